@@ -175,6 +175,8 @@ parameters! {
     ThroughTrees => "light through trees",
     /// Whether trees bear leaves.
     Leaves => "leaves",
+    /// What a class of points is.
+    ClassMeaning => "class of points",
     /// Place, direction and size of a window.
     Window => "window",
     // Roofs, parcels and plans

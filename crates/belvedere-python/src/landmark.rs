@@ -2,17 +2,15 @@
 
 use crate::arrays::to_1d;
 use crate::mesh::Mesh;
-use crate::observers::{eyes, places, skip, skipped, standing_observers};
+use crate::observers::standing_observers;
 use crate::outlook::Looking;
 use crate::scene::{Scene, unproven_as, unproven_choice};
-use crate::targets::{Cells, Column, Grid, grid_of, ground_points, remark_of};
+use crate::targets::{Column, Grid, grid_of, ground_points, remark_of};
 use crate::work::run;
-use belvedere::apps::ask::{self, LandmarkShape};
-use belvedere::apps::landmark::LandmarkParams;
-use belvedere::apps::protected_view::protected_view;
-use belvedere::apps::targets::{CellLevel, Measure};
+use belvedere::apps::ask::{self, LandmarkShape, Shared};
+use belvedere::apps::targets::Measure;
 use belvedere::control::Control;
-use belvedere::query::{BackFaces, SurfacePieces};
+use belvedere::query::{BackFaces, SurfacePieces, UnprovenAs};
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -99,7 +97,7 @@ impl Scene {
         Ok((answers.measures.into_iter().map(column).collect(), grid, remarks))
     }
 
-    /// Greatest heights above the ground and of the file, their grid, whether anything is protected, and what was skipped.
+    /// Greatest heights above the ground and of the file, their grid, and remarks.
     fn protected_view<'py>(
         &self,
         py: Python<'py>,
@@ -108,41 +106,35 @@ impl Scene {
         looking: Looking,
         unproven: &str,
         progress: Option<Py<PyAny>>,
-    ) -> PyResult<(Vec<Column<'py>>, Grid, bool, Vec<String>)> {
-        let unproven = unproven_as(unproven)?;
-        let points = ground_points(looking.ground.as_deref())?;
-        let usual = LandmarkParams::default();
-        let params = usual.with_unproven(unproven).with_max_range(looking.max_distance.unwrap_or(usual.max_range));
-        let places = places(&observers)?;
-        let inner = Arc::clone(&self.0);
-        let of_work = Arc::clone(&inner);
-        let (found, above, report) = run(py, progress, move |control| {
-            let inner = of_work;
-            let surface = landmark.surface(&inner, control)?;
-            let mut stand = eyes(&inner, &places, looking.observer_height, points, control)?;
-            let cells = Cells { side: looking.cell, height: None, level: CellLevel::Ground, ground: points };
-            let ground = cells.ground_within(&inner, inner.model().bounds().on_map(), control)?;
-            let scene = inner.blockers(unproven, control)?;
-            let report = skip(&scene, None, &mut stand, control)?;
-            let found = control.stage("computing limits", stand.len(), || {
-                protected_view(&scene, &surface, &stand, &ground.grid, &params, control)
-            })?;
-            let above = found.above_ground(&ground)?;
-            Ok(((found, ground.grid), above, report))
+    ) -> PyResult<(Vec<Column<'py>>, Grid, Vec<Bound<'py, PyDict>>)> {
+        let unproven = Some(unproven_as(unproven)?).filter(|&choice| choice != UnprovenAs::Reported);
+        let scene = Arc::clone(&self.0);
+        let usual = ask::ProtectedView::default();
+        let mut question = ask::ProtectedView {
+            observers: standing_observers(&observers, &scene)?,
+            observer_height: looking.observer_height.unwrap_or(usual.observer_height),
+            max_distance: looking.max_distance,
+            unproven,
+            ..usual
+        };
+        let ground = ground_points(looking.ground.as_deref())?;
+        let cells = ask::Places::Cells(ask::Cells { cell: looking.cell, ground, ..ask::Cells::default() });
+        let of_work = Arc::clone(&scene);
+        let answers = run(py, progress, move |control| {
+            ask::Ask::check(&question)?;
+            question.landmark = Some(Shared::new(landmark.surface(&of_work, control)?));
+            ask::ask(&of_work, &question, &cells, control)
         })?;
-        let (found, grid) = found;
-        let skipped = skipped(&inner, "observer", &report)?;
-        let frame = inner.frame();
-        #[expect(clippy::cast_possible_truncation, reason = "a height")]
-        let top = |&limit: &f32| frame.file_from_local([0.0, 0.0, f64::from(limit)])[2] as f32;
-        let tops = found.limits.values().iter().map(top).collect();
-        let is_protected = found.viewpoints.iter().any(|one| one.lines_protected > 0);
-        let column =
-            |name: &str, description, values: Vec<f32>| (name.to_owned(), description, to_1d(py, values).into_any());
+        let found = answers.found;
+        let grid = grid_of(&found.ground.ground.grid, scene.frame());
+        let column = |name: &str, description, values: &[f32]| {
+            (name.to_owned(), description, to_1d(py, values.to_vec()).into_any())
+        };
         let columns = vec![
-            column("height", "maximum height above the ground", above.values().to_vec()),
-            column("top", "maximum height", tops),
+            column("height", "maximum height above the ground", found.heights.values()),
+            column("top", "maximum height", found.tops.values()),
         ];
-        Ok((columns, grid_of(&grid, frame), is_protected, skipped))
+        let remarks = answers.remarks.iter().map(|remark| remark_of(py, remark)).collect::<PyResult<_>>()?;
+        Ok((columns, grid, remarks))
     }
 }

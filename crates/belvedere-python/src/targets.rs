@@ -37,15 +37,6 @@ pub(crate) struct Chosen {
     mesh: Option<Arc<Mesh>>,
 }
 
-/// Cells of a grid over the scene.
-#[derive(Clone, Copy)]
-pub(crate) struct Cells {
-    pub(crate) side: Option<f64>,
-    pub(crate) height: Option<f64>,
-    pub(crate) level: CellLevel,
-    pub(crate) ground: GroundPoints,
-}
-
 /// Which points are ground.
 pub(crate) fn ground_points(text: Option<&str>) -> PyResult<GroundPoints> {
     match text {
@@ -57,10 +48,6 @@ pub(crate) fn ground_points(text: Option<&str>) -> PyResult<GroundPoints> {
 }
 
 impl Wanted<'_> {
-    pub(crate) fn cell(&self) -> Option<f64> {
-        self.cell
-    }
-
     pub(crate) fn height(&self) -> Option<f64> {
         self.height
     }
@@ -112,22 +99,6 @@ pub(crate) fn ground_cloud(inner: &ask::Scene) -> belvedere::Result<&PointCloud>
         });
     }
     Ok(inner.cloud())
-}
-
-impl Cells {
-    /// The ground of the scene on a grid of these cells over the box from `low` to `high`.
-    pub(crate) fn ground_within(
-        &self,
-        inner: &ask::Scene,
-        (low, high): ([f64; 2], [f64; 2]),
-        control: &Control<'_>,
-    ) -> belvedere::Result<Ground> {
-        let cloud = ground_cloud(inner)?;
-        let [x, y, _] = cloud.frame.origin;
-        let grid = MapGrid::covering(low, high, self.side.unwrap_or_else(|| cell_for(low, high)), [x, y])?;
-        let params = GroundParams { points: self.ground, ..GroundParams::default() };
-        Ok(control.stage("computing ground", 0, || Ground::of_cloud(cloud, grid, &params, control))?.0)
-    }
 }
 
 /// Width and height of a grid in cells, and the six numbers of its affine transform in the unit of the file.

@@ -378,7 +378,7 @@ def test_cameras(scene, run_program, folder, standing):
         "cameras", "tile.laz", "--candidates", "posts.csv", "--private", "private.csv", "--coverage", 30, "--cell", 4,
         "--density", "none", "--headings", 6, "--tilt", 10, "--tilt", 40, "-o", "some.tif",
     )  # fmt: skip
-    with pytest.warns(belvedere.BelvedereWarning, match=r"candidate 1 .* inside an obstacle"):
+    with pytest.warns(belvedere.BelvedereWarning, match=r"candidate 2 .* inside an obstacle"):
         some = scene.cameras(
             posts, private=(x + 3, y + 9), coverage_percent=30, cell=4, density="none", headings=6, tilts_deg=(10, 40)
         )

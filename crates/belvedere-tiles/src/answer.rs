@@ -150,12 +150,7 @@ impl Surface {
 }
 
 /// How many targets are near the edge of the survey for light from `directions`.
-fn near_edge_count(
-    plan: &Plan,
-    targets: &Targets,
-    directions: &[[f64; 3]],
-    control: &Control<'_>,
-) -> Result<usize> {
+fn near_edge_count(plan: &Plan, targets: &Targets, directions: &[[f64; 3]], control: &Control<'_>) -> Result<usize> {
     let Some(coverage) = Coverage::of(plan.bounds()) else { return Ok(0) };
     let flags = near_edge(&coverage, &targets.positions, directions, control)?;
     Ok(flags.iter().filter(|flag| **flag == Some(true)).count())

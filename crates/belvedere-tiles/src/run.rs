@@ -83,7 +83,8 @@ impl RunReport {
     #[must_use]
     pub fn remarks(&self) -> Vec<Remark> {
         let damaged = self.damaged.iter().take(MAX_NAMED);
-        let damaged = damaged.map(|damage| Remark::warning("result-damaged", format!("{damage}; it was computed again")));
+        let damaged =
+            damaged.map(|damage| Remark::warning("result-damaged", format!("{damage}; it was computed again")));
         let unproven = (self.unproven_cells > 0).then(|| {
             let text =
                 format!("{} cells are unproven because tiles that may block them are missing", self.unproven_cells);

@@ -13,6 +13,7 @@
 //! | warnings and notes | [`remark`] |
 //! | figures beside the answer | [`report`] |
 
+mod cameras;
 mod horizon;
 mod irradiance;
 mod isovist;
@@ -22,17 +23,24 @@ mod line_of_sight;
 pub mod north;
 pub mod observers;
 pub mod places;
+mod protected_view;
 pub mod remark;
 pub mod report;
 pub mod scene;
 mod shadow;
+mod shared;
 mod sky_view;
 pub mod sun;
 mod sun_hours;
 mod sun_position;
 mod trees;
 mod viewshed;
+mod window_views;
+pub mod windows;
 
+pub use cameras::{
+    CameraGoal, CameraLens, CameraTargets, Cameras, CamerasFound, Candidates, ChosenCamera, GivenCamera, PrivatePlaces,
+};
 pub use horizon::{BelowLevel, Horizon, HorizonFound};
 pub use irradiance::{Irradiance, IrradianceFound, Radiation, Roofs, RoofsFound};
 pub use isovist::{IsovistColumn, Isovists, IsovistsFound};
@@ -42,16 +50,20 @@ pub use line_of_sight::{LinesOfSight, ProfileRows, SightColumns, SightsFound};
 pub use north::North;
 pub use observers::{Eyes, Standing};
 pub use places::{Cells, Places, Turned, remark_on_edge};
+pub use protected_view::{ProtectedView, ProtectedViewFound};
 pub use remark::{Remark, Severity};
 pub use report::Report;
 pub use scene::Scene;
 pub use shadow::{Shadow, ShadowFound, UNPROVEN};
+pub use shared::Shared;
 pub use sky_view::{SkyParts, SkyView};
 pub use sun::{Days, NamedSun, SunPlace, Suns};
 pub use sun_hours::{Prepared, SunHours, rules};
 pub use sun_position::{SunPosition, SunStands};
 pub use trees::ThroughTrees;
 pub use viewshed::{FarSeen, SeenSection, StandingObserver, ViewLimits, Viewshed, ViewshedFound, ViewshedTargets};
+pub use window_views::{WindowViews, WindowViewsFound};
+pub use windows::{GivenWindow, GivenWindows};
 
 use crate::targets::Measure;
 use belvedere_data::Result;
@@ -85,6 +97,12 @@ pub enum Question {
     Viewshed(Viewshed),
     /// From where a landmark is seen, and how much of it.
     Landmark(Landmark),
+    /// What is seen from windows.
+    WindowViews(WindowViews),
+    /// How high one may build without entering the view of a landmark.
+    ProtectedView(ProtectedView),
+    /// Which of many possible cameras to put up.
+    Cameras(Cameras),
 }
 
 /// What was found, of any question.
@@ -108,6 +126,12 @@ pub enum Found {
     Viewshed(Box<ViewshedFound>),
     /// Of [`Question::Landmark`].
     Landmark(LandmarkFound),
+    /// Of [`Question::WindowViews`].
+    WindowViews(WindowViewsFound),
+    /// Of [`Question::ProtectedView`].
+    ProtectedView(ProtectedViewFound),
+    /// Of [`Question::Cameras`].
+    Cameras(CamerasFound),
 }
 
 /// The answers to a question.
@@ -227,6 +251,9 @@ impl Ask for Question {
             Self::Isovist(question) => question.check(),
             Self::Viewshed(question) => question.check(),
             Self::Landmark(question) => question.check(),
+            Self::WindowViews(question) => question.check(),
+            Self::ProtectedView(question) => question.check(),
+            Self::Cameras(question) => question.check(),
         }
     }
 
@@ -244,6 +271,11 @@ impl Ask for Question {
                 question.answer(scene, places, context, control)?.map(|found| Found::Viewshed(Box::new(found)))
             }
             Self::Landmark(question) => question.answer(scene, places, context, control)?.map(Found::Landmark),
+            Self::WindowViews(question) => question.answer(scene, places, context, control)?.map(Found::WindowViews),
+            Self::ProtectedView(question) => {
+                question.answer(scene, places, context, control)?.map(Found::ProtectedView)
+            }
+            Self::Cameras(question) => question.answer(scene, places, context, control)?.map(Found::Cameras),
         })
     }
 }

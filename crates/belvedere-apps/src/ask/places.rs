@@ -91,10 +91,7 @@ impl Places {
                 control.stage("sampling mesh", 0, || Targets::of_mesh(mesh, scene.frame(), params))?
             }
         };
-        let count = targets.asked_count();
-        let outside = scene.model().coverage().map_or(0, |coverage| targets.leave_out_outside(&coverage));
-        context.report.places.targets_outside_cloud = Some(outside);
-        context.add(Remark::of_share("targets-outside-cloud", outside, count, "targets", OUTSIDE_CLOUD));
+        leave_out_outside(&mut targets, scene, context);
         Ok(Arc::new(targets))
     }
 
@@ -118,6 +115,14 @@ impl Places {
 /// Refuses places of another kind than a question is about.
 fn other<T>(parameter: Parameter, value: &str, expected: &'static str) -> Result<T> {
     Err(Error::InvalidParameter { parameter, value: value.to_owned(), expected })
+}
+
+/// Leaves out targets outside the cloud, reports how many, and warns of them.
+pub(super) fn leave_out_outside(targets: &mut Targets, scene: &Scene, context: &mut Context) {
+    let count = targets.asked_count();
+    let outside = scene.model().coverage().map_or(0, |coverage| targets.leave_out_outside(&coverage));
+    context.report.places.targets_outside_cloud = Some(outside);
+    context.add(Remark::of_share("targets-outside-cloud", outside, count, "targets", OUTSIDE_CLOUD));
 }
 
 fn own_points(scene: &Scene, turned: Turned) -> Result<Targets> {

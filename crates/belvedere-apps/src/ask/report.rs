@@ -1,12 +1,15 @@
 //! What is known of how answers came about. Sections that a question does not have are left out.
 
+use super::cameras::CamerasReport;
 use super::horizon::HorizonsSection;
 use super::landmark::LandmarkSection;
 use super::line_of_sight::{LineSection, PairsSection};
 use super::north::NorthReport;
 use super::observers::ObserversSection;
+use super::protected_view::ProtectedViewSection;
 use super::scene::KnownGround;
 use super::viewshed::SeenSection;
+use super::window_views::{ViewsSection, WindowsSection};
 use crate::edge::EdgeReport;
 use crate::eyes::EyesReport;
 use crate::landmark::LandmarkReport;
@@ -46,6 +49,9 @@ pub struct Report {
     /// Roofs that were found.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub roofs: Option<RoofsSection>,
+    /// The windows.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub windows: Option<WindowsSection>,
     /// What became of the places.
     #[serde(flatten)]
     pub places: PlacesReport,
@@ -85,6 +91,15 @@ pub struct Report {
     /// What trees let through.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub trees: Option<TreesSection>,
+    /// What windows see.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub views: Option<ViewsSection>,
+    /// What views of a landmark protect.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub protected_view: Option<ProtectedViewSection>,
+    /// Which cameras were chosen.
+    #[serde(flatten)]
+    pub cameras: Option<CamerasReport>,
     /// How measures are spread.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub measures: Option<MeasuresSection>,
@@ -119,6 +134,9 @@ pub struct PlacesReport {
     /// Targets outside the cloud, which have no answer.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub targets_outside_cloud: Option<usize>,
+    /// Targets inside an obstacle, which have no answer.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub targets_inside_obstacle: Option<usize>,
     /// Targets near its edge.
     #[serde(flatten)]
     pub edge: Option<EdgeReport>,
@@ -214,7 +232,9 @@ pub struct GroundSection {
 }
 
 impl GroundSection {
-    pub(super) fn of(known: &KnownGround) -> Self {
+    /// What is known of it.
+    #[must_use]
+    pub fn of(known: &KnownGround) -> Self {
         let grid = known.ground.grid;
         let source = match known.report.from {
             GroundPoints::Found => "detected points (no class 2)",

@@ -3,12 +3,14 @@
 use belvedere_core::medial::MedialBalls;
 use belvedere_data::vector::{length, sub};
 use belvedere_data::{Error, Result};
+use serde::{Deserialize, Serialize};
 
 /// How far the surface of a ball may lie from the point that it was made at, metres: rules of carving move balls by less.
 const FARTHEST_FROM_POINT: f64 = 1.0;
 
 /// A kind of what is seen from a window.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Seen {
     /// Nothing blocks, at the horizon or above it.
     Sky,

@@ -12,8 +12,8 @@ from . import _core
 from ._errors import wrong
 from ._inputs import Progress, check_finite, map_places, reporter
 from ._mesh import Mesh
-from ._outlook import _warn
 from ._raster import Raster
+from ._remarks import Remark, warned
 from ._sunlight import _place
 from ._table import Table
 from ._targets import Targets, coordinates, raster, wanted
@@ -49,6 +49,8 @@ class Placement:
         The number of new cameras below which no choice reaches the coverage that was wanted.
     cameras_to_choose_from : int
         Cameras that could be chosen: headings and tilts of all places.
+    remarks : tuple of Remark
+        What to know of the choice.
 
     Examples
     --------
@@ -67,6 +69,7 @@ class Placement:
     existing_only_percent: float
     least_possible_cameras: Union[int, None]
     cameras_to_choose_from: int
+    remarks: tuple[Remark, ...] = ()
 
 
 class Cameras:
@@ -180,7 +183,7 @@ class Cameras:
         -----
         BelvedereWarning
             Of given candidates and existing cameras that cannot look: inside an obstacle, below the ground, outside the
-            cloud.
+            cloud; and of targets outside the cloud.
 
         References
         ----------
@@ -232,10 +235,10 @@ class Cameras:
             "frequency": frequency_ghz,
             "fresnel_percent": fresnel_percent,
         }
-        columns, whole, counts, grid, skipped = self._core.cameras(
+        columns, whole, counts, grid, given_remarks = self._core.cameras(
             choice, wanted_targets, _place(None, grid_north=grid_north), unproven, reporter(progress)
         )
-        _warn(skipped)
+        remarks = warned(given_remarks, stacklevel=3)
         crs = self._core.crs
         of_targets: Raster | Table
         small = np.where(counts == np.uint32(2**32 - 1), 65535, np.minimum(counts, 65534)).astype(np.uint16)
@@ -245,7 +248,9 @@ class Cameras:
             text = "number of cameras that cover the cell, 65535 nodata"
             of_targets = raster(small, grid, crs, name="cameras", description=text, nodata=65535.0)
         places = columns.pop("place")
-        return Placement(Table(columns, places=places, crs=crs.text), of_targets, **whole)
+        cameras = Table(columns, places=places, crs=crs.text)
+        cameras.remarks = of_targets.remarks = remarks
+        return Placement(cameras, of_targets, remarks=remarks, **whole)
 
 
 def _existing(given: npt.ArrayLike | Table | None) -> npt.NDArray[np.float64]:

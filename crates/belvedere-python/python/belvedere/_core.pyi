@@ -204,7 +204,7 @@ class Scene:
         looking: dict[str, Any],
         unproven: str,
         progress: _Progress,
-    ) -> tuple[_Columns, _Grid, bool, list[str]]: ...
+    ) -> tuple[_Columns, _Grid, list[dict[str, Any]]]: ...
     def window_views(
         self, facades: dict[str, Any], place: dict[str, Any], unproven: str, progress: _Progress
     ) -> tuple[
@@ -212,7 +212,7 @@ class Scene:
         npt.NDArray[np.float64],
         list[str],
         tuple[list[str], list[tuple[str, npt.NDArray[Any]]]],
-        tuple[int, int, int, bool],
+        list[dict[str, Any]],
     ]: ...
     def cameras(
         self,
@@ -221,7 +221,7 @@ class Scene:
         place: dict[str, Any],
         unproven: str,
         progress: _Progress,
-    ) -> tuple[dict[str, npt.NDArray[Any]], dict[str, Any], npt.NDArray[np.uint32], _Grid | None, list[str]]: ...
+    ) -> tuple[dict[str, npt.NDArray[Any]], dict[str, Any], npt.NDArray[np.uint32], _Grid | None, list[dict[str, Any]]]: ...
     def irradiance(
         self, radiation: dict[str, Any], targets: dict[str, Any], trees: dict[str, Any], progress: _Progress
     ) -> _Results: ...

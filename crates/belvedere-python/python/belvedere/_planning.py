@@ -192,17 +192,16 @@ class Planning:
         what = _landmark(mesh, target_class, target_polygon, objects, spacing, seed)
         looking = _looking(observer_height=observer_height, cell=cell, ground=ground, max_distance=max_distance)
         places = map_places(observers, "observers", _OBSERVERS)
-        columns, grid, is_protected, skipped = self._core.protected_view(
-            what, places, looking, unproven, reporter(progress)
-        )
-        _warn(skipped)
-        if not is_protected:
-            _warn(["no observer sees any part of the landmark today: nothing is protected"])
+        columns, grid, given = self._core.protected_view(what, places, looking, unproven, reporter(progress))
+        remarks = warned(given, stacklevel=3)
         nan = float("nan")
         crs = self._core.crs
-        return Rasters(
-            {name: raster(values, grid, crs, name=name, description=text, nodata=nan) for name, text, values in columns}
-        )
+        found = {
+            name: raster(values, grid, crs, name=name, description=text, nodata=nan) for name, text, values in columns
+        }
+        for one in found.values():
+            one.remarks = remarks
+        return Rasters(found)
 
     def window_views(
         self,
@@ -255,7 +254,8 @@ class Planning:
         Warns
         -----
         BelvedereWarning
-            Of windows outside the cloud or in an obstacle, and of a scene whose points have no classes.
+            Of windows outside the cloud, near its edge or in an obstacle, and of a scene whose points have no classes or
+            mostly other ones than ASPRS has.
 
         References
         ----------
@@ -270,10 +270,7 @@ class Planning:
         100.0
         """
         check_finite(spacing=spacing)
-        if unproven not in ("report", "as-visible"):
-            raise wrong("unproven", f"'{unproven}'", "use 'report' or 'as-visible': a view has no targets to block")
-        is_table = isinstance(windows, Mapping)
-        if is_table and (spacing is not None or as_list(objects)):
+        if isinstance(windows, Mapping) and (spacing is not None or as_list(objects)):
             raise wrong("spacing and objects", "given", "they apply only to a mesh; leave them out")
         facades: dict[str, Any] = {
             "windows": _windows(windows) if isinstance(windows, Mapping) else [],
@@ -284,22 +281,19 @@ class Planning:
             "directions": directions,
             "classes": [] if classes is None else _classes(classes),
         }
-        columns, places, names, buildings, (outside, inside, count, has_classes) = self._core.window_views(
+        columns, places, names, buildings, given = self._core.window_views(
             facades, _place(None, grid_north=grid_north), unproven, reporter(progress)
         )
-        if outside:
-            _warn([f"{outside} of {count} places of windows are outside the cloud, where nothing is known"])
-        if inside and is_table:
-            _warn([f"{inside} of {count} places of windows are inside an obstacle and have no view"])
-        if not has_classes:
-            _warn(["the classes of points are unknown: only vegetation is known, from pulses"])
+        remarks = warned(given, stacklevel=3)
         found = {"object": np.array(names, object)} if names else {}
         found |= {name: values for name, _, values in columns}
         objects_table = None
         if names:
             of_names, of_columns = buildings
             objects_table = Table({"object": np.array(of_names, object), **dict(of_columns)})
-        return Table(found, places=places, crs=self._core.crs.text, objects=objects_table)
+        table = Table(found, places=places, crs=self._core.crs.text, objects=objects_table)
+        table.remarks = remarks
+        return table
 
     def comfort(
         self,

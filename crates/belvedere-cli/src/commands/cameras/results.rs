@@ -2,9 +2,7 @@
 
 use crate::commands::extension;
 use anyhow::Result;
-use belvedere::PointCloud;
-use belvedere::apps::cameras::{CoverageTable, Placement, Pose};
-use belvedere::apps::targets::Targets;
+use belvedere::apps::ask::{CamerasFound, ChosenCamera, Scene};
 use belvedere::figures::{MapLegend, MapMark, MapPicture, map_picture, write_png};
 use belvedere::ground::{Ground, highest_points};
 use belvedere::io::{Area, Cells, Spot, outlines, write_geojson, write_geojson_areas, write_table, write_tif_u16};
@@ -17,48 +15,17 @@ use std::path::Path;
 /// Colours of cells with no camera, one, two, three, and more.
 const COLORS: [[u8; 3]; 5] = [[120, 40, 50], [253, 225, 60], [110, 200, 95], [35, 145, 140], [60, 80, 165]];
 
-/// A camera that stands or is to be put up.
-struct Chosen {
-    /// Its row in the table.
-    row: usize,
-    is_new: bool,
-    /// What it adds to the coverage, percent; NaN for one that existed.
-    added: f64,
-    /// Numbers of the targets that it covers.
-    covered: Vec<usize>,
-}
-
 /// What is written.
-pub(super) struct Found<'a> {
-    poses: &'a [Pose],
-    chosen: Vec<Chosen>,
-    placed: &'a Placement,
-    targets: &'a Targets,
-    north: f64,
+pub(super) struct Shown<'a> {
+    pub(super) found: &'a CamerasFound,
+    pub(super) scene: &'a Scene,
 }
 
-impl<'a> Found<'a> {
-    /// The first `existing` of the `poses` stood already.
-    pub(super) fn new(
-        poses: &'a [Pose],
-        existing: usize,
-        table: &CoverageTable,
-        placed: &'a Placement,
-        targets: &'a Targets,
-        north: f64,
-    ) -> Self {
-        let covered = |row: usize| table.covered_by(row).filter(|&target| targets.weight(target) > 0.0).collect();
-        let stood = (0..existing).map(|row| Chosen { row, is_new: false, added: f64::NAN, covered: covered(row) });
-        let gains = placed.curve.windows(2).map(|pair| 100.0 * (pair[1] - pair[0]));
-        let new = placed.chosen.iter().zip(gains);
-        let new = new.map(|(&row, added)| Chosen { row, is_new: true, added, covered: covered(row) });
-        Self { poses, chosen: stood.chain(new).collect(), placed, targets, north }
-    }
-
-    pub(super) fn write(&self, output: &Path, cloud: &PointCloud) -> Result<()> {
-        match (extension(output).as_str(), self.targets.ground()) {
+impl Shown<'_> {
+    pub(super) fn write(&self, output: &Path) -> Result<()> {
+        match (extension(output).as_str(), self.found.targets.ground()) {
             ("csv", _) => self.write_targets(output),
-            ("png", Some(ground)) => self.write_map(output, ground, cloud),
+            ("png", Some(ground)) => self.write_map(output, ground),
             ("tif" | "tiff", Some(ground)) => self.write_counts(output, ground),
             _ => self.write_cameras(output),
         }
@@ -66,10 +33,10 @@ impl<'a> Found<'a> {
 
     /// Coverage after each camera.
     pub(super) fn write_curve(&self, output: &Path) -> Result<()> {
-        let new: Vec<&Chosen> = self.chosen.iter().filter(|camera| camera.is_new).collect();
+        let new: Vec<&ChosenCamera> = self.found.cameras.iter().filter(|camera| camera.is_new).collect();
         let numbers: Vec<Option<u64>> = (0..=new.len() as u64).map(Some).collect();
-        let added: Vec<f64> = std::iter::once(f64::NAN).chain(new.iter().map(|camera| camera.added)).collect();
-        let coverage: Vec<f64> = self.placed.curve.iter().map(|share| 100.0 * share).collect();
+        let added: Vec<f64> = std::iter::once(f64::NAN).chain(new.iter().map(|camera| camera.added_percent)).collect();
+        let coverage: Vec<f64> = self.found.placed.curve.iter().map(|share| 100.0 * share).collect();
         let cells = [
             ("new_cameras", Cells::Whole(&numbers)),
             ("added_percent", Cells::Real(&added, 4)),
@@ -78,16 +45,12 @@ impl<'a> Found<'a> {
         Ok(write_table(output, &cells)?)
     }
 
-    fn pose_of(&self, camera: &Chosen) -> Pose {
-        self.poses[camera.row]
-    }
-
     /// A point for each camera, with the properties that `--existing` reads.
     fn write_cameras(&self, output: &Path) -> Result<()> {
-        let frame = &self.targets.frame;
+        let frame = &self.found.targets.frame;
         let mut spots = Vec::new();
-        for (number, camera) in (1_u64..).zip(&self.chosen) {
-            let pose = self.pose_of(camera);
+        for (number, camera) in (1_u64..).zip(&self.found.cameras) {
+            let pose = camera.pose;
             if !pose.camera.eye.iter().all(|v| v.is_finite()) {
                 continue;
             }
@@ -96,7 +59,7 @@ impl<'a> Found<'a> {
             properties.insert("camera".to_owned(), number.into());
             properties.insert("existing".to_owned(), (!camera.is_new).into());
             if pose.heading.is_finite() {
-                let heading = (pose.heading + self.north).to_degrees().rem_euclid(360.0);
+                let heading = (pose.heading + self.found.grid_north).to_degrees().rem_euclid(360.0);
                 properties.insert("heading".to_owned(), rounded(heading, 3).into());
             }
             if pose.tilt.is_finite() {
@@ -104,10 +67,10 @@ impl<'a> Found<'a> {
             }
             properties.insert("fov".to_owned(), degrees(pose.width));
             if camera.is_new {
-                properties.insert("added_percent".to_owned(), rounded(camera.added, 4).into());
+                properties.insert("added_percent".to_owned(), rounded(camera.added_percent, 4).into());
             }
             properties.insert("covered_targets".to_owned(), camera.covered.len().into());
-            if self.targets.ground().is_none() {
+            if self.found.targets.ground().is_none() {
                 let numbers: Vec<Value> = camera.covered.iter().map(|target| (target + 1).into()).collect();
                 properties.insert("targets".to_owned(), numbers.into());
             }
@@ -121,24 +84,24 @@ impl<'a> Found<'a> {
     /// The cells that each camera covers.
     pub(super) fn write_footprints(&self, output: &Path) -> Result<()> {
         let mut areas = Vec::new();
-        for (number, camera) in (1..).zip(&self.chosen) {
+        for (number, camera) in (1..).zip(&self.found.cameras) {
             areas.extend(self.footprint(camera, number)?);
         }
-        write_geojson_areas(output, &areas, &self.targets.frame.crs)?;
+        write_geojson_areas(output, &areas, &self.found.targets.frame.crs)?;
         Ok(())
     }
 
     /// The cells that a camera covers, as an area.
-    fn footprint(&self, camera: &Chosen, number: u64) -> Result<Option<Area>> {
-        let Some(ground) = self.targets.ground() else { return Ok(None) };
+    fn footprint(&self, camera: &ChosenCamera, number: u64) -> Result<Option<Area>> {
+        let Some(ground) = self.found.targets.ground() else { return Ok(None) };
         let grid = ground.grid;
-        let mut cells = vec![false; self.targets.len()];
+        let mut cells = vec![false; self.found.targets.len()];
         camera.covered.iter().for_each(|&target| cells[target] = true);
         let polygons = outlines(&Raster::from_values(grid.width, grid.height, cells)?);
         if polygons.is_empty() {
             return Ok(None);
         }
-        let origin = self.targets.frame.origin;
+        let origin = self.found.targets.frame.origin;
         let place = |corner: [usize; 2]| {
             let [x, y] = grid.corner_at(corner);
             [x + origin[0], y + origin[1]]
@@ -152,28 +115,25 @@ impl<'a> Found<'a> {
 
     /// The number of cameras of each cell; none where nothing is asked.
     fn counts(&self) -> impl Iterator<Item = Option<u32>> + '_ {
-        (0..self.targets.len()).map(|row| {
-            let counts = self.targets.is_asked(row) && self.targets.weight(row) > 0.0;
-            counts.then(|| self.placed.counts[row])
-        })
+        (0..self.found.targets.len()).map(|row| self.found.count(row))
     }
 
     fn write_counts(&self, output: &Path, ground: &Ground) -> Result<()> {
         let values = self.counts().map(ResultKind::count).collect();
         let raster = Raster::from_values(ground.grid.width, ground.grid.height, values)?;
-        let place = georeference(&ground.grid, &self.targets.frame);
+        let place = georeference(&ground.grid, &self.found.targets.frame);
         let what = "number of cameras that cover the cell, 65535 nodata";
         Ok(write_tif_u16(output, &raster, Some(&place), Some(ResultKind::NO_COUNT), Some(what))?)
     }
 
-    fn write_map(&self, output: &Path, ground: &Ground, cloud: &PointCloud) -> Result<()> {
-        let relief = highest_points(&cloud.positions, ground);
-        let mark = |(number, camera): (usize, &Chosen)| {
-            let pose = self.pose_of(camera);
+    fn write_map(&self, output: &Path, ground: &Ground) -> Result<()> {
+        let relief = highest_points(&self.scene.ground_cloud()?.positions, ground);
+        let mark = |(number, camera): (usize, &ChosenCamera)| {
+            let pose = camera.pose;
             let place = ground.grid.cell_position([pose.camera.eye[0], pose.camera.eye[1]])?;
             Some(MapMark { place, view: Some([pose.heading, pose.width]), label: number.to_string() })
         };
-        let marks: Vec<MapMark> = (1..).zip(&self.chosen).filter_map(mark).collect();
+        let marks: Vec<MapMark> = (1..).zip(&self.found.cameras).filter_map(mark).collect();
         let most = self.counts().flatten().max().map_or(1, |most| (most as usize).clamp(1, COLORS.len() - 1));
         let color = |count: u32| COLORS.get((count as usize).min(most)).copied();
         let colors: Vec<Option<[u8; 3]>> = self.counts().map(|count| count.and_then(color)).collect();
@@ -182,7 +142,7 @@ impl<'a> Found<'a> {
         let map = MapPicture {
             relief: &relief,
             cell: ground.grid.cell,
-            place: Some(&georeference(&ground.grid, &self.targets.frame)),
+            place: Some(&georeference(&ground.grid, &self.found.targets.frame)),
             colors: &colors,
             marks: &marks,
             mark_name: "camera",
@@ -193,18 +153,19 @@ impl<'a> Found<'a> {
     }
 
     fn write_targets(&self, output: &Path) -> Result<()> {
-        let rows: Vec<usize> = (0..self.targets.len()).filter(|&row| self.targets.is_asked(row)).collect();
-        let mut cameras: Vec<Vec<String>> = vec![Vec::new(); self.targets.len()];
-        for (number, camera) in (1..).zip(&self.chosen) {
+        let CamerasFound { targets, placed, .. } = self.found;
+        let rows: Vec<usize> = (0..targets.len()).filter(|&row| targets.is_asked(row)).collect();
+        let mut cameras: Vec<Vec<String>> = vec![Vec::new(); targets.len()];
+        for (number, camera) in (1..).zip(&self.found.cameras) {
             camera.covered.iter().for_each(|&target| cameras[target].push(i32::to_string(&number)));
         }
         let places: Vec<[f64; 3]> =
-            rows.iter().map(|&row| self.targets.frame.to_file_coordinates(self.targets.positions[row])).collect();
+            rows.iter().map(|&row| targets.frame.to_file_coordinates(targets.positions[row])).collect();
         let axis = |axis: usize| places.iter().map(|place| place[axis]).collect::<Vec<f64>>();
         let [x, y, z] = [0, 1, 2].map(axis);
-        let weights: Vec<f64> = rows.iter().map(|&row| self.targets.weight(row)).collect();
+        let weights: Vec<f64> = rows.iter().map(|&row| targets.weight(row)).collect();
         let numbers: Vec<Option<u64>> = rows.iter().map(|&row| Some(row as u64 + 1)).collect();
-        let counts: Vec<Option<u64>> = rows.iter().map(|&row| Some(u64::from(self.placed.counts[row]))).collect();
+        let counts: Vec<Option<u64>> = rows.iter().map(|&row| Some(u64::from(placed.counts[row]))).collect();
         let lists: Vec<String> = rows.iter().map(|&row| cameras[row].join(" ")).collect();
         let lists: Vec<&str> = lists.iter().map(String::as_str).collect();
         let cells = [

@@ -1,27 +1,19 @@
-//! What cameras are to cover, and what they must not see: from flags and files to targets.
+//! What cameras are to cover, and what they must not see: from flags and files to a question.
 
 use crate::arguments::{CameraTargets, Usage};
 use crate::commands::extension;
-use crate::commands::mesh_targets::{is_mesh, mesh_of};
+use crate::commands::mesh_targets::is_mesh;
 use crate::commands::query::points_of_file;
-use crate::commands::sights::leave_out_outside;
-use crate::pipeline::Scene;
+use crate::pipeline::mesh_in;
 use crate::run::Run;
-use crate::summary::Summary;
 use anyhow::{Result, bail};
-use belvedere::PointCloud;
-use belvedere::apps::cameras::{CAMERA_TARGET_HEIGHT, WeightedArea, keep_within};
-use belvedere::apps::targets::{CellParams, MeshParams, Targets, set_on_ground};
-use belvedere::ground::Ground;
+use belvedere::Frame;
+use belvedere::apps::ask::{self, Cells, Places, PrivatePlaces, Standing};
+use belvedere::apps::cameras::WeightedArea;
+use belvedere::apps::targets::MeshParams;
 use belvedere::io::{RowsAre, Shape, read_geojson, read_observers};
 use std::path::Path;
-
-/// The scene, with the cloud that its ground comes from.
-pub(super) struct Site<'a> {
-    pub(super) scene: &'a Scene,
-    pub(super) cloud: &'a PointCloud,
-    pub(super) ground: &'a Ground,
-}
+use std::sync::Arc;
 
 /// What a file of targets holds.
 enum Kind {
@@ -60,76 +52,52 @@ pub(super) fn check(flags: &CameraTargets, are_cells: bool) -> Result<()> {
     Ok(())
 }
 
-/// The targets of the flags.
-pub(super) fn targets(flags: &CameraTargets, site: &Site<'_>, run: &mut Run) -> Result<Targets> {
-    let frame = &site.scene.cloud.frame;
-    let mut targets = match flags.targets.as_deref().map(|path| (path, kind(path))) {
-        None => cells(flags, site)?,
+/// What is to be covered: places, or what is added to `targets`.
+pub(super) fn places(
+    flags: &CameraTargets,
+    frame: &Frame,
+    targets: &mut ask::CameraTargets,
+    run: &mut Run,
+) -> Result<Places> {
+    let cells = || Places::Cells(Cells { cell: flags.cell, ..Cells::default() });
+    match flags.targets.as_deref().map(|path| (path, kind(path))) {
+        None => Ok(cells()),
         Some((path, Kind::Areas)) => {
-            let mut targets = cells(flags, site)?;
-            keep_within(&mut targets, &areas(path, site)?);
-            targets
+            targets.areas = areas(path, frame)?;
+            Ok(cells())
         }
-        Some((path, Kind::Places)) => places(path, flags, site)?,
+        Some((path, Kind::Places)) => {
+            (targets.points, targets.weights) = points(path, frame)?;
+            Ok(Places::Scene)
+        }
         Some((path, Kind::Mesh)) => {
-            let mesh = mesh_of(path, site.scene, run)?;
+            let mesh = mesh_in(path, &frame.crs, run)?;
             let usual = MeshParams::default().with_seed(run.seed);
             let params = flags.spacing.map_or(usual, |spacing| usual.with_spacing(spacing));
-            Targets::of_mesh(&mesh, frame, &params)?
+            Ok(Places::Mesh(Arc::new(mesh), params))
         }
         Some((path, Kind::Cloud)) => {
             let cloud = points_of_file(path, None, frame, run)?;
-            Targets::of_points(&cloud, cloud.attributes.normals.clone())
+            let normals = cloud.attributes.normals.clone();
+            Ok(Places::Cloud(Arc::new(cloud), normals))
         }
-    };
-    leave_out_outside(&mut targets, site.scene, &mut run.summary);
-    if targets.asked_count() == 0 {
-        bail!("no target is left: are --targets in the coordinates of the cloud, on known ground?");
     }
-    run.summary.add("targets", targets.asked_count());
-    Ok(targets)
 }
 
 /// The places that no camera may see.
-pub(super) fn private(path: &Path, flags: &CameraTargets, site: &Site<'_>, summary: &mut Summary) -> Result<Targets> {
-    let targets = match kind(path) {
-        Kind::Areas => {
-            let mut targets = cells(flags, site)?;
-            keep_within(&mut targets, &areas(path, site)?);
-            targets
-        }
-        Kind::Places => places(path, flags, site)?,
+pub(super) fn private(path: &Path, frame: &Frame) -> Result<PrivatePlaces> {
+    match kind(path) {
+        Kind::Areas => Ok(PrivatePlaces::Areas(areas(path, frame)?)),
+        Kind::Places => Ok(PrivatePlaces::Points(points(path, frame)?.0)),
         _ => {
             let path = path.display();
-            return Err(Usage(format!("--private {path}: use points (.csv .geojson) or polygons (.geojson)")).into());
+            Err(Usage(format!("--private {path}: use points (.csv .geojson) or polygons (.geojson)")).into())
         }
-    };
-    if targets.asked_count() == 0 {
-        let path = path.display();
-        bail!("{path}: no private place is left; is it in the coordinates of the cloud, and larger than a --cell?");
     }
-    summary.add("private_places", targets.asked_count());
-    Ok(targets)
-}
-
-fn height(flags: &CameraTargets) -> f64 {
-    flags.target_height.unwrap_or(CAMERA_TARGET_HEIGHT)
-}
-
-/// The cells of the ground that are not under a roof.
-fn cells(flags: &CameraTargets, site: &Site<'_>) -> Result<Targets> {
-    let params = CellParams::default().with_height(height(flags));
-    let control = belvedere::control::Control::none();
-    let (mut targets, _) = Targets::of_cells(site.cloud, site.ground.clone(), &params, &control)?;
-    if let Some(added) = site.scene.model.added() {
-        targets.set_on_added(added, &params);
-    }
-    Ok(targets)
 }
 
 /// The polygons of a file with their weights.
-fn areas(path: &Path, site: &Site<'_>) -> Result<Vec<WeightedArea>> {
-    let frame = &site.scene.cloud.frame;
+fn areas(path: &Path, frame: &Frame) -> Result<Vec<WeightedArea>> {
     let on_map = |corner: &[f64; 3]| [corner[0] - frame.origin[0], corner[1] - frame.origin[1]];
     let mut found = Vec::new();
     for feature in read_geojson(path, &frame.crs)? {
@@ -138,7 +106,7 @@ fn areas(path: &Path, site: &Site<'_>) -> Result<Vec<WeightedArea>> {
         };
         let weight = match feature.properties.get("weight") {
             None => 1.0,
-            Some(value) => match value.as_f64().filter(|weight| *weight >= 0.0) {
+            Some(value) => match value.as_f64() {
                 Some(weight) => weight,
                 None => bail!("{}: the weight {value} must be a number, 0 or more", path.display()),
             },
@@ -149,21 +117,15 @@ fn areas(path: &Path, site: &Site<'_>) -> Result<Vec<WeightedArea>> {
     Ok(found)
 }
 
-/// The points of a file with their weights.
-fn places(path: &Path, flags: &CameraTargets, site: &Site<'_>) -> Result<Targets> {
-    let frame = &site.scene.cloud.frame;
-    let (mut positions, mut heights, mut weights): (Vec<[f64; 3]>, Vec<f64>, Vec<f64>) = Default::default();
+/// The points of a file, and the weight of each.
+fn points(path: &Path, frame: &Frame) -> Result<(Vec<Standing>, Vec<f64>)> {
+    let (mut points, mut weights) = (Vec::new(), Vec::new());
     for row in read_observers(path, &frame.crs, RowsAre::Places)? {
         for corner in &row.corners {
-            positions.push(std::array::from_fn(|i| corner[i] - frame.origin[i]));
-            heights.push(row.height.unwrap_or(height(flags)));
+            let place = std::array::from_fn(|i| corner[i] - frame.origin[i]);
+            points.push(Standing { place, height: row.height });
             weights.push(row.weight.unwrap_or(1.0));
         }
     }
-    if let Some(bad) = weights.iter().find(|weight| !(**weight >= 0.0 && weight.is_finite())) {
-        bail!("{}: the weight {bad} must be a number, 0 or more", path.display());
-    }
-    set_on_ground(positions.iter_mut().zip(heights), site.ground);
-    let targets = Targets::of_places(&positions, frame.clone());
-    Ok(Targets { weights, ..targets })
+    Ok((points, weights))
 }

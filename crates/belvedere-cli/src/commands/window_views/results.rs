@@ -1,18 +1,17 @@
 //! Views from windows as files.
 
 use crate::commands::extension;
-use crate::commands::sights::ground;
-use crate::commands::windows::Windows;
-use crate::pipeline::Scene;
+use crate::commands::windows::Column;
 use crate::run::Run;
-use anyhow::{Result, bail};
-use belvedere::PointCloud;
+use crate::summary::Summary;
+use anyhow::Result;
+use belvedere::apps::ask::report::GroundSection;
+use belvedere::apps::ask::{self, Scene, WindowViewsFound};
 use belvedere::apps::targets::{Measure, Targets};
-use belvedere::apps::viewshed::cell_for;
-use belvedere::apps::window_views::{Seen, WindowView, named_columns, views_by_name};
+use belvedere::apps::window_views::{Seen, named_columns};
 use belvedere::figures::{MapLegend, MapPicture, map_picture, ramp, write_png};
-use belvedere::ground::{GroundPoints, MapGrid, highest_points};
-use belvedere::io::{Cells, Spot, WriteReport, with_columns_read, write_geojson, write_table};
+use belvedere::ground::{GroundPoints, highest_points};
+use belvedere::io::{Cells, Spot, TextRows, WriteReport, with_columns_read, write_geojson, write_table};
 use belvedere::report::rounded;
 use belvedere::results::{TakenFrom, georeference, write_measures};
 use serde_json::{Map, Value};
@@ -25,23 +24,27 @@ const DOT: f64 = 1.0 / 100.0;
 const NO_WINDOW_COLOR: [u8; 3] = [226; 3];
 
 /// What is written.
-pub(super) struct Found<'a> {
-    pub(super) windows: &'a Windows,
-    pub(super) views: &'a [WindowView],
+pub(super) struct Shown<'a> {
+    pub(super) scene: &'a Scene,
+    pub(super) found: &'a WindowViewsFound,
     pub(super) measures: &'a [Measure],
+    /// Where and what each window is.
+    pub(super) columns: Vec<Column>,
     /// Building of each window; empty where that is not known.
-    pub(super) names: &'a [String],
+    pub(super) names: Vec<String>,
+    /// The rows of a table of windows.
+    pub(super) rows: &'a TextRows,
 }
 
-impl Found<'_> {
+impl Shown<'_> {
     /// A row or a point for each window.
-    pub(super) fn write(&self, output: &Path, cloud: &PointCloud) -> belvedere::Result<WriteReport> {
+    pub(super) fn write(&self, output: &Path) -> belvedere::Result<WriteReport> {
         match extension(output).as_str() {
             "csv" => self.write_table(output).map(|()| WriteReport::default()),
-            "geojson" => self.write_geojson(output, cloud).map(|()| WriteReport::default()),
+            "geojson" => self.write_geojson(output).map(|()| WriteReport::default()),
             _ => {
-                let centers: Vec<[f64; 3]> = self.windows.windows.iter().map(|window| window.center).collect();
-                let targets = Targets::of_places(&centers, cloud.frame.clone());
+                let centers: Vec<[f64; 3]> = self.found.windows.iter().map(|window| window.center).collect();
+                let targets = Targets::of_places(&centers, self.scene.frame().clone());
                 write_measures(output, &targets, TakenFrom::Nothing, self.measures)
             }
         }
@@ -50,28 +53,28 @@ impl Found<'_> {
     fn write_table(&self, output: &Path) -> belvedere::Result<()> {
         let of_measure = |measure: &Measure| measure.values.iter().map(|&v| f64::from(v)).collect();
         let values: Vec<Vec<f64>> = self.measures.iter().map(of_measure).collect();
-        let numbers: Vec<Option<u64>> = (1..).take(self.views.len()).map(Some).collect();
-        let names: Vec<&str> = self.windows.names.iter().map(String::as_str).collect();
+        let numbers: Vec<Option<u64>> = (1..).take(self.found.views.len()).map(Some).collect();
+        let names: Vec<&str> = self.found.names.iter().map(String::as_str).collect();
         let mut cells = vec![("window", Cells::Whole(&numbers))];
         if !names.is_empty() {
             cells.push(("name", Cells::Words(&names)));
         }
-        cells.extend(self.windows.columns.iter().map(|(name, values, d)| (*name, Cells::Real(values, *d))));
+        cells.extend(self.columns.iter().map(|(name, values, d)| (*name, Cells::Real(values, *d))));
         let measured = self.measures.iter().zip(&values);
         cells.extend(measured.map(|(m, values)| (m.name.as_str(), Cells::Real(values, m.decimals))));
-        let given = &self.windows.given;
-        let read = given.columns(0..given.row_count());
+        let read = self.rows.columns(0..self.rows.row_count());
         write_table(output, &with_columns_read(&read, &["x", "y", "z", "azimuth", "tilt"], &cells))
     }
 
-    fn write_geojson(&self, output: &Path, cloud: &PointCloud) -> belvedere::Result<()> {
+    fn write_geojson(&self, output: &Path) -> belvedere::Result<()> {
+        let frame = self.scene.frame();
         let spot = |(row, window): (usize, &belvedere::apps::targets::Window)| {
             let mut properties: Map<String, Value> = Map::new();
             properties.insert("window".to_owned(), (row + 1).into());
             if let Some(name) = self.names.get(row) {
                 properties.insert("name".to_owned(), name.as_str().into());
             }
-            let columns = self.windows.columns.iter().filter(|(name, ..)| ["azimuth", "tilt"].contains(name));
+            let columns = self.columns.iter().filter(|(name, ..)| ["azimuth", "tilt"].contains(name));
             let columns = columns.map(|(name, values, decimals)| (*name, values[row], *decimals));
             let measures = self.measures.iter().map(|m| (m.name.as_str(), f64::from(m.values[row]), m.decimals));
             for (name, value, decimals) in columns.chain(measures) {
@@ -83,18 +86,16 @@ impl Found<'_> {
                 };
                 properties.insert(name.to_owned(), value);
             }
-            let place: [f64; 3] = std::array::from_fn(|axis| window.center[axis] + cloud.frame.origin[axis]);
+            let place: [f64; 3] = std::array::from_fn(|axis| window.center[axis] + frame.origin[axis]);
             Spot { place, properties }
         };
-        let spots: Vec<Spot> = self.windows.windows.iter().enumerate().map(spot).collect();
-        write_geojson(output, &spots, &[], &cloud.frame.crs).map(|_| ())
+        let spots: Vec<Spot> = self.found.windows.iter().enumerate().map(spot).collect();
+        write_geojson(output, &spots, &[], &frame.crs).map(|_| ())
     }
 
     /// A row for each building.
     pub(super) fn write_buildings(&self, output: &Path) -> Result<()> {
-        let names: Vec<&str> = self.names.iter().map(String::as_str).collect();
-        let weights: Vec<f64> = self.windows.windows.iter().map(|window| window.area.unwrap_or(1.0)).collect();
-        let found = views_by_name(self.views, &names, &weights);
+        let found = self.found.by_name(&self.names);
         let names: Vec<&str> = found.iter().map(|named| named.name.as_str()).collect();
         let counts: Vec<Option<u64>> = found.iter().map(|named| Some(named.windows as u64)).collect();
         let columns = named_columns(&found);
@@ -104,25 +105,14 @@ impl Found<'_> {
     }
 
     /// The share of one kind as dots on a map.
-    pub(super) fn write_map(
-        &self,
-        output: &Path,
-        title: &str,
-        shown: Seen,
-        (scene, cloud): (&Scene, &PointCloud),
-        run: &mut Run,
-    ) -> Result<()> {
-        if cloud.is_empty() {
-            bail!("{}: a map needs points, and a ball file has none; give --classes-of", output.display());
-        }
-        let (low, high) = scene.model.bounds().on_map();
-        let origin = [cloud.frame.origin[0], cloud.frame.origin[1]];
-        let grid = MapGrid::covering(low, high, cell_for(low, high), origin)?;
-        let ground = ground(cloud, GroundPoints::Auto, grid, run)?;
-        let relief = highest_points(&cloud.positions, &ground);
+    pub(super) fn write_map(&self, output: &Path, title: &str, shown: Seen, run: &mut Run) -> Result<()> {
+        let grid = ask::Cells::default().grid(self.scene)?;
+        let known = self.scene.ground(grid, GroundPoints::Auto, &run.control())?;
+        run.summary.add("ground", Summary::of(&GroundSection::of(&known)));
+        let relief = highest_points(&self.scene.cloud().positions, &known.ground);
         let mut sums = vec![(0.0, 0.0); grid.len()];
         let radius = (DOT * grid.width.max(grid.height) as f64).max(1.0);
-        for (window, view) in self.windows.windows.iter().zip(self.views) {
+        for (window, view) in self.found.windows.iter().zip(&self.found.views) {
             let share = view.shares[shown as usize];
             let place = grid.cell_position([window.center[0], window.center[1]]);
             let Some(place) = place.filter(|_| share.is_finite()) else { continue };
@@ -137,7 +127,7 @@ impl Found<'_> {
             .iter()
             .map(|share| Some(if share.is_finite() { ramp(share / most) } else { NO_WINDOW_COLOR }))
             .collect();
-        let place = georeference(&grid, &cloud.frame);
+        let place = georeference(&grid, self.scene.frame());
         let legend =
             MapLegend::Ramp("percent of the view", [0.0, 100.0 * most], &[(NO_WINDOW_COLOR, "no window with a view")]);
         let map = MapPicture::of_colors(&relief, grid.cell, Some(&place), &colors, title, legend);

@@ -1,0 +1,294 @@
+//! Cameras: which of many possible ones to put up, with a proven bound on the best choice.
+
+mod lens;
+mod report;
+mod standing;
+mod targets;
+
+pub use lens::CameraLens;
+pub(super) use report::CamerasReport;
+pub use standing::{Candidates, GivenCamera};
+pub use targets::{CameraTargets, PrivatePlaces};
+
+use super::report::{GroundSection, LinesSection};
+use super::{Answers, Ask, Cells, Context, North, Places, Scene};
+use crate::cameras::{
+    CoverageParams, CoverageReport, CoverageTable, FREE_FRESNEL_SHARE, FresnelZone, Goal, Mount, Placement,
+    PlacementParams, Pose, counted_weights, coverage, leave_out_private, place_cameras,
+};
+use crate::landmark::observer_cell_for;
+use crate::targets::Targets;
+use belvedere_core::ground::Ground;
+use belvedere_core::query::{EarthParams, MedialScene, RadioWave, UnprovenAs};
+use belvedere_data::control::Control;
+use belvedere_data::{Error, Parameter, Result};
+use report::ChoiceSection;
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+/// Which of many possible cameras to put up so that they cover much of some places.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Cameras {
+    /// What they are chosen for.
+    pub goal: CameraGoal,
+    /// Cameras that each target needs, 1 or more; one with fewer counts in proportion. Default 1.
+    pub per_target: u32,
+    /// Most branches of the search for the proven optimum, 0 for no search; `None` for about half a minute.
+    pub search_limit: Option<usize>,
+    /// Where they could stand.
+    pub candidates: Candidates,
+    /// Cameras that stay.
+    #[serde(skip)]
+    pub existing: Vec<GivenCamera>,
+    /// Height of cameras above the ground or the roof, metres; `None` for 4 above the ground and 1 above roofs.
+    pub camera_height: Option<f64>,
+    /// How they look.
+    pub lens: CameraLens,
+    /// What they are to cover, and what they must not see.
+    pub targets: CameraTargets,
+    /// From which north azimuths count.
+    pub north: North,
+    /// How lines of sight run over the earth.
+    #[serde(skip)]
+    pub earth: EarthParams,
+    /// Frequency of radio links, GHz, 0.001 to 1000: a target is only covered if the first Fresnel zone is free too. `None` for no links.
+    pub frequency_ghz: Option<f64>,
+    /// Share of the radius of that zone that must be free, percent, above 0 to 100; `None` for 60.
+    pub fresnel_percent: Option<f64>,
+    /// What targets count as that nothing blocks but that are not proven visible; they are covered only where they count as visible. What is given
+    /// needs pulses.
+    pub unproven: Option<UnprovenAs>,
+}
+
+/// What cameras are chosen for.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum CameraGoal {
+    /// To cover as much as possible with so many new ones.
+    Count(usize),
+    /// To cover so many percent of the targets, above 0 to 100, with as few new ones as possible.
+    CoveragePercent(f64),
+}
+
+impl Default for Cameras {
+    fn default() -> Self {
+        Self {
+            goal: CameraGoal::Count(1),
+            per_target: 1,
+            search_limit: None,
+            candidates: Candidates::default(),
+            existing: Vec::new(),
+            camera_height: None,
+            lens: CameraLens::default(),
+            targets: CameraTargets::default(),
+            north: North::True,
+            earth: EarthParams::default(),
+            frequency_ghz: None,
+            fresnel_percent: None,
+            unproven: None,
+        }
+    }
+}
+
+/// A camera that stays or is to be put up.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ChosenCamera {
+    /// Where it stands and how it looks.
+    pub pose: Pose,
+    /// Whether it is to be put up.
+    pub is_new: bool,
+    /// What it adds to the coverage, percent; NaN for one that stays.
+    pub added_percent: f64,
+    /// Rows of the targets that it covers.
+    pub covered: Vec<usize>,
+}
+
+/// The cameras that were chosen.
+pub struct CamerasFound {
+    /// Those that stay, then the new ones, those that add most first.
+    pub cameras: Vec<ChosenCamera>,
+    /// What is proven of the choice.
+    pub placed: Placement,
+    /// What is to be covered.
+    pub targets: Targets,
+    /// Number of cameras that could be chosen.
+    pub candidates: usize,
+    /// Azimuth of grid north from the north that azimuths count from, radians.
+    pub grid_north: f64,
+}
+
+/// What cameras stand on and look through.
+struct Site<'a> {
+    scene: &'a Scene,
+    blockers: &'a Arc<MedialScene>,
+    ground: &'a Ground,
+    grid_north: f64,
+}
+
+impl CamerasFound {
+    /// How many cameras cover a target; `None` for one that does not count.
+    #[must_use]
+    pub fn count(&self, row: usize) -> Option<u32> {
+        let counts = self.targets.is_asked(row) && self.targets.weight(row) > 0.0;
+        self.placed.counts.get(row).copied().filter(|_| counts)
+    }
+
+    fn new(
+        poses: &[Pose],
+        existing: usize,
+        table: &CoverageTable,
+        placed: Placement,
+        targets: Targets,
+        grid_north: f64,
+    ) -> Self {
+        let covered = |row: usize| table.covered_by(row).filter(|&target| targets.weight(target) > 0.0).collect();
+        let stays = (0..existing).map(|row| (row, false, f64::NAN));
+        let gains = placed.curve.windows(2).map(|pair| 100.0 * (pair[1] - pair[0]));
+        let new = placed.chosen.iter().zip(gains).map(|(&row, added)| (row, true, added));
+        let chosen = |(row, is_new, added_percent): (usize, bool, f64)| {
+            let pose = *poses.get(row)?;
+            Some(ChosenCamera { pose, is_new, added_percent, covered: covered(row) })
+        };
+        let cameras = stays.chain(new).filter_map(chosen).collect();
+        Self { cameras, placed, targets, candidates: poses.len() - existing, grid_north }
+    }
+}
+
+impl Cameras {
+    fn coverage_params(&self) -> Result<CoverageParams> {
+        let share = self.fresnel_percent.map_or(FREE_FRESNEL_SHARE, |percent| percent / 100.0);
+        let zone =
+            self.frequency_ghz.map(|ghz| RadioWave::of_frequency(ghz).and_then(|wave| FresnelZone::new(wave, share)));
+        Ok(CoverageParams::default()
+            .with_density(self.lens.lens()?.required_density(self.lens.density)?)
+            .with_earth(self.earth)
+            .with_unproven(self.unproven.unwrap_or(UnprovenAs::Reported))
+            .with_zone(zone.transpose()?))
+    }
+
+    fn placement_params(&self, existing: usize) -> PlacementParams {
+        let goal = match self.goal {
+            CameraGoal::Count(count) => Goal::Count(count),
+            CameraGoal::CoveragePercent(percent) => Goal::Coverage(percent / 100.0),
+        };
+        PlacementParams::new(goal)
+            .with_existing((0..existing).collect())
+            .with_required(self.per_target)
+            .with_search_limit(self.search_limit)
+    }
+
+    /// The cells that are targets, or on which the ground below others is known.
+    fn cells(&self, scene: &Scene, places: &Places) -> Cells {
+        let (low, high) = scene.model().bounds().on_map();
+        let given = match places {
+            Places::Cells(cells) => cells.clone(),
+            _ => Cells::default(),
+        };
+        let cell = given.cell.unwrap_or_else(|| observer_cell_for(low, high));
+        Cells { cell: Some(cell), height: Some(self.targets.height), ground: self.targets.ground, ..given }
+    }
+
+    /// The cameras that stay, then those to choose from, which must not see private places.
+    fn poses(
+        &self,
+        private: Option<&Targets>,
+        site: &Site<'_>,
+        report: &mut CamerasReport,
+        context: &mut Context,
+        control: &Control<'_>,
+    ) -> Result<(Vec<Pose>, Vec<Pose>)> {
+        let existing = self.existing_poses(site, report, context, control)?;
+        let mut candidates = self.candidate_poses(site, report, context, control)?;
+        let count = candidates.len();
+        if let Some(private) = private {
+            control.stage("testing private places", count, || {
+                leave_out_private(site.blockers, &mut candidates, private, &self.earth, control)
+            })?;
+        }
+        report.cameras_to_choose_from =
+            ChoiceSection { count, see_private_places: count - candidates.len(), existing: existing.len() };
+        if count == 0 {
+            let what = "all lie inside obstacles, below the ground or outside the cloud".to_owned();
+            return Err(Error::NoObserver { who: "place for a camera", what });
+        }
+        if candidates.is_empty() {
+            let what =
+                format!("all {count} have a private place in their picture; give other candidates, or more headings");
+            return Err(Error::NoObserver { who: "camera", what });
+        }
+        Ok((existing, candidates))
+    }
+}
+
+impl Ask for Cameras {
+    type Found = CamerasFound;
+
+    fn check(&self) -> Result<()> {
+        self.earth.validate()?;
+        self.coverage_params()?;
+        if self.per_target == 0 {
+            return Err(Error::InvalidParameter {
+                parameter: Parameter::RequiredCameras,
+                value: "0".to_owned(),
+                expected: "1 or more",
+            });
+        }
+        self.lens.mounting()?.poses_at(&Mount::default())?;
+        if let CameraGoal::CoveragePercent(percent) = self.goal
+            && !(percent > 0.0 && percent <= 100.0)
+        {
+            return Err(Error::InvalidParameter {
+                parameter: Parameter::Coverage,
+                value: format!("{percent} %"),
+                expected: "above 0 to 100 %",
+            });
+        }
+        self.targets.check()
+    }
+
+    fn answer(
+        &self,
+        scene: &Scene,
+        places: &Places,
+        context: &mut Context,
+        control: &Control<'_>,
+    ) -> Result<Answers<CamerasFound>> {
+        if self.unproven.is_some() {
+            scene.check_proof()?;
+        }
+        let params = self.coverage_params()?;
+        let north = self.north.of_scene(scene);
+        context.north(&north);
+        let cells = self.cells(scene, places);
+        let known = scene.ground(cells.grid(scene)?, cells.ground, control)?;
+        let blockers = scene.blockers(params.unproven, control)?;
+        let site = Site { scene, blockers: &blockers, ground: &known.ground, grid_north: north.of_grid };
+        let targets = self.targets.of((places, &cells), &site, context, control)?;
+        let private = self.targets.private_of(&cells, &site, control)?;
+        let mut report = CamerasReport {
+            targets: targets.asked_count(),
+            private_places: private.as_ref().map(Targets::asked_count),
+            ..CamerasReport::default()
+        };
+        context.report.ground = Some(GroundSection::of(&known));
+        context.report.lines_of_sight = Some(LinesSection::of(&blockers, None));
+        let (existing, candidates) = self.poses(private.as_ref(), &site, &mut report, context, control)?;
+        let poses: Vec<Pose> = existing.iter().chain(&candidates).copied().collect();
+        let cameras: Vec<_> = poses.iter().map(|pose| pose.camera).collect();
+        let (table, lines): (CoverageTable, CoverageReport) =
+            control.stage("testing lines of sight", cameras.len(), || {
+                coverage(&blockers, &cameras, &targets, &params, control)
+            })?;
+        report.pictures.fill(params.density, lines, table.pair_count());
+        let weights = counted_weights(&targets);
+        let placed = control.stage("choosing cameras", 0, || {
+            place_cameras(&table, &weights, &self.placement_params(existing.len()), control)
+        })?;
+        report.coverage.fill(&placed, &weights, self.per_target);
+        report.coverage.headlines(existing.len(), &weights).into_iter().for_each(|line| context.headline(line));
+        context.report.cameras = Some(report);
+        let found = CamerasFound::new(&poses, existing.len(), &table, placed, targets, north.of_grid);
+        Ok(Answers::new(found, Vec::new()))
+    }
+}

@@ -1,0 +1,146 @@
+//! Where cameras stand.
+
+use super::{Cameras, CamerasReport, Site};
+use crate::ask::observers::{Reach, skip_unfit};
+use crate::ask::{Cells, Context};
+use crate::cameras::{CAMERA_HEIGHT, Mount, Pose, ROOF_CAMERA_HEIGHT, ground_places, roof_places};
+use crate::eyes::skip_unfit_eyes;
+use crate::targets::set_on_ground;
+use belvedere_data::Result;
+use belvedere_data::control::Control;
+use serde::{Deserialize, Serialize};
+
+/// Side of the cells that cameras stand in unless said otherwise, metres.
+const SPACING: f64 = 5.0;
+
+/// Where cameras could stand.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Candidates {
+    /// Above the ground, in the middle of each cell of this side, metres. Default: 5.
+    Ground(f64),
+    /// Above roofs, in the middle of each cell of this side, metres.
+    Roofs(f64),
+    /// Where somebody says.
+    #[serde(skip)]
+    Given(Vec<GivenCamera>),
+}
+
+impl Default for Candidates {
+    fn default() -> Self {
+        Self::Ground(SPACING)
+    }
+}
+
+/// A place for cameras, with what is said of it; the rest is as in [`CameraLens`](super::CameraLens).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct GivenCamera {
+    /// Local metres; the height is NaN where it follows from the ground.
+    pub place: [f64; 3],
+    /// Height above the ground, metres; `None` for that of the question.
+    pub height: Option<f64>,
+    /// The only heading, degrees clockwise from the north of the question.
+    pub heading_deg: Option<f64>,
+    /// The only angle below the horizon, degrees.
+    pub tilt_deg: Option<f64>,
+    /// Horizontal field of view, degrees.
+    pub fov_deg: Option<f64>,
+    /// Least and greatest horizontal distance, metres.
+    pub distance: [Option<f64>; 2],
+    /// Azimuths that it can be turned to, degrees.
+    pub azimuth_deg: Option<[f64; 2]>,
+    /// Elevations that it can be tilted to, degrees.
+    pub elevation_deg: Option<[f64; 2]>,
+}
+
+impl GivenCamera {
+    fn mount(&self, eye: [f64; 3], grid_north: f64) -> Mount {
+        let in_grid = |azimuth: f64| azimuth.to_radians() - grid_north;
+        Mount {
+            eye,
+            heading: self.heading_deg.map(in_grid),
+            tilt: self.tilt_deg.map(f64::to_radians),
+            width: self.fov_deg.map(f64::to_radians),
+            distance: self.distance,
+            azimuth: self.azimuth_deg.map(|range| range.map(in_grid)),
+            elevation: self.elevation_deg.map(|range| range.map(f64::to_radians)),
+        }
+    }
+}
+
+impl Cameras {
+    /// The cameras that stay; one that cannot look is NaN, so that others keep their numbers.
+    pub(super) fn existing_poses(
+        &self,
+        site: &Site<'_>,
+        report: &mut CamerasReport,
+        context: &mut Context,
+        control: &Control<'_>,
+    ) -> Result<Vec<Pose>> {
+        if self.existing.is_empty() {
+            return Ok(Vec::new());
+        }
+        let eyes = self.eyes(&self.existing, site);
+        let (reach, looking) = (Reach::Cloud, (site.blockers, Some(site.ground)));
+        let eyes = skip_unfit(eyes, ("existing camera", reach), looking, (site.scene, context), control)?;
+        report.existing_camera_places = Some(eyes.report);
+        let mounting = self.lens.mounting()?;
+        let pose = |(given, eye): (&GivenCamera, [f64; 3])| mounting.existing_at(&given.mount(eye, site.grid_north));
+        self.existing.iter().zip(eyes.eyes).map(pose).collect()
+    }
+
+    /// The cameras to choose from.
+    pub(super) fn candidate_poses(
+        &self,
+        site: &Site<'_>,
+        report: &mut CamerasReport,
+        context: &mut Context,
+        control: &Control<'_>,
+    ) -> Result<Vec<Pose>> {
+        let mounts: Vec<Mount> = match &self.candidates {
+            Candidates::Given(given) => {
+                let eyes = self.eyes(given, site);
+                let (reach, looking) = (Reach::Cloud, (site.blockers, Some(site.ground)));
+                let eyes = skip_unfit(eyes, ("candidate", reach), looking, (site.scene, context), control)?;
+                report.candidate_places = eyes.report;
+                given.iter().zip(eyes.eyes).map(|(given, eye)| given.mount(eye, site.grid_north)).collect()
+            }
+            Candidates::Ground(cell) | Candidates::Roofs(cell) => {
+                let mut eyes = self.places_in_cells(*cell, site, control)?;
+                // places of a grid are nobody's choice, and nobody is warned of those that do not fit
+                report.candidate_places = control.stage("testing candidates", eyes.len(), || {
+                    skip_unfit_eyes(site.blockers, Some(site.ground), &mut eyes, control)
+                })?;
+                eyes.into_iter().map(|eye| Mount { eye, ..Mount::default() }).collect()
+            }
+        };
+        let mounting = self.lens.mounting()?;
+        let mut poses = Vec::new();
+        for mount in mounts.iter().filter(|mount| mount.eye[0].is_finite()) {
+            poses.extend(mounting.poses_at(mount)?);
+        }
+        Ok(poses)
+    }
+
+    fn places_in_cells(&self, cell: f64, site: &Site<'_>, control: &Control<'_>) -> Result<Vec<[f64; 3]>> {
+        let scene = site.scene;
+        let cells = Cells { cell: Some(cell), ..Cells::default() };
+        let known = scene.ground(cells.grid(scene)?, self.targets.ground, control)?;
+        let (cloud, ground) = (scene.ground_cloud()?, known.ground.clone());
+        control.stage("finding places for cameras", 0, || match self.candidates {
+            Candidates::Roofs(_) => {
+                roof_places(cloud, ground, self.camera_height.unwrap_or(ROOF_CAMERA_HEIGHT), control)
+            }
+            _ => ground_places(cloud, ground, self.camera_height.unwrap_or(CAMERA_HEIGHT), control),
+        })
+    }
+
+    /// Places as they are given, those without a height on the ground.
+    fn eyes(&self, given: &[GivenCamera], site: &Site<'_>) -> Vec<[f64; 3]> {
+        let usual = self.camera_height.unwrap_or(CAMERA_HEIGHT);
+        let mut eyes: Vec<[f64; 3]> = given.iter().map(|one| one.place).collect();
+        let heights = given.iter().map(|one| one.height.unwrap_or(usual));
+        set_on_ground(eyes.iter_mut().zip(heights), site.ground);
+        eyes
+    }
+}
