@@ -91,6 +91,8 @@ pub(crate) struct Scene {
     pub(crate) cloud: PointCloud,
     /// Rows of the files that reading left out.
     pub(crate) left_out: ReadReport,
+    /// What balls are to lines of sight.
+    pub(crate) profile: Profile,
 }
 
 impl Scene {
@@ -107,7 +109,7 @@ impl Scene {
             return Err(Usage("--shell applies only to carved balls, and these are not carved".to_owned()).into());
         }
         let usual = self.model.rule();
-        let rule = BlockRule { shell: shell.map_or(usual.shell, f64::from), ..usual };
+        let rule = BlockRule { profile: self.profile, shell: shell.map_or(usual.shell, f64::from), ..usual };
         let frame = self.cloud.frame.clone();
         let scene = ask::Scene::new(self.model, Arc::new(self.cloud)).with_rule(rule);
         let Some(GroundChoice::Cloud(path)) = ground else { return Ok(scene) };
@@ -178,7 +180,8 @@ fn present_scene(arguments: &SceneInput, points: Points, run: &mut Run) -> Resul
         run.summary.add("balls_read", parts.balls.len());
         let model = SceneModel::from_parts(parts)?;
         let cloud = PointCloud::in_frame(model.frame().clone());
-        return Ok(Scene { model, cloud, left_out: ReadReport::default() });
+        let (left_out, profile) = (ReadReport::default(), arguments.profile.into());
+        return Ok(Scene { model, cloud, left_out, profile });
     }
     let balls = arguments.shrinking.params(MethodChoice::Carved)?;
     let (mut cloud, left_out) = read_counted(&arguments.input, run)?;
@@ -193,7 +196,7 @@ fn present_scene(arguments: &SceneInput, points: Points, run: &mut Run) -> Resul
     };
     let (model, report) = built.map_err(|error| advised(&arguments.input, error))?;
     run.summary.add_report(&report);
-    Ok(Scene { model, cloud, left_out })
+    Ok(Scene { model, cloud, left_out, profile: arguments.profile.into() })
 }
 
 /// Flags that say how to make balls are of no use where they are made already.

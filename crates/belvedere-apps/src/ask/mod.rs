@@ -13,6 +13,8 @@
 //! | warnings and notes | [`remark`] |
 //! | figures beside the answer | [`report`] |
 
+mod comfort;
+mod envelope;
 mod irradiance;
 mod light;
 pub mod north;
@@ -22,12 +24,16 @@ pub mod remark;
 pub mod report;
 pub mod scene;
 mod shadow;
+mod shared;
 mod sky_view;
 pub mod sun;
 mod sun_hours;
 mod sun_position;
 mod trees;
+pub mod windows;
 
+pub use comfort::{Comfort, ComfortFound, ExposureSection, RoutesOrWindows};
+pub use envelope::{Envelope, EnvelopeFound, EnvelopeSection, Protected, ProtectedShape, ProtectedSuns};
 pub use irradiance::{Irradiance, IrradianceFound, Radiation, Roofs, RoofsFound};
 pub use light::OnTargets;
 pub use north::North;
@@ -37,11 +43,13 @@ pub use remark::{Remark, Severity};
 pub use report::Report;
 pub use scene::Scene;
 pub use shadow::{Shadow, ShadowFound, UNPROVEN};
+pub use shared::Shared;
 pub use sky_view::{SkyParts, SkyView};
 pub use sun::{Days, NamedSun, SunPlace, Suns};
 pub use sun_hours::{Prepared, SunHours, rules};
 pub use sun_position::{SunPosition, SunStands};
 pub use trees::ThroughTrees;
+pub use windows::{GivenWindow, GivenWindows};
 
 use crate::targets::Measure;
 use belvedere_data::Result;
@@ -65,6 +73,10 @@ pub enum Question {
     Irradiance(Irradiance),
     /// Where the sun stands.
     SunPosition(SunPosition),
+    /// What routes and windows get of sun and sky.
+    Comfort(Comfort),
+    /// How high one may build without taking protected sun.
+    Envelope(Envelope),
 }
 
 /// What was found, of any question.
@@ -78,6 +90,10 @@ pub enum Found {
     Irradiance(IrradianceFound),
     /// Of [`Question::SunPosition`].
     SunPosition(Vec<SunStands>),
+    /// Of [`Question::Comfort`].
+    Comfort(ComfortFound),
+    /// Of [`Question::Envelope`].
+    Envelope(EnvelopeFound),
 }
 
 /// The answers to a question.
@@ -186,6 +202,8 @@ impl Ask for Question {
             Self::SkyView(question) => question.check(),
             Self::Irradiance(question) => question.check(),
             Self::SunPosition(question) => question.check(),
+            Self::Comfort(question) => question.check(),
+            Self::Envelope(question) => question.check(),
         }
     }
 
@@ -196,6 +214,8 @@ impl Ask for Question {
             Self::SkyView(question) => question.answer(scene, places, context, control)?.map(Found::OnTargets),
             Self::Irradiance(question) => question.answer(scene, places, context, control)?.map(Found::Irradiance),
             Self::SunPosition(question) => question.answer(scene, places, context, control)?.map(Found::SunPosition),
+            Self::Comfort(question) => question.answer(scene, places, context, control)?.map(Found::Comfort),
+            Self::Envelope(question) => question.answer(scene, places, context, control)?.map(Found::Envelope),
         })
     }
 }

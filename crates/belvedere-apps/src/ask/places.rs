@@ -84,12 +84,17 @@ impl Places {
                 control.stage("sampling mesh", 0, || Targets::of_mesh(mesh, scene.frame(), params))?
             }
         };
-        let count = targets.asked_count();
-        let outside = scene.model().coverage().map_or(0, |coverage| targets.leave_out_outside(&coverage));
-        context.report.places.targets_outside_cloud = Some(outside);
-        context.add(Remark::of_share("targets-outside-cloud", outside, count, "targets", OUTSIDE_CLOUD));
+        leave_out_outside(&mut targets, scene, context);
         Ok(Arc::new(targets))
     }
+}
+
+/// Leaves out targets outside the cloud, which is reported and warned of.
+pub(super) fn leave_out_outside(targets: &mut Targets, scene: &Scene, context: &mut Context) {
+    let count = targets.asked_count();
+    let outside = scene.model().coverage().map_or(0, |coverage| targets.leave_out_outside(&coverage));
+    context.report.places.targets_outside_cloud = Some(outside);
+    context.add(Remark::of_share("targets-outside-cloud", outside, count, "targets", OUTSIDE_CLOUD));
 }
 
 fn own_points(scene: &Scene, turned: Turned) -> Result<Targets> {

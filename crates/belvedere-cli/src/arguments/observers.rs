@@ -140,13 +140,6 @@ pub(crate) struct Shell {
     pub(crate) shell: Option<f32>,
 }
 
-impl Shell {
-    /// The same for functions that can report unproven targets.
-    pub(crate) fn giving_way(&self) -> GivingWay {
-        GivingWay { shell: self.shell, unproven: None }
-    }
-}
-
 #[derive(Clone, Copy, ValueEnum)]
 pub(crate) enum CurvatureChoice {
     /// For lines longer than 2 km

@@ -1,7 +1,6 @@
 //! Where on earth a scene lies, how clocks run there, and which days were typed.
 
 use crate::arguments::{ElevationChoice, North, SunPeriod, SunPlace, Usage};
-use crate::pipeline::Scene;
 use crate::summary::{Summary, rounded};
 use anyhow::{Result, anyhow};
 use belvedere::apps::ask;
@@ -27,12 +26,7 @@ impl SunPlace {
         self.place(&North { grid_north: false })
     }
 
-    /// Where the middle of the scene lies on earth.
-    pub(crate) fn site(&self, scene: &Scene, summary: &mut Summary) -> Result<Site> {
-        self.site_of(&scene.cloud.frame, &scene.model.bounds(), summary)
-    }
-
-    /// The same of what lies within `bounds` of a frame.
+    /// Where the middle of what lies within `bounds` of a frame is on earth.
     pub(crate) fn site_of(&self, frame: &Frame, bounds: &Bounds, summary: &mut Summary) -> Result<Site> {
         let given = self.location.as_ref().map(|location| location.0.map(f64::to_radians));
         let found = Site::of_scene(frame, bounds, given, None);

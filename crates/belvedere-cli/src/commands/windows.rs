@@ -1,13 +1,15 @@
 //! Windows: from files to places that are asked.
 
 use super::landmark::what::objects_of;
-use super::mesh_targets::{is_mesh, mesh_of};
+use super::mesh_targets::is_mesh;
 use crate::arguments::Usage;
-use crate::pipeline::Scene;
+use crate::pipeline::{Scene, mesh_in};
 use crate::run::Run;
 use anyhow::{Result, bail};
 use belvedere::Frame;
-use belvedere::apps::targets::{Targets, Window, objects_of_windows};
+use belvedere::apps::ask::windows::WindowTargets;
+use belvedere::apps::ask::{GivenWindow, GivenWindows, Shared};
+use belvedere::apps::targets::{Targets, Window};
 use belvedere::apps::viewshed::CELL;
 use belvedere::io::{TextRows, read_table};
 use std::path::Path;
@@ -36,24 +38,70 @@ pub(crate) struct FaceChoice<'a> {
     pub(crate) objects: &'a [String],
 }
 
-/// Windows of a table, or the faces of a mesh. `grid_north` is the azimuth of grid north, radians.
-pub(crate) fn windows(
-    path: &Path,
-    choice: &FaceChoice<'_>,
-    (scene, grid_north): (&Scene, f64),
-    run: &mut Run,
-) -> Result<Windows> {
-    if is_mesh(path) {
-        return faces(path, choice, (scene, grid_north), run);
+/// Windows of a file as it gives them.
+pub(crate) struct WindowFile {
+    pub(crate) given: GivenWindows,
+    /// What a table says of each window.
+    columns: Vec<Column>,
+    /// The rows of a table.
+    pub(crate) rows: TextRows,
+}
+
+impl WindowFile {
+    /// Windows of a table, or the faces of a mesh, in a frame.
+    pub(crate) fn read(path: &Path, choice: &FaceChoice<'_>, frame: &Frame, run: &mut Run) -> Result<Self> {
+        if is_mesh(path) {
+            let mesh = objects_of(mesh_in(path, &frame.crs, run)?, choice.objects, path)?;
+            let given = GivenWindows::Faces(Shared::new(mesh));
+            return Ok(Self { given, columns: Vec::new(), rows: TextRows::default() });
+        }
+        for (flag, is_given) in [("--spacing", choice.spacing.is_some()), ("--object", !choice.objects.is_empty())] {
+            if is_given {
+                return Err(Usage(format!("{flag} applies only to windows from a mesh")).into());
+            }
+        }
+        if !["csv", "txt"].contains(&super::extension(path).as_str()) {
+            bail!("{}: windows are a table (.csv .txt) or a mesh (.obj .json .ply with faces)", path.display());
+        }
+        table(path, frame)
     }
-    for (flag, is_given) in [("--spacing", choice.spacing.is_some()), ("--object", !choice.objects.is_empty())] {
-        if is_given {
-            return Err(Usage(format!("{flag} applies only to windows from a mesh")).into());
+
+    /// Whether the building of each window is known.
+    pub(crate) fn names_buildings(&self) -> bool {
+        match &self.given {
+            GivenWindows::Each(_) => !self.buildings(&[]).is_empty(),
+            GivenWindows::Faces(mesh) => !mesh.object_names.is_empty(),
         }
     }
-    if !["csv", "txt"].contains(&super::extension(path).as_str()) {
-        bail!("{}: windows are a table (.csv .txt) or a mesh (.obj .json .ply with faces)", path.display());
+
+    /// The building of each window: what a table calls it, or its object; empty where that is not known.
+    pub(crate) fn buildings(&self, objects: &[String]) -> Vec<String> {
+        let columns = self.rows.columns(0..self.rows.row_count());
+        match columns.iter().find(|(name, _)| name.eq_ignore_ascii_case("name")) {
+            Some((_, cells)) => cells.iter().map(|&cell| cell.to_owned()).collect(),
+            None => objects.to_vec(),
+        }
     }
+
+    /// Where and what each window is; the azimuth of grid north is `grid_north`, radians.
+    pub(crate) fn columns(&self, windows: &[Window], frame: &Frame, grid_north: f64) -> Vec<Column> {
+        if matches!(self.given, GivenWindows::Each(_)) {
+            return self.columns.clone();
+        }
+        let centers: Vec<[f64; 3]> = windows.iter().map(|window| window.center).collect();
+        let column = |of: &dyn Fn(&Window) -> f64| -> Vec<f64> { windows.iter().map(of).collect() };
+        let mut columns = vec![("face", column(&|window| window.face.map_or(f64::NAN, f64::from)), 0)];
+        columns.extend(coordinates(frame, &centers));
+        columns.extend([
+            ("azimuth", column(&|window| (window.azimuth + grid_north).to_degrees().rem_euclid(360.0)), 2),
+            ("tilt", column(&|window| window.tilt.to_degrees()), 2),
+            ("area_m2", column(&|window| window.area.unwrap_or(f64::NAN)), 4),
+        ]);
+        columns
+    }
+}
+
+fn table(path: &Path, frame: &Frame) -> Result<WindowFile> {
     let table = read_table(path)?;
     let full = |name: &str| table.full_column(path, name);
     let (x, y, z, azimuth) = (full("x")?, full("y")?, full("z")?, full("azimuth")?);
@@ -65,45 +113,37 @@ pub(crate) fn windows(
     if table.row_count() == 0 {
         bail!("{}: the file has no window", path.display());
     }
-    let mut windows = Vec::with_capacity(table.row_count());
-    for row in 0..table.row_count() {
-        let tilt = if tilt[row].is_nan() { 90.0 } else { tilt[row] };
-        if !(0.0..=180.0).contains(&tilt) {
-            bail!("{}: row {}: the tilt is {tilt}, but must be 0 (facing up) to 180 degrees", path.display(), row + 1);
-        }
-        let size = [width[row], height[row]];
-        let size = size.iter().all(|v| v.is_finite()).then_some(size);
-        let center = scene.cloud.frame.local_from_file([x[row], y[row], z[row]]);
-        windows.push(Window::new(center, azimuth[row].to_radians() - grid_north, tilt.to_radians(), size));
-    }
-    let targets = Targets::of_windows(&windows, scene.cloud.frame.clone())
-        .map_err(|(row, error)| anyhow::anyhow!("{}: row {}: {error}", path.display(), row + 1))?;
-    let tilts = tilt.iter().map(|&tilt| if tilt.is_nan() { 90.0 } else { tilt }).collect();
+    let tilt: Vec<f64> = tilt.into_iter().map(|tilt| if tilt.is_nan() { 90.0 } else { tilt }).collect();
+    let window = |row: usize| {
+        let size = Some([width[row], height[row]]).filter(|size| size.iter().all(|v| v.is_finite()));
+        let place = frame.local_from_file([x[row], y[row], z[row]]);
+        GivenWindow { place, azimuth_deg: azimuth[row], tilt_deg: tilt[row], size }
+    };
+    let given = GivenWindows::Each((0..table.row_count()).map(window).collect());
     let columns = vec![
         ("x", x.to_vec(), 3),
         ("y", y.to_vec(), 3),
         ("z", z.to_vec(), 3),
         ("azimuth", azimuth.to_vec(), 2),
-        ("tilt", tilts, 2),
+        ("tilt", tilt, 2),
     ];
-    Ok(Windows { targets, windows, columns, names: Vec::new(), given: table.into_text() })
+    Ok(WindowFile { given, columns, rows: table.into_text() })
 }
 
-fn faces(path: &Path, choice: &FaceChoice<'_>, (scene, grid_north): (&Scene, f64), run: &mut Run) -> Result<Windows> {
-    let mesh = objects_of(mesh_of(path, scene, run)?, choice.objects, path)?;
-    let spacing = choice.spacing.unwrap_or(CELL);
-    let (targets, windows) = Targets::of_window_faces(&mesh, &scene.cloud.frame, spacing, run.seed)?;
-    let centers: Vec<[f64; 3]> = windows.iter().map(|window| window.center).collect();
-    let column = |of: &dyn Fn(&Window) -> f64| -> Vec<f64> { windows.iter().map(of).collect() };
-    let mut columns = vec![("face", column(&|window| window.face.map_or(f64::NAN, f64::from)), 0)];
-    columns.extend(coordinates(&scene.cloud.frame, &centers));
-    columns.extend([
-        ("azimuth", column(&|window| (window.azimuth + grid_north).to_degrees().rem_euclid(360.0)), 2),
-        ("tilt", column(&|window| window.tilt.to_degrees()), 2),
-        ("area_m2", column(&|window| window.area.unwrap_or(f64::NAN)), 4),
-    ]);
-    let names = objects_of_windows(&windows, &mesh);
-    Ok(Windows { targets, windows, columns, names, given: TextRows::default() })
+/// Windows of a table, or the faces of a mesh, with the targets in front of them. `grid_north` is the azimuth of grid north, radians.
+pub(crate) fn windows(
+    path: &Path,
+    choice: &FaceChoice<'_>,
+    (scene, grid_north): (&Scene, f64),
+    run: &mut Run,
+) -> Result<Windows> {
+    let frame = &scene.cloud.frame;
+    let file = WindowFile::read(path, choice, frame, run)?;
+    file.given.check()?;
+    let parts = (choice.spacing.unwrap_or(CELL), run.seed);
+    let WindowTargets { targets, windows, names } = file.given.targets(frame, grid_north, parts)?;
+    let columns = file.columns(&windows, frame, grid_north);
+    Ok(Windows { targets, windows, columns, names, given: file.rows })
 }
 
 /// Coordinates of the file.

@@ -1,0 +1,100 @@
+//! Windows: from what a user gives to the targets in front of them.
+
+use super::Shared;
+use crate::targets::{Targets, Window, objects_of_windows};
+use belvedere_data::frame::Frame;
+use belvedere_data::{Error, Mesh, Parameter, Result};
+
+/// Windows as they are given.
+#[derive(Clone, Debug, PartialEq)]
+pub enum GivenWindows {
+    /// One by one.
+    Each(Vec<GivenWindow>),
+    /// The faces of a mesh in metres.
+    Faces(Shared<Mesh>),
+}
+
+/// A window as it is given.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GivenWindow {
+    /// Its middle, local metres.
+    pub place: [f64; 3],
+    /// Azimuth that it looks to, clockwise from the north of the question, degrees.
+    pub azimuth_deg: f64,
+    /// Angle between the direction that it looks to and the zenith, degrees, 0 (facing up) to 180; 90 is upright.
+    pub tilt_deg: f64,
+    /// Width and height, metres, 0 to 1000; `None` for its middle alone.
+    pub size: Option<[f64; 2]>,
+}
+
+/// Windows with the targets in front of them.
+pub struct WindowTargets {
+    /// A group for each window.
+    pub targets: Targets,
+    /// Where each is and looks to.
+    pub windows: Vec<Window>,
+    /// Name of the object that each is a face of; empty where that is not known.
+    pub names: Vec<String>,
+}
+
+impl Default for GivenWindows {
+    fn default() -> Self {
+        Self::Each(Vec::new())
+    }
+}
+
+impl GivenWindows {
+    /// Checks what does not depend on a scene.
+    ///
+    /// # Errors
+    /// [`Error::InvalidParameter`] for a tilt that is not 0 to 180 degrees.
+    pub fn check(&self) -> Result<()> {
+        let Self::Each(windows) = self else { return Ok(()) };
+        for (number, window) in (1..).zip(windows) {
+            if !(0.0..=180.0).contains(&window.tilt_deg) {
+                return Err(Error::InvalidParameter {
+                    parameter: Parameter::Window,
+                    value: format!("number {number}, tilted by {} degrees", window.tilt_deg),
+                    expected: "tilted by 0 (facing up) to 180 degrees",
+                });
+            }
+        }
+        Ok(())
+    }
+
+    /// The targets in a frame where grid north has the azimuth `grid_north`, radians. Faces are cut into pieces of `spacing` metres at most,
+    /// with places drawn from `seed`.
+    ///
+    /// # Errors
+    /// [`Error::InvalidParameter`] for windows without a place, direction or size that can be; those of [`Targets::of_window_faces`].
+    pub fn targets(&self, frame: &Frame, grid_north: f64, (spacing, seed): (f64, u64)) -> Result<WindowTargets> {
+        match self {
+            Self::Each(given) => {
+                let windows: Vec<Window> = given.iter().map(|window| window.in_grid(grid_north)).collect();
+                let targets = Targets::of_windows(&windows, frame.clone()).map_err(with_number)?;
+                Ok(WindowTargets { targets, windows, names: Vec::new() })
+            }
+            Self::Faces(mesh) => {
+                let (targets, windows) = Targets::of_window_faces(mesh, frame, spacing, seed)?;
+                let names = objects_of_windows(&windows, mesh);
+                Ok(WindowTargets { targets, windows, names })
+            }
+        }
+    }
+}
+
+impl GivenWindow {
+    fn in_grid(&self, grid_north: f64) -> Window {
+        Window::new(self.place, self.azimuth_deg.to_radians() - grid_north, self.tilt_deg.to_radians(), self.size)
+    }
+}
+
+/// The error of a window with its number, from 1.
+fn with_number((row, error): (usize, Error)) -> Error {
+    match error {
+        Error::InvalidParameter { parameter, value, expected } => {
+            Error::InvalidParameter { parameter, value: format!("number {}, {value}", row + 1), expected }
+        }
+        other => other,
+    }
+}
