@@ -8,7 +8,7 @@ use crate::sun::Place;
 use crate::targets::Column;
 use crate::work::run;
 use belvedere::Frame;
-use belvedere::apps::ask;
+use belvedere::apps::ask::{self, GivenWindow, GivenWindows};
 use belvedere::apps::targets::{Targets, Window, objects_of_windows};
 use belvedere::apps::window_views::{
     ClassMeanings, Kinds, Proving, Seen, VIEW_DIRECTIONS, VIEW_SPACING, are_made_from, balls_seen, leave_out_level,
@@ -28,6 +28,15 @@ pub(crate) fn windows_of(rows: &[WindowRow], frame: &Frame, north: f64) -> Vec<W
         Window::new(frame.local_from_file([x, y, z]), azimuth.to_radians() - north, tilt.to_radians(), size)
     };
     rows.iter().map(window).collect()
+}
+
+/// Windows as questions take them.
+pub(crate) fn given(rows: &[WindowRow], frame: &Frame) -> GivenWindows {
+    let window = |&[x, y, z, azimuth_deg, tilt_deg, width, height]: &WindowRow| {
+        let size = (width.is_finite() && height.is_finite()).then_some([width, height]);
+        GivenWindow { place: frame.local_from_file([x, y, z]), azimuth_deg, tilt_deg, size }
+    };
+    GivenWindows::Each(rows.iter().map(window).collect())
 }
 
 /// Which windows, and what the classes of points mean.
