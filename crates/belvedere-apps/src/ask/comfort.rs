@@ -241,7 +241,10 @@ impl ComfortFound {
         }
         if let Some(hours) = mean("sun_hours") {
             let possible = self.schedule.possible_hours() / self.schedule.days.len().max(1) as f64;
-            context.headline(format!("sun hours: mean {hours:.2} hours a day, of {possible:.2} possible"));
+            let longest = mean("longest").unwrap_or(0.0);
+            context.headline(format!(
+                "sun: mean {hours:.2} of {possible:.2} possible hours a day, {longest:.2} without a break"
+            ));
         }
         let digits = |decimals: usize| i32::try_from(decimals).unwrap_or(3);
         let named = means

@@ -363,12 +363,15 @@ impl Envelope {
     fn summarise(&self, found: &SolarEnvelope, land: &Land, suns: &Suns, context: &mut Context) {
         let section = self.section(found, land, suns);
         let (count, unlimited) = (section.columns, section.columns_unlimited.unwrap_or(0));
-        let (area, suns) = (section.area_m2, suns.names.len());
-        context.headline(format!("solar envelope over {area} m2, {count} columns, for {suns} suns"));
-        if let (Some(volume), Some(mean), Some(most)) = (section.volume_m3, section.mean_height_m, section.max_height_m)
-        {
-            context.headline(format!("volume: {volume} m3; height: mean {mean} m, at most {most} m"));
+        let (area, no_room, suns) = (section.area_m2, section.columns_of_zero_height, suns.names.len());
+        let heights = section.volume_m3.zip(section.mean_height_m).zip(section.max_height_m);
+        if let Some(((volume, mean), most)) = heights {
+            context.headline(format!("solar envelope for {suns} suns: {volume} m3 on {area} m2"));
+            context.headline(format!("height above the ground: mean {mean} m, highest {most} m"));
+        } else {
+            context.headline(format!("solar envelope for {suns} suns: {unlimited} of {count} columns without limit"));
         }
+        context.headline(format!("no room: {no_room} of {count} columns"));
         if let (Some(place), Some(sun)) = (section.limiting_places.first(), section.limiting_suns.first()) {
             context.headline(format!("largest areas are limited by {place}, and by the sun of {sun}"));
         }

@@ -91,7 +91,7 @@ pub enum Found {
     /// Of [`Question::SunPosition`].
     SunPosition(Vec<SunStands>),
     /// Of [`Question::Comfort`].
-    Comfort(ComfortFound),
+    Comfort(Box<ComfortFound>),
     /// Of [`Question::Envelope`].
     Envelope(EnvelopeFound),
 }
@@ -214,7 +214,9 @@ impl Ask for Question {
             Self::SkyView(question) => question.answer(scene, places, context, control)?.map(Found::OnTargets),
             Self::Irradiance(question) => question.answer(scene, places, context, control)?.map(Found::Irradiance),
             Self::SunPosition(question) => question.answer(scene, places, context, control)?.map(Found::SunPosition),
-            Self::Comfort(question) => question.answer(scene, places, context, control)?.map(Found::Comfort),
+            Self::Comfort(question) => {
+                question.answer(scene, places, context, control)?.map(|found| Found::Comfort(Box::new(found)))
+            }
             Self::Envelope(question) => question.answer(scene, places, context, control)?.map(Found::Envelope),
         })
     }

@@ -37,9 +37,9 @@ pub(crate) fn run(arguments: &Comfort, global: &Global) -> Result<Summary> {
     let scene = scene.into_asked(route.map(|_| &arguments.ground), arguments.shell.shell, &run)?;
     let source = match (route, &arguments.places.windows) {
         (Some(route), _) => {
-            let (routes, names) = routes(route, scene.frame())?;
-            question.along = RoutesOrWindows::Routes(routes);
-            Source::Routes(names)
+            let named = routes(route, scene.frame())?;
+            question.along = RoutesOrWindows::Routes(named.corners);
+            Source::Routes(named.names)
         }
         (None, Some(path)) => {
             let choice = FaceChoice { spacing: arguments.spacing, objects: &[] };
@@ -79,9 +79,16 @@ fn question(arguments: &Comfort, global: &Global) -> Result<ask::Comfort> {
     })
 }
 
-/// Corners of routes, local metres, and what each route is called.
-fn routes(route: &Corners, frame: &Frame) -> Result<(Vec<Vec<[f64; 3]>>, Vec<String>)> {
-    let (mut routes, mut names) = (Vec::new(), Vec::new());
+/// Routes, and what each is called.
+#[derive(Default)]
+struct NamedRoutes {
+    /// Local metres.
+    corners: Vec<Vec<[f64; 3]>>,
+    names: Vec<String>,
+}
+
+fn routes(route: &Corners, frame: &Frame) -> Result<NamedRoutes> {
+    let mut routes = NamedRoutes::default();
     for named in shapes("--route", route, TypedAre::Line, frame)? {
         let Shape::Line(corners) = named.shape else {
             return wrong_shape("--route", route, "a route is a line, but this file has a point or a polygon");
@@ -89,10 +96,10 @@ fn routes(route: &Corners, frame: &Frame) -> Result<(Vec<Vec<[f64; 3]>>, Vec<Str
         if corners.len() < 2 {
             return wrong_shape("--route", route, "a route needs at least two corners");
         }
-        routes.push(corners);
-        names.push(named.name);
+        routes.corners.push(corners);
+        routes.names.push(named.name);
     }
-    Ok((routes, names))
+    Ok(routes)
 }
 
 /// What places were taken from.

@@ -95,7 +95,7 @@ fn question(arguments: &Envelope, global: &Global) -> Result<ask::Envelope> {
     })
 }
 
-/// The scene, with balls only where these are asked.
+/// The scene, with balls only where these are needed.
 fn scene(arguments: &Envelope, run: &mut Run) -> Result<Scene> {
     let is_balls = matches!(&arguments.scene.input.clouds[..], [path] if is_file(path) && is_ball_file(path)?);
     if arguments.credit_shade || is_balls {
