@@ -10,6 +10,7 @@ use belvedere_data::control::Control;
 use belvedere_data::vector::{cross, dot, unit};
 use belvedere_data::{Error, Parameter, Result};
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
 /// Height above the ground at which walkers are asked, metres: the middle of a standing body, for which PET and UTCI are defined (VDI 3787
@@ -73,7 +74,8 @@ pub enum WholeIs {
 }
 
 /// Whether the share of each group in shade is kept for each sun.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum ShadeAtEachSun {
     /// No. Default.
     #[default]

@@ -1,14 +1,7 @@
 //! Who looks: places of eyes, with or without their height.
 
-use crate::errors::{belvedere_error, wrong};
-use crate::targets::ground_cloud;
+use crate::errors::wrong;
 use belvedere::apps::ask::{self, Standing};
-use belvedere::apps::eyes::{EyesReport, skip_unfit_eyes};
-use belvedere::apps::targets::{grid_around, set_on_ground};
-use belvedere::apps::viewshed::OBSERVER_HEIGHT;
-use belvedere::control::Control;
-use belvedere::ground::{Ground, GroundParams, GroundPoints};
-use belvedere::query::MedialScene;
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 

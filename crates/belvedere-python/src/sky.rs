@@ -1,13 +1,12 @@
 //! Hours of sun, and how much of the sky is seen.
 
-use crate::errors::{exception, wrong};
+use crate::errors::wrong;
 use crate::scene::Scene;
 use crate::sun::Place;
 use crate::targets::{Results, Wanted};
 use crate::trees::Through;
 use crate::work::run;
 use belvedere::apps::ask::{self, SkyParts};
-use belvedere::apps::sun::{DayParams, Period, Site, Zone};
 use pyo3::prelude::*;
 use std::sync::Arc;
 
@@ -37,21 +36,6 @@ impl Days {
             time_step_min: self.step,
             min_sun_elevation_deg: self.min_sun_elevation,
         }
-    }
-
-    pub(crate) fn params(&self, place: &Place) -> PyResult<DayParams> {
-        let params = self.chosen().params(&place.chosen()?);
-        params.validate().map_err(exception)?;
-        Ok(params)
-    }
-
-    /// The times among the days, which can say how clocks run.
-    pub(crate) fn times(&self) -> Vec<String> {
-        self.between.iter().flatten().cloned().collect()
-    }
-
-    pub(crate) fn period(&self, place: &Place, site: &Site, zone: &Zone) -> PyResult<Option<Period>> {
-        self.chosen().period(&place.chosen()?, site, zone).map_err(exception)
     }
 }
 

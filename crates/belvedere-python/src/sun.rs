@@ -2,7 +2,7 @@
 
 use crate::errors::{exception, wrong};
 use belvedere::apps::ask::{self, North, SunPosition, Suns};
-use belvedere::apps::sun::{Refraction, Site, Zone};
+use belvedere::apps::sun::Refraction;
 use belvedere::control::Control;
 use pyo3::prelude::*;
 
@@ -42,17 +42,6 @@ impl Place {
             (false, None) => Ok(Refraction::Standard),
             (false, Some([pressure, temperature])) => Ok(Refraction::Air { pressure, temperature }),
         }
-    }
-
-    /// Where on earth a scene lies.
-    pub(crate) fn site(&self, scene: &ask::Scene) -> PyResult<Site> {
-        let found = self.chosen()?.site_of(scene.frame(), &scene.model().bounds(), None);
-        Ok(found.map_err(exception)?.0)
-    }
-
-    /// How clocks run there.
-    pub(crate) fn zone(&self, site: &Site, times: &[String]) -> PyResult<Zone> {
-        self.chosen()?.zone_at(site, times).map_err(exception)
     }
 
     /// Azimuth of grid north at the middle of a scene, clockwise from the north that azimuths are counted from, radians.

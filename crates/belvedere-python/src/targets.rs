@@ -6,12 +6,10 @@ use crate::errors::wrong;
 use crate::mesh::{Faces, rows_of};
 use belvedere::apps::ask::{self, Remark, Severity};
 use belvedere::apps::targets::{CellLevel, Measure, ResultKind, Targets};
-use belvedere::apps::viewshed::cell_for;
-use belvedere::control::Control;
-use belvedere::ground::{Ground, GroundParams, GroundPoints, MapGrid};
+use belvedere::ground::{GroundPoints, MapGrid};
 use belvedere::io::Georeference;
 use belvedere::results::{FaceRows, georeference};
-use belvedere::{Error, Frame, Mesh, PointCloud};
+use belvedere::{Frame, Mesh};
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -87,18 +85,6 @@ impl Wanted<'_> {
             ..ask::Cells::default()
         }))
     }
-}
-
-/// The cloud of a scene, which must have points to show the ground.
-pub(crate) fn ground_cloud(inner: &ask::Scene) -> belvedere::Result<&PointCloud> {
-    if inner.cloud().is_empty() {
-        return Err(Error::MissingAttribute {
-            attribute: "ground",
-            needed_for: "a grid of cells",
-            advice: "a ball file has no points: give its cloud with Scene.load(path, cloud=read(...)), or give targets",
-        });
-    }
-    Ok(inner.cloud())
 }
 
 /// Width and height of a grid in cells, and the six numbers of its affine transform in the unit of the file.

@@ -20,17 +20,8 @@ use std::sync::Arc;
 /// x, y and z in the coordinates of the file, azimuth and tilt in degrees, width and height in metres (NaN where a window has none).
 pub(crate) type WindowRow = [f64; 7];
 
-/// Windows in a frame, `north` being the azimuth of grid north, radians.
-pub(crate) fn windows_of(rows: &[WindowRow], frame: &Frame, north: f64) -> Vec<Window> {
-    let window = |&[x, y, z, azimuth, tilt, width, height]: &WindowRow| {
-        let size = (width.is_finite() && height.is_finite()).then_some([width, height]);
-        Window::new(frame.local_from_file([x, y, z]), azimuth.to_radians() - north, tilt.to_radians(), size)
-    };
-    rows.iter().map(window).collect()
-}
-
 /// Windows as questions take them.
-fn given(rows: &[WindowRow], frame: &Frame) -> GivenWindows {
+pub(crate) fn given(rows: &[WindowRow], frame: &Frame) -> GivenWindows {
     let window = |&[x, y, z, azimuth_deg, tilt_deg, width, height]: &WindowRow| {
         let size = (width.is_finite() && height.is_finite()).then_some([width, height]);
         GivenWindow { place: frame.local_from_file([x, y, z]), azimuth_deg, tilt_deg, size }

@@ -14,6 +14,8 @@
 //! | figures beside the answer | [`report`] |
 
 mod cameras;
+mod comfort;
+mod envelope;
 mod horizon;
 mod irradiance;
 mod isovist;
@@ -41,6 +43,8 @@ pub mod windows;
 pub use cameras::{
     CameraGoal, CameraLens, CameraTargets, Cameras, CamerasFound, Candidates, ChosenCamera, GivenCamera, PrivatePlaces,
 };
+pub use comfort::{Comfort, ComfortFound, ExposureSection, RoutesOrWindows};
+pub use envelope::{Envelope, EnvelopeFound, EnvelopeSection, Protected, ProtectedShape, ProtectedSuns};
 pub use horizon::{BelowLevel, Horizon, HorizonFound};
 pub use irradiance::{Irradiance, IrradianceFound, Radiation, Roofs, RoofsFound};
 pub use isovist::{IsovistColumn, Isovists, IsovistsFound};
@@ -103,6 +107,10 @@ pub enum Question {
     ProtectedView(ProtectedView),
     /// Which of many possible cameras to put up.
     Cameras(Cameras),
+    /// What routes and windows get of sun and sky.
+    Comfort(Comfort),
+    /// How high one may build without taking protected sun.
+    Envelope(Envelope),
 }
 
 /// What was found, of any question.
@@ -132,6 +140,10 @@ pub enum Found {
     ProtectedView(ProtectedViewFound),
     /// Of [`Question::Cameras`].
     Cameras(CamerasFound),
+    /// Of [`Question::Comfort`].
+    Comfort(Box<ComfortFound>),
+    /// Of [`Question::Envelope`].
+    Envelope(EnvelopeFound),
 }
 
 /// The answers to a question.
@@ -254,6 +266,8 @@ impl Ask for Question {
             Self::WindowViews(question) => question.check(),
             Self::ProtectedView(question) => question.check(),
             Self::Cameras(question) => question.check(),
+            Self::Comfort(question) => question.check(),
+            Self::Envelope(question) => question.check(),
         }
     }
 
@@ -276,6 +290,10 @@ impl Ask for Question {
                 question.answer(scene, places, context, control)?.map(Found::ProtectedView)
             }
             Self::Cameras(question) => question.answer(scene, places, context, control)?.map(Found::Cameras),
+            Self::Comfort(question) => {
+                question.answer(scene, places, context, control)?.map(|found| Found::Comfort(Box::new(found)))
+            }
+            Self::Envelope(question) => question.answer(scene, places, context, control)?.map(Found::Envelope),
         })
     }
 }

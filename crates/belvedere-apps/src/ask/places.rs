@@ -117,7 +117,7 @@ fn other<T>(parameter: Parameter, value: &str, expected: &'static str) -> Result
     Err(Error::InvalidParameter { parameter, value: value.to_owned(), expected })
 }
 
-/// Leaves out targets outside the cloud, reports how many, and warns of them.
+/// Leaves out targets outside the cloud, which is reported and warned of.
 pub(super) fn leave_out_outside(targets: &mut Targets, scene: &Scene, context: &mut Context) {
     let count = targets.asked_count();
     let outside = scene.model().coverage().map_or(0, |coverage| targets.leave_out_outside(&coverage));

@@ -1,6 +1,8 @@
 //! What is known of how answers came about. Sections that a question does not have are left out.
 
 use super::cameras::CamerasReport;
+use super::comfort::ExposureSection;
+use super::envelope::EnvelopeSection;
 use super::horizon::HorizonsSection;
 use super::landmark::LandmarkSection;
 use super::line_of_sight::{LineSection, PairsSection};
@@ -13,7 +15,7 @@ use super::window_views::{ViewsSection, WindowsSection};
 use crate::edge::EdgeReport;
 use crate::eyes::EyesReport;
 use crate::landmark::LandmarkReport;
-use crate::sun::{Site, SiteFrom};
+use crate::sun::{Date, DayParams, Site, SiteFrom, SunSchedule, Zone};
 use crate::targets::{Measure, MeasureStatistics, Targets};
 use crate::tree_light::Transmissivity;
 use belvedere_core::ground::GroundPoints;
@@ -100,6 +102,12 @@ pub struct Report {
     /// Which cameras were chosen.
     #[serde(flatten)]
     pub cameras: Option<CamerasReport>,
+    /// What routes or windows get of sun and sky.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub exposure: Option<ExposureSection>,
+    /// How high one may build.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub envelope: Option<EnvelopeSection>,
     /// How measures are spread.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub measures: Option<MeasuresSection>,
@@ -163,7 +171,7 @@ impl LocationSection {
 }
 
 /// Days of suns.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct PeriodSection {
     pub(super) first_day: String,
     pub(super) last_day: String,
@@ -171,8 +179,12 @@ pub struct PeriodSection {
     pub(super) time_zone: String,
     pub(super) time_step_min: f64,
     pub(super) suns: usize,
-    pub(super) directions: usize,
-    pub(super) possible_hours_per_day: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) suns_below_horizon: Option<usize>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) directions: Option<usize>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) possible_hours_per_day: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) max_direction_error_deg: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -180,6 +192,40 @@ pub struct PeriodSection {
     /// What each rule says.
     #[serde(flatten)]
     pub(super) rules: Named<String>,
+}
+
+impl PeriodSection {
+    pub(super) fn of(schedule: &SunSchedule, zone: &Zone, params: &DayParams) -> Self {
+        let dates: Vec<Date> = schedule.days.iter().map(|day| day.date).collect();
+        let error = |radians: f64| (schedule.greatest_error > 0.0).then(|| rounded(radians.to_degrees(), 3));
+        let possible = schedule.possible_hours() / dates.len().max(1) as f64;
+        Self {
+            suns: schedule.days.iter().map(|day| day.steps.len()).sum(),
+            directions: Some(schedule.directions.len()),
+            possible_hours_per_day: Some(rounded(possible, 3)),
+            max_direction_error_deg: error(schedule.greatest_error),
+            rms_direction_error_deg: error(schedule.rms_error),
+            ..Self::between(&dates, zone, params)
+        }
+    }
+
+    /// Suns of dates one by one, and how many of them are above and at or below the horizon.
+    pub(super) fn of_dates(dates: &[Date], zone: &Zone, params: &DayParams, [suns, below]: [usize; 2]) -> Self {
+        Self { suns, suns_below_horizon: Some(below), ..Self::between(dates, zone, params) }
+    }
+
+    fn between(dates: &[Date], zone: &Zone, params: &DayParams) -> Self {
+        let [first_day, last_day] =
+            [dates.first(), dates.last()].map(|date| date.map(ToString::to_string).unwrap_or_default());
+        Self {
+            first_day,
+            last_day,
+            days: dates.len(),
+            time_zone: zone.name().to_owned(),
+            time_step_min: rounded(params.step / 60.0, 3),
+            ..Self::default()
+        }
+    }
 }
 
 /// Single suns.

@@ -10,7 +10,6 @@ use crate::sun_hours::{SunPlan, SunRule, SunSums, scene_sun_hours};
 use crate::targets::Targets;
 use belvedere_core::query::UnprovenAs;
 use belvedere_data::control::Control;
-use belvedere_data::report::rounded;
 use belvedere_data::{Error, Parameter, Result};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -212,7 +211,7 @@ impl Ask for SunHours {
 }
 
 /// The days of a schedule in a few words.
-fn days_in_words(schedule: &SunSchedule, zone: &Zone) -> String {
+pub(super) fn days_in_words(schedule: &SunSchedule, zone: &Zone) -> String {
     let [first, last] = ends(schedule);
     let days = if first == last { first } else { format!("{first} to {last}, mean of days") };
     format!("{days} ({})", zone.name())
@@ -224,24 +223,10 @@ fn ends(schedule: &SunSchedule) -> [String; 2] {
 }
 
 fn section(plan: &SunPlan, zone: &Zone, params: &DayParams) -> PeriodSection {
-    let main = plan.period();
-    let [first_day, last_day] = ends(main);
-    let error = |radians: f64| (main.greatest_error > 0.0).then(|| rounded(radians.to_degrees(), 3));
     let rule = |planned: &crate::sun_hours::PlannedRule| {
         let text = format!("{} on {} days", planned.rule.description, planned.schedule.days.len());
         (planned.column.clone(), text)
     };
-    PeriodSection {
-        first_day,
-        last_day,
-        days: main.days.len(),
-        time_zone: zone.name().to_owned(),
-        time_step_min: rounded(params.step / 60.0, 3),
-        suns: main.days.iter().map(|day| day.steps.len()).sum(),
-        directions: main.directions.len(),
-        possible_hours_per_day: rounded(main.possible_hours() / main.days.len().max(1) as f64, 3),
-        max_direction_error_deg: error(main.greatest_error),
-        rms_direction_error_deg: error(main.rms_error),
-        rules: Named(plan.rules().iter().map(rule).collect()),
-    }
+    let rules = Named(plan.rules().iter().map(rule).collect());
+    PeriodSection { rules, ..PeriodSection::of(plan.period(), zone, params) }
 }

@@ -30,9 +30,7 @@ pub fn envelope_suns(
     params: &DayParams,
 ) -> Result<(Vec<EnvelopeSun>, usize)> {
     let invalid = |parameter, value: String, expected| Err(Error::InvalidParameter { parameter, value, expected });
-    if !(0.0 <= between[0] && between[0] <= between[1] && between[1] <= 24.0) {
-        return invalid(Parameter::HoursOfDay, format!("{between:?}"), "from 0 to 24, the first not after the last");
-    }
+    check_hours(between)?;
     if !(10.0..=3600.0).contains(&params.step) {
         return invalid(Parameter::TimeStep, params.step.to_string(), "10 to 3600 seconds");
     }
@@ -56,6 +54,18 @@ pub fn envelope_suns(
         }
     }
     Ok((suns, low_count))
+}
+
+/// Refuses hours that are not 0 to 24 in rising order.
+pub(crate) fn check_hours(between: [f64; 2]) -> Result<()> {
+    if 0.0 <= between[0] && between[0] <= between[1] && between[1] <= 24.0 {
+        return Ok(());
+    }
+    Err(Error::InvalidParameter {
+        parameter: Parameter::HoursOfDay,
+        value: format!("{between:?}"),
+        expected: "from 0 to 24, the first not after the last",
+    })
 }
 
 #[cfg(test)]

@@ -12,8 +12,10 @@ mod protected;
 mod strip;
 
 pub use convex::ConvexPolygon;
+pub(crate) use instants::check_hours;
 pub use instants::{EnvelopeSun, envelope_suns};
 pub use parcel::{Footprint, Parcel};
+pub(crate) use protected::check_fence;
 pub use protected::{ProtectedPiece, protected_faces, protected_line};
 
 use belvedere_core::ground::{Ground, MapGrid};
@@ -23,6 +25,7 @@ use belvedere_data::raster::Raster;
 use belvedere_data::vector::{dot, length};
 use belvedere_data::{Error, Parameter, Result};
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 use strip::Strip;
 
 /// A sun that stands this near to the zenith shades nothing beside a thing: cosine of its elevation.
@@ -31,7 +34,8 @@ const OVERHEAD: f64 = 1e-9;
 const MOST_PAIRS: usize = 200_000_000;
 
 /// What bounds an envelope besides the sun.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
 #[non_exhaustive]
 pub struct EnvelopeParams {
     /// Greatest height above the ground, metres, above 0: what zoning allows anyway. Default `None`: columns that no sun bounds are
@@ -42,6 +46,23 @@ pub struct EnvelopeParams {
 belvedere_data::setters!(EnvelopeParams {
     with_ceiling(ceiling: Option<f64>),
 });
+
+impl EnvelopeParams {
+    /// Checks these parameters.
+    ///
+    /// # Errors
+    /// [`Error::InvalidParameter`] for a ceiling that is not above zero.
+    pub fn validate(&self) -> Result<()> {
+        match self.ceiling {
+            Some(ceiling) if !(ceiling > 0.0 && ceiling.is_finite()) => Err(Error::InvalidParameter {
+                parameter: Parameter::MaxHeight,
+                value: ceiling.to_string(),
+                expected: "above zero metres",
+            }),
+            _ => Ok(()),
+        }
+    }
+}
 
 /// A solar envelope over the cells of a grid.
 #[derive(Clone, Debug)]
@@ -266,9 +287,7 @@ fn check(
     if let Some(piece) = protected.iter().find(finite) {
         return invalid(Parameter::ProtectedPlace, format!("{:?}", piece.corners), "finite");
     }
-    if let Some(ceiling) = params.ceiling.filter(|ceiling| !(*ceiling > 0.0 && ceiling.is_finite())) {
-        return invalid(Parameter::MaxHeight, ceiling.to_string(), "above zero metres");
-    }
+    params.validate()?;
     check_pairs(protected.len(), suns.len())?;
     let Some(free) = free else { return Ok(()) };
     let sizes = [

@@ -45,12 +45,7 @@ pub fn protected_line(
     source: u32,
 ) -> Result<(Vec<ProtectedPiece>, usize)> {
     let invalid = |parameter, value: String, expected| Err(Error::InvalidParameter { parameter, value, expected });
-    if !(fence >= 0.0 && fence.is_finite()) {
-        return invalid(Parameter::FenceHeight, fence.to_string(), "0 or more metres");
-    }
-    if !(spacing > 0.0 && spacing.is_finite()) {
-        return invalid(Parameter::Spacing, spacing.to_string(), "above zero metres");
-    }
+    check_fence(fence, spacing)?;
     let flat = |p: [f64; 3]| p[0].abs() < 1e7 && p[1].abs() < 1e7 && (p[2].is_nan() || p[2].abs() < 1e7);
     if let Some(corner) = corners.iter().find(|corner| !flat(**corner)) {
         return invalid(Parameter::ProtectedPlace, format!("{corner:?}"), "finite, within 10 000 km of the scene");
@@ -87,6 +82,20 @@ pub fn protected_line(
         }
     }
     Ok((pieces, unknown_count))
+}
+
+/// Refuses fences that are below zero and spacings that are not above it.
+pub(crate) fn check_fence(fence: f64, spacing: f64) -> Result<()> {
+    let invalid = |parameter, value: f64, expected| {
+        Err(Error::InvalidParameter { parameter, value: value.to_string(), expected })
+    };
+    if !(fence >= 0.0 && fence.is_finite()) {
+        return invalid(Parameter::FenceHeight, fence, "0 or more metres");
+    }
+    if !(spacing > 0.0 && spacing.is_finite()) {
+        return invalid(Parameter::Spacing, spacing, "above zero metres");
+    }
+    Ok(())
 }
 
 /// The pieces of a surface, such as facades, each asked a little outside of itself (`lift`, metres); the source is the number of the face.

@@ -2,7 +2,7 @@
 
 use super::{North, Numbers, SceneInput, UnprovenChoice, Usage, above_zero, at_most, height, length};
 use belvedere::ground::GroundPoints;
-use belvedere::query::{Curvature, MOST_RANDOM_PAIRS, RadioWave};
+use belvedere::query::{Curvature, MOST_RANDOM_PAIRS};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -93,15 +93,6 @@ pub(crate) struct Radio {
     pub(crate) frequency: Option<f64>,
 }
 
-impl Radio {
-    pub(crate) fn wave(&self) -> anyhow::Result<Option<RadioWave>> {
-        self.frequency
-            .map(RadioWave::of_frequency)
-            .transpose()
-            .map_err(|error| Usage(format!("--frequency-ghz: {error}")).into())
-    }
-}
-
 #[derive(Args)]
 #[command(next_help_heading = "Lines of sight")]
 pub(crate) struct Earth {
@@ -138,13 +129,6 @@ pub(crate) struct Shell {
     /// Balls bulge between the points of walls and roofs. Use 0 for targets that do not lie on surfaces.
     #[arg(long, value_name = "M", allow_negative_numbers = true, value_parser = length)]
     pub(crate) shell: Option<f32>,
-}
-
-impl Shell {
-    /// The same for functions that can report unproven targets.
-    pub(crate) fn giving_way(&self) -> GivingWay {
-        GivingWay { shell: self.shell, unproven: None }
-    }
 }
 
 #[derive(Clone, Copy, ValueEnum)]

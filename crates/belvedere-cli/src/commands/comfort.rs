@@ -1,182 +1,206 @@
 //! `belvedere comfort`.
 
-mod places;
-
 use super::check_output;
-use super::sights::{Proving, blockers};
-use super::sights::{leave_out_outside, report_edge};
-use super::windows::{FaceChoice, windows};
-use crate::arguments::{Comfort, Global, PatchesChoice, Usage};
+use super::shapes::{TypedAre, shapes, wrong_shape};
+use super::sky_view::sky_parts;
+use super::windows::{Column, FaceChoice, WindowFile, coordinates};
+use crate::arguments::{Comfort, Corners, Global, Usage};
 use crate::pipeline::{self, Points};
 use crate::run::Run;
-use crate::summary::{Summary, rounded};
+use crate::summary::Summary;
 use anyhow::Result;
-use belvedere::apps::exposure::{Exposure, ShadeAtEachSun, scene_exposure};
-use belvedere::apps::sky_view::{SKY_DIRECTIONS, SkyDirections};
-use belvedere::apps::sun::{Binning, SunSchedule, sun_days};
-use belvedere::apps::targets::Measure;
-use belvedere::io::{Cells, with_columns_read, write_table};
-use places::{Places, routes};
+use belvedere::Frame;
+use belvedere::apps::ask::{self, Ask, ComfortFound, Places, RoutesOrWindows};
+use belvedere::apps::exposure::ShadeAtEachSun;
+use belvedere::apps::targets::{Measure, Route};
+use belvedere::io::{Cells, Shape, TextRows, with_columns_read, write_table};
 use std::path::Path;
 
 pub(crate) fn run(arguments: &Comfort, global: &Global) -> Result<Summary> {
-    for (flag, output) in [
+    let outputs = [
         ("-o", Some(&arguments.output)),
         ("--routes", arguments.routes.as_ref()),
         ("--times", arguments.times.as_ref()),
-    ] {
-        if let Some(output) = output {
-            check_output(flag, output, &["csv"])?;
-        }
+    ];
+    for (flag, output) in outputs {
+        output.map_or(Ok(()), |output| check_output(flag, output, &["csv"]))?;
     }
     if !arguments.when.is_given() {
         return Err(Usage("a period is missing: give --date DAY, or --from and --to".to_owned()).into());
     }
-    let sky = match arguments.patches {
-        Some(PatchesChoice::Tregenza) => SkyDirections::patches(1)?,
-        Some(PatchesChoice::Reinhart) => SkyDirections::patches(2)?,
-        None => SkyDirections::even(arguments.directions.unwrap_or(SKY_DIRECTIONS))?,
-    };
+    let mut question = question(arguments, global)?;
+    question.check()?;
     let mut run = Run::new(global);
-    let points = if arguments.places.route.is_some() { Points::Keep } else { Points::LetGo };
-    let mut scene = pipeline::scene(&arguments.scene, points, &mut run)?;
-    let site = arguments.place.site(&scene, &mut run.summary)?;
-    let zone = arguments.place.zone(&site, &arguments.when.times())?;
-    let params = arguments.when.params(&arguments.place)?;
-    let Some(period) = arguments.when.period(&arguments.place, &site, &zone)? else {
-        return Err(Usage("a period is missing: give --date DAY, or --from and --to".to_owned()).into());
-    };
-    let days = sun_days(&site, &zone, &period, &params)?;
-    // each row of --times is about a sun of its own
-    let binning = if arguments.times.is_some() { Binning::Exact } else { Binning::Auto };
-    let schedule = SunSchedule::new(&days, binning)?;
-    let mut section = Summary::default();
-    section
-        .add("days", schedule.days.len())
-        .add("time_zone", zone.name())
-        .add("suns", schedule.days.iter().map(|day| day.steps.len()).sum::<usize>())
-        .add("directions", schedule.directions.len())
-        .add("possible_hours_per_day", rounded(schedule.possible_hours() / schedule.days.len().max(1) as f64, 3));
-    run.summary.add("period", section);
-    let north = arguments.north.of_scene(&scene);
-    if arguments.places.windows.is_some() || arguments.times.is_some() {
-        north.report(&mut run.summary);
-    }
-    let mut places = match (&arguments.places.route, &arguments.places.windows) {
-        (Some(route), _) => routes(arguments, route, &mut scene, &mut run)?,
+    let route = arguments.places.route.as_ref();
+    let points = if route.is_some() { Points::Keep } else { Points::LetGo };
+    let scene = pipeline::scene(&arguments.scene, points, &mut run)?;
+    let scene = scene.into_asked(route.map(|_| &arguments.ground), arguments.shell.shell, &run)?;
+    let source = match (route, &arguments.places.windows) {
+        (Some(route), _) => {
+            let named = routes(route, scene.frame())?;
+            question.along = RoutesOrWindows::Routes(named.corners);
+            Source::Routes(named.names)
+        }
         (None, Some(path)) => {
             let choice = FaceChoice { spacing: arguments.spacing, objects: &[] };
-            windows(path, &choice, (&scene, north.of_grid), &mut run)?.into()
+            let file = WindowFile::read(path, &choice, scene.frame(), &mut run)?;
+            question.along = RoutesOrWindows::Windows(file.given.clone());
+            Source::Windows(file)
         }
         (None, None) => return Err(Usage("targets are missing: give --route or --windows".to_owned()).into()),
     };
-    leave_out_outside(&mut places.targets, &scene, &mut run.summary);
-    let directions = [sky.directions.as_slice(), &schedule.directions].concat();
-    report_edge(&places.targets, &scene, &directions, &mut run)?;
-    let mut section = Summary::default();
-    let profile = scene.profile;
-    let (blockers, _) =
-        blockers(&scene, profile, &arguments.shell.giving_way(), Proving::Never, &mut run, &mut section)?;
-    section.add("sky_directions", sky.directions.len());
-    run.summary.add("lines_of_sight", section);
-    let targets = &places.targets;
-    let shade = if arguments.times.is_some() { ShadeAtEachSun::Kept } else { ShadeAtEachSun::NotKept };
-    let found = run.stage("testing sky and sun", 2 * targets.len(), |control| {
-        scene_exposure(&blockers, targets, &sky, &schedule, shade, control)
-    })?;
-    write_rows(&arguments.output, &places, &found)?;
-    let mut section = Summary::default();
-    section.add(places.kind, targets.groups.len()).add("targets", targets.len());
-    for (measure, mean) in found.means(targets) {
-        section.add(&format!("mean_{}", measure.name), rounded(mean, digits(measure)));
-    }
-    run.summary.add("exposure", section);
+    let answers = ask::ask(&scene, &question, &Places::Scene, &run.control())?;
+    run.answered(&answers);
+    let shown = Shown { found: &answers.found, source, frame: scene.frame() };
+    shown.write_rows(&arguments.output)?;
     if let Some(output) = &arguments.routes {
-        write_groups(output, &places, &found)?;
+        shown.write_groups(output)?;
     }
     if let Some(output) = &arguments.times {
-        write_times(output, &found, &schedule, north.of_grid)?;
+        shown.write_times(output)?;
     }
-    let written = [Some(&arguments.output), arguments.routes.as_ref(), arguments.times.as_ref()];
-    let written: Vec<String> = written.into_iter().flatten().map(|path| path.display().to_string()).collect();
-    run.summary
-        .headline("routes: <exposure.routes>, with <exposure.targets> places")
-        .headline("windows: <exposure.windows>, with <exposure.targets> places")
-        .headline("sun: <exposure.mean_sun_hours> h a day on average, <exposure.mean_longest> h without a break")
-        .headline("sky view factor: <exposure.mean_sky_view_factor> on average");
-    run.summary.add("written", written);
+    let written = outputs.into_iter().filter_map(|(_, path)| path).map(|path| path.display().to_string());
+    run.summary.add("written", written.collect::<Vec<_>>());
     Ok(run.finish())
 }
 
-fn digits(measure: &Measure) -> i32 {
-    i32::try_from(measure.decimals).unwrap_or(3)
+fn question(arguments: &Comfort, global: &Global) -> Result<ask::Comfort> {
+    Ok(ask::Comfort {
+        days: arguments.when.days(),
+        place: arguments.place.place(&arguments.north)?,
+        sky: sky_parts(arguments.patches, arguments.directions),
+        distance_step_m: arguments.route_step,
+        target_height: arguments.height.map(f64::from),
+        spacing: arguments.spacing,
+        seed: global.seed,
+        shade: if arguments.times.is_some() { ShadeAtEachSun::Kept } else { ShadeAtEachSun::NotKept },
+        ground: arguments.ground.points(),
+        along: RoutesOrWindows::default(),
+    })
 }
 
-/// A row for each place of routes, or for each window.
-fn write_rows(output: &Path, places: &Places, found: &Exposure) -> Result<()> {
-    if places.targets.normals.is_some() {
-        return write_groups(output, places, found);
+/// Routes, and what each is called.
+#[derive(Default)]
+struct NamedRoutes {
+    /// Local metres.
+    corners: Vec<Vec<[f64; 3]>>,
+    names: Vec<String>,
+}
+
+fn routes(route: &Corners, frame: &Frame) -> Result<NamedRoutes> {
+    let mut routes = NamedRoutes::default();
+    for named in shapes("--route", route, TypedAre::Line, frame)? {
+        let Shape::Line(corners) = named.shape else {
+            return wrong_shape("--route", route, "a route is a line, but this file has a point or a polygon");
+        };
+        if corners.len() < 2 {
+            return wrong_shape("--route", route, "a route needs at least two corners");
+        }
+        routes.corners.push(corners);
+        routes.names.push(named.name);
     }
-    let columns: Vec<(&str, Vec<f64>, usize)> = found
-        .measures
-        .iter()
-        .map(|(m, _)| (m.name.as_str(), m.values.iter().map(|&v| f64::from(v)).collect(), m.decimals))
-        .collect();
-    let numbered = places.targets.groups.iter().zip(1_u64..);
-    let groups: Vec<Option<u64>> =
-        numbered.flat_map(|(group, number)| group.clone().map(move |_| Some(number))).collect();
-    let mut cells = vec![("route", Cells::Whole(&groups))];
-    cells.extend(places.place_columns.iter().map(|(name, values, d)| (*name, Cells::Real(values, *d))));
-    cells.extend(columns.iter().map(|(name, values, d)| (*name, Cells::Real(values, *d))));
-    Ok(write_table(output, &cells)?)
+    Ok(routes)
 }
 
-/// A row for each route or window.
-fn write_groups(output: &Path, places: &Places, found: &Exposure) -> Result<()> {
-    let of_measure = |(number, (m, _)): (usize, &(Measure, _))| {
-        (m.name.clone(), found.of_groups(number, &places.targets), m.decimals)
-    };
-    let columns: Vec<(String, Vec<f64>, usize)> = found.measures.iter().enumerate().map(of_measure).collect();
-    let numbers: Vec<Option<u64>> = (1..).take(places.targets.groups.len()).map(Some).collect();
-    let names: Vec<&str> = places.names.iter().map(String::as_str).collect();
-    let mut cells = vec![(places.row_name, Cells::Whole(&numbers))];
-    if !names.is_empty() {
-        cells.push(("name", Cells::Words(&names)));
+/// What places were taken from.
+enum Source {
+    /// Routes with these names.
+    Routes(Vec<String>),
+    Windows(WindowFile),
+}
+
+/// What was found, to be written.
+struct Shown<'a> {
+    found: &'a ComfortFound,
+    source: Source,
+    frame: &'a Frame,
+}
+
+impl Shown<'_> {
+    /// A row for each place of routes, or for each window.
+    fn write_rows(&self, output: &Path) -> Result<()> {
+        if matches!(self.source, Source::Windows(_)) {
+            return self.write_groups(output);
+        }
+        let ComfortFound { targets, exposure, routes, .. } = self.found;
+        let places: Vec<[f64; 3]> = routes.iter().flat_map(|route| route.places.iter().copied()).collect();
+        let mut columns: Vec<Column> = vec![("distance_m", routes.iter().flat_map(Route::distances).collect(), 2)];
+        columns.extend(coordinates(self.frame, &places));
+        let of_measure =
+            |(measure, _): &(Measure, _)| -> Vec<f64> { measure.values.iter().copied().map(f64::from).collect() };
+        let values: Vec<Vec<f64>> = exposure.measures.iter().map(of_measure).collect();
+        let numbered = targets.groups.iter().zip(1_u64..);
+        let groups: Vec<Option<u64>> =
+            numbered.flat_map(|(group, number)| group.clone().map(move |_| Some(number))).collect();
+        let mut cells = vec![("route", Cells::Whole(&groups))];
+        cells.extend(columns.iter().map(|(name, values, decimals)| (*name, Cells::Real(values, *decimals))));
+        cells.extend(self.of_measures(&values));
+        Ok(write_table(output, &cells)?)
     }
-    cells.extend(places.group_columns.iter().map(|(name, values, d)| (*name, Cells::Real(values, *d))));
-    cells.extend(columns.iter().map(|(name, values, d)| (name.as_str(), Cells::Real(values, *d))));
-    let read = places.given.columns(0..places.given.row_count());
-    Ok(write_table(output, &with_columns_read(&read, &["x", "y", "z", "azimuth", "tilt"], &cells))?)
-}
 
-/// A row for each route and sun.
-fn write_times(output: &Path, found: &Exposure, schedule: &SunSchedule, grid_north: f64) -> Result<()> {
-    let (mut numbers, mut dates) = (Vec::new(), Vec::new());
-    let mut columns: [Vec<f64>; 4] = std::array::from_fn(|_| Vec::new());
-    for (shares, number) in found.shaded_shares.iter().zip(1_u64..) {
-        for day in &schedule.days {
-            for step in &day.steps {
-                let row = step.direction as usize;
-                let [azimuth, elevation] = schedule.grid_azimuth_and_elevation(row);
-                numbers.push(Some(number));
-                dates.push(day.date.to_string());
-                let azimuth = (azimuth + grid_north).to_degrees().rem_euclid(360.0);
-                let values = [step.middle(), azimuth, elevation.to_degrees(), shares[row]];
-                columns.iter_mut().zip(values).for_each(|(column, value)| column.push(value));
+    /// A row for each route or window.
+    fn write_groups(&self, output: &Path) -> Result<()> {
+        let ComfortFound { targets, exposure, routes, windows, grid_north, .. } = self.found;
+        let no_rows = TextRows::default();
+        let (name, names, given, columns) = match &self.source {
+            Source::Routes(names) => {
+                let lengths = routes.iter().map(Route::length).collect();
+                ("route", names, &no_rows, vec![("length_m", lengths, 2)])
+            }
+            Source::Windows(file) => {
+                ("window", &self.found.names, &file.rows, file.columns(windows, self.frame, *grid_north))
+            }
+        };
+        let values: Vec<Vec<f64>> =
+            (0..exposure.measures.len()).map(|number| exposure.of_groups(number, targets)).collect();
+        let numbers: Vec<Option<u64>> = (1..).take(targets.groups.len()).map(Some).collect();
+        let names: Vec<&str> = names.iter().map(String::as_str).collect();
+        let mut cells = vec![(name, Cells::Whole(&numbers))];
+        if !names.is_empty() {
+            cells.push(("name", Cells::Words(&names)));
+        }
+        cells.extend(columns.iter().map(|(name, values, decimals)| (*name, Cells::Real(values, *decimals))));
+        cells.extend(self.of_measures(&values));
+        let read = given.columns(0..given.row_count());
+        Ok(write_table(output, &with_columns_read(&read, &["x", "y", "z", "azimuth", "tilt"], &cells))?)
+    }
+
+    /// Values of each measure as columns.
+    fn of_measures<'a>(&'a self, values: &'a [Vec<f64>]) -> impl Iterator<Item = (&'a str, Cells<'a>)> {
+        let measures = self.found.exposure.measures.iter().zip(values);
+        measures.map(|((measure, _), values)| (measure.name.as_str(), Cells::Real(values, measure.decimals)))
+    }
+
+    /// A row for each route and sun.
+    fn write_times(&self, output: &Path) -> Result<()> {
+        let ComfortFound { exposure, schedule, grid_north, .. } = self.found;
+        let (mut numbers, mut dates) = (Vec::new(), Vec::new());
+        let mut columns: [Vec<f64>; 4] = std::array::from_fn(|_| Vec::new());
+        for (shares, number) in exposure.shaded_shares.iter().zip(1_u64..) {
+            for day in &schedule.days {
+                for step in &day.steps {
+                    let row = step.direction as usize;
+                    let [azimuth, elevation] = schedule.grid_azimuth_and_elevation(row);
+                    numbers.push(Some(number));
+                    dates.push(day.date.to_string());
+                    let azimuth = (azimuth + grid_north).to_degrees().rem_euclid(360.0);
+                    let values = [step.middle(), azimuth, elevation.to_degrees(), shares[row]];
+                    columns.iter_mut().zip(values).for_each(|(column, value)| column.push(value));
+                }
             }
         }
+        let dates: Vec<&str> = dates.iter().map(String::as_str).collect();
+        let [hours, azimuths, elevations, shares] = &columns;
+        Ok(write_table(
+            output,
+            &[
+                ("route", Cells::Whole(&numbers)),
+                ("date", Cells::Words(&dates)),
+                ("hour", Cells::Real(hours, 4)),
+                ("azimuth_deg", Cells::Real(azimuths, 3)),
+                ("elevation_deg", Cells::Real(elevations, 3)),
+                ("shaded_share", Cells::Real(shares, 4)),
+            ],
+        )?)
     }
-    let dates: Vec<&str> = dates.iter().map(String::as_str).collect();
-    let [hours, azimuths, elevations, shares] = &columns;
-    Ok(write_table(
-        output,
-        &[
-            ("route", Cells::Whole(&numbers)),
-            ("date", Cells::Words(&dates)),
-            ("hour", Cells::Real(hours, 4)),
-            ("azimuth_deg", Cells::Real(azimuths, 3)),
-            ("elevation_deg", Cells::Real(elevations, 3)),
-            ("shaded_share", Cells::Real(shares, 4)),
-        ],
-    )?)
 }

@@ -2,7 +2,7 @@
 
 use crate::arguments::Corners;
 use anyhow::{Result, bail};
-use belvedere::PointCloud;
+use belvedere::Frame;
 use belvedere::io::{RowsAre, Shape, read_geojson, read_observers};
 use std::path::Path;
 
@@ -21,22 +21,22 @@ pub(super) enum TypedAre {
 
 /// The shapes that were typed or are in the file named, local metres; heights that are not given are NaN. `typed_are` tells what corners
 /// of tables are too.
-pub(super) fn shapes(flag: &str, corners: &Corners, typed_are: TypedAre, cloud: &PointCloud) -> Result<Vec<Named>> {
+pub(super) fn shapes(flag: &str, corners: &Corners, typed_are: TypedAre, frame: &Frame) -> Result<Vec<Named>> {
     let shape = |corners: Vec<[f64; 3]>| match typed_are {
         TypedAre::Line => Shape::Line(corners),
         TypedAre::Polygon => Shape::Polygon(vec![corners]),
     };
     let path = match corners {
         Corners::Typed(corners) => {
-            let corners = corners.iter().map(|&corner| cloud.frame.local_from_file(corner)).collect();
+            let corners = corners.iter().map(|&corner| frame.local_from_file(corner)).collect();
             return Ok(vec![Named { shape: shape(corners), name: flag.to_owned() }]);
         }
         Corners::File(path) => path,
     };
-    let from_origin = |corner: &[f64; 3]| -> [f64; 3] { std::array::from_fn(|i| corner[i] - cloud.frame.origin[i]) };
+    let from_origin = |corner: &[f64; 3]| -> [f64; 3] { std::array::from_fn(|i| corner[i] - frame.origin[i]) };
     let file = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     let found: Vec<Named> = match super::extension(path).as_str() {
-        "geojson" | "json" => read_geojson(path, &cloud.frame.crs)?
+        "geojson" | "json" => read_geojson(path, &frame.crs)?
             .into_iter()
             .enumerate()
             .map(|(i, feature)| {
@@ -51,7 +51,7 @@ pub(super) fn shapes(flag: &str, corners: &Corners, typed_are: TypedAre, cloud: 
                 Named { shape, name: own.unwrap_or_else(|| format!("{file} feature {}", i + 1)) }
             })
             .collect(),
-        _ => read_observers(path, &cloud.frame.crs, RowsAre::Corners)?
+        _ => read_observers(path, &frame.crs, RowsAre::Corners)?
             .iter()
             .map(|row| Named { shape: shape(row.corners.iter().map(from_origin).collect()), name: file.clone() })
             .collect(),

@@ -1,17 +1,13 @@
 //! Eyes of isovists and horizons: from flags and files to places.
 
-use super::{extension, sights};
-use crate::arguments::{Eyes, FarTerrain, GroundChoice, Place, SceneInput};
-use crate::pipeline::{self, Points, Scene};
+use super::extension;
+use crate::arguments::{Eyes, FarTerrain, Place, SceneInput};
+use crate::pipeline::{self, Points};
 use crate::run::Run;
-use crate::summary::Summary;
 use anyhow::Result;
 use belvedere::Frame;
 use belvedere::apps::ask::{self, Standing};
-use belvedere::apps::targets::{grid_around, set_on_ground};
-use belvedere::apps::viewshed::OBSERVER_HEIGHT;
 use belvedere::io::{RowsAre, TextRows, read_observers, read_table};
-use belvedere::query::MedialScene;
 use std::path::Path;
 
 impl Eyes {

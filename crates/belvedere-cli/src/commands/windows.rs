@@ -3,31 +3,17 @@
 use super::landmark::what::objects_of;
 use super::mesh_targets::is_mesh;
 use crate::arguments::Usage;
-use crate::pipeline::{Scene, mesh_in};
+use crate::pipeline::mesh_in;
 use crate::run::Run;
 use anyhow::{Result, bail};
 use belvedere::Frame;
-use belvedere::apps::ask::windows::WindowTargets;
 use belvedere::apps::ask::{GivenWindow, GivenWindows, Shared};
-use belvedere::apps::targets::{Targets, Window};
-use belvedere::apps::viewshed::CELL;
+use belvedere::apps::targets::Window;
 use belvedere::io::{TextRows, read_table};
 use std::path::Path;
 
 /// Name, values and decimals.
 pub(crate) type Column = (&'static str, Vec<f64>, usize);
-
-/// Windows, and what else is known of them.
-pub(crate) struct Windows {
-    /// A group for each window.
-    pub(crate) targets: Targets,
-    /// Where and what each window is.
-    pub(crate) columns: Vec<Column>,
-    /// What the object of each is called; empty where nothing is.
-    pub(crate) names: Vec<String>,
-    /// The rows of a table of windows.
-    pub(crate) given: TextRows,
-}
 
 /// Which faces of a mesh are windows, and how they are cut.
 pub(crate) struct FaceChoice<'a> {
@@ -127,22 +113,6 @@ fn table(path: &Path, frame: &Frame) -> Result<WindowFile> {
         ("tilt", tilt, 2),
     ];
     Ok(WindowFile { given, columns, rows: table.into_text() })
-}
-
-/// Windows of a table, or the faces of a mesh, with the targets in front of them. `grid_north` is the azimuth of grid north, radians.
-pub(crate) fn windows(
-    path: &Path,
-    choice: &FaceChoice<'_>,
-    (scene, grid_north): (&Scene, f64),
-    run: &mut Run,
-) -> Result<Windows> {
-    let frame = &scene.cloud.frame;
-    let file = WindowFile::read(path, choice, frame, run)?;
-    file.given.check()?;
-    let parts = (choice.spacing.unwrap_or(CELL), run.seed);
-    let WindowTargets { targets, windows, names } = file.given.targets(frame, grid_north, parts)?;
-    let columns = file.columns(&windows, frame, grid_north);
-    Ok(Windows { targets, columns, names, given: file.rows })
 }
 
 /// Coordinates of the file.

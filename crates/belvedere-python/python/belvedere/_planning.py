@@ -345,6 +345,11 @@ class Planning:
         BelvedereError
             Unless a walk or windows and days are given.
 
+        Warns
+        -----
+        BelvedereWarning
+            Of places outside the cloud, of many near its edge, and of places of a walk without known ground.
+
         References
         ----------
         docs/methods/comfort.md
@@ -368,9 +373,12 @@ class Planning:
             "ground": ground,
         }
         place = _place(location, zone=zone, grid_north=grid_north)
-        columns = self._core.comfort(walks, _days(date, period, year, time_step_min), place, reporter(progress))
+        days = _days(date, period, year, time_step_min)
+        columns, given = self._core.comfort(walks, days, place, reporter(progress))
         places = columns.pop("place")
-        return Table(columns, places=places, crs=self._core.crs.text)
+        table = Table(columns, places=places, crs=self._core.crs.text)
+        table.remarks = warned(given, stacklevel=3)
+        return table
 
     def envelope(
         self,
@@ -431,6 +439,11 @@ class Planning:
         BelvedereError
             Without suns, for a parcel that is no polygon, and where no ground is known.
 
+        Warns
+        -----
+        BelvedereWarning
+            Of protected parts without known ground.
+
         References
         ----------
         docs/methods/solar-envelope.md
@@ -451,9 +464,6 @@ class Planning:
             if date is not None or period is not None:
                 raise wrong("sun and days", "given together", "give one of them")
             suns = [number_pair(one, "sun", _DIRECTION) for one in np.atleast_2d(np.asarray(sun, np.float64))]
-            for azimuth, elevation in suns:
-                if not 0 < elevation <= 90:
-                    raise wrong("sun", (azimuth, elevation), "the elevation must be above 0 and at most 90 degrees")
         is_one = all(np.ndim(corner) == 1 for corner in protect)  # type: ignore[union-attr]
         lines = [protect] if is_one else list(protect)  # type: ignore[arg-type]
         build: dict[str, Any] = {
@@ -469,11 +479,11 @@ class Planning:
             "ground": ground,
         }
         place = _place(location, zone=zone, grid_north=grid_north)
-        column, grid, _ = self._core.envelope(
-            build, _days(date, period, year, time_step_min), place, reporter(progress)
-        )
-        name, text, values = column
-        return raster(values, grid, self._core.crs, name=name, description=text, nodata=float("nan"))
+        days = _days(date, period, year, time_step_min)
+        (name, text, values), grid, given = self._core.envelope(build, days, place, reporter(progress))
+        height = raster(values, grid, self._core.crs, name=name, description=text, nodata=float("nan"))
+        height.remarks = warned(given, stacklevel=3)
+        return height
 
 
 def _line(value: Any, what: str, least: int = 1) -> list[tuple[float, float, float]]:
