@@ -328,7 +328,10 @@ def test_views_from_windows(scene, run_program, folder, standing):
     }
     pandas.DataFrame(rows).to_csv(folder / "windows.csv", index=False)
     run_program("window-views", "tile.laz", "--windows", "windows.csv", "--class", "2=water", "-o", "views.csv")
-    assert_same_views(scene.window_views(rows, classes={2: "water"}), pandas.read_csv(folder / "views.csv"))
+    with pytest.warns(belvedere.BelvedereWarning, match="near the edge of the cloud") as caught:
+        ours = scene.window_views(rows, classes={2: "water"})
+    assert [one.message.key for one in caught] == [one.key for one in ours.remarks] == ["targets-near-edge"]
+    assert_same_views(ours, pandas.read_csv(folder / "views.csv"))
 
     # two upright faces of a wall, and a roof
     corners = [(x, y, z + 5), (x + 4, y, z + 5), (x + 4, y, z + 8), (x, y, z + 8), (x + 4, y + 3, z + 8)]
@@ -336,7 +339,8 @@ def test_views_from_windows(scene, run_program, folder, standing):
     (folder / "facades.obj").write_text("\n".join(lines))
     flags = ["--windows", "facades.obj", "--object", "wall", "--directions", 300, "-o", "faces.csv"]
     run_program("window-views", "tile.laz", *flags, "--buildings", "buildings.csv")
-    ours = scene.window_views(folder / "facades.obj", objects="wall", directions=300)
+    with pytest.warns(belvedere.BelvedereWarning, match="near the edge of the cloud"):
+        ours = scene.window_views(folder / "facades.obj", objects="wall", directions=300)
     assert_same_views(ours, pandas.read_csv(folder / "faces.csv"))
     assert ours["object"].tolist() == ["wall"] * 2 and ours.objects is not None
     theirs = pandas.read_csv(folder / "buildings.csv")
@@ -378,10 +382,14 @@ def test_cameras(scene, run_program, folder, standing):
         "cameras", "tile.laz", "--candidates", "posts.csv", "--private", "private.csv", "--coverage", 30, "--cell", 4,
         "--density", "none", "--headings", 6, "--tilt", 10, "--tilt", 40, "-o", "some.tif",
     )  # fmt: skip
-    with pytest.warns(belvedere.BelvedereWarning, match=r"candidate 2 .* inside an obstacle"):
+    with pytest.warns(belvedere.BelvedereWarning) as caught:
         some = scene.cameras(
             posts, private=(x + 3, y + 9), coverage_percent=30, cell=4, density="none", headings=6, tilts_deg=(10, 40)
         )
+    # the cells of 4 m do not fit into the tile
+    assert {one.message.key for one in caught} == {"targets-outside-cloud", "observer-skipped"}
+    assert [one.text for one in some.remarks if one.severity == "warning"] == [str(one.message) for one in caught]
+    assert any("candidate " in one.text and "inside an obstacle" in one.text for one in some.remarks)
     assert_same_raster(some.counts, folder / "some.tif", folder)
     radio = ["--on-roofs", 12, "--fov", 360, "--count", 2, "--frequency-ghz", 2.4, "--fresnel-percent", 80]
     run_program("cameras", "tile.laz", *radio, "--max-distance", 40, "-o", "masts.tif")
@@ -390,7 +398,8 @@ def test_cameras(scene, run_program, folder, standing):
     assert_same_raster(ours.counts, folder / "masts.tif", folder)
     assert ours.coverage_percent < scene.cameras("roofs", **masts).coverage_percent
     assert some.coverage_percent >= 30 and some.least_possible_cameras <= len(some.covered)
-    more = scene.cameras(posts[2:], count=1, cell=4, density="none", existing=some.cameras, headings=6)
+    with pytest.warns(belvedere.BelvedereWarning, match=r"targets \(.* %\) are outside the cloud"):
+        more = scene.cameras(posts[2:], count=1, cell=4, density="none", existing=some.cameras, headings=6)
     assert more.existing_only_percent == pytest.approx(some.coverage_percent, abs=0.2)
     assert more.cameras["is_existing"].tolist() == [True] * len(some.covered) + [False]
 
