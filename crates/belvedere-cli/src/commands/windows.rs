@@ -1,4 +1,4 @@
-//! Windows: from files to places that are asked.
+//! Windows: from files to places.
 
 use super::landmark::what::objects_of;
 use super::mesh_targets::is_mesh;
@@ -129,7 +129,8 @@ fn table(path: &Path, frame: &Frame) -> Result<WindowFile> {
     Ok(WindowFile { given, columns, rows: table.into_text() })
 }
 
-/// Windows of a table, or the faces of a mesh, with the targets in front of them. `grid_north` is the azimuth of grid north, radians.
+/// Windows of a table, or the faces of a mesh, with the targets in front of them. `grid_north` is the azimuth of grid
+/// north, radians.
 pub(crate) fn windows(
     path: &Path,
     choice: &FaceChoice<'_>,

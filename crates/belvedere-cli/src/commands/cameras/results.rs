@@ -116,13 +116,13 @@ impl Shown<'_> {
     }
 
     /// The number of cameras of each cell; none where nothing is asked.
-    fn counts(&self) -> impl Iterator<Item = Option<u16>> + '_ {
-        let small = |count: u32| u16::try_from(count).unwrap_or(NO_COUNT).min(NO_COUNT - 1);
-        (0..self.found.targets.len()).map(move |row| self.found.count(row).map(small))
+    fn counts(&self) -> impl Iterator<Item = Option<u32>> + '_ {
+        (0..self.found.targets.len()).map(|row| self.found.count(row))
     }
 
     fn write_counts(&self, output: &Path, ground: &Ground) -> Result<()> {
-        let values = self.counts().map(|count| count.unwrap_or(NO_COUNT)).collect();
+        let small = |count: u32| u16::try_from(count).unwrap_or(NO_COUNT).min(NO_COUNT - 1);
+        let values = self.counts().map(|count| count.map_or(NO_COUNT, small)).collect();
         let raster = Raster::from_values(ground.grid.width, ground.grid.height, values)?;
         let place = georeference(&ground.grid, &self.found.targets.frame);
         let what = "number of cameras that cover the cell, 65535 nodata";
@@ -137,8 +137,8 @@ impl Shown<'_> {
             Some(MapMark { place, view: Some([pose.heading, pose.width]), label: number.to_string() })
         };
         let marks: Vec<MapMark> = (1..).zip(&self.found.cameras).filter_map(mark).collect();
-        let most = self.counts().flatten().max().map_or(1, |most| usize::from(most).clamp(1, COLORS.len() - 1));
-        let color = |count: u16| COLORS.get(usize::from(count).min(most)).copied();
+        let most = self.counts().flatten().max().map_or(1, |most| (most as usize).clamp(1, COLORS.len() - 1));
+        let color = |count: u32| COLORS.get((count as usize).min(most)).copied();
         let colors: Vec<Option<[u8; 3]>> = self.counts().map(|count| count.and_then(color)).collect();
         let names = ["no camera", "1 camera", "2 cameras", "3 cameras", "4 cameras or more"];
         let meanings: Vec<([u8; 3], &str)> = COLORS.into_iter().zip(names).take(most + 1).collect();
