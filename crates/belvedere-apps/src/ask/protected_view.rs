@@ -32,8 +32,8 @@ pub struct ProtectedView {
     pub observer_height: f64,
     /// Greatest distance from an observer to the landmark, metres, above 0; `None` for no limit.
     pub max_distance: Option<f64>,
-    /// What lines count as that nothing blocks but that are not proven: reported, the default, and visible ones are protected. What is given
-    /// needs pulses.
+    /// What lines count as that nothing blocks but that are not proven: reported, the default, and visible ones are
+    /// protected. What is given needs pulses.
     pub unproven: Option<UnprovenAs>,
 }
 
@@ -173,5 +173,23 @@ impl Ask for ProtectedView {
             *top = of_file;
         }
         Ok(Answers::new(ProtectedViewFound { heights, tops, ground, eyes }, Vec::new()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn distances_and_heights_that_cannot_be_are_refused() {
+        let usual = ProtectedView::default;
+        assert!(usual().check().is_ok());
+        for wrong in [
+            ProtectedView { max_distance: Some(0.0), ..usual() },
+            ProtectedView { max_distance: Some(f64::NAN), ..usual() },
+            ProtectedView { observer_height: f64::INFINITY, ..usual() },
+        ] {
+            assert!(matches!(wrong.check(), Err(Error::InvalidParameter { .. })), "{wrong:?}");
+        }
     }
 }

@@ -35,7 +35,8 @@ pub struct WindowViews {
     pub directions: usize,
     /// What classes of points are, where that is not what ASPRS says.
     pub classes: Vec<(u8, Seen)>,
-    /// Whether views through space that no pulse came near are reported (`None` too) or count as visible. What is given needs pulses.
+    /// Whether views through space that no pulse came near are reported (`None` too) or count as visible. What is given
+    /// needs pulses.
     pub unproven: Option<UnprovenAs>,
 }
 
@@ -237,5 +238,27 @@ impl WindowViews {
             );
             context.add(Some(Remark::warning("seen-things-of-no-kind", text).with("percent", other)));
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn views_that_cannot_be_are_refused_before_a_scene_is_needed() {
+        let usual = WindowViews::default;
+        assert!(usual().check().is_ok());
+        for wrong in [
+            WindowViews { directions: 0, ..usual() },
+            WindowViews { directions: 1_000_000, ..usual() },
+            WindowViews { spacing: 0.0, ..usual() },
+            WindowViews { classes: vec![(6, Seen::Building), (7, Seen::Sky)], ..usual() },
+            WindowViews { unproven: Some(UnprovenAs::Blocked), ..usual() },
+        ] {
+            assert!(matches!(wrong.check(), Err(Error::InvalidParameter { .. })), "{wrong:?}");
+        }
+        let other = WindowViews { classes: vec![(26, Seen::Ground)], unproven: Some(UnprovenAs::Visible), ..usual() };
+        assert!(other.check().is_ok());
     }
 }

@@ -62,11 +62,12 @@ impl GivenWindows {
         Ok(())
     }
 
-    /// The targets in a frame where grid north has the azimuth `grid_north`, radians. Faces are cut into pieces of `spacing` metres at most,
-    /// with places drawn from `seed`.
+    /// The targets in a frame where grid north has the azimuth `grid_north`, radians. Faces are cut into pieces of
+    /// `spacing` metres at most, with places drawn from `seed`.
     ///
     /// # Errors
-    /// [`Error::InvalidParameter`] for windows without a place, direction or size that can be; those of [`Targets::of_window_faces`].
+    /// [`Error::InvalidParameter`] for windows without a place, direction or size that can be; those of
+    /// [`Targets::of_window_faces`].
     pub fn targets(&self, frame: &Frame, grid_north: f64, (spacing, seed): (f64, u64)) -> Result<WindowTargets> {
         match self {
             Self::Each(given) => {
@@ -96,5 +97,35 @@ fn with_number((row, error): (usize, Error)) -> Error {
             Error::InvalidParameter { parameter, value: format!("number {}, {value}", row + 1), expected }
         }
         other => other,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn window(place: [f64; 3], tilt_deg: f64) -> GivenWindow {
+        GivenWindow { place, azimuth_deg: 180.0, tilt_deg, size: None }
+    }
+
+    #[test]
+    fn errors_name_the_window_by_its_number() {
+        let number_of = |error: Error| match error {
+            Error::InvalidParameter { parameter: Parameter::Window, value, .. } => value,
+            other => panic!("{other}"),
+        };
+        let tilted = GivenWindows::Each(vec![window([0.0; 3], 90.0), window([0.0; 3], 190.0)]);
+        assert_eq!(number_of(tilted.check().unwrap_err()), "number 2, tilted by 190 degrees");
+        let nowhere = GivenWindows::Each(vec![window([0.0; 3], 90.0), window([f64::NAN; 3], 90.0)]);
+        let error = nowhere.targets(&Frame::default(), 0.0, (1.0, 1)).err().unwrap();
+        assert!(number_of(error).starts_with("number 2, at "));
+    }
+
+    #[test]
+    fn azimuths_count_from_the_north_of_the_question() {
+        let given = GivenWindows::Each(vec![window([0.0; 3], 90.0)]);
+        let found = given.targets(&Frame::default(), 0.1, (1.0, 1)).unwrap();
+        assert!((found.windows[0].azimuth - (std::f64::consts::PI - 0.1)).abs() < 1e-12);
+        assert_eq!((found.targets.len(), found.names.len()), (1, 0));
     }
 }

@@ -56,7 +56,7 @@ pub(crate) fn run(arguments: &Cameras, global: &Global) -> Result<Summary> {
     Ok(run.finish())
 }
 
-/// What is asked, before files are read.
+/// The question, before files are read.
 fn question(arguments: &Cameras) -> Result<ask::Cameras> {
     let usual = ask::Cameras::default();
     let flags = &arguments.candidates;

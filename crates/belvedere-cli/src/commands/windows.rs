@@ -1,4 +1,4 @@
-//! Windows: from files to places that are asked.
+//! Windows: from files to places.
 
 use super::landmark::what::objects_of;
 use super::mesh_targets::is_mesh;

@@ -8,13 +8,16 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct CameraLens {
-    /// Horizontal field of view, degrees, above 0 to 360; `None` for 90. From 180 on it sees all around: a person, a fisheye lens, a mast.
+    /// Horizontal field of view, degrees, above 0 to 360; `None` for 90. From 180 on it sees all around: a person, a
+    /// fisheye lens, a mast.
     pub fov_deg: Option<f64>,
-    /// Vertical field of view, degrees; `None` for that of a picture of 16:9, or 180 where the horizontal one is 180 or more.
+    /// Vertical field of view, degrees; `None` for that of a picture of 16:9, or 180 where the horizontal one is 180 or
+    /// more.
     pub vertical_fov_deg: Option<f64>,
     /// Pixels across the picture; `None` for 1920.
     pub pixels: Option<f64>,
-    /// Pixels per metre that are needed, 0 for none; `None` for 25 (detect), or none where the field of view is 180 or more.
+    /// Pixels per metre that are needed, 0 for none; `None` for 25 (detect), or none where the field of view is 180 or
+    /// more.
     pub density: Option<f64>,
     /// Headings to choose from at each place, evenly spread, 1 to 360; `None` for 8.
     pub headings: Option<usize>,

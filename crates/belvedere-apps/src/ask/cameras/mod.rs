@@ -52,12 +52,13 @@ pub struct Cameras {
     /// How lines of sight run over the earth.
     #[serde(skip)]
     pub earth: EarthParams,
-    /// Frequency of radio links, GHz, 0.001 to 1000: a target is only covered if the first Fresnel zone is free too. `None` for no links.
+    /// Frequency of radio links, GHz, 0.001 to 1000: a target is only covered if the first Fresnel zone is free too.
+    /// `None` for no links.
     pub frequency_ghz: Option<f64>,
     /// Share of the radius of that zone that must be free, percent, above 0 to 100; `None` for 60.
     pub fresnel_percent: Option<f64>,
-    /// What targets count as that nothing blocks but that are not proven visible; they are covered only where they count as visible. What is given
-    /// needs pulses.
+    /// What targets count as that nothing blocks but that are not proven visible; they are covered only where they
+    /// count as visible. What is given needs pulses.
     pub unproven: Option<UnprovenAs>,
 }
 
@@ -290,5 +291,32 @@ impl Ask for Cameras {
         context.report.cameras = Some(report);
         let found = CamerasFound::new(&poses, existing.len(), &table, placed, targets, north.of_grid);
         Ok(Answers::new(found, Vec::new()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn choices_that_cannot_be_are_refused_before_a_scene_is_needed() {
+        let usual = Cameras::default;
+        let lens = |lens: CameraLens| Cameras { lens, ..usual() };
+        assert!(usual().check().is_ok());
+        for wrong in [
+            Cameras { goal: CameraGoal::CoveragePercent(0.0), ..usual() },
+            Cameras { goal: CameraGoal::CoveragePercent(120.0), ..usual() },
+            Cameras { per_target: 0, ..usual() },
+            Cameras { frequency_ghz: Some(2400.0), ..usual() },
+            Cameras { frequency_ghz: Some(2.4), fresnel_percent: Some(101.0), ..usual() },
+            lens(CameraLens { fov_deg: Some(400.0), ..CameraLens::default() }),
+            lens(CameraLens { fov_deg: Some(360.0), density: Some(25.0), ..CameraLens::default() }),
+            lens(CameraLens { headings: Some(0), ..CameraLens::default() }),
+            lens(CameraLens { tilts_deg: vec![15.0, 95.0], ..CameraLens::default() }),
+            lens(CameraLens { min_distance: Some(9.0), max_distance: Some(3.0), ..CameraLens::default() }),
+            Cameras { targets: CameraTargets { weights: vec![1.0, -1.0], ..CameraTargets::default() }, ..usual() },
+        ] {
+            assert!(matches!(wrong.check(), Err(Error::InvalidParameter { .. })), "{wrong:?}");
+        }
     }
 }
