@@ -52,11 +52,13 @@ fn blocks_of_any_size_give_the_rows_of_the_whole_matrix() {
     let (balls, vegetation) = balls();
     let scene = MedialScene::new(&balls, &params()).unwrap();
     let opaque = MedialScene::new(&without_vegetation(&balls, &vegetation).unwrap(), &params()).unwrap();
-    let trees =
-        TreeLight { opaque, crowns: Crowns { transmissivity: Transmissivity::default(), leaves: Leaves::ByDate } };
+    let trees = TreeLight {
+        opaque: opaque.into(),
+        crowns: Crowns { transmissivity: Transmissivity::default(), leaves: Leaves::ByDate },
+    };
     let targets = targets(300);
     let sky = SkyDirections::even(150).unwrap();
-    let [whole, opaque] = [&scene, &trees.opaque]
+    let [whole, opaque] = [&scene, &*trees.opaque]
         .map(|scene| scene.visibility_matrix(&targets.positions, &sky.directions, &Control::none()).unwrap());
     assert_ne!(whole, opaque, "trees must hide something");
     for block in [1, 63, 64, 257, 299, 300, 10_000] {
