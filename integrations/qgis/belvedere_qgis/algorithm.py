@@ -111,8 +111,8 @@ class BelvedereAlgorithm(QgsProcessingAlgorithm):
             if output.key in wanted
         }
         summary = self._run(path, arguments(self.command, values, written), feedback)
-        for warning in summary.get("warnings", []):
-            feedback.pushWarning(warning)
+        for remark in summary.get("remarks", []):
+            (feedback.pushWarning if remark["severity"] == "warning" else feedback.pushInfo)(remark["text"])
         for name, value in summary.items():
             if isinstance(value, (int, float, str)):
                 feedback.pushInfo(f"{name.replace('_', ' ')}: {value}")

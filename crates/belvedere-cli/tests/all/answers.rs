@@ -1,6 +1,6 @@
 //! What cannot be answered is not answered: places outside the cloud, and observers that cannot look.
 
-use crate::common::{EAST, NORTH, Workplace, at, column, house};
+use crate::common::{EAST, NORTH, Workplace, at, column, house, remarks};
 
 const HOUSE: &str = "house.laz --scene-config ../tau.json --orient given --ground found";
 /// Three kilometres beside the house.
@@ -32,14 +32,14 @@ fn places_outside_the_cloud_have_an_answer_of_their_own_in_all_ways_of_asking() 
         let summary = place.summary(&format!("query house.laz --orient given {targets} {view}"));
         assert_eq!(column(&place, "out.csv", "answer"), [1.0, 4.0, 4.0, above], "{view}");
         assert_eq!(summary["answers"]["outside_cloud"], 2);
-        let warning = summary["warnings"][0].as_str().unwrap();
+        let warning = &remarks(&summary)[0];
         assert!(warning.contains("2 of 4 targets (50 %) are outside the cloud"), "{warning}");
     }
     let beside = format!("--panorama {},{NORTH},20", EAST + FAR);
     let summary =
         place.summary(&format!("query house.laz --scene-config ../tau.json --orient given {targets} {beside}"));
     assert_eq!(summary["answers"]["outside_cloud"], 4);
-    assert!(summary["warnings"][0].as_str().unwrap().contains("the eye is outside the cloud"));
+    assert!(remarks(&summary)[0].contains("the eye is outside the cloud"));
 
     let pair = |a: [f64; 3], b: [f64; 3]| a.into_iter().chain(b).collect::<Vec<f64>>();
     let pairs = [pair(places[0], places[3]), pair(places[0], places[1]), pair(at(FAR, 0.0, 9.0), at(FAR, 9.0, 9.0))];
@@ -82,7 +82,7 @@ fn observers_that_cannot_look_are_named_skipped_and_counted() {
     assert_eq!(observers["skipped_inside_obstacle"], 1);
     assert_eq!(observers["skipped_below_ground"], 1);
     assert_eq!(observers["skipped_outside_cloud"], 1);
-    let warnings: Vec<&str> = summary["warnings"].as_array().unwrap().iter().map(|w| w.as_str().unwrap()).collect();
+    let warnings = remarks(&summary);
     assert!(warnings[0].starts_with("observer 2 at 84995.400,446000.250 is skipped: it is inside an obstacle, 0."));
     assert!(warnings[1].contains("observer 3") && warnings[1].contains("below the ground"), "{warnings:?}");
     assert!(warnings[2].contains("observer 4") && warnings[2].contains("outside the cloud"), "{warnings:?}");
@@ -135,7 +135,7 @@ fn places_near_the_edge_of_the_cloud_are_counted_and_mapped() {
         place.summary(&format!("shadow {HOUSE} --sun 180,30 --grid-north --cell 1 -o lit.tif --edge-mask edge.tif"));
     let share = summary["targets_near_edge_percent"].as_f64().unwrap();
     assert!((share - 50.0).abs() < 4.0, "{summary}");
-    let warning = summary["warnings"][0].as_str().unwrap();
+    let warning = remarks(&summary).remove(0);
     assert!(warning.contains("targets") && warning.contains("near the edge of the cloud"), "{warning}");
     let file = std::fs::File::open(place.path("edge.tif")).unwrap();
     let mut tiff = tiff::decoder::Decoder::new(file).unwrap();

@@ -250,7 +250,7 @@ fn a_cleared_area_loses_its_shadow_and_keeps_its_cells() {
     assert!(dark > 500 && still_dark * 50 < now_light, "{dark} {light} {still_dark} {now_light}");
     assert!(still_dark + now_light >= dark + light, "{dark} {light} {still_dark} {now_light}");
     assert_eq!(lit("box", "--clear 154900,462900,155100,463100"), [still_dark, now_light]);
-    let warnings = |flags: &str| place.summary(&format!("{plan} {flags} -o warned"))["warnings"].to_string();
+    let warnings = |flags: &str| place.summary(&format!("{plan} {flags} -o warned"))["remarks"].to_string();
     assert!(warnings("--clear class:77").contains("nothing stands there"));
     // one of two is enough
     assert!(!warnings("--clear class:77 --clear all.geojson").contains("nothing stands there"));

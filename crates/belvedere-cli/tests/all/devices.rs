@@ -55,7 +55,7 @@ fn a_device_that_is_not_there_is_refused_or_replaced_by_the_cpu() {
     place.refusal(1, "shadow field.laz --sun 160,35 -o out.tif --device 999", &["no device 999", "belvedere info"]);
     place.summary("sky-view field.laz --cell 1 --device cpu -o cpu.tif");
     let summary = place.summary("sky-view field.laz --cell 1 --device gpu -o gpu.tif");
-    let is_replaced = summary["warnings"].to_string().contains("no graphics processor with a driver");
+    let is_replaced = summary["remarks"].to_string().contains("no graphics processor with a driver");
     assert_ne!(summary.get("device").is_some(), is_replaced, "{summary}");
     assert!(place.bytes("cpu.tif") == place.bytes("gpu.tif"));
     assert_eq!(place.names(), ["balls.npz", "cpu.tif", "field.laz", "gpu.tif"]);

@@ -1,6 +1,6 @@
 //! Scenes as planned: meshes added to the house whose shadow is known.
 
-use crate::common::{EAST, NORTH, Workplace, at, column, house};
+use crate::common::{EAST, NORTH, Workplace, at, column, house, remarks};
 use belvedere::apps::viewshed::SEEN;
 use belvedere::results::{Pixels, ResultRaster};
 
@@ -153,9 +153,9 @@ fn differences_are_those_of_the_two_results_cell_by_cell() {
     // the raster of the change, read back, lies where the others do
     let again = place.summary("difference before.tif before.tif -o same.tif");
     assert_eq!((&again["difference"]["cells_loss"], &again["difference"]["cells_gain"]), (&0.into(), &0.into()));
-    assert!(again["warnings"].is_null() && run["warnings"].is_null());
+    assert!(again["remarks"].is_null() && run["remarks"].is_null());
     let mixed = place.summary("difference before.tif change.tif -o mixed.tif");
-    let warning = mixed["warnings"][0].as_str().unwrap();
+    let warning = &remarks(&mixed)[0];
     assert!(["before.tif", "change.tif", "after less before"].iter().all(|part| warning.contains(part)), "{warning}");
     place.summary("difference change.tif change.tif -o same.tif");
     place.summary(&format!("{shadow} --cell 1 -o coarse.tif").replace("--cell 0.5 ", ""));
@@ -179,7 +179,7 @@ fn cells_that_become_unproven_are_neither_gain_nor_loss() {
     let run = place.summary("difference before.tif after.tif -o change.csv");
     let cells = ["cells", "cells_gain", "cells_loss", "cells_only_before", "cells_only_after"];
     assert_eq!(cells.map(|name| run["difference"][name].as_u64().unwrap()), [2, 1, 1, 2, 2]);
-    let warnings = [0, 1].map(|i| run["warnings"][i].as_str().unwrap());
+    let warnings = remarks(&run);
     assert!(warnings[0].contains("before.tif: unproven cells count as cells without a value (1)"), "{warnings:?}");
     assert!(warnings[1].contains("after.tif: unproven cells count as cells without a value (2)"), "{warnings:?}");
 }

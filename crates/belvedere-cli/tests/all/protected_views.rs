@@ -56,7 +56,7 @@ fn the_view_of_a_wall_limits_what_may_be_built_before_it_and_not_behind_the_hous
     let none = place
         .summary(&format!("protected-view house.laz {BALLS} --targets wall.obj --observer {eye} --cell 1 -o c.npy"));
     assert_eq!(none["protected_view"]["cells_limited"], 0);
-    assert!(none["warnings"].to_string().contains("nothing is protected"), "{none}");
+    assert!(none["remarks"].to_string().contains("nothing is protected"), "{none}");
 }
 
 #[test]

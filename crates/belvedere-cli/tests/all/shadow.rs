@@ -156,9 +156,9 @@ fn a_film_has_a_frame_for_each_sun() {
     assert_eq!(header.split(',').filter(|name| name.starts_with("lit_202612")).count() as u64, suns, "{header}");
     // one map cannot show them all
     let two = format!("shadow {HOUSE} --sun 180,30 --sun 200,30 --cell 1 -o map.png");
-    let warnings = &place.summary(&two)["warnings"];
+    let warnings = &place.summary(&two)["remarks"];
     assert!(warnings.to_string().contains("only the first of 2 suns; --film"), "{warnings}");
-    let with_film = &place.summary(&format!("{two} --film film.png"))["warnings"];
+    let with_film = &place.summary(&format!("{two} --film film.png"))["remarks"];
     assert!(!with_film.to_string().contains("only the first"), "{with_film}");
 }
 

@@ -37,9 +37,9 @@ fn the_answer_comes_first_in_twelve_lines_and_all_figures_with_verbose() {
         (format!("shadow house.laz --sun 180,30 --cell 1{maps}"), "lit"),
         (format!("viewshed house.laz --observer 85000,445988 --cell 1{maps}"), "visible "),
         ("query house.laz --sun 180,30 --random 500 -o answers.csv".to_owned(), "visible "),
-        ("line-of-sight house.laz --observer 85000,445988,2 --target 85000,446012,2".to_owned(), "answer: blocked"),
+        ("line-of-sight house.laz --observer 85000,445988,2 --target 85000,446012,2".to_owned(), "line of sight: blocked"),
         (format!("sky-view house.laz --cell 4{maps}"), "sky view factor"),
-        (format!("isovist house.laz --observer 85000,445988,2{tables}"), "visible space: "),
+        (format!("isovist house.laz --observer 85000,445988,2{tables}"), "space seen by 1 observer: "),
     ] {
         let run = place.run(&command);
         let lines: Vec<&str> = run.stdout.lines().collect();
@@ -54,7 +54,7 @@ fn the_answer_comes_first_in_twelve_lines_and_all_figures_with_verbose() {
         }
         let (whole, json) = (place.run(&format!("{command} -v")).stdout, place.summary(&command));
         assert!(whole.lines().count() > SHORT && whole.contains("\nseconds\n"), "{command}: {whole}");
-        for name in json.as_object().unwrap().keys().filter(|name| !["headline", "warnings"].contains(&name.as_str())) {
+        for name in json.as_object().unwrap().keys().filter(|name| !["headline", "remarks"].contains(&name.as_str())) {
             let is_empty = json[name].as_array().is_some_and(Vec::is_empty);
             assert!(is_empty || whole.contains(&name.replace('_', " ")), "{command}: {name} is not in {whole}");
         }

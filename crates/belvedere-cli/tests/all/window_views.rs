@@ -96,7 +96,7 @@ fn a_ball_file_takes_the_classes_of_its_cloud_and_of_no_other() {
         place.summary(&format!("window-views house.npz {views} --classes-of house.laz -o of_balls.csv -o map.png"));
     assert!(place.bytes("of_balls.csv") == place.bytes("of_cloud.csv"), "{run}");
     let run = place.summary(&format!("window-views house.npz {views} -o without.csv"));
-    assert!(run["warnings"].to_string().contains("give the cloud that the balls were built from"), "{run}");
+    assert!(run["remarks"].to_string().contains("give the cloud that the balls were built from"), "{run}");
     assert_eq!(column(&place, "without.csv", "building")[0], 0.0);
     // a class can mean something else
     place.summary(&format!("window-views house.npz {views} --classes-of house.laz --class 6=water -o water.csv"));

@@ -173,6 +173,12 @@ pub(crate) fn npy<T: npyz::Deserialize>(path: &Path) -> (Vec<u64>, Vec<T>) {
     (array.shape().to_vec(), array.into_vec().unwrap())
 }
 
+/// The texts of the remarks of a run.
+pub(crate) fn remarks(summary: &serde_json::Value) -> Vec<String> {
+    let remarks = summary["remarks"].as_array().into_iter().flatten();
+    remarks.map(|remark| remark["text"].as_str().unwrap().to_owned()).collect()
+}
+
 /// Easting and northing of the middle of the house, metres.
 pub(crate) const EAST: f64 = 85_000.0;
 pub(crate) const NORTH: f64 = 446_000.0;
