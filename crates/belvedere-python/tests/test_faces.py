@@ -270,3 +270,108 @@ def test_a_place_has_the_same_hours_of_sun_on_the_page(scene, ask_program, ask_p
     assert of_page["sun_hours"] == round(float(of_python["sun_hours"][0]), 3)
     assert summary["measures"]["sun_hours"]["mean"] == pytest.approx(of_page["sun_hours"], abs=0.0011)
     assert said(of_page["remarks"]) == said(summary["remarks"]) == said(of_python.remarks)
+
+
+VIEWSHEDS = {
+    "one observer": ({}, []),
+    "within 30 m": ({"max_distance": 30}, ["--max-distance", 30]),
+    "to the east": ({"azimuth_range": (45, 135)}, ["--azimuth-range", "45,135"]),
+    "higher targets": ({"target_height": 1.5, "observer_height": 3}, ["--target-height", 1.5, "--observer-height", 3]),
+    "unproven as visible": ({"unproven": "as-visible"}, ["--unproven", "as-visible"]),
+    "unproven as blocked": ({"unproven": "as-blocked"}, ["--unproven", "as-blocked"]),
+}
+
+
+@pytest.mark.parametrize("name", VIEWSHEDS)
+def test_viewsheds_are_the_same_in_the_program_and_in_python(scene, ask_program, folder, standing, name):
+    given, flags = VIEWSHEDS[name]
+    x, y = standing
+    summary = ask_program("viewshed", "tile.laz", "--observer", f"{x},{y}", *flags, "--cell", 1, "-o", "seen.tif")
+    compare_rasters(folder / "seen.tif", summary, lambda: scene.viewshed((x, y), **given, cell=1))
+
+
+def test_viewsheds_of_several_observers_are_the_same(scene, ask_program, folder, standing):
+    x, y = standing
+    # the last one stands far beside the cloud
+    places = [(x, y), (x + 2, y - 1), (x - 1, y + 2), (x + 9000, y)]
+    (folder / "observers.csv").write_text("x,y\n" + "".join(f"{a},{b}\n" for a, b in places))
+    summary = ask_program("viewshed", "tile.laz", "--observers", "observers.csv", "--cell", 1, "-o", "seen.tif")
+    compare_rasters(folder / "seen.tif", summary, lambda: scene.viewshed(places, cell=1))
+    assert "observer-skipped" in {remark["key"] for remark in summary["remarks"]}
+
+
+def compare_rasters(path, summary, ask):
+    """Values, places without a value, what is unproven and remarks of a raster of the program and of Python."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", belvedere.BelvedereWarning)
+        raster = ask()
+    bands, _ = bands_of(path)
+    first, *rest = bands.values()
+    assert np.array_equal(first, values_of(raster), equal_nan=True)
+    assert bool(rest) == (raster.unproven is not None)
+    if rest:
+        assert np.array_equal(rest[0], values_of(raster.unproven), equal_nan=True)
+    assert said(summary.get("remarks", [])) == said(raster.remarks)
+    return raster
+
+
+def test_who_sees_a_place_is_the_same_on_the_page(scene, ask_program, ask_page, folder, eye):
+    summary = ask_program("viewshed", "tile.laz", "--target", ",".join(map(str, eye)), "-o", "who.tif")
+    compare_rasters(folder / "who.tif", summary, lambda: scene.viewshed(target=eye))
+    of_page, _ = ask_page("who", {"place": list(eye)})
+    assert {name: of_page[name] for name in ("visible", "blocked", "unproven")} == {
+        name: summary["cells"][name] for name in ("visible", "blocked", "unproven")
+    }
+    assert said(of_page["remarks"]) == said(summary.get("remarks", []))
+
+
+@pytest.mark.parametrize("rise", [0.5, 4.0, 15.0])
+def test_a_line_of_sight_is_the_same_on_the_page(scene, ask_program, ask_page, standing, eye, rise):
+    (x, y), low = standing, float(scene.cloud.xyz[:, 2].min())
+    observer, target = [x, y, low + 2], [eye[0], eye[1], low + rise]
+    typed = [",".join(map(str, place)) for place in (observer, target)]
+    summary = ask_program("line-of-sight", "tile.laz", "--observer", typed[0], "--target", typed[1], "-o", "line.csv")
+    of_page, _ = ask_page("line", {"observer": observer, "target": target})
+    assert of_page["answer"] == summary["line"]["answer"]
+    assert (of_page["first_block"] or {}).get("range_m") == summary["line"].get("first_block_range_m")
+    assert of_page["unproven_m"] == summary["line"].get("unproven_m")
+    of_python = scene.line_of_sight(observer, target)
+    assert of_python.answer.name.lower() == of_page["answer"]
+    assert said(of_page["remarks"]) == said(summary.get("remarks", [])) == said(of_python.remarks)
+
+
+def test_how_open_a_place_is_is_the_same_on_the_page(scene, ask_program, ask_page, folder, standing):
+    (x, y), z = standing, float(scene.cloud.xyz[:, 2].min()) + 2.5
+    of_page, _ = ask_page("around", {"place": [x, y, z]})
+    (folder / "here.csv").write_text(f"x,y,z\n{x},{y},{z}\n")
+    sky = ask_program("sky-view", "tile.laz", "--targets", "here.csv", "-o", "sky.csv")
+    isovist = ask_program("isovist", "tile.laz", "--observer", f"{x},{y},{z}", "-o", "isovist.csv")
+    figures = {name: value for name, value in isovist["isovist"].items() if name not in "xyz"}
+    assert of_page["isovist"] == pytest.approx(figures, nan_ok=True)
+    assert of_page["sky_view_factor"] == pytest.approx(sky["measures"]["sky_view_factor"]["mean"], abs=5.1e-3)
+    assert said(of_page["remarks"]) == said(isovist.get("remarks", []) + sky.get("remarks", []))
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", belvedere.BelvedereWarning)
+        of_python = scene.isovist((x, y, z))
+    assert float(of_python["volume_m3"][0]) == pytest.approx(figures["volume_m3"], abs=0.51)
+
+
+def test_horizons_and_landmarks_are_the_same_in_the_program_and_in_python(scene, ask_program, folder, standing):
+    x, y = standing
+    summary = ask_program("horizon", "tile.laz", "--observer", f"{x},{y}", "--angle-step-deg", 5, "-o", "horizon.csv")
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        _, of_python = scene.horizon((x, y), angle_step_deg=5)
+    table = np.genfromtxt(folder / "horizon.csv", delimiter=",", names=True)
+    assert np.allclose(np.ravel(of_python), table[table.dtype.names[1]], rtol=0, atol=6e-4)
+    keys = {warning.message.key for warning in caught if isinstance(warning.message, belvedere.BelvedereWarning)}
+    assert keys == {one["key"] for one in summary.get("remarks", []) if one["severity"] == "warning"}
+
+    summary = ask_program("landmark", "tile.laz", "--target-class", 6, "--cell", 4, "-o", "landmark.tif")
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", belvedere.BelvedereWarning)
+        views = scene.landmark(target_class=6, cell=4)
+    share = views["visible_share"]
+    bands, _ = bands_of(folder / "landmark.tif")
+    assert np.allclose(next(iter(bands.values())), values_of(share), rtol=0, atol=1e-6, equal_nan=True)
+    assert said(summary.get("remarks", [])) == said(share.remarks)

@@ -48,10 +48,6 @@ pub(crate) fn run(arguments: &Cameras, global: &Global) -> Result<Summary> {
     if let Some(output) = &arguments.footprints {
         run.stage("writing", 0, |_| shown.write_footprints(output))?;
     }
-    run.summary
-        .headline("<coverage.new_cameras> new cameras cover <coverage.coverage_percent> % of the targets")
-        .headline("best possible: <coverage.best_possible_percent> %, so at most <coverage.at_most_below_best_percent> % are missing")
-        .headline("all <cameras_to_choose_from.count> candidates together: <coverage.all_candidates_percent> %");
     run.summary.add("written", written.iter().map(|path| path.display().to_string()).collect::<Vec<_>>());
     Ok(run.finish())
 }

@@ -47,11 +47,6 @@ pub(crate) fn run(arguments: &Envelope, global: &Global) -> Result<Summary> {
             write_heights(output, &tops, (&envelope.grid, frame), what)
         })?;
     }
-    run.summary
-        .headline("volume: <envelope.volume_m3> m3 on <envelope.area_m2> m2")
-        .headline("mean height <envelope.mean_height_m> m, highest <envelope.max_height_m> m")
-        .headline("without limit: <envelope.columns_unlimited> of <envelope.columns> columns")
-        .headline("no room: <envelope.columns_of_zero_height> of <envelope.columns> columns");
     let written = arguments.output.iter().chain(&arguments.tops).map(|path| path.display().to_string());
     run.summary.add("written", written.collect::<Vec<_>>());
     Ok(run.finish())

@@ -40,9 +40,6 @@ pub(crate) fn run(arguments: &Horizon, global: &Global) -> Result<Summary> {
             _ => write_columns(output, elevations, *azimuth_count),
         })?;
     }
-    run.summary
-        .headline("mean elevation of the horizon: <horizons.mean_elevation_deg> degrees, highest <horizons.max_elevation_deg>")
-        .headline("<horizons.azimuths> azimuths[, <horizons.azimuths_near_edge_percent> % of them near the edge of the cloud]");
     run.summary.add("written", arguments.output.iter().map(|path| path.display().to_string()).collect::<Vec<_>>());
     Ok(run.finish())
 }

@@ -40,10 +40,6 @@ pub(crate) fn run(arguments: &Landmark, global: &Global) -> Result<Summary> {
     if let Some(folder) = &arguments.measures {
         written.extend(run.stage("writing", 0, |_| results::write_measures(folder, views, ground, cloud))?);
     }
-    run.summary
-        .headline("seen from <observers.observers_with_view_percent> % of <observers.count> places (<observers.observers_with_view>)")
-        .headline("at most <observers.max_visible_share> of its surface is visible, from place <observers.max_visible_share_observer>")
-        .headline("surface: <landmark.area_m2> m2");
     run.summary.add("written", written);
     Ok(run.finish())
 }

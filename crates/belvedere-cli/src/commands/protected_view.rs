@@ -53,14 +53,6 @@ pub(crate) fn run(arguments: &ProtectedView, global: &Global) -> Result<Summary>
     if let Some(output) = &arguments.tops {
         run.stage("writing", 0, |_| write_heights(output, &found.tops, place, "maximum height"))?;
     }
-    run.summary
-        .headline("heights limited on <protected_view.area_limited_m2> m2 (<protected_view.cells_limited> cells)")
-        .headline(
-            "lowest limit <protected_view.lowest_limit_m> m above the ground, mean <protected_view.mean_limit_m> m",
-        )
-        .headline(
-            "lines of sight: <protected_view.lines_protected> protected, <protected_view.lines_blocked> blocked today",
-        );
     let written = arguments.output.iter().chain(&arguments.tops).map(|path| path.display().to_string());
     run.summary.add("written", written.collect::<Vec<_>>());
     Ok(run.finish())

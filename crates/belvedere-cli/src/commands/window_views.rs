@@ -70,10 +70,6 @@ pub(crate) fn run(arguments: &WindowViews, global: &Global) -> Result<Summary> {
     if let Some(output) = &arguments.buildings {
         run.stage("writing", 0, |_| shown.write_buildings(output))?;
     }
-    run.summary
-        .headline("the view from <windows.windows> windows is on average <views.sky.mean> % sky, <views.vegetation.mean> % vegetation")
-        .headline("buildings <views.building.mean> %, ground <views.ground.mean> %, water <views.water.mean> %")
-        .headline("vegetation: from <views.vegetation.min> to <views.vegetation.max> %");
     let written = arguments.output.iter().chain(&arguments.buildings);
     run.summary.add("written", written.map(|path| path.display().to_string()).collect::<Vec<_>>());
     Ok(run.finish())
