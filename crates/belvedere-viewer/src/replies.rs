@@ -19,7 +19,10 @@ pub(crate) struct Refusal(pub(crate) String);
 
 impl From<belvedere::Error> for Refusal {
     fn from(error: belvedere::Error) -> Self {
-        Self(error.to_string())
+        match error {
+            belvedere::Error::NoObserver { what, .. } => Self(format!("Nobody can look from this place: {what}.")),
+            other => Self(other.to_string()),
+        }
     }
 }
 

@@ -5,7 +5,7 @@ use crate::chunks::Chunks;
 use crate::questions::Roofs;
 use belvedere::apps::ask::scene::KnownGround;
 use belvedere::apps::ask::{self, Cells, North, SunPlace};
-use belvedere::apps::eyes::{EyeFault, fault_of};
+use belvedere::apps::eyes::fault_of;
 use belvedere::apps::sun::Site;
 use belvedere::control::Control;
 use belvedere::ground::{Ground, GroundPoints};
@@ -232,13 +232,11 @@ impl Scene {
     pub(crate) fn check_eye(
         &self,
         blockers: &MedialScene,
-        ground: Option<&Ground>,
+        ground: &Ground,
         eye: [f64; 3],
-        inside: Inside,
     ) -> std::result::Result<(), String> {
-        match fault_of(blockers, ground, eye) {
+        match fault_of(blockers, Some(ground), eye) {
             None => Ok(()),
-            Some(EyeFault::InsideObstacle(_)) if inside == Inside::Allowed => Ok(()),
             Some(fault) => Err(format!("Nobody can look from this place: {fault}.")),
         }
     }
@@ -252,13 +250,6 @@ fn rows_there(cloud: &PointCloud, kept: &PointCloud) -> Vec<u32> {
     let mut kept = (0..).zip(&kept.positions).peekable();
     let row = |position: &[f32; 3]| kept.next_if(|(_, own)| *own == position).map_or(NOT_THERE, |(row, _)| row);
     cloud.positions.iter().map(row).collect()
-}
-
-/// Whether a place may lie inside an obstacle: what is seen of a target often is its inside.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Inside {
-    Allowed,
-    Refused,
 }
 
 /// Which points of the cloud are asked about.

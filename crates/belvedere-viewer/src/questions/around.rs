@@ -4,13 +4,11 @@ use super::Asked;
 use super::places::{command_at, local, number};
 use super::sun::at;
 use crate::replies::{Answer, Refusal};
-use crate::scene::Inside;
 use crate::scene_text::typed;
-use belvedere::apps::isovist::{IsovistParams, isovist};
-use belvedere::apps::sky_view::{SKY_DIRECTIONS, SkyDirections, scene_sky_view};
-use belvedere::query::UnprovenAs;
+use belvedere::apps::ask::{self, Isovists, Places, Remark, SkyView, Standing};
 use serde::Deserialize;
 use serde_json::{Map, Value, json};
+use std::sync::Arc;
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -22,15 +20,16 @@ pub(super) struct Question {
 const FARTHEST: f32 = 200.0;
 
 pub(super) fn answer(question: &Question, asked: &Asked<'_>) -> Result<Answer, Refusal> {
-    let (scene, control) = (asked.scene, asked.control);
+    let (scene, control) = (&asked.scene.asked, asked.control);
     let place = local(asked, question.place)?;
-    let blockers = scene.blockers(UnprovenAs::Visible, control)?;
-    scene.check_eye(&blockers, None, place, Inside::Refused)?;
-    let sky = scene_sky_view(&*blockers, &at(asked, place), &SkyDirections::even(SKY_DIRECTIONS)?, control)?;
-    let isovist = isovist(&blockers, place, &IsovistParams::default(), control)?;
-    let north = scene.grid_north(None);
+    let eyes = Places::Eyes(vec![Standing { place, height: None }]);
+    let isovists = ask::ask(scene, &Isovists::default(), &eyes, control)?;
+    let sky = ask::ask(scene, &SkyView::default(), &Places::Targets(Arc::new(at(asked, place))), control)?;
+    let Some(isovist) = isovists.found.isovists.first().and_then(Option::as_ref) else {
+        return Err(Refusal("Nobody can look from this place.".to_owned()));
+    };
     let figures: Map<String, Value> = isovist
-        .figures(north)
+        .figures(isovists.found.grid_north)
         .map(|figure| (figure.name.to_owned(), number(figure.value, i32::try_from(figure.decimals).unwrap_or(4))))
         .collect();
     let corners: Vec<Value> = isovist
@@ -39,14 +38,19 @@ pub(super) fn answer(question: &Question, asked: &Asked<'_>) -> Result<Answer, R
         .iter()
         .map(|[azimuth, range]| json!([number(azimuth.to_degrees(), 3), number(*range, 2)]))
         .collect();
-    let first = |values: &[f32]| values.first().map_or(Value::Null, |&v| number(f64::from(v), 4));
+    let first = |name: &str| {
+        let measure = sky.measures.iter().find(|measure| measure.name == name);
+        measure.and_then(|measure| measure.values.first()).map_or(Value::Null, |&v| number(f64::from(v), 4))
+    };
+    let remarks: Vec<&Remark> = isovists.remarks.iter().chain(&sky.remarks).collect();
     let panorama = &isovist.panorama;
     let head = json!({
-        "sky_view_factor": first(&sky.factors),
-        "sky_openness": first(&sky.openness),
+        "sky_view_factor": first("sky_view_factor"),
+        "sky_openness": first("sky_openness"),
         "isovist": figures,
         "plan": corners,
         "panorama": { "width": panorama.width(), "height": panorama.height(), "farthest_m": FARTHEST },
+        "remarks": remarks,
         "command": format!(
             "{}\n{}",
             command_at(asked, question.place, "sky-view", "-o sky.csv"),

@@ -3,7 +3,7 @@
 use super::Asked;
 use super::places::local;
 use crate::replies::{Answer, Refusal};
-use crate::scene::{Inside, Points};
+use crate::scene::Points;
 use belvedere::apps::viewshed::{Observer, SightLimits, ViewshedParams, viewshed_among};
 use belvedere::query::{AnswerCounts, UnprovenAs};
 use serde::Deserialize;
@@ -24,7 +24,7 @@ pub(super) fn answer(question: &Question, asked: &Asked<'_>) -> Result<Answer, R
     let points = scene.points(question.points, control)?;
     let blockers = scene.blockers(UnprovenAs::Reported, control)?;
     let ground = scene.ground(control)?;
-    scene.check_eye(&blockers, Some(&ground.ground), eye, Inside::Refused)?;
+    scene.check_eye(&blockers, &ground.ground, eye)?;
     let observer = Observer { eye, limits: SightLimits::default() };
     let params = ViewshedParams::default();
     let seen = viewshed_among(&blockers, &[observer], &points.targets.positions, &points.tree, &params, control)?;
