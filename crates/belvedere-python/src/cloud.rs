@@ -151,6 +151,7 @@ impl Cloud {
             positions: fixed_rows(&positions, "positions")?,
             attributes: columns(attributes, adjusted_gps_time)?,
             scanner_positions: fixed_rows(&scanner_positions, "scanner positions")?,
+            ..PointCloud::default()
         };
         cloud.validate().map_err(exception)?;
         Ok(Self(Arc::new(cloud)))

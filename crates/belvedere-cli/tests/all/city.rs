@@ -75,7 +75,7 @@ fn a_run_that_is_killed_at_any_moment_goes_on_and_has_the_same_results() {
     let merged = place.summary("city merge killed -o all.tif");
     assert!(merged["tiles"].as_u64().unwrap() >= 4, "{merged}");
     let catalogue = std::fs::read_to_string(place.path("killed/shadow_150_20.vrt")).unwrap();
-    assert_eq!(catalogue.matches("<SimpleSource>").count() as u64, merged["tiles"].as_u64().unwrap());
+    assert_eq!(catalogue.matches("<SourceBand>1<").count() as u64, merged["tiles"].as_u64().unwrap());
 }
 
 #[test]

@@ -281,6 +281,6 @@ fn terrain_that_does_not_fit_is_refused_by_name() {
     place.summary(&format!("sky-view {HOUSE} --cell 1 --directions 10 -o sky.tif"));
     place.refusal(1, &format!("{shadow} sky.tif"), &["sky.tif", "sky view factor", "no elevation raster"]);
     place.summary(&format!("viewshed {HOUSE} --observer {EAST},{NORTH},12 --cell 1 -o seen.tif"));
-    place.refusal(1, &format!("{shadow} seen.tif"), &["seen.tif", "1 visible, 0 blocked"]);
+    place.refusal(1, &format!("{shadow} seen.tif"), &["seen.tif", "1 nothing blocks it"]);
     assert!(!place.path("lit.csv").exists());
 }

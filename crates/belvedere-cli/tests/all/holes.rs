@@ -66,7 +66,7 @@ fn a_hole_of_the_survey_has_no_value_in_any_raster() {
     );
     let scene = "field.laz --method tau --orient given";
     let [x, y, z] = at(0.0, 40.0, 8.0);
-    let day = "--date 2026-06-21 --time-step-min 240";
+    let day = "--date 2026-06-21 --time-step-min 60";
     for (command, flags) in [
         ("shadow", "--sun 200,30 --ground found --measures all".to_owned()),
         ("shadow", "--sun 200,30 --ground found --surface".to_owned()),

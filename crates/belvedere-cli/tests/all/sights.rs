@@ -141,8 +141,8 @@ fn a_viewshed_hides_what_lies_behind_the_house() {
     };
     assert_eq!(cells.len(), (width * height) as usize);
     let cell = |x: f64, y: f64| cells[index(at(x, y, 0.0))];
-    // before the house, behind it, in it, and beside it
-    assert_eq!((cell(-8.5, 0.5), cell(8.5, 0.5), cell(0.5, 0.5), cell(-6.5, 10.5)), (1, 0, 0, 1));
+    // before the house, behind it, below its roof, where no place is, and beside it
+    assert_eq!((cell(-8.5, 0.5), cell(8.5, 0.5), cell(0.5, 0.5), cell(-6.5, 10.5)), (1, 0, 255, 1));
     let (shape, heights) = place.npy::<f32>("heights.npy");
     assert_eq!(shape, [u64::from(height), u64::from(width)]);
     // the eye at 1.7 m looks over the west end of the ridge, 7 m off and 8.9 m high where the line passes: 20.5 m off a thing must reach

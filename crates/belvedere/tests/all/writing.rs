@@ -48,6 +48,7 @@ fn full_cloud() -> PointCloud {
             scanner_index: Some((0..n).map(|i| i % 2).collect()),
         },
         scanner_positions: vec![[0.0; 3]; 2],
+        ..PointCloud::default()
     }
 }
 
