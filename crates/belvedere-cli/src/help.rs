@@ -48,7 +48,6 @@ const RARE: &[&str] = &[
     "clear",
     "curvature",
     "curve",
-    "directions",
     "edge-mask",
     "facing",
     "far",
@@ -113,7 +112,8 @@ const RARE_IN: &[(&str, &[&str])] = &[
     ("sun-hours", &["target-height"]),
     ("irradiance", &["target-height"]),
     ("cameras", &["existing", "pixels", "target-height", "tilt"]),
-    ("plan", &["clear-sky", "crs", "max-distance", "observer-height", "through-trees"]),
+    ("comfort", &["directions"]),
+    ("plan", &["clear-sky", "crs", "directions", "max-distance", "observer-height", "through-trees"]),
 ];
 /// Options of all commands that `-h` shows.
 const SHOWN_OF_ALL: [&str; 3] = ["json", "verbose", "help"];
