@@ -42,7 +42,7 @@ pub(crate) use scene::{
 };
 pub(crate) use shadow::Shadow;
 pub(crate) use sky::{FacingChoice, FarTerrain, PatchesChoice, SkyOutputs, SkyPlaces, SkyView};
-pub(crate) use sun::{ElevationChoice, SunHours, SunPeriod, SunPlace};
+pub(crate) use sun::{ElevationChoice, SunHours, SunPeriod, SunPlace, SunPosition};
 pub(crate) use surroundings::{
     BelowChoice, Eyes, Horizon, Isovist, Landmark, LandmarkShape, MeshTargets, ProtectedView,
 };
@@ -200,6 +200,9 @@ pub(crate) enum Command {
     /// Compute the hours of direct sun on a day, over a period, or for a daylight rule
     #[command(name = "sun-hours")]
     SunHours(SunHours),
+    /// Compute where the sun stands at given times
+    #[command(name = "sun-position")]
+    SunPosition(SunPosition),
     /// Compute the largest volume on a parcel that casts no shadow on its neighbours
     Envelope(Envelope),
     /// Measure sun, shade and sky along walking routes and at windows

@@ -24,7 +24,7 @@ pub(crate) const BALL_FLAGS: [&str; 14] = [
 /// Commands by task, in the order of the overview.
 const GROUPS: [(&str, &[&str]); 8] = [
     ("start", &["demo", "info", "view", "simulate"]),
-    ("sun", &["shadow", "sun-hours", "irradiance", "sky-view", "envelope", "comfort"]),
+    ("sun", &["shadow", "sun-hours", "irradiance", "sky-view", "sun-position", "envelope", "comfort"]),
     (
         "sight",
         &["line-of-sight", "viewshed", "isovist", "horizon", "landmark", "protected-view", "window-views", "cameras"],
@@ -139,6 +139,7 @@ const TEXTS: &[(&str, &str)] = &[
     ("sky-view", include_str!("help/sky-view.txt")),
     ("irradiance", include_str!("help/irradiance.txt")),
     ("sun-hours", include_str!("help/sun-hours.txt")),
+    ("sun-position", include_str!("help/sun-position.txt")),
     ("envelope", include_str!("help/envelope.txt")),
     ("comfort", include_str!("help/comfort.txt")),
     ("window-views", include_str!("help/window-views.txt")),

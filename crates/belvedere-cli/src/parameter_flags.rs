@@ -53,7 +53,7 @@ pub(crate) fn flags_of(parameter: Parameter) -> &'static [&'static str] {
         Parameter::HoursOfDay => &["--between"],
         Parameter::Instant => &["--time", "--from"],
         Parameter::InstantCount => &["--time-step-min"],
-        Parameter::Period => &["--from", "--date", "--year"],
+        Parameter::Period => &["--date", "--from", "--year"],
         Parameter::TimeStep => &["--time-step-min", "--time-step-s"],
         Parameter::SunTolerance => &["--sun-tolerance-deg"],
         Parameter::Rule => &["--rule"],

@@ -111,7 +111,14 @@ impl BallParameters {
                 Usage(format!("{}: {key}: {error}", file.path.display())).into()
             }
             None => match error.downcast_ref() {
-                Some(Usage(text)) => Usage(format!("{}: {text}", file.path.display())).into(),
+                Some(Usage(text)) => {
+                    let key = |word: &str| match word.strip_prefix("--") {
+                        Some(flag) => flag.replace('-', "_"),
+                        None => word.to_owned(),
+                    };
+                    let text: Vec<String> = text.split(' ').map(key).collect();
+                    Usage(format!("{}: {}", file.path.display(), text.join(" "))).into()
+                }
                 None => error,
             },
             _ => error,

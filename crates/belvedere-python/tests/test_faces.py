@@ -375,3 +375,14 @@ def test_horizons_and_landmarks_are_the_same_in_the_program_and_in_python(scene,
     bands, _ = bands_of(folder / "landmark.tif")
     assert np.allclose(next(iter(bands.values())), values_of(share), rtol=0, atol=1e-6, equal_nan=True)
     assert said(summary.get("remarks", [])) == said(share.remarks)
+
+
+def test_the_sun_stands_at_the_same_place_for_all_faces(scene, ask_program, ask_page, folder):
+    ask_program("sun-position", "tile.laz", "--time", NOON, "--time", "2026-12-21T09:00Z", "-o", "sun.csv")
+    rows = [line.split(",") for line in (folder / "sun.csv").read_text().splitlines()[1:]]
+    of_program = [(float(azimuth), float(elevation)) for _, azimuth, elevation in rows]
+    of_python = scene.sun_position([NOON, "2026-12-21T09:00Z"])
+    assert np.allclose(of_program, of_python, rtol=0, atol=5.1e-5)
+    of_page, _ = ask_page("shadow", {"time": NOON[:16], "zone": ZONE, "trees": "opaque"})
+    assert of_program[0] == (of_page["azimuth_deg"], of_page["elevation_deg"])
+    # a city is a map: it has no question without cells

@@ -364,6 +364,9 @@ impl LineSection {
         };
         let after = self.first_block_range_m.map_or_else(String::new, |range| format!(", {range} m from the observer"));
         context.headline(format!("line of sight: {answer}{by}{after}"));
+        if let Some([x, y, z]) = self.block_position {
+            context.headline(format!("first obstacle at {x}, {y}, {z}"));
+        }
         if let Some(length) = self.unproven_m.filter(|_| self.first_block_range_m.is_none()) {
             context.headline(format!("no pulse came near to {length} m of it"));
         }

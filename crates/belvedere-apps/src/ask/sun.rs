@@ -234,7 +234,7 @@ impl Days {
             let lowest = format!("{} degrees", params.least_elevation.to_degrees());
             return refused(Parameter::MinSunElevation, lowest, "lower: the sun stays below it there in this period");
         }
-        refused(Parameter::Period, "without sun", "one in which the sun rises there")
+        refused(Parameter::Period, "without sun", "other days: the sun does not rise there in this period")
     }
 }
 

@@ -124,6 +124,10 @@ impl SunHours {
         let (plan, zone) = self.plan(&site, among)?;
         context.report.period = Some(section(&plan, &zone, &self.days.params(&self.place)));
         let light = Light::on(places, plan.directions(), (&self.trees, UnprovenAs::Visible), scene, context, control)?;
+        if among.is_some() {
+            // what was kept is not tested again
+            context.report.lines_of_sight = None;
+        }
         let days = days_in_words(plan.period(), &zone);
         let of_rule = plan.rules().first().filter(|_| self.days.is_empty());
         let what = match of_rule {

@@ -1,6 +1,6 @@
 //! Flags of the location, the time zone, the days and the sun hours.
 
-use super::{Numbers, SceneInput, Shell, SkyOutputs, SkyPlaces, ThroughTrees, above_zero, location};
+use super::{CloudInput, Numbers, SceneInput, Shell, SkyOutputs, SkyPlaces, ThroughTrees, above_zero, location};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
@@ -22,6 +22,20 @@ pub(crate) struct SunPlace {
     /// The default pressure is that of the standard atmosphere at the height of the scene.
     #[arg(long, value_name = "HPA,C", allow_hyphen_values = true)]
     pub(crate) air: Option<Numbers<2>>,
+}
+
+#[derive(Args)]
+pub(crate) struct SunPosition {
+    /// Time, ISO 8601, with an offset unless --zone says how clocks run, such as 2026-06-21T15:00+02:00; repeatable
+    #[arg(long = "time", value_name = "TIME", required = true, help_heading = "Sun")]
+    pub(crate) times: Vec<String>,
+    #[command(flatten)]
+    pub(crate) sun: SunPlace,
+    /// Table of times, azimuths and elevations (.csv)
+    #[arg(short, long, value_name = "OUT", help_heading = "Result")]
+    pub(crate) output: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) input: CloudInput,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]

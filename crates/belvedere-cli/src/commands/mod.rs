@@ -31,6 +31,7 @@ mod simulate;
 mod sky_view;
 mod sun;
 mod sun_hours;
+mod sun_position;
 mod surroundings;
 mod targets;
 mod trajectory;
@@ -84,6 +85,7 @@ fn run_command(cli: &Cli) -> Result<Summary> {
         Command::SkyView(arguments) => sky_view::run(arguments, global),
         Command::Irradiance(arguments) => irradiance::run(arguments, global),
         Command::SunHours(arguments) => sun_hours::run(arguments, global),
+        Command::SunPosition(arguments) => sun_position::run(arguments, global),
         Command::Envelope(arguments) => envelope::run(arguments, global),
         Command::Comfort(arguments) => comfort::run(arguments, global),
         Command::WindowViews(arguments) => window_views::run(arguments, global),

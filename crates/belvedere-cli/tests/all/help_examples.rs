@@ -4,7 +4,7 @@ use crate::common::{Workplace, house};
 use std::collections::BTreeSet;
 use std::path::Path;
 
-const COMMANDS: [&str; 29] = [
+const COMMANDS: [&str; 30] = [
     "demo",
     "simulate",
     "info",
@@ -27,6 +27,7 @@ const COMMANDS: [&str; 29] = [
     "shadow",
     "sky-view",
     "sun-hours",
+    "sun-position",
     "city",
     "compare",
     "view",
@@ -154,7 +155,8 @@ fn every_example_works_as_printed() {
         let run = place.run_with("", &words);
         // the town of the demo is small: much of it is near its edge
         let is_edge = |line: &str| line.starts_with("warning: ") && line.contains("near the edge of the cloud");
-        assert!(run.status == 0 && run.stderr.lines().all(is_edge), "{example}: {run:?}");
+        let is_known = |line: &str| is_edge(line) || line.starts_with("note: ");
+        assert!(run.status == 0 && run.stderr.lines().all(is_known), "{example}: {run:?}");
     }
 }
 

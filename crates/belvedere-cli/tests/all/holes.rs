@@ -64,7 +64,7 @@ fn a_hole_of_the_survey_has_no_value_in_any_raster() {
             NORTH + 5.0
         ),
     );
-    let scene = "field.laz --method tau --orient given";
+    let scene = "field.laz --scene-config ../tau.json --orient given";
     let [x, y, z] = at(0.0, 40.0, 8.0);
     let day = "--date 2026-06-21 --time-step-min 60";
     for (command, flags) in [
@@ -95,7 +95,7 @@ fn a_hole_of_the_survey_has_no_value_in_any_raster() {
 fn suns_and_counts_are_bands_with_names_in_the_type_of_their_kind() {
     let place = Workplace::new();
     place.write_cloud("house.laz", &house());
-    let scene = "house.laz --method tau --orient given --ground found --cell 1";
+    let scene = "house.laz --scene-config ../tau.json --orient given --ground found --cell 1";
     place.summary(&format!("shadow {scene} --sun 180,30 --sun 240,20 -o lit.tif -o lit.csv --measures each"));
     let ReadBands::U8(bands) = read_tif_bands(place.path("lit.tif").as_path()).unwrap() else { panic!("bytes") };
     let ReadBands::U8(second) = read_tif_bands(place.path("each/lit_2.tif").as_path()).unwrap() else {

@@ -1,7 +1,7 @@
 //! `belvedere irradiance` on a house, whose sunny and shaded sides are known.
 #![expect(clippy::unwrap_used, reason = "tests stop at the first surprise")]
 
-use crate::common::{EAST, NORTH, Workplace, house};
+use crate::common::{EAST, NORTH, Workplace, house, remarks};
 
 /// The house's flags: its normals are given and no pulses are known.
 const HOUSE: &str =
@@ -92,10 +92,11 @@ fn weather_comes_from_files() {
         (&summary["radiation"]["weather_rows"], summary["radiation"]["global_kwh_m2"].as_f64()),
         (&12.into(), Some(3.6))
     );
-    assert!(summary["location"]["note"].is_null());
+    let is_far = |remark: &String| remark.contains("km away");
+    assert!(!remarks(&summary).iter().any(is_far));
     place.write("elsewhere.csv", weather(40.0, 0.0));
     let summary = place.summary(&format!("irradiance {HOUSE} --weather elsewhere.csv --cell 4 -o out.csv"));
-    assert!(summary["location"]["note"].as_str().unwrap().contains("km away"), "{summary}");
+    assert!(remarks(&summary).iter().any(is_far), "{summary}");
 }
 
 #[test]
@@ -122,7 +123,7 @@ fn what_cannot_be_is_refused_with_advice() {
     adrift.frame.crs = belvedere::crs::Crs::default();
     place.write_cloud("adrift.ply", &adrift);
     let flags = "--scene-config ../tau.json --orient given --ground found --sun-cell-deg 4 --clear-sky bird --cell 4 -o out.csv";
-    place.refusal(1, &format!("irradiance adrift.ply {flags}"), &["--location", "--crs"]);
+    place.refusal(2, &format!("irradiance adrift.ply {flags}"), &["--location", "latitude", "reference system"]);
     let summary = place.summary(&format!("irradiance adrift.ply {flags} --location 52,4.4"));
-    assert_eq!(summary["location"]["source"], "--location");
+    assert_eq!(summary["location"]["source"], "location given");
 }

@@ -154,7 +154,8 @@ fn what_cannot_be_is_refused_with_advice() {
     lost.frame.crs = Crs::default();
     place.write_cloud("lost.laz", &lost);
     let lost = "lost.laz --orient given --scene-config ../tau.json --targets places.csv";
-    place.refusal(1, &format!("sun-hours {lost} --date 2026-06-21 -o no.csv"), &["--location LAT,LON", "--crs"]);
+    let words = ["--location", "latitude", "reference system"];
+    place.refusal(2, &format!("sun-hours {lost} --date 2026-06-21 -o no.csv"), &words);
     let run = place.summary(&format!("sun-hours {lost} --date 2026-06-21 --location -33.9,151.2 -o south.csv"));
     // the shortest day of Sydney, by the sun's own clock
     assert!((run["period"]["possible_hours_per_day"].as_f64().unwrap() - 9.85).abs() < 0.1, "{run}");

@@ -37,7 +37,10 @@ fn the_answer_comes_first_in_twelve_lines_and_all_figures_with_verbose() {
         (format!("shadow house.laz --sun 180,30 --cell 1{maps}"), "lit"),
         (format!("viewshed house.laz --observer 85000,445988 --cell 1{maps}"), "visible "),
         ("query house.laz --sun 180,30 --random 500 -o answers.csv".to_owned(), "visible "),
-        ("line-of-sight house.laz --observer 85000,445988,2 --target 85000,446012,2".to_owned(), "line of sight: blocked"),
+        (
+            "line-of-sight house.laz --observer 85000,445988,2 --target 85000,446012,2".to_owned(),
+            "line of sight: blocked",
+        ),
         (format!("sky-view house.laz --cell 4{maps}"), "sky view factor"),
         (format!("isovist house.laz --observer 85000,445988,2{tables}"), "space seen by 1 observer: "),
     ] {

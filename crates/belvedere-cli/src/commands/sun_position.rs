@@ -1,0 +1,35 @@
+//! `belvedere sun-position`.
+
+use super::{check_output, horizon::write_lines};
+use crate::arguments::{Global, SunPosition};
+use crate::pipeline;
+use crate::run::Run;
+use crate::summary::Summary;
+use anyhow::Result;
+use belvedere::apps::ask::{self, Ask, Places};
+use belvedere::model::{ModelParts, SceneModel};
+use std::sync::Arc;
+
+pub(crate) fn run(arguments: &SunPosition, global: &Global) -> Result<Summary> {
+    if let Some(output) = &arguments.output {
+        check_output("-o", output, &["csv"])?;
+    }
+    let place = arguments.sun.place_from_true_north()?;
+    let question = ask::SunPosition { times: arguments.times.clone(), place };
+    question.check()?;
+    let mut run = Run::new(global);
+    let cloud = pipeline::read(&arguments.input, &mut run)?;
+    let bounds = pipeline::bounds_of(&cloud)?;
+    let parts = ModelParts { frame: cloud.frame.clone(), bounds, ..ModelParts::default() };
+    let scene = ask::Scene::new(SceneModel::from_parts(parts)?, Arc::new(cloud));
+    let answers = ask::ask(&scene, &question, &Places::Scene, &run.control())?;
+    run.answered(&answers);
+    if let Some(output) = &arguments.output {
+        let rows =
+            answers.found.iter().map(|sun| format!("{},{:.4},{:.4}", sun.time, sun.azimuth_deg, sun.elevation_deg));
+        let lines = std::iter::once("time,azimuth_deg,elevation_deg".to_owned()).chain(rows);
+        run.stage("writing", 0, |_| write_lines(output, lines))?;
+        run.summary.add("written", output.display().to_string());
+    }
+    Ok(run.finish())
+}
