@@ -64,11 +64,11 @@ impl ModelParts {
         }
         let Bounds { low, high } = self.bounds;
         if !(is_near(low) && is_near(high) && low.iter().zip(&high).all(|(low, high)| low <= high)) {
-            let corners = format!("one of the bounds {:?}", (low, high));
+            let corners = format!("in the bounds {:?}", (low, high));
             return invalid(
                 Parameter::Ball,
                 corners,
-                "within bounds from lowest to highest corner, within 10000 km of the origin",
+                "in bounds from the lowest to the highest corner, within 10000 km of the origin",
             );
         }
         // a zone before the easting gives some 60 000 km; vertical systems and units add nothing to that

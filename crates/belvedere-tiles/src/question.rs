@@ -22,7 +22,7 @@ use serde::{Deserialize, Serialize};
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum Question {
-    /// Which cells a sun lights: 1 lit, 0 in shadow, 2 unproven.
+    /// Which cells a sun lights: 1 lit, 0 in shadow.
     Shadow {
         /// Name of the folder of its results.
         name: String,
@@ -62,7 +62,7 @@ pub enum Question {
         /// How it is gathered.
         params: IrradianceParams,
     },
-    /// What observers see: of one 1 visible, 0 blocked, 2 unproven; of several how many see a cell.
+    /// What observers see: of one 1 where nothing blocks it, 0 blocked; of several from how many nothing blocks a cell.
     Viewshed {
         /// Their eyes, local metres.
         eyes: Vec<[f64; 3]>,

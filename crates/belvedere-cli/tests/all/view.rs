@@ -52,6 +52,16 @@ fn as_sent(points: &[[f64; 3]], place: &Workplace, table: &str, name: &str) -> V
     points.iter().map(find).collect()
 }
 
+/// 1 for what is lit, proven or not.
+fn lit(codes: &[u8]) -> Vec<u8> {
+    codes.iter().map(|&code| if code == 2 { 1 } else { code }).collect()
+}
+
+/// 1 for what is lit without proof.
+fn unproven(codes: &[u8]) -> Vec<u8> {
+    codes.iter().map(|&code| if code > 2 { code } else { u8::from(code == 2) }).collect()
+}
+
 fn millimetres(point: [f64; 3]) -> [i64; 3] {
     point.map(|v| (v * 1000.0).round() as i64)
 }
@@ -79,7 +89,8 @@ fn each_answer_of_the_page_is_that_of_the_command_it_shows() {
 
     let (head, answers) = page.ask("shadow", &json!({ "time": "2026-06-21T17:00", "zone": "Europe/Amsterdam" }));
     run_shown(&place, &as_table(&head, "shadow.laz", "shadow.csv"));
-    same(&answers, "shadow.csv", "lit");
+    same(&lit(&answers), "shadow.csv", "lit");
+    same(&unproven(&answers), "shadow.csv", "unproven");
     // the first answer: of a sample, which answers for its neighbours
     let (of_sample, first) =
         page.ask("shadow", &json!({ "time": "2026-06-21T17:00", "zone": "Europe/Amsterdam", "points": "sample" }));
@@ -205,7 +216,7 @@ fn a_ball_file_and_its_cloud_are_ready_without_building() {
     let (head, answers) = page.ask("shadow", &json!({ "time": "2026-06-21T17:00", "zone": "Europe/Amsterdam" }));
     run_shown(&place, &json!({ "command": head["command"].as_str().unwrap().replace("shadow.laz", "shadow.csv") }));
     let lit = column(&place, "shadow.csv", "lit").iter().filter(|lit| **lit > 0.0).count();
-    assert_eq!(answers.iter().filter(|&&code| code == 1).count(), lit);
+    assert_eq!(answers.iter().filter(|&&code| matches!(code, 1 | 2)).count(), lit);
     let middle = [0, 1].map(|i| state["shown"]["origin"][i].as_f64().unwrap());
     let (head, _) = page.ask("who", &json!({ "place": [middle[0], middle[1], 60.0] }));
     let run = place.summary(head["command"].as_str().unwrap().strip_prefix("belvedere ").unwrap());
@@ -337,11 +348,12 @@ fn answers_with_a_plan_are_those_of_the_command_with_its_files() {
         let differing = left.iter().zip(&written).filter(|(i, written)| sent[**i] != **written).count();
         assert!(differing * 10_000 <= sent.len(), "{name}: {differing} of {}", sent.len());
     };
-    let (head, lit) = page.ask_of_plan(&plan, "shadow", &time);
+    let (head, codes) = page.ask_of_plan(&plan, "shadow", &time);
     assert!(head["command"].as_str().unwrap().contains("--clear cleared.geojson --add planned.obj"), "{head}");
     as_table(&head, "shadow.laz", "shadow.csv");
-    same(&lit, "shadow.csv", "lit");
+    same(&lit(&codes), "shadow.csv", "lit");
     let (_, before) = page.ask("shadow", &time);
+    let (before, lit) = (lit(&before), lit(&codes));
     let of = |from: u8, to: u8| before.iter().zip(&lit).filter(|(a, b)| (**a, **b) == (from, to)).count();
     assert!(of(0, 1) > 50 && of(1, 0) > 50, "gains {}, losses {}", of(0, 1), of(1, 0));
 

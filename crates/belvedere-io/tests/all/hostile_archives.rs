@@ -161,13 +161,13 @@ fn numbers_that_no_scene_has_are_refused() {
         let error = write_balls(Output::writer("balls.npz", &mut cursor), &parts).unwrap_err().to_string();
         assert!(error.contains(what), "{error}");
     };
-    refused(|parts| parts.balls.radii[2] = 1e38, "radius of a ball");
-    refused(|parts| parts.balls.centers[1][2] = -1e30, "centre of a ball");
-    refused(|parts| parts.bounds.high[0] = 1e30, "bounds of balls");
-    refused(|parts| parts.bounds.low[0] = 100.0, "bounds of balls");
-    refused(|parts| parts.frame.origin[0] = 1e300, "origin of balls");
-    refused(|parts| parts.pulses.as_mut().unwrap().starts[0][1] = 1e20, "lower end of a pulse");
-    refused(|parts| parts.pulses.as_mut().unwrap().top = f32::NAN, "top of all pulses");
+    refused(|parts| parts.balls.radii[2] = 1e38, "ball is of radius");
+    refused(|parts| parts.balls.centers[1][2] = -1e30, "ball is at");
+    refused(|parts| parts.bounds.high[0] = 1e30, "ball is in the bounds");
+    refused(|parts| parts.bounds.low[0] = 100.0, "ball is in the bounds");
+    refused(|parts| parts.frame.origin[0] = 1e300, "origin is");
+    refused(|parts| parts.pulses.as_mut().unwrap().starts[0][1] = 1e20, "pulse is from");
+    refused(|parts| parts.pulses.as_mut().unwrap().top = f32::NAN, "pulse is up to");
 }
 
 #[test]
