@@ -176,6 +176,9 @@ impl Days {
     /// [`Error::InvalidParameter`] for days, times, steps and elevations that cannot be.
     pub fn check(&self, place: &SunPlace) -> Result<()> {
         let anywhere = place.check()?;
+        if let Some(minutes) = self.time_step_min.filter(|minutes| !(1.0 / 6.0..=60.0).contains(minutes)) {
+            return refused(Parameter::TimeStep, format!("{minutes} minutes"), "1/6 to 60 minutes");
+        }
         self.params(place).validate()?;
         let zone = place.zone_at(&anywhere, self.times())?;
         self.period(place, &anywhere, &zone).map(|_| ())

@@ -26,7 +26,7 @@ pub(crate) struct SunPlace {
 
 #[derive(Args)]
 pub(crate) struct SunPosition {
-    /// Time, ISO 8601, with an offset unless --zone says how clocks run, such as 2026-06-21T15:00+02:00; repeatable
+    /// Time in ISO 8601, with an offset unless --zone is given: 2026-06-21T15:00+02:00; repeatable
     #[arg(long = "time", value_name = "TIME", required = true, help_heading = "Sun")]
     pub(crate) times: Vec<String>,
     #[command(flatten)]

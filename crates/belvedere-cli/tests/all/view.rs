@@ -383,7 +383,7 @@ fn answers_with_a_plan_are_those_of_the_command_with_its_files() {
     let number = serde_json::from_slice::<Value>(&reply[4..]).unwrap()["mesh"].clone();
     let (loaded, _) = page.ask("plan", &json!({ "clear": drawn["clear"], "meshes": [number] }));
     assert!(loaded["command"].as_str().unwrap().ends_with("--add 'my tower.obj'"), "{loaded}");
-    assert_eq!(page.ask_of_plan(&loaded, "shadow", &time).1, lit);
+    assert_eq!(page.ask_of_plan(&loaded, "shadow", &time).1, codes);
 
     let refused = |(status, reply): (u16, Vec<u8>), text: &str| {
         let reply = String::from_utf8(reply).unwrap();
