@@ -49,7 +49,7 @@ pub(crate) fn flags_of(parameter: Parameter) -> &'static [&'static str] {
         Parameter::TimeZone => &["--zone"],
         Parameter::Date => &["--date", "--from"],
         Parameter::Year => &["--year"],
-        Parameter::Time => &["--time"],
+        Parameter::Time => &["--time", "--from"],
         Parameter::HoursOfDay => &["--between"],
         Parameter::Instant => &["--time", "--from"],
         Parameter::InstantCount => &["--time-step-min"],

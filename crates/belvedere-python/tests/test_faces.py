@@ -1,4 +1,4 @@
-"""One question, four faces: the program, Python, the page and a city give equal values, equal remarks and an equal third state.
+"""One question, four faces: program, Python, page and city give equal values, remarks and places without a value.
 
 Each row of the table is a question. Where a face cannot be asked, the row says why.
 """
@@ -10,8 +10,9 @@ import subprocess
 import time
 import urllib.request
 import warnings
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Callable
+from typing import Any
 
 import belvedere
 import numpy as np
@@ -51,11 +52,17 @@ SHADOWS = {
         ["--time", "2026-01-21T12:00Z", "--through-trees", "seasons"],
         {"time": "2026-01-21T12:00Z", "through_trees": "seasons"},
     ),
-    "half of the light through trees": (["--sun", "200,40", "--through-trees", 0.5], {"sun": (200, 40), "through_trees": 0.5}),
+    "half of the light through trees": (
+        ["--sun", "200,40", "--through-trees", 0.5],
+        {"sun": (200, 40), "through_trees": 0.5},
+    ),
 }
 HOURS = {
     "equinox": (["--date", DAY, "--zone", ZONE], {"date": DAY, "zone": ZONE}),
-    "half an hour": (["--date", DAY, "--zone", ZONE, "--time-step-min", 30], {"date": DAY, "zone": ZONE, "time_step_min": 30}),
+    "half an hour": (
+        ["--date", DAY, "--zone", ZONE, "--time-step-min", 30],
+        {"date": DAY, "zone": ZONE, "time_step_min": 30},
+    ),
     "suns above ten degrees": (
         ["--date", DAY, "--zone", ZONE, "--min-sun-elevation", 10],
         {"date": DAY, "zone": ZONE, "min_sun_elevation_deg": 10},
@@ -95,7 +102,12 @@ def rows() -> list[Row]:
                 )
             )
     found.append(
-        Row("shadow, soft", ["shadow", "--sun", "200,25", "--soft", "--cell", 2], lambda s: s.shadow(sun=(200, 25), soft=True, cell=2), NO_CITY_SOFT)
+        Row(
+            "shadow, soft",
+            ["shadow", "--sun", "200,25", "--soft", "--cell", 2],
+            lambda s: s.shadow(sun=(200, 25), soft=True, cell=2),
+            NO_CITY_SOFT,
+        )
     )
     for name, (flags, given) in HOURS.items():
         for surface in (False, True):
@@ -104,7 +116,9 @@ def rows() -> list[Row]:
                 Row(
                     f"sun hours, {name}, {'surface' if surface else 'ground'}",
                     ["sun-hours", *flags, *places, "--cell", 2],
-                    lambda scene, given=given, of_python=of_python: scene.sun_hours(**given, **of_python, cell=2)["sun_hours"],
+                    lambda scene, given=given, of_python=of_python: scene.sun_hours(**given, **of_python, cell=2)[
+                        "sun_hours"
+                    ],
                     ["--sun-hours", *flags] if surface else NO_CITY_GROUND,
                 )
             )
@@ -115,7 +129,9 @@ def rows() -> list[Row]:
                 Row(
                     f"sky view, {name}, {'surface' if surface else 'ground'}",
                     ["sky-view", *flags, *places, "--cell", 2],
-                    lambda scene, given=given, of_python=of_python: scene.sky_view(**given, **of_python, cell=2)["sky_view_factor"],
+                    lambda scene, given=given, of_python=of_python: scene.sky_view(**given, **of_python, cell=2)[
+                        "sky_view_factor"
+                    ],
                     ["--sky-view", *(flags or ["--directions", 577])] if surface else NO_CITY_GROUND,
                 )
             )
@@ -137,7 +153,9 @@ def ask_program(program, folder):
     """Runs a command of the program; returns its summary."""
 
     def ask(*words):
-        done = subprocess.run([program, "--json", *map(str, words)], cwd=folder, capture_output=True, text=True, timeout=300)
+        done = subprocess.run(
+            [program, "--json", *map(str, words)], cwd=folder, capture_output=True, text=True, timeout=300
+        )
         assert done.returncode == 0, done.stderr
         return json.loads(done.stdout)
 
@@ -148,7 +166,11 @@ def ask_program(program, folder):
 def ask_page(program, folder, tile):
     """Asks the page's server of the tile; returns the named values and the bytes of an answer."""
     server = subprocess.Popen(
-        [program, "view", tile.name, "--no-browser"], cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True
+        [program, "view", tile.name, "--no-browser"],
+        cwd=folder,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.DEVNULL,
+        text=True,
     )
     url = server.stdout.readline().strip()
 

@@ -221,7 +221,9 @@ class Scene:
         place: dict[str, Any],
         unproven: str,
         progress: _Progress,
-    ) -> tuple[dict[str, npt.NDArray[Any]], dict[str, Any], npt.NDArray[np.uint32], _Grid | None, list[dict[str, Any]]]: ...
+    ) -> tuple[
+        dict[str, npt.NDArray[Any]], dict[str, Any], npt.NDArray[np.uint32], _Grid | None, list[dict[str, Any]]
+    ]: ...
     def irradiance(
         self, radiation: dict[str, Any], targets: dict[str, Any], trees: dict[str, Any], progress: _Progress
     ) -> _Results: ...

@@ -23,7 +23,7 @@ from ._inputs import (
     reporter,
 )
 from ._mesh import Mesh, native_mesh
-from ._outlook import _OBSERVERS, _looking, _warn
+from ._outlook import _OBSERVERS, _looking
 from ._raster import Raster, Rasters
 from ._remarks import warned
 from ._sunlight import _DIRECTION, _days, _place
@@ -254,7 +254,7 @@ class Planning:
         Warns
         -----
         BelvedereWarning
-            Of windows outside the cloud, near its edge or in an obstacle, and of a scene whose points have no classes or
+            Of windows outside the cloud, near its edge or in an obstacle, and of points that have no classes or
             mostly other ones than ASPRS has.
 
         References
