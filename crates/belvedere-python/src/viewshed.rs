@@ -1,7 +1,7 @@
 //! What observers see of cells, and from where a target is seen.
 
 use crate::arrays::to_1d;
-use crate::errors::wrong;
+use crate::errors::{exception, wrong};
 use crate::observers::standing_observers;
 use crate::outlook::Looking;
 use crate::scene::{Scene, unproven_choice};
@@ -9,15 +9,15 @@ use crate::sun::Place;
 use crate::targets::{Grid, grid_at, grid_of, ground_points, remark_of};
 use crate::work::run;
 use belvedere::apps::ask::{self, Places, Standing, StandingObserver, ViewLimits, ViewshedTargets};
-use belvedere::results::terrain_georeference;
+use belvedere::results::{Pixels, ResultRaster, terrain_georeference};
 use numpy::PyReadonlyArray2;
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::Arc;
 
-/// Answers and counts of cells, their grid, and remarks.
-type Seen<'py> = (Bound<'py, PyAny>, Bound<'py, PyAny>, Grid, Vec<Bound<'py, PyDict>>);
+/// The bands of cells with their names, what they hold and their value for no data, their grid, and remarks.
+type Seen<'py> = (Vec<Bound<'py, PyAny>>, Vec<String>, (String, f64), Grid, Vec<Bound<'py, PyDict>>);
 
 impl Looking {
     fn question(&self, observers: Vec<Standing>, place: &Place, unproven: &str) -> PyResult<ask::Viewshed> {
@@ -48,7 +48,7 @@ impl Looking {
 
 #[pymethods]
 impl Scene {
-    /// Answers and counts of cells, their grid, and remarks.
+    /// The bands of cells with their names, what they hold and their value for no data, their grid, and remarks.
     fn viewshed<'py>(
         &self,
         py: Python<'py>,
@@ -79,7 +79,13 @@ impl Scene {
             (None, None) => return Err(PyRuntimeError::new_err("there are no cells")),
         };
         let remarks = answers.remarks.iter().map(|remark| remark_of(py, remark)).collect::<PyResult<Vec<_>>>()?;
-        let codes: Vec<u8> = seen.answers.iter().map(|&answer| answer as u8).collect();
-        Ok((to_1d(py, codes).into_any(), to_1d(py, seen.counts).into_any(), grid, remarks))
+        let raster = ResultRaster::of_viewshed(&seen, [grid.0, grid.1]).map_err(exception)?;
+        let no_data = raster.pixels.kind().in_gdal().1;
+        let bands = match &raster.pixels {
+            Pixels::Answers(bands) => bands.iter().map(|band| to_1d(py, band.values().to_vec()).into_any()).collect(),
+            Pixels::Counts(bands) => bands.iter().map(|band| to_1d(py, band.values().to_vec()).into_any()).collect(),
+            Pixels::Numbers(bands) => bands.iter().map(|band| to_1d(py, band.values().to_vec()).into_any()).collect(),
+        };
+        Ok((bands, raster.names, (raster.description, no_data), grid, remarks))
     }
 }

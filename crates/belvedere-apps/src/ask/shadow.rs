@@ -118,10 +118,15 @@ impl Ask for Shadow {
 
 /// Takes unproven light for what it is to be, and returns it where it is to be reported.
 fn settled(lit: &mut [f32], doubts: Option<Vec<f32>>, unproven: UnprovenAs) -> Option<Vec<f32>> {
-    let doubts = doubts?;
+    let mut doubts = doubts?;
     match unproven {
         UnprovenAs::Visible => None,
-        UnprovenAs::Reported => Some(doubts),
+        UnprovenAs::Reported => {
+            // what has no light that is known has no doubt either
+            let unknown = doubts.iter_mut().zip(&*lit).filter(|(_, lit)| lit.is_nan());
+            unknown.for_each(|(doubt, _)| *doubt = f32::NAN);
+            Some(doubts)
+        }
         UnprovenAs::Blocked => {
             let lit = lit.iter_mut().zip(&doubts).filter(|(_, doubt)| **doubt > 0.0);
             lit.for_each(|(lit, _)| *lit = 0.0);

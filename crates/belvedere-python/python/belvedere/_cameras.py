@@ -238,7 +238,7 @@ class Cameras:
         columns, whole, counts, grid, given_remarks = self._core.cameras(
             choice, wanted_targets, _place(None, grid_north=grid_north), unproven, reporter(progress)
         )
-        remarks = warned(given_remarks, stacklevel=3)
+        remarks = warned(given_remarks)
         crs = self._core.crs
         of_targets: Raster | Table
         small = np.where(counts == np.uint32(2**32 - 1), 65535, np.minimum(counts, 65534)).astype(np.uint16)

@@ -287,7 +287,7 @@ def _notes(report: dict[str, Any]) -> list[str]:
 
 
 def _warn(text: str) -> None:
-    warnings.warn(text, BelvedereWarning, stacklevel=3)
+    warnings.warn(text, BelvedereWarning)
 
 
 def _column(name: str, values: npt.ArrayLike, count: int) -> npt.NDArray[Any]:

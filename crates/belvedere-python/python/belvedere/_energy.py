@@ -202,7 +202,7 @@ class Energy:
         middle = np.column_stack([values for _, values in columns[:3]])
         found = {"cells": np.array(cells, np.int64), **dict(columns[3:])}
         table = Table(found, places=middle, crs=self._core.crs.text)
-        table.remarks = warned(given, stacklevel=3)
+        table.remarks = warned(given)
         return table
 
 

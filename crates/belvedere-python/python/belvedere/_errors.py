@@ -23,7 +23,7 @@ class BelvedereError(ValueError):
     ...     scene.shadow(sun=(180, 95))
     ... except belvedere.BelvedereError as error:
     ...     print(error.what, error.value)
-    sun (180, 95)
+    sun 180,95
     """
 
     def __init__(self, message: str, what: str = "", value: str = "", advice: str = "") -> None:

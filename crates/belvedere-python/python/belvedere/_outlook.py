@@ -141,7 +141,7 @@ class Outlook:
         seen = made[0]
         seen.description = text
         seen.unproven = made[1] if len(made) > 1 else None
-        seen.remarks = warned(given, stacklevel=3)
+        seen.remarks = warned(given)
         return seen
 
     def depth_map(
@@ -271,7 +271,7 @@ class Outlook:
         found, count, given = self._core.horizon(
             places, angle_step_deg, looking, _place(None, grid_north=grid_north), reporter(progress)
         )
-        warned(given, stacklevel=3)
+        warned(given)
         azimuths = 360.0 * np.arange(count) / count
         elevations = found.reshape(len(places), count)
         return azimuths, elevations[0] if np.ndim(observers) == 1 else elevations
@@ -343,7 +343,7 @@ class Outlook:
         )
         places = columns.pop("place")
         table = Table(columns, places=places, crs=self._core.crs.text, panoramas=panoramas)
-        table.remarks = warned(given, stacklevel=3)
+        table.remarks = warned(given)
         return table
 
 
@@ -363,4 +363,4 @@ def _range(value: npt.ArrayLike | None, what: str) -> tuple[float, float] | None
 
 def _warn(sentences: list[str]) -> None:
     for sentence in sentences:
-        warnings.warn(sentence, BelvedereWarning, stacklevel=3)
+        warnings.warn(sentence, BelvedereWarning)

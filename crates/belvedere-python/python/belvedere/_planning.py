@@ -123,7 +123,7 @@ class Planning:
         if places is None:
             return measures(([(*column, False) for column in columns], grid, None, given), self._core.crs, None)
         table = Table({name: values for name, _, values in columns}, places=places, crs=self._core.crs.text)
-        table.remarks = warned(given, stacklevel=3)
+        table.remarks = warned(given)
         return table
 
     def protected_view(
@@ -193,7 +193,7 @@ class Planning:
         looking = _looking(observer_height=observer_height, cell=cell, ground=ground, max_distance=max_distance)
         places = map_places(observers, "observers", _OBSERVERS)
         columns, grid, given = self._core.protected_view(what, places, looking, unproven, reporter(progress))
-        remarks = warned(given, stacklevel=3)
+        remarks = warned(given)
         nan = float("nan")
         crs = self._core.crs
         found = {
@@ -284,7 +284,7 @@ class Planning:
         columns, places, names, buildings, given = self._core.window_views(
             facades, _place(None, grid_north=grid_north), unproven, reporter(progress)
         )
-        remarks = warned(given, stacklevel=3)
+        remarks = warned(given)
         found = {"object": np.array(names, object)} if names else {}
         found |= {name: values for name, _, values in columns}
         objects_table = None
@@ -377,7 +377,7 @@ class Planning:
         columns, given = self._core.comfort(walks, days, place, reporter(progress))
         places = columns.pop("place")
         table = Table(columns, places=places, crs=self._core.crs.text)
-        table.remarks = warned(given, stacklevel=3)
+        table.remarks = warned(given)
         return table
 
     def envelope(
@@ -482,7 +482,7 @@ class Planning:
         days = _days(date, period, year, time_step_min)
         (name, text, values), grid, given = self._core.envelope(build, days, place, reporter(progress))
         height = raster(values, grid, self._core.crs, name=name, description=text, nodata=float("nan"))
-        height.remarks = warned(given, stacklevel=3)
+        height.remarks = warned(given)
         return height
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import sys
 import warnings
 from collections.abc import Iterable
 from typing import Any, NamedTuple
@@ -35,11 +37,18 @@ class Remark(NamedTuple):
     numbers: dict[str, float]
 
 
-def warned(given: Iterable[dict[str, Any]], stacklevel: int = 4) -> tuple[Remark, ...]:
-    """The remarks of an answer; raises a `BelvedereWarning` for each that is a warning."""
+#: The folder of this package.
+_HERE = os.path.dirname(__file__)
+
+
+def warned(given: Iterable[dict[str, Any]]) -> tuple[Remark, ...]:
+    """The remarks of an answer; raises a `BelvedereWarning` for each that is a warning, at the line of the user."""
+    level, frame = 1, sys._getframe()
+    while frame.f_back is not None and os.path.dirname(frame.f_code.co_filename) == _HERE:
+        level, frame = level + 1, frame.f_back
     remarks = tuple(Remark(one["key"], one["severity"], one["text"], one["numbers"]) for one in given)
     for remark in remarks:
         if remark.severity == "warning":
             warning = BelvedereWarning(remark.text, key=remark.key, numbers=remark.numbers)
-            warnings.warn(warning, stacklevel=stacklevel)
+            warnings.warn(warning, stacklevel=level)
     return remarks

@@ -181,7 +181,7 @@ class Sights:
         columns, standing, given = self._core.lines_of_sight(
             observers, targets, ends, unproven, curvature, refraction, frequency_ghz, reporter(progress)
         )
-        remarks = warned(given, stacklevel=3)
+        remarks = warned(given)
         if not is_one:
             table = Table(columns, places=np.where(np.isnan(targets), standing, targets), crs=self._core.crs.text)
             table.remarks = remarks

@@ -174,7 +174,7 @@ pub(crate) fn npy<T: npyz::Deserialize>(path: &Path) -> (Vec<u64>, Vec<T>) {
 }
 
 /// The texts of the remarks of a run.
-pub(crate) fn remarks(summary: &serde_json::Value) -> Vec<String> {
+pub(crate) fn remarks(summary: &Value) -> Vec<String> {
     let remarks = summary["remarks"].as_array().into_iter().flatten();
     remarks.map(|remark| remark["text"].as_str().unwrap().to_owned()).collect()
 }
