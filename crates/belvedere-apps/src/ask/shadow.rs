@@ -150,6 +150,7 @@ fn summarise(suns: &[NamedSun], measures: &[Measure], places: &str, context: &mu
             }
         }
         _ => {
+            #[expect(clippy::cast_possible_truncation, reason = "for people")]
             let shares: Vec<f32> = measures.iter().map(|measure| share(measure) as f32).collect();
             context.headline(format!("{} suns on {places}: lit {}", suns.len(), spread(&shares, 1, "%")));
         }
