@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import json
 import pickle
+import warnings
 
 import belvedere
 import numpy as np
@@ -525,7 +526,10 @@ def test_plans(scene, run_program, folder):
     answers = []
     for mast in (2.0, 900.0):
         run_program("viewshed", "tile.laz", *standing, str(mast), "--cell", "2", "-o", "from_top.tif")
-        seen = mountains.viewshed(top, observer_height=mast, cell=2)
+        with warnings.catch_warnings():
+            # without a mast nothing of the plain is seen
+            warnings.simplefilter("ignore" if mast < 900 else "error", belvedere.BelvedereWarning)
+            seen = mountains.viewshed(top, observer_height=mast, cell=2)
         assert_same_raster(seen, folder / "from_top.tif", folder)
         answers.append(np.isin(seen.values, [belvedere.Answer.VISIBLE, belvedere.Answer.UNPROVEN]).any())
         line = [*standing, str(mast), "--target", ",".join(map(repr, eye)), "-o", "line.csv"]

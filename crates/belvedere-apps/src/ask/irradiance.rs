@@ -297,6 +297,7 @@ impl Ask for Irradiance {
                     season_irradiation(light.obstacles(), &light.targets, &seasons, control)
                 })?;
                 measures = irradiation_measures(&sums, seasons.first().map_or(1, |s| s.radiation.group_count()));
+                measures.iter_mut().for_each(|measure| light.targets.clear_unasked(&mut measure.values));
                 context.report.measures = Some(MeasuresSection::of(&light.targets, &measures));
                 if let Some(first) = measures.first() {
                     let spread = spread(&first.values, 0, "kWh/m²");
