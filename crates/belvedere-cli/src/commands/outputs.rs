@@ -1,0 +1,90 @@
+//! Outputs of commands: formats by their extensions, and what is refused before hours of work go into it.
+
+use crate::arguments::Usage;
+use crate::summary::Summary;
+use anyhow::{Context, Result, bail};
+use belvedere::crs::Crs;
+use belvedere::io::{ExtraColumn, ExtraValues, Source, atomic};
+use std::path::{Path, PathBuf};
+
+/// The extension of a path in lower case, empty where it has none.
+pub(super) fn extension(path: &Path) -> String {
+    Source::path(path).extension()
+}
+
+/// Normals as columns of their own, for formats that have no other place for them.
+pub(super) struct NormalColumns([Vec<f32>; 3]);
+
+impl NormalColumns {
+    pub(super) fn new(normals: &[[f32; 3]]) -> Self {
+        Self([0, 1, 2].map(|axis| normals.iter().map(|n| n[axis]).collect()))
+    }
+
+    /// The columns under the names that readers of the format at `path` look for.
+    pub(super) fn columns(&self, path: &Path) -> [ExtraColumn<'_>; 3] {
+        let names = if is_las(path) { ["NormalX", "NormalY", "NormalZ"] } else { ["nx", "ny", "nz"] };
+        let descriptions = ["outward unit normal, east", "outward unit normal, north", "outward unit normal, up"];
+        std::array::from_fn(|axis| ExtraColumn {
+            name: names[axis],
+            description: descriptions[axis],
+            values: ExtraValues::F32(&self.0[axis]),
+        })
+    }
+}
+
+pub(super) fn is_las(path: &Path) -> bool {
+    matches!(extension(path).as_str(), "las" | "laz")
+}
+
+/// Whether an output is meant as a folder: it is one, or its name has no extension.
+pub(super) fn is_folder(path: &Path) -> bool {
+    path.is_dir() || extension(path).is_empty()
+}
+
+/// Refuses an output of an unknown format or in a folder that is not there, before hours of work go into it.
+pub(super) fn check_output(flag: &str, path: &Path, known: &[&str]) -> Result<()> {
+    if !known.contains(&extension(path).as_str()) {
+        let known = known.join(" .");
+        return Err(Usage(format!("{flag} {}: the extension must be one of .{known}", path.display())).into());
+    }
+    check_parent(path)
+}
+
+/// Warns of GeoJSON whose coordinates are not those that its standard promises.
+pub(super) fn warn_of_geojson(outputs: &[PathBuf], crs: &Crs, summary: &mut Summary) {
+    if !outputs.iter().any(|output| extension(output) == "geojson") || crs.geographic_projection().is_ok() {
+        return;
+    }
+    summary.warn(
+        "geojson-without-reference-system",
+        "GeoJSON has the coordinates of the cloud, not longitude and latitude: the reference system of the scene is unknown. Other \
+                   programs will misplace it; give --crs EPSG:CODE where the balls are built",
+    );
+}
+
+/// Refuses an output in a folder that is not there.
+pub(super) fn check_parent(path: &Path) -> Result<()> {
+    match path.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() && !parent.is_dir() => {
+            bail!("{}: the folder {} does not exist; create it first", path.display(), parent.display())
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Refuses an output folder that cannot be made, before hours of work go into it.
+pub(super) fn check_folder(path: &Path) -> Result<()> {
+    let is_new = !path.exists();
+    atomic::make_folder(path)?;
+    if is_new {
+        std::fs::remove_dir(path).with_context(|| path.display().to_string())?;
+    }
+    Ok(())
+}
+
+/// Whether a folder in the layout of masbcpp is written where it was read. Its coordinates then stay as they are: they may be finer than
+/// the f32 of the layout.
+pub(super) fn is_written_back(inputs: &[PathBuf], folder: &Path) -> bool {
+    let same = |a: &Path, b: &Path| matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b);
+    inputs.iter().any(|input| same(input, folder) || same(input, &folder.join("coords.npy")))
+}
