@@ -409,3 +409,45 @@ def test_the_sun_stands_at_the_same_place_for_all_faces(scene, ask_program, ask_
     of_page, _ = ask_page("shadow", {"time": NOON[:16], "zone": ZONE, "trees": "opaque"})
     assert of_program[0] == (of_page["azimuth_deg"], of_page["elevation_deg"])
     # a city is a map: it has no question without cells
+
+
+def test_a_hole_of_the_survey_has_no_value_on_any_face(tile, cloud, ask_program, folder):
+    middle = cloud.xyz[:, :2].min(0) / 2 + cloud.xyz[:, :2].max(0) / 2
+    survey = laspy.read(tile)
+    is_in_hole = (np.abs(np.stack([survey.x, survey.y], 1) - middle) < 25).all(axis=1)
+    survey.points = survey.points[~is_in_hole]
+    survey.write(folder / "hole.laz")
+    x, y = middle - 32
+
+    def values_in_hole(values, place):
+        rows, columns = np.indices(values.shape)
+        east, north = place[2] + place[0] * (columns + 0.5), place[5] + place[4] * (rows + 0.5)
+        # ground reaches 5 m beyond returns
+        is_deep = (np.abs(east - middle[0]) < 20) & (np.abs(north - middle[1]) < 20)
+        assert is_deep.sum() > 300 and np.isfinite(values[~is_deep]).any()
+        return int(np.isfinite(values[is_deep]).sum())
+
+    scene = belvedere.Scene(belvedere.read(folder / "hole.laz"))
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", belvedere.BelvedereWarning)
+        rasters = [
+            scene.shadow(sun=(200, 30), cell=2),
+            scene.shadow(sun=(200, 30), cell=2, surface=True),
+            scene.sun_hours(date=DAY, zone=ZONE, cell=2)["sun_hours"],
+            *scene.sky_view(directions=145, cell=2).values(),
+            scene.viewshed((x, y), cell=2),
+            scene.viewshed([(x, y), (x + 64, y)], cell=2),
+            scene.viewshed(target=(*middle, 30), cell=2),
+        ]
+    for raster in rasters:
+        for one in [raster] if raster.unproven is None else [raster, raster.unproven]:
+            assert values_in_hole(values_of(one), one.transform) == 0, one
+
+    asks = ["--sun", "200,30", "--sky-view", "--directions", 49, "--sun-hours", "--date", DAY, "--observer", f"{x},{y}"]
+    ask_program("city", "plan", "hole.laz", *asks, "--cell", 2, "--tile-size", 64, "-o", "holed")
+    ask_program("city", "run", "holed")
+    for name in ("shadow_200_30", "sky_view_factor", "sun_hours", "viewshed"):
+        ask_program("city", "merge", "holed", "--result", name, "-o", "holed.tif")
+        bands, place = bands_of(folder / "holed.tif")
+        for band, values in bands.items():
+            assert values_in_hole(values, tuple(place)[:6]) == 0, (name, band)
