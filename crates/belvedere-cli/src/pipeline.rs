@@ -12,9 +12,9 @@ use crate::arguments::{
 use crate::device::with_device;
 use crate::run::Run;
 use crate::scene_config::BallParameters;
-use crate::summary::{Summary, rounded};
+use crate::summary::Summary;
 use anyhow::{Result, bail};
-use belvedere::apps::ask;
+use belvedere::apps::ask::{self, ViewFrom};
 use belvedere::crs::CrsKind;
 use belvedere::depth::Profile;
 use belvedere::io::{ReadOptions, ReadReport, UpAxis, is_ball_file, read_balls, read_cloud, web_address};
@@ -262,38 +262,26 @@ impl From<ProfileChoice> for Profile {
 impl ViewChoice {
     /// The views on a scene, reported: one, or the two halves of a panorama.
     pub(crate) fn views(&self, scene: &Scene, summary: &mut Summary) -> Result<Vec<View>> {
-        let views = match self.kind.panorama {
+        let from = self.from(scene, summary)?;
+        if let Some(remark) = from.remark(scene.model.coverage().as_ref()) {
+            summary.remark(&remark);
+        }
+        summary.add("view", Summary::of(&from.section()));
+        match from {
+            ViewFrom::View(view) => Ok(vec![view]),
+            ViewFrom::Panorama { eye, width } => Ok(View::panorama(eye, width)?.to_vec()),
+        }
+    }
+
+    /// From where a picture of a scene is taken.
+    pub(crate) fn from(&self, scene: &Scene, summary: &mut Summary) -> Result<ViewFrom> {
+        match self.kind.panorama {
             Some(eye) => {
-                let eye = scene.local_from_file(eye.0);
-                View::panorama(eye, self.panorama_width()?)?.to_vec()
+                let (eye, width) = (scene.local_from_file(eye.0), self.panorama_width()?);
+                Ok(ViewFrom::Panorama { eye, width })
             }
-            None => vec![self.view(scene, summary)?],
-        };
-        let outside = |view: &View| {
-            let coverage = scene.model.coverage();
-            view.is_central() && coverage.is_some_and(|coverage| !coverage.holds(view.frame.eye))
-        };
-        if views.first().is_some_and(outside) {
-            summary.warn(
-                "eye-outside-cloud",
-                "the eye is outside the cloud: what stands around it and before it is unknown",
-            );
+            None => Ok(ViewFrom::View(self.view(scene, summary)?)),
         }
-        let mut section = Summary::default();
-        if let [view] = &views[..] {
-            section.add("width_px", view.size_px[0]).add("height_px", view.size_px[1]);
-            if let Some(pixels_per_metre) = view.pixels_per_metre() {
-                section.add("pixel_m", rounded(1.0 / pixels_per_metre, 4));
-            } else {
-                section.add("pixel_m_at_100_m", rounded(view.pixel_width(100.0), 4));
-            }
-            section.add("view_direction", view.frame.forward.map(|v| rounded(v, 4)).to_vec());
-        } else {
-            let width = self.panorama_width()?.next_multiple_of(2);
-            section.add("width_px", width).add("height_px", width / 2).add("view_direction", "all around");
-        }
-        summary.add("view", section);
-        Ok(views)
     }
 
     /// Refuses what no scene could be seen with, before one is read.

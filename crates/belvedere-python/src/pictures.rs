@@ -1,14 +1,17 @@
 //! Depth maps.
 
+use crate::errors::exception;
 use crate::scene::Scene;
 use crate::sun::Place;
+use crate::targets::remark_of;
 use crate::work::run;
-use belvedere::depth::{ItemBuffer, Profile};
+use belvedere::apps::ask::{self, Places, ViewFrom};
 use belvedere::raster::Raster;
 use belvedere::view::{CAMERA_FOV, CAMERA_SIZE, PANORAMA_WIDTH, View, default_pixel_size, to_sun};
 use numpy::PyArray2;
 use numpy::ndarray::Array2;
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 use std::sync::Arc;
 
 /// From where a picture is taken.
@@ -36,53 +39,59 @@ fn to_array<T: numpy::Element + Copy>(py: Python<'_>, raster: Raster<T>) -> PyRe
     Ok(PyArray2::from_owned_array(py, array).into_any())
 }
 
+impl Camera {
+    /// From where the picture is taken, azimuths being from the north that `place` says.
+    fn from(&self, scene: &ask::Scene, place: &Place) -> belvedere::Result<ViewFrom> {
+        let (low, high) = scene.model().bounds().corners();
+        let pixel = self.pixel.unwrap_or_else(|| default_pixel_size(low, high));
+        let local = |place| scene.frame().local_from_file(place);
+        let view = match (self.sun, self.direction, self.eye, self.look_at) {
+            (Some([azimuth, elevation]), ..) => {
+                let north = place.grid_north_of(scene);
+                let sun = to_sun(azimuth.to_radians() - north, elevation.to_radians());
+                View::parallel(sun.map(|v| -v), low, high, pixel)?
+            }
+            (_, Some(direction), ..) => View::parallel(direction, low, high, pixel)?,
+            (.., Some(eye), Some(look_at)) => {
+                let fov = self.fov.map_or(CAMERA_FOV, f64::to_radians);
+                let size = self.size.unwrap_or(CAMERA_SIZE);
+                View::perspective(local(eye), local(look_at), fov, size, 0.0, f64::INFINITY)?
+            }
+            (.., eye, None) => {
+                let width = self.width.unwrap_or(PANORAMA_WIDTH);
+                return Ok(ViewFrom::Panorama { eye: local(eye.unwrap_or_default()), width });
+            }
+            _ => {
+                return Err(belvedere::Error::InvalidParameter {
+                    parameter: belvedere::Parameter::View,
+                    value: "nothing".to_owned(),
+                    expected: "sun, direction, eye with look_at, or eye for a panorama",
+                });
+            }
+        };
+        Ok(ViewFrom::View(view))
+    }
+}
+
+/// Depths in metres, the rows of the balls that are seen, and remarks.
+type Depths<'py> = (Bound<'py, PyAny>, Option<Bound<'py, PyAny>>, Vec<Bound<'py, PyDict>>);
+
 #[pymethods]
 impl Scene {
-    /// Depths in metres, and the rows of the balls that are seen.
+    /// Depths in metres, the rows of the balls that are seen, and remarks.
     fn depth_map<'py>(
         &self,
         py: Python<'py>,
         camera: Camera,
         place: Place,
         progress: Option<Py<PyAny>>,
-    ) -> PyResult<(Bound<'py, PyAny>, Option<Bound<'py, PyAny>>)> {
-        let inner = Arc::clone(&self.0);
-        let north = place.grid_north_of(&inner);
-        let (depth, balls) = run(py, progress, move |control| {
-            let model = inner.model();
-            let (low, high) = model.bounds().corners();
-            let pixel = camera.pixel.unwrap_or_else(|| default_pixel_size(low, high));
-            let local = |place| inner.frame().local_from_file(place);
-            let view = match (camera.sun, camera.direction, camera.eye, camera.look_at) {
-                (Some([azimuth, elevation]), ..) => {
-                    let sun = to_sun(azimuth.to_radians() - north, elevation.to_radians());
-                    View::parallel(sun.map(|v| -v), low, high, pixel)?
-                }
-                (_, Some(direction), ..) => View::parallel(direction, low, high, pixel)?,
-                (.., Some(eye), Some(look_at)) => {
-                    let fov = camera.fov.map_or(CAMERA_FOV, f64::to_radians);
-                    let size = camera.size.unwrap_or(CAMERA_SIZE);
-                    View::perspective(local(eye), local(look_at), fov, size, 0.0, f64::INFINITY)?
-                }
-                (.., eye, None) => {
-                    let eye = local(eye.unwrap_or_default());
-                    let width = camera.width.unwrap_or(PANORAMA_WIDTH);
-                    let found =
-                        control.stage("drawing", 0, || model.panorama(eye, width, ItemBuffer::With, control))?;
-                    return Ok((found.range, found.balls));
-                }
-                _ => {
-                    return Err(belvedere::Error::InvalidParameter {
-                        parameter: belvedere::Parameter::View,
-                        value: "nothing".to_owned(),
-                        expected: "sun, direction, eye with look_at, or eye for a panorama",
-                    });
-                }
-            };
-            let found =
-                control.stage("drawing", 0, || model.depth_map(&view, Profile::Sphere, ItemBuffer::With, control))?;
-            Ok((found.depth, found.balls))
-        })?;
-        Ok((to_array(py, depth)?, balls.map(|balls| to_array(py, balls)).transpose()?))
+    ) -> PyResult<Depths<'py>> {
+        let scene = Arc::clone(&self.0);
+        let from = camera.from(&scene, &place).map_err(exception)?;
+        let question = ask::DepthMap { from: Some(from), ball_ids: true };
+        let answers = run(py, progress, move |control| ask::ask(&scene, &question, &Places::Scene, control))?;
+        let remarks = answers.remarks.iter().map(|remark| remark_of(py, remark)).collect::<PyResult<Vec<_>>>()?;
+        let balls = answers.found.balls.map(|balls| to_array(py, balls)).transpose()?;
+        Ok((to_array(py, answers.found.depth)?, balls, remarks))
     }
 }

@@ -15,6 +15,7 @@
 
 mod cameras;
 mod comfort;
+mod depth_map;
 mod envelope;
 mod horizon;
 mod irradiance;
@@ -44,6 +45,7 @@ pub use cameras::{
     CameraGoal, CameraLens, CameraTargets, Cameras, CamerasFound, Candidates, ChosenCamera, GivenCamera, PrivatePlaces,
 };
 pub use comfort::{Comfort, ComfortFound, ExposureSection, RoutesOrWindows};
+pub use depth_map::{DepthMap, DepthMapFound, PictureSection, ViewFrom, ViewSection};
 pub use envelope::{Envelope, EnvelopeFound, EnvelopeSection, Protected, ProtectedShape, ProtectedSuns};
 pub use horizon::{BelowLevel, Horizon, HorizonFound};
 pub use irradiance::{Irradiance, IrradianceFound, Radiation, Roofs, RoofsFound};
@@ -107,6 +109,8 @@ pub enum Question {
     ProtectedView(ProtectedView),
     /// Which of many possible cameras to put up.
     Cameras(Cameras),
+    /// The distance to the first surface for each pixel of a view.
+    DepthMap(DepthMap),
     /// What routes and windows get of sun and sky.
     Comfort(Comfort),
     /// How high one may build without taking protected sun.
@@ -140,6 +144,8 @@ pub enum Found {
     ProtectedView(ProtectedViewFound),
     /// Of [`Question::Cameras`].
     Cameras(CamerasFound),
+    /// Of [`Question::DepthMap`].
+    DepthMap(DepthMapFound),
     /// Of [`Question::Comfort`].
     Comfort(Box<ComfortFound>),
     /// Of [`Question::Envelope`].
@@ -266,6 +272,7 @@ impl Ask for Question {
             Self::WindowViews(question) => question.check(),
             Self::ProtectedView(question) => question.check(),
             Self::Cameras(question) => question.check(),
+            Self::DepthMap(question) => question.check(),
             Self::Comfort(question) => question.check(),
             Self::Envelope(question) => question.check(),
         }
@@ -290,6 +297,7 @@ impl Ask for Question {
                 question.answer(scene, places, context, control)?.map(Found::ProtectedView)
             }
             Self::Cameras(question) => question.answer(scene, places, context, control)?.map(Found::Cameras),
+            Self::DepthMap(question) => question.answer(scene, places, context, control)?.map(Found::DepthMap),
             Self::Comfort(question) => {
                 question.answer(scene, places, context, control)?.map(|found| Found::Comfort(Box::new(found)))
             }

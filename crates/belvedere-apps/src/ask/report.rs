@@ -2,6 +2,7 @@
 
 use super::cameras::CamerasReport;
 use super::comfort::ExposureSection;
+use super::depth_map::{PictureSection, ViewSection};
 use super::envelope::EnvelopeSection;
 use super::horizon::HorizonsSection;
 use super::landmark::LandmarkSection;
@@ -102,6 +103,12 @@ pub struct Report {
     /// Which cameras were chosen.
     #[serde(flatten)]
     pub cameras: Option<CamerasReport>,
+    /// The view of a picture.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub view: Option<ViewSection>,
+    /// What a picture shows.
+    #[serde(flatten)]
+    pub picture: Option<PictureSection>,
     /// What routes or windows get of sun and sky.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub exposure: Option<ExposureSection>,

@@ -1,0 +1,175 @@
+//! Depth map: the distance to the first surface for each pixel of a view.
+
+use super::scene::Scene;
+use super::{Answers, Ask, Context, Places, Remark};
+use belvedere_core::depth::{ItemBuffer, Profile};
+use belvedere_core::query::Coverage;
+use belvedere_data::control::Control;
+use belvedere_data::raster::Raster;
+use belvedere_data::report::{percent, rounded};
+use belvedere_data::view::View;
+use belvedere_data::{Error, Parameter, Result};
+use serde::{Deserialize, Serialize};
+
+/// The distance to the first surface for each pixel of a view.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct DepthMap {
+    /// From where the picture is taken; whoever reads a question from text gives it.
+    #[serde(skip)]
+    pub from: Option<ViewFrom>,
+    /// Whether to keep which ball each pixel shows. Default: not.
+    pub ball_ids: bool,
+}
+
+/// From where a picture is taken.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ViewFrom {
+    /// One view.
+    View(View),
+    /// All around an eye.
+    Panorama {
+        /// The eye, local metres.
+        eye: [f64; 3],
+        /// Width, pixels, even; the picture is half as high.
+        width: usize,
+    },
+}
+
+/// A picture of depths.
+#[derive(Clone, Debug)]
+pub struct DepthMapFound {
+    /// Distances, metres: along the axis of a view, from the eye of a panorama; infinite where nothing is hit.
+    pub depth: Raster<f32>,
+    /// The row of the ball that each pixel shows, where that was wanted.
+    pub balls: Option<Raster<u32>>,
+}
+
+/// A view, for reports.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ViewSection {
+    width_px: usize,
+    height_px: usize,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pixel_m: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pixel_m_at_100_m: Option<f64>,
+    view_direction: Looking,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(untagged)]
+enum Looking {
+    Along(Vec<f64>),
+    Around(&'static str),
+}
+
+/// A picture, for reports.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct PictureSection {
+    pixels_hit_percent: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    balls_around_eye_ignored: Option<usize>,
+}
+
+impl ViewFrom {
+    /// Where the eye is, local metres; `None` for parallel views.
+    #[must_use]
+    pub fn eye(&self) -> Option<[f64; 3]> {
+        match self {
+            Self::View(view) => view.is_central().then_some(view.frame.eye),
+            Self::Panorama { eye, .. } => Some(*eye),
+        }
+    }
+
+    /// A warning of an eye outside the cloud.
+    #[must_use]
+    pub fn remark(&self, coverage: Option<&Coverage>) -> Option<Remark> {
+        let is_outside = coverage.zip(self.eye()).is_some_and(|(coverage, eye)| !coverage.holds(eye));
+        let text = "the eye is outside the cloud: what stands around it and before it is unknown";
+        is_outside.then(|| Remark::warning("eye-outside-cloud", text))
+    }
+
+    /// What it is, for reports.
+    #[must_use]
+    pub fn section(&self) -> ViewSection {
+        match self {
+            Self::View(view) => {
+                let pixels_per_metre = view.pixels_per_metre();
+                ViewSection {
+                    width_px: view.size_px[0],
+                    height_px: view.size_px[1],
+                    pixel_m: pixels_per_metre.map(|count| rounded(1.0 / count, 4)),
+                    pixel_m_at_100_m: pixels_per_metre.is_none().then(|| rounded(view.pixel_width(100.0), 4)),
+                    view_direction: Looking::Along(view.frame.forward.map(|v| rounded(v, 4)).to_vec()),
+                }
+            }
+            Self::Panorama { width, .. } => {
+                let width = width.next_multiple_of(2);
+                ViewSection {
+                    width_px: width,
+                    height_px: width / 2,
+                    pixel_m: None,
+                    pixel_m_at_100_m: None,
+                    view_direction: Looking::Around("all around"),
+                }
+            }
+        }
+    }
+}
+
+impl Ask for DepthMap {
+    type Found = DepthMapFound;
+
+    fn check(&self) -> Result<()> {
+        Ok(())
+    }
+
+    fn answer(
+        &self,
+        scene: &Scene,
+        _: &Places,
+        context: &mut Context,
+        control: &Control<'_>,
+    ) -> Result<Answers<DepthMapFound>> {
+        let Some(from) = self.from else {
+            return Err(Error::InvalidParameter {
+                parameter: Parameter::View,
+                value: "missing".to_owned(),
+                expected: "given: the sun, a direction, a camera or a panorama",
+            });
+        };
+        context.add(from.remark(scene.model().coverage().as_ref()));
+        let view = from.section();
+        let (items, profile) =
+            (if self.ball_ids { ItemBuffer::With } else { ItemBuffer::Without }, scene.rule().profile);
+        let (depth, balls, around_eye_count) = control.stage("drawing depth map", 0, || match from {
+            ViewFrom::View(view) => {
+                let map = scene.model().depth_map(&view, profile, items, control)?;
+                Ok((map.depth, map.balls, map.around_eye_count))
+            }
+            ViewFrom::Panorama { .. } if profile != Profile::Sphere => Err(Error::InvalidParameter {
+                parameter: Parameter::BallProfile,
+                value: "the paper's cone".to_owned(),
+                expected: "sphere: the cone is for parallel views only",
+            }),
+            ViewFrom::Panorama { eye, width } => {
+                let map = scene.model().panorama(eye, width, items, control)?;
+                Ok((map.range, map.balls, map.around_eye_count))
+            }
+        })?;
+        let hit = depth.values().iter().filter(|depth| depth.is_finite()).count();
+        let pixels_hit_percent = percent(hit, depth.values().len());
+        let (width, height) = (view.width_px, view.height_px);
+        context.headline(format!("{width} x {height} pixels, {pixels_hit_percent} % of them show a surface"));
+        match (view.pixel_m, view.pixel_m_at_100_m) {
+            (Some(side), _) => context.headline(format!("side of a pixel: {side} m")),
+            (None, Some(side)) => context.headline(format!("side of a pixel at a distance of 100 m: {side} m")),
+            (None, None) => {}
+        }
+        context.report.view = Some(view);
+        let balls_around_eye_ignored = from.eye().map(|_| around_eye_count);
+        context.report.picture = Some(PictureSection { pixels_hit_percent, balls_around_eye_ignored });
+        Ok(Answers::new(DepthMapFound { depth, balls }, Vec::new()))
+    }
+}
