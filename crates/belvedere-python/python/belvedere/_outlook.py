@@ -214,9 +214,7 @@ class Outlook:
             "size": None if size is None else list(size),
             "width": width,
         }
-        depth, _, given_remarks = self._core.depth_map(
-            camera, _place(None, grid_north=grid_north), reporter(progress)
-        )
+        depth, _, given_remarks = self._core.depth_map(camera, _place(None, grid_north=grid_north), reporter(progress))
         warned(given_remarks)
         return depth
 
