@@ -149,7 +149,7 @@ def rows() -> list[Row]:
 
 
 @pytest.fixture(scope="session")
-def ask_program(program, folder):
+def ask_program(program, folder, tile):
     """Runs a command of the program; returns its summary."""
 
     def ask(*words):
@@ -235,7 +235,8 @@ def test_cells_have_the_same_answers_in_the_program_and_in_python(scene, ask_pro
     assert said(summary.get("remarks", [])) == said(raster.remarks)
 
 
-@pytest.mark.parametrize("row", [row for row in rows() if not isinstance(row.city, str)], ids=lambda row: row.name)
+# a third of them: a city makes the balls of its tiles anew for each
+@pytest.mark.parametrize("row", [row for row in rows() if not isinstance(row.city, str)][::3], ids=lambda row: row.name)
 def test_cells_have_the_same_answers_in_a_city(ask_program, folder, row):
     cell = row.program[-1]
     name = "".join(c if c.isalnum() else "_" for c in row.name)
@@ -390,10 +391,10 @@ def test_horizons_and_landmarks_are_the_same_in_the_program_and_in_python(scene,
     keys = {warning.message.key for warning in caught if isinstance(warning.message, belvedere.BelvedereWarning)}
     assert keys == {one["key"] for one in summary.get("remarks", []) if one["severity"] == "warning"}
 
-    summary = ask_program("landmark", "tile.laz", "--target-class", 6, "--cell", 4, "-o", "landmark.tif")
+    summary = ask_program("landmark", "tile.laz", "--target-class", 6, "--cell", 10, "-o", "landmark.tif")
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", belvedere.BelvedereWarning)
-        views = scene.landmark(target_class=6, cell=4)
+        views = scene.landmark(target_class=6, cell=10)
     share = views["visible_share"]
     bands, _ = bands_of(folder / "landmark.tif")
     assert np.allclose(next(iter(bands.values())), values_of(share), rtol=0, atol=1e-6, equal_nan=True)
