@@ -263,9 +263,7 @@ impl ViewChoice {
     /// The views on a scene, reported: one, or the two halves of a panorama.
     pub(crate) fn views(&self, scene: &Scene, summary: &mut Summary) -> Result<Vec<View>> {
         let from = self.from(scene, summary)?;
-        if let Some(remark) = from.remark(scene.model.coverage().as_ref()) {
-            summary.remark(&remark);
-        }
+        summary.remarks(from.remark(scene.model.coverage().as_ref()));
         summary.add("view", Summary::of(&from.section()));
         match from {
             ViewFrom::View(view) => Ok(vec![view]),

@@ -48,7 +48,7 @@ impl Run {
     pub(crate) fn answered<F>(&mut self, answers: &Answers<F>) {
         self.summary.add_report(&answers.report);
         answers.headline.iter().for_each(|line| self.summary.answer(line));
-        answers.remarks.iter().for_each(|remark| self.summary.remark(remark));
+        self.summary.remarks(answers.remarks.iter().cloned());
     }
 
     /// Works with a summary of its own, which is handed back beside the result.

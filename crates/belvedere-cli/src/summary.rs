@@ -82,29 +82,19 @@ impl Summary {
         }
     }
 
-    /// Adds what the user must know to read the results rightly, or a note. They go to standard error unless the summary is JSON.
-    pub(crate) fn remark(&mut self, remark: &Remark) {
-        let remarks = self.entries.entry(REMARKS).or_insert_with(|| Value::Array(Vec::new()));
-        if let Value::Array(remarks) = remarks {
-            remarks.push(Self::of(remark).into());
+    /// Adds what the user must know to read the results rightly, and notes. They go to standard error unless the summary is JSON.
+    pub(crate) fn remarks(&mut self, added: impl IntoIterator<Item = Remark>) {
+        for remark in added {
+            let remarks = self.entries.entry(REMARKS).or_insert_with(|| Value::Array(Vec::new()));
+            if let Value::Array(remarks) = remarks {
+                remarks.push(Self::of(&remark).into());
+            }
         }
     }
 
     /// Adds a warning of the program itself.
     pub(crate) fn warn(&mut self, key: &'static str, text: impl Into<String>) -> &mut Self {
-        self.remark(&Remark::warning(key, text));
-        self
-    }
-
-    /// Adds a warning that `part` of `whole` targets are so, with the share, unless none is.
-    pub(crate) fn warn_of_share(
-        &mut self,
-        key: &'static str,
-        (part, whole): (usize, usize),
-        what: &str,
-        so: &str,
-    ) -> &mut Self {
-        Remark::of_share(key, part, whole, what, so).iter().for_each(|remark| self.remark(remark));
+        self.remarks([Remark::warning(key, text)]);
         self
     }
 

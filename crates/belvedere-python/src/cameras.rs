@@ -5,7 +5,7 @@ use crate::errors::wrong;
 use crate::scene::{Scene, unproven_as};
 use crate::sights::earth;
 use crate::sun::Place;
-use crate::targets::{Grid, Wanted, grid_of, ground_points, remark_of};
+use crate::targets::{Grid, Wanted, grid_of, ground_points, remarks_of};
 use crate::work::run;
 use belvedere::Frame;
 use belvedere::apps::ask::{
@@ -147,7 +147,7 @@ impl Scene {
         question.targets.ground = ground_points(targets.ground())?;
         let places = targets.chosen(py, &scene)?.places;
         let answers = run(py, progress, move |control| ask::ask(&scene, &question, &places, control))?;
-        let remarks = answers.remarks.iter().map(|remark| remark_of(py, remark)).collect::<PyResult<_>>()?;
+        let remarks = remarks_of(py, &answers.remarks)?;
         let found = &answers.found;
         let counts = (0..found.targets.len()).map(|row| found.count(row).unwrap_or(u32::MAX)).collect();
         let frame = self.0.frame();

@@ -3,7 +3,7 @@
 use crate::arrays::to_1d;
 use crate::errors::{exception, wrong};
 use crate::scene::Scene;
-use crate::targets::{Results, Wanted, ground_points, remark_of};
+use crate::targets::{Results, Wanted, ground_points, remarks_of};
 use crate::trees::Through;
 use crate::work::run;
 use belvedere::apps::ask::{self, Roofs, SunPlace};
@@ -125,7 +125,7 @@ impl Scene {
         let scene = Arc::clone(&self.0);
         let of_work = Arc::clone(&scene);
         let answers = run(py, progress, move |control| ask::ask(&of_work, &question, &ask::Places::Scene, control))?;
-        let remarks = answers.remarks.iter().map(|remark| remark_of(py, remark)).collect::<PyResult<Vec<_>>>()?;
+        let remarks = remarks_of(py, &answers.remarks)?;
         let Some(roofs) = &answers.found.roofs else { return Ok((Vec::new(), Vec::new(), remarks)) };
         let cells = roofs.energies.iter().map(|energy| energy.cell_count).collect();
         let columns = roof_columns(&roofs.planes, &roofs.energies, scene.frame(), &answers.found.site);

@@ -5,7 +5,7 @@ use crate::mesh::Mesh;
 use crate::observers::standing_observers;
 use crate::outlook::Looking;
 use crate::scene::{Scene, unproven_as, unproven_choice};
-use crate::targets::{Column, Grid, grid_of, ground_points, remark_of};
+use crate::targets::{Column, Grid, grid_of, ground_points, remarks_of};
 use crate::work::run;
 use belvedere::apps::ask::{self, LandmarkShape, Shared};
 use belvedere::apps::targets::Measure;
@@ -92,7 +92,7 @@ impl Scene {
             ask::ask(&scene, &question, &ask::Places::Scene, control)
         })?;
         let grid = is_grid.then(|| grid_of(&answers.found.ground.ground.grid, self.0.frame()));
-        let remarks = answers.remarks.iter().map(|remark| remark_of(py, remark)).collect::<PyResult<Vec<_>>>()?;
+        let remarks = remarks_of(py, &answers.remarks)?;
         let column = |measure: Measure| (measure.name, measure.description, to_1d(py, measure.values).into_any());
         Ok((answers.measures.into_iter().map(column).collect(), grid, remarks))
     }
@@ -134,7 +134,7 @@ impl Scene {
             column("height", "maximum height above the ground", found.heights.values()),
             column("top", "maximum height", found.tops.values()),
         ];
-        let remarks = answers.remarks.iter().map(|remark| remark_of(py, remark)).collect::<PyResult<_>>()?;
+        let remarks = remarks_of(py, &answers.remarks)?;
         Ok((columns, grid, remarks))
     }
 }

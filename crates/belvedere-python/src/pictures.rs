@@ -3,7 +3,7 @@
 use crate::errors::exception;
 use crate::scene::Scene;
 use crate::sun::Place;
-use crate::targets::remark_of;
+use crate::targets::remarks_of;
 use crate::work::run;
 use belvedere::apps::ask::{self, Places, ViewFrom};
 use belvedere::raster::Raster;
@@ -90,7 +90,7 @@ impl Scene {
         let from = camera.from(&scene, &place).map_err(exception)?;
         let question = ask::DepthMap { from: Some(from), ball_ids: true };
         let answers = run(py, progress, move |control| ask::ask(&scene, &question, &Places::Scene, control))?;
-        let remarks = answers.remarks.iter().map(|remark| remark_of(py, remark)).collect::<PyResult<Vec<_>>>()?;
+        let remarks = remarks_of(py, &answers.remarks)?;
         let balls = answers.found.balls.map(|balls| to_array(py, balls)).transpose()?;
         Ok((to_array(py, answers.found.depth)?, balls, remarks))
     }

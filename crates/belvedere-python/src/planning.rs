@@ -5,11 +5,11 @@ use crate::landmark::local_ring;
 use crate::scene::Scene;
 use crate::sky::{Days, sky_parts};
 use crate::sun::Place;
-use crate::targets::{Column, Grid, grid_of, ground_points, remark_of};
+use crate::targets::{Column, Grid, grid_of, ground_points, remarks_of};
 use crate::windows::{WindowRow, given};
 use crate::work::run;
 use belvedere::Frame;
-use belvedere::apps::ask::{self, Protected, ProtectedShape, ProtectedSuns, Remark, RoutesOrWindows};
+use belvedere::apps::ask::{self, Protected, ProtectedShape, ProtectedSuns, RoutesOrWindows};
 use belvedere::apps::solar_envelope::EnvelopeParams;
 use belvedere::apps::targets::Route;
 use pyo3::prelude::*;
@@ -48,10 +48,6 @@ pub(crate) struct Build {
 
 fn local(corners: &[[f64; 3]], frame: &Frame) -> Vec<[f64; 3]> {
     corners.iter().map(|&corner| frame.local_from_file(corner)).collect()
-}
-
-fn dicts<'py>(py: Python<'py>, remarks: &[Remark]) -> PyResult<Vec<Bound<'py, PyDict>>> {
-    remarks.iter().map(|remark| remark_of(py, remark)).collect()
 }
 
 impl Walks {
@@ -141,7 +137,7 @@ impl Scene {
                 dict.set_item(&measure.name, to_1d(py, found.exposure.of_groups(number, &found.targets)))?;
             }
         }
-        Ok((dict, dicts(py, &answers.remarks)?))
+        Ok((dict, remarks_of(py, &answers.remarks)?))
     }
 
     /// Heights of the solar envelope above the ground, their grid, and remarks.
@@ -160,6 +156,6 @@ impl Scene {
         let what = answers.measures.first().map_or("", |height| height.description);
         let heights = to_1d(py, envelope.heights().values().to_vec()).into_any();
         let column = ("height".to_owned(), what, heights);
-        Ok((column, grid_of(&envelope.grid, self.0.frame()), dicts(py, &answers.remarks)?))
+        Ok((column, grid_of(&envelope.grid, self.0.frame()), remarks_of(py, &answers.remarks)?))
     }
 }

@@ -6,6 +6,7 @@ use crate::errors::{belvedere_error, exception, wrong};
 use crate::landmark::local_ring;
 use crate::mesh::Mesh;
 use crate::system::System;
+use crate::targets::remarks_of;
 use crate::work::run;
 use belvedere::apps::ask;
 use belvedere::apps::horizon::convergence;
@@ -21,7 +22,7 @@ use belvedere::normals::estimate::Neighborhood;
 use belvedere::query::UnprovenAs;
 use belvedere::{Frame, PointCloud};
 use pyo3::prelude::*;
-use pyo3::types::PyBytes;
+use pyo3::types::{PyBytes, PyDict};
 use std::io::Cursor;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -258,8 +259,13 @@ impl Scene {
         self.0.model().balls().len()
     }
 
-    /// The same scene without what stands in an area: rings of x and y in the coordinates of the file, or a class. With the report as JSON.
-    fn without(&self, py: Python<'_>, rings: Option<Vec<Vec<[f64; 2]>>>, class_: u8) -> PyResult<(Self, String)> {
+    /// The same scene without what stands in an area: rings of x and y in the coordinates of the file, or a class. With the report as JSON, and remarks.
+    fn without<'py>(
+        &self,
+        py: Python<'py>,
+        rings: Option<Vec<Vec<[f64; 2]>>>,
+        class_: u8,
+    ) -> PyResult<(Self, String, Vec<Bound<'py, PyDict>>)> {
         let inner = Arc::clone(&self.0);
         let (model, cloud, report) = run(py, None, move |control| {
             let area = match rings {
@@ -268,7 +274,8 @@ impl Scene {
             };
             inner.model().clone().without(&area, inner.cloud(), control)
         })?;
-        Ok((Self(Arc::new(ask::Scene::new(model, Arc::new(cloud)))), json(&report)?))
+        let remarks = remarks_of(py, &ask::remark_on_cleared(report.points_cleared))?;
+        Ok((Self(Arc::new(ask::Scene::new(model, Arc::new(cloud)))), json(&report)?, remarks))
     }
 
     /// The same scene before the terrain of an elevation raster.

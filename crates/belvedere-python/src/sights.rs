@@ -8,7 +8,9 @@ use crate::scene::{Scene, unproven_as};
 use crate::targets::{Wanted, ground_points, remarks_of};
 use crate::work::run;
 use belvedere::apps::ask::{self, LinesOfSight};
-use belvedere::query::{Curvature, EarthParams, MeshTargetParams, SurfacePieces, UnprovenAs, Viewer, seen_faces};
+use belvedere::query::{
+    AnswerCounts, Curvature, EarthParams, MeshTargetParams, SurfacePieces, UnprovenAs, Viewer, seen_faces,
+};
 use belvedere::results::FaceRows;
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
@@ -42,9 +44,23 @@ pub(crate) fn earth(curvature: Option<&str>, refraction: Option<f64>) -> PyResul
     Ok(params)
 }
 
+impl Scene {
+    /// What to know of an eye, local metres, and of targets of which some are outside the cloud.
+    fn remarks_on_viewer<'py>(
+        &self,
+        py: Python<'py>,
+        eye: [f64; 3],
+        (outside, count): (usize, usize),
+        things: &str,
+    ) -> PyResult<Vec<Bound<'py, PyDict>>> {
+        let of_eye = ask::remark_on_eye(self.0.model().coverage().as_ref(), eye);
+        remarks_of(py, of_eye.iter().chain(&ask::remark_on_outside(outside, count, things)))
+    }
+}
+
 #[pymethods]
 impl Scene {
-    /// An answer for each target of one eye.
+    /// An answer for each target of one eye, and remarks.
     fn visible<'py>(
         &self,
         py: Python<'py>,
@@ -52,9 +68,10 @@ impl Scene {
         targets: Wanted<'py>,
         unproven: &str,
         progress: Option<Py<PyAny>>,
-    ) -> PyResult<Bound<'py, PyAny>> {
+    ) -> PyResult<(Bound<'py, PyAny>, Vec<Bound<'py, PyDict>>)> {
         let unproven = unproven_as(unproven)?;
         let inner = Arc::clone(&self.0);
+        let eye = inner.frame().local_from_file(eye);
         let places = targets.chosen(py, &inner)?.places;
         let answers = run(py, progress, move |control| {
             // targets outside the cloud have an answer of their own
@@ -64,15 +81,18 @@ impl Scene {
                 other => other.targets(&inner, &mut ask::Context::default(), control)?.positions.clone(),
             };
             let scene = inner.blockers(unproven, control)?;
-            let eye = Viewer::Eye(inner.frame().local_from_file(eye));
-            let answers =
-                control.stage("testing targets", positions.len(), || scene.visible_from(eye, &positions, control))?;
-            Ok(answers.into_iter().map(|answer| unproven.settle(answer) as u8).collect::<Vec<u8>>())
+            let answers = control.stage("testing targets", positions.len(), || {
+                scene.visible_from(Viewer::Eye(eye), &positions, control)
+            })?;
+            Ok(answers.into_iter().map(|answer| unproven.settle(answer)).collect::<Vec<_>>())
         })?;
-        Ok(to_1d(py, answers).into_any())
+        let outside = AnswerCounts::of(&answers).outside_cloud;
+        let remarks = self.remarks_on_viewer(py, eye, (outside, answers.len()), "targets")?;
+        let codes: Vec<u8> = answers.into_iter().map(|answer| answer as u8).collect();
+        Ok((to_1d(py, codes).into_any(), remarks))
     }
 
-    /// How much one eye sees of each face and object of a mesh.
+    /// How much one eye sees of each face and object of a mesh, and remarks.
     fn seen_of_mesh<'py>(
         &self,
         py: Python<'py>,
@@ -80,22 +100,27 @@ impl Scene {
         faces: Faces,
         unproven: &str,
         progress: Option<Py<PyAny>>,
-    ) -> PyResult<Bound<'py, PyDict>> {
+    ) -> PyResult<(Bound<'py, PyDict>, Vec<Bound<'py, PyDict>>)> {
         let unproven = unproven_as(unproven)?;
         let inner = Arc::clone(&self.0);
+        let eye = inner.frame().local_from_file(eye);
         let (mesh, params) = faces.owned(&inner)?;
         let of_work = Arc::clone(&mesh);
-        let seen = run(py, progress, move |control| {
+        let (seen, outside) = run(py, progress, move |control| {
             let surface = SurfacePieces::of_mesh(&of_work, inner.frame().origin, params.spacing, params.seed)?;
             let scene = inner.blockers(unproven, control)?;
-            let eye = Viewer::Eye(inner.frame().local_from_file(eye));
-            seen_faces(&surface, eye, &MeshTargetParams::default(), |places| {
+            let places: Vec<[f32; 3]> = surface.pieces.iter().map(|piece| piece.place).collect();
+            let outside = inner.model().coverage().map_or(0, |coverage| coverage.outside_count(&places));
+            let eye = Viewer::Eye(eye);
+            let seen = seen_faces(&surface, eye, &MeshTargetParams::default(), |places| {
                 let answers =
                     control.stage("testing targets", places.len(), || scene.visible_from(eye, places, control))?;
                 Ok(answers.into_iter().map(|answer| unproven.settle(answer)).collect())
-            })
+            })?;
+            Ok((seen, (outside, places.len())))
         })?;
-        rows_of(py, FaceRows::of_seen(&mesh, &seen))
+        let remarks = self.remarks_on_viewer(py, eye, outside, "sample points of the mesh")?;
+        Ok((rows_of(py, FaceRows::of_seen(&mesh, &seen))?, remarks))
     }
 
     /// What is known of the line of sight of each pair, where its target is, and remarks. Heights that are NaN follow from

@@ -132,12 +132,15 @@ impl Chosen {
 }
 
 /// All remarks.
-pub(crate) fn remarks_of<'py>(py: Python<'py>, remarks: &[Remark]) -> PyResult<Vec<Bound<'py, PyDict>>> {
-    remarks.iter().map(|remark| remark_of(py, remark)).collect()
+pub(crate) fn remarks_of<'a, 'py>(
+    py: Python<'py>,
+    remarks: impl IntoIterator<Item = &'a Remark>,
+) -> PyResult<Vec<Bound<'py, PyDict>>> {
+    remarks.into_iter().map(|remark| remark_of(py, remark)).collect()
 }
 
 /// A remark: key, severity, text and numbers.
-pub(crate) fn remark_of<'py>(py: Python<'py>, remark: &Remark) -> PyResult<Bound<'py, PyDict>> {
+fn remark_of<'py>(py: Python<'py>, remark: &Remark) -> PyResult<Bound<'py, PyDict>> {
     let dict = PyDict::new(py);
     dict.set_item("key", remark.key)?;
     dict.set_item("severity", if remark.severity == Severity::Warning { "warning" } else { "note" })?;

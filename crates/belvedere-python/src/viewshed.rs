@@ -6,7 +6,7 @@ use crate::observers::standing_observers;
 use crate::outlook::Looking;
 use crate::scene::{Scene, unproven_choice};
 use crate::sun::Place;
-use crate::targets::{Grid, grid_at, grid_of, ground_points, remark_of};
+use crate::targets::{Grid, grid_at, grid_of, ground_points, remarks_of};
 use crate::work::run;
 use belvedere::apps::ask::{self, Places, Standing, StandingObserver, ViewLimits, ViewshedTargets};
 use belvedere::results::{Pixels, ResultRaster, terrain_georeference};
@@ -78,7 +78,7 @@ impl Scene {
             (None, Some(seen)) => (seen, grid_of(&found.ground.ground.grid, frame)),
             (None, None) => return Err(PyRuntimeError::new_err("there are no cells")),
         };
-        let remarks = answers.remarks.iter().map(|remark| remark_of(py, remark)).collect::<PyResult<Vec<_>>>()?;
+        let remarks = remarks_of(py, &answers.remarks)?;
         let raster = ResultRaster::of_viewshed(&seen, [grid.0, grid.1]).map_err(exception)?;
         let no_data = raster.pixels.kind().in_gdal().1;
         let bands = match &raster.pixels {

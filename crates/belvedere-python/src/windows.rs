@@ -5,7 +5,7 @@ use crate::errors::{exception, wrong};
 use crate::mesh::Mesh;
 use crate::scene::{Scene, unproven_as};
 use crate::sun::Place;
-use crate::targets::{Column, remark_of};
+use crate::targets::{Column, remarks_of};
 use crate::work::run;
 use belvedere::Frame;
 use belvedere::apps::ask::{self, GivenWindow, GivenWindows, Shared};
@@ -111,7 +111,7 @@ impl Scene {
         let columns_of_buildings = named_columns(&buildings).into_iter();
         of_buildings.extend(columns_of_buildings.map(|(name, values)| (name, to_1d(py, values).into_any())));
         let of_names = buildings.into_iter().map(|named| named.name).collect();
-        let remarks = answers.remarks.iter().map(|remark| remark_of(py, remark)).collect::<PyResult<_>>()?;
+        let remarks = remarks_of(py, &answers.remarks)?;
         Ok((columns, to_2d(py, &places)?, found.names, (of_names, of_buildings), remarks))
     }
 }

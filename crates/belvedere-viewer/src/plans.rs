@@ -31,6 +31,13 @@ pub(crate) struct Plan {
     meshes: Vec<usize>,
 }
 
+impl Plan {
+    /// Whether there are areas without what stands there now.
+    pub(crate) fn is_clearing(&self) -> bool {
+        !self.clear.is_empty()
+    }
+}
+
 /// A building with upright walls and a flat roof.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]

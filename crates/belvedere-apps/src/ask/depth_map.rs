@@ -1,7 +1,7 @@
 //! Depth map: the distance to the first surface for each pixel of a view.
 
 use super::scene::Scene;
-use super::{Answers, Ask, Context, Places, Remark};
+use super::{Answers, Ask, Context, Places, Remark, remark_on_eye};
 use belvedere_core::depth::{ItemBuffer, Profile};
 use belvedere_core::query::Coverage;
 use belvedere_data::control::Control;
@@ -82,12 +82,10 @@ impl ViewFrom {
         }
     }
 
-    /// A warning of an eye outside the cloud.
+    /// What to know of its eye.
     #[must_use]
     pub fn remark(&self, coverage: Option<&Coverage>) -> Option<Remark> {
-        let is_outside = coverage.zip(self.eye()).is_some_and(|(coverage, eye)| !coverage.holds(eye));
-        let text = "the eye is outside the cloud: what stands around it and before it is unknown";
-        is_outside.then(|| Remark::warning("eye-outside-cloud", text))
+        self.eye().and_then(|eye| remark_on_eye(coverage, eye))
     }
 
     /// What it is, for reports.

@@ -37,6 +37,7 @@ pub mod sun;
 mod sun_hours;
 mod sun_position;
 mod trees;
+mod viewer;
 mod viewshed;
 mod window_views;
 pub mod windows;
@@ -67,6 +68,7 @@ pub use sun::{Days, NamedSun, SunPlace, Suns};
 pub use sun_hours::{Prepared, SunHours, rules};
 pub use sun_position::{SunPosition, SunStands};
 pub use trees::ThroughTrees;
+pub use viewer::{remark_on_cleared, remark_on_eye, remark_on_outside};
 pub use viewshed::{FarSeen, SeenSection, StandingObserver, ViewLimits, Viewshed, ViewshedFound, ViewshedTargets};
 pub use window_views::{WindowViews, WindowViewsFound};
 pub use windows::{GivenWindow, GivenWindows};
@@ -320,5 +322,71 @@ fn spread(values: &[f32], digits: i32, unit: &str) -> String {
     ];
     let [mean, low, high] = figures.map(|value| rounded(value, digits));
     let space = if unit.is_empty() || unit == "%" { "" } else { " " };
-    format!("mean {mean}{space}{unit} ({low} to {high})")
+    match low < high {
+        true => format!("mean {mean}{space}{unit} ({low} to {high})"),
+        false => format!("{mean}{space}{unit}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use belvedere_core::model::{ModelParts, SceneModel};
+    use belvedere_data::{Bounds, Frame, PointCloud};
+    use std::sync::Arc;
+
+    /// A scene of 10 m without balls, which says nothing of where it lies.
+    fn scene() -> Scene {
+        let bounds = Bounds { low: [0.0; 3], high: [10.0; 3] };
+        let parts = ModelParts { frame: Frame::default(), bounds, ..ModelParts::default() };
+        Scene::new(SceneModel::from_parts(parts).unwrap(), Arc::new(PointCloud::default()))
+    }
+
+    #[test]
+    fn a_question_that_is_read_from_text_has_the_answer_of_its_type() {
+        let text = r#"{"sun-position": {"times": ["2026-06-21T11:44Z"], "place": {"location": [52.0, 4.4]}}}"#;
+        let question: Question = serde_json::from_str(text).unwrap();
+        let Question::SunPosition(own) = &question else { panic!("{question:?}") };
+        let (scene, control) = (scene(), Control::none());
+        let answers = ask(&scene, &question, &Places::Scene, &control).unwrap();
+        let of_type = ask(&scene, own, &Places::Scene, &control).unwrap();
+        let Found::SunPosition(found) = &answers.found else { panic!("another question was answered") };
+        assert_eq!((found, &answers.headline), (&of_type.found, &of_type.headline));
+        // at noon of the solstice the sun is as high as the pole of the ecliptic is oblique, above the equator of the sky
+        assert!((found[0].elevation_deg - (90.0 - 52.0 + 23.44)).abs() < 0.05, "{found:?}");
+    }
+
+    #[test]
+    fn questions_come_back_from_text_as_they_were() {
+        let questions = [
+            Question::LineOfSight(LinesOfSight { target_height: Some(2.0), ..LinesOfSight::default() }),
+            Question::Viewshed(Viewshed { reverse: true, cell: Some(0.5), ..Viewshed::default() }),
+            Question::Horizon(Horizon { angle_step_deg: Some(5.0), ..Horizon::default() }),
+            Question::Isovist(Isovists { min_jump: Some(0.5), ..Isovists::default() }),
+            Question::SkyView(SkyView { sky: SkyParts::Reinhart, ..SkyView::default() }),
+            Question::SunHours(SunHours { rules: vec!["bre-equinox".to_owned()], ..SunHours::default() }),
+            Question::DepthMap(DepthMap { ball_ids: true, ..DepthMap::default() }),
+            Question::SunPosition(SunPosition {
+                times: vec!["2026-06-21T13:00Z".to_owned()],
+                ..SunPosition::default()
+            }),
+        ];
+        for question in questions {
+            let text = serde_json::to_string(&question).unwrap();
+            assert_eq!(serde_json::from_str::<Question>(&text).unwrap(), question, "{text}");
+        }
+    }
+
+    #[test]
+    fn what_cannot_be_is_refused_through_the_enum_too() {
+        let cannot = Question::Viewshed(Viewshed { observer_height: Some(-1.0), ..Viewshed::default() });
+        assert!(ask(&scene(), &cannot, &Places::Scene, &Control::none()).is_err() && cannot.check().is_err());
+    }
+
+    #[test]
+    fn one_value_has_no_spread() {
+        assert_eq!(spread(&[5.25, f32::NAN], 1, "hours"), "5.3 hours");
+        assert_eq!(spread(&[5.0, 6.0], 1, "%"), "mean 5.5% (5 to 6)");
+        assert_eq!(spread(&[f32::NAN], 1, "%"), "no target has an answer");
+    }
 }

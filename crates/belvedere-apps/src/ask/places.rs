@@ -3,7 +3,7 @@
 use super::observers::Standing;
 use super::report::{GroundSection, PlacesReport};
 use super::scene::Scene;
-use super::{Context, Remark};
+use super::{Context, Remark, remark_on_outside};
 use crate::edge::{EdgeReport, near_edge};
 use crate::targets::{CellLevel, CellParams, Layout, MeshParams, Targets};
 use crate::viewshed::cell_for;
@@ -16,7 +16,6 @@ use std::sync::Arc;
 
 /// Share of targets near the edge of the cloud from which on it is warned of, percent.
 pub(super) const EDGE_WARNING_PERCENT: f64 = 1.0;
-pub(super) const OUTSIDE_CLOUD: &str = "are outside the cloud, where nothing is known, and have no answer";
 const NEAR_EDGE: &str = "are near the edge of the cloud: objects beyond it, as high as its highest point, could take some of their sun or sky";
 
 /// What a question is about.
@@ -122,7 +121,7 @@ pub(super) fn leave_out_outside(targets: &mut Targets, scene: &Scene, context: &
     let count = targets.asked_count();
     let outside = scene.model().coverage().map_or(0, |coverage| targets.leave_out_outside(&coverage));
     context.report.places.targets_outside_cloud = Some(outside);
-    context.add(Remark::of_share("targets-outside-cloud", outside, count, "targets", OUTSIDE_CLOUD));
+    context.add(remark_on_outside(outside, count, "targets"));
 }
 
 fn own_points(scene: &Scene, turned: Turned) -> Result<Targets> {

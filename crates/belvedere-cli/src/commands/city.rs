@@ -8,6 +8,7 @@ use crate::pipeline::areas;
 use crate::run::Run;
 use crate::summary::{Summary, rounded};
 use anyhow::{Result, bail};
+use belvedere::apps::ask::remark_on_cleared;
 use belvedere::apps::tree_light::Transmissivity;
 use belvedere::{Error, Parameter};
 use belvedere_tiles::{
@@ -49,7 +50,7 @@ fn plan(arguments: &CityPlan, global: &Global) -> Result<Summary> {
         other => anyhow::Error::from(other),
     })?;
     if !arguments.clear.is_empty() && !plan.clears_anything(&run.control())? {
-        run.summary.warn("nothing-cleared", "--clear: nothing stands there");
+        run.summary.remarks(remark_on_cleared(0));
     }
     plan.write(&arguments.output)?;
     let estimate = plan.estimate();
@@ -112,7 +113,7 @@ fn run_plan(arguments: &CityRun, global: &Global) -> Result<Summary> {
         );
     }
     run.summary.add_report(&report);
-    report.remarks().iter().for_each(|remark| run.summary.remark(remark));
+    run.summary.remarks(report.remarks());
     run.summary
         .add("written", arguments.run.display().to_string())
         .headline("balls of <balls_made> tiles made, and <answers_made> tiles of results")

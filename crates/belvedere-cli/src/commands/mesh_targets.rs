@@ -7,6 +7,7 @@ use crate::run::Run;
 use crate::summary::{Summary, rounded};
 use anyhow::{Result, bail};
 use belvedere::Mesh;
+use belvedere::apps::ask;
 use belvedere::io::{Source, write_mesh_values};
 use belvedere::query::{BackFaces, MeshTargetParams, Scope, SeenArea, SurfacePieces, Viewer, seen_faces, seen_in_all};
 use belvedere::results::FaceRows;
@@ -94,12 +95,7 @@ pub(super) fn run(arguments: &Query, path: &Path, global: &Global) -> Result<Sum
     run.summary.add("faces", told(&faces, &surface, spacing));
     let places: Vec<[f32; 3]> = surface.pieces.iter().map(|piece| piece.place).collect();
     let outside = scene.model.coverage().map_or(0, |coverage| coverage.outside_count(&places));
-    run.summary.warn_of_share(
-        "targets-outside-cloud",
-        (outside, places.len()),
-        "sample points of the mesh",
-        sights::OUTSIDE_CLOUD,
-    );
+    run.summary.remarks(ask::remark_on_outside(outside, places.len(), "sample points of the mesh"));
     run.stage("writing", 0, |_| match extension(output).as_str() {
         "ply" => {
             let shares: Vec<f64> = faces.iter().map(SeenArea::visible_share).collect();

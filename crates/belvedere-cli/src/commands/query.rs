@@ -6,6 +6,7 @@ use crate::pipeline::{self, Points, Scene};
 use crate::run::Run;
 use crate::summary::{Summary, percent, rounded};
 use anyhow::{Result, bail};
+use belvedere::apps::ask;
 use belvedere::depth::{ItemBuffer, Profile};
 use belvedere::io::{
     ExtraColumn, ExtraValues, ReadOptions, TextRows, WriteReport, read_cloud, read_text_rows, write_cloud,
@@ -70,7 +71,7 @@ pub(crate) fn run(arguments: &Query, global: &Global) -> Result<Summary> {
         answers
     };
     let outside = AnswerCounts::of(&answers).outside_cloud;
-    run.summary.warn_of_share("targets-outside-cloud", (outside, answers.len()), "targets", sights::OUTSIDE_CLOUD);
+    run.summary.remarks(ask::remark_on_outside(outside, answers.len(), "targets"));
     let unproven_as = arguments.unproven.map_or(UnprovenAs::Reported, UnprovenAs::from);
     let codes: Vec<u8> = answers.iter().map(|&answer| unproven_as.settle(answer) as u8).collect();
     run.summary.add("answers", counted(&answers, unproven_as, section));

@@ -8,9 +8,6 @@ use anyhow::Result;
 use belvedere::depth::Profile;
 use belvedere::query::{BlockRule, EarthParams, MedialScene, UnprovenAs};
 
-/// What is warned of with the share of what it happens to.
-pub(crate) const OUTSIDE_CLOUD: &str = "are outside the cloud, where nothing is known, and have no answer";
-
 /// Balls that lines of sight are cut with, and what to make of what is not proven; reported.
 pub(crate) fn proving_blockers(
     scene: &Scene,

@@ -5,6 +5,7 @@ use crate::arguments::{AreaChoice, Plan};
 use crate::run::Run;
 use crate::summary::Summary;
 use anyhow::{Result, bail};
+use belvedere::apps::ask::remark_on_cleared;
 use belvedere::crs::Crs;
 use belvedere::io::{Shape, read_geojson, read_mesh_in};
 use belvedere::model::{ClearReport, ClearedArea, SceneModel};
@@ -28,9 +29,7 @@ pub(super) fn clear(scene: &mut Scene, plan: &Plan, run: &mut Run) -> Result<()>
         sum.balls_cut += report.balls_cut;
         sum.ground_balls_added += report.ground_balls_added;
     }
-    if sum.points_cleared == 0 {
-        run.summary.warn("nothing-cleared", "--clear: nothing stands there");
-    }
+    run.summary.remarks(remark_on_cleared(sum.points_cleared));
     run.summary.add("cleared", Summary::of(&sum));
     Ok(())
 }

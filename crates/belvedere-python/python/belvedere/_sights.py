@@ -101,9 +101,14 @@ class Sights:
         <belvedere.Table: 1 rows of object, area_m2, visible_m2, visible_share, unproven_m2, standard_error_m2>
         """
         if isinstance(targets, Mesh):
-            return face_table(self._core.seen_of_mesh(place(eye, "eye"), targets._faces, unproven, reporter(progress)))
+            faces, given = self._core.seen_of_mesh(place(eye, "eye"), targets._faces, unproven, reporter(progress))
+            table = face_table(faces)
+            table.remarks = warned(given)
+            return table
         chosen = wanted(targets, None, {})
-        return self._core.visible(place(eye, "eye"), chosen, unproven, reporter(progress))
+        answers, given = self._core.visible(place(eye, "eye"), chosen, unproven, reporter(progress))
+        warned(given)
+        return answers
 
     def line_of_sight(
         self,

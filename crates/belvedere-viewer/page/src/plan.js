@@ -3,7 +3,7 @@ import * as api from "./api.js";
 import { escape } from "./charts.js";
 import { report } from "./messages.js";
 import { paint } from "./paint.js";
-import { card, corners } from "./questions.js";
+import { card, corners, remarks } from "./questions.js";
 import { save } from "./save.js";
 import { $, page } from "./state.js";
 import { cloud, draw, toFile } from "./view.js";
@@ -64,7 +64,7 @@ async function change(edit) {
     sessionStorage.setItem(KEPT, JSON.stringify([page.plan, page.loadedMeshes]));
     if (page.when === "before") page.when = $("when").value = "after";
     show();
-    panel(page.plan.clear.length > before.clear.length && !page.planned?.points_cleared ? `<p class="note">Nothing stands in this area.</p>` : "");
+    panel(page.plan.clear.length > before.clear.length && page.planned ? remarks(page.planned) : "");
   } catch (error) {
     page.plan = before;
     panel("");

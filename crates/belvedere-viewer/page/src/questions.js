@@ -172,7 +172,7 @@ page.ask = ask;
 // A command of which no word is broken where it fits into a line.
 const words = (command) => command.split(" ").map((word) => `<span>${escape(word)}</span>`).join(" ");
 // What must be known beside an answer, in the words of all faces.
-const remarks = ({ remarks: all = [] }) => all.map(({ key, severity, text }) => `<p class="remark ${severity}" data-key="${escape(key)}">${severity === "warning" ? "⚠ " : ""}${escape(text[0].toUpperCase() + text.slice(1))}.</p>`).join("");
+export const remarks = ({ remarks: all = [] }) => all.map(({ key, severity, text }) => `<p class="remark ${severity}" data-key="${escape(key)}">${severity === "warning" ? "⚠ " : ""}${escape(text[0].toUpperCase() + text.slice(1))}.</p>`).join("");
 function showAnswer(tool, answer, places) {
   const shown = answer.before ? changed(tool, answer, page) : tool.show(answer, page);
   const html = shown.html ?? shown;

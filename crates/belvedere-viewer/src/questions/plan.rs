@@ -3,10 +3,12 @@
 use super::Asked;
 use crate::plans::Plan;
 use crate::replies::{Answer, Refusal};
+use belvedere::apps::ask::remark_on_cleared;
 use belvedere::cloud::to_local;
 use serde_json::{Value, json};
 
 pub(super) fn answer(plan: Plan, asked: &Asked<'_>) -> Result<Answer, Refusal> {
+    let is_clearing = plan.is_clearing();
     let planned = asked.plans.make(plan, asked.scene, asked.text, asked.control)?;
     let files: Vec<Value> = planned.files.iter().map(|(name, text)| json!({ "name": name, "content": text })).collect();
     let origin = asked.scene.model().frame().origin;
@@ -18,6 +20,7 @@ pub(super) fn answer(plan: Plan, asked: &Asked<'_>) -> Result<Answer, Refusal> {
     let head = json!({
         "plan": planned.number,
         "points_cleared": planned.report.points_cleared,
+        "remarks": is_clearing.then(|| remark_on_cleared(planned.report.points_cleared)).flatten().as_slice(),
         "triangle_bytes": triangles.len(),
         "files": files,
         "command": planned.text.input,

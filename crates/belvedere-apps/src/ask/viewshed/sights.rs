@@ -1,8 +1,8 @@
 //! What observers see of each kind of targets, in numbers and words.
 
 use super::Viewshed;
-use crate::ask::places::{OUTSIDE_CLOUD, cells_of};
-use crate::ask::{Context, Remark, Scene};
+use crate::ask::places::cells_of;
+use crate::ask::{Context, Remark, Scene, remark_on_outside};
 use crate::targets::{CellParams, Targets};
 use crate::viewshed::{
     Masks, Observer, Viewshed as Seen, ViewshedParams, far_viewshed, least_visible_heights, tested_height, viewshed,
@@ -90,7 +90,7 @@ impl Sights<'_> {
         let things = Things { where_to: "", name: "points", area: None };
         let section = self.counted(&seen.answers, &things, context);
         let (outside, count) = (section.outside_cloud, seen.answers.len());
-        context.add(Remark::of_share("targets-outside-cloud", outside, count, "points", OUTSIDE_CLOUD));
+        context.add(remark_on_outside(outside, count, "points"));
         context.report.cloud_points = Some(section);
         Ok(seen)
     }

@@ -1,0 +1,26 @@
+//! What to know of targets of one viewer, however they are tested.
+
+use super::Remark;
+use belvedere_core::query::Coverage;
+
+const OUTSIDE_CLOUD: &str = "are outside the cloud, where nothing is known, and have no answer";
+
+/// A warning of an eye outside the cloud.
+#[must_use]
+pub fn remark_on_eye(coverage: Option<&Coverage>, eye: [f64; 3]) -> Option<Remark> {
+    let is_outside = coverage.is_some_and(|coverage| !coverage.holds(eye));
+    let text = "the eye is outside the cloud: what stands around it and before it is unknown";
+    is_outside.then(|| Remark::warning("eye-outside-cloud", text))
+}
+
+/// A warning that `outside` of `count` targets, which are called `things`, are outside the cloud; `None` where none is.
+#[must_use]
+pub fn remark_on_outside(outside: usize, count: usize, things: &str) -> Option<Remark> {
+    Remark::of_share("targets-outside-cloud", outside, count, things, OUTSIDE_CLOUD)
+}
+
+/// A warning that nothing was cleared, where `points` of the cloud were.
+#[must_use]
+pub fn remark_on_cleared(points: usize) -> Option<Remark> {
+    (points == 0).then(|| Remark::warning("nothing-cleared", "nothing stands there that could be cleared"))
+}
