@@ -70,8 +70,8 @@ impl DifferenceReport {
     }
 }
 
-/// Takes the values of unproven cells away, and returns their number: in rasters of what one observer sees, which `description` names, they are
-/// neither visible nor hidden. `unproven`, (M), is above 0 where a value is not proven.
+/// Takes the values of unproven cells away, and returns their number: in rasters of what one observer sees, which
+/// `description` names, they are neither visible nor hidden. `unproven`, (M), is above 0 where a value is not proven.
 pub fn clear_unproven(values: &mut [f32], unproven: &[f32], description: Option<&str>) -> usize {
     if description != Some(SEEN) {
         return 0;

@@ -176,7 +176,8 @@ impl Shrinking {
     }
 }
 
-/// The keys of a file and their values, each of the type that it needs. A key without a value is as if it was not there.
+/// The keys of a file and their values, each of the type that it needs. A key without a value is as if it was not
+/// there.
 fn read(path: &Path) -> Result<Map<String, Value>> {
     let text = std::fs::read_to_string(path).with_context(|| path.display().to_string())?;
     let refused = |what: String| Usage(format!("{}: {what}", path.display()));

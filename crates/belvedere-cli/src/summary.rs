@@ -33,7 +33,8 @@ enum Extent {
 }
 
 impl Summary {
-    /// Adds a line of the answer. `<section.name>` becomes that figure. A line, or a part in brackets, about a figure that is not there is left out.
+    /// Adds a line of the answer. `<section.name>` becomes that figure. A line, or a part in brackets, about a figure
+    /// that is not there is left out.
     pub(crate) fn headline(&mut self, text: impl AsRef<str>) -> &mut Self {
         self.headlines.extend(short::filled(text.as_ref(), &self.entries));
         self
@@ -82,7 +83,8 @@ impl Summary {
         }
     }
 
-    /// Adds what the user must know to read the results rightly, and notes. They go to standard error unless the summary is JSON.
+    /// Adds what the user must know to read the results rightly, and notes. They go to standard error unless the
+    /// summary is JSON.
     pub(crate) fn remarks(&mut self, added: impl IntoIterator<Item = Remark>) {
         for remark in added {
             let remarks = self.entries.entry(REMARKS).or_insert_with(|| Value::Array(Vec::new()));

@@ -19,7 +19,8 @@ pub struct PointCloud {
     pub attributes: Attributes,
     /// Local positions of the scanner set-ups that [`Attributes::scanner_index`] refers to, (S, 3), metres.
     pub scanner_positions: Vec<[f32; 3]>,
-    /// Places on the map, local metres, that the survey measured and whose points were cleared since, (C, 2): there is no hole in the survey.
+    /// Places on the map, local metres, that the survey measured and whose points were cleared since, (C, 2): there is
+    /// no hole in the survey.
     pub cleared_places: Vec<[f32; 2]>,
 }
 

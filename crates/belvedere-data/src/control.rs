@@ -15,8 +15,8 @@ pub enum StageEnd {
 /// What the owner of long work provides: a progress bar, a notebook, a page, a signal handler. Every method may be called from any
 /// thread and should return at once.
 ///
-/// Stages nest: a stage that begins while another is open is a part of it, and the outer one goes on when it ends. Finished items belong to
-/// the innermost open stage. [`OpenStages`] keeps account of this.
+/// Stages nest: a stage that begins while another is open is a part of it, and the outer one goes on when it ends.
+/// Finished items belong to the innermost open stage. [`OpenStages`] keeps account of this.
 pub trait Watcher: Sync {
     /// A stage begins that has `total` items; 0 where the number is not known.
     fn begin(&self, _stage: &'static str, _total: usize) {}

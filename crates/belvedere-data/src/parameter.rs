@@ -4,8 +4,8 @@ use std::fmt;
 
 macro_rules! parameters {
     ($($(#[$doc:meta])+ $variant:ident => $name:literal,)+) => {
-        /// What an [`Error::InvalidParameter`](crate::Error::InvalidParameter) is about. Several functions share a parameter that means the
-        /// same in each.
+        /// What an [`Error::InvalidParameter`](crate::Error::InvalidParameter) is about. Several functions share a
+        /// parameter that means the same in each.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
         #[non_exhaustive]
         pub enum Parameter {

@@ -127,8 +127,8 @@ pub fn write_u16<'a>(
     write::<Gray16>(output.into(), from_ref(raster), &marks)
 }
 
-/// Writes the bands of a raster, compressed without loss, with their names as GDAL reads them. Numbers that are not finite are written as the
-/// value for no data.
+/// Writes the bands of a raster, compressed without loss, with their names as GDAL reads them. Numbers that are not
+/// finite are written as the value for no data.
 ///
 /// # Errors
 /// As [`write_f32`], [`Error::LengthMismatch`] for bands of several sizes.

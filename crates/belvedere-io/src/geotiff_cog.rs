@@ -18,11 +18,12 @@ const TILE: usize = 512;
 /// Compression of the tiles, by its number in TIFF: Deflate.
 const DEFLATE: u16 = 8;
 
-/// Writes the bands of a raster whose columns run east and whose rows run south as a cloud-optimised GeoTIFF, compressed without loss.
+/// Writes the bands of a raster whose columns run east and whose rows run south as a cloud-optimised GeoTIFF,
+/// compressed without loss.
 ///
 /// # Errors
-/// [`Error::InvalidParameter`] for a raster without pixels, a turned one, and one of more than 4 GB compressed; [`Error::LengthMismatch`] for
-/// bands of several sizes; [`Error::Io`].
+/// [`Error::InvalidParameter`] for a raster without pixels, a turned one, and one of more than 4 GB compressed;
+/// [`Error::LengthMismatch`] for bands of several sizes; [`Error::Io`].
 pub fn write_cog<'a>(output: impl Into<Output<'a>>, bands: &Bands<'_>, place: &Georeference) -> Result<()> {
     let ([east, tilt], [turn, south]) = (place.column_step, place.row_step);
     if tilt != 0.0 || turn != 0.0 || !(east > 0.0 && south < 0.0) {

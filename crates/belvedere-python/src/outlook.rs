@@ -48,8 +48,8 @@ type Described<'py> = (Bound<'py, PyDict>, Vec<Bound<'py, PyAny>>, Vec<Bound<'py
 
 #[pymethods]
 impl Scene {
-    /// Elevations of the horizon, degrees, a row for each observer and a column for each azimuth, NaN for those skipped;
-    /// the number of azimuths; and remarks.
+    /// Elevations of the horizon, degrees, a row for each observer and a column for each azimuth, NaN for those
+    /// skipped; the number of azimuths; and remarks.
     fn horizon<'py>(
         &self,
         py: Python<'py>,

@@ -16,7 +16,8 @@ pub(crate) enum Values<'py> {
     U16(PyReadonlyArray2<'py, u16>),
 }
 
-/// Writes a GeoTIFF of bands of one type with the six numbers of an affine transform. A raster without a value for no data has one band.
+/// Writes a GeoTIFF of bands of one type with the six numbers of an affine transform. A raster without a value for no
+/// data has one band.
 #[pyfunction]
 #[expect(clippy::too_many_arguments, reason = "keywords in Python")]
 pub(crate) fn write_geotiff(

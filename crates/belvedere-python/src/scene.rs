@@ -259,7 +259,8 @@ impl Scene {
         self.0.model().balls().len()
     }
 
-    /// The same scene without what stands in an area: rings of x and y in the coordinates of the file, or a class. With the report as JSON, and remarks.
+    /// The same scene without what stands in an area: rings of x and y in the coordinates of the file, or a class. With
+    /// the report as JSON, and remarks.
     fn without<'py>(
         &self,
         py: Python<'py>,

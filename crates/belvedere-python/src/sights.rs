@@ -123,8 +123,8 @@ impl Scene {
         Ok((rows_of(py, FaceRows::of_seen(&mesh, &seen))?, remarks))
     }
 
-    /// What is known of the line of sight of each pair, where its target is, and remarks. Heights that are NaN follow from
-    /// the ground.
+    /// What is known of the line of sight of each pair, where its target is, and remarks. Heights that are NaN follow
+    /// from the ground.
     #[expect(clippy::too_many_arguments, reason = "keywords in Python")]
     fn lines_of_sight<'py>(
         &self,

@@ -44,7 +44,8 @@ impl Place {
         }
     }
 
-    /// Azimuth of grid north at the middle of a scene, clockwise from the north that azimuths are counted from, radians.
+    /// Azimuth of grid north at the middle of a scene, clockwise from the north that azimuths are counted from,
+    /// radians.
     pub(crate) fn grid_north_of(&self, scene: &ask::Scene) -> f64 {
         self.north().of_scene(scene).of_grid
     }

@@ -104,7 +104,8 @@ pub(crate) fn grid_at([width, height]: [usize; 2], place: &Georeference) -> Grid
 pub(crate) type MeasureColumn<'py> = (String, &'static str, Bound<'py, PyAny>, bool);
 /// Name, description and values.
 pub(crate) type Column<'py> = (String, &'static str, Bound<'py, PyAny>);
-/// Columns of measures; then the grid where targets are cells; or, where they are the faces of a mesh, only their rows; then remarks.
+/// Columns of measures; then the grid where targets are cells; or, where they are the faces of a mesh, only their rows;
+/// then remarks.
 pub(crate) type Results<'py> =
     (Vec<MeasureColumn<'py>>, Option<Grid>, Option<Bound<'py, PyDict>>, Vec<Bound<'py, PyDict>>);
 

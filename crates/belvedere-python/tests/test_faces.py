@@ -1,6 +1,6 @@
 """One question, four faces: program, Python, page and city give equal values, remarks and places without a value.
 
-Each row of the table is a question. Where a face cannot be asked, the row says why.
+Each row of the table is a question. Where a face has no such question, the row says why.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ NO_CITY_SUNS = "a city gives a raster for each sun"
 
 @dataclass
 class Row:
-    """A question in the words of each face; a text in place of words says why a face cannot be asked."""
+    """A question in the words of each face; a text in place of words says why a face has no such question."""
 
     name: str
     program: list[Any]

@@ -142,7 +142,8 @@ impl Radiation {
 }
 
 impl Question {
-    /// The questions about tiles that a question about a survey comes to, one for each result; figures and remarks go into `context`.
+    /// The questions about tiles that a question about a survey comes to, one for each result; figures and remarks go
+    /// into `context`.
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] for what cannot be, and for a question that tiles do not answer.
@@ -230,7 +231,8 @@ impl Question {
         }
     }
 
-    /// Names of the bands of a result of a kind: answers and counts have a second one, of what missing tiles may change.
+    /// Names of the bands of a result of a kind: answers and counts have a second one, of what missing tiles may
+    /// change.
     pub(crate) fn bands(&self, kind: ResultKind) -> Vec<String> {
         let first = match self {
             Self::Shadow { .. } => "lit",

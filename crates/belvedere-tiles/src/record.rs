@@ -98,7 +98,7 @@ pub struct Record {
     /// Cells whose answer is unproven because balls are missing.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub unproven_cells: usize,
-    /// Cells that are near the edge of the survey for the light that is asked about; `None` where light is not.
+    /// Cells that are near the edge of the survey for the light of the question; `None` where it is not about light.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub near_edge_cells: Option<usize>,
     /// Observers that stand inside an obstacle, and see nothing.

@@ -64,7 +64,7 @@ pub struct RunReport {
     pub already_done: usize,
     /// Cells whose answer is unproven because balls are missing.
     pub unproven_cells: usize,
-    /// Cells whose light is asked about, each counted once for each question about it.
+    /// Cells of questions about light, each counted once for each question.
     pub cells_of_light: usize,
     /// Of these, cells near the edge of the survey.
     pub cells_near_edge: usize,

@@ -115,8 +115,8 @@ impl Ask for Horizon {
     }
 }
 
-/// The mean share of azimuths at which something beyond the edge of the cloud could be the horizon; `None` where the edge
-/// is not known. The first azimuth from grid north is `first`, radians.
+/// The mean share of azimuths at which something beyond the edge of the cloud could be the horizon; `None` where the
+/// edge is not known. The first azimuth from grid north is `first`, radians.
 fn near_edge_percent(scene: &Scene, eyes: &Eyes, skylines: &[Vec<SkylinePoint>], first: f64) -> Option<f64> {
     let coverage = scene.model().coverage()?;
     let known = || eyes.eyes.iter().zip(skylines).filter(|(eye, _)| eye[0].is_finite());

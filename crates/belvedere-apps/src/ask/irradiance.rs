@@ -38,7 +38,7 @@ pub struct Irradiance {
     /// What gets through trees.
     #[serde(default)]
     pub trees: ThroughTrees,
-    /// The planes of roofs that are asked for beside places.
+    /// The planes of roofs that are wanted beside places.
     #[serde(default)]
     pub roofs: Option<Roofs>,
 }
@@ -101,9 +101,9 @@ impl Default for Roofs {
 
 /// What was found of places and roofs.
 pub struct IrradianceFound {
-    /// The places; `None` where only roofs are asked for.
+    /// The places; `None` where only roofs are wanted.
     pub on: Option<OnTargets>,
-    /// The roofs; `None` where they are not asked for.
+    /// The roofs; `None` where they are not wanted.
     pub roofs: Option<RoofsFound>,
     /// Where on earth the scene lies.
     pub site: Site,

@@ -1,11 +1,13 @@
-//! Questions: the one way from what a user wants to know to an answer, for the command line, Python, the page and cities.
+//! Questions: the one way from what a user wants to know to an answer, for the command line, Python, the page and
+//! cities.
 //!
-//! A face parses what its user gave into a [`Question`] and [`Places`], puts it to a [`Scene`] with [`ask`], and shows the [`Answers`].
-//! Defaults, checks, warnings and the third state of an answer are made here, so that no face has its own.
+//! A face parses what its user gave into a [`Question`] and [`Places`], puts it to a [`Scene`] with [`ask`], and shows
+//! the [`Answers`]. Defaults, checks, warnings and the third state of an answer are made here, so that no face has its
+//! own.
 //!
 //! | step | module |
 //! |---|---|
-//! | what can be asked for | [`Question`], a module for each |
+//! | what there is to find | [`Question`], a module for each |
 //! | places, and those without an answer | [`places`] |
 //! | suns, days, clocks, north | [`sun`], [`north`] |
 //! | who looks, and who cannot | [`observers`] |
@@ -80,7 +82,7 @@ use belvedere_data::report::rounded;
 use north::AzimuthNorth;
 use serde::{Deserialize, Serialize};
 
-/// All that can be asked for.
+/// All questions.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
@@ -178,7 +180,7 @@ pub struct Context {
     remarks: Vec<Remark>,
 }
 
-/// Something that can be asked for.
+/// A question.
 pub trait Ask {
     /// What is found beside measures.
     type Found;
@@ -352,7 +354,7 @@ mod tests {
         let of_type = ask(&scene, own, &Places::Scene, &control).unwrap();
         let Found::SunPosition(found) = &answers.found else { panic!("another question was answered") };
         assert_eq!((found, &answers.headline), (&of_type.found, &of_type.headline));
-        // at noon of the solstice the sun is as high as the pole of the ecliptic is oblique, above the equator of the sky
+        // on the longest day the sun at noon is 90 - latitude + 23.44 degrees high
         assert!((found[0].elevation_deg - (90.0 - 52.0 + 23.44)).abs() < 0.05, "{found:?}");
     }
 

@@ -19,7 +19,8 @@ pub enum North {
 /// The north of a scene that azimuths count from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AzimuthNorth {
-    /// Azimuth of grid north from there, clockwise, radians: subtract it from a given azimuth, add it to one of the grid.
+    /// Azimuth of grid north from there, clockwise, radians: subtract it from a given azimuth, add it to one of the
+    /// grid.
     pub of_grid: f64,
     counted_from: CountedFrom,
 }

@@ -1,4 +1,5 @@
-//! Who looks, and what is looked at: places on the ground become eyes, and those that cannot look are skipped and named.
+//! Who looks, and what is looked at: places on the ground become eyes, and those that cannot look are skipped and
+//! named.
 
 use super::places::Places;
 use super::report::GroundSection;
@@ -101,7 +102,8 @@ pub(super) fn check_height(height: Option<f64>) -> Result<()> {
     }
 }
 
-/// The places, local metres: those without a height stand on the ground, or on the terrain beyond the cloud. The height is NaN where neither is known.
+/// The places, local metres: those without a height stand on the ground, or on the terrain beyond the cloud. The height
+/// is NaN where neither is known.
 ///
 /// # Errors
 /// Those of computing the ground, which is done only where a place over the cloud has no height.

@@ -63,7 +63,8 @@ pub struct Cells {
     pub height: Option<f64>,
     /// Which points are ground.
     pub ground: GroundPoints,
-    /// Rings of an area on the map, local metres: cells whose middle lies beside it are not asked for. Empty for all cells.
+    /// Rings of an area on the map, local metres: cells whose middle lies beside it are no targets. Empty for all
+    /// cells.
     pub within: Vec<Vec<[f64; 2]>>,
 }
 
@@ -71,8 +72,8 @@ impl Places {
     /// The targets of a scene, without those outside its cloud.
     ///
     /// # Errors
-    /// [`Error::InvalidParameter`] for parameters out of range, places of another reference system, and a ball file without points where points
-    /// are needed; those of computing the ground.
+    /// [`Error::InvalidParameter`] for parameters out of range, places of another reference system, and a ball file
+    /// without points where points are needed; those of computing the ground.
     pub fn targets(&self, scene: &Scene, context: &mut Context, control: &Control<'_>) -> Result<Arc<Targets>> {
         let frame = || scene.frame().clone();
         let of_points = |positions: Vec<[f32; 3]>, normals| {
@@ -228,7 +229,8 @@ impl Cells {
     }
 }
 
-/// Whether each target is near the edge of the cloud for light from `directions`, which is reported, and warned of where many are.
+/// Whether each target is near the edge of the cloud for light from `directions`, which is reported, and warned of
+/// where many are.
 pub(super) fn test_edge(
     scene: &Scene,
     targets: &Targets,

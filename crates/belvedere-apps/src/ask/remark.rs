@@ -62,7 +62,8 @@ impl Remark {
         self
     }
 
-    /// A warning that `part` of `whole` things are so, such as "3 of 40 targets (7.5 %) are outside the cloud"; `None` where none is.
+    /// A warning that `part` of `whole` things are so, such as "3 of 40 targets (7.5 %) are outside the cloud"; `None`
+    /// where none is.
     #[must_use]
     pub fn of_share(key: &'static str, part: usize, whole: usize, things: &str, are_so: &str) -> Option<Self> {
         let share = percent(part, whole);

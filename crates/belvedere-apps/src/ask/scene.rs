@@ -91,7 +91,8 @@ fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 }
 
 impl Scene {
-    /// A model, and its cloud in the same frame; a cloud without points for a ball file alone. Balls block by the rule of the model.
+    /// A model, and its cloud in the same frame; a cloud without points for a ball file alone. Balls block by the rule
+    /// of the model.
     #[must_use]
     pub fn new(model: SceneModel, cloud: Arc<PointCloud>) -> Self {
         Self {
@@ -153,7 +154,8 @@ impl Scene {
         Ok(&self.ground_cloud)
     }
 
-    /// Where local coordinates lie. A scene that knows no reference system takes that of the cloud that shows its ground.
+    /// Where local coordinates lie. A scene that knows no reference system takes that of the cloud that shows its
+    /// ground.
     #[must_use]
     pub fn frame(&self) -> &Frame {
         let frame = self.model.frame();

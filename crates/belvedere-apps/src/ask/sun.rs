@@ -25,7 +25,8 @@ pub const MAX_LISTED_SUNS: usize = 5;
 pub struct SunPlace {
     /// Latitude and longitude, degrees, north and east positive; `None` for what the reference system says.
     pub location: Option<[f64; 2]>,
-    /// Zone of times and days, such as Europe/Amsterdam or +02:00; `None` for that of a given time, else mean solar time.
+    /// Zone of times and days, such as Europe/Amsterdam or +02:00; `None` for that of a given time, else mean solar
+    /// time.
     pub zone: Option<String>,
     /// By how much the air lifts the sun.
     pub refraction: Refraction,

@@ -27,7 +27,8 @@ pub struct SunHours {
     pub rules: Vec<String>,
     /// Where on earth, and how clocks run.
     pub place: SunPlace,
-    /// Greatest angle between a sun and the direction that is tested for it, degrees, 0 to 5; `None` for 0 up to 2000 suns, else 1.
+    /// Greatest angle between a sun and the direction that is tested for it, degrees, 0 to 5; `None` for 0 up to 2000
+    /// suns, else 1.
     pub sun_tolerance_deg: Option<f64>,
     /// What gets through trees.
     pub trees: ThroughTrees,
@@ -76,8 +77,8 @@ impl SunHours {
         }
     }
 
-    /// The suns of the days and of the rules at a site, and how clocks run there. Directions are those of `among` where given, each for suns within
-    /// the tolerance, 1 degree by default.
+    /// The suns of the days and of the rules at a site, and how clocks run there. Directions are those of `among` where
+    /// given, each for suns within the tolerance, 1 degree by default.
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] without days, and for what cannot be.

@@ -55,7 +55,8 @@ impl ThroughTrees {
     /// The light through the trees of a scene; `None` where they are opaque.
     ///
     /// # Errors
-    /// Those of [`ThroughTrees::crowns`], [`Error::InvalidParameter`] for a scene that knows no vegetation, and those of building what blocks beside it.
+    /// Those of [`ThroughTrees::crowns`], [`Error::InvalidParameter`] for a scene that knows no vegetation, and those
+    /// of building what blocks beside it.
     pub(super) fn of(&self, scene: &Scene, context: &mut Context, control: &Control<'_>) -> Result<Option<TreeLight>> {
         let model = scene.model();
         let measured = || Transmissivity::measured(model.balls(), model.transmission());

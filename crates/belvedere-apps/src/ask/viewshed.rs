@@ -89,7 +89,8 @@ pub struct ViewshedFound {
     pub points: Option<Seen>,
     /// Of far terrain, where it was wanted.
     pub far: Option<FarSeen>,
-    /// Lowest visible heights above the ground, metres, where they were wanted ([`crate::viewshed::least_visible_heights`]).
+    /// Lowest visible heights above the ground, metres, where they were wanted
+    /// ([`crate::viewshed::least_visible_heights`]).
     pub heights: Option<Raster<f32>>,
 }
 

@@ -75,7 +75,8 @@ impl Targets {
         Ok(Self::of_cells(cloud, ground, params, &Control::none())?.0)
     }
 
-    /// The cells of `ground`, whose heights come from `cloud`, in the frame of that cloud. Ground under a roof or another cover is left out.
+    /// The cells of `ground`, whose heights come from `cloud`, in the frame of that cloud. Ground under a roof or
+    /// another cover is left out.
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] for a height that is negative or not finite, those of [`top_surface`], and [`Error::Cancelled`].

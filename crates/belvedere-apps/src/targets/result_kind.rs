@@ -3,11 +3,13 @@
 /// What the values of a result are, which decides the type of its pixels and their value for no data.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum ResultKind {
-    /// Yes or no, such as lit, visible or a rule that is met: u8, 1 or 0, [`ResultKind::NO_ANSWER`] where there is none.
+    /// Yes or no, such as lit, visible or a rule that is met: u8, 1 or 0, [`ResultKind::NO_ANSWER`] where there is
+    /// none.
     Answer,
     /// Numbers of observers or cameras: u16, [`ResultKind::NO_COUNT`] where there is none.
     Count,
-    /// Measured numbers, such as shares, hours, factors and metres: f32, [`ResultKind::NO_NUMBER`] where there is none. Default.
+    /// Measured numbers, such as shares, hours, factors and metres: f32, [`ResultKind::NO_NUMBER`] where there is none.
+    /// Default.
     #[default]
     Number,
 }

@@ -59,8 +59,8 @@ pub struct Viewshed {
     pub answers: Vec<Answer>,
     /// How many observers see each target, (M).
     pub counts: Vec<u32>,
-    /// How many more observers have a line of sight to each target that nothing blocks, but that is not proven, (M); empty where proof is not
-    /// tested.
+    /// How many more observers have a line of sight to each target that nothing blocks, but that is not proven, (M);
+    /// empty where proof is not tested.
     pub unproven_counts: Vec<u32>,
     /// Bands of 32 observers: bit i of band b tells whether observer 32 · b + i sees each target, (bands, M); empty where masks are not
     /// kept.

@@ -85,7 +85,8 @@ pub(crate) struct Orienting {
     /// The paper uses 6; masbcpp uses 10.
     #[arg(long, value_name = "K", allow_negative_numbers = true)]
     pub(crate) neighbors: Option<NeighborChoice>,
-    /// Orientation: auto, given, up, scanner, scanner=X,Y,Z, stations=FILE, trajectory=FILE, pulses, mesh=FILE [default: auto]
+    /// Orientation: auto, given, up, scanner, scanner=X,Y,Z, stations=FILE, trajectory=FILE, pulses, mesh=FILE
+    /// [default: auto]
     ///
     /// auto: the normals of the file if it has them, else the scanner positions of the file, else up; `normals` always estimates new ones. For
     /// carving, auto also searches for the scanner in the data: in pulses with several returns, in scan angles, and by the grid of pulses around each

@@ -51,7 +51,8 @@ pub(crate) struct SceneBalls {
     /// How the crowns of trees block [default: measured]
     #[arg(long, value_name = "TREES", value_parser = trees(), hide_short_help = true)]
     pub(crate) trees: Option<Trees>,
-    /// Orientation of normals, and the scanner: trajectory=FILE, scanner=X,Y,Z, stations=FILE, pulses and others [default: auto]
+    /// Orientation of normals, and the scanner: trajectory=FILE, scanner=X,Y,Z, stations=FILE, pulses and others
+    /// [default: auto]
     ///
     /// `belvedere balls --help` explains all values.
     #[arg(long, value_name = "HOW", hide_short_help = true)]

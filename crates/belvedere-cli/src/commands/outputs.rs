@@ -82,8 +82,8 @@ pub(super) fn check_folder(path: &Path) -> Result<()> {
     Ok(())
 }
 
-/// Whether a folder in the layout of masbcpp is written where it was read. Its coordinates then stay as they are: they may be finer than
-/// the f32 of the layout.
+/// Whether a folder in the layout of masbcpp is written where it was read. Its coordinates then stay as they are: they
+/// may be finer than the f32 of the layout.
 pub(super) fn is_written_back(inputs: &[PathBuf], folder: &Path) -> bool {
     let same = |a: &Path, b: &Path| matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b);
     inputs.iter().any(|input| same(input, folder) || same(input, &folder.join("coords.npy")))

@@ -16,7 +16,8 @@ const DIGITS: usize = 4;
 /// Sections about the input and the work, which are no answer.
 const BESIDE: [&str; 3] = ["reading", "seconds", REMARKS];
 
-/// A line with its figures, each `<section.name>`, and parts in brackets; `None` if a figure outside brackets is not there.
+/// A line with its figures, each `<section.name>`, and parts in brackets; `None` if a figure outside brackets is not
+/// there.
 pub(super) fn filled(text: &str, entries: &Map<String, Value>) -> Option<String> {
     let mut line = String::new();
     let mut rest = text;

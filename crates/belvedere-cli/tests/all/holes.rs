@@ -1,4 +1,5 @@
-//! No raster has a value in a hole of the survey, under a roof or inside what is planned, and rasters say with a second band what is not proven.
+//! No raster has a value in a hole of the survey, under a roof or inside what is planned, and rasters say with a second
+//! band what is not proven.
 
 use crate::common::{EAST, NORTH, ROUGHNESS, Workplace, at, house};
 use belvedere::io::{PlacedRaster, ReadBands, read_tif, read_tif_bands};
@@ -83,7 +84,8 @@ fn a_hole_of_the_survey_has_no_value_in_any_raster() {
         for file in std::fs::read_dir(place.path("all")).unwrap() {
             let path = file.unwrap().path();
             let [in_hole, elsewhere] = with_a_value(&read_tif(path.as_path()).unwrap());
-            // some measures have a value in few cells: distances to a landmark where it is visible, hours of sun where there is sun
+            // some measures have a value in few cells: distances to a landmark where it is visible, hours of sun where
+            // there is sun
             let least = if path.ends_with("one.tif") { 300 } else { 50 };
             assert!(in_hole == 0 && elsewhere > least, "{command} {flags} {path:?}: {in_hole} {elsewhere}");
         }

@@ -7,11 +7,12 @@ const MOST_CELLS: f64 = 1e8;
 /// Cells up to this side may be larger than the area that they divide, metres: a small area still is one cell.
 const LEAST_SIDE: f64 = 100.0;
 
-/// Share of a cell by which a place may lie beyond an edge of a grid and still count as on it: local coordinates are rounded to f32.
+/// Share of a cell by which a place may lie beyond an edge of a grid and still count as on it: local coordinates are
+/// rounded to f32.
 const ON_EDGE: f64 = 1e-3;
 
-/// Square cells on the map, rows from the north, columns from the west. A cell holds its west and south edges, not its east and north ones,
-/// so that each place lies in one cell and the grids of adjoining areas share none.
+/// Square cells on the map, rows from the north, columns from the west. A cell holds its west and south edges, not its
+/// east and north ones, so that each place lies in one cell and the grids of adjoining areas share none.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MapGrid {
     /// West and north rim, local metres.
@@ -25,9 +26,10 @@ pub struct MapGrid {
 }
 
 impl MapGrid {
-    /// The grid over the box on the map from `low` to `high`, local metres, whose edges lie at whole multiples of `cell` metres counted
-    /// from where `origin`, metres, counts from: grids of neighbouring surveys fit together. A box that ends at such a multiple gets no
-    /// cells beyond it, so that adjoining boxes share no cell; one without an extent gets one cell.
+    /// The grid over the box on the map from `low` to `high`, local metres, whose edges lie at whole multiples of
+    /// `cell` metres counted from where `origin`, metres, counts from: grids of neighbouring surveys fit together. A
+    /// box that ends at such a multiple gets no cells beyond it, so that adjoining boxes share no cell; one without an
+    /// extent gets one cell.
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] for a cell that is not above zero or longer than the box and than 100 m, a box that is not finite, and more than 100 million cells.
@@ -88,8 +90,8 @@ impl MapGrid {
         [self.corner[0] + column as f64 * self.cell, self.corner[1] - row as f64 * self.cell]
     }
 
-    /// Where a local position lies, in columns from the west and rows from the north, fractions counted; `None` outside the grid, whose
-    /// outer edges are all inside: what is interpolated between cells has a value on them.
+    /// Where a local position lies, in columns from the west and rows from the north, fractions counted; `None` outside
+    /// the grid, whose outer edges are all inside: what is interpolated between cells has a value on them.
     #[must_use]
     pub fn cell_position(&self, [x, y]: [f64; 2]) -> Option<[f64; 2]> {
         let on_axis = |position: f64, count: usize| {
@@ -101,8 +103,8 @@ impl MapGrid {
         Some([column, row])
     }
 
-    /// Column and row of the cell that holds a local position; `None` outside, and on the east and north edges of the grid, which belong to
-    /// the cells beyond.
+    /// Column and row of the cell that holds a local position; `None` outside, and on the east and north edges of the
+    /// grid, which belong to the cells beyond.
     #[must_use]
     pub fn cell_of(&self, position: [f64; 2]) -> Option<[usize; 2]> {
         let [column, row] = self.cell_position(position)?;

@@ -36,9 +36,9 @@ pub struct GroundParams {
     /// How far from the next ground point a height is still given, metres, above 0. Default 60: the middle of large halls has a ground
     /// below it.
     pub reach: f64,
-    /// How far on the map the middle of a cell may lie from the nearest return, a point of the cloud of any class, and still have a height,
-    /// metres, above 0. Default 5: a hole in the survey, such as a missing tile or wide water, has no ground. Ground beside and below
-    /// buildings keeps its height, because walls and roofs are returns.
+    /// How far on the map the middle of a cell may lie from the nearest return, a point of the cloud of any class, and
+    /// still have a height, metres, above 0. Default 5: a hole in the survey, such as a missing tile or wide water, has
+    /// no ground. Ground beside and below buildings keeps its height, because walls and roofs are returns.
     pub max_gap_from_returns: f64,
 }
 
@@ -126,8 +126,9 @@ pub fn ground_points(
 
 impl Ground {
     /// The ground of `cloud` on `grid`: heights of the triangulated ground points at the middles of the cells, and the nearest
-    /// ground point's within 5 m beyond the outermost. A hole of the survey has none ([`GroundParams::max_gap_from_returns`]); where points
-    /// were cleared ([`PointCloud::cleared_places`]) there is no hole.
+    /// ground point's within 5 m beyond the outermost. A hole of the survey has none
+    /// ([`GroundParams::max_gap_from_returns`]); where points were cleared ([`PointCloud::cleared_places`]) there is no
+    /// hole.
     ///
     /// # Errors
     /// Those of [`ground_points`], and [`Error::InvalidParameter`] for a parameter outside its range.

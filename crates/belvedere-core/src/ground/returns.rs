@@ -3,18 +3,18 @@
 use super::MapGrid;
 use rayon::prelude::*;
 
-/// Default greatest distance on the map from the middle of a cell to the nearest return, metres. Occlusion beside buildings and sparse
-/// surveys stay below it; a missing tile and wide water do not.
+/// Default greatest distance on the map from the middle of a cell to the nearest return, metres. Occlusion beside
+/// buildings and sparse surveys stay below it; a missing tile and wide water do not.
 pub const MAX_GAP_FROM_RETURNS: f64 = 5.0;
 
-/// Side of the squares that settle most cells at once, for a distance of 1: with a diagonal below it, so that a return is near to all of
-/// its square.
+/// Side of the squares that settle most cells at once, for a distance of 1: with a diagonal below it, so that a return
+/// is near to all of its square.
 const SQUARE: f64 = 0.7;
 /// Squares from that of a return to the farthest that holds a place within the distance.
 const AROUND: usize = 2;
 
-/// For each cell of `grid`, whether its middle lies within `distance` metres, above 0, of any of the `returns` on the map, local metres,
-/// (cells). Returns that are not finite are near to nothing.
+/// For each cell of `grid`, whether its middle lies within `distance` metres, above 0, of any of the `returns` on the
+/// map, local metres, (cells). Returns that are not finite are near to nothing.
 ///
 /// Only returns near squares without any are compared with cells one by one.
 pub fn cells_near_returns(returns: impl Iterator<Item = [f64; 2]> + Clone, grid: &MapGrid, distance: f64) -> Vec<bool> {

@@ -29,8 +29,8 @@ pub struct SurfaceParams {
     pub roughness: f64,
     /// How far from the middle a point may lie and still be looked at, metres, above 0. Default: any distance.
     pub farthest: f32,
-    /// How far on the map the middle of a cell without ground may lie from the nearest point and still have a height, metres, above 0.
-    /// Default 5: a hole in the survey has no surface.
+    /// How far on the map the middle of a cell without ground may lie from the nearest point and still have a height,
+    /// metres, above 0. Default 5: a hole in the survey has no surface.
     pub max_gap_from_returns: f64,
 }
 
@@ -73,8 +73,9 @@ impl SurfaceParams {
 ///
 /// The layer on top at the middle is that of the highest point near it. Where its points, five at least, lie on a plane, as on roofs and streets, the
 /// plane's height at the middle is given, never beyond the heights of the points themselves; where they do not, as in crowns, the highest
-/// point of the cell, so that a place above it is outside. Cells far from any point are as in [`highest_points`], but for those in a hole of
-/// the survey ([`SurfaceParams::max_gap_from_returns`]), which have no height unless the ground has.
+/// point of the cell, so that a place above it is outside. Cells far from any point are as in [`highest_points`], but
+/// for those in a hole of the survey ([`SurfaceParams::max_gap_from_returns`]), which have no height unless the ground
+/// has.
 ///
 /// # Errors
 /// [`Error::InvalidParameter`] for a parameter outside its range or a point that is not finite, [`Error::Cancelled`].

@@ -24,7 +24,8 @@ pub(super) struct Question {
     trees: ThroughTrees,
 }
 
-/// Value of a point in shadow, of one that is lit, of one that is lit as far as the points show but unproven, and of one without an answer.
+/// Value of a point in shadow, of one that is lit, of one that is lit as far as the points show but unproven, and of
+/// one without an answer.
 const CODES: [u8; 4] = [0, 1, 2, 255];
 
 pub(super) fn answer(question: &Question, asked: &Asked<'_>) -> Result<Answer, Refusal> {

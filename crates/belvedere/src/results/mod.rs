@@ -2,7 +2,7 @@
 //!
 //! | targets | `.tif` | `.laz` `.las` `.ply` `.csv` |
 //! |---|---|---|
-//! | cells of a grid | the first measure as raster, with its further bands | a point for each cell that is asked about, all measures as columns |
+//! | cells of a grid | the first measure as raster, with its further bands | a point for each cell that is a target, all measures as columns |
 //! | points | | the points with their attributes, all measures as columns; `.csv` of a table: its rows as they were given |
 //! | faces of a mesh | | `.csv`: a row for each object and face; `.ply`: the mesh coloured by the first measure |
 
@@ -115,8 +115,9 @@ pub fn write_measures(
     }
 }
 
-/// Writes measures of the cells of a grid as the bands of a raster, with the reference system of their frame. Their kind decides the type of the
-/// pixels and their value for no data; measures of several kinds are numbers. Cells that are no targets have no value in any band.
+/// Writes measures of the cells of a grid as the bands of a raster, with the reference system of their frame. Their
+/// kind decides the type of the pixels and their value for no data; measures of several kinds are numbers. Cells that
+/// are no targets have no value in any band.
 ///
 /// # Errors
 /// [`Error::UnsupportedTargets`] for targets that are no cells, [`Error::LengthMismatch`] unless there is a value for each cell, and those of

@@ -1,4 +1,5 @@
-//! Results as rasters: bands with names, of one pixel type and one value for no data for each kind of result, whoever writes them.
+//! Results as rasters: bands with names, of one pixel type and one value for no data for each kind of result, whoever
+//! writes them.
 
 use crate::apps::targets::{Measure, ResultKind};
 use crate::apps::viewshed::{SEEN, SEEN_BY, Viewshed};
@@ -8,8 +9,8 @@ use crate::raster::Raster;
 use crate::{Error, Result};
 use std::path::Path;
 
-/// Name of the band that says where the first is not proven: 1 where it is 1 but no pulses prove it, 0 where it is proven or blocked; of several
-/// observers how many of those that it counts are not proven.
+/// Name of the band that says where the first is not proven: 1 where it is 1 but no pulses prove it, 0 where it is
+/// proven or blocked; of several observers how many of those that it counts are not proven.
 pub const UNPROVEN_BAND: &str = crate::apps::ask::UNPROVEN;
 
 /// The bands of a result, all of one kind.
@@ -168,8 +169,8 @@ impl ResultRaster {
         Ok(Self { pixels: Pixels::of_measures(measures, size)?, names, description })
     }
 
-    /// What observers see of cells. Of one observer 1 where nothing blocks the view, of several their number; where proof was tested, a second
-    /// band says what of it is not proven ([`UNPROVEN_BAND`]).
+    /// What observers see of cells. Of one observer 1 where nothing blocks the view, of several their number; where
+    /// proof was tested, a second band says what of it is not proven ([`UNPROVEN_BAND`]).
     ///
     /// # Errors
     /// [`Error::LengthMismatch`] unless there is an answer for each cell.
