@@ -458,3 +458,48 @@ def test_a_hole_of_the_survey_has_no_value_on_any_face(tile, cloud, ask_program,
         bands, place = bands_of(folder / "holed.tif")
         for band, values in bands.items():
             assert values_in_hole(values, tuple(place)[:6]) == 0, (name, band)
+
+
+def warned_of(call):
+    """Key and text of the warnings of a call."""
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        call()
+    own = [one.message for one in caught if isinstance(one.message, belvedere.BelvedereWarning)]
+    return [(warning.key, str(warning)) for warning in own]
+
+
+def warnings_of(remarks):
+    """The same of remarks of the program or the page."""
+    return [(remark["key"], remark["text"]) for remark in remarks if remark["severity"] == "warning"]
+
+
+def test_nothing_to_clear_is_said_on_every_face(scene, cloud, ask_program, ask_page, folder):
+    # a triangle of millimetres, a centimetre beside a point: no point lies in it
+    x, y = np.round(cloud.xyz[0, :2] + 0.01, 3)
+    corners = [(x, y), (x + 0.002, y), (x + 0.002, y + 0.002)]
+    inside = (np.abs(cloud.xyz[:, :2] - (x, y)) < 0.003).all(axis=1)
+    assert not inside.any()
+    ring = [[float(a), float(b)] for a, b in [*corners, corners[0]]]
+    polygon = {"type": "Polygon", "coordinates": [ring]}
+    (folder / "nothing.geojson").write_text(json.dumps(polygon))
+    summary = ask_program(
+        "shadow", "tile.laz", "--sun", "180,30", "--clear", "nothing.geojson", "--cell", 4, "-o", "cleared.tif"
+    )
+    of_program = [one for one in warnings_of(summary["remarks"]) if one[0] == "nothing-cleared"]
+    of_page, _ = ask_page("plan", {"clear": [ring[:3]], "buildings": [], "meshes": []})
+    assert len(of_program) == 1 and warnings_of(of_page["remarks"]) == of_program
+    assert warned_of(lambda: scene.without(corners)) == of_program
+
+
+def test_targets_and_eyes_outside_the_cloud_are_said_by_program_and_python(scene, cloud, ask_program, folder, standing):
+    x, y = standing
+    z = float(cloud.xyz[:, 2].max())
+    far = [float(v) for v in cloud.bounds[1] + [700, 0, 0]]
+    places = [(x, y, z), far, (x + 1, y, z)]
+    (folder / "far.csv").write_text("x,y,z\n" + "".join(f"{a},{b},{c}\n" for a, b, c in places))
+    for eye in [(x, y, z + 5), far]:
+        typed = ",".join(map(str, eye))
+        summary = ask_program("query", "tile.laz", "--panorama", typed, "--targets", "far.csv", "-o", "far_seen.csv")
+        of_program = sorted(warnings_of(summary["remarks"]))
+        assert of_program and sorted(warned_of(lambda eye=eye: scene.visible(eye, places))) == of_program

@@ -15,6 +15,8 @@ from zoneinfo import ZoneInfo
 import numpy as np
 import pytest
 
+from belvedere import BelvedereWarning
+
 
 def long_work(scene, progress=None):
     """Several seconds of work on any machine."""
@@ -131,12 +133,12 @@ def test_a_million_targets_cost_milliseconds_beside_the_answers(scene, cloud, ki
     """In and out of Rust: measured with targets outside the cloud, which need no line of sight."""
     far = np.tile(cloud.bounds[0] - 1000.0, (1_000_000, 1)).astype(kind)
     eye = cloud.bounds[0] - 2000.0
-    scene.visible(eye, far)
     seconds = []
-    for _ in range(3):
-        begun = time.perf_counter()
-        scene.visible(eye, far)
-        seconds.append(time.perf_counter() - begun)
+    with pytest.warns(BelvedereWarning, match="outside the cloud"):
+        for _ in range(4):
+            begun = time.perf_counter()
+            scene.visible(eye, far)
+            seconds.append(time.perf_counter() - begun)
     # ten milliseconds on a free core; a shared machine is slower, a loop over rows in Python a hundred times
     assert min(seconds) < 1.0, seconds
 

@@ -238,8 +238,8 @@ class Scene(Sights, Outlook, Sunlight, Energy, Planning, Cameras):
             if any(ring.ndim != 2 or ring.shape[1] != 2 for ring in arrays):
                 raise wrong("polygon", "not made of corners", "give corners as (x, y)")
             rings = [[(float(x), float(y)) for x, y in ring] for ring in arrays]
-        core, text, given = self._core.without(rings, 0 if class_ is None else int(class_))
-        warned(given)
+        core, text, remarks = self._core.without(rings, 0 if class_ is None else int(class_))
+        warned(remarks)
         return self._plan(core, {**self.report, "cleared": json.loads(text)})
 
     def with_horizon(self, path: str | os.PathLike[str]) -> Scene:
