@@ -1,20 +1,57 @@
-"""The documentation as a site: `docs/build-site OUT` (needs the package, sphinx, myst-parser and numpydoc)."""
+"""The documentation as a site: `docs/build-site OUT` (needs the package `belvedere` and the packages that `build-site` names)."""
+
+import re
 
 import belvedere
 
 project = "Belvedere"
 author = "The Belvedere developers"
 release = belvedere.__version__
-extensions = ["myst_parser", "numpydoc", "sphinx.ext.autodoc", "sphinx.ext.mathjax"]
-source_suffix = {".md": "markdown"}
-exclude_patterns = ["notebooks", "upstream.md"]
-html_theme = "alabaster"
-html_theme_options = {"page_width": "1100px", "description": "What can be seen from where, directly on point clouds"}
-myst_enable_extensions = ["dollarmath"]
+extensions = [
+    "myst_nb",
+    "numpydoc",
+    "sphinx.ext.autodoc",
+    "sphinx.ext.autosummary",
+    "sphinx.ext.mathjax",
+    "sphinx_copybutton",
+    "sphinx_design",
+]
+exclude_patterns = ["upstream.md", "_templates"]
+templates_path = ["_templates"]
+
+html_theme = "furo"
+html_title = "Belvedere"
+html_static_path = ["_static"]
+html_css_files = ["site.css"]
+html_copy_source = False
+html_show_sourcelink = False
+html_theme_options = {
+    "light_css_variables": {"color-brand-primary": "#1f5fa8", "color-brand-content": "#1f5fa8"},
+    "dark_css_variables": {"color-brand-primary": "#8ab8f0", "color-brand-content": "#8ab8f0"},
+}
+
+myst_enable_extensions = ["dollarmath", "colon_fence"]
 myst_heading_anchors = 3
+# notebooks are kept with their outputs; tests run them
+nb_execution_mode = "off"
+# a button copies the command without the prompt
+copybutton_prompt_text = r">>> |\.\.\. |\$ "
+copybutton_prompt_is_regexp = True
+
 numpydoc_show_class_members = False
 autodoc_member_order = "bysource"
 autodoc_typehints = "none"
-autosummary_generate = False
+# a page for each function and class, below `reference`, which is made again each time and not kept
+autosummary_generate = True
+autosummary_generate_overwrite = True
 # links of pages to files of the repository, which are no part of the site
 suppress_warnings = ["myst.xref_missing", "myst.header"]
+
+
+def link_pages(app, what, name, obj, options, lines):
+    """Docstrings name pages of the repository: here they are links."""
+    lines[:] = [re.sub(r"docs/([\w/-]+)\.md", r":doc:`/\1`", line) for line in lines]
+
+
+def setup(app):
+    app.connect("autodoc-process-docstring", link_pages)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import json
 import os
 import re
@@ -9,6 +10,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import belvedere
 import pytest
 
 DOCS = Path(__file__).parents[3] / "docs"
@@ -47,3 +49,12 @@ def test_notebook_runs(path, tmp_path):
     if "BELVEDERE_TEST_DATA" in "".join(code) and not (DATA / "data" / "delft_ahn3").is_dir():
         pytest.skip(f"SKIPPED: there is no reference data in {DATA}; name its folder in BELVEDERE_TEST_DATA")
     run("\n\n".join(code), tmp_path)
+
+
+def test_the_reference_has_every_function_and_class():
+    page = (DOCS / "api.md").read_text(encoding="utf-8")
+    listed = re.findall(r"^   ([A-Za-z_.]+)$", page, re.MULTILINE)
+    public = [name for name in belvedere.__all__ if name not in ("__version__", "city")]
+    public += [f"Scene.{name}" for name, _ in inspect.getmembers(belvedere.Scene, callable) if name[0] != "_"]
+    public += [f"city.{name}" for name in belvedere.city.__all__]
+    assert sorted(listed) == sorted(public)
