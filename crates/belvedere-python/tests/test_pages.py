@@ -8,6 +8,7 @@ import os
 import re
 import subprocess
 import sys
+import sysconfig
 from pathlib import Path
 
 import belvedere
@@ -58,3 +59,31 @@ def test_the_reference_has_every_function_and_class():
     public += [f"Scene.{name}" for name, _ in inspect.getmembers(belvedere.Scene, callable) if name[0] != "_"]
     public += [f"city.{name}" for name in belvedere.city.__all__]
     assert sorted(listed) == sorted(public)
+
+
+def described() -> dict[str, set[str]]:
+    """The flags of each command, from the program itself; those of `city` have its steps together."""
+    program = Path(sysconfig.get_path("scripts")) / "belvedere"
+    answer = subprocess.run([program, "describe", "--json"], capture_output=True, text=True, check=True)
+    flags: dict[str, set[str]] = {}
+    for command in json.loads(answer.stdout)["commands"]:
+        flags.setdefault(command["name"].split()[0], set()).update(each["name"] for each in command["parameters"])
+    return flags
+
+
+def test_the_table_of_questions_names_flags_and_parameters_that_exist():
+    page = (DOCS / "questions.md").read_text(encoding="utf-8")
+    rows = [[cell.strip() for cell in line.split("|")[1:-1]] for line in page.splitlines() if line.startswith("| ")]
+    rows = [row for row in rows if row[0] != "question" and len(row) == 4]
+    assert len(rows) > 25
+    flags = described()
+    for question, commands, python, _ in rows:
+        for command in re.findall(r"`([^`]+)`", commands):
+            words = command.split()
+            name = words[0] if words[0] in flags else None
+            for flag in (word for word in words if word.startswith("--")):
+                assert any(flag in own for key, own in flags.items() if name in (None, key)), (question, flag)
+        for method, arguments in re.findall(r"scene\.(?:with_\w+\([^)]*\)\.)?(\w+)\((.*?)\)", python):
+            parameters = inspect.signature(getattr(belvedere.Scene, method)).parameters
+            named = re.findall(r"(\w+)=", arguments)
+            assert set(named) <= set(parameters), (question, method, named)
