@@ -6,6 +6,7 @@ import inspect
 import json
 import os
 import re
+import shutil
 import subprocess
 import sys
 import sysconfig
@@ -59,6 +60,56 @@ def test_the_reference_has_every_function_and_class():
     public += [f"Scene.{name}" for name, _ in inspect.getmembers(belvedere.Scene, callable) if name[0] != "_"]
     public += [f"city.{name}" for name in belvedere.city.__all__]
     assert sorted(listed) == sorted(public)
+
+
+NUMBER = re.compile(r"-?\d[\d,]*(?:\.\d+)?")
+
+
+def is_shown(line: str, printed: str) -> bool:
+    """Whether a line was printed, with numbers within a tenth: answers change from version to version."""
+
+    def numbers(text: str) -> list[float]:
+        return [float(number.replace(",", "")) for number in NUMBER.findall(text)]
+
+    same_words = (each for each in printed.splitlines() if NUMBER.sub("#", each) == NUMBER.sub("#", line))
+    return any(numbers(each) == pytest.approx(numbers(line), rel=0.1, abs=1) for each in same_words)
+
+
+@pytest.mark.parametrize("path", sorted((DOCS / "tutorials").glob("*.md")), ids=lambda path: path.stem)
+def test_tutorial_works_as_printed(path, tmp_path):
+    page = path.read_text(encoding="utf-8")
+    source, name = re.search(r"<!-- data: (\S+) as (\S+) -->", page).groups()
+    if not (DATA / "data" / source).exists():
+        pytest.skip(f"SKIPPED: there is no reference data in {DATA}; name its folder in BELVEDERE_TEST_DATA")
+    shutil.copyfile(DATA / "data" / source, tmp_path / name)
+    paths = os.pathsep.join([sysconfig.get_path("scripts"), os.environ["PATH"]])
+    printed, code, count = "", "", 0
+    for kind, text in re.findall(r"```(sh|python|text)\n(.*?)```", page, re.DOTALL):
+        if kind == "sh":
+            done = subprocess.run(
+                ["bash", "-euo", "pipefail", "-c", text],
+                cwd=tmp_path,
+                capture_output=True,
+                text=True,
+                timeout=300,
+                env={**os.environ, "PATH": paths},
+            )
+            assert done.returncode == 0, done.stderr
+            printed, count = done.stdout, count + text.count("belvedere ")
+        elif kind == "python":
+            # later blocks use what earlier ones have made
+            code += text
+            printed = run(code, tmp_path)
+        else:
+            for line in text.splitlines():
+                assert is_shown(line, printed), f"{line!r} is not in\n{printed}"
+    assert count >= 2
+
+
+def test_a_line_that_was_not_printed_is_found():
+    printed = "mean 5.003 before, 4.822 after\n18 roof planes, 1,764 m2"
+    assert is_shown("mean 5.1 before, 4.8 after", printed) and is_shown("18 roof planes, 1,700 m2", printed)
+    assert not is_shown("mean 9 before, 4.8 after", printed) and not is_shown("18 planes, 1,764 m2", printed)
 
 
 def described() -> dict[str, set[str]]:
