@@ -25,6 +25,7 @@ html_static_path = ["_static"]
 html_css_files = ["site.css"]
 html_copy_source = False
 html_show_sourcelink = False
+html_show_copyright = False
 html_theme_options = {
     "light_css_variables": {"color-brand-primary": "#1f5fa8", "color-brand-content": "#1f5fa8"},
     "dark_css_variables": {"color-brand-primary": "#8ab8f0", "color-brand-content": "#8ab8f0"},
@@ -53,5 +54,14 @@ def link_pages(app, what, name, obj, options, lines):
     lines[:] = [re.sub(r"docs/([\w/-]+)\.md", r":doc:`/\1`", line) for line in lines]
 
 
+def link_notes(app, docname, source):
+    """Links to the research notes lead to their copies in the site, and back."""
+    if docname.startswith("notes/"):
+        source[0] = source[0].replace("](../../docs/", "](/")
+    else:
+        source[0] = re.sub(r"\]\((\.\./)+research/notes/", "](/notes/", source[0])
+
+
 def setup(app):
     app.connect("autodoc-process-docstring", link_pages)
+    app.connect("source-read", link_notes)
