@@ -1,4 +1,4 @@
-"""Writes the code of docs/python.md and of the notebooks as modules, for mypy: `typed_examples.py FOLDER`."""
+"""Writes the code of docs/python.md, tutorials and notebooks as modules, for mypy: `typed_examples.py FOLDER`."""
 
 from __future__ import annotations
 
@@ -13,8 +13,10 @@ DOCS = Path(__file__).parents[3] / "docs"
 def main() -> None:
     folder = Path(sys.argv[1])
     folder.mkdir(parents=True, exist_ok=True)
-    page = (DOCS / "python.md").read_text(encoding="utf-8")
-    code = {"page_python": "\n".join(re.findall(r"```python\n(.*?)```", page, re.DOTALL))}
+    code = {}
+    for path in [DOCS / "python.md", *sorted((DOCS / "tutorials").glob("*.md"))]:
+        blocks = re.findall(r"```python\n(.*?)```", path.read_text(encoding="utf-8"), re.DOTALL)
+        code[f"page_{path.stem}"] = "\n".join(blocks)
     for path in sorted((DOCS / "notebooks").glob("*.ipynb")):
         cells = json.loads(path.read_text(encoding="utf-8"))["cells"]
         code[f"notebook_{path.stem}"] = "\n\n".join(
