@@ -3,7 +3,7 @@
 use crate::landmark::LandmarkParams;
 use crate::solar_envelope::ConvexPolygon;
 use belvedere_core::ground::{Ground, MapGrid};
-use belvedere_core::query::{Answer, BackFaces, MedialScene, Piece, Sides, SurfacePieces, Viewer};
+use belvedere_core::query::{Answer, BackFaces, MedialScene, Sides, SurfacePiece, SurfacePieces, Viewer};
 use belvedere_data::control::Control;
 use belvedere_data::raster::Raster;
 use belvedere_data::vector::{dot, length, sub};
@@ -102,7 +102,7 @@ pub fn protected_view(
 }
 
 /// A triangle in space, local metres.
-type Face = [[f64; 3]; 3];
+type FaceCorners = [[f64; 3]; 3];
 
 /// The faces of the pyramids from an eye over the pieces that it sees.
 fn protected_faces(
@@ -111,8 +111,8 @@ fn protected_faces(
     eye: [f64; 3],
     params: &LandmarkParams,
     control: &Control<'_>,
-) -> Result<(Vec<Face>, ViewpointReport)> {
-    let answer = |piece: &Piece| {
+) -> Result<(Vec<FaceCorners>, ViewpointReport)> {
+    let answer = |piece: &SurfacePiece| {
         control.check()?;
         let is_turned_away = object.sides == Sides::Known
             && params.faces.back_faces != BackFaces::BothSides
@@ -142,7 +142,7 @@ fn protected_faces(
 }
 
 /// Lowers the limit of every cell below `faces` to them.
-fn lower(limits: &mut [f64], grid: &MapGrid, faces: &[Face], control: &Control<'_>) -> Result<()> {
+fn lower(limits: &mut [f64], grid: &MapGrid, faces: &[FaceCorners], control: &Control<'_>) -> Result<()> {
     let slopes: Vec<Slope> = faces.iter().filter_map(Slope::new).collect();
     limits.par_chunks_mut(BAND * grid.width.max(1)).enumerate().try_for_each(|(band, limits)| {
         control.check()?;
@@ -168,7 +168,7 @@ struct Slope {
 }
 
 impl Slope {
-    fn new(face: &Face) -> Option<Self> {
+    fn new(face: &FaceCorners) -> Option<Self> {
         let [a, b, c] = *face;
         let (u, v) = (sub(b, a), sub(c, a));
         let doubled = u[0] * v[1] - u[1] * v[0];

@@ -1,6 +1,6 @@
 //! Shadow: what of the sun reaches a place, its disc taken as a point or as it is.
 
-use crate::rows::{Surroundings, check_normals, fold_rows, normals_of};
+use crate::rows::{SkyObstacles, check_normals, fold_rows, normals_of};
 use crate::targets::Targets;
 use crate::tree_light::{Season, through_crowns};
 use belvedere_core::query::{Answer, MedialScene, VisibilityMatrix};
@@ -69,7 +69,7 @@ impl ShadowSun {
 /// # Errors
 /// Those of [`fold_rows`] and [`lit_shares`].
 pub fn scene_shadow<'a>(
-    obstacles: impl Into<Surroundings<'a>>,
+    obstacles: impl Into<SkyObstacles<'a>>,
     targets: &Targets,
     suns: &[ShadowSun],
     edges: Edges,

@@ -139,14 +139,14 @@ impl Season {
 
 /// What crowns let through, and when.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Crowns {
+pub struct CrownLight {
     /// What share of the light gets through a crown.
     pub transmissivity: Transmissivity,
     /// Whether trees carry leaves.
     pub leaves: Leaves,
 }
 
-impl Crowns {
+impl CrownLight {
     /// Share of the light that gets through crowns in a season; `None` where a question has no date.
     #[must_use]
     pub fn share(&self, season: Option<Season>) -> f64 {
@@ -164,7 +164,7 @@ pub struct TreeLight {
     /// The balls that are not vegetation.
     pub opaque: Arc<MedialScene>,
     /// What the vegetation lets through.
-    pub crowns: Crowns,
+    pub crowns: CrownLight,
 }
 
 impl TreeLight {
@@ -180,7 +180,7 @@ impl TreeLight {
         control: &Control<'_>,
     ) -> Result<Self> {
         let opaque = Arc::new(model.scene_without_vegetation(rule, control)?);
-        Ok(Self { opaque, crowns: Crowns { transmissivity, leaves } })
+        Ok(Self { opaque, crowns: CrownLight { transmissivity, leaves } })
     }
 }
 

@@ -17,7 +17,7 @@ pub use fill::GapFill;
 
 /// How the surface runs between the middles of the cells.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Relief {
+pub enum DsmSurface {
     /// Each cell is a column with a flat top.
     Columns,
     /// The height is interpolated bilinearly between the middles of four cells, as GDAL, GRASS and WhiteboxTools do along
@@ -37,7 +37,7 @@ pub struct DsmParams {
     pub gap_fill: GapFill,
     /// How the surface runs between the cells. Default columns: in the same town 0.6 % better for pedestrians and 4 % on roofs,
     /// and an eye in a street sees out of its column, whereas bilinear slopes bury it.
-    pub relief: Relief,
+    pub relief: DsmSurface,
     /// The surface blocks only farther than this from the target, metres, 0 or more. Columns that hold the target or the eye
     /// never block whatever the clearance, since the tools take the heights of both as given. Default 1: of 0.25 to 2 in the same town, where roofs and facades
     /// (0.1 m off the surface) are wrong least often together.
@@ -46,7 +46,7 @@ pub struct DsmParams {
 
 impl Default for DsmParams {
     fn default() -> Self {
-        Self { cell: 0.25, gap_fill: GapFill::Lowest, relief: Relief::Columns, clearance: 1.0 }
+        Self { cell: 0.25, gap_fill: GapFill::Lowest, relief: DsmSurface::Columns, clearance: 1.0 }
     }
 }
 

@@ -2,7 +2,7 @@
 
 mod along_ray;
 
-use crate::Survey;
+use crate::MethodInput;
 use crate::lines_of_sight::{check_clearance, check_least, check_positive, sight};
 use crate::sampling::{capped_spacing, check_neighbor};
 use along_ray::Crossings;
@@ -74,7 +74,7 @@ impl Default for ImplicitSurfaceParams {
 
 /// A sample of the surface.
 #[derive(Clone, Copy, Debug, Default)]
-struct Sample {
+struct SurfaceSample {
     position: [f32; 3],
     /// Unit vector, outward or of either sign.
     normal: [f32; 3],
@@ -93,7 +93,7 @@ struct Sample {
 /// weights are Gaussian and cut off at a radius; ours are a polynomial that reaches zero at that radius. The rim is ours.
 pub struct ImplicitSurface {
     /// In the order of the index.
-    samples: Vec<Sample>,
+    samples: Vec<SurfaceSample>,
     index: RayIndex,
     params: ImplicitSurfaceParams,
     left_out: usize,
@@ -105,7 +105,7 @@ impl ImplicitSurface {
     /// # Errors
     /// [`Error::InvalidParameter`](belvedere::Error::InvalidParameter) for a parameter out of its range or a position that is
     /// not finite, [`Error::LengthMismatch`](belvedere::Error::LengthMismatch) for a column of another length.
-    pub fn new(survey: &Survey<'_>, params: &ImplicitSurfaceParams) -> Result<Self> {
+    pub fn new(survey: &MethodInput<'_>, params: &ImplicitSurfaceParams) -> Result<Self> {
         check_neighbor("neighbour that gives the support", params.support_neighbor)?;
         check_positive("support as a multiple of the spacing", params.support_scale)?;
         check_least("maximum support in medians", params.max_support_in_medians, 1.0, "finite and at least 1")?;
@@ -123,12 +123,12 @@ impl ImplicitSurface {
         };
         let spacing = capped_spacing(positions, &neighbors, params.support_neighbor, params.max_support_in_medians);
         let given = positions.iter().zip(&normals).zip(&spacing);
-        let samples: Vec<Sample> = given
+        let samples: Vec<SurfaceSample> = given
             .filter(|((_, normal), spacing)| **normal != [0.0; 3] && **spacing > 0.0)
             .map(|((&position, &normal), &spacing)| {
                 #[expect(clippy::cast_possible_truncation, reason = "kept in f32 like the points")]
                 let support = (f64::from(spacing) * params.support_scale) as f32;
-                Sample { position, normal, support }
+                SurfaceSample { position, normal, support }
             })
             .collect();
         let boxes: Vec<_> =
@@ -153,7 +153,7 @@ impl ImplicitSurface {
 }
 
 /// Normals with signs as [`NormalSigns::Outward`] has them.
-pub(crate) fn outward(survey: &Survey<'_>, normals: Normals) -> Result<Vec<[f32; 3]>> {
+pub(crate) fn outward(survey: &MethodInput<'_>, normals: Normals) -> Result<Vec<[f32; 3]>> {
     let (oriented, _report) = orient(survey.cloud, normals, &Orientation::Up, &Control::none())?;
     let positions = &survey.cloud.positions;
     let mut vectors = oriented.normals().to_vec();

@@ -1,6 +1,6 @@
 //! The paper's method as published and its relatives: unions of medial balls that nothing but the points has shrunk.
 
-use crate::Survey;
+use crate::MethodInput;
 use belvedere::Bounds;
 use belvedere::clean::CleanParams;
 use belvedere::control::Control;
@@ -114,7 +114,7 @@ pub struct MedialBaseline {
 ///
 /// # Errors
 /// Those of [`SceneModel::build`]; an empty cloud is one.
-pub fn scene_model(survey: &Survey<'_>, outward: Outward<'_>, params: &MedialParams) -> Result<SceneModel> {
+pub fn scene_model(survey: &MethodInput<'_>, outward: Outward<'_>, params: &MedialParams) -> Result<SceneModel> {
     let orient = match outward {
         Outward::Model(mesh) => OrientBy::Mesh(mesh.clone()),
         // carving fails without a scanner rather than assume one
@@ -135,7 +135,7 @@ impl MedialBaseline {
     ///
     /// # Errors
     /// As [`scene_model`].
-    pub fn new(survey: &Survey<'_>, outward: Outward<'_>, params: &MedialParams) -> Result<Self> {
+    pub fn new(survey: &MethodInput<'_>, outward: Outward<'_>, params: &MedialParams) -> Result<Self> {
         Self::of_balls(survey, scene_model(survey, outward, params)?.into_parts().balls, params)
     }
 
@@ -155,7 +155,7 @@ impl MedialBaseline {
     ///
     /// # Errors
     /// [`belvedere::Error::NoPoints`] for an empty cloud.
-    pub fn of_balls(survey: &Survey<'_>, balls: MedialBalls, params: &MedialParams) -> Result<Self> {
+    pub fn of_balls(survey: &MethodInput<'_>, balls: MedialBalls, params: &MedialParams) -> Result<Self> {
         let Some(Bounds { low, high }) = survey.cloud.bounds() else {
             return Err(belvedere::Error::NoPoints { what: "a union of balls needs a cloud".to_owned() });
         };

@@ -65,13 +65,13 @@ impl ShadowMap {
     }
 
     /// Depth beyond which the pixel of `ray` is dark: where the ray meets the first triangle, as depth along `forward`, plus
-    /// the bias of a pixel that is `footprint` metres wide per metre of depth or, for `Footprint::Metres`, everywhere.
-    fn dark_beyond(&self, ray: &Ray, forward: [f64; 3], footprint: Footprint) -> f64 {
+    /// the bias of a pixel that is `footprint` metres wide per metre of depth or, for `PixelWidth::Metres`, everywhere.
+    fn dark_beyond(&self, ray: &Ray, forward: [f64; 3], footprint: PixelWidth) -> f64 {
         let Some((range, [a, b, c])) = self.mesh.first(ray) else { return f64::INFINITY };
         let depth = range * dot(ray.direction, forward);
         let width = match footprint {
-            Footprint::Metres(width) => width,
-            Footprint::PerMetre(width) => width * depth,
+            PixelWidth::Metres(width) => width,
+            PixelWidth::PerMetre(width) => width * depth,
         };
         let steepness = unit(cross(sub(b, a), sub(c, a))).map_or(f64::INFINITY, |normal| {
             let cosine = dot(normal, forward).abs();
@@ -96,7 +96,7 @@ impl ShadowMap {
                 let origin = frame.local_from_view([middle(column), middle(row), 0.0]);
                 // the plane of the picture touches the model: rounding must not put the model before it
                 let Some(ray) = Ray::new(origin, frame.forward, [-1.0, f64::INFINITY]) else { continue };
-                *depth = self.dark_beyond(&ray, frame.forward, Footprint::Metres(self.params.pixel_size));
+                *depth = self.dark_beyond(&ray, frame.forward, PixelWidth::Metres(self.params.pixel_size));
             }
         });
         Ok(Box::new(move |targets| {
@@ -128,7 +128,7 @@ impl ShadowMap {
                     continue;
                 };
                 let forward = face_direction(face, 0.0, 0.0);
-                *depth = self.dark_beyond(&ray, forward, Footprint::PerMetre(2.0 / size as f64));
+                *depth = self.dark_beyond(&ray, forward, PixelWidth::PerMetre(2.0 / size as f64));
             }
         });
         Box::new(move |targets| {
@@ -165,7 +165,7 @@ const CHUNK: usize = 16_384;
 
 /// Width of a pixel.
 #[derive(Clone, Copy)]
-enum Footprint {
+enum PixelWidth {
     Metres(f64),
     /// Metres per metre of depth.
     PerMetre(f64),

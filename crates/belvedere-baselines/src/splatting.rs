@@ -7,7 +7,7 @@ use crate::sampling::check_neighbor;
 use belvedere::query::{Sight, Viewer, Visibility};
 use belvedere::ray_index::{Ray, RayIndex};
 use belvedere::{PointCloud, Result};
-use splats::Splat;
+use splats::SurfaceSplat;
 
 /// What a point is drawn as.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -95,7 +95,7 @@ impl Default for SplatParams {
 /// sees as far as the next splat.
 pub struct Splats {
     /// In the order of the index.
-    splats: Vec<Splat>,
+    splats: Vec<SurfaceSplat>,
     index: RayIndex,
     params: SplatParams,
 }
@@ -113,7 +113,7 @@ impl Splats {
         check_least("maximum aspect ratio of a splat", params.max_aspect, 1.0, "finite and at least 1")?;
         check_clearance(params.clearance)?;
         let splats = splats::make(&cloud.positions, params)?;
-        let boxes: Vec<_> = splats.iter().map(Splat::bounding_box).collect();
+        let boxes: Vec<_> = splats.iter().map(SurfaceSplat::bounding_box).collect();
         let index = RayIndex::new(&boxes)?;
         let splats = index.order().iter().map(|&i| splats[i as usize]).collect();
         Ok(Self { splats, index, params: *params })
@@ -130,7 +130,7 @@ impl Splats {
     /// zero where a splat faces the line of sight, whose radius is the third value.
     #[must_use]
     pub fn outlines(&self) -> Vec<([f32; 3], [[f32; 3]; 2], f32)> {
-        self.splats.iter().map(Splat::outline).collect()
+        self.splats.iter().map(SurfaceSplat::outline).collect()
     }
 }
 

@@ -98,12 +98,12 @@ impl Voxels {
         }
         let own = ray.origin.map(|v| cell(v / self.params.size));
         let eye = ray.ranges[1].is_finite().then(|| ray.at(ray.ranges[1]).map(|v| cell(v / self.params.size)));
-        let bricks = Walk::new(ray, self.params.size * f64::from(BRICK), self.bounds);
+        let bricks = VoxelWalk::new(ray, self.params.size * f64::from(BRICK), self.bounds);
         bricks.any(|brick, from, to| {
             let Some(bits) = self.bricks.get(&brick) else { return false };
             let within = Ray { ranges: [from, to], ..*ray };
             let first = brick.map(|b| b * BRICK);
-            let voxels = Walk::new(&within, self.params.size, [first, first.map(|v| v + BRICK)]);
+            let voxels = VoxelWalk::new(&within, self.params.size, [first, first.map(|v| v + BRICK)]);
             voxels.any(|voxel, _, _| {
                 let (word, bit) = bit_of(voxel);
                 bits[word] & bit != 0 && voxel != own && Some(voxel) != eye
@@ -134,13 +134,13 @@ fn cell(coordinate: f64) -> i32 {
 /// # Source
 /// Amanatides & Woo 1987, "A Fast Voxel Traversal Algorithm for Ray Tracing". The ranges of the borders are computed from their
 /// index rather than summed up, so that long rays do not drift.
-struct Walk<'a> {
+struct VoxelWalk<'a> {
     ray: &'a Ray,
     size: f64,
     bounds: [[i32; 3]; 2],
 }
 
-impl<'a> Walk<'a> {
+impl<'a> VoxelWalk<'a> {
     /// A walk through cells of `size` metres, from the lowest corner of `bounds`, in cells, to the highest, which is outside.
     fn new(ray: &'a Ray, size: f64, bounds: [[i32; 3]; 2]) -> Self {
         Self { ray, size, bounds }

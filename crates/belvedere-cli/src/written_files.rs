@@ -1,6 +1,6 @@
 //! Inputs are there, no output replaces an input, and no file gets two results. Checked for all commands at once, on what was typed, before anything is read.
 
-use crate::arguments::{Corners, Usage};
+use crate::arguments::{CornersArgument, Usage};
 use anyhow::Result;
 use belvedere::io::{Source, web_address};
 use clap::parser::ValueSource;
@@ -83,7 +83,7 @@ fn files_named(argument: &Arg, value: &OsStr) -> Vec<PathBuf> {
         Some(("trajectory" | "mesh" | "cloud", file)) => vec![file.into()],
         Some((_, file)) if argument.get_id() == "model" => vec![file.into()],
         // corners are typed, or in a file
-        _ if parsed == TypeId::of::<Corners>() && !text.contains(',') => vec![value.into()],
+        _ if parsed == TypeId::of::<CornersArgument>() && !text.contains(',') => vec![value.into()],
         _ => Vec::new(),
     }
 }

@@ -131,7 +131,7 @@ impl BlockRule {
     #[inline]
     pub fn blocks_line(&self, ball: Ball, target: [f64; 3], towards: [f64; 3], reach: f64) -> Option<f64> {
         let whole = f64::from(ball.radius);
-        let Passing { along, beside_square, origin_square } = Passing::new(ball.center, target, towards);
+        let LinePassing { along, beside_square, origin_square } = LinePassing::new(ball.center, target, towards);
         if beside_square >= whole * whole {
             return None;
         }
@@ -156,7 +156,7 @@ impl BlockRule {
             return None;
         }
         let radius = self.radius_for(f64::from(ball.radius), ball.distance_to(chord.target));
-        let Passing { along, beside_square, .. } = Passing::new(ball.center, chord.start, chord.towards);
+        let LinePassing { along, beside_square, .. } = LinePassing::new(ball.center, chord.start, chord.towards);
         if radius <= 0.0 || beside_square >= radius * radius {
             return None;
         }
@@ -171,7 +171,7 @@ impl BlockRule {
     #[inline]
     pub fn meets_ray(&self, ball: Ball, eye: [f64; 3], direction: [f64; 3]) -> Option<f64> {
         let radius = f64::from(ball.radius);
-        let Passing { along, beside_square, origin_square } = Passing::new(ball.center, eye, direction);
+        let LinePassing { along, beside_square, origin_square } = LinePassing::new(ball.center, eye, direction);
         if along <= 0.0 || origin_square <= radius * radius || beside_square >= radius * radius {
             return None;
         }
@@ -247,7 +247,7 @@ pub struct Cover {
 
 /// How a line passes the centre of a ball.
 #[derive(Clone, Copy)]
-struct Passing {
+struct LinePassing {
     /// From the start of the line to its point nearest to the centre, metres.
     along: f64,
     /// Square of the distance between that point and the centre, m².
@@ -256,7 +256,7 @@ struct Passing {
     origin_square: f64,
 }
 
-impl Passing {
+impl LinePassing {
     #[inline]
     fn new(center: [f32; 3], origin: [f64; 3], direction: [f64; 3]) -> Self {
         let offset = sub(center.map(f64::from), origin);
@@ -306,7 +306,7 @@ impl Ball {
     #[must_use]
     #[inline]
     pub fn interval(&self, origin: [f64; 3], direction: [f64; 3]) -> Option<[f64; 2]> {
-        let Passing { along, beside_square, .. } = Passing::new(self.center, origin, direction);
+        let LinePassing { along, beside_square, .. } = LinePassing::new(self.center, origin, direction);
         let half_square = f64::from(self.radius).powi(2) - beside_square;
         let half = half_square.max(0.0).sqrt();
         (half_square > 0.0).then_some([along - half, along + half])

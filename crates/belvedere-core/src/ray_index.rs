@@ -6,7 +6,7 @@ mod opened;
 mod search_tree;
 mod walk;
 
-pub(crate) use opened::{OpenNode, Sides};
+pub(crate) use opened::{OpenNode, PartSides};
 pub(crate) use walk::Visit;
 
 use crate::instructions::Instructions;
@@ -15,7 +15,7 @@ use belvedere_data::{Error, Parameter, Result};
 use obvhs::aabb::Aabb;
 use obvhs::cwbvh::CwBvh;
 use search_tree::search_tree;
-use walk::{Scalar, TreeRay, walk};
+use walk::{RayScalar, TreeRay, walk};
 
 /// Padding of the boxes, as a share of the size of the scene: the tree works in f32 and a ray enters it at the box of the
 /// scene, so that its slab test errs by a few units of 6e-8 of that size.
@@ -62,9 +62,9 @@ pub struct RayIndex {
 }
 
 /// The parts of a node of a [`RayIndex`].
-pub struct Parts {
+pub struct NodeParts {
     /// What they are.
-    pub parts: [Part; PARTS],
+    pub parts: [NodePart; PARTS],
     /// Middles of their boxes, local metres, by axis.
     pub centers: [[f32; PARTS]; 3],
     /// Half sizes of their boxes, metres, by axis.
@@ -79,7 +79,7 @@ pub const NODE_WORDS: usize = 20;
 
 /// What a node of a [`RayIndex`] is made of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Part {
+pub enum NodePart {
     /// A place that is not taken.
     Nothing,
     /// Another node.
@@ -191,7 +191,7 @@ impl RayIndex {
     #[inline]
     fn walk(&self, ray: TreeRay, visit: impl Visit) {
         match self.instructions {
-            Instructions::Scalar => walk::<Scalar<false>>(&self.tree.nodes, ray, visit),
+            Instructions::Scalar => walk::<RayScalar<false>>(&self.tree.nodes, ray, visit),
             #[cfg(target_arch = "x86_64")]
             Instructions::Avx2 => avx2::run(&self.tree.nodes, ray, visit),
         }
@@ -210,8 +210,10 @@ impl RayIndex {
                     center - half - slack <= high[axis] && center + half + slack >= low[axis]
                 });
                 match part {
-                    Part::Rows { first, count } if meets => (first..first + count).for_each(|row| visit(row as usize)),
-                    Part::Node(node) if meets => nodes.push(node),
+                    NodePart::Rows { first, count } if meets => {
+                        (first..first + count).for_each(|row| visit(row as usize))
+                    }
+                    NodePart::Node(node) if meets => nodes.push(node),
                     _ => {}
                 }
             }
@@ -240,7 +242,7 @@ impl RayIndex {
     /// 6e-8 of the largest coordinate.
     #[must_use]
     #[inline]
-    pub fn parts(&self, node: u32) -> Option<Parts> {
+    pub fn parts(&self, node: u32) -> Option<NodeParts> {
         let node = self.tree.nodes.get(node as usize)?;
         let parts = std::array::from_fn(|child| opened::part_of(node, child));
         let steps = node.compute_extent().to_array();
@@ -262,7 +264,7 @@ impl RayIndex {
                 half_sizes[axis][child] = half_step * (high - low);
             }
         }
-        Some(Parts { parts, centers, half_sizes })
+        Some(NodeParts { parts, centers, half_sizes })
     }
 
     /// The nodes as words, for devices that trace rays themselves, in the layout of compressed nodes (Ylitie, Karras & Laine 2017) with lowest and highest sides
@@ -295,7 +297,7 @@ impl RayIndex {
     }
 
     /// The part of a ray inside the box of the scene, larger by `room`, as the tree takes it, or `None` where it misses the box.
-    fn enter(&self, ray: &Ray, room: [f64; 3]) -> Option<Entry> {
+    fn enter(&self, ray: &Ray, room: [f64; 3]) -> Option<PreparedRay> {
         let local: [f64; 3] = std::array::from_fn(|i| ray.origin[i] - self.center[i]);
         let [mut start, mut end] = ray.ranges;
         if self.tree.nodes.is_empty() {
@@ -313,12 +315,12 @@ impl RayIndex {
         }
         let origin = to_f32(std::array::from_fn(|i| local[i] + start * ray.direction[i]));
         let ray = TreeRay::new(origin, to_f32(ray.direction), to_f32(room), tree_reach(end - start));
-        Some(Entry { ray, start })
+        Some(PreparedRay { ray, start })
     }
 }
 
 /// A ray as the tree takes it.
-struct Entry {
+struct PreparedRay {
     ray: TreeRay,
     /// Range at which the tree's ray starts.
     start: f64,
@@ -454,7 +456,8 @@ mod tests {
         let mut counts = [0; 3];
         for (ray, room) in rays(2000).into_iter().zip([[0.0; 3], [0.7, 0.0, 0.2]].into_iter().cycle()) {
             let Some(entry) = index.enter(&ray, room) else { continue };
-            let fused = |visit: &mut dyn FnMut(usize) -> f32| walk::<Scalar<true>>(&index.tree.nodes, entry.ray, visit);
+            let fused =
+                |visit: &mut dyn FnMut(usize) -> f32| walk::<RayScalar<true>>(&index.tree.nodes, entry.ray, visit);
             let rows = visited(fused);
             assert_eq!(visited(|visit| index.walk(entry.ray, visit)), rows);
             counts.iter_mut().zip(&rows).for_each(|(count, rows)| *count += rows.len());

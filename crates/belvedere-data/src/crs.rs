@@ -303,7 +303,7 @@ fn utm_zone(longitude: f64, latitude: f64) -> u32 {
 
 /// Turns latitude and longitude (WGS 84) into the metres of one reference system, and back.
 pub struct GeographicProjection {
-    projection: registry::Projection,
+    projection: registry::CrsProjection,
     metres_per_unit: f64,
 }
 
@@ -317,7 +317,7 @@ impl Crs {
         let by_code = self.epsg.map(|code| format!("EPSG:{code}"));
         let mut failure = None;
         for definition in [by_code.as_deref(), self.wkt.as_deref()].into_iter().flatten() {
-            match registry::Projection::new(definition) {
+            match registry::CrsProjection::new(definition) {
                 Ok(projection) => {
                     return Ok(GeographicProjection { projection, metres_per_unit: self.metres_per_unit });
                 }

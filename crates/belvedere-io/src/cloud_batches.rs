@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use super::assemble::assemble;
 #[cfg(feature = "las")]
 use super::las::{self, LasPoints};
-use super::part::Part;
+use super::part::FilePart;
 use super::read_cloud::{Systems, files_of, read_one};
 use super::read_options::{ReadOptions, Reading, UpAxis};
 use super::source::Source;
@@ -34,7 +34,7 @@ pub struct CloudBatches<'a> {
     control: Control<'a>,
     systems: Systems,
     #[cfg(feature = "las")]
-    open: Option<(Part, LasPoints<'a>)>,
+    open: Option<(FilePart, LasPoints<'a>)>,
     failed: bool,
 }
 
@@ -85,13 +85,13 @@ impl CloudBatches<'_> {
     }
 
     /// The next points, possibly none, or `None` at the end.
-    fn next_part(&mut self) -> Result<Option<Part>> {
+    fn next_part(&mut self) -> Result<Option<FilePart>> {
         self.control.check()?;
         let reading = Reading { options: &self.options, forced: self.forced.as_ref(), control: &self.control };
         #[cfg(feature = "las")]
         if let Some((whole, points)) = &mut self.open {
             if let Some(some) = points.next(&reading)? {
-                let mut part = Part::new(&whole.report.path, whole.report.format.clone());
+                let mut part = FilePart::new(&whole.report.path, whole.report.format.clone());
                 part.crs = whole.crs.clone();
                 (part.coordinates, part.attributes, part.rows) = (some.coordinates, some.attributes, Some(some.rows));
                 return Ok(Some(part));

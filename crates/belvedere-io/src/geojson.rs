@@ -17,7 +17,7 @@ const METRE_DECIMALS: i32 = 3;
 
 /// Polygons with properties in common.
 #[derive(Clone, Debug, Default)]
-pub struct Area {
+pub struct PolygonArea {
     /// For each polygon its outer ring, counter-clockwise, and its holes, clockwise, each closed; easting and northing in metres.
     pub polygons: Vec<Vec<Vec<[f64; 2]>>>,
     /// What is known of it.
@@ -50,7 +50,11 @@ pub enum GeojsonCoordinates {
 ///
 /// # Source
 /// RFC 7946, sections 3.1.7, 3.3 and 4.
-pub fn write_geojson_areas<'a>(output: impl Into<Output<'a>>, areas: &[Area], crs: &Crs) -> Result<GeojsonCoordinates> {
+pub fn write_geojson_areas<'a>(
+    output: impl Into<Output<'a>>,
+    areas: &[PolygonArea],
+    crs: &Crs,
+) -> Result<GeojsonCoordinates> {
     write_geojson(output, &[], areas, crs)
 }
 
@@ -61,7 +65,7 @@ pub fn write_geojson_areas<'a>(output: impl Into<Output<'a>>, areas: &[Area], cr
 pub fn write_geojson<'a>(
     output: impl Into<Output<'a>>,
     spots: &[Spot],
-    areas: &[Area],
+    areas: &[PolygonArea],
     crs: &Crs,
 ) -> Result<GeojsonCoordinates> {
     let output = output.into();

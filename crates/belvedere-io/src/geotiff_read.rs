@@ -7,7 +7,7 @@ use tiff::tags::Tag;
 use tiff::{TiffError, TiffFormatError, TiffResult};
 
 use crate::geotiff::{GDAL_METADATA, Georeference, SOFTWARE};
-use crate::source::{Input, Reader, Source};
+use crate::source::{Input, Source, SourceReader};
 use belvedere_data::crs::Crs;
 use belvedere_data::raster::Raster;
 use belvedere_data::{Error, Result};
@@ -195,7 +195,7 @@ fn name_of_band(metadata: &str, band: usize) -> String {
 }
 
 /// A decoder that allocates no more than a file of `size` bytes can hold.
-fn decoder(mut reader: Reader<'_>, size: u64) -> TiffResult<Decoder<Reader<'_>>> {
+fn decoder(mut reader: SourceReader<'_>, size: u64) -> TiffResult<Decoder<SourceReader<'_>>> {
     if longest_value(&mut reader).is_ok_and(|longest| longest > size) {
         return Err(TiffError::LimitsExceeded);
     }
@@ -211,11 +211,11 @@ fn decoder(mut reader: Reader<'_>, size: u64) -> TiffResult<Decoder<Reader<'_>>>
 ///
 /// # Errors
 /// Those of reading; what is no TIFF file is left to the decoder.
-fn longest_value(reader: &mut Reader<'_>) -> io::Result<u64> {
+fn longest_value(reader: &mut SourceReader<'_>) -> io::Result<u64> {
     let mut start = [0; 4];
     reader.read_exact(&mut start)?;
     let is_large = start.contains(&43);
-    let number = |reader: &mut Reader<'_>, length: usize| {
+    let number = |reader: &mut SourceReader<'_>, length: usize| {
         let mut bytes = [0; 8];
         reader.read_exact(&mut bytes[..length])?;
         if start.starts_with(b"MM") {

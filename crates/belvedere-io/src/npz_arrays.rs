@@ -155,13 +155,13 @@ pub(crate) fn in_blocks<T: Deserialize, R: Read + Seek, E: From<io::Error>>(
 }
 
 /// The values of an array, by way of a buffer: a value at a time, the entry of an archive is slow.
-type Values<'a, 'z, T> = NpyReader<T, &'a mut BufReader<Take<ZipFile<'z>>>>;
+type NpzValues<'a, 'z, T> = NpyReader<T, &'a mut BufReader<Take<ZipFile<'z>>>>;
 
 /// Lets `read` read an array, of which it is given the shape and the values, and checks the sum of the whole.
 fn read_array<T: Deserialize, R: Read + Seek, O, E: From<io::Error>>(
     archive: &mut NpzArchive<R>,
     name: &str,
-    read: impl FnOnce(&[u64], &mut Values<'_, '_, T>) -> Result<O, E>,
+    read: impl FnOnce(&[u64], &mut NpzValues<'_, '_, T>) -> Result<O, E>,
 ) -> Result<O, E> {
     if !has(archive, name) {
         return Err(invalid(format!("there is no array {name}")).into());

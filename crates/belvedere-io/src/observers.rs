@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde_json::{Map, Value};
 
-use crate::geojson_read::{Shape, read_geojson};
+use crate::geojson_read::{FeatureShape, read_geojson};
 use crate::source::{Source, refuse_other_shapes};
 use crate::table::read_table;
 use belvedere_data::crs::Crs;
@@ -113,9 +113,9 @@ fn of_geojson(source: Source<'_>, path: &Path, crs: &Crs) -> Result<Vec<Observer
     let mut rows = Vec::new();
     for feature in read_geojson(source, crs)? {
         let corners = match feature.shape {
-            Shape::Point(place) => vec![place],
-            Shape::Line(corners) => corners,
-            Shape::Polygon(rings) => rings.into_iter().next().unwrap_or_default(),
+            FeatureShape::Point(place) => vec![place],
+            FeatureShape::Line(corners) => corners,
+            FeatureShape::Polygon(rings) => rings.into_iter().next().unwrap_or_default(),
         };
         if corners.is_empty() {
             continue;

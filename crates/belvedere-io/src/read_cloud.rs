@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use super::e57;
 #[cfg(feature = "las")]
 use super::las;
-use super::part::Part;
+use super::part::FilePart;
 #[cfg(feature = "ply")]
 use super::ply;
 use super::read_options::{ReadOptions, Reading, UpAxis};
@@ -111,7 +111,7 @@ pub fn read_cloud<'a, S: Into<Source<'a>>>(
     let forced = options.forced_crs()?;
     let reading = Reading { options, forced: forced.as_ref(), control };
     let mut systems = Systems::new(options);
-    let mut parts: Vec<Part> = Vec::new();
+    let mut parts: Vec<FilePart> = Vec::new();
     let (sources, skipped_files) = files_of(sources.into_iter().map(Into::into), &reading)?;
     for source in sources {
         control.check()?;
@@ -142,7 +142,7 @@ impl Systems {
     }
 
     /// Gives `part` the system of the option, and refuses one that cannot be used together with the others.
-    pub(super) fn accept(&mut self, part: &mut Part, reading: &Reading<'_>) -> Result<()> {
+    pub(super) fn accept(&mut self, part: &mut FilePart, reading: &Reading<'_>) -> Result<()> {
         if let Some(crs) = reading.forced {
             part.set_crs(crs.clone(), "option");
         }
@@ -243,7 +243,7 @@ fn is_masbcpp(folder: &Path) -> bool {
 }
 
 /// The points of one source, of which those that are not asked for are dropped.
-pub(super) fn read_one(source: Source<'_>, reading: &Reading<'_>) -> Result<Part> {
+pub(super) fn read_one(source: Source<'_>, reading: &Reading<'_>) -> Result<FilePart> {
     if let Some(folder) = source.folder() {
         #[cfg(feature = "npy")]
         let part = masbcpp::read(folder);
@@ -269,7 +269,7 @@ pub(super) fn read_one(source: Source<'_>, reading: &Reading<'_>) -> Result<Part
     selected(part?, reading)
 }
 
-fn selected(mut part: Part, reading: &Reading<'_>) -> Result<Part> {
+fn selected(mut part: FilePart, reading: &Reading<'_>) -> Result<FilePart> {
     reading.control.advance(part.coordinates.len());
     part.keep_selected(reading)?;
     Ok(part)

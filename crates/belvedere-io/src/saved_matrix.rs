@@ -7,7 +7,7 @@ use npyz::npz::{NpzArchive, NpzWriter};
 
 use crate::npz_arrays::{array, begin_array, in_blocks, open, rows, values, write_archive};
 use crate::output::Output;
-use crate::source::{Input, Reader, Source};
+use crate::source::{Input, Source, SourceReader};
 use belvedere_data::{Error, Parameter, Result};
 
 /// Bits in a word.
@@ -129,14 +129,14 @@ pub fn write_matrix_rows<'a>(
                 count += words.len();
                 bits.extend(words.iter().copied()).map_err(Error::io(path))
             })
-            .map_err(Stopped::BySink)?;
-            head.check_count(count).map_err(Stopped::BySink)?;
+            .map_err(RowsStopped::BySink)?;
+            head.check_count(count).map_err(RowsStopped::BySink)?;
             bits.finish()?;
             Ok(write_head(archive, head)?)
         });
         written.map_err(|stopped| match stopped {
-            Stopped::ByFile(error) => Error::io(path)(error),
-            Stopped::BySink(error) => error,
+            RowsStopped::ByFile(error) => Error::io(path)(error),
+            RowsStopped::BySink(error) => error,
         })
     })
 }
@@ -167,7 +167,7 @@ pub fn read_matrix_head<'a>(source: impl Into<Source<'a>>) -> Result<MatrixHead>
     head_of(&name, &mut archive)
 }
 
-fn head_of(path: &Path, archive: &mut NpzArchive<Reader<'_>>) -> Result<MatrixHead> {
+fn head_of(path: &Path, archive: &mut NpzArchive<SourceReader<'_>>) -> Result<MatrixHead> {
     let mut read = || -> io::Result<MatrixHead> {
         let one = |values: Vec<u64>| values.first().copied().unwrap_or(0);
         let origin = values::<f64, _>(archive, "origin", 3)?.0;
@@ -185,18 +185,18 @@ fn head_of(path: &Path, archive: &mut NpzArchive<Reader<'_>>) -> Result<MatrixHe
 }
 
 /// Why rows were read or written no further.
-enum Stopped {
+enum RowsStopped {
     ByFile(io::Error),
     BySink(Error),
 }
 
-impl From<io::Error> for Stopped {
+impl From<io::Error> for RowsStopped {
     fn from(error: io::Error) -> Self {
         Self::ByFile(error)
     }
 }
 
-impl From<Error> for Stopped {
+impl From<Error> for RowsStopped {
     fn from(error: Error) -> Self {
         Self::BySink(error)
     }
@@ -218,7 +218,7 @@ pub fn read_matrix_rows<'a>(
 
 fn rows_of(
     path: &Path,
-    archive: &mut NpzArchive<Reader<'_>>,
+    archive: &mut NpzArchive<SourceReader<'_>>,
     head: &MatrixHead,
     mut sink: impl FnMut(&[u64]) -> Result<()>,
 ) -> Result<()> {
@@ -230,12 +230,12 @@ fn rows_of(
             head.check_count(count).map_err(damaged(path))?;
         }
         head.check_rows(words).map_err(damaged(path))?;
-        sink(words).map_err(Stopped::BySink)
+        sink(words).map_err(RowsStopped::BySink)
     });
     match read {
         Ok(()) => {}
-        Err(Stopped::ByFile(error)) => return Err(unreadable(path)(error)),
-        Err(Stopped::BySink(error)) => return Err(error),
+        Err(RowsStopped::ByFile(error)) => return Err(unreadable(path)(error)),
+        Err(RowsStopped::BySink(error)) => return Err(error),
     }
     head.check_count(count).map_err(damaged(path))
 }

@@ -132,13 +132,13 @@ impl<'a> Source<'a> {
 pub(crate) struct Input<'a> {
     /// For messages.
     pub(crate) name: PathBuf,
-    pub(crate) reader: Reader<'a>,
+    pub(crate) reader: SourceReader<'a>,
     /// Number of bytes.
     pub(crate) size: u64,
 }
 
 /// Reader of an open source.
-pub(crate) type Reader<'a> = BufReader<Box<dyn ReadSeek + 'a>>;
+pub(crate) type SourceReader<'a> = BufReader<Box<dyn ReadSeek + 'a>>;
 
 /// The file at an address of the web, and its size.
 #[cfg(feature = "http")]

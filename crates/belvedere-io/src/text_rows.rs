@@ -6,7 +6,7 @@ use crate::columns::{Column, check_lengths};
 use crate::output::Output;
 use crate::rows::role_of;
 use crate::source::Source;
-use crate::table::{Cells, quoted, separator_of};
+use crate::table::{TableCells, quoted, separator_of};
 use crate::write_cloud::{ExtraColumn, to_column};
 use crate::xyz;
 use belvedere_data::{Error, Result};
@@ -74,20 +74,20 @@ impl TextRows {
 pub fn with_columns_read<'a>(
     read: &'a [(&'a str, Vec<&'a str>)],
     given: &[&str],
-    results: &[(&'a str, Cells<'a>)],
-) -> Vec<(&'a str, Cells<'a>)> {
+    results: &[(&'a str, TableCells<'a>)],
+) -> Vec<(&'a str, TableCells<'a>)> {
     let is_among = |names: &[&str], name: &str| names.iter().any(|own| own.eq_ignore_ascii_case(name));
     let (given, others): (Vec<_>, Vec<_>) = results.iter().partition(|(name, _)| is_among(given, name));
     let result_names: Vec<&str> = results.iter().map(|(name, _)| *name).collect();
-    let as_read = |(name, cells): (&'a str, Cells<'a>)| {
+    let as_read = |(name, cells): (&'a str, TableCells<'a>)| {
         let texts = read.iter().find(|(own, _)| own.eq_ignore_ascii_case(name)).map(|(_, texts)| texts.as_slice());
         match (texts, cells) {
-            (Some(texts), Cells::Real(values, decimals)) => (name, Cells::Given(texts, values, decimals)),
+            (Some(texts), TableCells::Real(values, decimals)) => (name, TableCells::Given(texts, values, decimals)),
             _ => (name, cells),
         }
     };
     let carried = read.iter().filter(|(name, _)| !is_among(&result_names, name));
-    let carried = carried.map(|(name, texts)| (*name, Cells::Words(texts.as_slice())));
+    let carried = carried.map(|(name, texts)| (*name, TableCells::Words(texts.as_slice())));
     given.into_iter().map(as_read).chain(carried).chain(others).collect()
 }
 

@@ -83,12 +83,12 @@ fn sbet_records(path: &Path, bytes: &[u8], cloud_crs: &Crs) -> Result<Vec<(f64, 
 }
 
 /// Which column holds time, x, y and z.
-type Columns = [usize; 4];
+type ColumnIndices = [usize; 4];
 
 fn table_records(path: &Path, bytes: &[u8], cloud_crs: &Crs) -> Result<Vec<(f64, [f64; 3])>> {
     let text = String::from_utf8_lossy(bytes);
     let scale = cloud_crs.metres_per_unit_xyz();
-    let mut columns: Option<Columns> = None;
+    let mut columns: Option<ColumnIndices> = None;
     let mut records = Vec::new();
     for (row, line) in text.trim_start_matches('\u{feff}').lines().enumerate() {
         let line = line.trim();
@@ -144,7 +144,7 @@ fn number(field: &str) -> Option<f64> {
     field.parse().ok()
 }
 
-fn heading_columns(fields: &[String]) -> Option<Columns> {
+fn heading_columns(fields: &[String]) -> Option<ColumnIndices> {
     let names: Vec<String> = fields
         .iter()
         .map(|field| {

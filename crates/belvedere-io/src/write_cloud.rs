@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use crate::columns::{Column, Values, check_lengths};
+use crate::columns::{Column, ColumnValues, check_lengths};
 use crate::output::Output;
 use crate::source::unusable;
 #[cfg(feature = "las")]
@@ -88,9 +88,9 @@ pub fn write_cloud<'a>(
 
 pub(crate) fn to_column<'a>(extra: &ExtraColumn<'a>) -> Column<'a> {
     let values = match extra.values {
-        ExtraValues::U8(v) => Values::U8(Cow::Borrowed(v)),
-        ExtraValues::U32(v) => Values::U32(Cow::Borrowed(v)),
-        ExtraValues::F32(v) => Values::F32(Cow::Borrowed(v)),
+        ExtraValues::U8(v) => ColumnValues::U8(Cow::Borrowed(v)),
+        ExtraValues::U32(v) => ColumnValues::U32(Cow::Borrowed(v)),
+        ExtraValues::F32(v) => ColumnValues::F32(Cow::Borrowed(v)),
     };
     Column { name: extra.name.into(), description: extra.description.into(), values }
 }

@@ -9,7 +9,7 @@ use las::{Builder, GpsTimeType, PointDataBuilder, Transform, Vector, Vlr};
 use rayon::prelude::*;
 
 use crate::atomic;
-use crate::columns::{Column, Values};
+use crate::columns::{Column, ColumnValues};
 use crate::output::{Output, WriteSeek};
 use crate::write_cloud::WriteReport;
 use belvedere_data::Bounds;
@@ -42,7 +42,7 @@ pub(crate) fn write(
         columns.push(Column {
             name: "scanner_index".into(),
             description: "scanner set-up, 65535 unknown".into(),
-            values: Values::U16(index.into()),
+            values: ColumnValues::U16(index.into()),
         });
     }
     let mut builder = Builder::from((1, 4));
@@ -218,12 +218,12 @@ fn crs_records(cloud: &PointCloud) -> Vec<Vlr> {
 fn descriptor(column: &Column<'_>) -> [u8; 192] {
     let mut bytes = [0; 192];
     bytes[2] = match column.values {
-        Values::U8(_) => 1,
-        Values::U16(_) => 3,
-        Values::U32(_) => 5,
-        Values::I32(_) => 6,
-        Values::F32(_) => 9,
-        Values::F64(_) => 10,
+        ColumnValues::U8(_) => 1,
+        ColumnValues::U16(_) => 3,
+        ColumnValues::U32(_) => 5,
+        ColumnValues::I32(_) => 6,
+        ColumnValues::F32(_) => 9,
+        ColumnValues::F64(_) => 10,
     };
     put_text(&mut bytes[4..36], &column.name);
     put_text(&mut bytes[160..192], &column.description);

@@ -9,7 +9,7 @@ use belvedere_data::{Error, GpsTimeKind, Result};
 
 /// Where the vehicle points.
 #[derive(Clone, Copy, Debug, Default)]
-pub enum Heading<'a> {
+pub enum VehicleHeading<'a> {
     /// Where it moves to; north while it stands.
     #[default]
     Course,
@@ -42,10 +42,10 @@ pub fn write_trajectory<'a>(
     trajectory: &Trajectory,
     kind: GpsTimeKind,
     crs: &Crs,
-    heading: Heading<'_>,
+    heading: VehicleHeading<'_>,
 ) -> Result<()> {
     let count = trajectory.times.len();
-    let given = if let Heading::Given(headings) = heading { headings.len() } else { count };
+    let given = if let VehicleHeading::Given(headings) = heading { headings.len() } else { count };
     for (what, found) in [("trajectory positions", trajectory.positions.len()), ("headings", given)] {
         if found != count {
             return Err(Error::LengthMismatch { what, expected: count, found });
@@ -112,7 +112,7 @@ fn write_sbet(
     trajectory: &Trajectory,
     kind: GpsTimeKind,
     crs: &Crs,
-    heading: Heading<'_>,
+    heading: VehicleHeading<'_>,
 ) -> Result<()> {
     let name = output.name().to_owned();
     let unusable = |e: Error| Error::UnusableCrs {
@@ -123,8 +123,8 @@ fn write_sbet(
     let places = trajectory
         .positions
         .iter()
-        .map(|&position| Place::new(&projection, position))
-        .collect::<Result<Vec<Place>>>()
+        .map(|&position| GlobePosition::new(&projection, position))
+        .collect::<Result<Vec<GlobePosition>>>()
         .map_err(unusable)?;
     let week_start = match (kind, trajectory.times.first()) {
         (GpsTimeKind::AdjustedStandard, Some(first)) => {
@@ -136,9 +136,9 @@ fn write_sbet(
         for (i, (time, place)) in trajectory.times.iter().zip(&places).enumerate() {
             let [north, east, up] = velocity(&trajectory.times, &places, i);
             let pointing = match heading {
-                Heading::Course if north == 0.0 && east == 0.0 => 0.0,
-                Heading::Course => east.atan2(north),
-                Heading::Given(headings) => headings.get(i).copied().unwrap_or(0.0) + place.grid_north,
+                VehicleHeading::Course if north == 0.0 && east == 0.0 => 0.0,
+                VehicleHeading::Course => east.atan2(north),
+                VehicleHeading::Given(headings) => headings.get(i).copied().unwrap_or(0.0) + place.grid_north,
             };
             let mut record = [0.0; 17];
             record[0] = time - week_start;
@@ -158,7 +158,7 @@ const WGS84: [f64; 2] = [6_378_137.0, 6.694_379_990_141_33e-3];
 const NORTHWARD: f64 = 100.0;
 
 /// A position on the globe.
-struct Place {
+struct GlobePosition {
     latitude: f64,
     longitude: f64,
     altitude: f64,
@@ -168,7 +168,7 @@ struct Place {
     grid_north: f64,
 }
 
-impl Place {
+impl GlobePosition {
     fn new(projection: &GeographicProjection, [x, y, altitude]: [f64; 3]) -> Result<Self> {
         let [latitude, longitude] = projection.unproject([x, y])?;
         let [semi_major, eccentricity_2] = WGS84;
@@ -186,7 +186,7 @@ impl Place {
 
 /// Velocity to the north, to the east and up at record `index`, metres per second: between the records before and after
 /// it, as far as they are near in time.
-fn velocity(times: &[f64], places: &[Place], index: usize) -> [f64; 3] {
+fn velocity(times: &[f64], places: &[GlobePosition], index: usize) -> [f64; 3] {
     let record = |i: usize| Some((*times.get(i)?, places.get(i)?));
     let Some(own) = record(index) else { return [0.0; 3] };
     let near = |other: Option<(f64, _)>| other.filter(|(time, _)| (time - own.0).abs() <= MAX_GAP_S).unwrap_or(own);

@@ -1,7 +1,7 @@
 //! Sets of targets whose visibility is worth asking for, and the viewers to ask from.
 
 use crate::random::Random;
-use crate::scene::{Material, Scene};
+use crate::scene::{Material, TriangleScene};
 use crate::truth::{CONTACT, Truth};
 use crate::vector::{add_scaled, cross, dot, length, scale, sub, unit};
 use rayon::prelude::*;
@@ -68,7 +68,7 @@ const DRAWS_PER_TARGET: u64 = 64;
 #[derive(Clone, Copy, Debug)]
 pub struct QuerySite<'a> {
     /// The scene.
-    pub scene: &'a Scene,
+    pub scene: &'a TriangleScene,
     /// Its index.
     pub truth: &'a Truth,
     /// Lowest and highest corner of the box that targets lie in, absolute, metres: the box of the cloud.
@@ -77,7 +77,7 @@ pub struct QuerySite<'a> {
 
 /// Targets of one kind.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Targets {
+pub struct TargetsOfKind {
     /// Positions, (M, 3), absolute, metres.
     pub positions: Vec<[f64; 3]>,
     /// The other end of each line of sight, (M, 3), for [`QuerySet::LinesOfSight`]; empty otherwise.
@@ -90,7 +90,7 @@ impl QuerySite<'_> {
     /// Every target draws from its own stream of `seed`, so that a longer list begins with the shorter one, whatever the
     /// number of threads. Free air is what [`QuerySite::is_inside`] denies.
     #[must_use]
-    pub fn targets(&self, set: QuerySet, count: usize, seed: u64) -> Targets {
+    pub fn targets(&self, set: QuerySet, count: usize, seed: u64) -> TargetsOfKind {
         let surfaces = match set {
             QuerySet::Roofs => SurfaceSampler::new(self.scene, Material::Roof),
             QuerySet::Facades => SurfaceSampler::new(self.scene, Material::Facade),
@@ -115,7 +115,7 @@ impl QuerySite<'_> {
             })
         };
         let drawn: Vec<_> = (0..count).into_par_iter().filter_map(draw).collect();
-        Targets {
+        TargetsOfKind {
             positions: drawn.iter().map(|&(position, _)| position).collect(),
             eyes: drawn.iter().filter_map(|&(_, eye)| eye).collect(),
         }
@@ -266,7 +266,7 @@ impl QuerySite<'_> {
     }
 }
 
-impl Scene {
+impl TriangleScene {
     /// Outward unit normal of triangle `index`, or `None` where it does not exist or has no area.
     #[must_use]
     pub fn normal(&self, index: usize) -> Option<[f64; 3]> {
@@ -284,7 +284,7 @@ struct SurfaceSampler {
 }
 
 impl SurfaceSampler {
-    fn new(scene: &Scene, material: Material) -> Self {
+    fn new(scene: &TriangleScene, material: Material) -> Self {
         let mut sampler = Self::default();
         let mut total = 0.0;
         for triangle in 0..scene.triangles.len() {
@@ -300,7 +300,7 @@ impl SurfaceSampler {
     }
 
     /// A point 0.1 m outside the surface.
-    fn draw(&self, scene: &Scene, random: &mut Random) -> Option<[f64; 3]> {
+    fn draw(&self, scene: &TriangleScene, random: &mut Random) -> Option<[f64; 3]> {
         let at = random.uniform() * self.areas.last()?;
         let chosen = self.areas.partition_point(|&area| area <= at);
         let [a, b, c] = scene.corners(*self.triangles.get(chosen)?)?;

@@ -8,7 +8,7 @@ use obvhs::ray::{Ray, RayHit};
 use obvhs::{Boundable, BvhBuildParams};
 use rayon::prelude::*;
 
-use crate::scene::Scene;
+use crate::scene::TriangleScene;
 use crate::vector::{add_scaled, cross, dot, length, sub, unit};
 
 /// Surfaces nearer than this to the start of a ray, or to the end of a segment, block nothing: 1 µm.
@@ -68,7 +68,7 @@ impl Boundable for PaddedBox {
 impl Truth {
     /// Indexes `scene`. Triangles with missing or non-finite vertices are left out; a scene without triangles blocks nothing.
     #[must_use]
-    pub fn new(scene: &Scene) -> Self {
+    pub fn new(scene: &TriangleScene) -> Self {
         let given = (0_u32..).take(scene.triangles.len());
         let usable = given.filter_map(|index| {
             let corners = scene.corners(index as usize)?;
@@ -178,7 +178,7 @@ impl Truth {
     }
 
     /// The part of a ray inside the box of the scene, as the tree takes it, or `None` where it misses the box.
-    fn enter(&self, local: [f64; 3], direction: [f64; 3], min_range: f64, max_range: f64) -> Option<Entry> {
+    fn enter(&self, local: [f64; 3], direction: [f64; 3], min_range: f64, max_range: f64) -> Option<TruthRay> {
         let (mut start, mut end) = (min_range, max_range);
         if self.triangles.is_empty() || max_range.is_nan() || !local.iter().all(|v| v.is_finite()) {
             return None;
@@ -202,12 +202,12 @@ impl Truth {
             0.0,
             tree_reach(end - start),
         );
-        Some(Entry { ray, start })
+        Some(TruthRay { ray, start })
     }
 }
 
 /// A ray as the search tree takes it.
-struct Entry {
+struct TruthRay {
     ray: Ray,
     /// Range at which the tree's ray starts.
     start: f64,

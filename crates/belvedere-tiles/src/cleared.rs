@@ -3,7 +3,7 @@
 //! What clearing does at a place follows from what is around: from the ground below, which is interpolated, and from what stands there. Each block is looked
 //! at by itself, with all points of the eight blocks around it, so that points and balls fare alike in all tiles that meet them.
 
-use crate::grid::{Area, CELL, TileId, block_area, block_of};
+use crate::grid::{CELL, MapArea, TileId, block_area, block_of};
 use crate::plan::Plan;
 use crate::window;
 use belvedere::control::Control;
@@ -60,11 +60,11 @@ impl Plan {
     }
 
     /// The areas that are cleared, with the rectangles around polygons on the survey.
-    fn cleared_areas(&self) -> Result<Vec<(&ClearedArea, Option<Area>)>> {
+    fn cleared_areas(&self) -> Result<Vec<(&ClearedArea, Option<MapArea>)>> {
         let (bounds, origin) = (self.bounds(), self.frame()?.origin);
         let mut areas = Vec::new();
         for cleared in &self.cleared {
-            areas.push((cleared, cleared.rectangle_on(&bounds, origin)?.map(|(low, high)| Area { low, high })));
+            areas.push((cleared, cleared.rectangle_on(&bounds, origin)?.map(|(low, high)| MapArea { low, high })));
         }
         Ok(areas)
     }
@@ -96,7 +96,7 @@ impl Plan {
 /// Those of reading the files, and of [`Clearing::new`].
 pub(crate) fn clear_balls(
     plan: &Plan,
-    core: &Area,
+    core: &MapArea,
     balls: &mut MedialBalls,
     transmission: &mut Vec<f32>,
     points: &[ClassedPoint],
@@ -154,7 +154,7 @@ impl ClearedSurface {
     /// Those of reading the files, and of [`Clearing::new`].
     pub(crate) fn new(
         plan: &Plan,
-        (area, core): (&Area, &Area),
+        (area, core): (&MapArea, &MapArea),
         points: &[ClassedPoint],
         places: &[[f64; 2]],
         control: &Control<'_>,
@@ -187,14 +187,14 @@ impl ClearedSurface {
 /// Gives `look` each block of `area` that polygons reach, and of `core` also those with points of cleared classes, with what clearing does there.
 fn each_block(
     plan: &Plan,
-    area: &Area,
-    core: &Area,
+    area: &MapArea,
+    core: &MapArea,
     control: &Control<'_>,
     mut look: impl FnMut([i32; 2], &[Clearing]),
 ) -> Result<()> {
     let (areas, frame) = (plan.cleared_areas()?, plan.frame()?);
-    let reaches = |polygon: &Area, block: &Area| polygon.distance(block) <= BESIDE + Clearing::REACH;
-    let is_near = |block: &Area| {
+    let reaches = |polygon: &MapArea, block: &MapArea| polygon.distance(block) <= BESIDE + Clearing::REACH;
+    let is_near = |block: &MapArea| {
         areas.iter().any(|(_, polygon)| polygon.map_or_else(|| block.meets(core), |polygon| reaches(&polygon, block)))
     };
     let blocks: Vec<[i32; 2]> = area.blocks().filter(|&at| is_near(&block_area(at))).collect();

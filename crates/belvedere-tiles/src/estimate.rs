@@ -1,8 +1,8 @@
 //! What a run will take.
 
-use crate::grid::{Area, CELL, block_area};
+use crate::grid::{CELL, MapArea, block_area};
 use crate::plan::Plan;
-use crate::survey::Block;
+use crate::survey::SurveyBlock;
 use serde::Serialize;
 
 /// Memory for each point of a window while balls are made, and without any, bytes. As measured in docs/scale.md.
@@ -17,7 +17,7 @@ const DISK_PER_POINT: f64 = 30.0;
 
 /// What a plan will take.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Estimate {
+pub struct RunEstimate {
     /// Points of all tiles.
     pub points: u64,
     /// Points that are read, those around tiles among them.
@@ -32,8 +32,8 @@ pub struct Estimate {
 
 impl Plan {
     /// Points that a tile reads, about.
-    fn window_points(&self, area: &Area) -> f64 {
-        let share = |block: &Block| {
+    fn window_points(&self, area: &MapArea) -> f64 {
+        let share = |block: &SurveyBlock| {
             let own = block_area(block.at);
             let side = |axis: usize| (area.high[axis].min(own.high[axis]) - area.low[axis].max(own.low[axis])).max(0.0);
             side(0) * side(1) / (CELL * CELL) * block.points as f64
@@ -44,11 +44,11 @@ impl Plan {
     /// What the run will take, about.
     #[must_use]
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "estimates; `as` saturates")]
-    pub fn estimate(&self) -> Estimate {
+    pub fn estimate(&self) -> RunEstimate {
         let windows: Vec<f64> = self.tiles.iter().map(|&tile| self.window_points(&self.window(tile))).collect();
         let most = windows.iter().copied().fold(0.0, f64::max);
         let points: u64 = self.blocks.iter().map(|block| block.points).sum();
-        Estimate {
+        RunEstimate {
             points,
             points_with_halo: windows.iter().sum::<f64>() as u64,
             most_points_of_a_tile: most as u64,

@@ -36,14 +36,14 @@ mod survey;
 mod window;
 
 pub use cell_sizes::{CellSizes, Topic};
-pub use estimate::Estimate;
+pub use estimate::RunEstimate;
 pub use grid::{TileGrid, TileId};
 pub use inputs::InputFile;
 pub use make_balls::make_balls;
 pub use merge::{Merged, merge, merged_within, write_catalogue};
 pub use plan::{Plan, PlanFrame, PlanParams};
 pub use planned::SideFile;
-pub use question::{Question, Radiation};
-pub use record::{Outcome, Record, Stage};
+pub use question::{TileQuestion, TileRadiation};
+pub use record::{Stage, TileOutcome, TileRecord};
 pub use run::{RunParams, RunReport, Shard, Steps, run};
 pub use status::{StageStatus, Status, status};

@@ -5,15 +5,15 @@
 //! at the nearest, and of a distant part only balls are asked that are high enough to block a line that is still free. Lines of sight to observers are asked
 //! in parts as well.
 
-use crate::grid::{Area, TOP_SIDE, TileId, square_area};
-use crate::lines::{Lines, MOST_BALL};
-use crate::obstacles::{BallTile, Found, ball_tiles, may_block, push, rule};
+use crate::grid::{MapArea, TOP_SIDE, TileId, square_area};
+use crate::lines::{AreaLines, MOST_BALL};
+use crate::obstacles::{BallTile, ObstacleSearch, ball_tiles, may_block, push, rule};
 use crate::plan::Plan;
 use crate::planned::Others;
 use crate::strips::Strips;
 use belvedere::Result;
 use belvedere::apps::rows::ObstacleParts;
-use belvedere::apps::tree_light::Crowns;
+use belvedere::apps::tree_light::CrownLight;
 use belvedere::control::Control;
 use belvedere::medial::{MedialBalls, vegetation_of_transmission};
 use belvedere::model::ModelParts;
@@ -29,33 +29,33 @@ const BANDS: [f64; 4] = [64.0, 192.0, 448.0, f64::INFINITY];
 const WORTH_ASKING: usize = 100_000;
 
 /// The balls that may matter for the cells of a tile, of which a part is in memory at a time.
-pub(crate) struct Parts<'a> {
+pub(crate) struct TileObstacles<'a> {
     plan: &'a Plan,
     run: &'a Path,
     /// Where the cells lie.
-    cells: Area,
+    cells: MapArea,
     /// What blocks beside balls.
     others: &'a Others,
     /// Most balls of a part.
     most_balls: usize,
     /// Squares of tiles, nearest first.
     squares: Vec<Vec<BallTile>>,
-    found: Mutex<Found>,
+    found: Mutex<ObstacleSearch>,
 }
 
-impl<'a> Parts<'a> {
+impl<'a> TileObstacles<'a> {
     /// Parts of at most `most_balls` of the balls that may matter for `lines` from the cells of `tile`, and the `others` that block.
     ///
     /// # Errors
     /// [`belvedere::Error::Cancelled`].
     pub(crate) fn around(
         (plan, run, tile): (&'a Plan, &'a Path, TileId),
-        lines: &Lines<'_>,
+        lines: &AreaLines<'_>,
         others: &'a Others,
         most_balls: usize,
         control: &Control<'_>,
     ) -> Result<Self> {
-        let mut found = Found::default();
+        let mut found = ObstacleSearch::default();
         let squares = squares(tile, ball_tiles(plan, run, lines, &mut found, control)?, most_balls);
         Ok(Self { plan, run, cells: lines.targets, others, most_balls, squares, found: Mutex::new(found) })
     }
@@ -66,7 +66,7 @@ impl<'a> Parts<'a> {
     /// Those of `look`, of writing records, and [`belvedere::Error::Cancelled`].
     pub(crate) fn each_scene(
         &self,
-        lines: &Lines<'_>,
+        lines: &AreaLines<'_>,
         control: &Control<'_>,
         mut look: impl FnMut(&MedialScene) -> Result<()>,
     ) -> Result<()> {
@@ -87,20 +87,26 @@ impl<'a> Parts<'a> {
     }
 
     /// The scene of balls that are asked together.
-    fn scene(&self, balls: MedialBalls, found: &mut Found, control: &Control<'_>) -> Result<MedialScene> {
+    fn scene(&self, balls: MedialBalls, found: &mut ObstacleSearch, control: &Control<'_>) -> Result<MedialScene> {
         found.ball_count += balls.len();
         found.most_held = found.most_held.max(balls.len());
         control.stage("indexing balls", balls.len(), || MedialScene::new(&balls, &rule(self.plan)))
     }
 
     /// What became of the balls.
-    pub(crate) fn into_found(self) -> Found {
+    pub(crate) fn into_found(self) -> ObstacleSearch {
         self.found.into_inner().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Takes from `free` what a square of tiles hides, part by part.
-    fn hide(&self, free: &mut Free<'_>, square: &[BallTile], found: &mut Found, control: &Control<'_>) -> Result<()> {
-        let mut part = Part::default();
+    fn hide(
+        &self,
+        free: &mut Free<'_>,
+        square: &[BallTile],
+        found: &mut ObstacleSearch,
+        control: &Control<'_>,
+    ) -> Result<()> {
+        let mut part = BallBatch::default();
         for BallTile { tile, tops, .. } in square {
             control.check()?;
             if free.strips.meeting(tops).is_empty() {
@@ -109,7 +115,7 @@ impl<'a> Parts<'a> {
             let read = control.stage("reading balls", 0, || found.read(self.plan, self.run, *tile, control))?;
             let Some(ModelParts { balls, transmission, .. }) = read else { continue };
             let vegetation = self.plan.trees.map(|_| vegetation_of_transmission(&transmission)).unwrap_or_default();
-            let distance = |center: &[f32; 3]| self.cells.distance(&Area::at(center.map(f64::from)));
+            let distance = |center: &[f32; 3]| self.cells.distance(&MapArea::at(center.map(f64::from)));
             let distances: Vec<f64> = balls.centers.par_iter().map(distance).collect();
             let mut from = f64::NEG_INFINITY;
             for to in BANDS {
@@ -145,8 +151,8 @@ impl<'a> Parts<'a> {
     }
 }
 
-impl ObstacleParts for Parts<'_> {
-    fn crowns(&self) -> Option<Crowns> {
+impl ObstacleParts for TileObstacles<'_> {
+    fn crowns(&self) -> Option<CrownLight> {
         self.plan.trees
     }
 
@@ -195,7 +201,7 @@ struct Free<'a> {
 
 /// Balls that are asked together.
 #[derive(Default)]
-struct Part {
+struct BallBatch {
     opaque: MedialBalls,
     /// Where trees let light through.
     vegetation: MedialBalls,
@@ -203,13 +209,19 @@ struct Part {
     columns: BTreeSet<usize>,
 }
 
-impl Part {
+impl BallBatch {
     fn ball_count(&self) -> usize {
         self.opaque.len() + self.vegetation.len()
     }
 
     /// Takes what the balls hide from `free`, and lets them go.
-    fn hide(&mut self, free: &mut Free<'_>, plan: &Plan, found: &mut Found, control: &Control<'_>) -> Result<()> {
+    fn hide(
+        &mut self,
+        free: &mut Free<'_>,
+        plan: &Plan,
+        found: &mut ObstacleSearch,
+        control: &Control<'_>,
+    ) -> Result<()> {
         if self.ball_count() == 0 {
             return Ok(());
         }

@@ -1,15 +1,15 @@
 //! The plan of a run: everything that a tile must know beside its own points.
 
 use crate::cell_sizes::CellSizes;
-use crate::grid::{Area, TileGrid, TileId, block_area};
-use crate::inputs::{Columns, InputFile, NOWHERE, PIECE_ROWS, hash};
+use crate::grid::{MapArea, TileGrid, TileId, block_area};
+use crate::inputs::{InputFile, NOWHERE, PIECE_ROWS, PointColumns, hash};
 use crate::planned::{Others, SideFile, added_meshes, far_terrain};
-use crate::question::Question;
+use crate::question::TileQuestion;
 use crate::record::Stage;
-use crate::survey::{Block, survey};
+use crate::survey::{SurveyBlock, survey};
 use crate::window;
 use belvedere::apps::targets::{grid_around, set_on_ground};
-use belvedere::apps::tree_light::Crowns;
+use belvedere::apps::tree_light::CrownLight;
 use belvedere::control::Control;
 use belvedere::crs::Crs;
 use belvedere::ground::{Ground, GroundParams};
@@ -79,7 +79,7 @@ pub struct Plan {
     /// Reference system that was given in place of what the files say.
     pub(crate) crs: Option<String>,
     frame: PlanFrame,
-    pub(crate) columns: Columns,
+    pub(crate) columns: PointColumns,
     /// Side of a tile, metres.
     pub tile_size: f64,
     /// Sides of the cells of results.
@@ -87,7 +87,7 @@ pub struct Plan {
     /// How far around a tile points are read, metres.
     pub halo: f64,
     /// What is asked.
-    pub questions: Vec<Question>,
+    pub questions: Vec<TileQuestion>,
     /// Meshes of what is planned, which block beside what was surveyed.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     meshes: Vec<SideFile>,
@@ -102,13 +102,13 @@ pub struct Plan {
     horizon: Option<SideFile>,
     /// Trees, where they let light through.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) trees: Option<Crowns>,
+    pub(crate) trees: Option<CrownLight>,
     /// Tiles that may hold points, from the south-west.
     pub tiles: Vec<TileId>,
     low: [f32; 3],
     high: [f32; 3],
     pub(crate) facts: SurveyFacts,
-    pub(crate) blocks: Vec<Block>,
+    pub(crate) blocks: Vec<SurveyBlock>,
     /// What records name the plan by that they belong to: a fingerprint of its file; empty before it was read from one.
     #[serde(skip)]
     pub(crate) name: String,
@@ -179,11 +179,11 @@ impl Plan {
                 format!("its reference system, {}, is not known to this program; give it with --crs", crs.describe());
             return Err(Error::UnusableCrs { path: inputs[with_crs].path.clone(), what });
         }
-        let columns = Columns::common(&heads);
+        let columns = PointColumns::common(&heads);
         let files: Vec<PathBuf> = inputs.iter().map(|file| file.path.clone()).collect();
         let points = inputs.iter().map(|file| file.points).sum();
         let local = |v: [f64; 3]| [v[0] - origin[0], v[1] - origin[1]];
-        let area = Area { low: local(low), high: local(high) };
+        let area = MapArea { low: local(low), high: local(high) };
         let options = window::options(params.crs.as_deref(), frame.to_frame()?);
         let found = control.stage("surveying", usize::try_from(points).unwrap_or(0), || {
             survey(&files, &options, columns, points, &area, control)
@@ -313,7 +313,7 @@ impl Plan {
     }
 
     /// Files that may have points in `area`.
-    pub(crate) fn files_meeting(&self, area: &Area) -> impl Iterator<Item = &InputFile> {
+    pub(crate) fn files_meeting(&self, area: &MapArea) -> impl Iterator<Item = &InputFile> {
         // what headers round bounds by
         let area = area.widened(0.1);
         let PlanFrame { origin, metres_per_unit, .. } = &self.frame;
@@ -328,12 +328,12 @@ impl Plan {
     }
 
     /// The area whose points a tile needs for its balls.
-    pub(crate) fn window(&self, tile: TileId) -> Area {
+    pub(crate) fn window(&self, tile: TileId) -> MapArea {
         self.grid().core(tile).in_blocks().widened(self.halo)
     }
 
     /// Blocks of 64 m with points that meet `area`.
-    pub(crate) fn blocks_in(&self, area: &Area) -> impl Iterator<Item = &Block> {
+    pub(crate) fn blocks_in(&self, area: &MapArea) -> impl Iterator<Item = &SurveyBlock> {
         area.blocks().filter_map(|at| {
             let place = self.blocks.binary_search_by_key(&at, |block| block.at).ok()?;
             self.blocks.get(place)
@@ -341,7 +341,7 @@ impl Plan {
     }
 
     /// The tiles with cells for the result of a question, from the south-west: all but some at the edge of the survey that only larger cells reach.
-    pub(crate) fn tiles_of(&self, question: &Question) -> Vec<TileId> {
+    pub(crate) fn tiles_of(&self, question: &TileQuestion) -> Vec<TileId> {
         let cell = self.cells.of(question);
         self.tiles.iter().copied().filter(|&tile| self.has_cells(tile, cell)).collect()
     }
@@ -349,7 +349,7 @@ impl Plan {
     /// Tiles with cells for any result.
     pub(crate) fn tiles_with_cells(&self) -> Vec<TileId> {
         let (grid, cell) = (self.grid(), self.cells.largest());
-        let of_block = |block: &Block| {
+        let of_block = |block: &SurveyBlock| {
             let area = block_area(block.at).widened(self.reach(cell));
             let (first, last) = (grid.tile_of(area.low), grid.tile_of(area.high));
             (first.north..=last.north)
@@ -373,9 +373,9 @@ impl Plan {
     /// # Errors
     /// [`Error::InvalidParameter`] for two questions whose results would lie in one folder and for parameters outside their range; those of reading
     /// weather.
-    pub fn with_questions(self, questions: Vec<Question>, control: &Control<'_>) -> Result<Self> {
+    pub fn with_questions(self, questions: Vec<TileQuestion>, control: &Control<'_>) -> Result<Self> {
         let mut names = BTreeSet::from([Stage::Balls.name()]);
-        if let Some(name) = questions.iter().map(Question::name).find(|name| !names.insert(name)) {
+        if let Some(name) = questions.iter().map(TileQuestion::name).find(|name| !names.insert(name)) {
             let (value, expected) = (format!("{name} twice"), "each question once");
             return Err(Error::InvalidParameter { parameter: Parameter::Questions, value, expected });
         }
@@ -407,7 +407,7 @@ impl Plan {
     ///
     /// # Errors
     /// [`Error::MissingAttribute`] for a survey whose pulses do not say what vegetation is.
-    pub fn with_light_through_trees(self, trees: Crowns) -> Result<Self> {
+    pub fn with_light_through_trees(self, trees: CrownLight) -> Result<Self> {
         if !(self.facts.carves && self.facts.measures_crowns) {
             return Err(Error::MissingAttribute {
                 attribute: "return numbers and GPS times",
@@ -437,7 +437,7 @@ impl Plan {
     }
 
     /// What the values of a result are.
-    pub(crate) fn kind_of(&self, question: &Question) -> ResultKind {
+    pub(crate) fn kind_of(&self, question: &TileQuestion) -> ResultKind {
         question.kind(self.trees.is_none())
     }
 
@@ -450,7 +450,7 @@ impl Plan {
         for place in places {
             let Some(grid) = grid_around([*place], origin)? else { continue };
             let corner = [grid.corner[0], grid.corner[1] - grid.cell * grid.height as f64];
-            let area = Area { low: corner, high: [corner[0] + grid.cell * grid.width as f64, grid.corner[1]] };
+            let area = MapArea { low: corner, high: [corner[0] + grid.cell * grid.width as f64, grid.corner[1]] };
             let cloud = window::read(self, &area.widened(GROUND_AROUND), control)?;
             let ground = match Ground::of_cloud(&cloud, grid, &GroundParams::default(), control) {
                 Err(error) if !window::is_nothing(&error) => return Err(error),

@@ -1,13 +1,13 @@
 //! A run: all tiles that are not done yet, one after the other.
 
-use crate::answer::{Surface, Task, answer};
+use crate::answer::{TileSurface, TileTask, answer};
 use crate::grid::TileId;
-use crate::lines::{Lines, tiles};
+use crate::lines::{AreaLines, tiles};
 use crate::make_balls::make_balls;
 use crate::merge::write_catalogue;
 use crate::plan::Plan;
 use crate::planned::Others;
-use crate::record::{Outcome, Record, Stage};
+use crate::record::{Stage, TileOutcome, TileRecord};
 use crate::report::write_report;
 use belvedere::apps::ask::{Remark, remark_on_edge};
 use belvedere::control::Control;
@@ -98,7 +98,7 @@ impl RunReport {
         damaged.chain(unproven).chain(skipped).chain(edge).collect()
     }
 
-    fn count_edge(&mut self, record: &Record) {
+    fn count_edge(&mut self, record: &TileRecord) {
         if let Some(near) = record.near_edge_cells {
             self.cells_near_edge += near;
             self.cells_of_light += record.cells;
@@ -119,7 +119,7 @@ pub fn run(plan: &Plan, folder: &Path, params: &RunParams<'_>, control: &Control
         let value = format!("{number}/{of}");
         return Err(Error::InvalidParameter { parameter: Parameter::Shard, value, expected: "1/N to N/N" });
     }
-    let mut work = Work { plan, folder, params, control, report: RunReport::default() };
+    let mut work = RunWork { plan, folder, params, control, report: RunReport::default() };
     let own = || plan.tiles.iter().copied().skip(number - 1).step_by(of);
     for tile in own() {
         work.balls(tile)?;
@@ -149,10 +149,10 @@ pub fn run(plan: &Plan, folder: &Path, params: &RunParams<'_>, control: &Control
             // other shares may not have come to them
             let core = plan.grid().core(tile);
             let lowest = plan.lowest_of_cells(tile, *cell);
-            for other in tiles(plan, &Lines::of(asked, core, lowest)) {
+            for other in tiles(plan, &AreaLines::of(asked, core, lowest)) {
                 work.missing_balls(other)?;
             }
-            let task = Task { question, asked, others: &others, most_balls };
+            let task = TileTask { question, asked, others: &others, most_balls };
             work.answer(task, tile, &mut last)?;
         }
     }
@@ -163,7 +163,7 @@ pub fn run(plan: &Plan, folder: &Path, params: &RunParams<'_>, control: &Control
     Ok(work.report)
 }
 
-struct Work<'a> {
+struct RunWork<'a> {
     plan: &'a Plan,
     folder: &'a Path,
     params: &'a RunParams<'a>,
@@ -171,10 +171,10 @@ struct Work<'a> {
     report: RunReport,
 }
 
-impl Work<'_> {
+impl RunWork<'_> {
     /// The record of a tile that is done and whose result is still there; what is damaged is named.
-    fn settled(&mut self, stage: Stage<'_>, tile: TileId) -> Option<Record> {
-        let record = Record::read(self.plan, self.folder, stage, tile).filter(Record::is_settled)?;
+    fn settled(&mut self, stage: Stage<'_>, tile: TileId) -> Option<TileRecord> {
+        let record = TileRecord::read(self.plan, self.folder, stage, tile).filter(TileRecord::is_settled)?;
         let Some(damage) = record.damage(self.folder, stage, tile) else { return Some(record) };
         self.report.damaged.push(damage);
         None
@@ -193,14 +193,14 @@ impl Work<'_> {
 
     /// The same for a tile that an answer needs: one that failed before is not tried again.
     fn missing_balls(&mut self, tile: TileId) -> Result<()> {
-        if Record::read(self.plan, self.folder, Stage::Balls, tile).is_none() {
+        if TileRecord::read(self.plan, self.folder, Stage::Balls, tile).is_none() {
             self.attempt(Stage::Balls, tile, || make_balls(self.plan, self.folder, tile, self.control))?;
             self.report.balls_made += 1;
         }
         Ok(())
     }
 
-    fn answer(&mut self, task: Task<'_>, tile: TileId, last: &mut Option<Surface>) -> Result<()> {
+    fn answer(&mut self, task: TileTask<'_>, tile: TileId, last: &mut Option<TileSurface>) -> Result<()> {
         let stage = Stage::Answer(task.question);
         let record = self.attempt(stage, tile, || answer(self.plan, self.folder, task, tile, last, self.control))?;
         self.report.answers_made += 1;
@@ -213,14 +213,19 @@ impl Work<'_> {
     }
 
     /// Does something with a tile, and records how long it took or why it failed.
-    fn attempt(&mut self, stage: Stage<'_>, tile: TileId, work: impl FnOnce() -> Result<Record>) -> Result<Record> {
+    fn attempt(
+        &mut self,
+        stage: Stage<'_>,
+        tile: TileId,
+        work: impl FnOnce() -> Result<TileRecord>,
+    ) -> Result<TileRecord> {
         let start = (self.params.seconds)();
         let mut record = match work() {
             Ok(record) => record,
             Err(Error::Cancelled) => return Err(Error::Cancelled),
             Err(error) => {
                 self.report.failed.push(format!("{} of tile {}: {error}", stage.name(), tile.name()));
-                Record { outcome: Outcome::Failed(error.to_string()), ..Record::default() }
+                TileRecord { outcome: TileOutcome::Failed(error.to_string()), ..TileRecord::default() }
             }
         };
         record.seconds = (self.params.seconds)() - start;

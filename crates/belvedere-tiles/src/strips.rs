@@ -3,7 +3,7 @@
 //! Seen along a direction, the lines from a tile lie side by side in strips. What stands in a strip must be higher than the lowest line there. Few lines reach
 //! far: so most of what stands far away never needs to be looked at, let alone indexed.
 
-use crate::grid::{Area, TOP_SIDE, square_area, square_at};
+use crate::grid::{MapArea, TOP_SIDE, square_area, square_at};
 use crate::lines::{MOST_BALL, ROOM};
 use belvedere::query::FreeLines;
 use rayon::prelude::*;
@@ -28,52 +28,55 @@ const CELL: f64 = TOP_SIDE / PARTS as f64;
 const RADII: [f64; 2] = [1.0, MOST_BALL];
 
 /// The lines of sight in one direction.
-struct Course {
+struct DirectionLines {
     /// Unit vector on the map that they run along.
     along: [f64; 2],
     slope: f64,
     /// Where the first strip begins to the left of that.
     left: f64,
-    strips: Vec<Strip>,
+    strips: Vec<LineStrip>,
 }
 
 /// Lines of sight side by side.
 #[derive(Clone, Copy)]
-struct Strip {
+struct LineStrip {
     /// Where the first starts along the direction.
     start: f64,
     /// Height of the lowest, continued back to where the distance along the direction is zero.
     height: f64,
 }
 
-const NO_LINES: Strip = Strip { start: f64::INFINITY, height: f64::INFINITY };
+const NO_LINES: LineStrip = LineStrip { start: f64::INFINITY, height: f64::INFINITY };
 
 /// Lines of sight that are still free.
 pub(crate) struct Strips {
     width: f64,
     /// Those of each direction.
-    courses: Vec<Course>,
+    courses: Vec<DirectionLines>,
 }
 
 impl Strips {
     /// No lines yet, in `directions` from targets over an area.
-    pub(crate) fn new(directions: &[[f64; 3]], targets: &Area) -> Self {
+    pub(crate) fn new(directions: &[[f64; 3]], targets: &MapArea) -> Self {
         let extent = (targets.high[0] - targets.low[0]).hypot(targets.high[1] - targets.low[1]);
         let width = WIDTH.max(extent / MOST_STRIPS);
-        Self { width, courses: directions.iter().map(|direction| Course::new(*direction, targets, width)).collect() }
+        Self {
+            width,
+            courses: directions.iter().map(|direction| DirectionLines::new(*direction, targets, width)).collect(),
+        }
     }
 
     /// Looks up where the lines of `free` in the directions of `columns` run, which ascend.
     pub(crate) fn look_up(&mut self, free: &FreeLines<'_>, columns: &[usize]) {
         let (width, courses) = (self.width, self.courses.iter_mut().enumerate());
-        let mut looked_up: Vec<(usize, &mut Course)> =
+        let mut looked_up: Vec<(usize, &mut DirectionLines)> =
             courses.filter(|(column, _)| columns.binary_search(column).is_ok()).collect();
         let low_count = looked_up.iter().filter(|(_, course)| course.is_low()).count();
         // where lines reach far each has its own start
         let of_low = (free.target_count() * low_count).div_ceil(MOST_STARTS);
         looked_up.par_chunks_mut(TOGETHER).for_each(|courses| {
             for (is_low, together) in [(true, of_low), (false, NEIGHBOURS)] {
-                let (columns, mut courses): (Vec<usize>, Vec<&mut Course>) = courses
+                let (columns, mut courses): (Vec<usize>, Vec<&mut DirectionLines>) = courses
                     .iter_mut()
                     .filter(|(_, course)| course.is_low() == is_low)
                     .map(|(column, course)| (*column, &mut **course))
@@ -82,7 +85,7 @@ impl Strips {
                 free.each_start(&columns, together, |number, corners, lowest| {
                     let [low, high] = corners.map(|corner| corner.map(f64::from));
                     if let Some(course) = courses.get_mut(number) {
-                        course.add(&Area { low, high }, f64::from(lowest), width);
+                        course.add(&MapArea { low, high }, f64::from(lowest), width);
                     }
                 });
             }
@@ -91,18 +94,20 @@ impl Strips {
 
     /// The columns of the directions in which something on one of the squares of 16 m with the highest `tops` may block a line.
     pub(crate) fn meeting(&self, tops: &[([i32; 2], f32)]) -> Vec<usize> {
-        let squares: Vec<(Area, f64)> =
+        let squares: Vec<(MapArea, f64)> =
             tops.iter().map(|&(number, top)| (square_area(number, TOP_SIDE), f64::from(top))).collect();
-        let meets = |course: &Course| squares.iter().any(|(area, top)| *top >= course.least_top(area, self.width));
+        let meets =
+            |course: &DirectionLines| squares.iter().any(|(area, top)| *top >= course.least_top(area, self.width));
         let courses = self.courses.par_iter().enumerate();
         courses.filter(|(_, course)| meets(course)).map(|(column, _)| column).collect()
     }
 
     /// How high balls on squares of 16 m with the highest `tops` must be to block a line in the directions of any of `columns`.
     pub(crate) fn least_tops(&self, columns: &[usize], tops: &[([i32; 2], f32)]) -> LeastTops {
-        let courses: Vec<&Course> = columns.iter().filter_map(|&column| self.courses.get(column)).collect();
-        let least =
-            |area: &Area| courses.iter().map(|course| course.least_top(area, self.width)).fold(f64::INFINITY, f64::min);
+        let courses: Vec<&DirectionLines> = columns.iter().filter_map(|&column| self.courses.get(column)).collect();
+        let least = |area: &MapArea| {
+            courses.iter().map(|course| course.least_top(area, self.width)).fold(f64::INFINITY, f64::min)
+        };
         let of_square = |&(number, top): &([i32; 2], f32)| {
             let reached = f64::from(top) >= least(&square_area(number, TOP_SIDE).widened(MOST_BALL));
             // numbers in a damaged record may be any
@@ -128,8 +133,8 @@ impl LeastTops {
     }
 }
 
-impl Course {
-    fn new(direction: [f64; 3], targets: &Area, width: f64) -> Self {
+impl DirectionLines {
+    fn new(direction: [f64; 3], targets: &MapArea, width: f64) -> Self {
         let level = direction[0].hypot(direction[1]);
         let slope = direction[2] / level;
         let (along, slope) = if slope < STEEPEST {
@@ -149,7 +154,7 @@ impl Course {
     }
 
     /// From where to where an area reaches along the lines and across.
-    fn spans(&self, area: &Area) -> [[f64; 2]; 2] {
+    fn spans(&self, area: &MapArea) -> [[f64; 2]; 2] {
         [area.span(self.along), area.span([-self.along[1], self.along[0]])]
     }
 
@@ -162,17 +167,17 @@ impl Course {
     }
 
     /// Adds lines that start over an area, none lower than `lowest`.
-    fn add(&mut self, area: &Area, lowest: f64, width: f64) {
+    fn add(&mut self, area: &MapArea, lowest: f64, width: f64) {
         let [[first, last], across] = self.spans(area);
         let met = self.met(across, width);
         let height = lowest - last * self.slope;
         for strip in self.strips.get_mut(met).into_iter().flatten() {
-            *strip = Strip { start: strip.start.min(first), height: strip.height.min(height) };
+            *strip = LineStrip { start: strip.start.min(first), height: strip.height.min(height) };
         }
     }
 
     /// How high something over `area` must be to block a line, local metres.
-    fn least_top(&self, area: &Area, width: f64) -> f64 {
+    fn least_top(&self, area: &MapArea, width: f64) -> f64 {
         let [[near, far], [left, right]] = self.spans(area);
         let met = self.strips.get(self.met([left - ROOM, right + ROOM], width)).unwrap_or_default();
         let ahead = met.iter().filter(|strip| far >= strip.start - ROOM);
@@ -207,7 +212,7 @@ mod tests {
         for count in [3, 300, 40_000] {
             let targets: Vec<[f32; 3]> = (0..count).map(|i| place(3, i, [0.0, 200.0], [0.0, 8.0])).collect();
             let free = FreeLines::new(&targets, &directions).unwrap();
-            let area = Area { low: [0.0; 2], high: [200.0; 2] };
+            let area = MapArea { low: [0.0; 2], high: [200.0; 2] };
             let mut strips = Strips::new(&directions, &area);
             strips.look_up(&free, &columns);
             let balls = MedialBalls {

@@ -21,7 +21,7 @@ const BRIGHTEST: f64 = 0.02;
 
 /// Some points of a square of the map.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Chunk {
+pub(crate) struct PointChunk {
     /// Lowest corner, local metres.
     pub(crate) low: [f32; 3],
     /// Length of a step along each axis, metres.
@@ -32,7 +32,7 @@ pub(crate) struct Chunk {
 
 /// All points in the order in which they are sent.
 pub(crate) struct Chunks {
-    pub(crate) chunks: Vec<Chunk>,
+    pub(crate) chunks: Vec<PointChunk>,
     /// Row of each point sent in the cloud, (N).
     rows: Vec<u32>,
     /// Intensity that is shown as the brightest.
@@ -108,10 +108,10 @@ impl Chunks {
             return self;
         }
         let mut rows = Vec::with_capacity(most);
-        let sampled = |chunk: &Chunk| {
+        let sampled = |chunk: &PointChunk| {
             let first = rows.len();
             rows.extend_from_slice(self.share(chunk, most));
-            Chunk { points: first..rows.len(), ..chunk.clone() }
+            PointChunk { points: first..rows.len(), ..chunk.clone() }
         };
         let chunks = self.chunks.iter().map(sampled).collect();
         Self { chunks, rows, brightest: self.brightest }
@@ -122,7 +122,7 @@ impl Chunks {
         self.chunks.iter().flat_map(move |chunk| self.share(chunk, most)).copied()
     }
 
-    fn share(&self, chunk: &Chunk, most: usize) -> &[u32] {
+    fn share(&self, chunk: &PointChunk, most: usize) -> &[u32] {
         let whole = self.rows.len().max(1);
         &self.rows[chunk.points.start..chunk.points.start + chunk.points.len() * most.min(whole) / whole]
     }
@@ -156,7 +156,7 @@ fn square([x, y, _]: [f32; 3]) -> [i64; 2] {
     [x, y].map(|v| (v / SIDE).floor() as i64)
 }
 
-fn chunk(cloud: &PointCloud, rows: &[u32], first: usize) -> Chunk {
+fn chunk(cloud: &PointCloud, rows: &[u32], first: usize) -> PointChunk {
     let (mut low, mut high) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
     for position in rows.iter().map(|&row| cloud.positions[row as usize]) {
         for axis in 0..3 {
@@ -166,7 +166,7 @@ fn chunk(cloud: &PointCloud, rows: &[u32], first: usize) -> Chunk {
     }
     // a flat chunk must not part by zero
     let step = [0, 1, 2].map(|axis| ((high[axis] - low[axis]) / STEPS).max(1e-6));
-    Chunk { low, step, points: first..first + rows.len() }
+    PointChunk { low, step, points: first..first + rows.len() }
 }
 
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to 16 bits")]

@@ -2,7 +2,7 @@
 
 use crate::chunks::Chunks;
 use crate::page;
-use crate::scene::{Scene, Shown};
+use crate::scene::{PageScene, ShownCloud};
 use crate::scene_text::{SceneText, typed};
 use belvedere::apps::ask::ThroughTrees;
 use belvedere::apps::eyes::fault_of;
@@ -62,8 +62,8 @@ pub fn export(
     control: &Control<'_>,
 ) -> Result<(String, ExportReport)> {
     let chunks = Chunks::new(cloud).sample(MOST_POINTS);
-    let shown = Arc::new(Shown::of(Arc::clone(cloud), chunks));
-    let scene = Scene::new(model, Arc::clone(&shown));
+    let shown = Arc::new(ShownCloud::of(Arc::clone(cloud), chunks));
+    let scene = PageScene::new(model, Arc::clone(&shown));
     let mut sent = PointCloud::in_frame(scene.model().frame().clone());
     sent.positions = scene.shown.chunks.positions(&scene.shown.cloud);
     let suns = match &params.day {
@@ -94,7 +94,7 @@ pub fn export(
 
 /// The suns of the whole hours of a day, and a bit for each point in the order in which points are sent: 1 for lit.
 fn suns(
-    scene: &Scene,
+    scene: &PageScene,
     sent: &PointCloud,
     (date, zone): (Date, &Zone),
     text: &SceneText,
@@ -130,7 +130,12 @@ fn suns(
 }
 
 /// The viewpoints, and two bits for each point in the order in which points are sent: 0 blocked, 1 visible, 2 unproven, 3 no answer.
-fn viewpoints(scene: &Scene, sent: &PointCloud, params: &ExportParams, control: &Control<'_>) -> Result<Vec<Value>> {
+fn viewpoints(
+    scene: &PageScene,
+    sent: &PointCloud,
+    params: &ExportParams,
+    control: &Control<'_>,
+) -> Result<Vec<Value>> {
     if params.viewpoints.is_empty() {
         return Ok(Vec::new());
     }

@@ -7,9 +7,9 @@
 //! The page is embedded in the program. Its sources and the script that bundles them are in `page/`.
 //!
 //! ```no_run
-//! use belvedere_viewer::{Viewer, ViewerParams};
+//! use belvedere_viewer::{PageServer, ViewerParams};
 //!
-//! let viewer = Viewer::start(&ViewerParams::default())?;
+//! let viewer = PageServer::start(&ViewerParams::default())?;
 //! println!("{}", viewer.url());
 //! let loading = viewer.loading();
 //! // read a cloud, show it, build its balls, hand them over
@@ -36,4 +36,4 @@ pub use loading::Loading;
 pub use plans::quoted;
 pub use results::PointsOf;
 pub use scene_text::SceneText;
-pub use server::{Viewer, ViewerParams};
+pub use server::{PageServer, ViewerParams};

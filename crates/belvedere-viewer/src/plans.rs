@@ -1,7 +1,7 @@
 //! What if: plans that were drawn on the page, and the scenes with them.
 
 use crate::replies::Refusal;
-use crate::scene::Scene;
+use crate::scene::PageScene;
 use crate::scene_text::SceneText;
 use belvedere::control::Control;
 use belvedere::io::{Source, read_mesh_in};
@@ -23,7 +23,7 @@ const AREAS: &str = "cleared.geojson";
 /// What was drawn, in the coordinates of the file.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
-pub(crate) struct Plan {
+pub(crate) struct DrawnPlan {
     /// Corners of areas without what stands there now.
     clear: Vec<Vec<[f64; 2]>>,
     buildings: Vec<Building>,
@@ -31,7 +31,7 @@ pub(crate) struct Plan {
     meshes: Vec<usize>,
 }
 
-impl Plan {
+impl DrawnPlan {
     /// Whether there are areas without what stands there now.
     pub(crate) fn is_clearing(&self) -> bool {
         !self.clear.is_empty()
@@ -52,8 +52,8 @@ struct Building {
 /// A plan and the scene with it.
 pub(crate) struct Planned {
     pub(crate) number: usize,
-    plan: Plan,
-    pub(crate) scene: Arc<Scene>,
+    plan: DrawnPlan,
+    pub(crate) scene: Arc<PageScene>,
     /// The scene on command lines.
     pub(crate) text: SceneText,
     pub(crate) report: ClearReport,
@@ -65,10 +65,10 @@ pub(crate) struct Planned {
 
 /// Plans and loaded meshes of all tabs.
 #[derive(Default)]
-pub(crate) struct Plans(Mutex<Kept>);
+pub(crate) struct Plans(Mutex<KeptPlans>);
 
 #[derive(Default)]
-struct Kept {
+struct KeptPlans {
     made: usize,
     plans: Vec<Arc<Planned>>,
     meshes: Vec<(String, Arc<Mesh>)>,
@@ -95,8 +95,8 @@ impl Plans {
     /// The scene with a plan.
     pub(crate) fn make(
         &self,
-        plan: Plan,
-        scene: &Scene,
+        plan: DrawnPlan,
+        scene: &PageScene,
         text: &SceneText,
         control: &Control<'_>,
     ) -> Result<Arc<Planned>, Refusal> {
@@ -156,7 +156,7 @@ impl Plans {
         Ok(planned)
     }
 
-    fn kept(&self) -> MutexGuard<'_, Kept> {
+    fn kept(&self) -> MutexGuard<'_, KeptPlans> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

@@ -1,11 +1,11 @@
 //! Results of commands beside the cloud: points and cells with values, and shapes on the ground.
 
-use crate::replies::Answer;
-use crate::scene::Scene;
+use crate::replies::QuestionReply;
+use crate::scene::PageScene;
 use belvedere::apps::ask::scene::KnownGround;
 use belvedere::cloud::to_local;
 use belvedere::control::Control;
-use belvedere::io::{GeojsonFeature, Georeference, PlacedRaster, PointResults, Shape};
+use belvedere::io::{FeatureShape, GeojsonFeature, Georeference, PlacedRaster, PointResults};
 use belvedere::{Bounds, Error, Frame, Result};
 use serde_json::{Value, json};
 use std::path::Path;
@@ -37,16 +37,16 @@ pub enum PointsOf {
 }
 
 /// What a file of results holds, local metres on the map.
-pub(crate) enum Results {
+pub(crate) enum ResultsFile {
     Points { positions: Vec<[f32; 3]>, columns: Vec<(String, Vec<f32>)> },
     Cells(PlacedRaster),
-    Shapes(Vec<Shape>),
+    Shapes(Vec<FeatureShape>),
 }
 
 /// A file of results.
 pub(crate) struct ResultFile {
     name: String,
-    results: Results,
+    results: ResultsFile,
     /// Whether it is shown before anybody chooses it.
     is_shown_first: bool,
 }
@@ -65,7 +65,7 @@ impl ResultFile {
         check_places(path, results.places.iter().map(|&place| frame.local_from_file(place)), bounds)?;
         let local = |&place: &[f64; 3]| to_local(frame.local_from_file(place), [0.0; 3]);
         let positions = results.places.iter().map(local).collect();
-        let results = Results::Points { positions, columns: results.columns };
+        let results = ResultsFile::Points { positions, columns: results.columns };
         Ok(Self { name: named(path), results, is_shown_first: points == PointsOf::Other })
     }
 
@@ -82,7 +82,7 @@ impl ResultFile {
         let size = [raster.values.width(), raster.values.height()];
         let all = (0..size[1]).flat_map(|row| (0..size[0]).map(move |column| [column, row]));
         check_places(path, all.map(|cell| center(place, cell, frame)).map(|[x, y]| [x, y, 0.0]), bounds)?;
-        Ok(Self { name: named(path), results: Results::Cells(raster), is_shown_first: true })
+        Ok(Self { name: named(path), results: ResultsFile::Cells(raster), is_shown_first: true })
     }
 
     /// Shapes in absolute metres.
@@ -95,38 +95,38 @@ impl ResultFile {
         frame: &Frame,
         bounds: &Bounds,
     ) -> Result<Self> {
-        let shapes: Vec<Shape> = features.into_iter().map(|feature| feature.shape).collect();
+        let shapes: Vec<FeatureShape> = features.into_iter().map(|feature| feature.shape).collect();
         let corners = shapes.iter().flat_map(|shape| match shape {
-            Shape::Point(place) => vec![*place],
-            Shape::Line(corners) => corners.clone(),
-            Shape::Polygon(rings) => rings.concat(),
+            FeatureShape::Point(place) => vec![*place],
+            FeatureShape::Line(corners) => corners.clone(),
+            FeatureShape::Polygon(rings) => rings.concat(),
         });
         check_places(path, corners.map(|corner| std::array::from_fn(|i| corner[i] - frame.origin[i])), bounds)?;
-        Ok(Self { name: named(path), results: Results::Shapes(shapes), is_shown_first: false })
+        Ok(Self { name: named(path), results: ResultsFile::Shapes(shapes), is_shown_first: false })
     }
 
     /// What the menu of the page needs.
     pub(crate) fn describe(&self) -> Value {
         let columns: Vec<&str> = match &self.results {
-            Results::Points { columns, .. } => columns.iter().map(|(name, _)| name.as_str()).collect(),
-            Results::Cells(_) => vec![""],
-            Results::Shapes(_) => Vec::new(),
+            ResultsFile::Points { columns, .. } => columns.iter().map(|(name, _)| name.as_str()).collect(),
+            ResultsFile::Cells(_) => vec![""],
+            ResultsFile::Shapes(_) => Vec::new(),
         };
-        json!({ "name": self.name, "columns": columns, "covers_cloud": matches!(self.results, Results::Points { .. }), "is_shown_first": self.is_shown_first })
+        json!({ "name": self.name, "columns": columns, "covers_cloud": matches!(self.results, ResultsFile::Points { .. }), "is_shown_first": self.is_shown_first })
     }
 
     /// Places and values, or lines. What has no height lies on the ground of the scene.
-    pub(crate) fn drawn(&self, scene: &Scene, control: &Control<'_>) -> Result<Answer> {
+    pub(crate) fn drawn(&self, scene: &PageScene, control: &Control<'_>) -> Result<QuestionReply> {
         let on_ground = OnGround { ground: scene.ground(control).ok(), low: f64::from(scene.model().bounds().low[2]) };
         let frame = scene.model().frame();
         match &self.results {
-            Results::Points { positions, columns } => Ok(layer(positions, columns, None)),
-            Results::Cells(raster) => Ok(cells(raster, frame, &on_ground)),
-            Results::Shapes(shapes) => {
+            ResultsFile::Points { positions, columns } => Ok(layer(positions, columns, None)),
+            ResultsFile::Cells(raster) => Ok(cells(raster, frame, &on_ground)),
+            ResultsFile::Shapes(shapes) => {
                 let segments = shapes.iter().flat_map(|shape| segments(shape, frame, &on_ground));
                 let body: Vec<u8> =
                     segments.flatten().flat_map(|place| to_local(place, [0.0; 3])).flat_map(f32::to_le_bytes).collect();
-                Ok(Answer { head: json!({ "lines": body.len() / 24 }), body })
+                Ok(QuestionReply { head: json!({ "lines": body.len() / 24 }), body })
             }
         }
     }
@@ -171,7 +171,7 @@ impl OnGround {
     }
 }
 
-fn cells(raster: &PlacedRaster, frame: &Frame, on_ground: &OnGround) -> Answer {
+fn cells(raster: &PlacedRaster, frame: &Frame, on_ground: &OnGround) -> QuestionReply {
     let Some(place) = &raster.place else { return layer(&[], &[], None) };
     let (width, height) = (raster.values.width(), raster.values.height());
     let stride = (1..).find(|stride| width.div_ceil(*stride) * height.div_ceil(*stride) <= MOST_CELLS).unwrap_or(1);
@@ -189,7 +189,7 @@ fn cells(raster: &PlacedRaster, frame: &Frame, on_ground: &OnGround) -> Answer {
 }
 
 /// Eight bytes for each point as chunks have them, and a byte for the value of each column: 0 for the least, 253 for the greatest, 255 for none.
-fn layer(positions: &[[f32; 3]], columns: &[(String, Vec<f32>)], size: Option<f64>) -> Answer {
+fn layer(positions: &[[f32; 3]], columns: &[(String, Vec<f32>)], size: Option<f64>) -> QuestionReply {
     let end = |pick: fn(f32, f32) -> f32, start: f32| {
         positions.iter().fold([start; 3], |end, place| std::array::from_fn(|i| pick(end[i], place[i])))
     };
@@ -225,24 +225,24 @@ fn layer(positions: &[[f32; 3]], columns: &[(String, Vec<f32>)], size: Option<f6
         }));
     }
     let head = json!({ "count": positions.len(), "low": low, "step": step, "size_m": size, "columns": described });
-    Answer { head, body }
+    QuestionReply { head, body }
 }
 
 /// The lines that draw a shape, local metres: pairs of ends. Lines without heights follow the ground, points stand on it as pins.
-fn segments(shape: &Shape, frame: &Frame, on_ground: &OnGround) -> Vec<[[f64; 3]; 2]> {
+fn segments(shape: &FeatureShape, frame: &Frame, on_ground: &OnGround) -> Vec<[[f64; 3]; 2]> {
     let local = |place: &[f64; 3]| {
         let [x, y, z] = std::array::from_fn(|i| place[i] - frame.origin[i]);
         [x, y, if z.is_finite() { z } else { on_ground.height([x, y]) }]
     };
     match shape {
-        Shape::Point(place) => {
+        FeatureShape::Point(place) => {
             let [x, y, z] = local(place);
             let top = [x, y, z + PIN];
             let bar = |dx: f64, dy: f64| [[x - dx, y - dy, z + PIN], [x + dx, y + dy, z + PIN]];
             vec![[[x, y, z], top], bar(0.4, 0.0), bar(0.0, 0.4)]
         }
-        Shape::Line(corners) => line(corners, &local, on_ground),
-        Shape::Polygon(rings) => rings.iter().flat_map(|ring| line(ring, &local, on_ground)).collect(),
+        FeatureShape::Line(corners) => line(corners, &local, on_ground),
+        FeatureShape::Polygon(rings) => rings.iter().flat_map(|ring| line(ring, &local, on_ground)).collect(),
     }
 }
 

@@ -4,9 +4,9 @@ use crate::guard::Guard;
 use crate::loading::Loading;
 use crate::page;
 use crate::plans::Plans;
-use crate::questions::{self, Asked};
-use crate::replies::{Answer, Refusal, binary, refused};
-use crate::scene::Scene;
+use crate::questions::{self, RequestContext};
+use crate::replies::{QuestionReply, Refusal, binary, refused};
+use crate::scene::PageScene;
 use crate::scene_text::SceneText;
 use crate::server::ViewerParams;
 use axum::body::Bytes;
@@ -35,7 +35,7 @@ const MOST_QUESTIONS: usize = 24;
 const POLICY: &str = "default-src 'self'; img-src 'self' blob: data:; style-src 'self' 'unsafe-inline'; frame-ancestors 'none'; base-uri 'none'; form-action 'none'";
 
 /// What all requests share.
-struct Shared {
+struct ServerState {
     loading: Loading,
     text: SceneText,
     title: String,
@@ -46,7 +46,7 @@ struct Shared {
 }
 
 pub(crate) fn app(guard: Arc<Guard>, loading: Loading, params: &ViewerParams) -> Router {
-    let shared = Shared {
+    let shared = ServerState {
         loading,
         text: params.scene.clone(),
         title: params.title.clone(),
@@ -99,7 +99,7 @@ fn file(path: &str) -> Response {
     }
 }
 
-async fn state(State(shared): State<Arc<Shared>>) -> Json<Value> {
+async fn state(State(shared): State<Arc<ServerState>>) -> Json<Value> {
     let now = shared.loading.read();
     let stage = now.stages.current();
     Json(json!({
@@ -115,22 +115,22 @@ async fn state(State(shared): State<Arc<Shared>>) -> Json<Value> {
     }))
 }
 
-async fn points(State(shared): State<Arc<Shared>>, Path((_, chunk)): Path<(String, usize)>) -> Response {
+async fn points(State(shared): State<Arc<ServerState>>, Path((_, chunk)): Path<(String, usize)>) -> Response {
     let shown = shared.loading.now().shown;
     off_thread(move || shown.and_then(|shown| shown.chunks.points(chunk, &shown.cloud))).await
 }
 
-async fn colors(State(shared): State<Arc<Shared>>, Path((_, chunk)): Path<(String, usize)>) -> Response {
+async fn colors(State(shared): State<Arc<ServerState>>, Path((_, chunk)): Path<(String, usize)>) -> Response {
     let shown = shared.loading.now().shown;
     off_thread(move || shown.and_then(|shown| shown.chunks.colors(chunk, &shown.cloud))).await
 }
 
-async fn balls(State(shared): State<Arc<Shared>>) -> Response {
+async fn balls(State(shared): State<Arc<ServerState>>) -> Response {
     let scene = shared.loading.now().scene;
     off_thread(move || scene.map(|scene| questions::balls(&scene))).await
 }
 
-async fn meshes(State(shared): State<Arc<Shared>>, Path((_, mesh)): Path<(String, usize)>) -> Response {
+async fn meshes(State(shared): State<Arc<ServerState>>, Path((_, mesh)): Path<(String, usize)>) -> Response {
     let meshes = shared.loading.now().meshes;
     off_thread(move || meshes.get(mesh).map(|mesh| mesh.to_vec())).await
 }
@@ -166,12 +166,12 @@ impl Drop for StopWhenDropped {
     }
 }
 
-async fn ask(state: State<Arc<Shared>>, Path((_, name)): Path<(String, String)>, request: Request) -> Response {
+async fn ask(state: State<Arc<ServerState>>, Path((_, name)): Path<(String, String)>, request: Request) -> Response {
     answer(state, None, name, request).await
 }
 
 async fn ask_of_plan(
-    state: State<Arc<Shared>>,
+    state: State<Arc<ServerState>>,
     Path((_, plan, name)): Path<(String, usize, String)>,
     request: Request,
 ) -> Response {
@@ -179,7 +179,12 @@ async fn ask_of_plan(
 }
 
 /// Answers a question of the scene as it is, or of that with a plan.
-async fn answer(State(shared): State<Arc<Shared>>, plan: Option<usize>, name: String, request: Request) -> Response {
+async fn answer(
+    State(shared): State<Arc<ServerState>>,
+    plan: Option<usize>,
+    name: String,
+    request: Request,
+) -> Response {
     let body = match body(request, "application/json", MOST_BYTES).await {
         Ok(body) => body,
         Err(response) => return response,
@@ -188,13 +193,13 @@ async fn answer(State(shared): State<Arc<Shared>>, plan: Option<usize>, name: St
     in_turn(&shared, move |scene, control| {
         let planned = plan.map(|number| plans.get(number)).transpose()?;
         let (scene, text) = planned.as_ref().map_or((scene, &text), |planned| (&*planned.scene, &planned.text));
-        questions::answer(&name, &body, &Asked { scene, text, plans: &plans, control })
+        questions::answer(&name, &body, &RequestContext { scene, text, plans: &plans, control })
     })
     .await
 }
 
 /// What is drawn of a file of results.
-async fn results(State(shared): State<Arc<Shared>>, Path((_, number)): Path<(String, usize)>) -> Response {
+async fn results(State(shared): State<Arc<ServerState>>, Path((_, number)): Path<(String, usize)>) -> Response {
     let Some(file) = shared.loading.now().results.get(number).cloned() else {
         return refused(StatusCode::NOT_FOUND, "there is no such file of results");
     };
@@ -203,7 +208,7 @@ async fn results(State(shared): State<Arc<Shared>>, Path((_, number)): Path<(Str
 
 /// Takes a mesh file for plans.
 async fn plan_mesh(
-    State(shared): State<Arc<Shared>>,
+    State(shared): State<Arc<ServerState>>,
     Path((_, name)): Path<(String, String)>,
     request: Request,
 ) -> Response {
@@ -214,7 +219,7 @@ async fn plan_mesh(
     let plans = Arc::clone(&shared.plans);
     in_turn(&shared, move |scene, _| {
         let number = plans.load(&name, &body, scene.model().frame())?;
-        Ok(Answer::of(json!({ "mesh": number, "name": name })))
+        Ok(QuestionReply::of(json!({ "mesh": number, "name": name })))
     })
     .await
 }
@@ -238,8 +243,8 @@ async fn body(request: Request, kind: &str, most: usize) -> Result<Bytes, Respon
 
 /// Does work on the scene when its turn comes, and stops when nobody waits for it any more.
 async fn in_turn(
-    shared: &Shared,
-    work: impl FnOnce(&Scene, &Control<'_>) -> Result<Answer, Refusal> + Send + 'static,
+    shared: &ServerState,
+    work: impl FnOnce(&PageScene, &Control<'_>) -> Result<QuestionReply, Refusal> + Send + 'static,
 ) -> Response {
     let Some(scene) = shared.loading.now().scene else {
         return refused(StatusCode::SERVICE_UNAVAILABLE, "the scene is not ready yet");

@@ -2,9 +2,9 @@
 
 use crate::asked_points::{AskedPoints, SAMPLE};
 use crate::chunks::Chunks;
-use crate::questions::Roofs;
+use crate::questions::RoofPlanes;
 use belvedere::apps::ask::scene::KnownGround;
-use belvedere::apps::ask::{self, Cells, North, SunPlace};
+use belvedere::apps::ask::{self, GridCells, North, SunPlace};
 use belvedere::apps::eyes::fault_of;
 use belvedere::apps::sun::Site;
 use belvedere::control::Control;
@@ -17,7 +17,7 @@ use serde_json::{Value, json};
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// A cloud, and its points as the page gets them.
-pub(crate) struct Shown {
+pub(crate) struct ShownCloud {
     pub(crate) cloud: Arc<PointCloud>,
     pub(crate) chunks: Chunks,
     /// What the page must know before it draws.
@@ -25,20 +25,20 @@ pub(crate) struct Shown {
 }
 
 /// The scene that questions are put to, with what the page shows of it.
-pub(crate) struct Scene {
+pub(crate) struct PageScene {
     pub(crate) asked: ask::Scene,
-    pub(crate) shown: Arc<Shown>,
+    pub(crate) shown: Arc<ShownCloud>,
     /// For each point that is shown its row among those that are there; `None` where no plan clears any.
     rows_there: Option<Vec<u32>>,
-    points: Kept<AskedPoints>,
-    sample: Kept<AskedPoints>,
-    roofs: Kept<Roofs>,
+    points: LazyResult<AskedPoints>,
+    sample: LazyResult<AskedPoints>,
+    roofs: LazyResult<RoofPlanes>,
 }
 
 /// Something that is made when first needed, and can fail.
-struct Kept<T>(Mutex<Option<Arc<T>>>);
+struct LazyResult<T>(Mutex<Option<Arc<T>>>);
 
-impl<T> Kept<T> {
+impl<T> LazyResult<T> {
     fn new() -> Self {
         Self(Mutex::new(None))
     }
@@ -54,7 +54,7 @@ impl<T> Kept<T> {
     }
 }
 
-impl Shown {
+impl ShownCloud {
     pub(crate) fn new(cloud: Arc<PointCloud>) -> Self {
         let chunks = Chunks::new(&cloud);
         Self::of(cloud, chunks)
@@ -100,14 +100,21 @@ impl Shown {
     }
 }
 
-impl Scene {
-    pub(crate) fn new(model: SceneModel, shown: Arc<Shown>) -> Self {
+impl PageScene {
+    pub(crate) fn new(model: SceneModel, shown: Arc<ShownCloud>) -> Self {
         let cloud = Arc::clone(&shown.cloud);
         Self::of(ask::Scene::new(model, cloud), shown)
     }
 
-    fn of(asked: ask::Scene, shown: Arc<Shown>) -> Self {
-        Self { asked, shown, rows_there: None, points: Kept::new(), sample: Kept::new(), roofs: Kept::new() }
+    fn of(asked: ask::Scene, shown: Arc<ShownCloud>) -> Self {
+        Self {
+            asked,
+            shown,
+            rows_there: None,
+            points: LazyResult::new(),
+            sample: LazyResult::new(),
+            roofs: LazyResult::new(),
+        }
     }
 
     pub(crate) fn model(&self) -> &SceneModel {
@@ -154,8 +161,8 @@ impl Scene {
         let _ = self.blockers(UnprovenAs::Visible, &control);
         if !self.asked.cloud().is_empty() {
             let _ = self.ground(&control);
-            let _ = self.points(Points::Sample, &control);
-            let _ = self.points(Points::All, &control);
+            let _ = self.points(PointChoice::Sample, &control);
+            let _ = self.points(PointChoice::All, &control);
         }
         if let Ok(proving) = self.blockers(UnprovenAs::Reported, &control) {
             let _ = proving.proof().map(|proof| proof.prepare_all(&control));
@@ -193,7 +200,7 @@ impl Scene {
     }
 
     /// The points that a question about all of the cloud asks about.
-    pub(crate) fn points(&self, points: Points, control: &Control<'_>) -> Result<Arc<AskedPoints>> {
+    pub(crate) fn points(&self, points: PointChoice, control: &Control<'_>) -> Result<Arc<AskedPoints>> {
         let cloud = self.cloud()?;
         let chunks = &self.shown.chunks;
         let place = |row: u32| match &self.rows_there {
@@ -201,19 +208,19 @@ impl Scene {
             None => Some(row),
         };
         match points {
-            Points::All => self.points.get(|| Ok(AskedPoints::all(cloud, chunks, place))),
-            Points::Sample => self.sample.get(|| AskedPoints::sample(cloud, chunks, place, control)),
+            PointChoice::All => self.points.get(|| Ok(AskedPoints::all(cloud, chunks, place))),
+            PointChoice::Sample => self.sample.get(|| AskedPoints::sample(cloud, chunks, place, control)),
         }
     }
 
     /// The ground of the cloud on the grid that the command line takes.
     pub(crate) fn ground(&self, control: &Control<'_>) -> Result<Arc<KnownGround>> {
-        self.asked.ground(Cells::default().grid(&self.asked)?, GroundPoints::Auto, control)
+        self.asked.ground(GridCells::default().grid(&self.asked)?, GroundPoints::Auto, control)
     }
 
     /// The planes of roofs.
-    pub(crate) fn roofs(&self, control: &Control<'_>) -> Result<Arc<Roofs>> {
-        self.roofs.get(|| Roofs::of(self, control))
+    pub(crate) fn roofs(&self, control: &Control<'_>) -> Result<Arc<RoofPlanes>> {
+        self.roofs.get(|| RoofPlanes::of(self, control))
     }
 
     /// Where the scene lies on earth.
@@ -255,7 +262,7 @@ fn rows_there(cloud: &PointCloud, kept: &PointCloud) -> Vec<u32> {
 /// Which points of the cloud are asked about.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub(crate) enum Points {
+pub(crate) enum PointChoice {
     #[default]
     All,
     /// A fair sample, which answers for its neighbours.

@@ -34,7 +34,7 @@ pub struct ViewerParams {
 
 /// A running server. It ends when it is dropped.
 #[derive(Debug)]
-pub struct Viewer {
+pub struct PageServer {
     guard: Arc<Guard>,
     loading: Loading,
     runtime: Option<Runtime>,
@@ -46,7 +46,7 @@ impl std::fmt::Debug for Loading {
     }
 }
 
-impl Viewer {
+impl PageServer {
     /// Begins to serve a page without a scene on 127.0.0.1.
     ///
     /// # Errors
@@ -84,7 +84,7 @@ impl Viewer {
     }
 }
 
-impl Drop for Viewer {
+impl Drop for PageServer {
     fn drop(&mut self) {
         // a question under way is left behind: nothing of it is written
         if let Some(runtime) = self.runtime.take() {

@@ -17,7 +17,7 @@ use belvedere::normals::OrientedCloud;
 use belvedere::random::uniform;
 use belvedere::vector::{cross, length, sub, unit};
 use belvedere::view::{View, to_sun};
-use belvedere_scenes::{Material, Scene, TownParams, Truth, town};
+use belvedere_scenes::{Material, TownParams, TriangleScene, Truth, town};
 
 /// The ground is a sheet without thickness: a ball below it touches nothing. Its underside is put this far below, metres.
 const UNDERSIDE: f64 = 3.0;
@@ -107,7 +107,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 }
 
 /// Points on all triangles, evenly at random, as many as a grid of `spacing` metres would have, with outward normals.
-fn sampled(scene: &Scene, spacing: f64) -> (Vec<[f64; 3]>, Vec<[f32; 3]>) {
+fn sampled(scene: &TriangleScene, spacing: f64) -> (Vec<[f64; 3]>, Vec<[f32; 3]>) {
     let (mut positions, mut normals) = (Vec::new(), Vec::new());
     let mut owed = 0.0;
     let mut draw = 0;

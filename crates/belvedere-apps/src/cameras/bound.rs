@@ -8,7 +8,7 @@
 //! # Source
 //! Galvão & ReVelle 1996 (Lagrangean relaxation of maximal covering), Held, Wolfe & Crowder 1974 (subgradients), Camerini, Fratta & Maffioli 1975 (their direction).
 
-use super::problem::{Problem, Selection, TOLERANCE};
+use super::problem::{CameraSelection, Problem, TOLERANCE};
 use belvedere_data::Result;
 use belvedere_data::control::Control;
 use rayon::prelude::*;
@@ -24,16 +24,16 @@ const LEAST_STEP: f64 = 1e-4;
 
 /// What is decided of a candidate.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Fate {
+pub(super) enum CandidateFate {
     Open,
     In,
     Out,
 }
 
 /// Candidates with what is decided of each, and how many more may be chosen.
-pub(super) struct Question<'q> {
+pub(super) struct BranchNode<'q> {
     pub(super) problem: &'q Problem<'q>,
-    pub(super) fates: &'q [Fate],
+    pub(super) fates: &'q [CandidateFate],
     pub(super) left: usize,
 }
 
@@ -62,22 +62,23 @@ struct AtPrices {
     picked: Vec<usize>,
 }
 
-impl Question<'_> {
+impl BranchNode<'_> {
     fn at(&self, prices: &[f64]) -> AtPrices {
-        let covered_by = |(camera, fate): (usize, &Fate)| match fate {
-            Fate::Out => 0.0,
+        let covered_by = |(camera, fate): (usize, &CandidateFate)| match fate {
+            CandidateFate::Out => 0.0,
             _ => self.problem.table.covered_by(camera).map(|target| prices[target]).sum(),
         };
         let covered: Vec<f64> = self.fates.par_iter().enumerate().with_min_len(CHUNK).map(covered_by).collect();
-        let with = |fate: Fate| (0..self.fates.len()).filter(move |&camera| self.fates[camera] == fate);
-        let mut picked: Vec<usize> = with(Fate::Open).collect();
+        let with = |fate: CandidateFate| (0..self.fates.len()).filter(move |&camera| self.fates[camera] == fate);
+        let mut picked: Vec<usize> = with(CandidateFate::Open).collect();
         if self.left < picked.len() {
             let order = |a: &usize, b: &usize| covered[*b].total_cmp(&covered[*a]).then(a.cmp(b));
             picked.select_nth_unstable_by(self.left, order);
             picked.truncate(self.left);
         }
         let free: f64 = self.problem.worth.iter().zip(prices).map(|(worth, price)| worth - price).sum();
-        let covered_all: f64 = with(Fate::In).chain(picked.iter().copied()).map(|camera| covered[camera]).sum();
+        let covered_all: f64 =
+            with(CandidateFate::In).chain(picked.iter().copied()).map(|camera| covered[camera]).sum();
         AtPrices { bound: f64::from(self.problem.required) * free + covered_all, covered, picked }
     }
 
@@ -90,8 +91,8 @@ impl Question<'_> {
         control: &Control<'_>,
     ) -> Result<Relaxation> {
         let problem = self.problem;
-        let ins: Vec<usize> = (0..self.fates.len()).filter(|&camera| self.fates[camera] == Fate::In).collect();
-        let base = Selection::of(problem, &ins);
+        let ins: Vec<usize> = (0..self.fates.len()).filter(|&camera| self.fates[camera] == CandidateFate::In).collect();
+        let base = CameraSelection::of(problem, &ins);
         let mut at = self.at(&prices);
         let mut found = Relaxation {
             bound: at.bound,
@@ -161,7 +162,7 @@ impl Question<'_> {
 }
 
 /// Prices that are the worth of what a selection leaves open.
-pub(super) fn prices_of(selection: &Selection<'_>) -> Vec<f64> {
+pub(super) fn prices_of(selection: &CameraSelection<'_>) -> Vec<f64> {
     let problem = selection.problem;
     let price = |(count, worth): (&u32, &f64)| if *count < problem.required { *worth } else { 0.0 };
     selection.counts.iter().zip(&problem.worth).map(price).collect()

@@ -144,14 +144,14 @@ pub struct Camera {
     /// Distances that it is good for, and the directions that it sees, by turning or by its lens.
     pub limits: SightLimits,
     /// The flat picture of a camera that is not turned.
-    pub picture: Option<Picture>,
+    pub picture: Option<PictureDirection>,
     /// Pixels per metre at a range of one metre; `None` where density is no question.
     pub density: Option<f64>,
 }
 
 /// Where a flat picture is turned to.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Picture {
+pub struct PictureDirection {
     /// Azimuth of its middle, radians clockwise from grid north.
     pub heading: f64,
     /// Angle of its middle below the horizon, radians.
@@ -160,7 +160,7 @@ pub struct Picture {
     pub half: [f64; 2],
 }
 
-impl Picture {
+impl PictureDirection {
     /// Whether a direction, of any length, is in the picture.
     #[must_use]
     pub fn holds(&self, direction: [f64; 3]) -> bool {
@@ -179,7 +179,8 @@ impl Camera {
     pub fn fixed(eye: [f64; 3], heading: f64, tilt: f64, lens: &Lens, distance: [f64; 2]) -> Self {
         let limits = SightLimits { distance, ..SightLimits::default() };
         if lens.is_flat() {
-            let picture = Picture { heading, tilt, half: [(lens.width / 2.0).tan(), (lens.height() / 2.0).tan()] };
+            let picture =
+                PictureDirection { heading, tilt, half: [(lens.width / 2.0).tan(), (lens.height() / 2.0).tan()] };
             return Self { eye, limits, picture: Some(picture), density: lens.density() };
         }
         let azimuth = (lens.width < TAU - 1e-9).then(|| [heading - lens.width / 2.0, heading + lens.width / 2.0]);

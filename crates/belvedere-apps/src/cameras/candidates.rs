@@ -86,7 +86,7 @@ pub struct Mount {
 
 /// A camera with its heading and tilt, for reports; NaN for one that turns or sees all around.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Pose {
+pub struct CameraPose {
     /// The camera.
     pub camera: Camera,
     /// Azimuth that it looks to, radians clockwise from grid north.
@@ -102,7 +102,7 @@ impl MountingParams {
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] for angles, pixels and distances outside their range.
-    pub fn poses_at(&self, mount: &Mount) -> Result<Vec<Pose>> {
+    pub fn poses_at(&self, mount: &Mount) -> Result<Vec<CameraPose>> {
         let lens = Lens { width: mount.width.unwrap_or(self.lens.width), ..self.lens };
         lens.validate()?;
         let distance = [0, 1].map(|i| mount.distance[i].unwrap_or(self.distance[i]));
@@ -110,7 +110,7 @@ impl MountingParams {
         limits.validate()?;
         if self.motion == Motion::Turning {
             let camera = Camera::turning(mount.eye, &lens, limits);
-            return Ok(vec![Pose { camera, heading: f64::NAN, tilt: f64::NAN, width: lens.width }]);
+            return Ok(vec![CameraPose { camera, heading: f64::NAN, tilt: f64::NAN, width: lens.width }]);
         }
         let invalid = |parameter, value: String, expected| Err(Error::InvalidParameter { parameter, value, expected });
         if self.headings == 0 || self.headings > 360 {
@@ -131,7 +131,7 @@ impl MountingParams {
             }
             let camera = Camera::fixed(mount.eye, heading, tilt, &lens, distance);
             let heading = if sees_all_around { f64::NAN } else { heading };
-            poses.push(Pose { camera, heading, tilt, width: lens.width });
+            poses.push(CameraPose { camera, heading, tilt, width: lens.width });
         }
         Ok(poses)
     }
@@ -140,7 +140,7 @@ impl MountingParams {
     ///
     /// # Errors
     /// Those of [`MountingParams::poses_at`], and [`Error::InvalidParameter`] for a place that leaves open where its camera looks.
-    pub fn existing_at(&self, mount: &Mount) -> Result<Pose> {
+    pub fn existing_at(&self, mount: &Mount) -> Result<CameraPose> {
         match self.poses_at(mount)?[..] {
             [pose] => Ok(pose),
             _ => Err(Error::InvalidParameter {

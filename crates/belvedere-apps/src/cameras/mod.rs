@@ -20,9 +20,9 @@ mod search;
 mod sights;
 mod table;
 
-pub use camera::{Camera, Lens, Level, Picture};
+pub use camera::{Camera, Lens, Level, PictureDirection};
 pub use candidates::{
-    CAMERA_HEIGHT, CAMERA_TARGET_HEIGHT, Motion, Mount, MountingParams, Pose, ROOF_CAMERA_HEIGHT, WeightedArea,
+    CAMERA_HEIGHT, CAMERA_TARGET_HEIGHT, CameraPose, Motion, Mount, MountingParams, ROOF_CAMERA_HEIGHT, WeightedArea,
     counted_weights, ground_places, keep_within, roof_places,
 };
 pub use placement::{Goal, Placement, PlacementParams, place_cameras};

@@ -1,8 +1,8 @@
 //! Which cameras to choose.
 
-use super::bound::{Best, Fate, Question, prices_of};
+use super::bound::{Best, BranchNode, CandidateFate, prices_of};
 use super::greedy::{exchange, fill};
-use super::problem::{Problem, Selection, TOLERANCE};
+use super::problem::{CameraSelection, Problem, TOLERANCE};
 use super::search::{improve, search};
 use super::table::CoverageTable;
 use belvedere_data::control::Control;
@@ -115,7 +115,7 @@ pub fn place_cameras(
         let expected = "the number of a camera of the table, counted from 0";
         return Err(Error::InvalidParameter { parameter: Parameter::ExistingCamera, value: bad.to_string(), expected });
     }
-    let solver = Solver::new(&problem, params);
+    let solver = PlacementSolver::new(&problem, params);
     match params.goal {
         Goal::Count(count) => {
             let found = solver.most_with(count, &|_, _| false, control)?;
@@ -126,42 +126,48 @@ pub fn place_cameras(
 }
 
 /// A problem with what is decided of it from the start.
-struct Solver<'a> {
+struct PlacementSolver<'a> {
     problem: &'a Problem<'a>,
     existing: Vec<usize>,
     candidates: Vec<usize>,
-    fates: Vec<Fate>,
+    fates: Vec<CandidateFate>,
     limit: usize,
 }
 
 /// The best selection for a number of cameras.
-struct Found {
+struct BestSelection {
     best: Best,
     bound: f64,
     branches: usize,
 }
 
-impl<'a> Solver<'a> {
+impl<'a> PlacementSolver<'a> {
     fn new(problem: &'a Problem<'a>, params: &PlacementParams) -> Self {
-        let mut fates = vec![Fate::Open; problem.table.camera_count()];
-        params.existing.iter().for_each(|&camera| fates[camera] = Fate::In);
-        let with = |fate: Fate| (0..fates.len()).filter(|&camera| fates[camera] == fate).collect::<Vec<usize>>();
+        let mut fates = vec![CandidateFate::Open; problem.table.camera_count()];
+        params.existing.iter().for_each(|&camera| fates[camera] = CandidateFate::In);
+        let with =
+            |fate: CandidateFate| (0..fates.len()).filter(|&camera| fates[camera] == fate).collect::<Vec<usize>>();
         let (cameras, targets) = (problem.table.camera_count(), problem.table.target_count());
         let looks = LOOKS_PER_BRANCH * (problem.table.pair_count() + targets + cameras * targets.div_ceil(64)).max(1);
         let limit = params.search_limit.unwrap_or((MOST_LOOKS / looks).min(MOST_BRANCHES));
-        Self { problem, existing: with(Fate::In), candidates: with(Fate::Open), limit, fates }
+        Self { problem, existing: with(CandidateFate::In), candidates: with(CandidateFate::Open), limit, fates }
     }
 
     /// The most that `count` new cameras cover, as far as it is found; stops early where `is_enough` of a value and a bound.
-    fn most_with(&self, count: usize, is_enough: &dyn Fn(f64, f64) -> bool, control: &Control<'_>) -> Result<Found> {
+    fn most_with(
+        &self,
+        count: usize,
+        is_enough: &dyn Fn(f64, f64) -> bool,
+        control: &Control<'_>,
+    ) -> Result<BestSelection> {
         let (problem, fixed) = (self.problem, self.existing.len());
-        let mut selection = Selection::of(problem, &self.existing);
+        let mut selection = CameraSelection::of(problem, &self.existing);
         fill(&mut selection, &self.candidates, |selection| selection.chosen.len() >= fixed + count, control)?;
         let prices = prices_of(&selection);
         exchange(&mut selection, fixed, &self.candidates, control)?;
         let value = selection.value();
         let mut best = Best { chosen: selection.chosen, value };
-        let question = Question { problem, fates: &self.fates, left: count };
+        let question = BranchNode { problem, fates: &self.fates, left: count };
         let mut root = question.relax(prices, ROUNDS, &mut best, control)?;
         for _ in 0..RESTARTS {
             for picked in [root.picked.clone(), best.chosen.clone()] {
@@ -179,7 +185,7 @@ impl<'a> Solver<'a> {
             search(problem, self.fates.clone(), count, root, &mut best, how, control)?
         };
         let bound = problem.rounded_down(bound).max(best.value);
-        Ok(Found { best, bound, branches })
+        Ok(BestSelection { best, bound, branches })
     }
 
     /// The fewest new cameras that cover `share`, as far as they are found, and a number below which none do.
@@ -195,10 +201,13 @@ impl<'a> Solver<'a> {
             return invalid(value, "at most what all candidates cover: lower it, or add candidates");
         }
         let fixed = self.existing.len();
-        let mut selection = Selection::of(self.problem, &self.existing);
+        let mut selection = CameraSelection::of(self.problem, &self.existing);
         fill(&mut selection, &self.candidates, |selection| selection.value() >= goal, control)?;
-        let mut best =
-            Found { bound: reachable, best: Best { value: selection.value(), chosen: selection.chosen }, branches: 0 };
+        let mut best = BestSelection {
+            bound: reachable,
+            best: Best { value: selection.value(), chosen: selection.chosen },
+            branches: 0,
+        };
         let (mut least, mut branches) = (0, 0);
         let mut count = best.best.chosen.len() - fixed;
         let mut is_proven_above = false;
@@ -227,11 +236,11 @@ impl<'a> Solver<'a> {
         let (mut low, mut high) = (0, most);
         while low < high {
             let count = low.midpoint(high);
-            let mut selection = Selection::of(self.problem, &self.existing);
+            let mut selection = CameraSelection::of(self.problem, &self.existing);
             let enough = self.existing.len() + count;
             fill(&mut selection, &self.candidates, |selection| selection.chosen.len() >= enough, control)?;
             let mut best = Best { value: selection.value(), chosen: selection.chosen.clone() };
-            let question = Question { problem: self.problem, fates: &self.fates, left: count };
+            let question = BranchNode { problem: self.problem, fates: &self.fates, left: count };
             let bound = question.relax(prices_of(&selection), ROUNDS, &mut best, control)?.bound;
             if self.problem.rounded_down(bound) < goal { low = count + 1 } else { high = count }
         }
@@ -240,7 +249,7 @@ impl<'a> Solver<'a> {
 
     fn reachable(&self) -> f64 {
         let all: Vec<usize> = (0..self.fates.len()).collect();
-        Selection::of(self.problem, &all).value()
+        CameraSelection::of(self.problem, &all).value()
     }
 
     /// The result, with the cameras in the order of what they add.
@@ -252,11 +261,12 @@ impl<'a> Solver<'a> {
         branches: usize,
         control: &Control<'_>,
     ) -> Result<Placement> {
-        let new: Vec<usize> = chosen.iter().copied().filter(|&camera| self.fates[camera] == Fate::Open).collect();
-        let mut selection = Selection::of(self.problem, &self.existing);
+        let new: Vec<usize> =
+            chosen.iter().copied().filter(|&camera| self.fates[camera] == CandidateFate::Open).collect();
+        let mut selection = CameraSelection::of(self.problem, &self.existing);
         let fixed = self.existing.len();
         let mut curve = Vec::with_capacity(new.len() + 1);
-        let note = |selection: &Selection<'_>| {
+        let note = |selection: &CameraSelection<'_>| {
             curve.push(selection.value());
             selection.chosen.len() >= fixed + new.len()
         };

@@ -1,7 +1,7 @@
 //! What cameras cover: lines of sight for what is in their pictures.
 
 use super::camera::Camera;
-use super::candidates::Pose;
+use super::candidates::CameraPose;
 use super::table::{CoverageTable, check_size};
 use crate::targets::Targets;
 use crate::viewshed::{Observer, SightLimits, ViewshedParams, viewshed};
@@ -96,7 +96,7 @@ pub fn coverage(
     control: &Control<'_>,
 ) -> Result<(CoverageTable, CoverageReport)> {
     check_size(cameras.len(), targets.len())?;
-    let asked = Asked { scene, targets, eastward: eastward(targets), params };
+    let asked = TargetQuery { scene, targets, eastward: eastward(targets), params };
     let groups: Vec<&[Camera]> = cameras.chunk_by(|a, b| a.eye == b.eye).collect();
     let rows: Vec<(Vec<u64>, CoverageReport)> =
         groups.par_iter().map(|group| asked.rows(group, control)).collect::<Result<_>>()?;
@@ -143,7 +143,7 @@ pub fn sees_private(
 /// Those of [`coverage`].
 pub fn leave_out_private(
     scene: &MedialScene,
-    poses: &mut Vec<Pose>,
+    poses: &mut Vec<CameraPose>,
     private: &Targets,
     earth: &EarthParams,
     control: &Control<'_>,
@@ -155,7 +155,7 @@ pub fn leave_out_private(
 }
 
 /// Targets, and how they are asked about.
-struct Asked<'a> {
+struct TargetQuery<'a> {
     scene: &'a MedialScene,
     targets: &'a Targets,
     eastward: Vec<(f32, u32)>,
@@ -173,7 +173,7 @@ fn eastward(targets: &Targets) -> Vec<(f32, u32)> {
     order
 }
 
-impl Asked<'_> {
+impl TargetQuery<'_> {
     /// The rows of cameras at one place.
     fn rows(&self, cameras: &[Camera], control: &Control<'_>) -> Result<(Vec<u64>, CoverageReport)> {
         control.check()?;

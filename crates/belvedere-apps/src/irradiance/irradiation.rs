@@ -158,7 +158,7 @@ pub(super) fn on_plane(
         }
     }
     let first = radiation.sun_directions.len();
-    let (mut sky, mut horizon) = (Seen::default(), Seen::default());
+    let (mut sky, mut horizon) = (SeenWeights::default(), SeenWeights::default());
     let group_count = groups.len();
     for (patch, (&direction, &solid_angle)) in
         radiation.sky.directions.iter().zip(&radiation.sky.solid_angles).enumerate()
@@ -201,12 +201,12 @@ pub(super) fn on_plane(
 
 /// Weights of all directions and of those seen.
 #[derive(Clone, Copy, Default)]
-struct Seen {
+struct SeenWeights {
     all: f64,
     seen: f64,
 }
 
-impl Seen {
+impl SeenWeights {
     fn add(&mut self, weight: f64, is_free: bool) {
         self.all += weight;
         if is_free {

@@ -87,8 +87,8 @@ pub fn patch_radiation(
     patches: &mut Vec<f64>,
 ) {
     patches.clear();
-    let shape =
-        sky_state(irradiance, zenith, extraterrestrial).map(|state| Shape::new(state.class, state.brightness, zenith));
+    let shape = sky_state(irradiance, zenith, extraterrestrial)
+        .map(|state| RadianceShape::new(state.class, state.brightness, zenith));
     let mut level = 0.0;
     for (&direction, &solid_angle) in sky.directions.iter().zip(&sky.solid_angles) {
         let radiance = shape.as_ref().map_or(1.0, |shape| shape.radiance(direction[2], dot(direction, sun)));
@@ -100,7 +100,7 @@ pub fn patch_radiation(
 }
 
 /// How radiance varies over the sky.
-struct Shape {
+struct RadianceShape {
     a: f64,
     b: f64,
     c: f64,
@@ -108,7 +108,7 @@ struct Shape {
     e: f64,
 }
 
-impl Shape {
+impl RadianceShape {
     fn new(class: usize, brightness: f64, zenith: f64) -> Self {
         let mut brightness = brightness.clamp(BRIGHTNESS[0], BRIGHTNESS[1]);
         if (1..=4).contains(&class) {

@@ -4,10 +4,10 @@ use super::ClearSky;
 use super::instants::{clear_instants, weather_instants};
 use super::irradiation::{Irradiation, irradiation};
 use super::period::{Instant, IrradianceParams, PeriodRadiation, PeriodReport};
-use crate::rows::{Obstacles, Surroundings, check_normals, fold_rows, normals_of};
+use crate::rows::{Obstacles, SkyObstacles, check_normals, fold_rows, normals_of};
 use crate::sun::{Date, Site, Zone};
 use crate::targets::Targets;
-use crate::tree_light::{Crowns, Season};
+use crate::tree_light::{CrownLight, Season};
 use belvedere_data::control::Control;
 use belvedere_data::weather::Weather;
 use belvedere_data::{Error, Result};
@@ -52,7 +52,7 @@ pub struct SeasonRadiation {
 pub fn period_seasons(
     source: &RadiationSource<'_>,
     site: &Site,
-    crowns: Option<Crowns>,
+    crowns: Option<CrownLight>,
     params: &IrradianceParams,
     control: &Control<'_>,
 ) -> Result<(Vec<SeasonRadiation>, PeriodReport)> {
@@ -129,7 +129,7 @@ fn split_year(year: i16, zone: &Zone, share: impl Fn(Date) -> f64) -> Result<Vec
 /// # Errors
 /// Those of [`fold_rows`] and [`irradiation`]; [`Error::NoPoints`] without any season.
 pub fn season_irradiation<'a>(
-    obstacles: impl Into<Surroundings<'a>>,
+    obstacles: impl Into<SkyObstacles<'a>>,
     targets: &Targets,
     seasons: &[SeasonRadiation],
     control: &Control<'_>,

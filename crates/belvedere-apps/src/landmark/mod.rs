@@ -215,7 +215,7 @@ pub fn landmark_views(
     if landmark.pieces.is_empty() {
         return Err(Error::NoPoints { what: "the landmark has no surface".to_owned() });
     }
-    let places = Places::new(landmark, params);
+    let places = LandmarkPieces::new(landmark, params);
     let look = |&eye: &[f64; 3]| {
         control.check()?;
         let view = if !eye.iter().all(|v| v.is_finite()) {
@@ -237,14 +237,14 @@ pub fn landmark_views(
 }
 
 /// Where the pieces of a landmark are asked about, in trees that serve all eyes.
-struct Places {
+struct LandmarkPieces {
     /// For eyes before the face of a piece.
     fronts: TargetTree,
     /// For eyes behind it, where these count.
     backs: TargetTree,
 }
 
-impl Places {
+impl LandmarkPieces {
     fn new(landmark: &SurfacePieces, params: &LandmarkParams) -> Self {
         let both = params.faces.back_faces == BackFaces::BothSides || landmark.sides == Sides::Both;
         let lifted = |side: f64| -> Vec<[f32; 3]> {

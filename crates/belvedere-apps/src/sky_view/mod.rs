@@ -4,7 +4,7 @@ mod directions;
 
 pub use directions::SkyDirections;
 
-use crate::rows::{Surroundings, check_normals, fold_rows, normals_of};
+use crate::rows::{SkyObstacles, check_normals, fold_rows, normals_of};
 use crate::targets::{Measure, Targets};
 use crate::tree_light::through_crowns;
 use belvedere_core::query::VisibilityMatrix;
@@ -56,7 +56,7 @@ impl SkyView {
 /// # Errors
 /// Those of [`fold_rows`] and [`sky_view`].
 pub fn scene_sky_view<'a>(
-    obstacles: impl Into<Surroundings<'a>>,
+    obstacles: impl Into<SkyObstacles<'a>>,
     targets: &Targets,
     sky: &SkyDirections,
     control: &Control<'_>,

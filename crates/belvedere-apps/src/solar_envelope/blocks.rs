@@ -9,12 +9,12 @@ const LEAST_HEIGHT: f64 = 1e-3;
 
 /// Vertices that are shared where they are the same number for number.
 #[derive(Default)]
-struct Builder {
+struct VertexMerger {
     mesh: Mesh,
     known: HashMap<[u64; 3], u32>,
 }
 
-impl Builder {
+impl VertexMerger {
     fn vertex(&mut self, place: [f64; 3]) -> u32 {
         let count = u32::try_from(self.mesh.vertices.len()).unwrap_or(u32::MAX);
         // zero has two signs
@@ -100,7 +100,7 @@ impl SolarEnvelope {
                 expected: "limited, to be a solid; give a maximum height",
             });
         }
-        let mut builder = Builder::default();
+        let mut builder = VertexMerger::default();
         let mut blocks: HashMap<usize, [f64; 2]> = HashMap::new();
         for column in self.columns.iter().filter(|column| column.height() >= LEAST_HEIGHT) {
             if column.footprint.is_whole {
@@ -130,7 +130,13 @@ impl SolarEnvelope {
     }
 
     /// Top, bottom and those parts of the walls of a whole cell that no neighbour covers.
-    fn block(&self, column: &EnvelopeColumn, span: [f64; 2], blocks: &HashMap<usize, [f64; 2]>, builder: &mut Builder) {
+    fn block(
+        &self,
+        column: &EnvelopeColumn,
+        span: [f64; 2],
+        blocks: &HashMap<usize, [f64; 2]>,
+        builder: &mut VertexMerger,
+    ) {
         let width = self.grid.width;
         let (x, y) = (column.footprint.cell % width, column.footprint.cell / width);
         let at = |x: Option<usize>, y: Option<usize>| {

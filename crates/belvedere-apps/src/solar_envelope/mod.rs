@@ -14,7 +14,7 @@ mod strip;
 pub use convex::ConvexPolygon;
 pub(crate) use instants::check_hours;
 pub use instants::{EnvelopeSun, envelope_suns};
-pub use parcel::{Footprint, Parcel};
+pub use parcel::{Parcel, ParcelCell};
 pub(crate) use protected::check_fence;
 pub use protected::{ProtectedPiece, protected_faces, protected_line};
 
@@ -26,7 +26,7 @@ use belvedere_data::vector::{dot, length};
 use belvedere_data::{Error, Parameter, Result};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
-use strip::Strip;
+use strip::ShadingStrip;
 
 /// A sun that stands this near to the zenith shades nothing beside a thing: cosine of its elevation.
 const OVERHEAD: f64 = 1e-9;
@@ -79,7 +79,7 @@ pub struct SolarEnvelope {
 #[derive(Clone, Debug, PartialEq)]
 pub struct EnvelopeColumn {
     /// The part of the cell.
-    pub footprint: Footprint,
+    pub footprint: ParcelCell,
     /// Height of the ground in the middle of the cell, local metres.
     pub ground: f64,
     /// Height of the envelope, local metres, the ground at least; infinite where nothing bounds it. It holds over the whole footprint, so
@@ -221,7 +221,7 @@ fn strips(
     direction: [f64; 3],
     is_free: impl Fn(usize) -> bool,
     report: &mut EnvelopeReport,
-) -> Vec<(Strip, usize)> {
+) -> Vec<(ShadingStrip, usize)> {
     let across = direction[0].hypot(direction[1]);
     let to_sun = [direction[0] / across, direction[1] / across];
     let slope = direction[2] / across;
@@ -238,7 +238,7 @@ fn strips(
         if across < OVERHEAD {
             continue;
         }
-        let mut add = |a, b| strips.push((Strip::new(a, b, to_sun, slope), number));
+        let mut add = |a, b| strips.push((ShadingStrip::new(a, b, to_sun, slope), number));
         // over a face the bound is linear too, hence least at its rim
         match piece.corners[..] {
             [a] => add(a, a),
@@ -251,7 +251,7 @@ fn strips(
 }
 
 /// Lowers the columns of one row of cells to what the strips of a sun allow.
-fn bound(columns: &mut [EnvelopeColumn], grid: &MapGrid, strips: &[(Strip, usize)], sun: usize) {
+fn bound(columns: &mut [EnvelopeColumn], grid: &MapGrid, strips: &[(ShadingStrip, usize)], sun: usize) {
     let (Some(first), Some(last)) = (columns.first(), columns.last()) else { return };
     let column_of = |column: &EnvelopeColumn| column.footprint.cell % grid.width;
     let row = first.footprint.cell / grid.width;

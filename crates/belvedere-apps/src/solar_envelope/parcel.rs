@@ -19,7 +19,7 @@ pub struct Parcel {
 
 /// The part of a cell of a grid that lies on a parcel.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Footprint {
+pub struct ParcelCell {
     /// Number of the cell, rows from the north.
     pub cell: usize,
     /// Pieces that make it up: the square itself where the cell lies wholly on the parcel.
@@ -114,7 +114,7 @@ impl Parcel {
 
     /// The cells of `grid` that have a part on the parcel, in their order.
     #[must_use]
-    pub fn footprints(&self, grid: &MapGrid) -> Vec<Footprint> {
+    pub fn footprints(&self, grid: &MapGrid) -> Vec<ParcelCell> {
         let mut footprints = Vec::new();
         let cell_area = grid.cell * grid.cell;
         for row in 0..grid.height {
@@ -142,7 +142,7 @@ impl Parcel {
                     pieces = vec![ConvexPolygon::of_box([west, south], [east, north])];
                     area = cell_area;
                 }
-                footprints.push(Footprint { cell: row * grid.width + column, pieces, area, is_whole });
+                footprints.push(ParcelCell { cell: row * grid.width + column, pieces, area, is_whole });
             }
         }
         footprints

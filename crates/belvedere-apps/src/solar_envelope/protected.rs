@@ -101,7 +101,7 @@ pub(crate) fn check_fence(fence: f64, spacing: f64) -> Result<()> {
 /// The pieces of a surface, such as facades, each asked a little outside of itself (`lift`, metres); the source is the number of the face.
 #[must_use]
 pub fn protected_faces(surface: &SurfacePieces, lift: f64) -> Vec<ProtectedPiece> {
-    let of_piece = |piece: &belvedere_core::query::Piece| ProtectedPiece {
+    let of_piece = |piece: &belvedere_core::query::SurfacePiece| ProtectedPiece {
         corners: piece.corners.map(|corner| corner.map(f64::from)).to_vec(),
         normal: Some(piece.normal.map(f64::from)),
         sample: piece.lifted_along_normal(lift),

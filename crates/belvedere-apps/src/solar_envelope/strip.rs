@@ -10,7 +10,7 @@ const TOUCH: f64 = 1e-9;
 
 /// The strip of the map from which things shade a protected edge at one sun, and the plane of heights above it up to which they do not.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Strip {
+pub(super) struct ShadingStrip {
     start: [f64; 3],
     along: [f64; 3],
     /// Unit vector on the map to the sun.
@@ -21,7 +21,7 @@ pub(super) struct Strip {
     across: f64,
 }
 
-impl Strip {
+impl ShadingStrip {
     /// The strip of the edge from `a` to `b`, local metres, at a sun that stands in the direction `to_sun` on the map, with the tangent of
     /// its elevation.
     pub(super) fn new(a: [f64; 3], b: [f64; 3], to_sun: [f64; 2], slope: f64) -> Self {

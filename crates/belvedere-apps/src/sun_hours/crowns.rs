@@ -1,6 +1,6 @@
 //! Hours of sun where crowns of trees let a share of it through.
 
-use super::stretches::{Lit, Run, runs_of};
+use super::stretches::{DayStretch, Lit, runs_of};
 use super::{CHUNK, ROUNDING, SunHours, SunHoursParams, sun_hours};
 use crate::sun::SunSchedule;
 use belvedere_core::query::VisibilityMatrix;
@@ -39,9 +39,10 @@ pub fn sun_hours_through_crowns(
             expected: "0 (opaque) to 1",
         });
     }
-    let days: Vec<(Vec<Run>, f64)> = schedule.days.iter().map(runs_of).zip(transmissivities.iter().copied()).collect();
+    let days: Vec<(Vec<DayStretch>, f64)> =
+        schedule.days.iter().map(runs_of).zip(transmissivities.iter().copied()).collect();
     let count = schedule.directions.len();
-    let sums: Vec<Sum> = (0..all.target_count())
+    let sums: Vec<CrownSum> = (0..all.target_count())
         .into_par_iter()
         .with_min_len(CHUNK)
         .map_init(
@@ -54,13 +55,13 @@ pub fn sun_hours_through_crowns(
                         faces && matrix.is_free(target, params.first_direction + number)
                     });
                 }
-                Sum::over(&days, free, through, params.sufficient_hours - ROUNDING)
+                CrownSum::over(&days, free, through, params.sufficient_hours - ROUNDING)
             },
         )
         .collect();
     let (day_count, possible) = (schedule.days.len().max(1) as f64, schedule.possible_hours());
     #[expect(clippy::cast_possible_truncation, reason = "hours of a day and shares of one")]
-    let column = |of: &dyn Fn(&Sum) -> f64| sums.iter().map(|sum| of(sum) as f32).collect();
+    let column = |of: &dyn Fn(&CrownSum) -> f64| sums.iter().map(|sum| of(sum) as f32).collect();
     found.hours = column(&|sum| sum.total / day_count);
     found.share = column(&|sum| if possible > 0.0 { (sum.total / possible).min(1.0) } else { f64::NAN });
     found.least = column(&|sum| sum.least);
@@ -69,14 +70,14 @@ pub fn sun_hours_through_crowns(
 }
 
 /// What is summed up at one target.
-struct Sum {
+struct CrownSum {
     total: f64,
     least: f64,
     days: u32,
 }
 
-impl Sum {
-    fn over(days: &[(Vec<Run>, f64)], free: &Lit, through: &Lit, sufficient: f64) -> Self {
+impl CrownSum {
+    fn over(days: &[(Vec<DayStretch>, f64)], free: &Lit, through: &Lit, sufficient: f64) -> Self {
         let mut sum = Self { total: 0.0, least: 24.0, days: 0 };
         for (runs, share) in days {
             let [free, through] = [free, through].map(|lit| runs.iter().map(|run| lit_hours(run, lit)).sum::<f64>());
@@ -90,7 +91,7 @@ impl Sum {
 }
 
 /// Hours of a run that are lit.
-fn lit_hours(run: &Run, lit: &Lit) -> f64 {
+fn lit_hours(run: &DayStretch, lit: &Lit) -> f64 {
     let (mut hours, mut from) = (0.0, run.first);
     while from < run.end {
         let start = lit.next_lit(from).min(run.end);

@@ -14,7 +14,7 @@ use belvedere_core::query::VisibilityMatrix;
 use belvedere_data::vector::dot;
 use belvedere_data::{Error, Parameter, Result};
 use rayon::prelude::*;
-use stretches::{Lit, Run, runs_of};
+use stretches::{DayStretch, Lit, runs_of};
 
 /// What rasters of hours of sun, and of whether a rule is met, say of themselves.
 pub const SUN_HOURS: &str = "hours of sun a day";
@@ -108,8 +108,8 @@ pub fn sun_hours(
     let sufficient = params.sufficient_hours - ROUNDING;
     let day_count = schedule.days.len().max(1) as f64;
     let possible = schedule.possible_hours();
-    let days: Vec<Vec<Run>> = schedule.days.iter().map(runs_of).collect();
-    let sums: Vec<Sum> = (0..matrix.target_count())
+    let days: Vec<Vec<DayStretch>> = schedule.days.iter().map(runs_of).collect();
+    let sums: Vec<TargetSum> = (0..matrix.target_count())
         .into_par_iter()
         .with_min_len(CHUNK)
         .map_init(
@@ -120,13 +120,13 @@ pub fn sun_hours(
                     let faces = normal.is_none_or(|normal| dot(normal, schedule.directions[number]) > 0.0);
                     faces && matrix.is_free(target, columns.start + number)
                 });
-                Sum::over(&days, lit, sufficient)
+                TargetSum::over(&days, lit, sufficient)
             },
         )
         .collect();
     #[expect(clippy::cast_possible_truncation, reason = "hours of a day and shares of one")]
-    let column = |of: &dyn Fn(&Sum) -> f64| sums.iter().map(|sum| of(sum) as f32).collect();
-    let if_lit = |sum: &Sum, value: f64| if sum.total > 0.0 { value } else { f64::NAN };
+    let column = |of: &dyn Fn(&TargetSum) -> f64| sums.iter().map(|sum| of(sum) as f32).collect();
+    let if_lit = |sum: &TargetSum, value: f64| if sum.total > 0.0 { value } else { f64::NAN };
     Ok(SunHours {
         hours: column(&|sum| sum.total / day_count),
         share: column(&|sum| if possible > 0.0 { (sum.total / possible).min(1.0) } else { f64::NAN }),
@@ -139,7 +139,7 @@ pub fn sun_hours(
 }
 
 /// What is summed up at one target.
-struct Sum {
+struct TargetSum {
     total: f64,
     least: f64,
     first: f32,
@@ -148,8 +148,8 @@ struct Sum {
     days: u32,
 }
 
-impl Sum {
-    fn over(days: &[Vec<Run>], lit: &Lit, sufficient: f64) -> Self {
+impl TargetSum {
+    fn over(days: &[Vec<DayStretch>], lit: &Lit, sufficient: f64) -> Self {
         let mut sum =
             Self { total: 0.0, least: 24.0, first: f32::INFINITY, last: f32::NEG_INFINITY, longest: 0.0, days: 0 };
         for runs in days {

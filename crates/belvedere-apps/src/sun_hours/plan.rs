@@ -1,10 +1,10 @@
 //! Suns of a period and of rules, asked about together, and the measures that follow.
 
 use super::{RULE_IS_MET, SUN_HOURS, SunHours, SunHoursParams, SunRule, sun_hours, sun_hours_through_crowns};
-use crate::rows::{RowBlock, Surroundings, check_normals, fold_rows, normals_of};
+use crate::rows::{RowBlock, SkyObstacles, check_normals, fold_rows, normals_of};
 use crate::sun::{Site, SunSchedule};
 use crate::targets::{Measure, ResultKind, Targets};
-use crate::tree_light::{Crowns, Season};
+use crate::tree_light::{CrownLight, Season};
 use belvedere_data::control::Control;
 use belvedere_data::{Error, Result};
 
@@ -88,7 +88,7 @@ impl SunSums {
         plan: &SunPlan,
         block: &RowBlock,
         normals: Option<&[[f32; 3]]>,
-        crowns: Option<(Crowns, &Site)>,
+        crowns: Option<(CrownLight, &Site)>,
     ) -> Result<()> {
         let normals = normals_of(normals, &block.rows);
         let of = |schedule: &SunSchedule, params: &SunHoursParams| match (&block.without_trees, crowns) {
@@ -151,7 +151,7 @@ impl SunSums {
 /// # Errors
 /// Those of [`fold_rows`] and [`SunSums::add`], and [`Error::MissingAttribute`] for trees without a site.
 pub fn scene_sun_hours<'a>(
-    obstacles: impl Into<Surroundings<'a>>,
+    obstacles: impl Into<SkyObstacles<'a>>,
     targets: &Targets,
     plan: &SunPlan,
     site: Option<&Site>,

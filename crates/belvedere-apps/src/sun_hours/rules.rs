@@ -32,13 +32,13 @@ pub struct SunRule {
 }
 
 /// A rule with a name: name, name of its column, days, hours, least elevation in degrees, what it asks for.
-struct Named(&'static str, &'static str, RuleDays, f64, f64, &'static str);
+struct NamedRule(&'static str, &'static str, RuleDays, f64, f64, &'static str);
 
 const EIGHT_MONTHS: RuleDays = RuleDays::Each([[2, 19], [10, 21]]);
 
-const NAMED: [Named; 4] = [
-    Named("nl-light", "nl_light", EIGHT_MONTHS, 2.0, 0.0, "2 h a day from 19 February to 21 October (TNO, light)"),
-    Named(
+const NAMED: [NamedRule; 4] = [
+    NamedRule("nl-light", "nl_light", EIGHT_MONTHS, 2.0, 0.0, "2 h a day from 19 February to 21 October (TNO, light)"),
+    NamedRule(
         "nl-strict",
         "nl_strict",
         RuleDays::Each([[1, 21], [11, 22]]),
@@ -46,7 +46,7 @@ const NAMED: [Named; 4] = [
         0.0,
         "3 h a day from 21 January to 22 November (TNO, strict)",
     ),
-    Named(
+    NamedRule(
         "the-hague",
         "the_hague",
         EIGHT_MONTHS,
@@ -54,7 +54,7 @@ const NAMED: [Named; 4] = [
         10.0,
         "2 h a day from 19 February to 21 October with the sun above 10 degrees (The Hague)",
     ),
-    Named(
+    NamedRule(
         "bre-equinox",
         "bre_equinox",
         RuleDays::On([3, 21]),
@@ -78,7 +78,8 @@ impl SunRule {
     /// not exist.
     pub fn parse(text: &str) -> Result<Self> {
         let text = text.trim();
-        if let Some(Named(name, _, days, hours, degrees, description)) = NAMED.iter().find(|named| named.0 == text) {
+        if let Some(NamedRule(name, _, days, hours, degrees, description)) = NAMED.iter().find(|named| named.0 == text)
+        {
             return Ok(Self {
                 name: (*name).to_owned(),
                 description: (*description).to_owned(),

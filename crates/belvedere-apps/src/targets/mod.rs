@@ -52,12 +52,12 @@ pub struct Targets {
     /// Rows of the targets of each route, window or object; empty where each target is on its own.
     pub groups: Vec<Range<usize>>,
     /// What targets are.
-    pub layout: Layout,
+    pub layout: TargetLayout,
 }
 
 /// What targets are, with what is needed to write their values.
 #[derive(Clone, Debug)]
-pub enum Layout {
+pub enum TargetLayout {
     /// Cells of a grid, row by row from the north, and the heights that they stand on.
     Cells(Box<Ground>),
     /// Points.
@@ -70,16 +70,16 @@ impl Targets {
     /// The points of `cloud`, all of them and in their order. They are turned as `normals`, (M, 3), say; level without.
     #[must_use]
     pub fn of_points(cloud: &PointCloud, normals: Option<Vec<[f32; 3]>>) -> Self {
-        Self::at(cloud.frame.clone(), cloud.positions.clone(), normals, Layout::Points)
+        Self::at(cloud.frame.clone(), cloud.positions.clone(), normals, TargetLayout::Points)
     }
 
     /// Places in local metres, level; one that is not finite is not asked about.
     #[must_use]
     pub fn of_places(places: &[[f64; 3]], frame: Frame) -> Self {
-        Self::at(frame, places.iter().map(|&place| to_f32(place)).collect(), None, Layout::Points)
+        Self::at(frame, places.iter().map(|&place| to_f32(place)).collect(), None, TargetLayout::Points)
     }
 
-    fn at(frame: Frame, positions: Vec<[f32; 3]>, normals: Option<Vec<[f32; 3]>>, layout: Layout) -> Self {
+    fn at(frame: Frame, positions: Vec<[f32; 3]>, normals: Option<Vec<[f32; 3]>>, layout: TargetLayout) -> Self {
         Self { frame, positions, normals, weights: Vec::new(), groups: Vec::new(), layout }
     }
 
@@ -111,7 +111,7 @@ impl Targets {
     #[must_use]
     pub fn ground(&self) -> Option<&Ground> {
         match &self.layout {
-            Layout::Cells(ground) => Some(ground),
+            TargetLayout::Cells(ground) => Some(ground),
             _ => None,
         }
     }
@@ -224,7 +224,7 @@ mod tests {
 
     #[test]
     fn groups_weigh_their_known_targets_and_keep_their_extremes() {
-        let mut targets = Targets::at(Frame::default(), vec![[0.0; 3]; 6], None, Layout::Points);
+        let mut targets = Targets::at(Frame::default(), vec![[0.0; 3]; 6], None, TargetLayout::Points);
         targets.groups = vec![0..3, 3..5, 5..6];
         let values = [1.0, 4.0, f32::NAN, 2.0, 6.0, f32::NAN];
         // without weights all count alike
@@ -242,7 +242,7 @@ mod tests {
     #[test]
     fn targets_without_a_position_have_no_value() {
         let positions = vec![[0.0; 3], [f32::NAN, 0.0, 0.0], [1.0, 2.0, f32::INFINITY]];
-        let targets = Targets::at(Frame::default(), positions, None, Layout::Points);
+        let targets = Targets::at(Frame::default(), positions, None, TargetLayout::Points);
         let mut values = [1.0, 2.0, 3.0];
         targets.clear_unasked(&mut values);
         assert!(values[0] == 1.0 && values[1].is_nan() && values[2].is_nan());

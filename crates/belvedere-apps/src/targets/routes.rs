@@ -1,6 +1,6 @@
 //! Places along routes.
 
-use super::{Layout, Targets, to_f32};
+use super::{TargetLayout, Targets, to_f32};
 use crate::exposure::route_lengths;
 use belvedere_data::frame::Frame;
 
@@ -46,7 +46,7 @@ impl Targets {
                 positions.push(to_f32(*place));
             }
         }
-        Self { weights, groups, ..Self::at(frame, positions, None, Layout::Points) }
+        Self { weights, groups, ..Self::at(frame, positions, None, TargetLayout::Points) }
     }
 }
 

@@ -1,6 +1,6 @@
 //! Faces of a mesh as targets, and what their pieces say of faces and objects.
 
-use super::{Layout, Targets};
+use super::{TargetLayout, Targets};
 use belvedere_core::query::{MeshTargetParams, SurfacePieces};
 use belvedere_data::frame::Frame;
 use belvedere_data::{Mesh, Result};
@@ -70,7 +70,7 @@ impl Targets {
             let start = groups.last().map_or(0, |last| last.end);
             groups.push(start..start + run.len());
         }
-        let layout = Layout::Surface(surface);
+        let layout = TargetLayout::Surface(surface);
         Ok(Self { weights, groups, ..Self::at(frame.clone(), positions, normals, layout) })
     }
 
@@ -78,7 +78,7 @@ impl Targets {
     #[must_use]
     pub fn surface(&self) -> Option<&SurfacePieces> {
         match &self.layout {
-            Layout::Surface(surface) => Some(surface),
+            TargetLayout::Surface(surface) => Some(surface),
             _ => None,
         }
     }

@@ -176,7 +176,7 @@ pub fn viewshed_among(
     if expected != found {
         return Err(Error::LengthMismatch { what: "tree of targets", expected, found });
     }
-    let asked = Asked { scene, tree, targets, params };
+    let asked = ViewshedTree { scene, tree, targets, params };
     let mut result = Viewshed {
         answers: asked.before_anybody_sees(observers),
         counts: vec![0; targets.len()],
@@ -192,7 +192,8 @@ pub fn viewshed_among(
         if observers.len() < 2 * threads { (Threading::Shared, 1) } else { (Threading::OneEach, at_once) };
     let bands: Vec<&[Observer]> = observers.chunks(BAND).collect();
     for round in bands.chunks(at_once) {
-        let seen: Result<Vec<Band>> = round.par_iter().map(|band| asked.band(band, threading, control)).collect();
+        let seen: Result<Vec<ObserverBand>> =
+            round.par_iter().map(|band| asked.band(band, threading, control)).collect();
         for band in seen? {
             add(&mut result, band, params.masks);
         }
@@ -211,7 +212,7 @@ const SMALL: usize = 1_000_000;
 const BAND: usize = 32;
 
 /// Targets in a tree, and how they are asked about.
-struct Asked<'a> {
+struct ViewshedTree<'a> {
     scene: &'a MedialScene,
     tree: &'a TargetTree,
     targets: &'a [[f32; 3]],
@@ -228,7 +229,7 @@ enum Threading {
 }
 
 /// What up to 32 observers see.
-struct Band {
+struct ObserverBand {
     /// Bit i: observer i sees the target, (M).
     seen: Vec<u32>,
     /// Rows of targets that one of them sees without proof, once for each that does.
@@ -236,7 +237,7 @@ struct Band {
     seen_counts: Vec<usize>,
 }
 
-impl Asked<'_> {
+impl ViewshedTree<'_> {
     /// Blocked for what somebody looks at, otherwise outside the view; outside the cloud for what lies there.
     fn before_anybody_sees(&self, observers: &[Observer]) -> Vec<Answer> {
         let lookers: Vec<&Observer> =
@@ -253,7 +254,7 @@ impl Asked<'_> {
         self.targets.par_iter().with_min_len(CHUNK).map(answer).collect()
     }
 
-    fn band(&self, observers: &[Observer], threading: Threading, control: &Control<'_>) -> Result<Band> {
+    fn band(&self, observers: &[Observer], threading: Threading, control: &Control<'_>) -> Result<ObserverBand> {
         let (mut seen, mut unproven) = (vec![0; self.targets.len()], Vec::new());
         let mut seen_counts = vec![0; observers.len()];
         let mut note = |number: usize, row: usize, answer: Answer| match self.params.unproven.settle(answer) {
@@ -290,7 +291,7 @@ impl Asked<'_> {
             };
             self.scene.visible_among_each(&eyes, self.tree, control, visit, |_| control.advance(1))?;
         }
-        Ok(Band { seen, unproven, seen_counts })
+        Ok(ObserverBand { seen, unproven, seen_counts })
     }
 
     /// Whether any line of sight of an observer is curved, or crosses far terrain.
@@ -329,7 +330,7 @@ impl Asked<'_> {
 }
 
 /// Adds what a band sees.
-fn add(result: &mut Viewshed, band: Band, masks: Masks) {
+fn add(result: &mut Viewshed, band: ObserverBand, masks: Masks) {
     for row in band.unproven {
         let answer = &mut result.answers[row as usize];
         if *answer != Answer::Visible {

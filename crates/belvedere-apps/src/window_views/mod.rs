@@ -4,7 +4,7 @@ mod names;
 mod seen;
 
 pub use names::{NamedView, named_columns, views_by_name};
-pub use seen::{ClassMeanings, Seen, are_made_from, balls_seen};
+pub use seen::{ClassMeanings, SeenKind, are_made_from, balls_seen};
 
 use crate::eyes::skip_unfit_eyes;
 use crate::rows::check_normals;
@@ -23,12 +23,12 @@ pub const VIEW_SPACING: f64 = 2.0;
 /// A face whose normal rises or falls by more than this, as a sine, is a roof or a floor and no facade: 45°.
 const STEEPEST_NORMAL: f32 = std::f32::consts::FRAC_1_SQRT_2;
 /// Kinds of what is seen.
-const KINDS: usize = Seen::ALL.len();
+const KINDS: usize = SeenKind::ALL.len();
 
 /// What one window has before it. All is NaN for a window that is not asked about.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WindowView {
-    /// Share of the half space before the window that is each of [`Seen::ALL`], by solid angle, 0 to 1; 1 together.
+    /// Share of the half space before the window that is each of [`SeenKind::ALL`], by solid angle, 0 to 1; 1 together.
     pub shares: [f64; KINDS],
     /// The same, weighted by the cosine to the normal of the window, as light arrives through it; 1 together.
     pub cosine_shares: [f64; KINDS],
@@ -44,9 +44,9 @@ pub struct WindowView {
 #[derive(Clone, Copy, Debug)]
 pub struct Kinds<'a> {
     /// Kind of each ball of the model, (B), as [`balls_seen`] has it.
-    pub balls: &'a [Seen],
+    pub balls: &'a [SeenKind],
     /// Kind of each mesh that was added, by its number; a building where nothing is said.
-    pub meshes: &'a [Seen],
+    pub meshes: &'a [SeenKind],
 }
 
 /// `count` directions of the upper half of the sphere as [`SkyDirections::even`] has them, and their opposites: before every window lie `count` of them, each with the same solid angle.
@@ -133,10 +133,10 @@ pub fn view_measures(views: &[WindowView], proof: Proving) -> Vec<Measure> {
         measures.push(measure.with_range(range));
     };
     let percent = Some([0.0, 100.0]);
-    for (i, seen) in Seen::ALL.into_iter().enumerate() {
+    for (i, seen) in SeenKind::ALL.into_iter().enumerate() {
         push(seen.name().to_owned(), "percent of the view", 3, percent, &|view| 100.0 * view.shares[i]);
     }
-    for (i, seen) in Seen::ALL.into_iter().enumerate() {
+    for (i, seen) in SeenKind::ALL.into_iter().enumerate() {
         let name = format!("{}_cos", seen.name());
         push(name, "percent, cosine-weighted", 3, percent, &|view| 100.0 * view.cosine_shares[i]);
     }
@@ -186,18 +186,18 @@ impl Sums {
                 Some((blocker, range)) => {
                     let kind = match blocker {
                         Blocker::Ball(row) => kinds.balls.get(row).copied().unwrap_or_default(),
-                        Blocker::Mesh(number) => kinds.meshes.get(number).copied().unwrap_or(Seen::Building),
-                        Blocker::Terrain => Seen::Ground,
+                        Blocker::Mesh(number) => kinds.meshes.get(number).copied().unwrap_or(SeenKind::Building),
+                        Blocker::Terrain => SeenKind::Ground,
                     };
                     (kind, range, scene.is_unproven(place, direction, range))
                 }
                 None => {
                     let seen = if scene.far_terrain().hides(place, direction) {
-                        Seen::Ground
+                        SeenKind::Ground
                     } else if direction[2] >= 0.0 {
-                        Seen::Sky
+                        SeenKind::Sky
                     } else {
-                        Seen::Beyond
+                        SeenKind::Beyond
                     };
                     (seen, f64::INFINITY, scene.is_unproven(place, direction, f64::INFINITY))
                 }

@@ -11,7 +11,7 @@ const FARTHEST_FROM_POINT: f64 = 1.0;
 /// A kind of what is seen from a window.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Seen {
+pub enum SeenKind {
     /// Nothing blocks, at the horizon or above it.
     Sky,
     /// Trees, hedges and lower plants.
@@ -29,7 +29,7 @@ pub enum Seen {
     Beyond,
 }
 
-impl Seen {
+impl SeenKind {
     /// All kinds, in the order of shares.
     pub const ALL: [Self; 7] =
         [Self::Sky, Self::Vegetation, Self::Water, Self::Building, Self::Ground, Self::Other, Self::Beyond];
@@ -58,7 +58,7 @@ impl Seen {
 
 /// What the classes of points are.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct ClassMeanings([Option<Seen>; 256]);
+pub struct ClassMeanings([Option<SeenKind>; 256]);
 
 impl Default for ClassMeanings {
     /// Vegetation is 3 to 5, a building 6, water 9, ground 2, rails 10 and roads 11; nothing is said of 0 and 1, and all else is other.
@@ -68,11 +68,11 @@ impl Default for ClassMeanings {
     fn default() -> Self {
         Self(std::array::from_fn(|class| match class {
             0 | 1 => None,
-            2 | 10 | 11 => Some(Seen::Ground),
-            3..=5 => Some(Seen::Vegetation),
-            6 => Some(Seen::Building),
-            9 => Some(Seen::Water),
-            _ => Some(Seen::Other),
+            2 | 10 | 11 => Some(SeenKind::Ground),
+            3..=5 => Some(SeenKind::Vegetation),
+            6 => Some(SeenKind::Building),
+            9 => Some(SeenKind::Water),
+            _ => Some(SeenKind::Other),
         }))
     }
 }
@@ -80,14 +80,14 @@ impl Default for ClassMeanings {
 impl ClassMeanings {
     /// The same, where `class` means `seen`.
     #[must_use]
-    pub fn with(mut self, class: u8, seen: Seen) -> Self {
+    pub fn with(mut self, class: u8, seen: SeenKind) -> Self {
         self.0[usize::from(class)] = Some(seen);
         self
     }
 
     /// What `class` means; `None` where it says nothing.
     #[must_use]
-    pub fn of(&self, class: u8) -> Option<Seen> {
+    pub fn of(&self, class: u8) -> Option<SeenKind> {
         self.0[usize::from(class)]
     }
 }
@@ -102,7 +102,7 @@ pub fn balls_seen(
     classes: Option<&[u8]>,
     vegetation: &[bool],
     meanings: &ClassMeanings,
-) -> Result<Vec<Seen>> {
+) -> Result<Vec<SeenKind>> {
     let least = balls.source.iter().map(|&row| row as usize + 1).max().unwrap_or(0);
     if let Some(found) = classes.map(<[_]>::len).filter(|&found| found < least) {
         return Err(Error::LengthMismatch { what: "classes of the points of balls", expected: least, found });
@@ -110,7 +110,7 @@ pub fn balls_seen(
     let kind = |(row, &source): (usize, &u32)| {
         let class = classes.and_then(|classes| classes.get(source as usize));
         let is_vegetation = vegetation.get(row) == Some(&true);
-        let unsaid = if is_vegetation { Seen::Vegetation } else { Seen::Other };
+        let unsaid = if is_vegetation { SeenKind::Vegetation } else { SeenKind::Other };
         class.and_then(|&class| meanings.of(class)).unwrap_or(unsaid)
     };
     Ok(balls.source.iter().enumerate().map(kind).collect())
@@ -146,10 +146,19 @@ mod tests {
         };
         let usual = ClassMeanings::default();
         // a class that says something comes before what pulses tell
-        assert_eq!(kinds(Some(&[6, 1, 0, 9]), &usual), [Seen::Building, Seen::Other, Seen::Vegetation, Seen::Water]);
-        let own = usual.clone().with(1, Seen::Ground).with(0, Seen::Other);
-        assert_eq!(kinds(Some(&[6, 1, 0, 9]), &own), [Seen::Building, Seen::Ground, Seen::Other, Seen::Water]);
-        assert_eq!(kinds(None, &usual), [Seen::Vegetation, Seen::Other, Seen::Vegetation, Seen::Vegetation]);
+        assert_eq!(
+            kinds(Some(&[6, 1, 0, 9]), &usual),
+            [SeenKind::Building, SeenKind::Other, SeenKind::Vegetation, SeenKind::Water]
+        );
+        let own = usual.clone().with(1, SeenKind::Ground).with(0, SeenKind::Other);
+        assert_eq!(
+            kinds(Some(&[6, 1, 0, 9]), &own),
+            [SeenKind::Building, SeenKind::Ground, SeenKind::Other, SeenKind::Water]
+        );
+        assert_eq!(
+            kinds(None, &usual),
+            [SeenKind::Vegetation, SeenKind::Other, SeenKind::Vegetation, SeenKind::Vegetation]
+        );
         assert!(balls_seen(&balls(), Some(&[6, 1, 0]), &[], &usual).is_err());
     }
 
@@ -163,7 +172,7 @@ mod tests {
 
     #[test]
     fn things_have_the_names_of_their_columns() {
-        assert_eq!(Seen::thing_called("water"), Some(Seen::Water));
-        assert!(["sky", "beyond", "Water", ""].iter().all(|name| Seen::thing_called(name).is_none()));
+        assert_eq!(SeenKind::thing_called("water"), Some(SeenKind::Water));
+        assert!(["sky", "beyond", "Water", ""].iter().all(|name| SeenKind::thing_called(name).is_none()));
     }
 }

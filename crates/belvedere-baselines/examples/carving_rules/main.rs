@@ -18,10 +18,10 @@ use belvedere::medial::{CarvedParams, CrownParams, Rule, Trees};
 use belvedere::model::BallParams;
 use belvedere::query::{Answer, BlockRule, UnprovenAs, Viewer, Visibility};
 use belvedere::{Error, Parameter, Result};
-use belvedere_baselines::agreement::{Counts, Rate};
+use belvedere_baselines::agreement::{Rate, TruthCounts};
 use belvedere_baselines::medial::{MedialBaseline, MedialParams, Outward, scene_model};
 use belvedere_scenes::{Preset, Regime};
-use place::{Missing, Place, Question};
+use place::{CarvingSite, Missing, ViewerTargets};
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::time::Instant;
@@ -86,7 +86,7 @@ fn main() -> Result<()> {
     let mut sums: BTreeMap<usize, Vec<Scores>> = BTreeMap::new();
     for &preset in &presets {
         for &seed in &seeds {
-            let place = Place::simulated(preset, seed, regime, missing)?;
+            let place = CarvingSite::simulated(preset, seed, regime, missing)?;
             for (number, (name, params)) in variants().into_iter().enumerate() {
                 if !wanted.is_empty() && !wanted.contains(&name) {
                     continue;
@@ -136,13 +136,13 @@ impl std::fmt::Display for Scores {
 }
 
 /// Counts of one question.
-fn counts(question: &Question, answers: &[Answer]) -> Counts {
-    let mut counts = Counts::default();
+fn counts(question: &ViewerTargets, answers: &[Answer]) -> TruthCounts {
+    let mut counts = TruthCounts::default();
     question.visible.iter().zip(answers).for_each(|(&visible, &answer)| counts.add(visible, answer));
     counts
 }
 
-fn judge(place: &Place, model: &MedialBaseline, seconds: f64) -> Result<Scores> {
+fn judge(place: &CarvingSite, model: &MedialBaseline, seconds: f64) -> Result<Scores> {
     let mean = |set: &str, views: &str, rate: Rate| -> Result<f64> {
         let mut values = Vec::new();
         for question in place.questions.iter().filter(|q| q.set == set && q.views == views) {

@@ -1,6 +1,6 @@
 //! How far answers are from the truth, in hours of sun and shares of the sky.
 
-use super::Places;
+use super::JudgedTargets;
 use belvedere::Result;
 use belvedere::apps::sky_view::SkyDirections;
 use std::f64::consts::{PI, TAU};
@@ -22,7 +22,7 @@ impl Setting {
 }
 
 /// Directions of the sun through a day, and of the sky.
-pub(crate) struct Light {
+pub(crate) struct LightDirections {
     pub(crate) directions: Vec<[f64; 3]>,
     /// How many of them are of the sun; those of the sky follow.
     pub(crate) sun_count: usize,
@@ -30,7 +30,7 @@ pub(crate) struct Light {
     pub(super) hours: f64,
 }
 
-impl Light {
+impl LightDirections {
     /// The sun of a declination at a latitude (radians) every `minutes` of a day while it is above the horizon, and `sky_count` directions
     /// of the sky.
     pub(crate) fn of_day(latitude: f64, declination: f64, minutes: f64, sky_count: usize) -> Result<Self> {
@@ -60,7 +60,7 @@ impl Light {
 
 /// How far answers are from the truth.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Score {
+pub(crate) struct LightScore {
     /// Hours of sun: mean true, mean absolute error, and mean hours wrongly lit and wrongly shaded.
     pub(crate) sun: [f64; 4],
     /// The same with the sun above 5 degrees.
@@ -75,10 +75,10 @@ pub(crate) struct Score {
     pub(crate) by_setting: [[f64; 5]; Setting::ALL.len()],
 }
 
-impl Score {
+impl LightScore {
     /// Of what `is_free` says of each target and direction.
-    pub(super) fn new(places: &Places, light: &Light, is_free: &dyn Fn(usize, usize) -> bool) -> Self {
-        let mut score = Score::default();
+    pub(super) fn new(places: &JudgedTargets, light: &LightDirections, is_free: &dyn Fn(usize, usize) -> bool) -> Self {
+        let mut score = LightScore::default();
         let width = light.directions.len();
         let one = 1.0 / places.len().max(1) as f64;
         let sky_count = (width - light.sun_count) as f64;

@@ -6,7 +6,7 @@ use super::{NONE, Tetrahedron, in_sphere, number, orient};
 const INFINITE: u32 = u32::MAX;
 
 /// A tetrahedralisation that grows. Tetrahedra with the corner at infinity close it, so that each has four neighbours.
-pub(super) struct Builder<'a> {
+pub(super) struct DelaunayBuilder<'a> {
     points: &'a [[f64; 3]],
     tetrahedra: Vec<Tetrahedron>,
     /// Unused places among `tetrahedra`; their corners are all infinite.
@@ -23,7 +23,7 @@ pub(super) struct Builder<'a> {
     edges: Vec<(u64, u32, usize)>,
 }
 
-impl<'a> Builder<'a> {
+impl<'a> DelaunayBuilder<'a> {
     /// Starts with a tetrahedron in positive order.
     pub(super) fn new(points: &'a [[f64; 3]], first: [u32; 4]) -> Self {
         let mut tetrahedra = vec![Tetrahedron { corners: first, neighbors: [1, 2, 3, 4] }];

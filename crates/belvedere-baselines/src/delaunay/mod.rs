@@ -8,7 +8,7 @@ use crate::curve::{Curve, insertion_order, number};
 use belvedere::vector::{cross, dot, sub};
 use robust::{Coord3D, insphere, orient3d};
 
-use insert::Builder;
+use insert::DelaunayBuilder;
 
 /// No tetrahedron: what lies beyond a face of the convex hull.
 pub(crate) const NONE: u32 = u32::MAX;
@@ -46,7 +46,7 @@ impl Delaunay {
             return Self { points, tetrahedra: Vec::new(), at_point };
         };
         let curve = Curve::new(&points);
-        let mut builder = Builder::new(&points, first);
+        let mut builder = DelaunayBuilder::new(&points, first);
         for point in insertion_order(&points, &first, &curve) {
             builder.insert(point);
         }

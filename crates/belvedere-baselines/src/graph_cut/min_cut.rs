@@ -15,7 +15,7 @@ pub(super) struct Graph {
 
 /// Which of the two trees a node belongs to.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Tree {
+enum CutTree {
     None,
     Source,
     Sink,
@@ -28,7 +28,7 @@ const ORPHAN: u8 = 5;
 /// Augments paths between two search trees that are kept from one path to the next.
 struct Flow {
     graph: Graph,
-    tree: Vec<Tree>,
+    tree: Vec<CutTree>,
     parent: Vec<u8>,
     /// Distance to the terminal, correct where `checked` is the present `time`.
     distance: Vec<u32>,
@@ -47,7 +47,7 @@ struct Flow {
 pub(super) fn sink_side(graph: Graph) -> Vec<bool> {
     let count = graph.terminal.len();
     let mut flow = Flow {
-        tree: vec![Tree::None; count],
+        tree: vec![CutTree::None; count],
         parent: vec![ORPHAN; count],
         distance: vec![0; count],
         checked: vec![0; count],
@@ -58,7 +58,7 @@ pub(super) fn sink_side(graph: Graph) -> Vec<bool> {
         graph,
     };
     flow.run();
-    flow.tree.into_iter().map(|tree| tree == Tree::Sink).collect()
+    flow.tree.into_iter().map(|tree| tree == CutTree::Sink).collect()
 }
 
 impl Flow {
@@ -66,13 +66,13 @@ impl Flow {
         for node in (0..).take(self.tree.len()) {
             let n = node as usize;
             if self.graph.terminal[n] != 0 {
-                self.tree[n] = if self.graph.terminal[n] > 0 { Tree::Source } else { Tree::Sink };
+                self.tree[n] = if self.graph.terminal[n] > 0 { CutTree::Source } else { CutTree::Sink };
                 (self.parent[n], self.distance[n]) = (TERMINAL, 1);
                 self.activate(node);
             }
         }
         while let Some(&node) = self.active.front() {
-            let path = if self.tree[node as usize] == Tree::None { None } else { self.grow(node) };
+            let path = if self.tree[node as usize] == CutTree::None { None } else { self.grow(node) };
             let Some((from, slot)) = path else {
                 self.active.pop_front();
                 self.is_active[node as usize] = false;
@@ -102,9 +102,9 @@ impl Flow {
 
     /// What can still flow away from the terminal of `tree` through a slot of `node`: out of it in the tree of the source,
     /// into it in that of the sink.
-    fn residual_outward(&self, node: u32, slot: usize, (other, back): (u32, usize), tree: Tree) -> i64 {
+    fn residual_outward(&self, node: u32, slot: usize, (other, back): (u32, usize), tree: CutTree) -> i64 {
         match tree {
-            Tree::Sink => self.graph.capacity[other as usize][back],
+            CutTree::Sink => self.graph.capacity[other as usize][back],
             _ => self.graph.capacity[node as usize][slot],
         }
     }
@@ -119,12 +119,12 @@ impl Flow {
                 continue;
             }
             let m = other as usize;
-            if self.tree[m] == Tree::None {
+            if self.tree[m] == CutTree::None {
                 self.tree[m] = self.tree[n];
                 self.hang(other, back, n);
                 self.activate(other);
             } else if self.tree[m] != self.tree[n] {
-                return Some(if self.tree[n] == Tree::Source { (node, slot) } else { (other, back) });
+                return Some(if self.tree[n] == CutTree::Source { (node, slot) } else { (other, back) });
             } else if self.checked[m] <= self.checked[n] && self.distance[m] > self.distance[n] + 1 {
                 self.hang(other, back, n);
             }
@@ -174,7 +174,7 @@ impl Flow {
             let n = node as usize;
             let slot = usize::from(self.parent[n]);
             let Some((parent, back)) = (slot < 4).then(|| self.across(node, slot)).flatten() else {
-                self.graph.terminal[n] -= if tree == Tree::Source { amount } else { -amount };
+                self.graph.terminal[n] -= if tree == CutTree::Source { amount } else { -amount };
                 if self.graph.terminal[n] == 0 {
                     self.parent[n] = ORPHAN;
                     self.orphans.push_front(node);
@@ -182,7 +182,7 @@ impl Flow {
                 return;
             };
             let p = parent as usize;
-            let sign = if tree == Tree::Source { 1 } else { -1 };
+            let sign = if tree == CutTree::Source { 1 } else { -1 };
             self.graph.capacity[p][back] -= sign * amount;
             self.graph.capacity[n][slot] += sign * amount;
             if self.residual_outward(parent, back, (node, slot), tree) == 0 {
@@ -228,7 +228,7 @@ impl Flow {
                 self.orphans.push_back(other);
             }
         }
-        self.tree[n] = Tree::None;
+        self.tree[n] = CutTree::None;
         self.parent[n] = ORPHAN;
     }
 

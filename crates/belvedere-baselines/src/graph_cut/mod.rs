@@ -3,7 +3,7 @@
 mod min_cut;
 mod votes;
 
-use crate::Survey;
+use crate::MethodInput;
 use crate::delaunay::{Delaunay, MOST_POINTS, NONE};
 use crate::lines_of_sight::{check_clearance, check_least, check_positive};
 use crate::mesh_rays::{MeshRays, MeshRaysParams};
@@ -66,7 +66,7 @@ impl GraphCut {
     /// # Errors
     /// [`Error::InvalidParameter`] for a parameter out of its range, for a position that is not finite and for more than 2^27 points,
     /// [`Error::LengthMismatch`] for a column of another length.
-    pub fn new(survey: &Survey<'_>, params: &GraphCutParams) -> Result<Self> {
+    pub fn new(survey: &MethodInput<'_>, params: &GraphCutParams) -> Result<Self> {
         check_positive("cell of the thinned cloud", params.cell)?;
         check_positive("noise", params.noise)?;
         check_least("depth behind a return in noises", params.depth_in_noises, 0.0, "finite and not negative")?;
@@ -115,7 +115,7 @@ fn first_per_cell(positions: &[[f32; 3]], cell: f64) -> Vec<usize> {
 }
 
 /// Whether each tetrahedron is inside.
-fn inside(delaunay: &Delaunay, survey: &Survey<'_>, kept: &[usize], params: &GraphCutParams) -> Vec<bool> {
+fn inside(delaunay: &Delaunay, survey: &MethodInput<'_>, kept: &[usize], params: &GraphCutParams) -> Vec<bool> {
     let votes = Votes::new(delaunay, survey, kept, params);
     let (mut capacity, mut terminal) = votes.into_capacities();
     let count = delaunay.tetrahedra.len();
@@ -124,7 +124,7 @@ fn inside(delaunay: &Delaunay, survey: &Survey<'_>, kept: &[usize], params: &Gra
         let corners = delaunay.corners(index);
         let own = index as usize;
         for (i, &neighbor) in tetrahedron.neighbors.iter().enumerate() {
-            let face = Face::opposite(&corners, i);
+            let face = TetrahedronFace::opposite(&corners, i);
             // beyond the hull the sphere is a half-space, which meets its face at no angle
             let beyond = spheres.get(neighbor as usize).map_or(1.0, |sphere| -face.cosine(sphere));
             let quality = params.quality * (1.0 - face.cosine(&spheres[own]).min(beyond));
@@ -153,7 +153,7 @@ fn boundary(delaunay: &Delaunay, inside: &[bool]) -> Vec<[[f64; 3]; 3]> {
         let corners = delaunay.corners(index);
         for (i, &neighbor) in tetrahedron.neighbors.iter().enumerate() {
             if inside.get(neighbor as usize).is_none_or(|&inside| !inside) {
-                triangles.push(Face::opposite(&corners, i).corners);
+                triangles.push(TetrahedronFace::opposite(&corners, i).corners);
             }
         }
     }
@@ -166,13 +166,13 @@ struct Sphere {
 }
 
 /// A face of a tetrahedron.
-struct Face {
+struct TetrahedronFace {
     corners: [[f64; 3]; 3],
     /// Towards the inside of the tetrahedron, unit length or zero.
     inward: [f64; 3],
 }
 
-impl Face {
+impl TetrahedronFace {
     fn opposite(corners: &[[f64; 3]; 4], apex: usize) -> Self {
         let face: [[f64; 3]; 3] = std::array::from_fn(|k| corners[(apex + 1 + k) % 4]);
         let normal = cross(sub(face[1], face[0]), sub(face[2], face[0]));

@@ -3,7 +3,7 @@
 use belvedere::vector::length;
 use rayon::prelude::*;
 
-use super::hull::{Hull, Walk};
+use super::hull::{Hull, HullWalk};
 
 /// Targets handed to a thread at once.
 const CHUNK: usize = 16_384;
@@ -46,7 +46,7 @@ impl FlippedView {
         let found: Vec<bool> = order
             .par_chunks(CHUNK)
             .flat_map_iter(|rows| {
-                let mut walk = Walk::default();
+                let mut walk = HullWalk::default();
                 let images = &images;
                 rows.iter().map(move |&row| {
                     let Some(image) = images[row as usize] else { return true };

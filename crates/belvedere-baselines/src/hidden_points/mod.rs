@@ -10,7 +10,7 @@ use std::sync::OnceLock;
 use belvedere::query::{Answer, Sight, Viewer, Visibility};
 use belvedere::{Error, Parameter, Result};
 
-use crate::Survey;
+use crate::MethodInput;
 use flip::FlippedView;
 pub use radius::RadiusChoice;
 
@@ -81,7 +81,7 @@ impl<'a> HiddenPoints<'a> {
     /// # Errors
     /// [`Error::NoPoints`], [`Error::InvalidParameter`] for a parameter outside its range, a position that is not finite, and
     /// more than 2^30 points.
-    pub fn new(survey: &Survey<'a>, params: HiddenPointsParams) -> Result<Self> {
+    pub fn new(survey: &MethodInput<'a>, params: HiddenPointsParams) -> Result<Self> {
         survey.cloud.validate()?;
         if survey.cloud.is_empty() {
             return Err(Error::NoPoints { what: "hidden point removal needs the points of a cloud".to_owned() });

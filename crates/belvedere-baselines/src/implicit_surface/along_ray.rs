@@ -1,6 +1,6 @@
 //! Where a ray crosses an implicit surface: the samples whose balls it meets, swept from near to far.
 
-use super::{ImplicitSurfaceParams, NormalSigns, Sample};
+use super::{ImplicitSurfaceParams, NormalSigns, SurfaceSample};
 use belvedere::ray_index::{Ray, RayIndex};
 use belvedere::vector::{dot, length, sub};
 
@@ -39,7 +39,7 @@ enum OnSurface {
 
 /// Crossings of one ray with the surface, from near to far.
 pub(super) struct Crossings<'a> {
-    samples: &'a [Sample],
+    samples: &'a [SurfaceSample],
     ray: &'a Ray,
     params: &'a ImplicitSurfaceParams,
     /// By range of entry.
@@ -54,7 +54,7 @@ pub(super) struct Crossings<'a> {
 
 impl<'a> Crossings<'a> {
     pub(super) fn new(
-        samples: &'a [Sample],
+        samples: &'a [SurfaceSample],
         index: &RayIndex,
         ray: &'a Ray,
         params: &'a ImplicitSurfaceParams,

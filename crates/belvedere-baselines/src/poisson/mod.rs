@@ -3,7 +3,7 @@
 mod level;
 mod nets;
 
-use crate::Survey;
+use crate::MethodInput;
 use crate::implicit_surface::outward;
 use crate::lines_of_sight::{check_clearance, check_least, check_positive};
 use crate::mesh_rays::{MeshRays, MeshRaysParams};
@@ -14,7 +14,7 @@ use belvedere::normals::estimate::{Neighborhood, estimate};
 use belvedere::query::{Sight, Viewer, Visibility};
 use belvedere::{Error, Parameter, Result};
 
-use level::{Level, Solver};
+use level::{GridLevel, LevelSolver};
 
 /// How a [`Poisson`] surface is made and traced.
 ///
@@ -76,7 +76,7 @@ pub struct Poisson {
 
 /// A point with a normal.
 #[derive(Clone, Copy, Debug)]
-struct Sample {
+struct OrientedSample {
     position: [f64; 3],
     /// Outward, unit length.
     normal: [f64; 3],
@@ -90,7 +90,7 @@ impl Poisson {
     /// # Errors
     /// [`Error::InvalidParameter`] for a parameter out of its range, for a position that is not finite and for a cloud that is a
     /// million times as wide as its points are apart, [`Error::LengthMismatch`] for a column of another length.
-    pub fn new(survey: &Survey<'_>, params: &PoissonParams) -> Result<Self> {
+    pub fn new(survey: &MethodInput<'_>, params: &PoissonParams) -> Result<Self> {
         check_neighbor("neighbour that gives the area of a point", params.area_neighbor)?;
         check_least("cell in spacings", params.cell_in_spacings, 0.25, "finite and at least 0.25")?;
         check_positive("least cell", params.least_cell)?;
@@ -132,7 +132,7 @@ impl Visibility for Poisson {
 /// Greatest distance of the neighbour that gives an area, as a multiple of the median: as for splats.
 const MAX_SPACING_IN_MEDIANS: f64 = 4.0;
 
-fn samples(survey: &Survey<'_>, neighbors: &NeighborIndex, params: &PoissonParams) -> Result<Vec<Sample>> {
+fn samples(survey: &MethodInput<'_>, neighbors: &NeighborIndex, params: &PoissonParams) -> Result<Vec<OrientedSample>> {
     let positions = &survey.cloud.positions;
     let neighborhood = Neighborhood::Fixed { k: params.normal_neighbors };
     let normals = outward(survey, estimate(positions, neighbors, neighborhood, &Control::none())?)?;
@@ -140,7 +140,7 @@ fn samples(survey: &Survey<'_>, neighbors: &NeighborIndex, params: &PoissonParam
     let given = positions.iter().zip(&normals).zip(&spacing);
     let samples = given.filter(|((_, normal), spacing)| **normal != [0.0; 3] && **spacing > 0.0);
     Ok(samples
-        .map(|((position, normal), &spacing)| Sample {
+        .map(|((position, normal), &spacing)| OrientedSample {
             position: position.map(f64::from),
             normal: normal.map(f64::from),
             // the disc to a neighbour holds as many points
@@ -157,7 +157,11 @@ const MARGIN: f64 = 3.0;
 const MOST_LEVELS: u32 = 15;
 
 /// The triangles of the surface, (T, 3, 3).
-fn reconstruct(samples: &[Sample], neighbors: &NeighborIndex, params: &PoissonParams) -> Result<Vec<[[f64; 3]; 3]>> {
+fn reconstruct(
+    samples: &[OrientedSample],
+    neighbors: &NeighborIndex,
+    params: &PoissonParams,
+) -> Result<Vec<[[f64; 3]; 3]>> {
     let mut areas: Vec<f64> = samples.iter().map(|sample| sample.area).collect();
     if areas.is_empty() {
         return Ok(Vec::new());
@@ -181,14 +185,14 @@ fn reconstruct(samples: &[Sample], neighbors: &NeighborIndex, params: &PoissonPa
     let coarsest = cell * f64::from(1 << depth);
     let corner = low.map(|v| v - MARGIN * coarsest);
     let size = std::array::from_fn(|axis| ((high[axis] - corner[axis]) / coarsest).ceil() + MARGIN);
-    let mut levels: Vec<Level> = Vec::new();
+    let mut levels: Vec<GridLevel> = Vec::new();
     for number in 0..=depth {
         let side = coarsest / f64::from(1 << number);
         let mut level = match levels.last() {
-            None => Level::whole(corner, side, size),
-            Some(_) => Level::around(corner, side, samples),
+            None => GridLevel::whole(corner, side, size),
+            Some(_) => GridLevel::around(corner, side, samples),
         };
-        level.values = Solver::new(&level, &levels, samples, params.screening).solve();
+        level.values = LevelSolver::new(&level, &levels, samples, params.screening).solve();
         levels.push(level);
     }
     // areas weigh the mean

@@ -1,7 +1,7 @@
 //! Triangles where a function on a grid crosses a value: a vertex in each cell that the surface crosses, a square across each edge.
 
-use super::Sample;
-use super::level::{Level, key, node, value};
+use super::OrientedSample;
+use super::level::{GridLevel, key, node, value};
 use rayon::prelude::*;
 use std::collections::{HashMap, HashSet};
 
@@ -19,8 +19,8 @@ struct Crossed {
 /// Gibson 1998, "Constrained Elastic Surface Nets", section 3, with vertices at the mean of the crossings of their cell; from cell to
 /// cell as in Bloomenthal 1988.
 pub(super) fn triangles(
-    levels: &[Level],
-    samples: &[Sample],
+    levels: &[GridLevel],
+    samples: &[OrientedSample],
     iso: f64,
     is_near: impl Fn([f64; 3]) -> bool + Sync,
 ) -> Vec<[[f64; 3]; 3]> {
@@ -55,7 +55,7 @@ fn step(k: usize) -> [i64; 3] {
 }
 
 /// What the surface does in a cell; `None` where it does not cross it.
-fn cross(levels: &[Level], cell: u64, iso: f64) -> Option<Crossed> {
+fn cross(levels: &[GridLevel], cell: u64, iso: f64) -> Option<Crossed> {
     let (finest, number) = (levels.last()?, levels.len() - 1);
     let first = node(cell);
     if !levels[0].holds(first.map(|v| v >> number)) {

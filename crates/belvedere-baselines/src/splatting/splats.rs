@@ -12,7 +12,7 @@ use belvedere::vector::{cross, dot, length, sub, unit};
 
 /// A piece of surface about a point.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Splat {
+pub(super) struct SurfaceSplat {
     center: [f32; 3],
     /// Half axes, at right angles to each other; zero where the splat faces the line of sight.
     axes: [[f32; 3]; 2],
@@ -20,7 +20,7 @@ pub(super) struct Splat {
     radius: f32,
 }
 
-impl Splat {
+impl SurfaceSplat {
     /// Range at which the line of `ray` passes through the splat, or `None` where it passes by.
     pub(super) fn range(&self, ray: &Ray) -> Option<f64> {
         let to_center = sub(self.center.map(f64::from), ray.origin);
@@ -57,14 +57,14 @@ impl Splat {
 /// # Errors
 /// [`Error::InvalidParameter`](belvedere::Error::InvalidParameter) for a number of neighbours out of its range or a position
 /// that is not finite.
-pub(super) fn make(positions: &[[f32; 3]], params: &SplatParams) -> Result<Vec<Splat>> {
+pub(super) fn make(positions: &[[f32; 3]], params: &SplatParams) -> Result<Vec<SurfaceSplat>> {
     let index = NeighborIndex::new(positions, &Control::none())?;
     let normals = estimate(positions, &index, Neighborhood::Fixed { k: params.normal_neighbors }, &Control::none())?;
     let spacing = capped_spacing(positions, &index, params.radius_neighbor, params.max_radius_in_medians);
     Ok(for_neighborhoods(positions, &index, params.normal_neighbors, |point, neighbors, _| {
         let center = positions[point];
         let radius = f64::from(spacing[point]) * params.radius_scale;
-        let facing = Splat { center, axes: [[0.0; 3]; 2], radius: to_f32([radius; 3])[0] };
+        let facing = SurfaceSplat { center, axes: [[0.0; 3]; 2], radius: to_f32([radius; 3])[0] };
         let normal = unit(normals.vectors[point].map(f64::from)).filter(|_| params.shape != SplatShape::Facing);
         let Some((normal, first)) = normal.and_then(|normal| Some((normal, any_tangent(normal)?))) else {
             return facing;
@@ -85,7 +85,7 @@ pub(super) fn make(positions: &[[f32; 3]], params: &SplatParams) -> Result<Vec<S
         };
         let longer = length(axes[0]);
         // duplicates of one point have no extent, hence no axes
-        Splat { center, axes: axes.map(to_f32), radius: to_f32([longer; 3])[0] }
+        SurfaceSplat { center, axes: axes.map(to_f32), radius: to_f32([longer; 3])[0] }
     }))
 }
 

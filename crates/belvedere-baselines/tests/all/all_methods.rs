@@ -3,8 +3,8 @@
 use crate::common::{blocked, count_true, scan, small_town, targets};
 use belvedere::query::{Answer, Viewer, Visibility};
 use belvedere::{Error, Mesh, PointCloud};
-use belvedere_baselines::Survey;
-use belvedere_baselines::dsm::{Dsm, DsmParams, GapFill, Relief};
+use belvedere_baselines::MethodInput;
+use belvedere_baselines::dsm::{Dsm, DsmParams, DsmSurface, GapFill};
 use belvedere_baselines::implicit_surface::{ImplicitSurface, ImplicitSurfaceParams};
 use belvedere_baselines::mesh_rays::{MeshRays, MeshRaysParams};
 use belvedere_baselines::shadow_map::{ShadowMap, ShadowMapParams};
@@ -12,16 +12,16 @@ use belvedere_baselines::splatting::{SplatParams, Splats};
 use belvedere_baselines::tin::{Tin, TinParams};
 use belvedere_baselines::voxels::{VoxelParams, Voxels};
 
-type Method = (&'static str, Box<dyn Visibility>);
+type NamedMethod = (&'static str, Box<dyn Visibility>);
 
 /// Every method that answers each kind of viewer, of one place.
-fn ray_methods(cloud: &PointCloud, mesh: &Mesh) -> Vec<Method> {
-    let survey = Survey { cloud, scanner: &[], models: &[] };
+fn ray_methods(cloud: &PointCloud, mesh: &Mesh) -> Vec<NamedMethod> {
+    let survey = MethodInput { cloud, scanner: &[], models: &[] };
     let dsm = |relief| Dsm::from_points(&cloud.positions, &DsmParams { relief, ..DsmParams::default() }).unwrap();
     vec![
         ("mesh rays", Box::new(MeshRays::new(mesh, cloud.frame.origin, &MeshRaysParams::default()).unwrap())),
-        ("columns", Box::new(dsm(Relief::Columns))),
-        ("bilinear", Box::new(dsm(Relief::Bilinear))),
+        ("columns", Box::new(dsm(DsmSurface::Columns))),
+        ("bilinear", Box::new(dsm(DsmSurface::Bilinear))),
         ("exact DSM", Box::new(Dsm::from_mesh(mesh, cloud.frame.origin, &DsmParams::default()).unwrap())),
         ("TIN", Box::new(Tin::new(cloud, &TinParams::default()).unwrap())),
         ("voxels", Box::new(Voxels::new(&cloud.positions, &VoxelParams::default()).unwrap())),
@@ -32,7 +32,7 @@ fn ray_methods(cloud: &PointCloud, mesh: &Mesh) -> Vec<Method> {
     ]
 }
 
-fn all_methods(cloud: &PointCloud, mesh: &Mesh) -> Vec<Method> {
+fn all_methods(cloud: &PointCloud, mesh: &Mesh) -> Vec<NamedMethod> {
     let mut methods = ray_methods(cloud, mesh);
     methods.push(("shadow map", Box::new(small_shadow_map(cloud, mesh))));
     methods
@@ -77,7 +77,7 @@ fn any_number_of_threads_gives_the_same_answers() {
     let run = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
-            let answer = |(name, method): Method| {
+            let answer = |(name, method): NamedMethod| {
                 let viewers = [Viewer::Direction(SUN), Viewer::Eye([1.0, 2.0, 9.0])];
                 (name, viewers.map(|viewer| method.visible(viewer, &targets).unwrap()))
             };
@@ -137,7 +137,7 @@ fn adding_obstacles_never_reveals() {
     let count = u32::try_from(mesh.vertices.len()).unwrap();
     more_mesh.vertices.extend(mesh.vertices.iter().map(|v| [v[0], v[1], v[2] + 128.0]));
     more_mesh.triangles.extend(mesh.triangles.iter().map(|t| t.map(|corner| corner + count)));
-    let methods = |cloud: &PointCloud, mesh: &Mesh| -> Vec<Method> {
+    let methods = |cloud: &PointCloud, mesh: &Mesh| -> Vec<NamedMethod> {
         let dsm = |relief| {
             let params = DsmParams { relief, gap_fill: GapFill::Leave, ..DsmParams::default() };
             Box::new(Dsm::from_points(&cloud.positions, &params).unwrap())
@@ -145,8 +145,8 @@ fn adding_obstacles_never_reveals() {
         let mut methods = all_methods(cloud, mesh);
         // what is filled into gaps may sink; triangles of other points are other triangles: `mesh rays` stands for both
         methods.retain(|(name, _)| !["columns", "bilinear", "TIN"].contains(name));
-        methods.push(("columns, no gaps filled", dsm(Relief::Columns)));
-        methods.push(("bilinear, no gaps filled", dsm(Relief::Bilinear)));
+        methods.push(("columns, no gaps filled", dsm(DsmSurface::Columns)));
+        methods.push(("bilinear, no gaps filled", dsm(DsmSurface::Bilinear)));
         methods
     };
     // a sun high enough to reach the town under its copy, and an eye between the two

@@ -2,7 +2,7 @@
 
 use belvedere::query::{Answer, Viewer, Visibility};
 use belvedere::{Error, PointCloud};
-use belvedere_baselines::Survey;
+use belvedere_baselines::MethodInput;
 use belvedere_baselines::hidden_points::{FlipRadius, ForeignTargets, HiddenPoints, HiddenPointsParams};
 
 /// Answers of Open3D and the truth, see `data/README.md`.
@@ -44,7 +44,7 @@ fn reference() -> Reference {
 }
 
 fn method<'a>(cloud: &'a PointCloud, params: HiddenPointsParams) -> HiddenPoints<'a> {
-    HiddenPoints::new(&Survey { cloud, scanner: &[], models: &[] }, params).unwrap()
+    HiddenPoints::new(&MethodInput { cloud, scanner: &[], models: &[] }, params).unwrap()
 }
 
 fn with_exponent(exponent: f64) -> HiddenPointsParams {
@@ -209,7 +209,7 @@ fn odd_clouds_and_viewers_have_defined_answers() {
     assert!(matches!(flat.visible(each, &ground.positions[..1]), Err(Error::UnsupportedViewer { .. })));
     let nowhere = Viewer::Eye([f64::NAN; 3]);
     assert!(matches!(flat.visible(nowhere, &ground.positions), Err(Error::InvalidParameter { .. })));
-    let survey = |cloud| Survey { cloud, scanner: &[], models: &[] };
+    let survey = |cloud| MethodInput { cloud, scanner: &[], models: &[] };
     let empty = PointCloud::default();
     assert!(matches!(HiddenPoints::new(&survey(&empty), with_exponent(1.0)), Err(Error::NoPoints { .. })));
     assert!(matches!(HiddenPoints::new(&survey(&ground), with_exponent(-1.0)), Err(Error::InvalidParameter { .. })));

@@ -1,7 +1,7 @@
 //! What it costs carved balls that the scanner is known badly, or not at all, and that normals come with the wrong sign: on a
 //! simulated town, against its exact mesh.
 
-use crate::common::place::Place;
+use crate::common::place::TownWithLight;
 use belvedere::control::Control;
 use belvedere::medial::{CarvedInput, CarvedParams, OrientByCarvingParams, carved_balls, orient_by_carving};
 use belvedere::neighbors::NeighborIndex;
@@ -9,11 +9,11 @@ use belvedere::normals::estimate::{Neighborhood, estimate};
 use belvedere::normals::{Orientation, OrientedCloud, orient};
 use belvedere::pulses::{NeedleParams, Needles, VerticalParams, vertical_pulses};
 use belvedere::query::{BlockRule, MedialScene, Viewer, Visibility};
-use belvedere_baselines::agreement::{Counts, Rate};
+use belvedere_baselines::agreement::{Rate, TruthCounts};
 use belvedere_baselines::medial::DEPTH_BIAS;
 use belvedere_scenes::Preset;
 
-impl Place {
+impl TownWithLight {
     /// Percent of answers that are right, balanced over lit and shaded places, mean over the suns, for a scanner at `scanner` and
     /// normals that `turn` has had its way with after pulses gave them their signs.
     fn score(
@@ -36,7 +36,7 @@ impl Place {
         let scene = MedialScene::new(&balls, &blocking).unwrap();
         let balanced = |(direction, visible): &([f64; 3], Vec<bool>)| {
             let answers = scene.visible(Viewer::Direction(*direction), &self.targets).unwrap();
-            let mut counts = Counts::default();
+            let mut counts = TruthCounts::default();
             visible.iter().zip(answers).for_each(|(&visible, answer)| counts.add(visible, answer));
             100.0 * Rate::Balanced.of(&counts).unwrap()
         };
@@ -56,7 +56,7 @@ fn all_flipped(oriented: &OrientedCloud) -> OrientedCloud {
 
 #[test]
 fn a_scanner_known_badly_and_normals_turned_wrongly_cost_less_than_a_point() {
-    let place = Place::new(Preset::Town);
+    let place = TownWithLight::new(Preset::Town);
     let same = |normal: [f32; 3]| normal;
     let exact = place.score(&place.scanner, same, as_it_is);
     // lateral error at an angle to the flight, and height
@@ -83,7 +83,7 @@ fn a_scanner_known_badly_and_normals_turned_wrongly_cost_less_than_a_point() {
 
 #[test]
 fn pulses_that_are_merely_assumed_to_be_vertical_are_worth_carving_with() {
-    let place = Place::new(Preset::Town);
+    let place = TownWithLight::new(Preset::Town);
     let same = |normal: [f32; 3]| normal;
     let exact = place.score(&place.scanner, same, as_it_is);
     let assumed = vertical_pulses(&place.cloud.positions, &VerticalParams::default(), &Control::none()).unwrap();

@@ -9,7 +9,7 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 #[derive(Args, Clone)]
-pub(crate) struct Normals {
+pub(crate) struct NormalsArguments {
     #[command(flatten)]
     pub(crate) cleaning: Cleaning,
     #[command(flatten)]
@@ -24,7 +24,7 @@ pub(crate) struct Normals {
 }
 
 #[derive(Args, Clone)]
-pub(crate) struct Balls {
+pub(crate) struct BallsArguments {
     #[command(flatten)]
     pub(crate) cleaning: Cleaning,
     #[command(flatten)]

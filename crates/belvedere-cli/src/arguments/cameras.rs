@@ -1,7 +1,8 @@
 //! Flags of camera placement.
 
 use super::{
-    Earth, GivingWay, GroundChoice, North, Radio, SceneInput, above_zero, at_least_one, at_most, finite, height, length,
+    Earth, GivingWay, GroundChoice, NorthArguments, Radio, SceneInput, above_zero, at_least_one, at_most, finite,
+    height, length,
 };
 use belvedere::apps::cameras::Level;
 use clap::Args;
@@ -9,9 +10,9 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 #[derive(Args)]
-pub(crate) struct Cameras {
+pub(crate) struct CamerasArguments {
     #[command(flatten)]
-    pub(crate) candidates: Candidates,
+    pub(crate) candidates: CandidatesArguments,
     /// Distance between candidates on a line of GeoJSON, in metres [default: 5]
     #[arg(long = "distance-step-m", value_name = "M", requires = "file", value_parser = above_zero::<f64>, allow_negative_numbers = true,
         help_heading = "Candidates (one of)")]
@@ -25,9 +26,9 @@ pub(crate) struct Cameras {
     #[arg(long, value_name = "FILE", help_heading = "Candidates (one of)")]
     pub(crate) existing: Option<PathBuf>,
     #[command(flatten)]
-    pub(crate) lens: CameraLens,
+    pub(crate) lens: CameraLensArguments,
     #[command(flatten)]
-    pub(crate) goal: CameraGoal,
+    pub(crate) goal: CameraGoalArguments,
     /// Number of cameras that each target needs
     ///
     /// A target with fewer cameras counts in proportion.
@@ -37,7 +38,7 @@ pub(crate) struct Cameras {
     #[arg(long, value_name = "N", help_heading = "Goal (one of)")]
     pub(crate) search_limit: Option<usize>,
     #[command(flatten)]
-    pub(crate) targets: CameraTargets,
+    pub(crate) targets: CameraTargetsArguments,
     #[command(flatten)]
     pub(crate) earth: Earth,
     #[command(flatten)]
@@ -48,7 +49,7 @@ pub(crate) struct Cameras {
     #[command(flatten)]
     pub(crate) giving_way: GivingWay,
     #[command(flatten)]
-    pub(crate) north: North,
+    pub(crate) north: NorthArguments,
     /// Cameras (.geojson), cameras per cell (.tif), map (.png) or a table of the targets (.csv); repeatable
     ///
     /// .geojson: a point in WGS 84 for each camera with its pose and what it adds; it can be used as --existing. .tif: the number of cameras that cover
@@ -68,7 +69,7 @@ pub(crate) struct Cameras {
 #[derive(Args)]
 #[command(next_help_heading = "Candidates (one of)")]
 #[group(id = "candidate_places", required = true, multiple = false)]
-pub(crate) struct Candidates {
+pub(crate) struct CandidatesArguments {
     /// Places for cameras from a table with columns x and y (.csv) or from GeoJSON, whose lines are walked along
     ///
     /// Columns or properties z, height, heading, tilt, fov, min_distance, max_distance, azimuth_from, azimuth_to, elevation_from and elevation_to override the flags. The
@@ -87,7 +88,7 @@ pub(crate) struct Candidates {
 
 #[derive(Args)]
 #[command(next_help_heading = "Cameras")]
-pub(crate) struct CameraLens {
+pub(crate) struct CameraLensArguments {
     /// Horizontal field of view in degrees, above 0 to 360 [default: 90]
     ///
     /// Below 180 the picture is flat. From 180 on the camera has no pixel density: a fisheye lens, a person, a mast.
@@ -103,7 +104,7 @@ pub(crate) struct CameraLens {
     ///
     /// The levels of EN 62676-4 are monitor (12.5), detect (25), observe (62.5), recognise (125) and identify (250).
     #[arg(long, value_name = "LEVEL")]
-    pub(crate) density: Option<Density>,
+    pub(crate) density: Option<PixelDensity>,
     /// Number of headings to choose from at each place, evenly spread, 1 to 360 [default: 8]
     #[arg(long, value_name = "N", value_parser = at_most::<360>)]
     pub(crate) headings: Option<usize>,
@@ -129,7 +130,7 @@ pub(crate) struct CameraLens {
 #[derive(Args)]
 #[command(next_help_heading = "Goal (one of)")]
 #[group(id = "camera_goal", required = true, multiple = false)]
-pub(crate) struct CameraGoal {
+pub(crate) struct CameraGoalArguments {
     /// Cover as much as possible with this number of new cameras
     #[arg(long, value_name = "N", value_parser = at_most::<100_000>)]
     pub(crate) count: Option<usize>,
@@ -140,7 +141,7 @@ pub(crate) struct CameraGoal {
 
 #[derive(Args)]
 #[command(next_help_heading = "Targets [default: cells on the ground]")]
-pub(crate) struct CameraTargets {
+pub(crate) struct CameraTargetsArguments {
     /// Polygons with cells (.geojson), points (.csv .geojson or a cloud), or a mesh (.obj .json .ply with faces)
     ///
     /// Column or property weight: how much each target counts; a cell in several polygons has the largest. Surfaces with normals (meshes, points of a cloud) count
@@ -166,9 +167,9 @@ pub(crate) struct CameraTargets {
 
 /// Pixels per metre; 0 for none.
 #[derive(Clone, Copy)]
-pub(crate) struct Density(pub(crate) f64);
+pub(crate) struct PixelDensity(pub(crate) f64);
 
-impl FromStr for Density {
+impl FromStr for PixelDensity {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {

@@ -1,12 +1,14 @@
 //! Flags of irradiance and of photovoltaic loss.
 
-use super::{Numbers, SceneInput, Shell, SkyOutputs, SkyPlaces, ThroughTrees, above_zero, at_least_one, location};
+use super::{
+    Numbers, SceneInput, Shell, SkyOutputs, SkyPlaces, ThroughTreesArguments, above_zero, at_least_one, location,
+};
 use belvedere::apps::irradiance::{SkyModel, Surroundings};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
 #[derive(Args)]
-pub(crate) struct Irradiance {
+pub(crate) struct IrradianceArguments {
     #[command(flatten)]
     pub(crate) radiation: RadiationChoice,
     /// Year of the clear sky [default: 2026]
@@ -22,7 +24,7 @@ pub(crate) struct Irradiance {
     #[command(flatten)]
     pub(crate) shell: Shell,
     #[command(flatten)]
-    pub(crate) trees: ThroughTrees,
+    pub(crate) trees: ThroughTreesArguments,
     /// Also write the roof planes, as a table (.csv) or outlines (.geojson); repeatable
     ///
     /// Columns: tilt, azimuth from true north, area, energy, and the minimum and maximum shading loss of a photovoltaic plant there.

@@ -1,6 +1,6 @@
 //! Flags of lines of sight and viewsheds.
 
-use super::{North, Numbers, SceneInput, UnprovenChoice, Usage, above_zero, at_most, height, length};
+use super::{NorthArguments, Numbers, SceneInput, UnprovenChoice, Usage, above_zero, at_most, height, length};
 use belvedere::ground::GroundPoints;
 use belvedere::query::{Curvature, MOST_RANDOM_PAIRS};
 use clap::{Args, ValueEnum};
@@ -8,9 +8,9 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 #[derive(Args)]
-pub(crate) struct LineOfSight {
+pub(crate) struct LineOfSightArguments {
     #[command(flatten)]
-    pub(crate) lines: Lines,
+    pub(crate) lines: LinesArguments,
     #[command(flatten)]
     pub(crate) heights: EndHeights,
     #[command(flatten)]
@@ -52,7 +52,7 @@ pub(crate) struct LineOfSight {
 #[derive(Args)]
 #[command(next_help_heading = "Lines of sight (one of)")]
 #[group(id = "lines", required = true, multiple = true)]
-pub(crate) struct Lines {
+pub(crate) struct LinesArguments {
     /// Table with columns ax,ay,az,bx,by,bz in file coordinates: observer A, target B (.csv), or lines (.geojson)
     ///
     /// Of a line the first corner is the observer, and the last the target. An end without a height is --observer-height or --target-height
@@ -64,10 +64,10 @@ pub(crate) struct Lines {
     pub(crate) random: Option<usize>,
     /// Observer of one line, in file coordinates; without Z it is --observer-height above the ground
     #[arg(long = "observer", value_name = "X,Y[,Z]", requires = "to", allow_hyphen_values = true)]
-    pub(crate) from: Option<Place>,
+    pub(crate) from: Option<MapPosition>,
     /// Target of one line, in file coordinates; without Z it is --target-height above the ground
     #[arg(long = "target", value_name = "X,Y[,Z]", requires = "from", allow_hyphen_values = true)]
-    pub(crate) to: Option<Place>,
+    pub(crate) to: Option<MapPosition>,
 }
 
 /// Heights of ends that have none of their own.
@@ -152,11 +152,11 @@ impl From<CurvatureChoice> for Curvature {
 }
 
 #[derive(Args)]
-pub(crate) struct Viewshed {
+pub(crate) struct ViewshedArguments {
     #[command(flatten)]
     pub(crate) who: Who,
     #[command(flatten)]
-    pub(crate) looking: Looking,
+    pub(crate) looking: LookingArguments,
     #[command(flatten)]
     pub(crate) earth: Earth,
     #[command(flatten)]
@@ -214,7 +214,7 @@ pub(crate) struct Viewshed {
 pub(crate) struct Who {
     /// An observer in file coordinates; without Z it is --observer-height above the ground; repeatable
     #[arg(long, value_name = "X,Y[,Z]", allow_hyphen_values = true)]
-    pub(crate) observer: Vec<Place>,
+    pub(crate) observer: Vec<MapPosition>,
     /// Observers from a table with columns x and y (.csv) or from GeoJSON, whose lines are paths
     ///
     /// Columns or properties z, height, min_distance, max_distance, azimuth_from, azimuth_to, elevation_from and elevation_to override the flags.
@@ -224,12 +224,12 @@ pub(crate) struct Who {
     ///
     /// The target is --target-height above the ground if it has no Z. The observers are --observer-height above the ground of each cell.
     #[arg(long, value_name = "X,Y[,Z]", allow_hyphen_values = true)]
-    pub(crate) target: Option<Place>,
+    pub(crate) target: Option<MapPosition>,
 }
 
 #[derive(Args)]
 #[command(next_help_heading = "Limits of sight")]
-pub(crate) struct Looking {
+pub(crate) struct LookingArguments {
     /// Distance between observers on a path, in metres; a table then has the corners of one path [default for GeoJSON: 5]
     #[arg(long = "distance-step-m", value_name = "M", requires = "observers", value_parser = above_zero::<f64>, allow_negative_numbers = true)]
     pub(crate) step: Option<f64>,
@@ -254,14 +254,14 @@ pub(crate) struct Looking {
     #[arg(long = "elevation-range", value_name = "FROM,TO", allow_hyphen_values = true)]
     pub(crate) elevation: Option<Numbers<2>>,
     #[command(flatten)]
-    pub(crate) north: North,
+    pub(crate) north: NorthArguments,
 }
 
 /// A place on the map, with a height or without.
 #[derive(Clone, Copy, PartialEq)]
-pub(crate) struct Place(pub(crate) [f64; 2], pub(crate) Option<f64>);
+pub(crate) struct MapPosition(pub(crate) [f64; 2], pub(crate) Option<f64>);
 
-impl Place {
+impl MapPosition {
     /// Refuses a place that `flag` gives twice: it would count twice.
     pub(crate) fn refuse_twice(flag: &str, places: &[Self]) -> Result<(), Usage> {
         let again = places.iter().enumerate().find(|(number, place)| places[..*number].contains(place));
@@ -275,7 +275,7 @@ impl Place {
     }
 }
 
-impl FromStr for Place {
+impl FromStr for MapPosition {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {

@@ -6,7 +6,7 @@ use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
 #[derive(Args)]
-pub(crate) struct DepthMap {
+pub(crate) struct DepthMapArguments {
     #[command(flatten)]
     pub(crate) view: ViewChoice,
     /// Depth in metres (.tif .npy), or a picture with a legend (.png); repeatable
@@ -31,7 +31,7 @@ pub(crate) struct Query {
     #[command(flatten)]
     pub(crate) view: ViewChoice,
     #[command(flatten)]
-    pub(crate) targets: Targets,
+    pub(crate) targets: TargetsArguments,
     #[command(flatten)]
     pub(crate) mesh: MeshTargets,
     /// Depth tolerance: how far behind the depth map a target is still visible, in metres [default: from the pixel size]
@@ -66,7 +66,7 @@ pub(crate) struct Query {
 #[derive(Args)]
 #[command(next_help_heading = "Targets (one of)")]
 #[group(required = true, multiple = false)]
-pub(crate) struct Targets {
+pub(crate) struct TargetsArguments {
     /// Points or a mesh to query, in the coordinates of the scene; a table needs columns x, y and z
     #[arg(long, value_name = "FILE")]
     pub(crate) targets: Option<PathBuf>,

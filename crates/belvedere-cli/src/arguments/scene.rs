@@ -39,7 +39,7 @@ pub(crate) struct SceneInput {
     #[command(flatten)]
     pub(crate) input: CloudInput,
     #[command(flatten)]
-    pub(crate) plan: Plan,
+    pub(crate) plan: PlanArguments,
     #[command(flatten)]
     pub(crate) balls: SceneBalls,
 }
@@ -78,7 +78,7 @@ pub(crate) struct BallShape {
 
 /// What is planned: the scene as it will be.
 #[derive(Args, Clone)]
-pub(crate) struct Plan {
+pub(crate) struct PlanArguments {
     /// Add a mesh to the scene, such as a planned building (.obj .ply .json); repeatable
     ///
     /// Its triangles block lines of sight exactly as they are, from both sides, whether they enclose a volume or not. Coordinates are those of

@@ -1,6 +1,6 @@
 //! Flags of the targets of sun and sky commands, and of the sky view.
 
-use super::{GroundChoice, SceneInput, Shell, ThroughTrees, above_zero, at_least_one, length};
+use super::{GroundChoice, SceneInput, Shell, ThroughTreesArguments, above_zero, at_least_one, length};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
@@ -34,7 +34,7 @@ pub(crate) struct SkyPlaces {
     #[arg(long, value_enum, value_name = "HOW", help_heading = "Targets")]
     pub(crate) facing: Option<FacingChoice>,
     #[command(flatten)]
-    pub(crate) far: FarTerrain,
+    pub(crate) far: FarTerrainArguments,
     /// Also write a mask of the cells near the edge of the cloud (.tif): 1 near the edge, 0 not, nodata 255
     ///
     /// A cell is near the edge if more than 5 % of the light comes from directions that leave the cloud below its highest point: objects beyond the
@@ -45,7 +45,7 @@ pub(crate) struct SkyPlaces {
 
 /// What stands beyond the cloud.
 #[derive(Args)]
-pub(crate) struct FarTerrain {
+pub(crate) struct FarTerrainArguments {
     /// Terrain beyond the cloud: elevation raster (DTM) in the coordinate system of the cloud or in degrees (.tif)
     ///
     /// Each place has its own horizon, exact for the cells of the raster, with the curvature of the earth and refraction. Within the extent of the cloud, and one cell
@@ -101,7 +101,7 @@ pub(crate) struct SkyOutputs {
 }
 
 #[derive(Args)]
-pub(crate) struct SkyView {
+pub(crate) struct SkyViewArguments {
     #[command(flatten)]
     pub(crate) places: SkyPlaces,
     #[command(flatten)]
@@ -116,7 +116,7 @@ pub(crate) struct SkyView {
     #[arg(long, value_enum, value_name = "NAME", help_heading = "Sky")]
     pub(crate) patches: Option<PatchesChoice>,
     #[command(flatten)]
-    pub(crate) trees: ThroughTrees,
+    pub(crate) trees: ThroughTreesArguments,
     #[command(flatten)]
     pub(crate) outputs: SkyOutputs,
     #[command(flatten)]

@@ -1,13 +1,15 @@
 //! Flags of the location, the time zone, the days and the sun hours.
 
-use super::{CloudInput, Numbers, SceneInput, Shell, SkyOutputs, SkyPlaces, ThroughTrees, above_zero, location};
+use super::{
+    CloudInput, Numbers, SceneInput, Shell, SkyOutputs, SkyPlaces, ThroughTreesArguments, above_zero, location,
+};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
 /// The place on earth, its clocks and its air.
 #[derive(Args)]
 #[command(next_help_heading = "Sun")]
-pub(crate) struct SunPlace {
+pub(crate) struct SunPlaceArguments {
     /// Latitude and longitude of the scene in degrees, north and east positive [default: from its reference system]
     #[arg(long, value_name = "LAT,LON", value_parser = location, allow_hyphen_values = true)]
     pub(crate) location: Option<Numbers<2>>,
@@ -25,12 +27,12 @@ pub(crate) struct SunPlace {
 }
 
 #[derive(Args)]
-pub(crate) struct SunPosition {
+pub(crate) struct SunPositionArguments {
     /// Time in ISO 8601, with an offset unless --zone is given: 2026-06-21T15:00+02:00; repeatable
     #[arg(long = "time", value_name = "TIME", required = true, help_heading = "Sun")]
     pub(crate) times: Vec<String>,
     #[command(flatten)]
-    pub(crate) sun: SunPlace,
+    pub(crate) sun: SunPlaceArguments,
     /// Table of times, azimuths and elevations (.csv)
     #[arg(short, long, value_name = "OUT", help_heading = "Result")]
     pub(crate) output: Option<PathBuf>,
@@ -73,7 +75,7 @@ pub(crate) struct SunPeriod {
 }
 
 #[derive(Args)]
-pub(crate) struct SunHours {
+pub(crate) struct SunHoursArguments {
     #[command(flatten)]
     pub(crate) when: SunPeriod,
     /// Daylight rule: nl-light, nl-strict, the-hague, bre-equinox, or your own as HOURS@DAYS; repeatable
@@ -88,13 +90,13 @@ pub(crate) struct SunHours {
     #[arg(long = "sun-tolerance-deg", value_name = "DEG", allow_negative_numbers = true, help_heading = "Period")]
     pub(crate) within: Option<f64>,
     #[command(flatten)]
-    pub(crate) sun: SunPlace,
+    pub(crate) sun: SunPlaceArguments,
     #[command(flatten)]
     pub(crate) places: SkyPlaces,
     #[command(flatten)]
     pub(crate) shell: Shell,
     #[command(flatten)]
-    pub(crate) trees: ThroughTrees,
+    pub(crate) trees: ThroughTreesArguments,
     #[command(flatten)]
     pub(crate) outputs: SkyOutputs,
     /// Also save the visibility matrix, for other days and rules with --load-matrix (.npz)

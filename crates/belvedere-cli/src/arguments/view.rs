@@ -34,7 +34,7 @@ pub(crate) struct ViewKind {
 
 /// The north that azimuths are counted from.
 #[derive(Args)]
-pub(crate) struct North {
+pub(crate) struct NorthArguments {
     /// Count azimuths clockwise from grid north instead of true north
     ///
     /// Azimuths are also from grid north if the scene has no coordinate reference system. The summary states which north was used.
@@ -47,7 +47,7 @@ pub(crate) struct ViewChoice {
     #[command(flatten)]
     pub(crate) kind: ViewKind,
     #[command(flatten)]
-    pub(crate) north: North,
+    pub(crate) north: NorthArguments,
     /// Pixel size with --sun and --direction, in metres [default: 0.25, smaller for small objects]
     #[arg(long, value_name = "M", conflicts_with_all = ["viewport", "eye", "panorama"], value_parser = above_zero::<f64>,
         allow_negative_numbers = true)]

@@ -1,6 +1,6 @@
 //! Flags of the page in the browser.
 
-use super::{Place, SceneInput};
+use super::{MapPosition, SceneInput};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -25,7 +25,7 @@ pub(crate) struct ViewPage {
     pub(crate) zone: Option<String>,
     /// Viewpoint in file coordinates whose view is in the file; without Z it is 1.7 m above the ground; repeatable
     #[arg(long, value_name = "X,Y[,Z]", help_heading = "File", requires = "export", allow_hyphen_values = true)]
-    pub(crate) observer: Vec<Place>,
+    pub(crate) observer: Vec<MapPosition>,
     #[command(flatten)]
     pub(crate) scene: SceneInput,
 }

@@ -5,14 +5,14 @@ mod questions;
 use super::{check_folder, check_output};
 use crate::arguments::{City, CityMerge, CityPlan, CityRun, CityStatus, CityStep, Global, Usage};
 use crate::pipeline::areas;
-use crate::run::Run;
+use crate::run::CommandContext;
 use crate::summary::{Summary, rounded};
 use anyhow::{Result, bail};
 use belvedere::apps::ask::remark_on_cleared;
 use belvedere::apps::tree_light::Transmissivity;
 use belvedere::{Error, Parameter};
 use belvedere_tiles::{
-    Plan, PlanParams, Question, RunParams, Shard, SideFile, Steps, merge, run as run_tiles, status as status_of,
+    Plan, PlanParams, RunParams, Shard, SideFile, Steps, TileQuestion, merge, run as run_tiles, status as status_of,
 };
 use std::path::PathBuf;
 use std::time::Instant;
@@ -32,7 +32,7 @@ pub(crate) fn run(arguments: &City, global: &Global) -> Result<Summary> {
 fn plan(arguments: &CityPlan, global: &Global) -> Result<Summary> {
     questions::check(arguments)?;
     check_folder(&arguments.output)?;
-    let mut run = Run::new(global);
+    let mut run = CommandContext::new(global);
     let params = PlanParams {
         clouds: arguments.clouds.clone(),
         crs: arguments.crs.clone(),
@@ -59,7 +59,7 @@ fn plan(arguments: &CityPlan, global: &Global) -> Result<Summary> {
         .add("tiles", plan.tiles.len())
         .add("tile_size_m", plan.tile_size)
         .add("halo_m", plan.halo)
-        .add("results", plan.questions.iter().map(Question::name).collect::<Vec<_>>())
+        .add("results", plan.questions.iter().map(TileQuestion::name).collect::<Vec<_>>())
         .add("points", estimate.points)
         .add("points_read_with_halo", estimate.points_with_halo)
         .add("points_of_the_largest_tile", estimate.most_points_of_a_tile)
@@ -94,7 +94,7 @@ fn planned(plan: Plan, arguments: &CityPlan) -> Result<Plan> {
 
 fn run_plan(arguments: &CityRun, global: &Global) -> Result<Summary> {
     let plan = Plan::read(&arguments.run)?;
-    let mut run = Run::new(global);
+    let mut run = CommandContext::new(global);
     let start = Instant::now();
     let shard = arguments.shard.map_or_else(Shard::default, |share| Shard { number: share.number, of: share.of });
     let steps = if arguments.balls_only { Steps::Balls } else { Steps::All };
@@ -139,7 +139,7 @@ fn status(arguments: &CityStatus) -> Result<Summary> {
 fn merge_tiles(arguments: &CityMerge, global: &Global) -> Result<Summary> {
     check_output("-o", &arguments.output, &["tif"])?;
     let plan = Plan::read(&arguments.run)?;
-    let names = || plan.questions.iter().map(Question::name).collect::<Vec<_>>().join(", ");
+    let names = || plan.questions.iter().map(TileQuestion::name).collect::<Vec<_>>().join(", ");
     let question = match (&arguments.result, &plan.questions[..]) {
         (None, [only]) => only,
         (None, _) => return Err(Usage(format!("--result is missing: give one of {}", names())).into()),
@@ -148,7 +148,7 @@ fn merge_tiles(arguments: &CityMerge, global: &Global) -> Result<Summary> {
             .find(|question| question.name() == name)
             .ok_or_else(|| Usage(format!("--result {name}: the results are {}", names())))?,
     };
-    let mut run = Run::new(global);
+    let mut run = CommandContext::new(global);
     let merged =
         run.stage("merging", 0, |control| merge(&plan, &arguments.run, question, &arguments.output, control))?;
     run.summary.add("tiles", merged.tiles).add("tiles_without_result", merged.without_result);

@@ -2,7 +2,7 @@
 
 use crate::arguments::{Global, Info};
 use crate::pipeline::{self, is_file};
-use crate::run::Run;
+use crate::run::CommandContext;
 use crate::summary::{Summary, rounded, sections, whole};
 use anyhow::Result;
 use belvedere::io::{ReadOptions, is_ball_file, read_balls, read_cloud};
@@ -12,7 +12,7 @@ use belvedere::summary::{CloudSummary, FacadeSummary, SurveyKind};
 use belvedere::{Error, PointCloud};
 
 pub(crate) fn run(arguments: &Info, global: &Global) -> Result<Summary> {
-    let run = Run::new(global);
+    let run = CommandContext::new(global);
     if let [path] = &arguments.input.clouds[..]
         && is_file(path)
         && is_ball_file(path)?

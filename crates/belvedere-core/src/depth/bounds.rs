@@ -86,12 +86,12 @@ pub fn depth_bounds(balls: &[Ball], view: &View, params: &BoundsParams, control:
         let bound = BallBound { side, rule, start };
         let drawn = match view.projection {
             Projection::Orthographic { pixels_per_metre } => {
-                let surface = parallel::Bound::new(bound, pixels_per_metre);
+                let surface = parallel::ParallelBound::new(bound, pixels_per_metre);
                 let shape = Parallel::new(&unlimited, pixels_per_metre, surface);
                 tiles::draw(&shape, view.size_px, balls.len(), ball, ItemBuffer::Without, control)
             }
             _ => {
-                let shape = Central::new(&unlimited, central::Bound(bound));
+                let shape = Central::new(&unlimited, central::CentralBound(bound));
                 tiles::draw(&shape, view.size_px, balls.len(), ball, ItemBuffer::Without, control)
             }
         };

@@ -5,13 +5,13 @@
 
 use super::bounds::{BallBound, BoundSide, margin};
 use super::outline::{ALL, outline};
-use super::tiles::{BLOCK, Shape, TILE};
+use super::tiles::{BLOCK, SplatSurface, TILE};
 use belvedere_data::vector::{cross, length};
 use belvedere_data::view::{Projection, View};
 
 /// A ball as seen from the eye.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Splat {
+pub(super) struct CentralSplat {
     /// Centre along right, down and forward, metres.
     center: [f32; 3],
     radius: f32,
@@ -27,7 +27,7 @@ pub(super) struct Splat {
 
 /// Where a direction of sight runs past a ball: along it to the point nearest to the centre, and from there to the centre, metres.
 #[derive(Clone, Copy)]
-struct Passing {
+struct DirectionPassing {
     along: f32,
     beside_square: f32,
 }
@@ -63,12 +63,12 @@ impl Turn {
 
     /// The passing of the direction nearest to the centre.
     #[inline(always)]
-    fn nearest(self, passing: Passing, distance: f32) -> Passing {
+    fn nearest(self, passing: DirectionPassing, distance: f32) -> DirectionPassing {
         let beside = passing.beside_square.sqrt();
         let turned = beside * self.cos - passing.along * self.sin;
         let along = passing.along * self.cos + beside * self.sin;
         let reaches_middle = turned <= 0.0;
-        Passing {
+        DirectionPassing {
             along: if reaches_middle { distance } else { along },
             beside_square: if reaches_middle { 0.0 } else { turned * turned },
         }
@@ -76,10 +76,10 @@ impl Turn {
 
     /// The passing of the direction farthest from the centre.
     #[inline(always)]
-    fn farthest(self, passing: Passing) -> Passing {
+    fn farthest(self, passing: DirectionPassing) -> DirectionPassing {
         let beside = passing.beside_square.sqrt();
         let turned = beside * self.cos + passing.along * self.sin;
-        Passing { along: passing.along * self.cos - beside * self.sin, beside_square: turned * turned }
+        DirectionPassing { along: passing.along * self.cos - beside * self.sin, beside_square: turned * turned }
     }
 }
 
@@ -97,7 +97,7 @@ pub(super) struct Directions {
 }
 
 /// What is drawn of a ball in a view from an eye.
-pub(super) trait Surface: Sync {
+pub(super) trait CentralSurface: Sync {
     /// Pixels beyond the rim of a ball whose depth may be finite.
     const BEYOND_PX: f32;
     /// Whether depths are ranges whatever the view.
@@ -112,12 +112,12 @@ pub(super) trait Surface: Sync {
         None
     }
     /// Depth in one direction, +∞ beside the ball.
-    fn depth(&self, pixel: &Pixel<'_>, splat: &Splat) -> f32;
+    fn depth(&self, pixel: &PixelRay<'_>, splat: &CentralSplat) -> f32;
 }
 
 /// One direction past one ball.
-pub(super) struct Pixel<'a> {
-    passing: Passing,
+pub(super) struct PixelRay<'a> {
+    passing: DirectionPassing,
     distance: f32,
     depth_per_range: f32,
     limits: [f32; 2],
@@ -133,7 +133,7 @@ pub(super) struct Central<S> {
     surface: S,
 }
 
-impl<S: Surface> Central<S> {
+impl<S: CentralSurface> Central<S> {
     #[expect(clippy::cast_possible_truncation, reason = "limits of depth in metres")]
     pub(super) fn new(view: &View, surface: S) -> Self {
         let limits = surface.limits(view).map(|v| v as f32);
@@ -165,12 +165,12 @@ impl<S: Surface> Central<S> {
     }
 }
 
-impl<S: Surface> Shape for Central<S> {
-    type Splat = Splat;
-    type Tile = Box<Directions>;
+impl<S: CentralSurface> SplatSurface for Central<S> {
+    type Splat = CentralSplat;
+    type PixelTile = Box<Directions>;
 
     #[expect(clippy::cast_possible_truncation, reason = "view coordinates relative to the eye")]
-    fn place(&self, center: [f32; 3], radius: f32, ball: u32) -> Option<Splat> {
+    fn place(&self, center: [f32; 3], radius: f32, ball: u32) -> Option<CentralSplat> {
         let center = self.view.frame.view_from_local(center);
         let distance = center.map(|v| v * v).iter().sum::<f64>().sqrt();
         let whole = f64::from(radius);
@@ -190,7 +190,7 @@ impl<S: Surface> Shape for Central<S> {
         let [near, far] = self.limits;
         let near = ((least - margin) as f32).max(near);
         let beyond = |[least, most]: [f64; 2]| [least as f32 - S::BEYOND_PX, most as f32 + S::BEYOND_PX];
-        (near <= far).then_some(Splat {
+        (near <= far).then_some(CentralSplat {
             center: center.map(|v| v as f32),
             radius,
             margin: margin as f32,
@@ -200,15 +200,15 @@ impl<S: Surface> Shape for Central<S> {
         })
     }
 
-    fn ball(splat: &Splat) -> u32 {
+    fn ball(splat: &CentralSplat) -> u32 {
         splat.ball
     }
 
-    fn near(splat: &Splat) -> f32 {
+    fn near(splat: &CentralSplat) -> f32 {
         splat.near
     }
 
-    fn extent(&self, splat: &Splat) -> [[f32; 2]; 2] {
+    fn extent(&self, splat: &CentralSplat) -> [[f32; 2]; 2] {
         splat.extent
     }
 
@@ -242,7 +242,7 @@ impl<S: Surface> Shape for Central<S> {
         tile
     }
 
-    fn least_depth(&self, tile: &Self::Tile, splat: &Splat, [column, row]: [usize; 2]) -> f32 {
+    fn least_depth(&self, tile: &Self::PixelTile, splat: &CentralSplat, [column, row]: [usize; 2]) -> f32 {
         // the pixel right and below of the middle: half a pixel's diagonal off it
         let at = (row + BLOCK / 2) * TILE + column + BLOCK / 2;
         let direction = [0, 1, 2].map(|axis: usize| tile.directions[axis][at]);
@@ -259,13 +259,13 @@ impl<S: Surface> Shape for Central<S> {
     }
 
     #[inline(always)]
-    fn depths(&self, tile: &Self::Tile, splat: &Splat, [column, row]: [usize; 2]) -> [f32; BLOCK] {
+    fn depths(&self, tile: &Self::PixelTile, splat: &CentralSplat, [column, row]: [usize; 2]) -> [f32; BLOCK] {
         let first = row * TILE + column;
         let [x, y, z] = [0, 1, 2].map(|axis: usize| &tile.directions[axis][first..][..BLOCK]);
         let depth_per_range = &tile.depth_per_range[first..][..BLOCK];
         let distance = splat.center.map(|v| v * v).iter().sum::<f32>().sqrt();
         std::array::from_fn(|lane| {
-            let pixel = Pixel {
+            let pixel = PixelRay {
                 passing: passing(splat.center, [x[lane], y[lane], z[lane]]),
                 distance,
                 depth_per_range: depth_per_range[lane],
@@ -279,15 +279,18 @@ impl<S: Surface> Shape for Central<S> {
 
 /// How a unit vector of sight passes a centre. The distance beside it is that of a vector product, which does not cancel.
 #[inline(always)]
-fn passing([cx, cy, cz]: [f32; 3], [x, y, z]: [f32; 3]) -> Passing {
+fn passing([cx, cy, cz]: [f32; 3], [x, y, z]: [f32; 3]) -> DirectionPassing {
     let (across, down, forward) = (cy * z - cz * y, cz * x - cx * z, cx * y - cy * x);
-    Passing { along: cx * x + cy * y + cz * z, beside_square: across * across + down * down + forward * forward }
+    DirectionPassing {
+        along: cx * x + cy * y + cz * z,
+        beside_square: across * across + down * down + forward * forward,
+    }
 }
 
 /// The sphere, sampled in the directions of pixel centres.
-pub(super) struct Sphere;
+pub(super) struct CentralSphere;
 
-impl Surface for Sphere {
+impl CentralSurface for CentralSphere {
     const BEYOND_PX: f32 = 0.1;
     const IN_RANGE: bool = false;
 
@@ -301,7 +304,7 @@ impl Surface for Sphere {
     }
 
     #[inline(always)]
-    fn depth(&self, pixel: &Pixel<'_>, splat: &Splat) -> f32 {
+    fn depth(&self, pixel: &PixelRay<'_>, splat: &CentralSplat) -> f32 {
         let [near, far] = pixel.limits;
         let square = splat.radius * splat.radius - pixel.passing.beside_square;
         let half_chord = square.max(0.0).sqrt();
@@ -313,9 +316,9 @@ impl Surface for Sphere {
 }
 
 /// Bounds of the range of a ball over each pixel.
-pub(super) struct Bound(pub(super) BallBound);
+pub(super) struct CentralBound(pub(super) BallBound);
 
-impl Surface for Bound {
+impl CentralSurface for CentralBound {
     /// A square reaches √½ of a pixel beyond its centre.
     const BEYOND_PX: f32 = 1.0;
     const IN_RANGE: bool = true;
@@ -334,7 +337,7 @@ impl Surface for Bound {
     }
 
     #[inline(always)]
-    fn depth(&self, pixel: &Pixel<'_>, splat: &Splat) -> f32 {
+    fn depth(&self, pixel: &PixelRay<'_>, splat: &CentralSplat) -> f32 {
         let passing = match self.0.side {
             BoundSide::Lower => pixel.turns[0].nearest(pixel.passing, pixel.distance),
             BoundSide::Upper => pixel.turns[1].farthest(pixel.passing),

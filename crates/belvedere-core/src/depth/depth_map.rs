@@ -76,15 +76,22 @@ pub fn depth_map(
     };
     let (size, count) = (view.size_px, balls.len());
     let drawn = match (view.projection, profile) {
-        (Projection::Orthographic { pixels_per_metre }, Profile::Sphere) => {
-            tiles::draw(&Parallel::new(view, pixels_per_metre, parallel::Sphere), size, count, usable, items, control)
-        }
+        (Projection::Orthographic { pixels_per_metre }, Profile::Sphere) => tiles::draw(
+            &Parallel::new(view, pixels_per_metre, parallel::ParallelSphere),
+            size,
+            count,
+            usable,
+            items,
+            control,
+        ),
         (Projection::Orthographic { pixels_per_metre }, Profile::PaperCone) => {
             #[expect(clippy::cast_possible_truncation, reason = "pixels per metre")]
             let cone = parallel::Cone { pixels_per_metre: pixels_per_metre as f32 };
             tiles::draw(&Parallel::new(view, pixels_per_metre, cone), size, count, usable, items, control)
         }
-        (_, Profile::Sphere) => tiles::draw(&Central::new(view, central::Sphere), size, count, usable, items, control),
+        (_, Profile::Sphere) => {
+            tiles::draw(&Central::new(view, central::CentralSphere), size, count, usable, items, control)
+        }
         (_, Profile::PaperCone) => {
             return Err(Error::InvalidParameter {
                 parameter: Parameter::BallProfile,

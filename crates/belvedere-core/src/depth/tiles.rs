@@ -23,11 +23,11 @@ const MOST_LISTED_TILES: usize = 16;
 const CHUNK: usize = 8192;
 
 /// A surface that stands for a ball in a view, and what it needs to be drawn. All depths are in one unit of its own choice.
-pub(super) trait Shape: Sync {
+pub(super) trait SplatSurface: Sync {
     /// A ball in the view.
     type Splat: Copy + Send + Sync;
     /// What the pixels of one tile have in common.
-    type Tile;
+    type PixelTile;
     /// A ball, its centre local, or `None` where it cannot be seen or is no ball of finite size.
     fn place(&self, center: [f32; 3], radius: f32, ball: u32) -> Option<Self::Splat>;
     /// Row of the ball.
@@ -37,11 +37,11 @@ pub(super) trait Shape: Sync {
     /// Least and most column, and least and most row, that pixel centres on the ball may have, in pixels.
     fn extent(&self, splat: &Self::Splat) -> [[f32; 2]; 2];
     /// The tile whose upper left pixel stands at a column and a row.
-    fn tile(&self, left: usize, top: usize) -> Self::Tile;
+    fn tile(&self, left: usize, top: usize) -> Self::PixelTile;
     /// At most the least depth of the ball at any pixel of the block at a column and a row of the tile, +∞ where it touches none.
-    fn least_depth(&self, tile: &Self::Tile, splat: &Self::Splat, block: [usize; 2]) -> f32;
+    fn least_depth(&self, tile: &Self::PixelTile, splat: &Self::Splat, block: [usize; 2]) -> f32;
     /// Depths at the pixels of one row of a block, which starts at a column and a row of the tile; +∞ beside the ball.
-    fn depths(&self, tile: &Self::Tile, splat: &Self::Splat, first: [usize; 2]) -> [f32; BLOCK];
+    fn depths(&self, tile: &Self::PixelTile, splat: &Self::Splat, first: [usize; 2]) -> [f32; BLOCK];
     /// Units of depth in a metre.
     fn units_per_metre(&self) -> f32 {
         1.0
@@ -53,7 +53,7 @@ pub(super) trait Shape: Sync {
 ///
 /// # Errors
 /// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
-pub(super) fn draw<S: Shape>(
+pub(super) fn draw<S: SplatSurface>(
     shape: &S,
     [width, height]: [usize; 2],
     count: usize,
@@ -121,7 +121,7 @@ struct TileLists {
 
 impl TileLists {
     #[expect(clippy::cast_possible_truncation, reason = "there are fewer splats than 2^32")]
-    fn new<S: Shape>(shape: &S, splats: &[S::Splat], [width, height]: [usize; 2]) -> Self {
+    fn new<S: SplatSurface>(shape: &S, splats: &[S::Splat], [width, height]: [usize; 2]) -> Self {
         let (columns, rows) = (width.div_ceil(TILE), height.div_ceil(TILE));
         let tiles_of = |splat: &S::Splat| {
             let [across, down] = shape.extent(splat);
@@ -168,7 +168,7 @@ impl TileLists {
 
     /// The splats of one tile, nearest first, equally near ones by row of the ball: places in `splats` in the low half of
     /// each key.
-    fn of_tile<S: Shape>(&self, shape: &S, splats: &[S::Splat], column: usize, row: usize) -> Vec<u64> {
+    fn of_tile<S: SplatSurface>(&self, shape: &S, splats: &[S::Splat], column: usize, row: usize) -> Vec<u64> {
         let tile = row * self.columns + column;
         let listed = &self.listed[self.starts[tile]..self.starts[tile + 1]];
         let touches = |from: usize, [least, most]: [f32; 2]| {
@@ -207,10 +207,10 @@ fn pixel_range([least, most]: [f32; 2], size: usize) -> [usize; 2] {
     [((least - 0.5).max(0.0) as usize).min(size), (end as usize).min(size)]
 }
 
-struct Tile<'a, S: Shape> {
+struct Tile<'a, S: SplatSurface> {
     shape: &'a S,
     /// What its pixels have in common.
-    pixels: S::Tile,
+    pixels: S::PixelTile,
     /// First pixel.
     left: usize,
     top: usize,
@@ -222,7 +222,7 @@ struct Tile<'a, S: Shape> {
     stale: [bool; BLOCKS * BLOCKS],
 }
 
-impl<'a, S: Shape> Tile<'a, S> {
+impl<'a, S: SplatSurface> Tile<'a, S> {
     fn new(shape: &'a S, column: usize, row: usize) -> Self {
         let (left, top) = (column * TILE, row * TILE);
         Self {

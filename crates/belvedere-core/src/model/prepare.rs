@@ -55,7 +55,7 @@ pub(super) struct CarvingInput {
 
 /// Where the scanner was.
 #[derive(Default)]
-struct Scanner {
+struct ScannerPositions {
     /// For each point, local metres, NaN where unknown.
     positions: Vec<[f32; 3]>,
     /// Whether pulses are only assumed to fall straight down.
@@ -126,7 +126,7 @@ pub(super) fn prepare(
         report.scanner = Some(found);
         scanner
     } else {
-        Scanner::default()
+        ScannerPositions::default()
     };
     let mut carving = match carving {
         Carving::Unwanted => None,
@@ -190,7 +190,13 @@ pub(super) fn prepare(
 impl CarvingInput {
     /// Lets pulses that all come from one place prove their way up to a few times the `noise` of their ranges, metres, before their returns.
     /// Where they come from several, how well these places are known counts as well, which the cloud does not tell.
-    fn lead_up_to(&mut self, noise: f32, scanner: &Scanner, params: &ModelParams, control: &Control<'_>) -> Result<()> {
+    fn lead_up_to(
+        &mut self,
+        noise: f32,
+        scanner: &ScannerPositions,
+        params: &ModelParams,
+        control: &Control<'_>,
+    ) -> Result<()> {
         let mut known = scanner.positions.iter().filter(|p| p.iter().all(|v| v.is_finite()));
         let first = known.next();
         let nearer = params.needles.end_margin - NOISES_BEFORE_RETURNS * noise;
@@ -221,7 +227,7 @@ fn check_surface<'a>(points: impl Iterator<Item = &'a [f32; 3]> + Clone) -> Resu
 fn orientation<'a>(
     cloud: &PointCloud,
     params: &'a ModelParams,
-    scanner: &'a Scanner,
+    scanner: &'a ScannerPositions,
     wants_scanner: bool,
     is_carved: bool,
 ) -> Orientation<'a> {
@@ -253,14 +259,14 @@ fn find_scanner(
     read_count: usize,
     params: &ModelParams,
     control: &Control<'_>,
-) -> Result<(Scanner, ScannerReport)> {
+) -> Result<(ScannerPositions, ScannerReport)> {
     if let Some(facts) = &params.facts {
         let positions = facts.scanner(cloud, control)?;
         let known_count = positions.iter().filter(|p| p.iter().all(|v| v.is_finite())).count();
         let mut report = ScannerReport { point_count: cloud.len(), ..ScannerReport::default() };
         let found_by = if facts.are_pulses_assumed() { FoundBy::Assumed } else { FoundBy::Trajectory };
         report.found.insert(found_by, known_count);
-        return Ok((Scanner { positions, is_assumed: facts.are_pulses_assumed() }, report));
+        return Ok((ScannerPositions { positions, is_assumed: facts.are_pulses_assumed() }, report));
     }
     let means = match &params.orient {
         OrientBy::ScannerOfEachPoint(given) => {
@@ -272,7 +278,7 @@ fn find_scanner(
             let known_count = positions.iter().filter(|p| p.iter().all(|v| v.is_finite())).count();
             let mut report = ScannerReport { point_count: cloud.len(), ..ScannerReport::default() };
             report.found.insert(FoundBy::Position, known_count);
-            return Ok((Scanner { positions, is_assumed: false }, report));
+            return Ok((ScannerPositions { positions, is_assumed: false }, report));
         }
         OrientBy::Trajectory(trajectory) => Means::Trajectory(trajectory),
         OrientBy::ScannerAt(position) => Means::Position(cloud.frame.from_file_coordinates(*position)),
@@ -284,13 +290,13 @@ fn find_scanner(
     let (positions, report) =
         control.stage("estimating scanner positions", 0, || locate(cloud, &means, &params.locate, control))?;
     let is_assumed = report.is_assumed();
-    Ok((Scanner { positions, is_assumed }, report))
+    Ok((ScannerPositions { positions, is_assumed }, report))
 }
 
 /// What carving needs of a cloud, and how that was found; `None` where they are only assumed, too few, and need not carve.
 fn carving_input(
     cloud: &PointCloud,
-    scanner: &Scanner,
+    scanner: &ScannerPositions,
     carving: Carving,
     params: &ModelParams,
     control: &Control<'_>,

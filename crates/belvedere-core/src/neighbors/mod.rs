@@ -26,7 +26,7 @@ pub use tangent_ball::Tangent;
 
 use belvedere_data::control::Control;
 use belvedere_data::{Error, Parameter, Result};
-use lanes::{Block, Node};
+use lanes::{LaneBlock, WideNode};
 
 /// A point found, by its index in the array the index was built from.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,8 +42,8 @@ pub struct Neighbor {
 /// Memory: 16 bytes a point and about 1 byte a point for the nodes.
 #[derive(Debug)]
 pub struct NeighborIndex {
-    nodes: Vec<Node>,
-    blocks: Vec<Block>,
+    nodes: Vec<WideNode>,
+    blocks: Vec<LaneBlock>,
     order: Vec<u32>,
     instructions: Instructions,
 }
@@ -115,7 +115,7 @@ impl NeighborIndex {
     #[must_use]
     pub fn nearest_within(&self, query: [f32; 3], bound_squared: f32) -> Option<Neighbor> {
         match self.instructions {
-            Instructions::Scalar => search::nearest::<lanes::Scalar>(self, query, bound_squared),
+            Instructions::Scalar => search::nearest::<lanes::NeighborScalar>(self, query, bound_squared),
             #[cfg(target_arch = "x86_64")]
             Instructions::Avx2 => avx2::nearest(self, query, bound_squared),
         }
@@ -125,7 +125,7 @@ impl NeighborIndex {
     /// by index.
     pub fn k_nearest(&self, query: [f32; 3], k: usize, found: &mut Vec<Neighbor>) {
         match self.instructions {
-            Instructions::Scalar => search::k_nearest::<lanes::Scalar>(self, query, k, found),
+            Instructions::Scalar => search::k_nearest::<lanes::NeighborScalar>(self, query, k, found),
             #[cfg(target_arch = "x86_64")]
             Instructions::Avx2 => avx2::k_nearest(self, query, k, found),
         }
@@ -134,7 +134,7 @@ impl NeighborIndex {
     /// Calls `visit` with every point at most `radius` metres from `query`, in an order that depends on the points only.
     pub fn within_radius(&self, query: [f32; 3], radius: f32, visit: impl FnMut(Neighbor)) {
         match self.instructions {
-            Instructions::Scalar => search::within_radius::<lanes::Scalar>(self, query, radius, visit),
+            Instructions::Scalar => search::within_radius::<lanes::NeighborScalar>(self, query, radius, visit),
             #[cfg(target_arch = "x86_64")]
             Instructions::Avx2 => avx2::within_radius(self, query, radius, visit),
         }
@@ -147,7 +147,7 @@ impl NeighborIndex {
     #[must_use]
     pub fn smallest_tangent_ball(&self, tangent: &Tangent, max_radius: f32) -> Option<(f32, u32)> {
         match self.instructions {
-            Instructions::Scalar => tangent_ball::search::<lanes::Scalar>(self, tangent, max_radius),
+            Instructions::Scalar => tangent_ball::search::<lanes::NeighborScalar>(self, tangent, max_radius),
             #[cfg(target_arch = "x86_64")]
             Instructions::Avx2 => avx2::smallest_tangent_ball(self, tangent, max_radius),
         }

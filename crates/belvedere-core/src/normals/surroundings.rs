@@ -12,11 +12,11 @@ const REACH_M: f64 = 3.0;
 const MIN_RELIEF_M: f32 = 2.0;
 
 /// Highest point of every occupied cell of a horizontal grid, sorted by cell.
-pub(super) struct Surroundings {
+pub(super) struct HighestPointGrid {
     cells: Vec<((i32, i32), f32)>,
 }
 
-impl Surroundings {
+impl HighestPointGrid {
     /// Surroundings of local positions, (N, 3), metres.
     pub(super) fn new(positions: &[[f32; 3]]) -> Self {
         let mut cells: Vec<((i32, i32), f32)> =

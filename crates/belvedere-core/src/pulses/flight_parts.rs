@@ -66,12 +66,12 @@ pub struct SensorPart {
     /// Median angle between the pulses and the directions to the estimated path, radians.
     pub median_angle: f64,
     /// Whether it is used.
-    pub verdict: Verdict,
+    pub verdict: PartVerdict,
 }
 
 /// Whether the estimate for a part of a flight line is used, and why not.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Verdict {
+pub enum PartVerdict {
     /// Used.
     Accepted,
     /// Used, though its own pulses do not suffice: other parts of the line tell where it must have been.
@@ -84,7 +84,7 @@ pub enum Verdict {
     Implausible,
 }
 
-impl Verdict {
+impl PartVerdict {
     /// Whether the part has a position that is used.
     #[must_use]
     pub fn is_used(self) -> bool {

@@ -78,25 +78,25 @@ pub fn group(cloud: &PointCloud, control: &Control<'_>) -> Result<(Pulses, Pulse
         (line, channel)
     };
     let mut report = PulseReport { point_count: cloud.len(), ..PulseReport::default() };
-    let mut keys: Vec<Key> = (0_u32..)
+    let mut keys: Vec<SortKey> = (0_u32..)
         .zip(times.iter().zip(numbers))
         .filter(|(_, (time, _))| time.is_finite() && **time != 0.0)
         .map(|(row, (&time, &number))| {
             let count = counts.and_then(|counts| counts.get(row as usize)).copied().unwrap_or(number);
             // a count below the number says nothing
-            Key { shot: column(row as usize), time, count: count.max(number), number, row }
+            SortKey { shot: column(row as usize), time, count: count.max(number), number, row }
         })
         .collect();
     report.without_time_count = cloud.len() - keys.len();
     control.check()?;
-    keys.par_sort_unstable_by(Key::compare);
+    keys.par_sort_unstable_by(SortKey::compare);
 
     let mut pulses = Pulses { offsets: vec![0], ..Pulses::default() };
-    for (number, mut same_time) in keys.chunk_by(Key::same_time).map(<[Key]>::to_vec).enumerate() {
+    for (number, mut same_time) in keys.chunk_by(SortKey::same_time).map(<[SortKey]>::to_vec).enumerate() {
         if number % CHECK_EACH == 0 {
             control.check()?;
         }
-        let place = |key: &Key| cloud.positions.get(key.row as usize);
+        let place = |key: &SortKey| cloud.positions.get(key.row as usize);
         let count = same_time.len();
         same_time.dedup_by(|later, earlier| later.same_return(earlier) && place(later) == place(earlier));
         report.duplicate_count += count - same_time.len();
@@ -121,7 +121,7 @@ pub fn group(cloud: &PointCloud, control: &Control<'_>) -> Result<(Pulses, Pulse
 
 /// What points are sorted by.
 #[derive(Clone, Copy)]
-struct Key {
+struct SortKey {
     /// Flight line and channel.
     shot: (u16, u8),
     time: f64,
@@ -131,7 +131,7 @@ struct Key {
     row: u32,
 }
 
-impl Key {
+impl SortKey {
     fn compare(&self, other: &Self) -> Ordering {
         let rest = |key: &Self| (key.count, key.number, key.row);
         self.shot.cmp(&other.shot).then(self.time.total_cmp(&other.time)).then_with(|| rest(self).cmp(&rest(other)))
@@ -148,7 +148,7 @@ impl Key {
 
 impl Pulses {
     /// Adds the pulse of `returns`, at least one, in order of their numbers.
-    fn add(&mut self, returns: &[Key], report: &mut PulseReport) {
+    fn add(&mut self, returns: &[SortKey], report: &mut PulseReport) {
         let (Some(first), Some(last)) = (returns.first(), returns.last()) else { return };
         self.returns.extend(returns.iter().map(|key| key.row));
         self.times.push(first.time);

@@ -5,7 +5,9 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::SensorPositions;
 use super::estimate::{self, height_offset, paths_from_angles, paths_from_returns};
-use super::flight_parts::{AngleVerdict, HeightOffset, ScanAngleParams, ScanAnglePart, SensorEstimateParams, Verdict};
+use super::flight_parts::{
+    AngleVerdict, HeightOffset, PartVerdict, ScanAngleParams, ScanAnglePart, SensorEstimateParams,
+};
 use super::group::{Pulses, group};
 use super::line_path::position_on;
 use super::scanner_report::{FoundBy, FoundStation, ScannerReport};
@@ -275,13 +277,15 @@ fn remark_parts(report: &mut ScannerReport) {
     let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
     for part in &report.parts {
         let why = match part.verdict {
-            Verdict::Accepted => continue,
-            Verdict::Bridged => "parts of flight lines are interpolated from their neighbours",
-            Verdict::TooFewPairs => "parts of flight lines have too few pulses with several returns far enough apart",
-            Verdict::Uncertain => {
+            PartVerdict::Accepted => continue,
+            PartVerdict::Bridged => "parts of flight lines are interpolated from their neighbours",
+            PartVerdict::TooFewPairs => {
+                "parts of flight lines have too few pulses with several returns far enough apart"
+            }
+            PartVerdict::Uncertain => {
                 "parts of flight lines have pulses that do not determine the scanner position well enough"
             }
-            Verdict::Implausible => "parts of flight lines have pulses that give an impossible scanner position",
+            PartVerdict::Implausible => "parts of flight lines have pulses that give an impossible scanner position",
         };
         *counts.entry(why).or_default() += 1;
     }

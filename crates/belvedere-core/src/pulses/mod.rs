@@ -21,7 +21,7 @@ mod sensor_positions;
 mod vertical;
 
 pub use flight_parts::{
-    AngleVerdict, HeightOffset, ScanAngleParams, ScanAnglePart, SensorEstimateParams, SensorPart, Verdict,
+    AngleVerdict, HeightOffset, PartVerdict, ScanAngleParams, ScanAnglePart, SensorEstimateParams, SensorPart,
 };
 pub use group::{PulseReport, Pulses, group};
 pub(crate) use line_path::positions_on_paths;

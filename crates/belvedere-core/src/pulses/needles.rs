@@ -15,7 +15,7 @@ use belvedere_data::vector::{dot, sub};
 use belvedere_data::{Error, PointCloud, Result};
 use serde::Serialize;
 use std::ops::ControlFlow;
-use tree::{Tree, Way};
+use tree::{SegmentAxis, SegmentTree};
 
 /// How far balls stay clear of pulses, metres: the step of coordinates in most files, and more than f32 rounds.
 pub(crate) const GAP_M: f32 = 1e-3;
@@ -52,7 +52,7 @@ pub struct Needles {
     /// Those of a tree follow each other.
     needles: Vec<Needle>,
     /// At most one for each way; none is empty.
-    trees: Vec<Tree>,
+    trees: Vec<SegmentTree>,
     /// Height that none rises above.
     top: f32,
 }
@@ -153,7 +153,7 @@ impl Needles {
             let sight: [f64; 3] = std::array::from_fn(|i| f64::from(s[i]) - f64::from(p[i]));
             let range = dot(sight, sight).sqrt();
             let towards = sight.map(|v| v / range);
-            let Some(way) = Way::of(towards) else { continue };
+            let Some(way) = SegmentAxis::of(towards) else { continue };
             let margin = f64::from(params.end_margin);
             let start: [f64; 3] = std::array::from_fn(|i| f64::from(p[i]) + margin * towards[i]);
             let to_top = if towards[2] > 0.0 { (f64::from(top) - start[2]) / towards[2] } else { f64::INFINITY };
@@ -174,7 +174,7 @@ impl Needles {
         let mut by_way = NeedlesByWay::default();
         for needle in &self.needles {
             let start = std::array::from_fn(|i| needle.start[i] - by * needle.direction[i]);
-            if let Some(way) = Way::of(needle.direction.map(f64::from)) {
+            if let Some(way) = SegmentAxis::of(needle.direction.map(f64::from)) {
                 by_way[way.number()].push(Needle { start, length: needle.length + by, ..*needle });
             }
         }
@@ -185,8 +185,8 @@ impl Needles {
     fn index(by_way: NeedlesByWay, top: f32, control: &Control<'_>) -> Result<Self> {
         let stop = Stop::new(control);
         let (mut needles, mut trees) = (Vec::with_capacity(by_way.iter().map(Vec::len).sum()), Vec::new());
-        for (way, mut own) in Way::ALL.into_iter().zip(by_way).filter(|(_, own)| !own.is_empty()) {
-            trees.push(Tree::new(way, &mut own, needles.len(), &stop, control));
+        for (way, mut own) in SegmentAxis::ALL.into_iter().zip(by_way).filter(|(_, own)| !own.is_empty()) {
+            trees.push(SegmentTree::new(way, &mut own, needles.len(), &stop, control));
             needles.append(&mut own);
             stop.check()?;
         }

@@ -25,7 +25,7 @@ const MOST_DEGREES: f64 = 360.0;
 pub struct AddedMeshes {
     tree: Arc<TriangleTree>,
     /// For each triangle of the tree.
-    faces: Arc<[Face]>,
+    faces: Arc<[AddedFace]>,
     names: Arc<[String]>,
 }
 
@@ -37,7 +37,7 @@ impl std::fmt::Debug for AddedMeshes {
 
 /// What is known of a triangle beside its corners.
 #[derive(Clone, Copy)]
-struct Face {
+struct AddedFace {
     normal: [f64; 3],
     corner: [f64; 3],
     mesh: u32,
@@ -45,7 +45,7 @@ struct Face {
 
 /// The ends of a line of sight.
 #[derive(Clone, Copy)]
-pub(super) struct Ends {
+pub(super) struct LineEnds {
     pub(super) target: [f64; 3],
     /// `None` for a viewer infinitely far away.
     pub(super) viewer: Option<[f64; 3]>,
@@ -112,7 +112,7 @@ impl AddedMeshes {
         let tree = TriangleTree::new(&corners)?;
         let face = |(&row, corners): (&u32, &Corners)| {
             let mesh = triangles.get(row as usize).map_or(0, |(_, mesh)| *mesh);
-            Face { normal: normal(corners).unwrap_or_default(), corner: corners[0], mesh }
+            AddedFace { normal: normal(corners).unwrap_or_default(), corner: corners[0], mesh }
         };
         let faces = tree.order().iter().zip(tree.triangles()).map(face).collect();
         Ok(Self { tree: Arc::new(tree), faces, names: names.into() })
@@ -190,23 +190,23 @@ impl AddedMeshes {
     #[must_use]
     pub fn blocks(&self, target: [f64; 3], towards: [f64; 3], range: f64) -> bool {
         let ray = Ray { origin: target, direction: towards, ranges: [0.0, range] };
-        let ends = Ends { target, viewer: range.is_finite().then(|| ray.at(range)) };
+        let ends = LineEnds { target, viewer: range.is_finite().then(|| ray.at(range)) };
         self.blocks_piece(&ray, &ends)
     }
 
     /// The same for the piece `ray` of a line of sight between `ends`.
-    pub(super) fn blocks_piece(&self, ray: &Ray, ends: &Ends) -> bool {
+    pub(super) fn blocks_piece(&self, ray: &Ray, ends: &LineEnds) -> bool {
         self.tree.any(ray, |row| self.is_between(row, ends))
     }
 
     /// The mesh that the piece `ray` of a line of sight between `ends` meets first, by its number, and the range.
-    pub(super) fn nearest(&self, ray: &Ray, ends: &Ends) -> Option<(usize, f64)> {
+    pub(super) fn nearest(&self, ray: &Ray, ends: &LineEnds) -> Option<(usize, f64)> {
         let (row, range) = self.tree.nearest(ray, |row| self.is_between(row, ends))?;
         Some((self.faces.get(row)?.mesh as usize, range))
     }
 
     /// The triangles that the piece `ray` of a line of sight between `ends` passes through.
-    pub(super) fn each_blocking(&self, ray: &Ray, ends: &Ends, mut visit: impl FnMut(&Corners)) {
+    pub(super) fn each_blocking(&self, ray: &Ray, ends: &LineEnds, mut visit: impl FnMut(&Corners)) {
         self.tree.each(ray, |row, _| {
             if self.is_between(row, ends)
                 && let Some(corners) = self.tree.triangles().get(row)
@@ -220,7 +220,7 @@ impl AddedMeshes {
     pub(super) fn near(
         &self,
         boxes: impl Iterator<Item = [[f64; 3]; 2]>,
-        ends: &Ends,
+        ends: &LineEnds,
     ) -> impl Iterator<Item = &Corners> {
         let mut rows = Vec::new();
         boxes.for_each(|[low, high]| self.tree.each_near(low, high, |row| rows.push(row)));
@@ -244,7 +244,7 @@ impl AddedMeshes {
 
     /// The triangles in whose planes `eye` does not lie, with the numbers of their meshes.
     pub(super) fn before(&self, eye: [f64; 3]) -> impl Iterator<Item = (Corners, usize)> + '_ {
-        let seen = move |(_, face): &(&Corners, &Face)| !face.touches(eye);
+        let seen = move |(_, face): &(&Corners, &AddedFace)| !face.touches(eye);
         let faces = self.tree.triangles().iter().zip(self.faces.iter()).filter(seen);
         faces.map(|(corners, face)| (*corners, face.mesh as usize))
     }
@@ -254,13 +254,13 @@ impl AddedMeshes {
         self.tree.bounds().unwrap_or([[f64::NAN; 3]; 2])
     }
 
-    fn is_between(&self, row: usize, ends: &Ends) -> bool {
+    fn is_between(&self, row: usize, ends: &LineEnds) -> bool {
         let touches = |end: [f64; 3]| self.faces.get(row).is_none_or(|face| face.touches(end));
         !touches(ends.target) && !ends.viewer.is_some_and(touches)
     }
 }
 
-impl Face {
+impl AddedFace {
     fn touches(&self, place: [f64; 3]) -> bool {
         dot(self.normal, sub(place, self.corner)).abs() <= CONTACT
     }

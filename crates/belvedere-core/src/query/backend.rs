@@ -18,7 +18,7 @@ pub trait Backend: Send + Sync + std::fmt::Debug {
     ///
     /// # Errors
     /// What the device reports.
-    fn prepare(&self, balls: &Arc<BallTree>) -> Result<Box<dyn Prepared>>;
+    fn prepare(&self, balls: &Arc<BallTree>) -> Result<Box<dyn PreparedBackend>>;
 
     /// Takes balls to draw them in views of so many pixels; `None`, the default, where that is no faster than [`depth_map`](crate::depth::depth_map()).
     ///
@@ -46,7 +46,7 @@ pub trait Backend: Send + Sync + std::fmt::Debug {
 }
 
 /// Balls made ready by a backend. What takes long to make is made on first use and kept.
-pub trait Prepared: Send + Sync {
+pub trait PreparedBackend: Send + Sync {
     /// Bounds of the depth of the first surface over each pixel of `view`, as [`crate::depth::depth_bounds`] defines them: they may be wider,
     /// but must hold. Balls that reach before `start`, as [`crate::depth::BoundsParams::start`], block nothing.
     ///
@@ -58,14 +58,14 @@ pub trait Prepared: Send + Sync {
     /// unit vectors. Neighbours among the targets stand close together in the list.
     ///
     /// # Errors
-    /// As [`Prepared::depth`].
+    /// As [`PreparedBackend::depth`].
     fn settle(&self, targets: &[[f32; 3]], directions: &[[f64; 3]], control: &Control<'_>) -> Result<Settled>;
 
     /// What is certain of the lines of sight of each of `targets` to each of a few `viewers`, which stand in the place of directions in what is
     /// returned; `None`, the default, where this backend is no faster than what is done without it: lines of sight one by one, or a tree of targets.
     ///
     /// # Errors
-    /// As [`Prepared::depth`].
+    /// As [`PreparedBackend::depth`].
     fn settle_few(&self, targets: &[[f32; 3]], viewers: Viewers<'_>, control: &Control<'_>) -> Result<Option<Settled>> {
         let _ = (targets, viewers, control);
         Ok(None)
@@ -117,7 +117,7 @@ impl Viewers<'_> {
 
 /// What is known of a line of sight.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Line {
+pub enum LineAnswer {
     /// No ball blocks it.
     Free,
     /// A ball blocks it.
@@ -134,15 +134,15 @@ pub(super) const WORDS: usize = 4;
 pub(super) const BLOCK: usize = WORDS * WORD;
 
 /// A bit for each target of a block.
-pub(super) type Bits = [u64; WORDS];
+pub(super) type WordBits = [u64; WORDS];
 
 /// What a backend settled: for each target and direction, or viewer, whether the line of sight is free, blocked or still open.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settled {
     direction_count: usize,
     /// Block after block, in each direction after direction.
-    pub(super) free: Vec<Bits>,
-    pub(super) blocked: Vec<Bits>,
+    pub(super) free: Vec<WordBits>,
+    pub(super) blocked: Vec<WordBits>,
     /// For each direction the range before which nothing blocks a line that is open, metres.
     pub(super) open_from: Vec<f64>,
 }
@@ -157,9 +157,9 @@ impl Settled {
     }
 
     /// Sets what is known of a line.
-    pub fn set(&mut self, target: usize, direction: usize, line: Line) {
+    pub fn set(&mut self, target: usize, direction: usize, line: LineAnswer) {
         let (at, word, bit) = self.place(target, direction);
-        for (bits, of) in [(&mut self.free, Line::Free), (&mut self.blocked, Line::Blocked)] {
+        for (bits, of) in [(&mut self.free, LineAnswer::Free), (&mut self.blocked, LineAnswer::Blocked)] {
             if let Some(bits) = bits.get_mut(at) {
                 bits[word] = bits[word] & !bit | if line == of { bit } else { 0 };
             }
@@ -200,13 +200,13 @@ impl Settled {
 
     /// What is known of a line.
     #[must_use]
-    pub fn line(&self, target: usize, direction: usize) -> Line {
+    pub fn line(&self, target: usize, direction: usize) -> LineAnswer {
         let (at, word, bit) = self.place(target, direction);
-        let is_set = |bits: &[Bits]| bits.get(at).is_some_and(|bits| bits[word] & bit != 0);
+        let is_set = |bits: &[WordBits]| bits.get(at).is_some_and(|bits| bits[word] & bit != 0);
         match (is_set(&self.free), is_set(&self.blocked)) {
-            (true, _) => Line::Free,
-            (_, true) => Line::Blocked,
-            _ => Line::Open,
+            (true, _) => LineAnswer::Free,
+            (_, true) => LineAnswer::Blocked,
+            _ => LineAnswer::Open,
         }
     }
 
@@ -223,7 +223,7 @@ impl Settled {
 }
 
 /// Calls `put` with each word of a direction, given by its number and how many there are, and the same 64 bits of `words`.
-fn each_word(bits: &mut [Bits], [direction, count]: [usize; 2], words: &[u32], put: impl Fn(&mut u64, u64)) {
+fn each_word(bits: &mut [WordBits], [direction, count]: [usize; 2], words: &[u32], put: impl Fn(&mut u64, u64)) {
     let of_direction = bits.iter_mut().skip(direction).step_by(count.max(1));
     for (bits, words) in of_direction.zip(words.chunks(2 * WORDS)) {
         for (word, halves) in bits.iter_mut().zip(words.chunks(2)) {

@@ -14,7 +14,7 @@ mod blockers;
 mod lanes;
 mod sweep;
 
-use super::backend::{Line, Settled, Viewers};
+use super::backend::{LineAnswer, Settled, Viewers};
 use super::medial_scene::MedialScene;
 use super::target_tree::TargetTree;
 use super::{Answer, Viewer};
@@ -22,7 +22,7 @@ use belvedere_data::Result;
 use belvedere_data::control::Control;
 use belvedere_data::vector::sub;
 use rayon::prelude::*;
-use sweep::Sweep;
+use sweep::TreeSweep;
 
 /// Targets of a subtree that one thread answers.
 const SHARE: usize = 4096;
@@ -37,7 +37,7 @@ impl MedialScene {
     /// [`Error::UnsupportedViewer`](belvedere_data::Error::UnsupportedViewer) for [`Viewer::Each`], and
     /// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
     pub fn answer_among(&self, viewer: Viewer<'_>, targets: &TargetTree, control: &Control<'_>) -> Result<Vec<Answer>> {
-        let sweep = Sweep::new(self, viewer, targets, control)?;
+        let sweep = TreeSweep::new(self, viewer, targets, control)?;
         let settled = match viewer {
             Viewer::Eye(eye) => self.settled_few(targets, Viewers::Eyes(&[eye]), control)?,
             _ => None,
@@ -93,7 +93,7 @@ impl MedialScene {
         control: &Control<'_>,
         mut visit: impl FnMut(usize),
     ) -> Result<()> {
-        let sweep = Sweep::new(self, viewer, targets, control)?;
+        let sweep = TreeSweep::new(self, viewer, targets, control)?;
         if !targets.nodes.is_empty() && !is_eye_outside(self, viewer) {
             sweep.run(0, &mut |place| {
                 if !self.is_hidden_otherwise(viewer, targets.positions()[place]) {
@@ -153,11 +153,11 @@ impl MedialScene {
     }
 
     /// Whether no ball blocks the line of sight of a target of which `line` is known; true for one at the viewer itself.
-    pub(super) fn sees(&self, viewer: Viewer<'_>, target: [f32; 3], line: Line) -> bool {
+    pub(super) fn sees(&self, viewer: Viewer<'_>, target: [f32; 3], line: LineAnswer) -> bool {
         match (line, viewer.line_of_sight(0, target)) {
-            (Line::Free, _) | (Line::Open, None) => true,
-            (Line::Blocked, _) => false,
-            (Line::Open, Some((towards, range))) => {
+            (LineAnswer::Free, _) | (LineAnswer::Open, None) => true,
+            (LineAnswer::Blocked, _) => false,
+            (LineAnswer::Open, Some((towards, range))) => {
                 !self.tree().blocks(&self.ray(target.map(f64::from), towards, range))
             }
         }

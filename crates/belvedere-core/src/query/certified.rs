@@ -154,7 +154,7 @@ impl<'a> CertifiedMap<'a> {
                 for (answer, &target) in answers.iter_mut().zip(targets) {
                     let way;
                     (*answer, way) = self.answer(target);
-                    settled += usize::from(way == Way::Settled);
+                    settled += usize::from(way == BoundCheck::Settled);
                 }
                 Ok(settled)
             })
@@ -165,19 +165,19 @@ impl<'a> CertifiedMap<'a> {
         Ok((answers, CertifiedReport { target_count: targets.len(), settled_count }))
     }
 
-    fn answer(&self, target: [f32; 3]) -> (Answer, Way) {
+    fn answer(&self, target: [f32; 3]) -> (Answer, BoundCheck) {
         let line = line_of_sight(self.bounds.iter().map(|bounds| &bounds.view), self.scope, target);
-        let Some((towards, range)) = line else { return (Answer::OutsideView, Way::Settled) };
+        let Some((towards, range)) = line else { return (Answer::OutsideView, BoundCheck::Settled) };
         let position = target.map(f64::from);
         match self.bounds.iter().find_map(|bounds| self.bracket(bounds, target)) {
             Some((depth, [lower, _])) if depth < lower => {
-                (self.scene.answer_unblocked(position, towards, range), Way::Settled)
+                (self.scene.answer_unblocked(position, towards, range), BoundCheck::Settled)
             }
             // before its surface a target may lie in the shell of a ball that reaches past it
             Some((depth, [_, upper])) if depth > upper && self.scene.params().bias >= 0.0 => {
-                (Answer::Blocked, Way::Settled)
+                (Answer::Blocked, BoundCheck::Settled)
             }
-            _ => (self.scene.answer(position, towards, range), Way::ByLineOfSight),
+            _ => (self.scene.answer(position, towards, range), BoundCheck::ByLineOfSight),
         }
     }
 
@@ -208,7 +208,7 @@ impl<'a> CertifiedMap<'a> {
 
 /// Whether a bound was enough.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Way {
+enum BoundCheck {
     Settled,
     ByLineOfSight,
 }

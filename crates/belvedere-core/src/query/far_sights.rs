@@ -2,7 +2,7 @@
 
 use super::far_line::FarLine;
 use super::far_terrain::piece_over;
-use super::{Answer, Block, Blocker, EarthParams, LineOfSight, MedialScene};
+use super::{Answer, Blocker, EarthParams, LineOfSight, MedialScene, Obstruction};
 use belvedere_data::vector::{length, sub};
 
 impl MedialScene {
@@ -60,7 +60,7 @@ impl MedialScene {
         if let Some(span) = terrain
             && sight.first_block.is_none_or(|block| span < line.span_to(block.place))
         {
-            let block = Block { range: 0.0, blocker: Blocker::Terrain, place: line.at(span) };
+            let block = Obstruction { range: 0.0, blocker: Blocker::Terrain, place: line.at(span) };
             sight = LineOfSight { answer: Answer::Blocked, first_block: Some(block), ..free };
         }
         if let Some(block) = &mut sight.first_block {

@@ -1,6 +1,6 @@
 //! How far one sees from an eye along a direction.
 
-use super::added::Ends;
+use super::added::LineEnds;
 use super::medial_scene::nearer;
 use super::{Blocker, MedialScene};
 use crate::ray_index::Ray;
@@ -17,7 +17,7 @@ impl MedialScene {
             self.tree().rule().meets_ray(*self.tree().balls().get(number)?, ray.origin, ray.direction)
         });
         let ball = ball.and_then(|(number, range)| Some((self.blocker_of_ball(number)?, range)));
-        let ends = Ends { target: eye, viewer: None };
+        let ends = LineEnds { target: eye, viewer: None };
         nearer(ball, self.added().and_then(|added| added.nearest(&ray, &ends)))
     }
 
@@ -39,7 +39,7 @@ impl MedialScene {
         });
         let ball = ball.and_then(|(number, range)| Some((self.blocker_of_ball(number)?, range)));
         let line = Ray { ranges: [0.0, f64::INFINITY], ..ray };
-        let ends = Ends { target: place, viewer: None };
+        let ends = LineEnds { target: place, viewer: None };
         nearer(ball, self.added().and_then(|added| added.nearest(&line, &ends)))
     }
 }

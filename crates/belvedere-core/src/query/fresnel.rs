@@ -1,6 +1,6 @@
 //! Fresnel zones of radio links: the space around a line of sight that must be free too.
 
-use super::added::Ends;
+use super::added::LineEnds;
 use super::{Answer, EarthParams, LineOfSight, MedialScene};
 use crate::blocking::Ball;
 use crate::triangle_tree::Corners;
@@ -221,7 +221,7 @@ impl MedialScene {
             });
         }
         if let Some(added) = self.added() {
-            let ends = Ends { target: ends[0], viewer: Some(ends[1]) };
+            let ends = LineEnds { target: ends[0], viewer: Some(ends[1]) };
             for corners in added.near(link.boxes(most), &ends) {
                 if clearance > 0.0 {
                     clearance = clearance.min(link.share_before(corners, clearance));

@@ -1,7 +1,7 @@
 //! A union of medial balls that exact lines of sight are cut with.
 
-use super::added::{AddedMeshes, Ends};
-use super::backend::{Backend, Prepared};
+use super::added::{AddedMeshes, LineEnds};
+use super::backend::{Backend, PreparedBackend};
 use super::ball_tree::BallTree;
 use super::certified::{line_in_view, viewer_of};
 use super::cpu::Cpu;
@@ -43,7 +43,7 @@ pub struct MedialScene {
     pub(super) freed: Vec<FreedSpace>,
     pub(super) far_terrain: FarTerrain,
     backend: Arc<dyn Backend>,
-    prepared: Lazy<Box<dyn Prepared>>,
+    prepared: Lazy<Box<dyn PreparedBackend>>,
 }
 
 impl MedialScene {
@@ -89,7 +89,7 @@ impl MedialScene {
     ///
     /// # Errors
     /// Those of [`Backend::prepare`].
-    pub fn prepared(&self) -> Result<&dyn Prepared> {
+    pub fn prepared(&self) -> Result<&dyn PreparedBackend> {
         self.prepared.get_or_make(|| self.backend.prepare(&self.tree)).map(AsRef::as_ref)
     }
 
@@ -293,7 +293,7 @@ impl MedialScene {
         let ray = self.ray(target, towards, range);
         let ball = self.tree.index().nearest(&ray, |number| self.front(number, &ray));
         let ball = ball.and_then(|(number, front)| Some((self.blocker_of_ball(number)?, front)));
-        let ends = Ends { target, viewer: range.is_finite().then(|| ray.at(range)) };
+        let ends = LineEnds { target, viewer: range.is_finite().then(|| ray.at(range)) };
         let line = Ray { ranges: [0.0, range], ..ray };
         nearer(ball, self.added.as_ref().and_then(|added| added.nearest(&line, &ends)))
     }

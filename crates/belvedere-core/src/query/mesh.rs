@@ -1,6 +1,6 @@
 //! Mesh targets: how much of each face and of each object a viewer sees.
 
-use super::surface::{Piece, Sides, SurfacePieces};
+use super::surface::{Sides, SurfacePiece, SurfacePieces};
 use super::{Answer, Viewer};
 use belvedere_data::vector::{dot, sub};
 use belvedere_data::{Error, Parameter, Result};
@@ -87,7 +87,7 @@ impl SeenArea {
     }
 }
 
-impl Piece {
+impl SurfacePiece {
     /// Any vector from the plane of the piece to a common viewer.
     fn towards(&self, viewer: Viewer<'_>) -> [f64; 3] {
         match viewer {
@@ -124,7 +124,7 @@ impl Piece {
 /// [`Error::UnsupportedViewer`] for [`Viewer::Each`], and those of [`Viewer::validate`].
 pub fn facing(surface: &SurfacePieces, viewer: Viewer<'_>) -> Result<Vec<bool>> {
     viewer.validate()?;
-    let turned = |piece: &Piece| dot(piece.normal.map(f64::from), piece.towards(viewer)) > 0.0;
+    let turned = |piece: &SurfacePiece| dot(piece.normal.map(f64::from), piece.towards(viewer)) > 0.0;
     match (surface.sides, viewer) {
         (_, Viewer::Each(_)) => {
             Err(Error::UnsupportedViewer { method: "a surface", what: "from one eye or along one direction" })
@@ -181,7 +181,7 @@ pub fn seen_faces(
 }
 
 /// What is seen of the pieces of one face.
-fn seen_of(pieces: &[Piece], answers: &[Answer], is_asked: bool) -> SeenArea {
+fn seen_of(pieces: &[SurfacePiece], answers: &[Answer], is_asked: bool) -> SeenArea {
     let mut seen = SeenArea::default();
     for (piece, answer) in pieces.iter().zip(answers) {
         let area = f64::from(piece.area);

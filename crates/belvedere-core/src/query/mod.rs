@@ -43,7 +43,7 @@ pub mod visibility_matrix;
 
 pub use crate::blocking::{Ball, BlockRule, Profile};
 pub use added::AddedMeshes;
-pub use backend::{Backend, Drawable, Line, Prepared, Settled, Viewers};
+pub use backend::{Backend, Drawable, LineAnswer, PreparedBackend, Settled, Viewers};
 pub use ball_tree::BallTree;
 pub use certified::{CertifiedReport, Scope};
 pub use coverage::Coverage;
@@ -59,8 +59,8 @@ pub use points::{
     Answer, AnswerCounts, MOST_RANDOM_PAIRS, MOST_RANDOM_TARGETS, UnprovenAs, query_points, random_targets,
 };
 pub use proof::{Beside, Proof, ProofParams};
-pub use segments::{Block, Blocker, Crossing, Enclosure, LineOfSight, merged_crossings, random_pairs};
+pub use segments::{Blocker, Crossing, Enclosure, LineOfSight, Obstruction, merged_crossings, random_pairs};
 pub use skyline::SkylinePoint;
-pub use surface::{Piece, Sides, SurfacePieces};
+pub use surface::{Sides, SurfacePiece, SurfacePieces};
 pub use visibility::{Sight, Viewer, Visibility};
 pub use visibility_matrix::{FreeLines, VisibilityMatrix};

@@ -51,13 +51,13 @@ impl Default for ProofParams {
 pub struct Proof {
     nearness: f64,
     params: ProofParams,
-    pulses: Pulses,
+    pulses: ProofSource,
     index: Arc<Lazy<ProofIndex>>,
 }
 
 /// What a proof is made of.
 #[derive(Clone)]
-enum Pulses {
+enum ProofSource {
     /// Indexed already.
     Indexed(Arc<Needles>),
     Columns(Arc<NeedleColumns>),
@@ -100,7 +100,7 @@ impl Proof {
     /// [`Error::InvalidParameter`] for a parameter outside its range.
     pub fn new(needles: Needles, params: &ProofParams) -> Result<Self> {
         let nearness = params.nearness.unwrap_or_else(|| nearness(&needles));
-        Self::of_pulses(Pulses::Indexed(Arc::new(needles)), nearness, params)
+        Self::of_pulses(ProofSource::Indexed(Arc::new(needles)), nearness, params)
     }
 
     /// The same for pulses as ball files hold them, which are not even indexed before the first line of sight needs it.
@@ -110,10 +110,10 @@ impl Proof {
     pub fn from_columns(columns: NeedleColumns, params: &ProofParams) -> Result<Self> {
         columns.validate()?;
         let nearness = params.nearness.unwrap_or_else(|| nearness_of(lower_ends(&columns)));
-        Self::of_pulses(Pulses::Columns(Arc::new(columns)), nearness, params)
+        Self::of_pulses(ProofSource::Columns(Arc::new(columns)), nearness, params)
     }
 
-    fn of_pulses(pulses: Pulses, nearness: f64, params: &ProofParams) -> Result<Self> {
+    fn of_pulses(pulses: ProofSource, nearness: f64, params: &ProofParams) -> Result<Self> {
         let invalid = |parameter, value: f64, expected| {
             Err(Error::InvalidParameter { parameter, value: value.to_string(), expected })
         };
@@ -148,8 +148,8 @@ impl Proof {
 
     fn make_index(&self, control: &Control<'_>) -> Result<ProofIndex> {
         let needles = match &self.pulses {
-            Pulses::Indexed(needles) => Arc::clone(needles),
-            Pulses::Columns(columns) => Arc::new(Needles::from_columns(columns, control)?),
+            ProofSource::Indexed(needles) => Arc::clone(needles),
+            ProofSource::Columns(columns) => Arc::new(Needles::from_columns(columns, control)?),
         };
         control.check()?;
         let mut extent = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];

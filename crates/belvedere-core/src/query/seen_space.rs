@@ -44,7 +44,7 @@ pub(super) struct SeenSpace {
     size: [usize; 2],
     /// Tiles in a row.
     width: usize,
-    tiles: Vec<OnceLock<Box<Tile>>>,
+    tiles: Vec<OnceLock<Box<BoxColumns>>>,
 }
 
 /// Columns along a side of a block of a tile.
@@ -52,7 +52,7 @@ const BLOCK: usize = 4;
 const BLOCKS: usize = TILE / BLOCK;
 
 /// Columns of boxes; the lowest box of a column is the lowest bit of its word.
-struct Tile {
+struct BoxColumns {
     /// Each column, row by row.
     columns: [u64; TILE * TILE],
     /// The layers on which all columns of a block are near pulses, so that a line crosses it in one step.
@@ -78,7 +78,7 @@ fn higher(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
 }
 
-impl Tile {
+impl BoxColumns {
     fn new(columns: [u64; TILE * TILE]) -> Self {
         let mut blocks = [u64::MAX; BLOCKS * BLOCKS];
         for (index, word) in columns.iter().enumerate() {
@@ -140,7 +140,7 @@ impl SeenSpace {
     }
 
     /// The boxes of the tile whose lowest column and row are `first`.
-    fn tile(&self, needles: &Needles, first: [usize; 2]) -> Box<Tile> {
+    fn tile(&self, needles: &Needles, first: [usize; 2]) -> Box<BoxColumns> {
         let mut boxes = [0; TILE * TILE];
         // a box more on all sides than any needle that counts for the tile passes
         let room = self.reach + self.side;
@@ -150,7 +150,7 @@ impl SeenSpace {
         if needles.upright_count() < needles.len() {
             self.mark_around_middles(needles, first, &mut boxes);
         }
-        Box::new(Tile::new(boxes))
+        Box::new(BoxColumns::new(boxes))
     }
 
     /// Marks the boxes of a tile that a needle is near to: those whose corners all are, since what is near a needle is convex. Where it

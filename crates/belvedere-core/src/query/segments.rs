@@ -1,6 +1,6 @@
 //! Lines of sight between pairs of points: what blocks them first, and all that lies on them.
 
-use super::added::Ends;
+use super::added::LineEnds;
 use super::medial_scene::nearer;
 use super::{Answer, EarthParams, MedialScene};
 use crate::blocking::Chord;
@@ -22,7 +22,7 @@ pub struct LineOfSight {
     /// Visible, blocked, unproven where pulses are known, or outside the cloud.
     pub answer: Answer,
     /// What the observer sees in place of the target, if the line is blocked.
-    pub first_block: Option<Block>,
+    pub first_block: Option<Obstruction>,
     /// How much of it no pulse came near to, metres; 0 where pulses are not known, and where it is blocked; NaN
     /// outside the cloud. Of a line that leaves the cloud, only the part over the cloud counts.
     pub unproven_length: f64,
@@ -55,7 +55,7 @@ impl Blocker {
 
 /// What stands before a target.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Block {
+pub struct Obstruction {
     /// Where the line of sight meets it, metres from the observer along the line; on a line that leaves the cloud, straight from the observer.
     pub range: f64,
     /// What it is.
@@ -83,7 +83,7 @@ pub struct Enclosure {
 }
 
 /// A piece of a line of sight between two points.
-struct Piece {
+struct LinePiece {
     /// From the end nearer to the target towards the observer.
     ray: Ray,
     /// Ends of the whole line.
@@ -91,9 +91,9 @@ struct Piece {
     observer: [f64; 3],
 }
 
-impl Piece {
-    fn ends(&self) -> Ends {
-        Ends { target: self.target, viewer: Some(self.observer) }
+impl LinePiece {
+    fn ends(&self) -> LineEnds {
+        LineEnds { target: self.target, viewer: Some(self.observer) }
     }
 
     /// All of it: a bias concerns balls only.
@@ -124,7 +124,7 @@ impl MedialScene {
         let pieces = if earth.bends(target, observer) {
             self.pieces(observer, target, earth)
         } else {
-            vec![(Piece { ray: self.biased(straight), target, observer }, 0.0)]
+            vec![(LinePiece { ray: self.biased(straight), target, observer }, 0.0)]
         };
         Some(self.sight_on_pieces(&pieces, pieces.len() == 1))
     }
@@ -138,18 +138,18 @@ impl MedialScene {
         self.sight_on_pieces(&self.chords(observer, target, corners), false)
     }
 
-    fn sight_on_pieces(&self, pieces: &[(Piece, f64)], whole: bool) -> LineOfSight {
+    fn sight_on_pieces(&self, pieces: &[(LinePiece, f64)], whole: bool) -> LineOfSight {
         for (piece, passed) in pieces {
             if let Some((blocker, from_observer)) = self.first_on(piece, whole) {
                 let place = piece.ray.at(piece.ray.ranges[1] - from_observer);
-                let block = Block { range: passed + from_observer, blocker, place };
+                let block = Obstruction { range: passed + from_observer, blocker, place };
                 return LineOfSight { answer: Answer::Blocked, first_block: Some(block), unproven_length: 0.0 };
             }
         }
         let Some(proof) = &self.proof else {
             return LineOfSight { answer: Answer::Visible, first_block: None, unproven_length: 0.0 };
         };
-        let unseen = |(piece, _): &(Piece, f64)| {
+        let unseen = |(piece, _): &(LinePiece, f64)| {
             self.unproven_length(proof, piece.ray.origin, piece.ray.direction, piece.ray.ranges[1])
         };
         let unproven_length = pieces.iter().map(unseen).sum();
@@ -198,7 +198,7 @@ impl MedialScene {
     /// are asked of the whole line.
     pub(super) fn answer_on_chords(&self, (observer, target): ([f64; 3], [f64; 3]), corners: &[[f64; 3]]) -> Answer {
         let pieces = self.chords(observer, target, corners);
-        let is_blocked = |piece: &Piece| {
+        let is_blocked = |piece: &LinePiece| {
             self.tree().index().any(&piece.ray, |number| self.front_on(number, piece).is_some())
                 || self.added().is_some_and(|added| added.blocks_piece(&piece.unbiased(), &piece.ends()))
         };
@@ -312,12 +312,12 @@ impl MedialScene {
     }
 
     /// The chords of a curved line from the observer on, each with what the line passed before it, metres.
-    fn pieces(&self, observer: [f64; 3], target: [f64; 3], earth: &EarthParams) -> Vec<(Piece, f64)> {
+    fn pieces(&self, observer: [f64; 3], target: [f64; 3], earth: &EarthParams) -> Vec<(LinePiece, f64)> {
         self.chords(observer, target, &earth.corners(observer, target))
     }
 
     /// The same through given corners.
-    fn chords(&self, observer: [f64; 3], target: [f64; 3], corners: &[[f64; 3]]) -> Vec<(Piece, f64)> {
+    fn chords(&self, observer: [f64; 3], target: [f64; 3], corners: &[[f64; 3]]) -> Vec<(LinePiece, f64)> {
         let mut passed = 0.0;
         let mut pieces = Vec::with_capacity(corners.len());
         for pair in corners.windows(2) {
@@ -325,7 +325,7 @@ impl MedialScene {
             let size = length(sub(near, far));
             let Some(ray) = Ray::new(far, sub(near, far), [0.0, size]) else { continue };
             let ray = if far == target { self.biased(ray) } else { ray };
-            pieces.push((Piece { ray, target, observer }, passed));
+            pieces.push((LinePiece { ray, target, observer }, passed));
             passed += size;
         }
         pieces
@@ -337,7 +337,7 @@ impl MedialScene {
     }
 
     /// What the observer meets first on a piece, and where, metres from the end of the piece on the observer's side.
-    fn first_on(&self, piece: &Piece, whole: bool) -> Option<(Blocker, f64)> {
+    fn first_on(&self, piece: &LinePiece, whole: bool) -> Option<(Blocker, f64)> {
         let ray = &piece.ray;
         let reach = ray.ranges[1];
         let back = Ray {
@@ -355,8 +355,8 @@ impl MedialScene {
     }
 
     /// As [`MedialScene::front`], for a chord of a longer line.
-    fn front_on(&self, number: usize, piece: &Piece) -> Option<f64> {
-        let Piece { ray, target, observer } = piece;
+    fn front_on(&self, number: usize, piece: &LinePiece) -> Option<f64> {
+        let LinePiece { ray, target, observer } = piece;
         let chord = Chord {
             start: ray.origin,
             towards: ray.direction,

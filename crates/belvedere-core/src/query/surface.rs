@@ -14,7 +14,7 @@ const NEIGHBORS: usize = 8;
 
 /// A small triangle of a surface and the place on it where it is asked whether it is seen.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Piece {
+pub struct SurfacePiece {
     /// Corners, local metres, counter-clockwise seen from outside where that is known.
     pub corners: [[f32; 3]; 3],
     /// A place drawn evenly on it, local metres.
@@ -40,7 +40,7 @@ pub enum Sides {
 #[derive(Clone, Debug)]
 pub struct SurfacePieces {
     /// The pieces.
-    pub pieces: Vec<Piece>,
+    pub pieces: Vec<SurfacePiece>,
     /// Number of faces, those without area among them, which have no piece.
     pub face_count: usize,
     /// Whether faces have an outside.
@@ -85,7 +85,7 @@ impl SurfacePieces {
             let piece = move |(i, corners): (usize, [[f64; 3]; 3])| {
                 let counter = ((face as u64) << 32) | ((i as u64) << 1);
                 let place = place_on(corners, [uniform(seed, counter), uniform(seed, counter + 1)]);
-                Piece {
+                SurfacePiece {
                     corners: corners.map(to_f32),
                     place: to_f32(place),
                     normal,
@@ -95,7 +95,7 @@ impl SurfacePieces {
             };
             pieces.into_iter().enumerate().map(piece).collect::<Vec<_>>()
         };
-        let pieces: Vec<Vec<Piece>> = local.par_iter().enumerate().map(of_face).collect();
+        let pieces: Vec<Vec<SurfacePiece>> = local.par_iter().enumerate().map(of_face).collect();
         Ok(Self { pieces: pieces.concat(), face_count: mesh.triangles.len(), sides: Sides::Known })
     }
 
@@ -141,7 +141,7 @@ impl SurfacePieces {
                 to_f32(std::array::from_fn(|i| f64::from(point[i]) + reach * (cos * right[i] + sin * up[i])))
             };
             let corners = [corner(0.0), corner(1.0 / 3.0), corner(2.0 / 3.0)];
-            Piece { corners, place: point, normal: to_f32(normal), area: single(area), face: index_u32(face) }
+            SurfacePiece { corners, place: point, normal: to_f32(normal), area: single(area), face: index_u32(face) }
         };
         let pieces = points.par_iter().zip(normals).enumerate().map(piece).collect();
         Ok(Self { pieces, face_count: points.len(), sides: Sides::Both })

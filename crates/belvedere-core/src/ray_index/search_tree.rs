@@ -130,22 +130,22 @@ fn node_of(parts: &[Aabb], around: &Aabb) -> CwBvhNode {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Part, RayIndex};
+    use super::super::{NodePart, RayIndex};
     use super::{BRANCHING, LARGE};
     use belvedere_data::random::uniform;
 
-    type Sides = [[f64; 3]; 2];
+    type BoxSides = [[f64; 3]; 2];
 
     /// The box around all rows below a node, which must lie in the boxes of all parts above them; counts how often each row is there.
-    fn around_rows(index: &RayIndex, boxes: &[[[f32; 3]; 2]], node: u32, counts: &mut [u32]) -> Sides {
+    fn around_rows(index: &RayIndex, boxes: &[[[f32; 3]; 2]], node: u32, counts: &mut [u32]) -> BoxSides {
         let parts = index.parts(node).unwrap();
         let mut around = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
         for (place, part) in parts.parts.into_iter().enumerate() {
             let mut own = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
             match part {
-                Part::Nothing => continue,
-                Part::Node(node) => own = around_rows(index, boxes, node, counts),
-                Part::Rows { first, count } => {
+                NodePart::Nothing => continue,
+                NodePart::Node(node) => own = around_rows(index, boxes, node, counts),
+                NodePart::Rows { first, count } => {
                     for row in first..first + count {
                         let number = index.order()[row as usize] as usize;
                         counts[number] += 1;
@@ -163,7 +163,7 @@ mod tests {
         around
     }
 
-    fn joined(a: Sides, b: Sides) -> Sides {
+    fn joined(a: BoxSides, b: BoxSides) -> BoxSides {
         [
             std::array::from_fn(|axis| f64::min(a[0][axis], b[0][axis])),
             std::array::from_fn(|axis| f64::max(a[1][axis], b[1][axis])),

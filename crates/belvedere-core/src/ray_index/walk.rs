@@ -59,9 +59,9 @@ pub(super) trait Test {
 
 /// One box after the other: every machine. With `FUSED`, products are added before they are rounded, which is slow on machines that have no such
 /// instruction.
-pub(super) struct Scalar<const FUSED: bool>;
+pub(super) struct RayScalar<const FUSED: bool>;
 
-impl<const FUSED: bool> Test for Scalar<FUSED> {
+impl<const FUSED: bool> Test for RayScalar<FUSED> {
     #[inline(always)]
     fn met(node: &CwBvhNode, ray: &TreeRay) -> Children {
         let sides = [

@@ -27,9 +27,9 @@ pub(super) enum SameTime {
 }
 
 /// Decoder of the times of one stream of points.
-pub(super) struct GpsTimes {
+pub(super) struct GpsTimeDecoder {
     /// Times are the bits of a double, compared as integers.
-    sequences: [Sequence; 4],
+    sequences: [TimeSequence; 4],
     current: usize,
     newest: usize,
     first_differences: ArithmeticModel,
@@ -39,7 +39,7 @@ pub(super) struct GpsTimes {
 }
 
 #[derive(Clone, Copy, Default)]
-struct Sequence {
+struct TimeSequence {
     time: i64,
     difference: i32,
     extremes: u32,
@@ -58,10 +58,10 @@ enum Step {
     Switch(usize),
 }
 
-impl GpsTimes {
+impl GpsTimeDecoder {
     /// Times that go on from `first`.
     pub(super) fn new(first: i64, same_time: SameTime) -> Self {
-        let mut sequences = [Sequence::default(); 4];
+        let mut sequences = [TimeSequence::default(); 4];
         sequences[0].time = first;
         let more = u32::from(same_time == SameTime::HasSymbol);
         Self {
@@ -92,7 +92,7 @@ impl GpsTimes {
                     let difference = self.differences.decompress(decoder, 0, 0)?;
                     let sequence = &mut self.sequences[self.current];
                     let time = sequence.time.wrapping_add(i64::from(difference));
-                    *sequence = Sequence { time, difference, extremes: 0 };
+                    *sequence = TimeSequence { time, difference, extremes: 0 };
                 }
                 Step::Multiple(multiple) => self.add_multiple(decoder, multiple)?,
                 Step::Whole => {
@@ -101,7 +101,7 @@ impl GpsTimes {
                     let time = (i64::from(upper) << 32) | i64::from(decoder.read_int()?);
                     self.newest = (self.newest + 1) % self.sequences.len();
                     self.current = self.newest;
-                    self.sequences[self.current] = Sequence { time, ..Sequence::default() };
+                    self.sequences[self.current] = TimeSequence { time, ..TimeSequence::default() };
                 }
             }
             return Ok(self.sequences[self.current].time);
@@ -160,11 +160,11 @@ impl GpsTimes {
 }
 
 /// The field of GPS times of point formats 1 and 3 to 5, in its second version (the first one has one sequence and no recursion).
-pub(super) struct GpsTimeField(GpsTimes);
+pub(super) struct GpsTimeField(GpsTimeDecoder);
 
 impl GpsTimeField {
     pub(super) fn new() -> Self {
-        Self(GpsTimes::new(0, SameTime::HasSymbol))
+        Self(GpsTimeDecoder::new(0, SameTime::HasSymbol))
     }
 }
 
@@ -177,7 +177,7 @@ impl<R: Read> FieldDecompressor<R> for GpsTimeField {
         let mut first = [0; 8];
         src.read_exact(&mut first)?;
         first_point.copy_from_slice(&first);
-        self.0 = GpsTimes::new(i64::from_le_bytes(first), SameTime::HasSymbol);
+        self.0 = GpsTimeDecoder::new(i64::from_le_bytes(first), SameTime::HasSymbol);
         Ok(())
     }
 

@@ -18,7 +18,7 @@ use ::laz::decompressors::{IntegerDecompressor, IntegerDecompressorBuilder};
 use ::laz::models::{ArithmeticModel, ArithmeticModelBuilder};
 use ::laz::record::LayeredFieldDecompressor;
 
-use super::gps_times::{GpsTimes, SameTime};
+use super::gps_times::{GpsTimeDecoder, SameTime};
 
 /// Bytes of the fields.
 const SIZE: usize = 30;
@@ -74,7 +74,7 @@ struct Channel {
     y_medians: [Median; 12],
     heights: [i32; 8],
     intensities: [u16; 8],
-    times: GpsTimes,
+    times: GpsTimeDecoder,
     changes: Models<8>,
     channel_steps: ArithmeticModel,
     return_counts: Models<16>,
@@ -168,7 +168,7 @@ impl Channel {
             y_medians: [Median::default(); 12],
             heights: [last.z; 8],
             intensities: [last.intensity; 8],
-            times: GpsTimes::new(last.time, SameTime::IsToldElsewhere),
+            times: GpsTimeDecoder::new(last.time, SameTime::IsToldElsewhere),
             changes: Models::new(128),
             channel_steps: ArithmeticModelBuilder::new(3).build(),
             return_counts: Models::new(16),

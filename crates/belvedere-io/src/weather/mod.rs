@@ -17,7 +17,7 @@ mod tmy3;
 use crate::source::{Input, Source};
 use belvedere_data::weather::Weather;
 use belvedere_data::{Error, Result};
-use lines::Lines;
+use lines::WeatherLines;
 use std::io::Read;
 
 /// Larger files are no weather: a year in steps of a minute has 50 MB.
@@ -46,7 +46,7 @@ pub fn read_weather<'a>(source: impl Into<Source<'a>>) -> Result<Weather> {
     // station names are in any encoding; figures are not
     let text = String::from_utf8_lossy(&bytes);
     let text = text.trim_start_matches('\u{feff}');
-    let lines = Lines::new(path, text);
+    let lines = WeatherLines::new(path, text);
     let first = text.lines().next().unwrap_or("");
     let second = text.lines().nth(1).unwrap_or("");
     let weather = if first.starts_with("LOCATION,") {

@@ -1,13 +1,13 @@
 //! Series and typical years of the National Solar Radiation Database.
 
-use super::lines::Lines;
+use super::lines::WeatherLines;
 use belvedere_data::Result;
 use belvedere_data::weather::{RowsHold, Weather, WeatherStep, unix_day};
 
 /// Steps that the database has, hours: where a file has a single row, the usual.
 const USUAL_STEP: f64 = 1.0;
 
-pub(super) fn read(lines: &Lines<'_>) -> Result<Weather> {
+pub(super) fn read(lines: &WeatherLines<'_>) -> Result<Weather> {
     let (names, values, head) = (lines.line(1)?, lines.line(2)?, lines.line(3)?);
     let (names, cells, columns) = (names.cells(), values.cells(), head.cells());
     let of_place = |name: &str| {

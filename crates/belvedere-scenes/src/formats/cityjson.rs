@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, HashSet};
 use std::fmt::Write as _;
 
-use crate::scene::{Material, Scene, index_u32};
+use crate::scene::{Material, TriangleScene, index_u32};
 use crate::vector::{cross, sub, unit};
 
 /// Size of a step of the integer coordinates, metres.
@@ -15,7 +15,7 @@ const LEVEL_SINE: f64 = 0.707;
 /// Height above the lowest corner of a part up to which an underside is its floor on the ground, metres.
 const FLOOR_REACH: f64 = 1.0;
 
-impl Scene {
+impl TriangleScene {
     /// CityJSON 2.0 text: one city object per object of the scene, named alike (blanks and other signs turned into
     /// underscores).
     ///

@@ -2,9 +2,9 @@
 
 use std::fmt::Write as _;
 
-use crate::scene::Scene;
+use crate::scene::TriangleScene;
 
-impl Scene {
+impl TriangleScene {
     /// Wavefront OBJ text: vertices with millimetres in absolute coordinates, one `o` group per object (blanks of its name
     /// turned into underscores), `usemtl` with [`crate::Material::name`].
     #[must_use]

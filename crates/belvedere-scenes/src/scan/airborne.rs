@@ -5,10 +5,10 @@ use rayon::prelude::*;
 use crate::random::Random;
 use crate::scan::Scan;
 use crate::scan::beam::BeamParams;
-use crate::scan::flight::{Strip, mean_coverage, strips, width_across};
+use crate::scan::flight::{FlightStrip, mean_coverage, strips, width_across};
 use crate::scan::recording::{Recorder, Shot};
-use crate::scan::scan_pattern::{ScanPattern, Sweep};
-use crate::scene::Scene;
+use crate::scan::scan_pattern::{PulseSweep, ScanPattern};
+use crate::scene::TriangleScene;
 use crate::truth::Truth;
 
 /// Pulses per m² where no number is wanted: what national surveys have.
@@ -91,7 +91,7 @@ impl AirborneParams {
     /// A survey of `scene`, whatever its size, with `pulses_per_m2` in all: strips that let every place be seen from both
     /// sides, and crowns that pulses enter ([`BeamParams::in_leaf`]); the other parameters are the defaults.
     #[must_use]
-    pub fn covering(scene: &Scene, pulses_per_m2: f64) -> Self {
+    pub fn covering(scene: &TriangleScene, pulses_per_m2: f64) -> Self {
         Self { beam: BeamParams::in_leaf(), ..Self::default() }.spread_over(scene, None, pulses_per_m2)
     }
 
@@ -101,7 +101,7 @@ impl AirborneParams {
     /// Without a count strips are at most half their width apart, so that every place lies between two that see it from
     /// either side: two for a town of 150 m with the default height and angle, three for 300 m.
     #[must_use]
-    pub fn spread_over(mut self, scene: &Scene, strip_count: Option<u16>, pulses_per_m2: f64) -> Self {
+    pub fn spread_over(mut self, scene: &TriangleScene, strip_count: Option<u16>, pulses_per_m2: f64) -> Self {
         if !self.leaves_something_to_fly() {
             return self;
         }
@@ -144,8 +144,8 @@ impl AirborneParams {
         if let ScanPattern::Conical { half_angle } = self.pattern { half_angle } else { self.half_angle }
     }
 
-    pub(crate) fn sweep(&self) -> Sweep {
-        Sweep { pattern: self.pattern, half_angle: self.greatest_angle(), pulses_per_line: self.pulses_per_line() }
+    pub(crate) fn sweep(&self) -> PulseSweep {
+        PulseSweep { pattern: self.pattern, half_angle: self.greatest_angle(), pulses_per_line: self.pulses_per_line() }
     }
 
     fn pulses_per_line(&self) -> u32 {
@@ -179,7 +179,7 @@ const MOST_STRIPS: u32 = 1000;
 /// The scan angle is the part of the angle from nadir across the flight, as files of conical scanners carry it too: theirs
 /// runs from -20° to 20° and is 0 straight ahead and behind, although every pulse is 20° from nadir.
 #[must_use]
-pub fn scan_airborne(scene: &Scene, params: &AirborneParams) -> Scan {
+pub fn scan_airborne(scene: &TriangleScene, params: &AirborneParams) -> Scan {
     let mut scan = Scan::default();
     if !params.leaves_something_to_fly() {
         return scan;
@@ -198,7 +198,7 @@ pub fn scan_airborne(scene: &Scene, params: &AirborneParams) -> Scan {
 }
 
 /// Returns of one line of a strip.
-fn scan_line(scene: &Scene, truth: &Truth, params: &AirborneParams, strip: &Strip, line: u32) -> Scan {
+fn scan_line(scene: &TriangleScene, truth: &Truth, params: &AirborneParams, strip: &FlightStrip, line: u32) -> Scan {
     let mut scan = Scan::default();
     let recorder = Recorder {
         scene,

@@ -1,7 +1,7 @@
 //! A laser pulse: a narrow cone that may meet several surfaces.
 
 use crate::random::Random;
-use crate::scene::{Material, Scene};
+use crate::scene::{Material, TriangleScene};
 use crate::truth::{CONTACT, Truth};
 use crate::vector::{add_scaled, cross, dot, sub, unit};
 
@@ -106,7 +106,7 @@ pub(crate) struct PulseEchoes {
 
 /// Sends a pulse into a scene; what lies farther than `max_range` metres gives no echo.
 pub(crate) fn pulse_echoes(
-    scene: &Scene,
+    scene: &TriangleScene,
     truth: &Truth,
     axis: &Axis,
     beam: &BeamParams,
@@ -168,7 +168,7 @@ impl SubRay {
 const LEAF_COSINE: f64 = 0.5;
 
 /// Where a ray that is inside crowns will be stopped.
-struct Foliage {
+struct CrownStop {
     range: f64,
     /// Where the ray entered.
     triangle: u32,
@@ -177,9 +177,15 @@ struct Foliage {
 }
 
 /// What stops a ray, or `None` where it leaves the scene.
-fn ray_echo(scene: &Scene, truth: &Truth, ray: &SubRay, beam: &BeamParams, random: &mut Random) -> Option<Echo> {
+fn ray_echo(
+    scene: &TriangleScene,
+    truth: &Truth,
+    ray: &SubRay,
+    beam: &BeamParams,
+    random: &mut Random,
+) -> Option<Echo> {
     let mut passed = 0.0;
-    let mut foliage: Option<Foliage> = None;
+    let mut foliage: Option<CrownStop> = None;
     loop {
         let hit = truth.first_hit_between(ray.origin, ray.direction, passed + CONTACT, ray.max_range);
         if let Some(leaves) = foliage.as_ref().filter(|f| hit.is_none_or(|hit| f.range < hit.range)) {
@@ -195,7 +201,7 @@ fn ray_echo(scene: &Scene, truth: &Truth, ray: &SubRay, beam: &BeamParams, rando
             if beam.foliage_depth > 0.0 && (foliage.is_some() || !enters) {
                 foliage = foliage.and_then(|f| {
                     let crown_count = if enters { f.crown_count + 1 } else { f.crown_count - 1 };
-                    (crown_count > 0).then_some(Foliage { crown_count, ..f })
+                    (crown_count > 0).then_some(CrownStop { crown_count, ..f })
                 });
                 passed = hit.range;
                 continue;
@@ -203,7 +209,7 @@ fn ray_echo(scene: &Scene, truth: &Truth, ray: &SubRay, beam: &BeamParams, rando
             if random.chance(beam.crown_porosity) {
                 if beam.foliage_depth > 0.0 {
                     let path = -beam.foliage_depth * (1.0 - random.uniform()).ln();
-                    foliage = Some(Foliage { range: hit.range + path, triangle: hit.triangle, crown_count: 1 });
+                    foliage = Some(CrownStop { range: hit.range + path, triangle: hit.triangle, crown_count: 1 });
                 }
                 passed = hit.range;
                 continue;
@@ -216,16 +222,16 @@ fn ray_echo(scene: &Scene, truth: &Truth, ray: &SubRay, beam: &BeamParams, rando
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::solids::{Placement, extruded};
+    use crate::solids::{PlanPlacement, extruded};
 
     fn downward(x: f64) -> Axis {
         Axis { origin: [x, 0.0, 500.0], direction: [0.0, 0.0, -1.0], across: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]] }
     }
 
     /// A plate 1 m high that ends at x = 0, over a plate that reaches on to x = 20.
-    fn step(height: f64) -> Scene {
-        let mut scene = Scene::default();
-        let at = |x| Placement { origin: [x, 0.0], angle: 0.0 };
+    fn step(height: f64) -> TriangleScene {
+        let mut scene = TriangleScene::default();
+        let at = |x| PlanPlacement { origin: [x, 0.0], angle: 0.0 };
         scene.add_object("low", &[extruded(&at(0.0).rectangle(40.0, 40.0), -1.0, 0.0)]);
         scene.add_object("high", &[extruded(&at(-10.0).rectangle(20.0, 20.0), -0.5, height)]);
         scene
@@ -268,9 +274,9 @@ mod tests {
     }
 
     /// A crown of 8 m over the ground, seen from above, as a block of leaves.
-    fn crown_over_ground() -> Scene {
-        let mut scene = Scene::default();
-        let at = Placement { origin: [0.0, 0.0], angle: 0.0 };
+    fn crown_over_ground() -> TriangleScene {
+        let mut scene = TriangleScene::default();
+        let at = PlanPlacement { origin: [0.0, 0.0], angle: 0.0 };
         scene.add_object("ground", &[extruded(&at.rectangle(40.0, 40.0), -1.0, 0.0)]);
         let crown = extruded(&at.rectangle(20.0, 20.0), 4.0, 12.0).with_material(Material::TreeCrown);
         scene.add_object("crown", &[crown]);

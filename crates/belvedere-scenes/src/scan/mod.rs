@@ -14,7 +14,7 @@ use std::fmt::Write as _;
 
 use rayon::prelude::*;
 
-use crate::scene::Scene;
+use crate::scene::TriangleScene;
 use crate::truth::Truth;
 use crate::vector::{add_scaled, cross, sub, unit};
 
@@ -141,7 +141,7 @@ impl Scan {
     ///
     /// Crowns block as opaque solids do, so that a return from inside a crown is in shadow.
     #[must_use]
-    pub fn lit_from(&self, scene: &Scene, truth: &Truth, direction: [f64; 3]) -> Vec<bool> {
+    pub fn lit_from(&self, scene: &TriangleScene, truth: &Truth, direction: [f64; 3]) -> Vec<bool> {
         self.exact_positions
             .par_iter()
             .zip(&self.triangle)

@@ -10,7 +10,7 @@ use crate::scan::beam::{Axis, BeamParams};
 use crate::scan::recording::{Recorder, Shot};
 use crate::scan::stations::free_stations;
 use crate::scan::{Scan, SensorPath};
-use crate::scene::Scene;
+use crate::scene::TriangleScene;
 use crate::truth::Truth;
 
 /// Where the tripod is set up.
@@ -110,7 +110,7 @@ impl TerrestrialParams {
 /// draws its noise from its own stream, so the scan has the same bits for any number of threads. Intensities do not depend
 /// on the range, as if the scanner had evened that out.
 #[must_use]
-pub fn scan_terrestrial(scene: &Scene, params: &TerrestrialParams) -> Scan {
+pub fn scan_terrestrial(scene: &TriangleScene, params: &TerrestrialParams) -> Scan {
     let mut scan = Scan::default();
     if !params.leaves_something_to_scan() {
         return scan;
@@ -160,7 +160,7 @@ impl Station {
 
 /// Returns of one column of pulses.
 fn scan_column(
-    scene: &Scene,
+    scene: &TriangleScene,
     truth: &Truth,
     params: &TerrestrialParams,
     station: &Station,

@@ -15,11 +15,11 @@ pub(crate) mod trees;
 use std::f64::consts::FRAC_PI_4;
 
 use crate::random::Random;
-use crate::scene::Scene;
-use crate::town::plan::{Layout, Plan};
-use crate::town::site::{Clearance, Site};
+use crate::scene::TriangleScene;
+use crate::town::plan::{BlockRectangle, TownLayout};
+use crate::town::site::{Clearance, TownSite};
 use crate::town::terrain::Terrain;
-use crate::town::trees::Crowns;
+use crate::town::trees::CrownMaterial;
 
 /// Lanes that a street has room for.
 const LANES_ACROSS: f64 = 4.5;
@@ -95,7 +95,7 @@ pub struct TownParams {
     /// any, the ground stays open. Default: terraces, L-shapes, tower and hall, detached houses, equally often.
     pub blocks: Vec<(BlockPlan, u32)>,
     /// What crowns are made of. Default opaque.
-    pub crowns: Crowns,
+    pub crowns: CrownMaterial,
     /// Lowest and highest tree, metres, 3 to 22. Default 7 to 13.
     pub tree_heights: [f64; 2],
     /// Ground per tree that is tried in gardens, courts and about the town, m², 20 or more; a half of the tries or fewer find
@@ -125,7 +125,7 @@ impl Default for TownParams {
                 (BlockPlan::TowerAndHall, 1),
                 (BlockPlan::DetachedHouses, 1),
             ],
-            crowns: Crowns::Opaque,
+            crowns: CrownMaterial::Opaque,
             tree_heights: [7.0, 13.0],
             area_per_garden_tree: 130.0,
             street_trees: StreetTrees::Middle,
@@ -139,7 +139,7 @@ impl TownParams {
     #[must_use]
     pub fn terrain(&self) -> Terrain {
         Terrain::new(self.origin, self.slope, self.hill_height, self.seed)
-            .with_canal(Layout::new(&self.within_limits()).trench())
+            .with_canal(TownLayout::new(&self.within_limits()).trench())
     }
 
     /// A lane along each street between the blocks, from one end of the town to the other, (R, 2, 2), metres, absolute: beside the
@@ -147,7 +147,7 @@ impl TownParams {
     #[must_use]
     pub fn lanes(&self) -> Vec<[[f64; 2]; 2]> {
         let params = self.within_limits();
-        let layout = Layout::new(&params);
+        let layout = TownLayout::new(&params);
         let (half, beside) = (layout.side / 2.0, params.street_width / LANES_ACROSS);
         let along_u = layout.streets_along_u.iter().map(|v| [-half, half].map(|u| layout.centre.at(u, v + beside)));
         // along v a side further left is one of lower u
@@ -181,11 +181,11 @@ fn within(value: f64, [low, high]: [f64; 2]) -> f64 {
 /// Object 0 is the terrain, then come `building 1`…, `tree 1`…, `deck 1`…, `canopy 1`…, `bridge 1`…, `fence 1`…, `mast 1`…,
 /// `wire 1`… and `car 1`… as they were built; coordinates are absolute. The same parameters give the same town.
 #[must_use]
-pub fn town(params: &TownParams) -> Scene {
+pub fn town(params: &TownParams) -> TriangleScene {
     let params = &params.within_limits();
-    let layout = Layout::new(params);
+    let layout = TownLayout::new(params);
     let centre = layout.centre;
-    let mut site = Site::new(params.terrain(), Random::new(params.seed, 0), centre.origin, layout.extent);
+    let mut site = TownSite::new(params.terrain(), Random::new(params.seed, 0), centre.origin, layout.extent);
     site.crowns = params.crowns;
     site.tree_heights = params.tree_heights;
 
@@ -229,8 +229,8 @@ fn choose(blocks: &[(BlockPlan, u32)], number: usize, random: &mut Random) -> Op
     None
 }
 
-impl Site {
-    fn build(&mut self, kind: BlockPlan, plan: &Plan) {
+impl TownSite {
+    fn build(&mut self, kind: BlockPlan, plan: &BlockRectangle) {
         match kind {
             BlockPlan::Terraces => self.terraces(plan),
             BlockPlan::LShapes => self.l_shapes(plan),

@@ -3,8 +3,8 @@
 use std::f64::consts::{PI, TAU};
 
 use crate::random::Random;
-use crate::scene::{Material, Part};
-use crate::solids::Placement;
+use crate::scene::{Material, ObjectPart};
+use crate::solids::PlanPlacement;
 
 /// Ground: an inclined plane with gentle hills, known as a formula.
 ///
@@ -21,7 +21,7 @@ pub struct Terrain {
 #[derive(Clone, Debug)]
 pub(crate) struct Canal {
     /// On the middle line, u along it.
-    pub(crate) placement: Placement,
+    pub(crate) placement: PlanPlacement,
     /// From bank to bank, metres.
     pub(crate) width: f64,
     /// Below the ground at its middle, metres.
@@ -102,10 +102,10 @@ impl Terrain {
     }
 
     /// Mesh of the square of side `extent` about the centre.
-    pub(crate) fn mesh(&self, extent: f64) -> Part {
+    pub(crate) fn mesh(&self, extent: f64) -> ObjectPart {
         let cells = whole((extent / CELL).ceil()).max(1) as usize;
         let coordinate = |i: usize| extent * (i as f64 / cells as f64 - 0.5);
-        let mut part = Part::default();
+        let mut part = ObjectPart::default();
         for j in 0..=cells {
             for i in 0..=cells {
                 let (x, y) = (self.centre[0] + coordinate(i), self.centre[1] + coordinate(j));

@@ -6,7 +6,7 @@ use std::collections::HashMap;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 use belvedere_scenes::closed_forms::{basin, box_on_plane, canyon, slab_over_plane, sphere_over_plane, stairs};
-use belvedere_scenes::{Material, Scene, Truth};
+use belvedere_scenes::{Material, TriangleScene, Truth};
 
 /// Azimuth clockwise from north and elevation, degrees.
 const SUNS: [[f64; 2]; 3] = [[110.0, 25.0], [180.0, 52.0], [241.0, 35.0]];
@@ -82,7 +82,7 @@ fn moved(rectangle: [f64; 2], sun: &Sun, height: f64) -> [[f64; 2]; 4] {
     [[-x, -y], [x, -y], [x, y], [-x, y]].map(|[x, y]| [x + shift * sun.away[0], y + shift * sun.away[1]])
 }
 
-fn check_hull(scene: &Scene, sun: &Sun, corners: &[[f64; 2]]) {
+fn check_hull(scene: &TriangleScene, sun: &Sun, corners: &[[f64; 2]]) {
     let truth = Truth::new(scene);
     let outline = hull(corners);
     let count = outline.len() as f64;

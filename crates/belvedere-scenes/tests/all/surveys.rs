@@ -1,8 +1,8 @@
 //! Other surveys than the default one: patterns, strips, crowns that pulses enter.
 
 use belvedere_scenes::{
-    AirborneParams, BeamParams, Material, MirrorMotion, Placement, Scan, ScanPattern, Scene, TownParams, Truth,
-    extruded, scan_airborne, town,
+    AirborneParams, BeamParams, Material, MirrorMotion, PlanPlacement, Scan, ScanPattern, TownParams, TriangleScene,
+    Truth, extruded, scan_airborne, town,
 };
 
 const PATTERNS: [ScanPattern; 4] = [
@@ -13,18 +13,18 @@ const PATTERNS: [ScanPattern; 4] = [
 ];
 
 /// Flat ground of `side` metres about the zero of the grid.
-fn plate(side: f64) -> Scene {
-    let mut scene = Scene::default();
-    let at = Placement { origin: [0.0, 0.0], angle: 0.0 };
+fn plate(side: f64) -> TriangleScene {
+    let mut scene = TriangleScene::default();
+    let at = PlanPlacement { origin: [0.0, 0.0], angle: 0.0 };
     let ground = extruded(&at.rectangle(side, side), -1.0, 0.0).with_material(Material::Terrain);
     scene.add_object("ground", &[ground]);
     scene
 }
 
 /// A house of 10 x 10 x 8 m on flat ground.
-fn house_on_a_plate() -> Scene {
+fn house_on_a_plate() -> TriangleScene {
     let mut scene = plate(60.0);
-    let at = Placement { origin: [0.0, 0.0], angle: 0.0 };
+    let at = PlanPlacement { origin: [0.0, 0.0], angle: 0.0 };
     scene.add_object("house", &[extruded(&at.rectangle(10.0, 10.0), -0.5, 8.0)]);
     scene
 }
@@ -38,7 +38,7 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
 }
 
 /// Outward unit normal of the triangle of return `i`, and how far its exact position lies outside that plane.
-fn plane_of(scene: &Scene, scan: &Scan, i: usize) -> ([f64; 3], f64) {
+fn plane_of(scene: &TriangleScene, scan: &Scan, i: usize) -> ([f64; 3], f64) {
     let [a, b, c] = scene.corners(scan.triangle[i] as usize).unwrap();
     let (u, v) = (sub(b, a), sub(c, a));
     let n = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];

@@ -24,9 +24,9 @@ fn results(folder: &Path) -> Vec<(String, Vec<u8>)> {
 }
 
 /// Stops the work after some number of looks at whether to stop.
-struct Impatient(AtomicUsize);
+struct CancelAfterChecks(AtomicUsize);
 
-impl Watcher for Impatient {
+impl Watcher for CancelAfterChecks {
     fn is_cancelled(&self) -> bool {
         self.0.fetch_update(Ordering::Relaxed, Ordering::Relaxed, |left| left.checked_sub(1)).is_err()
     }
@@ -42,7 +42,7 @@ fn a_run_that_is_stopped_again_and_again_has_the_results_of_one_that_is_not() {
     let params = RunParams { shard: Shard::default(), steps: Steps::All, most_balls: None, seconds: &|| 0.0 };
     let (mut stops, mut patience) = (0, 500);
     loop {
-        let watcher = Impatient(AtomicUsize::new(patience));
+        let watcher = CancelAfterChecks(AtomicUsize::new(patience));
         match run(&plan, &stopped, &params, &Control::new(&watcher)) {
             Err(Error::Cancelled) => stops += 1,
             other => {

@@ -1,12 +1,12 @@
 //! Tiles of any size give the balls and the answers of one tile over all.
 
 use crate::common::{cells, plan, run_all, run_with, suns, write_town};
-use belvedere::apps::ask::{Days, SkyParts, SunHours};
+use belvedere::apps::ask::{Days, SkyParts, SunHoursQuestion};
 use belvedere::apps::irradiance::{ClearSky, IrradianceParams, clear_instants};
 use belvedere::apps::sun::{Date, DayParams, Period, Site, SunStep, Zone, sun_days};
 use belvedere::control::Control;
 use belvedere::io::{read_balls, read_tif_f32, read_tif_u8, read_tif_u16};
-use belvedere_tiles::{Plan, Question, Radiation, merge, status};
+use belvedere_tiles::{Plan, TileQuestion, TileRadiation, merge, status};
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -44,45 +44,45 @@ fn day() -> Period {
 }
 
 /// Shadows, sky view, sun hours, energy, and what two observers see.
-fn all_questions(eyes: [[f64; 3]; 2]) -> Vec<Question> {
+fn all_questions(eyes: [[f64; 3]; 2]) -> Vec<TileQuestion> {
     let days = Days {
         dates: vec!["2026-04-10".to_owned()],
         time_step_min: Some(60.0),
         min_sun_elevation_deg: Some(8.0),
         ..Days::default()
     };
-    let radiation = Radiation::ClearSky { clear_sky: ClearSky::Haurwitz, year: 2026 };
+    let radiation = TileRadiation::ClearSky { clear_sky: ClearSky::Haurwitz, year: 2026 };
     let coarse = IrradianceParams::default().with_patch_division(1).with_sun_cell(0.3);
     let mut questions = suns();
     questions.extend([
-        Question::SkyView { sky: SkyParts::Even(49) },
-        Question::SunHours { site: site(), days: SunHours { days, ..SunHours::default() } },
-        Question::Irradiance { site: site(), radiation, params: coarse },
-        Question::Viewshed { eyes: eyes.to_vec(), max_distance: Some(120.0) },
+        TileQuestion::SkyView { sky: SkyParts::Even(49) },
+        TileQuestion::SunHours { site: site(), days: SunHoursQuestion { days, ..SunHoursQuestion::default() } },
+        TileQuestion::Irradiance { site: site(), radiation, params: coarse },
+        TileQuestion::Viewshed { eyes: eyes.to_vec(), max_distance: Some(120.0) },
     ]);
     questions
 }
 
 /// The shadow of each of the suns whose hours are summed.
-fn suns_of_the_day() -> Vec<(Question, f64)> {
+fn suns_of_the_day() -> Vec<(TileQuestion, f64)> {
     let days = sun_days(&site(), &Zone::mean_solar(&site()), &day(), &params()).unwrap();
     let question = |(number, step): (usize, &SunStep)| {
-        let question = Question::Shadow { name: format!("step_{number}"), to_sun: step.direction, season: None };
+        let question = TileQuestion::Shadow { name: format!("step_{number}"), to_sun: step.direction, season: None };
         (question, (step.end - step.start) / 3600.0)
     };
     days[0].steps.iter().enumerate().map(question).collect()
 }
 
-fn values(plan: &Plan, folder: &Path, question: &Question) -> BTreeMap<[i64; 2], u32> {
+fn values(plan: &Plan, folder: &Path, question: &TileQuestion) -> BTreeMap<[i64; 2], u32> {
     let path = folder.join("merged.tif");
     merge(plan, folder, question, &path, &Control::none()).unwrap();
     match question {
-        Question::Shadow { .. } => {
+        TileQuestion::Shadow { .. } => {
             let raster = read_tif_u8(&path).unwrap();
             let wide: Vec<u32> = raster.values().iter().map(|&v| v.into()).collect();
             cells(plan, &wide, raster.width(), 255)
         }
-        Question::Viewshed { .. } => {
+        TileQuestion::Viewshed { .. } => {
             let raster = read_tif_u16(&path).unwrap();
             let wide: Vec<u32> = raster.values().iter().map(|&v| v.into()).collect();
             cells(plan, &wide, raster.width(), 65_535)
@@ -154,7 +154,7 @@ fn sun_hours_are_the_sum_of_shadows(
     hours: &BTreeMap<[i64; 2], u32>,
     plan: &Plan,
     folder: &Path,
-    steps: &[(Question, f64)],
+    steps: &[(TileQuestion, f64)],
 ) {
     assert!(steps.len() >= 8, "{}", steps.len());
     let mut sums: BTreeMap<[i64; 2], f64> = hours.keys().map(|&cell| (cell, 0.0)).collect();

@@ -1,16 +1,16 @@
 //! Sun hours of an area that was drawn: of the cells on the ground whose middle lies in it.
 
-use super::Asked;
+use super::RequestContext;
 use super::places::{local, number, rounded};
-use crate::replies::{Answer, Refusal};
+use crate::replies::{QuestionReply, Refusal};
 use crate::scene_text::in_words;
-use belvedere::apps::ask::{self, Cells, Days, Places, SunHours, SunPlace, ThroughTrees};
+use belvedere::apps::ask::{self, Days, GridCells, Places, SunHoursQuestion, SunPlace, ThroughTrees};
 use serde::Deserialize;
 use serde_json::json;
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Question {
+pub(super) struct SunAreaRequest {
     /// Corners on the map, in the coordinates of the file.
     corners: Vec<[f64; 2]>,
     date: String,
@@ -20,7 +20,7 @@ pub(super) struct Question {
     trees: ThroughTrees,
 }
 
-pub(super) fn answer(question: &Question, asked: &Asked<'_>) -> Result<Answer, Refusal> {
+pub(super) fn answer(question: &SunAreaRequest, asked: &RequestContext<'_>) -> Result<QuestionReply, Refusal> {
     let scene = asked.scene;
     if question.corners.len() < 3 {
         return Err(Refusal("An area needs at least three corners.".to_owned()));
@@ -30,10 +30,10 @@ pub(super) fn answer(question: &Question, asked: &Asked<'_>) -> Result<Answer, R
         .iter()
         .map(|&[x, y]| local(asked, [x, y, 0.0]).map(|[x, y, _]| [x, y]))
         .collect::<Result<Vec<[f64; 2]>, _>>()?;
-    let cells = Cells { within: vec![corners], ..Cells::default() };
+    let cells = GridCells { within: vec![corners], ..GridCells::default() };
     let days = Days { dates: vec![question.date.clone()], ..Days::default() };
     let place = SunPlace { zone: Some(question.zone.clone()), ..SunPlace::default() };
-    let hours = SunHours { days, place, trees: question.trees, ..SunHours::default() };
+    let hours = SunHoursQuestion { days, place, trees: question.trees, ..SunHoursQuestion::default() };
     let answers = ask::ask(&scene.asked, &hours, &Places::Cells(cells), asked.control)?;
     let targets = &answers.found.targets;
     let known: Vec<usize> = (0..targets.len()).filter(|&row| targets.is_asked(row)).collect();
@@ -61,5 +61,5 @@ pub(super) fn answer(question: &Question, asked: &Asked<'_>) -> Result<Answer, R
     });
     let places = known.iter().map(|&row| targets.positions[row]);
     let body = places.zip(&hours).flat_map(|([x, y, z], &hours)| [x, y, z, hours]).flat_map(f32::to_le_bytes);
-    Ok(Answer { head, body: body.collect() })
+    Ok(QuestionReply { head, body: body.collect() })
 }

@@ -3,14 +3,14 @@
 use belvedere::PointCloud;
 use belvedere::control::Control;
 use belvedere::model::{ModelParams, OrientBy, SceneModel};
-use belvedere_viewer::{Viewer, ViewerParams};
+use belvedere_viewer::{PageServer, ViewerParams};
 use std::io::{Read, Write};
 use std::net::TcpStream;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// A viewer of rough ground with a step, 20 m wide.
-fn viewer() -> Viewer {
+fn viewer() -> PageServer {
     let mut coordinates = Vec::new();
     for x in 0..40 {
         for y in 0..40 {
@@ -19,7 +19,7 @@ fn viewer() -> Viewer {
         }
     }
     let cloud = Arc::new(PointCloud::from_coordinates(&coordinates).0);
-    let viewer = Viewer::start(&ViewerParams::default()).unwrap();
+    let viewer = PageServer::start(&ViewerParams::default()).unwrap();
     let loading = viewer.loading();
     loading.show(&cloud);
     let params = ModelParams::default().with_orient(OrientBy::Up);
@@ -28,7 +28,7 @@ fn viewer() -> Viewer {
 }
 
 /// Host with port, and token.
-fn address(viewer: &Viewer) -> (String, String) {
+fn address(viewer: &PageServer) -> (String, String) {
     let url = viewer.url();
     let (host, token) = url.strip_prefix("http://").unwrap().split_once('/').unwrap();
     (host.to_owned(), token.trim_end_matches('/').to_owned())

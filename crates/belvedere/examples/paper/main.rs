@@ -16,7 +16,7 @@ use belvedere::control::Control;
 use belvedere::io::{ReadOptions, read_cloud, read_mesh};
 use belvedere::medial::ShrinkParams;
 use experiment::{Look, compare_profiles, oblique, top_down};
-use model::{Model, Way, unlimited_tau, within_window};
+use model::{NormalMethod, PaperModel, unlimited_tau, within_window};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
@@ -82,7 +82,7 @@ fn artificial(folder: &Path, tables: &mut Tables) -> Result<()> {
             tables.line(&format!("normals of the PLY that equal those given to masbcpp: {agree} of {}", a.len()));
         }
     }
-    let model = Model::of_given_normals(cloud, ShrinkParams::angles())?;
+    let model = PaperModel::of_given_normals(cloud, ShrinkParams::angles())?;
     model.report(tables);
     let views = [("top-down", top_down(&model, 40.0)?), ("oblique", oblique(&model, VIEWER, 40.0)?)];
     let looks = compare_profiles(&model, &views, tables)?;
@@ -94,7 +94,7 @@ fn amsterdam(tables: &mut Tables) -> Result<()> {
     let Some(path) = data("reference/amsterdam") else { return Ok(()) };
     let (cloud, _) = read_cloud(&[path], &ReadOptions::default(), &Control::none())?;
     tables.line("\n## Amsterdam\n");
-    let model = Model::of_given_normals(cloud, ShrinkParams::angles())?;
+    let model = PaperModel::of_given_normals(cloud, ShrinkParams::angles())?;
     model.report(tables);
     let views = [("top-down", top_down(&model, 10.0)?), ("oblique", oblique(&model, VIEWER, 10.0)?)];
     compare_profiles(&model, &views, tables)?;
@@ -111,19 +111,19 @@ fn delft(folder: &Path, tables: &mut Tables) -> Result<()> {
     let (cloud, _) = read_cloud(&[tile], &options, &Control::none())?;
     let (mesh, _) = read_mesh(&city)?;
     let block = within_window(&cloud, BLOCK);
-    let way = Way { neighbors: PAPER_K, mesh: &mesh };
+    let way = NormalMethod { neighbors: PAPER_K, mesh: &mesh };
 
     tables.line("\n## Delft, a housing block\n");
-    let model = Model::of_scan(&block, &way, ShrinkParams::angles())?;
+    let model = PaperModel::of_scan(&block, &way, ShrinkParams::angles())?;
     model.report(tables);
     let views = [("top-down", top_down(&model, 10.0)?), ("oblique", oblique(&model, VIEWER, 10.0)?)];
     let looks = compare_profiles(&model, &views, tables)?;
-    let tau = Model::of_scan(&block, &way, unlimited_tau())?;
+    let tau = PaperModel::of_scan(&block, &way, unlimited_tau())?;
     figures::block(folder, &model, &tau, &looks[1])?;
     figures::close_views(folder, &cloud, &way)?;
 
     tables.line("\n## Delft, the whole tile\n");
-    let model = Model::of_scan(&cloud, &way, ShrinkParams::angles())?;
+    let model = PaperModel::of_scan(&cloud, &way, ShrinkParams::angles())?;
     model.report(tables);
     let views = [("top-down", top_down(&model, 4.0)?), ("oblique", oblique(&model, VIEWER, 4.0)?)];
     let looks: Vec<Look> = compare_profiles(&model, &views, tables)?;

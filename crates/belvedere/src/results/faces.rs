@@ -1,7 +1,7 @@
 //! Measures of the faces of a mesh as files.
 
 use crate::apps::targets::{FaceMeans, Measure, object_areas};
-use crate::io::{Cells, write_mesh_values};
+use crate::io::{TableCells, write_mesh_values};
 use crate::query::{SeenArea, SurfacePieces, seen_in_all, seen_objects};
 use crate::{Frame, Mesh, Result};
 use std::path::Path;
@@ -73,8 +73,8 @@ impl<'a> FaceRows<'a> {
     pub fn write(&self, path: &Path) -> Result<()> {
         let faces = (0_u64..).take(self.objects.len() - self.object_count).map(Some);
         let numbers: Vec<Option<u64>> = std::iter::repeat_n(None, self.object_count).chain(faces).collect();
-        let mut cells = vec![("object", Cells::Words(&self.objects)), ("face", Cells::Whole(&numbers))];
-        cells.extend(self.columns.iter().map(|(name, values, decimals)| (*name, Cells::Real(values, *decimals))));
+        let mut cells = vec![("object", TableCells::Words(&self.objects)), ("face", TableCells::Whole(&numbers))];
+        cells.extend(self.columns.iter().map(|(name, values, decimals)| (*name, TableCells::Real(values, *decimals))));
         crate::io::write_table(path, &cells)
     }
 }

@@ -22,7 +22,7 @@ pub use raster::{Pixels, ResultRaster, UNPROVEN_BAND, viewshed_words};
 
 pub use crate::apps::targets::ResultKind;
 
-use crate::apps::targets::{Layout, Measure, Targets};
+use crate::apps::targets::{Measure, TargetLayout, Targets};
 use crate::ground::{Ground, MapGrid};
 use crate::io::{ExtraColumn, ExtraValues, Georeference, TextRows, WriteReport, write_cloud, write_text_rows};
 use crate::{ElevationGrid, Error, Frame, Mesh, PointCloud, Result};
@@ -82,12 +82,12 @@ pub fn write_measures(
     let extension = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
     let is_tiff = matches!(extension.as_str(), "tif" | "tiff");
     match (&targets.layout, from) {
-        (Layout::Cells(_), _) if is_tiff => {
+        (TargetLayout::Cells(_), _) if is_tiff => {
             let further = measures.iter().skip(1).filter(|measure| measure.is_further_band);
             let bands: Vec<&Measure> = std::iter::once(first).chain(further).collect();
             write_raster(path, targets, &bands).map(|()| WriteReport::default())
         }
-        (Layout::Surface(surface), TakenFrom::Mesh(mesh)) => {
+        (TargetLayout::Surface(surface), TakenFrom::Mesh(mesh)) => {
             match extension.as_str() {
                 "ply" => faces::write_colored(path, mesh, surface, &targets.frame, first),
                 _ => FaceRows::of_measures(mesh, surface, measures).write(path),
@@ -98,7 +98,7 @@ pub fn write_measures(
             write_text_rows(path, rows, &columns(measures)).map(|()| WriteReport::default())
         }
         (_, TakenFrom::Cloud(cloud)) if !is_tiff => write_points(path, cloud, measures),
-        (Layout::Cells(_) | Layout::Points, TakenFrom::Nothing) if !is_tiff => {
+        (TargetLayout::Cells(_) | TargetLayout::Points, TakenFrom::Nothing) if !is_tiff => {
             let rows: Vec<usize> = (0..expected).filter(|&row| targets.is_asked(row)).collect();
             let positions = rows.iter().map(|&row| targets.positions[row]).collect();
             let cloud = PointCloud { frame: targets.frame.clone(), positions, ..PointCloud::default() };

@@ -12,7 +12,7 @@ use belvedere::random::uniform;
 use belvedere::vector::{length, sub, unit};
 use belvedere::view::{View, to_sun};
 use belvedere::{Bounds, Mesh};
-use belvedere_scenes::{Placement, Scene, Truth, extruded};
+use belvedere_scenes::{PlanPlacement, TriangleScene, Truth, extruded};
 
 fn balls(count: u64, size: f64) -> MedialBalls {
     let at = |i: u64| (size * uniform(3, i)) as f32;
@@ -26,19 +26,19 @@ fn balls(count: u64, size: f64) -> MedialBalls {
     }
 }
 
-fn mesh_of(scene: &Scene) -> Mesh {
+fn mesh_of(scene: &TriangleScene) -> Mesh {
     Mesh { vertices: scene.vertices.clone(), triangles: scene.triangles.clone(), ..Mesh::default() }
 }
 
 /// An upright box: middle of its footprint, angle, length, width, bottom and top.
-fn box_at([x, y]: [f64; 2], angle: f64, [along, across]: [f64; 2], [bottom, top]: [f64; 2]) -> Scene {
-    let mut scene = Scene::default();
-    let place = Placement { origin: [x, y], angle };
+fn box_at([x, y]: [f64; 2], angle: f64, [along, across]: [f64; 2], [bottom, top]: [f64; 2]) -> TriangleScene {
+    let mut scene = TriangleScene::default();
+    let place = PlanPlacement { origin: [x, y], angle };
     scene.add_object("box", &[extruded(&place.rectangle(along, across), bottom, top)]);
     scene
 }
 
-fn added(scene: &Scene) -> AddedMeshes {
+fn added(scene: &TriangleScene) -> AddedMeshes {
     AddedMeshes::new(&mesh_of(scene), "box", [0.0; 3], None, None).unwrap()
 }
 
@@ -237,7 +237,7 @@ fn a_target_on_a_face_is_not_hidden_by_it_and_inside_sees_nothing_outside() {
     let added = added(&box_at([400.3, 700.7], 0.3, [12.0, 7.0], [0.0, 9.0]));
     let scene =
         MedialScene::new(&MedialBalls::default(), &BlockRule::carved()).unwrap().with_added(Some(added.clone()));
-    let place = Placement { origin: [400.3, 700.7], angle: 0.3 };
+    let place = PlanPlacement { origin: [400.3, 700.7], angle: 0.3 };
     for i in 0..500_u64 {
         let (u, v) = (11.9 * (uniform(1, 2 * i) - 0.5), 6.9 * (uniform(1, 2 * i + 1) - 0.5));
         let [x, y] = place.at(u, v);

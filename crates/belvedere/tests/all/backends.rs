@@ -9,8 +9,8 @@ use belvedere::pulses::{NeedleParams, Needles};
 use belvedere::query::certified::CertifiedMap;
 use belvedere::query::target_tree::TargetTree;
 use belvedere::query::{
-    Answer, Backend, BallTree, Cpu, EarthParams, Line, MedialScene, Prepared, Proof, ProofParams, Scope, Settled,
-    Viewer, Visibility, VisibilityMatrix, random_pairs, random_targets,
+    Answer, Backend, BallTree, Cpu, EarthParams, LineAnswer, MedialScene, PreparedBackend, Proof, ProofParams, Scope,
+    Settled, Viewer, Visibility, VisibilityMatrix, random_pairs, random_targets,
 };
 use belvedere::random::uniform;
 use belvedere::raster::Raster;
@@ -25,17 +25,17 @@ struct Forgetful {
 }
 
 struct ForgetfulBalls {
-    inner: Box<dyn Prepared>,
+    inner: Box<dyn PreparedBackend>,
     share_open: f64,
 }
 
 impl Backend for Forgetful {
-    fn prepare(&self, balls: &Arc<BallTree>) -> belvedere::Result<Box<dyn Prepared>> {
+    fn prepare(&self, balls: &Arc<BallTree>) -> belvedere::Result<Box<dyn PreparedBackend>> {
         Ok(Box::new(ForgetfulBalls { inner: Cpu.prepare(balls)?, share_open: self.share_open }))
     }
 }
 
-impl Prepared for ForgetfulBalls {
+impl PreparedBackend for ForgetfulBalls {
     fn depth(&self, view: &View, start: f64, control: &Control<'_>) -> belvedere::Result<DepthBounds> {
         let sure = self.inner.depth(view, start, control)?;
         let [width, height] = view.size_px;
@@ -58,7 +58,8 @@ impl Prepared for ForgetfulBalls {
         for target in 0..targets.len() {
             for direction in 0..directions.len() {
                 let number = (target * directions.len() + direction) as u64;
-                let line = if uniform(8, number) < self.share_open { Line::Open } else { sure.line(target, direction) };
+                let line =
+                    if uniform(8, number) < self.share_open { LineAnswer::Open } else { sure.line(target, direction) };
                 settled.set(target, direction, line);
             }
         }
@@ -201,9 +202,9 @@ fn pulses_that_are_indexed_when_needed_prove_the_same() {
     assert!(matches!(Proof::from_columns(broken, &params), Err(Error::LengthMismatch { .. })));
 }
 
-struct Stopped;
+struct AlwaysCancelled;
 
-impl Watcher for Stopped {
+impl Watcher for AlwaysCancelled {
     fn is_cancelled(&self) -> bool {
         true
     }
@@ -211,7 +212,7 @@ impl Watcher for Stopped {
 
 #[test]
 fn what_is_cancelled_stops() {
-    let control = Control::new(&Stopped);
+    let control = Control::new(&AlwaysCancelled);
     let (targets, directions) = (targets(500), directions(20));
     let balls = town(3000);
     let scene = scene(&BlockRule::carved());

@@ -6,19 +6,21 @@ use belvedere::model::{ClearedArea, ModelParams, SceneModel};
 use belvedere::query::{Answer, UnprovenAs, random_targets};
 use belvedere::view::to_sun;
 use belvedere::{Mesh, PointCloud};
-use belvedere_scenes::{AirborneParams, Material, Part, Placement, Scene, Truth, extruded, scan_airborne};
+use belvedere_scenes::{
+    AirborneParams, Material, ObjectPart, PlanPlacement, TriangleScene, Truth, extruded, scan_airborne,
+};
 
 const FIRST: [f64; 2] = [24.0, 30.0];
 const SECOND: [f64; 2] = [38.0, 30.0];
 
-fn building(middle: [f64; 2], side: f64, height: f64) -> Part {
-    extruded(&Placement { origin: middle, angle: 0.0 }.rectangle(side, side), 0.0, height)
+fn building(middle: [f64; 2], side: f64, height: f64) -> ObjectPart {
+    extruded(&PlanPlacement { origin: middle, angle: 0.0 }.rectangle(side, side), 0.0, height)
 }
 
 /// Level ground with a building, and with another.
-fn scene(both: bool) -> Scene {
-    let mut scene = Scene::default();
-    let ground = Part {
+fn scene(both: bool) -> TriangleScene {
+    let mut scene = TriangleScene::default();
+    let ground = ObjectPart {
         vertices: vec![[0.0, 0.0, 0.0], [60.0, 0.0, 0.0], [60.0, 60.0, 0.0], [0.0, 60.0, 0.0]],
         triangles: vec![[0, 1, 2], [0, 2, 3]],
         materials: vec![Material::Terrain; 2],
@@ -135,7 +137,7 @@ fn adding_a_building_and_clearing_it_restores_every_answer() {
     let (model, cloud) = surveyed();
     let control = Control::none();
     let site = [46.0, 14.0];
-    let mut planned = Scene::default();
+    let mut planned = TriangleScene::default();
     planned.add_object("planned", &[building(site, 6.0, 12.0)]);
     let mesh = Mesh { vertices: planned.vertices.clone(), triangles: planned.triangles.clone(), ..Mesh::default() };
     let added = model.clone().with_added(&mesh, "planned").unwrap();

@@ -9,7 +9,7 @@ use belvedere::query::{Answer, UnprovenAs, Viewer, Visibility};
 use belvedere::trajectory::Trajectory;
 use belvedere::{Bounds, Error, PointCloud};
 use belvedere_scenes::{
-    MobileParams, Preset, QuerySet, QuerySite, Scan, Scene, Stations, TerrestrialParams, Truth, scan_mobile,
+    MobileParams, Preset, QuerySet, QuerySite, Scan, Stations, TerrestrialParams, TriangleScene, Truth, scan_mobile,
     scan_terrestrial, town,
 };
 
@@ -36,7 +36,7 @@ fn built(scan: &Scan) -> (PointCloud, SceneModel) {
 }
 
 /// Shares of what people in streets truly see that is called blocked, and of what they truly do not see that is called visible.
-fn errors_in_streets(scene: &Scene, cloud: &PointCloud, model: &SceneModel) -> [f64; 2] {
+fn errors_in_streets(scene: &TriangleScene, cloud: &PointCloud, model: &SceneModel) -> [f64; 2] {
     let medial = model.scene(&model.rule(), UnprovenAs::Reported, &Control::none()).unwrap();
     let truth = Truth::new(scene);
     let origin = cloud.frame.origin;

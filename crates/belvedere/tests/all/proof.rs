@@ -108,8 +108,8 @@ fn nearness_of_pulses_equals_that_of_every_pulse_tried_in_turn() {
 fn unproven_lengths_are_those_of_dense_samples() {
     const SPACING: f64 = 0.02;
     // pulses so sparse that lines have many gaps, and so dense that few are left and most boxes of space are near some
-    type Survey = fn(u64) -> (Vec<[f32; 3]>, Vec<[f32; 3]>);
-    let (above, ground): (Survey, Survey) = (survey, survey_from_the_ground);
+    type SurveyMaker = fn(u64) -> (Vec<[f32; 3]>, Vec<[f32; 3]>);
+    let (above, ground): (SurveyMaker, SurveyMaker) = (survey, survey_from_the_ground);
     for (survey, count, nearness, lines) in [
         (above, 500, 1.2, 12),
         (above, 2500, 0.7, 12),

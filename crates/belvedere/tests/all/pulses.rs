@@ -2,7 +2,7 @@
 
 use belvedere::control::Control;
 use belvedere::io::{ReadOptions, read_cloud};
-use belvedere::pulses::{Pulses, SensorEstimateParams, SensorPositions, SensorReport, Verdict, group};
+use belvedere::pulses::{PartVerdict, Pulses, SensorEstimateParams, SensorPositions, SensorReport, group};
 use belvedere::random::uniform;
 use belvedere::trajectory::Trajectory;
 use belvedere::vector::{length, sub};
@@ -201,7 +201,7 @@ fn lines_without_multiple_returns_are_refused_and_said_so() {
     let (sensor, report) =
         SensorPositions::from_returns(&cloud, &pulses, &SensorEstimateParams::default(), &Control::none()).unwrap();
     assert_eq!(report.known_count, 0);
-    assert!(!report.parts.is_empty() && report.parts.iter().all(|part| part.verdict == Verdict::TooFewPairs));
+    assert!(!report.parts.is_empty() && report.parts.iter().all(|part| part.verdict == PartVerdict::TooFewPairs));
     assert!(sensor.per_point(&pulses, cloud.len()).iter().flatten().all(|v| v.is_nan()));
     let wrong = SensorEstimateParams { part_s: f64::NAN, ..SensorEstimateParams::default() };
     assert!(matches!(
@@ -234,7 +234,7 @@ fn real_flights_are_found() {
         let Some((cloud, pulses, sensor, report)) = estimated("real_flights_are_found", file) else { return };
         // all but lines that touch a corner of the tile
         assert!(report.known_count as f64 > 0.95 * pulses.len() as f64, "{file}: {:#?}", report.parts);
-        for part in report.parts.iter().filter(|part| part.verdict == Verdict::Accepted) {
+        for part in report.parts.iter().filter(|part| part.verdict == PartVerdict::Accepted) {
             // centimetres over several metres; in Bresse, from three times as high, the beam is three times as wide
             assert!(part.median_angle < 0.5_f64.to_radians(), "{part:?}");
         }

@@ -10,7 +10,7 @@ use crate::common::simulated::cloud_of;
 use belvedere::control::Control;
 use belvedere::io::{ReadOptions, read_cloud, read_trajectory, write_found_trajectory};
 use belvedere::pulses::{
-    AngleVerdict, FoundBy, LocateParams, Means, ScannerReport, SensorEstimateParams, Verdict, locate, path_samples,
+    AngleVerdict, FoundBy, LocateParams, Means, PartVerdict, ScannerReport, SensorEstimateParams, locate, path_samples,
 };
 use belvedere::trajectory::Trajectory;
 use belvedere::vector::{cross, length, sub};
@@ -228,7 +228,7 @@ fn parts_without_pulses_of_several_returns_follow_from_their_neighbours() {
         ..LocateParams::default()
     };
     let (positions, report) = locate(&cloud, &Means::Automatic, &params, &Control::none()).unwrap();
-    assert!(report.parts.iter().any(|part| part.verdict == Verdict::Bridged), "{:?}", report.parts);
+    assert!(report.parts.iter().any(|part| part.verdict == PartVerdict::Bridged), "{:?}", report.parts);
     assert_eq!(report.found.get(&FoundBy::Returns), Some(&cloud.len()));
     let [_, degrees] = apart(&cloud, &positions, &truth);
     // as for the pulses themselves; see the simulator's echoes in `pulses.rs`

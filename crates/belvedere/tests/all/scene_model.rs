@@ -12,12 +12,12 @@ use belvedere::pulses::{LocateParams, Means, NeedleParams, Needles, group, locat
 use belvedere::query::UnprovenAs;
 use belvedere::trajectory::Trajectory;
 use belvedere::{Error, Mesh, PointCloud};
-use belvedere_scenes::{AirborneParams, Scan, Scene, TownParams, scan_airborne, town};
+use belvedere_scenes::{AirborneParams, Scan, TownParams, TriangleScene, scan_airborne, town};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// A small town, flown with few pulses.
-fn simulated() -> (Scene, Scan, PointCloud) {
+fn simulated() -> (TriangleScene, Scan, PointCloud) {
     let scene = town(&TownParams { extent: 60.0, ..TownParams::default() });
     let scan = scan_airborne(&scene, &AirborneParams { pulses_per_m2: 3.0, ..AirborneParams::default() });
     let cloud = cloud_of(&scan);
@@ -214,7 +214,7 @@ fn reports_use_keys_with_units_and_rounded_numbers() {
 }
 
 /// Stops the work when it has asked so many times whether to go on.
-struct Impatient {
+struct StopAfterChecks {
     asked: AtomicUsize,
     patience: usize,
     begun: Mutex<Vec<&'static str>>,
@@ -223,7 +223,7 @@ struct Impatient {
     done: AtomicUsize,
 }
 
-impl Impatient {
+impl StopAfterChecks {
     fn new(patience: usize) -> Self {
         Self {
             asked: AtomicUsize::new(0),
@@ -236,7 +236,7 @@ impl Impatient {
     }
 }
 
-impl Watcher for Impatient {
+impl Watcher for StopAfterChecks {
     fn begin(&self, stage: &'static str, total: usize) {
         self.total.store(total, Ordering::Relaxed);
         self.done.store(0, Ordering::Relaxed);
@@ -262,7 +262,7 @@ impl Watcher for Impatient {
 #[test]
 fn building_can_be_stopped_at_every_stage_and_asks_often() {
     let (_, _, cloud) = simulated();
-    let patient = Impatient::new(usize::MAX);
+    let patient = StopAfterChecks::new(usize::MAX);
     SceneModel::build(&cloud, &ModelParams::default(), &Control::new(&patient)).unwrap();
     let stages = patient.begun.lock().unwrap().clone();
     let asked = patient.asked.load(Ordering::Relaxed);
@@ -275,7 +275,7 @@ fn building_can_be_stopped_at_every_stage_and_asks_often() {
     }
     let mut last = 0;
     for share in 0..20 {
-        let impatient = Impatient::new(asked * share / 20);
+        let impatient = StopAfterChecks::new(asked * share / 20);
         let stopped = SceneModel::build(&cloud, &ModelParams::default(), &Control::new(&impatient));
         assert!(matches!(stopped, Err(Error::Cancelled)), "after {share} of 20 looks");
         let begun = impatient.begun.lock().unwrap().len();

@@ -11,15 +11,15 @@ use belvedere::control::Control;
 use std::path::Path;
 
 use belvedere::io::{
-    Heading, LevelOfDetail, ReadOptions, read_cityjson, read_cloud, read_mesh, read_trajectory, write_cloud,
+    LevelOfDetail, ReadOptions, VehicleHeading, read_cityjson, read_cloud, read_mesh, read_trajectory, write_cloud,
     write_trajectory,
 };
 use belvedere::summary::{CloudSummary, FacadeSummary};
 use belvedere::trajectory::Trajectory;
 use belvedere::{GpsTimeKind, PointCloud};
 use belvedere_scenes::{
-    AirborneParams, Material, MirrorMotion, Preset, Regime, Scan, ScanPattern, Scene, TerrestrialParams, TownParams,
-    Truth, scan_airborne, scan_terrestrial, town,
+    AirborneParams, Material, MirrorMotion, Preset, Regime, Scan, ScanPattern, TerrestrialParams, TownParams,
+    TriangleScene, Truth, scan_airborne, scan_terrestrial, town,
 };
 
 /// Cloud and trajectory as they come back from files: positions of the cloud in file coordinates, and of the scanner at the
@@ -36,7 +36,7 @@ fn delivered(scan: &Scan, folder: &Path, trajectory_name: &str) -> Delivered {
     write_cloud(&cloud_file, &cloud, &[]).unwrap();
     let path = &scan.sensor_path;
     let trajectory = Trajectory { times: path.times.clone(), positions: path.positions.clone() };
-    let heading = Heading::Given(&path.headings);
+    let heading = VehicleHeading::Given(&path.headings);
     write_trajectory(&path_file, &trajectory, GpsTimeKind::AdjustedStandard, &cloud.frame.crs, heading).unwrap();
 
     let (cloud, _) = read_cloud(&[cloud_file], &ReadOptions::default(), &Control::none()).unwrap();
@@ -61,7 +61,7 @@ fn unit(a: [f64; 3]) -> [f64; 3] {
     a.map(|v| v / dot(a, a).sqrt())
 }
 
-fn normal(scene: &Scene, triangle: usize) -> [f64; 3] {
+fn normal(scene: &TriangleScene, triangle: usize) -> [f64; 3] {
     let [a, b, c] = scene.corners(triangle).unwrap();
     let (u, v) = (sub(b, a), sub(c, a));
     unit([u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]])
@@ -72,7 +72,7 @@ fn normal(scene: &Scene, triangle: usize) -> [f64; 3] {
 const FILE_STEP: f64 = 0.000_87 + 0.000_1;
 
 /// Checks that returns lie within four deviations of the mesh along their rays, all but the share that noise explains.
-fn check_ranges(scene: &Scene, scan: &Scan, files: &Delivered, range_sd: f64, what: &str) {
+fn check_ranges(scene: &TriangleScene, scan: &Scan, files: &Delivered, range_sd: f64, what: &str) {
     let truth = Truth::new(scene);
     let (mut beyond, mut without_surface, mut squares) = (0, 0, 0.0);
     for i in 0..scan.len() {
@@ -187,7 +187,7 @@ fn returns_from_inside_crowns_lie_within_noise_of_their_exact_range() {
 }
 
 /// Area of the walls of `scene` above the ground, m²: by rows of samples that lie above `terrain`.
-fn wall_area(scene: &Scene, terrain: &belvedere_scenes::Terrain) -> f64 {
+fn wall_area(scene: &TriangleScene, terrain: &belvedere_scenes::Terrain) -> f64 {
     let steps = 20_u32;
     let walls = (0..scene.triangles.len())
         .filter(|&t| scene.materials[t] == Material::Facade && normal(scene, t)[2].abs() < 0.3);

@@ -21,7 +21,7 @@ enum Built {
     Block,
 }
 
-struct Survey {
+struct ThinSurvey {
     points: Vec<[f32; 3]>,
     scanner: Vec<[f32; 3]>,
     kinds: Vec<Kind>,
@@ -30,8 +30,8 @@ struct Survey {
 
 /// `count` pulses from two lines 120 m to either side, 450 m up: 15 degrees. Exact first hits, by hand: the top, the walls of
 /// the block, the ground.
-fn survey(built: Built, count: u64) -> Survey {
-    let mut survey = Survey { points: Vec::new(), scanner: Vec::new(), kinds: Vec::new(), on_top: Vec::new() };
+fn survey(built: Built, count: u64) -> ThinSurvey {
+    let mut survey = ThinSurvey { points: Vec::new(), scanner: Vec::new(), kinds: Vec::new(), on_top: Vec::new() };
     for i in 0..count {
         let scanner = [if i % 2 == 0 { -120.0 } else { 120.0 }, 10.0 * (uniform(3, i) - 0.5), 450.0];
         let aim = [24.0 * (uniform(1, i) - 0.5), 16.0 * (uniform(2, i) - 0.5), 0.0];
@@ -57,7 +57,7 @@ fn survey(built: Built, count: u64) -> Survey {
 }
 
 /// Shares of the points on top and of all others that are found thin.
-fn found(survey: &Survey) -> [f64; 2] {
+fn found(survey: &ThinSurvey) -> [f64; 2] {
     let thin = thin(survey);
     [true, false].map(|top| {
         let rows: Vec<usize> = (0..thin.len()).filter(|&row| survey.on_top[row] == top).collect();
@@ -65,7 +65,7 @@ fn found(survey: &Survey) -> [f64; 2] {
     })
 }
 
-fn thin(survey: &Survey) -> Vec<bool> {
+fn thin(survey: &ThinSurvey) -> Vec<bool> {
     let index = NeighborIndex::new(&survey.points, &Control::none()).unwrap();
     let (needles, _) =
         Needles::new(&survey.points, &survey.scanner, &NeedleParams::default(), &Control::none()).unwrap();
@@ -99,7 +99,7 @@ fn a_canopy_is_thin_to_its_middle_and_a_block_is_not() {
 
 #[test]
 fn a_canopy_hides_the_sky_and_leaves_room_below_it() {
-    let Survey { points, scanner, kinds, .. } = survey(Built::Canopy, PULSES);
+    let ThinSurvey { points, scanner, kinds, .. } = survey(Built::Canopy, PULSES);
     let mut cloud = PointCloud { positions: points, ..PointCloud::default() };
     let class = |kind: &Kind| if *kind == Kind::Ground { 2 } else { 1 };
     cloud.attributes.classification = Some(kinds.iter().map(class).collect());
@@ -135,7 +135,7 @@ fn neither_order_of_points_nor_number_of_threads_matters() {
     backward.points.reverse();
     backward.scanner.reverse();
     backward.kinds.reverse();
-    let on = |threads: usize, survey: &Survey| {
+    let on = |threads: usize, survey: &ThinSurvey| {
         rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap().install(|| thin(survey))
     };
     let expected = on(1, &forward);

@@ -5,7 +5,7 @@ use crate::mountains::grid;
 use belvedere::apps::exposure::WINDOW_LIFT;
 use belvedere::apps::targets::{Targets, Window};
 use belvedere::apps::window_views::{
-    ClassMeanings, Kinds, Proving, Seen, VIEW_DIRECTIONS, WindowView, balls_seen, leave_out_level, view_directions,
+    ClassMeanings, Kinds, Proving, SeenKind, VIEW_DIRECTIONS, WindowView, balls_seen, leave_out_level, view_directions,
     view_measures, window_views,
 };
 use belvedere::blocking::BlockRule;
@@ -17,7 +17,7 @@ use belvedere::query::{AddedMeshes, Ball, Blocker, FarTerrain, MedialScene, Unpr
 use belvedere::random::uniform;
 use belvedere::vector::{cross, dot, unit};
 use belvedere::{Error, Frame, Mesh};
-use belvedere_scenes::{AirborneParams, Material, Scene, TownParams, Truth, scan_airborne, town};
+use belvedere_scenes::{AirborneParams, Material, TownParams, TriangleScene, Truth, scan_airborne, town};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// A ball so large that the ground that it is for windows at a few metres' height is level.
@@ -49,7 +49,7 @@ fn sampling(share: f64, count: usize) -> f64 {
 
 #[test]
 fn over_flat_ground_half_of_the_view_is_sky_and_half_ground() {
-    let kinds = Kinds { balls: &[Seen::Ground], meshes: &[] };
+    let kinds = Kinds { balls: &[SeenKind::Ground], meshes: &[] };
     let height = 3.0;
     for azimuth in [0.0, 1.0, 2.5, PI] {
         let [view] = views(&level_ground(), &[window([0.0, 0.0, height], azimuth)], kinds, 10_000)[..] else {
@@ -57,9 +57,9 @@ fn over_flat_ground_half_of_the_view_is_sky_and_half_ground() {
         };
         // the half space holds half of the cap that the ball covers, whose edge lies √(2h/R) below level
         let missing = (2.0 * height / RADIUS).sqrt() / 2.0;
-        assert!((view.shares[Seen::Sky as usize] - 0.5).abs() < sampling(0.5, 10_000), "{view:?}");
-        assert!((view.cosine_shares[Seen::Sky as usize] - 0.5).abs() < sampling(0.5, 10_000), "{view:?}");
-        let ground = view.shares[Seen::Ground as usize];
+        assert!((view.shares[SeenKind::Sky as usize] - 0.5).abs() < sampling(0.5, 10_000), "{view:?}");
+        assert!((view.cosine_shares[SeenKind::Sky as usize] - 0.5).abs() < sampling(0.5, 10_000), "{view:?}");
+        let ground = view.shares[SeenKind::Ground as usize];
         assert!((view.shares.iter().sum::<f64>() - 1.0).abs() < 1e-12 && ground < 0.5, "{view:?}");
         assert!((0.5 - ground - missing).abs() < sampling(missing, 10_000), "{ground} {missing}");
         // the sine of the depression is even over solid angles, so that half of the ground is nearer than 2 h
@@ -84,24 +84,24 @@ fn a_window_before_an_endless_wall_sees_what_the_closed_form_leaves() {
     let count = 20_000;
     for (distance, height, top) in [(10.0, 4.0, 15.0), (30.0, 2.0, 12.0), (5.0, 8.0, 9.0), (12.0, 9.0, 6.0)] {
         let scene = level_ground().with_added(Some(endless_wall(distance + WINDOW_LIFT, top)));
-        let kinds = Kinds { balls: &[Seen::Ground], meshes: &[Seen::Building] };
+        let kinds = Kinds { balls: &[SeenKind::Ground], meshes: &[SeenKind::Building] };
         let [view] = views(&scene, &[window([0.0, 0.0, height], 0.0)], kinds, count)[..] else { panic!() };
         // planes through the window that are level along the wall cut the half space in wedges, each with the share of its angle in half a turn
         let up = ((top - height) / distance).atan();
         let down = (height / distance).atan();
         let cut = up.min(0.0);
         let expected = [
-            (Seen::Sky, 0.5 - up.max(0.0) / PI, (1.0 - up.max(0.0).sin()) / 2.0),
-            (Seen::Building, (up + down) / PI, (up.sin() + down.sin()) / 2.0),
+            (SeenKind::Sky, 0.5 - up.max(0.0) / PI, (1.0 - up.max(0.0).sin()) / 2.0),
+            (SeenKind::Building, (up + down) / PI, (up.sin() + down.sin()) / 2.0),
             // over a wall that is lower than the window the ground behind it is seen
-            (Seen::Ground, 0.5 - down / PI - cut / PI, (1.0 - down.sin() - cut.sin()) / 2.0),
+            (SeenKind::Ground, 0.5 - down / PI - cut / PI, (1.0 - down.sin() - cut.sin()) / 2.0),
         ];
         for (seen, share, cosine_share) in expected {
             let found = view.shares[seen as usize]
-                + if seen == Seen::Ground { view.shares[Seen::Beyond as usize] } else { 0.0 };
+                + if seen == SeenKind::Ground { view.shares[SeenKind::Beyond as usize] } else { 0.0 };
             assert!((found - share).abs() < sampling(share, count), "{seen:?} {found} {share} of {view:?}");
             let found = view.cosine_shares[seen as usize]
-                + if seen == Seen::Ground { view.cosine_shares[Seen::Beyond as usize] } else { 0.0 };
+                + if seen == SeenKind::Ground { view.cosine_shares[SeenKind::Beyond as usize] } else { 0.0 };
             // a direction counts by its cosine, twice the mean of it at most
             assert!(
                 (found - cosine_share).abs() < 2.0 * sampling(cosine_share, count),
@@ -161,17 +161,17 @@ fn what_is_seen_from_a_surface_is_what_the_matrix_has_as_blocked_and_what_is_ent
 }
 
 /// What a material is to people at a window.
-fn kind(material: Material) -> Seen {
+fn kind(material: Material) -> SeenKind {
     match material {
-        Material::Terrain => Seen::Ground,
-        Material::Roof | Material::Facade | Material::Slab => Seen::Building,
-        Material::TreeCrown | Material::Trunk | Material::Leaf => Seen::Vegetation,
-        _ => Seen::Other,
+        Material::Terrain => SeenKind::Ground,
+        Material::Roof | Material::Facade | Material::Slab => SeenKind::Building,
+        Material::TreeCrown | Material::Trunk | Material::Leaf => SeenKind::Vegetation,
+        _ => SeenKind::Other,
     }
 }
 
 /// Windows on facades of a town, none of them inside anything or so near to it that it is covered, with their centres in the file.
-fn facade_windows(exact: &Scene, truth: &Truth, origin: [f64; 3], count: usize) -> Vec<Window> {
+fn facade_windows(exact: &TriangleScene, truth: &Truth, origin: [f64; 3], count: usize) -> Vec<Window> {
     let facades: Vec<usize> =
         (0..exact.triangles.len()).filter(|&row| exact.materials[row] == Material::Facade).collect();
     let mut windows = Vec::new();
@@ -200,7 +200,7 @@ fn facade_windows(exact: &Scene, truth: &Truth, origin: [f64; 3], count: usize) 
 
 /// The view of exact rays in `directions` from the place that a window is asked at, with the mean range of things.
 fn exact_view(
-    exact: &Scene,
+    exact: &TriangleScene,
     truth: &Truth,
     window: &Window,
     origin: [f64; 3],
@@ -217,8 +217,8 @@ fn exact_view(
                 things += 1.0;
                 kind(exact.materials[hit.triangle as usize])
             }
-            None if direction[2] >= 0.0 => Seen::Sky,
-            None => Seen::Beyond,
+            None if direction[2] >= 0.0 => SeenKind::Sky,
+            None => SeenKind::Beyond,
         };
         counts[seen as usize] += 1.0;
     }
@@ -232,7 +232,7 @@ fn in_an_exact_town_shares_are_those_of_exact_rays_and_of_any_number_of_threads(
     let truth = Truth::new(&exact);
     let origin = [154_990.0, 463_010.0, 2.0];
     let mut added: Option<AddedMeshes> = None;
-    let kinds = [Seen::Ground, Seen::Building, Seen::Vegetation, Seen::Other];
+    let kinds = [SeenKind::Ground, SeenKind::Building, SeenKind::Vegetation, SeenKind::Other];
     for seen in kinds {
         let rows = (0..exact.triangles.len()).filter(|&row| kind(exact.materials[row]) == seen);
         let triangles = rows.map(|row| exact.triangles[row]).collect();
@@ -273,7 +273,7 @@ fn in_an_exact_town_shares_are_those_of_exact_rays_and_of_any_number_of_threads(
         assert!(differing * VIEW_DIRECTIONS as f64 <= 1.5, "{expected:?} {view:?}");
         assert!((mean - view.mean_range).abs() < 0.2, "{mean} {view:?}");
         let (expected, _) = exact_view(&exact, &truth, window, origin, &other);
-        for seen in Seen::ALL {
+        for seen in SeenKind::ALL {
             let (a, b) = (expected[seen as usize], view.shares[seen as usize]);
             // two samples of the same share, about 4000 and 1000 directions: four deviations of their difference, and one direction
             let share = f64::midpoint(a, b);
@@ -283,7 +283,9 @@ fn in_an_exact_town_shares_are_those_of_exact_rays_and_of_any_number_of_threads(
         }
     }
     assert!(
-        [Seen::Sky, Seen::Vegetation, Seen::Building, Seen::Ground].iter().all(|&s| kinds_met[s as usize] > 5),
+        [SeenKind::Sky, SeenKind::Vegetation, SeenKind::Building, SeenKind::Ground]
+            .iter()
+            .all(|&s| kinds_met[s as usize] > 5),
         "{kinds_met:?}"
     );
 }
@@ -329,7 +331,7 @@ fn far_terrain_is_ground_and_no_sky() {
         let [view] = views(&scene, &[window(place, 1.0)], kinds, count)[..] else { panic!() };
         assert!(view.mean_range.is_nan() && view.median_range.is_nan());
         assert!((view.shares.iter().sum::<f64>() - 1.0).abs() < 1e-12);
-        [Seen::Sky, Seen::Ground, Seen::Beyond].map(|kind| view.shares[kind as usize])
+        [SeenKind::Sky, SeenKind::Ground, SeenKind::Beyond].map(|kind| view.shares[kind as usize])
     };
     let close = |shares: [f64; 3], expected: [f64; 3]| {
         let errors =
@@ -352,7 +354,7 @@ fn far_terrain_is_ground_and_no_sky() {
 #[test]
 fn windows_that_are_not_asked_have_no_view_and_wrong_input_is_refused() {
     let scene = level_ground();
-    let kinds = Kinds { balls: &[Seen::Ground], meshes: &[] };
+    let kinds = Kinds { balls: &[SeenKind::Ground], meshes: &[] };
     let mut targets =
         Targets::of_windows(&[window([0.0, 0.0, 3.0], 0.0), window([5.0, 0.0, 3.0], 1.0)], Frame::default()).unwrap();
     targets.positions[0] = [f32::NAN; 3];

@@ -1,6 +1,6 @@
 //! What observers see of each kind of targets, in numbers and words.
 
-use super::Viewshed;
+use super::ViewshedQuestion;
 use crate::ask::places::cells_of;
 use crate::ask::{Context, Remark, Scene, remark_on_outside};
 use crate::targets::{CellParams, Targets};
@@ -50,7 +50,7 @@ struct Things {
 
 /// Observers before what blocks.
 pub(super) struct Sights<'a> {
-    pub(super) question: &'a Viewshed,
+    pub(super) question: &'a ViewshedQuestion,
     pub(super) scene: &'a Scene,
     pub(super) blockers: &'a MedialScene,
     pub(super) observers: &'a [Observer],

@@ -47,12 +47,12 @@ pub(crate) struct Hull {
 
 /// Where the last walk ended, and the numbers that choose the order of its tests.
 #[derive(Clone, Copy, Default)]
-pub(crate) struct Walk {
+pub(crate) struct HullWalk {
     facet: u32,
     turns: u64,
 }
 
-impl Walk {
+impl HullWalk {
     /// A number from 0 to 2 that follows no pattern: walks through facets that lie in one plane could go round for ever
     /// with a fixed order of tests (Devillers, Pion & Teillaud 2002).
     fn turn(&mut self) -> usize {
@@ -86,7 +86,7 @@ impl Hull {
         };
         let order = insertion_order(&hull.points, &first, &hull.curve);
         let mut cavity = Cavity::new(hull.points.len());
-        let mut walk = Walk::default();
+        let mut walk = HullWalk::default();
         for point in order {
             hull.insert(point, &mut walk, &mut cavity);
         }
@@ -105,7 +105,7 @@ impl Hull {
     }
 
     /// Whether `point` lies strictly outside, and if not, how far inside along the ray from the eye: 0 on the hull.
-    pub(crate) fn depth_below(&self, point: [f64; 3], walk: &mut Walk) -> Option<f64> {
+    pub(crate) fn depth_below(&self, point: [f64; 3], walk: &mut HullWalk) -> Option<f64> {
         let facet = self.locate(point, walk);
         let [a, b, c] = self.corners(facet);
         if orient(a, b, c, point) < 0.0 {
@@ -134,7 +134,7 @@ impl Hull {
     ///
     /// Each step crosses an edge that has `point` on its other side. Seen from inside, the facets of a convex hull are in
     /// front of each other in no circle, so the walk ends.
-    fn locate(&self, point: [f64; 3], walk: &mut Walk) -> u32 {
+    fn locate(&self, point: [f64; 3], walk: &mut HullWalk) -> u32 {
         let mut came_from = NONE;
         'walk: loop {
             let facet = &self.facets[walk.facet as usize];
@@ -155,7 +155,7 @@ impl Hull {
     }
 
     /// Adds a point: the facets that it sees give way to a fan from their rim.
-    fn insert(&mut self, index: u32, walk: &mut Walk, cavity: &mut Cavity) {
+    fn insert(&mut self, index: u32, walk: &mut HullWalk, cavity: &mut Cavity) {
         let point = self.points[index as usize];
         let seen = self.locate(point, walk);
         if !self.sees(point, seen) {

@@ -1,4 +1,4 @@
-use super::{Hull, Walk};
+use super::{Hull, HullWalk};
 
 /// Positions without pattern in the box from -1 to 1, times `size`.
 fn scattered(count: u64, size: [f64; 3]) -> Vec<[f64; 3]> {
@@ -96,7 +96,7 @@ fn all_of_a_sphere_is_extreme_and_its_depths_are_those_of_the_closed_form() {
     let hull = Hull::new(sphere.clone());
     // neighbours stand out by 1e-4 of the radius, rounding moves points by 1e-16
     assert!((0..sphere.len()).all(|i| hull.is_extreme(i)));
-    let mut walk = Walk::default();
+    let mut walk = HullWalk::default();
     for p in scattered(500, [1e6; 3]) {
         let range = belvedere::vector::length(p);
         match hull.depth_below(p, &mut walk) {

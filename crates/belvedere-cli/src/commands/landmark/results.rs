@@ -5,7 +5,7 @@ use belvedere::PointCloud;
 use belvedere::apps::landmark::{LandmarkMeasure, LandmarkView, MEASURES};
 use belvedere::figures::{MapLegend, MapMark, MapPicture, map_picture, ramp, write_png};
 use belvedere::ground::{Ground, highest_points};
-use belvedere::io::{Cells, TextRows, atomic, with_columns_read, write_table, write_tif_f32};
+use belvedere::io::{TableCells, TextRows, atomic, with_columns_read, write_table, write_tif_f32};
 use belvedere::raster::Raster;
 use belvedere::results::{ResultKind, georeference};
 use std::path::Path;
@@ -29,8 +29,8 @@ pub(super) fn write_rows(
     for measure in &MEASURES {
         columns.push((measure.name, rows.iter().map(|&row| measure.of(&views[row])).collect(), measure.decimals));
     }
-    let named: Vec<(&'static str, Cells<'_>)> =
-        columns.iter().map(|(name, values, decimals)| (*name, Cells::Real(values, *decimals))).collect();
+    let named: Vec<(&'static str, TableCells<'_>)> =
+        columns.iter().map(|(name, values, decimals)| (*name, TableCells::Real(values, *decimals))).collect();
     let read = given.columns(rows.iter().copied());
     Ok(write_table(output, &with_columns_read(&read, &["x", "y", "z"], &named))?)
 }

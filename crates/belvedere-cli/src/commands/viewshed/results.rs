@@ -7,7 +7,7 @@ use belvedere::apps::viewshed::Viewshed;
 use belvedere::figures::{MapLegend, MapMark, MapPicture, map_picture, ramp, write_png};
 use belvedere::ground::{Ground, highest_points};
 use belvedere::io::{
-    Area, ExtraColumn, ExtraValues, Georeference, WriteReport, outlines, write_cloud, write_geojson_areas,
+    ExtraColumn, ExtraValues, Georeference, PolygonArea, WriteReport, outlines, write_cloud, write_geojson_areas,
     write_npy_u32_bands, write_tif_u32,
 };
 use belvedere::query::Answer;
@@ -29,21 +29,21 @@ pub(super) struct SeenCells<'a> {
     pub(super) seen: &'a Viewshed,
     pub(super) eyes: &'a [[f64; 3]],
     pub(super) frame: &'a Frame,
-    pub(super) on: Field<'a>,
+    pub(super) on: CellSurface<'a>,
     /// Whether it is the eye that is seen from the cells.
     pub(super) is_reverse: bool,
 }
 
 /// What the cells lie on.
 #[derive(Clone, Copy)]
-pub(super) enum Field<'a> {
+pub(super) enum CellSurface<'a> {
     /// The ground below a cloud.
     Ground(&'a Ground, &'a PointCloud),
     /// Terrain beyond the cloud.
     Terrain(&'a ElevationGrid),
 }
 
-impl Field<'_> {
+impl CellSurface<'_> {
     fn size(self) -> [usize; 2] {
         match self {
             Self::Ground(ground, _) => [ground.grid.width, ground.grid.height],
@@ -86,7 +86,7 @@ impl SeenCells<'_> {
                 continue;
             }
             let cell_count: usize = polygons.iter().map(|polygon| polygon.cell_count).sum();
-            let mut area = Area::default();
+            let mut area = PolygonArea::default();
             area.properties.insert("answer".to_owned(), name.into());
             area.properties.insert("area_m2".to_owned(), (cell_count as f64 * steps[0] * -steps[1]).into());
             let corner = |corner: [usize; 2]| [0, 1].map(|i| place.upper_left[i] * unit + corner[i] as f64 * steps[i]);
@@ -107,7 +107,7 @@ impl SeenCells<'_> {
             Answer::Blocked if one => Some(HIDDEN_COLOR),
             Answer::Visible | Answer::Blocked => Some(ramp(f64::from(count) / most)),
             Answer::Unproven => Some(UNPROVEN_COLOR),
-            Answer::OutsideCloud if matches!(self.on, Field::Terrain(_)) => Some(CLOUD_COLOR),
+            Answer::OutsideCloud if matches!(self.on, CellSurface::Terrain(_)) => Some(CLOUD_COLOR),
             _ => None,
         };
         let colors: Vec<Option<[u8; 3]>> = seen.answers.iter().zip(&seen.counts).map(color).collect();
@@ -115,7 +115,7 @@ impl SeenCells<'_> {
         let mut others = unproven.as_slice().to_vec();
         let mut classes = [&[(SEEN_COLOR, "visible")], &others[..], &[(HIDDEN_COLOR, "blocked")]].concat();
         let (title, sheet) = match self.on {
-            Field::Ground(ground, cloud) => {
+            CellSurface::Ground(ground, cloud) => {
                 let title = match (is_reverse, one) {
                     (true, _) => "Cells from which the target is visible",
                     (false, true) => "Visible from the observer",
@@ -125,7 +125,7 @@ impl SeenCells<'_> {
                 let relief = highest_points(&cloud.positions, ground);
                 (title, Sheet { relief, colors, cell: ground.grid.cell, corner: ground.grid.corner, place })
             }
-            Field::Terrain(terrain) => {
+            CellSurface::Terrain(terrain) => {
                 let title = match (is_reverse, one) {
                     (true, _) => "Terrain from which the target is visible",
                     (false, true) => "Terrain visible from the observer",

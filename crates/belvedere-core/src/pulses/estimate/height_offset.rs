@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::sensor_fit::{Pair, median, trust};
+use super::sensor_fit::{ReturnPair, median, trust};
 use crate::pulses::Pulses;
 use crate::pulses::flight_parts::HeightOffset;
 use belvedere_data::PointCloud;
@@ -36,9 +36,9 @@ pub(in crate::pulses) fn height_offset(
         let returns = pulses.returns_of(pulse);
         let (first, last) = (place(returns.first()?)?, place(returns.last()?)?);
         let is_known = scanner.iter().all(|v| v.is_finite()) && (last - first).norm() >= LEAST_LENGTH;
-        is_known.then(|| (Pair::new(first, last, 0.0), Vector3::from(scanner.map(f64::from))))
+        is_known.then(|| (ReturnPair::new(first, last, 0.0), Vector3::from(scanner.map(f64::from))))
     };
-    let pairs: Vec<(Pair, Vector3<f64>)> = positions.iter().enumerate().filter_map(pair).collect();
+    let pairs: Vec<(ReturnPair, Vector3<f64>)> = positions.iter().enumerate().filter_map(pair).collect();
     if pairs.len() < LEAST_PAIRS {
         return None;
     }
@@ -63,7 +63,8 @@ pub(in crate::pulses) fn height_offset(
         sd = (squares / (2.0 * pairs.len() as f64) / normal).sqrt();
     }
     let found = misses(offset);
-    let angle = |(miss, (pair, _)): (&super::sensor_fit::Miss, &(Pair, _))| miss.offset.norm() / pair.along.norm();
+    let angle =
+        |(miss, (pair, _)): (&super::sensor_fit::Miss, &(ReturnPair, _))| miss.offset.norm() / pair.along.norm();
     let angle = median(found.iter().zip(&pairs).map(angle).collect());
     let height = median(pairs.iter().map(|(pair, scanner)| scanner.z + offset - pair.first.z).collect());
     // sine of the angle from the vertical, which is what a change of height shows in

@@ -47,7 +47,7 @@ impl Needles {
             (first[2] - last[2] > CROWN_DEPTH).then_some(first)
         };
         let entries: Vec<[f32; 3]> = (0..pulses.len()).into_par_iter().filter_map(entry).collect();
-        let tops = Tops::of(&entries, control)?;
+        let tops = CrownTops::of(&entries, control)?;
         let stop = Stop::new(control);
         let of_pulse = |pulse: usize| {
             let pairs = pulses.returns_of(pulse).windows(2).filter(|_| !stop.is_set());
@@ -64,12 +64,12 @@ impl Needles {
 }
 
 /// The tops of crowns, seen from above.
-struct Tops {
+struct CrownTops {
     places: Vec<[f32; 3]>,
     index: NeighborIndex,
 }
 
-impl Tops {
+impl CrownTops {
     /// Those of `entries`, where pulses entered crowns, local metres.
     fn of(entries: &[[f32; 3]], control: &Control<'_>) -> Result<Self> {
         let flat: Vec<[f32; 3]> = entries.iter().copied().map(level).collect();

@@ -1,6 +1,6 @@
 //! Needles as columns of numbers, as short as what is asked of them allows.
 
-use super::tree::Way;
+use super::tree::SegmentAxis;
 use super::{Needle, Needles, NeedlesByWay};
 use belvedere_data::Result;
 use belvedere_data::control::Control;
@@ -21,10 +21,10 @@ pub(crate) fn lower_ends(columns: &NeedleColumns) -> impl Iterator<Item = [f32; 
 }
 
 /// Way, start, unit vector and length of a pulse; `None` without length.
-fn piece(columns: &NeedleColumns, row: usize) -> Option<(Way, [f64; 3], [f64; 3], f64)> {
+fn piece(columns: &NeedleColumns, row: usize) -> Option<(SegmentAxis, [f64; 3], [f64; 3], f64)> {
     let way = match columns.ways.get(row) {
-        Some(&number) => *Way::ALL.get(usize::from(number))?,
-        None => Way::UP,
+        Some(&number) => *SegmentAxis::ALL.get(usize::from(number))?,
+        None => SegmentAxis::UP,
     };
     let slopes = columns.slopes.get(row)?.map(|steps| f64::from(steps) * SLOPE_STEP);
     let stretch = (slopes[0] * slopes[0] + slopes[1] * slopes[1] + 1.0).sqrt();
@@ -53,19 +53,19 @@ impl Needles {
     pub fn to_columns(&self) -> NeedleColumns {
         let top = self.top;
         #[expect(clippy::cast_possible_truncation, reason = "`as` saturates; the flattest needle has a slope of 3.2")]
-        let slope = |way: Way, needle: &Needle| {
+        let slope = |way: SegmentAxis, needle: &Needle| {
             let along = f64::from(needle.direction[way.axis]).abs();
             way.across().map(|axis| (f64::from(needle.direction[axis]) / along / SLOPE_STEP).round() as i16)
         };
         #[expect(clippy::cast_possible_truncation, reason = "one of six")]
-        let number = |way: Way| way.number() as u8;
+        let number = |way: SegmentAxis| way.number() as u8;
         let reaches_top = |needle: &Needle| {
             let end = f64::from(needle.start[2]) + f64::from(needle.length) * f64::from(needle.direction[2]);
             (f64::from(top) - end).abs() < REACHES_TOP
         };
         let length = |needle: &Needle| if reaches_top(needle) { f32::INFINITY } else { needle.length };
         let all_reach = self.needles.iter().all(reaches_top);
-        let all_upright = self.trees.iter().all(|tree| tree.way == Way::UP);
+        let all_upright = self.trees.iter().all(|tree| tree.way == SegmentAxis::UP);
         NeedleColumns {
             starts: self.lower_ends().collect(),
             slopes: self.ways().zip(&self.needles).map(|(way, needle)| slope(way, needle)).collect(),
@@ -76,7 +76,7 @@ impl Needles {
     }
 
     /// The way of each needle.
-    fn ways(&self) -> impl Iterator<Item = Way> + '_ {
+    fn ways(&self) -> impl Iterator<Item = SegmentAxis> + '_ {
         let ends = self.trees.iter().skip(1).map(|tree| tree.first).chain([self.needles.len()]);
         self.trees.iter().zip(ends).flat_map(|(tree, end)| std::iter::repeat_n(tree.way, end - tree.first))
     }
@@ -88,8 +88,8 @@ impl Needles {
     pub fn from_columns(columns: &NeedleColumns, control: &Control<'_>) -> Result<Self> {
         columns.validate()?;
         let mut by_way = NeedlesByWay::default();
-        for (way, needles) in Way::ALL.into_iter().zip(&mut by_way) {
-            if columns.ways.is_empty() && way != Way::UP {
+        for (way, needles) in SegmentAxis::ALL.into_iter().zip(&mut by_way) {
+            if columns.ways.is_empty() && way != SegmentAxis::UP {
                 continue;
             }
             let needle = |row| {

@@ -1,6 +1,6 @@
 //! How near pulses come to places and to lines.
 
-use super::tree::{Node, Way};
+use super::tree::{SegmentAxis, SegmentNode};
 use super::{GAP_M, Needle, Needles};
 use belvedere_data::vector::{dot, sub, unit};
 use std::ops::ControlFlow;
@@ -33,7 +33,9 @@ impl Needles {
     #[must_use]
     pub fn upright_count(&self) -> usize {
         match &self.trees[..] {
-            [first, rest @ ..] if first.way == Way::UP => rest.first().map_or(self.needles.len(), |next| next.first),
+            [first, rest @ ..] if first.way == SegmentAxis::UP => {
+                rest.first().map_or(self.needles.len(), |next| next.first)
+            }
             _ => 0,
         }
     }
@@ -59,7 +61,7 @@ impl Needles {
     /// Calls `visit` with the lower and upper end, local metres, of every upright needle that may pass over the level rectangle
     /// between the corners `low` and `high`, in no particular order.
     pub(crate) fn each_upright_over(&self, over: [[f64; 2]; 2], mut visit: impl FnMut([[f64; 3]; 2])) {
-        for tree in self.trees.iter().filter(|tree| tree.way == Way::UP) {
+        for tree in self.trees.iter().filter(|tree| tree.way == SegmentAxis::UP) {
             let _ = tree.walk(
                 &mut (),
                 |node, ()| may_pass_over(node, over),
@@ -165,7 +167,7 @@ impl Needles {
         }
         let mut state = (up(reach), None);
         for tree in &self.trees {
-            let may_enter = |node: &Node, (reach, _): &(f32, Option<T>)| tree.may_enter(node, center, *reach);
+            let may_enter = |node: &SegmentNode, (reach, _): &(f32, Option<T>)| tree.may_enter(node, center, *reach);
             let flow =
                 tree.walk(&mut state, may_enter, |numbers, (reach, found)| match visit(&self.needles[numbers]) {
                     ControlFlow::Break(value) => {
@@ -188,11 +190,12 @@ impl Needles {
 /// The same of pulses that are no needles yet: first returns, and where the scanner was, local metres. Those with an unknown scanner do not
 /// count.
 pub(crate) fn come_from_the_ground(pulses: impl Iterator<Item = ([f32; 3], [f32; 3])>) -> bool {
-    let way = |(end, scanner): ([f32; 3], [f32; 3])| Way::of(unit(sub(scanner.map(f64::from), end.map(f64::from)))?);
+    let way =
+        |(end, scanner): ([f32; 3], [f32; 3])| SegmentAxis::of(unit(sub(scanner.map(f64::from), end.map(f64::from)))?);
     let (mut flat_count, mut count) = (0, 0);
     for way in pulses.filter_map(way) {
         count += 1;
-        flat_count += usize::from(way != Way::UP);
+        flat_count += usize::from(way != SegmentAxis::UP);
     }
     are_flat(flat_count, count)
 }
@@ -203,7 +206,7 @@ fn are_flat(flat_count: usize, count: usize) -> bool {
 }
 
 /// Whether the box of a node of upright needles lies over a rectangle at some height.
-fn may_pass_over(node: &Node, [low, high]: [[f64; 2]; 2]) -> bool {
+fn may_pass_over(node: &SegmentNode, [low, high]: [[f64; 2]; 2]) -> bool {
     // shares of the way between the planes, with room for what f32 rounds
     let mut shares: [f64; 2] = [-1e-4, 1.0 + 1e-4];
     for axis in 0..2 {

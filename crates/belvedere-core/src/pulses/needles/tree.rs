@@ -20,14 +20,14 @@ const UPRIGHT_RISE: f64 = 0.3;
 /// The way along which a needle gets on most, an axis and a side of it. Across it a needle shifts by 3.2 m per metre at most where it
 /// is upright, otherwise by 1 m.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Way {
+pub(super) struct SegmentAxis {
     /// 0 east, 1 north, 2 up.
     pub(super) axis: usize,
     /// Whether against the axis.
     pub(super) is_backward: bool,
 }
 
-impl Way {
+impl SegmentAxis {
     pub(super) const UP: Self = Self { axis: 2, is_backward: false };
     /// Every way; its place here is the number it is saved by.
     pub(super) const ALL: [Self; 6] = [
@@ -49,7 +49,7 @@ impl Way {
         (along.abs() > 0.0).then_some(Self { axis, is_backward: along < 0.0 })
     }
 
-    /// Place in [`Way::ALL`].
+    /// Place in [`SegmentAxis::ALL`].
     pub(super) fn number(self) -> usize {
         (self.axis + 1) % 3 + if self.is_backward { 3 } else { 0 }
     }
@@ -63,7 +63,7 @@ impl Way {
 /// Where the needles of a node lie: what they span along their way, and their box at both ends of that. Between the two planes lines
 /// are straight, so that anywhere they lie within the box interpolated between the two.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Node {
+pub(super) struct SegmentNode {
     /// Least of both axes across, then most, at the lower plane.
     pub(super) below: [f32; 4],
     pub(super) above: [f32; 4],
@@ -76,19 +76,25 @@ pub(super) struct Node {
 }
 
 /// Needles that run one way.
-pub(super) struct Tree {
-    pub(super) way: Way,
+pub(super) struct SegmentTree {
+    pub(super) way: SegmentAxis,
     /// Number of its first needle.
     pub(super) first: usize,
-    nodes: Vec<Node>,
+    nodes: Vec<SegmentNode>,
 }
 
-impl Tree {
+impl SegmentTree {
     /// The tree over `needles`, which it puts in order; their first will be needle number `first`. What is left when the work is
     /// cancelled is no tree.
-    pub(super) fn new(way: Way, needles: &mut [Needle], first: usize, stop: &Stop<'_>, control: &Control<'_>) -> Self {
-        let mut nodes = vec![Node::EMPTY; node_count(needles.len())];
-        Build { way, stop, control }.node(needles, first, &mut nodes, 0);
+    pub(super) fn new(
+        way: SegmentAxis,
+        needles: &mut [Needle],
+        first: usize,
+        stop: &Stop<'_>,
+        control: &Control<'_>,
+    ) -> Self {
+        let mut nodes = vec![SegmentNode::EMPTY; node_count(needles.len())];
+        TreeBuild { way, stop, control }.node(needles, first, &mut nodes, 0);
         Self { way, first, nodes }
     }
 
@@ -98,7 +104,7 @@ impl Tree {
     pub(super) fn walk<S>(
         &self,
         state: &mut S,
-        may_hold: impl Fn(&Node, &S) -> bool,
+        may_hold: impl Fn(&SegmentNode, &S) -> bool,
         mut visit: impl FnMut(Range<usize>, &mut S) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
         let mut stack = [0_u32; 64];
@@ -125,7 +131,7 @@ impl Tree {
 
     /// Whether a needle below `node` may enter the ball.
     #[inline]
-    pub(super) fn may_enter(&self, node: &Node, center: [f32; 3], radius: f32) -> bool {
+    pub(super) fn may_enter(&self, node: &SegmentNode, center: [f32; 3], radius: f32) -> bool {
         // rounding of f32 at coordinates of kilometres is a tenth of a millimetre
         let reach = radius * (1.0 + 1e-5) + 1e-3;
         let along = center[self.way.axis];
@@ -150,7 +156,7 @@ impl Tree {
     }
 }
 
-impl Node {
+impl SegmentNode {
     const EMPTY: Self = Self {
         below: [f32::INFINITY, f32::INFINITY, f32::NEG_INFINITY, f32::NEG_INFINITY],
         above: [f32::INFINITY, f32::INFINITY, f32::NEG_INFINITY, f32::NEG_INFINITY],
@@ -160,7 +166,7 @@ impl Node {
     };
 
     /// The box around `needles`.
-    fn around(needles: &[Needle], way: Way) -> Self {
+    fn around(needles: &[Needle], way: SegmentAxis) -> Self {
         let mut node = Self::EMPTY;
         for needle in needles {
             let start = needle.start[way.axis];
@@ -193,12 +199,12 @@ impl Node {
 
 /// What needles are put in order by: a coordinate of one of their ends.
 #[derive(Clone, Copy)]
-struct Key {
+struct SegmentKey {
     axis: usize,
     is_far_end: bool,
 }
 
-impl Key {
+impl SegmentKey {
     const ALL: [Self; 6] = [
         Self { axis: 0, is_far_end: false },
         Self { axis: 1, is_far_end: false },
@@ -225,23 +231,23 @@ fn cut(count: usize) -> usize {
 }
 
 #[derive(Clone, Copy)]
-struct Build<'a> {
-    way: Way,
+struct TreeBuild<'a> {
+    way: SegmentAxis,
     stop: &'a Stop<'a>,
     control: &'a Control<'a>,
 }
 
-impl Build<'_> {
+impl TreeBuild<'_> {
     /// What `needles` are parted by, so that the boxes around both parts are least. Judged by a sample, in their order.
-    fn best_key(self, needles: &[Needle]) -> Key {
+    fn best_key(self, needles: &[Needle]) -> SegmentKey {
         let step = needles.len().div_ceil(SAMPLE);
         let mut sample: Vec<Needle> = needles.iter().step_by(step).copied().collect();
         let middle = sample.len() / 2;
-        let mut best = (f32::INFINITY, Key::ALL[0]);
-        for key in Key::ALL {
+        let mut best = (f32::INFINITY, SegmentKey::ALL[0]);
+        for key in SegmentKey::ALL {
             sample.select_nth_unstable_by(middle, |a, b| key.of(a).total_cmp(&key.of(b)));
             let (near, far) = sample.split_at(middle);
-            let cost = Node::around(near, self.way).volume() + Node::around(far, self.way).volume();
+            let cost = SegmentNode::around(near, self.way).volume() + SegmentNode::around(far, self.way).volume();
             if cost < best.0 {
                 best = (cost, key);
             }
@@ -250,11 +256,11 @@ impl Build<'_> {
     }
 
     /// Builds the node over `items`, whose first needle is number `first`, into `nodes[0]`, and what is below it behind.
-    fn node(self, items: &mut [Needle], first: usize, nodes: &mut [Node], index: usize) {
+    fn node(self, items: &mut [Needle], first: usize, nodes: &mut [SegmentNode], index: usize) {
         if items.len() > PARALLEL && self.stop.is_set() {
             return;
         }
-        let mut node = Node::around(items, self.way);
+        let mut node = SegmentNode::around(items, self.way);
         let Some((own, below)) = nodes.split_first_mut() else { return };
         #[expect(clippy::cast_possible_truncation, reason = "needles and nodes are numbered with 32 bits")]
         let number = |value: usize| value as u32;

@@ -1,8 +1,8 @@
 //! One viewer's look at a tree of targets: the search itself.
 
 use super::beam::Beam;
-use super::blockers::{BallBlock, Block, Blocks, LANES, Node, NodeBlock};
-use super::lanes::{Bits, Columns, HalfLine, Kernels, Scalar};
+use super::blockers::{BallBlock, BeamBlock, Blocks, IndexNode, LANES, NodeBlock};
+use super::lanes::{BeamScalar, HalfLine, Kernels, LaneBits, LaneColumns};
 use crate::blocking::{Ball, Profile};
 use crate::query::target_tree::{LEAF, TargetNode, TargetTree};
 use crate::query::{MedialScene, Viewer};
@@ -24,7 +24,7 @@ const MOST_OUTLINED: usize = 24;
 const RECENT: usize = 4;
 
 /// One viewer's look at a tree of targets.
-pub(super) struct Sweep<'a> {
+pub(super) struct TreeSweep<'a> {
     scene: &'a MedialScene,
     index: &'a RayIndex,
     balls: &'a [Ball],
@@ -45,7 +45,7 @@ pub(super) enum Apex {
     Direction([f64; 3]),
 }
 
-impl<'a> Sweep<'a> {
+impl<'a> TreeSweep<'a> {
     pub(super) fn new(
         scene: &'a MedialScene,
         viewer: Viewer<'a>,
@@ -94,7 +94,7 @@ impl<'a> Sweep<'a> {
         if super::avx2::search(self, node, visit) {
             return;
         }
-        self.search::<Scalar<false>>(node, visit);
+        self.search::<BeamScalar<false>>(node, visit);
     }
 
     /// The same. All that it calls is inlined, so that it can be compiled for other instructions.
@@ -106,10 +106,10 @@ impl<'a> Sweep<'a> {
             #[expect(clippy::cast_possible_truncation, reason = "beams are widened by more than what is rounded")]
             let side = |axis: usize, sign: f64| (index.center()[axis] + sign * index.half_size()[axis]) as f32;
             let sides = std::array::from_fn(|axis| [side(axis, -1.0), side(axis, 1.0)]);
-            lists.nodes.push(Node { sides, number: root });
+            lists.nodes.push(IndexNode { sides, number: root });
         }
-        let mut waiting = vec![Task { node, given: [[0; 2], lists.end()] }];
-        while let Some(Task { node, given }) = waiting.pop() {
+        let mut waiting = vec![BeamTask { node, given: [[0; 2], lists.end()] }];
+        while let Some(BeamTask { node, given }) = waiting.pop() {
             if self.control.is_cancelled() {
                 return;
             }
@@ -139,10 +139,10 @@ impl<'a> Sweep<'a> {
             for half in halves.into_iter().rev() {
                 match self.targets.nodes[half].halves {
                     Some([lower, upper]) => {
-                        waiting.push(Task { node: upper, given: left });
-                        waiting.push(Task { node: lower, given: left });
+                        waiting.push(BeamTask { node: upper, given: left });
+                        waiting.push(BeamTask { node: lower, given: left });
                     }
-                    None => waiting.push(Task { node: half, given: left }),
+                    None => waiting.push(BeamTask { node: half, given: left }),
                 }
             }
         }
@@ -281,8 +281,8 @@ impl<'a> Sweep<'a> {
             while let Some(number) = unopened.pop() {
                 let Some(node) = self.index.open(number) else { continue };
                 let parts = K::meet_boxes(&beam.space, &node.sides);
-                for part in Bits(node.nodes(parts.0)) {
-                    let part = Node::of(&node, part);
+                for part in LaneBits(node.nodes(parts.0)) {
+                    let part = IndexNode::of(&node, part);
                     if beam.is_narrower_than(&part) {
                         unopened.push(part.number);
                     } else {
@@ -324,7 +324,7 @@ impl<'a> Sweep<'a> {
             while let Some(number) = unopened.pop() {
                 let Some(node) = self.index.open(number) else { continue };
                 let parts = K::meet_boxes(&beam.space, &node.sides);
-                for part in Bits(node.nodes(parts.0)) {
+                for part in LaneBits(node.nodes(parts.0)) {
                     unopened.push(node.number(part));
                 }
                 let rows = node.rows(parts.0);
@@ -341,7 +341,7 @@ impl<'a> Sweep<'a> {
 
     /// Centres and radii of eight balls from a row on.
     #[inline(always)]
-    fn columns<K: Kernels>(&self, first: u32) -> Columns {
+    fn columns<K: Kernels>(&self, first: u32) -> LaneColumns {
         let balls = self.balls.get(first as usize..).unwrap_or_default();
         if let Some(balls) = balls.first_chunk() {
             return K::columns(balls);
@@ -447,7 +447,7 @@ enum By {
 }
 
 /// A node of targets, and from where to where the blocks of nodes and of balls lie that its beam may meet.
-struct Task {
+struct BeamTask {
     node: usize,
     given: [[usize; 2]; 2],
 }

@@ -2,7 +2,7 @@
 
 use crate::blocking::{Ball, Cover};
 use crate::query::ball_tree::BallTree;
-use crate::ray_index::{PARTS, Part, Ray};
+use crate::ray_index::{NodePart, PARTS, Ray};
 
 /// How far to the sides of a target, and how far above it, balls are taken as near, metres: beyond, rays that rise have left the
 /// surface that the target lies on.
@@ -52,9 +52,9 @@ impl Nearby {
                     continue;
                 }
                 match parts.parts[child] {
-                    Part::Nothing => {}
-                    Part::Node(node) => self.nodes.push(node),
-                    Part::Rows { first, count } => {
+                    NodePart::Nothing => {}
+                    NodePart::Node(node) => self.nodes.push(node),
+                    NodePart::Rows { first, count } => {
                         let meets = |row: &u32| reaches(tree.ball(*row as usize), [low, high]);
                         self.around.extend((first..first + count).filter(meets));
                     }

@@ -27,14 +27,14 @@ pub(super) struct SpaceLayers {
     /// Words of a row.
     pub(super) width: usize,
     /// Bit i, j: whether any ball reaches one of the cells i, i + 1, j, j + 1.
-    pub(super) reached: Cells,
+    pub(super) reached: CellBits,
     /// Bit i, j: whether each of the cells i, i + 1, j, j + 1 is filled by one ball, however it gives way.
-    pub(super) filled: Cells,
+    pub(super) filled: CellBits,
 }
 
 /// Bits of cells, row after row of all layers. Most rows above the ground are empty but for a few buildings.
 #[derive(Default)]
-pub(super) struct Cells {
+pub(super) struct CellBits {
     bits: Vec<u64>,
     /// Words of a row.
     width: usize,
@@ -42,7 +42,7 @@ pub(super) struct Cells {
     taken: Vec<[u32; 2]>,
 }
 
-impl Cells {
+impl CellBits {
     fn new(bits: Vec<u64>, width: usize) -> Self {
         #[expect(clippy::cast_possible_truncation, reason = "there are at most 2^30 cells")]
         let of_row = |row: &[u64]| {
@@ -92,7 +92,7 @@ impl SpaceLayers {
         let bits = || -> Vec<AtomicU64> { (0..width * size[1] * size[2]).map(|_| AtomicU64::new(0)).collect() };
         let (reached, filled) = (bits(), bits());
         let low = [low[0] - cell, low[1] - cell, low[2]];
-        let mut layers = Self { low, cell, size, width, reached: Cells::default(), filled: Cells::default() };
+        let mut layers = Self { low, cell, size, width, reached: CellBits::default(), filled: CellBits::default() };
         // bits are only ever set, so that their order does not matter
         balls.par_iter().with_min_len(CHUNK).try_for_each(|&Ball { center, radius }| {
             let radius = f64::from(radius);
@@ -101,8 +101,8 @@ impl SpaceLayers {
             control.check()
         })?;
         let plain = |bits: Vec<AtomicU64>| -> Vec<u64> { bits.into_iter().map(AtomicU64::into_inner).collect() };
-        layers.reached = Cells::new(layers.joined(&plain(reached), |a, b| a | b), width);
-        layers.filled = Cells::new(layers.joined(&plain(filled), |a, b| a & b), width);
+        layers.reached = CellBits::new(layers.joined(&plain(reached), |a, b| a | b), width);
+        layers.filled = CellBits::new(layers.joined(&plain(filled), |a, b| a & b), width);
         Ok(layers)
     }
 

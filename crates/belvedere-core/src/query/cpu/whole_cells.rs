@@ -3,7 +3,7 @@
 //! A line of sight belongs to the cell in which it meets the lowest level of the layers. With the place (x, y, z) of its target in cells and the
 //! slope s of its direction this is x − z·s. Heights have 18 bits of fraction and slopes 26, so that their product has 44, as x and y have: the
 //! difference is exact. What was rounded before, heights and slopes, moves the line by less than 24 · 2⁻¹⁸ + 4096 · 2⁻²⁷ < 2⁻¹² cells. A line
-//! closer than that to the border of its cell has none ([`Place::cell`]) and stays open.
+//! closer than that to the border of its cell has none ([`TargetCell::cell`]) and stays open.
 
 use super::space_layers::SpaceLayers;
 
@@ -24,14 +24,14 @@ const MOST_SLOPE: f64 = 24.0;
 
 /// A target, in cells from the corner of the layers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Place {
+pub(super) struct TargetCell {
     /// Along x and y, with 44 bits of fraction.
     pub(super) across: [i64; 2],
     /// Above the lowest layer, with 18 bits of fraction.
     pub(super) height: i32,
 }
 
-impl Place {
+impl TargetCell {
     /// Where a target, local metres, lies; `None` for one too far from the layers.
     #[must_use]
     pub(super) fn new(space: &SpaceLayers, position: [f32; 3]) -> Option<Self> {
@@ -47,7 +47,7 @@ impl Place {
     /// The cell in which the line of sight of this target meets the lowest level, along x and y; `None` where it may be the next one.
     #[must_use]
     #[inline]
-    pub(super) fn cell(&self, heading: &Heading) -> Option<[i32; 2]> {
+    pub(super) fn cell(&self, heading: &SweptDirection) -> Option<[i32; 2]> {
         let line: [i32; 2] = std::array::from_fn(|i| {
             let line = self.across[i] - i64::from(self.height) * i64::from(heading.slope[i]);
             // 2¹⁹ cells and 12 bits of fraction are 31 bits
@@ -60,14 +60,14 @@ impl Place {
     /// The layer in which the line of sight leaves the near space of this target; below zero for one below all layers.
     #[must_use]
     #[inline]
-    pub(super) fn layer(&self, heading: &Heading) -> i32 {
+    pub(super) fn layer(&self, heading: &SweptDirection) -> i32 {
         (self.height + heading.rise) >> HEIGHT_BITS
     }
 }
 
 /// A direction that is swept.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Heading {
+pub(super) struct SweptDirection {
     /// Cells that a line moves on in a layer along x and y, with 26 bits of fraction.
     pub(super) slope: [i32; 2],
     /// How many layers above its target a line leaves the near space of the target, with 18 bits of fraction.
@@ -76,7 +76,7 @@ pub(super) struct Heading {
     slope_exact: [f64; 2],
 }
 
-impl Heading {
+impl SweptDirection {
     /// The unit vector `direction` for targets whose lines of sight are known up to `near` metres from them; `None` for one that is too flat.
     #[must_use]
     pub(super) fn new(space: &SpaceLayers, direction: [f64; 3], near: f64) -> Option<Self> {

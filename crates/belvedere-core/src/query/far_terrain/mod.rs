@@ -10,7 +10,7 @@ use belvedere_data::ElevationGrid;
 use belvedere_data::horizon::HorizonProfile;
 use belvedere_data::vector::piece_in_box;
 use rayon::prelude::*;
-use relief::{Places, Relief};
+use relief::{LineStarts, TerrainHeights};
 pub(super) use rows::hide_behind_terrain;
 use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
@@ -27,7 +27,7 @@ const CHUNK: usize = 90;
 pub struct FarTerrain {
     /// Azimuths from grid north.
     profile: Option<Arc<HorizonProfile>>,
-    relief: Option<Arc<Relief>>,
+    relief: Option<Arc<TerrainHeights>>,
     earth: EarthParams,
 }
 
@@ -42,7 +42,7 @@ impl FarTerrain {
     /// The same with a raster, in place of one that it has; within the box `cloud` on the map, local metres, it blocks nothing.
     #[must_use]
     pub fn with_grid(mut self, grid: ElevationGrid, cloud: Option<([f64; 2], [f64; 2])>) -> Self {
-        self.relief = Some(Arc::new(Relief::new(grid, cloud)));
+        self.relief = Some(Arc::new(TerrainHeights::new(grid, cloud)));
         self
     }
 

@@ -17,16 +17,16 @@ const HALVINGS: usize = 50;
 
 /// Heights between the nodes of a raster, bilinear in each patch of four nodes, with the highest node of all blocks of patches of 2, 4, 8, … a side.
 #[derive(Debug)]
-pub(super) struct Relief {
+pub(super) struct TerrainHeights {
     grid: ElevationGrid,
     /// For blocks of 2, 4, 8, … patches a side; the last is one block.
-    levels: Vec<Level>,
+    levels: Vec<HeightLevel>,
     /// The box on the map, local metres, within which terrain blocks nothing: that of the cloud, and a cell around it.
     within: [[f64; 2]; 2],
 }
 
 #[derive(Debug)]
-struct Level {
+struct HeightLevel {
     width: usize,
     /// The highest node of each block, −∞ where no patch of it is known.
     highest: Vec<f32>,
@@ -34,7 +34,7 @@ struct Level {
 
 /// Places on the map with heights, from which lines leave alike: a box, or one place.
 #[derive(Clone, Copy)]
-pub(super) struct Places {
+pub(super) struct LineStarts {
     pub(super) low: [f64; 3],
     pub(super) high: [f64; 3],
 }
@@ -50,7 +50,7 @@ pub(super) struct Top {
 
 /// Lines from places in one direction on the map. Distances along them count from each place: there a line lies as far from that of the middle as its place
 /// from the middle.
-struct Lines {
+struct MapLines {
     /// The middle of the places in columns and rows of nodes, and their half size in both.
     start: [f64; 2],
     half: [f64; 2],
@@ -67,7 +67,7 @@ struct Lines {
     fall: f64,
 }
 
-impl Relief {
+impl TerrainHeights {
     /// The terrain of `grid` beyond the box `cloud` on the map, local metres.
     pub(super) fn new(grid: ElevationGrid, cloud: Option<([f64; 2], [f64; 2])>) -> Self {
         let (width, height) = (grid.heights().width(), grid.heights().height());
@@ -79,10 +79,10 @@ impl Relief {
                 corners.into_iter().fold(f32::NEG_INFINITY, f32::max)
             }
         };
-        let mut levels = vec![Level::halved([width - 1, height - 1], patch)];
+        let mut levels = vec![HeightLevel::halved([width - 1, height - 1], patch)];
         while let Some(last) = levels.last().filter(|level| level.highest.len() > 1) {
             let size = [last.width, last.highest.len() / last.width];
-            let next = Level::halved(size, |column, row| last.highest[row * last.width + column]);
+            let next = HeightLevel::halved(size, |column, row| last.highest[row * last.width + column]);
             levels.push(next);
         }
         // between the last points of the cloud and the first whole patch beyond them neither says what stands there
@@ -103,7 +103,7 @@ impl Relief {
     /// The highest terrain from a place in a direction on the map, a unit vector. Exact for the bilinear surface over the curved earth, whatever
     /// `guess` is: a distance where terrain may be high, which saves time if it is.
     pub(super) fn top(&self, place: [f64; 3], along: [f64; 2], earth: &EarthParams, guess: Option<f64>) -> Option<Top> {
-        let lines = self.lines(&Places { low: place, high: place }, along, earth);
+        let lines = self.lines(&LineStarts { low: place, high: place }, along, earth);
         let mut top = Top { tangent: f64::NEG_INFINITY, span: f64::NAN };
         if let Some(span) = guess {
             /// Part of the distance on both sides that is looked through first: a cell or two of usual rasters where mountains are.
@@ -115,7 +115,7 @@ impl Relief {
     }
 
     /// Raises `top` to the highest terrain on a line between two distances.
-    fn raise(&self, lines: &Lines, spans: [f64; 2], top: &mut Top) {
+    fn raise(&self, lines: &MapLines, spans: [f64; 2], top: &mut Top) {
         let spans = [spans[0].max(lines.from[0]), spans[1]];
         let _ = self.descend(lines, spans, top, &mut |corners, place, spans, top| {
             if let Some(found) = lines.top_of_patch(corners, place, spans)
@@ -129,7 +129,7 @@ impl Relief {
 
     /// Whether terrain rises above the line from a place in a direction on the map with the tangent of its elevation.
     pub(super) fn hides(&self, place: [f64; 3], along: [f64; 2], tangent: f64, earth: &EarthParams) -> bool {
-        let lines = self.lines(&Places { low: place, high: place }, along, earth);
+        let lines = self.lines(&LineStarts { low: place, high: place }, along, earth);
         let mut limit = Top { tangent, span: 0.0 };
         let hit =
             self.descend(&lines, [lines.from[0], f64::INFINITY], &mut limit, &mut |corners, place, spans, limit| {
@@ -149,7 +149,7 @@ impl Relief {
     /// Where terrain first rises above a line of sight, metres from the observer on the map; `None` where it does not.
     pub(super) fn meets_sight(&self, line: &FarLine<'_>) -> Option<f64> {
         let (patch, [from, _], top) = self.first_patch(line)?;
-        let lines = self.lines(&Places { low: line.observer, high: line.observer }, line.along, line.earth);
+        let lines = self.lines(&LineStarts { low: line.observer, high: line.observer }, line.along, line.earth);
         let limit = line.tangent + rounding(line.tangent);
         let corners = corners(&self.grid, patch[0], patch[1]);
         // between the near side of the patch and its highest place the terrain comes through the line once
@@ -165,7 +165,7 @@ impl Relief {
     /// The first patch in which terrain rises above a line of sight: its column and row, between which distances the line is over it, and the distance of its highest place.
     fn first_patch(&self, line: &FarLine<'_>) -> Option<([usize; 2], [f64; 2], f64)> {
         let FarLine { observer: from, along, span, tangent, earth, .. } = *line;
-        let lines = self.lines(&Places { low: from, high: from }, along, earth);
+        let lines = self.lines(&LineStarts { low: from, high: from }, along, earth);
         // a target on the surface is not hidden by what is rounded
         let mut limit = Top { tangent: tangent + rounding(tangent), span: 0.0 };
         let [enter, leave] = piece_over(self.within, from, along, span).unwrap_or([span; 2]);
@@ -186,8 +186,8 @@ impl Relief {
         first
     }
 
-    /// Whether terrain may rise above a line from any of these places. Never false where [`Relief::hides`] is true for one of them.
-    pub(super) fn may_hide(&self, places: &Places, along: [f64; 2], tangent: f64, earth: &EarthParams) -> bool {
+    /// Whether terrain may rise above a line from any of these places. Never false where [`TerrainHeights::hides`] is true for one of them.
+    pub(super) fn may_hide(&self, places: &LineStarts, along: [f64; 2], tangent: f64, earth: &EarthParams) -> bool {
         let lines = self.lines(places, along, earth);
         let mut limit = Top { tangent: tangent - rounding(tangent), span: 0.0 };
         // a patch is only reached if its highest corner, as near as it may be, rises above the lines
@@ -199,11 +199,11 @@ impl Relief {
         hit.is_break()
     }
 
-    /// Whether terrain is known to rise above the lines from all of these places `span` metres away. Never true where [`Relief::hides`] is false for one
+    /// Whether terrain is known to rise above the lines from all of these places `span` metres away. Never true where [`TerrainHeights::hides`] is false for one
     /// of them.
     pub(super) fn hides_all(
         &self,
-        places: &Places,
+        places: &LineStarts,
         along: [f64; 2],
         tangent: f64,
         span: f64,
@@ -231,7 +231,7 @@ impl Relief {
     }
 
     /// How lines leave `places`.
-    fn lines(&self, places: &Places, along: [f64; 2], earth: &EarthParams) -> Lines {
+    fn lines(&self, places: &LineStarts, along: [f64; 2], earth: &EarthParams) -> MapLines {
         let ([west, north], cell) = (self.grid.north_west(), self.grid.cell());
         let middle = [0, 1].map(|i| f64::midpoint(places.low[i], places.high[i]));
         let half = [0, 1].map(|i| (places.high[i] - places.low[i]) / 2.0);
@@ -246,7 +246,7 @@ impl Relief {
             [None, None] => [self.nearest(); 2],
             _ => [self.nearest(), f64::INFINITY],
         };
-        Lines {
+        MapLines {
             start: [(middle[0] - west) / cell[0], (north - middle[1]) / cell[1]],
             half: [half[0] / cell[0], half[1] / cell[1]],
             step,
@@ -263,7 +263,7 @@ impl Relief {
         self.grid.cell()[0].max(self.grid.cell()[1])
     }
 
-    /// Where the line from a place leaves the box of the cloud, metres, and [`Relief::nearest`] at least; `None` for a place outside.
+    /// Where the line from a place leaves the box of the cloud, metres, and [`TerrainHeights::nearest`] at least; `None` for a place outside.
     fn exit(&self, place: [f64; 2], along: [f64; 2]) -> Option<f64> {
         let [low, high] = self.within;
         let to_side = |axis: usize| match along[axis] {
@@ -283,7 +283,7 @@ impl Relief {
     /// Calls `visit` for every patch within `spans` of the lines that may rise above `top`, nearest blocks first, until it breaks off.
     fn descend(
         &self,
-        lines: &Lines,
+        lines: &MapLines,
         spans: [f64; 2],
         top: &mut Top,
         visit: &mut impl FnMut([f32; 4], [usize; 2], [f64; 2], &mut Top) -> ControlFlow<()>,
@@ -300,7 +300,7 @@ impl Relief {
         &self,
         level: usize,
         block: [usize; 2],
-        lines: &Lines,
+        lines: &MapLines,
         spans: [f64; 2],
         top: &mut Top,
         visit: &mut impl FnMut([f32; 4], [usize; 2], [f64; 2], &mut Top) -> ControlFlow<()>,
@@ -338,7 +338,7 @@ impl Relief {
     }
 }
 
-impl Level {
+impl HeightLevel {
     /// The level above one of `size` blocks with these maxima.
     fn halved(size: [usize; 2], highest: impl Fn(usize, usize) -> f32) -> Self {
         let [width, height] = size.map(|count| count.div_ceil(2));
@@ -352,7 +352,7 @@ impl Level {
     }
 }
 
-impl Lines {
+impl MapLines {
     /// The part of `spans` in which any of the lines is over the first `size` patches; empty where the first is above the second.
     fn over(&self, size: [usize; 2], mut spans: [f64; 2]) -> [f64; 2] {
         for (axis, count) in size.into_iter().enumerate() {

@@ -1,17 +1,17 @@
 //! Neighbouring targets looked at together: what the backend left open is asked of balls.
 
-use super::super::backend::{BLOCK, Bits, Settled, WORD, WORDS};
+use super::super::backend::{BLOCK, Settled, WORD, WORDS, WordBits};
 use super::super::ball_tree::BallTree;
 use super::packet::{Blockers, LANES, Packet};
 
 /// A direction and its column in the matrix.
-pub(super) struct Heading {
+pub(super) struct MatrixDirection {
     pub(super) direction: [f64; 3],
     column: usize,
 }
 
 /// The directions of some columns in bands of elevation, to and fro, so that each is close to the one before.
-pub(super) fn headings(directions: &[[f64; 3]], columns: &[usize]) -> Vec<Heading> {
+pub(super) fn headings(directions: &[[f64; 3]], columns: &[usize]) -> Vec<MatrixDirection> {
     /// Bands from the horizon to the zenith: about as high as 600 directions are apart.
     const BANDS: f64 = 16.0;
     let key = |direction: [f64; 3]| {
@@ -24,7 +24,7 @@ pub(super) fn headings(directions: &[[f64; 3]], columns: &[usize]) -> Vec<Headin
         let (a, b) = (key(directions[a]), key(directions[b]));
         a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1))
     });
-    order.into_iter().map(|column| Heading { direction: directions[column], column }).collect()
+    order.into_iter().map(|column| MatrixDirection { direction: directions[column], column }).collect()
 }
 
 /// Headings whose columns share a word of the rows.
@@ -47,7 +47,7 @@ impl Group {
 /// What all targets look at.
 pub(super) struct Sky<'a> {
     tree: &'a BallTree,
-    headings: &'a [Heading],
+    headings: &'a [MatrixDirection],
     /// What the backend knows of them.
     settled: &'a Settled,
     /// Which of the headings belongs to each column of the matrix.
@@ -56,7 +56,12 @@ pub(super) struct Sky<'a> {
 
 impl<'a> Sky<'a> {
     /// Looks at `headings`, which are some of `column_count` directions.
-    pub(super) fn new(tree: &'a BallTree, headings: &'a [Heading], settled: &'a Settled, column_count: usize) -> Self {
+    pub(super) fn new(
+        tree: &'a BallTree,
+        headings: &'a [MatrixDirection],
+        settled: &'a Settled,
+        column_count: usize,
+    ) -> Self {
         let mut numbers = vec![None; column_count];
         for (number, heading) in headings.iter().enumerate() {
             numbers[heading.column] = Some(number);
@@ -81,7 +86,7 @@ impl<'a> Sky<'a> {
         }
         let range = block * self.headings.len()..(block + 1) * self.headings.len();
         let [free, blocked] = [&self.settled.free, &self.settled.blocked].map(|bits| &bits[range.clone()]);
-        let mut open: Vec<Bits> = (known.iter().zip(free).zip(blocked))
+        let mut open: Vec<WordBits> = (known.iter().zip(free).zip(blocked))
             .map(|((known, free), blocked)| std::array::from_fn(|word| known[word] & !free[word] & !blocked[word]))
             .collect();
         self.ask(targets, &mut open);
@@ -101,7 +106,7 @@ impl<'a> Sky<'a> {
     }
 
     /// Takes out those that any ball blocks. One direction after the other, so that lines of sight side by side meet the same balls.
-    fn ask(&self, targets: &[[f32; 3]], open: &mut [Bits]) {
+    fn ask(&self, targets: &[[f32; 3]], open: &mut [WordBits]) {
         debug_assert!(targets.len() <= BLOCK);
         // what blocked each target last
         let mut before: Vec<Option<u32>> = vec![None; targets.len()];
@@ -133,7 +138,7 @@ impl<'a> Sky<'a> {
 /// What is found in a direction.
 struct OfDirection<'a> {
     /// A bit for each target that nothing blocks yet.
-    open: &'a mut Bits,
+    open: &'a mut WordBits,
     /// What blocked each target last.
     before: &'a mut [Option<u32>],
     /// What blocked the targets before.

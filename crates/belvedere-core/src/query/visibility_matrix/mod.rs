@@ -90,7 +90,7 @@ impl MedialScene {
     /// [`MedialScene::answer`] at infinite range, pulses not being asked. A target that is not finite sees nothing. Progress counts
     /// targets.
     ///
-    /// The backend settles most lines of sight ([`super::backend::Prepared::settle`]). What it leaves open is asked of the ball that
+    /// The backend settles most lines of sight ([`super::backend::PreparedBackend::settle`]). What it leaves open is asked of the ball that
     /// blocked its neighbours, and last of all balls. What the backend makes ready stays with the scene, so that targets may be
     /// asked in blocks.
     ///

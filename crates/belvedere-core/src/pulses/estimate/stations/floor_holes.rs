@@ -32,7 +32,7 @@ const LEAST_APART: f64 = 0.8;
 const MOST_EDGES: usize = 20_000;
 
 /// A cell of the map with its floor.
-struct Cell {
+struct FloorCell {
     at: [i32; 2],
     /// Points of the floor.
     count: u32,
@@ -47,7 +47,8 @@ pub(super) fn floor_holes(points: &[[f32; 3]]) -> Vec<[f64; 3]> {
     counts.sort_unstable();
     let middle = counts.get(counts.len() / 2).copied().unwrap_or_default();
     let dense = LEAST_COUNT.max(middle.saturating_mul(LEAST_CONTRAST) / OF_CONTRAST);
-    let mut edges: Vec<&Cell> = cells.par_iter().filter(|cell| cell.count >= dense && is_edge(&cells, cell)).collect();
+    let mut edges: Vec<&FloorCell> =
+        cells.par_iter().filter(|cell| cell.count >= dense && is_edge(&cells, cell)).collect();
     edges.sort_by_key(|cell| (std::cmp::Reverse(cell.count), cell.at));
     edges.truncate(MOST_EDGES);
     let around =
@@ -67,7 +68,7 @@ pub(super) fn floor_holes(points: &[[f32; 3]]) -> Vec<[f64; 3]> {
 }
 
 /// The cells of a sample of the points, by place.
-fn cells(points: &[[f32; 3]]) -> Vec<Cell> {
+fn cells(points: &[[f32; 3]]) -> Vec<FloorCell> {
     let share = (SAMPLED as f64 / points.len().max(1) as f64).max(LEAST_SHARE);
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a share of the range; `as` saturates")]
     let most = (share * f64::from(u32::MAX)) as u32;
@@ -77,7 +78,7 @@ fn cells(points: &[[f32; 3]]) -> Vec<Cell> {
     let cell = |chunk: &[([i32; 2], f32)]| {
         let &(at, height) = chunk.get(chunk.len() / 10)?;
         let count = chunk.iter().filter(|(_, z)| (z - height).abs() <= SLAB).count();
-        Some(Cell { at, count: u32::try_from(count).unwrap_or(u32::MAX), height })
+        Some(FloorCell { at, count: u32::try_from(count).unwrap_or(u32::MAX), height })
     };
     sorted.chunk_by(|a, b| a.0 == b.0).filter_map(cell).collect()
 }
@@ -99,14 +100,14 @@ fn cell_of(coordinate: f32) -> i32 {
 }
 
 /// Floor points of the cell at a place, if its floor is at about this height: below a ceiling nothing else may have been seen.
-fn count_at(cells: &[Cell], at: [i32; 2], height: f64, most_off: f64) -> f64 {
+fn count_at(cells: &[FloorCell], at: [i32; 2], height: f64, most_off: f64) -> f64 {
     let found = cells.binary_search_by(|cell| cell.at.cmp(&at)).ok().and_then(|i| cells.get(i));
     let on_floor = found.filter(|cell| (f64::from(cell.height) - height).abs() <= most_off);
     on_floor.map_or(0.0, |cell| f64::from(cell.count))
 }
 
 /// Whether a neighbour has far fewer points on the same floor.
-fn is_edge(cells: &[Cell], cell: &Cell) -> bool {
+fn is_edge(cells: &[FloorCell], cell: &FloorCell) -> bool {
     let [x, y] = cell.at;
     let beside = [[x - 1, y], [x + 1, y], [x, y - 1], [x, y + 1]];
     let is_low =
@@ -115,12 +116,12 @@ fn is_edge(cells: &[Cell], cell: &Cell) -> bool {
 }
 
 /// How uneven the edge of the hole about this cell is, and the middle of the hole; `None` where it is open, or no hole.
-fn hole_about(cells: &[Cell], foot: [i32; 2], dense: u32) -> Option<(f64, [f64; 3])> {
+fn hole_about(cells: &[FloorCell], foot: [i32; 2], dense: u32) -> Option<(f64, [f64; 3])> {
     let near = || {
         (-REACH..=REACH).flat_map(move |x| {
             let column = foot[0] + x;
             let from = cells.partition_point(|cell| cell.at < [column, foot[1] - REACH]);
-            let is_within = move |cell: &&Cell| cell.at <= [column, foot[1] + REACH];
+            let is_within = move |cell: &&FloorCell| cell.at <= [column, foot[1] + REACH];
             cells.get(from..).unwrap_or_default().iter().take_while(is_within)
         })
     };

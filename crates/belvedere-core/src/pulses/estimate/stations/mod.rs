@@ -8,7 +8,7 @@ use belvedere_data::cloud::to_local;
 use belvedere_data::control::Control;
 use belvedere_data::{PointCloud, Result};
 use floor_holes::floor_holes;
-use pulse_grid::{Fit, crowding, filled_share, fit};
+use pulse_grid::{StationFit, crowding, filled_share, fit};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::f64::consts::{FRAC_PI_2, TAU};
@@ -124,12 +124,12 @@ fn groups(cloud: &PointCloud) -> Vec<(Option<u16>, Vec<usize>)> {
 }
 
 /// The stations among these points, and the nearest one from which each point is seen.
-fn tripods(points: &[[f32; 3]], control: &Control<'_>) -> Result<(Vec<Fit>, Vec<Option<usize>>)> {
-    let mut found: Vec<Fit> = Vec::new();
+fn tripods(points: &[[f32; 3]], control: &Control<'_>) -> Result<(Vec<StationFit>, Vec<Option<usize>>)> {
+    let mut found: Vec<StationFit> = Vec::new();
     let mut failures = 0;
     for hole in floor_holes(points) {
         control.check()?;
-        let is_known = |fit: &Fit| (fit.position[0] - hole[0]).hypot(fit.position[1] - hole[1]) < APART;
+        let is_known = |fit: &StationFit| (fit.position[0] - hole[0]).hypot(fit.position[1] - hole[1]) < APART;
         if failures == MOST_FAILURES {
             break;
         }
@@ -160,7 +160,7 @@ fn is_whole(seen: &[Option<usize>]) -> bool {
 }
 
 /// Whether the directions of all these points form the grid of this station.
-fn is_only(points: &[[f32; 3]], station: &Fit) -> bool {
+fn is_only(points: &[[f32; 3]], station: &StationFit) -> bool {
     let places: Vec<[f64; 3]> = points.par_iter().map(|p| p.map(f64::from)).collect();
     let [(fine, most_fine), _] = CROWDING;
     // enough wedges that other stations are in some of them
@@ -169,7 +169,7 @@ fn is_only(points: &[[f32; 3]], station: &Fit) -> bool {
 }
 
 /// The station above a hole in the floor, if pulses near by prove that there is one.
-fn station_above(points: &[[f32; 3]], hole: [f64; 3]) -> Option<Fit> {
+fn station_above(points: &[[f32; 3]], hole: [f64; 3]) -> Option<StationFit> {
     let is_near = |p: &[f64; 3], most: f64| {
         let [x, y, z] = [0, 1, 2].map(|i| p[i] - hole[i]);
         let level = x.hypot(y);
@@ -184,13 +184,13 @@ fn station_above(points: &[[f32; 3]], hole: [f64; 3]) -> Option<Fit> {
 }
 
 /// The station above a hole in the floor by points near by, if they prove that there is one.
-fn station_by_grid(near: &[[f64; 3]], hole: [f64; 3]) -> Option<Fit> {
+fn station_by_grid(near: &[[f64; 3]], hole: [f64; 3]) -> Option<StationFit> {
     let [(fine, most_fine), (coarse, most_coarse)] = CROWDING;
     let few = in_wedges(near, hole, TRIED);
     let at = |height: f64| [hole[0], hole[1], hole[2] + height];
     let is_open = |height: &&f64| crowding(&few, at(**height), coarse) <= START_CROWDING;
     // from a wrong height, the floor alone looks as regular as from the right one, and walls do not
-    let fits: Vec<Fit> =
+    let fits: Vec<StationFit> =
         HEIGHTS.par_iter().filter(is_open).filter_map(|&height| fit(&few, at(height), FEW_PAIRS)).collect();
     let start = fits.into_iter().min_by(|a, b| a.sd.total_cmp(&b.sd))?;
     let kept = in_wedges(near, hole, FITTED);
@@ -216,7 +216,7 @@ fn in_wedges(near: &[[f64; 3]], hole: [f64; 3], most: f64) -> Vec<[f64; 3]> {
 }
 
 /// The nearest station from which each point is seen.
-fn seen_from(points: &[[f32; 3]], stations: &[Fit], control: &Control<'_>) -> Result<Vec<Option<usize>>> {
+fn seen_from(points: &[[f32; 3]], stations: &[StationFit], control: &Control<'_>) -> Result<Vec<Option<usize>>> {
     let mut nearest: Vec<Option<(f32, usize)>> = vec![None; points.len()];
     for (number, station) in stations.iter().enumerate() {
         control.check()?;

@@ -19,7 +19,7 @@ const UNKNOWNS: usize = 7;
 
 /// A station, as a grid of pulses shows it.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Fit {
+pub(super) struct StationFit {
     /// Local metres.
     pub(super) position: [f64; 3],
     /// Steps around and up, radians.
@@ -82,7 +82,7 @@ pub(super) fn filled_share(points: &[[f64; 3]], place: [f64; 3]) -> f64 {
 }
 
 /// A point and its neighbour in the grid, one step on around or up.
-struct Pair {
+struct GridPair {
     rows: [usize; 2],
     is_around: bool,
 }
@@ -97,7 +97,7 @@ fn pairs(
     tilt: [f64; 2],
     tolerance: f64,
     most: usize,
-) -> Option<(Vec<Pair>, [f64; 2])> {
+) -> Option<(Vec<GridPair>, [f64; 2])> {
     let directions = directions(points, place, tilt);
     let side = cell_side(&directions, 1.0);
     let mut cells: Vec<([i32; 2], [f64; 2], usize)> =
@@ -136,7 +136,7 @@ fn pairs(
             let Some((on, beside, to)) = next else { continue };
             let is_step = (on / steps[axis] - 1.0).abs() < tolerance && beside.abs() < tolerance * steps[1 - axis];
             if is_step {
-                pairs.push(Pair { rows: [row, to], is_around: axis == 0 });
+                pairs.push(GridPair { rows: [row, to], is_around: axis == 0 });
             }
         }
     }
@@ -144,7 +144,7 @@ fn pairs(
 }
 
 /// How far a pair is from one step, around and up, in steps.
-fn misfit(points: &[[f64; 3]], pair: &Pair, unknowns: &SVector<f64, UNKNOWNS>) -> [f64; 2] {
+fn misfit(points: &[[f64; 3]], pair: &GridPair, unknowns: &SVector<f64, UNKNOWNS>) -> [f64; 2] {
     let place = [unknowns[0], unknowns[1], unknowns[2]];
     let [from, to] = pair.rows.map(|row| direction(points[row], place, [unknowns[3], unknowns[4]]));
     let steps = [unknowns[5], unknowns[6]];
@@ -162,7 +162,7 @@ fn misfit(points: &[[f64; 3]], pair: &Pair, unknowns: &SVector<f64, UNKNOWNS>) -
 ///
 /// # Source
 /// This project's own. Gauss–Newton with the weights of Huber 1964.
-pub(super) fn fit(points: &[[f64; 3]], start: [f64; 3], most_pairs: usize) -> Option<Fit> {
+pub(super) fn fit(points: &[[f64; 3]], start: [f64; 3], most_pairs: usize) -> Option<StationFit> {
     let mut unknowns = SVector::<f64, UNKNOWNS>::from_row_slice(&[start[0], start[1], start[2], 0.0, 0.0, 1.0, 1.0]);
     let mut sd = f64::INFINITY;
     let mut moved = f64::INFINITY;
@@ -194,20 +194,20 @@ pub(super) fn fit(points: &[[f64; 3]], start: [f64; 3], most_pairs: usize) -> Op
             tolerance = LAST_TOLERANCE;
         }
     }
-    (moved < 5e-3).then_some(Fit {
+    (moved < 5e-3).then_some(StationFit {
         position: [unknowns[0], unknowns[1], unknowns[2]],
         steps: [unknowns[5], unknowns[6]],
         sd,
     })
 }
 
-type Equations = (SMatrix<f64, UNKNOWNS, UNKNOWNS>, SVector<f64, UNKNOWNS>, f64);
+type GridEquations = (SMatrix<f64, UNKNOWNS, UNKNOWNS>, SVector<f64, UNKNOWNS>, f64);
 
-fn normal_equations(points: &[[f64; 3]], pairs: &[Pair], unknowns: &SVector<f64, UNKNOWNS>) -> Equations {
+fn normal_equations(points: &[[f64; 3]], pairs: &[GridPair], unknowns: &SVector<f64, UNKNOWNS>) -> GridEquations {
     const SHARE: usize = 1024;
     let nudges = [1e-5, 1e-5, 1e-5, 1e-6, 1e-6, 1e-8, 1e-8];
-    let of_share = |share: &[Pair]| {
-        let mut sums: Equations = (SMatrix::zeros(), SVector::zeros(), 0.0);
+    let of_share = |share: &[GridPair]| {
+        let mut sums: GridEquations = (SMatrix::zeros(), SVector::zeros(), 0.0);
         for pair in share {
             let now = misfit(points, pair, unknowns);
             let mut slopes = [SVector::<f64, UNKNOWNS>::zeros(); 2];
@@ -227,6 +227,6 @@ fn normal_equations(points: &[[f64; 3]], pairs: &[Pair], unknowns: &SVector<f64,
         sums
     };
     // shares are added in order, so that the sum does not depend on the number of threads
-    let sums: Vec<Equations> = pairs.par_chunks(SHARE).map(of_share).collect();
+    let sums: Vec<GridEquations> = pairs.par_chunks(SHARE).map(of_share).collect();
     sums.into_iter().fold((SMatrix::zeros(), SVector::zeros(), 0.0), |a, b| (a.0 + b.0, a.1 + b.1, a.2 + b.2))
 }
