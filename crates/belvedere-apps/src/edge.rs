@@ -33,8 +33,8 @@ impl EdgeReport {
     #[must_use]
     pub fn of(flags: &[Option<bool>]) -> Self {
         let count = flags.iter().filter(|flag| **flag == Some(true)).count();
-        let asked = flags.iter().flatten().count();
-        Self { targets_near_edge: count, targets_near_edge_percent: percent(count, asked) }
+        let target_count = flags.iter().flatten().count();
+        Self { targets_near_edge: count, targets_near_edge_percent: percent(count, target_count) }
     }
 }
 

@@ -68,9 +68,9 @@ pub enum WholeIs {
     /// Their mean by weight.
     Mean,
     /// The least of them.
-    Least,
+    Min,
     /// The greatest of them.
-    Most,
+    Max,
 }
 
 /// Whether the share of each group in shade is kept for each sun.
@@ -101,8 +101,8 @@ impl Exposure {
     pub fn of_groups(&self, number: usize, targets: &Targets) -> Vec<f64> {
         match self.measures.get(number) {
             Some((measure, WholeIs::Mean)) => targets.group_means(&measure.values),
-            Some((measure, WholeIs::Least)) => targets.group_minima(&measure.values),
-            Some((measure, WholeIs::Most)) => targets.group_maxima(&measure.values),
+            Some((measure, WholeIs::Min)) => targets.group_minima(&measure.values),
+            Some((measure, WholeIs::Max)) => targets.group_maxima(&measure.values),
             None => Vec::new(),
         }
     }
@@ -171,8 +171,8 @@ pub fn scene_exposure(
     }
     push("sun_hours", "hours of sun a day", 3, sun.hours, WholeIs::Mean);
     push("sun_share", "share of possible sun", 4, sun.share, WholeIs::Mean);
-    push("first_light", "first sun, hour of the day", 3, sun.first, WholeIs::Least);
-    push("last_light", "last sun, hour of the day", 3, sun.last, WholeIs::Most);
+    push("first_light", "first sun, hour of the day", 3, sun.first, WholeIs::Min);
+    push("last_light", "last sun, hour of the day", 3, sun.last, WholeIs::Max);
     push("longest", "longest uninterrupted sun, hours", 3, sun.longest, WholeIs::Mean);
     Ok(Exposure { measures, shaded_shares: shaded.map(|shaded| shaded.shares(targets)).unwrap_or_default() })
 }

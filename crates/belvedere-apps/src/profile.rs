@@ -11,7 +11,7 @@ const REACH: f64 = 500.0;
 /// Rows between two looks at whether the work was cancelled: some milliseconds.
 const CHECKED: u32 = 256;
 /// Most rows of a profile.
-const MOST_ROWS: f64 = 1e6;
+const MAX_ROWS: f64 = 1e6;
 
 /// What a line of sight passes, one value for each of equally spaced places.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -51,7 +51,7 @@ pub fn sight_profile(
         return Err(Error::InvalidParameter { parameter: Parameter::ProfileLine, value, expected });
     }
     let step = step.unwrap_or((span / 1000.0).max(0.1));
-    if !(step > 0.0 && span / step <= MOST_ROWS) {
+    if !(step > 0.0 && span / step <= MAX_ROWS) {
         let value = format!("{step} m on {span} m");
         let expected = "above zero, and large enough for a million rows";
         return Err(Error::InvalidParameter { parameter: Parameter::ProfileStep, value, expected });

@@ -203,9 +203,9 @@ impl Slope {
         if south > north_of(first) || north < north_of(first + rows) {
             return;
         }
-        let at = |value: f64, most: usize| {
+        let at = |value: f64, max: usize| {
             #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to the grid")]
-            let number = value.clamp(0.0, most as f64) as usize;
+            let number = value.clamp(0.0, max as f64) as usize;
             number
         };
         let from = at((grid.corner[1] - north) / grid.cell - first as f64, rows);

@@ -87,7 +87,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn balls_of_a_slab_are_told_apart_by_what_is_wrong_with_them() {
+    fn balls_of_a_slab_are_separated_by_what_is_wrong_with_them() {
         // solid below z = 0; balls of radius 1 at points of its surface, by the normals they were made with
         let tilt = 60f32.to_radians();
         let normals = [[0.0, 0.0, 1.0], [0.0, 0.0, -1.0], [tilt.sin(), 0.0, tilt.cos()], [0.0, 0.0, 1.0_f32]];

@@ -3,7 +3,7 @@
 mod along_ray;
 
 use crate::MethodInput;
-use crate::lines_of_sight::{check_clearance, check_least, check_positive, sight};
+use crate::lines_of_sight::{check_clearance, check_min, check_positive, sight};
 use crate::sampling::{capped_spacing, check_neighbor};
 use along_ray::Crossings;
 use belvedere::Result;
@@ -46,7 +46,7 @@ pub struct ImplicitSurfaceParams {
     /// The surface ends where it lies farther than this share of the support from the mean of the samples around it, 0.1 to 1:
     /// beyond the rim of what was sampled the formula goes on, the surface does not. Default 0.5: 0.7 doubles the false shadows
     /// of the same town.
-    pub rim: f64,
+    pub edge: f64,
     /// Samples needed for a surface, 1 or more. Default 2: 3 leaves holes (roof misses 7.3 instead of 4.8 %).
     pub min_samples: usize,
     /// Step along a ray as a share of the support of the smallest sample there, 0.01 to 1. Default 0.25; 0.125 changes no
@@ -64,7 +64,7 @@ impl Default for ImplicitSurfaceParams {
             support_neighbor: 6,
             support_scale: 0.9,
             max_support_in_medians: 4.0,
-            rim: 0.5,
+            edge: 0.5,
             min_samples: 2,
             step: 0.25,
             clearance: 0.5,
@@ -108,10 +108,10 @@ impl ImplicitSurface {
     pub fn new(survey: &MethodInput<'_>, params: &ImplicitSurfaceParams) -> Result<Self> {
         check_neighbor("neighbour that gives the support", params.support_neighbor)?;
         check_positive("support as a multiple of the spacing", params.support_scale)?;
-        check_least("maximum support in medians", params.max_support_in_medians, 1.0, "finite and at least 1")?;
-        check_least("edge as a share of the support", params.rim, 0.1, "0.1 to 1")?;
-        check_least("1 / step along a ray", 1.0 / params.step, 1.0, "1 to 100")?;
-        check_least("step along a ray", params.step, 0.01, "0.01 to 1")?;
+        check_min("maximum support in medians", params.max_support_in_medians, 1.0, "finite and at least 1")?;
+        check_min("edge as a share of the support", params.edge, 0.1, "0.1 to 1")?;
+        check_min("1 / step along a ray", 1.0 / params.step, 1.0, "1 to 100")?;
+        check_min("step along a ray", params.step, 0.01, "0.01 to 1")?;
         check_clearance(params.clearance)?;
         let positions = &survey.cloud.positions;
         let neighbors = NeighborIndex::new(positions, &Control::none())?;

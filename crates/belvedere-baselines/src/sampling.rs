@@ -46,8 +46,8 @@ pub(crate) fn capped_spacing(positions: &[[f32; 3]], index: &NeighborIndex, k: u
     }
     let median = *sorted.select_nth_unstable_by(middle, f32::total_cmp).1;
     #[expect(clippy::cast_possible_truncation, reason = "saturates: no cap")]
-    let most = (f64::from(median) * cap) as f32;
-    spacing.iter_mut().for_each(|distance| *distance = distance.min(most));
+    let max = (f64::from(median) * cap) as f32;
+    spacing.iter_mut().for_each(|distance| *distance = distance.min(max));
     spacing
 }
 

@@ -1,6 +1,6 @@
 //! Shadow maps of a model: the depth of the first triangle per pixel, looked up instead of traced.
 
-use crate::lines_of_sight::{check_clearance, check_least, check_positive};
+use crate::lines_of_sight::{check_clearance, check_min, check_positive};
 use crate::mesh_rays::{MeshRays, MeshRaysParams};
 use belvedere::query::{Answer, Sight, Viewer, Visibility};
 use belvedere::ray_index::Ray;
@@ -52,8 +52,8 @@ impl ShadowMap {
     pub fn new(mesh: &Mesh, origin: [f64; 3], params: &ShadowMapParams) -> Result<Self> {
         check_positive("pixel size", params.pixel_size)?;
         check_clearance(params.depth_bias)?;
-        check_least("slope bias", params.slope_bias, 0.0, "finite and not negative")?;
-        check_least("maximum slope bias", params.max_slope_bias, 0.0, "finite and not negative, metres")?;
+        check_min("slope bias", params.slope_bias, 0.0, "finite and not negative")?;
+        check_min("maximum slope bias", params.max_slope_bias, 0.0, "finite and not negative, metres")?;
         if !(1..=16_384).contains(&params.face_px) {
             return Err(Error::InvalidParameter {
                 parameter: Parameter::MethodSetting,

@@ -2,7 +2,7 @@
 
 mod splats;
 
-use crate::lines_of_sight::{check_clearance, check_least, check_positive, sight};
+use crate::lines_of_sight::{check_clearance, check_min, check_positive, sight};
 use crate::sampling::check_neighbor;
 use belvedere::query::{Sight, Viewer, Visibility};
 use belvedere::ray_index::{Ray, RayIndex};
@@ -109,8 +109,8 @@ impl Splats {
     pub fn new(cloud: &PointCloud, params: &SplatParams) -> Result<Self> {
         check_neighbor("neighbour that gives the radius", params.radius_neighbor)?;
         check_positive("radius of a splat as a multiple of its spacing", params.radius_scale)?;
-        check_least("maximum radius in medians", params.max_radius_in_medians, 1.0, "finite and at least 1")?;
-        check_least("maximum aspect ratio of a splat", params.max_aspect, 1.0, "finite and at least 1")?;
+        check_min("maximum radius in medians", params.max_radius_in_medians, 1.0, "finite and at least 1")?;
+        check_min("maximum aspect ratio of a splat", params.max_aspect, 1.0, "finite and at least 1")?;
         check_clearance(params.clearance)?;
         let splats = splats::make(&cloud.positions, params)?;
         let boxes: Vec<_> = splats.iter().map(SurfaceSplat::bounding_box).collect();

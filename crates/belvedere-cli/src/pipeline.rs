@@ -105,7 +105,7 @@ impl LoadedScene {
 
 impl LoadedScene {
     /// The scene that questions are put to, with the ground and the shell of the flags.
-    pub(crate) fn into_asked(
+    pub(crate) fn into_question_scene(
         self,
         ground: Option<&GroundChoice>,
         shell: Option<f32>,
@@ -143,7 +143,7 @@ pub(crate) fn scene_of_places(
     let points = if places.needs_points() { KeepPoints::Keep } else { KeepPoints::LetGo };
     let mut scene = scene(input, points, run)?;
     places.far.set(&mut scene, run)?;
-    scene.into_asked(Some(&places.ground), shell, run)
+    scene.into_question_scene(Some(&places.ground), shell, run)
 }
 
 /// Whether a scene keeps the points that its balls were made from.

@@ -101,15 +101,15 @@ impl BlockRule {
     /// The least radius that a ball of `radius` counts with, however near its surface a target lies.
     #[must_use]
     #[inline]
-    pub fn least_radius(&self, radius: f64) -> f64 {
+    pub fn min_radius(&self, radius: f64) -> f64 {
         radius - self.shell_of(radius)
     }
 
-    /// [`BlockRule::least_radius`] in single precision, in which depth maps are drawn.
+    /// [`BlockRule::min_radius`] in single precision, in which depth maps are drawn.
     #[must_use]
     #[inline]
     #[expect(clippy::cast_possible_truncation, reason = "a length and a share")]
-    pub fn least_radius_f32(&self, radius: f32) -> f32 {
+    pub fn min_radius_f32(&self, radius: f32) -> f32 {
         radius - (self.shell as f32).min(SHELL_SHARE as f32 * radius)
     }
 

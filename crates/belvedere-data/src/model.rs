@@ -2,7 +2,7 @@
 
 use crate::balls::MedialBalls;
 use crate::frame::{Bounds, Frame};
-use crate::needles::NeedleColumns;
+use crate::free_segments::FreeSegmentColumns;
 use crate::{Error, Parameter, Result};
 use std::collections::BTreeMap;
 
@@ -31,7 +31,7 @@ pub struct ModelParts {
     /// vegetation. Empty where this was not measured.
     pub transmission: Vec<f32>,
     /// The pulses that prove lines of sight free, where they are known.
-    pub pulses: Option<NeedleColumns>,
+    pub pulses: Option<FreeSegmentColumns>,
     /// How the model was made, by name: side, method, parameters, program, input.
     pub provenance: BTreeMap<String, String>,
 }
@@ -78,6 +78,6 @@ impl ModelParts {
         if let Some(t) = self.transmission.iter().find(|t| !(t.is_nan() || (0.0..=1.0).contains(*t))) {
             return invalid(Parameter::Ball, format!("of transmission {t}"), "of transmission 0 to 1, or NaN");
         }
-        self.pulses.as_ref().map_or(Ok(()), NeedleColumns::validate)
+        self.pulses.as_ref().map_or(Ok(()), FreeSegmentColumns::validate)
     }
 }

@@ -23,9 +23,9 @@ mod tests {
 
     #[test]
     fn holes_and_closed_rings_are_understood() {
-        let rim = vec![[0.0, 0.0], [10.0, 0.0], [10.0, 10.0], [0.0, 10.0], [0.0, 0.0]];
+        let outline = vec![[0.0, 0.0], [10.0, 0.0], [10.0, 10.0], [0.0, 10.0], [0.0, 0.0]];
         let hole = vec![[4.0, 4.0], [6.0, 4.0], [6.0, 6.0], [4.0, 6.0]];
-        let polygon = [rim, hole];
+        let polygon = [outline, hole];
         for (place, expected) in
             [([1.0, 1.0], true), ([5.0, 5.0], false), ([5.0, 3.0], true), ([11.0, 5.0], false), ([-1.0, 4.0], false)]
         {

@@ -193,8 +193,8 @@ impl Trajectory {
         let offset = self.clock_offset_for(times, cloud.attributes.gps_time_kind);
         if offset.known_count == 0 && !times.is_empty() {
             let span = |times: &[f64]| {
-                let least = times.iter().copied().fold(f64::INFINITY, f64::min);
-                format!("{least} to {} s", times.iter().copied().fold(f64::NEG_INFINITY, f64::max))
+                let min = times.iter().copied().fold(f64::INFINITY, f64::min);
+                format!("{min} to {} s", times.iter().copied().fold(f64::NEG_INFINITY, f64::max))
             };
             return Err(Error::InvalidParameter {
                 parameter: Parameter::Trajectory,
@@ -217,11 +217,11 @@ impl Trajectory {
 }
 
 /// Farthest that a scanner may be from its points, metres: ten times what airborne scanners reach.
-const MOST_DISTANCE: f64 = 50_000.0;
+const MAX_DISTANCE: f64 = 50_000.0;
 /// How far below its scanner a point must be to count as below it, metres: more than points of the ground are rough.
 const CLEARLY_BELOW: f32 = 0.5;
 /// Least share of the points that are below their scanner: those of a vehicle measure the road, those of an aircraft everything.
-const LEAST_BELOW: f64 = 0.1;
+const MIN_BELOW: f64 = 0.1;
 
 /// Refuses scanner positions that cannot be those of points: in degrees, in another system, or at the height of the ground. Both (N, 3), local metres.
 fn check_above(positions: &[[f32; 3]], points: &[[f32; 3]]) -> Result<()> {
@@ -233,12 +233,12 @@ fn check_above(positions: &[[f32; 3]], points: &[[f32; 3]]) -> Result<()> {
     }
     let distance = |(p, q): &(&[f32; 3], &[f32; 3])| length([0, 1, 2].map(|i| f64::from(p[i]) - f64::from(q[i])));
     let nearest = known.iter().map(distance).fold(f64::INFINITY, f64::min);
-    if !(nearest <= MOST_DISTANCE) {
+    if !(nearest <= MAX_DISTANCE) {
         let value = format!("at least {:.0} km away from the points", nearest / 1000.0);
         return invalid(value, "in the reference system of the cloud: easting, northing and height, not degrees");
     }
     let below = known.iter().filter(|(p, q)| p[2] - q[2] > CLEARLY_BELOW && p[2].is_finite()).count();
-    if (below as f64) < LEAST_BELOW * known.len() as f64 {
+    if (below as f64) < MIN_BELOW * known.len() as f64 {
         let value = format!("above {} of {} points only", below, known.len());
         return invalid(value, "above the points: heights are those of the scanner, not of the ground");
     }

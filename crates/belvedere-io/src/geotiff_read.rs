@@ -13,7 +13,7 @@ use belvedere_data::raster::Raster;
 use belvedere_data::{Error, Result};
 
 /// Most bytes of values for each byte of a file: LZW comes to 1365, Deflate to 1032.
-const MOST_PACKED: u64 = 1400;
+const MAX_PACKED: u64 = 1400;
 
 /// All bands of a raster of one of the types that results have.
 #[derive(Clone, Debug, PartialEq)]
@@ -200,10 +200,10 @@ fn decoder(mut reader: SourceReader<'_>, size: u64) -> TiffResult<Decoder<Source
         return Err(TiffError::LimitsExceeded);
     }
     reader.rewind()?;
-    let most = usize::try_from(size.saturating_mul(MOST_PACKED)).unwrap_or(usize::MAX);
+    let max = usize::try_from(size.saturating_mul(MAX_PACKED)).unwrap_or(usize::MAX);
     let mut limits = Limits::default();
-    limits.decoding_buffer_size = limits.decoding_buffer_size.min(most);
-    limits.intermediate_buffer_size = limits.intermediate_buffer_size.min(most);
+    limits.decoding_buffer_size = limits.decoding_buffer_size.min(max);
+    limits.intermediate_buffer_size = limits.intermediate_buffer_size.min(max);
     Ok(Decoder::new(reader)?.with_limits(limits))
 }
 

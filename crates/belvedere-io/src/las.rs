@@ -26,7 +26,7 @@ use belvedere_data::{Error, Result};
 const BATCH: u64 = 1_000_000;
 
 /// How far points may lie outside the bounds of a header, in its unit: what programs round them by.
-const LEAST_ROOM: f64 = 0.01;
+const MIN_ROOM: f64 = 0.01;
 
 /// Scales this fine are used for degrees, not for metres.
 const DEGREE_SCALE: f64 = 1.000_001e-6;
@@ -231,7 +231,7 @@ fn are_given(bounds: &[[f64; 2]; 3]) -> bool {
 
 /// How far points with coordinates in steps of `scale` may lie outside the bounds of their header.
 fn room(scale: [f64; 3]) -> [f64; 3] {
-    scale.map(|scale| (10.0 * scale.abs()).max(LEAST_ROOM))
+    scale.map(|scale| (10.0 * scale.abs()).max(MIN_ROOM))
 }
 
 /// Compares the points of a file with the bounds of its header, which follow from the same scale and offset: notes points outside, refuses a file
@@ -251,11 +251,11 @@ fn check_bounds(mut part: FilePart, bounds: [[f64; 2]; 3], scale: [f64; 3]) -> R
     if !are_given(&bounds) || count == 0 || outside == 0 {
         return Ok(part);
     }
-    let told = |bounds: [[f64; 2]; 3]| bounds.map(|[low, high]| format!("{low:.2} to {high:.2}")).join(", ");
+    let ranges = |bounds: [[f64; 2]; 3]| bounds.map(|[low, high]| format!("{low:.2} to {high:.2}")).join(", ");
     let what = format!(
         "{outside} of {count} points are outside the bounds of the header ({}): they lie in {}",
-        told(bounds),
-        told(found)
+        ranges(bounds),
+        ranges(found)
     );
     if outside == count {
         return Err(Error::malformed(

@@ -308,8 +308,8 @@ fn chunks_at(path: &Path, places: &[ChunkPlace], header: &LasHeader) -> Result<V
 /// Refuses a chunk that would decompress to more than its bytes can be believed to hold.
 fn check_size(path: &Path, chunk: &ChunkTableEntry, header: &LasHeader) -> Result<()> {
     let decompressed = chunk.point_count.saturating_mul(u64::from(header.record_length));
-    let most = FREE_CHUNK_BYTES.max(chunk.byte_count.saturating_mul(MAX_RATIO)).min(MAX_CHUNK_BYTES);
-    if decompressed > most { Err(unfit(path, chunk, header)) } else { Ok(()) }
+    let max = FREE_CHUNK_BYTES.max(chunk.byte_count.saturating_mul(MAX_RATIO)).min(MAX_CHUNK_BYTES);
+    if decompressed > max { Err(unfit(path, chunk, header)) } else { Ok(()) }
 }
 
 fn unfit(path: &Path, chunk: &ChunkTableEntry, header: &LasHeader) -> Error {

@@ -39,8 +39,7 @@ pub(super) fn read_rows(input: Input<'_>) -> Result<(NpyTable, &'static str)> {
         return Err(Error::malformed(path, format!("has shape {shape:?}, but (N, 3) is needed")));
     };
     // Four bytes a number is the least that is read.
-    if width < 3 || count.checked_mul(width).and_then(|numbers| numbers.checked_mul(4)).is_none_or(|least| least > size)
-    {
+    if width < 3 || count.checked_mul(width).and_then(|numbers| numbers.checked_mul(4)).is_none_or(|min| min > size) {
         let what = format!("has shape {shape:?}, which is not an (N, 3) array that fits in its {size} bytes");
         return Err(Error::malformed(path, what));
     }

@@ -146,7 +146,7 @@ fn from_values(corners: Vec<[f64; 3]>, values: [Option<f64>; NAMES.len()], path:
     if let Some(corner) = corners.iter().find(|c| !(c[0].is_finite() && c[1].is_finite())) {
         return Err(Error::malformed(path, format!("an observer has the position {corner:?}")));
     }
-    let [height, least, most, azimuth_from, azimuth_to, elevation_from, elevation_to, heading, tilt, fov, weight] =
+    let [height, min, max, azimuth_from, azimuth_to, elevation_from, elevation_to, heading, tilt, fov, weight] =
         values.map(|value| value.filter(|v| !v.is_nan()));
     if let Some(height) = height.filter(|height| !(*height >= 0.0 && height.is_finite())) {
         let what = format!("an observer has the height {height}; heights above the ground are 0 metres or more");
@@ -155,7 +155,7 @@ fn from_values(corners: Vec<[f64; 3]>, values: [Option<f64>; NAMES.len()], path:
     Ok(ObserverRow {
         corners,
         height,
-        distance: [least, most],
+        distance: [min, max],
         azimuth_deg: [azimuth_from, azimuth_to],
         elevation_deg: [elevation_from, elevation_to],
         heading_deg: heading,

@@ -7,7 +7,7 @@ use belvedere_data::raster::Raster;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct GridPolygon {
     /// Rim of the area.
-    pub rim: Vec<[usize; 2]>,
+    pub exterior: Vec<[usize; 2]>,
     /// Rims of its holes.
     pub holes: Vec<Vec<[usize; 2]>>,
     /// Number of cells.
@@ -17,7 +17,7 @@ pub struct GridPolygon {
 impl GridPolygon {
     /// Its rim and holes with the corners at their `place`.
     pub fn rings(&self, place: impl Fn([usize; 2]) -> [f64; 2]) -> Vec<Vec<[f64; 2]>> {
-        std::iter::once(&self.rim)
+        std::iter::once(&self.exterior)
             .chain(&self.holes)
             .map(|ring| ring.iter().map(|&corner| place(corner)).collect())
             .collect()
@@ -38,7 +38,7 @@ pub fn outlines(cells: &Raster<bool>) -> Vec<GridPolygon> {
         inside.and_then(|(column, row)| labels.get(row * width + column).copied()).unwrap_or(NONE)
     };
     let mut polygons: Vec<GridPolygon> =
-        counts.iter().map(|&cell_count| GridPolygon { rim: Vec::new(), holes: Vec::new(), cell_count }).collect();
+        counts.iter().map(|&cell_count| GridPolygon { exterior: Vec::new(), holes: Vec::new(), cell_count }).collect();
     // every rim, outer or inner, has a side that runs west along the north of a cell
     let mut walked = vec![false; width * height];
     for row in 0..height {
@@ -51,7 +51,7 @@ pub fn outlines(cells: &Raster<bool>) -> Vec<GridPolygon> {
             for ring in simple_rings(walk([column, row], &label, &mut walked, width)) {
                 let Some(polygon) = polygons.get_mut(own as usize) else { continue };
                 if doubled_area(&ring) > 0 {
-                    polygon.rim = ring;
+                    polygon.exterior = ring;
                 } else {
                     polygon.holes.push(ring);
                 }
@@ -193,8 +193,8 @@ mod tests {
     fn a_frame_has_a_hole_and_runs_the_right_way() {
         let polygons = outlines(&raster(&["####", "#..#", "####"]));
         assert_eq!(polygons.len(), 1);
-        assert_eq!((doubled_area(&polygons[0].rim), polygons[0].cell_count), (24, 10));
-        assert_eq!(polygons[0].rim.len(), 5);
+        assert_eq!((doubled_area(&polygons[0].exterior), polygons[0].cell_count), (24, 10));
+        assert_eq!(polygons[0].exterior.len(), 5);
         assert_eq!(polygons[0].holes.iter().map(|h| doubled_area(h)).collect::<Vec<_>>(), [-4]);
     }
 
@@ -209,7 +209,7 @@ mod tests {
     }
 
     #[test]
-    fn areas_of_random_grids_add_up_and_no_rim_touches_itself() {
+    fn areas_of_random_grids_add_up_and_no_ring_touches_itself() {
         for seed in 0..40 {
             let (width, height) = (19, 13);
             let share = 0.3 + 0.01 * f64::from(seed);
@@ -219,12 +219,12 @@ mod tests {
             let polygons = outlines(&cells);
             let mut total = 0;
             for polygon in &polygons {
-                let own = doubled_area(&polygon.rim);
+                let own = doubled_area(&polygon.exterior);
                 let holes: i64 = polygon.holes.iter().map(|hole| doubled_area(hole)).sum();
                 assert!(own > 0 && holes <= 0);
                 assert_eq!(own + holes, 2 * polygon.cell_count as i64);
                 total += polygon.cell_count;
-                for ring in std::iter::once(&polygon.rim).chain(&polygon.holes) {
+                for ring in std::iter::once(&polygon.exterior).chain(&polygon.holes) {
                     assert_eq!(ring.first(), ring.last());
                     let distinct: std::collections::HashSet<_> = ring.iter().collect();
                     assert_eq!(distinct.len(), ring.len() - 1);

@@ -45,10 +45,10 @@ pub(super) fn read(input: Input<'_>, reading: &Reading<'_>) -> Result<FilePart> 
     let body = size.saturating_sub(header.length);
     let stride: u64 = header.fields.iter().map(|field| (field.size * field.count) as u64).sum();
     // In ascii a value takes a digit and a blank.
-    let least = if header.data == "ascii" { 2 * header.fields.len() as u64 } else { stride };
+    let min = if header.data == "ascii" { 2 * header.fields.len() as u64 } else { stride };
     let packed = header.data == "binary_compressed";
     let holds = if packed { body.saturating_mul(MAX_LZF_RATIO) } else { body + 1 };
-    if header.points.saturating_mul(least) > holds {
+    if header.points.saturating_mul(min) > holds {
         let what = format!("announces {} points, more than its {body} bytes can hold", header.points);
         return Err(Error::malformed(path, what));
     }

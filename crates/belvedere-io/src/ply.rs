@@ -152,13 +152,13 @@ fn header_bytes(path: &Path, file: &mut impl BufRead) -> Result<Vec<u8>> {
 
 /// Holds the number of an element against the bytes there are: in ascii every value takes two.
 fn check_count(path: &Path, element: &ElementDef, encoding: Encoding, body: u64) -> Result<()> {
-    let least: u64 = if encoding == Encoding::Ascii {
+    let min: u64 = if encoding == Encoding::Ascii {
         2 * element.properties.len() as u64
     } else {
-        element.properties.values().map(|property| least_bytes(&property.data_type)).sum()
+        element.properties.values().map(|property| min_bytes(&property.data_type)).sum()
     };
     // The last line of a text may lack its line break.
-    if (element.count as u64).saturating_mul(least) > body + 1 || (least == 0 && element.count > 0) {
+    if (element.count as u64).saturating_mul(min) > body + 1 || (min == 0 && element.count > 0) {
         let what = format!(
             "announces {} elements {}, more than its {body} bytes can hold; it is cut off or damaged",
             element.count, element.name
@@ -168,7 +168,7 @@ fn check_count(path: &Path, element: &ElementDef, encoding: Encoding, body: u64)
     Ok(())
 }
 
-fn least_bytes(kind: &PropertyType) -> u64 {
+fn min_bytes(kind: &PropertyType) -> u64 {
     let scalar = match kind {
         PropertyType::Scalar(scalar) | PropertyType::List(scalar, _) => scalar,
     };

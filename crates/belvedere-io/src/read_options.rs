@@ -210,7 +210,7 @@ enum SelectedBox {
 }
 
 /// By how much a box in local coordinates is widened at least when files are looked through for it, metres.
-const LEAST_BOX_ROOM: f64 = 1e-3;
+const MIN_BOX_ROOM: f64 = 1e-3;
 
 /// Points that a selection passed over.
 #[derive(Clone, Copy, Debug, Default)]
@@ -254,7 +254,7 @@ impl Selection {
             SelectedBox::File { low, high } => Some(FileBox { low: *low, high: *high }),
             SelectedBox::Local { bounds, origin, units } => {
                 // local positions are rounded to f32 before they are compared
-                let room = |v: f32| LEAST_BOX_ROOM + f64::from(v.abs()) * f64::from(f32::EPSILON);
+                let room = |v: f32| MIN_BOX_ROOM + f64::from(v.abs()) * f64::from(f32::EPSILON);
                 let file = |i: usize, v: f64| (v + origin[i]) / units[i];
                 Some(FileBox {
                     low: std::array::from_fn(|i| file(i, f64::from(bounds.low[i]) - room(bounds.low[i]))),

@@ -222,9 +222,9 @@ fn rows_of(
     head: &MatrixHead,
     mut sink: impl FnMut(&[u64]) -> Result<()>,
 ) -> Result<()> {
-    let most = ROWS * head.words_of_row().max(1);
+    let max = ROWS * head.words_of_row().max(1);
     let mut count = 0;
-    let read = in_blocks(archive, "bits", most, |words: &[u64]| {
+    let read = in_blocks(archive, "bits", max, |words: &[u64]| {
         count += words.len();
         if count > head.targets.len().saturating_mul(head.words_of_row()) {
             head.check_count(count).map_err(damaged(path))?;

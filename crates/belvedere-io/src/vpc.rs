@@ -13,7 +13,7 @@ use super::source::{Source, web_address};
 use belvedere_data::{Error, Result};
 
 /// Largest catalogue that is read, bytes: a million tiles, and far below the memory of any machine.
-const MOST_BYTES: u64 = 1 << 30;
+const MAX_BYTES: u64 = 1 << 30;
 
 /// The files of the catalogue `source` that may have points in `wanted`, in its order; all of them without a box. Paths are those of
 /// the catalogue, from the folder that it lies in; addresses of the web stay what they are.
@@ -24,7 +24,7 @@ pub(super) fn files_within(source: Source<'_>, wanted: Option<&FileBox>) -> Resu
     let input = source.open()?;
     let (name, size) = (input.name, input.size);
     let damaged = |what: String| Error::malformed(&name, what);
-    if size > MOST_BYTES {
+    if size > MAX_BYTES {
         return Err(damaged(format!("has {size} bytes, more than a catalogue of tiles; give the folder of the tiles")));
     }
     let catalogue: Value = serde_json::from_reader(input.reader)

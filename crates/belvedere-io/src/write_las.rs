@@ -91,8 +91,8 @@ pub(crate) fn write(
             Ok(clamped)
         })?
     };
-    let normals_asked = extra.iter().any(|c| c.name.eq_ignore_ascii_case("NormalX"));
-    let left_out = if cloud.attributes.normals.is_some() && !normals_asked { vec!["normals"] } else { Vec::new() };
+    let normals_requested = extra.iter().any(|c| c.name.eq_ignore_ascii_case("NormalX"));
+    let left_out = if cloud.attributes.normals.is_some() && !normals_requested { vec!["normals"] } else { Vec::new() };
     Ok(WriteReport { point_count: cloud.len(), left_out, clamped_count })
 }
 
@@ -249,9 +249,9 @@ impl Encoder<'_> {
     fn encode(&self, record: &mut [u8], index: usize) -> usize {
         let a = &self.cloud.attributes;
         let mut clamped = 0;
-        let mut cut = |value: u8, most: u8| {
-            clamped += usize::from(value > most);
-            value.min(most)
+        let mut cut = |value: u8, max: u8| {
+            clamped += usize::from(value > max);
+            value.min(max)
         };
         let xyz = self.cloud.frame.to_file_coordinates(self.cloud.positions[index]);
         let transforms = [self.transforms.x, self.transforms.y, self.transforms.z];

@@ -181,7 +181,7 @@ fn whole<'py>(py: Python<'py>, found: &CamerasResults) -> PyResult<Bound<'py, Py
     whole.set_item("is_proven_optimum", placed.is_optimal())?;
     whole.set_item("all_candidates_percent", 100.0 * placed.reachable)?;
     whole.set_item("existing_only_percent", 100.0 * placed.curve.first().copied().unwrap_or(0.0))?;
-    whole.set_item("least_possible_cameras", placed.least_count)?;
+    whole.set_item("least_possible_cameras", placed.min_count)?;
     whole.set_item("cameras_to_choose_from", found.candidates)?;
     let covered: Vec<_> = found.cameras.iter().map(|one| to_1d(py, one.covered.clone())).collect();
     whole.set_item("covered", covered)?;

@@ -33,10 +33,10 @@ pub(crate) fn write_geotiff(
     let [a, b, west, d, e, north] = transform;
     let place = Georeference { upper_left: [west, north], column_step: [a, d], row_step: [b, e], crs: crs.0 };
     let (place, description) = (Some(&place), description.as_deref());
-    let number = |most: u16| match nodata {
+    let number = |max: u16| match nodata {
         None => Ok(None),
-        Some(v) if v >= 0.0 && v <= f64::from(most) && v.fract() == 0.0 => Ok(Some(v)),
-        Some(v) => Err(wrong("nodata", &v.to_string(), &format!("give a whole number from 0 to {most}"))),
+        Some(v) if v >= 0.0 && v <= f64::from(max) && v.fract() == 0.0 => Ok(Some(v)),
+        Some(v) => Err(wrong("nodata", &v.to_string(), &format!("give a whole number from 0 to {max}"))),
     };
     let write = |values: BandValues<'_>| {
         py.detach(|| write_tif_bands(&path, &Bands { values, names: &names, description }, place))

@@ -60,7 +60,7 @@ const SIGHT_LENGTHS: [f64; 5] = [5.0, 25.0, 50.0, 100.0, 200.0];
 /// Least distance between two surfaces that a ray crosses for both to count, metres: an edge or a doubled face is one.
 const SAME_SURFACE: f64 = 1e-4;
 /// Crossings after which a ray is given up; no place has so many floors.
-const MOST_CROSSINGS: usize = 64;
+const MAX_CROSSINGS: usize = 64;
 /// Draws tried for each target wanted, so that a scene without free ground ends.
 const DRAWS_PER_TARGET: u64 = 64;
 
@@ -236,7 +236,7 @@ impl QuerySite<'_> {
             passed = hit.range + SAME_SURFACE;
             Some((hit, dot(self.scene.normal(hit.triangle as usize)?, direction)))
         })
-        .take(MOST_CROSSINGS)
+        .take(MAX_CROSSINGS)
     }
 
     fn anywhere(&self, random: &mut Random) -> [f64; 3] {

@@ -33,7 +33,7 @@ use rayon::prelude::*;
 use std::path::Path;
 
 /// Cells around a tile that the surface of its cells is taken from.
-const RIM: usize = 2;
+const EDGE_CELLS: usize = 2;
 /// Targets handed to a thread at once.
 const CHUNK: usize = 1024;
 
@@ -41,11 +41,11 @@ const CHUNK: usize = 1024;
 #[derive(Clone, Copy)]
 pub(crate) struct TileTask<'a> {
     pub(crate) question: &'a TileQuestion,
-    pub(crate) asked: &'a PreparedQuestion,
+    pub(crate) prepared: &'a PreparedQuestion,
     /// What blocks beside balls.
     pub(crate) others: &'a Others,
     /// Most balls that are asked together.
-    pub(crate) most_balls: usize,
+    pub(crate) max_balls: usize,
 }
 
 /// Cells of a tile on top of what stands there, or will.
@@ -59,8 +59,8 @@ pub(crate) struct TileSurface {
 
 /// The area of the points that the cells of a tile need.
 fn area_of_cells(plan: &Plan, tile: TileId, cell: f64) -> crate::grid::MapArea {
-    let farthest = f64::from(plan.facts.farthest()) + plan.facts.isolation_radius.unwrap_or(0.0);
-    plan.grid().core(tile).widened(farthest + (RIM + 1) as f64 * cell)
+    let farthest = f64::from(plan.statistics.farthest()) + plan.statistics.isolation_radius.unwrap_or(0.0);
+    plan.grid().core(tile).widened(farthest + (EDGE_CELLS + 1) as f64 * cell)
 }
 
 /// Answers a question for the cells of a tile on top of what stands there, with the balls that are in the folder of the run, and writes the answer; its
@@ -77,12 +77,12 @@ pub(crate) fn answer(
     last: &mut Option<TileSurface>,
     control: &Control<'_>,
 ) -> Result<TileRecord> {
-    let TileTask { question, asked, others, most_balls } = task;
+    let TileTask { question, prepared, others, max_balls } = task;
     let stage = Stage::Answer(question);
     atomic::make_folder(&stage.folder(run))?;
     let core = plan.grid().core(tile);
     let nothing = |points: usize| Ok(TileRecord { points, ..TileRecord::default() });
-    if AreaLines::of(asked, core, 0.0).is_empty() {
+    if AreaLines::of(prepared, core, 0.0).is_empty() {
         return nothing(0);
     }
     let cell = plan.cells.of(question);
@@ -92,16 +92,18 @@ pub(crate) fn answer(
     };
     let TileSurface { points, targets, .. } = last.insert(surface);
     let points = *points;
-    let (cells, TargetLayout::Cells(ground)) = (targets.asked_count(), &targets.layout) else { return nothing(points) };
+    let (cells, TargetLayout::Cells(ground)) = (targets.target_count(), &targets.layout) else {
+        return nothing(points);
+    };
     if cells == 0 {
         return nothing(points);
     }
     let known = targets.positions.iter().filter(|p| p[2].is_finite());
     let lowest = known.map(|p| f64::from(p[2])).fold(f64::INFINITY, f64::min);
-    let lines = AreaLines::of(asked, core, lowest);
+    let lines = AreaLines::of(prepared, core, lowest);
     let size = [ground.grid.width, ground.grid.height];
-    let parts = TileObstacles::around((plan, run, tile), &lines, others, most_balls, control)?;
-    let (found, balls) = match asked {
+    let parts = TileObstacles::around((plan, run, tile), &lines, others, max_balls, control)?;
+    let (found, balls) = match prepared {
         PreparedQuestion::Viewshed(observers) => {
             let mut sight = PartialSight::new(observers, &targets.positions);
             parts.each_scene(&lines, control, |scene| sight.look(scene, control))?;
@@ -112,7 +114,7 @@ pub(crate) fn answer(
         }
         PreparedQuestion::Light(light) => lit(light, parts, targets, size, control)?,
     };
-    let near_edge_cells = match asked {
+    let near_edge_cells = match prepared {
         PreparedQuestion::Light(light) => Some(near_edge_count(plan, targets, light.directions(), control)?),
         PreparedQuestion::Viewshed(_) => None,
     };
@@ -130,7 +132,7 @@ pub(crate) fn answer(
         damaged: balls.damaged,
         points,
         balls: balls.ball_count,
-        most_balls: balls.most_held,
+        max_balls: balls.max_held,
         cells,
         unproven_cells: found.unproven_cells,
         near_edge_cells,
@@ -282,8 +284,8 @@ impl<'a> PartialSight<'a> {
             [seen_by().count(), unproven]
         };
         let counts: Vec<[usize; 2]> = (0..targets.len()).into_par_iter().with_min_len(CHUNK).map(counts).collect();
-        let is_asked = |answer: Answer| !matches!(answer, Answer::OutsideView | Answer::OutsideCloud);
-        let cells = || answers.iter().zip(&counts).map(|(&answer, &counts)| is_asked(answer).then_some(counts));
+        let is_target = |answer: Answer| !matches!(answer, Answer::OutsideView | Answer::OutsideCloud);
+        let cells = || answers.iter().zip(&counts).map(|(&answer, &counts)| is_target(answer).then_some(counts));
         let values = match observers.len() {
             1 => {
                 let band = |i: usize| cells().map(|counts| ResultKind::answer(counts.map(|c| c[i] > 0))).collect();
@@ -311,7 +313,7 @@ fn cells(
     added: Option<&AddedMeshes>,
     control: &Control<'_>,
 ) -> Result<Targets> {
-    let (kept, _) = clean(cloud, &plan.facts.cleaning(&plan.model().clean), control)?;
+    let (kept, _) = clean(cloud, &plan.statistics.cleaning(&plan.model().clean), control)?;
     let core = plan.grid().core(tile);
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a whole number of cells")]
     let count = (plan.tile_size / cell).round() as usize;
@@ -323,18 +325,19 @@ fn cells(
     let cleared = ClearedSurface::new(plan, areas, &points, &middles, control)?;
     let stays = |(point, is_cleared): (&ClassedPoint, &bool)| (!is_cleared).then_some(point.0);
     let positions: Vec<[f32; 3]> = points.iter().zip(&cleared.is_cleared).filter_map(stays).collect();
-    let rim = RIM as f64 * cell;
+    let edge = EDGE_CELLS as f64 * cell;
     let wide = MapGrid {
-        corner: [core.low[0] - rim, core.high[1] + rim],
+        corner: [core.low[0] - edge, core.high[1] + edge],
         cell,
-        width: count + 2 * RIM,
-        height: count + 2 * RIM,
+        width: count + 2 * EDGE_CELLS,
+        height: count + 2 * EDGE_CELLS,
     };
     let unknown = Raster::filled(wide.width, wide.height, f32::NAN);
     let flat = Ground { grid: wide, heights: unknown.clone(), gaps: unknown };
-    let params = SurfaceParams { farthest: plan.facts.farthest(), ..SurfaceParams::default() };
+    let params = SurfaceParams { farthest: plan.statistics.farthest(), ..SurfaceParams::default() };
     let heights = top_surface(&positions, &flat, &params, control)?;
-    let of_cell = |(column, row): (usize, usize)| heights.get(column + RIM, row + RIM).unwrap_or(f32::NAN);
+    let of_cell =
+        |(column, row): (usize, usize)| heights.get(column + EDGE_CELLS, row + EDGE_CELLS).unwrap_or(f32::NAN);
     let mut heights = Raster::from_values(count, count, places.clone().map(of_cell).collect())?;
     for (place, height) in cleared.ground {
         if let Some(value) = heights.values_mut().get_mut(place).filter(|value| value.is_nan()) {

@@ -10,7 +10,7 @@
 //!
 //! # Tiles make no difference
 //! Every ball and every answer is the same, bit by bit, whatever the size of the tiles. Three things make it so: what a model estimates from its whole
-//! cloud is estimated once, with the plan ([`belvedere::model::SurveyFacts`]); all tiles share one frame, in which positions are the same numbers for
+//! cloud is estimated once, with the plan ([`belvedere::model::SurveyStatistics`]); all tiles share one frame, in which positions are the same numbers for
 //! all; and every step of the way looks at points no farther away than the margin.
 
 mod answer;

@@ -12,7 +12,7 @@ const FEW: usize = 8;
 /// By how much lines of sight are taken for wider than they are, metres: more than f32 rounds.
 pub(crate) const ROOM: f64 = 0.25;
 /// How far above and beside its points any ball reaches at most, metres: twice the radius that they start with.
-pub(crate) const MOST_BALL: f64 = 10.0;
+pub(crate) const MAX_BALL: f64 = 10.0;
 
 /// Lines of sight from targets over an area, none lower than `lowest`.
 pub(crate) struct AreaLines<'a> {
@@ -34,8 +34,8 @@ pub(crate) enum To<'a> {
 
 impl<'a> AreaLines<'a> {
     /// The lines of sight of a question from cells over an area.
-    pub(crate) fn of(asked: &'a PreparedQuestion, targets: MapArea, lowest: f64) -> Self {
-        let to = match asked {
+    pub(crate) fn of(prepared: &'a PreparedQuestion, targets: MapArea, lowest: f64) -> Self {
+        let to = match prepared {
             PreparedQuestion::Light(light) => To::Directions(light.directions()),
             PreparedQuestion::Viewshed(observers) => {
                 let is_near = |eye: &[f64; 3], reach: f64| targets.distance(&MapArea::at(*eye)) <= reach;
@@ -125,8 +125,8 @@ pub(crate) fn tiles(plan: &Plan, lines: &AreaLines<'_>) -> Vec<TileId> {
     let is_planned = |tile: &TileId| plan.tiles.binary_search(tile).is_ok();
     let mut tiles = BTreeSet::new();
     for block in &plan.blocks {
-        let area = block_area(block.at).widened(MOST_BALL);
-        if !lines.may_meet(&area, f64::from(block.heights[1]) + MOST_BALL) {
+        let area = block_area(block.at).widened(MAX_BALL);
+        if !lines.may_meet(&area, f64::from(block.heights[1]) + MAX_BALL) {
             continue;
         }
         let (first, last) = (grid.tile_of(area.low), grid.tile_of(area.high));

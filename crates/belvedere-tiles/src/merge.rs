@@ -15,7 +15,7 @@ use std::io::Write as _;
 use std::path::Path;
 
 /// Most cells of a merged raster: a gigabyte of floats.
-const MOST_CELLS: usize = 1 << 28;
+const MAX_CELLS: usize = 1 << 28;
 
 /// What was merged.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -158,7 +158,7 @@ fn gather(
 ) -> Result<(Pixels, Georeference, Merged)> {
     let (with_result, cells) = results(plan, folder, question, tiles)?;
     let (width, height) = (cells.width, cells.height);
-    if width.saturating_mul(height) > MOST_CELLS {
+    if width.saturating_mul(height) > MAX_CELLS {
         return Err(Error::InvalidParameter {
             parameter: Parameter::Raster,
             value: format!("{width} x {height} cells"),

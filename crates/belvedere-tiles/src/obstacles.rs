@@ -1,7 +1,7 @@
 //! What can block lines of sight from a tile: the balls of all tiles that are high and near enough.
 
 use crate::grid::{CELL, MapArea, TOP_SIDE, TileId, block_area, square_area};
-use crate::lines::{AreaLines, MOST_BALL, passes, tiles};
+use crate::lines::{AreaLines, MAX_BALL, passes, tiles};
 use crate::make_balls::{make_balls, square_of};
 use crate::plan::Plan;
 use crate::record::{Stage, TileOutcome, TileRecord};
@@ -27,7 +27,7 @@ pub(crate) struct ObstacleSearch {
     /// Balls that were asked.
     pub(crate) ball_count: usize,
     /// Most of them that were held at a time, where they were asked in parts.
-    pub(crate) most_held: usize,
+    pub(crate) max_held: usize,
     /// Where balls are missing: what may stand there, and how high.
     pub(crate) missing: Vec<(MapArea, f64)>,
     /// Balls that were found damaged, and were made again.
@@ -95,7 +95,7 @@ pub(crate) fn ball_tiles(
 
 /// How balls of tiles block.
 pub(crate) fn rule(plan: &Plan) -> BlockRule {
-    if plan.facts.carves { BlockRule::carved() } else { BlockRule::uncarved() }
+    if plan.statistics.carves { BlockRule::carved() } else { BlockRule::uncarved() }
 }
 
 /// The balls of a tile. Those that are not what was written are named and made again; `None` where that fails.
@@ -148,7 +148,7 @@ fn unknown(plan: &Plan, tile: TileId) -> Vec<(MapArea, f64)> {
         let own = block_area(block.at);
         let low = [0, 1].map(|axis| own.low[axis].max(core.low[axis]));
         let high = [0, 1].map(|axis| (own.low[axis] + CELL).min(core.high[axis]));
-        (MapArea { low, high }.widened(MOST_BALL), f64::from(block.heights[1]) + MOST_BALL)
+        (MapArea { low, high }.widened(MAX_BALL), f64::from(block.heights[1]) + MAX_BALL)
     };
     plan.blocks_in(&core).map(part).collect()
 }

@@ -6,7 +6,7 @@
 //! in parts as well.
 
 use crate::grid::{MapArea, TOP_SIDE, TileId, square_area};
-use crate::lines::{AreaLines, MOST_BALL};
+use crate::lines::{AreaLines, MAX_BALL};
 use crate::obstacles::{BallTile, ObstacleSearch, ball_tiles, may_block, push, rule};
 use crate::plan::Plan;
 use crate::planned::Others;
@@ -37,14 +37,14 @@ pub(crate) struct TileObstacles<'a> {
     /// What blocks beside balls.
     others: &'a Others,
     /// Most balls of a part.
-    most_balls: usize,
+    max_balls: usize,
     /// Squares of tiles, nearest first.
     squares: Vec<Vec<BallTile>>,
     found: Mutex<ObstacleSearch>,
 }
 
 impl<'a> TileObstacles<'a> {
-    /// Parts of at most `most_balls` of the balls that may matter for `lines` from the cells of `tile`, and the `others` that block.
+    /// Parts of at most `max_balls` of the balls that may matter for `lines` from the cells of `tile`, and the `others` that block.
     ///
     /// # Errors
     /// [`belvedere::Error::Cancelled`].
@@ -52,12 +52,12 @@ impl<'a> TileObstacles<'a> {
         (plan, run, tile): (&'a Plan, &'a Path, TileId),
         lines: &AreaLines<'_>,
         others: &'a Others,
-        most_balls: usize,
+        max_balls: usize,
         control: &Control<'_>,
     ) -> Result<Self> {
         let mut found = ObstacleSearch::default();
-        let squares = squares(tile, ball_tiles(plan, run, lines, &mut found, control)?, most_balls);
-        Ok(Self { plan, run, cells: lines.targets, others, most_balls, squares, found: Mutex::new(found) })
+        let squares = squares(tile, ball_tiles(plan, run, lines, &mut found, control)?, max_balls);
+        Ok(Self { plan, run, cells: lines.targets, others, max_balls, squares, found: Mutex::new(found) })
     }
 
     /// Gives `look` scenes of at most so many balls that may block one of `lines`, until all were given. A line of sight is free where it is free in all.
@@ -77,7 +77,7 @@ impl<'a> TileObstacles<'a> {
             let read = control.stage("reading balls", 0, || found.read(self.plan, self.run, of_tile.tile, control))?;
             let Some(ModelParts { balls, .. }) = read else { continue };
             for row in may_block(&balls, lines) {
-                if part.len() == self.most_balls {
+                if part.len() == self.max_balls {
                     look(&self.scene(std::mem::take(&mut part), &mut found, control)?)?;
                 }
                 push(&mut part, &balls, row);
@@ -89,7 +89,7 @@ impl<'a> TileObstacles<'a> {
     /// The scene of balls that are asked together.
     fn scene(&self, balls: MedialBalls, found: &mut ObstacleSearch, control: &Control<'_>) -> Result<MedialScene> {
         found.ball_count += balls.len();
-        found.most_held = found.most_held.max(balls.len());
+        found.max_held = found.max_held.max(balls.len());
         control.stage("indexing balls", balls.len(), || MedialScene::new(&balls, &rule(self.plan)))
     }
 
@@ -120,7 +120,7 @@ impl<'a> TileObstacles<'a> {
             let mut from = f64::NEG_INFINITY;
             for to in BANDS {
                 // as far as the far corner of a square that a ball reaches into
-                let reach = 1.5 * TOP_SIDE + MOST_BALL;
+                let reach = 1.5 * TOP_SIDE + MAX_BALL;
                 let may_reach = |&&(number, _): &&([i32; 2], f32)| {
                     let distance = self.cells.distance(&square_area(number, TOP_SIDE));
                     distance + reach > from && distance <= to + reach
@@ -128,13 +128,13 @@ impl<'a> TileObstacles<'a> {
                 let tops: Vec<_> = tops.iter().filter(may_reach).copied().collect();
                 let met = free.strips.meeting(&tops);
                 part.columns.extend(&met);
-                let least_tops = free.strips.least_tops(&met, &tops);
+                let min_tops = free.strips.min_tops(&met, &tops);
                 let is_in = |row: &usize| distances[*row] > from && distances[*row] <= to;
-                let may_block = |row: &usize| least_tops.may_block(balls.centers[*row], balls.radii[*row]);
+                let may_block = |row: &usize| min_tops.may_block(balls.centers[*row], balls.radii[*row]);
                 let rows: Vec<usize> =
                     (0..balls.len()).into_par_iter().filter(|row| is_in(row) && may_block(row)).collect();
                 for row in rows {
-                    if part.ball_count() == self.most_balls {
+                    if part.ball_count() == self.max_balls {
                         part.hide(free, self.plan, found, control)?;
                     }
                     let is_vegetation = vegetation.get(row) == Some(&true);
@@ -226,7 +226,7 @@ impl BallBatch {
             return Ok(());
         }
         found.ball_count += self.ball_count();
-        found.most_held = found.most_held.max(self.ball_count());
+        found.max_held = found.max_held.max(self.ball_count());
         let columns: Vec<usize> = self.columns.iter().copied().collect();
         let hide = |lines: &mut FreeLines<'_>, balls: &mut MedialBalls| {
             let balls = std::mem::take(balls);
@@ -249,8 +249,8 @@ impl BallBatch {
     }
 }
 
-/// Tiles in squares, the nearest first, all as large as the largest around `tile` with no more than `most_balls`.
-fn squares(tile: TileId, ball_tiles: Vec<BallTile>, most_balls: usize) -> Vec<Vec<BallTile>> {
+/// Tiles in squares, the nearest first, all as large as the largest around `tile` with no more than `max_balls`.
+fn squares(tile: TileId, ball_tiles: Vec<BallTile>, max_balls: usize) -> Vec<Vec<BallTile>> {
     let away = |other: &BallTile| [other.tile.east - tile.east, other.tile.north - tile.north];
     // the number of a square, where one of `side` tiles has the tile in its middle
     let number = |other: &BallTile, side: i64| away(other).map(|away| (away + (side - 1) / 2).div_euclid(side));
@@ -258,7 +258,7 @@ fn squares(tile: TileId, ball_tiles: Vec<BallTile>, most_balls: usize) -> Vec<Ve
     let balls_around =
         |side: i64| ball_tiles.iter().filter(|other| is_in_first(other, side)).map(|other| other.ball_count).sum();
     let farthest = ball_tiles.iter().flat_map(away).map(i64::abs).max().unwrap_or(0);
-    let fits = |side: &i64| -> bool { most_balls >= balls_around(*side) };
+    let fits = |side: &i64| -> bool { max_balls >= balls_around(*side) };
     let side = (2..=2 * farthest + 1).take_while(fits).last().unwrap_or(1);
     let mut squares: BTreeMap<[i64; 3], Vec<BallTile>> = BTreeMap::new();
     for other in ball_tiles {

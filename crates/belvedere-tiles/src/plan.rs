@@ -14,7 +14,7 @@ use belvedere::control::Control;
 use belvedere::crs::Crs;
 use belvedere::ground::{Ground, GroundParams};
 use belvedere::io::{LasHead, atomic, cloud_files};
-use belvedere::model::{ClearedArea, ModelParams, SurveyFacts};
+use belvedere::model::{ClearedArea, ModelParams, SurveyStatistics};
 use belvedere::query::Coverage;
 use belvedere::results::ResultKind;
 use belvedere::{Bounds, Error, Frame, Parameter, Result};
@@ -31,7 +31,7 @@ const ORIGIN_STEP: f64 = 1024.0;
 /// Farthest that a point may lie from the origin, metres: up to here f32 keeps a millimetre.
 const FARTHEST: f64 = 16_384.0;
 /// Smallest and largest side of a tile, metres.
-const LEAST_TILE: f64 = 16.0;
+const MIN_TILE: f64 = 16.0;
 const LARGEST_TILE: f64 = 8192.0;
 /// Points around a place that its ground is taken from, metres, beside the usual ones.
 const GROUND_AROUND: f64 = 32.0;
@@ -85,7 +85,8 @@ pub struct Plan {
     /// Sides of the cells of results.
     pub cells: CellSizes,
     /// How far around a tile points are read, metres.
-    pub halo: f64,
+    #[serde(rename = "halo")]
+    pub buffer: f64,
     /// What is asked.
     pub questions: Vec<TileQuestion>,
     /// Meshes of what is planned, which block beside what was surveyed.
@@ -107,7 +108,8 @@ pub struct Plan {
     pub tiles: Vec<TileId>,
     low: [f32; 3],
     high: [f32; 3],
-    pub(crate) facts: SurveyFacts,
+    #[serde(rename = "facts")]
+    pub(crate) statistics: SurveyStatistics,
     pub(crate) blocks: Vec<SurveyBlock>,
     /// What records name the plan by that they belong to: a fingerprint of its file; empty before it was read from one.
     #[serde(skip)]
@@ -137,7 +139,7 @@ impl Plan {
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] for sizes out of range, places outside, a survey that is too wide for one frame, and memory into which no tile fits;
-    /// those of reading the files, and of [`SurveyFacts::estimate`].
+    /// those of reading the files, and of [`SurveyStatistics::estimate`].
     pub fn make(params: &PlanParams, control: &Control<'_>) -> Result<Self> {
         check_sizes(params)?;
         let (mut inputs, heads) = inputs(&params.clouds)?;
@@ -195,8 +197,8 @@ impl Plan {
         }
         let bounds = found.bounds.ok_or_else(|| Error::NoPoints { what: "all points are noise".to_owned() })?;
         let model = ModelParams::default();
-        let facts =
-            SurveyFacts::estimate(&files[0], &found.along_lines, &found.places, &found.extremes, &model, control)?;
+        let statistics =
+            SurveyStatistics::estimate(&files[0], &found.along_lines, &found.places, &found.extremes, &model, control)?;
         let mut plan = Self {
             layout: LAYOUT,
             program: params.program.clone(),
@@ -206,7 +208,7 @@ impl Plan {
             tile_size: params.tile_size,
             cells: params.cells.clone(),
             // in steps, so that it does not look more exact than it is
-            halo: facts.halo(&model).ceil(),
+            buffer: statistics.buffer(&model).ceil(),
             questions: Vec::new(),
             meshes: Vec::new(),
             cleared: Vec::new(),
@@ -216,7 +218,7 @@ impl Plan {
             tiles: Vec::new(),
             low: bounds.low,
             high: bounds.high,
-            facts,
+            statistics,
             blocks: found.blocks,
             frame,
             name: String::new(),
@@ -309,7 +311,7 @@ impl Plan {
 
     /// How balls of tiles are made.
     pub(crate) fn model(&self) -> ModelParams {
-        ModelParams::default().with_facts(Some(Arc::new(self.facts.clone())))
+        ModelParams::default().with_statistics(Some(Arc::new(self.statistics.clone())))
     }
 
     /// Files that may have points in `area`.
@@ -329,7 +331,7 @@ impl Plan {
 
     /// The area whose points a tile needs for its balls.
     pub(crate) fn window(&self, tile: TileId) -> MapArea {
-        self.grid().core(tile).in_blocks().widened(self.halo)
+        self.grid().core(tile).in_blocks().widened(self.buffer)
     }
 
     /// Blocks of 64 m with points that meet `area`.
@@ -408,7 +410,7 @@ impl Plan {
     /// # Errors
     /// [`Error::MissingAttribute`] for a survey whose pulses do not say what vegetation is.
     pub fn with_light_through_trees(self, trees: CrownLight) -> Result<Self> {
-        if !(self.facts.carves && self.facts.measures_crowns) {
+        if !(self.statistics.carves && self.statistics.measures_crowns) {
             return Err(Error::MissingAttribute {
                 attribute: "return numbers and GPS times",
                 needed_for: "knowing which balls are vegetation",
@@ -421,7 +423,7 @@ impl Plan {
     /// Share of the pulses that get through crowns, in the places that the plan looked at.
     #[must_use]
     pub fn share_of_pulses_through_crowns(&self) -> f64 {
-        self.facts.whole.transmission
+        self.statistics.whole.transmission
     }
 
     /// The meshes of what is planned, and far terrain.
@@ -468,7 +470,7 @@ impl Plan {
     fn fitting(mut self, memory: u64) -> Result<Self> {
         let (size, needed) = (self.tile_size, self.estimate().memory_bytes);
         while self.estimate().memory_bytes > memory {
-            if self.tile_size / 2.0 < LEAST_TILE || !self.cells.divide(self.tile_size / 2.0) {
+            if self.tile_size / 2.0 < MIN_TILE || !self.cells.divide(self.tile_size / 2.0) {
                 let megabytes = |bytes: u64| bytes as f64 / 1e6;
                 return Err(Error::InvalidParameter {
                     parameter: Parameter::TileMemory,
@@ -524,7 +526,7 @@ fn inputs(clouds: &[PathBuf]) -> Result<(Vec<InputFile>, Vec<LasHead>)> {
 fn check_sizes(params: &PlanParams) -> Result<()> {
     params.cells.check()?;
     let size = params.tile_size;
-    if !((LEAST_TILE..=LARGEST_TILE).contains(&size) && params.cells.divide(size)) {
+    if !((MIN_TILE..=LARGEST_TILE).contains(&size) && params.cells.divide(size)) {
         let expected = "16 to 8192 m, and a whole number of cells";
         return Err(Error::InvalidParameter { parameter: Parameter::TileSize, value: format!("{size} m"), expected });
     }
@@ -533,11 +535,11 @@ fn check_sizes(params: &PlanParams) -> Result<()> {
 
 /// The numbers of a plan that must not be anything.
 fn check_numbers(plan: &Plan) -> Option<()> {
-    let finite = plan.frame.origin.iter().chain(&plan.frame.metres_per_unit).chain([&plan.halo, &plan.tile_size]);
+    let finite = plan.frame.origin.iter().chain(&plan.frame.metres_per_unit).chain([&plan.buffer, &plan.tile_size]);
     let sizes = PlanParams { tile_size: plan.tile_size, cells: plan.cells.clone(), ..PlanParams::default() };
     let are_whole = plan.inputs.iter().all(InputFile::has_sound_pieces);
     let are_sorted = plan.blocks.windows(2).all(|pair| pair[0].at < pair[1].at);
     let is_sound =
-        finite.clone().all(|v| v.is_finite()) && plan.halo > 0.0 && plan.halo < 1e4 && are_sorted && are_whole;
+        finite.clone().all(|v| v.is_finite()) && plan.buffer > 0.0 && plan.buffer < 1e4 && are_sorted && are_whole;
     (is_sound && plan.has_sound_areas(plan.frame.origin) && check_sizes(&sizes).is_ok()).then_some(())
 }

@@ -11,7 +11,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 /// Largest record that is believed, bytes.
-const MOST_BYTES: u64 = 1 << 26;
+const MAX_BYTES: u64 = 1 << 26;
 
 /// A step of the run of a tile.
 #[derive(Clone, Copy, Debug)]
@@ -90,8 +90,8 @@ pub struct TileRecord {
     /// Balls that were made, or that could matter for the answer.
     pub balls: usize,
     /// Most balls that were held at a time for an answer.
-    #[serde(default, skip_serializing_if = "is_zero")]
-    pub most_balls: usize,
+    #[serde(rename = "most_balls", default, skip_serializing_if = "is_zero")]
+    pub max_balls: usize,
     /// Cells that are asked about.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub cells: usize,
@@ -124,7 +124,7 @@ impl TileRecord {
     /// The record of a tile in a run; `None` where there is none that belongs to the plan.
     pub(crate) fn read(plan: &Plan, run: &Path, stage: Stage<'_>, tile: TileId) -> Option<Self> {
         let path = stage.record(run, tile);
-        if std::fs::metadata(&path).ok()?.len() > MOST_BYTES {
+        if std::fs::metadata(&path).ok()?.len() > MAX_BYTES {
             return None;
         }
         let record: Self = serde_json::from_slice(&std::fs::read(&path).ok()?).ok()?;

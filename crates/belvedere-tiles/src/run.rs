@@ -48,7 +48,7 @@ pub struct RunParams<'a> {
     pub steps: Steps,
     /// Most balls that are held at a time for an answer; no answer depends on it. `None` for as many as take no more memory than
     /// making the balls of the largest tile.
-    pub most_balls: Option<usize>,
+    pub max_balls: Option<usize>,
     /// Seconds on a clock of the program, for records; the library has none.
     pub seconds: &'a dyn Fn() -> f64,
 }
@@ -69,7 +69,8 @@ pub struct RunReport {
     /// Of these, cells near the edge of the survey.
     pub cells_near_edge: usize,
     /// Most balls that were held at a time for an answer.
-    pub most_balls: usize,
+    #[serde(rename = "most_balls")]
+    pub max_balls: usize,
     /// Observers of viewsheds that stand inside an obstacle, and see nothing.
     pub skipped_observers: usize,
     /// Results that were damaged or gone, and were made again.
@@ -125,17 +126,17 @@ pub fn run(plan: &Plan, folder: &Path, params: &RunParams<'_>, control: &Control
         work.balls(tile)?;
     }
     let questions = if params.steps == Steps::All { &plan.questions[..] } else { &[] };
-    let most_balls = params.most_balls.unwrap_or_else(|| plan.balls_at_a_time());
+    let max_balls = params.max_balls.unwrap_or_else(|| plan.balls_at_a_time());
     let others = if questions.is_empty() { Others::none() } else { plan.others()? };
-    let mut prepared = Vec::new();
+    let mut ready = Vec::new();
     for question in questions {
-        prepared.push((plan.cells.of(question), question, question.prepare(plan.trees, control)?));
+        ready.push((plan.cells.of(question), question, question.prepare(plan.trees, control)?));
     }
     // those on cells of one size follow each other and share the surface of a tile
-    prepared.sort_by(|a, b| a.0.total_cmp(&b.0));
+    ready.sort_by(|a, b| a.0.total_cmp(&b.0));
     for tile in own() {
         let mut last = None;
-        for (cell, question, asked) in &prepared {
+        for (cell, question, prepared) in &ready {
             if !plan.has_cells(tile, *cell) {
                 continue;
             }
@@ -149,10 +150,10 @@ pub fn run(plan: &Plan, folder: &Path, params: &RunParams<'_>, control: &Control
             // other shares may not have come to them
             let core = plan.grid().core(tile);
             let lowest = plan.lowest_of_cells(tile, *cell);
-            for other in tiles(plan, &AreaLines::of(asked, core, lowest)) {
+            for other in tiles(plan, &AreaLines::of(prepared, core, lowest)) {
                 work.missing_balls(other)?;
             }
-            let task = TileTask { question, asked, others: &others, most_balls };
+            let task = TileTask { question, prepared, others: &others, max_balls };
             work.answer(task, tile, &mut last)?;
         }
     }
@@ -207,7 +208,7 @@ impl RunWork<'_> {
         self.report.unproven_cells += record.unproven_cells;
         self.report.count_edge(&record);
         self.report.damaged.extend(record.damaged);
-        self.report.most_balls = self.report.most_balls.max(record.most_balls);
+        self.report.max_balls = self.report.max_balls.max(record.max_balls);
         self.report.skipped_observers = self.report.skipped_observers.max(record.skipped_observers);
         Ok(())
     }

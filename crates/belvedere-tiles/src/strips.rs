@@ -4,20 +4,20 @@
 //! far: so most of what stands far away never needs to be looked at, let alone indexed.
 
 use crate::grid::{MapArea, TOP_SIDE, square_area, square_at};
-use crate::lines::{MOST_BALL, ROOM};
+use crate::lines::{MAX_BALL, ROOM};
 use belvedere::query::FreeLines;
 use rayon::prelude::*;
 use std::collections::HashMap;
 
 /// Least width of a strip, metres, and most strips of a direction.
 const WIDTH: f64 = 4.0;
-const MOST_STRIPS: f64 = 1024.0;
+const MAX_STRIPS: f64 = 1024.0;
 /// Slope in place of that of lines that are steeper, metres of height for each metre on the map: in the highest scene they move by less than [`ROOM`].
 const STEEPEST: f64 = 1e6;
 /// Slope below which lines reach far: 11 degrees.
 const LOW_SLOPE: f64 = 0.2;
 /// Lines of these up to which each has its own start, and neighbours that share one where lines are steeper.
-const MOST_STARTS: usize = 1 << 24;
+const MAX_STARTS: usize = 1 << 24;
 const NEIGHBOURS: usize = 256;
 /// Directions handed to a thread at once.
 const TOGETHER: usize = 64;
@@ -25,7 +25,7 @@ const TOGETHER: usize = 64;
 const PARTS: i32 = 2;
 const CELL: f64 = TOP_SIDE / PARTS as f64;
 /// Radii up to which balls are looked up together, metres.
-const RADII: [f64; 2] = [1.0, MOST_BALL];
+const RADII: [f64; 2] = [1.0, MAX_BALL];
 
 /// The lines of sight in one direction.
 struct DirectionLines {
@@ -59,7 +59,7 @@ impl Strips {
     /// No lines yet, in `directions` from targets over an area.
     pub(crate) fn new(directions: &[[f64; 3]], targets: &MapArea) -> Self {
         let extent = (targets.high[0] - targets.low[0]).hypot(targets.high[1] - targets.low[1]);
-        let width = WIDTH.max(extent / MOST_STRIPS);
+        let width = WIDTH.max(extent / MAX_STRIPS);
         Self {
             width,
             courses: directions.iter().map(|direction| DirectionLines::new(*direction, targets, width)).collect(),
@@ -73,7 +73,7 @@ impl Strips {
             courses.filter(|(column, _)| columns.binary_search(column).is_ok()).collect();
         let low_count = looked_up.iter().filter(|(_, course)| course.is_low()).count();
         // where lines reach far each has its own start
-        let of_low = (free.target_count() * low_count).div_ceil(MOST_STARTS);
+        let of_low = (free.target_count() * low_count).div_ceil(MAX_STARTS);
         looked_up.par_chunks_mut(TOGETHER).for_each(|courses| {
             for (is_low, together) in [(true, of_low), (false, NEIGHBOURS)] {
                 let (columns, mut courses): (Vec<usize>, Vec<&mut DirectionLines>) = courses
@@ -97,39 +97,39 @@ impl Strips {
         let squares: Vec<(MapArea, f64)> =
             tops.iter().map(|&(number, top)| (square_area(number, TOP_SIDE), f64::from(top))).collect();
         let meets =
-            |course: &DirectionLines| squares.iter().any(|(area, top)| *top >= course.least_top(area, self.width));
+            |course: &DirectionLines| squares.iter().any(|(area, top)| *top >= course.min_top(area, self.width));
         let courses = self.courses.par_iter().enumerate();
         courses.filter(|(_, course)| meets(course)).map(|(column, _)| column).collect()
     }
 
     /// How high balls on squares of 16 m with the highest `tops` must be to block a line in the directions of any of `columns`.
-    pub(crate) fn least_tops(&self, columns: &[usize], tops: &[([i32; 2], f32)]) -> LeastTops {
+    pub(crate) fn min_tops(&self, columns: &[usize], tops: &[([i32; 2], f32)]) -> MinTops {
         let courses: Vec<&DirectionLines> = columns.iter().filter_map(|&column| self.courses.get(column)).collect();
-        let least = |area: &MapArea| {
-            courses.iter().map(|course| course.least_top(area, self.width)).fold(f64::INFINITY, f64::min)
+        let min = |area: &MapArea| {
+            courses.iter().map(|course| course.min_top(area, self.width)).fold(f64::INFINITY, f64::min)
         };
         let of_square = |&(number, top): &([i32; 2], f32)| {
-            let reached = f64::from(top) >= least(&square_area(number, TOP_SIDE).widened(MOST_BALL));
+            let reached = f64::from(top) >= min(&square_area(number, TOP_SIDE).widened(MAX_BALL));
             // numbers in a damaged record may be any
             let [east, north] = number.map(|number| number.wrapping_mul(PARTS));
             let cells =
                 (0..PARTS * PARTS).map(move |part| [east.wrapping_add(part % PARTS), north.wrapping_add(part / PARTS)]);
-            let with_least = move |cell| (cell, RADII.map(|radius| least(&square_area(cell, CELL).widened(radius))));
-            cells.filter(move |_| reached).map(with_least)
+            let with_min = move |cell| (cell, RADII.map(|radius| min(&square_area(cell, CELL).widened(radius))));
+            cells.filter(move |_| reached).map(with_min)
         };
-        LeastTops(tops.par_iter().flat_map_iter(of_square).collect())
+        MinTops(tops.par_iter().flat_map_iter(of_square).collect())
     }
 }
 
 /// How high balls must be to block a line: by the cell of their centre, those of small and those of any radius. In other cells none blocks.
-pub(crate) struct LeastTops(HashMap<[i32; 2], [f64; 2]>);
+pub(crate) struct MinTops(HashMap<[i32; 2], [f64; 2]>);
 
-impl LeastTops {
+impl MinTops {
     pub(crate) fn may_block(&self, [x, y, z]: [f32; 3], radius: f32) -> bool {
         let radius = f64::from(radius);
-        let Some(kind) = RADII.iter().position(|most| radius <= *most) else { return true };
-        let least = self.0.get(&square_at([x, y], CELL));
-        least.is_some_and(|least| f64::from(z) + radius >= least[kind])
+        let Some(kind) = RADII.iter().position(|max| radius <= *max) else { return true };
+        let min = self.0.get(&square_at([x, y], CELL));
+        min.is_some_and(|min| f64::from(z) + radius >= min[kind])
     }
 }
 
@@ -177,7 +177,7 @@ impl DirectionLines {
     }
 
     /// How high something over `area` must be to block a line, local metres.
-    fn least_top(&self, area: &MapArea, width: f64) -> f64 {
+    fn min_top(&self, area: &MapArea, width: f64) -> f64 {
         let [[near, far], [left, right]] = self.spans(area);
         let met = self.strips.get(self.met([left - ROOM, right + ROOM], width)).unwrap_or_default();
         let ahead = met.iter().filter(|strip| far >= strip.start - ROOM);
@@ -223,8 +223,8 @@ mod tests {
                 separation_angles: vec![1.0; 2000],
             };
             let tops = tops(&balls);
-            let least_tops = strips.least_tops(&strips.meeting(&tops), &tops);
-            let may_block = |row: &usize| least_tops.may_block(balls.centers[*row], balls.radii[*row]);
+            let min_tops = strips.min_tops(&strips.meeting(&tops), &tops);
+            let may_block = |row: &usize| min_tops.may_block(balls.centers[*row], balls.radii[*row]);
             let rows: Vec<usize> = (0..2000).filter(may_block).collect();
             let blocks = |row: usize| {
                 let (center, radius) = (balls.centers[row].map(f64::from), f64::from(balls.radii[row]));

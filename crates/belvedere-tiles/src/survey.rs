@@ -12,7 +12,7 @@ use std::collections::{BTreeMap, HashMap};
 use std::path::PathBuf;
 
 /// Most points of the sample along flight lines.
-const MOST_SAMPLED: u64 = 4_000_000;
+const MAX_SAMPLED: u64 = 4_000_000;
 /// Places whose points are all kept, along each side of the survey, and their side, metres.
 const PLACES: u32 = 5;
 const PLACE_M: f64 = 40.0;
@@ -66,7 +66,7 @@ pub(crate) fn survey(
     area: &MapArea,
     control: &Control<'_>,
 ) -> Result<SurveyOverview> {
-    let every = point_count.div_ceil(MOST_SAMPLED).max(1);
+    let every = point_count.div_ceil(MAX_SAMPLED).max(1);
     let places = places(area);
     let mut blocks: BTreeMap<[i32; 2], PointCounts> = BTreeMap::new();
     let frame = options.frame.clone().unwrap_or_default();

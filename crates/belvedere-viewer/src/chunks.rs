@@ -9,7 +9,7 @@ use std::ops::Range;
 /// Side of a square, metres: 16 bits then part it in steps of 2 mm.
 const SIDE: f32 = 128.0;
 /// Most points of a chunk, so that pictures appear while others are on their way.
-const MOST: usize = 250_000;
+const MAX: usize = 250_000;
 /// Points of the first chunk of a square with many: these come before all others, so that the whole cloud is seen at once.
 const FIRST: usize = 20_000;
 /// A square has many points from so many times [`FIRST`] on.
@@ -103,14 +103,14 @@ impl Chunks {
     }
 
     /// At most so many points, the same share of each chunk.
-    pub(crate) fn sample(self, most: usize) -> Self {
-        if self.rows.len() <= most {
+    pub(crate) fn sample(self, max: usize) -> Self {
+        if self.rows.len() <= max {
             return self;
         }
-        let mut rows = Vec::with_capacity(most);
+        let mut rows = Vec::with_capacity(max);
         let sampled = |chunk: &PointChunk| {
             let first = rows.len();
-            rows.extend_from_slice(self.share(chunk, most));
+            rows.extend_from_slice(self.share(chunk, max));
             PointChunk { points: first..rows.len(), ..chunk.clone() }
         };
         let chunks = self.chunks.iter().map(sampled).collect();
@@ -118,13 +118,13 @@ impl Chunks {
     }
 
     /// Rows in the cloud of at most so many points, the same share of each chunk.
-    pub(crate) fn sampled_rows(&self, most: usize) -> impl Iterator<Item = u32> {
-        self.chunks.iter().flat_map(move |chunk| self.share(chunk, most)).copied()
+    pub(crate) fn sampled_rows(&self, max: usize) -> impl Iterator<Item = u32> {
+        self.chunks.iter().flat_map(move |chunk| self.share(chunk, max)).copied()
     }
 
-    fn share(&self, chunk: &PointChunk, most: usize) -> &[u32] {
+    fn share(&self, chunk: &PointChunk, max: usize) -> &[u32] {
         let whole = self.rows.len().max(1);
-        &self.rows[chunk.points.start..chunk.points.start + chunk.points.len() * most.min(whole) / whole]
+        &self.rows[chunk.points.start..chunk.points.start + chunk.points.len() * max.min(whole) / whole]
     }
 
     /// Number of points sent.
@@ -148,7 +148,7 @@ impl Chunks {
 /// The points of a square, chunk by chunk.
 fn parts_of(rows: &[u32]) -> impl Iterator<Item = &[u32]> {
     let (first, rest) = rows.split_at(if rows.len() > MANY * FIRST { FIRST } else { 0 });
-    Some(first).into_iter().filter(|first| !first.is_empty()).chain(rest.chunks(MOST))
+    Some(first).into_iter().filter(|first| !first.is_empty()).chain(rest.chunks(MAX))
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "numbers of squares")]

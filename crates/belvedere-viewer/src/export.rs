@@ -21,7 +21,7 @@ use serde_json::{Value, json};
 use std::sync::Arc;
 
 /// Most points of a file: it then has 35 MB, which browsers open in a second.
-const MOST_POINTS: usize = 3_000_000;
+const MAX_POINTS: usize = 3_000_000;
 const ALPHABET: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
 
 /// What a file shows.
@@ -61,7 +61,7 @@ pub fn export(
     params: &ExportParams,
     control: &Control<'_>,
 ) -> Result<(String, ExportReport)> {
-    let chunks = Chunks::new(cloud).sample(MOST_POINTS);
+    let chunks = Chunks::new(cloud).sample(MAX_POINTS);
     let shown = Arc::new(ShownCloud::of(Arc::clone(cloud), chunks));
     let scene = PageScene::new(model, Arc::clone(&shown));
     let mut sent = PointCloud::in_frame(scene.model().frame().clone());

@@ -16,7 +16,6 @@
 //! # Ok::<(), std::io::Error>(())
 //! ```
 
-mod asked_points;
 mod chunks;
 mod export;
 mod guard;
@@ -30,6 +29,7 @@ mod routes;
 mod scene;
 mod scene_text;
 mod server;
+mod target_points;
 
 pub use export::{ExportParams, ExportReport, export};
 pub use loading::Loading;

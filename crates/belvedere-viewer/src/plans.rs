@@ -13,9 +13,9 @@ use std::fmt::Write;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// Plans that are kept: one for each of a few tabs. Each holds as much as the scene.
-const MOST_PLANS: usize = 4;
+const MAX_PLANS: usize = 4;
 /// Meshes that are kept.
-const MOST_MESHES: usize = 16;
+const MAX_MESHES: usize = 16;
 /// File in which the drawn buildings are saved, and that in which the cleared areas are.
 const BUILDINGS: &str = "planned.obj";
 const AREAS: &str = "cleared.geojson";
@@ -85,8 +85,8 @@ impl Plans {
     pub(crate) fn load(&self, name: &str, bytes: &[u8], frame: &Frame) -> Result<usize, Refusal> {
         let (mesh, _) = read_mesh_in(Source::bytes(name, bytes), &frame.crs)?;
         let mut kept = self.kept();
-        if kept.meshes.len() >= MOST_MESHES {
-            return Err(Refusal(format!("No more than {MOST_MESHES} meshes can be loaded: start the program again.")));
+        if kept.meshes.len() >= MAX_MESHES {
+            return Err(Refusal(format!("No more than {MAX_MESHES} meshes can be loaded: start the program again.")));
         }
         kept.meshes.push((name.to_owned(), Arc::new(mesh)));
         Ok(kept.meshes.len() - 1)
@@ -146,7 +146,7 @@ impl Plans {
             files,
             added: meshes.into_iter().map(|(_, mesh)| mesh).collect(),
         });
-        if kept.plans.len() >= MOST_PLANS {
+        if kept.plans.len() >= MAX_PLANS {
             kept.plans.remove(0);
         }
         kept.plans.push(Arc::clone(&planned));

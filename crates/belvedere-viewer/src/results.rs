@@ -17,13 +17,13 @@ const NONE: u8 = 255;
 /// Byte of the greatest value.
 const GREATEST: f32 = 253.0;
 /// Most cells of a raster that are sent; of larger ones every second, third … row and column is.
-const MOST_CELLS: usize = 4_000_000;
+const MAX_CELLS: usize = 4_000_000;
 /// How far above the ground cells are drawn, metres: high enough for points that scatter around it. Lines are drawn above cells.
 const ABOVE: f64 = 0.15;
 const LINES_ABOVE: f64 = 0.6;
 /// Piece of a line that follows the ground, metres, and most of them.
 const PIECE: f64 = 2.0;
-const MOST_PIECES: f64 = 1e4;
+const MAX_PIECES: f64 = 1e4;
 /// Height of a pin that marks a point, metres.
 const PIN: f64 = 4.0;
 
@@ -174,7 +174,7 @@ impl OnGround {
 fn cells(raster: &PlacedRaster, frame: &Frame, on_ground: &OnGround) -> QuestionReply {
     let Some(place) = &raster.place else { return layer(&[], &[], None) };
     let (width, height) = (raster.values.width(), raster.values.height());
-    let stride = (1..).find(|stride| width.div_ceil(*stride) * height.div_ceil(*stride) <= MOST_CELLS).unwrap_or(1);
+    let stride = (1..).find(|stride| width.div_ceil(*stride) * height.div_ceil(*stride) <= MAX_CELLS).unwrap_or(1);
     let (mut positions, mut values) = (Vec::new(), Vec::new());
     for row in (0..height).step_by(stride) {
         for column in (0..width).step_by(stride) {
@@ -207,11 +207,10 @@ fn layer(positions: &[[f32; 3]], columns: &[(String, Vec<f32>)], size: Option<f6
     let mut described = Vec::new();
     for (name, values) in columns {
         let finite = values.iter().copied().filter(|value| value.is_finite());
-        let [least, greatest] =
-            finite.clone().fold([f32::INFINITY, f32::NEG_INFINITY], |[a, b], v| [a.min(v), b.max(v)]);
+        let [min, greatest] = finite.clone().fold([f32::INFINITY, f32::NEG_INFINITY], |[a, b], v| [a.min(v), b.max(v)]);
         // answers are codes of their own
-        let are_codes = least >= 0.0 && greatest <= 4.0 && finite.into_iter().all(|value| value.fract() == 0.0);
-        let (from, to) = if are_codes { (0.0, GREATEST) } else { (least, greatest.max(least + f32::MIN_POSITIVE)) };
+        let are_codes = min >= 0.0 && greatest <= 4.0 && finite.into_iter().all(|value| value.fract() == 0.0);
+        let (from, to) = if are_codes { (0.0, GREATEST) } else { (min, greatest.max(min + f32::MIN_POSITIVE)) };
         body.extend(values.iter().map(|&value| {
             #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 253")]
             let byte = ((value - from) / (to - from) * GREATEST).round() as u8;
@@ -220,7 +219,7 @@ fn layer(positions: &[[f32; 3]], columns: &[(String, Vec<f32>)], size: Option<f6
         described.push(json!({
             "name": name,
             "are_codes": are_codes,
-            "least": least.is_finite().then_some(least),
+            "least": min.is_finite().then_some(min),
             "greatest": greatest.is_finite().then_some(greatest),
         }));
     }
@@ -252,11 +251,8 @@ fn line(corners: &[[f64; 3]], local: &dyn Fn(&[f64; 3]) -> [f64; 3], on_ground: 
         let [a, b] = [&pair[0], &pair[1]].map(local);
         let is_flat = pair.iter().any(|corner| !corner[2].is_finite());
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped")]
-        let count = if is_flat {
-            ((b[0] - a[0]).hypot(b[1] - a[1]) / PIECE).ceil().clamp(1.0, MOST_PIECES) as usize
-        } else {
-            1
-        };
+        let count =
+            if is_flat { ((b[0] - a[0]).hypot(b[1] - a[1]) / PIECE).ceil().clamp(1.0, MAX_PIECES) as usize } else { 1 };
         let at = |part: usize| -> [f64; 3] {
             let share = part as f64 / count as f64;
             let [x, y, z] = std::array::from_fn(|i| a[i] + share * (b[i] - a[i]));

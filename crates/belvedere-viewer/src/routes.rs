@@ -24,13 +24,13 @@ use std::time::Duration;
 use tokio::sync::Semaphore;
 
 /// Most bytes of a question: a polygon with a thousand corners.
-const MOST_BYTES: usize = 65_536;
+const MAX_BYTES: usize = 65_536;
 /// Most bytes of a mesh that is loaded.
-const MOST_MESH_BYTES: usize = 32 << 20;
+const MAX_MESH_BYTES: usize = 32 << 20;
 /// How long the rest of a request may take.
 const PATIENCE: Duration = Duration::from_secs(10);
 /// Questions that wait or are answered; more are refused.
-const MOST_QUESTIONS: usize = 24;
+const MAX_QUESTIONS: usize = 24;
 /// The page may load what is its own, and nothing else; nobody may show it in a frame.
 const POLICY: &str = "default-src 'self'; img-src 'self' blob: data:; style-src 'self' 'unsafe-inline'; frame-ancestors 'none'; base-uri 'none'; form-action 'none'";
 
@@ -51,7 +51,7 @@ pub(crate) fn app(guard: Arc<Guard>, loading: Loading, params: &ViewerParams) ->
         text: params.scene.clone(),
         title: params.title.clone(),
         turn: Arc::new(Semaphore::new(1)),
-        places: Arc::new(Semaphore::new(MOST_QUESTIONS)),
+        places: Arc::new(Semaphore::new(MAX_QUESTIONS)),
         plans: Arc::default(),
     };
     Router::new()
@@ -67,7 +67,7 @@ pub(crate) fn app(guard: Arc<Guard>, loading: Loading, params: &ViewerParams) ->
         .route("/{token}/plans/{plan}/ask/{question}", post(ask_of_plan))
         .route("/{token}/plan-meshes/{name}", post(plan_mesh))
         .fallback(|| async { refused(StatusCode::NOT_FOUND, "there is nothing at this address") })
-        .layer(DefaultBodyLimit::max(MOST_BYTES))
+        .layer(DefaultBodyLimit::max(MAX_BYTES))
         .layer(from_fn_with_state(guard, check))
         .layer(from_fn(with_headers))
         .with_state(Arc::new(shared))
@@ -185,7 +185,7 @@ async fn answer(
     name: String,
     request: Request,
 ) -> Response {
-    let body = match body(request, "application/json", MOST_BYTES).await {
+    let body = match body(request, "application/json", MAX_BYTES).await {
         Ok(body) => body,
         Err(response) => return response,
     };
@@ -212,7 +212,7 @@ async fn plan_mesh(
     Path((_, name)): Path<(String, String)>,
     request: Request,
 ) -> Response {
-    let body = match body(request, "application/octet-stream", MOST_MESH_BYTES).await {
+    let body = match body(request, "application/octet-stream", MAX_MESH_BYTES).await {
         Ok(body) => body,
         Err(response) => return response,
     };
@@ -225,17 +225,17 @@ async fn plan_mesh(
 }
 
 /// The body of a request of one type, which forms of other pages cannot send.
-async fn body(request: Request, kind: &str, most: usize) -> Result<Bytes, Response> {
+async fn body(request: Request, kind: &str, max: usize) -> Result<Bytes, Response> {
     let is_kind =
         request.headers().get(header::CONTENT_TYPE).is_some_and(|own| own.as_bytes().starts_with(kind.as_bytes()));
     if !is_kind {
         return Err(refused(StatusCode::UNSUPPORTED_MEDIA_TYPE, &format!("this must be sent as {kind}")));
     }
-    match tokio::time::timeout(PATIENCE, axum::body::to_bytes(request.into_body(), most)).await {
+    match tokio::time::timeout(PATIENCE, axum::body::to_bytes(request.into_body(), max)).await {
         Ok(Ok(body)) => Ok(body),
         Ok(Err(_)) => Err(refused(
             StatusCode::PAYLOAD_TOO_LARGE,
-            &format!("what was sent is too long: the most is {} kB", most >> 10),
+            &format!("what was sent is too long: the most is {} kB", max >> 10),
         )),
         Err(_) => Err(refused(StatusCode::REQUEST_TIMEOUT, "what was sent took too long to arrive")),
     }

@@ -1,8 +1,8 @@
 //! What is shown and asked about, with what takes long to make made once.
 
-use crate::asked_points::{AskedPoints, SAMPLE};
 use crate::chunks::Chunks;
 use crate::questions::RoofPlanes;
+use crate::target_points::{SAMPLE, TargetPoints};
 use belvedere::apps::ask::scene::KnownGround;
 use belvedere::apps::ask::{self, GridCells, North, SunPlace};
 use belvedere::apps::eyes::fault_of;
@@ -26,12 +26,12 @@ pub(crate) struct ShownCloud {
 
 /// The scene that questions are put to, with what the page shows of it.
 pub(crate) struct PageScene {
-    pub(crate) asked: ask::Scene,
+    pub(crate) inner: ask::Scene,
     pub(crate) shown: Arc<ShownCloud>,
     /// For each point that is shown its row among those that are there; `None` where no plan clears any.
     rows_there: Option<Vec<u32>>,
-    points: LazyResult<AskedPoints>,
-    sample: LazyResult<AskedPoints>,
+    points: LazyResult<TargetPoints>,
+    sample: LazyResult<TargetPoints>,
     roofs: LazyResult<RoofPlanes>,
 }
 
@@ -106,9 +106,9 @@ impl PageScene {
         Self::of(ask::Scene::new(model, cloud), shown)
     }
 
-    fn of(asked: ask::Scene, shown: Arc<ShownCloud>) -> Self {
+    fn of(inner: ask::Scene, shown: Arc<ShownCloud>) -> Self {
         Self {
-            asked,
+            inner,
             shown,
             rows_there: None,
             points: LazyResult::new(),
@@ -118,7 +118,7 @@ impl PageScene {
     }
 
     pub(crate) fn model(&self) -> &SceneModel {
-        self.asked.model()
+        self.inner.model()
     }
 
     /// The scene with a plan: what stands in areas is cleared, then meshes in metres are added.
@@ -129,7 +129,7 @@ impl PageScene {
         control: &Control<'_>,
     ) -> Result<(Self, ClearReport)> {
         let (mut model, mut report) = (self.model().clone(), ClearReport::default());
-        let own = self.asked.cloud();
+        let own = self.inner.cloud();
         let mut cloud = Arc::clone(own);
         for area in areas {
             let (cleared, kept, of_area) = model.without(area, &cloud, control)?;
@@ -143,8 +143,8 @@ impl PageScene {
         let rows_there = (cloud.len() < own.len()).then(|| rows_there(own, &cloud));
         // the pulses are indexed once for all plans
         let proof = self.blockers(UnprovenAs::Reported, control)?.proof().cloned();
-        let asked = ask::Scene::new(model, cloud).with_proof(proof);
-        Ok((Self { rows_there, ..Self::of(asked, Arc::clone(&self.shown)) }, report))
+        let inner = ask::Scene::new(model, cloud).with_proof(proof);
+        Ok((Self { rows_there, ..Self::of(inner, Arc::clone(&self.shown)) }, report))
     }
 
     /// A byte for each point in the order in which points are sent: 1 for one that the plan clears.
@@ -159,7 +159,7 @@ impl PageScene {
     pub(crate) fn prepare(&self) {
         let control = Control::none();
         let _ = self.blockers(UnprovenAs::Visible, &control);
-        if !self.asked.cloud().is_empty() {
+        if !self.inner.cloud().is_empty() {
             let _ = self.ground(&control);
             let _ = self.points(PointChoice::Sample, &control);
             let _ = self.points(PointChoice::All, &control);
@@ -187,12 +187,12 @@ impl PageScene {
 
     /// What blocks lines of sight. Pulses are left out where they make no difference.
     pub(crate) fn blockers(&self, unproven: UnprovenAs, control: &Control<'_>) -> Result<Arc<MedialScene>> {
-        self.asked.blockers(unproven, control)
+        self.inner.blockers(unproven, control)
     }
 
     /// The points of the cloud, which the questions about all of it need.
     pub(crate) fn cloud(&self) -> Result<&PointCloud> {
-        let cloud = self.asked.cloud();
+        let cloud = self.inner.cloud();
         if cloud.is_empty() {
             return Err(Error::NoPoints { what: "a ball file has none; open it together with its cloud".to_owned() });
         }
@@ -200,7 +200,7 @@ impl PageScene {
     }
 
     /// The points that a question about all of the cloud asks about.
-    pub(crate) fn points(&self, points: PointChoice, control: &Control<'_>) -> Result<Arc<AskedPoints>> {
+    pub(crate) fn points(&self, points: PointChoice, control: &Control<'_>) -> Result<Arc<TargetPoints>> {
         let cloud = self.cloud()?;
         let chunks = &self.shown.chunks;
         let place = |row: u32| match &self.rows_there {
@@ -208,14 +208,14 @@ impl PageScene {
             None => Some(row),
         };
         match points {
-            PointChoice::All => self.points.get(|| Ok(AskedPoints::all(cloud, chunks, place))),
-            PointChoice::Sample => self.sample.get(|| AskedPoints::sample(cloud, chunks, place, control)),
+            PointChoice::All => self.points.get(|| Ok(TargetPoints::all(cloud, chunks, place))),
+            PointChoice::Sample => self.sample.get(|| TargetPoints::sample(cloud, chunks, place, control)),
         }
     }
 
     /// The ground of the cloud on the grid that the command line takes.
     pub(crate) fn ground(&self, control: &Control<'_>) -> Result<Arc<KnownGround>> {
-        self.asked.ground(GridCells::default().grid(&self.asked)?, GroundPoints::Auto, control)
+        self.inner.ground(GridCells::default().grid(&self.inner)?, GroundPoints::Auto, control)
     }
 
     /// The planes of roofs.
@@ -225,14 +225,14 @@ impl PageScene {
 
     /// Where the scene lies on earth.
     pub(crate) fn site(&self) -> Result<Site> {
-        Ok(SunPlace::default().site_of(self.asked.frame(), &self.model().bounds(), None)?.0)
+        Ok(SunPlace::default().site_of(self.inner.frame(), &self.model().bounds(), None)?.0)
     }
 
     /// Azimuth of grid north from true north at a local place, or at the middle of the scene; grid north counts where true north is
     /// unknown.
     pub(crate) fn grid_north(&self, place: Option<[f64; 3]>) -> f64 {
-        let place = place.map_or_else(|| self.asked.middle(), |place| [place[0], place[1]]);
-        North::True.at(&self.asked, place).of_grid
+        let place = place.map_or_else(|| self.inner.middle(), |place| [place[0], place[1]]);
+        North::True.at(&self.inner, place).of_grid
     }
 
     /// Refuses an eye that cannot look, in words.

@@ -15,7 +15,7 @@ use tokio::runtime::Runtime;
 use tokio::sync::Semaphore;
 
 /// Connections at once: a browser opens six for each tab. Others wait.
-const MOST_CONNECTIONS: usize = 256;
+const MAX_CONNECTIONS: usize = 256;
 /// How long the head of a request may take, and a connection may rest before the next.
 const PATIENCE: Duration = Duration::from_secs(15);
 /// Threads that serve; questions have their own.
@@ -94,7 +94,7 @@ impl Drop for PageServer {
 }
 
 async fn accept(listener: TcpListener, app: axum::Router) {
-    let places = Arc::new(Semaphore::new(MOST_CONNECTIONS));
+    let places = Arc::new(Semaphore::new(MAX_CONNECTIONS));
     loop {
         let Ok(place) = Arc::clone(&places).acquire_owned().await else { return };
         let Ok((stream, _)) = listener.accept().await else {

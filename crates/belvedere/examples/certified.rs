@@ -68,11 +68,11 @@ fn main() -> Result<ExitCode, Box<dyn std::error::Error>> {
             depth_map(balls, view, Profile::Sphere, ItemBuffer::Without, &Control::none())?;
         }
         let plain = start.elapsed();
-        let (mut settled, mut differ, mut visible, mut asked) = (0, 0, 0, 0);
+        let (mut settled, mut differ, mut visible, mut queried) = (0, 0, 0, 0);
         let (mut by_map, mut by_rays) = (0.0, 0.0);
-        while asked < count {
-            let seed = u64::try_from(asked)?;
-            let targets = random_targets(low, high, BATCH.min(count - asked), seed);
+        while queried < count {
+            let seed = u64::try_from(queried)?;
+            let targets = random_targets(low, high, BATCH.min(count - queried), seed);
             let start = Instant::now();
             let (answers, report) = map.answers(&targets, &Control::none())?;
             by_map += start.elapsed().as_secs_f64();
@@ -82,7 +82,7 @@ fn main() -> Result<ExitCode, Box<dyn std::error::Error>> {
             settled += report.settled_count;
             differ += answers.iter().zip(&exact).filter(|(a, b)| a != b).count();
             visible += exact.iter().filter(|&&a| a == Answer::Visible).count();
-            asked += targets.len();
+            queried += targets.len();
         }
         let percent = |n: usize| 100.0 * n as f64 / count as f64;
         let pixels: usize = views.iter().map(|v| v.size_px[0] * v.size_px[1]).sum();

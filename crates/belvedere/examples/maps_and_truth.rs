@@ -92,10 +92,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 let median = errors.get(errors.len() / 2).copied().unwrap_or(f64::NAN);
                 let mut sizes: Vec<f64> = errors.iter().map(|e| e.abs()).collect();
                 sizes.sort_by(f64::total_cmp);
-                let most = sizes.get(sizes.len() * 9 / 10).copied().unwrap_or(f64::NAN);
+                let max = sizes.get(sizes.len() * 9 / 10).copied().unwrap_or(f64::NAN);
                 let percent = |n: usize| 100.0 * n as f64 / count;
                 println!(
-                    "| {spacing} | {pixel} | {name} | {median:.4} | {most:.3} | {:.1} % | {:.1} % | {:.1} % |",
+                    "| {spacing} | {pixel} | {name} | {median:.4} | {max:.3} | {:.1} % | {:.1} % | {:.1} % |",
                     percent(beyond),
                     percent(within),
                     percent(narrow)

@@ -233,7 +233,7 @@ impl ComfortResults {
         context.headline(format!(
             "sun and sky of {count} {} with {} places, {}",
             if count == 1 { kind } else { &kinds },
-            self.targets.asked_count(),
+            self.targets.target_count(),
             days_in_words(&self.schedule, zone)
         ));
         if let Some(factor) = mean("sky_view_factor") {

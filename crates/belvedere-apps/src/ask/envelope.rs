@@ -365,9 +365,9 @@ impl EnvelopeQuestion {
         let (count, unlimited) = (section.columns, section.columns_unlimited.unwrap_or(0));
         let (area, no_room, suns) = (section.area_m2, section.columns_of_zero_height, suns.names.len());
         let heights = section.volume_m3.zip(section.mean_height_m).zip(section.max_height_m);
-        if let Some(((volume, mean), most)) = heights {
+        if let Some(((volume, mean), max)) = heights {
             context.headline(format!("solar envelope for {suns} suns: {volume} m3 on {area} m2"));
-            context.headline(format!("height above the ground: mean {mean} m, highest {most} m"));
+            context.headline(format!("height above the ground: mean {mean} m, highest {max} m"));
         } else {
             context.headline(format!("solar envelope for {suns} suns: {unlimited} of {count} columns without limit"));
         }

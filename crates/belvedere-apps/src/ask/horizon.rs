@@ -102,10 +102,10 @@ impl Ask for HorizonQuestion {
             HorizonParams::default().with_azimuth_count(azimuth_count).with_turn(north.of_grid).with_earth(self.earth);
         let skylines = control
             .stage("computing horizons", eyes.eyes.len(), || horizons(&blockers, &eyes.eyes, &params, control))?;
-        let least = if self.below == BelowLevel::Zero { 0.0 } else { -90.0 };
+        let min = if self.below == BelowLevel::Zero { 0.0 } else { -90.0 };
         let elevations_deg: Vec<Vec<f64>> = skylines
             .iter()
-            .map(|skyline| skyline.iter().map(|point| point.elevation.to_degrees().max(least)).collect())
+            .map(|skyline| skyline.iter().map(|point| point.elevation.to_degrees().max(min)).collect())
             .collect();
         let near_edge = near_edge_percent(scene, &eyes, &skylines, -north.of_grid);
         let section = HorizonsSection::of(&elevations_deg, near_edge);

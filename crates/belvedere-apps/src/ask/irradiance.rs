@@ -232,7 +232,7 @@ fn remark_on(weather: &Weather, site: &Site, context: &mut Context) {
 impl Roofs {
     fn params(&self) -> RoofPlaneParams {
         let usual = RoofPlaneParams::default();
-        usual.with_least_area(self.min_area.unwrap_or(usual.least_area)).with_cell(self.panel.unwrap_or(usual.cell))
+        usual.with_min_area(self.min_area.unwrap_or(usual.min_area)).with_cell(self.panel.unwrap_or(usual.cell))
     }
 
     /// The planes of a scene.

@@ -119,7 +119,7 @@ fn other<T>(parameter: Parameter, value: &str, expected: &'static str) -> Result
 
 /// Leaves out targets outside the cloud, which is reported and warned of.
 pub(super) fn leave_out_outside(targets: &mut Targets, scene: &Scene, context: &mut Context) {
-    let count = targets.asked_count();
+    let count = targets.target_count();
     let outside = scene.model().coverage().map_or(0, |coverage| targets.leave_out_outside(&coverage));
     context.report.places.targets_outside_cloud = Some(outside);
     context.add(remark_on_outside(outside, count, "targets"));
@@ -244,7 +244,7 @@ pub(super) fn test_edge(
     })?;
     let report = EdgeReport::of(&flags);
     context.report.places.edge = Some(report);
-    context.add(remark_on_edge(report.targets_near_edge, targets.asked_count()));
+    context.add(remark_on_edge(report.targets_near_edge, targets.target_count()));
     Ok(flags)
 }
 
@@ -258,7 +258,7 @@ pub fn remark_on_edge(near: usize, count: usize) -> Option<Remark> {
 impl PlacesReport {
     /// Targets in words, such as "14400 cells of 1 m".
     pub(super) fn in_words(targets: &Targets) -> String {
-        let count = targets.asked_count();
+        let count = targets.target_count();
         match &targets.layout {
             TargetLayout::Cells(ground) => format!("{count} cells of {} m", ground.grid.cell),
             TargetLayout::Points => format!("{count} points"),

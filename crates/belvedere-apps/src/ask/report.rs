@@ -389,6 +389,6 @@ pub struct MeasuresSection {
 impl MeasuresSection {
     pub(super) fn of<'a>(targets: &Targets, measures: impl IntoIterator<Item = &'a Measure>) -> Self {
         let spread = measures.into_iter().map(|measure| (measure.name.clone(), measure.rounded_statistics()));
-        Self { targets: targets.asked_count(), spread: NamedValues(spread.collect()) }
+        Self { targets: targets.target_count(), spread: NamedValues(spread.collect()) }
     }
 }

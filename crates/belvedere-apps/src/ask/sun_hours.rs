@@ -97,8 +97,8 @@ impl SunHoursQuestion {
         let mut of_rules = Vec::new();
         for (column, rule) in rules(&self.rules)? {
             let dates = self.days.dates_of(rule.days, site, &zone)?;
-            let least_elevation = self.days.min_sun_elevation_deg.map_or(rule.least_elevation, f64::to_radians);
-            let schedule = schedule(&Period::Days(dates), &params.with_least_elevation(least_elevation))?;
+            let min_elevation = self.days.min_sun_elevation_deg.map_or(rule.min_elevation, f64::to_radians);
+            let schedule = schedule(&Period::Days(dates), &params.with_min_elevation(min_elevation))?;
             of_rules.push((column.to_owned(), rule, schedule));
         }
         let main = match (self.days.period(&self.place, site, &zone)?, of_rules.first()) {

@@ -90,7 +90,7 @@ pub struct ViewshedResults {
     /// Of far terrain, where it was wanted.
     pub far: Option<FarSeen>,
     /// Lowest visible heights above the ground, metres, where they were wanted
-    /// ([`crate::viewshed::least_visible_heights`]).
+    /// ([`crate::viewshed::min_visible_heights`]).
     pub heights: Option<Raster<f32>>,
 }
 

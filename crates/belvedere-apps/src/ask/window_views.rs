@@ -188,9 +188,9 @@ impl Ask for WindowViewsQuestion {
         let kinds = self.kinds(scene, context)?;
         let blockers = scene.blockers(self.unproven.unwrap_or(UnprovenAs::Reported), control)?;
         context.report.lines_of_sight = Some(LinesSection::of(&blockers, None));
-        let count = targets.asked_count();
+        let count = targets.target_count();
         let inside = control.stage("testing targets", 0, || leave_out_walled_up(&mut targets, &blockers, control))?;
-        if targets.asked_count() == 0 {
+        if targets.target_count() == 0 {
             let what = "all are outside the cloud, inside obstacles, or faces of roofs and floors. Are they in the coordinates of the cloud?";
             return Err(Error::NoObserver { who: "window", what: what.to_owned() });
         }
@@ -204,7 +204,7 @@ impl Ask for WindowViewsQuestion {
             let kinds = Kinds { balls: &kinds, meshes: &[] };
             window_views(&blockers, &targets, kinds, &directions, control)
         })?;
-        let proving = if blockers.proof().is_some() { Proving::Asked } else { Proving::NotAsked };
+        let proving = if blockers.proof().is_some() { Proving::Tested } else { Proving::NotTested };
         let measures = view_measures(&views, proving);
         self.sum_up(&views, &measures, context);
         Ok(Answers::new(WindowViewsResults { windows, names, views, grid_north: north.of_grid }, measures))

@@ -20,7 +20,7 @@ const PATIENCE: usize = 12;
 /// Share of the last direction that the next one keeps. Of 0, 0.3, 0.5 and 0.7, the last gave the lowest bound in seven of eight random towns.
 const MEMORY: f64 = 0.7;
 /// Steps below this share of their size at the start move nothing.
-const LEAST_STEP: f64 = 1e-4;
+const MIN_STEP: f64 = 1e-4;
 
 /// What is decided of a candidate.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -117,7 +117,7 @@ impl BranchNode<'_> {
             if self.left == 0 {
                 found.bound = value;
             }
-            if !problem.is_better(found.bound, best.value) || scale < LEAST_STEP || self.left == 0 {
+            if !problem.is_better(found.bound, best.value) || scale < MIN_STEP || self.left == 0 {
                 break;
             }
             let mut size = 0.0;

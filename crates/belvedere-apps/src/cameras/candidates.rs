@@ -17,7 +17,7 @@ pub const ROOF_CAMERA_HEIGHT: f64 = 1.0;
 /// Height of what cameras look at above the ground, metres: the head of a person.
 pub const CAMERA_TARGET_HEIGHT: f64 = 1.5;
 /// Least height of a roof above the ground, metres: lower ones are cars and hedges.
-const LEAST_ROOF: f64 = 2.0;
+const MIN_ROOF: f64 = 2.0;
 
 /// Whether cameras are turned.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -159,7 +159,7 @@ impl MountingParams {
 pub fn ground_places(cloud: &PointCloud, ground: Ground, height: f64, control: &Control<'_>) -> Result<Vec<[f64; 3]>> {
     let (targets, _) = Targets::of_cells(cloud, ground, &CellParams::default().with_height(height), control)?;
     Ok((0..targets.len())
-        .filter(|&row| targets.is_asked(row))
+        .filter(|&row| targets.is_target(row))
         .map(|row| targets.positions[row].map(f64::from))
         .collect())
 }
@@ -181,10 +181,10 @@ pub fn roof_places(cloud: &PointCloud, ground: Ground, height: f64, control: &Co
     let (targets, _) = Targets::of_cells(cloud, ground, &params, control)?;
     let is_roof = |row: usize| {
         let place = targets.positions[row];
-        let is_high = f64::from(place[2] - levels.values()[row]) - height >= LEAST_ROOF;
+        let is_high = f64::from(place[2] - levels.values()[row]) - height >= MIN_ROOF;
         is_high && of_buildings.as_ref().is_none_or(|tops| tops.values()[row] >= highest.values()[row])
     };
-    let rows = (0..targets.len()).filter(|&row| targets.is_asked(row) && is_roof(row));
+    let rows = (0..targets.len()).filter(|&row| targets.is_target(row) && is_roof(row));
     Ok(rows.map(|row| targets.positions[row].map(f64::from)).collect())
 }
 
@@ -204,7 +204,7 @@ pub fn keep_within(targets: &mut Targets, areas: &[WeightedArea]) {
         let place = [position[0], position[1]].map(f64::from);
         let found = areas.iter().filter(|area| is_inside(&area.rings, place)).map(|area| area.weight);
         match found.reduce(f64::max) {
-            Some(most) => *weight = most,
+            Some(max) => *weight = max,
             None => *position = [f32::NAN; 3],
         }
     }
@@ -213,7 +213,7 @@ pub fn keep_within(targets: &mut Targets, areas: &[WeightedArea]) {
 /// How much each target counts for [`super::place_cameras`]: its weight, and 0 for one that is not asked about.
 #[must_use]
 pub fn counted_weights(targets: &Targets) -> Vec<f64> {
-    (0..targets.len()).map(|row| if targets.is_asked(row) { targets.weight(row) } else { 0.0 }).collect()
+    (0..targets.len()).map(|row| if targets.is_target(row) { targets.weight(row) } else { 0.0 }).collect()
 }
 
 #[cfg(test)]
@@ -227,8 +227,8 @@ mod tests {
         let poses = usual.poses_at(&Mount::default()).unwrap();
         assert_eq!(poses.len(), 16);
         assert!((poses[15].heading - 7.0 * TAU / 8.0).abs() < 1e-12 && poses[15].tilt == 0.4);
-        let told = Mount { heading: Some(1.0), tilt: Some(0.2), width: Some(PI), ..Mount::default() };
-        let one = usual.existing_at(&told).unwrap();
+        let existing = Mount { heading: Some(1.0), tilt: Some(0.2), width: Some(PI), ..Mount::default() };
+        let one = usual.existing_at(&existing).unwrap();
         assert_eq!((one.heading, one.tilt, one.camera.picture), (1.0, 0.2, None));
         assert!(usual.existing_at(&Mount { heading: Some(1.0), ..Mount::default() }).is_err());
         // all around, headings are no choice

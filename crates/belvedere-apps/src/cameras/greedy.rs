@@ -79,10 +79,10 @@ pub(super) fn exchange(
             let gain = if is_chosen(&camera) { return None } else { selection.gain(camera) };
             let mut best: Option<(f64, usize)> = None;
             for (place, loss) in losses.iter().enumerate() {
-                let least = best.map_or(TOLERANCE, |(better, _)| better);
-                if gain + loss.tight_worth - loss.worth > least {
+                let min = best.map_or(TOLERANCE, |(better, _)| better);
+                if gain + loss.tight_worth - loss.worth > min {
                     let better = gain + selection.saved(camera, loss) - loss.worth;
-                    if better > least {
+                    if better > min {
                         best = Some((better, place));
                     }
                 }

@@ -13,11 +13,11 @@ const ROUNDS: usize = 80;
 /// How often that is done again with the prices that were found. With 6 in place of 1, selections of random towns are up to 1.8 % better.
 const RESTARTS: usize = 6;
 /// Words, targets and covered pairs that the search may look at, if no limit is given: about half a minute.
-const MOST_LOOKS: usize = 4_000_000_000;
+const MAX_LOOKS: usize = 4_000_000_000;
 /// How often a branch looks at each of them: the rounds of its bound.
 const LOOKS_PER_BRANCH: usize = 40;
 /// Most branches of a search, if no limit is given.
-const MOST_BRANCHES: usize = 20_000;
+const MAX_BRANCHES: usize = 20_000;
 
 /// What cameras are chosen for.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -67,7 +67,7 @@ pub struct Placement {
     /// The share that no selection of as many cameras can exceed.
     pub bound: f64,
     /// The number of new cameras below which no selection reaches the goal; for [`Goal::Coverage`].
-    pub least_count: Option<usize>,
+    pub min_count: Option<usize>,
     /// The share that all candidates together cover.
     pub reachable: f64,
     /// Branches of the search for the optimum.
@@ -92,8 +92,8 @@ impl Placement {
     /// Whether no other selection is better: none covers more, or none needs fewer cameras.
     #[must_use]
     pub fn is_optimal(&self) -> bool {
-        match self.least_count {
-            Some(least) => self.chosen.len() == least,
+        match self.min_count {
+            Some(min) => self.chosen.len() == min,
             None => self.bound <= self.coverage() + TOLERANCE,
         }
     }
@@ -118,7 +118,7 @@ pub fn place_cameras(
     let solver = PlacementSolver::new(&problem, params);
     match params.goal {
         Goal::Count(count) => {
-            let found = solver.most_with(count, &|_, _| false, control)?;
+            let found = solver.best_with(count, &|_, _| false, control)?;
             Ok(solver.placement(&found.best.chosen, found.bound, None, found.branches, control)?)
         }
         Goal::Coverage(share) => solver.fewest_for(share, control),
@@ -149,12 +149,12 @@ impl<'a> PlacementSolver<'a> {
             |fate: CandidateFate| (0..fates.len()).filter(|&camera| fates[camera] == fate).collect::<Vec<usize>>();
         let (cameras, targets) = (problem.table.camera_count(), problem.table.target_count());
         let looks = LOOKS_PER_BRANCH * (problem.table.pair_count() + targets + cameras * targets.div_ceil(64)).max(1);
-        let limit = params.search_limit.unwrap_or((MOST_LOOKS / looks).min(MOST_BRANCHES));
+        let limit = params.search_limit.unwrap_or((MAX_LOOKS / looks).min(MAX_BRANCHES));
         Self { problem, existing: with(CandidateFate::In), candidates: with(CandidateFate::Open), limit, fates }
     }
 
     /// The most that `count` new cameras cover, as far as it is found; stops early where `is_enough` of a value and a bound.
-    fn most_with(
+    fn best_with(
         &self,
         count: usize,
         is_enough: &dyn Fn(f64, f64) -> bool,
@@ -208,32 +208,32 @@ impl<'a> PlacementSolver<'a> {
             best: Best { value: selection.value(), chosen: selection.chosen },
             branches: 0,
         };
-        let (mut least, mut branches) = (0, 0);
+        let (mut min, mut branches) = (0, 0);
         let mut count = best.best.chosen.len() - fixed;
         let mut is_proven_above = false;
         while count > 0 && !is_proven_above {
-            let found = self.most_with(count - 1, &|value, bound| value >= goal || bound < goal, control)?;
+            let found = self.best_with(count - 1, &|value, bound| value >= goal || bound < goal, control)?;
             branches += found.branches;
             count -= 1;
             if found.best.value >= goal {
                 count = found.best.chosen.len() - fixed;
                 best = found;
             } else if found.bound < goal {
-                (is_proven_above, least) = (true, count + 1);
+                (is_proven_above, min) = (true, count + 1);
             } else {
                 break;
             }
         }
         if !is_proven_above {
-            least = self.least_count(count, goal, control)?;
+            min = self.min_count(count, goal, control)?;
         }
         let bound = best.bound.min(reachable);
-        self.placement(&best.best.chosen, bound, Some(least), branches, control)
+        self.placement(&best.best.chosen, bound, Some(min), branches, control)
     }
 
-    /// The least number of cameras, at most `most`, whose bound reaches `goal`: found by halving, for a bound never falls with more cameras.
-    fn least_count(&self, most: usize, goal: f64, control: &Control<'_>) -> Result<usize> {
-        let (mut low, mut high) = (0, most);
+    /// The least number of cameras, at most `max`, whose bound reaches `goal`: found by halving, for a bound never falls with more cameras.
+    fn min_count(&self, max: usize, goal: f64, control: &Control<'_>) -> Result<usize> {
+        let (mut low, mut high) = (0, max);
         while low < high {
             let count = low.midpoint(high);
             let mut selection = CameraSelection::of(self.problem, &self.existing);
@@ -257,7 +257,7 @@ impl<'a> PlacementSolver<'a> {
         &self,
         chosen: &[usize],
         bound: f64,
-        least_count: Option<usize>,
+        min_count: Option<usize>,
         branches: usize,
         control: &Control<'_>,
     ) -> Result<Placement> {
@@ -276,7 +276,7 @@ impl<'a> PlacementSolver<'a> {
             chosen: selection.chosen[fixed..].to_vec(),
             curve,
             bound: bound.min(reachable),
-            least_count,
+            min_count,
             reachable,
             branches,
             counts: selection.counts,

@@ -96,10 +96,10 @@ pub fn coverage(
     control: &Control<'_>,
 ) -> Result<(CoverageTable, CoverageReport)> {
     check_size(cameras.len(), targets.len())?;
-    let asked = TargetQuery { scene, targets, eastward: eastward(targets), params };
+    let query = TargetQuery { scene, targets, eastward: eastward(targets), params };
     let groups: Vec<&[Camera]> = cameras.chunk_by(|a, b| a.eye == b.eye).collect();
     let rows: Vec<(Vec<u64>, CoverageReport)> =
-        groups.par_iter().map(|group| asked.rows(group, control)).collect::<Result<_>>()?;
+        groups.par_iter().map(|group| query.rows(group, control)).collect::<Result<_>>()?;
     let mut report = CoverageReport { fresnel_zone_blocked: params.zone.map(|_| 0), ..CoverageReport::default() };
     for (_, of_group) in &rows {
         if let (Some(all), Some(blocked)) = (&mut report.fresnel_zone_blocked, of_group.fresnel_zone_blocked) {
@@ -166,7 +166,7 @@ struct TargetQuery<'a> {
 fn eastward(targets: &Targets) -> Vec<(f32, u32)> {
     let mut order: Vec<(f32, u32)> = (0..)
         .zip(&targets.positions)
-        .filter(|&(row, _)| targets.is_asked(row as usize))
+        .filter(|&(row, _)| targets.is_target(row as usize))
         .map(|(row, p)| (p[0], row))
         .collect();
     order.par_sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));

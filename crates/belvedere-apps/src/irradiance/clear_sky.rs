@@ -116,8 +116,8 @@ fn ineichen(cosine: f64, absolute: f64, linke: f64, height: f64, extraterrestria
     let ghi = gain * extraterrestrial * cosine * (-loss * absolute * (low + high * (linke - 1.0))).exp();
     let beam = extraterrestrial * (0.664 + 0.163 / low) * (-0.09 * absolute * (linke - 1.0)).exp();
     // of a low sun the first form gives more than all that arrives
-    let most = ghi * ((1.0 - (0.1 - 0.2 * (-linke).exp()) / (0.1 + 0.882 / low)) / cosine).max(0.0);
-    let dni = beam.max(0.0).min(most);
+    let max = ghi * ((1.0 - (0.1 - 0.2 * (-linke).exp()) / (0.1 + 0.882 / low)) / cosine).max(0.0);
+    let dni = beam.max(0.0).min(max);
     Irradiance { ghi, dni, dhi: (ghi - dni * cosine).max(0.0) }
 }
 

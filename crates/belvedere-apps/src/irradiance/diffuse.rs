@@ -70,7 +70,7 @@ const CLASSES: [f64; 7] = [1.065, 1.23, 1.5, 1.95, 2.8, 4.5, 6.2];
 /// Weight of the zenith's cube in the clearness, for angles in radians.
 const KAPPA: f64 = 1.041;
 /// Least cosine of the zenith that Hay & Davies' ratio divides by: a sun of one degree, as in pvlib.
-const HAY_DAVIES_LEAST: f64 = 0.01745;
+const HAY_DAVIES_MIN: f64 = 0.01745;
 
 /// Clearness and brightness of a sky, and the class of its clearness.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -112,7 +112,7 @@ pub fn diffuse_parts(model: SkyModel, irradiance: &Irradiance, zenith: f64, extr
         SkyModel::Isotropic => DiffuseParts { even: dhi, sun: 0.0, horizon: 0.0 },
         SkyModel::HayDavies => {
             let from_sun = if zenith < FRAC_PI_2 { (irradiance.dni / extraterrestrial).clamp(0.0, 1.0) } else { 0.0 };
-            let sun = dhi * from_sun / cosine.max(HAY_DAVIES_LEAST);
+            let sun = dhi * from_sun / cosine.max(HAY_DAVIES_MIN);
             DiffuseParts { even: dhi * (1.0 - from_sun), sun, horizon: 0.0 }
         }
         SkyModel::Perez => {

@@ -13,9 +13,9 @@ use std::f64::consts::FRAC_PI_2;
 /// Parts that rows of weather are cut into by default: of an hour 15 minutes, in which the sun moves 4 degrees.
 pub const PARTS: usize = 4;
 /// Most parts of a row: of an hour half a minute each.
-const MOST_PARTS: usize = 120;
+const MAX_PARTS: usize = 120;
 /// Instants of a clear sky beyond which something is mistyped: 20 years of minutes.
-const MOST_INSTANTS: f64 = 1.1e7;
+const MAX_INSTANTS: f64 = 1.1e7;
 
 /// The rows of `weather` under the sun of `site`, each cut into `parts` of equal length, 1 to 120.
 ///
@@ -27,7 +27,7 @@ const MOST_INSTANTS: f64 = 1.1e7;
 /// [`Error::InvalidParameter`] for a number of parts outside its range, and those of [`Weather::validate`] and [`sun_position`].
 pub fn weather_instants(weather: &Weather, site: &Site, parts: usize) -> Result<Vec<Instant>> {
     weather.validate()?;
-    if !(1..=MOST_PARTS).contains(&parts) {
+    if !(1..=MAX_PARTS).contains(&parts) {
         let value = parts.to_string();
         return Err(Error::InvalidParameter { parameter: Parameter::WeatherParts, value, expected: "1 to 120" });
     }
@@ -76,7 +76,7 @@ pub fn clear_instants(
 ) -> Result<Vec<Instant>> {
     clear_sky.validate()?;
     let count = ((to - from) / step).ceil();
-    if !(step > 0.0 && (1.0..=MOST_INSTANTS).contains(&count)) {
+    if !(step > 0.0 && (1.0..=MAX_INSTANTS).contains(&count)) {
         return Err(Error::InvalidParameter {
             parameter: Parameter::Period,
             value: format!("{from} to {to} in steps of {step} s"),

@@ -67,9 +67,9 @@ const SHAPES: [[[f64; 4]; 5]; 8] = [
 /// Range of brightness that the coefficients were fitted in.
 const BRIGHTNESS: [f64; 2] = [0.01, 0.6];
 /// Least brightness of the classes between overcast and clear, below which the fit gives darkness around the sun.
-const LEAST_BETWEEN: f64 = 0.2;
+const MIN_BETWEEN: f64 = 0.2;
 /// Least height of a place of the sky, since the gradation divides by it.
-const LEAST_UP: f64 = 0.01;
+const MIN_UP: f64 = 0.01;
 
 /// Radiation of each patch of `sky` on a plane that faces it, W/m², (D): its radiance times its solid angle, scaled so that a level plane gets
 /// the diffuse radiation of `irradiance` exactly. `sun` is the unit vector to the sun in the axes of the sky, `zenith` its angle from
@@ -112,7 +112,7 @@ impl RadianceShape {
     fn new(class: usize, brightness: f64, zenith: f64) -> Self {
         let mut brightness = brightness.clamp(BRIGHTNESS[0], BRIGHTNESS[1]);
         if (1..=4).contains(&class) {
-            brightness = brightness.max(LEAST_BETWEEN);
+            brightness = brightness.max(MIN_BETWEEN);
         }
         let [a, b, c, d, e] = SHAPES[class];
         let linear = |k: [f64; 4]| k[0] + k[1] * zenith + brightness * (k[2] + k[3] * zenith);
@@ -128,7 +128,7 @@ impl RadianceShape {
     /// Radiance relative to the others at a height `up`, the sine of its elevation, and a cosine of the angle to the sun.
     fn radiance(&self, up: f64, cosine_to_sun: f64) -> f64 {
         let cosine = cosine_to_sun.clamp(-1.0, 1.0);
-        let gradation = 1.0 + self.a * (self.b / up.max(LEAST_UP)).exp();
+        let gradation = 1.0 + self.a * (self.b / up.max(MIN_UP)).exp();
         let around_sun = 1.0 + self.c * (self.d * cosine.acos()).exp() + self.e * cosine * cosine;
         (gradation * around_sun).max(0.0)
     }

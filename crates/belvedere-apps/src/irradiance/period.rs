@@ -15,7 +15,7 @@ const MONTHS: usize = 12;
 /// Share of direct radiation with the sun below the horizon from which on the times of a file are doubtful.
 const DOUBTFUL: f64 = 0.01;
 /// Sun directions beyond which their bits would fill the memory of a usual machine.
-const MOST_SUN_DIRECTIONS: f64 = 200_000.0;
+const MAX_SUN_DIRECTIONS: f64 = 200_000.0;
 
 /// How the radiation of a period is gathered and falls on planes.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -94,7 +94,7 @@ impl IrradianceParams {
             return invalid(Parameter::Albedo, self.albedo, "0 to 1");
         }
         let cells = 2.0 * TAU / (self.sun_cell * self.sun_cell);
-        if !(self.sun_cell > 0.0 && self.sun_cell <= TAU / 10.0 && cells <= MOST_SUN_DIRECTIONS) {
+        if !(self.sun_cell > 0.0 && self.sun_cell <= TAU / 10.0 && cells <= MAX_SUN_DIRECTIONS) {
             return invalid(Parameter::SunCell, self.sun_cell.to_degrees(), "0.5 to 36");
         }
         Ok(())
@@ -104,7 +104,7 @@ impl IrradianceParams {
 /// Sine of the elevation below which it is night, −12°: within an hour around sunset the sun sinks to here where days are shortest.
 const NIGHT: f64 = -0.208;
 /// Most radiation that sensors show at night, W/m².
-const MOST_AT_NIGHT: f64 = 20.0;
+const MAX_AT_NIGHT: f64 = 20.0;
 
 /// An instant, or a part of an interval, of a period.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -244,7 +244,7 @@ impl PeriodRadiation {
                     patches[patch * group_count + group] += radiation * instant.hours;
                 }
             }
-            if instant.sun[2] < NIGHT && ghi > MOST_AT_NIGHT {
+            if instant.sun[2] < NIGHT && ghi > MAX_AT_NIGHT {
                 report.night_hours += instant.hours;
             }
             if instant.sun[2] <= 0.0 {

@@ -151,7 +151,7 @@ pub fn season_irradiation<'a>(
             Ok(())
         })?;
     }
-    for (_, sums) in sums.chunks_mut(group_count).enumerate().filter(|(row, _)| !targets.is_asked(*row)) {
+    for (_, sums) in sums.chunks_mut(group_count).enumerate().filter(|(row, _)| !targets.is_target(*row)) {
         sums.fill(Irradiation::unknown());
     }
     Ok(sums)

@@ -49,6 +49,6 @@ impl Isovist {
 }
 
 fn statistics(names: [&'static str; 5], ranges: &RadialStatistics) -> [(&'static str, f64, usize); 5] {
-    let values = [ranges.least, ranges.mean, ranges.greatest, ranges.variance, ranges.skewness];
+    let values = [ranges.min, ranges.mean, ranges.greatest, ranges.variance, ranges.skewness];
     std::array::from_fn(|i| (names[i], values[i], 4))
 }

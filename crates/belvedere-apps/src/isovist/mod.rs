@@ -88,7 +88,7 @@ pub struct Isovist {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RadialStatistics {
     /// Least.
-    pub least: f64,
+    pub min: f64,
     /// Mean.
     pub mean: f64,
     /// Greatest.
@@ -111,7 +111,7 @@ impl RadialStatistics {
         // rounding leaves about 1e-16 of the square of the mean where all ranges are equal
         let is_even = variance <= 1e-14 * mean * mean;
         Self {
-            least: weighted.iter().map(|w| w.0).fold(f64::INFINITY, f64::min),
+            min: weighted.iter().map(|w| w.0).fold(f64::INFINITY, f64::min),
             mean,
             greatest: weighted.iter().map(|w| w.0).fold(0.0, f64::max),
             variance,

@@ -22,7 +22,7 @@ use rayon::prelude::*;
 /// Pieces that a landmark is cut into where nothing is said: a share of it is then known to 1.6 % at worst, mostly to much less.
 const USUAL_PIECES: f64 = 1000.0;
 /// Least spacing where nothing is said, metres: balls know walls to about a decimetre.
-const LEAST_SPACING: f64 = 0.25;
+const MIN_SPACING: f64 = 0.25;
 /// Least range that measures are made of, metres: a piece that touches the eye would fill half of its view.
 const NEAREST: f64 = 1e-3;
 
@@ -127,7 +127,7 @@ pub fn observer_cell_for(low: [f64; 2], high: [f64; 2]) -> f64 {
 #[must_use]
 pub fn spacing_for(area: f64) -> f64 {
     // most pieces are half a cell, whose diagonal is the spacing
-    (4.0 * area / USUAL_PIECES).sqrt().max(LEAST_SPACING)
+    (4.0 * area / USUAL_PIECES).sqrt().max(MIN_SPACING)
 }
 
 /// What an eye at `eye`, local metres, sees of `landmark`.

@@ -9,7 +9,7 @@ use belvedere_data::polygon::is_inside;
 use belvedere_data::{Error, PointCloud, Result};
 
 /// Greatest radius of the surface that a point stands for, metres: walls that few pulses reach have points a metre apart.
-const MOST_RADIUS: f64 = 1.0;
+const MAX_RADIUS: f64 = 1.0;
 
 /// Which points of a cloud are the landmark.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -67,6 +67,6 @@ pub fn landmark_points(cloud: &PointCloud, which: &LandmarkPoints<'_>) -> Result
     let points: Vec<[f32; 3]> = rows.iter().filter_map(|&row| cloud.positions.get(row as usize).copied()).collect();
     let index = NeighborIndex::new(&points, &Control::none())?;
     let normals = estimate(&points, &index, Neighborhood::default(), &Control::none())?;
-    let surface = SurfacePieces::of_points(&points, &normals.vectors, MOST_RADIUS, &Control::none())?;
+    let surface = SurfacePieces::of_points(&points, &normals.vectors, MAX_RADIUS, &Control::none())?;
     Ok((rows, surface))
 }

@@ -5,7 +5,7 @@ use belvedere_data::raster::Raster;
 use belvedere_data::vector::{dot, sub};
 
 /// Cells along one side beyond which a plane is none of a building.
-const MOST_CELLS: f64 = 20_000.0;
+const MAX_CELLS: f64 = 20_000.0;
 /// Shares of a side by which cells are shifted to measure an area.
 const SHIFTS: [f64; 4] = [0.125, 0.375, 0.625, 0.875];
 
@@ -98,11 +98,11 @@ fn in_plane(points: &[[f32; 3]], rows: &[u32], plane: &PlaneFit) -> Vec<[f64; 2]
 
 /// Cells that hold points, the first of them `shift` of a side below and left of the outermost; their lower corner, and their side.
 fn filled(flat: &[[f64; 2]], cell: f64, shift: f64) -> (Raster<bool>, [f64; 2], f64) {
-    let least = |axis: usize| flat.iter().map(|p| p[axis]).fold(f64::INFINITY, f64::min);
-    let most = |axis: usize| flat.iter().map(|p| p[axis]).fold(f64::NEG_INFINITY, f64::max);
-    let span = [0, 1].map(|axis| most(axis) - least(axis));
-    let cell = cell.max(span[0].max(span[1]) / MOST_CELLS);
-    let low = [0, 1].map(|axis| least(axis) - shift * cell);
+    let min = |axis: usize| flat.iter().map(|p| p[axis]).fold(f64::INFINITY, f64::min);
+    let max = |axis: usize| flat.iter().map(|p| p[axis]).fold(f64::NEG_INFINITY, f64::max);
+    let span = [0, 1].map(|axis| max(axis) - min(axis));
+    let cell = cell.max(span[0].max(span[1]) / MAX_CELLS);
+    let low = [0, 1].map(|axis| min(axis) - shift * cell);
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "20 000 cells at most")]
     let [width, height] = span.map(|span| (span / cell + shift).floor() as usize + 1);
     let mut filled = Raster::filled(width, height, false);

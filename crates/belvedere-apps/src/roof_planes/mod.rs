@@ -20,7 +20,7 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 pub const BUILDING: u8 = 6;
 
 /// Least side of a cell, metres: points do not tell more, and the cells of a whole town would fill the memory.
-const LEAST_CELL: f64 = 0.1;
+const MIN_CELL: f64 = 0.1;
 
 /// How planes are found.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,9 +34,9 @@ pub struct RoofPlaneParams {
     /// Farthest step from point to point of a plane, metres, above 0. Default 1: what two points a square metre reach over.
     pub reach: f64,
     /// Steepest plane that counts, radians from level, below π/2. Default 75 degrees: walls are no roofs.
-    pub most_tilt: f64,
+    pub max_tilt: f64,
     /// Least area of a plane, m². Default 4: two panels.
-    pub least_area: f64,
+    pub min_area: f64,
     /// Side of the cells that a plane is cut into, metres, 0.1 to 1000. Default 1: the width of a panel.
     pub cell: f64,
 }
@@ -45,8 +45,8 @@ belvedere_data::setters!(RoofPlaneParams {
     with_distance(distance: f64),
     with_angle(angle: f64),
     with_reach(reach: f64),
-    with_most_tilt(most_tilt: f64),
-    with_least_area(least_area: f64),
+    with_max_tilt(max_tilt: f64),
+    with_min_area(min_area: f64),
     with_cell(cell: f64),
 });
 
@@ -56,8 +56,8 @@ impl Default for RoofPlaneParams {
             distance: 0.12,
             angle: 25f64.to_radians(),
             reach: 1.0,
-            most_tilt: 75f64.to_radians(),
-            least_area: 4.0,
+            max_tilt: 75f64.to_radians(),
+            min_area: 4.0,
             cell: 1.0,
         }
     }
@@ -75,7 +75,7 @@ impl RoofPlaneParams {
                 expected: "above 0 to 1000 m",
             });
         }
-        if self.cell < LEAST_CELL {
+        if self.cell < MIN_CELL {
             return Err(Error::InvalidParameter {
                 parameter: Parameter::RoofLength,
                 value: format!("cells of {} m", self.cell),
@@ -83,10 +83,10 @@ impl RoofPlaneParams {
             });
         }
         let is_angle = |v: f64| v > 0.0 && v <= FRAC_PI_2;
-        if !is_angle(self.angle) || !is_angle(self.most_tilt) || !(self.least_area >= 0.0) {
+        if !is_angle(self.angle) || !is_angle(self.max_tilt) || !(self.min_area >= 0.0) {
             return Err(Error::InvalidParameter {
                 parameter: Parameter::RoofAngle,
-                value: format!("{} and {} rad, {} m²", self.angle, self.most_tilt, self.least_area),
+                value: format!("{} and {} rad, {} m²", self.angle, self.max_tilt, self.min_area),
                 expected: "angles above 0 to 90 degrees, an area of 0 or more",
             });
         }
@@ -149,8 +149,8 @@ pub fn roof_planes(points: &[[f32; 3]], params: &RoofPlaneParams, control: &Cont
     // near ridges and eaves few neighbours are on one plane
     let normals = estimate(points, &index, Neighborhood::adaptive(), &Control::none())?;
     let is_roof = |rows: &[u32], fit: &fit::PlaneFit| {
-        let is_flat_enough = fit.normal[2].clamp(-1.0, 1.0).acos() <= params.most_tilt;
-        is_flat_enough && cells::area(points, rows, fit, params.cell) >= params.least_area
+        let is_flat_enough = fit.normal[2].clamp(-1.0, 1.0).acos() <= params.max_tilt;
+        is_flat_enough && cells::area(points, rows, fit, params.cell) >= params.min_area
     };
     let regions = grow::regions(points, &index, &normals, params, is_roof, control)?;
     let room = Room::new(points, &index, &regions, params);

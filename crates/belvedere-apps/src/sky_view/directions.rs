@@ -6,7 +6,7 @@ use std::f64::consts::{PI, TAU};
 /// Patches of each row of Tregenza's sky, from the horizon up; one more lies around the zenith.
 const TREGENZA: [usize; 7] = [30, 30, 24, 24, 18, 12, 6];
 /// Most directions of a sky: their bits of a million targets still fit into the memory of a usual machine.
-const MOST_DIRECTIONS: usize = 100_000;
+const MAX_DIRECTIONS: usize = 100_000;
 
 /// Parts of the upper hemisphere, a direction for each.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,7 +28,7 @@ impl SkyDirections {
     /// # Source
     /// González 2010, Measurement of areas on a sphere using Fibonacci and latitude–longitude lattices.
     pub fn even(count: usize) -> Result<Self> {
-        if !(1..=MOST_DIRECTIONS).contains(&count) {
+        if !(1..=MAX_DIRECTIONS).contains(&count) {
             return Err(Error::InvalidParameter {
                 parameter: Parameter::DirectionCount,
                 value: count.to_string(),

@@ -5,7 +5,7 @@ use belvedere_data::{Error, Mesh, Parameter, Result};
 use std::collections::HashMap;
 
 /// Columns lower than this have no room for anything, metres.
-const LEAST_HEIGHT: f64 = 1e-3;
+const MIN_HEIGHT: f64 = 1e-3;
 
 /// Vertices that are shared where they are the same number for number.
 #[derive(Default)]
@@ -102,7 +102,7 @@ impl SolarEnvelope {
         }
         let mut builder = VertexMerger::default();
         let mut blocks: HashMap<usize, [f64; 2]> = HashMap::new();
-        for column in self.columns.iter().filter(|column| column.height() >= LEAST_HEIGHT) {
+        for column in self.columns.iter().filter(|column| column.height() >= MIN_HEIGHT) {
             if column.footprint.is_whole {
                 blocks.insert(column.footprint.cell, [column.ground, column.top]);
             } else {

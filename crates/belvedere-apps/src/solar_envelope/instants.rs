@@ -4,7 +4,7 @@ use crate::sun::{Date, DayParams, Site, Zone, sun_position_with};
 use belvedere_data::{Error, Parameter, Result};
 
 /// Most instants: three years at 10 minutes.
-const MOST_INSTANTS: usize = 200_000;
+const MAX_INSTANTS: usize = 200_000;
 
 /// A sun that must reach what is protected.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,7 +36,7 @@ pub fn envelope_suns(
     }
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "8640 at most")]
     let count = ((between[1] - between[0]) * 3600.0 / params.step - 1e-9).ceil() as usize;
-    if dates.len().saturating_mul(count + 1) > MOST_INSTANTS {
+    if dates.len().saturating_mul(count + 1) > MAX_INSTANTS {
         return invalid(Parameter::InstantCount, format!("{} x {}", dates.len(), count + 1), "at most 200 000");
     }
     let (mut suns, mut low_count) = (Vec::new(), 0);
@@ -46,7 +46,7 @@ pub fn envelope_suns(
         for i in 0..=count {
             let unix_s = first + (last - first) * i as f64 / count.max(1) as f64;
             let sun = sun_position_with(site, unix_s, params.refraction)?;
-            if sun.elevation > params.least_elevation {
+            if sun.elevation > params.min_elevation {
                 suns.push(EnvelopeSun { unix_s, direction: sun.to_sun(site) });
             } else {
                 low_count += 1;

@@ -31,7 +31,7 @@ use strip::ShadingStrip;
 /// A sun that stands this near to the zenith shades nothing beside a thing: cosine of its elevation.
 const OVERHEAD: f64 = 1e-9;
 /// Most pairs of a protected piece and a sun: some minutes of work.
-const MOST_PAIRS: usize = 200_000_000;
+const MAX_PAIRS: usize = 200_000_000;
 
 /// What bounds an envelope besides the sun.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -205,7 +205,7 @@ pub fn existing_shade(
 }
 
 fn check_pairs(pieces: usize, suns: usize) -> Result<()> {
-    if pieces.saturating_mul(suns) <= MOST_PAIRS {
+    if pieces.saturating_mul(suns) <= MAX_PAIRS {
         return Ok(());
     }
     Err(Error::InvalidParameter {
@@ -260,9 +260,9 @@ fn bound(columns: &mut [EnvelopeColumn], grid: &MapGrid, strips: &[(ShadingStrip
     let band = ConvexPolygon::of_box([west, south], [east, north]);
     let edges: Vec<f64> = columns.iter().map(|column| grid.corner_at([column_of(column), row])[0]).collect();
     for &(strip, piece) in strips {
-        let Some([least, most]) = strip.span_x(&band) else { continue };
-        let from = edges.partition_point(|west| west + grid.cell < least);
-        let to = edges.partition_point(|west| *west <= most);
+        let Some([min, max]) = strip.span_x(&band) else { continue };
+        let from = edges.partition_point(|west| west + grid.cell < min);
+        let to = edges.partition_point(|west| *west <= max);
         for column in columns.get_mut(from..to).unwrap_or_default() {
             let limit = column.footprint.pieces.iter().filter_map(|piece| strip.limit(piece)).reduce(f64::min);
             if let Some(limit) = limit.filter(|limit| *limit < column.top) {

@@ -5,9 +5,9 @@ use belvedere_core::ground::MapGrid;
 use belvedere_data::{Error, Parameter, Result};
 
 /// Most corners of a parcel: more are a slipped file, and every pair of sides is tested for crossing.
-const MOST_CORNERS: usize = 10_000;
+const MAX_CORNERS: usize = 10_000;
 /// Least area of a parcel, m²: below it the corners lie in a line.
-const LEAST_AREA: f64 = 0.01;
+const MIN_AREA: f64 = 0.01;
 /// Strips and pieces thinner than this are rounding, metres.
 const THIN: f64 = 1e-9;
 
@@ -62,7 +62,7 @@ impl Parcel {
             kept.push(ring);
         }
         let count: usize = kept.iter().map(Vec::len).sum();
-        if count == 0 || count > MOST_CORNERS {
+        if count == 0 || count > MAX_CORNERS {
             return invalid(format!("of {count} corners"), "a polygon of 3 to 10 000 corners");
         }
         let parcel = Self { rings: kept };
@@ -80,7 +80,7 @@ impl Parcel {
         }
         // sides that run over each other cancel by pairs, as do the strips below
         let area = parcel.area();
-        if !(area >= LEAST_AREA) {
+        if !(area >= MIN_AREA) {
             return invalid(format!("of {area} m2"), "an area: its corners must not lie in one line");
         }
         Ok(parcel)
@@ -204,7 +204,7 @@ mod tests {
 
     #[test]
     fn footprints_add_up_to_the_area_of_the_parcel() {
-        let rim = ring(&[[0.3, 0.2], [9.7, 1.1], [8.2, 9.4], [5.0, 4.0], [1.1, 8.8]]);
+        let outline = ring(&[[0.3, 0.2], [9.7, 1.1], [8.2, 9.4], [5.0, 4.0], [1.1, 8.8]]);
         let hole = ring(&[[3.0, 2.0], [3.5, 3.5], [4.5, 2.2]]);
         // shoelace formula, by hand of the test
         let shoelace = |ring: &[[f64; 2]]| {
@@ -216,8 +216,8 @@ mod tests {
                 .sum();
             (sum / 2.0).abs()
         };
-        let expected = shoelace(&rim) - shoelace(&hole);
-        let parcel = Parcel::new(&[rim, hole]).unwrap();
+        let expected = shoelace(&outline) - shoelace(&hole);
+        let parcel = Parcel::new(&[outline, hole]).unwrap();
         let footprints = parcel.footprints(&grid());
         let area: f64 = footprints.iter().map(|f| f.area).sum();
         assert!((area - expected).abs() < 1e-6 && (parcel.area() - expected).abs() < 1e-9, "{area} {expected}");
@@ -239,9 +239,9 @@ mod tests {
         assert!(refused(&[ring(&[[0.0, 0.0], [4.0, f64::NAN], [4.0, 0.0]])]).contains("finite"));
         assert!(refused(&[ring(&[[0.0, 0.0], [f64::INFINITY, 1.0], [4.0, 0.0]])]).contains("finite"));
         // a hole that crosses the rim
-        let rim = ring(&[[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]]);
+        let outline = ring(&[[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]]);
         let hole = ring(&[[3.0, 1.0], [5.0, 1.0], [5.0, 2.0], [3.0, 2.0]]);
-        assert!(refused(&[rim, hole]).contains("crossing itself"));
+        assert!(refused(&[outline, hole]).contains("crossing itself"));
         assert!(refused(&[vec![[0.0, 0.0]; 20_000]]).contains("1 corners"));
     }
 }

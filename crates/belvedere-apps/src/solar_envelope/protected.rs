@@ -6,7 +6,7 @@ use belvedere_core::query::SurfacePieces;
 use belvedere_data::{Error, Parameter, Result};
 
 /// Most pieces of lines: every sun sweeps each over the parcel.
-const MOST_PIECES: usize = 1_000_000;
+const MAX_PIECES: usize = 1_000_000;
 
 /// A piece of what is protected: a point, an edge or a triangle.
 #[derive(Clone, Debug, PartialEq)]
@@ -62,7 +62,7 @@ pub fn protected_line(
     for pair in corners.windows(2) {
         let &[a, b] = pair else { continue };
         let count = ((b[0] - a[0]).hypot(b[1] - a[1]) / spacing).ceil().max(1.0);
-        if count + pieces.len() as f64 > MOST_PIECES as f64 {
+        if count + pieces.len() as f64 > MAX_PIECES as f64 {
             return invalid(Parameter::Spacing, spacing.to_string(), "enough for at most a million pieces");
         }
         let at = |share: f64| [0, 1, 2].map(|i| a[i] + share * (b[i] - a[i]));

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
 /// Most steps for which each has its own direction where that is left to [`SunSchedule::new`].
-const MOST_EXACT: usize = 2000;
+const MAX_EXACT: usize = 2000;
 /// Angle within which a direction stands for others where it is left to [`SunSchedule::new`]: 1°, two diameters of the sun.
 const USUAL_ANGLE: f64 = 0.017_453_292_519_943_295;
 
@@ -98,7 +98,7 @@ impl SunSchedule {
         let step_count: usize = days.iter().map(|day| day.steps.len()).sum();
         let angle = match binning {
             Binning::Exact => None,
-            Binning::Auto => (step_count > MOST_EXACT).then_some(USUAL_ANGLE),
+            Binning::Auto => (step_count > MAX_EXACT).then_some(USUAL_ANGLE),
             Binning::Within(angle) => Some(checked(angle)?),
         };
         let mut schedule = Self {

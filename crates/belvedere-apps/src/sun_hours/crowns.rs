@@ -64,7 +64,7 @@ pub fn sun_hours_through_crowns(
     let column = |of: &dyn Fn(&CrownSum) -> f64| sums.iter().map(|sum| of(sum) as f32).collect();
     found.hours = column(&|sum| sum.total / day_count);
     found.share = column(&|sum| if possible > 0.0 { (sum.total / possible).min(1.0) } else { f64::NAN });
-    found.least = column(&|sum| sum.least);
+    found.min = column(&|sum| sum.min);
     found.days = sums.iter().map(|sum| sum.days).collect();
     Ok(found)
 }
@@ -72,18 +72,18 @@ pub fn sun_hours_through_crowns(
 /// What is summed up at one target.
 struct CrownSum {
     total: f64,
-    least: f64,
+    min: f64,
     days: u32,
 }
 
 impl CrownSum {
     fn over(days: &[(Vec<DayStretch>, f64)], free: &Lit, through: &Lit, sufficient: f64) -> Self {
-        let mut sum = Self { total: 0.0, least: 24.0, days: 0 };
+        let mut sum = Self { total: 0.0, min: 24.0, days: 0 };
         for (runs, share) in days {
             let [free, through] = [free, through].map(|lit| runs.iter().map(|run| lit_hours(run, lit)).sum::<f64>());
             let hours = free + share * (through - free);
             sum.total += hours;
-            sum.least = sum.least.min(hours);
+            sum.min = sum.min.min(hours);
             sum.days += u32::from(hours >= sufficient);
         }
         sum

@@ -41,7 +41,7 @@ pub struct SunHours {
     /// Longest stretch without a break on any day, hours.
     pub longest: Vec<f32>,
     /// Hours on the day with the least.
-    pub least: Vec<f32>,
+    pub min: Vec<f32>,
     /// Number of days on which the hours suffice.
     pub days: Vec<u32>,
 }
@@ -54,7 +54,7 @@ impl SunHours {
         self.first.extend(other.first);
         self.last.extend(other.last);
         self.longest.extend(other.longest);
-        self.least.extend(other.least);
+        self.min.extend(other.min);
         self.days.extend(other.days);
     }
 }
@@ -133,7 +133,7 @@ pub fn sun_hours(
         first: column(&|sum| if_lit(sum, f64::from(sum.first))),
         last: column(&|sum| if_lit(sum, f64::from(sum.last))),
         longest: column(&|sum| f64::from(sum.longest)),
-        least: column(&|sum| sum.least),
+        min: column(&|sum| sum.min),
         days: sums.iter().map(|sum| sum.days).collect(),
     })
 }
@@ -141,7 +141,7 @@ pub fn sun_hours(
 /// What is summed up at one target.
 struct TargetSum {
     total: f64,
-    least: f64,
+    min: f64,
     first: f32,
     last: f32,
     longest: f32,
@@ -151,7 +151,7 @@ struct TargetSum {
 impl TargetSum {
     fn over(days: &[Vec<DayStretch>], lit: &Lit, sufficient: f64) -> Self {
         let mut sum =
-            Self { total: 0.0, least: 24.0, first: f32::INFINITY, last: f32::NEG_INFINITY, longest: 0.0, days: 0 };
+            Self { total: 0.0, min: 24.0, first: f32::INFINITY, last: f32::NEG_INFINITY, longest: 0.0, days: 0 };
         for runs in days {
             let [mut hours, mut stretch] = [0.0_f32; 2];
             for run in runs {
@@ -176,7 +176,7 @@ impl TargetSum {
             }
             let hours = f64::from(hours);
             sum.total += hours;
-            sum.least = sum.least.min(hours);
+            sum.min = sum.min.min(hours);
             sum.days += u32::from(hours >= sufficient);
         }
         sum

@@ -113,8 +113,8 @@ impl SunSums {
     /// `min_sun_hours` and `total_hours`; and for each rule whether it is met on all of its days, 1 or 0.
     #[must_use]
     pub fn into_measures(self, plan: &SunPlan, targets: &Targets) -> Vec<Measure> {
-        let most = plan.period.days.iter().map(|day| day.possible_hours).fold(0.0, f64::max);
-        let hours = Some([0.0, most.max(0.1)]);
+        let max = plan.period.days.iter().map(|day| day.possible_hours).fold(0.0, f64::max);
+        let hours = Some([0.0, max.max(0.1)]);
         let (clock, share) = (Some([0.0, 24.0]), Some([0.0, 1.0]));
         let measure = |name: &str, description, range, values| {
             Measure::new(name, values).with_description(description).with_decimals(3).with_range(range)
@@ -132,7 +132,7 @@ impl SunSums {
             measure("longest", "longest uninterrupted sun, hours", hours, self.period.longest),
         ];
         if day_count > 1 {
-            measures.push(measure("min_sun_hours", "hours of the day with the least sun", hours, self.period.least));
+            measures.push(measure("min_sun_hours", "hours of the day with the least sun", hours, self.period.min));
             measures.push(measure("total_hours", "hours of sun in all", None, total));
         }
         for (planned, found) in plan.rules.iter().zip(self.rules) {

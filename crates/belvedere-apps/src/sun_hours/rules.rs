@@ -28,7 +28,7 @@ pub struct SunRule {
     /// Hours of sun that a day must have, 0 to 24.
     pub hours: f64,
     /// Elevation of the sun from which on hours count, radians.
-    pub least_elevation: f64,
+    pub min_elevation: f64,
 }
 
 /// A rule with a name: name, name of its column, days, hours, least elevation in degrees, what it asks for.
@@ -85,7 +85,7 @@ impl SunRule {
                 description: (*description).to_owned(),
                 days: *days,
                 hours: *hours,
-                least_elevation: degrees.to_radians(),
+                min_elevation: degrees.to_radians(),
             });
         }
         Self::of_text(text).ok_or_else(|| Error::InvalidParameter {
@@ -103,8 +103,8 @@ impl SunRule {
             None => (rest, 0.0_f64),
         };
         let days = RuleDays::parse(days)?;
-        let (name, description) = (text.to_owned(), format!("{hours} h {}", told(days, degrees)));
-        Some(Self { name, description, days, hours, least_elevation: degrees.to_radians() })
+        let (name, description) = (text.to_owned(), format!("{hours} h {}", described(days, degrees)));
+        Some(Self { name, description, days, hours, min_elevation: degrees.to_radians() })
     }
 }
 
@@ -170,7 +170,7 @@ fn month_and_day(text: &str) -> Option<[i8; 2]> {
     Some([date.month(), date.day()])
 }
 
-fn told(days: RuleDays, degrees: f64) -> String {
+fn described(days: RuleDays, degrees: f64) -> String {
     let day = |[month, day]: [i8; 2]| format!("{month:02}-{day:02}");
     let days = match days {
         RuleDays::On(one) => format!("on {}", day(one)),

@@ -97,14 +97,14 @@ impl Targets {
 
     /// Whether a target is asked about: it has a position.
     #[must_use]
-    pub fn is_asked(&self, row: usize) -> bool {
+    pub fn is_target(&self, row: usize) -> bool {
         self.positions.get(row).is_some_and(|position| position.iter().all(|v| v.is_finite()))
     }
 
     /// Number of targets that are asked about.
     #[must_use]
-    pub fn asked_count(&self) -> usize {
-        (0..self.len()).filter(|&row| self.is_asked(row)).count()
+    pub fn target_count(&self) -> usize {
+        (0..self.len()).filter(|&row| self.is_target(row)).count()
     }
 
     /// The ground below cells; `None` where targets are no cells.
@@ -147,8 +147,8 @@ impl Targets {
     pub fn leave_out_enclosed(&mut self, scene: &MedialScene, control: &Control<'_>) -> Result<usize> {
         let is_enclosed = |position: &[f32; 3]| {
             control.check()?;
-            let is_asked = position.iter().all(|v| v.is_finite());
-            Ok(is_asked && scene.enclosure(position.map(f64::from)).ball_count > 0)
+            let is_target = position.iter().all(|v| v.is_finite());
+            Ok(is_target && scene.enclosure(position.map(f64::from)).ball_count > 0)
         };
         let enclosed: Vec<bool> = self.positions.par_iter().map(is_enclosed).collect::<Result<_>>()?;
         for (position, _) in self.positions.iter_mut().zip(&enclosed).filter(|(_, is_enclosed)| **is_enclosed) {
@@ -246,6 +246,6 @@ mod tests {
         let mut values = [1.0, 2.0, 3.0];
         targets.clear_unasked(&mut values);
         assert!(values[0] == 1.0 && values[1].is_nan() && values[2].is_nan());
-        assert_eq!((targets.len(), targets.asked_count()), (3, 1));
+        assert_eq!((targets.len(), targets.target_count()), (3, 1));
     }
 }

@@ -62,6 +62,6 @@ mod tests {
         let targets = Targets::along_routes(&[route, single], Frame::default());
         assert_eq!(targets.weights, [2.5, 7.5, 0.0, 1.0]);
         assert_eq!(targets.groups, [0..3, 3..4]);
-        assert_eq!(targets.asked_count(), 3);
+        assert_eq!(targets.target_count(), 3);
     }
 }

@@ -84,7 +84,7 @@ impl Targets {
 }
 
 /// Below this share of the normal that is level, a face looks straight up or down and has no azimuth.
-const LEAST_LEVEL_SHARE: f64 = 1e-6;
+const MIN_LEVEL_SHARE: f64 = 1e-6;
 
 fn window_of_face(pieces: &[SurfacePiece]) -> Option<Window> {
     let first = pieces.first()?;
@@ -97,7 +97,7 @@ fn window_of_face(pieces: &[SurfacePiece]) -> Option<Window> {
     };
     let [nx, ny, nz] = first.normal.map(f64::from);
     let level = nx.hypot(ny);
-    let azimuth = if level > LEAST_LEVEL_SHARE { nx.atan2(ny) } else { f64::NAN };
+    let azimuth = if level > MIN_LEVEL_SHARE { nx.atan2(ny) } else { f64::NAN };
     Some(Window {
         center: [middle(0), middle(1), middle(2)],
         azimuth,

@@ -176,9 +176,9 @@ pub fn viewshed_among(
     if expected != found {
         return Err(Error::LengthMismatch { what: "tree of targets", expected, found });
     }
-    let asked = ViewshedTree { scene, tree, targets, params };
+    let queried = ViewshedTree { scene, tree, targets, params };
     let mut result = Viewshed {
-        answers: asked.before_anybody_sees(observers),
+        answers: queried.before_anybody_sees(observers),
         counts: vec![0; targets.len()],
         unproven_counts: if tests_proof(scene, params) { vec![0; targets.len()] } else { Vec::new() },
         masks: Vec::new(),
@@ -193,7 +193,7 @@ pub fn viewshed_among(
     let bands: Vec<&[Observer]> = observers.chunks(BAND).collect();
     for round in bands.chunks(at_once) {
         let seen: Result<Vec<ObserverBand>> =
-            round.par_iter().map(|band| asked.band(band, threading, control)).collect();
+            round.par_iter().map(|band| queried.band(band, threading, control)).collect();
         for band in seen? {
             add(&mut result, band, params.masks);
         }
@@ -358,7 +358,7 @@ fn add(result: &mut Viewshed, band: ObserverBand, masks: Masks) {
 ///
 /// # Errors
 /// As [`viewshed`], and for a ceiling below zero, and for an observer on far terrain: the terrain before it is not asked here.
-pub fn least_visible_heights(
+pub fn min_visible_heights(
     scene: &MedialScene,
     observers: &[Observer],
     ground: &Ground,
@@ -393,7 +393,7 @@ pub fn least_visible_heights(
             let bound = if height.is_finite() { f64::from(*height) } else { ceiling };
             // from where targets on the ground are tested, so that 0 is what a viewshed calls visible
             let lowest = [foot[0], foot[1], foot[2] + GROUND_TOLERANCE];
-            let seen = scene.least_visible_height(observer.eye, lowest, (bound - GROUND_TOLERANCE).max(0.0), earth);
+            let seen = scene.min_visible_height(observer.eye, lowest, (bound - GROUND_TOLERANCE).max(0.0), earth);
             let seen = seen.map(|above| if above > 0.0 { above + GROUND_TOLERANCE } else { 0.0 });
             #[expect(clippy::cast_possible_truncation, reason = "metres above the ground")]
             let seen = seen.map_or(f32::INFINITY, |seen| seen as f32);

@@ -53,8 +53,8 @@ impl SightLimits {
                 "in ascending order, from -90 to 90 degrees",
             );
         }
-        let [least, most] = self.distance;
-        if !(least >= 0.0 && least.is_finite() && most > least) {
+        let [min, max] = self.distance;
+        if !(min >= 0.0 && min.is_finite() && max > min) {
             return invalid(Parameter::Distance, self.distance, "in ascending order, from 0 metres");
         }
         Ok(())
@@ -74,9 +74,9 @@ impl SightLimits {
         {
             return false;
         }
-        self.elevation.is_none_or(|[least, most]| {
+        self.elevation.is_none_or(|[min, max]| {
             let elevation = z.atan2(distance);
-            (least..=most).contains(&elevation)
+            (min..=max).contains(&elevation)
         })
     }
 }
@@ -88,13 +88,13 @@ impl SightLimits {
 /// [`Error::InvalidParameter`] for a step that is not above zero or gives more than a million places.
 pub fn places_along(corners: &[[f64; 3]], step: f64) -> Result<Vec<[f64; 3]>> {
     /// Observers of more than this are a slipped digit.
-    const MOST_PLACES: f64 = 1e6;
+    const MAX_PLACES: f64 = 1e6;
     let size = |pair: &[[f64; 3]]| match pair {
         [a, b] => (b[0] - a[0]).hypot(b[1] - a[1]),
         _ => 0.0,
     };
     let total: f64 = corners.windows(2).map(size).sum();
-    if !(step > 0.0 && total / step <= MOST_PLACES) {
+    if !(step > 0.0 && total / step <= MAX_PLACES) {
         return Err(Error::InvalidParameter {
             parameter: Parameter::PathStep,
             value: format!("{step} m on {total} m"),

@@ -89,7 +89,7 @@ pub fn window_views(
         for row in group.clone() {
             control.check()?;
             if let (true, Some(&place), Some(&normal)) =
-                (targets.is_asked(row), targets.positions.get(row), normals.get(row))
+                (targets.is_target(row), targets.positions.get(row), normals.get(row))
             {
                 let window = (place.map(f64::from), normal.map(f64::from));
                 sums.add(scene, window, targets.weight(row), kinds, directions);
@@ -142,7 +142,7 @@ pub fn view_measures(views: &[WindowView], proof: Proving) -> Vec<Measure> {
     }
     push("mean_range_m".to_owned(), "mean range of things seen", 2, None, &|view| view.mean_range);
     push("median_range_m".to_owned(), "median range of things seen", 2, None, &|view| view.median_range);
-    if proof == Proving::Asked {
+    if proof == Proving::Tested {
         push("unproven".to_owned(), "percent of the view not proven", 3, percent, &|view| 100.0 * view.unproven);
     }
     measures
@@ -152,9 +152,9 @@ pub fn view_measures(views: &[WindowView], proof: Proving) -> Vec<Measure> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Proving {
     /// They were.
-    Asked,
+    Tested,
     /// They were not, or are not known.
-    NotAsked,
+    NotTested,
 }
 
 /// What the places of a window add up to.

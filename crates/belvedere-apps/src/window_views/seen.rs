@@ -103,9 +103,9 @@ pub fn balls_seen(
     vegetation: &[bool],
     meanings: &ClassMeanings,
 ) -> Result<Vec<SeenKind>> {
-    let least = balls.source.iter().map(|&row| row as usize + 1).max().unwrap_or(0);
-    if let Some(found) = classes.map(<[_]>::len).filter(|&found| found < least) {
-        return Err(Error::LengthMismatch { what: "classes of the points of balls", expected: least, found });
+    let min = balls.source.iter().map(|&row| row as usize + 1).max().unwrap_or(0);
+    if let Some(found) = classes.map(<[_]>::len).filter(|&found| found < min) {
+        return Err(Error::LengthMismatch { what: "classes of the points of balls", expected: min, found });
     }
     let kind = |(row, &source): (usize, &u32)| {
         let class = classes.and_then(|classes| classes.get(source as usize));
@@ -163,7 +163,7 @@ mod tests {
     }
 
     #[test]
-    fn balls_are_told_from_those_of_another_cloud() {
+    fn balls_of_another_cloud_are_recognised() {
         let mut points = [[0.0, 0.0, 0.0], [10.0, 0.0, 0.0], [20.0, 0.0, 0.0], [30.0, 0.0, 0.0]];
         assert!(are_made_from(&balls(), &points));
         points.reverse();

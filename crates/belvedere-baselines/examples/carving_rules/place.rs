@@ -245,8 +245,8 @@ impl CarvingSite {
                             let enters = hit.map_or(0.0, |hit| hit.range) + SKIN;
                             let inside = std::array::from_fn(|i| absolute(target)[i] + enters * towards[i]);
                             let solid = self.truth.first_hit(inside, towards, f64::INFINITY).map(|hit| hit.range);
-                            for (count, most) in thin.iter_mut().zip(THIN) {
-                                *count += usize::from(solid.is_some_and(|solid| solid < most));
+                            for (count, max) in thin.iter_mut().zip(THIN) {
+                                *count += usize::from(solid.is_some_and(|solid| solid < max));
                             }
                         }
                         if visible && answer == Answer::Blocked {

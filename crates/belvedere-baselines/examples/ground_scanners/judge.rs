@@ -155,7 +155,7 @@ impl fmt::Display for ScannerResults {
         )?;
         if let Some(pulses) = &self.report.pulses {
             let blocked = pulses.blocked.map_or(f64::NAN, |blocked| blocked.percent);
-            writeln!(f, "  pulses used {}, blocked {blocked:.3} %", pulses.needles.used)?;
+            writeln!(f, "  pulses used {}, blocked {blocked:.3} %", pulses.free_segments.used)?;
         }
         if let Some(BallsReport::Carved(carved)) = &self.report.interior_balls {
             writeln!(f, "  {carved:?}")?;

@@ -35,7 +35,7 @@ pub(crate) struct JudgedTargets {
     /// Where they truly are, absolute.
     exact: Vec<[f64; 3]>,
     /// Where a user would ask for them, local metres.
-    asked: Vec<[f32; 3]>,
+    queried: Vec<[f32; 3]>,
     settings: Vec<Setting>,
     /// Whether each sees each direction, (M x D).
     free: Vec<bool>,
@@ -43,7 +43,7 @@ pub(crate) struct JudgedTargets {
 
 impl JudgedTargets {
     pub(crate) fn len(&self) -> usize {
-        self.asked.len()
+        self.queried.len()
     }
 }
 
@@ -102,14 +102,14 @@ impl LightTown {
     /// found in the cloud.
     pub(crate) fn ground_cells(&self, height: f64, count: usize, light: &LightDirections) -> JudgedTargets {
         let step = (self.bare.len() / count.max(1)).max(1);
-        let (mut exact, mut asked) = (Vec::new(), Vec::new());
+        let (mut exact, mut queried) = (Vec::new(), Vec::new());
         for &([x, y], z) in self.bare.iter().step_by(step) {
             let Some(found) = self.ground.height_at([x, y]) else { continue };
             let [x, y] = [x + self.cloud.frame.origin[0], y + self.cloud.frame.origin[1]];
             exact.push([x, y, z + height]);
-            asked.push(self.local([x, y, found + self.cloud.frame.origin[2] + height]));
+            queried.push(self.local([x, y, found + self.cloud.frame.origin[2] + height]));
         }
-        self.places(exact, asked, light)
+        self.places(exact, queried, light)
     }
 
     /// About `count` cells whose top is a roof, `height` metres above it: the truth above the exact roof at the middle of the cell, the
@@ -129,7 +129,7 @@ impl LightTown {
             }
         };
         let above = self.site().bounds[1][2] + 100.0;
-        let (mut exact, mut asked) = (Vec::new(), Vec::new());
+        let (mut exact, mut queried) = (Vec::new(), Vec::new());
         for (cell, &top) in tops.values().iter().enumerate() {
             let [x, y] = grid.center(cell % grid.width, cell / grid.width);
             let at = [x + self.cloud.frame.origin[0], y + self.cloud.frame.origin[1]];
@@ -138,17 +138,17 @@ impl LightTown {
             };
             if self.scene.materials.get(hit.triangle as usize) == Some(&Material::Roof) && top.is_finite() {
                 exact.push([at[0], at[1], above - hit.range + height]);
-                asked.push(self.local([at[0], at[1], f64::from(top) + self.cloud.frame.origin[2] + height]));
+                queried.push(self.local([at[0], at[1], f64::from(top) + self.cloud.frame.origin[2] + height]));
             }
         }
-        let step = (asked.len() / count.max(1)).max(1);
-        Ok(self.places(exact.into_iter().step_by(step).collect(), asked.into_iter().step_by(step).collect(), light))
+        let step = (queried.len() / count.max(1)).max(1);
+        Ok(self.places(exact.into_iter().step_by(step).collect(), queried.into_iter().step_by(step).collect(), light))
     }
 
     /// How high the questions of places stand above where these truly are, metres: mean, and mean of the absolute values.
     pub(crate) fn heights_off(places: &JudgedTargets, origin: f64) -> [f64; 2] {
-        let off = |(exact, asked): (&[f64; 3], &[f32; 3])| f64::from(asked[2]) + origin - exact[2];
-        let off: Vec<f64> = places.exact.iter().zip(&places.asked).map(off).collect();
+        let off = |(exact, queried): (&[f64; 3], &[f32; 3])| f64::from(queried[2]) + origin - exact[2];
+        let off: Vec<f64> = places.exact.iter().zip(&places.queried).map(off).collect();
         let mean = |value: fn(f64) -> f64| off.iter().map(|&v| value(v)).sum::<f64>() / off.len().max(1) as f64;
         [mean(|v| v), mean(f64::abs)]
     }
@@ -156,28 +156,28 @@ impl LightTown {
     /// About `count` places 0.1 m outside roofs, whose position is known.
     pub(crate) fn roofs(&self, count: usize, light: &LightDirections) -> JudgedTargets {
         let exact = self.site().targets(QuerySet::Roofs, count, 1).positions;
-        let asked = exact.iter().map(|&p| self.local(p)).collect();
-        self.places(exact, asked, light)
+        let queried = exact.iter().map(|&p| self.local(p)).collect();
+        self.places(exact, queried, light)
     }
 
     /// About `count` returns from roofs: the truth on their surface, the question at the return.
     pub(crate) fn roof_returns(&self, count: usize, light: &LightDirections) -> JudgedTargets {
         let site = self.site();
-        let (mut exact, mut asked) = (Vec::new(), Vec::new());
+        let (mut exact, mut queried) = (Vec::new(), Vec::new());
         for (&p, &scanner) in self.cloud.positions.iter().zip(&self.scanner).step_by(7) {
             let Some((hit, outside)) = site.surface_of_return(self.absolute(scanner), self.absolute(p)) else {
                 continue;
             };
-            if self.scene.materials.get(hit.triangle as usize) == Some(&Material::Roof) && asked.len() < 4 * count {
+            if self.scene.materials.get(hit.triangle as usize) == Some(&Material::Roof) && queried.len() < 4 * count {
                 exact.push(outside);
-                asked.push(p);
+                queried.push(p);
             }
         }
-        let step = (asked.len() / count.max(1)).max(1);
-        self.places(exact.into_iter().step_by(step).collect(), asked.into_iter().step_by(step).collect(), light)
+        let step = (queried.len() / count.max(1)).max(1);
+        self.places(exact.into_iter().step_by(step).collect(), queried.into_iter().step_by(step).collect(), light)
     }
 
-    fn places(&self, exact: Vec<[f64; 3]>, asked: Vec<[f32; 3]>, light: &LightDirections) -> JudgedTargets {
+    fn places(&self, exact: Vec<[f64; 3]>, queried: Vec<[f32; 3]>, light: &LightDirections) -> JudgedTargets {
         let (mut from, mut towards) = (Vec::new(), Vec::new());
         for &p in &exact {
             for &direction in &light.directions {
@@ -187,7 +187,7 @@ impl LightTown {
         }
         let free = self.truth.first_hits(&from, &towards, f64::INFINITY).iter().map(Option::is_none).collect();
         let settings = exact.iter().map(|&p| self.setting(p)).collect();
-        JudgedTargets { exact, asked, settings, free }
+        JudgedTargets { exact, queried, settings, free }
     }
 
     fn material(&self, from: [f64; 3], towards: [f64; 3], range: f64) -> Option<Material> {
@@ -221,8 +221,8 @@ impl LightTown {
         params: &BlockRule,
     ) -> Result<LightScore> {
         let scene = MedialScene::new(&self.balls, params)?;
-        let asked: Vec<[f32; 3]> = places.asked.iter().map(|p| [p[0], p[1], p[2] + lift]).collect();
-        let found = scene.visibility_matrix(&asked, &light.directions, &Control::none())?;
+        let queried: Vec<[f32; 3]> = places.queried.iter().map(|p| [p[0], p[1], p[2] + lift]).collect();
+        let found = scene.visibility_matrix(&queried, &light.directions, &Control::none())?;
         Ok(LightScore::new(places, light, &|target, column| found.is_free(target, column)))
     }
 
@@ -235,7 +235,7 @@ impl LightTown {
     ) -> Result<LightScore> {
         let mut columns = Vec::new();
         for &direction in &light.directions {
-            columns.push(method.visible(Viewer::Direction(direction), &places.asked)?);
+            columns.push(method.visible(Viewer::Direction(direction), &places.queried)?);
         }
         Ok(LightScore::new(places, light, &|target, column| columns[column][target] == Answer::Visible))
     }
@@ -259,7 +259,7 @@ impl LightTown {
             _ => "> 5 m",
         };
         for (target, free) in places.free.chunks(width).enumerate() {
-            let at = places.asked[target].map(f64::from);
+            let at = places.queried[target].map(f64::from);
             let at = [at[0], at[1], at[2] + f64::from(lift)];
             for (&truly, &direction) in free.iter().zip(&light.directions).take(light.sun_count) {
                 let block = scene.first_block(at, direction, f64::INFINITY);

@@ -54,7 +54,7 @@ impl LightDirections {
     /// Class of elevation of a direction.
     fn class(&self, direction: usize) -> usize {
         let elevation = self.directions.get(direction).map_or(0.0, |d| d[2].asin().to_degrees());
-        ELEVATIONS_DEG.iter().position(|&most| elevation < most).unwrap_or(ELEVATIONS_DEG.len() - 1)
+        ELEVATIONS_DEG.iter().position(|&max| elevation < max).unwrap_or(ELEVATIONS_DEG.len() - 1)
     }
 }
 

@@ -8,7 +8,7 @@ use belvedere::apps::viewshed::{Observer, SightLimits, ViewshedParams, cell_targ
 use belvedere::control::Control;
 use belvedere::ground::{Ground, GroundParams, MapGrid};
 use belvedere::medial::MedialBalls;
-use belvedere::pulses::{NeedleParams, Needles};
+use belvedere::pulses::{FreeSegmentParams, FreeSegments};
 use belvedere::query::{Answer, BlockRule, MedialScene, Proof, ProofParams};
 use belvedere::{PointCloud, Result};
 use belvedere_baselines::MethodInput;
@@ -93,8 +93,9 @@ impl ViewshedTown {
     /// What people in the streets see of targets `height` metres above the ground.
     pub(crate) fn judge(&self, height: f64) -> Result<ViewshedScore> {
         let scene = MedialScene::new(&self.balls, &BlockRule::carved())?;
-        let (needles, _) = Needles::of_cloud(&self.cloud, &self.scanner, &NeedleParams::default(), &Control::none())?;
-        let scene = scene.with_pulses(Proof::new(needles, &ProofParams::default())?);
+        let (free_segments, _) =
+            FreeSegments::of_cloud(&self.cloud, &self.scanner, &FreeSegmentParams::default(), &Control::none())?;
+        let scene = scene.with_pulses(Proof::new(free_segments, &ProofParams::default())?);
         let targets = cell_targets(&self.ground, tested_height(height));
         let origin = self.cloud.frame.origin;
         let mut score = ViewshedScore::default();
@@ -104,17 +105,17 @@ impl ViewshedTown {
             let seen = viewshed(&scene, &[observer], &targets, &ViewshedParams::default(), &Control::none())?;
             let absolute = |p: [f64; 3]| -> [f64; 3] { std::array::from_fn(|i| p[i] + origin[i]) };
             let (mut both, mut either) = ([0, 0], [0, 0]);
-            let asked = targets.iter().zip(&self.exact_ground).zip(&seen.answers);
-            let asked: Vec<([f64; 3], Answer)> = asked
+            let queried = targets.iter().zip(&self.exact_ground).zip(&seen.answers);
+            let queried: Vec<([f64; 3], Answer)> = queried
                 .filter(|(_, answer)| **answer != Answer::OutsideView)
                 .filter_map(|((target, ground), answer)| {
                     let [x, y, _] = absolute(target.map(f64::from));
                     Some(([x, y, (*ground)? + height], *answer))
                 })
                 .collect();
-            let places: Vec<[f64; 3]> = asked.iter().map(|(place, _)| *place).collect();
+            let places: Vec<[f64; 3]> = queried.iter().map(|(place, _)| *place).collect();
             let occluded = self.truth.occluded_each(&places, absolute(eye));
-            for ((_, answer), occluded) in asked.iter().zip(occluded) {
+            for ((_, answer), occluded) in queried.iter().zip(occluded) {
                 let (seen, truly) = (*answer != Answer::Blocked, !occluded);
                 for i in 0..if *answer == Answer::Unproven { 1 } else { 2 } {
                     both[i] += usize::from(seen && truly);

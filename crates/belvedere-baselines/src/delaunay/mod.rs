@@ -13,7 +13,7 @@ use insert::DelaunayBuilder;
 /// No tetrahedron: what lies beyond a face of the convex hull.
 pub(crate) const NONE: u32 = u32::MAX;
 /// More points could have more tetrahedra than there are numbers of 32 bits.
-pub(crate) const MOST_POINTS: usize = 1 << 27;
+pub(crate) const MAX_POINTS: usize = 1 << 27;
 
 /// A tetrahedron, its corners in positive order: seen from the first, the others turn counter-clockwise.
 #[derive(Clone, Copy, Debug)]
@@ -34,7 +34,7 @@ pub(crate) struct Delaunay {
 }
 
 impl Delaunay {
-    /// Tetrahedralises `points`, (N, 3), finite and of f32 precision, at most [`MOST_POINTS`]. Points in one plane have no
+    /// Tetrahedralises `points`, (N, 3), finite and of f32 precision, at most [`MAX_POINTS`]. Points in one plane have no
     /// tetrahedra. Of points at one place one is used.
     ///
     /// # Source

@@ -99,16 +99,9 @@ fn points_in_one_plane_have_no_tetrahedra() {
 
 #[test]
 fn the_least_and_greatest_numbers_of_f32_are_no_trouble() {
-    let (most, least) = (f64::from(f32::MAX), f64::from(f32::MIN_POSITIVE));
+    let (max, min) = (f64::from(f32::MAX), f64::from(f32::MIN_POSITIVE));
     let mut points = scattered(40, [1.0; 3]);
-    points.extend([
-        [most, 0.0, 0.0],
-        [0.0, most, -most],
-        [least, least, 0.0],
-        [-most; 3],
-        [0.0, 0.0, -least],
-        [0.0; 3],
-    ]);
+    points.extend([[max, 0.0, 0.0], [0.0, max, -max], [min, min, 0.0], [-max; 3], [0.0, 0.0, -min], [0.0; 3]]);
     let delaunay = Delaunay::new(points.clone());
     assert!(delaunay.at_point.iter().all(|&at| at != NONE));
 }

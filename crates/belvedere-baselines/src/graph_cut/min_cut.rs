@@ -204,7 +204,7 @@ impl Flow {
                 continue;
             }
             if let Some(distance) = self.distance_to_terminal(other)
-                && best.is_none_or(|(least, _)| distance < least)
+                && best.is_none_or(|(min, _)| distance < min)
             {
                 best = Some((distance, slot));
             }
@@ -270,10 +270,10 @@ mod tests {
     /// A graph without pattern: pairs of nodes that have a slot left are joined.
     fn random_graph(count: u32, seed: u64) -> Graph {
         let mut counter = 0;
-        let mut random = |most: u32| {
+        let mut random = |max: u32| {
             counter += 1;
             #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "below `most`")]
-            let number = (belvedere::random::uniform(seed, counter) * f64::from(most)) as u32;
+            let number = (belvedere::random::uniform(seed, counter) * f64::from(max)) as u32;
             number
         };
         let mut graph = Graph {
@@ -315,9 +315,9 @@ mod tests {
         for seed in 0..300 {
             let count = 2 + u32::try_from(seed % 10).unwrap();
             let graph = random_graph(count, seed);
-            let least = (0..1_u32 << count).map(|cut| cost(&graph, |n| cut >> n & 1 == 1)).min().unwrap();
+            let min = (0..1_u32 << count).map(|cut| cost(&graph, |n| cut >> n & 1 == 1)).min().unwrap();
             let found = sink_side(graph.clone());
-            assert_eq!(cost(&graph, |n| found[n]), least, "seed {seed}");
+            assert_eq!(cost(&graph, |n| found[n]), min, "seed {seed}");
         }
     }
 

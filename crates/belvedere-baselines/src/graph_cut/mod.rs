@@ -4,8 +4,8 @@ mod min_cut;
 mod votes;
 
 use crate::MethodInput;
-use crate::delaunay::{Delaunay, MOST_POINTS, NONE};
-use crate::lines_of_sight::{check_clearance, check_least, check_positive};
+use crate::delaunay::{Delaunay, MAX_POINTS, NONE};
+use crate::lines_of_sight::{check_clearance, check_min, check_positive};
 use crate::mesh_rays::{MeshRays, MeshRaysParams};
 use belvedere::query::{Sight, Viewer, Visibility};
 use belvedere::vector::{cross, dot, length, sub};
@@ -69,15 +69,15 @@ impl GraphCut {
     pub fn new(survey: &MethodInput<'_>, params: &GraphCutParams) -> Result<Self> {
         check_positive("cell of the thinned cloud", params.cell)?;
         check_positive("noise", params.noise)?;
-        check_least("depth behind a return in noises", params.depth_in_noises, 0.0, "finite and not negative")?;
-        check_least("weight of the shape of triangles", params.quality, 0.0, "finite and not negative")?;
+        check_min("depth behind a return in noises", params.depth_in_noises, 0.0, "finite and not negative")?;
+        check_min("weight of the shape of triangles", params.quality, 0.0, "finite and not negative")?;
         check_clearance(params.clearance)?;
         survey.cloud.validate()?;
         let (expected, found) = (survey.cloud.len(), survey.scanner.len());
         if found != 0 && found != expected {
             return Err(Error::LengthMismatch { what: "scanner positions of the points", expected, found });
         }
-        if expected > MOST_POINTS {
+        if expected > MAX_POINTS {
             let value = expected.to_string();
             return Err(Error::InvalidParameter { parameter: Parameter::PointCount, value, expected: "at most 2^27" });
         }

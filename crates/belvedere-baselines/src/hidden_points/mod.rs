@@ -86,7 +86,7 @@ impl<'a> HiddenPoints<'a> {
         if survey.cloud.is_empty() {
             return Err(Error::NoPoints { what: "hidden point removal needs the points of a cloud".to_owned() });
         }
-        if survey.cloud.len() > hull::MOST_POINTS {
+        if survey.cloud.len() > hull::MAX_POINTS {
             return Err(invalid("number of points", survey.cloud.len(), "at most 2^30"));
         }
         if !(0.0..=10.0).contains(&params.noise) {

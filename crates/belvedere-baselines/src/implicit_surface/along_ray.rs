@@ -34,7 +34,7 @@ struct Value {
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum OnSurface {
     Supported,
-    BeyondRim,
+    BeyondEdge,
 }
 
 /// Crossings of one ray with the surface, from near to far.
@@ -129,12 +129,12 @@ impl<'a> Crossings<'a> {
             normal_sum = normal_sum.map(|v| -v);
         }
         let normal = normal_sum.map(|v| v / weight_sum);
-        let supported = count >= self.params.min_samples && length(to_mean) <= self.params.rim * support / weight_sum;
+        let supported = count >= self.params.min_samples && length(to_mean) <= self.params.edge * support / weight_sum;
         Some(Value {
             range,
             distance: -dot(normal, to_mean),
             normal,
-            on_surface: if supported { OnSurface::Supported } else { OnSurface::BeyondRim },
+            on_surface: if supported { OnSurface::Supported } else { OnSurface::BeyondEdge },
         })
     }
 

@@ -11,7 +11,7 @@ const BITS: u32 = 21;
 const REACH: i64 = 1;
 /// Steps of the solver at most, and by how much it makes the residual smaller: the surface then moves by less than a
 /// hundredth of a cell.
-const MOST_STEPS: usize = 200;
+const MAX_STEPS: usize = 200;
 const RESIDUAL: f64 = 1e-3;
 /// Values summed at once, so that sums do not depend on threads.
 const CHUNK: usize = 4096;
@@ -237,7 +237,7 @@ impl LevelSolver {
         let mut direction = scaled.clone();
         let mut size = product(&residual, &scaled);
         let enough = RESIDUAL * RESIDUAL * product(&self.right, &precondition(&self.right));
-        for _ in 0..MOST_STEPS {
+        for _ in 0..MAX_STEPS {
             if !(size > enough) {
                 break;
             }

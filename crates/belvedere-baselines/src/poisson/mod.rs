@@ -5,7 +5,7 @@ mod nets;
 
 use crate::MethodInput;
 use crate::implicit_surface::outward;
-use crate::lines_of_sight::{check_clearance, check_least, check_positive};
+use crate::lines_of_sight::{check_clearance, check_min, check_positive};
 use crate::mesh_rays::{MeshRays, MeshRaysParams};
 use crate::sampling::{capped_spacing, check_neighbor};
 use belvedere::control::Control;
@@ -33,7 +33,7 @@ pub struct PoissonParams {
     pub cell_in_spacings: f64,
     /// Side of the finest cells at least, metres, above 0. Default 0.1, as for the graph cut: scans on the ground have points so near to each
     /// other that the surface between sparse ones would have too many cells.
-    pub least_cell: f64,
+    pub min_cell: f64,
     /// Weight of the points against that of the normals, 0 or more. Default 1; 0.5 has the same mean error with 32 neighbours, and the 4
     /// of the source one that is 0.2 points higher with 16.
     pub screening: f64,
@@ -51,7 +51,7 @@ impl Default for PoissonParams {
             normal_neighbors: 48,
             area_neighbor: 6,
             cell_in_spacings: 0.7,
-            least_cell: 0.1,
+            min_cell: 0.1,
             screening: 1.0,
             trim: 1.5,
             clearance: 0.5,
@@ -92,9 +92,9 @@ impl Poisson {
     /// million times as wide as its points are apart, [`Error::LengthMismatch`] for a column of another length.
     pub fn new(survey: &MethodInput<'_>, params: &PoissonParams) -> Result<Self> {
         check_neighbor("neighbour that gives the area of a point", params.area_neighbor)?;
-        check_least("cell in spacings", params.cell_in_spacings, 0.25, "finite and at least 0.25")?;
-        check_positive("least cell", params.least_cell)?;
-        check_least("weight of the points", params.screening, 0.0, "finite and not negative")?;
+        check_min("cell in spacings", params.cell_in_spacings, 0.25, "finite and at least 0.25")?;
+        check_positive("least cell", params.min_cell)?;
+        check_min("weight of the points", params.screening, 0.0, "finite and not negative")?;
         check_positive("distance at which the surface ends", params.trim)?;
         check_clearance(params.clearance)?;
         let positions = &survey.cloud.positions;
@@ -154,7 +154,7 @@ const COARSEST_CELLS: f64 = 32.0;
 /// Cells of the coarsest level around the cloud.
 const MARGIN: f64 = 3.0;
 /// Levels at most: cells of the finest are numbered by 20 bits.
-const MOST_LEVELS: u32 = 15;
+const MAX_LEVELS: u32 = 15;
 
 /// The triangles of the surface, (T, 3, 3).
 fn reconstruct(
@@ -168,7 +168,7 @@ fn reconstruct(
     }
     let middle = areas.len() / 2;
     let spacing = areas.select_nth_unstable_by(middle, f64::total_cmp).1.sqrt();
-    let cell = params.least_cell.max(params.cell_in_spacings * spacing);
+    let cell = params.min_cell.max(params.cell_in_spacings * spacing);
     let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
     for sample in samples {
         for axis in 0..3 {
@@ -177,7 +177,7 @@ fn reconstruct(
         }
     }
     let longest = (0..3).map(|axis| high[axis] - low[axis]).fold(0.0, f64::max);
-    let Some(depth) = (0..MOST_LEVELS).find(|&depth| longest <= COARSEST_CELLS * cell * f64::from(1 << depth)) else {
+    let Some(depth) = (0..MAX_LEVELS).find(|&depth| longest <= COARSEST_CELLS * cell * f64::from(1 << depth)) else {
         let value = format!("{longest} m by {cell} m");
         let expected = "points that are not a million times as far apart as neighbours: take out stray points";
         return Err(Error::InvalidParameter { parameter: Parameter::Extent, value, expected });

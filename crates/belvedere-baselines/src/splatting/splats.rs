@@ -91,9 +91,9 @@ pub(super) fn make(positions: &[[f32; 3]], params: &SplatParams) -> Result<Vec<S
 
 /// A unit vector at right angles to a unit vector.
 fn any_tangent(normal: [f64; 3]) -> Option<[f64; 3]> {
-    let least = |a: usize, b: usize| if normal[b].abs() < normal[a].abs() { b } else { a };
+    let min = |a: usize, b: usize| if normal[b].abs() < normal[a].abs() { b } else { a };
     let mut axis = [0.0; 3];
-    axis[least(least(0, 1), 2)] = 1.0;
+    axis[min(min(0, 1), 2)] = 1.0;
     unit(cross(normal, axis))
 }
 

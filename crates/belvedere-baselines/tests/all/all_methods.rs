@@ -90,7 +90,7 @@ fn any_number_of_threads_gives_the_same_answers() {
 }
 
 #[test]
-fn targets_that_cannot_be_told_are_outside_the_view_and_wrong_viewers_are_errors() {
+fn targets_without_an_answer_are_outside_the_view_and_wrong_viewers_are_errors() {
     let (scene, mesh) = small_town();
     let cloud = scan(&scene);
     let eye = [1.0_f32, 2.0, 30.0];

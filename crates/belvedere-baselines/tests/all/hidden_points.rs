@@ -223,8 +223,8 @@ fn the_rule_on_two_sides_of_a_ball_takes_half_of_its_points() {
     let point = |i: u16| {
         let z = 1.0 - (2.0 * f64::from(i) + 1.0) / f64::from(count);
         let turn = f64::from(i) * 2.399_963_229_728_653;
-        let rim = (1.0 - z * z).sqrt();
-        [rim * turn.cos(), rim * turn.sin(), z].map(|v| (10.0 * v) as f32)
+        let ring_radius = (1.0 - z * z).sqrt();
+        [ring_radius * turn.cos(), ring_radius * turn.sin(), z].map(|v| (10.0 * v) as f32)
     };
     let ball = cloud_of((0..count).map(point).collect());
     let katz = method(&ball, HiddenPointsParams::default());

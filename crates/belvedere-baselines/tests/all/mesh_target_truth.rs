@@ -81,9 +81,9 @@ fn shares_of_buildings_that_are_seen_are_those_of_the_mesh() {
                      false-blocked {false_blocked:.4}, share of a building off by {error:.4} over {}",
                 score.truly_visible, score.truly_blocked, score.buildings
             );
-            let [most_visible, most_blocked, most_error] = bars(name, kind);
-            assert!(false_visible < most_visible && false_blocked < most_blocked, "{name} {kind}");
-            assert!(error < most_error, "{name} {kind}: {error}");
+            let [max_visible, max_blocked, max_error] = bars(name, kind);
+            assert!(false_visible < max_visible && false_blocked < max_blocked, "{name} {kind}");
+            assert!(error < max_error, "{name} {kind}: {error}");
         }
     }
 }

@@ -148,7 +148,7 @@ fn clouds_that_have_no_surface_block_nothing_and_wrong_parameters_are_refused() 
     for params in [
         PoissonParams { area_neighbor: 0, ..default() },
         PoissonParams { cell_in_spacings: 0.1, ..default() },
-        PoissonParams { least_cell: f64::NAN, ..default() },
+        PoissonParams { min_cell: f64::NAN, ..default() },
         PoissonParams { screening: -1.0, ..default() },
         PoissonParams { trim: 0.0, ..default() },
         PoissonParams { clearance: f64::NAN, ..default() },

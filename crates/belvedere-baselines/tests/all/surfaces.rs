@@ -158,7 +158,7 @@ fn rays_meet_the_implicit_surface_where_the_sphere_is() {
 }
 
 #[test]
-fn the_implicit_plane_ends_at_its_rim_and_at_a_hole() {
+fn the_implicit_plane_ends_at_its_edge_and_at_a_hole() {
     let mut cloud = grid(20, 0.5, 0.5);
     cloud.positions.retain(|p| p[0].hypot(p[1]) > 3.0);
     let survey = MethodInput { cloud: &cloud, scanner: &[], models: &[] };
@@ -198,7 +198,7 @@ fn the_implicit_surface_refuses_parameters_out_of_range() {
         ImplicitSurfaceParams { step: f64::NAN, ..default() },
         ImplicitSurfaceParams { support_scale: -1.0, ..default() },
         ImplicitSurfaceParams { support_neighbor: 0, ..default() },
-        ImplicitSurfaceParams { rim: 0.0, ..default() },
+        ImplicitSurfaceParams { edge: 0.0, ..default() },
         ImplicitSurfaceParams { normal_neighbors: 2, ..default() },
     ] {
         assert!(ImplicitSurface::new(&survey, &params).is_err(), "{params:?}");

@@ -7,7 +7,7 @@ use belvedere::medial::{CarvedInput, CarvedParams, OrientByCarvingParams, carved
 use belvedere::neighbors::NeighborIndex;
 use belvedere::normals::estimate::{Neighborhood, estimate};
 use belvedere::normals::{Orientation, OrientedCloud, orient};
-use belvedere::pulses::{NeedleParams, Needles, VerticalParams, vertical_pulses};
+use belvedere::pulses::{FreeSegmentParams, FreeSegments, VerticalParams, vertical_pulses};
 use belvedere::query::{BlockRule, MedialScene, Viewer, Visibility};
 use belvedere_baselines::agreement::{Rate, TruthCounts};
 use belvedere_baselines::medial::DEPTH_BIAS;
@@ -20,17 +20,19 @@ impl TownWithLight {
         &self,
         scanner: &[[f32; 3]],
         before: impl Fn([f32; 3]) -> [f32; 3],
-        turn: impl Fn(OrientedCloud, &NeighborIndex, &Needles) -> OrientedCloud,
+        turn: impl Fn(OrientedCloud, &NeighborIndex, &FreeSegments) -> OrientedCloud,
     ) -> f64 {
         let index = NeighborIndex::new(&self.cloud.positions, &Control::none()).unwrap();
         let mut normals =
             estimate(&self.cloud.positions, &index, Neighborhood::Fixed { k: 16 }, &Control::none()).unwrap();
         normals.vectors.iter_mut().for_each(|normal| *normal = before(*normal));
         let (oriented, _) = orient(&self.cloud, normals, &Orientation::Pulses(scanner), &Control::none()).unwrap();
-        let (needles, _) = Needles::of_cloud(&self.cloud, scanner, &NeedleParams::default(), &Control::none()).unwrap();
-        let oriented = turn(oriented, &index, &needles);
+        let (free_segments, _) =
+            FreeSegments::of_cloud(&self.cloud, scanner, &FreeSegmentParams::default(), &Control::none()).unwrap();
+        let oriented = turn(oriented, &index, &free_segments);
         let attributes = &self.cloud.attributes;
-        let input = CarvedInput { oriented: &oriented, index: &index, attributes, needles: &needles, pulses: None };
+        let input =
+            CarvedInput { oriented: &oriented, index: &index, attributes, needles: &free_segments, pulses: None };
         let balls = carved_balls(&input, &CarvedParams::default(), &Control::none()).unwrap().balls;
         let blocking = BlockRule { bias: DEPTH_BIAS, ..BlockRule::default() };
         let scene = MedialScene::new(&balls, &blocking).unwrap();
@@ -44,7 +46,7 @@ impl TownWithLight {
     }
 }
 
-fn as_it_is(oriented: OrientedCloud, _: &NeighborIndex, _: &Needles) -> OrientedCloud {
+fn as_it_is(oriented: OrientedCloud, _: &NeighborIndex, _: &FreeSegments) -> OrientedCloud {
     oriented
 }
 
@@ -71,8 +73,8 @@ fn a_scanner_known_badly_and_normals_turned_wrongly_cost_less_than_a_point() {
     assert!((flipped - exact).abs() < 1.0, "{flipped} of {exact}");
     // and what pulses leave of balls on either side turns them without that
     let params = OrientByCarvingParams { least_confidence: 1.0, ..OrientByCarvingParams::default() };
-    let turn = |oriented: OrientedCloud, index: &NeighborIndex, needles: &Needles| {
-        orient_by_carving(&all_flipped(&oriented), index, needles, &params, &Control::none()).unwrap().0
+    let turn = |oriented: OrientedCloud, index: &NeighborIndex, free_segments: &FreeSegments| {
+        orient_by_carving(&all_flipped(&oriented), index, free_segments, &params, &Control::none()).unwrap().0
     };
     let carved = place.score(&place.scanner, same, turn);
     let wrong = place.score(&place.scanner, same, |oriented, _, _| all_flipped(&oriented));

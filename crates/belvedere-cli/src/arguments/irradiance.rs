@@ -38,7 +38,7 @@ pub(crate) struct IrradianceArguments {
         allow_negative_numbers = true,
         help_heading = "Roofs"
     )]
-    pub(crate) least_area: Option<f64>,
+    pub(crate) min_area: Option<f64>,
     /// Side of the panels that a roof plane is divided into, in metres; a row of panels is a string [default: 1]
     #[arg(long, value_name = "M", requires = "planes", value_parser = above_zero::<f64>, allow_negative_numbers = true,
         help_heading = "Roofs")]

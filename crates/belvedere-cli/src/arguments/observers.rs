@@ -2,7 +2,7 @@
 
 use super::{NorthArguments, Numbers, SceneInput, UnprovenChoice, Usage, above_zero, at_most, height, length};
 use belvedere::ground::GroundPoints;
-use belvedere::query::{Curvature, MOST_RANDOM_PAIRS};
+use belvedere::query::{Curvature, MAX_RANDOM_PAIRS};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -60,7 +60,7 @@ pub(crate) struct LinesArguments {
     #[arg(long, value_name = "FILE", conflicts_with_all = ["from", "to", "random"])]
     pub(crate) pairs: Option<PathBuf>,
     /// N random pairs, at most 10 million, uniform in the bounding box of the cloud (see --seed)
-    #[arg(long, value_name = "N", value_parser = at_most::<MOST_RANDOM_PAIRS>, conflicts_with_all = ["from", "to"])]
+    #[arg(long, value_name = "N", value_parser = at_most::<MAX_RANDOM_PAIRS>, conflicts_with_all = ["from", "to"])]
     pub(crate) random: Option<usize>,
     /// Observer of one line, in file coordinates; without Z it is --observer-height above the ground
     #[arg(long = "observer", value_name = "X,Y[,Z]", requires = "to", allow_hyphen_values = true)]

@@ -1,7 +1,7 @@
 //! Flags of depth maps and of targets in a view.
 
 use super::{BallShape, MeshTargets, SceneInput, ViewChoice, at_most, finite, length};
-use belvedere::query::MOST_RANDOM_TARGETS;
+use belvedere::query::MAX_RANDOM_TARGETS;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
@@ -71,7 +71,7 @@ pub(crate) struct TargetsArguments {
     #[arg(long, value_name = "FILE")]
     pub(crate) targets: Option<PathBuf>,
     /// Query N random points, at most 50 million, uniform in the bounding box of the cloud (see --seed)
-    #[arg(long, value_name = "N", value_parser = at_most::<MOST_RANDOM_TARGETS>)]
+    #[arg(long, value_name = "N", value_parser = at_most::<MAX_RANDOM_TARGETS>)]
     pub(crate) random: Option<usize>,
     /// Query all points of the cloud, in their order
     #[arg(long = "self")]

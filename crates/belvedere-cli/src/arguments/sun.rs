@@ -68,7 +68,7 @@ pub(crate) struct SunPeriod {
     pub(crate) step: Option<f64>,
     /// Minimum elevation of the sun in degrees; lower suns are ignored [default: 0, or that of a rule]
     #[arg(long = "min-sun-elevation", value_name = "DEG", allow_negative_numbers = true)]
-    pub(crate) least_elevation: Option<f64>,
+    pub(crate) min_elevation: Option<f64>,
     /// Year of days that are given without a year
     #[arg(long, value_name = "Y", default_value_t = 2026)]
     pub(crate) year: i16,

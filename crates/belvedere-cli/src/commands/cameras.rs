@@ -25,7 +25,7 @@ pub(crate) fn run(arguments: &CamerasArguments, global: &Global) -> Result<Summa
         arguments.output.iter().chain(&arguments.curve).chain(&arguments.footprints).cloned().collect();
     let frame = scene.cloud.frame.clone();
     warn_of_geojson(&written, &frame.crs, &mut run.summary);
-    let scene = scene.into_asked(Some(&arguments.targets.ground), arguments.giving_way.shell, &run)?;
+    let scene = scene.into_question_scene(Some(&arguments.targets.ground), arguments.giving_way.shell, &run)?;
     let places = what::places(&arguments.targets, &frame, &mut question.targets, &mut run)?;
     if let Some(path) = &arguments.lens.private {
         question.targets.private = what::private(path, &frame)?;

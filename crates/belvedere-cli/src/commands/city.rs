@@ -18,7 +18,7 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 /// Most failures that are listed one by one.
-const MOST_LISTED: usize = 10;
+const MAX_LISTED: usize = 10;
 
 pub(crate) fn run(arguments: &City, global: &Global) -> Result<Summary> {
     match &arguments.step {
@@ -58,11 +58,11 @@ fn plan(arguments: &CityPlan, global: &Global) -> Result<Summary> {
         .add("files", plan.inputs.len())
         .add("tiles", plan.tiles.len())
         .add("tile_size_m", plan.tile_size)
-        .add("halo_m", plan.halo)
+        .add("halo_m", plan.buffer)
         .add("results", plan.questions.iter().map(TileQuestion::name).collect::<Vec<_>>())
         .add("points", estimate.points)
-        .add("points_read_with_halo", estimate.points_with_halo)
-        .add("points_of_the_largest_tile", estimate.most_points_of_a_tile)
+        .add("points_read_with_halo", estimate.points_with_buffer)
+        .add("points_of_the_largest_tile", estimate.max_points_of_a_tile)
         .add("estimated_memory_gb", rounded(estimate.memory_bytes as f64 / 1e9, 2))
         .add("estimated_disk_gb", rounded(estimate.disk_bytes as f64 / 1e9, 2))
         .add("written", arguments.output.display().to_string())
@@ -98,11 +98,11 @@ fn run_plan(arguments: &CityRun, global: &Global) -> Result<Summary> {
     let start = Instant::now();
     let shard = arguments.shard.map_or_else(Shard::default, |share| Shard { number: share.number, of: share.of });
     let steps = if arguments.balls_only { Steps::Balls } else { Steps::All };
-    let params = RunParams { shard, steps, most_balls: None, seconds: &|| start.elapsed().as_secs_f64() };
+    let params = RunParams { shard, steps, max_balls: None, seconds: &|| start.elapsed().as_secs_f64() };
     let report = run_tiles(&plan, &arguments.run, &params, &run.control())?;
     if let Some((first, _)) = report.failed.split_first() {
-        let listed = report.failed.iter().take(MOST_LISTED).map(|why| format!("\n  {why}")).collect::<String>();
-        let more = report.failed.len().saturating_sub(MOST_LISTED);
+        let listed = report.failed.iter().take(MAX_LISTED).map(|why| format!("\n  {why}")).collect::<String>();
+        let more = report.failed.len().saturating_sub(MAX_LISTED);
         let more = if more > 0 { format!("\n  and {more} more (belvedere city status)") } else { String::new() };
         if report.failed.len() == 1 {
             bail!("{first}; all else is done, and the next run tries it again");

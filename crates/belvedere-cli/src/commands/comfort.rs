@@ -34,7 +34,7 @@ pub(crate) fn run(arguments: &ComfortArguments, global: &Global) -> Result<Summa
     let route = arguments.places.route.as_ref();
     let points = if route.is_some() { KeepPoints::Keep } else { KeepPoints::LetGo };
     let scene = pipeline::scene(&arguments.scene, points, &mut run)?;
-    let scene = scene.into_asked(route.map(|_| &arguments.ground), arguments.shell.shell, &run)?;
+    let scene = scene.into_question_scene(route.map(|_| &arguments.ground), arguments.shell.shell, &run)?;
     let source = match (route, &arguments.places.windows) {
         (Some(route), _) => {
             let named = routes(route, scene.frame())?;

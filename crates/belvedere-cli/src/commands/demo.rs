@@ -183,18 +183,18 @@ fn agreement(
     let mut section = Summary::default();
     for (name, exact) in [("pedestrians", &pedestrians), ("cloud_points", &scan.exact_positions)] {
         let shadowed = truth.occluded_towards_each(exact, sun);
-        let asked: Vec<[f32; 3]> = exact.iter().map(|&p| to_local(p, cloud.frame.origin)).collect();
-        let answers = blockers.visible(Viewer::Direction(sun), &asked)?;
+        let queried: Vec<[f32; 3]> = exact.iter().map(|&p| to_local(p, cloud.frame.origin)).collect();
+        let answers = blockers.visible(Viewer::Direction(sun), &queried)?;
         let lit_count = shadowed.iter().filter(|s| !**s).count();
         let wrong = |answer: Answer, truly_shadowed: bool| {
             answers.iter().zip(&shadowed).filter(|&(a, s)| *a == answer && *s == truly_shadowed).count()
         };
         let mut scores = Summary::default();
         scores
-            .add("targets", asked.len())
-            .add("ground_truth_in_shadow_percent", percent(asked.len() - lit_count, asked.len()))
+            .add("targets", queried.len())
+            .add("ground_truth_in_shadow_percent", percent(queried.len() - lit_count, queried.len()))
             .add("false_blocked_percent", percent(wrong(Answer::Blocked, false), lit_count))
-            .add("false_visible_percent", percent(wrong(Answer::Visible, true), asked.len() - lit_count));
+            .add("false_visible_percent", percent(wrong(Answer::Visible, true), queried.len() - lit_count));
         section.add(name, scores);
     }
     Ok(section)

@@ -28,7 +28,7 @@ pub(crate) fn run(arguments: &EnvelopeArguments, global: &Global) -> Result<Summ
     question.check()?;
     let mut run = CommandContext::new(global);
     let scene = scene(arguments, &mut run)?;
-    let scene = scene.into_asked(Some(&arguments.ground), arguments.shell.shell, &run)?;
+    let scene = scene.into_question_scene(Some(&arguments.ground), arguments.shell.shell, &run)?;
     question.parcel = parcel(arguments, scene.frame())?;
     question.protect = protect(arguments, scene.frame(), &mut run)?;
     let answers = ask::ask(&scene, &question, &Places::Scene, &run.control())?;

@@ -1,6 +1,6 @@
 //! `belvedere horizon`.
 
-use super::surroundings::least_count;
+use super::surroundings::min_count;
 use super::{check_output, extension};
 use crate::arguments::{BelowChoice, Global, HorizonArguments, Usage};
 use crate::run::CommandContext;
@@ -25,7 +25,7 @@ pub(crate) fn run(arguments: &HorizonArguments, global: &Global) -> Result<Summa
         below: if arguments.below == BelowChoice::Zero { BelowLevel::Zero } else { BelowLevel::Keep },
     };
     question.check()?;
-    check_formats(arguments, least_count(arguments.eyes.eye.len(), arguments.eyes.eyes.as_deref())?)?;
+    check_formats(arguments, min_count(arguments.eyes.eye.len(), arguments.eyes.eyes.as_deref())?)?;
     let mut run = CommandContext::new(global);
     let scene = arguments.eyes.scene(&arguments.scene, Some(&arguments.far), &mut run)?;
     let standing = arguments.eyes.standing(scene.frame())?;

@@ -25,7 +25,7 @@ pub(crate) fn run(arguments: &IrradianceArguments, global: &Global) -> Result<Su
     let grouping = if arguments.months { Grouping::Months } else { Grouping::Whole };
     let params = radiation::params(&arguments.model).with_grouping(grouping);
     let roofs =
-        Roofs { min_area: arguments.least_area, panel: arguments.panel, ground: arguments.places.ground.points() };
+        Roofs { min_area: arguments.min_area, panel: arguments.panel, ground: arguments.places.ground.points() };
     let question = ask::IrradianceQuestion {
         // a mistyped weather file must not be found out after the balls were made
         radiation: radiation::of(arguments, &params, &run)?,
@@ -40,7 +40,7 @@ pub(crate) fn run(arguments: &IrradianceArguments, global: &Global) -> Result<Su
     let mut scene = pipeline::scene(&arguments.scene, points, &mut run)?;
     arguments.places.far.set(&mut scene, &mut run)?;
     warn_of_geojson(&arguments.planes, &scene.cloud.frame.crs, &mut run.summary);
-    let scene = scene.into_asked(Some(&arguments.places.ground), arguments.shell.shell, &run)?;
+    let scene = scene.into_question_scene(Some(&arguments.places.ground), arguments.shell.shell, &run)?;
     let (places, source) = match wants_places {
         true => arguments.places.places(&scene, &mut run).map(|(places, source)| (places, Some(source)))?,
         false => (Places::Scene, None),

@@ -1,6 +1,6 @@
 //! `belvedere isovist`.
 
-use super::surroundings::{least_count, rows_as_given};
+use super::surroundings::{min_count, rows_as_given};
 use super::{check_output, extension};
 use crate::arguments::{Global, IsovistArguments, Usage};
 use crate::run::CommandContext;
@@ -26,7 +26,7 @@ pub(crate) fn run(arguments: &IsovistArguments, global: &Global) -> Result<Summa
         min_jump: arguments.jump,
     };
     question.check()?;
-    check_pictures(arguments, least_count(arguments.eyes.eye.len(), arguments.eyes.eyes.as_deref())?)?;
+    check_pictures(arguments, min_count(arguments.eyes.eye.len(), arguments.eyes.eyes.as_deref())?)?;
     let mut run = CommandContext::new(global);
     let scene = arguments.eyes.scene(&arguments.scene, None, &mut run)?;
     let standing = arguments.eyes.standing(scene.frame())?;

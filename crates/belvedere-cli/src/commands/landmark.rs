@@ -21,7 +21,7 @@ pub(crate) fn run(arguments: &LandmarkArguments, global: &Global) -> Result<Summ
     arguments.earth.params()?;
     let mut run = CommandContext::new(global);
     let scene = pipeline::scene(&arguments.scene, KeepPoints::Keep, &mut run)?;
-    let scene = scene.into_asked(Some(&arguments.ground), arguments.giving_way.shell, &run)?;
+    let scene = scene.into_question_scene(Some(&arguments.ground), arguments.giving_way.shell, &run)?;
     let shape = what::shape(&arguments.shape, scene.frame(), &mut run)?;
     let question = question(arguments, shape, scene.frame())?;
     let answers = ask::ask(&scene, &question, &Places::Scene, &run.control())?;

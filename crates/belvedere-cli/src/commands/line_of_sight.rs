@@ -31,7 +31,7 @@ pub(crate) fn run(arguments: &LineOfSightArguments, global: &Global) -> Result<S
     if let Some(path) = &arguments.terrain {
         set_terrain(path, &mut scene, &mut run)?;
     }
-    let scene = scene.into_asked(Some(&arguments.ground), arguments.giving_way.shell, &run)?;
+    let scene = scene.into_question_scene(Some(&arguments.ground), arguments.giving_way.shell, &run)?;
     let (pairs, rows) = pairs(arguments, &scene, &run)?;
     let answers = ask::ask(&scene, &question, &Places::Pairs(pairs), &run.control())?;
     run.answered(&answers);

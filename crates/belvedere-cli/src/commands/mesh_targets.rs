@@ -92,7 +92,7 @@ pub(super) fn run(arguments: &Query, path: &Path, global: &Global) -> Result<Sum
             Ok(answers.into_iter().map(|answer| unproven.settle(answer)).collect())
         })
     })?;
-    run.summary.add("faces", told(&faces, &surface, spacing));
+    run.summary.add("faces", face_summary(&faces, &surface, spacing));
     let places: Vec<[f32; 3]> = surface.pieces.iter().map(|piece| piece.place).collect();
     let outside = scene.model.coverage().map_or(0, |coverage| coverage.outside_count(&places));
     run.summary.remarks(ask::remark_on_outside(outside, places.len(), "sample points of the mesh"));
@@ -111,7 +111,7 @@ pub(super) fn run(arguments: &Query, path: &Path, global: &Global) -> Result<Sum
     Ok(run.finish())
 }
 
-fn told(faces: &[SeenArea], surface: &SurfacePieces, spacing: f64) -> Summary {
+fn face_summary(faces: &[SeenArea], surface: &SurfacePieces, spacing: f64) -> Summary {
     let all = seen_in_all(faces);
     let mut section = Summary::default();
     section

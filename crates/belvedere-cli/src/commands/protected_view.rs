@@ -38,7 +38,7 @@ pub(crate) fn run(arguments: &ProtectedViewArguments, global: &Global) -> Result
     question.landmark = Some(SharedObject::new(what::surface(&arguments.shape, &scene, &mut run)?.0));
     question.observers = arguments.eyes.standing(&scene.cloud.frame)?;
     let ground = &arguments.eyes.ground;
-    let scene = scene.into_asked(Some(ground), arguments.giving_way.shell, &run)?;
+    let scene = scene.into_question_scene(Some(ground), arguments.giving_way.shell, &run)?;
     let places = Places::Cells(GridCells { cell: arguments.cell, ground: ground.points(), ..GridCells::default() });
     let answers = ask::ask(&scene, &question, &places, &run.control())?;
     run.answered(&answers);
@@ -62,10 +62,10 @@ fn write_map(output: &Path, found: &ProtectedViewResults, scene: &Scene) -> Resu
     let ground = &found.ground.ground;
     let relief = highest_points(&scene.ground_cloud()?.positions, ground);
     let heights = found.heights.values();
-    let most = heights.iter().copied().filter(|v| v.is_finite()).fold(0.0, f32::max).max(1.0);
+    let max = heights.iter().copied().filter(|v| v.is_finite()).fold(0.0, f32::max).max(1.0);
     // where no ground is known there is no answer; elsewhere a cell without a limit is one that no view crosses
     let color = |(&height, &ground): (&f32, &f32)| match height.is_finite() {
-        true => Some(ramp(f64::from(height / most))),
+        true => Some(ramp(f64::from(height / max))),
         false => ground.is_finite().then_some(NO_LIMIT_COLOR),
     };
     let colors: Vec<Option<[u8; 3]>> = heights.iter().zip(ground.heights.values()).map(color).collect();
@@ -82,7 +82,7 @@ fn write_map(output: &Path, found: &ProtectedViewResults, scene: &Scene) -> Resu
         marks: &marks,
         mark_name: "observer",
         title: "Maximum height below the protected views",
-        legend: MapLegend::Ramp("metres above the ground", [0.0, f64::from(most)], &[(NO_LIMIT_COLOR, "no limit")]),
+        legend: MapLegend::Ramp("metres above the ground", [0.0, f64::from(max)], &[(NO_LIMIT_COLOR, "no limit")]),
     };
     Ok(write_png(output, &map_picture(&map)?)?)
 }

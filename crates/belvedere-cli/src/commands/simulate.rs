@@ -16,7 +16,7 @@ use belvedere_scenes::{
 use std::path::Path;
 
 /// Most pulses: a scan of more would fill the memory of most machines, so that a slipped digit is an error and no crash.
-const MOST_PULSES: f64 = 5e8;
+const MAX_PULSES: f64 = 5e8;
 
 pub(crate) fn run(arguments: &Simulate, global: &Global) -> Result<Summary> {
     check_flags(arguments)?;
@@ -111,10 +111,10 @@ fn check_pulses(arguments: &Simulate) -> Result<()> {
             (stations * params.pulses_per_station() as f64, "use a larger --angle-step-deg or fewer --stations")
         }
     };
-    if count <= MOST_PULSES {
+    if count <= MAX_PULSES {
         return Ok(());
     }
-    Err(Usage(format!("{count:.1e} pulses are more than the {MOST_PULSES:.0e} that fit into memory; {advice}")).into())
+    Err(Usage(format!("{count:.1e} pulses are more than the {MAX_PULSES:.0e} that fit into memory; {advice}")).into())
 }
 
 fn airborne(arguments: &Simulate, scene: &TriangleScene, seed: u64) -> AirborneParams {

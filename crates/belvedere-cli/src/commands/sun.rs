@@ -45,7 +45,7 @@ impl SunPeriod {
             between: self.from.clone().zip(self.to.clone()).map(|(from, to)| [from, to]),
             year: Some(self.year),
             time_step_min: self.step,
-            min_sun_elevation_deg: self.least_elevation,
+            min_sun_elevation_deg: self.min_elevation,
         }
     }
 

@@ -41,12 +41,12 @@ impl EyesArguments {
         if let Some(far) = far {
             far.set(&mut scene, run)?;
         }
-        scene.into_asked(needs_ground.then_some(&self.ground), None, run)
+        scene.into_question_scene(needs_ground.then_some(&self.ground), None, run)
     }
 }
 
 /// How many observers there are at least: those typed, or the rows of a table; one for other files.
-pub(super) fn least_count(typed: usize, observers: Option<&Path>) -> Result<usize> {
+pub(super) fn min_count(typed: usize, observers: Option<&Path>) -> Result<usize> {
     Ok(typed.max(rows_as_given(observers)?.row_count()).max(1))
 }
 

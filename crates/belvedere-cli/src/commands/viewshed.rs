@@ -31,7 +31,7 @@ pub(crate) fn run(arguments: &ViewshedArguments, global: &Global) -> Result<Summ
     if let Some(path) = &arguments.terrain {
         set_terrain(path, &mut scene, &mut run)?;
     }
-    let scene = scene.into_asked(Some(&arguments.ground), arguments.giving_way.shell, &run)?;
+    let scene = scene.into_question_scene(Some(&arguments.ground), arguments.giving_way.shell, &run)?;
     let areas: Vec<PathBuf> = arguments.output.iter().chain(&arguments.far_output).cloned().collect();
     warn_of_geojson(&areas, &scene.frame().crs, &mut run.summary);
     question.observers = who::observers(arguments, scene.frame())?;

@@ -43,7 +43,7 @@ pub(crate) fn run(arguments: &WindowViewsArguments, global: &Global) -> Result<S
         bail!("--buildings: {path} does not name buildings; a table needs the column name, a mesh named objects");
     }
     question.windows = file.given.clone();
-    let scene = scene.into_asked(None, arguments.giving_way.shell, &run)?;
+    let scene = scene.into_question_scene(None, arguments.giving_way.shell, &run)?;
     let answers = ask::ask(&scene, &question, &Places::Scene, &run.control()).map_err(|error| match error {
         Error::NoObserver { .. } => anyhow::Error::from(error).context(arguments.windows.display().to_string()),
         other => other.into(),

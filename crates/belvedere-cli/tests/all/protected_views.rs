@@ -38,8 +38,8 @@ fn the_view_of_a_wall_limits_what_may_be_built_before_it_and_not_behind_the_hous
     // a fan of 20 m by 10 m at its end, and the cells that its sides cross
     assert!((95..150).contains(&limited.len()), "{}", limited.len());
     // the plane from 1.7 m at the eye to 3 m at the lower edge of the wall; the ground is flat to a few centimetres
-    let (least, most) = limited.iter().fold((f32::INFINITY, 0.0_f32), |(a, b), &v| (a.min(v), b.max(v)));
-    assert!((least - 1.7).abs() < 0.15 && (most - 3.0).abs() < 0.15, "{least} {most}");
+    let (min, max) = limited.iter().fold((f32::INFINITY, 0.0_f32), |(a, b), &v| (a.min(v), b.max(v)));
+    assert!((min - 1.7).abs() < 0.15 && (max - 3.0).abs() < 0.15, "{min} {max}");
     assert_eq!(shape.iter().product::<u64>() as usize, tops.len());
     assert!(tops.iter().zip(&heights).all(|(top, height)| top.is_nan() || (top - height).abs() < 0.1));
     assert!(place.bytes("limits.png").starts_with(b"\x89PNG") && place.bytes("limits.tif").starts_with(b"II"));

@@ -30,7 +30,7 @@ fn the_shadow_of_a_house_is_the_exact_one() {
         assert_eq!(run["sun"]["suns"], 1);
         let [x, y, z, lit] = ["x", "y", "z", "lit"].map(|name| column(&place, "lit.csv", name));
         let sun = to_sun(azimuth, elevation);
-        let (mut shaded, mut asked) = (0, 0);
+        let (mut shaded, mut queried) = (0, 0);
         for i in 0..lit.len() {
             let spot = [x[i] - EAST, y[i] - NORTH, z[i]];
             if spot[0].abs() < 5.8 && spot[1].abs() < 4.8 {
@@ -44,9 +44,9 @@ fn the_shadow_of_a_house_is_the_exact_one() {
             }
             assert_eq!(lit[i], if expected { 0.0 } else { 1.0 }, "sun {azimuth},{elevation} at {spot:?}");
             shaded += usize::from(expected);
-            asked += 1;
+            queried += 1;
         }
-        assert!(shaded > 30 && asked > 2000, "{shaded} of {asked}");
+        assert!(shaded > 30 && queried > 2000, "{shaded} of {queried}");
         assert!(place.bytes("lit.png").starts_with(b"\x89PNG") && place.path("lit.tif").is_file());
     }
 }

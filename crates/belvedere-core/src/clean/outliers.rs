@@ -158,15 +158,15 @@ fn nearest_distance(grid: &SortedGrid, positions: &[[f32; 3]], index: u32, guess
     let p = positions[index as usize];
     for doubling in 0..=SPACING_DOUBLINGS {
         let radius = guess * 2.0_f64.powi(doubling);
-        let mut least = f64::INFINITY;
+        let mut min = f64::INFINITY;
         let _ = grid.visit_near(p, radius, |other| {
             if other != index {
-                least = least.min(squared_distance(p, positions[other as usize]));
+                min = min.min(squared_distance(p, positions[other as usize]));
             }
             ControlFlow::Continue(())
         });
-        if least <= radius * radius {
-            return least.sqrt();
+        if min <= radius * radius {
+            return min.sqrt();
         }
     }
     f64::INFINITY

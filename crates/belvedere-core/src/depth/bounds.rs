@@ -14,7 +14,7 @@ use belvedere_data::{Error, Parameter, Result};
 /// products of both err by fewer than 16 of them together.
 const ROUNDING: f64 = 4e-6;
 /// The same near the origin of the view, metres.
-const LEAST_ROUNDING: f64 = 1e-6;
+const MIN_ROUNDING: f64 = 1e-6;
 
 /// What bounds of depth are to allow for.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -39,11 +39,11 @@ impl BoundsParams {
     /// all others, metres.
     #[must_use]
     pub fn starts(&self, view: &View) -> [f64; 2] {
-        let most_range_per_depth = match view.projection {
+        let max_range_per_depth = match view.projection {
             Projection::Perspective { .. } => 1.0 / view.direction([0.0; 2])[2],
             _ => 1.0,
         };
-        [self.start, if self.start > 0.0 { self.start * most_range_per_depth } else { self.start }]
+        [self.start, if self.start > 0.0 { self.start * max_range_per_depth } else { self.start }]
     }
 }
 
@@ -121,17 +121,17 @@ pub(super) struct BallBound {
 
 impl BallBound {
     /// The radius to draw a ball with, `None` where it does not count. `size` is at least the largest of its coordinates, metres;
-    /// `fronts` the least and the most depth of its front; nothing smaller than `least_cover` covers a pixel at its distance.
+    /// `fronts` the least and the most depth of its front; nothing smaller than `min_cover` covers a pixel at its distance.
     #[expect(clippy::cast_possible_truncation, reason = "rounded outward on purpose")]
-    pub(super) fn radius(&self, radius: f32, size: f64, [least, most]: [f64; 2], least_cover: f64) -> Option<f32> {
+    pub(super) fn radius(&self, radius: f32, size: f64, [min, max]: [f64; 2], min_cover: f64) -> Option<f32> {
         let radius = f64::from(radius);
         let margin = margin(size, radius);
         match self.side {
-            BoundSide::Lower => (most + margin > self.start[0]).then(|| ((radius + margin) as f32).next_up()),
+            BoundSide::Lower => (max + margin > self.start[0]).then(|| ((radius + margin) as f32).next_up()),
             BoundSide::Upper => {
                 // twice, since giving way halves what is left of one
                 let drawn = radius - 2.0 * margin;
-                (drawn > least_cover && least - margin > self.start[1]).then(|| (drawn as f32).next_down())
+                (drawn > min_cover && min - margin > self.start[1]).then(|| (drawn as f32).next_down())
             }
         }
     }
@@ -140,8 +140,8 @@ impl BallBound {
 impl BallBound {
     /// The radius that is left of a ball drawn with `radius` for any target, however near to its surface.
     #[inline(always)]
-    pub(super) fn least_radius(&self, radius: f32) -> f32 {
-        self.rule.least_radius_f32(radius)
+    pub(super) fn min_radius(&self, radius: f32) -> f32 {
+        self.rule.min_radius_f32(radius)
     }
 
     /// A depth behind which every target lies farther than the shell from a ball drawn with `radius` around `center` deep, so that
@@ -155,5 +155,5 @@ impl BallBound {
 
 /// By how much a ball is drawn too large or too small, metres.
 pub(super) fn margin(size: f64, radius: f64) -> f64 {
-    ROUNDING * (size + radius) + LEAST_ROUNDING
+    ROUNDING * (size + radius) + MIN_ROUNDING
 }

@@ -89,7 +89,7 @@ pub(super) struct Directions {
     directions: [[f32; TILE * TILE]; 3],
     /// Depth per range of each pixel, and the least of them.
     depth_per_range: [f32; TILE * TILE],
-    least_depth_per_range: f32,
+    min_depth_per_range: f32,
     /// From the middle of a block to anywhere within its pixels.
     block: Turn,
     /// From the middle of a pixel to anywhere within it.
@@ -103,8 +103,8 @@ pub(super) trait CentralSurface: Sync {
     /// Whether depths are ranges whatever the view.
     const IN_RANGE: bool;
     /// The radius to draw with, or `None` where a ball does not count. `fronts` is the least and the most range of its front; nothing
-    /// smaller than `least_cover` covers a pixel at its range.
-    fn radius(&self, radius: f32, size: f64, fronts: [f64; 2], least_cover: f64) -> Option<f32>;
+    /// smaller than `min_cover` covers a pixel at its range.
+    fn radius(&self, radius: f32, size: f64, fronts: [f64; 2], min_cover: f64) -> Option<f32>;
     /// Limits of depth of what is drawn.
     fn limits(&self, view: &View) -> [f64; 2];
     /// What a ball covers whose outline says nothing because its surface runs through the eye, as far as can be told.
@@ -129,7 +129,7 @@ pub(super) struct Central<S> {
     view: View,
     limits: [f32; 2],
     /// At most the sine of the angle from the middle of any pixel to its corners.
-    least_pixel: f64,
+    min_pixel: f64,
     surface: S,
 }
 
@@ -140,8 +140,8 @@ impl<S: CentralSurface> Central<S> {
         // pixels are smallest at the corners of a perspective picture and at those of a stereographic map
         let corner = view.direction([0.0; 2]);
         let inward = view.direction([0.5; 2]);
-        let least_pixel = length(cross(corner, inward)) * 0.5;
-        Self { view: *view, limits, least_pixel, surface }
+        let min_pixel = length(cross(corner, inward)) * 0.5;
+        Self { view: *view, limits, min_pixel, surface }
     }
 
     fn is_in_range(&self) -> bool {
@@ -180,16 +180,16 @@ impl<S: CentralSurface> SplatSurface for Central<S> {
         let size = center.iter().map(|v| v.abs()).sum();
         let margin = margin(size, whole);
         let silhouette = ((distance - whole) * (distance + whole)).max(0.0).sqrt();
-        let radius = self.surface.radius(radius, size, [distance - whole, silhouette], distance * self.least_pixel)?;
+        let radius = self.surface.radius(radius, size, [distance - whole, silhouette], distance * self.min_pixel)?;
         let extent = outline(&self.view, center, whole).or_else(|| self.surface.at_eye(distance, whole, margin))?;
-        let inside = |[least, most]: [f64; 2], size: usize| most > -1.0 && least < size as f64 + 1.0;
+        let inside = |[min, max]: [f64; 2], size: usize| max > -1.0 && min < size as f64 + 1.0;
         if !(inside(extent[0], self.view.size_px[0]) && inside(extent[1], self.view.size_px[1])) {
             return None;
         }
-        let least = if self.is_in_range() { distance - f64::from(radius) } else { center[2] - f64::from(radius) };
+        let min = if self.is_in_range() { distance - f64::from(radius) } else { center[2] - f64::from(radius) };
         let [near, far] = self.limits;
-        let near = ((least - margin) as f32).max(near);
-        let beyond = |[least, most]: [f64; 2]| [least as f32 - S::BEYOND_PX, most as f32 + S::BEYOND_PX];
+        let near = ((min - margin) as f32).max(near);
+        let beyond = |[min, max]: [f64; 2]| [min as f32 - S::BEYOND_PX, max as f32 + S::BEYOND_PX];
         (near <= far).then_some(CentralSplat {
             center: center.map(|v| v as f32),
             radius,
@@ -221,7 +221,7 @@ impl<S: CentralSurface> SplatSurface for Central<S> {
         let mut tile = Box::new(Directions {
             directions: [[0.0; TILE * TILE]; 3],
             depth_per_range: [1.0; TILE * TILE],
-            least_depth_per_range: 1.0,
+            min_depth_per_range: 1.0,
             block: Turn::towards(pixel * (1.0 + BLOCK as f64)),
             pixel: [Turn::towards(pixel), Turn::away(pixel)],
         });
@@ -235,14 +235,14 @@ impl<S: CentralSurface> SplatSurface for Central<S> {
                 }
                 if !self.is_in_range() {
                     tile.depth_per_range[at] = direction[2] as f32;
-                    tile.least_depth_per_range = tile.least_depth_per_range.min(direction[2] as f32);
+                    tile.min_depth_per_range = tile.min_depth_per_range.min(direction[2] as f32);
                 }
             }
         }
         tile
     }
 
-    fn least_depth(&self, tile: &Self::PixelTile, splat: &CentralSplat, [column, row]: [usize; 2]) -> f32 {
+    fn min_depth(&self, tile: &Self::PixelTile, splat: &CentralSplat, [column, row]: [usize; 2]) -> f32 {
         // the pixel right and below of the middle: half a pixel's diagonal off it
         let at = (row + BLOCK / 2) * TILE + column + BLOCK / 2;
         let direction = [0, 1, 2].map(|axis: usize| tile.directions[axis][at]);
@@ -252,7 +252,7 @@ impl<S: CentralSurface> SplatSurface for Central<S> {
         let square = radius * radius - passing.beside_square;
         let half_chord = square.max(0.0).sqrt();
         if square > 0.0 && passing.along + half_chord >= 0.0 {
-            (passing.along - half_chord).max(0.0) * tile.least_depth_per_range * (1.0 - 1e-6)
+            (passing.along - half_chord).max(0.0) * tile.min_depth_per_range * (1.0 - 1e-6)
         } else {
             f32::INFINITY
         }
@@ -294,9 +294,9 @@ impl CentralSurface for CentralSphere {
     const BEYOND_PX: f32 = 0.1;
     const IN_RANGE: bool = false;
 
-    fn radius(&self, radius: f32, _: f64, [least, _]: [f64; 2], _: f64) -> Option<f32> {
+    fn radius(&self, radius: f32, _: f64, [min, _]: [f64; 2], _: f64) -> Option<f32> {
         // a ball that holds the eye is left out
-        (least > 0.0).then_some(radius)
+        (min > 0.0).then_some(radius)
     }
 
     fn limits(&self, view: &View) -> [f64; 2] {
@@ -323,8 +323,8 @@ impl CentralSurface for CentralBound {
     const BEYOND_PX: f32 = 1.0;
     const IN_RANGE: bool = true;
 
-    fn radius(&self, radius: f32, size: f64, fronts: [f64; 2], least_cover: f64) -> Option<f32> {
-        self.0.radius(radius, size, fronts, least_cover)
+    fn radius(&self, radius: f32, size: f64, fronts: [f64; 2], min_cover: f64) -> Option<f32> {
+        self.0.radius(radius, size, fronts, min_cover)
     }
 
     fn limits(&self, _: &View) -> [f64; 2] {
@@ -353,7 +353,7 @@ impl CentralSurface for CentralBound {
             BoundSide::Upper => {
                 let is_covered = (passing.beside_square < splat.radius * splat.radius) & (passing.along > 0.0);
                 let behind = self.0.behind(pixel.distance, splat.radius, splat.margin);
-                front(self.0.least_radius(splat.radius)).min(if is_covered { behind } else { f32::INFINITY })
+                front(self.0.min_radius(splat.radius)).min(if is_covered { behind } else { f32::INFINITY })
             }
         }
     }

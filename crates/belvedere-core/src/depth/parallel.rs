@@ -86,7 +86,7 @@ impl<S: ParallelSurface> SplatSurface for Parallel<S> {
 
     /// This is the depth at the offset within the block that is nearest to the centre. Every operation from offset to
     /// depth is monotone in f32, so no pixel of the block can come out nearer, not even by rounding.
-    fn least_depth(&self, &[left, top]: &[usize; 2], splat: &ParallelSplat, [column, row]: [usize; 2]) -> f32 {
+    fn min_depth(&self, &[left, top]: &[usize; 2], splat: &ParallelSplat, [column, row]: [usize; 2]) -> f32 {
         let offset = |first: usize, center: f32| {
             let [first, last] = [first, first + BLOCK - 1].map(|pixel| pixel as f32 + 0.5 - center);
             0f32.clamp(first, last) * self.units_per_pixel
@@ -205,7 +205,7 @@ impl ParallelSurface for ParallelBound {
                 #[expect(clippy::cast_possible_truncation, reason = "a length")]
                 let behind = self.bound.behind(splat.z, splat.radius, margin as f32);
                 let behind = if beside < splat.radius * splat.radius { behind } else { f32::INFINITY };
-                front(self.bound.least_radius(splat.radius)).min(behind)
+                front(self.bound.min_radius(splat.radius)).min(behind)
             }
         }
     }

@@ -18,7 +18,7 @@ pub(super) const TILE: usize = 64;
 pub(super) const BLOCK: usize = 8;
 const BLOCKS: usize = TILE / BLOCK;
 /// A ball over more tiles than this is not listed in each but offered to all, which bounds the memory of the lists.
-const MOST_LISTED_TILES: usize = 16;
+const MAX_LISTED_TILES: usize = 16;
 /// Balls handed to a thread at once.
 const CHUNK: usize = 8192;
 
@@ -39,7 +39,7 @@ pub(super) trait SplatSurface: Sync {
     /// The tile whose upper left pixel stands at a column and a row.
     fn tile(&self, left: usize, top: usize) -> Self::PixelTile;
     /// At most the least depth of the ball at any pixel of the block at a column and a row of the tile, +∞ where it touches none.
-    fn least_depth(&self, tile: &Self::PixelTile, splat: &Self::Splat, block: [usize; 2]) -> f32;
+    fn min_depth(&self, tile: &Self::PixelTile, splat: &Self::Splat, block: [usize; 2]) -> f32;
     /// Depths at the pixels of one row of a block, which starts at a column and a row of the tile; +∞ beside the ball.
     fn depths(&self, tile: &Self::PixelTile, splat: &Self::Splat, first: [usize; 2]) -> [f32; BLOCK];
     /// Units of depth in a metre.
@@ -135,7 +135,7 @@ impl TileLists {
         let mut wide = Vec::new();
         for (i, splat) in splats.iter().enumerate() {
             let (across, down) = tiles_of(splat);
-            if across.len() * down.len() > MOST_LISTED_TILES {
+            if across.len() * down.len() > MAX_LISTED_TILES {
                 wide.push(i as u32);
                 continue;
             }
@@ -152,7 +152,7 @@ impl TileLists {
         let mut listed = vec![0; counts[columns * rows]];
         for (i, splat) in splats.iter().enumerate() {
             let (across, down) = tiles_of(splat);
-            if across.len() * down.len() > MOST_LISTED_TILES {
+            if across.len() * down.len() > MAX_LISTED_TILES {
                 continue;
             }
             for row in down {
@@ -171,9 +171,9 @@ impl TileLists {
     fn of_tile<S: SplatSurface>(&self, shape: &S, splats: &[S::Splat], column: usize, row: usize) -> Vec<u64> {
         let tile = row * self.columns + column;
         let listed = &self.listed[self.starts[tile]..self.starts[tile + 1]];
-        let touches = |from: usize, [least, most]: [f32; 2]| {
+        let touches = |from: usize, [min, max]: [f32; 2]| {
             let from = from as f32 * TILE as f32;
-            most > from && least < from + TILE as f32
+            max > from && min < from + TILE as f32
         };
         let wide = self.wide.iter().filter(|&&i| {
             let [across, down] = shape.extent(&splats[i as usize]);
@@ -196,15 +196,15 @@ fn ascending_bits(value: f32) -> u32 {
     if bits >> 31 == 0 { bits | 1 << 31 } else { !bits }
 }
 
-/// First and one past the last pixel whose centre may lie from `least` to `most`; one or two pixels too many at most.
+/// First and one past the last pixel whose centre may lie from `min` to `max`; one or two pixels too many at most.
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates and is clamped to the picture")]
-fn pixel_range([least, most]: [f32; 2], size: usize) -> [usize; 2] {
-    let end = most + 1.5;
+fn pixel_range([min, max]: [f32; 2], size: usize) -> [usize; 2] {
+    let end = max + 1.5;
     if end < 1.0 {
         return [0, 0];
     }
     // a cast rounds towards zero, which is down for what is not negative
-    [((least - 0.5).max(0.0) as usize).min(size), (end as usize).min(size)]
+    [((min - 0.5).max(0.0) as usize).min(size), (end as usize).min(size)]
 }
 
 struct Tile<'a, S: SplatSurface> {
@@ -261,7 +261,7 @@ impl<'a, S: SplatSurface> Tile<'a, S> {
                 let block = block_row * BLOCKS + block_column;
                 let corner = [block_column * BLOCK, block_row * BLOCK];
                 if S::near(splat) > self.farthest_of(block)
-                    || self.shape.least_depth(&self.pixels, splat, corner) > self.farthest[block]
+                    || self.shape.min_depth(&self.pixels, splat, corner) > self.farthest[block]
                 {
                     continue;
                 }

@@ -24,7 +24,7 @@ use serde::{Deserialize, Serialize};
 /// ASPRS class of ground.
 const GROUND: u8 = 2;
 /// Ground points beyond the outermost of which the nearest one's height is still taken, metres: a few spacings of sparse surveys.
-const RIM: f32 = 5.0;
+const MAX_EXTRAPOLATION: f32 = 5.0;
 
 /// How the ground of a cloud is made.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -187,7 +187,7 @@ impl Ground {
                     *gap = near.distance_squared.sqrt();
                     if *gap > reach {
                         *height = f32::NAN;
-                    } else if height.is_nan() && *gap <= RIM {
+                    } else if height.is_nan() && *gap <= MAX_EXTRAPOLATION {
                         *height = points.get(near.index as usize).map_or(f32::NAN, |p| p[2]);
                     }
                 }

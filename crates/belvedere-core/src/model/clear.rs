@@ -16,7 +16,7 @@ use serde::{Deserialize, Serialize};
 /// ASPRS class of ground.
 const GROUND: u8 = 2;
 /// Most columns in which space is freed: their side is doubled until they are no more.
-const MOST_CELLS: f64 = 4e6;
+const MAX_CELLS: f64 = 4e6;
 
 /// What is cleared.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -208,7 +208,7 @@ fn grid_over(area: &ClearedArea, cloud: &PointCloud) -> Result<Option<MapGrid>> 
     };
     let (low, high) = (low.map(|v| v - Clearing::REACH), high.map(|v| v + Clearing::REACH));
     let mut cell = Clearing::CELL;
-    while (high[0] - low[0]) * (high[1] - low[1]) > MOST_CELLS * cell * cell {
+    while (high[0] - low[0]) * (high[1] - low[1]) > MAX_CELLS * cell * cell {
         cell *= 2.0;
     }
     MapGrid::covering(low, high, cell, [cloud.frame.origin[0], cloud.frame.origin[1]]).map(Some)

@@ -23,7 +23,7 @@ const GAP: f32 = 0.7;
 const GROUND_RADIUS: f64 = 1.0;
 const GROUND_STEP: f64 = 0.35;
 /// Smallest radius to which a ball is cut that reaches into the area, metres; smaller ones are cleared.
-const LEAST_RADIUS: f64 = 0.05;
+const MIN_RADIUS: f64 = 0.05;
 /// Halvings that find the radius of such a ball: to a thousandth of its radius.
 const HALVINGS: usize = 10;
 
@@ -100,7 +100,7 @@ impl Clearing {
             if self.reaches_in(center_of(radius), radius) { too_large = radius } else { free = radius }
         }
         #[expect(clippy::cast_possible_truncation, reason = "balls are f32")]
-        (free >= LEAST_RADIUS).then(|| (center_of(free).map(|v| v as f32), free as f32))
+        (free >= MIN_RADIUS).then(|| (center_of(free).map(|v| v as f32), free as f32))
     }
 
     /// Balls that close the ground where no ground point is near: centres and radii.

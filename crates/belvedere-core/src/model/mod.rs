@@ -11,25 +11,25 @@ mod build;
 mod clear;
 mod clearing;
 mod close_range_normals;
-mod facts;
 mod params;
 mod pictures;
 mod prepare;
 mod questions;
 mod report;
+mod statistics;
 mod terrain;
 
 pub use belvedere_data::model::ModelParts;
 pub use clear::{ClearReport, ClearedArea};
 pub use clearing::Clearing;
-pub use facts::{SurveyExtremes, SurveyFacts};
 pub use params::{BallParams, ModelParams, OrientBy};
 pub use prepare::OrientedSurvey;
 pub use report::{BallsReport, BlockedPulses, BuildReport, NormalsReport, PulsesReport};
+pub use statistics::{SurveyExtremes, SurveyStatistics};
 pub use terrain::{TerrainReport, check_terrain};
 
 use crate::medial::{MedialBalls, PULSE_TOUCH, vegetation_of_transmission};
-use crate::pulses::NeedleColumns;
+use crate::pulses::FreeSegmentColumns;
 use crate::query::{AddedMeshes, Backend, BallTree, FarTerrain, FreedSpace};
 use belvedere_data::horizon::HorizonProfile;
 use belvedere_data::{Bounds, ElevationGrid, Error, Frame, Mesh, Parameter, Result};
@@ -181,7 +181,7 @@ impl SceneModel {
 
     /// The pulses that prove lines of sight free, where they are known.
     #[must_use]
-    pub fn pulses(&self) -> Option<&NeedleColumns> {
+    pub fn pulses(&self) -> Option<&FreeSegmentColumns> {
         self.parts.pulses.as_ref()
     }
 

@@ -1,10 +1,10 @@
 //! How a scene model is built.
 
-use super::facts::SurveyFacts;
+use super::statistics::SurveyStatistics;
 use crate::clean::CleanParams;
 use crate::medial::{CarvedParams, ShrinkMethod, ShrinkParams};
 use crate::normals::estimate::Neighborhood;
-use crate::pulses::{LocateParams, NeedleParams};
+use crate::pulses::{FreeSegmentParams, LocateParams};
 use belvedere_data::trajectory::Trajectory;
 use belvedere_data::{Mesh, Result};
 use std::sync::Arc;
@@ -30,11 +30,11 @@ pub struct ModelParams {
     /// How the scanner is found.
     pub locate: LocateParams,
     /// How pulses become what they prove empty.
-    pub needles: NeedleParams,
+    pub free_segments: FreeSegmentParams,
     /// How balls are made.
     pub balls: BallParams,
     /// What is known of the survey that the cloud is a part of. Default: none, and the cloud is a whole.
-    pub facts: Option<Arc<SurveyFacts>>,
+    pub statistics: Option<Arc<SurveyStatistics>>,
 }
 
 belvedere_data::setters!(ModelParams {
@@ -42,9 +42,9 @@ belvedere_data::setters!(ModelParams {
     with_neighborhood(neighborhood: Neighborhood),
     with_orient(orient: OrientBy),
     with_locate(locate: LocateParams),
-    with_needles(needles: NeedleParams),
+    with_free_segments(free_segments: FreeSegmentParams),
     with_balls(balls: BallParams),
-    with_facts(facts: Option<Arc<SurveyFacts>>),
+    with_statistics(statistics: Option<Arc<SurveyStatistics>>),
 });
 
 /// How the outward side of normals is found. Ways that know where the scanner was also say where pulses came from.
@@ -139,9 +139,9 @@ impl BallParams {
     }
 
     /// How balls are made from the points where these facts decide whether pulses carve.
-    pub(super) fn shrinking_by(&self, facts: &SurveyFacts) -> ShrinkParams {
+    pub(super) fn shrinking_by(&self, statistics: &SurveyStatistics) -> ShrinkParams {
         match self {
-            Self::CarvedIfPossible(carved, _) if facts.carves => carved.shrinking(),
+            Self::CarvedIfPossible(carved, _) if statistics.carves => carved.shrinking(),
             other => other.shrinking(),
         }
     }

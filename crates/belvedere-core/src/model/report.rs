@@ -3,7 +3,7 @@
 use crate::clean::CleanReport;
 use crate::medial::{CarvedReport, ShrinkReport};
 use crate::normals::{OrientReport, Orientation};
-use crate::pulses::{NeedleReport, ScannerReport};
+use crate::pulses::{FreeSegmentReport, ScannerReport};
 use belvedere_data::report::rounded;
 use serde::{Serialize, Serializer};
 
@@ -51,7 +51,7 @@ fn in_tenths_of_millimetres<S: Serializer>(length: &f32, serializer: S) -> Resul
 pub struct PulsesReport {
     /// How many of them prove space empty.
     #[serde(flatten)]
-    pub needles: NeedleReport,
+    pub free_segments: FreeSegmentReport,
     /// Ways between two returns of a pulse that prove space empty as well; they do not carve.
     #[serde(rename = "ways_between_returns")]
     pub between_returns: usize,

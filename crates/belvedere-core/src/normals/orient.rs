@@ -340,12 +340,12 @@ fn check_finite(scanners: &[[f64; 3]]) -> Result<()> {
     Ok(())
 }
 
-/// Towards `scanner` where the cosine between normal and pulse is `least` or more, and wherever the pulse does not come from above.
+/// Towards `scanner` where the cosine between normal and pulse is `min` or more, and wherever the pulse does not come from above.
 fn by_pulses(
     cloud: &PointCloud,
     vectors: &[[f32; 3]],
     scanner: &[[f32; 3]],
-    least: f32,
+    min: f32,
     control: &Control<'_>,
 ) -> Result<Vec<Option<NormalSign>>> {
     if scanner.len() != cloud.len() {
@@ -356,7 +356,7 @@ fn by_pulses(
         let verdict = scanner.iter().all(|v| v.is_finite()).then(|| towards(scanner, position, normal))??;
         let [x, y, up] = sub(scanner, position);
         let is_from_above = up > FROM_ABOVE * (x * x + y * y + up * up).sqrt();
-        (verdict.outward.abs() >= least || !is_from_above).then_some(verdict)
+        (verdict.outward.abs() >= min || !is_from_above).then_some(verdict)
     })
 }
 

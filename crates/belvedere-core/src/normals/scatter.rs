@@ -11,7 +11,7 @@ use rayon::prelude::*;
 /// points lie on ground or roofs.
 const SMOOTH_SHARE: f64 = 0.25;
 /// A neighbourhood counts as flat up to this many times the noise of the cloud. Among 17 points of a plane one in a thousand is rougher.
-const MOST_NOISE: f32 = 2.0;
+const MAX_NOISE: f32 = 2.0;
 /// Cosine of the angle between a pulse and the normal from which on the noise of ranges outweighs that of directions, and is not divided by nearly nothing: 60°.
 const STEEP: f32 = 0.5;
 
@@ -56,13 +56,13 @@ impl Scatter {
     /// The same where the noise of the cloud is given: that of a larger one that it is a part of.
     #[must_use]
     pub fn smoothed_within(&self, noise: Option<f32>, positions: &[[f32; 3]]) -> (Vec<[f32; 3]>, usize) {
-        let most = noise.map_or(0.0, |noise| MOST_NOISE * noise);
+        let max = noise.map_or(0.0, |noise| MAX_NOISE * noise);
         let planes = self.roughness.par_iter().zip(&self.to_plane);
         let on_plane = |(&p, (&roughness, to_plane)): (&[f32; 3], (&f32, &[f32; 3]))| {
-            if roughness <= most { std::array::from_fn(|i| p[i] + to_plane[i]) } else { p }
+            if roughness <= max { std::array::from_fn(|i| p[i] + to_plane[i]) } else { p }
         };
         let moved = positions.par_iter().zip(planes).map(on_plane).collect();
-        (moved, self.roughness.iter().filter(|&&roughness| roughness <= most).count())
+        (moved, self.roughness.iter().filter(|&&roughness| roughness <= max).count())
     }
 }
 

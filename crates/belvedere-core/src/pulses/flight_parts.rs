@@ -10,9 +10,9 @@ pub struct SensorEstimateParams {
     pub part_s: f64,
     /// Least distance between first and last return for a pulse to tell its direction, metres, 0.5 to 50. Default 3: with
     /// 2 cm noise the direction is then good to half a degree.
-    pub least_length: f64,
+    pub min_length: f64,
     /// Fewest such pulses in a part, 6 to 100 000. Default 30.
-    pub least_pair_count: usize,
+    pub min_pair_count: usize,
     /// Standard deviation of the vertical speed about zero, metres per second, 0.1 to 100. Default 2: surveys fly level, and
     /// a tile that took two seconds to pass hardly tells climb from scale.
     pub vertical_speed_sd: f64,
@@ -25,20 +25,20 @@ pub struct SensorEstimateParams {
     /// Speeds that are accepted, metres per second. Default 15 to 120: helicopters to jets.
     pub speeds: [f64; 2],
     /// Least height above the middle of the returns that is accepted, metres. Default 30.
-    pub least_height: f64,
+    pub min_height: f64,
 }
 
 impl Default for SensorEstimateParams {
     fn default() -> Self {
         Self {
             part_s: 5.0,
-            least_length: 3.0,
-            least_pair_count: 30,
+            min_length: 3.0,
+            min_pair_count: 30,
             vertical_speed_sd: 2.0,
             acceleration_sd: 1.0,
             greatest_sd: [20.0, 50.0],
             speeds: [15.0, 120.0],
-            least_height: 30.0,
+            min_height: 30.0,
         }
     }
 }
@@ -102,10 +102,10 @@ impl SensorEstimateParams {
             range.contains(&value).then_some(()).ok_or_else(wrong)
         };
         check("part of a flight line", self.part_s, 0.5..=60.0, "0.5 to 60 s")?;
-        check("minimum length of a pulse", self.least_length, 0.5..=50.0, "0.5 to 50 m")?;
+        check("minimum length of a pulse", self.min_length, 0.5..=50.0, "0.5 to 50 m")?;
         check("deviation of the vertical speed", self.vertical_speed_sd, 0.1..=100.0, "0.1 to 100 m/s")?;
         check("deviation of the acceleration", self.acceleration_sd, 0.01..=100.0, "0.01 to 100 m/s2")?;
-        check("minimum number of pulses", self.least_pair_count as f64, 6.0..=1e5, "6 to 100000")
+        check("minimum number of pulses", self.min_pair_count as f64, 6.0..=1e5, "6 to 100000")
     }
 }
 
@@ -115,7 +115,7 @@ pub struct ScanAngleParams {
     /// Longest part of a flight line that is taken for straight and evenly flown, seconds, 0.5 to 60. Default 10.
     pub part_s: f64,
     /// Least standard deviation of the angles of a part, radians. Default 1°: a tile of 30 m below a scanner 450 m up.
-    pub least_spread: f64,
+    pub min_spread: f64,
     /// Greatest median angle by which points may miss their place, across and along the flight, radians. Default 1°: half a
     /// degree of rounding, and a pitch that angles do not tell.
     pub greatest_miss: f64,
@@ -129,20 +129,20 @@ pub struct ScanAngleParams {
     /// Speeds that are accepted, metres per second. Default 15 to 120: helicopters to jets.
     pub speeds: [f64; 2],
     /// Least height above the middle of the points that is accepted, metres. Default 30.
-    pub least_height: f64,
+    pub min_height: f64,
 }
 
 impl Default for ScanAngleParams {
     fn default() -> Self {
         Self {
             part_s: 10.0,
-            least_spread: 1_f64.to_radians(),
+            min_spread: 1_f64.to_radians(),
             greatest_miss: 1_f64.to_radians(),
             greatest_bend: 0.35,
             greatest_crab: 0.36,
             greatest_contradiction: 3_f64.to_radians(),
             speeds: [15.0, 120.0],
-            least_height: 30.0,
+            min_height: 30.0,
         }
     }
 }

@@ -8,7 +8,7 @@ use belvedere_data::control::Control;
 use belvedere_data::{Error, PointCloud, Result};
 
 /// Most points of one time, line and channel: LAS counts returns to 15, and two full pulses in one tick of a clock do not occur.
-const MOST_PER_TIME: usize = 15;
+const MAX_PER_TIME: usize = 15;
 /// Times between two looks at whether to go on.
 const CHECK_EACH: usize = 4096;
 
@@ -100,7 +100,7 @@ pub fn group(cloud: &PointCloud, control: &Control<'_>) -> Result<(Pulses, Pulse
         let count = same_time.len();
         same_time.dedup_by(|later, earlier| later.same_return(earlier) && place(later) == place(earlier));
         report.duplicate_count += count - same_time.len();
-        if same_time.len() > MOST_PER_TIME {
+        if same_time.len() > MAX_PER_TIME {
             report.ambiguous_count += same_time.len();
             continue;
         }

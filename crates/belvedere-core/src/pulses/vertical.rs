@@ -9,7 +9,7 @@ const HEIGHT: f32 = 1000.0;
 
 /// Share of the points with nothing above them from which on vertical pulses are a fair assumption. Clouds of aircraft have three
 /// quarters or more; where the scanner stood among walls it is a fifth, and carving by pulses that never were blocks most of what is visible.
-pub(crate) const LEAST_ASSUMED_SHARE: f64 = 0.5;
+pub(crate) const MIN_ASSUMED_SHARE: f64 = 0.5;
 
 /// Which points count as ends of vertical pulses.
 #[derive(Clone, Copy, Debug, PartialEq)]

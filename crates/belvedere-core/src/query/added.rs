@@ -14,7 +14,7 @@ use std::sync::Arc;
 /// 0.1 mm a kilometre from the origin, and a target on a triangle must not be hidden by it.
 const CONTACT: f64 = 1e-3;
 /// Coordinates up to which a mesh may be in degrees rather than metres.
-const MOST_DEGREES: f64 = 360.0;
+const MAX_DEGREES: f64 = 360.0;
 
 /// Triangles of meshes that block lines of sight, from both sides, watertight or not.
 ///
@@ -92,7 +92,7 @@ impl AddedMeshes {
                 format!(" while the cloud lies between {from:?} and {to:?} m")
             });
             let value = format!("{name}, which lies between {from:?} and {to:?} m,{cloud}");
-            let in_degrees = from.iter().chain(&to).take(2).all(|v| v.abs() <= MOST_DEGREES);
+            let in_degrees = from.iter().chain(&to).take(2).all(|v| v.abs() <= MAX_DEGREES);
             return match in_degrees {
                 true => invalid(value, "in the coordinates of the cloud, on or above it; degrees must be converted"),
                 false => invalid(value, "in the coordinates of the cloud, on or above it"),

@@ -14,7 +14,7 @@ pub const CURVED_FROM: f64 = 2000.0;
 /// Horizontal length of a chord, metres: with the usual refraction it lies 4 mm off the curve at most.
 const CHORD: f64 = 500.0;
 /// Most chords of one line.
-const MOST_CHORDS: f64 = 10_000.0;
+const MAX_CHORDS: f64 = 10_000.0;
 
 /// Which lines of sight follow the curvature of the earth.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -126,7 +126,7 @@ impl EarthParams {
         if !self.bends(from, to) || !span.is_finite() {
             return vec![from, to];
         }
-        let count = (span / CHORD).ceil().clamp(1.0, MOST_CHORDS);
+        let count = (span / CHORD).ceil().clamp(1.0, MAX_CHORDS);
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a whole number up to 10 000")]
         let last = count as u32;
         let corner = |i: u32| -> [f64; 3] {

@@ -156,14 +156,14 @@ pub fn seen_faces(
     let back_faces = params.back_faces;
     let turned = facing(surface, viewer)?;
     let facing = if back_faces == BackFaces::BothSides { vec![true; turned.len()] } else { turned };
-    let asked: Vec<usize> = (0..surface.pieces.len()).filter(|&row| facing[row]).collect();
-    let places: Vec<[f32; 3]> = asked.iter().map(|&row| surface.pieces[row].lifted(viewer, params.lift)).collect();
+    let queried: Vec<usize> = (0..surface.pieces.len()).filter(|&row| facing[row]).collect();
+    let places: Vec<[f32; 3]> = queried.iter().map(|&row| surface.pieces[row].lifted(viewer, params.lift)).collect();
     let given = ask(&places)?;
     if given.len() != places.len() {
         return Err(Error::LengthMismatch { what: "answers", expected: places.len(), found: given.len() });
     }
     let mut answers = vec![Answer::Blocked; surface.pieces.len()];
-    for (&row, answer) in asked.iter().zip(given) {
+    for (&row, answer) in queried.iter().zip(given) {
         answers[row] = answer;
     }
     let mut faces = vec![SeenArea::default(); surface.face_count];
@@ -181,7 +181,7 @@ pub fn seen_faces(
 }
 
 /// What is seen of the pieces of one face.
-fn seen_of(pieces: &[SurfacePiece], answers: &[Answer], is_asked: bool) -> SeenArea {
+fn seen_of(pieces: &[SurfacePiece], answers: &[Answer], is_queried: bool) -> SeenArea {
     let mut seen = SeenArea::default();
     for (piece, answer) in pieces.iter().zip(answers) {
         let area = f64::from(piece.area);
@@ -200,7 +200,7 @@ fn seen_of(pieces: &[SurfacePiece], answers: &[Answer], is_asked: bool) -> SeenA
     };
     let last = pieces.len() - 1;
     seen.variance = match last {
-        _ if !is_asked => 0.0,
+        _ if !is_queried => 0.0,
         0 => seen.area * seen.area / 4.0,
         _ => {
             let pairs: f64 = (0..pieces.len() / 2).map(|pair| differ(2 * pair, 2 * pair + 1)).sum();

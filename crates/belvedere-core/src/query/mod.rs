@@ -3,7 +3,7 @@
 //! There are three ways of asking a [`MedialScene`]:
 //!
 //! - a pair of points: [`MedialScene::line_of_sight`] (what blocks it first, how much of it is not proven), with
-//!   [`MedialScene::crossings`], [`MedialScene::least_visible_height`], [`MedialScene::seen_along`], [`MedialScene::seen_from_surface`] and
+//!   [`MedialScene::crossings`], [`MedialScene::min_visible_height`], [`MedialScene::seen_along`], [`MedialScene::seen_from_surface`] and
 //!   [`MedialScene::far_sight_answer`] (one that leaves the cloud) beside it;
 //! - many targets of one viewer: [`MedialScene::visible_from`], or [`MedialScene::visible_in_views`] for pictures;
 //! - many directions at many targets: [`MedialScene::visibility_matrix`].
@@ -56,7 +56,7 @@ pub use fresnel::RadioWave;
 pub use medial_scene::MedialScene;
 pub use mesh::{BackFaces, MeshTargetParams, SeenArea, facing, seen_faces, seen_in_all, seen_objects};
 pub use points::{
-    Answer, AnswerCounts, MOST_RANDOM_PAIRS, MOST_RANDOM_TARGETS, UnprovenAs, query_points, random_targets,
+    Answer, AnswerCounts, MAX_RANDOM_PAIRS, MAX_RANDOM_TARGETS, UnprovenAs, query_points, random_targets,
 };
 pub use proof::{Beside, Proof, ProofParams};
 pub use segments::{Blocker, Crossing, Enclosure, LineOfSight, Obstruction, merged_crossings, random_pairs};

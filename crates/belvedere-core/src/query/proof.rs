@@ -2,7 +2,7 @@
 
 use super::lazy::Lazy;
 use super::seen_space::SeenSpace;
-use crate::pulses::{NeedleColumns, Needles, lower_ends};
+use crate::pulses::{FreeSegmentColumns, FreeSegments, lower_ends};
 use belvedere_data::control::Control;
 use belvedere_data::{Error, Parameter, Result};
 use rayon::prelude::*;
@@ -11,7 +11,7 @@ use std::sync::Arc;
 /// How far ahead the next pulse is looked for where none is near, metres: half a street.
 const LOOK_AHEAD: f64 = 4.0;
 /// Nearness where pulses are dense enough, metres: what carves balls of half a metre leaves no room for things that block.
-const LEAST_NEARNESS: f64 = 0.7;
+const MIN_NEARNESS: f64 = 0.7;
 /// Side of the cells that pulses are counted in, metres.
 const COUNTING_CELL: f32 = 4.0;
 
@@ -35,14 +35,14 @@ pub struct ProofParams {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Beside {
     /// Nothing is asked of it: a line of sight is followed to the edge of the survey.
-    NotAsked,
+    Ignored,
     /// No pulse saw it.
     Unseen,
 }
 
 impl Default for ProofParams {
     fn default() -> Self {
-        Self { nearness: None, tolerance: 0.5, step: 0.1, beside: Beside::NotAsked }
+        Self { nearness: None, tolerance: 0.5, step: 0.1, beside: Beside::Ignored }
     }
 }
 
@@ -59,13 +59,13 @@ pub struct Proof {
 #[derive(Clone)]
 enum ProofSource {
     /// Indexed already.
-    Indexed(Arc<Needles>),
-    Columns(Arc<NeedleColumns>),
+    Indexed(Arc<FreeSegments>),
+    Columns(Arc<FreeSegmentColumns>),
 }
 
 /// Pulses, made ready for lines of sight.
 struct ProofIndex {
-    needles: Arc<Needles>,
+    free_segments: Arc<FreeSegments>,
     seen_space: SeenSpace,
     /// West, south and east, north of the lower ends.
     extent: [[f64; 2]; 2],
@@ -77,8 +77,8 @@ struct ProofIndex {
 /// # Source
 /// This project's own.
 #[must_use]
-pub fn nearness(needles: &Needles) -> f64 {
-    nearness_of(needles.lower_ends())
+pub fn nearness(free_segments: &FreeSegments) -> f64 {
+    nearness_of(free_segments.lower_ends())
 }
 
 fn nearness_of(lower_ends: impl Iterator<Item = [f32; 3]>) -> f64 {
@@ -90,7 +90,7 @@ fn nearness_of(lower_ends: impl Iterator<Item = [f32; 3]>) -> f64 {
     counts.sort_unstable();
     let median = counts.get(counts.len() / 2).copied().unwrap_or(1);
     let density = median as f64 / f64::from(COUNTING_CELL * COUNTING_CELL);
-    LEAST_NEARNESS.max(1.0 / density.sqrt())
+    MIN_NEARNESS.max(1.0 / density.sqrt())
 }
 
 impl Proof {
@@ -98,16 +98,16 @@ impl Proof {
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] for a parameter outside its range.
-    pub fn new(needles: Needles, params: &ProofParams) -> Result<Self> {
-        let nearness = params.nearness.unwrap_or_else(|| nearness(&needles));
-        Self::of_pulses(ProofSource::Indexed(Arc::new(needles)), nearness, params)
+    pub fn new(free_segments: FreeSegments, params: &ProofParams) -> Result<Self> {
+        let nearness = params.nearness.unwrap_or_else(|| nearness(&free_segments));
+        Self::of_pulses(ProofSource::Indexed(Arc::new(free_segments)), nearness, params)
     }
 
     /// The same for pulses as ball files hold them, which are not even indexed before the first line of sight needs it.
     ///
     /// # Errors
-    /// As [`Proof::new`], and those of [`NeedleColumns::validate`].
-    pub fn from_columns(columns: NeedleColumns, params: &ProofParams) -> Result<Self> {
+    /// As [`Proof::new`], and those of [`FreeSegmentColumns::validate`].
+    pub fn from_columns(columns: FreeSegmentColumns, params: &ProofParams) -> Result<Self> {
         columns.validate()?;
         let nearness = params.nearness.unwrap_or_else(|| nearness_of(lower_ends(&columns)));
         Self::of_pulses(ProofSource::Columns(Arc::new(columns)), nearness, params)
@@ -142,25 +142,25 @@ impl Proof {
     /// # Errors
     /// [`Error::Cancelled`].
     pub fn prepare_all(&self, control: &Control<'_>) -> Result<()> {
-        let ProofIndex { needles, seen_space, .. } = self.index.get_or_make(|| self.make_index(control))?;
-        seen_space.make_all(needles, control)
+        let ProofIndex { free_segments, seen_space, .. } = self.index.get_or_make(|| self.make_index(control))?;
+        seen_space.make_all(free_segments, control)
     }
 
     fn make_index(&self, control: &Control<'_>) -> Result<ProofIndex> {
-        let needles = match &self.pulses {
-            ProofSource::Indexed(needles) => Arc::clone(needles),
-            ProofSource::Columns(columns) => Arc::new(Needles::from_columns(columns, control)?),
+        let free_segments = match &self.pulses {
+            ProofSource::Indexed(free_segments) => Arc::clone(free_segments),
+            ProofSource::Columns(columns) => Arc::new(FreeSegments::from_columns(columns, control)?),
         };
         control.check()?;
         let mut extent = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
-        for start in needles.lower_ends() {
+        for start in free_segments.lower_ends() {
             for axis in 0..2 {
                 extent[0][axis] = extent[0][axis].min(f64::from(start[axis]));
                 extent[1][axis] = extent[1][axis].max(f64::from(start[axis]));
             }
         }
-        let seen_space = SeenSpace::new(&needles, extent, self.nearness);
-        Ok(ProofIndex { needles, seen_space, extent })
+        let seen_space = SeenSpace::new(&free_segments, extent, self.nearness);
+        Ok(ProofIndex { free_segments, seen_space, extent })
     }
 
     /// How near a pulse must pass, metres.
@@ -192,10 +192,10 @@ impl Proof {
     /// The unseen length, or something above `enough` as soon as it is known to exceed that.
     fn length(&self, target: [f64; 3], towards: [f64; 3], range: f64, enough: f64) -> f64 {
         let Some(index) = self.index.get(|control| self.make_index(control)) else { return range };
-        if index.needles.is_empty() {
+        if index.free_segments.is_empty() {
             return range;
         }
-        let top = f64::from(index.needles.top());
+        let top = f64::from(index.free_segments.top());
         let mut below = [0.0, range];
         clip(&mut below, target[2], towards[2], [f64::NEG_INFINITY, top]);
         let mut inside = below;
@@ -204,7 +204,7 @@ impl Proof {
         }
         let span = |[from, to]: [f64; 2]| (to - from).max(0.0);
         let beside = match self.params.beside {
-            Beside::NotAsked => 0.0,
+            Beside::Ignored => 0.0,
             Beside::Unseen => span(below) - span(inside),
         };
         if span(inside) == f64::INFINITY {
@@ -223,21 +223,21 @@ impl Proof {
         [from, to]: [f64; 2],
         enough: f64,
     ) -> f64 {
-        let ProofIndex { needles, seen_space, .. } = index;
+        let ProofIndex { free_segments, seen_space, .. } = index;
         let point = |at: f64| -> [f64; 3] { std::array::from_fn(|i| origin[i] + at * direction[i]) };
         let backward = direction.map(|v| -v);
         let mut unseen = 0.0;
         let mut gap_from: Option<f64> = None;
         let mut at = from;
         while at < to {
-            let seen_to = seen_space
-                .near_until(needles, (origin, direction), at)
-                .or_else(|| needles.near_piece(origin, direction, at, self.nearness).map(|[_, piece_to]| piece_to));
+            let seen_to = seen_space.near_until(free_segments, (origin, direction), at).or_else(|| {
+                free_segments.near_piece(origin, direction, at, self.nearness).map(|[_, piece_to]| piece_to)
+            });
             if let Some(seen_to) = seen_to {
                 if let Some(start) = gap_from.take() {
                     // the last step may have gone past where pulses come near again
                     let mut end = at;
-                    while let Some([_, before]) = needles.near_piece(origin, backward, -end, self.nearness)
+                    while let Some([_, before]) = free_segments.near_piece(origin, backward, -end, self.nearness)
                         && end > start
                     {
                         end = -before;
@@ -249,7 +249,7 @@ impl Proof {
             }
             let start = *gap_from.get_or_insert(at);
             let reach = self.nearness + LOOK_AHEAD;
-            let clear = needles.free_distance(point(at), reach) - self.nearness;
+            let clear = free_segments.free_distance(point(at), reach) - self.nearness;
             if unseen + (at + clear.max(0.0)).min(to) - start > enough {
                 return f64::max(unseen + (at + clear.max(0.0)).min(to) - start, enough);
             }

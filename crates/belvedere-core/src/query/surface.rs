@@ -8,7 +8,7 @@ use belvedere_data::{Error, Mesh, Parameter, Result};
 use rayon::prelude::*;
 
 /// Most pieces of a surface: 60 bytes each still fit into the memory of a usual machine.
-const MOST_PIECES: usize = 50_000_000;
+const MAX_PIECES: usize = 50_000_000;
 /// Neighbours whose distance tells how much surface a point stands for.
 const NEIGHBORS: usize = 8;
 
@@ -71,7 +71,7 @@ impl SurfacePieces {
             // cells are half the square of the spacing, and those at the rim mostly two or three pieces
             expected += 1.0 + 8.0 * area_of(*corners) / (spacing * spacing) + 6.0 * longest / spacing;
         }
-        if !(expected <= MOST_PIECES as f64) {
+        if !(expected <= MAX_PIECES as f64) {
             let value = format!("{spacing} m, which makes about {expected:.0} samples");
             return invalid(Parameter::Spacing, value, "large enough for at most 50 million samples");
         }
@@ -100,7 +100,7 @@ impl SurfacePieces {
     }
 
     /// The surface that `points`, (N, 3) local metres, lie on: about each a triangle square to its normal (`normals`, (N, 3), of any
-    /// sign), whose area follows from how near the eighth neighbour is, π d² / 8, and is that of a disc of `most_radius`
+    /// sign), whose area follows from how near the eighth neighbour is, π d² / 8, and is that of a disc of `max_radius`
     /// metres at most. Points without a normal, (0, 0, 0), are turned upward.
     ///
     /// # Errors
@@ -109,17 +109,17 @@ impl SurfacePieces {
     pub fn of_points(
         points: &[[f32; 3]],
         normals: &[[f32; 3]],
-        most_radius: f64,
+        max_radius: f64,
         control: &Control<'_>,
     ) -> Result<Self> {
         if normals.len() != points.len() {
             return Err(Error::LengthMismatch { what: "normals", expected: points.len(), found: normals.len() });
         }
-        if !(most_radius.is_finite() && most_radius > 0.0) {
-            return invalid(Parameter::PointRadius, most_radius.to_string(), "above zero metres");
+        if !(max_radius.is_finite() && max_radius > 0.0) {
+            return invalid(Parameter::PointRadius, max_radius.to_string(), "above zero metres");
         }
         let index = NeighborIndex::new(points, control)?;
-        let most_area = std::f64::consts::PI * most_radius * most_radius;
+        let max_area = std::f64::consts::PI * max_radius * max_radius;
         let piece = |(face, (&point, normal)): (usize, (&[f32; 3], &[f32; 3]))| {
             let mut found = Vec::new();
             // the point itself is among them
@@ -127,8 +127,8 @@ impl SurfacePieces {
             let count = found.len().saturating_sub(1);
             let farthest = found.iter().map(|n| f64::from(n.distance_squared)).fold(0.0, f64::max);
             let area = match count {
-                0 => most_area,
-                _ => (std::f64::consts::PI * farthest / count as f64).min(most_area),
+                0 => max_area,
+                _ => (std::f64::consts::PI * farthest / count as f64).min(max_area),
             };
             let normal = unit(normal.map(f64::from)).unwrap_or([0.0, 0.0, 1.0]);
             let aside = if normal[2].abs() < 0.9 { [0.0, 0.0, 1.0] } else { [1.0, 0.0, 0.0] };
@@ -299,13 +299,13 @@ mod tests {
 
     #[test]
     fn pieces_are_short_cover_the_triangle_and_hold_their_places() {
-        for (corners, most) in [
+        for (corners, max) in [
             ([[0.0, 0.0, 0.0], [7.0, 0.0, 1.0], [2.0, 5.0, 0.0]], 1200),
             // a strip 100 m long and 1 cm wide costs its length: 283 slices of two pieces
             ([[0.0, 0.0, 0.0], [100.0, 0.0, 0.0], [100.0, 0.01, 0.0]], 567),
         ] {
             let pieces = SurfacePieces::of_mesh(&mesh(corners), [0.0; 3], 0.5, 3).unwrap();
-            assert!((100..most).contains(&pieces.pieces.len()), "{}", pieces.pieces.len());
+            assert!((100..max).contains(&pieces.pieces.len()), "{}", pieces.pieces.len());
             // areas are f32
             assert!((pieces.area() / area_of(corners) - 1.0).abs() < 1e-5);
             for piece in &pieces.pieces {

@@ -17,7 +17,7 @@ use rayon::prelude::*;
 /// Boxes from which on a tree is made of parts: fewer take some hundredths of a second.
 const LARGE: usize = 1 << 16;
 /// Most boxes of a leaf.
-const MOST_IN_LEAF: u32 = 3;
+const MAX_IN_LEAF: u32 = 3;
 /// What tells a node among the parts of a node, beside the number of its place.
 const IS_NODE: u8 = 0b0011_1000;
 
@@ -53,7 +53,7 @@ fn one_tree(boxes: &[Aabb], rows: &[u32]) -> CwBvh {
         params.search_depth_threshold,
     );
     ReinsertionOptimizer::default().run(&mut binary, params.reinsertion_batch_ratio, None);
-    let mut tree = bvh2_to_cwbvh(&binary, MOST_IN_LEAF, true, false);
+    let mut tree = bvh2_to_cwbvh(&binary, MAX_IN_LEAF, true, false);
     tree.primitive_indices.iter_mut().for_each(|place| *place = rows[*place as usize]);
     tree
 }

@@ -18,11 +18,11 @@ const STEEPEST_NORMAL: f32 = 0.3;
 const NEIGHBORS: u8 = 8;
 /// How far the eighth neighbour on a wall may be for a point to represent wall, metres: at this distance a wall has a tenth of a point per square metre,
 /// fewer than any survey of buildings leaves.
-const MOST_REACH: f64 = 5.0;
+const MAX_REACH: f64 = 5.0;
 /// Fewest points on walls, near each other, whose area is estimated.
-const LEAST_STEEP: usize = 50;
+const MIN_STEEP: usize = 50;
 /// Building points looked at; of larger clouds every so manieth square is taken, so that this stays a matter of seconds.
-const MOST_POINTS: usize = 2_000_000;
+const MAX_POINTS: usize = 2_000_000;
 /// Side of those squares, metres: a few houses, of which little is cut at the rim.
 const SQUARE: f32 = 64.0;
 
@@ -60,7 +60,7 @@ impl FacadeSummary {
     pub fn of(cloud: &PointCloud, control: &Control<'_>) -> Result<Option<Self>> {
         let Some(classes) = cloud.attributes.classification.as_ref() else { return Ok(None) };
         let building_count = classes.iter().filter(|&&class| class == BUILDING).count();
-        let stride = i64::try_from(building_count.div_ceil(MOST_POINTS)).unwrap_or(i64::MAX).max(1);
+        let stride = i64::try_from(building_count.div_ceil(MAX_POINTS)).unwrap_or(i64::MAX).max(1);
         #[expect(clippy::cast_possible_truncation, reason = "saturates; clouds are not 2^63 squares wide")]
         let square = |v: f32| (v / SQUARE).floor() as i64;
         // Neighbouring squares of a row and of a column fall into different parts.
@@ -91,7 +91,7 @@ impl FacadeSummary {
 fn walls_of(points: &[[f32; 3]], control: &Control<'_>) -> Result<Option<Walls>> {
     let stop = Stop::new(control);
     let count = usize::from(NEIGHBORS);
-    if points.len() < LEAST_STEEP {
+    if points.len() < MIN_STEEP {
         return Ok(None);
     }
     let index = NeighborIndex::new(points, control)?;
@@ -108,9 +108,9 @@ fn walls_of(points: &[[f32; 3]], control: &Control<'_>) -> Result<Option<Walls>>
         .collect();
     stop.check()?;
     // in order, so that the sum is the same for any number of threads
-    let near = || discs.iter().filter(|&&disc| disc <= PI * MOST_REACH * MOST_REACH);
+    let near = || discs.iter().filter(|&&disc| disc <= PI * MAX_REACH * MAX_REACH);
     let (area, used) = (near().sum::<f64>() / f64::from(NEIGHBORS), near().count());
-    Ok((area > 0.0 && used >= LEAST_STEEP).then(|| Walls { area, density: used as f64 / area }))
+    Ok((area > 0.0 && used >= MIN_STEEP).then(|| Walls { area, density: used as f64 / area }))
 }
 
 #[cfg(test)]

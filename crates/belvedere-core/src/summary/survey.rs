@@ -1,6 +1,6 @@
 //! What kind of survey a cloud comes from, what carves its balls, and what would make its answers better.
 
-use crate::pulses::{LEAST_ASSUMED_SHARE, ScannerReport, come_from_the_ground};
+use crate::pulses::{MIN_ASSUMED_SHARE, ScannerReport, come_from_the_ground};
 use crate::summary::CloudSummary;
 use belvedere_data::PointCloud;
 use std::fmt;
@@ -72,9 +72,9 @@ impl SurveyKind {
     /// Where the scanner could not be found.
     fn without_pulses(cloud: &PointCloud, counted: &CloudSummary, scanner: &[[f32; 3]]) -> Self {
         let open = pulses(cloud, scanner).filter(|(_, scanner)| scanner[2].is_finite()).count();
-        let is_from_above = open as f64 >= LEAST_ASSUMED_SHARE * cloud.len() as f64;
-        let has_times = counted.gps_time.is_some_and(|times| times.can_tell_pulses_apart(cloud.len()));
-        let has_angles = counted.scan_angle_deg.is_some_and(|[least, most]| least < most);
+        let is_from_above = open as f64 >= MIN_ASSUMED_SHARE * cloud.len() as f64;
+        let has_times = counted.gps_time.is_some_and(|times| times.can_separate_pulses(cloud.len()));
+        let has_angles = counted.scan_angle_deg.is_some_and(|[min, max]| min < max);
         let has_returns = counted.multi_return_share.is_some_and(|share| share > 0.0);
         // readers of LAS give the column in any case, and what was made from photographs leaves it empty
         let has_intensities = cloud.attributes.intensity.iter().flatten().any(|&intensity| intensity > 0);

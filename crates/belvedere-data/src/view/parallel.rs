@@ -74,18 +74,18 @@ impl View {
             });
         }
         let ViewFrame { right, down, .. } = ViewFrame::looking([0.0; 3], forward);
-        let mut least = [f64::INFINITY; 3];
-        let mut most = [f64::NEG_INFINITY; 3];
+        let mut min = [f64::INFINITY; 3];
+        let mut max = [f64::NEG_INFINITY; 3];
         for corner in 0..8 {
             let p: [f64; 3] = std::array::from_fn(|i| if corner >> i & 1 == 0 { low[i] } else { high[i] });
             for (axis, v) in [right, down, forward].into_iter().enumerate() {
-                least[axis] = least[axis].min(dot(v, p));
-                most[axis] = most[axis].max(dot(v, p));
+                min[axis] = min[axis].min(dot(v, p));
+                max[axis] = max[axis].max(dot(v, p));
             }
         }
-        let eye = std::array::from_fn(|i| least[0] * right[i] + least[1] * down[i] + least[2] * forward[i]);
+        let eye = std::array::from_fn(|i| min[0] * right[i] + min[1] * down[i] + min[2] * forward[i]);
         // half a pixel of room keeps points on the rim of the box inside the picture
-        let span = |axis: usize| (most[axis] - least[axis]).max(0.0) + 0.5 * pixel_size;
+        let span = |axis: usize| (max[axis] - min[axis]).max(0.0) + 0.5 * pixel_size;
         Self::from_viewport(eye, right.map(|v| v * span(0)), down.map(|v| v * span(1)), 1.0 / pixel_size)
     }
 

@@ -13,7 +13,7 @@ use ::laz::record::FieldDecompressor;
 
 /// Greatest and least multiple of the last difference that has a symbol of its own; symbols count from 0 to 500, then from −1 to −10.
 const GREATEST_MULTIPLE: i32 = 500;
-const LEAST_MULTIPLE: i32 = -10;
+const MIN_MULTIPLE: i32 = -10;
 /// The first symbol behind those of multiples.
 const AFTER_MULTIPLES: u32 = 511;
 /// A sequence takes over a new difference after so many differences that no multiple describes well.
@@ -23,7 +23,7 @@ const MAX_EXTREMES: u32 = 3;
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum SameTime {
     HasSymbol,
-    IsToldElsewhere,
+    IsStoredElsewhere,
 }
 
 /// Decoder of the times of one stream of points.
@@ -110,7 +110,7 @@ impl GpsTimeDecoder {
     }
 
     fn step<R: Read>(&mut self, decoder: &mut ArithmeticDecoder<R>) -> io::Result<Step> {
-        let more = u32::from(self.same_time == SameTime::IsToldElsewhere);
+        let more = u32::from(self.same_time == SameTime::IsStoredElsewhere);
         if self.sequences[self.current].difference == 0 {
             return Ok(match decoder.decode_symbol(&mut self.first_differences)? + more {
                 0 => Step::Same,
@@ -139,7 +139,7 @@ impl GpsTimeDecoder {
             2..10 => 2,
             10..GREATEST_MULTIPLE => 3,
             GREATEST_MULTIPLE => 4,
-            LEAST_MULTIPLE => 6,
+            MIN_MULTIPLE => 6,
             _ => 5,
         };
         let sequence = &mut self.sequences[self.current];
@@ -148,11 +148,11 @@ impl GpsTimeDecoder {
         sequence.time = sequence.time.wrapping_add(i64::from(difference));
         match multiple {
             1 => sequence.extremes = 0,
-            0 | GREATEST_MULTIPLE | LEAST_MULTIPLE if sequence.extremes == MAX_EXTREMES => {
+            0 | GREATEST_MULTIPLE | MIN_MULTIPLE if sequence.extremes == MAX_EXTREMES => {
                 sequence.difference = difference;
                 sequence.extremes = 0;
             }
-            0 | GREATEST_MULTIPLE | LEAST_MULTIPLE => sequence.extremes += 1,
+            0 | GREATEST_MULTIPLE | MIN_MULTIPLE => sequence.extremes += 1,
             _ => {}
         }
         Ok(())

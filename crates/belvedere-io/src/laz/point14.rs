@@ -168,7 +168,7 @@ impl Channel {
             y_medians: [Median::default(); 12],
             heights: [last.z; 8],
             intensities: [last.intensity; 8],
-            times: GpsTimeDecoder::new(last.time, SameTime::IsToldElsewhere),
+            times: GpsTimeDecoder::new(last.time, SameTime::IsStoredElsewhere),
             changes: Models::new(128),
             channel_steps: ArithmeticModelBuilder::new(3).build(),
             return_counts: Models::new(16),

@@ -5,7 +5,7 @@ use belvedere_data::{Error, Result};
 use std::path::Path;
 
 /// Most radiation that any instrument below the atmosphere shows, W/m², with room for clouds that reflect.
-const MOST_RADIATION: f64 = 3000.0;
+const MAX_RADIATION: f64 = 3000.0;
 /// Noise of sensors at night, W/m².
 const NOISE: f64 = -20.0;
 
@@ -102,8 +102,8 @@ impl<'a> WeatherLine<'a> {
         if is_missing(value) {
             return Ok(None);
         }
-        if !(NOISE..=MOST_RADIATION).contains(&value) {
-            return Err(self.wrong(&format!("{name} is {value} W/m², but must be {NOISE} to {MOST_RADIATION}")));
+        if !(NOISE..=MAX_RADIATION).contains(&value) {
+            return Err(self.wrong(&format!("{name} is {value} W/m², but must be {NOISE} to {MAX_RADIATION}")));
         }
         Ok(Some(value.max(0.0)))
     }

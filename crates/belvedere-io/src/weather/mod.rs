@@ -21,7 +21,7 @@ use lines::WeatherLines;
 use std::io::Read;
 
 /// Larger files are no weather: a year in steps of a minute has 50 MB.
-const MOST_BYTES: u64 = 500_000_000;
+const MAX_BYTES: u64 = 500_000_000;
 
 /// Reads the radiation of a weather file. Its rows keep their own years, of which a typical year has several.
 ///
@@ -38,7 +38,7 @@ const MOST_BYTES: u64 = 500_000_000;
 pub fn read_weather<'a>(source: impl Into<Source<'a>>) -> Result<Weather> {
     let Input { name, mut reader, size } = source.into().open()?;
     let path = name.as_path();
-    if size > MOST_BYTES {
+    if size > MAX_BYTES {
         return Err(Error::malformed(path, format!("{size} bytes are too many for a weather file")));
     }
     let mut bytes = Vec::new();

@@ -5,7 +5,7 @@ use belvedere_data::Result;
 use belvedere_data::weather::{RowsHold, Weather, WeatherStep, unix_day};
 
 /// Lines among which the head of the table must be.
-const MOST_HEAD_LINES: usize = 60;
+const MAX_HEAD_LINES: usize = 60;
 
 /// What stands above the table.
 #[derive(Default)]
@@ -32,7 +32,7 @@ enum RadiationColumns {
 
 pub(super) fn read(lines: &WeatherLines<'_>) -> Result<Weather> {
     let mut head = Head::default();
-    let Some(names) = lines.all().take(MOST_HEAD_LINES).find(|line| line.text.starts_with("time")) else {
+    let Some(names) = lines.all().take(MAX_HEAD_LINES).find(|line| line.text.starts_with("time")) else {
         return Err(lines
             .line(1)?
             .wrong("no line below begins with \"time\", as the header of the table does; use the CSV of PVGIS"));

@@ -229,9 +229,9 @@ impl Trial {
         }
     }
 
-    fn finish(self, least: usize) {
+    fn finish(self, min: usize) {
         assert!(self.faults.is_empty(), "{} of {}:\n{}", self.faults.len(), self.inputs, self.faults.join("\n"));
-        assert!(self.inputs >= least, "only {} inputs", self.inputs);
+        assert!(self.inputs >= min, "only {} inputs", self.inputs);
     }
 }
 

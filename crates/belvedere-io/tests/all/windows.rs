@@ -216,8 +216,8 @@ fn of_rows_that_hold_a_window_no_more_is_read_and_nothing_is_lost() {
         assert_eq!(found, expected, "{name}");
         assert_eq!(passed_over, left_out, "{name}");
         // 57,000 of 300,000 rows; chunks of LAZ have 50,000: rows 100,000 to 200,000 and 250,000 to 300,000
-        let most = if name == "cloud.laz" { 0.55 } else { 0.2 };
-        assert!((part as f64) < most * whole as f64, "{name}: {part} of {whole} bytes");
+        let max = if name == "cloud.laz" { 0.55 } else { 0.2 };
+        assert!((part as f64) < max * whole as f64, "{name}: {part} of {whole} bytes");
     }
 }
 

@@ -107,7 +107,7 @@ impl AirborneParams {
         }
         let width = width_across(scene, self.heading);
         self.strip_count = strip_count.unwrap_or_else(|| {
-            let count = saturating_count(width / (self.swath() / 2.0)).saturating_add(1).clamp(2, MOST_STRIPS);
+            let count = saturating_count(width / (self.swath() / 2.0)).saturating_add(1).clamp(2, MAX_STRIPS);
             u16::try_from(count).unwrap_or(u16::MAX)
         });
         self.strip_spacing = width / f64::from(self.strip_count.max(2) - 1);
@@ -168,7 +168,7 @@ impl AirborneParams {
 }
 
 /// Most strips that [`AirborneParams::spread_over`] makes of itself.
-const MOST_STRIPS: u32 = 1000;
+const MAX_STRIPS: u32 = 1000;
 
 /// Flies over `scene` and returns what the scanner records.
 ///

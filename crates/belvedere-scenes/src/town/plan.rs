@@ -7,7 +7,7 @@ use crate::town::terrain::Canal;
 /// Half the side of the square within a block that the block plans are drawn for, metres.
 const PLAN_HALF_SIDE: f64 = 20.0;
 /// Ground kept free of buildings at the rim, metres.
-const RIM: f64 = 4.0;
+const EDGE: f64 = 4.0;
 /// Least side of the ground for two by two blocks, metres.
 const MIN_EXTENT_OF_FOUR: f64 = 100.0;
 /// Ground that a canal takes between two rows of blocks besides the street, metres, and how much of it is trench.
@@ -61,7 +61,7 @@ impl TownLayout {
         let extent = params.extent;
         // The turned grid of blocks has to fit into the upright square.
         let (sin, cos) = params.street_angle.sin_cos();
-        let side = (extent - 2.0 * RIM) / (sin.abs() + cos.abs());
+        let side = (extent - 2.0 * EDGE) / (sin.abs() + cos.abs());
         let street = params.street_width;
         let fewest = if extent < MIN_EXTENT_OF_FOUR { 1.0 } else { 2.0 };
         let across = ((side + street) / params.block_pitch).floor().max(fewest);

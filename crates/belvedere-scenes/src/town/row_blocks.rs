@@ -83,19 +83,19 @@ impl TownSite {
         };
         // The other rows and their balconies, and a metre.
         let corner = BALCONY_DEPTH + 1.0;
-        let rim = 0.5;
+        let margin = 0.5;
         for (angle, arcades) in [(0.0, 0.7), (PI, 0.2)] {
             let side = plan.centre.moved(0.0, 0.0, angle);
-            let row = side.moved(0.0, -half_v + depth / 2.0 + rim, 0.0);
-            self.row(&row, 2.0 * (half_u - rim), &style(arcades, depth + corner));
+            let row = side.moved(0.0, -half_v + depth / 2.0 + margin, 0.0);
+            self.row(&row, 2.0 * (half_u - margin), &style(arcades, depth + corner));
         }
         for angle in [FRAC_PI_2, 1.5 * PI] {
             let side = plan.centre.moved(0.0, 0.0, angle);
-            let row = side.moved(0.0, -half_u + depth / 2.0 + rim, 0.0);
+            let row = side.moved(0.0, -half_u + depth / 2.0 + margin, 0.0);
             // Into the backs of the other rows, whose depth varies.
-            self.row(&row, 2.0 * (half_v - depth - rim + 0.6), &style(0.0, corner));
+            self.row(&row, 2.0 * (half_v - depth - margin + 0.6), &style(0.0, corner));
         }
-        let [court_u, court_v] = [half_u - depth - rim, half_v - depth - rim];
+        let [court_u, court_v] = [half_u - depth - margin, half_v - depth - margin];
         if court_u > 7.0 && court_v > 6.0 {
             let shed = plan.centre.moved(court_u * 0.4, court_v * 0.3, 0.2);
             self.canopy(shed, [5.0, 3.5], 2.6, 0.15, 5.0);

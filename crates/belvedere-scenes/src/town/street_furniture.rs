@@ -104,13 +104,13 @@ pub(crate) fn posted_slab(placement: &PlanPlacement, shape: &PostedSlab, terrain
     let steps = shape.size.map(|side| pieces((side - 2.0 * shape.inset).max(0.0), shape.spacing));
     for i in 0..=steps[0] {
         for j in 0..=steps[1] {
-            let on_rim = i == 0 || j == 0 || i == steps[0] || j == steps[1];
+            let on_edge = i == 0 || j == 0 || i == steps[0] || j == steps[1];
             let position = |side: f64, step: u32, steps: u32| {
                 (side - 2.0 * shape.inset) * (f64::from(step) / f64::from(steps) - 0.5)
             };
             let post = placement.moved(position(length, i, steps[0]), position(width, j, steps[1]), 0.0);
             let footprint = post.rectangle(shape.post_side, shape.post_side);
-            if on_rim {
+            if on_edge {
                 let bottom = terrain.lowest(&footprint) - 1.0;
                 // Half-way up into the slab, so that it neither touches nor pierces.
                 parts.push(prism(&footprint, bottom, shape.underside + shape.thickness / 2.0, Material::Slab));

@@ -42,7 +42,7 @@ fn shadow_end(truth: &Truth, sun: &Sun, start: [f64; 2], heading: f64, farthest:
 }
 
 /// Distance from `start` along `heading` to the rim of a convex polygon, corners counter-clockwise.
-fn rim(polygon: &[[f64; 2]], start: [f64; 2], heading: f64) -> f64 {
+fn distance_to_edge(polygon: &[[f64; 2]], start: [f64; 2], heading: f64) -> f64 {
     let direction = [heading.cos(), heading.sin()];
     (0..polygon.len())
         .map(|i| {
@@ -89,7 +89,8 @@ fn check_hull(scene: &TriangleScene, sun: &Sun, corners: &[[f64; 2]]) {
     let middle = [0, 1].map(|axis| outline.iter().map(|p| p[axis]).sum::<f64>() / count);
     for step in 0..72 {
         let heading = TAU * f64::from(step) / 72.0 + 0.01;
-        let (found, expected) = (shadow_end(&truth, sun, middle, heading, 200.0), rim(&outline, middle, heading));
+        let (found, expected) =
+            (shadow_end(&truth, sun, middle, heading, 200.0), distance_to_edge(&outline, middle, heading));
         // Flat faces: nothing but rounding stands between the two, far below the millimetre that is asked for.
         assert!((found - expected).abs() < MILLIMETRE / 100.0, "{heading}: {found} {expected}");
     }

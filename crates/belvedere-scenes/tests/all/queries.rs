@@ -43,8 +43,8 @@ fn targets_of_each_kind_lie_where_they_should() {
     for set in QuerySet::ALL {
         let targets = site.targets(set, 2000, 1);
         // pairs over 100 m apart hardly fit into a town of 120 m: some of a quarter of the pairs are not found
-        let least = if set == QuerySet::LinesOfSight { 1500 } else { 2000 };
-        assert!((least..=2000).contains(&targets.positions.len()), "{}: {}", set.name(), targets.positions.len());
+        let min = if set == QuerySet::LinesOfSight { 1500 } else { 2000 };
+        assert!((min..=2000).contains(&targets.positions.len()), "{}: {}", set.name(), targets.positions.len());
         let above = |p: &[f64; 3]| p[2] - ground.height(p[0], p[1]);
         // the mesh departs from the formula of the ground by less than 5 mm
         let at_height = |height: f64| targets.positions.iter().all(|p| (above(p) - height).abs() < 0.005);

@@ -47,7 +47,7 @@ fn plane_of(scene: &TriangleScene, scan: &Scan, i: usize) -> ([f64; 3], f64) {
 }
 
 #[test]
-fn asked_density_is_flown_with_every_pattern_and_any_extent() {
+fn requested_density_is_flown_with_every_pattern_and_any_extent() {
     for pattern in PATTERNS {
         for (side, cross_strip_count) in [(120.0, 0), (500.0, 0), (120.0, 2)] {
             let scene = plate(side);
@@ -79,9 +79,9 @@ fn strips_are_as_many_as_the_extent_needs() {
     let count = |side: f64| AirborneParams::covering(&plate(side), 10.0).strip_count;
     // Strips of 420 m, half of it between neighbours; the ground is 1.37 times as wide across a heading of 30 degrees.
     assert_eq!([150.0, 300.0, 1000.0].map(count), [2, 3, 8]);
-    let asked = AirborneParams::default().spread_over(&plate(300.0), Some(5), 10.0);
-    assert_eq!(asked.strip_count, 5);
-    assert!((asked.strip_spacing * 4.0 - 300.0 * (0.5 + 0.75_f64.sqrt())).abs() < 1e-9);
+    let requested = AirborneParams::default().spread_over(&plate(300.0), Some(5), 10.0);
+    assert_eq!(requested.strip_count, 5);
+    assert!((requested.strip_spacing * 4.0 - 300.0 * (0.5 + 0.75_f64.sqrt())).abs() < 1e-9);
 }
 
 #[test]
@@ -226,8 +226,8 @@ fn light_on_a_scan_is_that_of_the_shadow_of_a_box() {
         // Points are asked 3 cm above the ground, which shortens the shadow by as much.
         let in_shadow = on_ground && y.abs() < 5.0 && x > 4.999 && x < 13.0 - 0.03;
         let on_dark_wall = (x - 5.0).abs() < 1e-6 && !on_ground;
-        let near_rim = on_ground && ((x - 12.97).abs() < 1e-6 || (y.abs() - 5.0).abs() < 1e-6);
-        assert!(near_rim || *lit != (in_shadow || on_dark_wall), "{:?}", scan.exact_positions[i]);
+        let near_edge = on_ground && ((x - 12.97).abs() < 1e-6 || (y.abs() - 5.0).abs() < 1e-6);
+        assert!(near_edge || *lit != (in_shadow || on_dark_wall), "{:?}", scan.exact_positions[i]);
         shaded += usize::from(!lit);
     }
     // 10 by 8 m of ground at two strips of 4 pulses per m²

@@ -266,13 +266,13 @@ fn shadow_of_a_box_is_height_over_tangent_of_elevation_long() {
     for elevation_deg in [5.0_f64, 20.0, 45.0, 70.0, 89.0] {
         let elevation = elevation_deg.to_radians();
         let to_sun = [elevation.cos(), 0.0, elevation.sin()];
-        let rim = -5.0 - 10.0 / elevation.tan();
+        let edge = -5.0 - 10.0 / elevation.tan();
         // Queries lie on the ground itself, which must not shade them.
         for y in [-7.9, -3.3, 0.0, 4.1, 7.9] {
-            assert!(truth.occluded_towards([rim + 1e-4, y, 0.0], to_sun), "{elevation_deg}");
-            assert!(!truth.occluded_towards([rim - 1e-4, y, 0.0], to_sun), "{elevation_deg}");
+            assert!(truth.occluded_towards([edge + 1e-4, y, 0.0], to_sun), "{elevation_deg}");
+            assert!(!truth.occluded_towards([edge - 1e-4, y, 0.0], to_sun), "{elevation_deg}");
         }
-        assert!(!truth.occluded_towards([rim + 1.0, 8.001, 0.0], to_sun));
+        assert!(!truth.occluded_towards([edge + 1.0, 8.001, 0.0], to_sun));
         assert!(!truth.occluded_towards([5.001, 0.0, 0.0], to_sun), "the sunny side stays lit");
     }
 }

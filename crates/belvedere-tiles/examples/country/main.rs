@@ -38,8 +38,8 @@ fn main() -> std::io::Result<()> {
         for workers in [64, 1000] {
             // a processor is lost once a week
             // so that nobody waits for the last tiles of a stage
-            let most_open = if workers < 500 { 2 } else { 4 };
-            let cluster = Cluster { workers, hours_to_loss: 168.0, seconds_to_replace: 600.0, tries: 3, most_open };
+            let max_open = if workers < 500 { 2 } else { 4 };
+            let cluster = Cluster { workers, hours_to_loss: 168.0, seconds_to_replace: 600.0, tries: 3, max_open };
             let outcome = simulate(&country, &cluster);
             let busy = (outcome.recorded + outcome.wasted) / (outcome.elapsed * workers as f64);
             writeln!(
@@ -50,7 +50,7 @@ fn main() -> std::io::Result<()> {
                 outcome.elapsed / 86_400.0,
                 100.0 * busy,
                 100.0 * outcome.wasted / outcome.recorded,
-                outcome.most_ball_bytes / 1e12
+                outcome.max_ball_bytes / 1e12
             )?;
         }
     }

@@ -34,7 +34,7 @@ pub(crate) struct Cluster {
     /// How often a tile is tried.
     pub(crate) tries: u32,
     /// Most plans that are begun and not yet merged.
-    pub(crate) most_open: usize,
+    pub(crate) max_open: usize,
 }
 
 /// How it went.
@@ -53,7 +53,7 @@ pub(crate) struct SimulationOutcome {
     /// Workers that were lost.
     pub(crate) losses: usize,
     /// Most balls on disk at a time, bytes.
-    pub(crate) most_ball_bytes: f64,
+    pub(crate) max_ball_bytes: f64,
 }
 
 /// A tile in a stage.
@@ -173,7 +173,7 @@ impl SimulatedRun<'_> {
                 return Some(SimulatedTask { plan: open.plan, stage: open.stage, tile: open.next - 1, tries: 0 });
             }
         }
-        if self.next_plan == self.country.plans || self.open.len() == self.cluster.most_open {
+        if self.next_plan == self.country.plans || self.open.len() == self.cluster.max_open {
             return None;
         }
         self.open.push_back(OpenPlan { plan: self.next_plan, left: tiles, next: 1, ..OpenPlan::default() });
@@ -233,7 +233,7 @@ impl SimulatedRun<'_> {
             self.open.remove(place);
         }
         let on_disk: f64 = self.open.iter().map(|open| open.ball_bytes).sum();
-        self.outcome.most_ball_bytes = self.outcome.most_ball_bytes.max(on_disk);
+        self.outcome.max_ball_bytes = self.outcome.max_ball_bytes.max(on_disk);
     }
 }
 

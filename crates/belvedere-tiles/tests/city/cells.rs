@@ -82,8 +82,8 @@ fn results_with_their_own_cells_are_those_of_plans_with_one_question_and_of_any_
             let known = raster.values().iter().enumerate().filter(|(_, value)| value.is_finite());
             known.map(|(at, value)| (place(at), value.to_bits())).collect::<BTreeMap<_, _>>()
         });
-        let least = 140.0 * 140.0 / (side * side) * 0.9;
-        assert!(values[0].len() as f64 > least && values[0] == values[1], "{name}: {}", values[0].len());
+        let min = 140.0 * 140.0 / (side * side) * 0.9;
+        assert!(values[0].len() as f64 > min && values[0] == values[1], "{name}: {}", values[0].len());
     }
 }
 

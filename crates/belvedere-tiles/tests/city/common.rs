@@ -69,8 +69,8 @@ pub(crate) fn run_all(plan: &Plan, folder: &Path) -> RunReport {
 }
 
 /// With at most so many balls at a time.
-pub(crate) fn run_with(plan: &Plan, folder: &Path, most_balls: Option<usize>) -> RunReport {
-    let params = RunParams { shard: Shard::default(), steps: Steps::All, most_balls, seconds: &|| 0.0 };
+pub(crate) fn run_with(plan: &Plan, folder: &Path, max_balls: Option<usize>) -> RunReport {
+    let params = RunParams { shard: Shard::default(), steps: Steps::All, max_balls, seconds: &|| 0.0 };
     run(plan, folder, &params, &Control::none()).unwrap()
 }
 

@@ -19,7 +19,7 @@ const LOW: [f64; 3] = [155_000.0, 462_970.0, -50.0];
 const HIGH: [f64; 3] = [155_016.0, 462_984.0, 60.0];
 
 /// Balls at a time in small tiles.
-const MOST_BALLS: usize = 700;
+const MAX_BALLS: usize = 700;
 
 type CellMap<T> = BTreeMap<[i64; 2], T>;
 
@@ -74,10 +74,10 @@ fn done(
 ) -> Plan {
     change(plan(clouds, folder, size, questions.to_vec())).write(folder).unwrap();
     let plan = Plan::read(folder).unwrap();
-    let most_balls = (size < 100.0).then_some(MOST_BALLS);
-    let report = run_with(&plan, folder, most_balls);
+    let max_balls = (size < 100.0).then_some(MAX_BALLS);
+    let report = run_with(&plan, folder, max_balls);
     assert!(report.failed.is_empty() && report.unproven_cells == 0, "{report:?}");
-    assert_eq!(report.most_balls == MOST_BALLS, most_balls.is_some(), "{report:?}");
+    assert_eq!(report.max_balls == MAX_BALLS, max_balls.is_some(), "{report:?}");
     plan
 }
 
@@ -148,7 +148,7 @@ fn a_planned_building_blocks_exactly_whatever_the_tiles() {
         &belvedere_tiles::RunParams {
             shard: Default::default(),
             steps: Default::default(),
-            most_balls: None,
+            max_balls: None,
             seconds: &|| 0.0,
         },
         &Control::none(),

@@ -39,7 +39,7 @@ fn a_run_that_is_stopped_again_and_again_has_the_results_of_one_that_is_not() {
     let (straight, stopped) = (place.path().join("straight"), place.path().join("stopped"));
     run_all(&plan(&clouds, &straight, 64.0, suns()), &straight);
     let plan = plan(&clouds, &stopped, 64.0, suns());
-    let params = RunParams { shard: Shard::default(), steps: Steps::All, most_balls: None, seconds: &|| 0.0 };
+    let params = RunParams { shard: Shard::default(), steps: Steps::All, max_balls: None, seconds: &|| 0.0 };
     let (mut stops, mut patience) = (0, 500);
     loop {
         let watcher = CancelAfterChecks(AtomicUsize::new(patience));
@@ -68,7 +68,7 @@ fn shares_of_the_tiles_give_the_whole_together() {
     run_all(&plan(&clouds, &straight, 64.0, suns()), &straight);
     let plan = plan(&clouds, &shared, 64.0, suns());
     let run_share = |number: usize, steps: Steps| {
-        let params = RunParams { shard: Shard { number, of: 3 }, steps, most_balls: None, seconds: &|| 0.0 };
+        let params = RunParams { shard: Shard { number, of: 3 }, steps, max_balls: None, seconds: &|| 0.0 };
         let report = run(&plan, &shared, &params, &Control::none()).unwrap();
         assert!(report.failed.is_empty());
         (report.balls_made, report.answers_made)
@@ -80,7 +80,7 @@ fn shares_of_the_tiles_give_the_whole_together() {
     let answers = [2, 1, 3].map(|number| run_share(number, Steps::All));
     assert!(answers.iter().all(|made| made.0 == 0 && made.1 > 0), "{answers:?}");
     assert!(results(&straight) == results(&shared));
-    let params = RunParams { shard: Shard { number: 4, of: 3 }, steps: Steps::All, most_balls: None, seconds: &|| 0.0 };
+    let params = RunParams { shard: Shard { number: 4, of: 3 }, steps: Steps::All, max_balls: None, seconds: &|| 0.0 };
     assert!(run(&plan, &shared, &params, &Control::none()).is_err());
 }
 

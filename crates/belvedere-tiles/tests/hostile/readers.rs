@@ -94,8 +94,8 @@ pub(crate) fn check(reader: &TriedReader, bytes: &[u8]) -> bool {
     let is_read = (reader.read)(reader.file, &whole);
     let taken = ALLOCATOR.peak_usage().saturating_sub(before);
     let times = if reader.file.ends_with("tif") { TIMES_RASTER } else { TIMES_FILE };
-    let most = times * bytes.len() + BESIDE_FILE;
-    assert!(taken <= most, "{} of {} bytes took {taken} bytes of memory, more than {most}", reader.file, bytes.len());
+    let max = times * bytes.len() + BESIDE_FILE;
+    assert!(taken <= max, "{} of {} bytes took {taken} bytes of memory, more than {max}", reader.file, bytes.len());
     is_read
 }
 

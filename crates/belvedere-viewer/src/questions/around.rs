@@ -19,12 +19,12 @@ pub(super) struct AroundRequest {
 /// Range that is shown as the farthest, metres.
 const FARTHEST: f32 = 200.0;
 
-pub(super) fn answer(question: &AroundRequest, asked: &RequestContext<'_>) -> Result<QuestionReply, Refusal> {
-    let (scene, control) = (&asked.scene.asked, asked.control);
-    let place = local(asked, question.place)?;
+pub(super) fn answer(question: &AroundRequest, context: &RequestContext<'_>) -> Result<QuestionReply, Refusal> {
+    let (scene, control) = (&context.scene.inner, context.control);
+    let place = local(context, question.place)?;
     let eyes = Places::Eyes(vec![Standing { place, height: None }]);
     let isovists = ask::ask(scene, &IsovistsQuestion::default(), &eyes, control)?;
-    let sky = ask::ask(scene, &SkyViewQuestion::default(), &Places::Targets(Arc::new(at(asked, place))), control)?;
+    let sky = ask::ask(scene, &SkyViewQuestion::default(), &Places::Targets(Arc::new(at(context, place))), control)?;
     let Some(isovist) = isovists.found.isovists.first().and_then(Option::as_ref) else {
         return Err(Refusal("Nobody can look from this place.".to_owned()));
     };
@@ -53,8 +53,8 @@ pub(super) fn answer(question: &AroundRequest, asked: &RequestContext<'_>) -> Re
         "remarks": remarks,
         "command": format!(
             "{}\n{}",
-            command_at(asked, question.place, "sky-view", "-o sky.csv"),
-            asked.text.command("isovist", &format!("--observer {} -o isovist.json", typed(&question.place))),
+            command_at(context, question.place, "sky-view", "-o sky.csv"),
+            context.text.command("isovist", &format!("--observer {} -o isovist.json", typed(&question.place))),
         ),
     });
     Ok(QuestionReply { head, body: panorama.values().iter().map(|&range| brightness(range)).collect() })

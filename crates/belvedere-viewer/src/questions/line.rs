@@ -17,8 +17,8 @@ pub(super) struct LineRequest {
     target: [f64; 3],
 }
 
-pub(super) fn answer(question: &LineRequest, asked: &RequestContext<'_>) -> Result<QuestionReply, Refusal> {
-    let ends = [local(asked, question.observer)?, local(asked, question.target)?];
+pub(super) fn answer(question: &LineRequest, context: &RequestContext<'_>) -> Result<QuestionReply, Refusal> {
+    let ends = [local(context, question.observer)?, local(context, question.target)?];
     let [observer, target] = ends;
     if observer == target {
         return Err(Refusal("A and B are the same place: click two different ones.".to_owned()));
@@ -27,7 +27,7 @@ pub(super) fn answer(question: &LineRequest, asked: &RequestContext<'_>) -> Resu
     let line =
         LinesOfSightQuestion { profile: (!is_vertical).then(ProfileRows::default), ..LinesOfSightQuestion::default() };
     let pair = ends.map(|place| Standing { place, height: None });
-    let answers = ask::ask(&asked.scene.asked, &line, &Places::Pairs(vec![pair]), asked.control)?;
+    let answers = ask::ask(&context.scene.inner, &line, &Places::Pairs(vec![pair]), context.control)?;
     let (found, remarks) = (answers.found, answers.remarks);
     let sight = found.sights.first().and_then(Option::as_ref);
     let name = match found.answers.first() {
@@ -37,7 +37,7 @@ pub(super) fn answer(question: &LineRequest, asked: &RequestContext<'_>) -> Resu
         _ => "outside the cloud",
     };
     let block = sight.and_then(|sight| sight.first_block).map(
-        |block| json!({ "range_m": rounded(block.range, 3), "place": shown(asked, block.place), "ball": block.blocker.ball() }),
+        |block| json!({ "range_m": rounded(block.range, 3), "place": shown(context, block.place), "ball": block.blocker.ball() }),
     );
     let unproven = sight.filter(|_| found.is_proof_tested).map(|sight| number(sight.unproven_length, 3));
     let typed = format!("--observer {} --target {}", typed(&question.observer), typed(&question.target));
@@ -47,16 +47,16 @@ pub(super) fn answer(question: &LineRequest, asked: &RequestContext<'_>) -> Resu
         "length_m": rounded(length, 3),
         "first_block": block,
         "unproven_m": unproven,
-        "profile": found.profile.as_ref().map(|profile| drawn(profile, asked)),
+        "profile": found.profile.as_ref().map(|profile| drawn(profile, context)),
         "remarks": remarks,
-        "command": asked.text.command_on_ground("line-of-sight", &format!("{typed} -o line.csv --profile-out profile.png")),
+        "command": context.text.command_on_ground("line-of-sight", &format!("{typed} -o line.csv --profile-out profile.png")),
     });
     Ok(QuestionReply::of(head))
 }
 
 /// Distances, the ground, the line and what is solid, in heights of the file.
-fn drawn(profile: &SightProfile, asked: &RequestContext<'_>) -> Value {
-    let frame = asked.scene.model().frame();
+fn drawn(profile: &SightProfile, context: &RequestContext<'_>) -> Value {
+    let frame = context.scene.model().frame();
     let height = |local: f64| (local + frame.origin[2]) / frame.crs.vertical_metres_per_unit;
     let heights = |values: &[f64]| values.iter().map(|&v| number(height(v), 2)).collect::<Vec<_>>();
     let solid: Vec<Value> = profile

@@ -30,17 +30,17 @@ pub(crate) struct RequestContext<'a> {
 }
 
 /// Answers the question of that name.
-pub(crate) fn answer(name: &str, body: &[u8], asked: &RequestContext<'_>) -> Result<QuestionReply, Refusal> {
+pub(crate) fn answer(name: &str, body: &[u8], context: &RequestContext<'_>) -> Result<QuestionReply, Refusal> {
     match name {
-        "seen" => seen::answer(&parsed(body)?, asked),
-        "line" => line::answer(&parsed(body)?, asked),
-        "sun" => sun::answer(&parsed(body)?, asked),
-        "shadow" => shadow::answer(&parsed(body)?, asked),
-        "around" => around::answer(&parsed(body)?, asked),
-        "who" => who::answer(&parsed(body)?, asked),
-        "roof" => roof::answer(&parsed(body)?, asked),
-        "plan" => plan::answer(parsed(body)?, asked),
-        "sun_area" => sun_area::answer(&parsed(body)?, asked),
+        "seen" => seen::answer(&parsed(body)?, context),
+        "line" => line::answer(&parsed(body)?, context),
+        "sun" => sun::answer(&parsed(body)?, context),
+        "shadow" => shadow::answer(&parsed(body)?, context),
+        "around" => around::answer(&parsed(body)?, context),
+        "who" => who::answer(&parsed(body)?, context),
+        "roof" => roof::answer(&parsed(body)?, context),
+        "plan" => plan::answer(parsed(body)?, context),
+        "sun_area" => sun_area::answer(&parsed(body)?, context),
         _ => Err(Refusal("there is no such question".to_owned())),
     }
 }

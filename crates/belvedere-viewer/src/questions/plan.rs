@@ -7,11 +7,11 @@ use belvedere::apps::ask::remark_on_cleared;
 use belvedere::cloud::to_local;
 use serde_json::{Value, json};
 
-pub(super) fn answer(plan: DrawnPlan, asked: &RequestContext<'_>) -> Result<QuestionReply, Refusal> {
+pub(super) fn answer(plan: DrawnPlan, context: &RequestContext<'_>) -> Result<QuestionReply, Refusal> {
     let is_clearing = plan.is_clearing();
-    let planned = asked.plans.make(plan, asked.scene, asked.text, asked.control)?;
+    let planned = context.plans.make(plan, context.scene, context.text, context.control)?;
     let files: Vec<Value> = planned.files.iter().map(|(name, text)| json!({ "name": name, "content": text })).collect();
-    let origin = asked.scene.model().frame().origin;
+    let origin = context.scene.model().frame().origin;
     let corners = planned
         .added
         .iter()

@@ -67,10 +67,10 @@ impl RoofPlanes {
 
 pub(super) fn answer(
     question: &RoofRequest,
-    asked: &RequestContext<'_>,
+    context: &RequestContext<'_>,
 ) -> std::result::Result<QuestionReply, Refusal> {
-    let (scene, control) = (asked.scene, asked.control);
-    let place = local(asked, question.place)?;
+    let (scene, control) = (context.scene, context.control);
+    let place = local(context, question.place)?;
     let site = scene.site()?;
     let roofs = scene.roofs(control)?;
     let Some((plane_index, plane)) = roofs.at(place) else {
@@ -98,7 +98,7 @@ pub(super) fn answer(
         "year": CLEAR_SKY_YEAR,
         "planes": roofs.planes.len(),
         "roofs_m2": rounded(roofs.planes.iter().map(|plane| plane.area).sum(), 1),
-        "command": asked.text.command_on_ground("irradiance", "--clear-sky ineichen --months --planes roofs.csv"),
+        "command": context.text.command_on_ground("irradiance", "--clear-sky ineichen --months --planes roofs.csv"),
     });
     let points = plane.points.iter().filter_map(|&row| roofs.points.get(row as usize));
     Ok(QuestionReply { head, body: points.flatten().flat_map(|v| v.to_le_bytes()).collect() })

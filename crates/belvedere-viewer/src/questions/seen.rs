@@ -18,9 +18,9 @@ pub(super) struct SeenRequest {
     points: PointChoice,
 }
 
-pub(super) fn answer(question: &SeenRequest, asked: &RequestContext<'_>) -> Result<QuestionReply, Refusal> {
-    let (scene, control) = (asked.scene, asked.control);
-    let eye = local(asked, question.place)?;
+pub(super) fn answer(question: &SeenRequest, context: &RequestContext<'_>) -> Result<QuestionReply, Refusal> {
+    let (scene, control) = (context.scene, context.control);
+    let eye = local(context, question.place)?;
     let points = scene.points(question.points, control)?;
     let blockers = scene.blockers(UnprovenAs::Reported, control)?;
     let ground = scene.ground(control)?;
@@ -35,7 +35,7 @@ pub(super) fn answer(question: &SeenRequest, asked: &RequestContext<'_>) -> Resu
         "blocked": counts.blocked,
         "unproven": counts.unproven,
         "tells_unproven": blockers.proof().is_some(),
-        "command": asked.text.seen(&question.place),
+        "command": context.text.seen(&question.place),
     });
     Ok(QuestionReply { head, body: points.in_order(|row| seen.answers[row] as u8) })
 }

@@ -28,13 +28,13 @@ pub(super) struct ShadowRequest {
 /// one without an answer.
 const CODES: [u8; 4] = [0, 1, 2, 255];
 
-pub(super) fn answer(question: &ShadowRequest, asked: &RequestContext<'_>) -> Result<QuestionReply, Refusal> {
-    let (scene, control) = (asked.scene, asked.control);
+pub(super) fn answer(question: &ShadowRequest, context: &RequestContext<'_>) -> Result<QuestionReply, Refusal> {
+    let (scene, control) = (context.scene, context.control);
     let points = scene.points(question.points, control)?;
     let place = SunPlace { zone: Some(question.zone.clone()), ..SunPlace::default() };
     let times = vec![question.time.clone()];
     let of_sun = SunPositionQuestion { times: times.clone(), place: place.clone() };
-    let of_sun = ask::ask(&scene.asked, &of_sun, &Places::Scene, control)?.found;
+    let of_sun = ask::ask(&scene.inner, &of_sun, &Places::Scene, control)?.found;
     let shadow = ask::ShadowQuestion {
         suns: Suns::Times(times),
         place,
@@ -42,7 +42,7 @@ pub(super) fn answer(question: &ShadowRequest, asked: &RequestContext<'_>) -> Re
         trees: question.trees,
         unproven: None,
     };
-    let answers = ask::ask(&scene.asked, &shadow, &Places::Targets(Arc::clone(&points.targets)), control)?;
+    let answers = ask::ask(&scene.inner, &shadow, &Places::Targets(Arc::clone(&points.targets)), control)?;
     let measure = |name: &str| answers.measures.iter().find(|measure| measure.name == name).map(|m| &m.values[..]);
     let (lit, unproven) = (measure("lit").unwrap_or_default(), measure(UNPROVEN));
     let lit_count = lit.iter().filter(|&&share| share > 0.0).count();
@@ -60,7 +60,7 @@ pub(super) fn answer(question: &ShadowRequest, asked: &RequestContext<'_>) -> Re
         "to_sun": sun.sun.to_sun,
         "time": stands.time,
         "remarks": answers.remarks,
-        "command": asked.text.shadow(&question.time, &question.zone, question.trees),
+        "command": context.text.shadow(&question.time, &question.zone, question.trees),
     });
     let code = |row: usize| match lit.get(row) {
         Some(share) if *share > 0.0 => {

@@ -29,9 +29,9 @@ pub(super) struct SunRequest {
 /// Day of the months whose suns are shown: near both solstices.
 const DAY_OF_MONTH: i8 = 21;
 
-pub(super) fn answer(question: &SunRequest, asked: &RequestContext<'_>) -> Result<QuestionReply, Refusal> {
-    let (scene, control) = (asked.scene, asked.control);
-    let place = local(asked, question.place)?;
+pub(super) fn answer(question: &SunRequest, context: &RequestContext<'_>) -> Result<QuestionReply, Refusal> {
+    let (scene, control) = (context.scene, context.control);
+    let place = local(context, question.place)?;
     let site = scene.site()?;
     let zone = Zone::parse(&question.zone)?;
     let date = Date::parse(&question.date)?;
@@ -39,12 +39,12 @@ pub(super) fn answer(question: &SunRequest, asked: &RequestContext<'_>) -> Resul
     if blockers.is_outside_cloud(place) {
         return Err(Refusal("This place is outside the cloud, where nothing is known.".to_owned()));
     }
-    let targets = Arc::new(at(asked, place));
+    let targets = Arc::new(at(context, place));
     let hours_on = |date: Date| {
         let days = Days { dates: vec![date.to_string()], ..Days::default() };
         let place = SunPlace { zone: Some(question.zone.clone()), ..SunPlace::default() };
         let question = SunHoursQuestion { days, place, trees: question.trees, ..SunHoursQuestion::default() };
-        ask::ask(&scene.asked, &question, &Places::Targets(Arc::clone(&targets)), control)
+        ask::ask(&scene.inner, &question, &Places::Targets(Arc::clone(&targets)), control)
     };
     let of_day = hours_on(date)?;
     let first = |answers: &Answers<OnTargets>, name: &str| {
@@ -88,14 +88,14 @@ pub(super) fn answer(question: &SunRequest, asked: &RequestContext<'_>) -> Resul
         "zone": zone.name(),
         "latitude_deg": rounded(site.latitude.to_degrees(), 5),
         "longitude_deg": rounded(site.longitude.to_degrees(), 5),
-        "command": command_at(asked, question.place, "sun-hours", &flags),
+        "command": command_at(context, question.place, "sun-hours", &flags),
     });
     Ok(QuestionReply::of(head))
 }
 
 /// The place as the only target.
-pub(super) fn at(asked: &RequestContext<'_>, place: [f64; 3]) -> Targets {
-    let mut cloud = PointCloud::in_frame(asked.scene.model().frame().clone());
+pub(super) fn at(context: &RequestContext<'_>, place: [f64; 3]) -> Targets {
+    let mut cloud = PointCloud::in_frame(context.scene.model().frame().clone());
     cloud.positions = vec![belvedere::cloud::to_local(place, [0.0; 3])];
     Targets::of_points(&cloud, None)
 }

@@ -15,15 +15,15 @@ pub(super) struct WhoSeesRequest {
     place: [f64; 3],
 }
 
-pub(super) fn answer(question: &WhoSeesRequest, asked: &RequestContext<'_>) -> Result<QuestionReply, Refusal> {
-    let standing = Standing { place: local(asked, question.place)?, height: None };
+pub(super) fn answer(question: &WhoSeesRequest, context: &RequestContext<'_>) -> Result<QuestionReply, Refusal> {
+    let standing = Standing { place: local(context, question.place)?, height: None };
     let viewshed = ViewshedQuestion {
         observers: vec![StandingObserver { standing, limits: ViewLimits::default() }],
         reverse: true,
         targets: vec![ViewshedTargets::Cells],
         ..ViewshedQuestion::default()
     };
-    let answers = ask::ask(&asked.scene.asked, &viewshed, &Places::Scene, asked.control)?;
+    let answers = ask::ask(&context.scene.inner, &viewshed, &Places::Scene, context.control)?;
     let (ground, seen) = (&answers.found.ground.ground, answers.found.cells.as_ref());
     let cells = seen.map_or(&[][..], |seen| &seen.answers);
     let (grid, counts) = (ground.grid, AnswerCounts::of(cells));
@@ -34,7 +34,7 @@ pub(super) fn answer(question: &WhoSeesRequest, asked: &RequestContext<'_>) -> R
         "visible_m2": rounded(counts.visible as f64 * grid.cell * grid.cell, 1),
         "grid": { "first_center": grid.center(0, 0), "cell_m": grid.cell, "columns": grid.width, "rows": grid.height },
         "remarks": answers.remarks,
-        "command": asked.text.command_on_ground("viewshed", &format!("--target {} -o who.tif", typed(&question.place))),
+        "command": context.text.command_on_ground("viewshed", &format!("--target {} -o who.tif", typed(&question.place))),
     });
     let heights = ground.heights.values().iter().flat_map(|height| height.to_le_bytes());
     Ok(QuestionReply { head, body: heights.chain(cells.iter().map(|&answer| answer as u8)).collect() })

@@ -52,7 +52,7 @@ fn get(host: &str, path: &str, headers: &str) -> (u16, String) {
     sent(host, format!("GET {path} HTTP/1.1\r\n{headers}Connection: close\r\n\r\n").as_bytes())
 }
 
-fn asked(host: &str, token: &str, body: &str) -> (u16, String) {
+fn response(host: &str, token: &str, body: &str) -> (u16, String) {
     let length = body.len();
     let head = format!(
         "POST /{token}/ask/seen HTTP/1.1\r\nHost: {host}\r\nContent-Type: application/json\r\nContent-Length: {length}\r\nConnection: close\r\n\r\n"
@@ -126,7 +126,7 @@ fn huge_false_and_slow_requests_do_no_harm() {
 
     // 5: a body of 50 MB, and one that only claims to be
     let huge = format!("{{\"place\":[{}1]}}", "1,".repeat(25_000_000));
-    let (status, _) = asked(&host, &token, &huge);
+    let (status, _) = response(&host, &token, &huge);
     assert!(status == 413 || status == 0, "{status}");
     let head = format!(
         "POST /{token}/ask/seen HTTP/1.1\r\n{own}Content-Type: application/json\r\nContent-Length: 99999999999\r\nConnection: close\r\n\r\n{{}}"
@@ -145,10 +145,10 @@ fn huge_false_and_slow_requests_do_no_harm() {
         "[",
         "\u{0}",
     ] {
-        let (status, text) = asked(&host, &token, body);
+        let (status, text) = response(&host, &token, body);
         assert!(status == 422 && text.contains("error"), "{body}: {status} {text}");
     }
-    let (status, text) = asked(&host, &token, "{\"place\":[1e300,-1e300,1e300]}");
+    let (status, text) = response(&host, &token, "{\"place\":[1e300,-1e300,1e300]}");
     assert!(status == 422 && text.contains("outside the cloud"), "{status} {text}");
     // 7: not JSON, as a form of another page would be, and other methods
     let form = format!(
@@ -188,7 +188,7 @@ fn huge_false_and_slow_requests_do_no_harm() {
     assert_eq!(plan("plans/7/ask/seen", "{\"place\":[2,2,1.7]}").0, 422);
     assert_eq!(plan("plans/x/ask/seen", "{}").0, 400);
     // 8: deep nesting, and a head without end
-    assert_eq!(asked(&host, &token, &"[".repeat(60_000)).0, 422);
+    assert_eq!(response(&host, &token, &"[".repeat(60_000)).0, 422);
     let long = format!("GET /{token}/state HTTP/1.1\r\n{own}X: {}\r\n\r\n", "a".repeat(2_000_000));
     assert!([0, 400, 431].contains(&sent(&host, long.as_bytes()).0));
     // 9: a client that sends a byte a second holds up nobody
@@ -207,7 +207,7 @@ fn a_thousand_at_once_are_answered_or_refused_and_the_page_lives_on() {
     let (host, token) = address(&viewer);
     // 10: a thousand questions, from as many connections
     let statuses: Vec<u16> = std::thread::scope(|scope| {
-        let ask = |_| scope.spawn(|| asked(&host, &token, "{\"place\":[2,2,1.7]}").0);
+        let ask = |_| scope.spawn(|| response(&host, &token, "{\"place\":[2,2,1.7]}").0);
         let all: Vec<_> = (0..1000).map(ask).collect();
         all.into_iter().map(|one| one.join().unwrap()).collect()
     });

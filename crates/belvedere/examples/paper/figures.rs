@@ -80,22 +80,22 @@ fn balls_picture(view: &View, model: &PaperModel, colors: &[[u8; 3]]) -> Result<
     Ok(canvas_with_balls(view, &model.balls, &of_sources(model, colors))?.into_picture())
 }
 
-/// Targets with one answer, at most `most` of them.
-fn with_answer(look: &Look, answer: Answer, most: usize) -> Vec<[f32; 3]> {
-    look.targets.iter().zip(&look.answers).filter(|&(_, &a)| a == answer).map(|(&t, _)| t).take(most).collect()
+/// Targets with one answer, at most `max` of them.
+fn with_answer(look: &Look, answer: Answer, max: usize) -> Vec<[f32; 3]> {
+    look.targets.iter().zip(&look.answers).filter(|&(_, &a)| a == answer).map(|(&t, _)| t).take(max).collect()
 }
 
 /// Balls and blocked targets together.
-fn shadow_picture(view: &View, model: &PaperModel, colors: &[[u8; 3]], look: &Look, most: usize) -> Result<Picture> {
+fn shadow_picture(view: &View, model: &PaperModel, colors: &[[u8; 3]], look: &Look, max: usize) -> Result<Picture> {
     let mut canvas = canvas_with_balls(view, &model.balls, &of_sources(model, colors))?;
-    canvas.draw_points(&with_answer(look, Answer::Blocked, most), Colors::One(SHADOW), 1)?;
+    canvas.draw_points(&with_answer(look, Answer::Blocked, max), Colors::One(SHADOW), 1)?;
     Ok(canvas.into_picture())
 }
 
 /// What the depth map shows, without the distance the picture plane was moved back by.
 fn depth_of(look: &Look, title: &str) -> Result<Picture> {
-    let least = look.map.depth.values().iter().copied().fold(f32::INFINITY, f32::min);
-    let values = look.map.depth.values().iter().map(|d| d - least).collect();
+    let min = look.map.depth.values().iter().copied().fold(f32::INFINITY, f32::min);
+    let values = look.map.depth.values().iter().map(|d| d - min).collect();
     let depth = Raster::from_values(look.map.depth.width(), look.map.depth.height(), values)?;
     Ok(depth_picture(&depth, title))
 }

@@ -99,7 +99,7 @@ pub fn write_measures(
         }
         (_, TakenFrom::Cloud(cloud)) if !is_tiff => write_points(path, cloud, measures),
         (TargetLayout::Cells(_) | TargetLayout::Points, TakenFrom::Nothing) if !is_tiff => {
-            let rows: Vec<usize> = (0..expected).filter(|&row| targets.is_asked(row)).collect();
+            let rows: Vec<usize> = (0..expected).filter(|&row| targets.is_target(row)).collect();
             let positions = rows.iter().map(|&row| targets.positions[row]).collect();
             let cloud = PointCloud { frame: targets.frame.clone(), positions, ..PointCloud::default() };
             let pick = |measure: &Measure| Measure {

@@ -218,7 +218,7 @@ fn skylines_heights_and_ranges_know_added_meshes() {
     for i in 0..300_u64 {
         let place = |k: u64| 60.0 * uniform(8, 4 * i + k);
         let (observer, foot) = ([place(0), place(1), 9.0 + 0.2 * place(2)], [place(3), place(5), 0.0]);
-        let Some(height) = scene.least_visible_height(observer, foot, 300.0, &flat) else { continue };
+        let Some(height) = scene.min_visible_height(observer, foot, 300.0, &flat) else { continue };
         let seen = |height: f64| scene.sight_answer(observer, [foot[0], foot[1], height], &flat) == Answer::Visible;
         assert!(seen(height) || seen(height + 1e-3), "{observer:?} {foot:?} {height}");
         let below: Vec<f64> = (0..200).map(|k| height * f64::from(k) / 200.0).collect();

@@ -5,7 +5,7 @@ use belvedere::blocking::BlockRule;
 use belvedere::control::{Control, Watcher};
 use belvedere::depth::{DepthBounds, ItemBuffer, Profile, depth_map};
 use belvedere::medial::MedialBalls;
-use belvedere::pulses::{NeedleParams, Needles};
+use belvedere::pulses::{FreeSegmentParams, FreeSegments};
 use belvedere::query::certified::CertifiedMap;
 use belvedere::query::target_tree::TargetTree;
 use belvedere::query::{
@@ -184,10 +184,11 @@ fn pulses_that_are_indexed_when_needed_prove_the_same() {
         .filter(|p| (p[0] - 30.0).hypot(p[1] - 30.0) > 8.0)
         .collect();
     let scanner = vec![[30.0, 10.0, 500.0]; returns.len()];
-    let (needles, _) = Needles::new(&returns, &scanner, &NeedleParams::default(), &Control::none()).unwrap();
-    let columns = needles.to_columns();
+    let (free_segments, _) =
+        FreeSegments::new(&returns, &scanner, &FreeSegmentParams::default(), &Control::none()).unwrap();
+    let columns = free_segments.to_columns();
     let params = ProofParams::default();
-    let at_once = Proof::new(Needles::from_columns(&columns, &Control::none()).unwrap(), &params).unwrap();
+    let at_once = Proof::new(FreeSegments::from_columns(&columns, &Control::none()).unwrap(), &params).unwrap();
     let when_needed = Proof::from_columns(columns.clone(), &params).unwrap();
     assert_eq!(at_once.nearness().to_bits(), when_needed.nearness().to_bits());
     let targets = random_targets([0.0, 0.0, 0.1], [60.0, 60.0, 3.0], 3000, 4);

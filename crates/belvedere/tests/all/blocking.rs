@@ -174,8 +174,8 @@ fn a_wider_shell_or_bias_never_blocks_more() {
             assert!(!blocks(BlockRule { bias: rule.bias + 0.3, ..rule }), "case {number}");
         }
         let radius = f64::from(ball.radius);
-        let [counted, least] = [rule.radius_for(radius, ball.distance_to(target)), rule.least_radius(radius)];
-        assert!(least <= counted && counted <= radius, "case {number}");
+        let [counted, min] = [rule.radius_for(radius, ball.distance_to(target)), rule.min_radius(radius)];
+        assert!(min <= counted && counted <= radius, "case {number}");
     }
 }
 

@@ -94,13 +94,13 @@ pub(crate) fn assert_bounds_hold(balls: &[Ball], bounds: &DepthBounds, start: f6
         let (x, y) = (uniform(9, 2 * i) * width, uniform(9, 2 * i + 1) * height);
         let place = if i % 3 == 0 { [x.floor() + 1e-9, y.floor() + 1.0 - 1e-9] } else { [x, y] };
         let [column, row] = place.map(|v| v as usize);
-        let [mut least, most] = bounds.bounds.get(column, row).unwrap().map(f64::from);
+        let [mut min, max] = bounds.bounds.get(column, row).unwrap().map(f64::from);
         if start == 0.0 {
-            least = least.max(0.0);
+            min = min.max(0.0);
         }
         let front = first_front(balls, view, place, start);
-        assert!(least <= front && front <= most, "{what}: {front} not in {least}..{most}");
-        within_upper += usize::from(most.is_finite());
+        assert!(min <= front && front <= max, "{what}: {front} not in {min}..{max}");
+        within_upper += usize::from(max.is_finite());
     }
     within_upper
 }

@@ -102,9 +102,9 @@ fn selections_are_the_best_of_all_and_bounds_are_never_below_them() {
             let fewest = best.iter().position(|share| *share > wanted - 1e-12).unwrap();
             let found = place(&lists, &weights, &params);
             assert!(found.coverage() > wanted - 1e-9 && found.chosen.len() == fewest, "{seed} {wanted} {found:?}");
-            assert_eq!((found.least_count, found.is_optimal()), (Some(fewest), true), "{seed} {wanted}");
+            assert_eq!((found.min_count, found.is_optimal()), (Some(fewest), true), "{seed} {wanted}");
             let quick = place(&lists, &weights, &params.with_search_limit(Some(0)));
-            assert!(quick.least_count.unwrap() <= fewest && quick.chosen.len() >= fewest, "{seed} {wanted}");
+            assert!(quick.min_count.unwrap() <= fewest && quick.chosen.len() >= fewest, "{seed} {wanted}");
         }
     }
 }

@@ -64,20 +64,20 @@ fn a_cleared_building_is_gone_and_the_ground_below_it_closed() {
     // people in the sun, on the ground beside what is left
     for (azimuth, elevation) in [(250.0_f64, 35.0_f64), (110.0, 25.0), (180.0, 60.0)] {
         let sun = to_sun(azimuth.to_radians(), elevation.to_radians());
-        let (mut asked, mut wrong) = (0, 0);
+        let (mut queried, mut wrong) = (0, 0);
         for place in random_targets([8.0, 8.0, 1.0], [52.0, 52.0, 1.0], 4000, 3) {
             let place = place.map(f64::from);
             if (0..2).all(|axis| (place[axis] - SECOND[axis]).abs() < 5.0) {
                 continue;
             }
-            asked += 1;
+            queried += 1;
             let is_lit = !truth.occluded_towards(place, sun);
             let answer = after.answer(local(place), sun, f64::INFINITY);
             let in_area = (0..2).all(|axis| (place[axis] - FIRST[axis]).abs() < 5.0);
             assert!(!(in_area && is_lit) || answer == Answer::Visible, "{place:?} {answer:?}");
             wrong += usize::from((answer != Answer::Blocked) != is_lit);
         }
-        assert!(wrong * 100 < asked * 2, "{wrong} of {asked}");
+        assert!(wrong * 100 < queried * 2, "{wrong} of {queried}");
     }
     // straight through where it stood, which no pulse saw
     let through = [[FIRST[0], 22.0, 2.0], [FIRST[0], 38.0, 2.0]].map(local);

@@ -30,7 +30,7 @@ fn built(scan: &Scan) -> (PointCloud, SceneModel) {
     let params = ModelParams::default().with_orient(orient).with_balls(carved);
     let (model, report) = SceneModel::build(&cloud, &params, &Control::none()).unwrap();
     let pulses = report.pulses.unwrap();
-    assert!(pulses.needles.used > cloud.len() / 2, "{pulses:?}");
+    assert!(pulses.free_segments.used > cloud.len() / 2, "{pulses:?}");
     assert!(pulses.blocked.unwrap().percent < 0.1, "{pulses:?}");
     (cloud, model)
 }

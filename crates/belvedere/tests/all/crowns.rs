@@ -6,7 +6,7 @@ use belvedere::medial::{CarvedBalls, CarvedInput, CarvedParams, CrownParams, Tre
 use belvedere::neighbors::NeighborIndex;
 use belvedere::normals::estimate::{Neighborhood, estimate};
 use belvedere::normals::{Orientation, orient};
-use belvedere::pulses::{NeedleParams, Needles, group};
+use belvedere::pulses::{FreeSegmentParams, FreeSegments, group};
 use belvedere::random::uniform;
 use belvedere::{Attributes, PointCloud};
 
@@ -50,13 +50,14 @@ fn carved(cloud: &PointCloud, params: &CarvedParams) -> CarvedBalls {
     let index = NeighborIndex::new(&cloud.positions, &Control::none()).unwrap();
     let normals = estimate(&cloud.positions, &index, Neighborhood::default(), &Control::none()).unwrap();
     let (oriented, _) = orient(cloud, normals, &Orientation::Pulses(&scanner), &Control::none()).unwrap();
-    let (needles, _) = Needles::of_cloud(cloud, &scanner, &NeedleParams::default(), &Control::none()).unwrap();
+    let (free_segments, _) =
+        FreeSegments::of_cloud(cloud, &scanner, &FreeSegmentParams::default(), &Control::none()).unwrap();
     let (pulses, _) = group(cloud, &Control::none()).unwrap();
     let input = CarvedInput {
         oriented: &oriented,
         index: &index,
         attributes: &cloud.attributes,
-        needles: &needles,
+        needles: &free_segments,
         pulses: Some(&pulses),
     };
     carved_balls(&input, params, &Control::none()).unwrap()
@@ -177,7 +178,7 @@ fn roof_and_bush() -> PointCloud {
 }
 
 #[test]
-fn without_classes_a_bush_is_told_from_a_roof() {
+fn without_classes_a_bush_is_separated_from_a_roof() {
     let mut cloud = roof_and_bush();
     let bush = cloud.len() - 1600;
     let found = carved(&cloud, &trees(Trees::Porous));

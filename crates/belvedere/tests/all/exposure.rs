@@ -92,7 +92,7 @@ fn a_wall_before_a_ball_loses_the_component_behind_it() {
 }
 
 #[test]
-fn windows_are_asked_before_their_parts() {
+fn targets_of_windows_lie_before_their_panes() {
     let [east] = &window_places([1.0, 2.0, 3.0], [1.0, 0.0, 0.0], None).unwrap()[..] else { panic!("one place") };
     assert_eq!(*east, [1.1, 2.0, 3.0]);
     let nine = window_places([0.0; 3], plane_normal(PI, FRAC_PI_2), Some([3.0, 1.5])).unwrap();

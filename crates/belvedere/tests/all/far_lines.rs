@@ -6,7 +6,7 @@ use belvedere::PointCloud;
 use belvedere::apps::eyes::{EyeFault, fault_of_target, skip_unfit_eyes, skip_unfit_far_eyes};
 use belvedere::apps::profile::sight_profile;
 use belvedere::apps::targets::{CellParams, Targets};
-use belvedere::apps::viewshed::{Observer, ViewshedParams, far_viewshed, least_visible_heights, viewshed};
+use belvedere::apps::viewshed::{Observer, ViewshedParams, far_viewshed, min_visible_heights, viewshed};
 use belvedere::control::Control;
 use belvedere::ground::{Ground, MapGrid};
 use belvedere::query::{Answer, Blocker, EarthParams, LineOfSight, MedialScene, RadioWave};
@@ -254,8 +254,7 @@ fn an_observer_behind_a_ridge_sees_of_the_cloud_what_lies_above_the_line_over_it
     let cells = MapGrid { corner: [6000.0, -3700.0], cell: 100.0, width: 6, height: 6 };
     let heights = Raster::filled(6, 6, 0.0);
     let ground = Ground { grid: cells, gaps: heights.clone(), heights };
-    let of =
-        |eye| least_visible_heights(&scene, &[observer(eye)], &ground, 50.0, &EarthParams::flat(), &Control::none());
+    let of = |eye| min_visible_heights(&scene, &[observer(eye)], &ground, 50.0, &EarthParams::flat(), &Control::none());
     assert!(of([6100.0, -4200.0, 60.0]).is_ok());
     assert!(of(eye).unwrap_err().to_string().contains("in the cloud"));
 }

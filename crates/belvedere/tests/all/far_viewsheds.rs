@@ -164,14 +164,14 @@ fn compared(scene: &MedialScene, cloud: MapBox, eye: [f64; 3], height: f64, step
     let mut counts = [0; 3];
     for (node, answer) in nodes(scene, &found).step_by(step) {
         let target = [node[0], node[1], node[2] + height];
-        let least = clearance(terrain, cloud, eye, target, &earth);
+        let min = clearance(terrain, cloud, eye, target, &earth);
         match answer {
             // steps find nothing that is not there, but for what is rounded over kilometres
-            Answer::Visible => assert!(least > -1e-4, "{node:?}: {least}"),
-            _ => assert!(least < margin, "{node:?}: {least}"),
+            Answer::Visible => assert!(min > -1e-4, "{node:?}: {min}"),
+            _ => assert!(min < margin, "{node:?}: {min}"),
         }
         counts[usize::from(answer == Answer::Visible)] += 1;
-        counts[2] += usize::from(answer != Answer::Visible && least > 0.0);
+        counts[2] += usize::from(answer != Answer::Visible && min > 0.0);
     }
     counts
 }

@@ -263,7 +263,7 @@ fn parts_of_a_row_keep_its_energy_and_follow_the_sun() {
 }
 
 #[test]
-fn direct_radiation_without_a_sun_is_told() {
+fn direct_radiation_without_a_sun_is_reported() {
     // a file whose clock is wrong by twelve hours
     let night = weather(vec![step(171.0 * 24.0 + 0.5, 400.0)]);
     let instants = weather_instants(&night, &site(), 1).unwrap();

@@ -155,7 +155,7 @@ fn crossings_cover_what_dense_samples_find_inside() {
 }
 
 #[test]
-fn an_observer_in_a_ball_is_told_how_deep() {
+fn an_observer_in_a_ball_is_reported_with_its_depth() {
     let list = [([0.0, 0.0, 0.0], 2.0), ([1.0, 0.0, 0.0], 1.5), ([9.0, 0.0, 0.0], 1.0)];
     let scene = MedialScene::new(&balls(&list), &BlockRule::default()).unwrap();
     let inside = scene.enclosure([0.5, 0.0, 0.0]);

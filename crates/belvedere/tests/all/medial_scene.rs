@@ -258,7 +258,7 @@ fn the_index_proposes_every_box_that_a_ray_meets() {
         assert!(expected.iter().all(|b| proposed.contains(b)), "ray {i}");
         assert_eq!(index.any(&ray, |row| range(&boxes[index.order()[row] as usize]).is_some()), !expected.is_empty());
         let nearest = index.nearest(&ray, |row| range(&boxes[index.order()[row] as usize])).map(|(_, r)| r);
-        let least = expected.iter().filter_map(|&b| range(&boxes[b])).reduce(f64::min);
-        assert_eq!(nearest, least, "ray {i}");
+        let min = expected.iter().filter_map(|&b| range(&boxes[b])).reduce(f64::min);
+        assert_eq!(nearest, min, "ray {i}");
     }
 }

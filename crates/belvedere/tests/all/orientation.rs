@@ -58,8 +58,8 @@ fn sphere(radius: f64, count: u32) -> (PointCloud, Vec<[f32; 3]>) {
         .map(|i| {
             let z = 1.0 - (2.0 * f64::from(i) + 1.0) / f64::from(count);
             let turn = f64::from(i) * 2.399_963_229_728_653;
-            let rim = (1.0 - z * z).sqrt();
-            [(rim * turn.cos()) as f32, (rim * turn.sin()) as f32, z as f32]
+            let ring_radius = (1.0 - z * z).sqrt();
+            [(ring_radius * turn.cos()) as f32, (ring_radius * turn.sin()) as f32, z as f32]
         })
         .collect();
     (cloud_of(normals.iter().map(|n| n.map(|v| v * radius as f32)).collect()), normals)

@@ -82,12 +82,12 @@ fn outlines_hold_exactly_the_pixels_that_rays_hit() {
                 for column in 0..map.depth.width() {
                     let place = [column as f64 + 0.5, row as f64 + 0.5];
                     let mine = f64::from(map.depth.get(column, row).unwrap());
-                    let least = exact_depth(group, &view, place, room);
-                    let most = exact_depth(group, &view, place, -room);
+                    let min = exact_depth(group, &view, place, room);
+                    let max = exact_depth(group, &view, place, -room);
                     let slack = room * 100.0;
                     assert!(
-                        least - slack <= mine && mine <= most + slack,
-                        "{name}, {column} {row}: {mine} not in {least}..{most}"
+                        min - slack <= mine && mine <= max + slack,
+                        "{name}, {column} {row}: {mine} not in {min}..{max}"
                     );
                     let item = map.balls.as_ref().unwrap().get(column, row).unwrap();
                     assert_eq!(item == NO_BALL, mine == f64::INFINITY);

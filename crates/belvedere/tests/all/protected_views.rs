@@ -83,8 +83,8 @@ fn several_viewpoints_have_the_lowest_of_their_limits_in_any_order_and_on_any_th
     let all = run(&nothing(), &object, &eyes, &grid);
     let single: Vec<ProtectedView> = eyes.iter().map(|&eye| run(&nothing(), &object, &[eye], &grid)).collect();
     for (row, &limit) in all.limits.values().iter().enumerate() {
-        let least = single.iter().map(|one| one.limits.values()[row]).fold(f32::NAN, f32::min);
-        assert!(limit == least || limit.is_nan() && least.is_nan());
+        let min = single.iter().map(|one| one.limits.values()[row]).fold(f32::NAN, f32::min);
+        assert!(limit == min || limit.is_nan() && min.is_nan());
     }
     assert_eq!(all.viewpoints[3].lines_not_tested, object.pieces.len());
     let mut turned = eyes;

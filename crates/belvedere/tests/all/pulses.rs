@@ -117,7 +117,7 @@ fn what_is_no_pulse_is_counted_and_left_out() {
 }
 
 #[test]
-fn times_that_tell_nothing_are_an_error() {
+fn times_of_no_use_are_an_error() {
     let mut cloud = cloud_of_rows(&[(1, 5.0, 1, 2, 0.0), (1, 5.0, 1, 2, 1.0), (1, 0.0, 1, 1, 2.0)]);
     assert!(matches!(group(&cloud, &Control::none()), Err(Error::MissingAttribute { .. })));
     cloud.attributes.gps_time = None;
@@ -245,9 +245,9 @@ fn real_flights_are_found() {
             let from_nadir = (sight[2] / length(sight)).acos().to_degrees();
             (from_nadir - tilt.unwrap_or(f64::from(angles[row].abs()).to_degrees())).abs()
         });
-        let [typical, most] = spread(off.collect());
+        let [typical, max] = spread(off.collect());
         // half a degree of rounding, and a roll, pitch or heading that not every supplier puts into the angle
-        assert!(typical < 1.5 && most < 4.0, "{file}: {typical} {most}");
+        assert!(typical < 1.5 && max < 4.0, "{file}: {typical} {max}");
     }
 }
 
@@ -302,8 +302,8 @@ fn fifty_pulses_half_a_second_give_the_path_to_a_metre() {
         assert_eq!((report.known_count, report.parts.len()), (1000, 20));
         assert!(report.parts.iter().all(|part| part.pair_count.abs_diff(50) <= 1));
         let errors = (0..1000).map(|i| length(sub(sensor.per_pulse[i].map(f64::from), truth[i]))).collect();
-        let [typical, most] = spread(errors);
+        let [typical, max] = spread(errors);
         // the bar of the project; the sum of the covariances of 50 such pulses is half of it
-        assert!(typical <= bar, "{acceleration_sd}: {typical} {most}");
+        assert!(typical <= bar, "{acceleration_sd}: {typical} {max}");
     }
 }

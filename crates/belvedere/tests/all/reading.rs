@@ -391,7 +391,7 @@ fn text_variants_give_the_same_points() {
 }
 
 #[test]
-fn text_columns_are_told_by_name_or_value() {
+fn text_columns_are_recognised_by_name_or_value() {
     let folder = tempfile::tempdir().unwrap();
     let named = text_file(&folder, "a.txt", "x y z nx ny nz r g b intensity class\n1 2 3 0 0 2 255 0 128 77 6\n");
     let (cloud, _) = read(&[named]).unwrap();
@@ -451,7 +451,7 @@ fn folder_joins_its_files_by_name_and_drops_what_only_some_have() {
 }
 
 #[test]
-fn systems_are_told_by_code_and_text() {
+fn systems_are_given_by_code_and_text() {
     for (text, kind, horizontal, vertical) in [
         ("EPSG:28992", CrsKind::Projected, 1.0, 1.0),
         ("7415", CrsKind::Projected, 1.0, 1.0),

@@ -6,7 +6,7 @@ use belvedere::control::Control;
 use belvedere::medial::{CarvedBalls, CarvedInput, CarvedParams, ReliefParams, carved_balls};
 use belvedere::neighbors::NeighborIndex;
 use belvedere::normals::OrientedCloud;
-use belvedere::pulses::{NeedleParams, Needles};
+use belvedere::pulses::{FreeSegmentParams, FreeSegments};
 use belvedere::query::{Answer, BlockRule, MedialScene};
 use belvedere::random::uniform;
 
@@ -44,8 +44,8 @@ fn survey(wall_height: f64) -> ReliefSurvey {
     survey
 }
 
-fn needles(survey: &ReliefSurvey) -> Needles {
-    Needles::new(&survey.points, &survey.scanner, &NeedleParams::default(), &Control::none()).unwrap().0
+fn free_segments(survey: &ReliefSurvey) -> FreeSegments {
+    FreeSegments::new(&survey.points, &survey.scanner, &FreeSegmentParams::default(), &Control::none()).unwrap().0
 }
 
 fn balls(survey: &ReliefSurvey, relief: Option<ReliefParams>) -> CarvedBalls {
@@ -54,9 +54,14 @@ fn balls(survey: &ReliefSurvey, relief: Option<ReliefParams>) -> CarvedBalls {
     let oriented = OrientedCloud::with_known_normals(survey.points.clone(), normals).unwrap();
     let index = NeighborIndex::new(&survey.points, &Control::none()).unwrap();
     let attributes = Attributes { classification: Some(vec![6; survey.points.len()]), ..Attributes::default() };
-    let needles = needles(survey);
-    let input =
-        CarvedInput { oriented: &oriented, index: &index, attributes: &attributes, needles: &needles, pulses: None };
+    let free_segments = free_segments(survey);
+    let input = CarvedInput {
+        oriented: &oriented,
+        index: &index,
+        attributes: &attributes,
+        needles: &free_segments,
+        pulses: None,
+    };
     carved_balls(&input, &CarvedParams { relief, ..CarvedParams::default() }, &Control::none()).unwrap()
 }
 

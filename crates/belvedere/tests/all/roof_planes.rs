@@ -158,7 +158,7 @@ fn crowns_and_walls_are_no_roofs() {
 }
 
 #[test]
-fn roofs_are_told_by_class_or_by_height() {
+fn roofs_are_found_by_class_or_by_height() {
     let mut positions = sheet(5, 4.0, [-10.0, 40.0], [-10.0, 20.0], |_, _| 0.0);
     let ground_count = positions.len();
     positions.extend(house(4.0));
@@ -187,7 +187,7 @@ fn parameters_out_of_range_are_refused() {
         // would be 10^18 cells a square metre
         usual.with_cell(1e-9),
         usual.with_angle(2.0),
-        usual.with_least_area(f64::NAN),
+        usual.with_min_area(f64::NAN),
     ] {
         assert!(roof_planes(&house(4.0), &params, &Control::none()).is_err(), "{params:?}");
     }

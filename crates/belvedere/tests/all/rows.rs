@@ -187,5 +187,5 @@ fn targets_inside_a_ball_are_left_out() {
     let mut targets = targets(20);
     targets.positions = vec![[0.0, 0.5, 5.0], [0.0, 0.0, 9.0], [f32::NAN; 3]];
     assert_eq!(targets.leave_out_enclosed(&scene, &Control::none()).unwrap(), 1);
-    assert_eq!((0..3).map(|row| targets.is_asked(row)).collect::<Vec<_>>(), [false, true, false]);
+    assert_eq!((0..3).map(|row| targets.is_target(row)).collect::<Vec<_>>(), [false, true, false]);
 }

@@ -108,13 +108,13 @@ fn scan_angles_of_a_cone_are_refused() {
 }
 
 #[test]
-fn what_angles_do_not_tell_is_told_by_pulses_with_several_returns() {
+fn where_angles_say_nothing_pulses_with_several_returns_locate_the_scanner() {
     let scan = flown(&AirborneParams { pulses_per_m2: 4.0, ..AirborneParams::default() });
     let mut cloud = cloud_of(&scan);
     let (truth, _) = trajectory(&scan, 0.0).scanner_positions(&cloud).unwrap();
     let params = LocateParams {
         // they fix no position here, but they are there
-        returns: SensorEstimateParams { least_pair_count: 100_000, ..SensorEstimateParams::default() },
+        returns: SensorEstimateParams { min_pair_count: 100_000, ..SensorEstimateParams::default() },
         ..LocateParams::default()
     };
     let locate = |cloud: &PointCloud| locate(cloud, &Means::Automatic, &params, &Control::none()).unwrap();
@@ -178,7 +178,7 @@ fn the_height_of_a_trajectory_is_checked_by_pulses() {
 }
 
 #[test]
-fn times_that_tell_little_are_counted_and_lead_to_a_stated_assumption() {
+fn times_of_little_use_are_counted_and_lead_to_a_stated_assumption() {
     let scan = flown(&AirborneParams { pulses_per_m2: 2.0, ..AirborneParams::default() });
     let mut cloud = cloud_of(&scan);
     cloud.attributes.scan_angle = None;
@@ -290,7 +290,7 @@ fn real_clouds_are_served_by_what_they_have() {
     };
     // scanners that look across the flight: angles alone put them where pulses with several returns do
     // (one block in Amsterdam is too narrow for two of its three lines)
-    for (file, least_share) in
+    for (file, min_share) in
         [("data/delft_ahn3/ahn3_cropped_1.laz", 0.9), ("data/amsterdam_ahn3/ahn_2386_9702.laz", 0.2)]
     {
         let Some(cloud) = read(file) else { return };
@@ -298,7 +298,7 @@ fn real_clouds_are_served_by_what_they_have() {
         let singles = singles(&cloud);
         let (by_angle, report) = found(&singles);
         let served = report.found.get(&FoundBy::ScanAngle).copied().unwrap_or(0);
-        assert!(served as f64 > least_share * singles.len() as f64, "{file}: {report:?}");
+        assert!(served as f64 > min_share * singles.len() as f64, "{file}: {report:?}");
         let line = |row: usize| singles.attributes.point_source_id.as_ref().unwrap()[row];
         let times = singles.attributes.gps_time.as_ref().unwrap();
         let truth: Vec<[f32; 3]> = (0..singles.len())

@@ -211,18 +211,18 @@ fn wall_area(scene: &TriangleScene, terrain: &belvedere_scenes::Terrain) -> f64 
 }
 
 #[test]
-fn info_tells_density_multi_returns_and_facade_density_as_the_simulation_knows_them() {
+fn info_reports_density_multi_returns_and_facade_density_as_the_simulation_knows_them() {
     let town_params = TownParams { extent: 200.0, ..TownParams::default() };
     let scene = town(&town_params);
     for (pattern, density) in [(ScanPattern::Rotating, 10.0), (ScanPattern::CONICAL_20, 20.0)] {
         let params = AirborneParams { pattern, ..AirborneParams::covering(&scene, 10.0) };
         let scan = scan_airborne(&scene, &params.spread_over(&scene, None, density));
         let cloud = cloud_of(&scan);
-        let facts = CloudSummary::of(&cloud, &Control::none()).unwrap();
+        let statistics = CloudSummary::of(&cloud, &Control::none()).unwrap();
         // Cells on the rim count as a whole; they are a metre wide.
-        assert!((facts.occupied_area / 4e4 - 1.0).abs() < 0.03, "{}", facts.occupied_area);
-        assert!((facts.density * facts.occupied_area / scan.len() as f64 - 1.0).abs() < 1e-9);
-        let pulses = facts.pulses.unwrap();
+        assert!((statistics.occupied_area / 4e4 - 1.0).abs() < 0.03, "{}", statistics.occupied_area);
+        assert!((statistics.density * statistics.occupied_area / scan.len() as f64 - 1.0).abs() < 1e-9);
+        let pulses = statistics.pulses.unwrap();
         let firsts = || (0..scan.len()).filter(|&i| scan.return_number[i] == 1);
         let several = firsts().filter(|&i| scan.return_count[i] > 1).count() as f64;
         assert!((pulses.count - firsts().count() as f64).abs() < 1e-6);
@@ -311,13 +311,13 @@ fn cityjson_parts_are_those_given_and_surfaces_say_what_they_are() {
     assert_eq!(of_type("TINRelief"), 1);
     // without parts, each solid is one: the tower has its machine room
     let by_solid: serde_json::Value = serde_json::from_str(&scene.to_cityjson(&[], 28_992)).unwrap();
-    let most = by_solid["CityObjects"]
+    let max = by_solid["CityObjects"]
         .as_object()
         .unwrap()
         .values()
         .filter_map(|object| Some(object["children"].as_array()?.len()))
         .max();
-    assert_eq!(most, Some(2));
+    assert_eq!(max, Some(2));
 
     let mut kinds = std::collections::BTreeMap::<String, f64>::new();
     for (name, object) in objects.iter().filter(|(_, object)| object["type"] == "BuildingPart") {

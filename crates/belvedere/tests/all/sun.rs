@@ -138,8 +138,8 @@ fn odd_places_and_instants_have_an_answer_or_an_error() {
         assert!(sun_position(&Site { height: bad * 1000.0, ..site(0.0, 0.0) }, 0.0).is_err());
     }
     for bad in [f64::NAN, f64::NEG_INFINITY, 1e12, -1e12, 1e300] {
-        let told = sun_position(&site(0.0, 0.0), bad).unwrap_err().to_string();
-        assert!(told.contains("1000 to 3000"), "{told}");
+        let message = sun_position(&site(0.0, 0.0), bad).unwrap_err().to_string();
+        assert!(message.contains("1000 to 3000"), "{message}");
     }
     for year in [1001, 1582, 1899, 2999] {
         assert!(sun_position(&site(0.0, 0.0), at(&format!("{year}-06-01T12:00Z"))).unwrap().elevation > 1.0, "{year}");
@@ -211,7 +211,7 @@ fn light_of_a_day_is_that_of_the_closed_form() {
         assert!(sun_day(&site, &Zone::utc(), date("2026-02-19"), None, &params).is_err(), "{step}");
     }
     // above 10° there is less, and only between two instants less still
-    let params = DayParams::default().with_least_elevation(10f64.to_radians());
+    let params = DayParams::default().with_min_elevation(10f64.to_radians());
     let high = sun_day(&site, &Zone::utc(), date("2026-02-19"), None, &params).unwrap();
     assert!(high.possible_hours() < hours(600.0) - 1.5);
     assert!(high.steps.iter().all(|step| step.direction[2] > 10f64.to_radians().sin()));
@@ -275,8 +275,8 @@ fn zones_name_instants_and_summer_time_leaves_none_in_doubt() {
         ("", "written as"),
         ("2026-06-21T12:00:00\u{2212}02:00", "written as"),
     ] {
-        let told = parse_instant(text, None).unwrap_err().to_string();
-        assert!(told.contains(why), "{text}: {told}");
+        let message = parse_instant(text, None).unwrap_err().to_string();
+        assert!(message.contains(why), "{text}: {message}");
     }
     // an offset says which of the two half past twos is meant
     assert_eq!(at("2026-10-25T02:30+01:00[Europe/Amsterdam]") - at("2026-10-25T02:30+02:00[Europe/Amsterdam]"), 3600.0);
@@ -314,7 +314,7 @@ fn year(latitude: f64, step: f64) -> Vec<SunDay> {
 }
 
 #[test]
-fn a_year_has_few_directions_and_none_is_farther_than_told() {
+fn a_year_has_few_directions_and_none_is_farther_than_stated() {
     for latitude in [52.2, 0.0, -70.0] {
         let days = year(latitude, 600.0);
         let steps: usize = days.iter().map(|day| day.steps.len()).sum();

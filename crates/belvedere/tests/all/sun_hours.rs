@@ -82,7 +82,7 @@ fn a_ball_before_the_sun_takes_its_width_in_hours() {
         assert!((noon - 12.125).abs() < 0.02, "{noon}");
         assert!((f64::from(found.first[0]) - (noon - possible / 2.0)).abs() < 0.02, "{}", found.first[0]);
         assert!((f64::from(found.last[0]) - (noon + possible / 2.0)).abs() < 0.02, "{}", found.last[0]);
-        assert_eq!((found.days[0], found.least[0]), (1, found.hours[0]));
+        assert_eq!((found.days[0], found.min[0]), (1, found.hours[0]));
     }
 }
 
@@ -158,8 +158,8 @@ fn a_year_of_shared_suns_is_a_year_of_suns() {
     // in spring and autumn the hours of a place change by minutes a day, so that a limit of two hours is passed weeks early or late
     let differ = a.days.iter().zip(&b.days).map(|(&a, &b)| a.abs_diff(b)).max().unwrap();
     assert!(differ <= 40, "days with two hours differ by {differ}");
-    let least: f32 = a.least.iter().zip(&b.least).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
-    assert!(least <= 1.01, "{least}");
+    let min: f32 = a.min.iter().zip(&b.min).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+    assert!(min <= 1.01, "{min}");
 }
 
 #[test]
@@ -189,7 +189,7 @@ fn light_through_crowns_counts_by_the_share_of_its_day() {
         let near =
             |found: f32, expected: f64| assert!((f64::from(found) - expected).abs() < 1e-4, "{found} {expected}");
         near(found.hours[target], days.iter().sum::<f64>() / 4.0);
-        near(found.least[target], days.iter().copied().fold(f64::INFINITY, f64::min));
+        near(found.min[target], days.iter().copied().fold(f64::INFINITY, f64::min));
         near(found.share[target], days.iter().sum::<f64>() / schedule.possible_hours());
         assert_eq!(found.days[target] as usize, days.iter().filter(|&&hours| hours >= 8.0 - 1e-4).count());
         took += 12.0 - days[0];
@@ -225,10 +225,10 @@ fn rules_know_their_days() {
     assert_eq!(days("3@12-30..01-02", &site_north), ["2026-01-01", "2026-01-02", "2026-12-30", "2026-12-31"]);
     assert_eq!(days("3@02-29", &site_north), ["2026-02-28"]);
     let hague = SunRule::parse("the-hague").unwrap();
-    assert!((hague.least_elevation.to_degrees() - 10.0).abs() < 1e-9 && hague.hours == 2.0);
+    assert!((hague.min_elevation.to_degrees() - 10.0).abs() < 1e-9 && hague.hours == 2.0);
     let own = SunRule::parse("1.5@03-21>11").unwrap();
     assert_eq!((own.hours, own.days), (1.5, RuleDays::On([3, 21])));
-    assert!((own.least_elevation.to_degrees() - 11.0).abs() < 1e-9);
+    assert!((own.min_elevation.to_degrees() - 11.0).abs() < 1e-9);
     for bad in [
         "",
         "bre",
@@ -247,8 +247,8 @@ fn rules_know_their_days() {
         "2@..",
         "2@03-é",
     ] {
-        let told = SunRule::parse(bad).unwrap_err().to_string();
-        assert!(told.contains("nl-light"), "{bad}: {told}");
+        let message = SunRule::parse(bad).unwrap_err().to_string();
+        assert!(message.contains("nl-light"), "{bad}: {message}");
     }
 }
 
@@ -374,8 +374,8 @@ fn kept_matrices_come_back_whole_or_not_at_all() {
     let damaged = folder.path().join("damaged.npz");
     for end in (0..bytes.len()).step_by(97) {
         std::fs::write(&damaged, &bytes[..end]).unwrap();
-        let told = read_matrix(&damaged).unwrap_err().to_string();
-        assert!(told.contains("damaged.npz"), "{told}");
+        let message = read_matrix(&damaged).unwrap_err().to_string();
+        assert!(message.contains("damaged.npz"), "{message}");
     }
     for at in (0..bytes.len()).step_by(11) {
         let mut bytes = bytes.clone();

@@ -6,7 +6,7 @@ use belvedere::control::Control;
 use belvedere::medial::{Kind, ThinSurfaceParams, on_thin_surfaces};
 use belvedere::model::{ModelParams, OrientBy, SceneModel};
 use belvedere::neighbors::NeighborIndex;
-use belvedere::pulses::{NeedleParams, Needles};
+use belvedere::pulses::{FreeSegmentParams, FreeSegments};
 use belvedere::query::{Answer, BlockRule, UnprovenAs};
 use belvedere::random::uniform;
 
@@ -67,10 +67,17 @@ fn found(survey: &ThinSurvey) -> [f64; 2] {
 
 fn thin(survey: &ThinSurvey) -> Vec<bool> {
     let index = NeighborIndex::new(&survey.points, &Control::none()).unwrap();
-    let (needles, _) =
-        Needles::new(&survey.points, &survey.scanner, &NeedleParams::default(), &Control::none()).unwrap();
-    on_thin_surfaces(&survey.points, &survey.kinds, &index, &needles, &ThinSurfaceParams::default(), &Control::none())
-        .unwrap()
+    let (free_segments, _) =
+        FreeSegments::new(&survey.points, &survey.scanner, &FreeSegmentParams::default(), &Control::none()).unwrap();
+    on_thin_surfaces(
+        &survey.points,
+        &survey.kinds,
+        &index,
+        &free_segments,
+        &ThinSurfaceParams::default(),
+        &Control::none(),
+    )
+    .unwrap()
 }
 
 /// Ten pulses a square metre.
@@ -145,13 +152,14 @@ fn neither_order_of_points_nor_number_of_threads_matters() {
 }
 
 #[test]
-fn no_points_and_no_needles_are_no_thin_surfaces() {
+fn no_points_and_no_pulses_are_no_thin_surfaces() {
     let nothing = NeighborIndex::new(&[], &Control::none()).unwrap();
-    let (needles, _) = Needles::new(&[], &[], &NeedleParams::default(), &Control::none()).unwrap();
+    let (free_segments, _) = FreeSegments::new(&[], &[], &FreeSegmentParams::default(), &Control::none()).unwrap();
     let params = ThinSurfaceParams::default();
-    assert!(on_thin_surfaces(&[], &[], &nothing, &needles, &params, &Control::none()).unwrap().is_empty());
+    assert!(on_thin_surfaces(&[], &[], &nothing, &free_segments, &params, &Control::none()).unwrap().is_empty());
     let survey = survey(Built::Canopy, PULSES);
     let index = NeighborIndex::new(&survey.points, &Control::none()).unwrap();
-    let thin = on_thin_surfaces(&survey.points, &survey.kinds, &index, &needles, &params, &Control::none()).unwrap();
+    let thin =
+        on_thin_surfaces(&survey.points, &survey.kinds, &index, &free_segments, &params, &Control::none()).unwrap();
     assert!(thin.len() == survey.points.len() && !thin.contains(&true));
 }

@@ -150,9 +150,9 @@ fn what_is_seen_from_a_surface_is_what_the_matrix_has_as_blocked_and_what_is_ent
                     let half = (radius * radius - (dot(to_center, to_center) - along * along)).max(0.0).sqrt();
                     Some((along - half).max(0.0))
                 };
-                let least = (0..list.len()).filter_map(entered).fold(f64::INFINITY, f64::min);
+                let min = (0..list.len()).filter_map(entered).fold(f64::INFINITY, f64::min);
                 // the entry is found as a difference of numbers of a few tens of metres
-                assert!((range - least).abs() < 1e-6, "{range} {least}");
+                assert!((range - min).abs() < 1e-6, "{range} {min}");
                 assert!((entered(first).unwrap() - range).abs() < 1e-6);
             }
         }
@@ -352,7 +352,7 @@ fn far_terrain_is_ground_and_no_sky() {
 }
 
 #[test]
-fn windows_that_are_not_asked_have_no_view_and_wrong_input_is_refused() {
+fn windows_that_are_no_targets_have_no_view_and_wrong_input_is_refused() {
     let scene = level_ground();
     let kinds = Kinds { balls: &[SeenKind::Ground], meshes: &[] };
     let mut targets =
@@ -361,10 +361,10 @@ fn windows_that_are_not_asked_have_no_view_and_wrong_input_is_refused() {
     let directions = view_directions(100).unwrap();
     let found = window_views(&scene, &targets, kinds, &directions, &Control::none()).unwrap();
     assert!(found[0].shares.iter().all(|share| share.is_nan()) && found[0].unproven.is_nan());
-    let measures = view_measures(&found, Proving::NotAsked);
+    let measures = view_measures(&found, Proving::NotTested);
     assert!(measures.iter().all(|m| m.values[0].is_nan() && m.name.len() <= 15 && m.description.len() <= 31));
     assert!((measures[..7].iter().map(|m| m.values[1]).sum::<f32>() - 100.0).abs() < 1e-4);
-    assert_eq!(view_measures(&found, Proving::Asked).len(), measures.len() + 1);
+    assert_eq!(view_measures(&found, Proving::Tested).len(), measures.len() + 1);
     let run = |targets: &Targets, kinds| window_views(&scene, targets, kinds, &directions, &Control::none());
     let few = run(&targets, Kinds { balls: &[], meshes: &[] });
     assert!(matches!(few, Err(Error::LengthMismatch { expected: 1, found: 0, .. })), "{few:?}");
@@ -375,5 +375,5 @@ fn windows_that_are_not_asked_have_no_view_and_wrong_input_is_refused() {
     assert!(view_directions(0).is_err());
     // a roof is left out, the window that is left out already is not counted among walls
     targets.normals.as_mut().unwrap()[1] = [0.0, 0.6, 0.8];
-    assert_eq!((leave_out_level(&mut targets), targets.asked_count()), (1, 0));
+    assert_eq!((leave_out_level(&mut targets), targets.target_count()), (1, 0));
 }

@@ -131,7 +131,7 @@ impl CamerasResults {
     /// How many cameras cover a target; `None` for one that does not count.
     #[must_use]
     pub fn count(&self, row: usize) -> Option<u32> {
-        let counts = self.targets.is_asked(row) && self.targets.weight(row) > 0.0;
+        let counts = self.targets.is_target(row) && self.targets.weight(row) > 0.0;
         self.placed.counts.get(row).copied().filter(|_| counts)
     }
 
@@ -268,8 +268,8 @@ impl Ask for CamerasQuestion {
         let targets = self.targets.of((places, &cells), &site, context, control)?;
         let private = self.targets.private_of(&cells, &site, control)?;
         let mut report = CamerasReport {
-            targets: targets.asked_count(),
-            private_places: private.as_ref().map(Targets::asked_count),
+            targets: targets.target_count(),
+            private_places: private.as_ref().map(Targets::target_count),
             ..CamerasReport::default()
         };
         context.report.ground = Some(GroundSection::of(&known));

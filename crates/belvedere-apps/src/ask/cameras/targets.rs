@@ -100,7 +100,7 @@ impl CameraTargets {
             }
             targets.weights.clone_from(&self.weights);
         }
-        if targets.asked_count() == 0 {
+        if targets.target_count() == 0 {
             let what = "are they in the coordinates of the cloud, on known ground?".to_owned();
             return Err(Error::NoObserver { who: "target", what });
         }
@@ -119,7 +119,7 @@ impl CameraTargets {
             PrivatePlaces::Points(points) => self.on_ground(points, site),
             PrivatePlaces::Areas(areas) => of_cells(cells, areas, site, &mut Context::default(), control)?,
         };
-        if targets.asked_count() == 0 {
+        if targets.target_count() == 0 {
             let what = "are they in the coordinates of the cloud, and larger than a cell?".to_owned();
             return Err(Error::NoObserver { who: "private place", what });
         }

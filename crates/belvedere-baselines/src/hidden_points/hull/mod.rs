@@ -20,7 +20,7 @@ use start::{first_tetrahedron, middle, tetrahedron};
 /// two, so that the centre stays on that way exactly, and small enough to count as the eye itself.
 const CENTRE_SHARE: f64 = 1.0 / 1_048_576.0;
 /// A hull of so many points has twice as many facets, whose numbers fit 32 bits.
-pub(crate) const MOST_POINTS: usize = 1 << 30;
+pub(crate) const MAX_POINTS: usize = 1 << 30;
 /// No facet.
 const NONE: u32 = u32::MAX;
 
@@ -176,13 +176,13 @@ impl Hull {
                 if self.sees(point, neighbor) {
                     cavity.add(neighbor);
                 } else {
-                    cavity.rim.push([corners[i], corners[(i + 1) % 3], neighbor]);
+                    cavity.border.push([corners[i], corners[(i + 1) % 3], neighbor]);
                 }
             }
         }
         cavity.release();
-        let rim = std::mem::take(&mut cavity.rim);
-        for &[from, to, outer] in &rim {
+        let border = std::mem::take(&mut cavity.border);
+        for &[from, to, outer] in &border {
             let facet = Facet { corners: [from, to, index], neighbors: [outer, NONE, NONE] };
             let number = self.place(facet, cavity);
             cavity.fan_from[from as usize] = number;
@@ -192,13 +192,13 @@ impl Hull {
             }
             walk.facet = number;
         }
-        for &[from, to, _] in &rim {
+        for &[from, to, _] in &border {
             let (this, next) = (cavity.fan_from[from as usize], cavity.fan_from[to as usize]);
             self.facets[this as usize].neighbors[1] = next;
             self.facets[next as usize].neighbors[2] = this;
         }
-        cavity.rim = rim;
-        cavity.rim.clear();
+        cavity.border = border;
+        cavity.border.clear();
     }
 
     fn sees(&self, point: [f64; 3], facet: u32) -> bool {

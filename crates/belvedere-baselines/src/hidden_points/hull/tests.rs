@@ -89,8 +89,8 @@ fn all_of_a_sphere_is_extreme_and_its_depths_are_those_of_the_closed_form() {
         .map(|i| {
             let z = 1.0 - (2.0 * f64::from(i) + 1.0) / f64::from(count);
             let turn = f64::from(i) * 2.399_963_229_728_653;
-            let rim = (1.0 - z * z).sqrt();
-            [rim * turn.cos(), rim * turn.sin(), z].map(|v| 1e6 * v)
+            let ring_radius = (1.0 - z * z).sqrt();
+            [ring_radius * turn.cos(), ring_radius * turn.sin(), z].map(|v| 1e6 * v)
         })
         .collect();
     let hull = Hull::new(sphere.clone());

@@ -136,11 +136,11 @@ impl CameraOutput<'_> {
             Some(MapMark { place, view: Some([pose.heading, pose.width]), label: number.to_string() })
         };
         let marks: Vec<MapMark> = (1..).zip(&self.found.cameras).filter_map(mark).collect();
-        let most = self.counts().flatten().max().map_or(1, |most| (most as usize).clamp(1, COLORS.len() - 1));
-        let color = |count: u32| COLORS.get((count as usize).min(most)).copied();
+        let max = self.counts().flatten().max().map_or(1, |max| (max as usize).clamp(1, COLORS.len() - 1));
+        let color = |count: u32| COLORS.get((count as usize).min(max)).copied();
         let colors: Vec<Option<[u8; 3]>> = self.counts().map(|count| count.and_then(color)).collect();
         let names = ["no camera", "1 camera", "2 cameras", "3 cameras", "4 cameras or more"];
-        let meanings: Vec<([u8; 3], &str)> = COLORS.into_iter().zip(names).take(most + 1).collect();
+        let meanings: Vec<([u8; 3], &str)> = COLORS.into_iter().zip(names).take(max + 1).collect();
         let map = MapPicture {
             relief: &relief,
             cell: ground.grid.cell,
@@ -156,7 +156,7 @@ impl CameraOutput<'_> {
 
     fn write_targets(&self, output: &Path) -> Result<()> {
         let CamerasResults { targets, placed, .. } = self.found;
-        let rows: Vec<usize> = (0..targets.len()).filter(|&row| targets.is_asked(row)).collect();
+        let rows: Vec<usize> = (0..targets.len()).filter(|&row| targets.is_target(row)).collect();
         let mut cameras: Vec<Vec<String>> = vec![Vec::new(); targets.len()];
         for (number, camera) in (1..).zip(&self.found.cameras) {
             camera.covered.iter().for_each(|&target| cameras[target].push(i32::to_string(&number)));

@@ -70,7 +70,7 @@ pub(super) fn cells(arguments: &CityPlan) -> Result<CellSizes> {
         if given.contains(&topic) {
             return Err(Usage(format!("--cell-for: {name} is given twice")).into());
         }
-        let (is_asked, flag) = match topic {
+        let (is_requested, flag) = match topic {
             Topic::Shadow => (!arguments.suns.is_empty() || !arguments.times.is_empty(), "--sun or --time"),
             Topic::SunHours => (arguments.sun_hours, "--sun-hours"),
             Topic::Rule => (!arguments.rule.is_empty(), "--rule"),
@@ -78,7 +78,7 @@ pub(super) fn cells(arguments: &CityPlan) -> Result<CellSizes> {
             Topic::SkyView => (arguments.sky_view, "--sky-view"),
             Topic::Viewshed => (!arguments.observers.is_empty(), "--observer"),
         };
-        if !is_asked {
+        if !is_requested {
             return Err(Usage(format!("--cell-for {name} needs {flag}")).into());
         }
         given.push(topic);

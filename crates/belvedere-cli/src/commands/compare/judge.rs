@@ -59,16 +59,16 @@ pub(super) fn judge(
     };
     result.cost.build_seconds = start.elapsed().as_secs_f64();
 
-    let asked = ask(case, built.as_ref(), method.per_eye);
-    let views = asked.view_seconds.len().max(1);
-    result.cost.seconds_per_view = asked.view_seconds.iter().sum::<f64>() / views as f64;
+    let replies = ask(case, built.as_ref(), method.per_eye);
+    let views = replies.view_seconds.len().max(1);
+    result.cost.seconds_per_view = replies.view_seconds.iter().sum::<f64>() / views as f64;
     result.cost.queries_per_second =
-        (asked.query_count > 0).then(|| asked.query_count as f64 / asked.query_seconds.max(1e-9));
+        (replies.query_count > 0).then(|| replies.query_count as f64 / replies.query_seconds.max(1e-9));
     result.cost.peak_mib = before.zip(resident_and_peak_mib()).map(|([now, _], [_, peak])| (peak - now).max(0.0));
     drop(built);
     for set in &case.sets {
         for group in GROUPS {
-            let answered = asked.answers.iter().filter(|a| a.set == set.name && case.views[a.view].group == group);
+            let answered = replies.answers.iter().filter(|a| a.set == set.name && case.views[a.view].group == group);
             let (mut views, mut refused) = (Vec::new(), None);
             for one in answered {
                 match &one.answers {
@@ -95,7 +95,7 @@ pub(super) fn judge(
             });
         }
     }
-    let shown = asked.answers.into_iter().find(|a| a.set == SHOWN_SET && a.view == SHOWN_VIEW);
+    let shown = replies.answers.into_iter().find(|a| a.set == SHOWN_SET && a.view == SHOWN_VIEW);
     let shown = shown.and_then(|one| one.answers.ok()).map(|answers| PictureAnswers { answers });
     (result, shown)
 }
@@ -116,7 +116,8 @@ struct MethodAnswers {
 
 fn ask(case: &ComparisonCase, method: &dyn Visibility, per_eye: PerEye) -> MethodAnswers {
     let mut street_eyes = 0;
-    let mut asked = MethodAnswers { answers: Vec::new(), view_seconds: Vec::new(), query_count: 0, query_seconds: 0.0 };
+    let mut replies =
+        MethodAnswers { answers: Vec::new(), view_seconds: Vec::new(), query_count: 0, query_seconds: 0.0 };
     for view in 0..case.views.len() {
         let sets = || case.sets.iter().filter(|set| set.truth.iter().any(|(number, _)| *number == view));
         let Some(first) = sets().next() else { continue };
@@ -131,12 +132,12 @@ fn ask(case: &ComparisonCase, method: &dyn Visibility, per_eye: PerEye) -> Metho
         let seconds = start.elapsed().as_secs_f64();
         let sight = match sight {
             Ok(sight) => {
-                asked.view_seconds.push(seconds);
+                replies.view_seconds.push(seconds);
                 sight
             }
             Err(error) => {
                 let refused = |set: &Set| AnswerSet { set: set.name, view, answers: Err(error.to_string()) };
-                asked.answers.extend(sets().map(refused));
+                replies.answers.extend(sets().map(refused));
                 continue;
             }
         };
@@ -144,14 +145,14 @@ fn ask(case: &ComparisonCase, method: &dyn Visibility, per_eye: PerEye) -> Metho
             let start = Instant::now();
             let answers = sight(&set.targets);
             if answers.is_ok() {
-                asked.query_seconds += start.elapsed().as_secs_f64();
-                asked.query_count += set.targets.len();
+                replies.query_seconds += start.elapsed().as_secs_f64();
+                replies.query_count += set.targets.len();
             }
             let answers = answers.map_err(|error| error.to_string());
-            asked.answers.push(AnswerSet { set: set.name, view, answers });
+            replies.answers.push(AnswerSet { set: set.name, view, answers });
         }
     }
-    asked
+    replies
 }
 
 fn counts(set: &Set, view: usize, answers: &[Answer]) -> Vec<TruthCounts> {

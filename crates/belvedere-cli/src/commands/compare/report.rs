@@ -173,8 +173,8 @@ impl ComparisonResults {
     }
 
     /// False-blocked and false-visible of a method on one set and group of views, averaged over places.
-    pub(super) fn error_shares(&self, method: &str, asked: (&str, &str)) -> [Option<f64>; 2] {
-        let rate = |pick: &dyn Fn(&MethodScore) -> Option<Rated>| self.rate(method, asked, pick).map(|i| i.value);
+    pub(super) fn error_shares(&self, method: &str, group: (&str, &str)) -> [Option<f64>; 2] {
+        let rate = |pick: &dyn Fn(&MethodScore) -> Option<Rated>| self.rate(method, group, pick).map(|i| i.value);
         [rate(&|score| score.false_blocked), rate(&|score| score.false_visible)]
     }
 
@@ -229,8 +229,8 @@ impl ComparisonResults {
             "Positive: better than carved balls. Means over the places at which both were measured, with the 95 % interval from resampled places: a difference whose interval holds 0 may be chance.",
             [&["method"], headings.as_slice()].concat(),
         );
-        let balanced = |result: &MethodResult, asked: (&str, &str)| {
-            let score = result.scores.iter().find(|s| (s.set.as_str(), s.views.as_str()) == asked)?;
+        let balanced = |result: &MethodResult, group: (&str, &str)| {
+            let score = result.scores.iter().find(|s| (s.set.as_str(), s.views.as_str()) == group)?;
             score.balanced.map(|[value, ..]| value)
         };
         for (key, title) in names.into_iter().filter(|(key, _)| *key != CARVED) {
@@ -265,9 +265,9 @@ impl ComparisonResults {
             let rate = |pick: &dyn Fn(&MethodScore) -> Option<Rated>| {
                 with_interval(self.rate(key, (STREET, STREET_GROUP), pick))
             };
-            let asked = self.of(key).flat_map(|r| &r.scores).filter(|s| s.views == STREET_GROUP).map(|s| s.observers);
+            let group = self.of(key).flat_map(|r| &r.scores).filter(|s| s.views == STREET_GROUP).map(|s| s.observers);
             let cells = [
-                asked.max().unwrap_or(0).to_string(),
+                group.max().unwrap_or(0).to_string(),
                 rate(&|s| s.balanced),
                 self.tenth(key).map_or("–".to_owned(), percent),
                 rate(&|s| s.false_blocked),
@@ -455,8 +455,8 @@ impl ComparisonResults {
     /// What methods could not do, once each.
     fn refusals(&self) -> TextTable {
         let mut table = TextTable::new("Combinations without an answer", "", vec!["method", "query", "reason"]);
-        let mut add = |title: &str, asked: String, reason: &str| {
-            let row = vec![title.to_owned(), asked, reason.to_owned()];
+        let mut add = |title: &str, group: String, reason: &str| {
+            let row = vec![title.to_owned(), group, reason.to_owned()];
             if !table.rows.contains(&row) {
                 table.rows.push(row);
             }

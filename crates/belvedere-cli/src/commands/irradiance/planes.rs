@@ -83,7 +83,7 @@ fn write_outlines(output: &std::path::Path, roofs: &RoofsResults, frame: &Frame,
             [place[0] + frame.origin[0], place[1] + frame.origin[1]]
         };
         for polygon in outlines(&plane.cells.filled) {
-            let rings = std::iter::once(&polygon.rim).chain(&polygon.holes);
+            let rings = std::iter::once(&polygon.exterior).chain(&polygon.holes);
             // rows run up the slope here, not down a picture, so that rings come out the other way round
             area.polygons.push(rings.map(|ring| ring.iter().rev().map(corner).collect()).collect());
         }

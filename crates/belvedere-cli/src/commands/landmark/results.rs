@@ -82,10 +82,10 @@ pub(super) fn write_map(
 ) -> Result<()> {
     let relief = highest_points(&cloud.positions, ground);
     let shares: Vec<f64> = views.iter().map(LandmarkView::visible_share).collect();
-    let most = shares.iter().copied().filter(|share| share.is_finite()).fold(0.0, f64::max).max(0.01);
+    let max = shares.iter().copied().filter(|share| share.is_finite()).fold(0.0, f64::max).max(0.01);
     let color = |&share: &f64| match share {
         0.0 => Some(UNSEEN_COLOR),
-        share => share.is_finite().then(|| ramp(share / most)),
+        share => share.is_finite().then(|| ramp(share / max)),
     };
     let unseen = shares.contains(&0.0).then_some((UNSEEN_COLOR, "not visible"));
     let colors: Vec<Option<[u8; 3]>> = shares.iter().map(color).collect();
@@ -99,7 +99,7 @@ pub(super) fn write_map(
         marks: mark.as_slice(),
         mark_name: "landmark",
         title: "Visible share of the landmark",
-        legend: MapLegend::Ramp("percent", [0.0, 100.0 * most], unseen.as_slice()),
+        legend: MapLegend::Ramp("percent", [0.0, 100.0 * max], unseen.as_slice()),
     };
     Ok(write_png(output, &map_picture(&map)?)?)
 }

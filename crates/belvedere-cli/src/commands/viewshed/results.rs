@@ -22,7 +22,7 @@ const HIDDEN_COLOR: [u8; 3] = [38, 52, 96];
 /// Terrain over which the cloud lies, which has cells of its own.
 const CLOUD_COLOR: [u8; 3] = [120, 120, 120];
 /// Most pixels of a map of terrain.
-const MOST_PIXELS: f64 = 4e6;
+const MAX_PIXELS: f64 = 4e6;
 
 /// What is seen of cells, and where they lie.
 pub(super) struct SeenCells<'a> {
@@ -100,12 +100,12 @@ impl SeenCells<'_> {
     fn write_map(&self, output: &Path) -> Result<()> {
         let Self { seen, is_reverse, .. } = *self;
         // two at least: the legend of a range of two or more has whole numbers
-        let most = f64::from(seen.counts.iter().copied().max().unwrap_or(0).max(2));
+        let max = f64::from(seen.counts.iter().copied().max().unwrap_or(0).max(2));
         let one = self.is_of_one();
         let color = |(answer, &count): (&Answer, &u32)| match answer {
             Answer::Visible if one => Some(SEEN_COLOR),
             Answer::Blocked if one => Some(HIDDEN_COLOR),
-            Answer::Visible | Answer::Blocked => Some(ramp(f64::from(count) / most)),
+            Answer::Visible | Answer::Blocked => Some(ramp(f64::from(count) / max)),
             Answer::Unproven => Some(UNPROVEN_COLOR),
             Answer::OutsideCloud if matches!(self.on, CellSurface::Terrain(_)) => Some(CLOUD_COLOR),
             _ => None,
@@ -143,7 +143,7 @@ impl SeenCells<'_> {
             is_inside.then(|| MapMark { place, ..MapMark::default() })
         };
         let marks: Vec<MapMark> = self.eyes.iter().filter_map(mark).collect();
-        let legend = if one { MapLegend::Colors(&classes) } else { MapLegend::Ramp("observers", [0.0, most], &others) };
+        let legend = if one { MapLegend::Colors(&classes) } else { MapLegend::Ramp("observers", [0.0, max], &others) };
         let mark_name = if is_reverse { "target" } else { "observer" };
         let (relief, place, colors, marks) = (&sheet.relief, Some(&sheet.place), &sheet.colors[..], &marks[..]);
         let map = MapPicture { relief, cell: sheet.cell, place, colors, marks, mark_name, title, legend };
@@ -168,7 +168,7 @@ impl Sheet {
         let size = [terrain.heights().width(), terrain.heights().height()];
         let extent = [0, 1].map(|i| size[i] as f64 * sides[i]);
         let usual = sides[0].max(sides[1]);
-        let cell = usual.max((extent[0] * extent[1] / MOST_PIXELS).sqrt());
+        let cell = usual.max((extent[0] * extent[1] / MAX_PIXELS).sqrt());
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most as many as nodes")]
         let [width, height] = extent.map(|extent| (extent / cell).round().max(1.0) as usize);
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to the nodes")]

@@ -2,7 +2,7 @@
 
 use crate::arguments::{MapPosition, Usage, ViewshedArguments};
 use crate::commands::extension;
-use crate::commands::surroundings::least_count;
+use crate::commands::surroundings::min_count;
 use anyhow::Result;
 use belvedere::Frame;
 use belvedere::apps::ask::{Standing, StandingObserver, ViewLimits};
@@ -21,7 +21,7 @@ const MAX_COUNTED: usize = 65_534;
 pub(super) fn check(arguments: &ViewshedArguments) -> Result<()> {
     MapPosition::refuse_twice("--observer", &arguments.who.observer)?;
     let (who, looking) = (&arguments.who, &arguments.looking);
-    let count = if looking.step.is_some() { 1 } else { least_count(who.observer.len(), who.observers.as_deref())? };
+    let count = if looking.step.is_some() { 1 } else { min_count(who.observer.len(), who.observers.as_deref())? };
     check_count(arguments, count)
 }
 

@@ -128,14 +128,14 @@ impl WindowOutput<'_> {
             }
         }
         let shares: Vec<f64> = sums.into_iter().map(|(sum, count)| sum / count).collect();
-        let most = shares.iter().copied().filter(|share| share.is_finite()).fold(0.0, f64::max).max(0.01);
+        let max = shares.iter().copied().filter(|share| share.is_finite()).fold(0.0, f64::max).max(0.01);
         let colors: Vec<Option<[u8; 3]>> = shares
             .iter()
-            .map(|share| Some(if share.is_finite() { ramp(share / most) } else { NO_WINDOW_COLOR }))
+            .map(|share| Some(if share.is_finite() { ramp(share / max) } else { NO_WINDOW_COLOR }))
             .collect();
         let place = georeference(&grid, self.scene.frame());
         let legend =
-            MapLegend::Ramp("percent of the view", [0.0, 100.0 * most], &[(NO_WINDOW_COLOR, "no window with a view")]);
+            MapLegend::Ramp("percent of the view", [0.0, 100.0 * max], &[(NO_WINDOW_COLOR, "no window with a view")]);
         let map = MapPicture::of_colors(&relief, grid.cell, Some(&place), &colors, title, legend);
         Ok(run.stage("writing", 0, |_| write_png(output, &map_picture(&map)?))?)
     }

@@ -14,15 +14,15 @@ use belvedere_data::vector::length;
 use belvedere_data::{Error, Parameter, PointCloud, Result};
 
 /// Points of a part that are used at most, evenly over its time: more only cost time.
-const MOST_POINTS: usize = 20_000;
+const MAX_POINTS: usize = 20_000;
 /// Fewest points of a part.
-const LEAST_POINTS: usize = 200;
+const MIN_POINTS: usize = 200;
 /// Rounds in which height and lateral offsets are made to agree; relief of a tenth of the height settles in four.
 const ROUNDS: usize = 6;
 /// Pulses with several returns in a part from which they are asked whether they agree.
-const LEAST_PAIRS: usize = 20;
+const MIN_PAIRS: usize = 20;
 /// Least distance between first and last return for a pulse to tell its direction, metres.
-const LEAST_LENGTH: f64 = 3.0;
+const MIN_LENGTH: f64 = 3.0;
 
 /// A point with what is needed of it.
 #[derive(Clone, Copy)]
@@ -110,7 +110,7 @@ fn pairs(cloud: &PointCloud, pulses: &Pulses) -> Vec<Direction> {
         let (first, last) = (place(returns.first()?)?, place(returns.last()?)?);
         let length = (first - last).norm();
         let line = *pulses.source_ids.get(pulse)?;
-        (length >= LEAST_LENGTH).then(|| (line, pulses.times[pulse], first, (first - last) / length))
+        (length >= MIN_LENGTH).then(|| (line, pulses.times[pulse], first, (first - last) / length))
     };
     let mut pairs: Vec<Direction> = (0..pulses.len()).filter_map(pair).collect();
     pairs.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
@@ -132,13 +132,13 @@ fn estimate(part: &[AngleSample], pairs: &[Direction], params: &ScanAngleParams)
         contradiction: f64::NAN,
         verdict: AngleVerdict::TooFewPoints,
     };
-    if part.len() < LEAST_POINTS {
+    if part.len() < MIN_POINTS {
         return (result, None);
     }
-    let samples: Vec<AngleSample> = part.iter().step_by(part.len().div_ceil(MOST_POINTS)).copied().collect();
+    let samples: Vec<AngleSample> = part.iter().step_by(part.len().div_ceil(MAX_POINTS)).copied().collect();
     result.verdict = AngleVerdict::TooNarrow;
     let Some(fit) = ScanLineFit::of(&samples, middle) else { return (result, None) };
-    if fit.angle_spread < params.least_spread || !fit.is_finite() {
+    if fit.angle_spread < params.min_spread || !fit.is_finite() {
         return (result, None);
     }
     result.position = fit.position;
@@ -149,7 +149,7 @@ fn estimate(part: &[AngleSample], pairs: &[Direction], params: &ScanAngleParams)
         pairs.partition_point(|pair| pair.0 < result.source_id || (pair.0 == result.source_id && pair.1 < first));
     let within = pairs.iter().skip(of_line).take_while(|pair| pair.0 == result.source_id && pair.1 <= last);
     let within: Vec<&Direction> = within.collect();
-    if within.len() >= LEAST_PAIRS {
+    if within.len() >= MIN_PAIRS {
         result.pitch = fit.pitch(&within, middle);
         let ahead = fit.height * result.pitch.tan();
         result.position = std::array::from_fn(|i| fit.position[i] - ahead * fit.forward.get(i).copied().unwrap_or(0.0));
@@ -160,7 +160,7 @@ fn estimate(part: &[AngleSample], pairs: &[Direction], params: &ScanAngleParams)
         result.contradiction = median(apart.collect());
     }
     let [slowest, fastest] = params.speeds;
-    let is_plausible = (slowest..=fastest).contains(&length(fit.velocity)) && fit.height >= params.least_height;
+    let is_plausible = (slowest..=fastest).contains(&length(fit.velocity)) && fit.height >= params.min_height;
     result.verdict = if fit.misses.iter().any(|miss| *miss > params.greatest_miss) || fit.crab > params.greatest_crab {
         AngleVerdict::NotAcross
     } else if fit.bend.abs() > params.greatest_bend || !(fit.bend_sd < params.greatest_bend) {

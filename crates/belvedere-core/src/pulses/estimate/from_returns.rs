@@ -55,8 +55,7 @@ fn estimate(cloud: &PointCloud, pulses: &Pulses, members: &[usize], params: &Sen
     let pair = |&pulse: &usize| {
         let returns = pulses.returns_of(pulse);
         let (first, last) = (place(returns.first()?), place(returns.last()?));
-        ((last - first).norm() >= params.least_length)
-            .then(|| ReturnPair::new(first, last, pulses.times[pulse] - middle))
+        ((last - first).norm() >= params.min_length).then(|| ReturnPair::new(first, last, pulses.times[pulse] - middle))
     };
     let pairs: Vec<ReturnPair> = members.iter().filter_map(pair).collect();
     let firsts = members.iter().filter_map(|&pulse| Some(place(pulses.returns_of(pulse).first()?).z));
@@ -74,7 +73,7 @@ fn estimate(cloud: &PointCloud, pulses: &Pulses, members: &[usize], params: &Sen
         verdict: PartVerdict::TooFewPairs,
     };
     let mut knot = None;
-    if pairs.len() >= params.least_pair_count {
+    if pairs.len() >= params.min_pair_count {
         part.verdict = PartVerdict::Uncertain;
         if let Some(SensorFit { state, covariance, median_angle }) = fit(&pairs, params.vertical_speed_sd) {
             let found = ScannerState { time: middle, state, covariance };
@@ -153,6 +152,6 @@ impl SensorPart {
 
     fn is_plausible(&self, params: &SensorEstimateParams) -> bool {
         let [slowest, fastest] = params.speeds;
-        (slowest..=fastest).contains(&length(self.velocity)) && self.height >= params.least_height
+        (slowest..=fastest).contains(&length(self.velocity)) && self.height >= params.min_height
     }
 }

@@ -10,13 +10,13 @@ use belvedere_data::PointCloud;
 /// Rounds of improvement and reweighting; offsets of a tenth of the height settle in four.
 const ROUNDS: usize = 8;
 /// Least distance between first and last return for a pulse to tell its direction, metres.
-const LEAST_LENGTH: f64 = 3.0;
+const MIN_LENGTH: f64 = 3.0;
 /// Fewest such pulses.
-const LEAST_PAIRS: usize = 100;
+const MIN_PAIRS: usize = 100;
 /// Offsets up to this are left alone, metres.
-const LEAST_OFFSET: f64 = 1.0;
+const MIN_OFFSET: f64 = 1.0;
 /// Offsets below so many deviations may be chance.
-const LEAST_DEVIATIONS: f64 = 4.0;
+const MIN_DEVIATIONS: f64 = 4.0;
 /// Share of the misses of single pulses that may be systematic: beams that graze edges miss to one side more than to the other.
 const SYSTEMATIC_SHARE: f64 = 0.5;
 
@@ -35,11 +35,11 @@ pub(in crate::pulses) fn height_offset(
     let pair = |(pulse, scanner): (usize, &[f32; 3])| {
         let returns = pulses.returns_of(pulse);
         let (first, last) = (place(returns.first()?)?, place(returns.last()?)?);
-        let is_known = scanner.iter().all(|v| v.is_finite()) && (last - first).norm() >= LEAST_LENGTH;
+        let is_known = scanner.iter().all(|v| v.is_finite()) && (last - first).norm() >= MIN_LENGTH;
         is_known.then(|| (ReturnPair::new(first, last, 0.0), Vector3::from(scanner.map(f64::from))))
     };
     let pairs: Vec<(ReturnPair, Vector3<f64>)> = positions.iter().enumerate().filter_map(pair).collect();
-    if pairs.len() < LEAST_PAIRS {
+    if pairs.len() < MIN_PAIRS {
         return None;
     }
     let misses = |offset: f64| -> Vec<_> {
@@ -70,6 +70,6 @@ pub(in crate::pulses) fn height_offset(
     // sine of the angle from the vertical, which is what a change of height shows in
     let tilt = median(found.iter().map(|miss| miss.across.column(2).norm()).collect());
     let feigned = SYSTEMATIC_SHARE * height.abs() * angle / tilt;
-    let is_applied = offset.is_finite() && offset.abs() > LEAST_OFFSET.max(LEAST_DEVIATIONS * sd).max(feigned);
+    let is_applied = offset.is_finite() && offset.abs() > MIN_OFFSET.max(MIN_DEVIATIONS * sd).max(feigned);
     offset.is_finite().then_some(HeightOffset { offset, sd, pair_count: pairs.len(), is_applied })
 }

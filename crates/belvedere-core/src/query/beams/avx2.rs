@@ -77,7 +77,7 @@ impl Kernels for BeamAvx2 {
     fn meet_boxes(space: &ConvexSpace, sides: &PartSides) -> LaneBits {
         // SAFETY: see above
         unsafe {
-            let mut least = all(f32::INFINITY);
+            let mut min = all(f32::INFINITY);
             for plane in 0..PLANES {
                 let [x, y, z] = space.inward[plane];
                 let corner = [
@@ -85,9 +85,9 @@ impl Kernels for BeamAvx2 {
                     load(&sides[1][usize::from(y & 1)]),
                     load(&sides[2][usize::from(z & 1)]),
                 ];
-                least = _mm256_min_ps(least, depth(space, plane, corner));
+                min = _mm256_min_ps(min, depth(space, plane, corner));
             }
-            bits(_mm256_cmp_ps::<_CMP_GE_OQ>(least, _mm256_setzero_ps()))
+            bits(_mm256_cmp_ps::<_CMP_GE_OQ>(min, _mm256_setzero_ps()))
         }
     }
 
@@ -96,11 +96,11 @@ impl Kernels for BeamAvx2 {
         // SAFETY: see above
         unsafe {
             let (center, radius) = ([load(x), load(y), load(z)], load(radius));
-            let mut least = radius;
+            let mut min = radius;
             for plane in 0..PLANES {
-                least = _mm256_min_ps(least, depth(space, plane, center));
+                min = _mm256_min_ps(min, depth(space, plane, center));
             }
-            bits(_mm256_cmp_ps::<_CMP_GE_OQ>(least, _mm256_sub_ps(_mm256_setzero_ps(), radius)))
+            bits(_mm256_cmp_ps::<_CMP_GE_OQ>(min, _mm256_sub_ps(_mm256_setzero_ps(), radius)))
         }
     }
 

@@ -121,29 +121,29 @@ impl<const FUSED: bool> BeamScalar<FUSED> {
 impl<const FUSED: bool> Kernels for BeamScalar<FUSED> {
     #[inline(always)]
     fn meet_boxes(space: &ConvexSpace, sides: &PartSides) -> LaneBits {
-        let mut least = [f32::INFINITY; LANES];
+        let mut min = [f32::INFINITY; LANES];
         for plane in 0..PLANES {
             let [x, y, z] = space.inward[plane].map(|side| usize::from(side & 1));
             let depths = Self::depths(space, plane, [&sides[0][x], &sides[1][y], &sides[2][z]]);
             for lane in 0..LANES {
-                least[lane] = if depths[lane] < least[lane] { depths[lane] } else { least[lane] };
+                min[lane] = if depths[lane] < min[lane] { depths[lane] } else { min[lane] };
             }
         }
-        bits(least.map(|least| least >= 0.0))
+        bits(min.map(|min| min >= 0.0))
     }
 
     #[inline(always)]
     fn meet_balls(space: &ConvexSpace, [x, y, z, radius]: &LaneColumns) -> LaneBits {
-        let mut least = *radius;
+        let mut min = *radius;
         for plane in 0..PLANES {
             let depths = Self::depths(space, plane, [x, y, z]);
             for lane in 0..LANES {
-                least[lane] = if depths[lane] < least[lane] { depths[lane] } else { least[lane] };
+                min[lane] = if depths[lane] < min[lane] { depths[lane] } else { min[lane] };
             }
         }
         let mut meets = [false; LANES];
         for lane in 0..LANES {
-            meets[lane] = least[lane] >= -radius[lane];
+            meets[lane] = min[lane] >= -radius[lane];
         }
         bits(meets)
     }

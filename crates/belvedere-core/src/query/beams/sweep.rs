@@ -19,7 +19,7 @@ const ROUNDING: f64 = 1e-6;
 /// rounds in the exact test, and then some.
 const COVER_MARGINS: [f64; 2] = [1e-9, 1e-14];
 /// Targets of a node that stand for their shape; of more, their box does. At least the corners of a box.
-const MOST_OUTLINED: usize = 24;
+const MAX_OUTLINED: usize = 24;
 /// Balls that blocked the last targets and are asked first for the next; more find little more.
 const RECENT: usize = 4;
 
@@ -66,7 +66,7 @@ impl<'a> TreeSweep<'a> {
             }
         };
         let index = scene.tree().index();
-        let farthest = |v: [f64; 3]| v.into_iter().fold(0.0, |most: f64, v| most.max(v.abs()));
+        let farthest = |v: [f64; 3]| v.into_iter().fold(0.0, |max: f64, v| max.max(v.abs()));
         let mut scale = (0..3).map(|i| index.half_size()[i] + index.center()[i].abs()).fold(0.0, f64::max);
         if let Apex::Eye(eye) = apex {
             scale = scale.max(farthest(eye));
@@ -212,8 +212,8 @@ impl<'a> TreeSweep<'a> {
     /// box, otherwise the corners of the box.
     #[inline(always)]
     pub(super) fn outline(&self, target: &TargetNode, room: f64) -> Outline {
-        let mut outline = Outline { points: [[0.0; 3]; MOST_OUTLINED], count: 8 };
-        if target.count <= MOST_OUTLINED && room == 0.0 {
+        let mut outline = Outline { points: [[0.0; 3]; MAX_OUTLINED], count: 8 };
+        if target.count <= MAX_OUTLINED && room == 0.0 {
             outline.count = target.count;
             let targets = &self.targets.positions()[target.first..target.first + target.count];
             for (point, target) in outline.points.iter_mut().zip(targets) {
@@ -363,7 +363,7 @@ impl<'a> TreeSweep<'a> {
         }
         let Ball { center, radius } = self.balls[ball as usize];
         let (center, whole) = (center.map(f64::from), f64::from(radius));
-        let radius = params.least_radius(whole);
+        let radius = params.min_radius(whole);
         let outline = self.outline(target, params.bias.max(0.0));
         let corners = outline.points();
         let squared = |v: [f64; 3]| dot(v, v);
@@ -479,7 +479,7 @@ impl Lists {
 
 /// Points in whose convex hull all targets of a node lie.
 pub(super) struct Outline {
-    points: [[f64; 3]; MOST_OUTLINED],
+    points: [[f64; 3]; MAX_OUTLINED],
     count: usize,
 }
 

@@ -10,7 +10,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 /// Side of a cell, metres: finer ones leave less open but take longer to sweep.
 const CELL: f64 = 0.5;
 /// Most cells: four bits each while they are made.
-const MOST_CELLS: f64 = (1_u64 << 30) as f64;
+const MAX_CELLS: f64 = (1_u64 << 30) as f64;
 /// By how much balls are taken too large where they reach cells and too small where they fill them, metres: far more than f64 errs.
 const MARGIN: f64 = 1e-3;
 /// Balls handed to a thread at once.
@@ -81,7 +81,7 @@ impl SpaceLayers {
             );
         let count = |cell: f64, axis: usize| ((high[axis] - low[axis]).max(0.0) / cell).floor() + 1.0;
         let mut cell = CELL;
-        while (count(cell, 0) + 64.0) * (count(cell, 1) + 1.0) * count(cell, 2) > MOST_CELLS {
+        while (count(cell, 0) + 64.0) * (count(cell, 1) + 1.0) * count(cell, 2) > MAX_CELLS {
             cell *= 1.25;
         }
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "bounded by the number of cells")]
@@ -96,7 +96,7 @@ impl SpaceLayers {
         // bits are only ever set, so that their order does not matter
         balls.par_iter().with_min_len(CHUNK).try_for_each(|&Ball { center, radius }| {
             let radius = f64::from(radius);
-            let radii = [radius + MARGIN, rule.least_radius(radius) - MARGIN];
+            let radii = [radius + MARGIN, rule.min_radius(radius) - MARGIN];
             layers.mark([&reached, &filled], center.map(f64::from), radii);
             control.check()
         })?;

@@ -16,11 +16,11 @@ const ACROSS_BITS: u32 = HEIGHT_BITS + SLOPE_BITS;
 /// A line closer than this part of a cell (2 to the power of minus this) to a border may belong to the next cell.
 const BORDER_BITS: u32 = 12;
 /// Most cells that a target lies above or below the lowest layer: 2 km where cells are 0.5 m. Lines of others stay open.
-const MOST_HEIGHT: f64 = 4096.0;
+const MAX_HEIGHT: f64 = 4096.0;
 /// Most cells that a target lies from the corner along x or y: 131 km where cells are 0.5 m.
-const MOST_ACROSS: f64 = 262_144.0;
+const MAX_ACROSS: f64 = 262_144.0;
 /// Most cells that a line of sight moves on in a layer; flatter directions are not swept.
-const MOST_SLOPE: f64 = 24.0;
+const MAX_SLOPE: f64 = 24.0;
 
 /// A target, in cells from the corner of the layers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -36,7 +36,7 @@ impl TargetCell {
     #[must_use]
     pub(super) fn new(space: &SpaceLayers, position: [f32; 3]) -> Option<Self> {
         let at: [f64; 3] = std::array::from_fn(|i| (f64::from(position[i]) - space.low[i]) / space.cell);
-        let is_near = at[0].abs() < MOST_ACROSS && at[1].abs() < MOST_ACROSS && at[2].abs() < MOST_HEIGHT;
+        let is_near = at[0].abs() < MAX_ACROSS && at[1].abs() < MAX_ACROSS && at[2].abs() < MAX_HEIGHT;
         #[expect(clippy::cast_possible_truncation, reason = "the limits above fit")]
         is_near.then(|| Self {
             across: [at[0], at[1]].map(|v| (v * (1_i64 << ACROSS_BITS) as f64).floor() as i64),
@@ -82,7 +82,7 @@ impl SweptDirection {
     pub(super) fn new(space: &SpaceLayers, direction: [f64; 3], near: f64) -> Option<Self> {
         let slope = [direction[0] / direction[2], direction[1] / direction[2]];
         let rise = near * direction[2] / space.cell;
-        let is_swept = direction[2] > 0.0 && slope[0].abs().max(slope[1].abs()) <= MOST_SLOPE && rise < MOST_HEIGHT;
+        let is_swept = direction[2] > 0.0 && slope[0].abs().max(slope[1].abs()) <= MAX_SLOPE && rise < MAX_HEIGHT;
         #[expect(clippy::cast_possible_truncation, reason = "the limits above fit")]
         is_swept.then(|| Self {
             slope: slope.map(|v| (v * f64::from(1 << SLOPE_BITS)).round() as i32),

@@ -7,7 +7,7 @@ use belvedere_data::ElevationGrid;
 use std::ops::ControlFlow;
 
 /// Smallest step of a line in cells for each metre: a line along an axis is turned by less than its rounding, so that no quotient is 0 / 0.
-const LEAST_SLOPE: f64 = 1e-14;
+const MIN_SLOPE: f64 = 1e-14;
 
 /// Terrain nearer to the first end of a line of sight than this does not block it, metres: the ground at the feet of an eye that lies on it.
 const FOOT: f64 = 0.1;
@@ -235,7 +235,7 @@ impl TerrainHeights {
         let ([west, north], cell) = (self.grid.north_west(), self.grid.cell());
         let middle = [0, 1].map(|i| f64::midpoint(places.low[i], places.high[i]));
         let half = [0, 1].map(|i| (places.high[i] - places.low[i]) / 2.0);
-        let away = |slope: f64| if slope.abs() < LEAST_SLOPE { LEAST_SLOPE } else { slope };
+        let away = |slope: f64| if slope.abs() < MIN_SLOPE { MIN_SLOPE } else { slope };
         let step = [away(along[0] / cell[0]), away(-along[1] / cell[1])];
         let corner = |is_forward: bool| {
             [0, 1].map(|i| if (along[i] > 0.0) == is_forward { places.high[i] } else { places.low[i] })

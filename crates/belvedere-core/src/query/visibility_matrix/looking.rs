@@ -94,12 +94,12 @@ impl<'a> Sky<'a> {
             *known = std::array::from_fn(|word| known[word] & free[word] | open[word]);
         }
         for group in &groups {
-            let asked = group.headings.iter().fold(0_u64, |bits, (column, _)| bits | 1 << column);
+            let queried = group.headings.iter().fold(0_u64, |bits, (column, _)| bits | 1 << column);
             for (word, rows) in rows.chunks_mut(width * WORD).enumerate() {
                 let mut of_columns = [0; WORD];
                 group.headings.iter().for_each(|&(column, number)| of_columns[column] = known[number][word]);
                 for (row, seen) in rows.chunks_mut(width).zip(transposed(of_columns)) {
-                    row[group.word] &= seen | !asked;
+                    row[group.word] &= seen | !queried;
                 }
             }
         }
@@ -111,13 +111,13 @@ impl<'a> Sky<'a> {
         // what blocked each target last
         let mut before: Vec<Option<u32>> = vec![None; targets.len()];
         for ((heading, open), &open_from) in self.headings.iter().zip(open).zip(&self.settled.open_from) {
-            let asked = *open;
+            let queried = *open;
             let mut of_direction = OfDirection { open, before: &mut before, last: [None; 2] };
             let mut packet = Packet::new(self.tree, heading.direction, open_from);
             let mut taken = Vec::with_capacity(LANES);
-            let targets_asked =
-                (0..).zip(asked).flat_map(|(word, asked)| bits(asked).map(move |bit| word * WORD + bit));
-            for target in targets_asked {
+            let targets_queried =
+                (0..).zip(queried).flat_map(|(word, queried)| bits(queried).map(move |bit| word * WORD + bit));
+            for target in targets_queried {
                 let ray = self.tree.ray(targets[target].map(f64::from), heading.direction, f64::INFINITY);
                 let blocks = |&ball: &u32| self.tree.front(ball as usize, &ray).is_some();
                 if let Some(ball) = of_direction.likely(target).into_iter().flatten().find(blocks) {

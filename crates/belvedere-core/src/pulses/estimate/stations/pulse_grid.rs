@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Directions nearer to the zenith or nadir are left out, radians from the horizon: columns meet there.
-const MOST_ELEVATION: f64 = 1.22;
+const MAX_ELEVATION: f64 = 1.22;
 /// How far the way from a direction to the next may differ from a step of the grid, in steps.
 const TOLERANCE: f64 = 0.3;
 /// The same near the end.
@@ -38,7 +38,7 @@ fn direction(point: [f64; 3], place: [f64; 3], tilt: [f64; 2]) -> [f64; 2] {
 /// Directions of `points` from `place`, without those near the poles.
 fn directions(points: &[[f64; 3]], place: [f64; 3], tilt: [f64; 2]) -> Vec<([f64; 2], usize)> {
     let seen = |(row, point): (usize, &[f64; 3])| (direction(*point, place, tilt), row);
-    let is_kept = |(d, _): &([f64; 2], usize)| d[1].abs() < MOST_ELEVATION;
+    let is_kept = |(d, _): &([f64; 2], usize)| d[1].abs() < MAX_ELEVATION;
     points.iter().enumerate().map(seen).filter(is_kept).collect()
 }
 
@@ -57,7 +57,7 @@ fn sorted_cells(directions: &[([f64; 2], usize)], side: f64) -> Vec<[i32; 2]> {
 /// Side of cells that hold `each` of these directions on average where they hold any, radians.
 fn cell_side(directions: &[([f64; 2], usize)], each: f64) -> f64 {
     let count = directions.len().max(1) as f64;
-    let coarse = (TAU * 2.0 * MOST_ELEVATION * 8.0 / count).sqrt();
+    let coarse = (TAU * 2.0 * MAX_ELEVATION * 8.0 / count).sqrt();
     let taken = sorted_cells(directions, coarse).chunk_by(|a, b| a == b).count();
     (each * taken as f64 * coarse * coarse / count).sqrt()
 }
@@ -78,7 +78,7 @@ pub(super) fn crowding(points: &[[f64; 3]], place: [f64; 3], each: f64) -> f64 {
 pub(super) fn filled_share(points: &[[f64; 3]], place: [f64; 3]) -> f64 {
     let directions = directions(points, place, [0.0; 2]);
     let side = cell_side(&directions, 1.0);
-    side * side * directions.len() as f64 / (TAU * 2.0 * MOST_ELEVATION)
+    side * side * directions.len() as f64 / (TAU * 2.0 * MAX_ELEVATION)
 }
 
 /// A point and its neighbour in the grid, one step on around or up.
@@ -96,14 +96,14 @@ fn pairs(
     place: [f64; 3],
     tilt: [f64; 2],
     tolerance: f64,
-    most: usize,
+    max: usize,
 ) -> Option<(Vec<GridPair>, [f64; 2])> {
     let directions = directions(points, place, tilt);
     let side = cell_side(&directions, 1.0);
     let mut cells: Vec<([i32; 2], [f64; 2], usize)> =
         directions.par_iter().map(|&(d, row)| (cell(d, side), d, row)).collect();
     cells.par_sort_unstable_by(|a, b| a.0.cmp(&b.0).then(a.1[0].total_cmp(&b.1[0])).then(a.1[1].total_cmp(&b.1[1])));
-    let stride = cells.len().div_ceil(most / 2).max(1);
+    let stride = cells.len().div_ceil(max / 2).max(1);
     let next = |&(at, d, row): &([i32; 2], [f64; 2], usize)| {
         let mut nearest = [Next::None; 2];
         for column in at[0] - 1..=at[0] + 2 {
@@ -162,14 +162,14 @@ fn misfit(points: &[[f64; 3]], pair: &GridPair, unknowns: &SVector<f64, UNKNOWNS
 ///
 /// # Source
 /// This project's own. Gauss–Newton with the weights of Huber 1964.
-pub(super) fn fit(points: &[[f64; 3]], start: [f64; 3], most_pairs: usize) -> Option<StationFit> {
+pub(super) fn fit(points: &[[f64; 3]], start: [f64; 3], max_pairs: usize) -> Option<StationFit> {
     let mut unknowns = SVector::<f64, UNKNOWNS>::from_row_slice(&[start[0], start[1], start[2], 0.0, 0.0, 1.0, 1.0]);
     let mut sd = f64::INFINITY;
     let mut moved = f64::INFINITY;
     let mut tolerance = TOLERANCE;
     for _ in 0..ROUNDS {
         let (pairs, steps) =
-            pairs(points, [unknowns[0], unknowns[1], unknowns[2]], [unknowns[3], unknowns[4]], tolerance, most_pairs)?;
+            pairs(points, [unknowns[0], unknowns[1], unknowns[2]], [unknowns[3], unknowns[4]], tolerance, max_pairs)?;
         if pairs.len() < 10 * UNKNOWNS {
             return None;
         }

@@ -1,6 +1,6 @@
 //! A tree over needles that run one way: its nodes keep where their needles pass two planes.
 
-use super::Needle;
+use super::FreeSegment;
 use belvedere_data::control::{Control, Stop};
 use std::ops::{ControlFlow, Range};
 
@@ -9,7 +9,7 @@ const LEAF: usize = 8;
 /// Below this many needles a thread goes on alone.
 const PARALLEL: usize = 8192;
 /// Least distance of the two planes of a node, metres: rounding must not tilt what lies between them.
-const LEAST_SPAN: f32 = 0.01;
+const MIN_SPAN: f32 = 0.01;
 /// Needles that a way of parting a node is judged by.
 const SAMPLE: usize = 32;
 /// Radius of the balls that the boxes of a tree are made for, metres.
@@ -84,17 +84,17 @@ pub(super) struct SegmentTree {
 }
 
 impl SegmentTree {
-    /// The tree over `needles`, which it puts in order; their first will be needle number `first`. What is left when the work is
+    /// The tree over `free_segments`, which it puts in order; their first will be needle number `first`. What is left when the work is
     /// cancelled is no tree.
     pub(super) fn new(
         way: SegmentAxis,
-        needles: &mut [Needle],
+        free_segments: &mut [FreeSegment],
         first: usize,
         stop: &Stop<'_>,
         control: &Control<'_>,
     ) -> Self {
-        let mut nodes = vec![SegmentNode::EMPTY; node_count(needles.len())];
-        TreeBuild { way, stop, control }.node(needles, first, &mut nodes, 0);
+        let mut nodes = vec![SegmentNode::EMPTY; node_count(free_segments.len())];
+        TreeBuild { way, stop, control }.node(free_segments, first, &mut nodes, 0);
         Self { way, first, nodes }
     }
 
@@ -146,9 +146,9 @@ impl SegmentTree {
         let mut square = 0.0;
         for (side, axis) in self.way.across().into_iter().enumerate() {
             let at = |share: f32, side: usize| node.below[side] + share * (node.above[side] - node.below[side]);
-            let least = at(s, side).min(at(t, side));
-            let most = at(s, side + 2).max(at(t, side + 2));
-            let off = (least - center[axis]).max(center[axis] - most).max(0.0);
+            let min = at(s, side).min(at(t, side));
+            let max = at(s, side + 2).max(at(t, side + 2));
+            let off = (min - center[axis]).max(center[axis] - max).max(0.0);
             square += off * off;
         }
         let off = (low - along).max(along - high).max(0.0);
@@ -165,20 +165,20 @@ impl SegmentNode {
         count: 0,
     };
 
-    /// The box around `needles`.
-    fn around(needles: &[Needle], way: SegmentAxis) -> Self {
+    /// The box around `free_segments`.
+    fn around(free_segments: &[FreeSegment], way: SegmentAxis) -> Self {
         let mut node = Self::EMPTY;
-        for needle in needles {
-            let start = needle.start[way.axis];
-            let end = start + needle.direction[way.axis] * needle.length;
+        for free_segment in free_segments {
+            let start = free_segment.start[way.axis];
+            let end = start + free_segment.direction[way.axis] * free_segment.length;
             node.planes = [node.planes[0].min(start.min(end)), node.planes[1].max(start.max(end))];
         }
-        node.planes[1] = node.planes[1].max(node.planes[0] + LEAST_SPAN);
-        for needle in needles {
-            let per_metre = 1.0 / needle.direction[way.axis];
+        node.planes[1] = node.planes[1].max(node.planes[0] + MIN_SPAN);
+        for free_segment in free_segments {
+            let per_metre = 1.0 / free_segment.direction[way.axis];
             for (side, axis) in way.across().into_iter().enumerate() {
-                let slope = needle.direction[axis] * per_metre;
-                let at = |plane: f32| needle.start[axis] + (plane - needle.start[way.axis]) * slope;
+                let slope = free_segment.direction[axis] * per_metre;
+                let at = |plane: f32| free_segment.start[axis] + (plane - free_segment.start[way.axis]) * slope;
                 for (plane, found) in node.planes.into_iter().zip([&mut node.below, &mut node.above]) {
                     let at = at(plane);
                     found[side] = found[side].min(at);
@@ -214,9 +214,9 @@ impl SegmentKey {
         Self { axis: 2, is_far_end: true },
     ];
 
-    fn of(self, needle: &Needle) -> f32 {
-        let start = needle.start[self.axis];
-        if self.is_far_end { start + needle.direction[self.axis] * needle.length } else { start }
+    fn of(self, free_segment: &FreeSegment) -> f32 {
+        let start = free_segment.start[self.axis];
+        if self.is_far_end { start + free_segment.direction[self.axis] * free_segment.length } else { start }
     }
 }
 
@@ -238,10 +238,10 @@ struct TreeBuild<'a> {
 }
 
 impl TreeBuild<'_> {
-    /// What `needles` are parted by, so that the boxes around both parts are least. Judged by a sample, in their order.
-    fn best_key(self, needles: &[Needle]) -> SegmentKey {
-        let step = needles.len().div_ceil(SAMPLE);
-        let mut sample: Vec<Needle> = needles.iter().step_by(step).copied().collect();
+    /// What `free_segments` are parted by, so that the boxes around both parts are least. Judged by a sample, in their order.
+    fn best_key(self, free_segments: &[FreeSegment]) -> SegmentKey {
+        let step = free_segments.len().div_ceil(SAMPLE);
+        let mut sample: Vec<FreeSegment> = free_segments.iter().step_by(step).copied().collect();
         let middle = sample.len() / 2;
         let mut best = (f32::INFINITY, SegmentKey::ALL[0]);
         for key in SegmentKey::ALL {
@@ -256,7 +256,7 @@ impl TreeBuild<'_> {
     }
 
     /// Builds the node over `items`, whose first needle is number `first`, into `nodes[0]`, and what is below it behind.
-    fn node(self, items: &mut [Needle], first: usize, nodes: &mut [SegmentNode], index: usize) {
+    fn node(self, items: &mut [FreeSegment], first: usize, nodes: &mut [SegmentNode], index: usize) {
         if items.len() > PARALLEL && self.stop.is_set() {
             return;
         }

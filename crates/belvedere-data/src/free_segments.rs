@@ -9,7 +9,7 @@ const WAYS: u8 = 6;
 /// The empty piece of each pulse before its first return, and pieces between its returns, one per row: 16 bytes each where all are upright and reach the same height,
 /// up to 21 otherwise.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct NeedleColumns {
+pub struct FreeSegmentColumns {
     /// Ends at the first returns, (P, 3), local metres.
     pub starts: Vec<[f32; 3]>,
     /// The way that a pulse gets on most towards the scanner, (P): 0 up, 1 east, 2 north, 3 down, 4 west, 5 south; empty where all go
@@ -24,7 +24,7 @@ pub struct NeedleColumns {
     pub top: f32,
 }
 
-impl NeedleColumns {
+impl FreeSegmentColumns {
     /// Adds the rows of `other`, which rises no higher.
     pub fn append(&mut self, mut other: Self) {
         let [own, added] = [self.starts.len(), other.starts.len()];

@@ -1,32 +1,32 @@
 //! How near pulses come to places and to lines.
 
 use super::tree::{SegmentAxis, SegmentNode};
-use super::{GAP_M, Needle, Needles};
+use super::{FreeSegment, FreeSegments, GAP_M};
 use belvedere_data::vector::{dot, sub, unit};
 use std::ops::ControlFlow;
 
 /// Pieces of a line shorter than this are not worth a step, metres: more than boxes of the tree are padded by, so that the needles of a
 /// tripod, which all end at one place, need not all be asked where a line leaves what is near to that.
-const LEAST_PIECE: f64 = 4e-3;
+const MIN_PIECE: f64 = 4e-3;
 /// How much nearer than the nearest one known a needle must be to be looked for, metres: where needles end at one place all are equally
 /// near.
 const WORTH_LOOKING: f64 = 5e-3;
 
 /// Share of pulses that are not upright from which on a scanner is taken to stand on the ground: those of aircraft are steeper than
 /// 40°.
-const LEAST_FLAT_SHARE: f64 = 0.05;
+const MIN_FLAT_SHARE: f64 = 0.05;
 
-impl Needles {
+impl FreeSegments {
     /// Number of needles.
     #[must_use]
     pub fn len(&self) -> usize {
-        self.needles.len()
+        self.free_segments.len()
     }
 
     /// Whether there is no needle.
     #[must_use]
     pub fn is_empty(&self) -> bool {
-        self.needles.is_empty()
+        self.free_segments.is_empty()
     }
 
     /// How many of them rise by 0.3 m or more for each metre of their length, as all pulses of aircraft do.
@@ -34,7 +34,7 @@ impl Needles {
     pub fn upright_count(&self) -> usize {
         match &self.trees[..] {
             [first, rest @ ..] if first.way == SegmentAxis::UP => {
-                rest.first().map_or(self.needles.len(), |next| next.first)
+                rest.first().map_or(self.free_segments.len(), |next| next.first)
             }
             _ => 0,
         }
@@ -55,7 +55,7 @@ impl Needles {
     /// Where needles begin, local metres, in no particular order: just before the first returns. For pulses from above these are the
     /// lower ends.
     pub fn lower_ends(&self) -> impl ExactSizeIterator<Item = [f32; 3]> + '_ {
-        self.needles.iter().map(|needle| needle.start)
+        self.free_segments.iter().map(|free_segment| free_segment.start)
     }
 
     /// Calls `visit` with the lower and upper end, local metres, of every upright needle that may pass over the level rectangle
@@ -66,9 +66,9 @@ impl Needles {
                 &mut (),
                 |node, ()| may_pass_over(node, over),
                 |numbers, ()| {
-                    for needle in &self.needles[numbers] {
-                        let (start, up) = (needle.start.map(f64::from), needle.direction.map(f64::from));
-                        visit([start, std::array::from_fn(|i| start[i] + f64::from(needle.length) * up[i])]);
+                    for free_segment in &self.free_segments[numbers] {
+                        let (start, up) = (free_segment.start.map(f64::from), free_segment.direction.map(f64::from));
+                        visit([start, std::array::from_fn(|i| start[i] + f64::from(free_segment.length) * up[i])]);
                     }
                     ControlFlow::Continue(())
                 },
@@ -80,9 +80,9 @@ impl Needles {
     /// taken in f64; a point or distance that is not a number is near nothing.
     #[must_use]
     pub fn passes_within(&self, point: [f64; 3], distance: f64) -> bool {
-        let found = self.visit_near(point, distance, |needles| {
-            let near = |needle: &Needle| needle.square_distance(point) < distance * distance;
-            if needles.iter().any(near) { ControlFlow::Break(()) } else { ControlFlow::Continue(distance) }
+        let found = self.visit_near(point, distance, |free_segments| {
+            let near = |free_segment: &FreeSegment| free_segment.square_distance(point) < distance * distance;
+            if free_segments.iter().any(near) { ControlFlow::Break(()) } else { ControlFlow::Continue(distance) }
         });
         found.is_some()
     }
@@ -105,27 +105,27 @@ impl Needles {
 
     /// The distance of a needle that no other is nearer than by more than `slack` metres, if any is nearer than `within` metres.
     fn nearest_but(&self, point: [f64; 3], within: f64, slack: f64) -> Option<f64> {
-        let mut least = within * within;
+        let mut min = within * within;
         let mut found = false;
-        let _: Option<()> = self.visit_near(point, within, |needles| {
-            for needle in needles {
-                let square = needle.square_distance(point);
-                if square < least {
-                    (least, found) = (square, true);
+        let _: Option<()> = self.visit_near(point, within, |free_segments| {
+            for free_segment in free_segments {
+                let square = free_segment.square_distance(point);
+                if square < min {
+                    (min, found) = (square, true);
                 }
             }
-            ControlFlow::Continue((least.sqrt() - slack).max(0.0))
+            ControlFlow::Continue((min.sqrt() - slack).max(0.0))
         });
-        found.then(|| least.sqrt())
+        found.then(|| min.sqrt())
     }
 
-    /// Largest radius of a ball about `center`, local metres, that no needle comes nearer to than a millimetre, at most `most` metres; 0 where
+    /// Largest radius of a ball about `center`, local metres, that no needle comes nearer to than a millimetre, at most `max` metres; 0 where
     /// there is none.
     #[must_use]
-    pub fn clearance(&self, center: [f32; 3], most: f32) -> f32 {
+    pub fn clearance(&self, center: [f32; 3], max: f32) -> f32 {
         #[expect(clippy::cast_possible_truncation, reason = "below `most`")]
-        self.nearest_distance(center.map(f64::from), (most + GAP_M).into())
-            .map_or(most, |distance| (distance as f32 - GAP_M).max(0.0))
+        self.nearest_distance(center.map(f64::from), (max + GAP_M).into())
+            .map_or(max, |distance| (distance as f32 - GAP_M).max(0.0))
     }
 
     /// A piece of the line through `origin` along the unit vector `direction` on which one needle is nearer than `distance`
@@ -136,12 +136,14 @@ impl Needles {
     #[must_use]
     pub fn near_piece(&self, origin: [f64; 3], direction: [f64; 3], at: f64, distance: f64) -> Option<[f64; 2]> {
         // a piece that is long enough is near there as well
-        let further = std::array::from_fn(|i| origin[i] + (at + LEAST_PIECE) * direction[i]);
-        self.visit_near(further, distance, |needles| {
-            let near = |needle: &&Needle| needle.square_distance(further) < distance * distance;
-            let pieces =
-                needles.iter().filter(near).filter_map(|needle| needle.near_piece(origin, direction, distance));
-            let holding = pieces.filter(|[from, to]| *from <= at && *to > at + LEAST_PIECE);
+        let further = std::array::from_fn(|i| origin[i] + (at + MIN_PIECE) * direction[i]);
+        self.visit_near(further, distance, |free_segments| {
+            let near = |free_segment: &&FreeSegment| free_segment.square_distance(further) < distance * distance;
+            let pieces = free_segments
+                .iter()
+                .filter(near)
+                .filter_map(|free_segment| free_segment.near_piece(origin, direction, distance));
+            let holding = pieces.filter(|[from, to]| *from <= at && *to > at + MIN_PIECE);
             match holding.max_by(|a, b| a[1].total_cmp(&b[1])) {
                 Some(piece) => ControlFlow::Break(piece),
                 None => ControlFlow::Continue(distance),
@@ -155,7 +157,7 @@ impl Needles {
         &self,
         point: [f64; 3],
         reach: f64,
-        mut visit: impl FnMut(&[Needle]) -> ControlFlow<T, f64>,
+        mut visit: impl FnMut(&[FreeSegment]) -> ControlFlow<T, f64>,
     ) -> Option<T> {
         // rounded up, and `may_enter` adds the rounding of coordinates
         #[expect(clippy::cast_possible_truncation, reason = "a length in metres")]
@@ -169,7 +171,7 @@ impl Needles {
         for tree in &self.trees {
             let may_enter = |node: &SegmentNode, (reach, _): &(f32, Option<T>)| tree.may_enter(node, center, *reach);
             let flow =
-                tree.walk(&mut state, may_enter, |numbers, (reach, found)| match visit(&self.needles[numbers]) {
+                tree.walk(&mut state, may_enter, |numbers, (reach, found)| match visit(&self.free_segments[numbers]) {
                     ControlFlow::Break(value) => {
                         *found = Some(value);
                         ControlFlow::Break(())
@@ -202,7 +204,7 @@ pub(crate) fn come_from_the_ground(pulses: impl Iterator<Item = ([f32; 3], [f32;
 
 /// Whether so many of all pulses are flat that no aircraft sent them.
 fn are_flat(flat_count: usize, count: usize) -> bool {
-    count > 0 && flat_count as f64 >= LEAST_FLAT_SHARE * count as f64
+    count > 0 && flat_count as f64 >= MIN_FLAT_SHARE * count as f64
 }
 
 /// Whether the box of a node of upright needles lies over a rectangle at some height.
@@ -213,8 +215,8 @@ fn may_pass_over(node: &SegmentNode, [low, high]: [[f64; 2]; 2]) -> bool {
         let ends = |side: usize| [f64::from(node.below[side]), f64::from(node.above[side])];
         let ([west, to_west], [east, to_east]) = (ends(axis), ends(axis + 2));
         // west ≤ high and −east ≤ −low, both linear in the share
-        for [at, slope, most] in [[west, to_west - west, high[axis]], [-east, east - to_east, -low[axis]]] {
-            let left = most + 1e-2 - at;
+        for [at, slope, max] in [[west, to_west - west, high[axis]], [-east, east - to_east, -low[axis]]] {
+            let left = max + 1e-2 - at;
             if slope > 0.0 {
                 shares[1] = shares[1].min(left / slope);
             } else if slope < 0.0 {
@@ -227,7 +229,7 @@ fn may_pass_over(node: &SegmentNode, [low, high]: [[f64; 2]; 2]) -> bool {
     shares[0] <= shares[1]
 }
 
-impl Needle {
+impl FreeSegment {
     /// Squared distance of a point to the needle, m².
     fn square_distance(&self, point: [f64; 3]) -> f64 {
         let (from, up) = (sub(point, self.start.map(f64::from)), self.direction.map(f64::from));

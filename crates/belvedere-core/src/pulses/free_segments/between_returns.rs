@@ -1,6 +1,6 @@
 //! The ways of pulses between their returns: what they prove below crowns and beside edges.
 
-use super::{NeedleParams, Needles};
+use super::{FreeSegmentParams, FreeSegments};
 use crate::neighbors::NeighborIndex;
 use crate::pulses::Pulses;
 use belvedere_data::control::{Control, Stop};
@@ -15,7 +15,7 @@ const TOP_REACH: f32 = 2.0;
 /// line of sight through the stem then has a metre unproven, twice what is tolerated.
 const STEM_REACH: f32 = 1.2;
 
-impl Needles {
+impl FreeSegments {
     /// The ways of `pulses` from each of their returns to the one before, as needles that reach as high as these may. Rows of `pulses` are those
     /// of `cloud`.
     ///
@@ -33,7 +33,7 @@ impl Needles {
         &self,
         cloud: &PointCloud,
         pulses: &Pulses,
-        params: &NeedleParams,
+        params: &FreeSegmentParams,
         control: &Control<'_>,
     ) -> Result<Self> {
         let place = |row: u32| cloud.positions.get(row as usize).copied();
