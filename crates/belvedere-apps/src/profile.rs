@@ -30,12 +30,13 @@ pub struct SightProfile {
     pub blocked_at: Option<f64>,
 }
 
-/// The profile from `observer` to `target`, local metres, every `step` metres on the map; `None` for a thousandth of the line, 0.1 m
-/// at least. A line over far terrain ([`MedialScene::is_on_far_terrain`]) follows the curvature of the earth whatever its length.
+/// The profile from `observer` to `target`, local metres, every `step` metres on the map; `None` for a thousandth of
+/// the line, 0.1 m at least. A line over far terrain ([`MedialScene::is_on_far_terrain`]) follows the curvature of the
+/// earth whatever its length.
 ///
 /// # Errors
-/// [`Error::InvalidParameter`] for ends that are not finite or stand above each other, and for a step that is not above zero or makes
-/// more than a million rows; [`Error::Cancelled`].
+/// [`Error::InvalidParameter`] for ends that are not finite or stand above each other, and for a step that is not above
+/// zero or makes more than a million rows; [`Error::Cancelled`].
 pub fn sight_profile(
     scene: &MedialScene,
     ground: Option<&Ground>,

@@ -13,7 +13,8 @@ use serde::Serialize;
 
 /// Rows of cells that a thread lowers at once.
 const BAND: usize = 16;
-/// A face whose area on the map is below this share of the square of its longest side stands upright: its neighbours bound the cells below it.
+/// A face whose area on the map is below this share of the square of its longest side stands upright: its neighbours
+/// bound the cells below it.
 const THINNEST: f64 = 1e-9;
 
 /// What is protected of the view from one place.
@@ -39,7 +40,8 @@ pub struct ProtectedView {
 }
 
 impl ProtectedView {
-    /// The limits above the ground of the same cells, metres, 0 where a view passes below it; NaN where no view passes and where no ground is known.
+    /// The limits above the ground of the same cells, metres, 0 where a view passes below it; NaN where no view passes
+    /// and where no ground is known.
     ///
     /// # Errors
     /// [`Error::LengthMismatch`] for a ground of other cells.
@@ -60,17 +62,21 @@ impl ProtectedView {
     }
 }
 
-/// How high one may build on each cell of `grid` without entering the view of `object` from any of `eyes`, local metres; an eye that is not finite looks at nothing.
+/// How high one may build on each cell of `grid` without entering the view of `object` from any of `eyes`, local
+/// metres; an eye that is not finite looks at nothing.
 ///
-/// Each piece of the object that is seen today is protected as a whole: the pyramid from the eye over its three corners stays free. The limit of a cell is the lowest height of all pyramids over
-/// its whole square, in closed form, so that what is built below it on every cell enters none. What is hidden today is not protected. Lines that are not proven
-/// count as `params.unproven` says; those that are reported are protected. Lines of sight are straight: the curvature of the earth is not in the limits. Progress counts eyes.
+/// Each piece of the object that is seen today is protected as a whole: the pyramid from the eye over its three corners
+/// stays free. The limit of a cell is the lowest height of all pyramids over its whole square, in closed form, so that
+/// what is built below it on every cell enters none. What is hidden today is not protected. Lines that are not proven
+/// count as `params.unproven` says; those that are reported are protected. Lines of sight are straight: the curvature
+/// of the earth is not in the limits. Progress counts eyes.
 ///
 /// # Errors
 /// [`Error::InvalidParameter`] for a range that is not above zero, and [`Error::Cancelled`].
 ///
 /// # Source
-/// Protected vistas as planning has them (Greater London Authority 2012, London View Management Framework); the pyramids and their limit over cells are this project's.
+/// Protected vistas as planning has them (Greater London Authority 2012, London View Management Framework); the
+/// pyramids and their limit over cells are this project's.
 pub fn protected_view(
     scene: &MedialScene,
     object: &SurfacePieces,

@@ -1,8 +1,9 @@
 //! Rows of the visibility matrix as a stream: which directions each target sees, a block of targets at a time.
 //!
-//! Sun hours, sky views, shadows, irradiance and exposure are sums over the directions that a target sees. A sum needs the row of one target
-//! only, so that no application holds the matrix of all targets: memory stays bounded however many targets and directions there are. Rows do
-//! not depend on each other, and no result depends on how targets are cut into blocks.
+//! Sun hours, sky views, shadows, irradiance and exposure are sums over the directions that a target sees. A sum needs
+//! the row of one target only, so that no application holds the matrix of all targets: memory stays bounded however
+//! many targets and directions there are. Rows do not depend on each other, and no result depends on how targets are
+//! cut into blocks.
 
 use crate::tree_light::{CrownLight, TreeLight};
 use belvedere_core::query::{MedialScene, VisibilityMatrix};
@@ -41,8 +42,9 @@ pub trait ObstacleParts: Sync {
     /// What crowns let through, where they do; `None` where trees are opaque.
     fn crowns(&self) -> Option<CrownLight>;
 
-    /// Which of `directions`, (D, 3) unit vectors, each of `targets`, (M, 3) local metres, sees, and what each would see without trees where
-    /// these let light through: the bits that one scene of all parts would give. Progress counts targets, once for each matrix.
+    /// Which of `directions`, (D, 3) unit vectors, each of `targets`, (M, 3) local metres, sees, and what each would
+    /// see without trees where these let light through: the bits that one scene of all parts would give. Progress
+    /// counts targets, once for each matrix.
     ///
     /// # Errors
     /// Those of [`MedialScene::visibility_matrix`] and of reading the parts.
@@ -119,9 +121,9 @@ pub struct RowBlock {
     pub without_trees: Option<VisibilityMatrix>,
 }
 
-/// Asks which of `directions`, (D, 3) unit vectors, each of `targets`, (M, 3) local metres, sees, and hands the rows to `fold`, block after
-/// block in the order of the targets. A target that is not finite sees nothing. Progress counts targets, twice each where trees let light
-/// through.
+/// Asks which of `directions`, (D, 3) unit vectors, each of `targets`, (M, 3) local metres, sees, and hands the rows to
+/// `fold`, block after block in the order of the targets. A target that is not finite sees nothing. Progress counts
+/// targets, twice each where trees let light through.
 ///
 /// # Errors
 /// Those of [`MedialScene::visibility_matrix`], of [`ObstacleParts::look`] and of `fold`, and [`Error::Cancelled`].

@@ -23,7 +23,8 @@ pub struct TruthCounts {
 }
 
 impl TruthCounts {
-    /// Counts one answer. Unproven counts as visible, since nothing blocks the line of sight, and beside that on its own.
+    /// Counts one answer. Unproven counts as visible, since nothing blocks the line of sight, and beside that on its
+    /// own.
     pub fn add(&mut self, visible_in_truth: bool, answer: Answer) {
         if answer == Answer::Unproven {
             *if visible_in_truth { &mut self.unproven_visible } else { &mut self.unproven_blocked } += 1;
@@ -52,8 +53,8 @@ impl TruthCounts {
         }
     }
 
-    /// Targets that got `answer`, as a share of all answered ones, and the share of them that are right: visible or blocked in
-    /// truth as it says, visible for [`Answer::Unproven`]. `None` where none was answered, or none so.
+    /// Targets that got `answer`, as a share of all answered ones, and the share of them that are right: visible or
+    /// blocked in truth as it says, visible for [`Answer::Unproven`]. `None` where none was answered, or none so.
     #[must_use]
     pub fn worth(&self, answer: Answer) -> [Option<f64>; 2] {
         let (right, wrong) = match answer {
@@ -161,8 +162,8 @@ pub fn count_by_tile(tiles: &Tiles, truth: &[Option<bool>], answers: &[Answer]) 
     counts
 }
 
-/// The rate of that view, over all its tiles, below which `share` of the views lie, 0 to 1: 0.1 for the tenth percentile. Views
-/// without the rate are left out; `None` where none has it.
+/// The rate of that view, over all its tiles, below which `share` of the views lie, 0 to 1: 0.1 for the tenth
+/// percentile. Views without the rate are left out; `None` where none has it.
 #[must_use]
 pub fn quantile(views: &[Vec<TruthCounts>], rate: Rate, share: f64) -> Option<f64> {
     let of_view = |tiles: &Vec<TruthCounts>| {
@@ -182,8 +183,8 @@ const RESAMPLES: u64 = 400;
 /// view has the rate.
 ///
 /// Whole tiles are drawn with replacement, the same in every view, because errors come in patches: one wrong ball or
-/// one missing tree spoils all targets around it, and targets resampled one by one would look far more certain than they
-/// are.
+/// one missing tree spoils all targets around it, and targets resampled one by one would look far more certain than
+/// they are.
 ///
 /// # Source
 /// Efron & Tibshirani 1993, chapter 13 (percentile intervals); blocks as in Künsch 1989.
@@ -218,8 +219,8 @@ pub fn interval(views: &[Vec<TruthCounts>], rate: Rate, seed: u64) -> Option<Int
     Some(percentiles(value, resampled))
 }
 
-/// The mean of the rates of several places, with its 95 % interval. Places are drawn with replacement: they differ more than
-/// the tiles of one do. A single place keeps its own interval; `None` for none.
+/// The mean of the rates of several places, with its 95 % interval. Places are drawn with replacement: they differ more
+/// than the tiles of one do. A single place keeps its own interval; `None` for none.
 #[must_use]
 pub fn over_places(places: &[Interval], seed: u64) -> Option<Interval> {
     if let [one] = places {
@@ -313,7 +314,8 @@ mod tests {
 
     #[test]
     fn the_interval_of_independent_tiles_is_that_of_the_binomial() {
-        // 400 tiles with one visible target each, of which 100 are called blocked: 0.25 ± 1.96·√(0.25·0.75/400) = ± 0.0424
+        // 400 tiles with one visible target each, of which 100 are called blocked: 0.25 ± 1.96·√(0.25·0.75/400) = ±
+        // 0.0424
         let tile = |i: u64| TruthCounts {
             false_blocked: u64::from(i.is_multiple_of(4)),
             visible: u64::from(!i.is_multiple_of(4)),

@@ -1,9 +1,10 @@
 //! A truth that every airborne cloud carries: pulses that were left out when the model was built.
 //!
-//! The way of a pulse to its first return is free, and what lies just behind its last return is not
-//! seen from the scanner. Behind trees, fences and wires that is less certain than behind ground and buildings: a part of the beam may pass beside them, too weak for
-//! another return. Pulses that a method never saw therefore tell how often it blocks what is free and sees through
-//! what is solid. Neighbouring pulses that it did see lie close by: the test says nothing of space that no pulse reached.
+//! The way of a pulse to its first return is free, and what lies just behind its last return is not seen from the
+//! scanner. Behind trees, fences and wires that is less certain than behind ground and buildings: a part of the beam
+//! may pass beside them, too weak for another return. Pulses that a method never saw therefore tell how often it blocks
+//! what is free and sees through what is solid. Neighbouring pulses that it did see lie close by: the test says nothing
+//! of space that no pulse reached.
 
 use belvedere::pulses::{Pulses, SensorPositions};
 use belvedere::query::{Answer, UnprovenAs, Viewer, Visibility};
@@ -132,11 +133,12 @@ impl HeldOutPairs {
     }
 }
 
-/// Holds out a random share of `pulses` with all their returns, and asks with those whose position in `scanner` is known.
+/// Holds out a random share of `pulses` with all their returns, and asks with those whose position in `scanner` is
+/// known.
 ///
-/// Which pulses are held out depends on the seed and their order alone. A pulse whose first return is missing asks nothing
-/// of the way to it, one whose last return is missing nothing of what is behind. A free path ends at the scanner if that is
-/// nearer than [`HeldOutParams::path_length`].
+/// Which pulses are held out depends on the seed and their order alone. A pulse whose first return is missing asks
+/// nothing of the way to it, one whose last return is missing nothing of what is behind. A free path ends at the
+/// scanner if that is nearer than [`HeldOutParams::path_length`].
 ///
 /// # Errors
 /// [`Error::InvalidParameter`] for a parameter outside its range, [`Error::LengthMismatch`] where `scanner` is of other
@@ -210,8 +212,8 @@ pub fn split(
 /// How `method`, built from [`HeldOut::kept`] alone, answers what the pulses held out know.
 ///
 /// # Errors
-/// What the method returns; those that know no [`Viewer::Each`] fail with [`Error::UnsupportedViewer`], those that answer
-/// for points of their own only with [`Error::UnsupportedTargets`].
+/// What the method returns; those that know no [`Viewer::Each`] fail with [`Error::UnsupportedViewer`], those that
+/// answer for points of their own only with [`Error::UnsupportedTargets`].
 pub fn score(method: &dyn Visibility, held_out: &HeldOut) -> Result<HeldOutScore> {
     let mut score = HeldOutScore::default();
     for (answer, surface) in answers(method, &held_out.free)? {

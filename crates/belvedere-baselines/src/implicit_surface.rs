@@ -21,8 +21,8 @@ pub enum NormalSigns {
     /// Towards the scanner where it is known, else upward or, of steep points, away from what is high around them
     /// ([`Orientation::Up`]).
     Outward,
-    /// None are needed: around each place, normals are made to agree with the nearest, and along a ray with the last. Ridges and
-    /// corners of 90° and less are beyond this.
+    /// None are needed: around each place, normals are made to agree with the nearest, and along a ray with the last.
+    /// Ridges and corners of 90° and less are beyond this.
     Agreeing,
 }
 
@@ -31,26 +31,26 @@ pub enum NormalSigns {
 pub struct ImplicitSurfaceParams {
     /// Neighbours whose principal components give the normals, 3 to 256. Default 16.
     pub normal_neighbors: usize,
-    /// What the signs of the normals are taken from. Default agreeing: on a simulated town of 11 points/m²
-    /// (seed 7, not one that is reported) it casts fewer false shadows (0.3 % of sunlit pedestrian points instead of 1.6 %) at
+    /// What the signs of the normals are taken from. Default agreeing: on a simulated town of 11 points/m² (seed 7, not
+    /// one that is reported) it casts fewer false shadows (0.3 % of sunlit pedestrian points instead of 1.6 %) at
     /// nearly the same misses (2.4 and 2.1 %), for signs towards the scanner err in crowns and on sparse walls.
     pub signs: NormalSigns,
     /// Which neighbour's distance the support is a multiple of, 1 to 256. Default 6.
     pub support_neighbor: usize,
-    /// Radius of the ball in which a sample counts, as a multiple of that distance, above 0. Default 0.9: of 0.75 to 2.5 in
-    /// the same town where most pedestrian points are right (98.6 %; 96.7 at 0.75, 95.9 at 1.5). Smaller leaves holes, larger
-    /// mixes the two sides of ridges and corners.
+    /// Radius of the ball in which a sample counts, as a multiple of that distance, above 0. Default 0.9: of 0.75 to
+    /// 2.5 in the same town where most pedestrian points are right (98.6 %; 96.7 at 0.75, 95.9 at 1.5). Smaller leaves
+    /// holes, larger mixes the two sides of ridges and corners.
     pub support_scale: f64,
     /// Greatest support as a multiple of the median, 1 or more. Default 4.
     pub max_support_in_medians: f64,
-    /// The surface ends where it lies farther than this share of the support from the mean of the samples around it, 0.1 to 1:
-    /// beyond the rim of what was sampled the formula goes on, the surface does not. Default 0.5: 0.7 doubles the false shadows
-    /// of the same town.
+    /// The surface ends where it lies farther than this share of the support from the mean of the samples around it,
+    /// 0.1 to 1: beyond the rim of what was sampled the formula goes on, the surface does not. Default 0.5: 0.7 doubles
+    /// the false shadows of the same town.
     pub edge: f64,
     /// Samples needed for a surface, 1 or more. Default 2: 3 leaves holes (roof misses 7.3 instead of 4.8 %).
     pub min_samples: usize,
-    /// Step along a ray as a share of the support of the smallest sample there, 0.01 to 1. Default 0.25; 0.125 changes no
-    /// share of answers by more than 0.1 %.
+    /// Step along a ray as a share of the support of the smallest sample there, 0.01 to 1. Default 0.25; 0.125 changes
+    /// no share of answers by more than 0.1 %.
     pub step: f64,
     /// The surface blocks only farther than this from the target, metres, 0 or more. Default 0.5, as for splats.
     pub clearance: f64,
@@ -82,15 +82,15 @@ struct SurfaceSample {
     support: f32,
 }
 
-/// The surface f(x) = n̄(x) · (x − p̄(x)) = 0, where p̄ and n̄ are weighted means of the samples and their normals around x. It
-/// blocks from both sides.
+/// The surface f(x) = n̄(x) · (x − p̄(x)) = 0, where p̄ and n̄ are weighted means of the samples and their normals
+/// around x. It blocks from both sides.
 ///
-/// It encloses nothing that was not scanned: an eye inside a house sees out where a wall has no points. Points whose neighbours
-/// determine no plane have no part in it.
+/// It encloses nothing that was not scanned: an eye inside a house sees out where a wall has no points. Points whose
+/// neighbours determine no plane have no part in it.
 ///
 /// # Source
-/// Wald & Seidel 2005, "Interactive Ray Tracing of Point-based Models", after Adamson & Alexa 2003. Their
-/// weights are Gaussian and cut off at a radius; ours are a polynomial that reaches zero at that radius. The rim is ours.
+/// Wald & Seidel 2005, "Interactive Ray Tracing of Point-based Models", after Adamson & Alexa 2003. Their weights are
+/// Gaussian and cut off at a radius; ours are a polynomial that reaches zero at that radius. The rim is ours.
 pub struct ImplicitSurface {
     /// In the order of the index.
     samples: Vec<SurfaceSample>,
@@ -103,8 +103,8 @@ impl ImplicitSurface {
     /// Makes a sample of each point of the cloud of `survey`, whose scanner positions it uses.
     ///
     /// # Errors
-    /// [`Error::InvalidParameter`](belvedere::Error::InvalidParameter) for a parameter out of its range or a position that is
-    /// not finite, [`Error::LengthMismatch`](belvedere::Error::LengthMismatch) for a column of another length.
+    /// [`Error::InvalidParameter`](belvedere::Error::InvalidParameter) for a parameter out of its range or a position
+    /// that is not finite, [`Error::LengthMismatch`](belvedere::Error::LengthMismatch) for a column of another length.
     pub fn new(survey: &MethodInput<'_>, params: &ImplicitSurfaceParams) -> Result<Self> {
         check_neighbor("neighbour that gives the support", params.support_neighbor)?;
         check_positive("support as a multiple of the spacing", params.support_scale)?;

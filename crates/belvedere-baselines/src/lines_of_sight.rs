@@ -8,11 +8,11 @@ use rayon::prelude::*;
 /// Least targets handed to a thread at once: enough to make handing over cheap, few enough to share slow ones out.
 const CHUNK: usize = 256;
 
-/// Answers targets by one ray each, from `clearance` metres before the target to the viewer; `blocks` says whether anything
-/// lies within the ranges of a ray, which count from the target.
+/// Answers targets by one ray each, from `clearance` metres before the target to the viewer; `blocks` says whether
+/// anything lies within the ranges of a ray, which count from the target.
 ///
-/// A target that is not finite, or is the eye itself, gets [`Answer::OutsideView`]. One nearer to its eye than the clearance
-/// is visible.
+/// A target that is not finite, or is the eye itself, gets [`Answer::OutsideView`]. One nearer to its eye than the
+/// clearance is visible.
 ///
 /// # Errors
 /// [`Error::InvalidParameter`] for a viewer that is not finite.

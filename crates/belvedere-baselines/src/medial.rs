@@ -18,8 +18,8 @@ const PIXEL_SIZE: f64 = 0.25;
 
 /// How far a target may lie inside a ball and still count as visible where spheres are cut exactly, metres.
 ///
-/// Balls stand out over noisy surfaces by about a decimetre, and sight lines meet surfaces at a slant. It is the bias that
-/// `notes` on comparable scenes used for every point-based method; splats and voxels here have the same allowance.
+/// Balls stand out over noisy surfaces by about a decimetre, and sight lines meet surfaces at a slant. It is the bias
+/// that `notes` on comparable scenes used for every point-based method; splats and voxels here have the same allowance.
 pub const DEPTH_BIAS: f64 = 0.25;
 
 /// Which balls are made, and how they hide targets.
@@ -45,8 +45,8 @@ pub enum ParallelViews {
 }
 
 impl MedialParams {
-    /// Peters, Ledoux & Biljecki 2015 as published: normals from six neighbours, masbcpp's angles and initial radius, the
-    /// printed Algorithm 1 (a cone) and no bias.
+    /// Peters, Ledoux & Biljecki 2015 as published: normals from six neighbours, masbcpp's angles and initial radius,
+    /// the printed Algorithm 1 (a cone) and no bias.
     #[must_use]
     pub fn published() -> Self {
         Self {
@@ -67,8 +67,8 @@ impl MedialParams {
         }
     }
 
-    /// Jalba, Kustra & Telea 2013: the union of all medial balls of a dense cloud, none left out and none refused. Every ball
-    /// shrinks until it is empty; normals from sixteen neighbours, since the source presumes good ones.
+    /// Jalba, Kustra & Telea 2013: the union of all medial balls of a dense cloud, none left out and none refused.
+    /// Every ball shrinks until it is empty; normals from sixteen neighbours, since the source presumes good ones.
     #[must_use]
     pub fn unfiltered_union() -> Self {
         let method = ShrinkMethod::Angles { first_separation_angle: 0.0, next_separation_angle: 0.0 };

@@ -88,11 +88,12 @@ impl<'a> Method<'a> {
 /// scanners state.
 const NOISE: f64 = 0.06;
 
-/// How near to a target a mesh may lie without blocking it, metres: points of a cloud lie up to a decimetre behind the surface
-/// that the model gives them.
+/// How near to a target a mesh may lie without blocking it, metres: points of a cloud lie up to a decimetre behind the
+/// surface that the model gives them.
 const MESH_CLEARANCE: f64 = 0.1;
 
-/// Carved balls for surveys in winter, of which targets in the air are asked: crowns are twigs, and nothing gives way to targets.
+/// Carved balls for surveys in winter, of which targets in the air are asked: crowns are twigs, and nothing gives way
+/// to targets.
 fn carved_for_winter() -> MedialParams {
     let carving = CarvedParams::default().with_trees(Trees::Porous);
     let blocking = BlockRule { shell: 0.0, ..BlockRule::carved() };
@@ -109,8 +110,8 @@ fn carved_variants() -> impl Iterator<Item = (String, String, MedialParams)> {
     })
 }
 
-/// The methods that a survey allows, in the order of tables: those that need the cloud alone, then for each model those that
-/// trace it, then Belvedere's own and variants of them.
+/// The methods that a survey allows, in the order of tables: those that need the cloud alone, then for each model those
+/// that trace it, then Belvedere's own and variants of them.
 #[must_use]
 pub fn methods<'a>(survey: &'a MethodInput<'a>) -> Vec<Method<'a>> {
     let (cloud, positions, origin) = (survey.cloud, &survey.cloud.positions, survey.cloud.frame.origin);

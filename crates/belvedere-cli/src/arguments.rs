@@ -1,4 +1,5 @@
-//! What can be typed: flags as entered. What they build is made in `pipeline` and in each command. Texts longer than a line are in `help/`.
+//! What can be typed: flags as entered. What they build is made in `pipeline` and in each command. Texts longer than a
+//! line are in `help/`.
 
 mod balls;
 mod cameras;
@@ -96,7 +97,8 @@ pub(crate) struct Global {
     /// Number of threads, at most 1024; it does not change results [default: all processors]
     #[arg(long, global = true, value_name = "N", value_parser = at_most::<1024>)]
     pub(crate) threads: Option<usize>,
-    /// What tests many lines of sight and draws depth maps; it does not change results: auto, cpu, gpu, or the number of a device
+    /// What tests many lines of sight and draws depth maps; it does not change results: auto, cpu, gpu, or the number
+    /// of a device
     #[arg(long, global = true, value_name = "DEVICE", default_value = "auto", allow_negative_numbers = true)]
     pub(crate) device: DeviceChoice,
     /// Seed of the random numbers

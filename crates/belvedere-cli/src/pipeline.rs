@@ -72,7 +72,8 @@ pub(crate) fn warn_of_missing(report: &ReadReport, summary: &mut Summary) {
     }
 }
 
-/// The error of building a model of these clouds, with their names where they have too few points, and with the flags that help.
+/// The error of building a model of these clouds, with their names where they have too few points, and with the flags
+/// that help.
 pub(crate) fn advised(input: &CloudInput, error: Error) -> anyhow::Error {
     let names = || input.clouds.iter().map(|path| path.display().to_string()).collect::<Vec<_>>().join(", ");
     match error {

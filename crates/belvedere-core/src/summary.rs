@@ -42,8 +42,8 @@ pub struct CloudSummary {
 /// Pulses of a cloud.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PulseCounts {
-    /// Each point counts as the part of a pulse that it is, 1 / its return count: a pulse cut at the rim of a tile counts in
-    /// part.
+    /// Each point counts as the part of a pulse that it is, 1 / its return count: a pulse cut at the rim of a tile
+    /// counts in part.
     pub count: f64,
     /// Those with several returns.
     pub multi_return_count: f64,

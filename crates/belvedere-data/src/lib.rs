@@ -1,5 +1,5 @@
-//! Plain data that all of Belvedere shares: point clouds, reference systems, meshes, medial balls, rasters, views, errors,
-//! progress.
+//! Plain data that all of Belvedere shares: point clouds, reference systems, meshes, medial balls, rasters, views,
+//! errors, progress.
 //!
 //! Users add the crate `belvedere`, which holds everything here under the same names.
 

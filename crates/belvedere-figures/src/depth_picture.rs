@@ -19,9 +19,9 @@ const AMBIENT: f64 = 0.35;
 /// Maps smaller than this are enlarged.
 const MIN_SIDE: usize = 480;
 
-/// A picture of a depth map, metres: near yellow, far violet, light grey where nothing was hit (not finite), with `title`
-/// above and a legend at the right. The colours span the first to the last hundredth of the depths, so that a few far pixels
-/// do not flatten the rest. Small maps are enlarged by repeating pixels.
+/// A picture of a depth map, metres: near yellow, far violet, light grey where nothing was hit (not finite), with
+/// `title` above and a legend at the right. The colours span the first to the last hundredth of the depths, so that a
+/// few far pixels do not flatten the rest. Small maps are enlarged by repeating pixels.
 #[must_use]
 pub fn depth_picture(depth: &Raster<f32>, title: &str) -> Picture {
     let (near, far) =
@@ -30,8 +30,9 @@ pub fn depth_picture(depth: &Raster<f32>, title: &str) -> Picture {
     with_legend(&enlarged(colored(depth, &colors, |_| 1.0)), &colors, title, "depth (m)")
 }
 
-/// A picture of the depths that `view` shows, as [`depth_picture`], but for an eye: equal ratios of depth are equal steps of colour,
-/// since what is near would else be all one, and surfaces are shaded as if lit from the upper left behind the eye.
+/// A picture of the depths that `view` shows, as [`depth_picture`], but for an eye: equal ratios of depth are equal
+/// steps of colour, since what is near would else be all one, and surfaces are shaded as if lit from the upper left
+/// behind the eye.
 #[must_use]
 pub fn camera_picture(view: &View, depth: &Raster<f32>, title: &str) -> Picture {
     let position =
@@ -43,8 +44,8 @@ pub fn camera_picture(view: &View, depth: &Raster<f32>, title: &str) -> Picture 
     with_legend(&enlarged(shaded), &colors, title, "depth (m)")
 }
 
-/// A picture of the ranges around an eye, columns and rows as in [`panorama_direction`], coloured and shaded as [`camera_picture`],
-/// with the points of the compass below.
+/// A picture of the ranges around an eye, columns and rows as in [`panorama_direction`], coloured and shaded as
+/// [`camera_picture`], with the points of the compass below.
 #[must_use]
 pub fn panorama_picture(range: &Raster<f32>, title: &str) -> Picture {
     let width = range.width();
@@ -135,8 +136,8 @@ fn scaled(color: [u8; 3], share: f64) -> [u8; 3] {
     color.map(|channel| (f64::from(channel) * share.clamp(0.0, 1.0)).round() as u8)
 }
 
-/// Unit normal of the surface that a pixel shows, and unit vector towards the eye at the origin of `position`; `None` where no
-/// neighbour in one of both directions shows a surface.
+/// Unit normal of the surface that a pixel shows, and unit vector towards the eye at the origin of `position`; `None`
+/// where no neighbour in one of both directions shows a surface.
 fn facing(
     depth: &Raster<f32>,
     [column, row]: [usize; 2],

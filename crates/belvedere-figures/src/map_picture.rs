@@ -39,9 +39,11 @@ pub struct MapPicture<'a> {
     pub relief: &'a Raster<f32>,
     /// Side of a pixel, metres.
     pub cell: f64,
-    /// Where the map lies, for coordinates along its sides, in the reference system and unit of the file; `None` draws none.
+    /// Where the map lies, for coordinates along its sides, in the reference system and unit of the file; `None` draws
+    /// none.
     pub place: Option<&'a Georeference>,
-    /// Colour of each pixel, as many as heights; `None`, where there is no answer, shows the bare relief, and the legend says so.
+    /// Colour of each pixel, as many as heights; `None`, where there is no answer, shows the bare relief, and the
+    /// legend says so.
     pub colors: &'a [Option<[u8; 3]>],
     /// Places to mark.
     pub marks: &'a [MapMark],
@@ -73,7 +75,8 @@ impl<'a> MapPicture<'a> {
 pub struct MapMark {
     /// Columns from the west and rows from the north.
     pub place: [f64; 2],
-    /// Azimuth that it looks to, clockwise from the north of the grid, and width of its view, radians: drawn as a wedge.
+    /// Azimuth that it looks to, clockwise from the north of the grid, and width of its view, radians: drawn as a
+    /// wedge.
     pub view: Option<[f64; 2]>,
     /// What stands beside it; empty for nothing.
     pub label: String,
@@ -83,8 +86,8 @@ pub struct MapMark {
 pub enum MapLegend<'a> {
     /// Each colour and its meaning.
     Colors(&'a [([u8; 3], &'a str)]),
-    /// Colours from dark violet to yellow, as [`belvedere_io::ramp`] has them, between two values, with the name of what is
-    /// measured, and further colours with their meanings.
+    /// Colours from dark violet to yellow, as [`belvedere_io::ramp`] has them, between two values, with the name of
+    /// what is measured, and further colours with their meanings.
     Ramp(&'a str, [f64; 2], &'a [([u8; 3], &'a str)]),
 }
 
@@ -303,7 +306,8 @@ fn draw_north(sheet: &mut Picture, [left, top]: [usize; 2], scale: usize) {
     draw_text(sheet, left + 9 * scale, top + scale, "N", scale, INK);
 }
 
-/// Round coordinates along the sides of a map: pixels from its west side with their eastings, and from its north side with their northings.
+/// Round coordinates along the sides of a map: pixels from its west side with their eastings, and from its north side
+/// with their northings.
 #[derive(Default)]
 struct Axes {
     eastings: Vec<(usize, String)>,
@@ -376,8 +380,8 @@ impl Axes {
     }
 }
 
-/// Round values between `low` and `high`, and either end that is half a step or more from the next of them (counts begin at 1): the
-/// share of the way that each lies at, and how it is written.
+/// Round values between `low` and `high`, and either end that is half a step or more from the next of them (counts
+/// begin at 1): the share of the way that each lies at, and how it is written.
 fn ticks([low, high]: [f64; 2]) -> Vec<(f64, String)> {
     /// What rounding may take from a whole number of steps.
     const ROUNDING: f64 = 1e-6;

@@ -29,8 +29,8 @@ pub struct DistanceProfile<'a> {
     pub title: &'a str,
 }
 
-/// The profile as a diagram: ground brown, what blocks grey, the line green to where it is blocked and red behind. Heights are
-/// exaggerated to fill it; both axes have their scale.
+/// The profile as a diagram: ground brown, what blocks grey, the line green to where it is blocked and red behind.
+/// Heights are exaggerated to fill it; both axes have their scale.
 #[must_use]
 pub fn profile_picture(profile: &DistanceProfile<'_>) -> Picture {
     let margin = 8 * SCALE;

@@ -13,8 +13,8 @@ use belvedere_data::{Error, Parameter, Result};
 /// Points further than this from the median (or from a fixed origin) along an axis are no part of any scene, in metres.
 const FARTHEST: f64 = 1e6;
 
-/// Only points this near to the median influence the origin, in metres: f32 keeps a millimetre up to 16 km, and one stray
-/// point must not coarsen all others.
+/// Only points this near to the median influence the origin, in metres: f32 keeps a millimetre up to 16 km, and one
+/// stray point must not coarsen all others.
 const NEAR: f64 = 1e4;
 
 /// The median is taken of about this many points, evenly spread: it only has to land among the points.

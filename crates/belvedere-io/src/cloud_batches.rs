@@ -22,7 +22,8 @@ pub struct CloudBatch {
     pub cloud: PointCloud,
     /// Path or name of the source that they come from.
     pub source: PathBuf,
-    /// Row of each point among the points of its source, from 0, where [`ReadOptions::row_numbers`] asks for it; empty otherwise.
+    /// Row of each point among the points of its source, from 0, where [`ReadOptions::row_numbers`] asks for it; empty
+    /// otherwise.
     pub rows: Vec<u64>,
 }
 
@@ -40,10 +41,10 @@ pub struct CloudBatches<'a> {
 
 /// The points of `sources` in clouds of at most about a million points, in the order of the sources and their points.
 ///
-/// All clouds have the frame of [`ReadOptions::frame`]. Where that is not given, the first cloud chooses the origin for all. Only LAS
-/// and LAZ files are read piece by piece; a source in another format is read whole and becomes one cloud. Attributes are those of
-/// the file: what [`crate::read_cloud`] decides from all points together (whether colours have 8 bits, whether GPS times are of
-/// use) is not decided here for LAS and LAZ files.
+/// All clouds have the frame of [`ReadOptions::frame`]. Where that is not given, the first cloud chooses the origin for
+/// all. Only LAS and LAZ files are read piece by piece; a source in another format is read whole and becomes one cloud.
+/// Attributes are those of the file: what [`crate::read_cloud`] decides from all points together (whether colours have
+/// 8 bits, whether GPS times are of use) is not decided here for LAS and LAZ files.
 ///
 /// Batches without a point that the options ask for are skipped.
 ///

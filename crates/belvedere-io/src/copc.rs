@@ -1,8 +1,8 @@
 //! Which chunks of a COPC file hold the points of a box: a walk through the hierarchy of the file.
 //!
-//! COPC is LAZ whose chunks are the nodes of an octree. The hierarchy names for each node where its chunk lies; it comes in pages, and
-//! only pages of nodes that meet the box are read. Everything the hierarchy claims is compared with the size of the file before it is
-//! used, and the chunks are decompressed by the same reader as those of any LAZ file.
+//! COPC is LAZ whose chunks are the nodes of an octree. The hierarchy names for each node where its chunk lies; it
+//! comes in pages, and only pages of nodes that meet the box are read. Everything the hierarchy claims is compared with
+//! the size of the file before it is used, and the chunks are decompressed by the same reader as those of any LAZ file.
 //!
 //! # Source
 //! COPC specification 1.0: info record, section 3.1; hierarchy, section 3.2 (Bell, Belcher & Manning 2021).
@@ -37,8 +37,8 @@ struct Octree {
     root: (u64, u64),
 }
 
-/// The chunks of nodes that meet `wanted`, in the order of the file, or `None` where the file is no COPC. `size` is that of the file in
-/// bytes.
+/// The chunks of nodes that meet `wanted`, in the order of the file, or `None` where the file is no COPC. `size` is
+/// that of the file in bytes.
 ///
 /// # Errors
 /// [`Error::Malformed`] for a hierarchy that does not fit the file.

@@ -18,7 +18,8 @@ const METRE_DECIMALS: i32 = 3;
 /// Polygons with properties in common.
 #[derive(Clone, Debug, Default)]
 pub struct PolygonArea {
-    /// For each polygon its outer ring, counter-clockwise, and its holes, clockwise, each closed; easting and northing in metres.
+    /// For each polygon its outer ring, counter-clockwise, and its holes, clockwise, each closed; easting and northing
+    /// in metres.
     pub polygons: Vec<Vec<Vec<[f64; 2]>>>,
     /// What is known of it.
     pub properties: Map<String, Value>,
@@ -42,8 +43,9 @@ pub enum GeojsonCoordinates {
     OfTheFile,
 }
 
-/// Writes each of `areas` as a feature with a multipolygon, and tells in which coordinates: longitude and latitude where `crs`, the
-/// system of the areas, gives these; else easting and northing in the unit of `crs`, with a member `crs_note` that says so.
+/// Writes each of `areas` as a feature with a multipolygon, and tells in which coordinates: longitude and latitude
+/// where `crs`, the system of the areas, gives these; else easting and northing in the unit of `crs`, with a member
+/// `crs_note` that says so.
 ///
 /// # Errors
 /// [`Error::Io`], and [`Error::UnusableCrs`] for places that have no longitude and latitude.

@@ -32,13 +32,14 @@ pub struct GeojsonFeature {
 
 /// Reads the shapes of a GeoJSON file and brings them into the system `crs` of the cloud.
 ///
-/// Coordinates are longitude and latitude of WGS 84 (RFC 7946) unless the file names a system in the older member `crs`. Then, or
-/// where `crs` gives no longitude and latitude, or where a coordinate can be neither, they are taken as those of the cloud's
-/// file. Heights are in the unit of the cloud's heights. Features without geometry are passed over.
+/// Coordinates are longitude and latitude of WGS 84 (RFC 7946) unless the file names a system in the older member
+/// `crs`. Then, or where `crs` gives no longitude and latitude, or where a coordinate can be neither, they are taken as
+/// those of the cloud's file. Heights are in the unit of the cloud's heights. Features without geometry are passed
+/// over.
 ///
 /// # Errors
-/// [`Error::Io`]; [`Error::Malformed`] for what is no GeoJSON and for coordinates that are not finite; [`Error::UnusableCrs`] where the
-/// file names another system than the cloud's.
+/// [`Error::Io`]; [`Error::Malformed`] for what is no GeoJSON and for coordinates that are not finite;
+/// [`Error::UnusableCrs`] where the file names another system than the cloud's.
 pub fn read_geojson<'a>(source: impl Into<Source<'a>>, crs: &Crs) -> Result<Vec<GeojsonFeature>> {
     let source = source.into();
     refuse_other_shapes(source.name())?;

@@ -1,4 +1,5 @@
-//! Cloud-optimised GeoTIFF: tiles, coarser levels, and directories before the data, so that programs read what they show and no more.
+//! Cloud-optimised GeoTIFF: tiles, coarser levels, and directories before the data, so that programs read what they
+//! show and no more.
 //!
 //! # Source
 //! TIFF 6.0 (Adobe 1992), OGC GeoTIFF 1.1 (19-008r4), OGC Cloud Optimized GeoTIFF 1.0 (21-026).

@@ -29,7 +29,8 @@ pub enum ReadBands {
 /// The values of all bands of a raster, as they are stored.
 ///
 /// # Errors
-/// [`Error::Io`], and [`Error::Malformed`] for what is no such raster. More than 256 MB of values are refused, and more than the file can hold.
+/// [`Error::Io`], and [`Error::Malformed`] for what is no such raster. More than 256 MB of values are refused, and more
+/// than the file can hold.
 pub fn read_bands<'a>(source: impl Into<Source<'a>>) -> Result<ReadBands> {
     Ok(named_bands(source.into())?.1)
 }
@@ -207,7 +208,8 @@ fn decoder(mut reader: SourceReader<'_>, size: u64) -> TiffResult<Decoder<Source
     Ok(Decoder::new(reader)?.with_limits(limits))
 }
 
-/// Bytes that the longest entry of the first directory claims to have. The decoder reads this directory, and allocates what it claims, before it takes limits.
+/// Bytes that the longest entry of the first directory claims to have. The decoder reads this directory, and allocates
+/// what it claims, before it takes limits.
 ///
 /// # Errors
 /// Those of reading; what is no TIFF file is left to the decoder.

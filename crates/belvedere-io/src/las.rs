@@ -1,5 +1,5 @@
-//! LAS 1.0 to 1.4 and LAZ (also COPC), all point formats. Points come in the order of the file. Of a box only those chunks of a COPC
-//! file are read that may hold points of it, and nothing of a file whose bounds do not meet it.
+//! LAS 1.0 to 1.4 and LAZ (also COPC), all point formats. Points come in the order of the file. Of a box only those
+//! chunks of a COPC file are read that may hold points of it, and nothing of a file whose bounds do not meet it.
 
 use std::collections::VecDeque;
 use std::io::{Read, Seek, SeekFrom};
@@ -73,8 +73,8 @@ impl<'a> LasFile<'a> {
         self.batches_of(extra, rows, None)
     }
 
-    /// The points that may lie in `wanted`, many at a time in file order, and how many are passed over because they cannot: in COPC by its hierarchy, in
-    /// other files because they are in none of `rows`, where these are known.
+    /// The points that may lie in `wanted`, many at a time in file order, and how many are passed over because they
+    /// cannot: in COPC by its hierarchy, in other files because they are in none of `rows`, where these are known.
     fn batches_within(
         mut self,
         extra: ExtraBytes,
@@ -234,8 +234,8 @@ fn room(scale: [f64; 3]) -> [f64; 3] {
     scale.map(|scale| (10.0 * scale.abs()).max(MIN_ROOM))
 }
 
-/// Compares the points of a file with the bounds of its header, which follow from the same scale and offset: notes points outside, refuses a file
-/// all of whose points are.
+/// Compares the points of a file with the bounds of its header, which follow from the same scale and offset: notes
+/// points outside, refuses a file all of whose points are.
 fn check_bounds(mut part: FilePart, bounds: [[f64; 2]; 3], scale: [f64; 3]) -> Result<FilePart> {
     let mut found = [[f64::INFINITY, f64::NEG_INFINITY]; 3];
     let mut outside = 0_usize;
@@ -471,7 +471,8 @@ impl LasHeader {
 pub struct LasHead {
     /// Number of points.
     pub points: u64,
-    /// Points that the header announces but the file lacks: it is cut off. Of a LAZ file this is known when its points are read.
+    /// Points that the header announces but the file lacks: it is cut off. Of a LAZ file this is known when its points
+    /// are read.
     pub missing_points: u64,
     /// Size of the file, bytes.
     pub bytes: u64,

@@ -22,8 +22,8 @@ use belvedere_data::{Error, Result};
 /// A chunk that would decompress to more bytes than this is no chunk that any writer makes (50 000 points are usual).
 const MAX_CHUNK_BYTES: u64 = 1 << 30;
 
-/// A chunk that decompresses to more than [`FREE_CHUNK_BYTES`] must not be shrunk more than this: points that are worth storing are
-/// shrunk 3 to 20 times, and what a file makes its reader allocate must depend on the size of the file.
+/// A chunk that decompresses to more than [`FREE_CHUNK_BYTES`] must not be shrunk more than this: points that are worth
+/// storing are shrunk 3 to 20 times, and what a file makes its reader allocate must depend on the size of the file.
 const MAX_RATIO: u64 = 256;
 const FREE_CHUNK_BYTES: u64 = 1 << 26;
 
@@ -183,8 +183,9 @@ impl<'a> LazReader<'a> {
     }
 }
 
-/// Whether an arithmetic-coded stream begins with a value below its interval. From 0xFFFFFFFF the decoder of the laz crate (0.13) yields the
-/// same symbol forever without consuming a byte, or looks for symbols that are not in its tables.
+/// Whether an arithmetic-coded stream begins with a value below its interval. From 0xFFFFFFFF the decoder of the laz
+/// crate (0.13) yields the same symbol forever without consuming a byte, or looks for symbols that are not in its
+/// tables.
 fn begins_soundly(stream: &[u8]) -> bool {
     stream.first_chunk() != Some(&[0xff; 4])
 }

@@ -1,14 +1,15 @@
 //! Files in and out of Belvedere.
 //!
-//! Readers take a [`Source`]: a path, an address of the web, bytes in memory, or any `Read + Seek` with a name. Writers take an [`Output`]: a path or any
-//! `Write + Seek` with a name. The extension of the name selects the format. A file appears under its name only when it is
-//! complete ([`atomic`]).
+//! Readers take a [`Source`]: a path, an address of the web, bytes in memory, or any `Read + Seek` with a name. Writers
+//! take an [`Output`]: a path or any `Write + Seek` with a name. The extension of the name selects the format. A file
+//! appears under its name only when it is complete ([`atomic`]).
 //!
 //! # Features
-//! Formats that need crates of their own are features, all on by default: `las` (LAS, LAZ, COPC), `e57`, `ply` (reading), `npy`
-//! (NPY, NPZ ball files, masbcpp's folders), `tiff` (GeoTIFF), `obj` (reading). `http` reads files on web servers. `crs` (from `belvedere-data`) is the database of
-//! reference systems. Text, PCD, PTX, GeoJSON, CityJSON, tables, weather files and trajectories are always there. A format that
-//! was not built in gives [`belvedere_data::Error::MissingFeature`].
+//! Formats that need crates of their own are features, all on by default: `las` (LAS, LAZ, COPC), `e57`, `ply`
+//! (reading), `npy` (NPY, NPZ ball files, masbcpp's folders), `tiff` (GeoTIFF), `obj` (reading). `http` reads files on
+//! web servers. `crs` (from `belvedere-data`) is the database of reference systems. Text, PCD, PTX, GeoJSON, CityJSON,
+//! tables, weather files and trajectories are always there. A format that was not built in gives
+//! [`belvedere_data::Error::MissingFeature`].
 
 mod assemble;
 pub mod atomic;

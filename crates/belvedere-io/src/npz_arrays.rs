@@ -54,14 +54,16 @@ pub(crate) fn begin_array<'a, T: AutoSerialize, W: Write + Seek>(
 
 /// Bytes that all arrays of an archive may hold together, whatever its size.
 const MAX_BYTES_OF_SMALL: u64 = 1 << 26;
-/// Bytes that all arrays may hold for each byte of the archive. Compressed balls hold 2 to 4, matrices of open land at most 20.
+/// Bytes that all arrays may hold for each byte of the archive. Compressed balls hold 2 to 4, matrices of open land at
+/// most 20.
 const MAX_BYTES_FOR_EACH: u64 = 100;
 /// Bytes of an entry that are read at once.
 const BUFFER_BYTES: usize = 1 << 16;
 /// The record that ends an archive without a comment.
 const END_BYTES: usize = 22;
 
-/// Opens an archive of `size` bytes whose directory does not contradict itself, and whose arrays are not far larger than the archive.
+/// Opens an archive of `size` bytes whose directory does not contradict itself, and whose arrays are not far larger
+/// than the archive.
 ///
 /// # Errors
 /// [`io::ErrorKind::InvalidData`] where it is damaged or would expand beyond reason.

@@ -59,14 +59,14 @@ pub enum RowsAre {
 
 /// Reads observers from a table (.csv .txt) or GeoJSON (.geojson .json).
 ///
-/// A table has columns x and y in the coordinates of the cloud's file, and may have z (height of the eye; empty where it follows from
-/// the ground), height (above the ground, metres), min_distance and max_distance (metres), azimuth_from, azimuth_to,
-/// elevation_from, elevation_to, heading, tilt and fov (degrees) and weight. GeoJSON has these as properties; points are observers, lines are paths, and
-/// the corners of polygons are walked around.
+/// A table has columns x and y in the coordinates of the cloud's file, and may have z (height of the eye; empty where
+/// it follows from the ground), height (above the ground, metres), min_distance and max_distance (metres),
+/// azimuth_from, azimuth_to, elevation_from, elevation_to, heading, tilt and fov (degrees) and weight. GeoJSON has
+/// these as properties; points are observers, lines are paths, and the corners of polygons are walked around.
 ///
 /// # Errors
-/// [`Error::UnknownFormat`], [`Error::Malformed`] for missing columns, text in place of numbers and files without observers, and
-/// what [`read_table`] and [`read_geojson`] refuse.
+/// [`Error::UnknownFormat`], [`Error::Malformed`] for missing columns, text in place of numbers and files without
+/// observers, and what [`read_table`] and [`read_geojson`] refuse.
 pub fn read_observers<'a>(source: impl Into<Source<'a>>, crs: &Crs, rows_are: RowsAre) -> Result<Vec<ObserverRow>> {
     let source = source.into();
     let name = source.name().to_owned();

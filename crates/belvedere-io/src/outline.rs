@@ -2,8 +2,9 @@
 
 use belvedere_data::raster::Raster;
 
-/// An area of cells that touch along sides: corners in columns from the west and rows from the north, first corner repeated at the
-/// end. Seen on a map with north up, the outer rim runs counter-clockwise and holes clockwise, as RFC 7946 wants.
+/// An area of cells that touch along sides: corners in columns from the west and rows from the north, first corner
+/// repeated at the end. Seen on a map with north up, the outer rim runs counter-clockwise and holes clockwise, as RFC
+/// 7946 wants.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct GridPolygon {
     /// Rim of the area.
@@ -26,8 +27,8 @@ impl GridPolygon {
 
 const NONE: u32 = u32::MAX;
 
-/// The outlines of the cells that are `true`, in the order of their first cells. Cells that touch at a corner only are different
-/// areas; no rim touches itself.
+/// The outlines of the cells that are `true`, in the order of their first cells. Cells that touch at a corner only are
+/// different areas; no rim touches itself.
 #[must_use]
 pub fn outlines(cells: &Raster<bool>) -> Vec<GridPolygon> {
     let (width, height) = (cells.width(), cells.height());
@@ -100,8 +101,8 @@ fn labelled(cells: &Raster<bool>) -> (Vec<u32>, Vec<usize>) {
 /// Steps to the west, south, east and north: turning left on a map whose rows count southward.
 const STEPS: [[isize; 2]; 4] = [[-1, 0], [0, 1], [1, 0], [0, -1]];
 
-/// Walks around an area with its cells at the left hand, from the north-east corner of `start` westward; the corners at which the
-/// walk turns, the first of them not repeated. Marks the cells whose north sides it ran along.
+/// Walks around an area with its cells at the left hand, from the north-east corner of `start` westward; the corners at
+/// which the walk turns, the first of them not repeated. Marks the cells whose north sides it ran along.
 fn walk(start: [usize; 2], label: &impl Fn(isize, isize) -> u32, walked: &mut [bool], width: usize) -> Vec<[usize; 2]> {
     let start = [start[0].cast_signed() + 1, start[1].cast_signed()];
     let (mut corner, mut heading) = (start, 0);

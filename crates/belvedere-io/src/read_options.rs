@@ -166,8 +166,8 @@ impl Reading<'_> {
         if done.is_multiple_of(POINTS_PER_CHECK) { self.control.check() } else { Ok(()) }
     }
 
-    /// A box that holds every point asked for, in the coordinates of files that were not opened yet; `None` without a box, and where the
-    /// unit of the files is not known.
+    /// A box that holds every point asked for, in the coordinates of files that were not opened yet; `None` without a
+    /// box, and where the unit of the files is not known.
     pub(super) fn box_of_unopened(&self) -> Option<FileBox> {
         let of_frame = self.options.frame.as_ref().map(|frame| &frame.crs).filter(|crs| crs.kind != CrsKind::Unknown);
         let known = self.forced.or(of_frame);

@@ -24,7 +24,8 @@ const MAX_BYTES: u64 = 1 << 24;
 const MAX_WHOLE: u64 = 1 << 28;
 /// Time to wait before asking again, where a server was busy or a connection broke.
 const PAUSES: [Duration; 3] = [Duration::from_millis(300), Duration::from_secs(1), Duration::from_secs(3)];
-/// Longest wait for a connection, for an answer, and for all of it: a whole file of the largest size at half a megabyte a second.
+/// Longest wait for a connection, for an answer, and for all of it: a whole file of the largest size at half a megabyte
+/// a second.
 const CONNECT: Duration = Duration::from_secs(20);
 const ANSWER: Duration = Duration::from_secs(60);
 const WHOLE_ANSWER: Duration = Duration::from_secs(600);
@@ -98,7 +99,8 @@ impl Remote {
         self.part_start + self.part.len() as u64
     }
 
-    /// Gets the part that starts at the position, of at least `wanted` bytes as far as the file and one request allow that.
+    /// Gets the part that starts at the position, of at least `wanted` bytes as far as the file and one request allow
+    /// that.
     fn fetch(&mut self, wanted: u64) -> Result<()> {
         if self.position != self.part_end() {
             self.run_start = self.position;

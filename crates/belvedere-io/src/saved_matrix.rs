@@ -78,8 +78,8 @@ impl MatrixHead {
 pub struct SavedMatrix {
     /// What the bits are about.
     pub head: MatrixHead,
-    /// Bits, row after row, each of as many words of 64 as hold a bit for each direction, lowest first: 1 where the target sees the
-    /// sky. Bits beyond the last direction are 0.
+    /// Bits, row after row, each of as many words of 64 as hold a bit for each direction, lowest first: 1 where the
+    /// target sees the sky. Bits beyond the last direction are 0.
     pub words: Vec<u64>,
 }
 
@@ -87,7 +87,8 @@ impl SavedMatrix {
     /// Whether the parts fit each other.
     ///
     /// # Errors
-    /// [`Error::LengthMismatch`] where they do not, [`Error::InvalidParameter`] for directions that are not of unit length.
+    /// [`Error::LengthMismatch`] where they do not, [`Error::InvalidParameter`] for directions that are not of unit
+    /// length.
     pub fn validate(&self) -> Result<()> {
         self.head.check_count(self.words.len())?;
         self.head.check_directions()?;
@@ -98,7 +99,8 @@ impl SavedMatrix {
 /// Takes rows of a matrix, whole ones, in the order of the targets.
 pub type RowSink<'a> = dyn FnMut(&[u64]) -> Result<()> + 'a;
 
-/// Writes a matrix as a NumPy archive with the arrays `bits` (M, W) u64, `directions` (D, 3), `targets` (M, 3), `origin` (3) and `scene` (1).
+/// Writes a matrix as a NumPy archive with the arrays `bits` (M, W) u64, `directions` (D, 3), `targets` (M, 3),
+/// `origin` (3) and `scene` (1).
 ///
 /// # Errors
 /// [`Error::Io`], and those of [`SavedMatrix::validate`].
@@ -107,8 +109,8 @@ pub fn write_matrix<'a>(output: impl Into<Output<'a>>, matrix: &SavedMatrix) -> 
     write_matrix_rows(output, &matrix.head, |sink| sink(&matrix.words))
 }
 
-/// Writes the same with rows that `rows` hands to a sink as it makes them, so that the bits are never held all at once. The file appears
-/// once all rows are there.
+/// Writes the same with rows that `rows` hands to a sink as it makes them, so that the bits are never held all at once.
+/// The file appears once all rows are there.
 ///
 /// # Errors
 /// [`Error::Io`], those of `rows`, [`Error::LengthMismatch`] unless there is a row for each target, and
@@ -202,7 +204,8 @@ impl From<Error> for RowsStopped {
     }
 }
 
-/// Reads the bits of a file whose `head` was read, and hands some whole rows at a time to `sink`, in the order of the targets.
+/// Reads the bits of a file whose `head` was read, and hands some whole rows at a time to `sink`, in the order of the
+/// targets.
 ///
 /// # Errors
 /// Those of [`read_matrix_head`] and of `sink`.

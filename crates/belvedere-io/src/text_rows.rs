@@ -67,9 +67,9 @@ impl TextRows {
     }
 }
 
-/// The columns of a table of `results` for rows that were `read` from a table ([`TextRows::columns`]). Results that are among the `given`
-/// names are written as they were read, with their number only where nothing was; the other columns read follow behind them, unless a
-/// result has their name.
+/// The columns of a table of `results` for rows that were `read` from a table ([`TextRows::columns`]). Results that are
+/// among the `given` names are written as they were read, with their number only where nothing was; the other columns
+/// read follow behind them, unless a result has their name.
 #[must_use]
 pub fn with_columns_read<'a>(
     read: &'a [(&'a str, Vec<&'a str>)],
@@ -91,8 +91,9 @@ pub fn with_columns_read<'a>(
     given.into_iter().map(as_read).chain(carried).chain(others).collect()
 }
 
-/// Reads the rows of a text file of points (.csv .txt .xyz) as they are: one for each line that [`read_cloud`](crate::read_cloud) reads or
-/// leaves out. Columns without a name are called x, y, z, column_4 and so on.
+/// Reads the rows of a text file of points (.csv .txt .xyz) as they are: one for each line that
+/// [`read_cloud`](crate::read_cloud) reads or leaves out. Columns without a name are called x, y, z, column_4 and so
+/// on.
 ///
 /// # Errors
 /// Those of reading the points.
@@ -100,8 +101,8 @@ pub fn read_text_rows<'a>(source: impl Into<Source<'a>>) -> Result<TextRows> {
     xyz::read_text(source.into().open()?)
 }
 
-/// Writes rows as they were given, with `results` behind them, as a table: cells parted by commas (.csv) or blanks (.txt .xyz). A given column
-/// that has the name of a result is replaced by it.
+/// Writes rows as they were given, with `results` behind them, as a table: cells parted by commas (.csv) or blanks
+/// (.txt .xyz). A given column that has the name of a result is replaced by it.
 ///
 /// # Errors
 /// [`Error::LengthMismatch`] where a result does not have a value for each row, [`Error::Io`].

@@ -1,8 +1,8 @@
 //! Catalogues of tiles (`.vpc`, virtual point clouds): which files belong to a cloud, and where each of them lies.
 //!
 //! # Source
-//! Virtual point cloud specification 1.0.0 (PDAL wrench, QGIS): a STAC collection of items with the asset `data` and the property
-//! `proj:bbox`.
+//! Virtual point cloud specification 1.0.0 (PDAL wrench, QGIS): a STAC collection of items with the asset `data` and
+//! the property `proj:bbox`.
 
 use std::path::{Path, PathBuf};
 
@@ -15,8 +15,8 @@ use belvedere_data::{Error, Result};
 /// Largest catalogue that is read, bytes: a million tiles, and far below the memory of any machine.
 const MAX_BYTES: u64 = 1 << 30;
 
-/// The files of the catalogue `source` that may have points in `wanted`, in its order; all of them without a box. Paths are those of
-/// the catalogue, from the folder that it lies in; addresses of the web stay what they are.
+/// The files of the catalogue `source` that may have points in `wanted`, in its order; all of them without a box. Paths
+/// are those of the catalogue, from the folder that it lies in; addresses of the web stay what they are.
 ///
 /// # Errors
 /// [`Error::Io`]; [`Error::Malformed`] for what is no catalogue.
@@ -60,7 +60,8 @@ fn place(folder: &Path, path: &str) -> PathBuf {
     }
 }
 
-/// Bounds of a tile in the coordinates of its file, unlimited in height where the catalogue gives none; `None` where it gives no bounds.
+/// Bounds of a tile in the coordinates of its file, unlimited in height where the catalogue gives none; `None` where it
+/// gives no bounds.
 fn bounds(tile: &Value) -> Option<([f64; 3], [f64; 3])> {
     let numbers = tile.pointer("/properties/proj:bbox")?.as_array()?;
     let numbers: Vec<f64> = numbers.iter().map(Value::as_f64).collect::<Option<_>>()?;

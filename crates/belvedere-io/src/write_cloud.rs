@@ -48,12 +48,13 @@ pub struct WriteReport {
     pub clamped_count: usize,
 }
 
-/// The report of writing `cloud` to `output`, with its attributes and the `extra` columns, in a format that follows from
-/// the extension (.las .laz .ply .csv .xyz .txt .npy). Coordinates are those of the reference system and unit of the cloud's file.
+/// The report of writing `cloud` to `output`, with its attributes and the `extra` columns, in a format that follows
+/// from the extension (.las .laz .ply .csv .xyz .txt .npy). Coordinates are those of the reference system and unit of
+/// the cloud's file.
 ///
 /// LAS and LAZ files hold every attribute but normals, which go in as extra columns `NormalX`, `NormalY` and `NormalZ`
-/// where wanted. PLY files and tables hold scan angles in degrees (`scan_angle_deg`) and colours in 8 bits; tables have a
-/// header row. NPY files hold (N, 3) f64 coordinates and nothing else.
+/// where wanted. PLY files and tables hold scan angles in degrees (`scan_angle_deg`) and colours in 8 bits; tables have
+/// a header row. NPY files hold (N, 3) f64 coordinates and nothing else.
 ///
 /// # Errors
 /// [`Error::UnknownFormat`] for other extensions, [`Error::LengthMismatch`] when a column does not have one value per

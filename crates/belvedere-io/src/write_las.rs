@@ -24,8 +24,8 @@ const DEGREES_PER_SCAN_STEP: f64 = 0.006;
 /// Coarsest step between coordinates, metres.
 const MAX_STEP: f64 = 0.001;
 
-/// Writes `cloud` with its attributes, `extra` columns as extra bytes, and `records` as further variable length records;
-/// compressed where the extension is `laz`.
+/// Writes `cloud` with its attributes, `extra` columns as extra bytes, and `records` as further variable length
+/// records; compressed where the extension is `laz`.
 ///
 /// Attributes beyond the standard fields (scanner index) become extra bytes too. Where the cloud has no return numbers,
 /// each point is the only return of its pulse and the file says that these numbers are synthetic.

@@ -19,20 +19,20 @@ pub enum VehicleHeading<'a> {
 
 /// Writes `trajectory`, whose positions are metres in the system `crs`, in a format that follows from the extension.
 ///
-/// `.csv` and `.txt` get the header `time,x,y,z` and a line per position, in the unit of the system with four decimals, and
-/// microseconds of the same clock.
+/// `.csv` and `.txt` get the header `time,x,y,z` and a line per position, in the unit of the system with four decimals,
+/// and microseconds of the same clock.
 ///
 /// `.sbet` and `.out` get 17 little-endian f64 a record: time, latitude and longitude (radians, WGS 84), altitude,
-/// velocities along x, y and z, roll, pitch, heading, wander angle, accelerations and angular rates. The wander angle is 0, so
-/// that x points to true north, y west and z up. Times count from the start of the GPS week of the first position, and on
-/// beyond the end of that week; where they already do (`kind`), they stay. Altitudes stay as they are, above the vertical
-/// datum of the system rather than the ellipsoid. Velocities are differences between neighbouring records (0 where none
-/// is near), headings are turned to true north. Roll, pitch, accelerations and rates are not known here and 0.
-/// [`crate::read_trajectory`] brings back times and positions.
+/// velocities along x, y and z, roll, pitch, heading, wander angle, accelerations and angular rates. The wander angle
+/// is 0, so that x points to true north, y west and z up. Times count from the start of the GPS week of the first
+/// position, and on beyond the end of that week; where they already do (`kind`), they stay. Altitudes stay as they are,
+/// above the vertical datum of the system rather than the ellipsoid. Velocities are differences between neighbouring
+/// records (0 where none is near), headings are turned to true north. Roll, pitch, accelerations and rates are not
+/// known here and 0. [`crate::read_trajectory`] brings back times and positions.
 ///
 /// # Errors
-/// [`Error::UnknownFormat`] for other extensions, [`Error::LengthMismatch`] where positions or headings are not as many as
-/// times, [`Error::UnusableCrs`] where SBET is asked for in a system that gives no latitude and longitude, and
+/// [`Error::UnknownFormat`] for other extensions, [`Error::LengthMismatch`] where positions or headings are not as many
+/// as times, [`Error::UnusableCrs`] where SBET is asked for in a system that gives no latitude and longitude, and
 /// [`Error::Io`]. An existing file is replaced only by a complete one.
 ///
 /// # Source
@@ -75,11 +75,12 @@ fn write_table(output: Output<'_>, trajectory: &Trajectory, crs: &Crs) -> Result
 }
 
 /// Writes positions that were found as a table for people and for [`crate::read_trajectory`]: `.csv` or `.txt` with the
-/// columns time, x, y, z, sd_x, sd_y, sd_z, residual_deg and line. Positions and deviations are in the unit of the file of the
-/// cloud in the system `crs`; what is not known is left empty.
+/// columns time, x, y, z, sd_x, sd_y, sd_z, residual_deg and line. Positions and deviations are in the unit of the file
+/// of the cloud in the system `crs`; what is not known is left empty.
 ///
 /// # Errors
-/// [`Error::UnknownFormat`] for other extensions, and [`Error::Io`]. An existing file is replaced only by a complete one.
+/// [`Error::UnknownFormat`] for other extensions, and [`Error::Io`]. An existing file is replaced only by a complete
+/// one.
 pub fn write_found_trajectory<'a>(
     output: impl Into<Output<'a>>,
     samples: &[TrajectorySample],
@@ -154,7 +155,8 @@ fn write_sbet(
 
 /// Semi-major axis of the ellipsoid of WGS 84, metres, and its squared eccentricity.
 const WGS84: [f64; 2] = [6_378_137.0, 6.694_379_990_141_33e-3];
-/// Distance over which the direction of grid north is measured, metres: short against its bending, long against rounding.
+/// Distance over which the direction of grid north is measured, metres: short against its bending, long against
+/// rounding.
 const NORTHWARD: f64 = 100.0;
 
 /// A position on the globe.

@@ -35,7 +35,8 @@ impl Separator {
     }
 }
 
-/// Cells parted by a character, without surrounding blanks and quotation marks. Within quotation marks the character is a part of the cell.
+/// Cells parted by a character, without surrounding blanks and quotation marks. Within quotation marks the character is
+/// a part of the cell.
 struct Parted<'a> {
     rest: Option<&'a str>,
     by: char,

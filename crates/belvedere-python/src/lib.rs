@@ -1,7 +1,7 @@
 //! The native part of the Python package `belvedere`: calls the library, decides and computes nothing itself.
 //!
-//! The package in `python/belvedere` has the documentation and everything that does not need the library. Here arrays become columns, work
-//! is done without the interpreter, and results become arrays.
+//! The package in `python/belvedere` has the documentation and everything that does not need the library. Here arrays
+//! become columns, work is done without the interpreter, and results become arrays.
 
 mod arrays;
 mod cameras;

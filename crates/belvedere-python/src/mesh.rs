@@ -116,7 +116,8 @@ impl PyMesh {
     /// The same of these objects alone, of all where none is named.
     ///
     /// # Errors
-    /// Those of [`Mesh::in_metres`], and [`belvedere::Error::InvalidParameter`] for an object that the mesh does not have.
+    /// Those of [`Mesh::in_metres`], and [`belvedere::Error::InvalidParameter`] for an object that the mesh does not
+    /// have.
     pub(crate) fn objects_in_metres(
         &self,
         objects: &[String],

@@ -17,7 +17,8 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::Arc;
 
-/// x, y and z in the coordinates of the file, azimuth and tilt in degrees, width and height in metres (NaN where a window has none).
+/// x, y and z in the coordinates of the file, azimuth and tilt in degrees, width and height in metres (NaN where a
+/// window has none).
 pub(crate) type WindowRow = [f64; 7];
 
 /// Windows as questions take them.

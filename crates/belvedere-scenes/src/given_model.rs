@@ -24,11 +24,11 @@ const NAMED: [(&str, Material); 12] = [
 const STEEP: f64 = 0.5;
 
 impl TriangleScene {
-    /// A scene of the triangles of a mesh: `vertices`, (V, 3), absolute, metres; `triangles`, (T, 3), counter-clockwise seen
-    /// from outside; `objects`, (T), indices into `object_names`, empty where the mesh knows no objects.
+    /// A scene of the triangles of a mesh: `vertices`, (V, 3), absolute, metres; `triangles`, (T, 3), counter-clockwise
+    /// seen from outside; `objects`, (T), indices into `object_names`, empty where the mesh knows no objects.
     ///
-    /// Materials follow the name of an object where it begins with a word such as `terrain`, `tree` or `bridge`; otherwise
-    /// steep triangles are facades, gentle ones with another surface below them roofs, and the rest terrain.
+    /// Materials follow the name of an object where it begins with a word such as `terrain`, `tree` or `bridge`;
+    /// otherwise steep triangles are facades, gentle ones with another surface below them roofs, and the rest terrain.
     #[must_use]
     pub fn from_model(
         vertices: Vec<[f64; 3]>,

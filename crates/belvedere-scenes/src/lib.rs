@@ -1,9 +1,10 @@
 //! Simulated towns with exact meshes, and simulated laser scans of them.
 //!
-//! Tests and demonstrations need scenes whose answers are known. This crate makes a town out of triangles ([`town`], from a
-//! description or a [`Preset`]) or a scene with a formula ([`closed_forms`]), generalises it to the blocks of a city model
-//! ([`blocks`]), answers exactly what blocks what in it ([`Truth`]), knows what is worth asking ([`QuerySite`]), and scans it
-//! from the air ([`scan_airborne`]), from tripods ([`scan_terrestrial`]) or from a car ([`scan_mobile`]). It knows no other crate of the project: what comes out are plain columns and meshes.
+//! Tests and demonstrations need scenes whose answers are known. This crate makes a town out of triangles ([`town`],
+//! from a description or a [`Preset`]) or a scene with a formula ([`closed_forms`]), generalises it to the blocks of a
+//! city model ([`blocks`]), answers exactly what blocks what in it ([`Truth`]), knows what is worth asking
+//! ([`QuerySite`]), and scans it from the air ([`scan_airborne`]), from tripods ([`scan_terrestrial`]) or from a car
+//! ([`scan_mobile`]). It knows no other crate of the project: what comes out are plain columns and meshes.
 //!
 //! ```
 //! use belvedere_scenes::{AirborneParams, TownParams, Truth, scan_airborne, town};

@@ -18,13 +18,13 @@ const DOWNWARD: f64 = 0.5;
 const CELL: f64 = 8.0;
 
 /// The same scene generalised to LoD1: the terrain, and for each part of a building that stands on the ground the prism
-/// over its footprint, from its bottom to the height that 70 % of its roof lies below (by area seen from above; dormers,
-/// chimneys and what else sits on the footprint counts with it, and so does the roof beneath).
+/// over its footprint, from its bottom to the height that 70 % of its roof lies below (by area seen from above;
+/// dormers, chimneys and what else sits on the footprint counts with it, and so does the roof beneath).
 ///
 /// A building is what has faces of [`Material::Roof`]. What does not stand in the ground, overhangs the walls or is no
-/// building is left out: balconies, decks, canopies, bridges, trees, cars, fences, masts, wires. Floors over arcades belong
-/// to the footprint. Objects keep their names; those of which nothing is left are left out. Without terrain, every part
-/// with a roof counts as standing on the ground.
+/// building is left out: balconies, decks, canopies, bridges, trees, cars, fences, masts, wires. Floors over arcades
+/// belong to the footprint. Objects keep their names; those of which nothing is left are left out. Without terrain,
+/// every part with a roof counts as standing on the ground.
 ///
 /// Needs [`TriangleScene::parts`]; without them each object counts as one part.
 #[must_use]

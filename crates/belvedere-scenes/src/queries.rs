@@ -87,8 +87,8 @@ pub struct TargetsOfKind {
 impl QuerySite<'_> {
     /// `count` targets of a kind, fewer where the place has no room for them (no roof, say).
     ///
-    /// Every target draws from its own stream of `seed`, so that a longer list begins with the shorter one, whatever the
-    /// number of threads. Free air is what [`QuerySite::is_inside`] denies.
+    /// Every target draws from its own stream of `seed`, so that a longer list begins with the shorter one, whatever
+    /// the number of threads. Free air is what [`QuerySite::is_inside`] denies.
     #[must_use]
     pub fn targets(&self, set: QuerySet, count: usize, seed: u64) -> TargetsOfKind {
         let surfaces = match set {
@@ -123,16 +123,17 @@ impl QuerySite<'_> {
 
     /// Whether `point` lies within a solid or below the terrain.
     ///
-    /// Straight above the point, each surface left from within counts one more, each entered one less: the winding number
-    /// of the closed solids (and of the ground) around it, which overlapping solids do not confuse. Triangles must be
-    /// counter-clockwise seen from outside.
+    /// Straight above the point, each surface left from within counts one more, each entered one less: the winding
+    /// number of the closed solids (and of the ground) around it, which overlapping solids do not confuse. Triangles
+    /// must be counter-clockwise seen from outside.
     #[must_use]
     pub fn is_inside(&self, point: [f64; 3]) -> bool {
         let up = [0.0, 0.0, 1.0];
         self.crossings(point, up).map(|(_, facing)| if facing > 0.0 { 1 } else { -1 }).sum::<i32>() > 0
     }
 
-    /// Height of the terrain at absolute (x, y), metres, or `None` beyond its rim. The highest, where there are several.
+    /// Height of the terrain at absolute (x, y), metres, or `None` beyond its rim. The highest, where there are
+    /// several.
     #[must_use]
     pub fn ground_height(&self, [x, y]: [f64; 2]) -> Option<f64> {
         let top = self.bounds[1][2].max(self.scene_top()) + 1.0;
@@ -141,12 +142,12 @@ impl QuerySite<'_> {
             .map(|(hit, _)| top - hit.range)
     }
 
-    /// The surface that a laser return at `point` came from, for a scanner at `scanner`: the crossing of their line that lies
-    /// nearest to the return, its triangle, and a point 3 cm outside it; `None` where no surface lies within 0.3 m of the
-    /// return along the line. All absolute, metres.
+    /// The surface that a laser return at `point` came from, for a scanner at `scanner`: the crossing of their line
+    /// that lies nearest to the return, its triangle, and a point 3 cm outside it; `None` where no surface lies within
+    /// 0.3 m of the return along the line. All absolute, metres.
     ///
-    /// What is visible of a cloud's own points is asked of the point outside: the return itself lies behind or before the
-    /// surface by chance.
+    /// What is visible of a cloud's own points is asked of the point outside: the return itself lies behind or before
+    /// the surface by chance.
     #[must_use]
     pub fn surface_of_return(&self, scanner: [f64; 3], point: [f64; 3]) -> Option<(crate::Hit, [f64; 3])> {
         let direction = unit(sub(point, scanner))?;
@@ -159,8 +160,8 @@ impl QuerySite<'_> {
         Some((hit, add_scaled(add_scaled(scanner, direction, hit.range), normal, OUTSIDE)))
     }
 
-    /// Two observers: a person's eyes in the open near the middle of the place, and 6 m above its highest roof, absolute,
-    /// metres. The first is missing where no ground is free, the second where there is no roof.
+    /// Two observers: a person's eyes in the open near the middle of the place, and 6 m above its highest roof,
+    /// absolute, metres. The first is missing where no ground is free, the second where there is no roof.
     #[must_use]
     pub fn observers(&self, seed: u64) -> [Option<[f64; 3]>; 2] {
         let [low, high] = self.bounds;
@@ -177,8 +178,9 @@ impl QuerySite<'_> {
         [street, highest.map(|p| [p[0], p[1], p[2] + ABOVE_ROOF])]
     }
 
-    /// `count` people's eyes in the open anywhere in the place but for its outer twentieth, absolute, metres; fewer where little
-    /// ground is free. Where no ground has the sky above it, they stand under a ceiling. One street observer says little: an error near it spoils a whole sector of its view.
+    /// `count` people's eyes in the open anywhere in the place but for its outer twentieth, absolute, metres; fewer
+    /// where little ground is free. Where no ground has the sky above it, they stand under a ceiling. One street
+    /// observer says little: an error near it spoils a whole sector of its view.
     #[must_use]
     pub fn street_observers(&self, count: usize, seed: u64) -> Vec<[f64; 3]> {
         let [low, high] = self.bounds;
@@ -190,8 +192,8 @@ impl QuerySite<'_> {
         (0..count).into_par_iter().filter_map(eye).collect()
     }
 
-    /// Eyes with room to step, not in a hedge, a passage or a car, within `reach` of `middle`: under the open sky, or where none of the
-    /// ground is, as within a building, under a ceiling.
+    /// Eyes with room to step, not in a hedge, a passage or a car, within `reach` of `middle`: under the open sky, or
+    /// where none of the ground is, as within a building, under a ceiling.
     fn standing_in_the_open(&self, middle: [f64; 2], reach: [f64; 2], random: &mut Random) -> Option<[f64; 3]> {
         let is_under_the_sky = |eye: [f64; 3]| !self.truth.occluded_towards(eye, [0.0, 0.0, 1.0]);
         self.with_room_to_step(middle, reach, random, is_under_the_sky)

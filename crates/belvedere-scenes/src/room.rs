@@ -30,9 +30,11 @@ impl RoomSizes {
     }
 }
 
-/// The two rooms and where a scanner stands in each of them, (2, 3), metres, absolute. Another seed gives other sizes and other furniture.
+/// The two rooms and where a scanner stands in each of them, (2, 3), metres, absolute. Another seed gives other sizes
+/// and other furniture.
 ///
-/// The floor is terrain, walls and cupboards are facades, the ceiling and the tops of tables are slabs. All solids are closed.
+/// The floor is terrain, walls and cupboards are facades, the ceiling and the tops of tables are slabs. All solids are
+/// closed.
 pub(crate) fn furnished_rooms(seed: u64) -> (TriangleScene, [[f64; 3]; 2]) {
     let mut random = Random::new(seed, 0);
     let plan = RoomSizes::new(&mut random);

@@ -48,8 +48,8 @@ impl Material {
         Self::Car,
     ];
 
-    /// Standard class of a laser point on this material: 1 unclassified, 2 ground, 5 high vegetation, 6 building, 14 wire
-    /// conductor, 17 bridge deck (ASPRS LAS 1.4, table 17).
+    /// Standard class of a laser point on this material: 1 unclassified, 2 ground, 5 high vegetation, 6 building, 14
+    /// wire conductor, 17 bridge deck (ASPRS LAS 1.4, table 17).
     #[must_use]
     pub fn asprs_class(self) -> u8 {
         match self {
@@ -95,7 +95,8 @@ impl Material {
     }
 }
 
-/// A piece of surface with a material per triangle: what the shape functions make and [`TriangleScene::add_object`] takes.
+/// A piece of surface with a material per triangle: what the shape functions make and [`TriangleScene::add_object`]
+/// takes.
 #[derive(Clone, Debug, Default)]
 pub struct ObjectPart {
     /// Vertices, (V, 3), metres, absolute.
@@ -137,9 +138,9 @@ impl ObjectPart {
 
 /// A scene of triangles, grouped in named objects.
 ///
-/// Everything but the terrain consists of closed solids, a part each (all leaves of a crown are one part); solids may overlap,
-/// as a trunk reaches into its crown and neighbouring houses into each other. The terrain is a sheet that ends at the rim of
-/// the scene.
+/// Everything but the terrain consists of closed solids, a part each (all leaves of a crown are one part); solids may
+/// overlap, as a trunk reaches into its crown and neighbouring houses into each other. The terrain is a sheet that ends
+/// at the rim of the scene.
 #[derive(Clone, Debug, Default)]
 pub struct TriangleScene {
     /// Vertices, (V, 3), metres, absolute (the projected frame, not local).

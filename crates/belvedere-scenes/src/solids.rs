@@ -34,8 +34,8 @@ impl PlanPlacement {
         [self.at(-u, -v), self.at(u, -v), self.at(u, v), self.at(-u, v)]
     }
 
-    /// Corners of an L whose outer corner is the origin: one wing along u to `length_u`, one along v to `length_v`, both
-    /// `width` wide; counter-clockwise from the inner corner, (6, 2), metres.
+    /// Corners of an L whose outer corner is the origin: one wing along u to `length_u`, one along v to `length_v`,
+    /// both `width` wide; counter-clockwise from the inner corner, (6, 2), metres.
     #[must_use]
     pub fn l_shape(&self, length_u: f64, length_v: f64, width: f64) -> [[f64; 2]; 6] {
         [
@@ -66,8 +66,8 @@ pub fn extruded(footprint: &[[f64; 2]], bottom: f64, top: f64) -> ObjectPart {
     part
 }
 
-/// Closed house over the rectangle `footprint`, (4, 2), metres, counter-clockwise: walls from `bottom` to `eaves`, and a
-/// roof whose ridge at height `ridge` runs parallel to the first side.
+/// Closed house over the rectangle `footprint`, (4, 2), metres, counter-clockwise: walls from `bottom` to `eaves`, and
+/// a roof whose ridge at height `ridge` runs parallel to the first side.
 ///
 /// The ridge ends `hip` metres short of each end of the house: 0 gives gables (upright, facade), more gives hipped ends
 /// (roof); beyond half the length the ridge would cross itself.
@@ -90,8 +90,8 @@ pub fn ridged(footprint: &[[f64; 2]; 4], bottom: f64, eaves: f64, ridge: f64, hi
     part
 }
 
-/// Closed L-shaped house (see [`PlanPlacement::l_shape`]) with a gable at the end of each wing, a valley over the inner corner
-/// and a hip over the outer one. Lengths and heights in metres.
+/// Closed L-shaped house (see [`PlanPlacement::l_shape`]) with a gable at the end of each wing, a valley over the inner
+/// corner and a hip over the outer one. Lengths and heights in metres.
 #[must_use]
 pub fn l_shaped_ridged(
     placement: &PlanPlacement,
@@ -120,12 +120,12 @@ pub fn l_shaped_ridged(
     part
 }
 
-/// Closed solid through `rings`, each of the same number of corners: sides between neighbouring rings, the first and the
-/// last ring as caps. An upright prism is two rings, a sagging wire many.
+/// Closed solid through `rings`, each of the same number of corners: sides between neighbouring rings, the first and
+/// the last ring as caps. An upright prism is two rings, a sagging wire many.
 ///
-/// Rings run counter-clockwise seen from the end that the sweep goes to; all of a cap must be in sight of its first corner.
-/// `side_materials` has one material per edge of a ring, edge k from corner k to the next; the last one holds for all
-/// that follow. Sides need not be flat. Fewer than two rings, or none with three corners, give an empty part.
+/// Rings run counter-clockwise seen from the end that the sweep goes to; all of a cap must be in sight of its first
+/// corner. `side_materials` has one material per edge of a ring, edge k from corner k to the next; the last one holds
+/// for all that follow. Sides need not be flat. Fewer than two rings, or none with three corners, give an empty part.
 pub(crate) fn swept<R: AsRef<[[f64; 3]]>>(rings: &[R], side_materials: &[Material], cap: Material) -> ObjectPart {
     let mut part = ObjectPart::default();
     let count = rings.iter().map(|ring| ring.as_ref().len()).min().unwrap_or(0);
@@ -165,9 +165,9 @@ pub(crate) enum WingCourse {
     Closed,
 }
 
-/// Closed building of wings along a course, with the outer corners `outer`, (N, 2), on the right and `inner`, (N, 2), on the
-/// left; the opposite walls of a wing are parallel. The ridge runs midway between them; at the height of the eaves it makes
-/// a flat roof. Heights in metres.
+/// Closed building of wings along a course, with the outer corners `outer`, (N, 2), on the right and `inner`, (N, 2),
+/// on the left; the opposite walls of a wing are parallel. The ridge runs midway between them; at the height of the
+/// eaves it makes a flat roof. Heights in metres.
 pub(crate) fn winged(
     outer: &[[f64; 2]],
     inner: &[[f64; 2]],

@@ -63,9 +63,9 @@ fn area_of_cells(plan: &Plan, tile: TileId, cell: f64) -> crate::grid::MapArea {
     plan.grid().core(tile).widened(farthest + (EDGE_CELLS + 1) as f64 * cell)
 }
 
-/// Answers a question for the cells of a tile on top of what stands there, with the balls that are in the folder of the run, and writes the answer; its
-/// record is to be written next. Where balls that can matter are missing, answers are unproven. `last` is the surface of the last answer for the tile,
-/// which may be on the same cells.
+/// Answers a question for the cells of a tile on top of what stands there, with the balls that are in the folder of the
+/// run, and writes the answer; its record is to be written next. Where balls that can matter are missing, answers are
+/// unproven. `last` is the surface of the last answer for the tile, which may be on the same cells.
 ///
 /// # Errors
 /// Those of reading the files and the balls, and of writing.

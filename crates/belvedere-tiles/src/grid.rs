@@ -34,7 +34,8 @@ pub struct TileGrid {
     pub origin: [f64; 2],
 }
 
-/// A rectangle on the map from its lowest to its highest corner, local metres. The lower sides belong to it, the upper ones do not.
+/// A rectangle on the map from its lowest to its highest corner, local metres. The lower sides belong to it, the upper
+/// ones do not.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct MapArea {
     pub(crate) low: [f64; 2],

@@ -23,7 +23,8 @@ pub struct InputFile {
     pub bounds: [[f64; 3]; 2],
     /// CRC-32 over its size and its first and last 64 KiB, as hexadecimal digits.
     pub fingerprint: String,
-    /// The rectangle around each piece of its rows: west, south, east and north, whole local metres. Empty where that is not known.
+    /// The rectangle around each piece of its rows: west, south, east and north, whole local metres. Empty where that
+    /// is not known.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(crate) pieces: Vec<PieceCell>,
 }

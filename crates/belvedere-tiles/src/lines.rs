@@ -137,8 +137,8 @@ pub(crate) fn tiles(plan: &Plan, lines: &AreaLines<'_>) -> Vec<TileId> {
     tiles.into_iter().collect()
 }
 
-/// Whether the line of sight from a target, local metres, may meet what stands over `area` up to `top`: the line runs along `way` and ends after
-/// `length` times that, or never.
+/// Whether the line of sight from a target, local metres, may meet what stands over `area` up to `top`: the line runs
+/// along `way` and ends after `length` times that, or never.
 pub(crate) fn passes(target: [f64; 3], way: [f64; 3], length: f64, area: &MapArea, top: f64) -> bool {
     let sides = [0, 1].map(|axis| [area.low[axis] - target[axis], area.high[axis] - target[axis]]);
     let over = piece_in_box(sides, [way[0], way[1]], [0.0, length]);

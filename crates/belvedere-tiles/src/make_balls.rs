@@ -13,7 +13,8 @@ use belvedere::{PointCloud, Result};
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// Makes the balls of a tile and writes them and their record into the folder of the run. The same plan and tile give the same balls.
+/// Makes the balls of a tile and writes them and their record into the folder of the run. The same plan and tile give
+/// the same balls.
 ///
 /// # Errors
 /// Those of reading the files and of [`SceneModel::build`].

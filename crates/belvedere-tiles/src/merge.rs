@@ -61,7 +61,8 @@ fn in_xml(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('"', "&quot;")
 }
 
-/// Writes a catalogue (`.vrt`) of the results of a question that are there, which QGIS, GDAL and rasterio open as one raster that says what its values are.
+/// Writes a catalogue (`.vrt`) of the results of a question that are there, which QGIS, GDAL and rasterio open as one
+/// raster that says what its values are.
 ///
 /// # Errors
 /// [`Error::Io`].
@@ -121,10 +122,12 @@ pub fn merge(
     Ok(merged)
 }
 
-/// The results of a question that are there, of the tiles that touch the box from `low` to `high` on the map, metres of the reference system.
+/// The results of a question that are there, of the tiles that touch the box from `low` to `high` on the map, metres of
+/// the reference system.
 ///
 /// # Errors
-/// [`Error::NoPoints`] where the plan has no tile there, [`Error::InvalidParameter`] for more cells than fit into memory; those of reading rasters.
+/// [`Error::NoPoints`] where the plan has no tile there, [`Error::InvalidParameter`] for more cells than fit into
+/// memory; those of reading rasters.
 pub fn merged_within(
     plan: &Plan,
     folder: &Path,

@@ -35,8 +35,8 @@ pub(crate) struct ObstacleSearch {
 }
 
 impl ObstacleSearch {
-    /// Whether a line of sight from a target, local metres, may meet what is missing: along `way`, to an end after `length` times that or without
-    /// end.
+    /// Whether a line of sight from a target, local metres, may meet what is missing: along `way`, to an end after
+    /// `length` times that or without end.
     pub(crate) fn is_unknown(&self, target: [f64; 3], way: [f64; 3], length: f64) -> bool {
         self.missing.iter().any(|(area, top)| passes(target, way, length, area, *top))
     }

@@ -1,9 +1,10 @@
 //! Obstacles of a tile part by part: memory does not grow with the area that its lines of sight cross.
 //!
-//! The lowest of many directions of the sky meets balls all over a city. But a line of sight is free where no ball blocks it, so that balls may be
-//! asked one part after the other, and the answer does not depend on how they are cut into parts. Parts are squares of tiles, nearest first: most lines end
-//! at the nearest, and of a distant part only balls are asked that are high enough to block a line that is still free. Lines of sight to observers are asked
-//! in parts as well.
+//! The lowest of many directions of the sky meets balls all over a city. But a line of sight is free where no ball
+//! blocks it, so that balls may be asked one part after the other, and the answer does not depend on how they are cut
+//! into parts. Parts are squares of tiles, nearest first: most lines end at the nearest, and of a distant part only
+//! balls are asked that are high enough to block a line that is still free. Lines of sight to observers are asked in
+//! parts as well.
 
 use crate::grid::{MapArea, TOP_SIDE, TileId, square_area};
 use crate::lines::{AreaLines, MAX_BALL};
@@ -23,7 +24,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 
-/// Distances from the cells up to which the balls of a tile are asked before the others, metres: after the first, few lines of sight are left.
+/// Distances from the cells up to which the balls of a tile are asked before the others, metres: after the first, few
+/// lines of sight are left.
 const BANDS: [f64; 4] = [64.0, 192.0, 448.0, f64::INFINITY];
 /// Balls that are asked before more are looked up, if there are as many.
 const WORTH_ASKING: usize = 100_000;
@@ -44,7 +46,8 @@ pub(crate) struct TileObstacles<'a> {
 }
 
 impl<'a> TileObstacles<'a> {
-    /// Parts of at most `max_balls` of the balls that may matter for `lines` from the cells of `tile`, and the `others` that block.
+    /// Parts of at most `max_balls` of the balls that may matter for `lines` from the cells of `tile`, and the `others`
+    /// that block.
     ///
     /// # Errors
     /// [`belvedere::Error::Cancelled`].
@@ -60,7 +63,8 @@ impl<'a> TileObstacles<'a> {
         Ok(Self { plan, run, cells: lines.targets, others, max_balls, squares, found: Mutex::new(found) })
     }
 
-    /// Gives `look` scenes of at most so many balls that may block one of `lines`, until all were given. A line of sight is free where it is free in all.
+    /// Gives `look` scenes of at most so many balls that may block one of `lines`, until all were given. A line of
+    /// sight is free where it is free in all.
     ///
     /// # Errors
     /// Those of `look`, of writing records, and [`belvedere::Error::Cancelled`].

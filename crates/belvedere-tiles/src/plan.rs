@@ -26,7 +26,8 @@ use std::sync::Arc;
 
 /// Version of the layout of plans and records.
 const LAYOUT: u32 = 8;
-/// Corners that the origin of local coordinates is one of, metres: of blocks of 64 m, and few, so that neighbouring surveys share it.
+/// Corners that the origin of local coordinates is one of, metres: of blocks of 64 m, and few, so that neighbouring
+/// surveys share it.
 const ORIGIN_STEP: f64 = 1024.0;
 /// Farthest that a point may lie from the origin, metres: up to here f32 keeps a millimetre.
 const FARTHEST: f64 = 16_384.0;
@@ -42,11 +43,13 @@ pub struct PlanParams {
     pub clouds: Vec<PathBuf>,
     /// Reference system in place of what the files say.
     pub crs: Option<String>,
-    /// Side of a tile, metres. Default 512: a multiple of the blocks of 64 m, so that no point is looked at for nothing.
+    /// Side of a tile, metres. Default 512: a multiple of the blocks of 64 m, so that no point is looked at for
+    /// nothing.
     pub tile_size: f64,
     /// Sides of the cells of results. Default 1 m.
     pub cells: CellSizes,
-    /// Places that the survey must hold, in its coordinates: one outside is refused before points are read. Default none.
+    /// Places that the survey must hold, in its coordinates: one outside is refused before points are read. Default
+    /// none.
     pub places: Vec<[f64; 2]>,
     /// Most memory that a tile may take, bytes: tiles are quartered until the largest fits. `None` for any.
     pub memory: Option<u64>,
@@ -138,8 +141,8 @@ impl Plan {
     /// Looks at all points once, and plans the tiles, without a question.
     ///
     /// # Errors
-    /// [`Error::InvalidParameter`] for sizes out of range, places outside, a survey that is too wide for one frame, and memory into which no tile fits;
-    /// those of reading the files, and of [`SurveyStatistics::estimate`].
+    /// [`Error::InvalidParameter`] for sizes out of range, places outside, a survey that is too wide for one frame, and
+    /// memory into which no tile fits; those of reading the files, and of [`SurveyStatistics::estimate`].
     pub fn make(params: &PlanParams, control: &Control<'_>) -> Result<Self> {
         check_sizes(params)?;
         let (mut inputs, heads) = inputs(&params.clouds)?;
@@ -233,7 +236,8 @@ impl Plan {
     /// Reads the plan of a run.
     ///
     /// # Errors
-    /// [`Error::Io`], and [`Error::Malformed`] for a folder without a plan, for what is no plan, and for one of another version.
+    /// [`Error::Io`], and [`Error::Malformed`] for a folder without a plan, for what is no plan, and for one of another
+    /// version.
     pub fn read(folder: &Path) -> Result<Self> {
         let path = Self::path(folder);
         let refused = |what: String| Err(Error::malformed(&path, format!("{what} again with `belvedere city plan`")));
@@ -342,7 +346,8 @@ impl Plan {
         })
     }
 
-    /// The tiles with cells for the result of a question, from the south-west: all but some at the edge of the survey that only larger cells reach.
+    /// The tiles with cells for the result of a question, from the south-west: all but some at the edge of the survey
+    /// that only larger cells reach.
     pub(crate) fn tiles_of(&self, question: &TileQuestion) -> Vec<TileId> {
         let cell = self.cells.of(question);
         self.tiles.iter().copied().filter(|&tile| self.has_cells(tile, cell)).collect()
@@ -373,8 +378,8 @@ impl Plan {
     /// This with other questions.
     ///
     /// # Errors
-    /// [`Error::InvalidParameter`] for two questions whose results would lie in one folder and for parameters outside their range; those of reading
-    /// weather.
+    /// [`Error::InvalidParameter`] for two questions whose results would lie in one folder and for parameters outside
+    /// their range; those of reading weather.
     pub fn with_questions(self, questions: Vec<TileQuestion>, control: &Control<'_>) -> Result<Self> {
         let mut names = BTreeSet::from([Stage::Balls.name()]);
         if let Some(name) = questions.iter().map(TileQuestion::name).find(|name| !names.insert(name)) {
@@ -385,8 +390,8 @@ impl Plan {
         Ok(Self { questions, ..self })
     }
 
-    /// This with meshes of what is planned, such as buildings: their triangles block exactly, beside what was surveyed, and cells below them are
-    /// asked about on top of them.
+    /// This with meshes of what is planned, such as buildings: their triangles block exactly, beside what was surveyed,
+    /// and cells below them are asked about on top of them.
     ///
     /// # Errors
     /// Those of reading meshes, and [`Error::InvalidParameter`] for one that does not lie on the survey.
@@ -395,11 +400,13 @@ impl Plan {
         Ok(Self { meshes, ..self })
     }
 
-    /// This before far terrain, an elevation raster and a horizon as [`read_terrain`](belvedere::io::read_terrain) and [`read_horizon`](belvedere::io::read_horizon) take them: directions to the
-    /// sun and the sky below it are blocked. Within the box of the survey, and a cell of the raster around it, terrain blocks nothing.
+    /// This before far terrain, an elevation raster and a horizon as [`read_terrain`](belvedere::io::read_terrain) and
+    /// [`read_horizon`](belvedere::io::read_horizon) take them: directions to the sun and the sky below it are blocked.
+    /// Within the box of the survey, and a cell of the raster around it, terrain blocks nothing.
     ///
     /// # Errors
-    /// Those of reading the files, and [`Error::InvalidParameter`] for terrain that does not reach the survey or lies far above or below it.
+    /// Those of reading the files, and [`Error::InvalidParameter`] for terrain that does not reach the survey or lies
+    /// far above or below it.
     pub fn with_far_terrain(self, terrain: Option<SideFile>, horizon: Option<SideFile>) -> Result<Self> {
         far_terrain(terrain.as_ref(), horizon.as_ref(), &self.frame()?, self.bounds())?;
         Ok(Self { terrain, horizon, ..self })
@@ -443,7 +450,8 @@ impl Plan {
         question.kind(self.trees.is_none())
     }
 
-    /// Puts places on the map, local metres, on the ground: each that has no height gets `height` metres above the ground there.
+    /// Puts places on the map, local metres, on the ground: each that has no height gets `height` metres above the
+    /// ground there.
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] for a place without ground, those of reading the files and of [`Ground::of_cloud`].

@@ -247,8 +247,8 @@ impl TileQuestion {
     /// What follows from its parameters, where crowns of trees let light through or not.
     ///
     /// # Errors
-    /// [`Error::InvalidParameter`] for parameters outside their range, a sun that is not above the horizon and eyes that are nowhere; those of
-    /// reading weather.
+    /// [`Error::InvalidParameter`] for parameters outside their range, a sun that is not above the horizon and eyes
+    /// that are nowhere; those of reading weather.
     pub(crate) fn prepare(&self, crowns: Option<CrownLight>, control: &Control<'_>) -> Result<PreparedQuestion> {
         let invalid = |parameter, value: String, expected| Err(Error::InvalidParameter { parameter, value, expected });
         match self {

@@ -46,8 +46,8 @@ pub struct RunParams<'a> {
     pub shard: Shard,
     /// Which steps.
     pub steps: Steps,
-    /// Most balls that are held at a time for an answer; no answer depends on it. `None` for as many as take no more memory than
-    /// making the balls of the largest tile.
+    /// Most balls that are held at a time for an answer; no answer depends on it. `None` for as many as take no more
+    /// memory than making the balls of the largest tile.
     pub max_balls: Option<usize>,
     /// Seconds on a clock of the program, for records; the library has none.
     pub seconds: &'a dyn Fn() -> f64,
@@ -110,7 +110,8 @@ impl RunReport {
 /// Most damaged results that are named.
 const MAX_NAMED: usize = 10;
 
-/// Makes the balls and the answers that a run lacks. What fails is named and recorded, and the rest goes on; the next run tries it again.
+/// Makes the balls and the answers that a run lacks. What fails is named and recorded, and the rest goes on; the next
+/// run tries it again.
 ///
 /// # Errors
 /// [`Error::InvalidParameter`] for a share that there is not, [`Error::Cancelled`], and those of writing records.

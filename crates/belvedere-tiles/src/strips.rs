@@ -1,7 +1,8 @@
 //! Where lines of sight that are still free run, and what is high enough to block one of them.
 //!
-//! Seen along a direction, the lines from a tile lie side by side in strips. What stands in a strip must be higher than the lowest line there. Few lines reach
-//! far: so most of what stands far away never needs to be looked at, let alone indexed.
+//! Seen along a direction, the lines from a tile lie side by side in strips. What stands in a strip must be higher than
+//! the lowest line there. Few lines reach far: so most of what stands far away never needs to be looked at, let alone
+//! indexed.
 
 use crate::grid::{MapArea, TOP_SIDE, square_area, square_at};
 use crate::lines::{MAX_BALL, ROOM};
@@ -12,7 +13,8 @@ use std::collections::HashMap;
 /// Least width of a strip, metres, and most strips of a direction.
 const WIDTH: f64 = 4.0;
 const MAX_STRIPS: f64 = 1024.0;
-/// Slope in place of that of lines that are steeper, metres of height for each metre on the map: in the highest scene they move by less than [`ROOM`].
+/// Slope in place of that of lines that are steeper, metres of height for each metre on the map: in the highest scene
+/// they move by less than [`ROOM`].
 const STEEPEST: f64 = 1e6;
 /// Slope below which lines reach far: 11 degrees.
 const LOW_SLOPE: f64 = 0.2;
@@ -92,7 +94,8 @@ impl Strips {
         });
     }
 
-    /// The columns of the directions in which something on one of the squares of 16 m with the highest `tops` may block a line.
+    /// The columns of the directions in which something on one of the squares of 16 m with the highest `tops` may block
+    /// a line.
     pub(crate) fn meeting(&self, tops: &[([i32; 2], f32)]) -> Vec<usize> {
         let squares: Vec<(MapArea, f64)> =
             tops.iter().map(|&(number, top)| (square_area(number, TOP_SIDE), f64::from(top))).collect();
@@ -102,7 +105,8 @@ impl Strips {
         courses.filter(|(_, course)| meets(course)).map(|(column, _)| column).collect()
     }
 
-    /// How high balls on squares of 16 m with the highest `tops` must be to block a line in the directions of any of `columns`.
+    /// How high balls on squares of 16 m with the highest `tops` must be to block a line in the directions of any of
+    /// `columns`.
     pub(crate) fn min_tops(&self, columns: &[usize], tops: &[([i32; 2], f32)]) -> MinTops {
         let courses: Vec<&DirectionLines> = columns.iter().filter_map(|&column| self.courses.get(column)).collect();
         let min = |area: &MapArea| {
@@ -121,7 +125,8 @@ impl Strips {
     }
 }
 
-/// How high balls must be to block a line: by the cell of their centre, those of small and those of any radius. In other cells none blocks.
+/// How high balls must be to block a line: by the cell of their centre, those of small and those of any radius. In
+/// other cells none blocks.
 pub(crate) struct MinTops(HashMap<[i32; 2], [f64; 2]>);
 
 impl MinTops {

@@ -1,4 +1,5 @@
-// Clicks through the page in Chromium: pictures, each question, files, keyboard, two tabs, bad files, a lost connection.
+// Clicks through the page in Chromium: pictures, each question, files, keyboard, two tabs, bad files, a lost
+// connection.
 import assert from "node:assert/strict";
 import { execFileSync, spawn } from "node:child_process";
 import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";

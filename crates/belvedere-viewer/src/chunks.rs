@@ -10,7 +10,8 @@ use std::ops::Range;
 const SIDE: f32 = 128.0;
 /// Most points of a chunk, so that pictures appear while others are on their way.
 const MAX: usize = 250_000;
-/// Points of the first chunk of a square with many: these come before all others, so that the whole cloud is seen at once.
+/// Points of the first chunk of a square with many: these come before all others, so that the whole cloud is seen at
+/// once.
 const FIRST: usize = 20_000;
 /// A square has many points from so many times [`FIRST`] on.
 const MANY: usize = 5;
@@ -40,7 +41,8 @@ pub(crate) struct Chunks {
 }
 
 impl Chunks {
-    /// Parts the points of a cloud. The first points of a chunk are a fair sample of all of it, and the first chunks lie all over the cloud.
+    /// Parts the points of a cloud. The first points of a chunk are a fair sample of all of it, and the first chunks
+    /// lie all over the cloud.
     pub(crate) fn new(cloud: &PointCloud) -> Self {
         let mut squares: BTreeMap<[i64; 2], Vec<u32>> = BTreeMap::new();
         for (row, position) in (0..).zip(&cloud.positions) {
@@ -66,7 +68,8 @@ impl Chunks {
         Self { chunks, rows: all, brightest }
     }
 
-    /// Eight bytes for each point of a chunk, little endian: its steps along x, y and z with 16 bits each, its class and its intensity.
+    /// Eight bytes for each point of a chunk, little endian: its steps along x, y and z with 16 bits each, its class
+    /// and its intensity.
     pub(crate) fn points(&self, number: usize, cloud: &PointCloud) -> Option<Vec<u8>> {
         let chunk = self.chunks.get(number)?;
         let rows = self.rows.get(chunk.points.clone())?;

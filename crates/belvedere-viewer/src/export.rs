@@ -1,4 +1,5 @@
-//! The page as one file that needs no server: its points, the shadows of the hours of a day, and what is seen from viewpoints.
+//! The page as one file that needs no server: its points, the shadows of the hours of a day, and what is seen from
+//! viewpoints.
 
 use crate::chunks::Chunks;
 use crate::page;
@@ -53,8 +54,8 @@ pub struct ExportReport {
 /// The page of a cloud and its model as one file.
 ///
 /// # Errors
-/// [`Error::MissingAttribute`] for a day without a known location, [`Error::InvalidParameter`] for a viewpoint that nobody can look
-/// from, and [`Error::Cancelled`].
+/// [`Error::MissingAttribute`] for a day without a known location, [`Error::InvalidParameter`] for a viewpoint that
+/// nobody can look from, and [`Error::Cancelled`].
 pub fn export(
     cloud: &Arc<PointCloud>,
     model: SceneModel,
@@ -129,7 +130,8 @@ fn suns(
     Ok(hours.iter().zip(&lit).map(of_hour).collect())
 }
 
-/// The viewpoints, and two bits for each point in the order in which points are sent: 0 blocked, 1 visible, 2 unproven, 3 no answer.
+/// The viewpoints, and two bits for each point in the order in which points are sent: 0 blocked, 1 visible, 2 unproven,
+/// 3 no answer.
 fn viewpoints(
     scene: &PageScene,
     sent: &PointCloud,

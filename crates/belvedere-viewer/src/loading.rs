@@ -63,7 +63,8 @@ impl Loading {
     /// Shows a raster on the ground.
     ///
     /// # Errors
-    /// [`belvedere::Error::Malformed`] for one without a place or beside the cloud, [`belvedere::Error::UnusableCrs`] for one in another system.
+    /// [`belvedere::Error::Malformed`] for one without a place or beside the cloud, [`belvedere::Error::UnusableCrs`]
+    /// for one in another system.
     pub fn show_raster(&self, path: &Path, raster: PlacedRaster, frame: &Frame, bounds: &Bounds) -> Result<()> {
         let file = ResultFile::of_raster(path, raster, frame, bounds)?;
         self.state().results.push(Arc::new(file));
@@ -92,7 +93,8 @@ impl Loading {
         state.shown = Some(shown);
         state.scene = Some(Arc::clone(&scene));
         drop(state);
-        // what the first questions need is made while people still look; not on a thread of the pool, which must not wait for locks
+        // what the first questions need is made while people still look; not on a thread of the pool, which must not
+        // wait for locks
         std::thread::spawn(move || scene.prepare());
     }
 

@@ -40,7 +40,8 @@ impl QuestionReply {
 }
 
 impl IntoResponse for QuestionReply {
-    /// The length of the head as JSON in 4 bytes, little endian, the head filled up with blanks to a multiple of 4 bytes, and the body.
+    /// The length of the head as JSON in 4 bytes, little endian, the head filled up with blanks to a multiple of 4
+    /// bytes, and the body.
     fn into_response(self) -> Response {
         let mut head = self.head.to_string().into_bytes();
         head.resize(head.len().next_multiple_of(4), b' ');

@@ -18,7 +18,8 @@ const NONE: u8 = 255;
 const GREATEST: f32 = 253.0;
 /// Most cells of a raster that are sent; of larger ones every second, third … row and column is.
 const MAX_CELLS: usize = 4_000_000;
-/// How far above the ground cells are drawn, metres: high enough for points that scatter around it. Lines are drawn above cells.
+/// How far above the ground cells are drawn, metres: high enough for points that scatter around it. Lines are drawn
+/// above cells.
 const ABOVE: f64 = 0.15;
 const LINES_ABOVE: f64 = 0.6;
 /// Piece of a line that follows the ground, metres, and most of them.
@@ -72,8 +73,8 @@ impl ResultFile {
     /// A raster that lies on the map.
     ///
     /// # Errors
-    /// [`Error::Malformed`] for one that says nothing of its place or lies beside the scene, and [`Error::UnusableCrs`] for one in another
-    /// system.
+    /// [`Error::Malformed`] for one that says nothing of its place or lies beside the scene, and [`Error::UnusableCrs`]
+    /// for one in another system.
     pub(crate) fn of_raster(path: &Path, raster: PlacedRaster, frame: &Frame, bounds: &Bounds) -> Result<Self> {
         let Some(place) = &raster.place else {
             return Err(Error::malformed(path, "does not say where it lies on the map: write it as a GeoTIFF"));
@@ -188,7 +189,8 @@ fn cells(raster: &PlacedRaster, frame: &Frame, on_ground: &OnGround) -> Question
     layer(&positions, &[(String::new(), values)], Some(size))
 }
 
-/// Eight bytes for each point as chunks have them, and a byte for the value of each column: 0 for the least, 253 for the greatest, 255 for none.
+/// Eight bytes for each point as chunks have them, and a byte for the value of each column: 0 for the least, 253 for
+/// the greatest, 255 for none.
 fn layer(positions: &[[f32; 3]], columns: &[(String, Vec<f32>)], size: Option<f64>) -> QuestionReply {
     let end = |pick: fn(f32, f32) -> f32, start: f32| {
         positions.iter().fold([start; 3], |end, place| std::array::from_fn(|i| pick(end[i], place[i])))
@@ -227,7 +229,8 @@ fn layer(positions: &[[f32; 3]], columns: &[(String, Vec<f32>)], size: Option<f6
     QuestionReply { head, body }
 }
 
-/// The lines that draw a shape, local metres: pairs of ends. Lines without heights follow the ground, points stand on it as pins.
+/// The lines that draw a shape, local metres: pairs of ends. Lines without heights follow the ground, points stand on
+/// it as pins.
 fn segments(shape: &FeatureShape, frame: &Frame, on_ground: &OnGround) -> Vec<[[f64; 3]; 2]> {
     let local = |place: &[f64; 3]| {
         let [x, y, z] = std::array::from_fn(|i| place[i] - frame.origin[i]);

@@ -228,8 +228,8 @@ impl PageScene {
         Ok(SunPlace::default().site_of(self.inner.frame(), &self.model().bounds(), None)?.0)
     }
 
-    /// Azimuth of grid north from true north at a local place, or at the middle of the scene; grid north counts where true north is
-    /// unknown.
+    /// Azimuth of grid north from true north at a local place, or at the middle of the scene; grid north counts where
+    /// true north is unknown.
     pub(crate) fn grid_north(&self, place: Option<[f64; 3]>) -> f64 {
         let place = place.map_or_else(|| self.inner.middle(), |place| [place[0], place[1]]);
         North::True.at(&self.inner, place).of_grid

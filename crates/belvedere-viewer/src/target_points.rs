@@ -1,4 +1,5 @@
-//! The points that questions about the whole cloud ask about: all of them, or a fair sample that is answered within a tenth of a second.
+//! The points that questions about the whole cloud ask about: all of them, or a fair sample that is answered within a
+//! tenth of a second.
 
 use crate::chunks::Chunks;
 use belvedere::apps::targets::Targets;
@@ -9,7 +10,8 @@ use belvedere::{PointCloud, Result};
 use rayon::prelude::*;
 use std::sync::Arc;
 
-/// Most points of a sample: their lines of sight take two threads 20 to 70 ms. The standard error of a share of all points is at most 0.3 %.
+/// Most points of a sample: their lines of sight take two threads 20 to 70 ms. The standard error of a share of all
+/// points is at most 0.3 %.
 pub(crate) const SAMPLE: usize = 30_000;
 
 /// Points that are asked about, and which of them answers for each point that is shown.
@@ -58,7 +60,8 @@ impl TargetPoints {
         })
     }
 
-    /// A byte for each point shown, in the order in which points are sent, from those of the points that were asked about.
+    /// A byte for each point shown, in the order in which points are sent, from those of the points that were asked
+    /// about.
     pub(crate) fn in_order(&self, of_target: impl Fn(usize) -> u8 + Sync) -> Vec<u8> {
         let answer = |&target: &u32| if target == NOBODY { CLEARED } else { of_target(target as usize) };
         self.answerers.par_iter().with_min_len(4096).map(answer).collect()

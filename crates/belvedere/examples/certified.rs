@@ -1,10 +1,11 @@
-//! Do certified maps answer as exact lines of sight do, what share of the targets do they settle, and how fast are they?
+//! Do certified maps answer as exact lines of sight do, what share of the targets do they settle, and how fast are
+//! they?
 //!
 //!     belvedere demo -o demo
 //!     cargo run --release --example certified -- demo/balls.npz [TARGETS]
 //!
-//! Ten million targets, unless told otherwise, spread evenly over the box of the balls' points, by three projections; exit status 1
-//! if one answer differs.
+//! Ten million targets, unless told otherwise, spread evenly over the box of the balls' points, by three projections;
+//! exit status 1 if one answer differs.
 #![allow(clippy::print_stdout, reason = "the table is what this example is for")]
 
 use belvedere::Bounds;
@@ -34,7 +35,8 @@ fn main() -> Result<ExitCode, Box<dyn std::error::Error>> {
     let [l, h] = [low, high].map(|corner| corner.map(f64::from));
     let middle: [f64; 3] = std::array::from_fn(|i| (l[i] + h[i]) / 2.0);
     let sun = to_sun(235f64.to_radians(), 30f64.to_radians());
-    // an eye above the roofs at a corner, for which no pixel is wider than the 0.25 m of the parallel view anywhere in the scene
+    // an eye above the roofs at a corner, for which no pixel is wider than the 0.25 m of the parallel view anywhere in
+    // the scene
     let corner = [l[0], l[1], h[2] + 10.0];
     let distance = (0..3).map(|i| (if i == 2 { l[i] } else { h[i] } - corner[i]).powi(2)).sum::<f64>().sqrt();
     let width = (4.0 * distance * 2.0 * 0.7f64.tan()).round();

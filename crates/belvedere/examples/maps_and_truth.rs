@@ -1,9 +1,10 @@
-//! How far do depth maps of the medial balls of an exact mesh lie from the mesh, as it is sampled more densely and pixels shrink?
+//! How far do depth maps of the medial balls of an exact mesh lie from the mesh, as it is sampled more densely and
+//! pixels shrink?
 //!
 //!     cargo run --release --example maps_and_truth
 //!
-//! A simulated town of 60 m, its triangles sampled evenly at random with their exact normals; seen by the sun and by a camera over a
-//! corner. Errors are depth minus truth through the middle of each pixel, where both see something.
+//! A simulated town of 60 m, its triangles sampled evenly at random with their exact normals; seen by the sun and by a
+//! camera over a corner. Errors are depth minus truth through the middle of each pixel, where both see something.
 #![allow(clippy::print_stdout, reason = "the table is what this example is for")]
 
 use belvedere::Bounds;
@@ -19,7 +20,8 @@ use belvedere::vector::{cross, length, sub, unit};
 use belvedere::view::{View, to_sun};
 use belvedere_scenes::{Material, TownParams, TriangleScene, Truth, town};
 
-/// The ground is a sheet without thickness: a ball below it touches nothing. Its underside is put this far below, metres.
+/// The ground is a sheet without thickness: a ball below it touches nothing. Its underside is put this far below,
+/// metres.
 const UNDERSIDE: f64 = 3.0;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {

@@ -1,12 +1,15 @@
 //! What no selection of cameras can exceed: the linear relaxation, by prices on the targets.
 //!
-//! Each target t has a price between 0 and its worth w. A selection S of at most k cameras, each target needing r of them, is worth
-//! Σ w·min(count, r) ≤ Σ r·(w − price) + Σ over S of the prices that a camera covers: for one count each, w·min(count, r) ≤ r·(w − price) + price·count. The k
-//! cameras that cover the highest prices bound the last sum for any S. So any prices give a bound that holds, and the least of these bounds is that of the linear relaxation.
-//! Prices that are the worth of what a greedy selection leaves open, and 0 elsewhere, give a bound no worse than that of Nemhauser, Wolsey & Fisher (1978).
+//! Each target t has a price between 0 and its worth w. A selection S of at most k cameras, each target needing r of
+//! them, is worth Σ w·min(count, r) ≤ Σ r·(w − price) + Σ over S of the prices that a camera covers: for one count
+//! each, w·min(count, r) ≤ r·(w − price) + price·count. The k cameras that cover the highest prices bound the last sum
+//! for any S. So any prices give a bound that holds, and the least of these bounds is that of the linear relaxation.
+//! Prices that are the worth of what a greedy selection leaves open, and 0 elsewhere, give a bound no worse than that
+//! of Nemhauser, Wolsey & Fisher (1978).
 //!
 //! # Source
-//! Galvão & ReVelle 1996 (Lagrangean relaxation of maximal covering), Held, Wolfe & Crowder 1974 (subgradients), Camerini, Fratta & Maffioli 1975 (their direction).
+//! Galvão & ReVelle 1996 (Lagrangean relaxation of maximal covering), Held, Wolfe & Crowder 1974 (subgradients),
+//! Camerini, Fratta & Maffioli 1975 (their direction).
 
 use super::problem::{CameraSelection, Problem, TOLERANCE};
 use belvedere_data::Result;
@@ -17,7 +20,8 @@ use rayon::prelude::*;
 const CHUNK: usize = 32;
 /// Rounds without a better bound after which steps are halved.
 const PATIENCE: usize = 12;
-/// Share of the last direction that the next one keeps. Of 0, 0.3, 0.5 and 0.7, the last gave the lowest bound in seven of eight random towns.
+/// Share of the last direction that the next one keeps. Of 0, 0.3, 0.5 and 0.7, the last gave the lowest bound in seven
+/// of eight random towns.
 const MEMORY: f64 = 0.7;
 /// Steps below this share of their size at the start move nothing.
 const MIN_STEP: f64 = 1e-4;
@@ -82,7 +86,8 @@ impl BranchNode<'_> {
         AtPrices { bound: f64::from(self.problem.required) * free + covered_all, covered, picked }
     }
 
-    /// Lowers the bound from `prices` for so many rounds, or until nothing better than `best` remains; better selections met on the way replace it.
+    /// Lowers the bound from `prices` for so many rounds, or until nothing better than `best` remains; better
+    /// selections met on the way replace it.
     pub(super) fn relax(
         &self,
         prices: Vec<f64>,

@@ -54,10 +54,11 @@ impl Level {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Lens {
-    /// Horizontal field of view, radians, above 0 to 2π. Below π the picture is flat; from π on the lens is a fisheye, a panorama, or a person
-    /// or mast, without a density. Default π/2.
+    /// Horizontal field of view, radians, above 0 to 2π. Below π the picture is flat; from π on the lens is a fisheye,
+    /// a panorama, or a person or mast, without a density. Default π/2.
     pub width: f64,
-    /// Vertical field of view, radians, above 0 to π and below π for a flat picture. `None`, the default: of a picture of 16 : 9, and π where the width is π or more.
+    /// Vertical field of view, radians, above 0 to π and below π for a flat picture. `None`, the default: of a picture
+    /// of 16 : 9, and π where the width is π or more.
     pub height: Option<f64>,
     /// Pixels across the picture. Default 1920.
     pub pixels: f64,
@@ -111,13 +112,15 @@ impl Lens {
         self.height.unwrap_or(if self.is_flat() { 2.0 * ((self.width / 2.0).tan() / ASPECT).atan() } else { PI })
     }
 
-    /// Pixels per metre of a surface at a range of one metre that faces the camera: W / (2 tan(width / 2)). `None` without a flat picture.
+    /// Pixels per metre of a surface at a range of one metre that faces the camera: W / (2 tan(width / 2)). `None`
+    /// without a flat picture.
     #[must_use]
     pub fn density(&self) -> Option<f64> {
         self.is_flat().then(|| self.pixels / (2.0 * (self.width / 2.0).tan()))
     }
 
-    /// Pixels per metre that are required: those given, or else those of [`Level::Detect`]; 0, for no requirement, without a flat picture.
+    /// Pixels per metre that are required: those given, or else those of [`Level::Detect`]; 0, for no requirement,
+    /// without a flat picture.
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] for a density below 0, and for one above 0 without a flat picture.
@@ -174,7 +177,8 @@ impl PictureDirection {
 }
 
 impl Camera {
-    /// A camera that keeps looking to `heading` and `tilt` below the horizon, radians, good for horizontal distances from and to these metres.
+    /// A camera that keeps looking to `heading` and `tilt` below the horizon, radians, good for horizontal distances
+    /// from and to these metres.
     #[must_use]
     pub fn fixed(eye: [f64; 3], heading: f64, tilt: f64, lens: &Lens, distance: [f64; 2]) -> Self {
         let limits = SightLimits { distance, ..SightLimits::default() };
@@ -195,9 +199,9 @@ impl Camera {
         Self { eye, limits, picture: None, density: lens.density() }
     }
 
-    /// Whether a target that nothing hides, local metres, is in the picture with at least so many pixels per metre; 0 asks for none. Pixels
-    /// per metre are those at the range of the target, times the cosine of the angle at which its unit `normal` is seen, where it has one. A target
-    /// whose back is seen is not covered.
+    /// Whether a target that nothing hides, local metres, is in the picture with at least so many pixels per metre; 0
+    /// asks for none. Pixels per metre are those at the range of the target, times the cosine of the angle at which its
+    /// unit `normal` is seen, where it has one. A target whose back is seen is not covered.
     #[must_use]
     pub fn covers(&self, target: [f64; 3], normal: Option<[f64; 3]>, density: f64) -> bool {
         if !self.limits.allow(self.eye, target) {

@@ -37,7 +37,8 @@ pub struct MountingParams {
     pub lens: Lens,
     /// Whether they are turned.
     pub motion: Motion,
-    /// Headings to choose from at each place, evenly spread from north on, 1 or more. Default 8. One is enough for cameras that see or turn all around.
+    /// Headings to choose from at each place, evenly spread from north on, 1 or more. Default 8. One is enough for
+    /// cameras that see or turn all around.
     pub headings: usize,
     /// Angles below the horizon to choose from, radians, −π/2 to π/2. Default: 15 degrees.
     pub tilts: Vec<f64>,
@@ -139,7 +140,8 @@ impl MountingParams {
     /// The camera that stands at a place.
     ///
     /// # Errors
-    /// Those of [`MountingParams::poses_at`], and [`Error::InvalidParameter`] for a place that leaves open where its camera looks.
+    /// Those of [`MountingParams::poses_at`], and [`Error::InvalidParameter`] for a place that leaves open where its
+    /// camera looks.
     pub fn existing_at(&self, mount: &Mount) -> Result<CameraPose> {
         match self.poses_at(mount)?[..] {
             [pose] => Ok(pose),
@@ -152,7 +154,8 @@ impl MountingParams {
     }
 }
 
-/// Places for cameras `height` metres above the ground, in the middle of the cells of `ground`, local metres. There are none below roofs.
+/// Places for cameras `height` metres above the ground, in the middle of the cells of `ground`, local metres. There are
+/// none below roofs.
 ///
 /// # Errors
 /// Those of [`Targets::of_cells`].
@@ -164,8 +167,9 @@ pub fn ground_places(cloud: &PointCloud, ground: Ground, height: f64, control: &
         .collect())
 }
 
-/// Places for cameras `height` metres above roofs, in the middle of the cells of `ground`, local metres: where something is at least 2 m high. In a
-/// cloud that knows buildings (class 6), the highest point of the cell must be one.
+/// Places for cameras `height` metres above roofs, in the middle of the cells of `ground`, local metres: where
+/// something is at least 2 m high. In a cloud that knows buildings (class 6), the highest point of the cell must be
+/// one.
 ///
 /// # Errors
 /// Those of [`Targets::of_cells`].

@@ -28,8 +28,8 @@ impl PartialOrd for Gain {
     }
 }
 
-/// Adds the camera of `candidates` that gains most until `is_enough` or no camera gains anything. What a camera gains only shrinks as others
-/// are added, so that few gains are computed anew.
+/// Adds the camera of `candidates` that gains most until `is_enough` or no camera gains anything. What a camera gains
+/// only shrinks as others are added, so that few gains are computed anew.
 ///
 /// # Source
 /// Nemhauser, Wolsey & Fisher 1978: at least 1 − 1/e of the best possible gain. Minoux 1978: the lazy order.
@@ -64,7 +64,8 @@ fn next(selection: &CameraSelection<'_>, queue: &mut BinaryHeap<Gain>) -> Option
     }
 }
 
-/// Exchanges chosen cameras, but not the first `fixed`, for others of `candidates` as long as that gains anything: the best exchange first.
+/// Exchanges chosen cameras, but not the first `fixed`, for others of `candidates` as long as that gains anything: the
+/// best exchange first.
 pub(super) fn exchange(
     selection: &mut CameraSelection<'_>,
     fixed: usize,

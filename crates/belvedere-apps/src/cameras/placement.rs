@@ -10,7 +10,8 @@ use belvedere_data::{Error, Parameter, Result};
 
 /// Rounds of a bound before the cameras that it would choose are improved by exchanges.
 const ROUNDS: usize = 80;
-/// How often that is done again with the prices that were found. With 6 in place of 1, selections of random towns are up to 1.8 % better.
+/// How often that is done again with the prices that were found. With 6 in place of 1, selections of random towns are
+/// up to 1.8 % better.
 const RESTARTS: usize = 6;
 /// Words, targets and covered pairs that the search may look at, if no limit is given: about half a minute.
 const MAX_LOOKS: usize = 4_000_000_000;
@@ -38,7 +39,8 @@ pub struct PlacementParams {
     pub existing: Vec<usize>,
     /// How many cameras each target needs, 1 or more. A target with fewer counts in proportion. Default 1.
     pub required: u32,
-    /// Most branches of the search for the proven optimum; 0 for none. `None`, the default: by the size of the problem, about half a minute.
+    /// Most branches of the search for the proven optimum; 0 for none. `None`, the default: by the size of the problem,
+    /// about half a minute.
     pub search_limit: Option<usize>,
 }
 
@@ -61,8 +63,8 @@ impl PlacementParams {
 pub struct Placement {
     /// New cameras, those that add most first.
     pub chosen: Vec<usize>,
-    /// Share of all weight that is covered by the existing cameras, and after each new one, (chosen + 1). A target with fewer cameras than it needs counts in
-    /// proportion.
+    /// Share of all weight that is covered by the existing cameras, and after each new one, (chosen + 1). A target with
+    /// fewer cameras than it needs counts in proportion.
     pub curve: Vec<f64>,
     /// The share that no selection of as many cameras can exceed.
     pub bound: f64,
@@ -99,11 +101,12 @@ impl Placement {
     }
 }
 
-/// Chooses cameras of `table` for targets with these `weights`, (M), 0 for one that does not count. The same for any number of threads.
+/// Chooses cameras of `table` for targets with these `weights`, (M), 0 for one that does not count. The same for any
+/// number of threads.
 ///
 /// # Errors
-/// [`Error::InvalidParameter`] for weights and parameters outside their range and for a coverage that all candidates together do not reach;
-/// [`Error::LengthMismatch`]; [`Error::Cancelled`].
+/// [`Error::InvalidParameter`] for weights and parameters outside their range and for a coverage that all candidates
+/// together do not reach; [`Error::LengthMismatch`]; [`Error::Cancelled`].
 pub fn place_cameras(
     table: &CoverageTable,
     weights: &[f64],
@@ -153,7 +156,8 @@ impl<'a> PlacementSolver<'a> {
         Self { problem, existing: with(CandidateFate::In), candidates: with(CandidateFate::Open), limit, fates }
     }
 
-    /// The most that `count` new cameras cover, as far as it is found; stops early where `is_enough` of a value and a bound.
+    /// The most that `count` new cameras cover, as far as it is found; stops early where `is_enough` of a value and a
+    /// bound.
     fn best_with(
         &self,
         count: usize,
@@ -231,7 +235,8 @@ impl<'a> PlacementSolver<'a> {
         self.placement(&best.best.chosen, bound, Some(min), branches, control)
     }
 
-    /// The least number of cameras, at most `max`, whose bound reaches `goal`: found by halving, for a bound never falls with more cameras.
+    /// The least number of cameras, at most `max`, whose bound reaches `goal`: found by halving, for a bound never
+    /// falls with more cameras.
     fn min_count(&self, max: usize, goal: f64, control: &Control<'_>) -> Result<usize> {
         let (mut low, mut high) = (0, max);
         while low < high {

@@ -43,8 +43,8 @@ impl Ord for Branch {
     }
 }
 
-/// Improves `best` and lowers its bound until they meet, `limit` branches were looked at, or `is_enough` of value and bound; returns the bound and the number
-/// of branches.
+/// Improves `best` and lowers its bound until they meet, `limit` branches were looked at, or `is_enough` of value and
+/// bound; returns the bound and the number of branches.
 pub(super) fn search(
     problem: &Problem<'_>,
     fates: Vec<CandidateFate>,

@@ -19,7 +19,8 @@ pub struct CoverageParams {
     pub density: f64,
     /// How lines of sight run over the earth.
     pub earth: EarthParams,
-    /// What to make of lines of sight that nothing blocks but that are not proven: they cover if they count as visible. Default: reported, which covers nothing.
+    /// What to make of lines of sight that nothing blocks but that are not proven: they cover if they count as visible.
+    /// Default: reported, which covers nothing.
     pub unproven: UnprovenAs,
     /// The Fresnel zone that must be free too. Default: none.
     pub zone: Option<FresnelZone>,
@@ -35,7 +36,8 @@ pub struct FresnelZone {
 }
 
 impl FresnelZone {
-    /// The zone of a link with this wave, of which `share` of the radius must be free: above 0 to 1, usually [`FREE_FRESNEL_SHARE`].
+    /// The zone of a link with this wave, of which `share` of the radius must be free: above 0 to 1, usually
+    /// [`FREE_FRESNEL_SHARE`].
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] for another share.
@@ -84,7 +86,8 @@ pub struct CoverageReport {
     pub fresnel_zone_blocked: Option<usize>,
 }
 
-/// Which of `cameras` cover which of `targets`; control counts cameras. Cameras at one place should follow each other: their lines of sight are asked once.
+/// Which of `cameras` cover which of `targets`; control counts cameras. Cameras at one place should follow each other:
+/// their lines of sight are asked once.
 ///
 /// # Errors
 /// Those of [`viewshed`], and [`belvedere_data::Error::InvalidParameter`] for a table of more than 8 GiB.
@@ -113,8 +116,8 @@ pub fn coverage(
     Ok((CoverageTable::of_bits(targets.len(), bits), report))
 }
 
-/// Which of `cameras` have any of the `private` places in their picture, at whatever distance and density: one that cannot be proven hidden counts as
-/// seen. Control counts cameras.
+/// Which of `cameras` have any of the `private` places in their picture, at whatever distance and density: one that
+/// cannot be proven hidden counts as seen. Control counts cameras.
 ///
 /// # Errors
 /// Those of [`coverage`].

@@ -5,7 +5,8 @@ use crate::sky_view::SkyDirections;
 use belvedere_data::vector::dot;
 use belvedere_data::weather::Irradiance;
 
-/// For each class of clearness a1 to a4, b1 to b4, c1 to c4, d1 to d4 and e1 to e4 of Perez, Seals & Michalsky 1993, table 1.
+/// For each class of clearness a1 to a4, b1 to b4, c1 to c4, d1 to d4 and e1 to e4 of Perez, Seals & Michalsky 1993,
+/// table 1.
 const SHAPES: [[[f64; 4]; 5]; 8] = [
     [
         [1.3525, -0.2576, -0.2690, -1.4366],
@@ -71,13 +72,14 @@ const MIN_BETWEEN: f64 = 0.2;
 /// Least height of a place of the sky, since the gradation divides by it.
 const MIN_UP: f64 = 0.01;
 
-/// Radiation of each patch of `sky` on a plane that faces it, W/m², (D): its radiance times its solid angle, scaled so that a level plane gets
-/// the diffuse radiation of `irradiance` exactly. `sun` is the unit vector to the sun in the axes of the sky, `zenith` its angle from
-/// straight up, radians (apparent). A sky without a sun above the horizon is even. Put into `patches`, which is overwritten.
+/// Radiation of each patch of `sky` on a plane that faces it, W/m², (D): its radiance times its solid angle, scaled so
+/// that a level plane gets the diffuse radiation of `irradiance` exactly. `sun` is the unit vector to the sun in the
+/// axes of the sky, `zenith` its angle from straight up, radians (apparent). A sky without a sun above the horizon is
+/// even. Put into `patches`, which is overwritten.
 ///
 /// # Source
-/// Perez, Seals & Michalsky 1993, All-weather model for sky luminance distribution — preliminary configuration and validation, equations 1 to
-/// 8; the bounds of brightness are those of Delaunay 1994 in Radiance's gendaylit.
+/// Perez, Seals & Michalsky 1993, All-weather model for sky luminance distribution — preliminary configuration and
+/// validation, equations 1 to 8; the bounds of brightness are those of Delaunay 1994 in Radiance's gendaylit.
 pub fn patch_radiation(
     sky: &SkyDirections,
     irradiance: &Irradiance,
@@ -125,7 +127,8 @@ impl RadianceShape {
         Self { a: linear(a), b: linear(b), c, d, e: linear(e) }
     }
 
-    /// Radiance relative to the others at a height `up`, the sine of its elevation, and a cosine of the angle to the sun.
+    /// Radiance relative to the others at a height `up`, the sine of its elevation, and a cosine of the angle to the
+    /// sun.
     fn radiance(&self, up: f64, cosine_to_sun: f64) -> f64 {
         let cosine = cosine_to_sun.clamp(-1.0, 1.0);
         let gradation = 1.0 + self.a * (self.b / up.max(MIN_UP)).exp();

@@ -1,4 +1,5 @@
-//! What sun and sky send over a period, gathered by direction, so that cost follows distinct directions and not instants.
+//! What sun and sky send over a period, gathered by direction, so that cost follows distinct directions and not
+//! instants.
 
 use super::diffuse::{SkyModel, diffuse_parts};
 use super::patch_sky::patch_radiation;
@@ -24,12 +25,15 @@ const MAX_SUN_DIRECTIONS: f64 = 200_000.0;
 pub struct IrradianceParams {
     /// Model of the sky's diffuse radiation.
     pub sky: SkyModel,
-    /// Division of the sky into patches, 1 to 26: 145 patches for 1, 577 for 2, the default, whose sky view factor errs by 0.004.
+    /// Division of the sky into patches, 1 to 26: 145 patches for 1, 577 for 2, the default, whose sky view factor errs
+    /// by 0.004.
     pub patch_division: usize,
-    /// Side of the cells that directions of the sun are gathered in, radians, above 0 to a tenth of a circle. Default 3 degrees: against 1
-    /// degree the energy of a year on cells in Delft differs by 0.02 % on the mean and 0.9 % (RMS) of it, in a third of the time.
+    /// Side of the cells that directions of the sun are gathered in, radians, above 0 to a tenth of a circle. Default 3
+    /// degrees: against 1 degree the energy of a year on cells in Delft differs by 0.02 % on the mean and 0.9 % (RMS)
+    /// of it, in a third of the time.
     pub sun_cell: f64,
-    /// Share of the global radiation that the ground reflects, 0 to 1. Default 0.2: grass, and what PVGIS and GRASS take.
+    /// Share of the global radiation that the ground reflects, 0 to 1. Default 0.2: grass, and what PVGIS and GRASS
+    /// take.
     pub albedo: f64,
     /// What stands before a plane and hides the sky.
     pub surroundings: Surroundings,
@@ -101,7 +105,8 @@ impl IrradianceParams {
     }
 }
 
-/// Sine of the elevation below which it is night, −12°: within an hour around sunset the sun sinks to here where days are shortest.
+/// Sine of the elevation below which it is night, −12°: within an hour around sunset the sun sinks to here where days
+/// are shortest.
 const NIGHT: f64 = -0.208;
 /// Most radiation that sensors show at night, W/m².
 const MAX_AT_NIGHT: f64 = 20.0;
@@ -189,8 +194,8 @@ impl PeriodReport {
         self.sun_direction_count += other.sun_direction_count;
     }
 
-    /// Whether so much direct radiation comes with the sun below the horizon, a hundredth of all, that the place or the time zone of the
-    /// weather is probably wrong.
+    /// Whether so much direct radiation comes with the sun below the horizon, a hundredth of all, that the place or the
+    /// time zone of the weather is probably wrong.
     #[must_use]
     pub fn is_doubtful(&self) -> bool {
         self.dni_without_sun > DOUBTFUL * self.dni
@@ -200,13 +205,13 @@ impl PeriodReport {
 impl PeriodRadiation {
     /// Gathers `instants`.
     ///
-    /// Directions of the sun are gathered in cells of equal width and height; each is asked once, along its mean weighted by radiation, and
-    /// keeps the sum of radiation times direction, so that planes of any tilt get what single instants would give unless the sun crosses
-    /// their plane within the cell.
+    /// Directions of the sun are gathered in cells of equal width and height; each is asked once, along its mean
+    /// weighted by radiation, and keeps the sum of radiation times direction, so that planes of any tilt get what
+    /// single instants would give unless the sun crosses their plane within the cell.
     ///
     /// # Errors
-    /// [`Error::InvalidParameter`] for parameters outside their range and for instants that are not finite or below zero,
-    /// [`Error::NoPoints`] without instants.
+    /// [`Error::InvalidParameter`] for parameters outside their range and for instants that are not finite or below
+    /// zero, [`Error::NoPoints`] without instants.
     pub fn gather(instants: &[Instant], params: &IrradianceParams) -> Result<Self> {
         params.validate()?;
         if instants.is_empty() {
@@ -270,7 +275,8 @@ impl PeriodRadiation {
         Ok(Self { params: *params, sky, sun_directions, sun, evenly, patches, report })
     }
 
-    /// Directions that targets must be asked about, unit vectors, (D, 3): those of the sun, then the middles of the patches of the sky.
+    /// Directions that targets must be asked about, unit vectors, (D, 3): those of the sun, then the middles of the
+    /// patches of the sky.
     #[must_use]
     pub fn directions(&self) -> Vec<[f64; 3]> {
         self.sun_directions.iter().chain(&self.sky.directions).copied().collect()

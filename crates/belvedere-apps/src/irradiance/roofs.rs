@@ -82,8 +82,9 @@ pub fn above_roof(place: [f64; 3], normal: [f64; 3]) -> [f32; 3] {
     crate::targets::to_f32([0, 1, 2].map(|i| place[i] + PANEL_HEIGHT * normal[i]))
 }
 
-/// Where the horizon of each of `planes` is measured: above the middle of the cell nearest to the middle of the plane that lies in no ball of
-/// `scene`, of the nearest 16; above the nearest cell where all do. With it whether it lies in none.
+/// Where the horizon of each of `planes` is measured: above the middle of the cell nearest to the middle of the plane
+/// that lies in no ball of `scene`, of the nearest 16; above the nearest cell where all do. With it whether it lies in
+/// none.
 #[must_use]
 pub fn horizon_places(planes: &[RoofPlane], scene: &MedialScene) -> Vec<([f32; 3], bool)> {
     let of_plane = |plane: &RoofPlane| {
@@ -105,7 +106,8 @@ pub fn horizon_places(planes: &[RoofPlane], scene: &MedialScene) -> Vec<([f32; 3
 /// The energy of each of `planes` over all of `seasons` among `obstacles`. Progress counts planes.
 ///
 /// # Errors
-/// Those of [`crate::rows::fold_rows`] and [`plane_irradiation`]; [`belvedere_data::Error::NoPoints`] without any season.
+/// Those of [`crate::rows::fold_rows`] and [`plane_irradiation`]; [`belvedere_data::Error::NoPoints`] without any
+/// season.
 pub fn roof_irradiation<'a>(
     obstacles: impl Into<Obstacles<'a>>,
     planes: &[RoofPlane],

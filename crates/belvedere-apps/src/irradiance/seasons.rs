@@ -45,7 +45,8 @@ pub struct SeasonRadiation {
     pub share: f64,
 }
 
-/// A period in parts by what crowns let through; one part where they let nothing through. The report is that of all parts.
+/// A period in parts by what crowns let through; one part where they let nothing through. The report is that of all
+/// parts.
 ///
 /// # Errors
 /// Those of [`weather_instants`], [`clear_instants`] and [`PeriodRadiation::gather`], and [`Error::Cancelled`].
@@ -123,8 +124,8 @@ fn split_year(year: i16, zone: &Zone, share: impl Fn(Date) -> f64) -> Result<Vec
     Ok(spans)
 }
 
-/// The energy of `targets` over all of `seasons` among `obstacles`: (M) rows of as many sums as the seasons have groups, NaN for a target that is
-/// not asked about. Progress counts targets, [`look_count`] times each.
+/// The energy of `targets` over all of `seasons` among `obstacles`: (M) rows of as many sums as the seasons have
+/// groups, NaN for a target that is not asked about. Progress counts targets, [`look_count`] times each.
 ///
 /// # Errors
 /// Those of [`fold_rows`] and [`irradiation`]; [`Error::NoPoints`] without any season.

@@ -14,7 +14,8 @@ pub struct IsovistFigure {
 }
 
 impl Isovist {
-    /// All numbers that describe it. `grid_north` is the azimuth of grid north from the north that azimuths are counted from, radians.
+    /// All numbers that describe it. `grid_north` is the azimuth of grid north from the north that azimuths are counted
+    /// from, radians.
     pub fn figures(&self, grid_north: f64) -> impl Iterator<Item = IsovistFigure> {
         let plan = &self.plan;
         let [east, north, up] = self.drift;

@@ -14,8 +14,8 @@ const MIN_POINTS: usize = 12;
 const FIRST_FIT: usize = 12;
 /// Times that the points near a grown plane are taken anew: the first fit leans to where it began.
 const ROUNDS: usize = 2;
-/// Least share of the points within reach of a plane's points that lie on it, too: in a crown, where planes pass through by chance, a fifth
-/// do, and on a roof between others more than two thirds.
+/// Least share of the points within reach of a plane's points that lie on it, too: in a crown, where planes pass
+/// through by chance, a fifth do, and on a roof between others more than two thirds.
 const MIN_SHARE: f64 = 0.5;
 
 const FREE: u32 = u32::MAX;
@@ -55,8 +55,8 @@ pub(super) fn regions(
     Ok(regions)
 }
 
-/// Gives points that were left because their normals bend, as near ridges, to the plane next to them that they lie on: to the nearest, of
-/// planes equally near to the first.
+/// Gives points that were left because their normals bend, as near ridges, to the plane next to them that they lie on:
+/// to the nearest, of planes equally near to the first.
 fn absorb(
     points: &[[f32; 3]],
     index: &NeighborIndex,
@@ -144,7 +144,8 @@ impl Region<'_> {
         None
     }
 
-    /// The points that are found from `seed`, their plane, and the share of all points within reach of them that lie on it.
+    /// The points that are found from `seed`, their plane, and the share of all points within reach of them that lie on
+    /// it.
     fn grow(&mut self, seed: u32, start: PlaneFit) -> (Vec<u32>, Option<PlaneFit>, f64) {
         let min_cosine = self.params.angle.cos();
         #[expect(clippy::cast_possible_truncation, reason = "a length in metres")]

@@ -1,4 +1,5 @@
-//! Roofs as planes: the plane parts of what stands above the ground, with tilt, azimuth, area and the cells that solar panels would lie on.
+//! Roofs as planes: the plane parts of what stands above the ground, with tilt, azimuth, area and the cells that solar
+//! panels would lie on.
 
 mod cells;
 mod fit;
@@ -26,12 +27,14 @@ const MIN_CELL: f64 = 0.1;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct RoofPlaneParams {
-    /// Farthest that a point of a plane lies from it, metres, above 0. Default 0.12: four times the noise of airborne scans.
+    /// Farthest that a point of a plane lies from it, metres, above 0. Default 0.12: four times the noise of airborne
+    /// scans.
     pub distance: f64,
-    /// Most that the normal of a point differs from that of its plane, radians, above 0 to π/2. Default 25 degrees: wide, since normals
-    /// bend near ridges and eaves; distance decides.
+    /// Most that the normal of a point differs from that of its plane, radians, above 0 to π/2. Default 25 degrees:
+    /// wide, since normals bend near ridges and eaves; distance decides.
     pub angle: f64,
-    /// Farthest step from point to point of a plane, metres, above 0. Default 1: what two points a square metre reach over.
+    /// Farthest step from point to point of a plane, metres, above 0. Default 1: what two points a square metre reach
+    /// over.
     pub reach: f64,
     /// Steepest plane that counts, radians from level, below π/2. Default 75 degrees: walls are no roofs.
     pub max_tilt: f64,
@@ -131,18 +134,19 @@ impl RoofPlane {
     }
 }
 
-/// The plane parts of `points`, (N, 3) local metres, those of roofs being given; largest first. Points of no plane are left out, and so
-/// are planes without room for a panel.
+/// The plane parts of `points`, (N, 3) local metres, those of roofs being given; largest first. Points of no plane are
+/// left out, and so are planes without room for a panel.
 ///
-/// From points whose surroundings are flattest on, a plane takes in neighbours that lie near it and look the same way, and is fitted anew
-/// as it grows. Its area is that of the cells that hold points, less what cells at its rim reach over it.
+/// From points whose surroundings are flattest on, a plane takes in neighbours that lie near it and look the same way,
+/// and is fitted anew as it grows. Its area is that of the cells that hold points, less what cells at its rim reach
+/// over it.
 ///
 /// # Errors
 /// [`Error::InvalidParameter`] for parameters outside their range and points that are not finite; [`Error::Cancelled`].
 ///
 /// # Source
-/// Region growing with a smoothness constraint: Rabbani, van den Heuvel & Vosselman 2006. The area of a set from the number of squares it
-/// meets and the length of their outline is Steiner's formula.
+/// Region growing with a smoothness constraint: Rabbani, van den Heuvel & Vosselman 2006. The area of a set from the
+/// number of squares it meets and the length of their outline is Steiner's formula.
 pub fn roof_planes(points: &[[f32; 3]], params: &RoofPlaneParams, control: &Control<'_>) -> Result<Vec<RoofPlane>> {
     params.validate()?;
     let index = NeighborIndex::new(points, &Control::none())?;

@@ -18,9 +18,9 @@ pub struct SkyDirections {
 }
 
 impl SkyDirections {
-    /// `count` parts of equal solid angle along a spiral. Of 400 street canyons the sky view factor at 577 directions errs by 0.0041 (root
-    /// mean square), openness by 0.0036, and the sky view factor of walls by 0.0020; at 145 by 0.0118, 0.0106 and 0.0062, at 2305 by
-    /// 0.0015, 0.0013 and 0.0008.
+    /// `count` parts of equal solid angle along a spiral. Of 400 street canyons the sky view factor at 577 directions
+    /// errs by 0.0041 (root mean square), openness by 0.0036, and the sky view factor of walls by 0.0020; at 145 by
+    /// 0.0118, 0.0106 and 0.0062, at 2305 by 0.0015, 0.0013 and 0.0008.
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] for no direction and for more than 100 000.
@@ -43,8 +43,8 @@ impl SkyDirections {
         Ok(Self { directions: (0..count).map(direction).collect(), solid_angles: vec![TAU / count as f64; count] })
     }
 
-    /// The middles of Reinhart's patches, rows from the horizon up, each from north clockwise, the zenith last: the 145 of Tregenza for
-    /// `division` 1, 577 for 2, 2305 for 4.
+    /// The middles of Reinhart's patches, rows from the horizon up, each from north clockwise, the zenith last: the 145
+    /// of Tregenza for `division` 1, 577 for 2, 2305 for 4.
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] for a division that is not 1 to 26.

@@ -31,12 +31,12 @@ pub struct ParcelCell {
 }
 
 impl Parcel {
-    /// The parcel within `rings`, local metres on the map, each a rim or a hole, of any sense, the first corner repeated at the end or
-    /// not: what lies within an odd number of rings belongs to it.
+    /// The parcel within `rings`, local metres on the map, each a rim or a hole, of any sense, the first corner
+    /// repeated at the end or not: what lies within an odd number of rings belongs to it.
     ///
     /// # Errors
-    /// [`Error::InvalidParameter`] for a corner that is not finite, a ring with less than three corners, sides that cross each other, more
-    /// than 10 000 corners, and rings that enclose nothing.
+    /// [`Error::InvalidParameter`] for a corner that is not finite, a ring with less than three corners, sides that
+    /// cross each other, more than 10 000 corners, and rings that enclose nothing.
     pub fn new(rings: &[Vec<[f64; 2]>]) -> Result<Self> {
         let invalid =
             |value: String, expected| Err(Error::InvalidParameter { parameter: Parameter::Parcel, value, expected });
@@ -152,8 +152,8 @@ impl Parcel {
         self.rings.iter().flat_map(|ring| (0..ring.len()).map(|i| [ring[i], ring[(i + 1) % ring.len()]]))
     }
 
-    /// The part between two northings as trapezoids with level sides: between two heights of corners no two sides cross, so that every
-    /// second gap between them is inside.
+    /// The part between two northings as trapezoids with level sides: between two heights of corners no two sides
+    /// cross, so that every second gap between them is inside.
     fn trapezoids(&self, south: f64, north: f64) -> Vec<ConvexPolygon> {
         let mut levels: Vec<f64> =
             self.rings.iter().flatten().map(|corner| corner[1]).filter(|y| (south..north).contains(y)).collect();

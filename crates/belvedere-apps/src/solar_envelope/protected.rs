@@ -13,7 +13,8 @@ const MAX_PIECES: usize = 1_000_000;
 pub struct ProtectedPiece {
     /// One, two or three corners, local metres.
     pub corners: Vec<[f64; 3]>,
-    /// Outward unit normal of a face: suns behind it do not light it anyway. `None` for lines and points, which every sun lights.
+    /// Outward unit normal of a face: suns behind it do not light it anyway. `None` for lines and points, which every
+    /// sun lights.
     pub normal: Option<[f64; 3]>,
     /// Place that is asked whether something else shades the piece already, local metres.
     pub sample: [f32; 3],
@@ -30,13 +31,14 @@ impl ProtectedPiece {
     }
 }
 
-/// The top of a fence of `fence` metres along a line through `corners`, local metres, in pieces of at most `spacing` metres. Shadows may
-/// fall on the fence and stay below its top. Where a corner has no height (NaN), the ground below each piece's ends counts: the
-/// line follows the terrain; pieces whose ground is not known are left out, and their number returned too.
+/// The top of a fence of `fence` metres along a line through `corners`, local metres, in pieces of at most `spacing`
+/// metres. Shadows may fall on the fence and stay below its top. Where a corner has no height (NaN), the ground below
+/// each piece's ends counts: the line follows the terrain; pieces whose ground is not known are left out, and their
+/// number returned too.
 ///
 /// # Errors
-/// [`Error::InvalidParameter`] for a corner whose place on the map is not finite, a fence that is below zero or not finite, a spacing that
-/// is not above zero, and lines of more than a million pieces.
+/// [`Error::InvalidParameter`] for a corner whose place on the map is not finite, a fence that is below zero or not
+/// finite, a spacing that is not above zero, and lines of more than a million pieces.
 pub fn protected_line(
     corners: &[[f64; 3]],
     fence: f64,
@@ -98,7 +100,8 @@ pub(crate) fn check_fence(fence: f64, spacing: f64) -> Result<()> {
     Ok(())
 }
 
-/// The pieces of a surface, such as facades, each asked a little outside of itself (`lift`, metres); the source is the number of the face.
+/// The pieces of a surface, such as facades, each asked a little outside of itself (`lift`, metres); the source is the
+/// number of the face.
 #[must_use]
 pub fn protected_faces(surface: &SurfacePieces, lift: f64) -> Vec<ProtectedPiece> {
     let of_piece = |piece: &belvedere_core::query::SurfacePiece| ProtectedPiece {

@@ -7,7 +7,8 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 const DAY: f64 = 86_400.0;
-/// Longest time between two looks at the elevation, seconds: a sun that shows between two of them and is gone again rises 0.02° at most.
+/// Longest time between two looks at the elevation, seconds: a sun that shows between two of them and is gone again
+/// rises 0.02° at most.
 const SAMPLING: f64 = 300.0;
 /// Most days of a period: ten years.
 const MAX_DAYS: usize = 3700;
@@ -18,11 +19,11 @@ const MOMENT: f64 = 0.01;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct DayParams {
-    /// Length of a step, seconds, 10 to 3600; steps are made a little shorter where they do not fill the day. Default 600: shadows of edges
-    /// come and go within half a step of the truth, ±5 minutes each.
+    /// Length of a step, seconds, 10 to 3600; steps are made a little shorter where they do not fill the day. Default
+    /// 600: shadows of edges come and go within half a step of the truth, ±5 minutes each.
     pub step: f64,
-    /// Elevation above which the middle of the sun counts, radians, 0 to just below π/2, apparent unless `refraction` is left out. Default
-    /// 0: the flat horizon. Some rules leave out low suns.
+    /// Elevation above which the middle of the sun counts, radians, 0 to just below π/2, apparent unless `refraction`
+    /// is left out. Default 0: the flat horizon. Some rules leave out low suns.
     #[serde(rename = "least_elevation")]
     pub min_elevation: f64,
     /// By how much air lifts the sun. Default [`Refraction::Standard`].
@@ -54,8 +55,8 @@ pub struct SunStep {
     pub direction: [f64; 3],
 }
 
-/// A day of the sun at a site: from its midnight (half-way between two culminations) to the next, so that it holds the whole light of the
-/// place whatever clocks show, and days follow each other without gap.
+/// A day of the sun at a site: from its midnight (half-way between two culminations) to the next, so that it holds the
+/// whole light of the place whatever clocks show, and days follow each other without gap.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SunDay {
     /// What the calendar of the zone calls it at noon.
@@ -79,15 +80,16 @@ impl SunDay {
         self.steps.iter().map(|step| step.end - step.start).sum::<f64>() / 3600.0
     }
 
-    /// Time of day of an instant on the clocks of the zone, hours; below 0 or above 24 where the day of the sun reaches beyond the date.
+    /// Time of day of an instant on the clocks of the zone, hours; below 0 or above 24 where the day of the sun reaches
+    /// beyond the date.
     #[must_use]
     pub fn clock_hours(&self, unix_s: f64) -> f64 {
         (unix_s - self.clock_start) / 3600.0
     }
 }
 
-/// The day of the sun that a date names at a site. Of the true noons of the site it is the one whose mean noon comes next to 12 o'clock
-/// in the `zone`. Where `within` is given, only what lies between the two instants counts.
+/// The day of the sun that a date names at a site. Of the true noons of the site it is the one whose mean noon comes
+/// next to 12 o'clock in the `zone`. Where `within` is given, only what lies between the two instants counts.
 ///
 /// # Errors
 /// [`Error::InvalidParameter`] for parameters outside their range, and those of [`sun_position_with`].
@@ -127,8 +129,8 @@ pub enum Period {
     Between([f64; 2]),
 }
 
-/// The days of the sun of a period, 3700 at most (ten years), in the order given; of days at both ends of a span between instants only the
-/// part within it has steps.
+/// The days of the sun of a period, 3700 at most (ten years), in the order given; of days at both ends of a span
+/// between instants only the part within it has steps.
 ///
 /// # Errors
 /// [`Error::InvalidParameter`] for a period without days or that ends before it begins, and those of [`sun_day`].

@@ -8,14 +8,15 @@ use belvedere_data::vector::dot;
 use belvedere_data::{Error, Parameter, Result};
 use rayon::prelude::*;
 
-/// As [`sun_hours`], where only vegetation stands in the way of a sun an hour counting as much as crowns let through on that day:
-/// `transmissivities`, 0 to 1, has one for each day of `schedule`. `all` is the matrix of all balls, `opaque` that of those that are not
-/// vegetation, of the same targets and directions. Hours, share, the least day and the days that suffice are those of the light that
-/// arrives; first, last and longest are of the sun that nothing stands before, since light through leaves has no such hour.
+/// As [`sun_hours`], where only vegetation stands in the way of a sun an hour counting as much as crowns let through on
+/// that day: `transmissivities`, 0 to 1, has one for each day of `schedule`. `all` is the matrix of all balls, `opaque`
+/// that of those that are not vegetation, of the same targets and directions. Hours, share, the least day and the days
+/// that suffice are those of the light that arrives; first, last and longest are of the sun that nothing stands before,
+/// since light through leaves has no such hour.
 ///
 /// # Errors
-/// Those of [`sun_hours`], [`Error::LengthMismatch`] where the matrices differ or there is not a share for each day, and
-/// [`Error::InvalidParameter`] for a share outside 0 to 1.
+/// Those of [`sun_hours`], [`Error::LengthMismatch`] where the matrices differ or there is not a share for each day,
+/// and [`Error::InvalidParameter`] for a share outside 0 to 1.
 pub fn sun_hours_through_crowns(
     all: &VisibilityMatrix,
     opaque: &VisibilityMatrix,

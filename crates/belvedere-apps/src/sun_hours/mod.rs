@@ -1,4 +1,5 @@
-//! How long the sun reaches a place: hours and share of a day or of many days, first and last light, longest stretch, rules.
+//! How long the sun reaches a place: hours and share of a day or of many days, first and last light, longest stretch,
+//! rules.
 
 mod crowns;
 mod plan;
@@ -23,7 +24,8 @@ pub const RULE_IS_MET: &str = "rule is met";
 
 /// Targets handed to a thread at once.
 const CHUNK: usize = 64;
-/// By how much the hours of a day may stay below what is asked and yet suffice, hours: what f32 rounds in a sum of steps.
+/// By how much the hours of a day may stay below what is asked and yet suffice, hours: what f32 rounds in a sum of
+/// steps.
 const ROUNDING: f64 = 1e-4;
 
 /// The sun at each of many targets over the days of a [`SunSchedule`]; each array has a value for each target, (M).
@@ -33,8 +35,8 @@ pub struct SunHours {
     pub hours: Vec<f32>,
     /// Share of the hours of sun above a flat horizon, 0 to 1; NaN where the sun does not rise on any day.
     pub share: Vec<f32>,
-    /// When the sun first arrives, hours on the clocks of the zone: the earliest of the days; NaN where it never does. True to within a
-    /// step.
+    /// When the sun first arrives, hours on the clocks of the zone: the earliest of the days; NaN where it never does.
+    /// True to within a step.
     pub first: Vec<f32>,
     /// When it last leaves: the latest of the days; NaN where it never came.
     pub last: Vec<f32>,
@@ -80,12 +82,13 @@ impl Default for SunHoursParams {
     }
 }
 
-/// Sums up when the suns of `schedule` reach each target of `matrix`, whose columns from `first_direction` on are the directions of the
-/// schedule. `normals`, (M, 3) unit vectors, are given for surfaces, which a sun behind them does not light; with `None` a target is lit
-/// from all sides.
+/// Sums up when the suns of `schedule` reach each target of `matrix`, whose columns from `first_direction` on are the
+/// directions of the schedule. `normals`, (M, 3) unit vectors, are given for surfaces, which a sun behind them does not
+/// light; with `None` a target is lit from all sides.
 ///
 /// # Errors
-/// [`Error::LengthMismatch`] where matrix, schedule and normals differ, [`Error::InvalidParameter`] for hours outside their range.
+/// [`Error::LengthMismatch`] where matrix, schedule and normals differ, [`Error::InvalidParameter`] for hours outside
+/// their range.
 pub fn sun_hours(
     matrix: &VisibilityMatrix,
     schedule: &SunSchedule,

@@ -29,8 +29,8 @@ pub struct SunPlan {
 }
 
 impl SunPlan {
-    /// A plan for the suns of `period` and of `rules`, each with the name of its column and its suns. Rules whose directions are those of the
-    /// period share them.
+    /// A plan for the suns of `period` and of `rules`, each with the name of its column and its suns. Rules whose
+    /// directions are those of the period share them.
     #[must_use]
     pub fn new(period: SunSchedule, rules: Vec<(String, SunRule, SunSchedule)>) -> Self {
         let mut directions = period.directions.clone();
@@ -77,9 +77,9 @@ pub struct SunSums {
 }
 
 impl SunSums {
-    /// Adds the targets of `block`, whose columns are the directions of `plan` and which follow those added before. `normals`, (M, 3), are
-    /// those of all targets. Where `block` says what is seen without trees, `crowns` with the site say what share of the light of each
-    /// day these let through.
+    /// Adds the targets of `block`, whose columns are the directions of `plan` and which follow those added before.
+    /// `normals`, (M, 3), are those of all targets. Where `block` says what is seen without trees, `crowns` with the
+    /// site say what share of the light of each day these let through.
     ///
     /// # Errors
     /// Those of [`sun_hours`] and [`sun_hours_through_crowns`].
@@ -109,8 +109,9 @@ impl SunSums {
         Ok(())
     }
 
-    /// All figures as measures of `targets`: `sun_hours`, `sun_share`, `first_light`, `last_light`, `longest`; of several days also
-    /// `min_sun_hours` and `total_hours`; and for each rule whether it is met on all of its days, 1 or 0.
+    /// All figures as measures of `targets`: `sun_hours`, `sun_share`, `first_light`, `last_light`, `longest`; of
+    /// several days also `min_sun_hours` and `total_hours`; and for each rule whether it is met on all of its days, 1
+    /// or 0.
     #[must_use]
     pub fn into_measures(self, plan: &SunPlan, targets: &Targets) -> Vec<Measure> {
         let max = plan.period.days.iter().map(|day| day.possible_hours).fold(0.0, f64::max);
@@ -145,8 +146,8 @@ impl SunSums {
     }
 }
 
-/// The sun of `plan` at each of `targets` among `obstacles`. Where trees let light through, `site` says when they carry leaves. Progress counts
-/// targets, once or twice each.
+/// The sun of `plan` at each of `targets` among `obstacles`. Where trees let light through, `site` says when they carry
+/// leaves. Progress counts targets, once or twice each.
 ///
 /// # Errors
 /// Those of [`fold_rows`] and [`SunSums::add`], and [`Error::MissingAttribute`] for trees without a site.

@@ -70,12 +70,12 @@ impl SunRule {
         NAMED.iter().map(|named| (named.0, named.1))
     }
 
-    /// A rule by its name, or one's own, written as HOURS@DAYS with days as in [`RuleDays::parse`], and where low suns do not count, with
-    /// the least elevation in degrees behind a sign: "2@02-19..10-21>10".
+    /// A rule by its name, or one's own, written as HOURS@DAYS with days as in [`RuleDays::parse`], and where low suns
+    /// do not count, with the least elevation in degrees behind a sign: "2@02-19..10-21>10".
     ///
     /// # Errors
-    /// [`Error::InvalidParameter`] for a name that is not known, and for days, hours (above 0 to 24) and elevations (0 to below 90°) that do
-    /// not exist.
+    /// [`Error::InvalidParameter`] for a name that is not known, and for days, hours (above 0 to 24) and elevations (0
+    /// to below 90°) that do not exist.
     pub fn parse(text: &str) -> Result<Self> {
         let text = text.trim();
         if let Some(NamedRule(name, _, days, hours, degrees, description)) = NAMED.iter().find(|named| named.0 == text)
@@ -109,8 +109,8 @@ impl SunRule {
 }
 
 impl RuleDays {
-    /// Days written as MM-DD or MM-DD..MM-DD, or by a name: "equinox" (21 March, as rules have it), "shortest-day" or "winter-solstice",
-    /// "longest-day" or "summer-solstice"; `None` for what is neither.
+    /// Days written as MM-DD or MM-DD..MM-DD, or by a name: "equinox" (21 March, as rules have it), "shortest-day" or
+    /// "winter-solstice", "longest-day" or "summer-solstice"; `None` for what is neither.
     #[must_use]
     pub fn parse(text: &str) -> Option<Self> {
         match text {
@@ -125,8 +125,8 @@ impl RuleDays {
         })
     }
 
-    /// These days in a year, in the order of the calendar, of a span over the turn of the year its end first. 29 February is 28 February in
-    /// years without.
+    /// These days in a year, in the order of the calendar, of a span over the turn of the year its end first. 29
+    /// February is 28 February in years without.
     ///
     /// # Errors
     /// Those of [`Date::new`], and of the position of the sun.

@@ -1,4 +1,5 @@
-//! Stretches of light: steps that follow each other are counted at once, so that a day costs as much as the sun comes and goes.
+//! Stretches of light: steps that follow each other are counted at once, so that a day costs as much as the sun comes
+//! and goes.
 
 use crate::sun::DayOfLight;
 

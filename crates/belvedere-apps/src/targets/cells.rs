@@ -79,7 +79,8 @@ impl Targets {
     /// another cover is left out.
     ///
     /// # Errors
-    /// [`Error::InvalidParameter`] for a height that is negative or not finite, those of [`top_surface`], and [`Error::Cancelled`].
+    /// [`Error::InvalidParameter`] for a height that is negative or not finite, those of [`top_surface`], and
+    /// [`Error::Cancelled`].
     pub fn of_cells(
         cloud: &PointCloud,
         mut ground: Ground,
@@ -111,8 +112,8 @@ impl Targets {
         Ok((Self::at(cloud.frame.clone(), positions, None, TargetLayout::Cells(Box::new(ground))), report))
     }
 
-    /// Sets cells made with `params` on the meshes that were added: those on a surface on top of what is higher, cloud or mesh. Cells on the
-    /// ground inside a mesh are left out; returns how many.
+    /// Sets cells made with `params` on the meshes that were added: those on a surface on top of what is higher, cloud
+    /// or mesh. Cells on the ground inside a mesh are left out; returns how many.
     pub fn set_on_added(&mut self, added: &AddedMeshes, params: &CellParams) -> usize {
         let TargetLayout::Cells(ground) = &mut self.layout else { return 0 };
         if params.level == CellLevel::Surface {

@@ -1,15 +1,16 @@
-//! What is asked about: cells of a grid, points, pieces of a surface, places along routes and on windows, all as one type.
+//! What is asked about: cells of a grid, points, pieces of a surface, places along routes and on windows, all as one
+//! type.
 //!
 //! | targets | made by |
 //! |---|---|
-//! | cells on the ground or on what stands on it | [`Targets::ground_cells`], [`Targets::surface_cells`], [`Targets::of_cells`] |
+//! | cells on ground or obstacles | [`Targets::ground_cells`], [`Targets::surface_cells`], [`Targets::of_cells`] |
 //! | points of a cloud or of a file | [`Targets::of_points`], [`Targets::of_places`] |
 //! | faces of a mesh, in pieces | [`Targets::of_mesh`] |
 //! | places along routes | [`Targets::along_routes`] |
 //! | windows with a size, faces as windows | [`Targets::of_windows`], [`Targets::of_window_faces`] |
 //!
-//! Results are [`Measure`]s with a value for each target. A target without a position (NaN: no ground is known, or it lies inside an obstacle)
-//! has no value.
+//! Results are [`Measure`]s with a value for each target. A target without a position (NaN: no ground is known, or it
+//! lies inside an obstacle) has no value.
 
 mod cells;
 mod measure;
@@ -169,8 +170,8 @@ impl Targets {
         self.groups.iter().map(|group| group.clone().map(|row| self.weight(row)).sum()).collect()
     }
 
-    /// Mean of `values`, (M), over each group, by the weights of its targets; targets without a value do not count, and a group without any
-    /// value has NaN.
+    /// Mean of `values`, (M), over each group, by the weights of its targets; targets without a value do not count, and
+    /// a group without any value has NaN.
     #[must_use]
     pub fn group_means(&self, values: &[f32]) -> Vec<f64> {
         let mean = |group: &Range<usize>| {

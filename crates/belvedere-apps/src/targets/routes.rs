@@ -34,8 +34,8 @@ impl Route {
 }
 
 impl Targets {
-    /// The places of `routes`, one group each, weighted by the length of route that they stand for; a place without a height has no
-    /// weight.
+    /// The places of `routes`, one group each, weighted by the length of route that they stand for; a place without a
+    /// height has no weight.
     #[must_use]
     pub fn along_routes(routes: &[Route], frame: Frame) -> Self {
         let (mut positions, mut weights, mut groups) = (Vec::new(), Vec::new(), Vec::new());

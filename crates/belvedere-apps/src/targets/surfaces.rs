@@ -52,7 +52,8 @@ pub struct FaceMeans {
 }
 
 impl Targets {
-    /// The faces of `mesh`, metres, cut into pieces. Each piece is a target that weighs its area; the pieces of a face are a group.
+    /// The faces of `mesh`, metres, cut into pieces. Each piece is a target that weighs its area; the pieces of a face
+    /// are a group.
     ///
     /// # Errors
     /// Those of [`SurfacePieces::of_mesh`].
@@ -85,8 +86,8 @@ impl Targets {
 }
 
 impl FaceMeans {
-    /// The means of `values`, one for each piece of `surface`, over the faces of `mesh` and, by their area, over its objects. What has no
-    /// value does not count.
+    /// The means of `values`, one for each piece of `surface`, over the faces of `mesh` and, by their area, over its
+    /// objects. What has no value does not count.
     #[must_use]
     pub fn new(mesh: &Mesh, surface: &SurfacePieces, values: &[f32]) -> Self {
         let areas = surface.face_areas();
@@ -100,8 +101,8 @@ impl FaceMeans {
     }
 }
 
-/// Sums of `values`, one for each face of `mesh`, over its objects; over all faces where it knows no objects. Values that are not finite
-/// do not count.
+/// Sums of `values`, one for each face of `mesh`, over its objects; over all faces where it knows no objects. Values
+/// that are not finite do not count.
 pub(crate) fn object_sums(mesh: &Mesh, values: &[f64]) -> Vec<f64> {
     let is_whole = mesh.object_names.is_empty();
     let mut sums = vec![0.0; mesh.object_names.len().max(1)];

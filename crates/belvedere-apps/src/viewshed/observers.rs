@@ -15,7 +15,8 @@ pub struct Observer {
 /// Directions and distances that an observer looks at; what lies outside is not asked.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SightLimits {
-    /// From and to, radians clockwise from grid north: from 5.2 to 1 runs through north. `None`, the default: all around.
+    /// From and to, radians clockwise from grid north: from 5.2 to 1 runs through north. `None`, the default: all
+    /// around.
     pub azimuth: Option<[f64; 2]>,
     /// Least and greatest angle above the horizon, radians, −π/2 to π/2. `None`, the default: all.
     pub elevation: Option<[f64; 2]>,
@@ -81,8 +82,8 @@ impl SightLimits {
     }
 }
 
-/// Places `step` metres apart along a path through `corners`, measured on the map, local metres: its first and last corner are
-/// among them, so that the last piece may be shorter. Heights run linearly between corners; NaN stays NaN.
+/// Places `step` metres apart along a path through `corners`, measured on the map, local metres: its first and last
+/// corner are among them, so that the last piece may be shorter. Heights run linearly between corners; NaN stays NaN.
 ///
 /// # Errors
 /// [`Error::InvalidParameter`] for a step that is not above zero or gives more than a million places.

@@ -32,11 +32,13 @@ pub struct WindowView {
     pub shares: [f64; KINDS],
     /// The same, weighted by the cosine to the normal of the window, as light arrives through it; 1 together.
     pub cosine_shares: [f64; KINDS],
-    /// Mean range of the things seen, metres, by solid angle; sky and what is beyond the cloud do not count, far terrain neither. NaN where no thing is seen.
+    /// Mean range of the things seen, metres, by solid angle; sky and what is beyond the cloud do not count, far
+    /// terrain neither. NaN where no thing is seen.
     pub mean_range: f64,
     /// Half of the solid angle of the things seen is nearer than this, metres; NaN where no thing is seen.
     pub median_range: f64,
-    /// Share of the half space that is seen through space that no pulse came near to, 0 to 1, whatever is seen there; 0 where pulses are not known.
+    /// Share of the half space that is seen through space that no pulse came near to, 0 to 1, whatever is seen there; 0
+    /// where pulses are not known.
     pub unproven: f64,
 }
 
@@ -49,7 +51,8 @@ pub struct Kinds<'a> {
     pub meshes: &'a [SeenKind],
 }
 
-/// `count` directions of the upper half of the sphere as [`SkyDirections::even`] has them, and their opposites: before every window lie `count` of them, each with the same solid angle.
+/// `count` directions of the upper half of the sphere as [`SkyDirections::even`] has them, and their opposites: before
+/// every window lie `count` of them, each with the same solid angle.
 ///
 /// # Errors
 /// Those of [`SkyDirections::even`].
@@ -60,14 +63,17 @@ pub fn view_directions(count: usize) -> Result<Vec<[f64; 3]>> {
     Ok(directions)
 }
 
-/// What each of the groups of `targets`, windows with normals, sees of `scene` in `directions`, unit vectors that each have the same solid angle ([`view_directions`]): those behind the plane
-/// of a window do not count. Places of a window count by their weight. Progress counts targets.
+/// What each of the groups of `targets`, windows with normals, sees of `scene` in `directions`, unit vectors that each
+/// have the same solid angle ([`view_directions`]): those behind the plane of a window do not count. Places of a window
+/// count by their weight. Progress counts targets.
 ///
 /// # Errors
-/// [`Error::UnsupportedTargets`] for targets without normals, [`Error::LengthMismatch`] unless each target has one and each ball has a kind, and [`Error::Cancelled`].
+/// [`Error::UnsupportedTargets`] for targets without normals, [`Error::LengthMismatch`] unless each target has one and
+/// each ball has a kind, and [`Error::Cancelled`].
 ///
 /// # Source
-/// This project's own. Laser scans for the value of homes: Helbich, Jochem, Mücke & Höfle 2013, Computers, Environment and Urban Systems 39.
+/// This project's own. Laser scans for the value of homes: Helbich, Jochem, Mücke & Höfle 2013, Computers, Environment
+/// and Urban Systems 39.
 pub fn window_views(
     scene: &MedialScene,
     targets: &Targets,
@@ -101,7 +107,8 @@ pub fn window_views(
     targets.groups.par_iter().map(of_group).collect()
 }
 
-/// Leaves out the targets of a mesh that are no facade: roofs, floors, and all else nearer to level than to upright. Returns how many.
+/// Leaves out the targets of a mesh that are no facade: roofs, floors, and all else nearer to level than to upright.
+/// Returns how many.
 pub fn leave_out_level(targets: &mut Targets) -> usize {
     let Targets { positions, normals, .. } = targets;
     let is_level = |normal: &[f32; 3]| !(normal[2].abs() <= STEEPEST_NORMAL);
@@ -109,7 +116,8 @@ pub fn leave_out_level(targets: &mut Targets) -> usize {
     level.map(|(position, _)| *position = [f32::NAN; 3]).count()
 }
 
-/// Leaves out the targets that lie deep in an obstacle and have no view: a window lies on a wall, whose balls reach a little beyond it. Returns how many.
+/// Leaves out the targets that lie deep in an obstacle and have no view: a window lies on a wall, whose balls reach a
+/// little beyond it. Returns how many.
 ///
 /// # Errors
 /// [`Error::Cancelled`].
@@ -122,7 +130,8 @@ pub fn leave_out_walled_up(targets: &mut Targets, scene: &MedialScene, control: 
     Ok(report.skipped_inside_obstacle)
 }
 
-/// The figures of windows as measures: shares in percent, ranges in metres. Cosine-weighted shares have names that end in `_cos`; what is unproven is left out where `proof` says that pulses are not asked.
+/// The figures of windows as measures: shares in percent, ranges in metres. Cosine-weighted shares have names that end
+/// in `_cos`; what is unproven is left out where `proof` says that pulses are not asked.
 #[must_use]
 pub fn view_measures(views: &[WindowView], proof: Proving) -> Vec<Measure> {
     let mut measures = Vec::new();

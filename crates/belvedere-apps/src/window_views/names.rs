@@ -12,11 +12,13 @@ pub struct NamedView {
     pub windows: usize,
     /// Mean share of each of [`SeenKind::ALL`], 0 to 1; NaN where no window has a view.
     pub shares: [f64; SeenKind::ALL.len()],
-    /// Least and greatest share of vegetation and water of a window: the green and blue of the worst and of the best view.
+    /// Least and greatest share of vegetation and water of a window: the green and blue of the worst and of the best
+    /// view.
     pub green_and_blue: [f64; 2],
 }
 
-/// The mean views of `views`, (W), by the name of each, (W), and its weight, (W), such as the area of a window; in the order in which names come first.
+/// The mean views of `views`, (W), by the name of each, (W), and its weight, (W), such as the area of a window; in the
+/// order in which names come first.
 #[must_use]
 pub fn views_by_name(views: &[WindowView], names: &[&str], weights: &[f64]) -> Vec<NamedView> {
     let mut rows: std::collections::HashMap<&str, usize> = std::collections::HashMap::new();
@@ -46,7 +48,8 @@ pub fn views_by_name(views: &[WindowView], names: &[&str], weights: &[f64]) -> V
     found.into_iter().map(finished).collect()
 }
 
-/// The figures of buildings by name, percent: mean shares of each of [`SeenKind::ALL`], then the green and blue of the worst and of the best view.
+/// The figures of buildings by name, percent: mean shares of each of [`SeenKind::ALL`], then the green and blue of the
+/// worst and of the best view.
 #[must_use]
 pub fn named_columns(views: &[NamedView]) -> Vec<(&'static str, Vec<f64>)> {
     let percent = |share: &dyn Fn(&NamedView) -> f64| views.iter().map(|named| 100.0 * share(named)).collect();

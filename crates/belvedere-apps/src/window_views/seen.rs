@@ -5,7 +5,8 @@ use belvedere_data::vector::{length, sub};
 use belvedere_data::{Error, Result};
 use serde::{Deserialize, Serialize};
 
-/// How far the surface of a ball may lie from the point that it was made at, metres: rules of carving move balls by less.
+/// How far the surface of a ball may lie from the point that it was made at, metres: rules of carving move balls by
+/// less.
 const FARTHEST_FROM_POINT: f64 = 1.0;
 
 /// A kind of what is seen from a window.
@@ -25,7 +26,8 @@ pub enum SeenKind {
     /// Whatever else blocks: cars, bridges, wires, and points without a class.
     #[default]
     Other,
-    /// Nothing in the cloud blocks, but this is no sky: below the horizon, where the cloud ends and no far terrain is known.
+    /// Nothing in the cloud blocks, but this is no sky: below the horizon, where the cloud ends and no far terrain is
+    /// known.
     Beyond,
 }
 
@@ -61,7 +63,8 @@ impl SeenKind {
 pub struct ClassMeanings([Option<SeenKind>; 256]);
 
 impl Default for ClassMeanings {
-    /// Vegetation is 3 to 5, a building 6, water 9, ground 2, rails 10 and roads 11; nothing is said of 0 and 1, and all else is other.
+    /// Vegetation is 3 to 5, a building 6, water 9, ground 2, rails 10 and roads 11; nothing is said of 0 and 1, and
+    /// all else is other.
     ///
     /// # Source
     /// ASPRS LAS 1.4, table 17.
@@ -92,8 +95,10 @@ impl ClassMeanings {
     }
 }
 
-/// The kind of each of `balls`, (B): that of the class of the point that it was made at. `classes`, (N), are those of the cloud that the balls were made from; `None` where they
-/// are not known. Where a class says nothing, balls that are `vegetation` ([`SceneModel::vegetation`](belvedere_core::model::SceneModel::vegetation)) are that, and others are other.
+/// The kind of each of `balls`, (B): that of the class of the point that it was made at. `classes`, (N), are those of
+/// the cloud that the balls were made from; `None` where they are not known. Where a class says nothing, balls that are
+/// `vegetation` ([`SceneModel::vegetation`](belvedere_core::model::SceneModel::vegetation)) are that, and others are
+/// other.
 ///
 /// # Errors
 /// [`Error::LengthMismatch`] for a ball whose point has no class.
@@ -116,7 +121,8 @@ pub fn balls_seen(
     Ok(balls.source.iter().enumerate().map(kind).collect())
 }
 
-/// Whether `balls` were made from points at `positions`, (N, 3) in the same frame: most of them touch the point of their row to a metre.
+/// Whether `balls` were made from points at `positions`, (N, 3) in the same frame: most of them touch the point of
+/// their row to a metre.
 #[must_use]
 pub fn are_made_from(balls: &MedialBalls, positions: &[[f32; 3]]) -> bool {
     let touches = |row: &usize| {

@@ -1,13 +1,16 @@
 //! What each rule of carved balls is worth: the same towns and questions with all rules, and with each left out.
 //!
 //! ```sh
-//! cargo run --release -p belvedere-baselines --example carving_rules -- village,town,old-town,towers 1,2,3 [VARIANT,…] \
+//! cargo run --release -p belvedere-baselines --example carving_rules -- \
+//!   village,town,old-town,towers 1,2,3 [VARIANT,…] \
 //!     [SCANNER] [unclassified] [water] [blame]
 //! ```
 //!
-//! prints the table of docs/methods/carving.md. With a scanner of `belvedere compare --regimes`, such as `leaves` or `bare`, the town and its survey are those
-//! of the comparison, and `unclassified` takes away the classes of vegetation. With `water` pulses do not return from the ground in strips of 12 m. With `blame` it says which surfaces hide what is called visible, at which
-//! surfaces the balls sit that hide what is visible, and what share of these errors lies at edges or in space that no pulse came near. `-- figures FOLDER` draws its pictures.
+//! prints the table of docs/methods/carving.md. With a scanner of `belvedere compare --regimes`, such as `leaves` or
+//! `bare`, the town and its survey are those of the comparison, and `unclassified` takes away the classes of
+//! vegetation. With `water` pulses do not return from the ground in strips of 12 m. With `blame` it says which surfaces
+//! hide what is called visible, at which surfaces the balls sit that hide what is visible, and what share of these
+//! errors lies at edges or in space that no pulse came near. `-- figures FOLDER` draws its pictures.
 #![allow(clippy::print_stdout, reason = "an example talks")]
 
 mod figures;

@@ -64,7 +64,8 @@ pub(crate) struct Missing {
     pub(crate) water: bool,
 }
 
-/// Where lines of sight lie that are alike in truth, the wrongly answered ones and all: how many, how many at edges, along unproven lines, and at either.
+/// Where lines of sight lie that are alike in truth, the wrongly answered ones and all: how many, how many at edges,
+/// along unproven lines, and at either.
 #[derive(Clone, Copy, Default)]
 struct LineTally {
     wrong: [usize; 4],
@@ -197,8 +198,9 @@ impl CarvingSite {
         MethodInput { cloud: &self.cloud, scanner: &self.scanner, models: &[] }
     }
 
-    /// Whether a line of sight half a spacing of pulses beside this one, on any side, is blocked in truth where this one is free, or free where it is blocked. What is nearer to
-    /// the target than the surface tolerance does not count.
+    /// Whether a line of sight half a spacing of pulses beside this one, on any side, is blocked in truth where this
+    /// one is free, or free where it is blocked. What is nearer to the target than the surface tolerance does not
+    /// count.
     fn is_at_edge(&self, target: [f32; 3], towards: [f64; 3], range: f64, is_free: bool) -> bool {
         let across = unit(cross(towards, [0.0, 0.0, 1.0])).unwrap_or([1.0, 0.0, 0.0]);
         let up = cross(across, towards);
@@ -214,8 +216,8 @@ impl CarvingSite {
         })
     }
 
-    /// Prints by surface what hides what a model calls visible, and at what its balls sit that hide what is visible; and what share of both lies at edges or along lines that
-    /// the pulses of `with_pulses` do not prove.
+    /// Prints by surface what hides what a model calls visible, and at what its balls sit that hide what is visible;
+    /// and what share of both lies at edges or along lines that the pulses of `with_pulses` do not prove.
     pub(crate) fn blame(&self, model: &MedialBaseline, with_pulses: &MedialScene) -> Result<()> {
         let absolute = |p| self.absolute(p);
         let site = self.site();

@@ -29,7 +29,8 @@ pub(crate) struct ScannerResults {
     report: BuildReport,
     streets: AnswerTally,
     own: AnswerTally,
-    /// For lines in streets that are falsely blocked: what the point of the ball lies on, how many, and the mean radius.
+    /// For lines in streets that are falsely blocked: what the point of the ball lies on, how many, and the mean
+    /// radius.
     blockers: BTreeMap<&'static str, (usize, f64)>,
 }
 

@@ -4,8 +4,8 @@
 //! cargo run --release -p belvedere-baselines --example ground_scanners -- tripods,car town 110 77
 //! ```
 //!
-//! prints the table of docs/methods/scanners.md: scanners, kinds of towns, their extent in metres, seeds. A last number makes the angles
-//! between pulses so many times as large, for a quick look.
+//! prints the table of docs/methods/scanners.md: scanners, kinds of towns, their extent in metres, seeds. A last number
+//! makes the angles between pulses so many times as large, for a quick look.
 #![allow(clippy::print_stdout, reason = "an example talks")]
 
 #[path = "../../tests/all/common/flown.rs"]

@@ -98,8 +98,8 @@ impl LightTown {
         std::array::from_fn(|i| (p[i] - self.cloud.frame.origin[i]) as f32)
     }
 
-    /// About `count` cells of the ground, `height` metres above it: the truth above the exact ground, the question above the ground
-    /// found in the cloud.
+    /// About `count` cells of the ground, `height` metres above it: the truth above the exact ground, the question
+    /// above the ground found in the cloud.
     pub(crate) fn ground_cells(&self, height: f64, count: usize, light: &LightDirections) -> JudgedTargets {
         let step = (self.bare.len() / count.max(1)).max(1);
         let (mut exact, mut queried) = (Vec::new(), Vec::new());
@@ -112,8 +112,8 @@ impl LightTown {
         self.places(exact, queried, light)
     }
 
-    /// About `count` cells whose top is a roof, `height` metres above it: the truth above the exact roof at the middle of the cell, the
-    /// question above what the points tell of it.
+    /// About `count` cells whose top is a roof, `height` metres above it: the truth above the exact roof at the middle
+    /// of the cell, the question above what the points tell of it.
     pub(crate) fn roof_cells(
         &self,
         tops: CellTops,
@@ -145,7 +145,8 @@ impl LightTown {
         Ok(self.places(exact.into_iter().step_by(step).collect(), queried.into_iter().step_by(step).collect(), light))
     }
 
-    /// How high the questions of places stand above where these truly are, metres: mean, and mean of the absolute values.
+    /// How high the questions of places stand above where these truly are, metres: mean, and mean of the absolute
+    /// values.
     pub(crate) fn heights_off(places: &JudgedTargets, origin: f64) -> [f64; 2] {
         let off = |(exact, queried): (&[f64; 3], &[f32; 3])| f64::from(queried[2]) + origin - exact[2];
         let off: Vec<f64> = places.exact.iter().zip(&places.queried).map(off).collect();
@@ -240,8 +241,8 @@ impl LightTown {
         Ok(LightScore::new(places, light, &|target, column| columns[column][target] == Answer::Visible))
     }
 
-    /// What blocks wrongly: the class of the point that the ball met first belongs to and how far off it is met; and what the balls
-    /// miss: the material met first. Hours a target, the largest first.
+    /// What blocks wrongly: the class of the point that the ball met first belongs to and how far off it is met; and
+    /// what the balls miss: the material met first. Hours a target, the largest first.
     pub(crate) fn blame(
         &self,
         places: &JudgedTargets,

@@ -4,8 +4,9 @@
 //! cargo run --release -p belvedere-baselines --example sun_and_sky -- village,town,old-town 150 0.5 4000 11
 //! ```
 //!
-//! prints the table of docs/methods/sun-and-sky-accuracy.md: kinds of towns, their extent and the side of a cell in metres, targets of each kind, and
-//! the seed. Sun hours are those of 21 June at 52° N in steps of ten minutes, sky views those of 577 directions.
+//! prints the table of docs/methods/sun-and-sky-accuracy.md: kinds of towns, their extent and the side of a cell in
+//! metres, targets of each kind, and the seed. Sun hours are those of 21 June at 52° N in steps of ten minutes, sky
+//! views those of 577 directions.
 #![allow(clippy::print_stdout, reason = "an example talks")]
 
 mod judge;

@@ -31,8 +31,8 @@ pub(crate) struct LightDirections {
 }
 
 impl LightDirections {
-    /// The sun of a declination at a latitude (radians) every `minutes` of a day while it is above the horizon, and `sky_count` directions
-    /// of the sky.
+    /// The sun of a declination at a latitude (radians) every `minutes` of a day while it is above the horizon, and
+    /// `sky_count` directions of the sky.
     pub(crate) fn of_day(latitude: f64, declination: f64, minutes: f64, sky_count: usize) -> Result<Self> {
         let steps = (24.0 * 60.0 / minutes).round();
         let ((sin, cos), (sin_d, cos_d)) = (latitude.sin_cos(), declination.sin_cos());
@@ -70,8 +70,8 @@ pub(crate) struct LightScore {
     pub(crate) openness: [f64; 3],
     /// Mean hours wrongly lit and wrongly shaded by class of elevation of the sun.
     pub(crate) by_elevation: [[f64; 2]; ELEVATIONS_DEG.len()],
-    /// By what is above or beside: share of the targets, and what of the mean absolute error, of the hours wrongly lit and of the hours
-    /// wrongly shaded they make; sky view factors likewise.
+    /// By what is above or beside: share of the targets, and what of the mean absolute error, of the hours wrongly lit
+    /// and of the hours wrongly shaded they make; sky view factors likewise.
     pub(crate) by_setting: [[f64; 5]; Setting::ALL.len()],
 }
 

@@ -32,15 +32,16 @@ pub(crate) struct ViewshedTown {
     pub(crate) eyes: Vec<[f64; 3]>,
 }
 
-/// Cells by what they truly are and by what they were taken for, over all observers: unproven ones for visible in the first counts, and
-/// left out of the second.
+/// Cells by what they truly are and by what they were taken for, over all observers: unproven ones for visible in the
+/// first counts, and left out of the second.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct ViewshedScore {
     pub(crate) truly_visible: usize,
     pub(crate) truly_blocked: usize,
     pub(crate) false_visible: usize,
     pub(crate) false_blocked: usize,
-    /// Sum over observers of the cells seen by both by those seen by either, unproven ones taken for visible, and left out.
+    /// Sum over observers of the cells seen by both by those seen by either, unproven ones taken for visible, and left
+    /// out.
     pub(crate) iou_sums: [f64; 2],
     pub(crate) unproven: usize,
     pub(crate) observers: usize,

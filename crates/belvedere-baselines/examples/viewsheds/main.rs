@@ -4,7 +4,8 @@
 //! cargo run --release -p belvedere-baselines --example viewsheds -- village,town,old-town 300 0.5 10
 //! ```
 //!
-//! prints the table of docs/methods/viewshed.md: kinds of towns, their extent and the side of a cell in metres, people in streets.
+//! prints the table of docs/methods/viewshed.md: kinds of towns, their extent and the side of a cell in metres, people
+//! in streets.
 #![allow(clippy::print_stdout, reason = "an example talks")]
 
 mod judge;

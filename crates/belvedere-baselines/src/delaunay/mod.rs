@@ -34,12 +34,12 @@ pub(crate) struct Delaunay {
 }
 
 impl Delaunay {
-    /// Tetrahedralises `points`, (N, 3), finite and of f32 precision, at most [`MAX_POINTS`]. Points in one plane have no
-    /// tetrahedra. Of points at one place one is used.
+    /// Tetrahedralises `points`, (N, 3), finite and of f32 precision, at most [`MAX_POINTS`]. Points in one plane have
+    /// no tetrahedra. Of points at one place one is used.
     ///
     /// # Source
-    /// Bowyer 1981 and Watson 1981, with one corner at infinity for what lies outside; insertion in rounds: Amenta, Choi &
-    /// Rote 2003; exact signs: Shewchuk 1997.
+    /// Bowyer 1981 and Watson 1981, with one corner at infinity for what lies outside; insertion in rounds: Amenta,
+    /// Choi & Rote 2003; exact signs: Shewchuk 1997.
     pub(crate) fn new(points: Vec<[f64; 3]>) -> Self {
         let Some(first) = first_tetrahedron(&points) else {
             let at_point = vec![NONE; points.len()];

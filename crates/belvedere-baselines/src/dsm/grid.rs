@@ -35,7 +35,8 @@ impl Track {
 }
 
 impl HeightGrid {
-    /// `heights` with row 0 in the south, NaN where there is none; `corner` is the south-western corner of the first cell.
+    /// `heights` with row 0 in the south, NaN where there is none; `corner` is the south-western corner of the first
+    /// cell.
     pub(super) fn new(heights: Raster<f32>, corner: [f64; 2], cell: f64, relief: DsmSurface) -> Self {
         let base = match relief {
             DsmSurface::Columns => pooled(&heights, [heights.width(), heights.height()], 1, 1),
@@ -58,12 +59,12 @@ impl HeightGrid {
         self.corner
     }
 
-    /// Whether the surface lies above some part of `ray` within its ranges; of columns, those that hold the two ends of the
-    /// line of sight (the origin of the ray and the end of its ranges) do not count.
+    /// Whether the surface lies above some part of `ray` within its ranges; of columns, those that hold the two ends of
+    /// the line of sight (the origin of the ray and the end of its ranges) do not count.
     ///
     /// # Source
-    /// Maximum mipmaps: Tevs, Ihrke & Seidel 2008, "Maximum Mipmaps for Fast, Accurate, and Scalable Dynamic Height Field
-    /// Rendering".
+    /// Maximum mipmaps: Tevs, Ihrke & Seidel 2008, "Maximum Mipmaps for Fast, Accurate, and Scalable Dynamic Height
+    /// Field Rendering".
     pub(super) fn blocks(&self, ray: &Ray) -> bool {
         let Some(top) = self.greatest.last().and_then(|level| level.get(0, 0)) else { return false };
         let offset = if self.relief == DsmSurface::Bilinear { 0.5 } else { 0.0 };
@@ -188,7 +189,8 @@ impl HeightGrid {
     }
 }
 
-/// The greatest value of each window of `window` × `window` values, `stride` apart; windows that hold NaN are lower than all.
+/// The greatest value of each window of `window` × `window` values, `stride` apart; windows that hold NaN are lower
+/// than all.
 fn pooled(values: &Raster<f32>, size: [usize; 2], stride: usize, window: usize) -> Raster<f32> {
     let [width, height] = size;
     let mut pooled = Raster::filled(width, height, f32::NEG_INFINITY);

@@ -42,8 +42,8 @@ struct Flow {
 /// Whether each node lies on the side of the sink of a minimum cut. Nodes that can reach neither terminal do not.
 ///
 /// # Source
-/// Boykov & Kolmogorov 2004, "An Experimental Comparison of Min-Cut/Max-Flow Algorithms for Energy Minimization in Vision",
-/// section 3; time stamps and distances: Kolmogorov 2003.
+/// Boykov & Kolmogorov 2004, "An Experimental Comparison of Min-Cut/Max-Flow Algorithms for Energy Minimization in
+/// Vision", section 3; time stamps and distances: Kolmogorov 2003.
 pub(super) fn sink_side(graph: Graph) -> Vec<bool> {
     let count = graph.terminal.len();
     let mut flow = Flow {
@@ -100,8 +100,8 @@ impl Flow {
         Some((other, back))
     }
 
-    /// What can still flow away from the terminal of `tree` through a slot of `node`: out of it in the tree of the source,
-    /// into it in that of the sink.
+    /// What can still flow away from the terminal of `tree` through a slot of `node`: out of it in the tree of the
+    /// source, into it in that of the sink.
     fn residual_outward(&self, node: u32, slot: usize, (other, back): (u32, usize), tree: CutTree) -> i64 {
         match tree {
             CutTree::Sink => self.graph.capacity[other as usize][back],
@@ -109,8 +109,8 @@ impl Flow {
         }
     }
 
-    /// Lets the tree of `node` grow by its neighbours; returns the arc from the source's tree to the sink's where it meets
-    /// the other.
+    /// Lets the tree of `node` grow by its neighbours; returns the arc from the source's tree to the sink's where it
+    /// meets the other.
     fn grow(&mut self, node: u32) -> Option<(u32, usize)> {
         let n = node as usize;
         for slot in 0..4 {
@@ -153,7 +153,8 @@ impl Flow {
         }
     }
 
-    /// Calls `visit` with each node of the path from `node` to its terminal and what can still flow between it and its parent.
+    /// Calls `visit` with each node of the path from `node` to its terminal and what can still flow between it and its
+    /// parent.
     fn along_path(&self, mut node: u32, mut visit: impl FnMut(u32, i64)) {
         let tree = self.tree[node as usize];
         loop {

@@ -27,8 +27,8 @@ struct TetrahedronPath {
 }
 
 impl<'a> Votes<'a> {
-    /// Counts the votes of first returns among the points, which are the rows `kept` of the cloud: the way to each is free, what lies
-    /// just behind is solid.
+    /// Counts the votes of first returns among the points, which are the rows `kept` of the cloud: the way to each is
+    /// free, what lies just behind is solid.
     pub(super) fn new(
         delaunay: &'a Delaunay,
         survey: &MethodInput<'_>,
@@ -60,8 +60,8 @@ impl<'a> Votes<'a> {
         votes
     }
 
-    /// Capacities from each tetrahedron to its neighbours, in the order of its faces, where what comes from beyond the hull
-    /// stands at that face; and capacities from the source less those to the sink.
+    /// Capacities from each tetrahedron to its neighbours, in the order of its faces, where what comes from beyond the
+    /// hull stands at that face; and capacities from the source less those to the sink.
     pub(super) fn into_capacities(self) -> (Vec<[i64; 4]>, Vec<i64>) {
         let terminal = self.inside.iter().map(|votes| -votes.load(Ordering::Relaxed)).collect();
         let tetrahedra = &self.delaunay.tetrahedra;
@@ -108,8 +108,9 @@ impl<'a> Votes<'a> {
         weight
     }
 
-    /// Follows a way from a point and calls `leave` with each tetrahedron left, through which face, the next one with the
-    /// face of entry, and how far from the point. Returns the tetrahedron in which the way ends, or `None` beyond the hull.
+    /// Follows a way from a point and calls `leave` with each tetrahedron left, through which face, the next one with
+    /// the face of entry, and how far from the point. Returns the tetrahedron in which the way ends, or `None` beyond
+    /// the hull.
     fn walk(
         &self,
         point: usize,
@@ -171,8 +172,8 @@ impl<'a> Votes<'a> {
         None
     }
 
-    /// How far along a way the plane of a face lies through which it leaves a tetrahedron; infinite for one through which it
-    /// does not.
+    /// How far along a way the plane of a face lies through which it leaves a tetrahedron; infinite for one through
+    /// which it does not.
     fn range_of_face(&self, tetrahedron: u32, face: usize, way: &TetrahedronPath) -> f64 {
         let corners = self.delaunay.corners(tetrahedron);
         let [a, b, c]: [[f64; 3]; 3] = std::array::from_fn(|k| corners[(face + 1 + k) % 4]);

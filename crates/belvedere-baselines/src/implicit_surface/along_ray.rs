@@ -7,8 +7,8 @@ use belvedere::vector::{dot, length, sub};
 /// Halvings of the step in which the sign changes: of a step of 0.2 m they leave a millimetre.
 const HALVINGS: usize = 8;
 
-/// How near the surface the aim of a local plane must come, as a share of the step: of 0.025 and 0.1 the latter missed fewer
-/// shadows of a simulated town (2.4 instead of 2.7 % of those in free space) at equal false ones.
+/// How near the surface the aim of a local plane must come, as a share of the step: of 0.025 and 0.1 the latter missed
+/// fewer shadows of a simulated town (2.4 instead of 2.7 % of those in free space) at equal false ones.
 const AIM_TOLERANCE: f64 = 0.1;
 
 /// A sample met by a ray, and the ranges between which the ray is in its ball.
@@ -138,8 +138,8 @@ impl<'a> Crossings<'a> {
         })
     }
 
-    /// Where the local plane of either end of a step meets the ray, if that is within the step and nearly on the surface: at ridges
-    /// and corners, signs that agree along the ray cannot tell the two sides apart.
+    /// Where the local plane of either end of a step meets the ray, if that is within the step and nearly on the
+    /// surface: at ridges and corners, signs that agree along the ray cannot tell the two sides apart.
     fn aimed_at(&self, near: Value, far: Value) -> Option<Value> {
         let tolerance = AIM_TOLERANCE * (far.range - near.range);
         [near, far].into_iter().find_map(|end| {

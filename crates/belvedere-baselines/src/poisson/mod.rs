@@ -18,30 +18,31 @@ use level::{GridLevel, LevelSolver};
 
 /// How a [`Poisson`] surface is made and traced.
 ///
-/// Chosen on the towns of [`GraphCutParams`](crate::graph_cut::GraphCutParams), with the mean error named there; single changes on seed 7
-/// alone.
+/// Chosen on the towns of [`GraphCutParams`](crate::graph_cut::GraphCutParams), with the mean error named there; single
+/// changes on seed 7 alone.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PoissonParams {
-    /// Neighbours whose principal components give the normals, 3 to 256. Default 48: mean errors are 7.0 % at 24, 6.6 % at 32 and
-    /// 6.5 % at 48.
+    /// Neighbours whose principal components give the normals, 3 to 256. Default 48: mean errors are 7.0 % at 24, 6.6 %
+    /// at 32 and 6.5 % at 48.
     pub normal_neighbors: usize,
-    /// Which neighbour's distance the area of a point follows from, 1 to 256. Default 6; 12 changes the mean error by less than
-    /// 0.1 points.
+    /// Which neighbour's distance the area of a point follows from, 1 to 256. Default 6; 12 changes the mean error by
+    /// less than 0.1 points.
     pub area_neighbor: usize,
-    /// Side of the finest cells as a multiple of the median spacing of the points, 0.25 or more. Default 0.7: with 32 neighbours mean
-    /// errors are 7.0 % at 1, 6.6 % at 0.7 and 6.5 % at 0.5, which takes twice the time.
+    /// Side of the finest cells as a multiple of the median spacing of the points, 0.25 or more. Default 0.7: with 32
+    /// neighbours mean errors are 7.0 % at 1, 6.6 % at 0.7 and 6.5 % at 0.5, which takes twice the time.
     pub cell_in_spacings: f64,
-    /// Side of the finest cells at least, metres, above 0. Default 0.1, as for the graph cut: scans on the ground have points so near to each
-    /// other that the surface between sparse ones would have too many cells.
+    /// Side of the finest cells at least, metres, above 0. Default 0.1, as for the graph cut: scans on the ground have
+    /// points so near to each other that the surface between sparse ones would have too many cells.
     pub min_cell: f64,
-    /// Weight of the points against that of the normals, 0 or more. Default 1; 0.5 has the same mean error with 32 neighbours, and the 4
-    /// of the source one that is 0.2 points higher with 16.
+    /// Weight of the points against that of the normals, 0 or more. Default 1; 0.5 has the same mean error with 32
+    /// neighbours, and the 4 of the source one that is 0.2 points higher with 16.
     pub screening: f64,
-    /// The surface ends where it lies farther than this from the nearest point, metres, above 0. Default 1.5: with 16 neighbours, cells
-    /// of 1 and a weight of 4, mean errors are 18.7 % at 0.5, 8.6 % at 1, 7.7 % at 1.5, 8.0 % at 2 and at 4.
+    /// The surface ends where it lies farther than this from the nearest point, metres, above 0. Default 1.5: with 16
+    /// neighbours, cells of 1 and a weight of 4, mean errors are 18.7 % at 0.5, 8.6 % at 1, 7.7 % at 1.5, 8.0 % at 2
+    /// and at 4.
     pub trim: f64,
-    /// A triangle blocks only if it lies farther than this from the target, metres, 0 or more. Default 0.5, as for splats; 0.3 changes
-    /// the mean error by 0.1 points.
+    /// A triangle blocks only if it lies farther than this from the target, metres, 0 or more. Default 0.5, as for
+    /// splats; 0.3 changes the mean error by 0.1 points.
     pub clearance: f64,
 }
 
@@ -59,16 +60,16 @@ impl Default for PoissonParams {
     }
 }
 
-/// The surface on which the indicator function χ has its mean over the points. χ minimises ∫ |∇χ − V|² and, over the points, χ² by
-/// their area, where V is the field of outward normals. The surface blocks from both sides.
+/// The surface on which the indicator function χ has its mean over the points. χ minimises ∫ |∇χ − V|² and, over the
+/// points, χ² by their area, where V is the field of outward normals. The surface blocks from both sides.
 ///
-/// Points whose neighbours determine no plane have no part in it. Signs of normals are those towards the scanner where it is known, else
-/// upward or, of steep points, away from what is high around them.
+/// Points whose neighbours determine no plane have no part in it. Signs of normals are those towards the scanner where
+/// it is known, else upward or, of steep points, away from what is high around them.
 ///
 /// # Source
-/// Kazhdan & Hoppe 2013, "Screened Poisson Surface Reconstruction", section 3, solved from coarse to fine as in Kazhdan, Bolitho & Hoppe
-/// 2006, section 4. Ours takes finite differences on grids in place of B-splines on an octree, and triangles from surface
-/// nets (Gibson 1998).
+/// Kazhdan & Hoppe 2013, "Screened Poisson Surface Reconstruction", section 3, solved from coarse to fine as in
+/// Kazhdan, Bolitho & Hoppe 2006, section 4. Ours takes finite differences on grids in place of B-splines on an octree,
+/// and triangles from surface nets (Gibson 1998).
 pub struct Poisson {
     rays: MeshRays,
     left_out: usize,
@@ -88,8 +89,9 @@ impl Poisson {
     /// Reconstructs the surface of the cloud of `survey`, whose scanner positions it uses.
     ///
     /// # Errors
-    /// [`Error::InvalidParameter`] for a parameter out of its range, for a position that is not finite and for a cloud that is a
-    /// million times as wide as its points are apart, [`Error::LengthMismatch`] for a column of another length.
+    /// [`Error::InvalidParameter`] for a parameter out of its range, for a position that is not finite and for a cloud
+    /// that is a million times as wide as its points are apart, [`Error::LengthMismatch`] for a column of another
+    /// length.
     pub fn new(survey: &MethodInput<'_>, params: &PoissonParams) -> Result<Self> {
         check_neighbor("neighbour that gives the area of a point", params.area_neighbor)?;
         check_min("cell in spacings", params.cell_in_spacings, 0.25, "finite and at least 0.25")?;

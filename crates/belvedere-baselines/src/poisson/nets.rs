@@ -1,4 +1,5 @@
-//! Triangles where a function on a grid crosses a value: a vertex in each cell that the surface crosses, a square across each edge.
+//! Triangles where a function on a grid crosses a value: a vertex in each cell that the surface crosses, a square
+//! across each edge.
 
 use super::OrientedSample;
 use super::level::{GridLevel, key, node, value};
@@ -13,11 +14,12 @@ struct Crossed {
     below: u8,
 }
 
-/// The triangles where the levels have the value `iso`, found from the cells of the samples on, as far as `is_near` holds.
+/// The triangles where the levels have the value `iso`, found from the cells of the samples on, as far as `is_near`
+/// holds.
 ///
 /// # Source
-/// Gibson 1998, "Constrained Elastic Surface Nets", section 3, with vertices at the mean of the crossings of their cell; from cell to
-/// cell as in Bloomenthal 1988.
+/// Gibson 1998, "Constrained Elastic Surface Nets", section 3, with vertices at the mean of the crossings of their
+/// cell; from cell to cell as in Bloomenthal 1988.
 pub(super) fn triangles(
     levels: &[GridLevel],
     samples: &[OrientedSample],
@@ -101,8 +103,8 @@ impl Crossed {
         })
     }
 
-    /// Two triangles across each edge at the first corner that the surface crosses, between the vertices of the four cells
-    /// around it.
+    /// Two triangles across each edge at the first corner that the surface crosses, between the vertices of the four
+    /// cells around it.
     fn squares(&self, vertices: &HashMap<u64, [f64; 3]>) -> impl Iterator<Item = [[f64; 3]; 3]> {
         let first = node(self.cell);
         (0..3)

@@ -55,8 +55,8 @@ impl SurfaceSplat {
 /// One splat per position, (N, 3) local metres.
 ///
 /// # Errors
-/// [`Error::InvalidParameter`](belvedere::Error::InvalidParameter) for a number of neighbours out of its range or a position
-/// that is not finite.
+/// [`Error::InvalidParameter`](belvedere::Error::InvalidParameter) for a number of neighbours out of its range or a
+/// position that is not finite.
 pub(super) fn make(positions: &[[f32; 3]], params: &SplatParams) -> Result<Vec<SurfaceSplat>> {
     let index = NeighborIndex::new(positions, &Control::none())?;
     let normals = estimate(positions, &index, Neighborhood::Fixed { k: params.normal_neighbors }, &Control::none())?;
@@ -97,8 +97,8 @@ fn any_tangent(normal: [f64; 3]) -> Option<[f64; 3]> {
     unit(cross(normal, axis))
 }
 
-/// Direction in which points of a plane spread most, radians from the first axis, and how many times farther they spread that
-/// way than across (a ratio of standard deviations; infinite on a line).
+/// Direction in which points of a plane spread most, radians from the first axis, and how many times farther they
+/// spread that way than across (a ratio of standard deviations; infinite on a line).
 fn spread(points: &[[f64; 2]]) -> (f64, f64) {
     let count = points.len().max(1) as f64;
     let mean = [0, 1].map(|i| points.iter().map(|p| p[i]).sum::<f64>() / count);

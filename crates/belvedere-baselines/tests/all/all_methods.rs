@@ -1,4 +1,5 @@
-//! What every method must keep: its viewers agree with each other, threads and more obstacles change nothing for the worse.
+//! What every method must keep: its viewers agree with each other, threads and more obstacles change nothing for the
+//! worse.
 
 use crate::common::{blocked, count_true, scan, small_town, targets};
 use belvedere::query::{Answer, Viewer, Visibility};
@@ -128,8 +129,8 @@ fn adding_obstacles_never_reveals() {
     let (scene, mesh) = small_town();
     let cloud = scan(&scene);
     let targets = targets(&cloud, 3000, 5);
-    // as a second obstacle a copy of the town, 128 m up: the neighbours of each point stay the same, so that what is made of
-    // them does too
+    // as a second obstacle a copy of the town, 128 m up: the neighbours of each point stay the same, so that what is
+    // made of them does too
     let mut more = cloud.clone();
     more.positions.extend(cloud.positions.iter().map(|p| [p[0], p[1], p[2] + 128.0]));
     more.attributes.return_number = None;

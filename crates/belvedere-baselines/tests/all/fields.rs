@@ -115,8 +115,8 @@ fn a_bilinear_dsm_blocks_where_small_steps_along_the_line_dip_below_it() {
                 p[2] - surface(p[0], p[1])
             })
             .fold(f64::INFINITY, f64::min);
-        // slopes reach 9 m in 0.5 m: within a step of 2 mm the surface falls by 4 cm at most, but between two samples only
-        // by half of it
+        // slopes reach 9 m in 0.5 m: within a step of 2 mm the surface falls by 4 cm at most, but between two samples
+        // only by half of it
         if min.abs() < 0.03 {
             close += 1;
             continue;

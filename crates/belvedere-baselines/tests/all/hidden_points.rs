@@ -108,8 +108,8 @@ fn a_roof_hides_what_is_below_it() {
     let ground_count = positions.len();
     positions.extend(roof);
     let cloud = cloud_of(positions);
-    // flipped level ground stands out by R t²/L² between points t = 0.25 m apart: with L = 5.7 km and R = 10^5 L that is
-    // 1.1 m, so roof points 5 m up hide what is between them
+    // flipped level ground stands out by R t²/L² between points t = 0.25 m apart: with L = 5.7 km and R = 10^5 L that
+    // is 1.1 m, so roof points 5 m up hide what is between them
     let method = method(&cloud, with_exponent(5.0));
     let found = seen(&method, Viewer::Direction([0.0, 0.0, 1.0]), &cloud.positions);
     for (p, found) in cloud.positions.iter().zip(&found).take(ground_count) {

@@ -88,7 +88,8 @@ fn shares_of_buildings_that_are_seen_are_those_of_the_mesh() {
     }
 }
 
-/// Greatest false-visible and false-blocked share and error of the share of a building: half as much again as was measured.
+/// Greatest false-visible and false-blocked share and error of the share of a building: half as much again as was
+/// measured.
 fn bars(name: &str, kind: &str) -> [f64; 3] {
     match (name, kind) {
         ("facades", "street") => [0.046, 0.21, 0.11],
@@ -98,7 +99,8 @@ fn bars(name: &str, kind: &str) -> [f64; 3] {
     }
 }
 
-/// Adds what the balls make of the faces turned to `viewer`, against the rays of the mesh; shares are of buildings with 10 m² turned to it.
+/// Adds what the balls make of the faces turned to `viewer`, against the rays of the mesh; shares are of buildings with
+/// 10 m² turned to it.
 fn judge(
     balls: &MedialScene,
     truth: &Truth,

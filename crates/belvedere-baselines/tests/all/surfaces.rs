@@ -66,8 +66,8 @@ fn splats_of_a_grid_have_the_radius_and_shape_of_its_spacing() {
         assert!((length(axis) - expected).abs() < 1e-7 && axis[2] == 0.0, "{axis:?}");
     }
     assert!((f64::from(radius) - expected).abs() < 1e-7);
-    // rows twice as far apart as points within them: the ellipse reaches farther across the rows than along them, and keeps
-    // the area of the disc
+    // rows twice as far apart as points within them: the ellipse reaches farther across the rows than along them, and
+    // keeps the area of the disc
     let rows = grid(12, 1.0, 0.25);
     let [disc, ellipse] = [SplatParams::surfels(), SplatParams::object_space()].map(|params| middle(&rows, &params).1);
     let area = |[u, v]: [[f32; 3]; 2]| length(cross(u.map(f64::from), v.map(f64::from)).map(|v| v as f32));
@@ -140,8 +140,8 @@ fn rays_meet_the_implicit_surface_where_the_sphere_is() {
                 if signs == NormalSigns::Outward && hit[2].abs() < 2.0 {
                     continue;
                 }
-                // over a spacing the sphere falls away by spacing² / 2 radius, a fiftieth of the spacing; means over a support, the
-                // plane of 16 neighbours and the bisection err by a few times that
+                // over a spacing the sphere falls away by spacing² / 2 radius, a fiftieth of the spacing; means over a
+                // support, the plane of 16 neighbours and the bisection err by a few times that
                 assert!(height.abs() < 0.1 * spacing, "{height} of {spacing} at {hit:?}");
             } else {
                 panic!("{signs:?}: the ray to {aim:?} from {from:?} met nothing");

@@ -1,5 +1,5 @@
-//! What it costs carved balls that the scanner is known badly, or not at all, and that normals come with the wrong sign: on a
-//! simulated town, against its exact mesh.
+//! What it costs carved balls that the scanner is known badly, or not at all, and that normals come with the wrong
+//! sign: on a simulated town, against its exact mesh.
 
 use crate::common::place::TownWithLight;
 use belvedere::control::Control;
@@ -14,8 +14,8 @@ use belvedere_baselines::medial::DEPTH_BIAS;
 use belvedere_scenes::Preset;
 
 impl TownWithLight {
-    /// Percent of answers that are right, balanced over lit and shaded places, mean over the suns, for a scanner at `scanner` and
-    /// normals that `turn` has had its way with after pulses gave them their signs.
+    /// Percent of answers that are right, balanced over lit and shaded places, mean over the suns, for a scanner at
+    /// `scanner` and normals that `turn` has had its way with after pulses gave them their signs.
     fn score(
         &self,
         scanner: &[[f32; 3]],

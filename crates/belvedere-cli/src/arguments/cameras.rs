@@ -22,7 +22,8 @@ pub(crate) struct CamerasArguments {
     pub(crate) camera_height: Option<f64>,
     /// Cameras that exist already and stay, from a table (.csv) or GeoJSON; they do not count towards --count
     ///
-    /// The columns are those of --candidates. Each row needs heading and tilt, unless the cameras turn or see all around.
+    /// The columns are those of --candidates. Each row needs heading and tilt, unless the cameras turn or see all
+    /// around.
     #[arg(long, value_name = "FILE", help_heading = "Candidates (one of)")]
     pub(crate) existing: Option<PathBuf>,
     #[command(flatten)]
@@ -34,7 +35,8 @@ pub(crate) struct CamerasArguments {
     /// A target with fewer cameras counts in proportion.
     #[arg(long = "per-target", value_name = "N", default_value_t = 1, value_parser = at_most::<1000>, help_heading = "Goal (one of)")]
     pub(crate) required: usize,
-    /// Maximum number of branches in the search for the proven optimum; 0 for no search [default: for about half a minute]
+    /// Maximum number of branches in the search for the proven optimum; 0 for no search
+    /// [default: for about half a minute]
     #[arg(long, value_name = "N", help_heading = "Goal (one of)")]
     pub(crate) search_limit: Option<usize>,
     #[command(flatten)]
@@ -43,7 +45,8 @@ pub(crate) struct CamerasArguments {
     pub(crate) earth: Earth,
     #[command(flatten)]
     pub(crate) radio: Radio,
-    /// Percentage of the radius of the first Fresnel zone that must be free, above 0 to 100 [default: 60, as ITU-R P.530]
+    /// Percentage of the radius of the first Fresnel zone that must be free, above 0 to 100
+    /// [default: 60, as ITU-R P.530]
     #[arg(long, value_name = "PERCENT", requires = "frequency", value_parser = above_zero::<f64>, allow_negative_numbers = true, help_heading = "Lines of sight")]
     pub(crate) fresnel_percent: Option<f64>,
     #[command(flatten)]
@@ -52,8 +55,9 @@ pub(crate) struct CamerasArguments {
     pub(crate) north: NorthArguments,
     /// Cameras (.geojson), cameras per cell (.tif), map (.png) or a table of the targets (.csv); repeatable
     ///
-    /// .geojson: a point in WGS 84 for each camera with its pose and what it adds; it can be used as --existing. .tif: the number of cameras that cover
-    /// each cell, 0 for blind spots, nodata 65535. .csv: a row for each target with the number of cameras that cover it and their numbers.
+    /// .geojson: a point in WGS 84 for each camera with its pose and what it adds; it can be used as --existing. .tif:
+    /// the number of cameras that cover each cell, 0 for blind spots, nodata 65535. .csv: a row for each target with
+    /// the number of cameras that cover it and their numbers.
     #[arg(short, long, value_name = "OUT", required = true, help_heading = "Result")]
     pub(crate) output: Vec<PathBuf>,
     /// Also write the cells that each camera covers as areas in WGS 84 (.geojson)
@@ -72,8 +76,8 @@ pub(crate) struct CamerasArguments {
 pub(crate) struct CandidatesArguments {
     /// Places for cameras from a table with columns x and y (.csv) or from GeoJSON, whose lines are walked along
     ///
-    /// Columns or properties z, height, heading, tilt, fov, min_distance, max_distance, azimuth_from, azimuth_to, elevation_from and elevation_to override the flags. The
-    /// last four are the range of a camera that turns.
+    /// Columns or properties z, height, heading, tilt, fov, min_distance, max_distance, azimuth_from, azimuth_to,
+    /// elevation_from and elevation_to override the flags. The last four are the range of a camera that turns.
     #[arg(long = "candidates", value_name = "FILE")]
     pub(crate) file: Option<PathBuf>,
     /// Places for cameras above the ground, in the middle of each cell of this side in metres
@@ -100,7 +104,8 @@ pub(crate) struct CameraLensArguments {
     /// Pixels across the picture [default: 1920]
     #[arg(long, value_name = "N", value_parser = at_least_one)]
     pub(crate) pixels: Option<usize>,
-    /// Required pixels per metre: a number, a level such as identify, or none [default: detect; none where --fov is 180 or more]
+    /// Required pixels per metre: a number, a level such as identify, or none
+    /// [default: detect; none where --fov is 180 or more]
     ///
     /// The levels of EN 62676-4 are monitor (12.5), detect (25), observe (62.5), recognise (125) and identify (250).
     #[arg(long, value_name = "LEVEL")]
@@ -122,7 +127,8 @@ pub(crate) struct CameraLensArguments {
     pub(crate) min_distance: Option<f32>,
     /// Places that no camera may see: points (.csv) or polygons (.geojson)
     ///
-    /// Cells of polygons and points without Z are --target-height above the ground. A heading is not used if any of these places could be in its picture, at any distance.
+    /// Cells of polygons and points without Z are --target-height above the ground. A heading is not used if any of
+    /// these places could be in its picture, at any distance.
     #[arg(long, value_name = "FILE")]
     pub(crate) private: Option<PathBuf>,
 }
@@ -144,8 +150,9 @@ pub(crate) struct CameraGoalArguments {
 pub(crate) struct CameraTargetsArguments {
     /// Polygons with cells (.geojson), points (.csv .geojson or a cloud), or a mesh (.obj .json .ply with faces)
     ///
-    /// Column or property weight: how much each target counts; a cell in several polygons has the largest. Surfaces with normals (meshes, points of a cloud) count
-    /// with the pixels per metre at the angle at which they are seen, and not from behind.
+    /// Column or property weight: how much each target counts; a cell in several polygons has the largest. Surfaces
+    /// with normals (meshes, points of a cloud) count with the pixels per metre at the angle at which they are seen,
+    /// and not from behind.
     #[arg(long, value_name = "FILE")]
     pub(crate) targets: Option<PathBuf>,
     /// Side of a cell in metres [default: 2, doubled until there are at most 40000]
@@ -159,8 +166,8 @@ pub(crate) struct CameraTargetsArguments {
     pub(crate) spacing: Option<f64>,
     /// Source of the ground heights: auto, classed, found or cloud=FILE
     ///
-    /// auto: ground points (class 2) if the cloud has them, else found. classed: class 2 only. found: detected from the shape of the cloud.
-    /// cloud=FILE: the ground of another cloud, which a ball file needs.
+    /// auto: ground points (class 2) if the cloud has them, else found. classed: class 2 only. found: detected from the
+    /// shape of the cloud. cloud=FILE: the ground of another cloud, which a ball file needs.
     #[arg(long, value_name = "HOW", default_value = "auto")]
     pub(crate) ground: GroundChoice,
 }

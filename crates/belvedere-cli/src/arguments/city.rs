@@ -32,7 +32,8 @@ pub(crate) enum CityStep {
 pub(crate) struct CityPlan {
     /// Tiles of the survey (.las .laz .copc.laz), a catalogue of tiles (.vpc), or a folder of tiles
     ///
-    /// Tiles may lie on a web server (https://...): only the parts near each tile of the plan are transferred, after one look at the whole.
+    /// Tiles may lie on a web server (https://...): only the parts near each tile of the plan are transferred, after
+    /// one look at the whole.
     #[arg(value_name = "CLOUD", required = true)]
     pub(crate) clouds: Vec<PathBuf>,
     /// Coordinate reference system, as EPSG:CODE or WKT [default: that of the files]
@@ -51,7 +52,8 @@ pub(crate) struct CityPlan {
     pub(crate) sun_hours: bool,
     /// Map where a daylight rule is met; repeatable
     ///
-    /// nl-light, nl-strict, the-hague, bre-equinox, or your own as HOURS@DAYS, such as 1.5@03-21, 1@shortest-day, and with a minimum sun elevation of 10 degrees 2@02-19..10-21>10.
+    /// nl-light, nl-strict, the-hague, bre-equinox, or your own as HOURS@DAYS, such as 1.5@03-21, 1@shortest-day, and
+    /// with a minimum sun elevation of 10 degrees 2@02-19..10-21>10.
     #[arg(long, value_name = "RULE", help_heading = "Questions")]
     pub(crate) rule: Vec<String>,
     /// Map the solar energy of a year in kWh for each square metre, with --weather or --clear-sky
@@ -62,7 +64,8 @@ pub(crate) struct CityPlan {
     pub(crate) sky_view: bool,
     /// Map what an observer sees who stands at a place in file coordinates; repeatable
     ///
-    /// Without Z, an observer is --observer-height above the ground. Of several observers, the map has the number that see each cell.
+    /// Without Z, an observer is --observer-height above the ground. Of several observers, the map has the number that
+    /// see each cell.
     #[arg(long = "observer", value_name = "X,Y[,Z]", allow_hyphen_values = true, help_heading = "Questions")]
     pub(crate) observers: Vec<MapPosition>,
     /// Height of observers above the ground in metres [default: 1.7]
@@ -113,8 +116,9 @@ pub(crate) struct CityPlan {
     pub(crate) add: Vec<PathBuf>,
     /// Clear what stands in an area: POLYGON.geojson, X0,Y0,X1,Y1 or class:N; repeatable
     ///
-    /// Polygons, a box from the lowest to the highest x and y, or the points of a class, in the coordinates of the survey. What goes is as in other commands (belvedere shadow
-    /// --help). It comes before --add, so that a building can replace another.
+    /// Polygons, a box from the lowest to the highest x and y, or the points of a class, in the coordinates of the
+    /// survey. What goes is as in other commands (belvedere shadow --help). It comes before --add, so that a building
+    /// can replace another.
     #[arg(long, value_name = "AREA", help_heading = "Plan", allow_hyphen_values = true)]
     pub(crate) clear: Vec<AreaChoice>,
     #[command(flatten)]

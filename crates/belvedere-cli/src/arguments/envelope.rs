@@ -68,8 +68,8 @@ pub(crate) struct EnvelopeArguments {
     pub(crate) parcel: CornersArgument,
     /// Lines, polygon outlines, points (GeoJSON) or facades that stay free of new shadows; repeatable
     ///
-    /// Also a line from a table with columns x, y and optionally z (.csv) or as "X,Y X,Y ..."; or facades as a mesh (.obj .json .ply
-    /// with faces).
+    /// Also a line from a table with columns x, y and optionally z (.csv) or as "X,Y X,Y ..."; or facades as a mesh
+    /// (.obj .json .ply with faces).
     #[arg(long, value_name = "FILE|CORNERS", required = true, allow_hyphen_values = true, help_heading = "Land")]
     pub(crate) protect: Vec<CornersArgument>,
     /// Height of a fence on protected lines and points, in metres; shadows may reach its top [default: 0]
@@ -88,8 +88,8 @@ pub(crate) struct EnvelopeArguments {
     pub(crate) spacing: Option<f64>,
     /// Source of the ground heights: auto, classed, found or cloud=FILE
     ///
-    /// auto: ground points (class 2) if the cloud has them, else found. classed: class 2 only. found: detected from the shape of the cloud.
-    /// cloud=FILE: the ground of another cloud, which a ball file needs.
+    /// auto: ground points (class 2) if the cloud has them, else found. classed: class 2 only. found: detected from the
+    /// shape of the cloud. cloud=FILE: the ground of another cloud, which a ball file needs.
     #[arg(long, value_name = "HOW", default_value = "auto", help_heading = "Land")]
     pub(crate) ground: GroundChoice,
     /// Ignore parts that are already in shadow of the scene, including buildings and trees on the parcel
@@ -113,7 +113,8 @@ pub(crate) struct EnvelopeArguments {
     pub(crate) shell: Shell,
     /// Heights above ground (.tif .npy), a map (.png), or closed solids (.ply .obj); repeatable
     ///
-    /// .tif: nodata -9999 outside the parcel and where no sun limits the height. .npy: NaN outside, infinity where nothing limits.
+    /// .tif: nodata -9999 outside the parcel and where no sun limits the height. .npy: NaN outside, infinity where
+    /// nothing limits.
     #[arg(short, long, value_name = "OUT", required = true, help_heading = "Result")]
     pub(crate) output: Vec<PathBuf>,
     /// Also write the top of the envelope in the vertical system of the cloud (.tif .npy)
@@ -142,8 +143,8 @@ pub(crate) struct ComfortArguments {
     pub(crate) spacing: Option<f64>,
     /// Source of the ground heights: auto, classed, found or cloud=FILE
     ///
-    /// auto: ground points (class 2) if the cloud has them, else found. classed: class 2 only. found: detected from the shape of the cloud.
-    /// cloud=FILE: the ground of another cloud, which a ball file needs.
+    /// auto: ground points (class 2) if the cloud has them, else found. classed: class 2 only. found: detected from the
+    /// shape of the cloud. cloud=FILE: the ground of another cloud, which a ball file needs.
     #[arg(long, value_name = "HOW", default_value = "auto", help_heading = "Targets")]
     pub(crate) ground: GroundChoice,
     #[command(flatten)]
@@ -182,8 +183,8 @@ pub(crate) struct ComfortPlaces {
     pub(crate) route: Option<CornersArgument>,
     /// Windows: a table (.csv), or the faces of a mesh (.obj .json .ply)
     ///
-    /// The table has the columns x, y, z of the middle and azimuth in degrees from true north (see --grid-north). It may have tilt (90: vertical),
-    /// width and height in metres.
+    /// The table has the columns x, y, z of the middle and azimuth in degrees from true north (see --grid-north). It
+    /// may have tilt (90: vertical), width and height in metres.
     #[arg(long, value_name = "FILE")]
     pub(crate) windows: Option<PathBuf>,
 }

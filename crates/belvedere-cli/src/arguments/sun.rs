@@ -13,13 +13,15 @@ pub(crate) struct SunPlaceArguments {
     /// Latitude and longitude of the scene in degrees, north and east positive [default: from its reference system]
     #[arg(long, value_name = "LAT,LON", value_parser = location, allow_hyphen_values = true)]
     pub(crate) location: Option<Numbers<2>>,
-    /// Time zone of times and days, such as Europe/Amsterdam or +02:00 [default: that of a given time, else mean solar time]
+    /// Time zone of times and days, such as Europe/Amsterdam or +02:00
+    /// [default: that of a given time, else mean solar time]
     #[arg(long, value_name = "ZONE", allow_hyphen_values = true)]
     pub(crate) zone: Option<String>,
     /// Elevation of the sun: apparent (with refraction of the air) or geometric
     #[arg(long = "sun-elevation", value_enum, value_name = "KIND", default_value_t = ElevationChoice::Apparent)]
     pub(crate) elevation: ElevationChoice,
-    /// Air pressure in hPa and temperature in degrees Celsius, for refraction [default: standard atmosphere, 10 degrees]
+    /// Air pressure in hPa and temperature in degrees Celsius, for refraction
+    /// [default: standard atmosphere, 10 degrees]
     ///
     /// The default pressure is that of the standard atmosphere at the height of the scene.
     #[arg(long, value_name = "HPA,C", allow_hyphen_values = true)]
@@ -80,11 +82,12 @@ pub(crate) struct SunHoursArguments {
     pub(crate) when: SunPeriod,
     /// Daylight rule: nl-light, nl-strict, the-hague, bre-equinox, or your own as HOURS@DAYS; repeatable
     ///
-    /// Examples of your own: 1.5@03-21, 1@shortest-day, and with a minimum sun elevation of 10 degrees 2@02-19..10-21>10. Without --date or
-    /// --from, the results are for the days of the first rule.
+    /// Examples of your own: 1.5@03-21, 1@shortest-day, and with a minimum sun elevation of 10 degrees
+    /// 2@02-19..10-21>10. Without --date or --from, the results are for the days of the first rule.
     #[arg(long, value_name = "RULE", help_heading = "Period")]
     pub(crate) rule: Vec<String>,
-    /// Maximum angle between a sun and the direction used for it, in degrees, 0 to 5 [default: 0 up to 2000 suns, else 1]
+    /// Maximum angle between a sun and the direction used for it, in degrees, 0 to 5
+    /// [default: 0 up to 2000 suns, else 1]
     ///
     /// 0 uses the exact direction of each sun. Larger values let several suns share one direction, which is faster.
     #[arg(long = "sun-tolerance-deg", value_name = "DEG", allow_negative_numbers = true, help_heading = "Period")]

@@ -64,8 +64,8 @@ pub(crate) struct LandmarkArguments {
     pub(crate) observer_height: Option<f64>,
     /// Source of the ground heights: auto, classed, found or cloud=FILE
     ///
-    /// auto: ground points (class 2) if the cloud has them, else found. classed: class 2 only. found: detected from the shape of the cloud.
-    /// cloud=FILE: the ground of another cloud, which a ball file needs.
+    /// auto: ground points (class 2) if the cloud has them, else found. classed: class 2 only. found: detected from the
+    /// shape of the cloud. cloud=FILE: the ground of another cloud, which a ball file needs.
     #[arg(long, value_name = "HOW", default_value = "auto", help_heading = "Observers")]
     pub(crate) ground: GroundChoice,
     /// Maximum distance to the landmark in metres [default: no limit]
@@ -95,7 +95,8 @@ pub(crate) struct LandmarkShapeArguments {
     /// Name of an object of the mesh that is the landmark; repeatable [default: all]
     #[arg(long, value_name = "NAME", requires = "target", help_heading = "Landmark (one of)")]
     pub(crate) object: Vec<String>,
-    /// Maximum side of the triangles that the mesh is cut into, in metres [default: for about 1000 triangles, at least 0.25]
+    /// Maximum side of the triangles that the mesh is cut into, in metres
+    /// [default: for about 1000 triangles, at least 0.25]
     #[arg(long, value_name = "M", requires = "target", value_parser = above_zero::<f64>, allow_negative_numbers = true,
         help_heading = "Landmark (one of)")]
     pub(crate) spacing: Option<f64>,
@@ -132,8 +133,8 @@ pub(crate) struct EyesArguments {
     pub(crate) height: Option<f64>,
     /// Source of the ground heights for observers without Z: auto, classed, found or cloud=FILE
     ///
-    /// auto: ground points (class 2) if the cloud has them, else found. classed: class 2 only. found: detected from the shape of the cloud.
-    /// cloud=FILE: the ground of another cloud, which a ball file needs.
+    /// auto: ground points (class 2) if the cloud has them, else found. classed: class 2 only. found: detected from the
+    /// shape of the cloud. cloud=FILE: the ground of another cloud, which a ball file needs.
     #[arg(long, value_name = "HOW", default_value = "auto")]
     pub(crate) ground: GroundChoice,
 }
@@ -206,8 +207,8 @@ pub(crate) struct HorizonArguments {
     pub(crate) below: BelowChoice,
     /// Horizon elevations (.csv), in the format of PVGIS (.txt), or a diagram (.png); repeatable
     ///
-    /// .csv: azimuth and elevation in degrees, with one elevation column for each observer. .txt: the elevations of one observer, one on each
-    /// line, clockwise from north. .png: one observer.
+    /// .csv: azimuth and elevation in degrees, with one elevation column for each observer. .txt: the elevations of one
+    /// observer, one on each line, clockwise from north. .png: one observer.
     #[arg(short, long, value_name = "OUT", required = true, help_heading = "Result")]
     pub(crate) output: Vec<PathBuf>,
     #[command(flatten)]

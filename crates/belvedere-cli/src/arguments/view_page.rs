@@ -14,7 +14,8 @@ pub(crate) struct ViewPage {
     pub(crate) no_browser: bool,
     /// Write the page as one file that needs no server (.html), and end
     ///
-    /// The file holds at most 3 million points. It answers no other questions than the shadows of --date and the views of --observer.
+    /// The file holds at most 3 million points. It answers no other questions than the shadows of --date and the views
+    /// of --observer.
     #[arg(long, value_name = "OUT", help_heading = "File")]
     pub(crate) export: Option<PathBuf>,
     /// Day whose shadows are in the file, at each full hour

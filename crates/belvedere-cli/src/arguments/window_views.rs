@@ -10,8 +10,9 @@ use std::str::FromStr;
 pub(crate) struct WindowViewsArguments {
     /// Windows: a table (.csv), or a mesh whose faces are facades (.obj .json .ply)
     ///
-    /// The table has the columns x, y, z of the middle and azimuth in degrees from true north (see --grid-north). It may have tilt (90: vertical), width and height in metres, and name:
-    /// the building that the window belongs to. Of a mesh each face is a window; roofs and floors (nearer to horizontal than to vertical) are left out.
+    /// The table has the columns x, y, z of the middle and azimuth in degrees from true north (see --grid-north). It
+    /// may have tilt (90: vertical), width and height in metres, and name: the building that the window belongs to. Of
+    /// a mesh each face is a window; roofs and floors (nearer to horizontal than to vertical) are left out.
     #[arg(long, value_name = "FILE", help_heading = "Windows")]
     pub(crate) windows: PathBuf,
     /// Name of an object of the mesh whose faces are windows; repeatable [default: all]
@@ -29,8 +30,8 @@ pub(crate) struct WindowViewsArguments {
     pub(crate) directions: Option<usize>,
     /// What a class of points is: vegetation, water, building, ground or other; repeatable
     ///
-    /// Default: the classes of ASPRS. 2, 10 and 11 are ground, 3 to 5 vegetation, 6 building, 9 water. Points of class 0 or 1 are vegetation if the pulses show
-    /// that; all others are other. Example: --class 26=ground.
+    /// Default: the classes of ASPRS. 2, 10 and 11 are ground, 3 to 5 vegetation, 6 building, 9 water. Points of class
+    /// 0 or 1 are vegetation if the pulses show that; all others are other. Example: --class 26=ground.
     #[arg(long = "class", value_name = "N=KIND", help_heading = "View")]
     pub(crate) classes: Vec<ClassMeaning>,
     /// Cloud from which a ball file was built, for the classes of its points
@@ -47,7 +48,8 @@ pub(crate) struct WindowViewsArguments {
     pub(crate) output: Vec<PathBuf>,
     /// Also write a table with the mean view of the windows of each building (.csv)
     ///
-    /// Windows of a table need the column name: windows of one building have the same name. Of a mesh each object is a building, and its windows count by their area.
+    /// Windows of a table need the column name: windows of one building have the same name. Of a mesh each object is a
+    /// building, and its windows count by their area.
     #[arg(long, value_name = "OUT", help_heading = "Result")]
     pub(crate) buildings: Option<PathBuf>,
     /// What the map shows: sky, vegetation, water, building, ground or other [default: vegetation]

@@ -14,8 +14,8 @@ const UNKNOWN_NORTH: &str =
 /// The north of the azimuths of a command.
 #[derive(Clone, Copy)]
 pub(crate) struct CommandNorth {
-    /// Azimuth of grid north, clockwise from the north that azimuths are counted from, radians: subtract it from a given azimuth to get
-    /// one in the grid, and add it to an azimuth in the grid to report it.
+    /// Azimuth of grid north, clockwise from the north that azimuths are counted from, radians: subtract it from a
+    /// given azimuth to get one in the grid, and add it to an azimuth in the grid to report it.
     pub(crate) of_grid: f64,
     name: &'static str,
 }

@@ -117,7 +117,8 @@ fn rows_as_given(arguments: &Query, scene: &LoadedScene, summary: &mut Summary) 
     }
 }
 
-/// The rows of a table of points for an output that is a table too. Columns that another output has no place for are reported.
+/// The rows of a table of points for an output that is a table too. Columns that another output has no place for are
+/// reported.
 pub(super) fn text_rows_for(path: &Path, output: &Path, summary: &mut Summary) -> Result<Option<TextRows>> {
     let is_table = |path: &Path| ["csv", "txt", "xyz"].contains(&extension(path).as_str());
     if !is_table(path) {

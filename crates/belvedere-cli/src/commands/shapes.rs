@@ -19,8 +19,8 @@ pub(super) enum TypedAre {
     Polygon,
 }
 
-/// The shapes that were typed or are in the file named, local metres; heights that are not given are NaN. `typed_are` tells what corners
-/// of tables are too.
+/// The shapes that were typed or are in the file named, local metres; heights that are not given are NaN. `typed_are`
+/// tells what corners of tables are too.
 pub(super) fn shapes(
     flag: &str,
     corners: &CornersArgument,

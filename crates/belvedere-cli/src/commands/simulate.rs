@@ -15,7 +15,8 @@ use belvedere_scenes::{
 };
 use std::path::Path;
 
-/// Most pulses: a scan of more would fill the memory of most machines, so that a slipped digit is an error and no crash.
+/// Most pulses: a scan of more would fill the memory of most machines, so that a slipped digit is an error and no
+/// crash.
 const MAX_PULSES: f64 = 5e8;
 
 pub(crate) fn run(arguments: &Simulate, global: &Global) -> Result<Summary> {

@@ -22,7 +22,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// Memory that making balls takes beside the cloud, bytes for each of its points: 600 were measured with 10 million points of AHN3.
+/// Memory that making balls takes beside the cloud, bytes for each of its points: 600 were measured with 10 million
+/// points of AHN3.
 const BYTES_PER_POINT: u64 = 650;
 /// How long a page may take to open and to read why nothing is shown.
 const PATIENCE: Duration = Duration::from_secs(3);
@@ -217,7 +218,8 @@ impl Files {
         }
     }
 
-    /// The scene as other commands take it: its files, and the flags that were typed unless a ball file holds what they say.
+    /// The scene as other commands take it: its files, and the flags that were typed unless a ball file holds what they
+    /// say.
     fn typed(&self) -> String {
         if let Some(balls) = &self.balls {
             return quoted(&balls.to_string_lossy());

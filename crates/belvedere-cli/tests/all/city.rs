@@ -288,7 +288,8 @@ fn questions_are_those_of_the_commands_they_are_named_after() {
     assert!(of_code(1) > 20 && of_code(2) == 0, "{}", of_code(1));
     let raster = |name: &str| belvedere::io::read_tif(place.path(&format!("{name}.tif")).as_path()).unwrap();
     let width = |name: &str| raster(name).values.width();
-    // rasters say what they hold, as those of single scenes do: other quantities are neither subtracted without a word nor taken for terrain
+    // rasters say what they hold, as those of single scenes do: other quantities are neither subtracted without a word
+    // nor taken for terrain
     let shadow = "shadow_20260320_124500";
     place.summary(&format!("city merge run --result {shadow} -o {shadow}.tif"));
     let what = |name: &str| belvedere::io::read_tif(place.path(name).as_path()).unwrap().description.unwrap();

@@ -6,8 +6,8 @@ use crate::common::Workplace;
 use std::io::{BufRead, BufReader};
 use std::process::{Command, Stdio};
 
-/// Runs the program, sends SIGINT once it has finished its first stage, and gives the exit status and the lines that it printed to
-/// standard error.
+/// Runs the program, sends SIGINT once it has finished its first stage, and gives the exit status and the lines that it
+/// printed to standard error.
 fn interrupted(place: &Workplace, arguments: &str) -> (Option<i32>, Vec<String>) {
     let mut run = place
         .command(&format!("--progress json {arguments}"))

@@ -182,8 +182,8 @@ fn a_folder_gets_what_masbcpp_computes() {
         place.summary_with(&format!("balls -o out {flags}"), &[case.to_str().unwrap()]);
         for side in ["in", "out"] {
             let [centers, touch] = agreement(&out, &case.join(setting), side);
-            // two other programs that repeat masbcpp reach 99.92 %: the rest are ties broken by the last bit, of which there
-            // are more where no ball is ever refused
+            // two other programs that repeat masbcpp reach 99.92 %: the rest are ties broken by the last bit, of which
+            // there are more where no ball is ever refused
             let min = if setting == "nodenoise" { 0.997 } else { 0.999 };
             assert!(centers >= min, "{}: {setting} {side}: centres {centers}", case.display());
             // of duplicates, either may be named as second point

@@ -46,7 +46,8 @@ fn cells_and_points_see_as_much_sky_as_beside_the_exact_house() {
         if spot[0].abs() < 6.0 && spot[1].abs() < 5.0 {
             continue;
         }
-        // walls stand a quarter of a metre forward or back where points are half a metre apart: 0.02 of the sky at a metre from them
+        // walls stand a quarter of a metre forward or back where points are half a metre apart: 0.02 of the sky at a
+        // metre from them
         for (found, expected) in [factor[i], openness[i]].into_iter().zip(exact(spot)) {
             assert!((found - expected).abs() < 0.03, "{spot:?}: {found} instead of {expected}");
         }

@@ -39,7 +39,8 @@ fn hours_are_those_of_the_exact_house() {
     let found = ["sun_hours", "first_light", "last_light"].map(|name| column(&place, "hours.csv", name));
     for (i, expected) in expected.iter().enumerate() {
         for k in 0..3 {
-            // balls end a quarter of a metre beside edges here (points half a metre apart): 2° of the sun's way from 8 m, two steps at each end
+            // balls end a quarter of a metre beside edges here (points half a metre apart): 2° of the sun's way from 8
+            // m, two steps at each end
             let tolerance = if k == 0 { 0.7 } else { 0.4 };
             assert!(
                 (found[k][i] - expected[k]).abs() < tolerance,

@@ -1,4 +1,5 @@
-//! Light through trees on the command line: below a crown, what arrives lies between shade and the open sky by the share given.
+//! Light through trees on the command line: below a crown, what arrives lies between shade and the open sky by the
+//! share given.
 
 use crate::common::{Workplace, at, column, house};
 use belvedere::PointCloud;

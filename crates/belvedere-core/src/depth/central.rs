@@ -1,7 +1,7 @@
 //! Balls in views from an eye: how far away a ball's surface is in the direction of a pixel.
 //!
-//! All that matters is the angle between that direction and the ball's centre, so that one test serves every projection; only
-//! the directions of the pixels and the outline of a ball differ.
+//! All that matters is the angle between that direction and the ball's centre, so that one test serves every
+//! projection; only the directions of the pixels and the outline of a ball differ.
 
 use super::bounds::{BallBound, BoundSide, margin};
 use super::outline::{ALL, outline};
@@ -25,7 +25,8 @@ pub(super) struct CentralSplat {
     ball: u32,
 }
 
-/// Where a direction of sight runs past a ball: along it to the point nearest to the centre, and from there to the centre, metres.
+/// Where a direction of sight runs past a ball: along it to the point nearest to the centre, and from there to the
+/// centre, metres.
 #[derive(Clone, Copy)]
 struct DirectionPassing {
     along: f32,
@@ -102,8 +103,8 @@ pub(super) trait CentralSurface: Sync {
     const BEYOND_PX: f32;
     /// Whether depths are ranges whatever the view.
     const IN_RANGE: bool;
-    /// The radius to draw with, or `None` where a ball does not count. `fronts` is the least and the most range of its front; nothing
-    /// smaller than `min_cover` covers a pixel at its range.
+    /// The radius to draw with, or `None` where a ball does not count. `fronts` is the least and the most range of its
+    /// front; nothing smaller than `min_cover` covers a pixel at its range.
     fn radius(&self, radius: f32, size: f64, fronts: [f64; 2], min_cover: f64) -> Option<f32>;
     /// Limits of depth of what is drawn.
     fn limits(&self, view: &View) -> [f64; 2];
@@ -148,8 +149,8 @@ impl<S: CentralSurface> Central<S> {
         S::IN_RANGE || matches!(self.view.projection, Projection::Hemispherical { .. })
     }
 
-    /// At least the angle between two directions through places of the picture, per pixel between them, where the nearer of all
-    /// such places to the middle of the picture lies this far from it, pixels.
+    /// At least the angle between two directions through places of the picture, per pixel between them, where the
+    /// nearer of all such places to the middle of the picture lies this far from it, pixels.
     fn angle_per_pixel(&self, off_middle: f64) -> f64 {
         let (scale, steepness) = match self.view.projection {
             Projection::Orthographic { pixels_per_metre } => (pixels_per_metre, 0.0),
@@ -277,7 +278,8 @@ impl<S: CentralSurface> SplatSurface for Central<S> {
     }
 }
 
-/// How a unit vector of sight passes a centre. The distance beside it is that of a vector product, which does not cancel.
+/// How a unit vector of sight passes a centre. The distance beside it is that of a vector product, which does not
+/// cancel.
 #[inline(always)]
 fn passing([cx, cy, cz]: [f32; 3], [x, y, z]: [f32; 3]) -> DirectionPassing {
     let (across, down, forward) = (cy * z - cz * y, cz * x - cx * z, cx * y - cy * x);

@@ -27,8 +27,8 @@ pub(super) trait ParallelSurface: Sync {
     }
     /// The ball whose centre lies at `x`, `y` pixels and `z` metres, or `None` where it cannot be seen.
     fn place(&self, x: f64, y: f64, z: f64, radius: f32, ball: u32) -> Option<ParallelSplat>;
-    /// Depth at the offset `dx`, `dy` from the centre, +∞ beside the ball. It must not fall as the size of either offset grows, not
-    /// even by rounding.
+    /// Depth at the offset `dx`, `dy` from the centre, +∞ beside the ball. It must not fall as the size of either
+    /// offset grows, not even by rounding.
     fn depth(&self, splat: &ParallelSplat, dx: f32, dy: f32) -> f32;
 }
 
@@ -60,7 +60,8 @@ impl<S: ParallelSurface> SplatSurface for Parallel<S> {
         let [width, height] = self.view.size_px.map(|v| v as f64);
         let [x, y, z] = self.view.frame.view_from_local(center);
         let (x, y) = (x * self.pixels_per_metre, y * self.pixels_per_metre);
-        // a pixel more than the ball reaches: the cone's centre moves by up to half of one, and bounds look at whole pixels
+        // a pixel more than the ball reaches: the cone's centre moves by up to half of one, and bounds look at whole
+        // pixels
         let reach = f64::from(radius) * self.pixels_per_metre + 1.0;
         // a comparison with NaN is false, so centres that are not finite fall out here
         let inside = x + reach > 0.0 && x - reach < width && y + reach > 0.0 && y - reach < height && z.is_finite();

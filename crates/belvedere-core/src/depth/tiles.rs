@@ -1,9 +1,9 @@
 //! Drawing balls tile by tile, from front to back, leaving out what is hidden.
 //!
-//! Balls are sorted into the tiles they may touch. Each tile then draws its own from the nearest to the farthest and stops
-//! at the first that begins behind everything drawn so far. Within a tile, blocks of 8 x 8 pixels know their farthest depth,
-//! and a ball skips those it cannot come nearer in. Large balls (a 30 m ball covers thousands of pixels) thus cost what
-//! is seen of them.
+//! Balls are sorted into the tiles they may touch. Each tile then draws its own from the nearest to the farthest and
+//! stops at the first that begins behind everything drawn so far. Within a tile, blocks of 8 x 8 pixels know their
+//! farthest depth, and a ball skips those it cannot come nearer in. Large balls (a 30 m ball covers thousands of
+//! pixels) thus cost what is seen of them.
 
 use super::depth_map::{ItemBuffer, NO_BALL};
 use crate::blocking::Ball;
@@ -22,7 +22,8 @@ const MAX_LISTED_TILES: usize = 16;
 /// Balls handed to a thread at once.
 const CHUNK: usize = 8192;
 
-/// A surface that stands for a ball in a view, and what it needs to be drawn. All depths are in one unit of its own choice.
+/// A surface that stands for a ball in a view, and what it needs to be drawn. All depths are in one unit of its own
+/// choice.
 pub(super) trait SplatSurface: Sync {
     /// A ball in the view.
     type Splat: Copy + Send + Sync;
@@ -38,7 +39,8 @@ pub(super) trait SplatSurface: Sync {
     fn extent(&self, splat: &Self::Splat) -> [[f32; 2]; 2];
     /// The tile whose upper left pixel stands at a column and a row.
     fn tile(&self, left: usize, top: usize) -> Self::PixelTile;
-    /// At most the least depth of the ball at any pixel of the block at a column and a row of the tile, +∞ where it touches none.
+    /// At most the least depth of the ball at any pixel of the block at a column and a row of the tile, +∞ where it
+    /// touches none.
     fn min_depth(&self, tile: &Self::PixelTile, splat: &Self::Splat, block: [usize; 2]) -> f32;
     /// Depths at the pixels of one row of a block, which starts at a column and a row of the tile; +∞ beside the ball.
     fn depths(&self, tile: &Self::PixelTile, splat: &Self::Splat, first: [usize; 2]) -> [f32; BLOCK];
@@ -48,8 +50,8 @@ pub(super) trait SplatSurface: Sync {
     }
 }
 
-/// The least depth of `count` balls, given by centre (local) and radius, at each pixel of a picture, metres; +∞ where there is
-/// none. `ball` is `None` for those to be left out.
+/// The least depth of `count` balls, given by centre (local) and radius, at each pixel of a picture, metres; +∞ where
+/// there is none. `ball` is `None` for those to be left out.
 ///
 /// # Errors
 /// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
@@ -166,8 +168,8 @@ impl TileLists {
         Self { columns, starts, listed, wide }
     }
 
-    /// The splats of one tile, nearest first, equally near ones by row of the ball: places in `splats` in the low half of
-    /// each key.
+    /// The splats of one tile, nearest first, equally near ones by row of the ball: places in `splats` in the low half
+    /// of each key.
     fn of_tile<S: SplatSurface>(&self, shape: &S, splats: &[S::Splat], column: usize, row: usize) -> Vec<u64> {
         let tile = row * self.columns + column;
         let listed = &self.listed[self.starts[tile]..self.starts[tile + 1]];

@@ -21,8 +21,9 @@ impl SceneModel {
     /// The result is the same, bit by bit, for any number of threads.
     ///
     /// # Errors
-    /// [`Error::NoPoints`] where cleaning leaves none, [`Error::NoSurface`] where it leaves too few for a surface, [`Error::MissingAttribute`] where the cloud lacks what the parameters need,
-    /// [`Error::InvalidParameter`] for a parameter out of range, [`Error::Cancelled`].
+    /// [`Error::NoPoints`] where cleaning leaves none, [`Error::NoSurface`] where it leaves too few for a surface,
+    /// [`Error::MissingAttribute`] where the cloud lacks what the parameters need, [`Error::InvalidParameter`] for a
+    /// parameter out of range, [`Error::Cancelled`].
     pub fn build(cloud: &PointCloud, params: &ModelParams, control: &Control<'_>) -> Result<(Self, BuildReport)> {
         let (survey, report) = prepare(Cow::Borrowed(cloud), params, control)?;
         let normals = survey.normals_of_rows(cloud.len());
@@ -144,7 +145,8 @@ impl OrientedSurvey {
         Ok((balls, BallsReport::Shrunk(report)))
     }
 
-    /// Turns the points that `balls` are tangent at and touch from rows of the points kept into rows of the cloud as given.
+    /// Turns the points that `balls` are tangent at and touch from rows of the points kept into rows of the cloud as
+    /// given.
     pub fn restore_rows(&self, balls: &mut MedialBalls) {
         for row in balls.source.iter_mut().chain(&mut balls.touch) {
             // neither a pulse nor nothing has a row

@@ -51,8 +51,8 @@ belvedere_data::setters!(ModelParams {
 #[derive(Clone, Debug, Default)]
 #[non_exhaustive]
 pub enum OrientBy {
-    /// By the pulses where the scanner can be found and the balls are to be carved; otherwise as the cloud gives its normals;
-    /// otherwise towards its scanner positions; otherwise up.
+    /// By the pulses where the scanner can be found and the balls are to be carved; otherwise as the cloud gives its
+    /// normals; otherwise towards its scanner positions; otherwise up.
     #[default]
     Auto,
     /// As the cloud gives its normals.
@@ -65,7 +65,8 @@ pub enum OrientBy {
     ScannerAt([f64; 3]),
     /// Towards the scanner position of each point, (N, 3), local metres, NaN where it is not known.
     ScannerOfEachPoint(Vec<[f32; 3]>),
-    /// Towards the station of each point: point source ids, and positions in the metres of the cloud's reference system.
+    /// Towards the station of each point: point source ids, and positions in the metres of the cloud's reference
+    /// system.
     Stations(Vec<(u16, [f64; 3])>),
     /// Towards the scanner's place on this trajectory.
     Trajectory(Trajectory),
@@ -82,7 +83,8 @@ pub enum BallParams {
     Shrunk(ShrinkParams),
     /// From points and pulses. Building fails where the scanner is not known.
     Carved(CarvedParams),
-    /// From points and pulses, or from the points alone where pulses cannot carve: where they are only assumed, and few.
+    /// From points and pulses, or from the points alone where pulses cannot carve: where they are only assumed, and
+    /// few.
     CarvedIfPossible(CarvedParams, ShrinkParams),
 }
 

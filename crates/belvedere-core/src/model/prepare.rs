@@ -18,13 +18,14 @@ use std::borrow::Cow;
 
 /// Points no farther from a line than this lie on it, metres: the step of coordinates in most files.
 const LINE_WIDTH: f64 = 1e-3;
-/// How far before its return a pulse proves its way at most, in noises of ranges, where nothing else is uncertain: one return in 30,000 lies so much too
-/// far away, and balls begin below the surface.
+/// How far before its return a pulse proves its way at most, in noises of ranges, where nothing else is uncertain: one
+/// return in 30,000 lies so much too far away, and balls begin below the surface.
 const NOISES_BEFORE_RETURNS: f32 = 4.0;
 
 /// A cloud that is ready for balls: cleaned, with outward normals, an index, and what its pulses prove empty.
 pub struct OrientedSurvey {
-    /// The points that were kept, with outward normals; where they are to be carved, on the surface that they scatter about.
+    /// The points that were kept, with outward normals; where they are to be carved, on the surface that they scatter
+    /// about.
     pub oriented: OrientedCloud,
     /// Index of these points.
     pub index: NeighborIndex,
@@ -63,12 +64,12 @@ struct ScannerPositions {
 }
 
 impl OrientedSurvey {
-    /// Cleans `cloud`, finds the scanner where [`ModelParams::balls`] or [`ModelParams::orient`] need it, estimates normals and
-    /// turns them outward.
+    /// Cleans `cloud`, finds the scanner where [`ModelParams::balls`] or [`ModelParams::orient`] need it, estimates
+    /// normals and turns them outward.
     ///
     /// # Errors
-    /// [`Error::NoPoints`] where cleaning leaves none, [`Error::NoSurface`] where it leaves fewer than four or all on one line; those of [`clean`], [`locate`], [`estimate_within`] and [`orient()`];
-    /// [`Error::Cancelled`].
+    /// [`Error::NoPoints`] where cleaning leaves none, [`Error::NoSurface`] where it leaves fewer than four or all on
+    /// one line; those of [`clean`], [`locate`], [`estimate_within`] and [`orient()`]; [`Error::Cancelled`].
     pub fn prepare(cloud: &PointCloud, params: &ModelParams, control: &Control<'_>) -> Result<(Self, BuildReport)> {
         prepare(Cow::Borrowed(cloud), params, control)
     }
@@ -188,8 +189,9 @@ pub(super) fn prepare(
 }
 
 impl CarvingInput {
-    /// Lets pulses that all come from one place prove their way up to a few times the `noise` of their ranges, metres, before their returns.
-    /// Where they come from several, how well these places are known counts as well, which the cloud does not tell.
+    /// Lets pulses that all come from one place prove their way up to a few times the `noise` of their ranges, metres,
+    /// before their returns. Where they come from several, how well these places are known counts as well, which the
+    /// cloud does not tell.
     fn lead_up_to(
         &mut self,
         noise: f32,
@@ -293,7 +295,8 @@ fn find_scanner(
     Ok((ScannerPositions { positions, is_assumed }, report))
 }
 
-/// What carving needs of a cloud, and how that was found; `None` where they are only assumed, too few, and need not carve.
+/// What carving needs of a cloud, and how that was found; `None` where they are only assumed, too few, and need not
+/// carve.
 fn carving_input(
     cloud: &PointCloud,
     scanner: &ScannerPositions,

@@ -58,8 +58,8 @@ pub struct PulsesReport {
     /// Why the crowns of trees could not be measured, if they could not: what is missing to tell pulses apart.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub crowns_not_measured: Option<String>,
-    /// Pulses whose way the finished balls block, of those used: what is built against what was measured. Left out where none were
-    /// used to carve.
+    /// Pulses whose way the finished balls block, of those used: what is built against what was measured. Left out
+    /// where none were used to carve.
     #[serde(flatten, skip_serializing_if = "Option::is_none")]
     pub blocked: Option<BlockedPulses>,
     /// Why pulses do not carve, where they were to carve if possible.

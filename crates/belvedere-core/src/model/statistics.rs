@@ -11,16 +11,18 @@ use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 use std::path::Path;
 
-/// How far away a point may lie and still be a neighbour, metres: more than the usual 16 neighbours take wherever there is a surface.
+/// How far away a point may lie and still be a neighbour, metres: more than the usual 16 neighbours take wherever there
+/// is a surface.
 const FARTHEST_NEIGHBOR: f32 = 16.0;
-/// How far the rules for balls look beyond a point, metres: edges of roofs within three spacings of pulses, of which the widest is 3 m; cells of a
-/// metre with those about them, crowns and relief less.
+/// How far the rules for balls look beyond a point, metres: edges of roofs within three spacings of pulses, of which
+/// the widest is 3 m; cells of a metre with those about them, crowns and relief less.
 const RULES_REACH: f64 = 12.0;
 /// By how much pulses may lean more than the most of a sample, as a share of that.
 const LEAN_ROOM: f64 = 1.1;
 
-/// What is estimated once from a whole survey. Parts of the survey that are built with these facts ([`ModelParams::statistics`]) and lie in one frame, whose
-/// origin is a corner of blocks of 64 m, have the same balls, bit by bit, wherever they overlap by [`SurveyStatistics::buffer`].
+/// What is estimated once from a whole survey. Parts of the survey that are built with these facts
+/// ([`ModelParams::statistics`]) and lie in one frame, whose origin is a corner of blocks of 64 m, have the same balls,
+/// bit by bit, wherever they overlap by [`SurveyStatistics::buffer`].
 ///
 /// A model of a whole cloud estimates these facts by itself, from all of its points.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -61,12 +63,12 @@ pub struct SurveyExtremes {
 }
 
 impl SurveyStatistics {
-    /// The facts of a survey of which `along_lines` is a sample that is spread over all of it, whole pulses at random, and `places` are all points of
-    /// some places, both in the frame that its parts will have. Errors call it `name`.
+    /// The facts of a survey of which `along_lines` is a sample that is spread over all of it, whole pulses at random,
+    /// and `places` are all points of some places, both in the frame that its parts will have. Errors call it `name`.
     ///
     /// # Errors
-    /// [`Error::InvalidParameter`] for ways of orienting that need more than the points, [`Error::Malformed`] for scanners on the ground; those of
-    /// [`super::SceneModel::build`].
+    /// [`Error::InvalidParameter`] for ways of orienting that need more than the points, [`Error::Malformed`] for
+    /// scanners on the ground; those of [`super::SceneModel::build`].
     pub fn estimate(
         name: &Path,
         along_lines: &PointCloud,
@@ -196,8 +198,8 @@ impl SurveyStatistics {
     }
 }
 
-/// How far the pulse from a scanner to a point leans: horizontal metres for each metre of height; `None` where it is not known or does not come
-/// from above.
+/// How far the pulse from a scanner to a point leans: horizontal metres for each metre of height; `None` where it is
+/// not known or does not come from above.
 fn lean((point, scanner): (&[f32; 3], &[f32; 3])) -> Option<f64> {
     let [x, y, z] = std::array::from_fn(|i| f64::from(scanner[i]) - f64::from(point[i]));
     (z > 0.0).then(|| x.hypot(y) / z).filter(|lean| lean.is_finite())

@@ -4,8 +4,9 @@ use belvedere_data::report::{percent, rounded};
 use belvedere_data::{Bounds, ElevationGrid, Error, Frame, Parameter, Result};
 use serde::Serialize;
 
-/// How far heights of terrain may lie above or below all points of a cloud, metres: more than any error of a raster of 90 m cells, less than 30 m for which
-/// heights above an ellipsoid and above the sea differ in most countries, and than a height in feet taken for metres in all but the lowest.
+/// How far heights of terrain may lie above or below all points of a cloud, metres: more than any error of a raster of
+/// 90 m cells, less than 30 m for which heights above an ellipsoid and above the sea differ in most countries, and than
+/// a height in feet taken for metres in all but the lowest.
 const MAX_OFFSET: f32 = 25.0;
 
 /// Farthest that the sea lies from the ellipsoid, metres.
@@ -50,7 +51,8 @@ impl TerrainReport {
     }
 }
 
-/// Refuses terrain, which `name` names, that does not reach the cloud between `cloud`, local metres, or whose heights are not those of the cloud.
+/// Refuses terrain, which `name` names, that does not reach the cloud between `cloud`, local metres, or whose heights
+/// are not those of the cloud.
 ///
 /// # Errors
 /// [`Error::InvalidParameter`] with what to do.
@@ -84,7 +86,8 @@ pub fn check_terrain(terrain: &ElevationGrid, name: &str, cloud: Bounds, frame: 
     Ok(())
 }
 
-/// What heights of `terrain` must be to fit those of a `cloud`, metres: what makes them differ can be seen from the numbers.
+/// What heights of `terrain` must be to fit those of a `cloud`, metres: what makes them differ can be seen from the
+/// numbers.
 fn expected_heights(terrain: [f64; 2], cloud: [f64; 2]) -> &'static str {
     let room = f64::from(MAX_OFFSET);
     let [low, high] = terrain.map(|height| height * METRES_PER_FOOT);

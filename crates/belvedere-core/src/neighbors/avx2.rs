@@ -1,4 +1,5 @@
-//! Eight lanes at once on machines with AVX2: the same arithmetic as [`super::lanes::NeighborScalar`], in the same order.
+//! Eight lanes at once on machines with AVX2: the same arithmetic as [`super::lanes::NeighborScalar`], in the same
+//! order.
 #![expect(
     unsafe_code,
     reason = "the search for the nearest point takes most of the time of making balls; AVX2 saves 9 % of it on the surface and \
@@ -10,7 +11,8 @@ use super::lanes::{LANES, LaneBlock, Lanes, WideNode};
 use super::{Neighbor, NeighborIndex, Tangent, search, tangent_ball};
 use std::arch::x86_64::*;
 
-// SAFETY of the calls below: `Instructions::NeighborAvx2` is only stored in an index after `is_x86_feature_detected!("avx2")`.
+// SAFETY of the calls below: `Instructions::NeighborAvx2` is only stored in an index after
+// `is_x86_feature_detected!("avx2")`.
 
 pub(super) fn nearest(index: &NeighborIndex, query: [f32; 3], bound_squared: f32) -> Option<Neighbor> {
     #[target_feature(enable = "avx2")]
@@ -50,8 +52,8 @@ pub(super) fn smallest_tangent_ball(index: &NeighborIndex, tangent: &Tangent, ma
 
 struct NeighborAvx2;
 
-// SAFETY of the blocks below: the methods are only inlined into the functions above, which enable AVX2; `load` and `store`
-// touch arrays of exactly eight f32.
+// SAFETY of the blocks below: the methods are only inlined into the functions above, which enable AVX2; `load` and
+// `store` touch arrays of exactly eight f32.
 
 #[inline(always)]
 fn load(lanes: &[f32; LANES]) -> __m256 {

@@ -63,8 +63,8 @@ impl Child {
     }
 }
 
-/// The tests a search makes of eight boxes or points. Each returns a mask of the lanes that pass and leaves their values
-/// in `out`; implementations round alike, so that searches on either give the same answer.
+/// The tests a search makes of eight boxes or points. Each returns a mask of the lanes that pass and leaves their
+/// values in `out`; implementations round alike, so that searches on either give the same answer.
 pub(super) trait Lanes {
     /// Squared distance from `query` to each box; passes up to and including `bound`.
     fn boxes(node: &WideNode, query: [f32; 3], bound: f32, out: &mut [f32; LANES]) -> u32;

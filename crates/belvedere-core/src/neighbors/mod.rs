@@ -1,9 +1,9 @@
 //! Neighbours of points: the one spatial index, used by every stage that asks what lies near.
 //!
-//! A tree with eight children a node and tight boxes, over leaves of 32 points kept as structure of arrays. Ball centres
-//! lie far from the surface, where thousands of points are nearly equally far; only tight boxes tell them apart. On half a
-//! million points of a simulated city a nearest point costs 0.34 µs on the surface, 0.5 µs from 5 m and 1.0 µs from 200 m
-//! below it; the kd-tree crate kiddo takes 0.24, 2.1 and 57 µs (`benches/neighbors.rs`).
+//! A tree with eight children a node and tight boxes, over leaves of 32 points kept as structure of arrays. Ball
+//! centres lie far from the surface, where thousands of points are nearly equally far; only tight boxes tell them
+//! apart. On half a million points of a simulated city a nearest point costs 0.34 µs on the surface, 0.5 µs from 5 m
+//! and 1.0 µs from 200 m below it; the kd-tree crate kiddo takes 0.24, 2.1 and 57 µs (`benches/neighbors.rs`).
 //!
 //! | question | method |
 //! |---|---|
@@ -58,8 +58,8 @@ impl NeighborIndex {
         Self::with_instructions(points, Instructions::detect(), control)
     }
 
-    /// As [`NeighborIndex::new`], searched with the given instructions. Asking for a set this machine lacks gives scalar
-    /// searches.
+    /// As [`NeighborIndex::new`], searched with the given instructions. Asking for a set this machine lacks gives
+    /// scalar searches.
     ///
     /// # Errors
     /// As [`NeighborIndex::new`].
@@ -80,8 +80,8 @@ impl NeighborIndex {
     /// The index of the same points after each moved a little: faster to make than a new one, as fast to search.
     ///
     /// # Errors
-    /// [`Error::LengthMismatch`] for another number of points, [`Error::InvalidParameter`] for a coordinate that is not finite or beyond
-    /// 1e18.
+    /// [`Error::LengthMismatch`] for another number of points, [`Error::InvalidParameter`] for a coordinate that is not
+    /// finite or beyond 1e18.
     pub fn moved_to(self, points: &[[f32; 3]]) -> Result<Self> {
         if points.len() != self.len() {
             return Err(Error::LengthMismatch { what: "moved points", expected: self.len(), found: points.len() });
@@ -110,8 +110,8 @@ impl NeighborIndex {
         &self.order
     }
 
-    /// The point nearest to `query` whose squared distance is strictly below `bound_squared`, or `None`. Of equally near
-    /// points the one with the lowest index.
+    /// The point nearest to `query` whose squared distance is strictly below `bound_squared`, or `None`. Of equally
+    /// near points the one with the lowest index.
     #[must_use]
     pub fn nearest_within(&self, query: [f32; 3], bound_squared: f32) -> Option<Neighbor> {
         match self.instructions {
@@ -131,7 +131,8 @@ impl NeighborIndex {
         }
     }
 
-    /// Calls `visit` with every point at most `radius` metres from `query`, in an order that depends on the points only.
+    /// Calls `visit` with every point at most `radius` metres from `query`, in an order that depends on the points
+    /// only.
     pub fn within_radius(&self, query: [f32; 3], radius: f32, visit: impl FnMut(Neighbor)) {
         match self.instructions {
             Instructions::Scalar => search::within_radius::<lanes::NeighborScalar>(self, query, radius, visit),

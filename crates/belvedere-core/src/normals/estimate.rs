@@ -24,7 +24,8 @@ pub enum Neighborhood {
 }
 
 impl Default for Neighborhood {
-    /// 16 neighbours: enough to average centimetre noise out, few enough to stay on one roof at ten points a square metre.
+    /// 16 neighbours: enough to average centimetre noise out, few enough to stay on one roof at ten points a square
+    /// metre.
     fn default() -> Self {
         Self::Fixed { k: 16 }
     }
@@ -64,8 +65,8 @@ const CHUNK: usize = 1024;
 
 /// One normal per point of `positions`, (N, 3) local metres, which `index` was built from; signs are arbitrary.
 ///
-/// A point whose neighbourhood is a single spot or a line gets the normal (0, 0, 0) and quality 0. With fewer points than
-/// neighbours asked for, all points are neighbours.
+/// A point whose neighbourhood is a single spot or a line gets the normal (0, 0, 0) and quality 0. With fewer points
+/// than neighbours asked for, all points are neighbours.
 ///
 /// # Errors
 /// [`Error::InvalidParameter`] for fewer than 3 or more than 256 neighbours or a flatness that is not above zero;
@@ -142,8 +143,8 @@ pub fn estimate_within(
     Ok((normals, scatter))
 }
 
-/// The planes of all `positions`, (N, 3) local metres, within `reach`, (M), metres, of each of `places`, (M, 3); the points are moved onto planes from
-/// `places`. `index` must have been built from the positions.
+/// The planes of all `positions`, (N, 3) local metres, within `reach`, (M), metres, of each of `places`, (M, 3); the
+/// points are moved onto planes from `places`. `index` must have been built from the positions.
 ///
 /// # Errors
 /// [`Error::LengthMismatch`] where lengths differ; [`Error::Cancelled`].
@@ -282,7 +283,8 @@ impl Plane {
     /// That of a spot or a line.
     const NONE: Self = Self { normal: [0.0; 3], quality: 0.0, offset: 0.0, roughness: f32::INFINITY };
 
-    /// The plane of a neighbourhood with these eigenvalues, this component of the least one and this mean, from the point.
+    /// The plane of a neighbourhood with these eigenvalues, this component of the least one and this mean, from the
+    /// point.
     #[expect(
         clippy::cast_possible_truncation,
         reason = "unit vectors, ratios below one and lengths within a neighbourhood"
@@ -301,7 +303,8 @@ impl Plane {
     }
 }
 
-/// Eigenvalues in ascending order and the unit eigenvector of the least, of the symmetric matrix xx, yy, zz, xy, yz, zx.
+/// Eigenvalues in ascending order and the unit eigenvector of the least, of the symmetric matrix xx, yy, zz, xy, yz,
+/// zx.
 ///
 /// Closed form (Smith 1961) with the eigenvector from the longest cross product of two rows of A − λI; where two
 /// eigenvalues nearly coincide those rows say nothing and Jacobi rotations take over.

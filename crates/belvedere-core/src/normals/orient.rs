@@ -25,12 +25,12 @@ const FALLBACK_WEIGHT: f64 = 0.25;
 /// Confidence below which a sign is as good as unknown: the line of sight runs within 3° of the surface.
 pub const LOW_CONFIDENCE: f32 = 0.05;
 
-/// Below this cosine between normal and pulse a sign by the pulse is worth less than the vote of roof and ground, or up: on sparse facades
-/// normals are tilted by ten degrees and more. On simulated towns (seeds 7 and 8) leaving such signs to the vote gains 0.9 to
-/// 1.3 points of IoU in free air.
+/// Below this cosine between normal and pulse a sign by the pulse is worth less than the vote of roof and ground, or
+/// up: on sparse facades normals are tilted by ten degrees and more. On simulated towns (seeds 7 and 8) leaving such
+/// signs to the vote gains 0.9 to 1.3 points of IoU in free air.
 const GRAZING: f32 = 0.3;
-/// Part of a pulse's way that leads up, from which on it comes from above: roofs and ground vote for such surveys. What is seen from the side, or from
-/// below as ceilings are, knows neither.
+/// Part of a pulse's way that leads up, from which on it comes from above: roofs and ground vote for such surveys. What
+/// is seen from the side, or from below as ceilings are, knows neither.
 const FROM_ABOVE: f64 = 0.3;
 
 /// How to find the outward side of each normal.
@@ -142,22 +142,24 @@ impl NormalSign {
 
 /// The cloud with outward normals, and how they were found.
 ///
-/// `normals` are unit vectors with quality, (N) each; lengths are corrected where they are off, and a normal that is zero
-/// or not finite stays zero with zero confidence. The confidence is |n·v| for the unit vector v to the scanner or up,
+/// `normals` are unit vectors with quality, (N) each; lengths are corrected where they are off, and a normal that is
+/// zero or not finite stays zero with zero confidence. The confidence is |n·v| for the unit vector v to the scanner or
+/// up,
 /// |n·n_f| for the normal n_f of an aligned face (half of that where the mesh itself could not be verified), 0.5 for
 /// parity, 0.5·|n·h| for the vote (h horizontal), 0.25·|n_z| for up where another way was asked for but silent, 1 for
 /// given normals. For [`Orientation::Given`], `normals` may be empty; then the quality is 1.
 ///
-/// A mesh need not be consistently oriented or closed: each of its faces is first turned to its open side where one side
-/// is open and the other enclosed (parity of crossings straight up, which needs no orientation); faces for which that
-/// fails keep their turning sense, but are overruled by parity at the point. A face counts as the point's own surface
-/// within 2 m, if their normals are within 60° of each other and the point lies no more than 0.25 m beside it. The result
-/// is the same for any number of threads.
+/// A mesh need not be consistently oriented or closed: each of its faces is first turned to its open side where one
+/// side is open and the other enclosed (parity of crossings straight up, which needs no orientation); faces for which
+/// that fails keep their turning sense, but are overruled by parity at the point. A face counts as the point's own
+/// surface within 2 m, if their normals are within 60° of each other and the point lies no more than 0.25 m beside it.
+/// The result is the same for any number of threads.
 ///
 /// # Errors
 /// [`Error::LengthMismatch`] where lengths differ, [`Error::MissingAttribute`] where the cloud lacks scanner positions,
-/// GPS times or normals that the way needs, [`Error::InvalidParameter`] for positions or scanners that are not finite, no
-/// scanner at all, a mesh without a face, and a trajectory that knows a position at none of the cloud's times; [`Error::Cancelled`].
+/// GPS times or normals that the way needs, [`Error::InvalidParameter`] for positions or scanners that are not finite,
+/// no scanner at all, a mesh without a face, and a trajectory that knows a position at none of the cloud's times;
+/// [`Error::Cancelled`].
 ///
 /// # Source
 /// By scanner position and by city model: Peters, Ledoux & Biljecki 2015, section 4. The vote, the probing of faces and
@@ -340,7 +342,8 @@ fn check_finite(scanners: &[[f64; 3]]) -> Result<()> {
     Ok(())
 }
 
-/// Towards `scanner` where the cosine between normal and pulse is `min` or more, and wherever the pulse does not come from above.
+/// Towards `scanner` where the cosine between normal and pulse is `min` or more, and wherever the pulse does not come
+/// from above.
 fn by_pulses(
     cloud: &PointCloud,
     vectors: &[[f32; 3]],

@@ -136,8 +136,8 @@ impl ReferenceMesh {
         }
         for offset in PROBE_OFFSETS_M {
             if let Some(along) = self.open_side(position, normal, offset) {
-                // ground under a passage or in a court that the model filled lies near the floor of a solid, and what is
-                // below a floor counts as open: parity cannot be asked about surfaces that would face down
+                // ground under a passage or in a court that the model filled lies near the floor of a solid, and what
+                // is below a floor counts as open: parity cannot be asked about surfaces that would face down
                 let outward_z = if along { normal[2] } else { -normal[2] };
                 if outward_z >= -MIN_ALIGNMENT {
                     return MeshVerdict::Parity(if along { 0.5 } else { -0.5 });
@@ -236,7 +236,8 @@ impl ReferenceMesh {
     }
 }
 
-/// Whether (x, y) lies in the triangle seen from above. Of triangles that share an edge exactly one covers a point on it.
+/// Whether (x, y) lies in the triangle seen from above. Of triangles that share an edge exactly one covers a point on
+/// it.
 fn covers(corners: [[f64; 3]; 3], x: f64, y: f64) -> bool {
     let mut inside = false;
     for i in 0..3 {

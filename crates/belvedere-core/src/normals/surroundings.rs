@@ -33,8 +33,8 @@ impl HighestPointGrid {
     /// where they are about level.
     ///
     /// # Source
-    /// The idea that above a facade lies roof (inside) and below it ground (outside); halves of the local relief instead
-    /// of fixed offsets from the point serve points near the ground and near the eaves alike.
+    /// The idea that above a facade lies roof (inside) and below it ground (outside); halves of the local relief
+    /// instead of fixed offsets from the point serve points near the ground and near the eaves alike.
     pub(super) fn downhill(&self, position: [f32; 3]) -> Option<[f64; 2]> {
         let (x, y) = (f64::from(position[0]), f64::from(position[1]));
         let (mut low, mut high) = (f32::INFINITY, f32::NEG_INFINITY);

@@ -25,8 +25,8 @@ const CHECK_EACH: usize = 4096;
 /// How pulses become needles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FreeSegmentParams {
-    /// Length before the first return that is not counted as empty, metres, 0 to 1. Default 0.05: the noise of a range. A model of a
-    /// scan from one place on the ground takes less where it finds less noise.
+    /// Length before the first return that is not counted as empty, metres, 0 to 1. Default 0.05: the noise of a range.
+    /// A model of a scan from one place on the ground takes less where it finds less noise.
     pub end_margin: f32,
     /// Height above the highest return up to which needles reach, metres, above 0. Default 2; nothing stands higher.
     pub headroom: f32,
@@ -69,8 +69,8 @@ pub struct FreeSegmentReport {
 }
 
 impl FreeSegments {
-    /// Needles of the first returns of `cloud`, all its points where it has no return numbers, for scanners at `scanner`, (N, 3)
-    /// local metres, NaN where unknown.
+    /// Needles of the first returns of `cloud`, all its points where it has no return numbers, for scanners at
+    /// `scanner`, (N, 3) local metres, NaN where unknown.
     ///
     /// # Errors
     /// [`Error::LengthMismatch`] unless there is a scanner position for each point; [`Error::Cancelled`].
@@ -193,8 +193,8 @@ impl FreeSegments {
         Ok(Self { free_segments, trees, top })
     }
 
-    /// Where needle `number` begins, local metres; the unit vector along it, towards the scanner; and its length, metres. `None` from
-    /// [`FreeSegments::len`] on. Their order is that of the index.
+    /// Where needle `number` begins, local metres; the unit vector along it, towards the scanner; and its length,
+    /// metres. `None` from [`FreeSegments::len`] on. Their order is that of the index.
     #[must_use]
     pub fn segment(&self, number: usize) -> Option<([f32; 3], [f32; 3], f32)> {
         self.free_segments
@@ -202,8 +202,8 @@ impl FreeSegments {
             .map(|free_segment| (free_segment.start, free_segment.direction, free_segment.length))
     }
 
-    /// The greatest radius, below `max_radius`, of the balls of a pencil that no needle enters, or `None` where no needle
-    /// enters the ball of `max_radius`. Metres.
+    /// The greatest radius, below `max_radius`, of the balls of a pencil that no needle enters, or `None` where no
+    /// needle enters the ball of `max_radius`. Metres.
     ///
     /// # Source
     /// The closed form for a line is this project's: the ball of the pencil through a point at t metres along a needle
@@ -244,8 +244,8 @@ impl FreeSegment {
         Self { start: start.map(|v| v as f32), direction: direction.map(|v| v as f32), length: length as f32 }
     }
 
-    /// Radius of the ball of the pencil through `touching` along `inward` that this needle touches, or `None` where it touches
-    /// none.
+    /// Radius of the ball of the pencil through `touching` along `inward` that this needle touches, or `None` where it
+    /// touches none.
     fn tangent_radius(&self, touching: [f32; 3], inward: [f32; 3]) -> Option<f64> {
         let (start, along) = (self.start.map(f64::from), self.direction.map(f64::from));
         let inward = inward.map(f64::from);

@@ -7,7 +7,8 @@ use rayon::prelude::*;
 use belvedere_data::control::Control;
 use belvedere_data::{Error, PointCloud, Result};
 
-/// Most points of one time, line and channel: LAS counts returns to 15, and two full pulses in one tick of a clock do not occur.
+/// Most points of one time, line and channel: LAS counts returns to 15, and two full pulses in one tick of a clock do
+/// not occur.
 const MAX_PER_TIME: usize = 15;
 /// Times between two looks at whether to go on.
 const CHECK_EACH: usize = 4096;
@@ -51,14 +52,14 @@ pub struct PulseReport {
 
 /// Groups the returns of `cloud` by flight line, scanner channel and GPS time.
 ///
-/// Pulses of the same time are told apart by how many returns they had; single returns are a pulse each. Points that cannot be
-/// told to belong to one pulse are left out and counted. A cloud of ground-based scans, whose times
-/// belong to a single point each, gives a pulse for each point.
+/// Pulses of the same time are told apart by how many returns they had; single returns are a pulse each. Points that
+/// cannot be told to belong to one pulse are left out and counted. A cloud of ground-based scans, whose times belong to
+/// a single point each, gives a pulse for each point.
 ///
 /// # Errors
 /// [`Error::MissingAttribute`] without GPS times or return numbers, or where no pulse at all can be told from another
-/// because times are missing or too coarse. [`Error::LengthMismatch`] for a column of another length than the positions.
-/// [`Error::Cancelled`].
+/// because times are missing or too coarse. [`Error::LengthMismatch`] for a column of another length than the
+/// positions. [`Error::Cancelled`].
 pub fn group(cloud: &PointCloud, control: &Control<'_>) -> Result<(Pulses, PulseReport)> {
     cloud.validate()?;
     let attributes = &cloud.attributes;

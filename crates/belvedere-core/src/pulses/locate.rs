@@ -20,8 +20,9 @@ use belvedere_data::{Error, PointCloud, Result};
 /// What the scanner is to be found by.
 #[derive(Clone, Copy, Debug, Default)]
 pub enum Means<'a> {
-    /// Poses in the file; without them pulses with several returns, then scan angles where they can be trusted; where none of these
-    /// finds the scanner of a single point, stations of tripods that the points show; and at last the assumption that pulses fall straight down.
+    /// Poses in the file; without them pulses with several returns, then scan angles where they can be trusted; where
+    /// none of these finds the scanner of a single point, stations of tripods that the points show; and at last the
+    /// assumption that pulses fall straight down.
     #[default]
     Automatic,
     /// Pulses with several returns, then scan angles, and no assumption.
@@ -47,16 +48,19 @@ pub struct LocateParams {
     pub vertical: VerticalParams,
 }
 
-/// Local position of the scanner for each point of `cloud`, (N, 3) metres, NaN where it is not known; and how it was found.
+/// Local position of the scanner for each point of `cloud`, (N, 3) metres, NaN where it is not known; and how it was
+/// found.
 ///
-/// The scanner of every point with a time on a known path is found, whether or not it could be told to which pulse it belongs. Which points
-/// and parts of lines are left out and why is in the report. The result is the same for any number of threads and, but for
-/// points of the same pulse and number, any order of the points.
+/// The scanner of every point with a time on a known path is found, whether or not it could be told to which pulse it
+/// belongs. Which points and parts of lines are left out and why is in the report. The result is the same for any
+/// number of threads and, but for points of the same pulse and number, any order of the points.
 ///
 /// # Errors
-/// [`Error::MissingAttribute`] where the means asked for find the scanner of no point; [`Means::Automatic`] finds it for at least one of every cloud
-/// but those with poses that no point refers to: a scanner on the ground does not look straight down. [`Error::LengthMismatch`] for a column of another length than the positions, [`Error::InvalidParameter`] for
-/// parameters out of range and a trajectory that covers no time of the cloud, [`Error::Cancelled`].
+/// [`Error::MissingAttribute`] where the means asked for find the scanner of no point; [`Means::Automatic`] finds it
+/// for at least one of every cloud but those with poses that no point refers to: a scanner on the ground does not look
+/// straight down. [`Error::LengthMismatch`] for a column of another length than the positions,
+/// [`Error::InvalidParameter`] for parameters out of range and a trajectory that covers no time of the cloud,
+/// [`Error::Cancelled`].
 pub fn locate(
     cloud: &PointCloud,
     means: &Means<'_>,

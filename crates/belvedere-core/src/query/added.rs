@@ -1,4 +1,5 @@
-//! Meshes that were added to a scene, such as planned buildings: their triangles block lines of sight exactly, beside the balls.
+//! Meshes that were added to a scene, such as planned buildings: their triangles block lines of sight exactly, beside
+//! the balls.
 
 use super::Coverage;
 use crate::ground::MapGrid;
@@ -10,17 +11,17 @@ use belvedere_data::vector::{cross, dot, sub, unit};
 use belvedere_data::{Error, Mesh, Parameter, Result};
 use std::sync::Arc;
 
-/// Distance from the plane of a triangle up to which an end of a line of sight lies on the triangle, metres: targets are f32, which is off by
-/// 0.1 mm a kilometre from the origin, and a target on a triangle must not be hidden by it.
+/// Distance from the plane of a triangle up to which an end of a line of sight lies on the triangle, metres: targets
+/// are f32, which is off by 0.1 mm a kilometre from the origin, and a target on a triangle must not be hidden by it.
 const CONTACT: f64 = 1e-3;
 /// Coordinates up to which a mesh may be in degrees rather than metres.
 const MAX_DEGREES: f64 = 360.0;
 
 /// Triangles of meshes that block lines of sight, from both sides, watertight or not.
 ///
-/// A triangle blocks a line of sight that passes through it, edges included, unless an end of the line lies on it: within 1 mm of its plane. So
-/// a target on a roof or a wall is not hidden by that roof or wall, and an eye inside a closed mesh sees its inside and nothing
-/// beyond it.
+/// A triangle blocks a line of sight that passes through it, edges included, unless an end of the line lies on it:
+/// within 1 mm of its plane. So a target on a roof or a wall is not hidden by that roof or wall, and an eye inside a
+/// closed mesh sees its inside and nothing beyond it.
 #[derive(Clone)]
 pub struct AddedMeshes {
     tree: Arc<TriangleTree>,
@@ -52,11 +53,12 @@ pub(super) struct LineEnds {
 }
 
 impl AddedMeshes {
-    /// The triangles of `mesh`, metres of its reference system, called `name`, beside those of `before`, for local positions relative to `origin`.
+    /// The triangles of `mesh`, metres of its reference system, called `name`, beside those of `before`, for local
+    /// positions relative to `origin`.
     ///
     /// # Errors
-    /// [`Error::InvalidParameter`] for a mesh without a triangle that has an area, with a corner that is missing or not finite, or that does
-    /// not meet the space of `coverage`.
+    /// [`Error::InvalidParameter`] for a mesh without a triangle that has an area, with a corner that is missing or not
+    /// finite, or that does not meet the space of `coverage`.
     pub fn new(
         mesh: &Mesh,
         name: &str,
@@ -167,8 +169,8 @@ impl AddedMeshes {
         }
     }
 
-    /// Whether a place, local metres, lies inside a mesh, which may lack its bottom: lines up, east and north pass through an odd number of
-    /// surfaces each.
+    /// Whether a place, local metres, lies inside a mesh, which may lack its bottom: lines up, east and north pass
+    /// through an odd number of surfaces each.
     #[must_use]
     pub fn encloses(&self, place: [f64; 3]) -> bool {
         if !place.iter().all(|v| v.is_finite()) {
@@ -186,7 +188,8 @@ impl AddedMeshes {
         above.into_iter().any(is_inside)
     }
 
-    /// Whether a triangle blocks the line of sight from `target` to `range` metres (infinite for a direction) along the unit vector `towards`.
+    /// Whether a triangle blocks the line of sight from `target` to `range` metres (infinite for a direction) along the
+    /// unit vector `towards`.
     #[must_use]
     pub fn blocks(&self, target: [f64; 3], towards: [f64; 3], range: f64) -> bool {
         let ray = Ray { origin: target, direction: towards, ranges: [0.0, range] };
@@ -216,7 +219,8 @@ impl AddedMeshes {
         });
     }
 
-    /// The triangles between `ends` whose boxes may meet one of `boxes`, given by their lowest and highest corner, local metres; each once.
+    /// The triangles between `ends` whose boxes may meet one of `boxes`, given by their lowest and highest corner,
+    /// local metres; each once.
     pub(super) fn near(
         &self,
         boxes: impl Iterator<Item = [[f64; 3]; 2]>,

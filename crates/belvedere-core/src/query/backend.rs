@@ -1,8 +1,8 @@
 //! The seam between the scene and whatever answers lines of sight in bulk.
 //!
-//! A backend takes the balls once ([`Backend::prepare`]) and then answers batch after batch. It may be conservative: a line of sight that
-//! it cannot decide for certain it leaves *open*, and the exact lines of sight of the processor decide that one. So the
-//! answers are the same bits on any device.
+//! A backend takes the balls once ([`Backend::prepare`]) and then answers batch after batch. It may be conservative: a
+//! line of sight that it cannot decide for certain it leaves *open*, and the exact lines of sight of the processor
+//! decide that one. So the answers are the same bits on any device.
 
 use super::ball_tree::BallTree;
 use crate::depth::{DepthBounds, DepthMap, ItemBuffer};
@@ -20,7 +20,8 @@ pub trait Backend: Send + Sync + std::fmt::Debug {
     /// What the device reports.
     fn prepare(&self, balls: &Arc<BallTree>) -> Result<Box<dyn PreparedBackend>>;
 
-    /// Takes balls to draw them in views of so many pixels; `None`, the default, where that is no faster than [`depth_map`](crate::depth::depth_map()).
+    /// Takes balls to draw them in views of so many pixels; `None`, the default, where that is no faster than
+    /// [`depth_map`](crate::depth::depth_map()).
     ///
     /// # Errors
     /// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
@@ -47,22 +48,24 @@ pub trait Backend: Send + Sync + std::fmt::Debug {
 
 /// Balls made ready by a backend. What takes long to make is made on first use and kept.
 pub trait PreparedBackend: Send + Sync {
-    /// Bounds of the depth of the first surface over each pixel of `view`, as [`crate::depth::depth_bounds`] defines them: they may be wider,
-    /// but must hold. Balls that reach before `start`, as [`crate::depth::BoundsParams::start`], block nothing.
+    /// Bounds of the depth of the first surface over each pixel of `view`, as [`crate::depth::depth_bounds`] defines
+    /// them: they may be wider, but must hold. Balls that reach before `start`, as
+    /// [`crate::depth::BoundsParams::start`], block nothing.
     ///
     /// # Errors
     /// [`Error::Cancelled`](belvedere_data::Error::Cancelled) and what the device reports.
     fn depth(&self, view: &View, start: f64, control: &Control<'_>) -> Result<DepthBounds>;
 
-    /// What is certain of the lines of sight without end of each of `targets`, (M, 3) local metres, in each of `directions`, (D, 3)
-    /// unit vectors. Neighbours among the targets stand close together in the list.
+    /// What is certain of the lines of sight without end of each of `targets`, (M, 3) local metres, in each of
+    /// `directions`, (D, 3) unit vectors. Neighbours among the targets stand close together in the list.
     ///
     /// # Errors
     /// As [`PreparedBackend::depth`].
     fn settle(&self, targets: &[[f32; 3]], directions: &[[f64; 3]], control: &Control<'_>) -> Result<Settled>;
 
-    /// What is certain of the lines of sight of each of `targets` to each of a few `viewers`, which stand in the place of directions in what is
-    /// returned; `None`, the default, where this backend is no faster than what is done without it: lines of sight one by one, or a tree of targets.
+    /// What is certain of the lines of sight of each of `targets` to each of a few `viewers`, which stand in the place
+    /// of directions in what is returned; `None`, the default, where this backend is no faster than what is done
+    /// without it: lines of sight one by one, or a tree of targets.
     ///
     /// # Errors
     /// As [`PreparedBackend::depth`].
@@ -74,7 +77,8 @@ pub trait PreparedBackend: Send + Sync {
 
 /// Balls made ready to be drawn by a backend.
 pub trait Drawable: Send + Sync {
-    /// The depth map of the balls in `view`, as [`depth_map`](crate::depth::depth_map()) makes it of spheres, bit by bit.
+    /// The depth map of the balls in `view`, as [`depth_map`](crate::depth::depth_map()) makes it of spheres, bit by
+    /// bit.
     ///
     /// # Errors
     /// Those of [`depth_map`](crate::depth::depth_map()).
@@ -136,7 +140,8 @@ pub(super) const BLOCK: usize = WORDS * WORD;
 /// A bit for each target of a block.
 pub(super) type WordBits = [u64; WORDS];
 
-/// What a backend settled: for each target and direction, or viewer, whether the line of sight is free, blocked or still open.
+/// What a backend settled: for each target and direction, or viewer, whether the line of sight is free, blocked or
+/// still open.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settled {
     direction_count: usize,
@@ -166,16 +171,16 @@ impl Settled {
         }
     }
 
-    /// Sets what is known of all lines of a direction: a bit for each target, 32 a word, of those that are free and of those that are blocked. Bits beyond the
-    /// last target must not be set.
+    /// Sets what is known of all lines of a direction: a bit for each target, 32 a word, of those that are free and of
+    /// those that are blocked. Bits beyond the last target must not be set.
     pub fn set_direction(&mut self, direction: usize, free: &[u32], blocked: &[u32]) {
         let count = self.direction_count;
         each_word(&mut self.free, [direction, count], free, |word, known| *word = known);
         each_word(&mut self.blocked, [direction, count], blocked, |word, known| *word = known);
     }
 
-    /// Joins to what is known of all lines of a direction what is known of them past other balls, given as in [`Settled::set_direction`]: free are
-    /// those that are free past both, blocked those that any blocks.
+    /// Joins to what is known of all lines of a direction what is known of them past other balls, given as in
+    /// [`Settled::set_direction`]: free are those that are free past both, blocked those that any blocks.
     pub fn join_direction(&mut self, direction: usize, free: &[u32], blocked: &[u32]) {
         let count = self.direction_count;
         each_word(&mut self.free, [direction, count], free, |word, known| *word &= known);
@@ -210,7 +215,8 @@ impl Settled {
         }
     }
 
-    /// Says that nothing blocks the open lines of a direction nearer to their targets than `range` metres, which saves work.
+    /// Says that nothing blocks the open lines of a direction nearer to their targets than `range` metres, which saves
+    /// work.
     pub fn set_open_from(&mut self, direction: usize, range: f64) {
         if let Some(open_from) = self.open_from.get_mut(direction) {
             *open_from = range;
@@ -222,7 +228,8 @@ impl Settled {
     }
 }
 
-/// Calls `put` with each word of a direction, given by its number and how many there are, and the same 64 bits of `words`.
+/// Calls `put` with each word of a direction, given by its number and how many there are, and the same 64 bits of
+/// `words`.
 fn each_word(bits: &mut [WordBits], [direction, count]: [usize; 2], words: &[u32], put: impl Fn(&mut u64, u64)) {
     let of_direction = bits.iter_mut().skip(direction).step_by(count.max(1));
     for (bits, words) in of_direction.zip(words.chunks(2 * WORDS)) {

@@ -13,7 +13,8 @@ use rayon::prelude::*;
 const LIGHT_SPEED: f64 = 299_792_458.0;
 /// Frequencies of radio links, GHz: below, the zone is wider than the links are long; above is infrared.
 const FREQUENCIES_GHZ: [f64; 2] = [0.001, 1000.0];
-/// Length of the pieces of a link whose boxes are searched for obstacles, metres: shorter ones search less air and more often.
+/// Length of the pieces of a link whose boxes are searched for obstacles, metres: shorter ones search less air and more
+/// often.
 const PIECE: f64 = 16.0;
 /// Most pieces of a link: longer ones have longer pieces.
 const MAX_PIECES: f64 = 10_000.0;
@@ -95,7 +96,8 @@ impl Link {
         self.wave.zone_radius([along, self.length - along])
     }
 
-    /// The part of the radius of the zone that is free if something lies `beside` metres from the line at `along`: infinite at the ends, where the zone is a point.
+    /// The part of the radius of the zone that is free if something lies `beside` metres from the line at `along`:
+    /// infinite at the ends, where the zone is a point.
     fn share(&self, along: f64, beside: f64) -> f64 {
         let radius = self.radius(along);
         if radius > 0.0 { beside.max(0.0) / radius } else { f64::INFINITY }
@@ -117,7 +119,8 @@ impl Link {
     fn share_before(&self, corners: &Corners, max: f64) -> f64 {
         let middle: [f64; 3] = std::array::from_fn(|i| corners.iter().map(|corner| corner[i]).sum::<f64>() / 3.0);
         let reach = corners.iter().map(|&corner| length(sub(corner, middle))).fold(0.0, f64::max);
-        // it leaves at least what the sphere around it leaves; the sag raises its corners by less than this beside its middle
+        // it leaves at least what the sphere around it leaves; the sag raises its corners by less than this beside its
+        // middle
         let around = reach * (1.0 + 4.0 * self.sag(self.length / 2.0) / self.length);
         if self.beside(middle)[1] - around >= max * self.radius(self.length / 2.0) {
             return f64::INFINITY;
@@ -127,7 +130,8 @@ impl Link {
         let between =
             |p: [f64; 3], q: [f64; 3], t: f64| -> [f64; 3] { std::array::from_fn(|i| p[i] + t * (q[i] - p[i])) };
         let of_triangle = |pair: &[[f64; 3]]| {
-            // the distance to a line is convex over a triangle: one minimum along every line in it, and one across these
+            // the distance to a line is convex over a triangle: one minimum along every line in it, and one across
+            // these
             min(0.0, 1.0, |across| {
                 let [from, to] = [pair[0], pair[1]].map(|corner| between(a, corner, across));
                 min(0.0, 1.0, |t| {
@@ -198,11 +202,13 @@ fn min(mut from: f64, mut to: f64, value: impl Fn(f64) -> f64) -> f64 {
 }
 
 impl MedialScene {
-    /// How much of the first Fresnel zone of a radio link between two points, local metres, is free: the share of its radius that nothing reaches into, 0 where something
-    /// touches the line itself, and at most `max`. A zone counts as free from 0.6 on (ITU-R P.530). NaN for points that are not finite, or are the same.
+    /// How much of the first Fresnel zone of a radio link between two points, local metres, is free: the share of its
+    /// radius that nothing reaches into, 0 where something touches the line itself, and at most `max`. A zone counts as
+    /// free from 0.6 on (ITU-R P.530). NaN for points that are not finite, or are the same.
     ///
-    /// Balls that hold an end are left out and balls near an end give way to it, as to a target; so do triangles in whose plane an end lies. Whether the line of sight is proven is another question, and
-    /// far terrain is not asked. On a curved line the sag is that at the middle of each ball.
+    /// Balls that hold an end are left out and balls near an end give way to it, as to a target; so do triangles in
+    /// whose plane an end lies. Whether the line of sight is proven is another question, and far terrain is not asked.
+    /// On a curved line the sag is that at the middle of each ball.
     #[must_use]
     pub fn fresnel_clearance(&self, ends: [[f64; 3]; 2], wave: RadioWave, earth: &EarthParams, max: f64) -> f64 {
         let Some(link) = Link::new(ends, wave, earth) else { return f64::NAN };
@@ -233,12 +239,13 @@ impl MedialScene {
 }
 
 impl MedialScene {
-    /// [`MedialScene::fresnel_clearance`] up to the whole zone of each of `pairs`, (N, two ends), local metres, whose lines of sight are `sights`, (N,), of
-    /// [`MedialScene::lines_of_sight`]. A link that is blocked has none free, and one with an end outside the cloud, or without a line, is NaN. Progress counts pairs.
+    /// [`MedialScene::fresnel_clearance`] up to the whole zone of each of `pairs`, (N, two ends), local metres, whose
+    /// lines of sight are `sights`, (N,), of [`MedialScene::lines_of_sight`]. A link that is blocked has none free, and
+    /// one with an end outside the cloud, or without a line, is NaN. Progress counts pairs.
     ///
     /// # Errors
-    /// [`Error::LengthMismatch`] for another number of lines of sight; [`Error::InvalidParameter`] for a link over far terrain, of which it is not known how far it reaches into the zone; and
-    /// [`Error::Cancelled`].
+    /// [`Error::LengthMismatch`] for another number of lines of sight; [`Error::InvalidParameter`] for a link over far
+    /// terrain, of which it is not known how far it reaches into the zone; and [`Error::Cancelled`].
     pub fn fresnel_clearances(
         &self,
         pairs: &[[[f64; 3]; 2]],
@@ -318,8 +325,9 @@ mod tests {
             #[expect(clippy::cast_possible_truncation, reason = "balls are f32")]
             let radius = (0.2 + 3.0 * random(5)) as f32;
             let found = scene(&[(center, radius)]).fresnel_clearance(ends, wave, &EarthParams::flat(), 9.0);
-            // random points of the ball: none leaves less, and the best leaves hardly more. About 100 000 lie 3 cm apart on the largest ball, a fiftieth of
-            // the zone and more near its ends; a ball that the line crosses has points as near to it
+            // random points of the ball: none leaves less, and the best leaves hardly more. About 100 000 lie 3 cm
+            // apart on the largest ball, a fiftieth of the zone and more near its ends; a ball that the line crosses
+            // has points as near to it
             let mut min = 9.0_f64;
             for n in 0..200_000 {
                 let offset: [f64; 3] = std::array::from_fn(|k| 2.0 * uniform(3, 4 * n + k as u64) - 1.0);

@@ -24,9 +24,10 @@ pub enum BackFaces {
 pub struct MeshTargetParams {
     /// What to make of faces turned away from the viewer. Default: not visible.
     pub back_faces: BackFaces,
-    /// How far before its face a place is asked, on the side of the viewer, metres, 0 or more. Default 0.1: balls stand out by about as
-    /// much where no pulse reached. On a simulated town this takes the false-blocked share of facades in the sun from 15.7 to 9.6 % and
-    /// the error of a building's share from 0.10 to 0.05, for a point more of false-visible on facades and three on roofs.
+    /// How far before its face a place is asked, on the side of the viewer, metres, 0 or more. Default 0.1: balls stand
+    /// out by about as much where no pulse reached. On a simulated town this takes the false-blocked share of facades
+    /// in the sun from 15.7 to 9.6 % and the error of a building's share from 0.10 to 0.05, for a point more of
+    /// false-visible on facades and three on roofs.
     pub lift: f64,
 }
 
@@ -117,8 +118,8 @@ impl SurfacePiece {
     }
 }
 
-/// Whether each piece of `surface` is turned to `viewer`. Pieces seen exactly edge-on are not; those of a surface without a known outside
-/// all are.
+/// Whether each piece of `surface` is turned to `viewer`. Pieces seen exactly edge-on are not; those of a surface
+/// without a known outside all are.
 ///
 /// # Errors
 /// [`Error::UnsupportedViewer`] for [`Viewer::Each`], and those of [`Viewer::validate`].
@@ -135,14 +136,16 @@ pub fn facing(surface: &SurfacePieces, viewer: Viewer<'_>) -> Result<Vec<bool>> 
 }
 
 /// What `viewer` sees of each face of `surface`, (faces). `ask` answers for places, (M, 3) local metres, such as
-/// [`super::Visibility::visible`] for the same viewer; whatever is not [`Answer::Visible`] or [`Answer::Unproven`] counts as not seen.
+/// [`super::Visibility::visible`] for the same viewer; whatever is not [`Answer::Visible`] or [`Answer::Unproven`]
+/// counts as not seen.
 ///
-/// Each piece counts as its place does. The standard error of a face follows from pairs of neighbouring pieces that differ (collapsed
-/// strata), and errs to the large side; a face of one piece has the greatest there can be, half its area. Areas and
-/// squares of errors of faces add up to those of objects.
+/// Each piece counts as its place does. The standard error of a face follows from pairs of neighbouring pieces that
+/// differ (collapsed strata), and errs to the large side; a face of one piece has the greatest there can be, half its
+/// area. Areas and squares of errors of faces add up to those of objects.
 ///
 /// # Errors
-/// Those of [`facing`], of [`MeshTargetParams::validate`] and of `ask`, and [`Error::LengthMismatch`] where it answers for another number of places.
+/// Those of [`facing`], of [`MeshTargetParams::validate`] and of `ask`, and [`Error::LengthMismatch`] where it answers
+/// for another number of places.
 ///
 /// # Source
 /// Cochran 1977, Sampling Techniques, section 5A.12 (one unit per stratum).

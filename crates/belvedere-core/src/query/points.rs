@@ -86,7 +86,8 @@ const CHUNK: usize = 16_384;
 /// [`DepthMap::default_depth_bias`].
 ///
 /// # Source
-/// Peters, Ledoux & Biljecki 2015, section 3.3 and Algorithm 2 (`QUERYPOINT`); Williams 1978. The bias is not in the paper.
+/// Peters, Ledoux & Biljecki 2015, section 3.3 and Algorithm 2 (`QUERYPOINT`); Williams 1978. The bias is not in the
+/// paper.
 #[must_use]
 pub fn query_points(map: &DepthMap, targets: &[[f32; 3]], depth_bias: f32) -> Vec<Answer> {
     #[expect(clippy::cast_possible_truncation, reason = "the depth map holds f32")]

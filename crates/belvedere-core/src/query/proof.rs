@@ -10,7 +10,8 @@ use std::sync::Arc;
 
 /// How far ahead the next pulse is looked for where none is near, metres: half a street.
 const LOOK_AHEAD: f64 = 4.0;
-/// Nearness where pulses are dense enough, metres: what carves balls of half a metre leaves no room for things that block.
+/// Nearness where pulses are dense enough, metres: what carves balls of half a metre leaves no room for things that
+/// block.
 const MIN_NEARNESS: f64 = 0.7;
 /// Side of the cells that pulses are counted in, metres.
 const COUNTING_CELL: f32 = 4.0;
@@ -21,11 +22,11 @@ pub struct ProofParams {
     /// How near a pulse must pass for a place to count as seen, metres, above 0; `None`, the default, for
     /// [`nearness`] of the pulses.
     pub nearness: Option<f64>,
-    /// How much of a line of sight, in total, may run through space not seen, metres, 0 or more. Default 0.5: less than what a
-    /// person or a trunk takes.
+    /// How much of a line of sight, in total, may run through space not seen, metres, 0 or more. Default 0.5: less than
+    /// what a person or a trunk takes.
     pub tolerance: f64,
-    /// Step where no pulse is near, metres, above 0. Default 0.1. A seen piece shorter than this between two that are not may be
-    /// counted with them; all other lengths are exact.
+    /// Step where no pulse is near, metres, above 0. Default 0.1. A seen piece shorter than this between two that are
+    /// not may be counted with them; all other lengths are exact.
     pub step: f64,
     /// What is thought of space beside the survey.
     pub beside: Beside,
@@ -46,7 +47,8 @@ impl Default for ProofParams {
     }
 }
 
-/// Pulses that tell how much of a line of sight none of them came near to. Their index is made when it is first needed, once for all clones.
+/// Pulses that tell how much of a line of sight none of them came near to. Their index is made when it is first needed,
+/// once for all clones.
 #[derive(Clone)]
 pub struct Proof {
     nearness: f64,
@@ -71,8 +73,8 @@ struct ProofIndex {
     extent: [[f64; 2]; 2],
 }
 
-/// How near a pulse must pass for a place to count as seen, metres: 0.7, or the usual distance between pulses, 1/√density,
-/// where that is more. The density is the median over cells of 4 m that have any.
+/// How near a pulse must pass for a place to count as seen, metres: 0.7, or the usual distance between pulses,
+/// 1/√density, where that is more. The density is the median over cells of 4 m that have any.
 ///
 /// # Source
 /// This project's own.
@@ -129,7 +131,8 @@ impl Proof {
         Ok(Self { nearness, params: *params, pulses, index: Arc::new(Lazy::new()) })
     }
 
-    /// Indexes the pulses, if no line of sight needed that before. All else does it by itself, but cannot be cancelled meanwhile.
+    /// Indexes the pulses, if no line of sight needed that before. All else does it by itself, but cannot be cancelled
+    /// meanwhile.
     ///
     /// # Errors
     /// [`Error::Cancelled`].
@@ -175,8 +178,8 @@ impl Proof {
         self.params.tolerance
     }
 
-    /// How much of the way from `target`, local metres, along the unit vector `towards` to `range` metres (infinite for a
-    /// direction) runs through space that no pulse came near to, metres. Above the highest return everything is free.
+    /// How much of the way from `target`, local metres, along the unit vector `towards` to `range` metres (infinite for
+    /// a direction) runs through space that no pulse came near to, metres. Above the highest return everything is free.
     /// Without any pulse all of it is unseen; so is a line that runs down without end.
     #[must_use]
     pub fn unproven_length(&self, target: [f64; 3], towards: [f64; 3], range: f64) -> f64 {

@@ -7,14 +7,15 @@ use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::OnceLock;
 
-/// Side of a box as a share of the nearness. A needle that passes the middle of a box within nearness − side/√2 is near to all of
-/// it; the smaller the boxes, the more of them find such a needle, and the more there are.
+/// Side of a box as a share of the nearness. A needle that passes the middle of a box within nearness − side/√2 is near
+/// to all of it; the smaller the boxes, the more of them find such a needle, and the more there are.
 const SIDE_PER_NEARNESS: f64 = 0.45;
 /// Height of a box as a share of the nearness: leaning needles stay in low boxes.
 const HEIGHT_PER_NEARNESS: f64 = 1.0;
 /// The same where needles run in all directions: cubes.
 const HEIGHT_AMONG_FLAT: f64 = SIDE_PER_NEARNESS;
-/// Boxes above one another: bits of a word. Higher scenes get higher boxes, of which fewer are near one needle all the way up.
+/// Boxes above one another: bits of a word. Higher scenes get higher boxes, of which fewer are near one needle all the
+/// way up.
 const MAX_LAYERS: f64 = 64.0;
 /// Most columns, 160 MB; a larger survey gets larger boxes, and what these cannot prove is asked of the pulses.
 const MAX_COLUMNS: f64 = 2e7;
@@ -24,7 +25,8 @@ const ROUNDING: f64 = 2e-3;
 /// Columns of boxes along a side of a tile: 5 m of usual pulses.
 const TILE: usize = 16;
 
-/// A grid of boxes, each known to be near pulses or not. It proves less than the pulses themselves and nothing that they do not.
+/// A grid of boxes, each known to be near pulses or not. It proves less than the pulses themselves and nothing that
+/// they do not.
 ///
 /// Tiles of it are made when a line first runs through them, so that a few lines cost little and many share the work.
 pub(super) struct SeenSpace {
@@ -153,9 +155,10 @@ impl SeenSpace {
         Box::new(BoxColumns::new(boxes))
     }
 
-    /// Marks the boxes of a tile that a needle is near to: those whose corners all are, since what is near a needle is convex. Where it
-    /// passes through a layer it must be within `reach` of the middle line of a box both where it enters and where it leaves; in the
-    /// layer that it begins in, nearer, since the lower corners lie below its end. Where it does so it lies over the rectangle `over`.
+    /// Marks the boxes of a tile that a needle is near to: those whose corners all are, since what is near a needle is
+    /// convex. Where it passes through a layer it must be within `reach` of the middle line of a box both where it
+    /// enters and where it leaves; in the layer that it begins in, nearer, since the lower corners lie below its end.
+    /// Where it does so it lies over the rectangle `over`.
     fn mark(
         &self,
         [start, end]: [[f64; 3]; 2],
@@ -167,7 +170,8 @@ impl SeenSpace {
         let [bottom, top] = [start[2], end[2]].map(|z| (z - self.low[2]) / self.height);
         let lean = [0, 1].map(|axis| (end[axis] - start[axis]) / (top - bottom));
         let place = [0, 1].map(|axis| start[axis] - self.low[axis] - (first[axis] as f64 + 0.5) * self.side);
-        // the layers that it passes through between two heights above its lower end; that it begins in is not one of them
+        // the layers that it passes through between two heights above its lower end; that it begins in is not one of
+        // them
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most 64, and `as` saturates")]
         let layers_between = |from: f64, to: f64| {
             bits(((bottom + from) as u32).saturating_add(1), ((bottom + to) as u32).min(self.layers as u32))
@@ -220,7 +224,8 @@ impl SeenSpace {
         }
     }
 
-    /// Marks boxes of the layer in which a needle begins, if it ends above that. Its ends are in layers, and its lower end is at `place`, metres from the middle of the tile's first box.
+    /// Marks boxes of the layer in which a needle begins, if it ends above that. Its ends are in layers, and its lower
+    /// end is at `place`, metres from the middle of the tile's first box.
     fn mark_lowest(&self, [bottom, top]: [f64; 2], place: [f64; 2], lean: [f64; 2], boxes: &mut [u64; TILE * TILE]) {
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "`as` saturates")]
         let layer = bottom as usize;
@@ -242,8 +247,8 @@ impl SeenSpace {
         }
     }
 
-    /// Columns or rows of a tile whose middles may be within reach of what lies between two places, metres from the middle of its first
-    /// box, and perhaps one more: rounding up would take longer than to test one in vain.
+    /// Columns or rows of a tile whose middles may be within reach of what lies between two places, metres from the
+    /// middle of its first box, and perhaps one more: rounding up would take longer than to test one in vain.
     #[inline]
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "an index into the tile")]
     fn boxes_between(&self, a: f64, b: f64, reach: f64) -> Range<usize> {
@@ -268,8 +273,8 @@ impl SeenSpace {
         }
     }
 
-    /// Where a line leaves the boxes around the one that it is in at `at`, if all of these are near `free_segments`, those that the grid was
-    /// made for.
+    /// Where a line leaves the boxes around the one that it is in at `at`, if all of these are near `free_segments`,
+    /// those that the grid was made for.
     pub(super) fn near_until(
         &self,
         free_segments: &FreeSegments,

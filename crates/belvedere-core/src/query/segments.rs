@@ -56,7 +56,8 @@ impl Blocker {
 /// What stands before a target.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Obstruction {
-    /// Where the line of sight meets it, metres from the observer along the line; on a line that leaves the cloud, straight from the observer.
+    /// Where the line of sight meets it, metres from the observer along the line; on a line that leaves the cloud,
+    /// straight from the observer.
     pub range: f64,
     /// What it is.
     pub blocker: Blocker,
@@ -103,14 +104,15 @@ impl LinePiece {
 }
 
 impl MedialScene {
-    /// What is known of the line of sight from `observer` to `target`, local metres, over the earth of `earth`; `None` where a
-    /// coordinate is not finite or both are the same point.
+    /// What is known of the line of sight from `observer` to `target`, local metres, over the earth of `earth`; `None`
+    /// where a coordinate is not finite or both are the same point.
     ///
-    /// The answer is that of [`MedialScene::answer`] for the same pair on a plane earth. A curved line is cut into chords; the rules for
-    /// the ends (balls that hold the observer are left out, balls near the target give way) are asked of the ends of
-    /// the whole line.
+    /// The answer is that of [`MedialScene::answer`] for the same pair on a plane earth. A curved line is cut into
+    /// chords; the rules for the ends (balls that hold the observer are left out, balls near the target give way) are
+    /// asked of the ends of the whole line.
     ///
-    /// Where an end lies on far terrain ([`MedialScene::is_on_far_terrain`]) the answer is that of [`MedialScene::far_sight_answer`]: `None` also where one end is above the other.
+    /// Where an end lies on far terrain ([`MedialScene::is_on_far_terrain`]) the answer is that of
+    /// [`MedialScene::far_sight_answer`]: `None` also where one end is above the other.
     #[must_use]
     pub fn line_of_sight(&self, observer: [f64; 3], target: [f64; 3], earth: &EarthParams) -> Option<LineOfSight> {
         let straight = Ray::new(target, sub(observer, target), [0.0, length(sub(observer, target))])?;
@@ -157,7 +159,8 @@ impl MedialScene {
         LineOfSight { answer, first_block: None, unproven_length }
     }
 
-    /// [`MedialScene::line_of_sight`] for each of `pairs`, (N, observer and target), local metres, in their order. Progress counts pairs.
+    /// [`MedialScene::line_of_sight`] for each of `pairs`, (N, observer and target), local metres, in their order.
+    /// Progress counts pairs.
     ///
     /// # Errors
     /// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
@@ -176,8 +179,8 @@ impl MedialScene {
         pairs.par_iter().with_min_len(CHUNK).map(ask).collect()
     }
 
-    /// The answer of [`MedialScene::line_of_sight`] alone, which is quicker; [`Answer::OutsideView`] for a point that is not finite
-    /// or is the observer's own.
+    /// The answer of [`MedialScene::line_of_sight`] alone, which is quicker; [`Answer::OutsideView`] for a point that
+    /// is not finite or is the observer's own.
     #[must_use]
     pub fn sight_answer(&self, observer: [f64; 3], target: [f64; 3], earth: &EarthParams) -> Answer {
         let range = length(sub(observer, target));
@@ -194,8 +197,8 @@ impl MedialScene {
         self.answer_on_chords((observer, target), &earth.corners(observer, target))
     }
 
-    /// The answer for the part of a line of sight between two ends, the observer first, that runs along chords through `corners`, from the observer's side on. The rules for the ends
-    /// are asked of the whole line.
+    /// The answer for the part of a line of sight between two ends, the observer first, that runs along chords through
+    /// `corners`, from the observer's side on. The rules for the ends are asked of the whole line.
     pub(super) fn answer_on_chords(&self, (observer, target): ([f64; 3], [f64; 3]), corners: &[[f64; 3]]) -> Answer {
         let pieces = self.chords(observer, target, corners);
         let is_blocked = |piece: &LinePiece| {
@@ -216,10 +219,11 @@ impl MedialScene {
         Answer::Visible
     }
 
-    /// Every ball and mesh on the line of sight from `observer` to `target`, local metres, by its whole radius, in the order in which the
-    /// line enters them. Balls around the ends are among them, and those that give way to the target. A mesh holds what lies between every two
-    /// of its surfaces, counted from the target, and from the last one to the observer where their number is odd. Empty for a line without
-    /// length or with coordinates that are not finite.
+    /// Every ball and mesh on the line of sight from `observer` to `target`, local metres, by its whole radius, in the
+    /// order in which the line enters them. Balls around the ends are among them, and those that give way to the
+    /// target. A mesh holds what lies between every two of its surfaces, counted from the target, and from the last one
+    /// to the observer where their number is odd. Empty for a line without length or with coordinates that are not
+    /// finite.
     #[must_use]
     pub fn crossings(&self, observer: [f64; 3], target: [f64; 3], earth: &EarthParams) -> Vec<Crossing> {
         let corners = earth.corners(observer, target);
@@ -271,7 +275,8 @@ impl MedialScene {
         enclosure
     }
 
-    /// Calls `visit` with the number in the index of every ball that blocks the line of sight from `observer` to `target`.
+    /// Calls `visit` with the number in the index of every ball that blocks the line of sight from `observer` to
+    /// `target`.
     pub(super) fn each_blocker(
         &self,
         observer: [f64; 3],
@@ -297,7 +302,8 @@ impl MedialScene {
         }
     }
 
-    /// Calls `visit` with the corners of every triangle of an added mesh that blocks the line of sight from `observer` to `target`.
+    /// Calls `visit` with the corners of every triangle of an added mesh that blocks the line of sight from `observer`
+    /// to `target`.
     pub(super) fn each_added_blocker(
         &self,
         observer: [f64; 3],
@@ -368,8 +374,8 @@ impl MedialScene {
     }
 }
 
-/// `count` pairs of points spread evenly at random over the local box from `low` to `high`, observer and target. The same seed gives
-/// the same pairs for any number of threads.
+/// `count` pairs of points spread evenly at random over the local box from `low` to `high`, observer and target. The
+/// same seed gives the same pairs for any number of threads.
 #[must_use]
 pub fn random_pairs(low: [f32; 3], high: [f32; 3], count: usize, seed: u64) -> Vec<[[f64; 3]; 2]> {
     let ends = super::random_targets(low, high, 2 * count, seed);

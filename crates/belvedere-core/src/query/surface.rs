@@ -48,12 +48,13 @@ pub struct SurfacePieces {
 }
 
 impl SurfacePieces {
-    /// The triangles of `mesh`, metres, about the local origin `origin`, metres, each cut into slices and cells until no side is
-    /// longer than `spacing` metres; at least one piece a triangle that has an area. A place is drawn on each from `seed`.
+    /// The triangles of `mesh`, metres, about the local origin `origin`, metres, each cut into slices and cells until
+    /// no side is longer than `spacing` metres; at least one piece a triangle that has an area. A place is drawn on
+    /// each from `seed`.
     ///
     /// # Errors
-    /// [`Error::InvalidParameter`] for a spacing that is not above zero or would make more than 50 million pieces, and for
-    /// vertices that are not finite or lie 10 000 km or more from the origin.
+    /// [`Error::InvalidParameter`] for a spacing that is not above zero or would make more than 50 million pieces, and
+    /// for vertices that are not finite or lie 10 000 km or more from the origin.
     pub fn of_mesh(mesh: &Mesh, origin: [f64; 3], spacing: f64, seed: u64) -> Result<Self> {
         if !(spacing.is_finite() && spacing > 0.0) {
             return invalid(Parameter::Spacing, spacing.to_string(), "above zero metres");
@@ -99,13 +100,13 @@ impl SurfacePieces {
         Ok(Self { pieces: pieces.concat(), face_count: mesh.triangles.len(), sides: Sides::Known })
     }
 
-    /// The surface that `points`, (N, 3) local metres, lie on: about each a triangle square to its normal (`normals`, (N, 3), of any
-    /// sign), whose area follows from how near the eighth neighbour is, π d² / 8, and is that of a disc of `max_radius`
-    /// metres at most. Points without a normal, (0, 0, 0), are turned upward.
+    /// The surface that `points`, (N, 3) local metres, lie on: about each a triangle square to its normal (`normals`,
+    /// (N, 3), of any sign), whose area follows from how near the eighth neighbour is, π d² / 8, and is that of a disc
+    /// of `max_radius` metres at most. Points without a normal, (0, 0, 0), are turned upward.
     ///
     /// # Errors
-    /// [`Error::LengthMismatch`] unless there is a normal for each point, [`Error::InvalidParameter`] for a point that is not finite and
-    /// a radius that is not above zero.
+    /// [`Error::LengthMismatch`] unless there is a normal for each point, [`Error::InvalidParameter`] for a point that
+    /// is not finite and a radius that is not above zero.
     pub fn of_points(
         points: &[[f32; 3]],
         normals: &[[f32; 3]],
@@ -172,8 +173,8 @@ impl SurfacePieces {
         areas
     }
 
-    /// Mean of `values`, one for each piece, over the area of each face, (faces). Pieces whose value is NaN do not count; NaN for a face
-    /// without any.
+    /// Mean of `values`, one for each piece, over the area of each face, (faces). Pieces whose value is NaN do not
+    /// count; NaN for a face without any.
     #[must_use]
     pub fn face_means(&self, values: &[f32]) -> Vec<f64> {
         let mut sums = vec![[0.0, 0.0]; self.face_count];
@@ -191,8 +192,8 @@ fn invalid<T>(parameter: Parameter, value: String, expected: &'static str) -> Re
     Err(Error::InvalidParameter { parameter, value, expected })
 }
 
-/// A triangle in pieces without a side longer than `spacing`, neighbours after each other: slices across its longest side, each cut
-/// along that side too where it is wide.
+/// A triangle in pieces without a side longer than `spacing`, neighbours after each other: slices across its longest
+/// side, each cut along that side too where it is wide.
 fn cut(corners: [[f64; 3]; 3], spacing: f64, pieces: &mut Vec<[[f64; 3]; 3]>) {
     let [a, b, c] = corners;
     let sides = [sub(b, a), sub(c, b), sub(a, c)];

@@ -1,4 +1,5 @@
-//! Eight boxes at once on machines with AVX2 and FMA: the same arithmetic as [`super::walk::RayScalar`] with fused products, in the same order.
+//! Eight boxes at once on machines with AVX2 and FMA: the same arithmetic as [`super::walk::RayScalar`] with fused
+//! products, in the same order.
 #![expect(
     unsafe_code,
     reason = "walks take about two fifths of the time of sky views; AVX2 saved 9 % of the whole (`walk.rs`) before lines walked in packets, and the \

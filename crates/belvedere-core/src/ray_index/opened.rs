@@ -53,7 +53,8 @@ impl OpenNode<'_> {
         self.node.child_base_idx + before.count_ones()
     }
 
-    /// Rows from the first to the last, exclusive, of those of `parts` that are rows; others may lie between. Rows of later parts come later.
+    /// Rows from the first to the last, exclusive, of those of `parts` that are rows; others may lie between. Rows of
+    /// later parts come later.
     #[inline(always)]
     pub(crate) fn rows(&self, parts: u32) -> Range<u32> {
         let rows = parts & self.taken() & !u32::from(self.node.imask);

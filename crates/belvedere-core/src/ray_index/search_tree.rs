@@ -1,4 +1,5 @@
-//! Trees over boxes, large ones in parts side by side: the steps that make nodes of eight parts from a binary tree run on one thread each.
+//! Trees over boxes, large ones in parts side by side: the steps that make nodes of eight parts from a binary tree run
+//! on one thread each.
 
 #![expect(
     clippy::cast_possible_truncation,
@@ -40,8 +41,8 @@ fn tree_of(boxes: &[Aabb], rows: &mut [u32]) -> CwBvh {
     joined(&trees)
 }
 
-/// The tree over the boxes of `rows`, made at once: the steps of `build_cwbvh`, but for its check of the boxes in debug builds,
-/// which allows for errors of 1e-5 and panics on sound trees wider than some hundred metres.
+/// The tree over the boxes of `rows`, made at once: the steps of `build_cwbvh`, but for its check of the boxes in debug
+/// builds, which allows for errors of 1e-5 and panics on sound trees wider than some hundred metres.
 fn one_tree(boxes: &[Aabb], rows: &[u32]) -> CwBvh {
     let params = BvhBuildParams::medium_build();
     let of_rows: Vec<Aabb> = rows.iter().map(|&row| boxes[row as usize]).collect();
@@ -99,7 +100,8 @@ fn joined(trees: &[CwBvh]) -> CwBvh {
     all
 }
 
-/// A node whose parts are nodes, the next ones, with boxes in steps from its lowest corner: the smallest powers of two of which 255 reach the highest one.
+/// A node whose parts are nodes, the next ones, with boxes in steps from its lowest corner: the smallest powers of two
+/// of which 255 reach the highest one.
 fn node_of(parts: &[Aabb], around: &Aabb) -> CwBvhNode {
     let size = (around.max - around.min).to_array();
     let steps = size.map(|size| (size.max(1e-20) / 255.0).log2().ceil().exp2());
@@ -136,7 +138,8 @@ mod tests {
 
     type BoxSides = [[f64; 3]; 2];
 
-    /// The box around all rows below a node, which must lie in the boxes of all parts above them; counts how often each row is there.
+    /// The box around all rows below a node, which must lie in the boxes of all parts above them; counts how often each
+    /// row is there.
     fn around_rows(index: &RayIndex, boxes: &[[[f32; 3]; 2]], node: u32, counts: &mut [u32]) -> BoxSides {
         let parts = index.parts(node).unwrap();
         let mut around = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];

@@ -5,12 +5,12 @@ use crate::summary::CloudSummary;
 use belvedere_data::PointCloud;
 use std::fmt;
 
-/// Share of the points whose scanner must be known for nothing to be missing, percent: what lies beside the first and last pulses of a flight line
-/// stays unknown.
+/// Share of the points whose scanner must be known for nothing to be missing, percent: what lies beside the first and
+/// last pulses of a flight line stays unknown.
 const NEARLY_ALL_PERCENT: f64 = 99.0;
 
-/// Share of the points in the densest twentieth of the ground from which on the scanner stood on it. Measured: 0.10 to 0.20 from the air (Delft, Amsterdam,
-/// Bresse, simulated towns), 0.35 from a car, 0.5 from tripods.
+/// Share of the points in the densest twentieth of the ground from which on the scanner stood on it. Measured: 0.10 to
+/// 0.20 from the air (Delft, Amsterdam, Bresse, simulated towns), 0.35 from a car, 0.5 from tripods.
 const UNEVEN_SHARE: f64 = 0.28;
 
 /// A survey in one line: [`fmt::Display`] joins the three parts.
@@ -116,7 +116,8 @@ impl SurveyKind {
     }
 }
 
-/// Whether the densest twentieth of the cells, seen from above, holds [`UNEVEN_SHARE`] of the points, as near a scanner on the ground.
+/// Whether the densest twentieth of the cells, seen from above, holds [`UNEVEN_SHARE`] of the points, as near a scanner
+/// on the ground.
 fn is_uneven(positions: &[[f32; 3]], side: f64) -> bool {
     #[expect(clippy::cast_possible_truncation, reason = "saturates; clouds are not 2^31 cells wide")]
     let cell = |v: f32| (f64::from(v) / side).floor() as i32;

@@ -5,8 +5,8 @@ use crate::vector::{cross, dot, unit};
 use crate::{Error, Parameter, Result};
 
 impl View {
-    /// The paper's viewport: `p0` is the upper left corner, `vx` spans the rows and `vy` the columns (their lengths give
-    /// the size of the picture), `pixels_per_metre` is s. The line of sight is `vx × vy`.
+    /// The paper's viewport: `p0` is the upper left corner, `vx` spans the rows and `vy` the columns (their lengths
+    /// give the size of the picture), `pixels_per_metre` is s. The line of sight is `vx × vy`.
     ///
     /// `p0` is local; all lengths are metres.
     ///
@@ -89,8 +89,8 @@ impl View {
         Self::from_viewport(eye, right.map(|v| v * span(0)), down.map(|v| v * span(1)), 1.0 / pixel_size)
     }
 
-    /// The same view with the picture plane of a parallel view moved back as far as needed for none of `positions`, local metres,
-    /// to lie before it. Pixels stay the same lines of sight. Views from an eye stay as they are.
+    /// The same view with the picture plane of a parallel view moved back as far as needed for none of `positions`,
+    /// local metres, to lie before it. Pixels stay the same lines of sight. Views from an eye stay as they are.
     #[must_use]
     pub fn moved_before(mut self, positions: &[[f32; 3]]) -> Self {
         if self.is_central() {
@@ -106,8 +106,9 @@ impl View {
         self
     }
 
-    /// Where the picture of a parallel view straight down or up lies in the plane: easting and northing of its upper left
-    /// corner, of the step to the next column and of the step to the next row, local metres; `None` for any other view.
+    /// Where the picture of a parallel view straight down or up lies in the plane: easting and northing of its upper
+    /// left corner, of the step to the next column and of the step to the next row, local metres; `None` for any other
+    /// view.
     #[must_use]
     pub fn ground_grid(&self) -> Option<[[f64; 2]; 3]> {
         let pixels_per_metre = self.pixels_per_metre()?;

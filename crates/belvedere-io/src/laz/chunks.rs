@@ -1,4 +1,5 @@
-//! Chunks of LAZ points, decompressed side by side with the fields of the laz crate, except those that it decodes by recursion.
+//! Chunks of LAZ points, decompressed side by side with the fields of the laz crate, except those that it decodes by
+//! recursion.
 
 use std::io::Cursor;
 
@@ -11,7 +12,8 @@ use ::laz::{DecompressionSelection, LazItem, LazVlr};
 use super::gps_times::GpsTimeField;
 use super::point14::Point14Field;
 
-/// Decompresses the `chunks`, which follow each other in `compressed`, to `points`, which have the sizes that the chunks claim.
+/// Decompresses the `chunks`, which follow each other in `compressed`, to `points`, which have the sizes that the
+/// chunks claim.
 ///
 /// # Errors
 ///

@@ -1,8 +1,8 @@
-//! GPS times of LAZ points, decoded by a loop: the laz crate (0.13) decodes them by recursion, which damaged files drive through the
-//! end of the stack (`docs/upstream.md`).
+//! GPS times of LAZ points, decoded by a loop: the laz crate (0.13) decodes them by recursion, which damaged files
+//! drive through the end of the stack (`docs/upstream.md`).
 //!
-//! Source: M. Isenburg, LASzip: lossless compression of LiDAR data, PE&RS 79(2), 2013, and what LASzip 3 writes: times follow up to four sequences, and each
-//! goes on by about a multiple of its last difference.
+//! Source: M. Isenburg, LASzip: lossless compression of LiDAR data, PE&RS 79(2), 2013, and what LASzip 3 writes: times
+//! follow up to four sequences, and each goes on by about a multiple of its last difference.
 
 use std::io::{self, Read};
 
@@ -11,7 +11,8 @@ use ::laz::decompressors::{IntegerDecompressor, IntegerDecompressorBuilder};
 use ::laz::models::{ArithmeticModel, ArithmeticModelBuilder};
 use ::laz::record::FieldDecompressor;
 
-/// Greatest and least multiple of the last difference that has a symbol of its own; symbols count from 0 to 500, then from −1 to −10.
+/// Greatest and least multiple of the last difference that has a symbol of its own; symbols count from 0 to 500, then
+/// from −1 to −10.
 const GREATEST_MULTIPLE: i32 = 500;
 const MIN_MULTIPLE: i32 = -10;
 /// The first symbol behind those of multiples.
@@ -159,7 +160,8 @@ impl GpsTimeDecoder {
     }
 }
 
-/// The field of GPS times of point formats 1 and 3 to 5, in its second version (the first one has one sequence and no recursion).
+/// The field of GPS times of point formats 1 and 3 to 5, in its second version (the first one has one sequence and no
+/// recursion).
 pub(super) struct GpsTimeField(GpsTimeDecoder);
 
 impl GpsTimeField {

@@ -25,16 +25,18 @@ const MAX_BYTES: u64 = 500_000_000;
 
 /// Reads the radiation of a weather file. Its rows keep their own years, of which a typical year has several.
 ///
-/// What is missing in a row stays missing where other columns make up for it; rows without global radiation, or with a value that the format
-/// marks as missing, are left out and counted. Values below zero that are noise of sensors at night, down to −20 W/m², count as zero.
+/// What is missing in a row stays missing where other columns make up for it; rows without global radiation, or with a
+/// value that the format marks as missing, are left out and counted. Values below zero that are noise of sensors at
+/// night, down to −20 W/m², count as zero.
 ///
 /// # Errors
-/// [`Error::Io`]; [`Error::Malformed`], which names the line, for files of another kind, columns that are missing, dates that do not exist,
-/// text in place of numbers, radiation beyond 3000 W/m² or below −20, series of PVGIS on tilted planes, and files without rows.
+/// [`Error::Io`]; [`Error::Malformed`], which names the line, for files of another kind, columns that are missing,
+/// dates that do not exist, text in place of numbers, radiation beyond 3000 W/m² or below −20, series of PVGIS on
+/// tilted planes, and files without rows.
 ///
 /// # Source
-/// EnergyPlus, Auxiliary Programs, "EnergyPlus Weather File (EPW) Data Dictionary"; Wilcox & Marion 2008, User's manual for TMY3 data sets;
-/// PVGIS user manual, sections 4 and 6; NSRDB, "PSM v3 and v4 CSV".
+/// EnergyPlus, Auxiliary Programs, "EnergyPlus Weather File (EPW) Data Dictionary"; Wilcox & Marion 2008, User's manual
+/// for TMY3 data sets; PVGIS user manual, sections 4 and 6; NSRDB, "PSM v3 and v4 CSV".
 pub fn read_weather<'a>(source: impl Into<Source<'a>>) -> Result<Weather> {
     let Input { name, mut reader, size } = source.into().open()?;
     let path = name.as_path();

@@ -1,4 +1,5 @@
-//! Damaged files of everything that is read beside clouds: meshes, city models, tables, shapes, trajectories, weather, matrices.
+//! Damaged files of everything that is read beside clouds: meshes, city models, tables, shapes, trajectories, weather,
+//! matrices.
 
 use std::io::Cursor;
 use std::time::Instant;

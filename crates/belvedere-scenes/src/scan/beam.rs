@@ -8,21 +8,21 @@ use crate::vector::{add_scaled, cross, dot, sub, unit};
 /// Shape of a pulse and how its echoes are told apart.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BeamParams {
-    /// Full angle of the cone that holds all but 1/e² of the energy, radians, 0 to 0.01. Default 0.0004: usual for airborne
-    /// scanners, 18 cm on the ground from 450 m.
+    /// Full angle of the cone that holds all but 1/e² of the energy, radians, 0 to 0.01. Default 0.0004: usual for
+    /// airborne scanners, 18 cm on the ground from 450 m.
     pub divergence: f64,
     /// Echoes closer together than this merge into one, metres, 0.1 to 10. Default 0.8: a pulse of 5 ns.
     pub range_resolution: f64,
-    /// Share of the energy of the pulse below which an echo goes unnoticed, 0 to 1. Default 0.15: more than one of the six
-    /// outer rays, less than the centre ray.
+    /// Share of the energy of the pulse below which an echo goes unnoticed, 0 to 1. Default 0.15: more than one of the
+    /// six outer rays, less than the centre ray.
     pub weakest_echo: f64,
     /// Most echoes recorded per pulse, the first ones, 1 to 15. Default 5.
     pub max_returns: u8,
     /// Probability that a ray passes through the hull of a crown, at entry and (without [`BeamParams::foliage_depth`])
     /// again at exit, 0 to 1. Default 0.35: a seventh of the energy reaches the ground below, as in trees in leaf.
     pub crown_porosity: f64,
-    /// Mean free path of a ray among the leaves inside a crown, metres, 0 to 100. Default 0: rays are stopped by the hull
-    /// alone, so that every return lies on a triangle. Otherwise a ray that passed the hull is stopped after an
+    /// Mean free path of a ray among the leaves inside a crown, metres, 0 to 100. Default 0: rays are stopped by the
+    /// hull alone, so that every return lies on a triangle. Otherwise a ray that passed the hull is stopped after an
     /// exponentially distributed path, inside the crown, or leaves the crown freely.
     pub foliage_depth: f64,
 }
@@ -41,12 +41,12 @@ impl Default for BeamParams {
 }
 
 impl BeamParams {
-    /// The default pulse in crowns that it enters, before a receiver that notices weak echoes: half of the rays pass the
-    /// hull and then get 1.5 m deep on average.
+    /// The default pulse in crowns that it enters, before a receiver that notices weak echoes: half of the rays pass
+    /// the hull and then get 1.5 m deep on average.
     ///
-    /// Four fifths of the pulses that meet a crown then give several returns, a quarter reach the ground, and half of the
-    /// returns inside crowns lie within a metre of the hull. Over a town a twelfth of whose ground lies under crowns that
-    /// makes 7 % of all pulses; in AHN3 over Delft, with more trees, it is 21 %.
+    /// Four fifths of the pulses that meet a crown then give several returns, a quarter reach the ground, and half of
+    /// the returns inside crowns lie within a metre of the hull. Over a town a twelfth of whose ground lies under
+    /// crowns that makes 7 % of all pulses; in AHN3 over Delft, with more trees, it is 21 %.
     #[must_use]
     pub fn in_leaf() -> Self {
         Self { weakest_echo: 0.1, crown_porosity: 0.5, foliage_depth: 1.5, ..Self::default() }
@@ -80,8 +80,8 @@ impl Axis {
 
 /// An echo of a pulse.
 ///
-/// It is placed at the strongest of the rays that make it up, not at their mean, so that it lies exactly on a surface, or
-/// exactly where that ray met leaves inside a crown.
+/// It is placed at the strongest of the rays that make it up, not at their mean, so that it lies exactly on a surface,
+/// or exactly where that ray met leaves inside a crown.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Echo {
     pub(crate) range: f64,

@@ -142,8 +142,8 @@ pub(crate) fn width_across(scene: &TriangleScene, heading: f64) -> f64 {
 /// Places along each side of a scene at which coverage is looked up.
 const COVERAGE_STEPS: u32 = 60;
 
-/// How many strips see a place of `scene`, mean over its ground, each weighted with how dense its pulses are there against
-/// the mean of the strip.
+/// How many strips see a place of `scene`, mean over its ground, each weighted with how dense its pulses are there
+/// against the mean of the strip.
 pub(crate) fn mean_coverage(scene: &TriangleScene, params: &AirborneParams) -> f64 {
     let Some((low, high)) = scene.bounds() else { return 0.0 };
     let sweep = params.sweep();

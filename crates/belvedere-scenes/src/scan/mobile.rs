@@ -13,8 +13,8 @@ use crate::scene::{Material, TriangleScene};
 use crate::truth::Truth;
 use crate::vector::cross;
 
-/// How a scene is scanned from a car. Values outside their ranges that leave nothing to scan (a range, speed or rate that is not
-/// positive) give a scan without points.
+/// How a scene is scanned from a car. Values outside their ranges that leave nothing to scan (a range, speed or rate
+/// that is not positive) give a scan without points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MobileParams {
     /// Any number; another one gives other noise. Default 1.
@@ -35,8 +35,8 @@ pub struct MobileParams {
     pub beam: BeamParams,
     /// Standard deviation of a range, metres, 0 to 0.1. Default 0.005.
     pub range_sd: f64,
-    /// Standard deviation of the direction of a pulse about each of two axes, radians, 0 to 0.001. Default 2e-4: what is left of a
-    /// trajectory's errors within one run.
+    /// Standard deviation of the direction of a pulse about each of two axes, radians, 0 to 0.001. Default 2e-4: what
+    /// is left of a trajectory's errors within one run.
     pub pointing_sd: f64,
     /// Share of pulses lost, 0 to 1. Default 0.01.
     pub dropout: f64,
@@ -74,9 +74,9 @@ const SETTLED: f64 = 0.5;
 
 /// Drives a car with two scanners along the runs and returns what they record.
 ///
-/// The mirrors turn about level axes, 45° to either side of the way ahead. Returns of a run carry its number as point source id, the
-/// scanners are channels of one instrument in the same place. Each pulse draws its noise from its own stream, so the scan has the same
-/// bits for any number of threads.
+/// The mirrors turn about level axes, 45° to either side of the way ahead. Returns of a run carry its number as point
+/// source id, the scanners are channels of one instrument in the same place. Each pulse draws its noise from its own
+/// stream, so the scan has the same bits for any number of threads.
 #[must_use]
 pub fn scan_mobile(scene: &TriangleScene, params: &MobileParams) -> Scan {
     let mut scan = Scan::default();

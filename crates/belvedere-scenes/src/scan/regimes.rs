@@ -112,7 +112,8 @@ impl Regime {
         if self == Self::Room { furnished_rooms(params.seed).0 } else { town(params) }
     }
 
-    /// A survey of `scene`, which [`Regime::scene`] made of `params`, with their seed, and with `pulses_per_m2` where the scanner flies.
+    /// A survey of `scene`, which [`Regime::scene`] made of `params`, with their seed, and with `pulses_per_m2` where
+    /// the scanner flies.
     #[must_use]
     pub fn scan(self, scene: &TriangleScene, params: &TownParams, pulses_per_m2: f64) -> Scan {
         let seed = params.seed;

@@ -13,8 +13,8 @@ pub enum ScanPattern {
     Rotating,
     /// An oscillating mirror: a zig-zag across the flight.
     Oscillating(MirrorMotion),
-    /// A tilted mirror that spins about the vertical: a circle that moves along, so that every place is seen from ahead and
-    /// from behind, and walls across the flight as well as those along it.
+    /// A tilted mirror that spins about the vertical: a circle that moves along, so that every place is seen from ahead
+    /// and from behind, and walls across the flight as well as those along it.
     Conical {
         /// Angle of all pulses from nadir, radians, 0 to 1.2. 20° is usual.
         half_angle: f64,
@@ -72,8 +72,8 @@ impl PulseSweep {
         (Axis { origin, direction, across: [course.forward, outwards] }, angle)
     }
 
-    /// Pulses per m² at `offset` metres beside the path of an aircraft `height` metres up, as a multiple of the mean over
-    /// the strip.
+    /// Pulses per m² at `offset` metres beside the path of an aircraft `height` metres up, as a multiple of the mean
+    /// over the strip.
     pub(crate) fn relative_density(&self, offset: f64, height: f64) -> f64 {
         // A mirror that turns round has no speed there; beams of finite width keep the density finite.
         let slowest = 0.05;

@@ -15,15 +15,15 @@ const DIRECTIONS: u32 = 16;
 const STEP: f64 = 2.0;
 /// Most places tried along each side.
 const PLACES_ACROSS: f64 = 150.0;
-/// Height above the foot at which room must be free, metres, besides the height of the instrument: above kerbs and cars'
-/// wheels, below hedges.
+/// Height above the foot at which room must be free, metres, besides the height of the instrument: above kerbs and
+/// cars' wheels, below hedges.
 const KNEE: f64 = 0.6;
 
 /// Up to `count` positions of an instrument `height` metres above open ground, (S, 3), metres, absolute.
 ///
-/// Open ground has nothing above it and nothing beside it for a few metres. Each open place is as near as can be to one of
-/// the positions: they start far from each other and then move to the middle of the places that are nearest to them. Fewer
-/// where there is less room, none in a scene without ground.
+/// Open ground has nothing above it and nothing beside it for a few metres. Each open place is as near as can be to one
+/// of the positions: they start far from each other and then move to the middle of the places that are nearest to them.
+/// Fewer where there is less room, none in a scene without ground.
 ///
 /// # Source
 /// Start: farthest-point sampling, Gonzalez 1985. Moves: Lloyd 1982.

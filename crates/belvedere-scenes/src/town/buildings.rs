@@ -3,11 +3,12 @@
 use crate::scene::{Material, ObjectPart};
 use crate::solids::{PlanPlacement, extruded, prism, ridged, swept};
 
-/// How far a joint reaches into the solid it belongs to, metres: solids that merely touch would leave a scanner a seam to
-/// look into.
+/// How far a joint reaches into the solid it belongs to, metres: solids that merely touch would leave a scanner a seam
+/// to look into.
 pub(crate) const JOINT: f64 = 0.1;
 
-/// Ridge, eaves and size of a house with its ridge along u, on which dormers and chimneys sit. Metres, absolute heights.
+/// Ridge, eaves and size of a house with its ridge along u, on which dormers and chimneys sit. Metres, absolute
+/// heights.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RoofShape {
     pub(crate) length: f64,
@@ -29,7 +30,8 @@ pub(crate) fn chimney(house: &PlanPlacement, roof: &RoofShape, along: f64) -> Ob
     prism(&footprint, roof.eaves, roof.ridge + 0.8, Material::Facade)
 }
 
-/// Gabled dormer in the slope towards −v, `along` metres from the middle of the house; `None` where the roof is too low.
+/// Gabled dormer in the slope towards −v, `along` metres from the middle of the house; `None` where the roof is too
+/// low.
 pub(crate) fn dormer(house: &PlanPlacement, roof: &RoofShape, along: f64) -> Option<ObjectPart> {
     let inset = 0.8;
     let eaves = roof.height(inset) + 1.1;
@@ -65,8 +67,8 @@ pub(crate) fn balcony(wall: &PlanPlacement, width: f64, depth: f64, floor: f64) 
     swept(&rings, &[Material::Slab], Material::Slab)
 }
 
-/// House over an arcade: its ground floor towards −v stands back by `setback` behind pillars, the floors above reach out
-/// to the full `roof` outline and rest on a ceiling at height `ceiling`. The house, then its pillars.
+/// House over an arcade: its ground floor towards −v stands back by `setback` behind pillars, the floors above reach
+/// out to the full `roof` outline and rest on a ceiling at height `ceiling`. The house, then its pillars.
 pub(crate) fn arcaded(
     house: &PlanPlacement,
     roof: &RoofShape,

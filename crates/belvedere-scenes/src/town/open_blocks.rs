@@ -47,8 +47,8 @@ impl TownSite {
         }
     }
 
-    /// Flat-roofed building with a machine room and rows of balconies, from the given storey up, on the walls that face −v
-    /// after a turn by each of `faces`.
+    /// Flat-roofed building with a machine room and rows of balconies, from the given storey up, on the walls that face
+    /// −v after a turn by each of `faces`.
     fn balconied(&mut self, place: &PlanPlacement, size: [f64; 2], height: f64, faces: &[f64], first_storey: u32) {
         let footprint = place.rectangle(size[0], size[1]);
         let ground = self.ground(place.origin);

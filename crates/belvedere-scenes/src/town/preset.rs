@@ -19,7 +19,8 @@ pub const EXTENT: f64 = 150.0;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Preset {
-    /// Detached houses with chimneys and dormers in fenced gardens, porous trees, cars, masts and wires on hilly ground.
+    /// Detached houses with chimneys and dormers in fenced gardens, porous trees, cars, masts and wires on hilly
+    /// ground.
     Village,
     /// Rows of houses with party walls, high-rise with balconies and decks, a market square with arcades, courtyards, a
     /// petrol station, a dry canal with bridges; cars, fences, masts and wires, opaque trees.

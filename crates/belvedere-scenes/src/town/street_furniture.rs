@@ -85,8 +85,8 @@ pub(crate) fn bridge(ends: [[f64; 2]; 2], width: f64, ground: GroundHeight<'_>) 
     std::iter::once(deck).chain(parapets).collect()
 }
 
-/// Slab of `size` about the origin with its underside at height `underside`, on square posts along its rim that stand `inset`
-/// metres inside it and at most `spacing` metres apart. Metres.
+/// Slab of `size` about the origin with its underside at height `underside`, on square posts along its rim that stand
+/// `inset` metres inside it and at most `spacing` metres apart. Metres.
 pub(crate) struct PostedSlab {
     pub(crate) size: [f64; 2],
     pub(crate) underside: f64,

@@ -139,8 +139,8 @@ impl TownSite {
         }
     }
 
-    /// Roof over nothing: a slab of `size` with its underside `clear` metres above the ground at its middle, on posts at most
-    /// `spacing` metres apart.
+    /// Roof over nothing: a slab of `size` with its underside `clear` metres above the ground at its middle, on posts
+    /// at most `spacing` metres apart.
     pub(crate) fn canopy(
         &mut self,
         placement: PlanPlacement,

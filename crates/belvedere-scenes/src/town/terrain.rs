@@ -52,8 +52,8 @@ const WAVELENGTHS: [f64; 3] = [160.0, 110.0, 75.0];
 pub(crate) const CELL: f64 = 2.0;
 
 impl Terrain {
-    /// Ground about `centre` (absolute, metres) that rises by `slope` (metres per metre) in a random direction, with hills
-    /// of up to `hill_height` metres above and below.
+    /// Ground about `centre` (absolute, metres) that rises by `slope` (metres per metre) in a random direction, with
+    /// hills of up to `hill_height` metres above and below.
     pub(crate) fn new(centre: [f64; 3], slope: f64, hill_height: f64, seed: u64) -> Self {
         let mut random = Random::new(seed, 1);
         let (sin, cos) = random.between(0.0, TAU).sin_cos();
@@ -78,8 +78,8 @@ impl Terrain {
     /// Height of the ground at absolute (x, y), all in metres.
     ///
     /// The mesh lies on this height at its vertices and departs from it by less than 4 mm per metre of hill height
-    /// between them (half the squared circumradius of its triangles times the greatest curvature). In a canal it departs by
-    /// up to 0.4 m, since its banks are steeper than the mesh is fine.
+    /// between them (half the squared circumradius of its triangles times the greatest curvature). In a canal it
+    /// departs by up to 0.4 m, since its banks are steeper than the mesh is fine.
     #[must_use]
     pub fn height(&self, x: f64, y: f64) -> f64 {
         let (dx, dy) = (x - self.centre[0], y - self.centre[1]);

@@ -38,7 +38,8 @@ const COLUMNS: usize = 14;
 /// What the crowns of trees are made of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CrownMaterial {
-    /// A closed hull that lets no light through ([`Material::TreeCrown`]); the scanner's beam may be told to pass it in part.
+    /// A closed hull that lets no light through ([`Material::TreeCrown`]); the scanner's beam may be told to pass it in
+    /// part.
     Opaque,
     /// Sprays of leaves, 0.2 to 0.4 m, in clumps with gaps between ([`Material::Leaf`]): about two in
     /// five straight lines through the crown get past them.
@@ -77,8 +78,8 @@ pub(crate) fn tree(
 const SPRAYS: u32 = 400;
 /// Clumps that the sprays gather in.
 const CLUMPS: usize = 24;
-/// Area of the sprays seen from one side, as a share of that of the crown: about two in five lines through the inner crown
-/// stay free.
+/// Area of the sprays seen from one side, as a share of that of the crown: about two in five lines through the inner
+/// crown stay free.
 const COVER: f64 = 0.55;
 
 /// Sprays within an ellipsoid about `centre`: each a closed flat tetrahedron, turned at random.
@@ -117,7 +118,8 @@ const TWIGS: u32 = 4;
 /// Radius of the tip of a limb or a twig, metres.
 const TIP_RADIUS: f64 = 0.01;
 
-/// Branches of a tree without leaves, within an ellipsoid about `centre`: each a closed prism that tapers. The trunk goes on to the top.
+/// Branches of a tree without leaves, within an ellipsoid about `centre`: each a closed prism that tapers. The trunk
+/// goes on to the top.
 fn branches(centre: [f64; 3], shape: &TreeShape, half_height: f64, random: &mut Random) -> ObjectPart {
     let TreeShape { crown_radius: radius, trunk_radius, .. } = *shape;
     let mut part = ObjectPart::default();
@@ -141,7 +143,8 @@ fn branches(centre: [f64; 3], shape: &TreeShape, half_height: f64, random: &mut 
     part
 }
 
-/// Adds a closed prism of three sides that tapers from `radius` at `from` to [`TIP_RADIUS`] at `to`; nothing where they coincide.
+/// Adds a closed prism of three sides that tapers from `radius` at `from` to [`TIP_RADIUS`] at `to`; nothing where they
+/// coincide.
 fn add_branch(part: &mut ObjectPart, from: [f64; 3], to: [f64; 3], radius: f64) {
     let Some(along) = unit(sub(to, from)) else { return };
     let aside = if along[2].abs() < 0.9 { [0.0, 0.0, 1.0] } else { [1.0, 0.0, 0.0] };

@@ -170,8 +170,8 @@ fn treads_are_shaded_over_rise_times_cosine_over_tangent() {
     }
 }
 
-/// Share of a hemisphere about `normal`, cosine-weighted, that is free of the scene, by `rows`² stratified rays: equal areas
-/// on the unit disc lifted to the hemisphere (Malley's method).
+/// Share of a hemisphere about `normal`, cosine-weighted, that is free of the scene, by `rows`² stratified rays: equal
+/// areas on the unit disc lifted to the hemisphere (Malley's method).
 fn sky_view(truth: &Truth, point: [f64; 3], frame: [[f64; 3]; 3], rows: u32) -> f64 {
     let origins = vec![point; (rows * rows) as usize];
     let directions: Vec<[f64; 3]> = (0..rows)
@@ -189,8 +189,8 @@ fn sky_view(truth: &Truth, point: [f64; 3], frame: [[f64; 3]; 3], rows: u32) -> 
 }
 
 const UP: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-/// Rays per side, and what the count of cells that a horizon cuts can make of it: a rim of about 4 cells per row, each wrong
-/// by half at most and at random. Far above the error of the open ends of the canyon (2e-6).
+/// Rays per side, and what the count of cells that a horizon cuts can make of it: a rim of about 4 cells per row, each
+/// wrong by half at most and at random. Far above the error of the open ends of the canyon (2e-6).
 const ROWS: u32 = 600;
 const SAMPLING: f64 = 1e-3;
 

@@ -34,7 +34,8 @@ fn block_of_a_gable_roof_ends_at_seven_tenths_of_it() {
 fn block_of_a_pyramid_ends_where_it_has_shrunk_to_three_tenths() {
     let mut scene = TriangleScene::default();
     scene.add_object("tent", &[ridged(&UPRIGHT.rectangle(8.0, 8.0), 0.0, 4.0, 10.0, 3.999)]);
-    // The plan of a pyramid above height share s is (1 − s)² of all: 0.3 at s = 1 − √0.3. A ridge of 2 mm does not count.
+    // The plan of a pyramid above height share s is (1 − s)² of all: 0.3 at s = 1 − √0.3. A ridge of 2 mm does not
+    // count.
     let expected = 64.0 * (4.0 + 6.0 * (1.0 - 0.3_f64.sqrt()));
     let found = volume(&blocks(&scene), "tent");
     assert!((found / expected - 1.0).abs() < 1e-3, "{found} {expected}");

@@ -128,8 +128,8 @@ fn default_town_stays_the_one_that_numbers_were_published_for() {
         let weighted = scene.vertices.iter().enumerate().map(|(i, v)| {
             (i % 97 + 1) as f64 * ((v[0] - params.origin[0]) + 2.0 * (v[1] - params.origin[1]) + 3.0 * v[2])
         });
-        // Sums of 1e5 numbers of 1e4, and sines whose last bit is the platform's: 1e-10 each, 1e-2 is a thousandth of any
-        // change that one vertex could show.
+        // Sums of 1e5 numbers of 1e4, and sines whose last bit is the platform's: 1e-10 each, 1e-2 is a thousandth of
+        // any change that one vertex could show.
         let sum: f64 = weighted.sum();
         assert!((sum - fingerprint).abs() < 1e-2, "{sum}");
     }

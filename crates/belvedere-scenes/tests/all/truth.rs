@@ -90,8 +90,8 @@ fn brute_force(scene: &TriangleScene, origin: [f64; 3], direction: [f64; 3], max
     (best, near_edge)
 }
 
-/// Barycentric distance from an edge below which f64 rounding decides: coordinates of 5e5 m have 6e-11 m, triangles are a
-/// few decimetres to metres.
+/// Barycentric distance from an edge below which f64 rounding decides: coordinates of 5e5 m have 6e-11 m, triangles are
+/// a few decimetres to metres.
 const EDGE: f64 = 1e-8;
 
 fn random_rays(scene: &TriangleScene, count: usize, seed: u64) -> Vec<([f64; 3], [f64; 3])> {
@@ -197,8 +197,9 @@ fn hundred_thousand_rays_through_a_town_with_everything_agree_with_the_plain_loo
     let truth = Truth::new(&scene);
     let (low, high) = scene.bounds().unwrap();
     let centre: [f64; 3] = std::array::from_fn(|i| (low[i] + high[i]) / 2.0);
-    // About the centre, where the loop rounds a thousand times less than in the national grid. It might judge a ray that
-    // passes an edge by less than its rounding otherwise than the truth does; none of these does, so none is left out.
+    // About the centre, where the loop rounds a thousand times less than in the national grid. It might judge a ray
+    // that passes an edge by less than its rounding otherwise than the truth does; none of these does, so none is left
+    // out.
     let triangles: Vec<[[f64; 3]; 3]> =
         (0..scene.triangles.len()).map(|t| scene.corners(t).unwrap().map(|corner| sub(corner, centre))).collect();
     let rays: Vec<_> = random_rays(&scene, 100_000, 77).into_iter().enumerate().collect();

@@ -14,7 +14,8 @@ const TILE: f64 = 0.5;
 const SQUARE: f64 = 30.0;
 /// What a plan has around its square, kilometres.
 const MARGIN: f64 = 1.0;
-/// Seconds of a processor for the balls of a point, and for the sky view of a cell of 1 m in 577 directions: docs/scale.md and docs/gpu.md.
+/// Seconds of a processor for the balls of a point, and for the sky view of a cell of 1 m in 577 directions:
+/// docs/scale.md and docs/gpu.md.
 const BALL_SECONDS: f64 = 22e-6;
 const SKY_SECONDS: f64 = 170e-6;
 /// Bytes of balls for each point.

@@ -1,9 +1,11 @@
-//! The runs of a whole country on a cluster, in simulated time: which tile is computed when, and what is lost when computers are.
+//! The runs of a whole country on a cluster, in simulated time: which tile is computed when, and what is lost when
+//! computers are.
 //!
-//! A country is cut into plans, each of which has the tiles of a square and of a margin around it. A plan has two stages, as `belvedere city run` has
-//! with `--balls-only` and without: answers begin when all balls of the plan are made. Its balls are deleted when its answers are merged. Workers take the
-//! next tile of the first plan that has one. A worker that is lost loses the tile that it was computing, which another one computes again; what was
-//! recorded before stays. A tile that cannot be computed is tried a few times, then named and left out.
+//! A country is cut into plans, each of which has the tiles of a square and of a margin around it. A plan has two
+//! stages, as `belvedere city run` has with `--balls-only` and without: answers begin when all balls of the plan are
+//! made. Its balls are deleted when its answers are merged. Workers take the next tile of the first plan that has one.
+//! A worker that is lost loses the tile that it was computing, which another one computes again; what was recorded
+//! before stays. A tile that cannot be computed is tried a few times, then named and left out.
 
 use belvedere::random::uniform;
 use std::cmp::Reverse;
@@ -137,7 +139,8 @@ impl SimulatedRun<'_> {
         self.now.saturating_add(milliseconds(-(1.0 - u).ln() * 3600.0 * self.cluster.hours_to_loss))
     }
 
-    /// How long a tile takes: half to one and a half times the average, and one in a hundred, a city centre, five times as long.
+    /// How long a tile takes: half to one and a half times the average, and one in a hundred, a city centre, five times
+    /// as long.
     fn seconds(&self, task: SimulatedTask) -> f64 {
         let number = (task.plan * self.country.tiles_per_plan + task.tile) as u64;
         let share = if uniform(2, number) < 0.01 { 5.0 } else { 0.5 + uniform(3, number) };

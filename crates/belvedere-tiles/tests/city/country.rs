@@ -17,8 +17,8 @@ fn a_million_tiles_are_computed_once_in_the_time_that_their_work_takes() {
     assert!(outcome.records.iter().all(|&records| records == [1, 1]));
     assert_eq!((outcome.wasted, outcome.losses, outcome.named), (0.0, 0, 0));
     let min = outcome.recorded / 1000.0;
-    // a list of tasks without order between them ends one longest task after that at the latest (Graham 1966); here workers wait for the
-    // longest task at the end of the stages of the last two plans
+    // a list of tasks without order between them ends one longest task after that at the latest (Graham 1966); here
+    // workers wait for the longest task at the end of the stages of the last two plans
     assert!((min..min + 4.0 * 5.0 * 110.0).contains(&outcome.elapsed), "{} of {min}", outcome.elapsed);
     let all_balls = 1_024_000.0 * COUNTRY.ball_bytes;
     assert!(outcome.max_ball_bytes <= all_balls * 4.0 / 250.0, "{}", outcome.max_ball_bytes);

@@ -64,7 +64,8 @@ fn numbers(plan: &Plan, folder: &Path, question: &TileQuestion) -> CellMap<f32> 
     cells(plan, raster.values(), raster.width(), -9999.0)
 }
 
-/// A plan with what is changed of it, run to its end; in small tiles with so few balls at a time that each needs many parts.
+/// A plan with what is changed of it, run to its end; in small tiles with so few balls at a time that each needs many
+/// parts.
 fn done(
     clouds: &[PathBuf],
     folder: &Path,
@@ -232,7 +233,8 @@ fn mountains_beyond_a_survey_take_the_light_of_all_tiles() {
     let terrain = ridge(place.path(), lowest, frame.crs.clone());
     let horizon = place.path().join("horizon.csv");
     std::fs::write(&horizon, "azimuth,elevation\n90,0\n180,30\n270,0\n").unwrap();
-    // the sun stands over the ridge and below its top, over it and above, and beside it; 31 degrees in the south are above the horizon that is given
+    // the sun stands over the ridge and below its top, over it and above, and beside it; 31 degrees in the south are
+    // above the horizon that is given
     let sun = |azimuth: f64, elevation: f64| TileQuestion::Shadow {
         name: format!("shadow_{azimuth}_{elevation}"),
         to_sun: ShadowSun::at(azimuth.to_radians(), elevation.to_radians()).to_sun,
@@ -249,7 +251,8 @@ fn mountains_beyond_a_survey_take_the_light_of_all_tiles() {
     let without = done(&clouds, &folders[0], 512.0, &questions, |plan| plan);
     let whole = done(&clouds, &folders[1], 512.0, &questions, far);
     let tiles = done(&clouds, &folders[2], 64.0, &questions, far);
-    // the ridge is 950 m from the north edge of the town and 1070 m from the south edge, and 870 to 900 m higher: above 39 and below 44 degrees
+    // the ridge is 950 m from the north edge of the town and 1070 m from the south edge, and 870 to 900 m higher: above
+    // 39 and below 44 degrees
     for (number, is_hidden) in [true, false, true, false].into_iter().enumerate() {
         let [before, of_whole, of_tiles] =
             [(&without, 0), (&whole, 1), (&tiles, 2)].map(|(plan, i)| codes(plan, &folders[i], &questions[number]));

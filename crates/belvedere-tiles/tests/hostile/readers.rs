@@ -1,4 +1,5 @@
-//! Every reader of the library as a function of bytes, and what it may cost. Shared with `fuzz/`, which looks for files that break it.
+//! Every reader of the library as a function of bytes, and what it may cost. Shared with `fuzz/`, which looks for files
+//! that break it.
 
 use std::hint::black_box;
 use std::path::Path;
@@ -18,7 +19,8 @@ use peak_alloc::PeakAlloc;
 #[global_allocator]
 static ALLOCATOR: PeakAlloc = PeakAlloc;
 
-/// Memory that a file may take: so many times its size, and what tables and decoders take for a file of any size, bytes.
+/// Memory that a file may take: so many times its size, and what tables and decoders take for a file of any size,
+/// bytes.
 const TIMES_FILE: usize = 20;
 const BESIDE_FILE: usize = 64 << 20;
 /// The same for rasters, which LZW packs up to 1400 times: bytes, and then as f32.

@@ -157,7 +157,8 @@ fn huge_false_and_slow_requests_do_no_harm() {
     assert_eq!(sent(&host, form.as_bytes()).0, 415);
     let delete = format!("DELETE /{token}/state HTTP/1.1\r\n{own}Connection: close\r\n\r\n");
     assert_eq!(sent(&host, delete.as_bytes()).0, 405);
-    // the same for meshes and plans: a mesh that is too large, a form, a broken one, a plan with a million corners, and one that nobody made
+    // the same for meshes and plans: a mesh that is too large, a form, a broken one, a plan with a million corners, and
+    // one that nobody made
     let mesh = |kind: &str, name: &str, body: &str| {
         let length = body.len();
         let head = format!(

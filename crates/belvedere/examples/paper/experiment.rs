@@ -12,8 +12,8 @@ use std::time::Instant;
 /// As many targets as in the paper.
 const TARGET_COUNT: usize = 1_000_000;
 const SEED: u64 = 1;
-/// How far the picture plane is moved back, metres: farther than the largest ball reaches in front of the scene, so that
-/// both profiles see every ball whole.
+/// How far the picture plane is moved back, metres: farther than the largest ball reaches in front of the scene, so
+/// that both profiles see every ball whole.
 const SET_BACK: f64 = 500.0;
 
 /// A view of a model with the answers to the random targets.

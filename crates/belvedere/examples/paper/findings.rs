@@ -54,7 +54,8 @@ fn percent(count: usize, of: usize) -> f64 {
     100.0 * count as f64 / of.max(1) as f64
 }
 
-/// Balls that hold points of their own cloud or air that a pulse went through, and what people on the ground would see of the sun, for the real tile.
+/// Balls that hold points of their own cloud or air that a pulse went through, and what people on the ground would see
+/// of the sun, for the real tile.
 pub(crate) fn delft(published: PaperModel, cloud: &PointCloud, mesh: &Mesh, tables: &mut Tables) -> Result<()> {
     let six = NormalMethod { neighbors: 6, mesh };
     let sixteen = NormalMethod { neighbors: 16, mesh };
@@ -259,8 +260,8 @@ impl Inside {
     }
 }
 
-/// Whether each ball's centre lies outside every solid and above the ground. The first surface straight above tells: it is
-/// seen from behind by what is inside.
+/// Whether each ball's centre lies outside every solid and above the ground. The first surface straight above tells: it
+/// is seen from behind by what is inside.
 fn free_centers(model: &PaperModel, scene: &TriangleScene, truth: &Truth) -> Vec<bool> {
     let up = [0.0, 0.0, 1.0];
     let faces_up = |triangle: u32| {

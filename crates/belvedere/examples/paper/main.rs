@@ -1,8 +1,8 @@
 //! Regenerates the experiments of the paper: Peters, Ledoux & Biljecki 2015, section 4.
 //!
-//! `cargo run --release -p belvedere --example paper -- OUTDIR` writes pictures like Figures 4 to 7 and `tables.md` with
-//! every figure that docs/paper.md quotes. Data are looked for under `BELVEDERE_TEST_DATA` (default: `shared` beside the
-//! repository); data sets that are not there are skipped, and the run says so.
+//! `cargo run --release -p belvedere --example paper -- OUTDIR` writes pictures like Figures 4 to 7 and `tables.md`
+//! with every figure that docs/paper.md quotes. Data are looked for under `BELVEDERE_TEST_DATA` (default: `shared`
+//! beside the repository); data sets that are not there are skipped, and the run says so.
 #![allow(clippy::print_stdout, reason = "an example reports on the terminal")]
 #![allow(clippy::cast_possible_truncation, reason = "sizes of pictures and local coordinates are small")]
 
@@ -20,8 +20,8 @@ use model::{NormalMethod, PaperModel, unlimited_tau, within_window};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-/// A housing block inside the area of the city model, EPSG:28992: west, south, east, north. The paper's block has 24 647
-/// points.
+/// A housing block inside the area of the city model, EPSG:28992: west, south, east, north. The paper's block has 24
+/// 647 points.
 const BLOCK: [f64; 4] = [84_905.0, 447_551.0, 84_955.0, 447_601.0];
 /// A pitched roof, and a row of trees along a canal, for close views; EPSG:28992 as above.
 pub(crate) const ROOF: [f64; 4] = [84_932.0, 447_578.0, 84_955.0, 447_601.0];

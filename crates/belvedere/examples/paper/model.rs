@@ -57,8 +57,8 @@ pub(crate) fn within_window(cloud: &PointCloud, [west, south, east, north]: [f64
 }
 
 impl PaperModel {
-    /// Of a cloud whose normals are given and outward. Nothing is cleaned away: the points are those the published method
-    /// was run on.
+    /// Of a cloud whose normals are given and outward. Nothing is cleaned away: the points are those the published
+    /// method was run on.
     pub(crate) fn of_given_normals(cloud: PointCloud, params: ShrinkParams) -> Result<Self> {
         let mut times = Vec::new();
         let given_count = cloud.len();

@@ -18,7 +18,8 @@ pub(super) fn write_colored(
     write_mesh_values(path, mesh, frame.crs.metres_per_unit_xyz(), &measure.name, &values, measure.span(&values))
 }
 
-/// A table of the faces of a mesh: a row for each object (one in all where the mesh knows no objects), then one for each face.
+/// A table of the faces of a mesh: a row for each object (one in all where the mesh knows no objects), then one for
+/// each face.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FaceRows<'a> {
     /// Object of each row; empty where there is none.

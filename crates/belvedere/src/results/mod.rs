@@ -2,8 +2,8 @@
 //!
 //! | targets | `.tif` | `.laz` `.las` `.ply` `.csv` |
 //! |---|---|---|
-//! | cells of a grid | the first measure as raster, with its further bands | a point for each cell that is a target, all measures as columns |
-//! | points | | the points with their attributes, all measures as columns; `.csv` of a table: its rows as they were given |
+//! | cells of a grid | the first measure, with its further bands | a point for each target, all measures as columns |
+//! | points | | the points with their attributes, all measures as columns; `.csv` of a table: its rows |
 //! | faces of a mesh | | `.csv`: a row for each object and face; `.ply`: the mesh coloured by the first measure |
 
 #[cfg(feature = "figures")]
@@ -64,8 +64,8 @@ pub fn terrain_georeference(terrain: &ElevationGrid, frame: &Frame) -> Georefere
 /// Writes the measures of `targets` in the format that the extension of `path` names.
 ///
 /// # Errors
-/// [`Error::UnsupportedTargets`] where such targets do not fit the format, [`Error::LengthMismatch`] where a measure has not a value for each
-/// target, [`Error::NoPoints`] without a measure, and those of the writers.
+/// [`Error::UnsupportedTargets`] where such targets do not fit the format, [`Error::LengthMismatch`] where a measure
+/// has not a value for each target, [`Error::NoPoints`] without a measure, and those of the writers.
 pub fn write_measures(
     path: &Path,
     targets: &Targets,
@@ -120,8 +120,8 @@ pub fn write_measures(
 /// are no targets have no value in any band.
 ///
 /// # Errors
-/// [`Error::UnsupportedTargets`] for targets that are no cells, [`Error::LengthMismatch`] unless there is a value for each cell, and those of
-/// [`ResultRaster::write`].
+/// [`Error::UnsupportedTargets`] for targets that are no cells, [`Error::LengthMismatch`] unless there is a value for
+/// each cell, and those of [`ResultRaster::write`].
 pub fn write_raster(path: &Path, targets: &Targets, measures: &[&Measure]) -> Result<()> {
     let grid = cells(targets)?.grid;
     let place = georeference(&grid, &targets.frame);

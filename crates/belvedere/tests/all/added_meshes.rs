@@ -1,4 +1,5 @@
-//! Meshes added to a scene: against closed forms, against the exact rays of the simulated towns, and all ways of asking against each other.
+//! Meshes added to a scene: against closed forms, against the exact rays of the simulated towns, and all ways of asking
+//! against each other.
 
 use belvedere::blocking::BlockRule;
 use belvedere::control::Control;
@@ -157,7 +158,8 @@ fn all_ways_of_asking_agree_about_added_meshes() {
         assert_eq!(sight.answer, answer);
         assert_eq!(scene.sight_answer(eye, target, &EarthParams::flat()), answer);
         assert_eq!(scene.sight_answer(eye, target, &curved), scene.line_of_sight(eye, target, &curved).unwrap().answer);
-        // what blocks first stands where a line that ends a little before it does is free, and one a little after is not
+        // what blocks first stands where a line that ends a little before it does is free, and one a little after is
+        // not
         if let Some(block) = sight.first_block.filter(|block| block.blocker.mesh().is_some()) {
             let towards = unit(sub(target, eye)).unwrap();
             let at = |range: f64| -> [f64; 3] { std::array::from_fn(|i| eye[i] + range * towards[i]) };

@@ -1,4 +1,5 @@
-//! When a ball blocks a line of sight, against the same said in another way: roots of quadratics and points on surfaces.
+//! When a ball blocks a line of sight, against the same said in another way: roots of quadratics and points on
+//! surfaces.
 
 use belvedere::Error;
 use belvedere::blocking::{Ball, BlockRule, Chord, Profile};

@@ -1,4 +1,5 @@
-//! Views of a scene of balls and targets at their surfaces, and what bounds of depth and answers by them must fulfil, those of the CPU and those of a device.
+//! Views of a scene of balls and targets at their surfaces, and what bounds of depth and answers by them must fulfil,
+//! those of the CPU and those of a device.
 
 use belvedere::blocking::Ball;
 use belvedere::control::Control;
@@ -105,7 +106,8 @@ pub(crate) fn assert_bounds_hold(balls: &[Ball], bounds: &DepthBounds, start: f6
     within_upper
 }
 
-/// Checks that answers by bounds are those of exact lines of sight, all that the viewer may ask and those within a picture. Says which share of the former the bounds settle.
+/// Checks that answers by bounds are those of exact lines of sight, all that the viewer may ask and those within a
+/// picture. Says which share of the former the bounds settle.
 pub(crate) fn assert_answers_are_exact(scene: &MedialScene, views: &[View], targets: &[[f32; 3]], what: &str) -> f64 {
     let viewer = match views[0].is_central() {
         true => Viewer::Eye(views[0].frame.eye),

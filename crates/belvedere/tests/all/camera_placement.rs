@@ -127,7 +127,8 @@ fn problems_without_an_answer_are_refused_with_the_reason() {
     assert_eq!((all.chosen, all.counts, all.bound), (vec![0, 1], vec![1, 1, 1, 0], 0.75));
 }
 
-/// What cameras before the walls of houses see of places between these, within `reach` metres and 90 degrees, on a square of `side` metres.
+/// What cameras before the walls of houses see of places between these, within `reach` metres and 90 degrees, on a
+/// square of `side` metres.
 fn town(seed: u64, (side, houses): (f64, usize), targets: usize, cameras: usize, reach: f64) -> Vec<Vec<usize>> {
     let mut random = RandomNumbers(seed, 0);
     let mut house = || {

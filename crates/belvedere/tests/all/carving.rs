@@ -1,4 +1,5 @@
-//! Pulses as needles and balls cut by them, against every pulse tried in turn at dense samples, and against closed forms.
+//! Pulses as needles and balls cut by them, against every pulse tried in turn at dense samples, and against closed
+//! forms.
 #![expect(clippy::cast_possible_truncation, reason = "test places within a hundred metres in f32")]
 
 use belvedere::control::Control;
@@ -27,7 +28,8 @@ fn survey(count: u64) -> (Vec<[f32; 3]>, Vec<[f32; 3]>) {
     (returns, scanner)
 }
 
-/// First returns anywhere about three scanners in their midst and one that drives through: pulses in all directions, some of them short.
+/// First returns anywhere about three scanners in their midst and one that drives through: pulses in all directions,
+/// some of them short.
 fn survey_from_the_ground(count: u64) -> (Vec<[f32; 3]>, Vec<[f32; 3]>) {
     let stations = [[20.0, 30.0, 1.5], [70.0, 40.0, 6.0], [55.0, 90.0, -2.0]];
     let of = |i: u64| {
@@ -108,7 +110,8 @@ fn the_ball_that_no_pulse_enters_is_that_of_all_pulses_tried_in_turn() {
             let found = free_segments.smallest_tangent_ball(&tangent, 12.0);
             if let Some(radius) = found {
                 cut_count += 1;
-                // ends of needles are f32, off by 1e-5 m, which a ball of the pencil magnifies where the needle grazes its plane
+                // ends of needles are f32, off by 1e-5 m, which a ball of the pencil magnifies where the needle grazes
+                // its plane
                 let off = (f64::from(radius) - expected).abs();
                 assert!(off < 1e-3 + 1e-3 * expected, "pencil {i}: {radius} instead of {expected}");
             } else {
@@ -121,7 +124,8 @@ fn the_ball_that_no_pulse_enters_is_that_of_all_pulses_tried_in_turn() {
 
 #[test]
 fn a_ball_beside_a_curtain_of_pulses_shrinks_to_the_closed_form() {
-    // vertical pulses along the plane x = 3 cut balls at the origin that grow towards +x: the largest has its far side there
+    // vertical pulses along the plane x = 3 cut balls at the origin that grow towards +x: the largest has its far side
+    // there
     let returns: Vec<[f32; 3]> = (-200..=200).map(|i| [3.0, 0.05 * i as f32, -20.0]).collect();
     let scanner: Vec<[f32; 3]> = returns.iter().map(|p| [p[0], p[1], 500.0]).collect();
     // one return high up, so that needles reach past the balls

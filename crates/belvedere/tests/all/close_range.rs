@@ -35,7 +35,8 @@ fn built(scan: &Scan) -> (PointCloud, SceneModel) {
     (cloud, model)
 }
 
-/// Shares of what people in streets truly see that is called blocked, and of what they truly do not see that is called visible.
+/// Shares of what people in streets truly see that is called blocked, and of what they truly do not see that is called
+/// visible.
 fn errors_in_streets(scene: &TriangleScene, cloud: &PointCloud, model: &SceneModel) -> [f64; 2] {
     let medial = model.scene(&model.rule(), UnprovenAs::Reported, &Control::none()).unwrap();
     let truth = Truth::new(scene);

@@ -44,8 +44,9 @@ fn balls_of(points: Vec<[f32; 3]>, model: &TriangleScene, neighbors: usize) -> M
     shrink(&oriented, &index, Side::Interior, &params, &Control::none()).unwrap().0.shrunk()
 }
 
-/// Whether the shade that balls cast on squares of ground of 2 · `half_side` about `middles` is that of `form`: every pixel that lies a pixel
-/// off the outline has to be. Returns how many pixels were compared, in the sun and in the shade, each sun having both.
+/// Whether the shade that balls cast on squares of ground of 2 · `half_side` about `middles` is that of `form`: every
+/// pixel that lies a pixel off the outline has to be. Returns how many pixels were compared, in the sun and in the
+/// shade, each sun having both.
 fn compare(balls: &MedialBalls, form: Form<'_>, pixel: f64, middles: &[[f64; 2]], half_side: f64) -> [usize; 2] {
     let scene = MedialScene::new(balls, &BlockRule::carved()).unwrap();
     let across = (2.0 * half_side / pixel).round() as usize;

@@ -1,4 +1,5 @@
-//! Sky view factor and openness where they are formulas: street canyons, basins, tilted planes; and how well directions stand for the sky.
+//! Sky view factor and openness where they are formulas: street canyons, basins, tilted planes; and how well directions
+//! stand for the sky.
 #![expect(clippy::cast_possible_truncation, reason = "test places within a few hundred metres in f32")]
 
 use belvedere::apps::sky_view::{SkyDirections, SkyView, sky_view};
@@ -8,13 +9,13 @@ use belvedere::query::{BlockRule, MedialScene};
 use belvedere::random::uniform;
 use std::f64::consts::{PI, TAU};
 
-/// Least radius of the balls of a wall, metres. Seen from 2 m or more an edge made of them lies lower by 0.41 of it: 0.004 of the
-/// tangent of its elevation at most, which moves the views of the sky by less than 0.002.
+/// Least radius of the balls of a wall, metres. Seen from 2 m or more an edge made of them lies lower by 0.41 of it:
+/// 0.004 of the tangent of its elevation at most, which moves the views of the sky by less than 0.002.
 const FINEST: f64 = 0.01;
 
-/// Balls in the corner below `top` and beyond `wall` of a section that stands upright, as (beyond the wall, height, radius): each touches
-/// both, and every line of sight into the wall meets one of them, since the circles beside a corner that a line misses lie in a ratio of
-/// 5.8 and more.
+/// Balls in the corner below `top` and beyond `wall` of a section that stands upright, as (beyond the wall, height,
+/// radius): each touches both, and every line of sight into the wall meets one of them, since the circles beside a
+/// corner that a line misses lie in a ratio of 5.8 and more.
 fn corner_balls(top: f64, largest: f64) -> impl Iterator<Item = (f64, f64, f64)> {
     let count = (largest / FINEST).log2().ceil() as i32 + 1;
     (0..count).map(move |i| {
@@ -68,7 +69,8 @@ fn view(scene: &MedialScene, targets: &[[f64; 3]], normals: Option<&[[f32; 3]]>,
     sky_view(&matrix, &sky, normals).unwrap()
 }
 
-/// The two figures of the floor of an endless canyon with eaves at two elevations (Johnson & Watson 1984 for the first).
+/// The two figures of the floor of an endless canyon with eaves at two elevations (Johnson & Watson 1984 for the
+/// first).
 fn floor_of_canyon(eaves: [f64; 2]) -> [f64; 2] {
     [f64::midpoint(eaves[0].cos(), eaves[1].cos()), 1.0 - (eaves[0] + eaves[1]) / PI]
 }
@@ -83,8 +85,9 @@ fn errors(found: &SkyView, target: usize, expected: [f64; 2], max: f64, what: &s
 
 #[test]
 fn street_canyons_have_the_sky_of_the_formula() {
-    // an edge of a roof cuts the sky between directions: root mean square errors of 0.004 at 577 directions, thrice that at most, and a
-    // tenth of it at 20 000, where what is left is that of the balls and of the sky at the open ends
+    // an edge of a roof cuts the sky between directions: root mean square errors of 0.004 at 577 directions, thrice
+    // that at most, and a tenth of it at 20 000, where what is left is that of the balls and of the sky at the open
+    // ends
     for (count, max, max_rms) in [(577, 0.0126, 0.005), (20_000, 0.0025, 0.001)] {
         let mut all = Vec::new();
         for (width, heights) in [(20.0, [10.0, 10.0]), (10.0, [10.0, 10.0]), (8.0, [12.0, 16.0]), (30.0, [6.0, 20.0])] {
@@ -148,8 +151,8 @@ fn tilted_free_planes_see_what_their_tilt_leaves() {
     }
 }
 
-/// Root mean square errors over 400 canyons of sky view factor and openness on the floor and of the sky view factor of walls, from
-/// directions asked of the exact horizon.
+/// Root mean square errors over 400 canyons of sky view factor and openness on the floor and of the sky view factor of
+/// walls, from directions asked of the exact horizon.
 fn errors_of_directions(count: usize) -> [f64; 3] {
     let sky = SkyDirections::even(count).unwrap();
     let mut squares = [0.0; 3];

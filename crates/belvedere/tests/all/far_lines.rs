@@ -1,4 +1,5 @@
-//! Lines of sight and viewsheds with ends on the terrain beyond a cloud, against closed forms and lines followed step by step.
+//! Lines of sight and viewsheds with ends on the terrain beyond a cloud, against closed forms and lines followed step
+//! by step.
 
 use crate::far_viewsheds::{MapBox, around, heights_above, observer, open_scene, sag, scene};
 use crate::mountains::{grid, mountains};
@@ -42,7 +43,8 @@ fn two_masts_by_the_sea_see_each_other_up_to_the_sum_of_their_horizons() {
                 let at = (-b - (b * b - 4.0 * a * low).sqrt()) / (2.0 * a);
                 let block = found.first_block.unwrap();
                 assert_eq!(block.blocker, Blocker::Terrain);
-                // rounding is allowed a billionth of the distance in height; that is metres along a line that grazes the sea
+                // rounding is allowed a billionth of the distance in height; that is metres along a line that grazes
+                // the sea
                 let room = if span < reach + 2.0 { 30.0 } else { 0.1 };
                 assert!((block.place[0] - ends[0][0] - at).abs() < room, "{block:?} {at}");
                 assert!(block.place[2].abs() < 1e-4 && (block.range - at.hypot(low)).abs() < room, "{block:?}");
@@ -91,7 +93,8 @@ fn lines_over_mountains_are_blocked_where_lines_followed_step_by_step_come_below
                 let above = block.place[2] - ground;
                 assert!(above.abs() < 1e-3 || is_at_box && above < 0.0, "{} {ground}", block.place[2]);
                 match below {
-                    // steps are at most 60 m / 32 times the root of 2 apart; terrain may also rise above the line between two steps only
+                    // steps are at most 60 m / 32 times the root of 2 apart; terrain may also rise above the line
+                    // between two steps only
                     Some(below) if at <= below + 1e-6 => grazing += usize::from(below - at > 2.7),
                     Some(below) => panic!("{from:?} {to:?}: {at} after {below}"),
                     None => grazing += 1,

@@ -105,7 +105,8 @@ fn the_shadow_of_a_ball_on_a_wall_is_its_disc_within_the_error_stated() {
 
 #[test]
 fn a_near_ball_hides_its_central_projection_from_an_eye() {
-    // the eye 20 m before the wall, a ball of 0.5 m half way: its cone cuts a disc of 20 · tan(asin(0.05)) m from the wall
+    // the eye 20 m before the wall, a ball of 0.5 m half way: its cone cuts a disc of 20 · tan(asin(0.05)) m from the
+    // wall
     let ball = scene(&[([5.0, -10.0, 5.0], 0.5)]);
     let faces = seen(&ball, &wall(), Viewer::Eye([5.0, -20.0, 5.0]), 0.1, BackFaces::NotVisible);
     let all = seen_in_all(&faces);

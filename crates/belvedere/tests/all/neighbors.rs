@@ -1,5 +1,5 @@
-//! Every kind of search against brute force and against another kd-tree, query by query, on kind and unkind clouds, with
-//! and without AVX2.
+//! Every kind of search against brute force and against another kd-tree, query by query, on kind and unkind clouds,
+//! with and without AVX2.
 
 use belvedere::control::Control;
 use belvedere::neighbors::{Instructions, Neighbor, NeighborIndex, Tangent};
@@ -126,7 +126,8 @@ fn distances_agree_with_another_kd_tree() {
     }
 }
 
-/// The same radius in f64 straight from the formula, over all points, and the squared chord to the point that decides it.
+/// The same radius in f64 straight from the formula, over all points, and the squared chord to the point that decides
+/// it.
 fn tangent_ball_by_brute_force(points: &[[f32; 3]], t: &Tangent, max_radius: f32) -> (f64, f64) {
     points
         .iter()

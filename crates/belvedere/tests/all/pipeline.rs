@@ -1,5 +1,5 @@
-//! From a LAZ file to answers on a simulated town: the same bits for any number of threads, and how often the answers are
-//! wrong against the exact mesh.
+//! From a LAZ file to answers on a simulated town: the same bits for any number of threads, and how often the answers
+//! are wrong against the exact mesh.
 
 use crate::common::simulated::cloud_of;
 use belvedere::Bounds;

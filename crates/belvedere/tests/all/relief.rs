@@ -19,8 +19,8 @@ struct ReliefSurvey {
     scanner: Vec<[f32; 3]>,
 }
 
-/// 12 pulses per m² from two lines 60 m to either side, 450 m up. Exact first hits, by hand: the top of the wall, its sides, the
-/// roof at height 0.
+/// 12 pulses per m² from two lines 60 m to either side, 450 m up. Exact first hits, by hand: the top of the wall, its
+/// sides, the roof at height 0.
 fn survey(wall_height: f64) -> ReliefSurvey {
     let mut survey = ReliefSurvey { points: Vec::new(), scanner: Vec::new() };
     for i in 0..12 * 8 * 24 {
@@ -65,8 +65,8 @@ fn balls(survey: &ReliefSurvey, relief: Option<ReliefParams>) -> CarvedBalls {
     carved_balls(&input, &CarvedParams { relief, ..CarvedParams::default() }, &Control::none()).unwrap()
 }
 
-/// Share of level lines of sight across the wall straight below points on its top, all of them blocked in truth, that the
-/// balls block. They run between 0.2 m above the roof and 0.2 m below the top.
+/// Share of level lines of sight across the wall straight below points on its top, all of them blocked in truth, that
+/// the balls block. They run between 0.2 m above the roof and 0.2 m below the top.
 fn blocked_share(survey: &ReliefSurvey, balls: &CarvedBalls) -> f64 {
     let scene = MedialScene::new(&balls.balls, &BlockRule::default()).unwrap();
     let top: Vec<f64> = survey.points.iter().filter(|p| f64::from(p[2]) > HEIGHT - 0.01).map(|p| p[1].into()).collect();

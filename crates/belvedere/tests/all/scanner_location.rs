@@ -1,5 +1,5 @@
-//! Where the scanner was, by whatever a cloud has: simulated flights whose path is known, with one means after the other taken
-//! away, and real clouds.
+//! Where the scanner was, by whatever a cloud has: simulated flights whose path is known, with one means after the
+//! other taken away, and real clouds.
 #![allow(
     clippy::unwrap_used,
     clippy::cast_possible_truncation,
@@ -41,8 +41,8 @@ fn found(cloud: &PointCloud) -> (Vec<[f32; 3]>, ScannerReport) {
     locate(cloud, &Means::Automatic, &LocateParams::default(), &Control::none()).unwrap()
 }
 
-/// Median distance between two sets of positions in metres, and median angle between the directions to them in degrees, where
-/// both are known.
+/// Median distance between two sets of positions in metres, and median angle between the directions to them in degrees,
+/// where both are known.
 fn apart(cloud: &PointCloud, found: &[[f32; 3]], truth: &[[f32; 3]]) -> [f64; 2] {
     let (mut distances, mut angles) = (Vec::new(), Vec::new());
     for ((place, found), truth) in cloud.positions.iter().zip(found).zip(truth) {
@@ -79,8 +79,8 @@ fn scan_angles_give_the_path_of_scanners_that_look_across_the_flight() {
             let (positions, report) = found(&cloud);
             assert_eq!(report.found.get(&FoundBy::ScanAngle), Some(&cloud.len()), "{pattern:?}: {report:?}");
             let [metres, degrees] = apart(&cloud, &positions, &truth);
-            // the path wanders by a metre about the straight line that is fitted; half a degree of rounding averages out over
-            // thousands of points
+            // the path wanders by a metre about the straight line that is fitted; half a degree of rounding averages
+            // out over thousands of points
             assert!(metres < 3.0 && degrees < 0.3, "{pattern:?} {rounded}: {metres} m, {degrees} deg");
         }
     }

@@ -1,5 +1,5 @@
-//! What a simulated survey delivers agrees with itself: returns with the exact mesh along their rays, angles and times with
-//! the written trajectory, written meshes with the scene.
+//! What a simulated survey delivers agrees with itself: returns with the exact mesh along their rays, angles and times
+//! with the written trajectory, written meshes with the scene.
 #![allow(
     clippy::unwrap_used,
     clippy::cast_possible_truncation,
@@ -22,8 +22,8 @@ use belvedere_scenes::{
     TriangleScene, Truth, scan_airborne, scan_terrestrial, town,
 };
 
-/// Cloud and trajectory as they come back from files: positions of the cloud in file coordinates, and of the scanner at the
-/// time of each point.
+/// Cloud and trajectory as they come back from files: positions of the cloud in file coordinates, and of the scanner at
+/// the time of each point.
 struct Delivered {
     cloud: PointCloud,
     positions: Vec<[f64; 3]>,
@@ -67,8 +67,8 @@ fn normal(scene: &TriangleScene, triangle: usize) -> [f64; 3] {
     unit([u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]])
 }
 
-/// How far a return may be moved by the millimetres of the files, metres: half a step along each axis, and a tenth of it in the
-/// trajectory.
+/// How far a return may be moved by the millimetres of the files, metres: half a step along each axis, and a tenth of
+/// it in the trajectory.
 const FILE_STEP: f64 = 0.000_87 + 0.000_1;
 
 /// Checks that returns lie within four deviations of the mesh along their rays, all but the share that noise explains.

@@ -11,8 +11,8 @@ use belvedere::query::{BlockRule, MedialScene};
 use belvedere::random::uniform;
 use belvedere::{Attributes, PointCloud};
 
-/// Pulses 0.25 m apart over 20 m × 10 m of ground, tilted by 20° to either side in turn, and what they meet first: a box along
-/// x from `bottom` to `top`, `width` across, in the middle; class 1, the ground class 2.
+/// Pulses 0.25 m apart over 20 m × 10 m of ground, tilted by 20° to either side in turn, and what they meet first: a
+/// box along x from `bottom` to `top`, `width` across, in the middle; class 1, the ground class 2.
 fn survey(bottom: f64, top: f64, width: f64) -> (PointCloud, Vec<[f32; 3]>) {
     let (mut cloud, mut scanner) = (PointCloud::default(), Vec::new());
     let mut classes = Vec::new();
@@ -74,7 +74,8 @@ fn a_fence_blocks_to_the_ground_and_stays_thin() {
     assert!(with.report.slender * 2 > hits, "{} of {hits}", with.report.slender);
     assert!(blocked(&with, 0.7) > 0.9 && blocked(&with, 0.7) > blocked(&without, 0.7), "{}", blocked(&with, 0.7));
     assert_eq!(blocked(&with, 2.0), 0.0);
-    // no ball of the fence reaches farther than its radius to either side and half the fence; beyond its ends no pulse passes
+    // no ball of the fence reaches farther than its radius to either side and half the fence; beyond its ends no pulse
+    // passes
     let away_from_ends = |c: &[f32; 3]| (1.0..19.0).contains(&c[0]);
     for (center, radius) in with.balls.centers.iter().zip(&with.balls.radii).filter(|(c, _)| away_from_ends(c)) {
         assert!(center[2] - radius < 0.35 || center[1].abs() + radius < 0.03 + 2.0 * 0.15, "{center:?} {radius}");

@@ -171,7 +171,8 @@ fn traced_box_by_box_the_columns_shade_nothing_and_none_can_grow_by_five_centime
         if column.top.is_finite() {
             bounded += 1;
             assert!(!shades(column.top - 1e-6, 2000), "column at {x} {y} shades a fence");
-            // 17 m of fence in 4000 steps of 4 mm, under suns of 33 degrees at most: the bound moves by a few mm between them
+            // 17 m of fence in 4000 steps of 4 mm, under suns of 33 degrees at most: the bound moves by a few mm
+            // between them
             assert!(shades(column.top + 0.05, 4000), "column at {x} {y} could grow: {}", column.top);
         } else {
             assert!(!shades(1e6, 500));

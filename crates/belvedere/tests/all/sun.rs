@@ -58,8 +58,8 @@ fn positions_are_those_of_pvlib() {
         let [latitude, longitude, height, azimuth, apparent, geometric] = numbers[..] else { panic!("{line}") };
         let site = Site { height, ..site(latitude, longitude) };
         let sun = sun_position(&site, instant).unwrap();
-        // the same algorithm, whose own uncertainty is 0.0003°; how the earth will slow down is a forecast, which programs put up to two
-        // minutes apart in 2099, in which the sun moves 0.0014° among the stars
+        // the same algorithm, whose own uncertainty is 0.0003°; how the earth will slow down is a forecast, which
+        // programs put up to two minutes apart in 2099, in which the sun moves 0.0014° among the stars
         let tolerance = if instant < at("2027-01-01T00:00Z") { 3e-4 } else { 2e-3 };
         assert!((sun.elevation.to_degrees() - apparent).abs() < tolerance, "{line}: {}", sun.elevation.to_degrees());
         assert!((sun.geometric_elevation.to_degrees() - geometric).abs() < tolerance, "{line}");
@@ -89,7 +89,8 @@ fn the_grid_turns_with_the_meridians() {
         );
         for hour in [8, 12, 16] {
             let sun = sun_position(&found, at(&format!("2026-05-04T{hour:02}:00Z"))).unwrap();
-            // a place a little way along the true azimuth of the sun, on a sphere as wide as the ellipsoid at this latitude each way
+            // a place a little way along the true azimuth of the sun, on a sphere as wide as the ellipsoid at this
+            // latitude each way
             let (sine, squared) = (found.latitude.sin(), 0.006_694_38);
             let prime = 6_378_137.0 / (1.0 - squared * sine * sine).sqrt();
             let meridian = prime * (1.0 - squared) / (1.0 - squared * sine * sine);
@@ -189,7 +190,8 @@ fn light_of_a_day_is_that_of_the_closed_form() {
             let day = sun_day(&site, &Zone::utc(), date(text), None, &plain).unwrap();
             let cosine = -f64::to_radians(latitude).tan() * declination.to_radians().tan();
             let expected = 2.0 * cosine.acos().to_degrees() / 15.0;
-            // declination moves by up to 0.4° in the day of the equinox, which shifts both ends alike; at 64° a hundredth of a degree is a minute
+            // declination moves by up to 0.4° in the day of the equinox, which shifts both ends alike; at 64° a
+            // hundredth of a degree is a minute
             assert!(
                 (day.possible_hours() - expected).abs() < 0.08,
                 "{latitude} {text}: {} {expected}",

@@ -28,8 +28,8 @@ struct ThinSurvey {
     on_top: Vec<bool>,
 }
 
-/// `count` pulses from two lines 120 m to either side, 450 m up: 15 degrees. Exact first hits, by hand: the top, the walls of
-/// the block, the ground.
+/// `count` pulses from two lines 120 m to either side, 450 m up: 15 degrees. Exact first hits, by hand: the top, the
+/// walls of the block, the ground.
 fn survey(built: Built, count: u64) -> ThinSurvey {
     let mut survey = ThinSurvey { points: Vec::new(), scanner: Vec::new(), kinds: Vec::new(), on_top: Vec::new() };
     for i in 0..count {
@@ -118,7 +118,8 @@ fn a_canopy_hides_the_sky_and_leaves_room_below_it() {
         let visible = places.filter(|&place| scene.answer(place, towards, f64::INFINITY) == Answer::Visible);
         visible.count() as f64 / 4000.0
     };
-    // 0.32 m between pulses, at random; 0.027 measured; circles of 0.95 of that at points only leave a twentieth of a plane open
+    // 0.32 m between pulses, at random; 0.027 measured; circles of 0.95 of that at points only leave a twentieth of a
+    // plane open
     let through = share(1.5, [0.0, 0.0, 1.0]);
     assert!(through < 0.04, "{through} of lines see through the canopy");
     // balls of 0.95 spacings reach 0.6 m down

@@ -47,7 +47,8 @@ fn top(away: f64, up: f64, radius: f64) -> f64 {
 
 #[test]
 fn a_hedge_before_a_low_wall_lets_its_share_of_the_sun_through() {
-    // to the north: a hedge of 2 m at 3 m, stacked so that it leaves nothing, and at 12 m the rounded top of a wall of 3 m
+    // to the north: a hedge of 2 m at 3 m, stacked so that it leaves nothing, and at 12 m the rounded top of a wall of
+    // 3 m
     let hedge = [0.0, 0.5, 1.0, 1.5].map(|up| ([0.0, 3.0, up], 0.5, LEAF));
     let wall = [0.0, 0.5, 1.0, 1.5, 2.0, 2.5].map(|up| ([0.0, 12.0, up], 0.5, WALL));
     let balls = ClassifiedBalls::new(&[&hedge[..], &wall[..]].concat());

@@ -40,7 +40,8 @@ fn looking(eye: [f64; 3]) -> Observer {
 
 #[test]
 fn the_shadow_of_a_ball_on_a_plain_is_its_conic() {
-    // a ball of 2 m at 5 m height, 10 m before an eye at 8 m: a cell is hidden where its line of sight comes within 2 m of the middle
+    // a ball of 2 m at 5 m height, 10 m before an eye at 8 m: a cell is hidden where its line of sight comes within 2 m
+    // of the middle
     let (eye, center, radius) = ([5.0, 20.0, 8.0], [15.0, 20.0, 5.0], 2.0);
     let scene = scene(&[(center.map(|v: f64| v as f32), radius as f32)], &BlockRule::default());
     let ground = plain(40.0, 0.25);
@@ -99,8 +100,8 @@ fn least_heights_are_where_answers_change() {
 
 #[test]
 fn beyond_the_horizon_a_thing_must_reach_the_closed_form() {
-    // water as a row of large balls whose crests lie at height 0, an eye 10 m above it: a mast at S metres is seen from (S − d)²·q on,
-    // where d = √(10/q) is the way to the horizon and q = (1 − k)/2R
+    // water as a row of large balls whose crests lie at height 0, an eye 10 m above it: a mast at S metres is seen from
+    // (S − d)²·q on, where d = √(10/q) is the way to the horizon and q = (1 − k)/2R
     let list: Vec<([f32; 3], f32)> = (0..1500).map(|i| ([20.0 * i as f32, 0.0, -5000.0], 5000.0)).collect();
     let scene = scene(&list, &BlockRule::default());
     let earth = EarthParams { curvature: Curvature::On, ..EarthParams::default() };
@@ -108,7 +109,8 @@ fn beyond_the_horizon_a_thing_must_reach_the_closed_form() {
     for span in [20_000.0, 25_000.0] {
         let expected = q * (span - (10.0_f64 / q).sqrt()).powi(2);
         let found = scene.min_visible_height([0.0, 0.0, 10.0], [span, 0.0, 0.0], 500.0, &earth).unwrap();
-        // crests 20 m apart sag by 1 cm between them, chords by 4 mm, and both are magnified by the ratio of the ways, below 2
+        // crests 20 m apart sag by 1 cm between them, chords by 4 mm, and both are magnified by the ratio of the ways,
+        // below 2
         assert!((found - expected).abs() < 0.05, "{found} {expected}");
         assert!(expected > 3.0);
     }

@@ -42,7 +42,8 @@ fn views(scene: &MedialScene, windows: &[Window], kinds: Kinds<'_>, count: usize
     window_views(scene, &targets, kinds, &view_directions(count).unwrap(), &Control::none()).unwrap()
 }
 
-/// By how much a share may err that is counted on `count` directions: two deviations of as many independent ones, of which even ones err less.
+/// By how much a share may err that is counted on `count` directions: two deviations of as many independent ones, of
+/// which even ones err less.
 fn sampling(share: f64, count: usize) -> f64 {
     2.0 * (share * (1.0 - share) / count as f64).sqrt()
 }
@@ -86,7 +87,8 @@ fn a_window_before_an_endless_wall_sees_what_the_closed_form_leaves() {
         let scene = level_ground().with_added(Some(endless_wall(distance + WINDOW_LIFT, top)));
         let kinds = Kinds { balls: &[SeenKind::Ground], meshes: &[SeenKind::Building] };
         let [view] = views(&scene, &[window([0.0, 0.0, height], 0.0)], kinds, count)[..] else { panic!() };
-        // planes through the window that are level along the wall cut the half space in wedges, each with the share of its angle in half a turn
+        // planes through the window that are level along the wall cut the half space in wedges, each with the share of
+        // its angle in half a turn
         let up = ((top - height) / distance).atan();
         let down = (height / distance).atan();
         let cut = up.min(0.0);
@@ -170,7 +172,8 @@ fn kind(material: Material) -> SeenKind {
     }
 }
 
-/// Windows on facades of a town, none of them inside anything or so near to it that it is covered, with their centres in the file.
+/// Windows on facades of a town, none of them inside anything or so near to it that it is covered, with their centres
+/// in the file.
 fn facade_windows(exact: &TriangleScene, truth: &Truth, origin: [f64; 3], count: usize) -> Vec<Window> {
     let facades: Vec<usize> =
         (0..exact.triangles.len()).filter(|&row| exact.materials[row] == Material::Facade).collect();
@@ -275,7 +278,8 @@ fn in_an_exact_town_shares_are_those_of_exact_rays_and_of_any_number_of_threads(
         let (expected, _) = exact_view(&exact, &truth, window, origin, &other);
         for seen in SeenKind::ALL {
             let (a, b) = (expected[seen as usize], view.shares[seen as usize]);
-            // two samples of the same share, about 4000 and 1000 directions: four deviations of their difference, and one direction
+            // two samples of the same share, about 4000 and 1000 directions: four deviations of their difference, and
+            // one direction
             let share = f64::midpoint(a, b);
             let deviation = (share * (1.0 - share) * (1.0 / 4000.0 + 1.0 / VIEW_DIRECTIONS as f64)).sqrt();
             assert!((a - b).abs() < 4.0 * deviation + 1.0 / VIEW_DIRECTIONS as f64, "{seen:?} {a} {b}");
@@ -314,7 +318,8 @@ fn in_a_scanned_town_views_are_near_those_of_exact_rays() {
     }
     let errors = errors.map(|sum| 100.0 * sum / windows.len() as f64);
     assert!(found.iter().any(|view| view.unproven > 0.01) && windows.len() >= 40);
-    // measured: 1.0 for sky, 0.8 for vegetation, 1.7 for buildings, 1.2 for ground, 0.4 for what is beyond; a half more is a change for the worse
+    // measured: 1.0 for sky, 0.8 for vegetation, 1.7 for buildings, 1.2 for ground, 0.4 for what is beyond; a half more
+    // is a change for the worse
     assert!(errors.iter().all(|error| *error < 2.5), "{errors:?}");
     // the same without pulses has the same view, of which nothing is unproven
     let unasked = model.scene(&model.rule(), UnprovenAs::Visible, &none).unwrap();
@@ -342,7 +347,8 @@ fn far_terrain_is_ground_and_no_sky() {
     let horizon = HorizonProfile::new([[0.0, 10f64.to_radians()]]).unwrap();
     let sky = (1.0 - 10f64.to_radians().sin()) / 2.0;
     close(seen(FarTerrain::default().with_profile(horizon), [0.0; 3]), [sky, 1.0 - sky, 0.0]);
-    // a wall 1 km away all around a plain, which all lines that fall meet: the half space is as even in the sine of the elevation as the sphere
+    // a wall 1 km away all around a plain, which all lines that fall meet: the half space is as even in the sine of the
+    // elevation as the sphere
     let plain = |x: f64, y: f64| if (x - 2000.0).hypot(y + 2000.0) < 1000.0 { 0.0 } else { 120.0 };
     let wall = FarTerrain::default().with_grid(grid(401, 10.0, plain), None);
     let sky = (1.0 - (118.3f64 / 1000.0).atan().sin()) / 2.0;

@@ -1,8 +1,9 @@
 //! Convex hull of a point set and the eye, with exact arithmetic.
 //!
-//! General hull programs spend their time far from what is needed here: flipped points lie close to a sphere about the eye,
-//! so that most are on the hull, and neighbours in the picture are neighbours on the hull. Points are therefore inserted
-//! along a space-filling curve, in rounds that double, and each is found by a walk of a few facets from the last one.
+//! General hull programs spend their time far from what is needed here: flipped points lie close to a sphere about the
+//! eye, so that most are on the hull, and neighbours in the picture are neighbours on the hull. Points are therefore
+//! inserted along a space-filling curve, in rounds that double, and each is found by a walk of a few facets from the
+//! last one.
 
 mod cavity;
 mod start;
@@ -16,8 +17,8 @@ use robust::{Coord3D, orient3d};
 use cavity::Cavity;
 use start::{first_tetrahedron, middle, tetrahedron};
 
-/// How near to the eye walks aim from, as a share of the way from the eye to the middle of the first tetrahedron: a power of
-/// two, so that the centre stays on that way exactly, and small enough to count as the eye itself.
+/// How near to the eye walks aim from, as a share of the way from the eye to the middle of the first tetrahedron: a
+/// power of two, so that the centre stays on that way exactly, and small enough to count as the eye itself.
 const CENTRE_SHARE: f64 = 1.0 / 1_048_576.0;
 /// A hull of so many points has twice as many facets, whose numbers fit 32 bits.
 pub(crate) const MAX_POINTS: usize = 1 << 30;
@@ -64,13 +65,13 @@ impl HullWalk {
 impl Hull {
     /// The hull of `points`, (N, 3), and the eye at the origin. Coordinates are finite and below 1e50.
     ///
-    /// A set that fills no volume with the eye (all in a plane through it, up to rounding, or fewer than three points) is
-    /// completed by pairs of points opposite each other about the eye. The eye lies between the two, so they change
+    /// A set that fills no volume with the eye (all in a plane through it, up to rounding, or fewer than three points)
+    /// is completed by pairs of points opposite each other about the eye. The eye lies between the two, so they change
     /// nothing about which points of the set are extreme.
     ///
     /// # Source
-    /// Insertion in rounds: Amenta, Choi & Rote 2003. Exact signs: Shewchuk 1997. The hull is unique, so neither order nor
-    /// method shows in [`Hull::is_extreme`].
+    /// Insertion in rounds: Amenta, Choi & Rote 2003. Exact signs: Shewchuk 1997. The hull is unique, so neither order
+    /// nor method shows in [`Hull::is_extreme`].
     pub(crate) fn new(mut points: Vec<[f64; 3]>) -> Self {
         let given_count = points.len();
         let eye = number(given_count);
@@ -96,7 +97,8 @@ impl Hull {
         hull
     }
 
-    /// Whether point number `index` of those given is a corner of the hull; points at the same place all are or none is.
+    /// Whether point number `index` of those given is a corner of the hull; points at the same place all are or none
+    /// is.
     pub(crate) fn is_extreme(&self, index: usize) -> bool {
         self.representative
             .get(index)
@@ -132,8 +134,8 @@ impl Hull {
 
     /// The facet that the ray from the centre through `point` meets.
     ///
-    /// Each step crosses an edge that has `point` on its other side. Seen from inside, the facets of a convex hull are in
-    /// front of each other in no circle, so the walk ends.
+    /// Each step crosses an edge that has `point` on its other side. Seen from inside, the facets of a convex hull are
+    /// in front of each other in no circle, so the walk ends.
     fn locate(&self, point: [f64; 3], walk: &mut HullWalk) -> u32 {
         let mut came_from = NONE;
         'walk: loop {
@@ -259,7 +261,8 @@ impl Hull {
     }
 }
 
-/// Positive where `d` lies below the plane of `a`, `b` and `c`, which turn counter-clockwise as seen from above; exact sign.
+/// Positive where `d` lies below the plane of `a`, `b` and `c`, which turn counter-clockwise as seen from above; exact
+/// sign.
 fn orient(a: [f64; 3], b: [f64; 3], c: [f64; 3], d: [f64; 3]) -> f64 {
     let coordinates = |[x, y, z]: [f64; 3]| Coord3D { x, y, z };
     orient3d(coordinates(a), coordinates(b), coordinates(c), coordinates(d))

@@ -16,8 +16,8 @@ use rayon::prelude::*;
 const TILE_SIDE: f32 = 25.0;
 /// The cloud's own points, as a kind of target.
 pub(super) const OWN: &str = "OWN";
-/// Pedestrians as people in streets see them, and those people: one observer says little, since an error near it spoils a
-/// whole sector of its view.
+/// Pedestrians as people in streets see them, and those people: one observer says little, since an error near it spoils
+/// a whole sector of its view.
 pub(super) const STREET: &str = "STREET";
 pub(super) const STREET_GROUP: &str = "street";
 /// People that look.

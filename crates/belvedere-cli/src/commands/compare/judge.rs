@@ -206,8 +206,8 @@ pub(super) fn worth_of_answers(case: &ComparisonCase) -> belvedere::Result<Vec<A
     Ok(rows)
 }
 
-/// Which of the published balls are wrong, by the surface they are tangent at, and what people under the suns would be told
-/// if some of them were left out.
+/// Which of the published balls are wrong, by the surface they are tangent at, and what people under the suns would be
+/// told if some of them were left out.
 pub(super) fn audit_published(
     case: &ComparisonCase,
     seed: u64,

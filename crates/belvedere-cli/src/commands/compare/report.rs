@@ -28,8 +28,8 @@ const COLUMNS: [(&str, &str, &str); 13] = [
     (STREET, STREET_GROUP, "street"),
     ("LOS", "pairs", "LOS"),
 ];
-/// What a terminal shows of them: balanced accuracy, that of the worst tenth of the observers where the heading says `p10`, or
-/// both kinds of error where it says `err`.
+/// What a terminal shows of them: balanced accuracy, that of the worst tenth of the observers where the heading says
+/// `p10`, or both kinds of error where it says `err`.
 const ESSENCE: [(&str, &str, &str); 13] = [
     ("AIR", "suns", "AIR sun"),
     ("PED", "suns", "PED sun"),

@@ -173,8 +173,8 @@ macro_rules! kept {
 }
 kept!(MethodResult, PlaceResult, HeldOutResult);
 
-/// The result at `path` if it was made from the same, or `None`: a file that is missing, unreadable or of another making is
-/// made anew.
+/// The result at `path` if it was made from the same, or `None`: a file that is missing, unreadable or of another
+/// making is made anew.
 pub(super) fn kept<T: StoredResult>(path: &Path, made_from: &str) -> Option<T> {
     let result: T = serde_json::from_slice(&std::fs::read(path).ok()?).ok()?;
     (result.made_from() == made_from).then_some(result)

@@ -71,7 +71,8 @@ impl ComparisonResults {
         (scanners.len() > 1).then_some(table)
     }
 
-    /// Writes the curves of errors over the densities of the first scanner that has several, and says whether there is one.
+    /// Writes the curves of errors over the densities of the first scanner that has several, and says whether there is
+    /// one.
     pub(super) fn write_curves(&self, folder: &Path) -> Result<bool> {
         let scanners = self.scanners();
         let of_name = |name: &str| -> Vec<&ComparisonScanner> {

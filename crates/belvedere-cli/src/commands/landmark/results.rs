@@ -13,7 +13,8 @@ use std::path::Path;
 /// Cells from which nothing of the landmark is seen: apart from the dark violet of a little.
 const UNSEEN_COLOR: [u8; 3] = [176, 120, 120];
 
-/// A row for each observer that stands somewhere, with what a table said of it; one that was skipped has its coordinates alone.
+/// A row for each observer that stands somewhere, with what a table said of it; one that was skipped has its
+/// coordinates alone.
 pub(super) fn write_rows(
     output: &Path,
     views: &[LandmarkView],

@@ -189,7 +189,8 @@ pub(crate) const ROUGHNESS: f32 = 0.08;
 /// A gabled house on level ground at height 0, in the Dutch grid, with its outward normals, points half a metre apart.
 ///
 /// The house spans 10 m from west to east and 8 m from south to north around (EAST, NORTH). Its eaves are 6 m high and
-/// run along the south and north sides, its ridge is 9 m high. There is ground 15 m around its middle, and none below it.
+/// run along the south and north sides, its ridge is 9 m high. There is ground 15 m around its middle, and none below
+/// it.
 pub(crate) fn house() -> PointCloud {
     let mut points: Vec<([f32; 3], [f32; 3])> = Vec::new();
     let steps = |from: f32, to: f32| (0..).map(move |i| from + 0.5 * i as f32).take_while(move |v| *v <= to);

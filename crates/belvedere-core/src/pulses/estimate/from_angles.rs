@@ -33,13 +33,14 @@ struct AngleSample {
     tangent: f64,
 }
 
-/// The paths of flight lines that scan angles tell, by line, and the parts of lines that were looked at. None for a cloud without
-/// angles (or whose angles are all 0) or times.
+/// The paths of flight lines that scan angles tell, by line, and the parts of lines that were looked at. None for a
+/// cloud without angles (or whose angles are all 0) or times.
 ///
-/// Taken across the flight, an angle a puts a point beside the scanner's path by (height) tan a. Position, velocity, height and
-/// direction of the scan lines that fit this best follow from linear least squares. How far the scanner looks ahead, the angles do
-/// not tell; the pulses with several returns among `pulses` do, where there are some. A line is not trusted where points miss
-/// their place, where scan lines are bent, or where those pulses point elsewhere: all that cones and tilted scanners give away.
+/// Taken across the flight, an angle a puts a point beside the scanner's path by (height) tan a. Position, velocity,
+/// height and direction of the scan lines that fit this best follow from linear least squares. How far the scanner
+/// looks ahead, the angles do not tell; the pulses with several returns among `pulses` do, where there are some. A line
+/// is not trusted where points miss their place, where scan lines are bent, or where those pulses point elsewhere: all
+/// that cones and tilted scanners give away.
 ///
 /// # Errors
 /// [`Error::InvalidParameter`] for a length of parts outside 0.5 to 60 s.

@@ -17,15 +17,16 @@ const MIN_PAIRS: usize = 100;
 const MIN_OFFSET: f64 = 1.0;
 /// Offsets below so many deviations may be chance.
 const MIN_DEVIATIONS: f64 = 4.0;
-/// Share of the misses of single pulses that may be systematic: beams that graze edges miss to one side more than to the other.
+/// Share of the misses of single pulses that may be systematic: beams that graze edges miss to one side more than to
+/// the other.
 const SYSTEMATIC_SHARE: f64 = 0.5;
 
-/// The offset that brings `positions`, (P, 3) local metres for each of `pulses`, NaN where unknown, nearest to the lines of the
-/// pulses with several returns; `None` where too few have returns far enough apart.
+/// The offset that brings `positions`, (P, 3) local metres for each of `pulses`, NaN where unknown, nearest to the
+/// lines of the pulses with several returns; `None` where too few have returns far enough apart.
 ///
 /// # Source
-/// The miss at the last return as in [`crate::pulses::SensorPositions::from_returns`], with Huber's weights and one unknown for all
-/// lines; ours.
+/// The miss at the last return as in [`crate::pulses::SensorPositions::from_returns`], with Huber's weights and one
+/// unknown for all lines; ours.
 pub(in crate::pulses) fn height_offset(
     cloud: &PointCloud,
     pulses: &Pulses,

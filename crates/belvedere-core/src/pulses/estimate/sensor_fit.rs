@@ -28,13 +28,13 @@ pub(super) struct SensorFit {
     pub(super) median_angle: f64,
 }
 
-/// Position and velocity for which the last returns of `pairs` lie nearest to the lines from the scanner through the first
-/// ones, or `None` where they fix none.
+/// Position and velocity for which the last returns of `pairs` lie nearest to the lines from the scanner through the
+/// first ones, or `None` where they fix none.
 ///
-/// The first guess minimises how far the lines miss the scanner, which is linear. It lies too near, because a line with a
-/// wrong direction misses a far scanner by more, so the rounds that follow (Gauss and Newton) minimise the distance at the
-/// last return, where the error is. That distance is measured across the way from the scanner, not across the measured
-/// pulse, whose own error would pull the scanner towards the ground.
+/// The first guess minimises how far the lines miss the scanner, which is linear. It lies too near, because a line with
+/// a wrong direction misses a far scanner by more, so the rounds that follow (Gauss and Newton) minimise the distance
+/// at the last return, where the error is. That distance is measured across the way from the scanner, not across the
+/// measured pulse, whose own error would pull the scanner towards the ground.
 pub(super) fn fit(pairs: &[ReturnPair], vertical_speed_sd: f64) -> Option<SensorFit> {
     let mut start = PathEquations::default();
     for pair in pairs {

@@ -14,12 +14,13 @@ pub(super) struct ScannerState {
     pub(super) covariance: Matrix6<f64>,
 }
 
-/// The estimates for the parts of a line at increasing `times`, made to agree: each with what the others say of it, as far as
-/// accelerations of the deviation `acceleration_sd` (metres per second squared, white over a second) leave it. `None` where
-/// no estimate is near in time.
+/// The estimates for the parts of a line at increasing `times`, made to agree: each with what the others say of it, as
+/// far as accelerations of the deviation `acceleration_sd` (metres per second squared, white over a second) leave it.
+/// `None` where no estimate is near in time.
 ///
 /// # Source
-/// Rauch, Tung & Striebel 1965: the smoother of fixed interval, for a constant velocity disturbed by white acceleration.
+/// Rauch, Tung & Striebel 1965: the smoother of fixed interval, for a constant velocity disturbed by white
+/// acceleration.
 pub(super) fn smoothed(
     times: &[f64],
     estimates: &[Option<ScannerState>],

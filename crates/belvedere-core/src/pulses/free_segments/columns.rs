@@ -7,7 +7,8 @@ use belvedere_data::control::Control;
 use belvedere_data::free_segments::FreeSegmentColumns;
 use rayon::prelude::*;
 
-/// Steps of a slope, metres of shift across a needle's way for each metre along it: a needle 60 m long is off by 3 mm at its far end.
+/// Steps of a slope, metres of shift across a needle's way for each metre along it: a needle 60 m long is off by 3 mm
+/// at its far end.
 const SLOPE_STEP: f64 = 1e-4;
 /// A needle that ends within this of the top of all, metres, reaches it.
 const REACHES_TOP: f64 = 1e-3;
@@ -48,8 +49,9 @@ impl FreeSegments {
         self.free_segments.par_iter().map(line)
     }
 
-    /// The needles as columns, in the order of the index. Directions are rounded, so that what [`FreeSegments::from_columns`] makes of
-    /// them lies up to 5 mm in 100 m off these; it gives the same columns again, in another order.
+    /// The needles as columns, in the order of the index. Directions are rounded, so that what
+    /// [`FreeSegments::from_columns`] makes of them lies up to 5 mm in 100 m off these; it gives the same columns
+    /// again, in another order.
     #[must_use]
     pub fn to_columns(&self) -> FreeSegmentColumns {
         let top = self.top;

@@ -5,15 +5,15 @@ use super::{FreeSegment, FreeSegments, GAP_M};
 use belvedere_data::vector::{dot, sub, unit};
 use std::ops::ControlFlow;
 
-/// Pieces of a line shorter than this are not worth a step, metres: more than boxes of the tree are padded by, so that the needles of a
-/// tripod, which all end at one place, need not all be asked where a line leaves what is near to that.
+/// Pieces of a line shorter than this are not worth a step, metres: more than boxes of the tree are padded by, so that
+/// the needles of a tripod, which all end at one place, need not all be asked where a line leaves what is near to that.
 const MIN_PIECE: f64 = 4e-3;
-/// How much nearer than the nearest one known a needle must be to be looked for, metres: where needles end at one place all are equally
-/// near.
+/// How much nearer than the nearest one known a needle must be to be looked for, metres: where needles end at one place
+/// all are equally near.
 const WORTH_LOOKING: f64 = 5e-3;
 
-/// Share of pulses that are not upright from which on a scanner is taken to stand on the ground: those of aircraft are steeper than
-/// 40°.
+/// Share of pulses that are not upright from which on a scanner is taken to stand on the ground: those of aircraft are
+/// steeper than 40°.
 const MIN_FLAT_SHARE: f64 = 0.05;
 
 impl FreeSegments {
@@ -52,14 +52,14 @@ impl FreeSegments {
         self.top
     }
 
-    /// Where needles begin, local metres, in no particular order: just before the first returns. For pulses from above these are the
-    /// lower ends.
+    /// Where needles begin, local metres, in no particular order: just before the first returns. For pulses from above
+    /// these are the lower ends.
     pub fn lower_ends(&self) -> impl ExactSizeIterator<Item = [f32; 3]> + '_ {
         self.free_segments.iter().map(|free_segment| free_segment.start)
     }
 
-    /// Calls `visit` with the lower and upper end, local metres, of every upright needle that may pass over the level rectangle
-    /// between the corners `low` and `high`, in no particular order.
+    /// Calls `visit` with the lower and upper end, local metres, of every upright needle that may pass over the level
+    /// rectangle between the corners `low` and `high`, in no particular order.
     pub(crate) fn each_upright_over(&self, over: [[f64; 2]; 2], mut visit: impl FnMut([[f64; 3]; 2])) {
         for tree in self.trees.iter().filter(|tree| tree.way == SegmentAxis::UP) {
             let _ = tree.walk(
@@ -76,8 +76,8 @@ impl FreeSegments {
         }
     }
 
-    /// Whether a needle passes nearer than `distance` metres to `point`, local metres. The distance to the piece of a line is
-    /// taken in f64; a point or distance that is not a number is near nothing.
+    /// Whether a needle passes nearer than `distance` metres to `point`, local metres. The distance to the piece of a
+    /// line is taken in f64; a point or distance that is not a number is near nothing.
     #[must_use]
     pub fn passes_within(&self, point: [f64; 3], distance: f64) -> bool {
         let found = self.visit_near(point, distance, |free_segments| {
@@ -93,8 +93,8 @@ impl FreeSegments {
         self.nearest_but(point, within, 0.0)
     }
 
-    /// A distance from `point`, local metres, within which there is no needle: that of the nearest one, or a few millimetres less, at most
-    /// `within` metres.
+    /// A distance from `point`, local metres, within which there is no needle: that of the nearest one, or a few
+    /// millimetres less, at most `within` metres.
     #[must_use]
     pub fn free_distance(&self, point: [f64; 3], within: f64) -> f64 {
         // near by first: where pulses are dense, many thousands pass within some metres
@@ -103,7 +103,8 @@ impl FreeSegments {
         nearest.map_or(within, |distance| (distance - WORTH_LOOKING).max(0.0))
     }
 
-    /// The distance of a needle that no other is nearer than by more than `slack` metres, if any is nearer than `within` metres.
+    /// The distance of a needle that no other is nearer than by more than `slack` metres, if any is nearer than
+    /// `within` metres.
     fn nearest_but(&self, point: [f64; 3], within: f64, slack: f64) -> Option<f64> {
         let mut min = within * within;
         let mut found = false;
@@ -119,8 +120,8 @@ impl FreeSegments {
         found.then(|| min.sqrt())
     }
 
-    /// Largest radius of a ball about `center`, local metres, that no needle comes nearer to than a millimetre, at most `max` metres; 0 where
-    /// there is none.
+    /// Largest radius of a ball about `center`, local metres, that no needle comes nearer to than a millimetre, at most
+    /// `max` metres; 0 where there is none.
     #[must_use]
     pub fn clearance(&self, center: [f32; 3], max: f32) -> f32 {
         #[expect(clippy::cast_possible_truncation, reason = "below `most`")]
@@ -128,9 +129,9 @@ impl FreeSegments {
             .map_or(max, |distance| (distance as f32 - GAP_M).max(0.0))
     }
 
-    /// A piece of the line through `origin` along the unit vector `direction` on which one needle is nearer than `distance`
-    /// metres everywhere: where it begins and ends, metres from the origin, `at` being well within. `None` where no needle is
-    /// that near at `at`, or stays so for less than 4 mm.
+    /// A piece of the line through `origin` along the unit vector `direction` on which one needle is nearer than
+    /// `distance` metres everywhere: where it begins and ends, metres from the origin, `at` being well within. `None`
+    /// where no needle is that near at `at`, or stays so for less than 4 mm.
     ///
     /// Of several needles it takes one that stays near for long, not always the one that does so longest.
     #[must_use]
@@ -151,8 +152,8 @@ impl FreeSegments {
         })
     }
 
-    /// Shows `visit` the needles of every leaf that may come nearer than `reach` metres to `point`, until it breaks off; what it
-    /// continues with is the reach from there on.
+    /// Shows `visit` the needles of every leaf that may come nearer than `reach` metres to `point`, until it breaks
+    /// off; what it continues with is the reach from there on.
     fn visit_near<T>(
         &self,
         point: [f64; 3],
@@ -189,8 +190,8 @@ impl FreeSegments {
     }
 }
 
-/// The same of pulses that are no needles yet: first returns, and where the scanner was, local metres. Those with an unknown scanner do not
-/// count.
+/// The same of pulses that are no needles yet: first returns, and where the scanner was, local metres. Those with an
+/// unknown scanner do not count.
 pub(crate) fn come_from_the_ground(pulses: impl Iterator<Item = ([f32; 3], [f32; 3])>) -> bool {
     let way =
         |(end, scanner): ([f32; 3], [f32; 3])| SegmentAxis::of(unit(sub(scanner.map(f64::from), end.map(f64::from)))?);
@@ -238,8 +239,8 @@ impl FreeSegment {
         dot(off, off)
     }
 
-    /// The piece of a line nearer than `distance` to the needle: what it cuts from the union of a cylinder and two spheres, which
-    /// is convex.
+    /// The piece of a line nearer than `distance` to the needle: what it cuts from the union of a cylinder and two
+    /// spheres, which is convex.
     fn near_piece(&self, origin: [f64; 3], direction: [f64; 3], distance: f64) -> Option<[f64; 2]> {
         let up = self.direction.map(f64::from);
         let length = f64::from(self.length);

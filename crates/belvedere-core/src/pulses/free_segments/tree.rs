@@ -17,8 +17,8 @@ const TYPICAL_RADIUS: f32 = 0.1;
 /// An upright needle rises at least so much per metre of its length. Those of aircraft do, and make one tree.
 const UPRIGHT_RISE: f64 = 0.3;
 
-/// The way along which a needle gets on most, an axis and a side of it. Across it a needle shifts by 3.2 m per metre at most where it
-/// is upright, otherwise by 1 m.
+/// The way along which a needle gets on most, an axis and a side of it. Across it a needle shifts by 3.2 m per metre at
+/// most where it is upright, otherwise by 1 m.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct SegmentAxis {
     /// 0 east, 1 north, 2 up.
@@ -60,8 +60,8 @@ impl SegmentAxis {
     }
 }
 
-/// Where the needles of a node lie: what they span along their way, and their box at both ends of that. Between the two planes lines
-/// are straight, so that anywhere they lie within the box interpolated between the two.
+/// Where the needles of a node lie: what they span along their way, and their box at both ends of that. Between the two
+/// planes lines are straight, so that anywhere they lie within the box interpolated between the two.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SegmentNode {
     /// Least of both axes across, then most, at the lower plane.
@@ -84,8 +84,8 @@ pub(super) struct SegmentTree {
 }
 
 impl SegmentTree {
-    /// The tree over `free_segments`, which it puts in order; their first will be needle number `first`. What is left when the work is
-    /// cancelled is no tree.
+    /// The tree over `free_segments`, which it puts in order; their first will be needle number `first`. What is left
+    /// when the work is cancelled is no tree.
     pub(super) fn new(
         way: SegmentAxis,
         free_segments: &mut [FreeSegment],
@@ -98,8 +98,8 @@ impl SegmentTree {
         Self { way, first, nodes }
     }
 
-    /// Shows `visit` the numbers of the needles of every leaf that `may_hold` does not rule out, nor a node above it, until it breaks
-    /// off. Both share `state`.
+    /// Shows `visit` the numbers of the needles of every leaf that `may_hold` does not rule out, nor a node above it,
+    /// until it breaks off. Both share `state`.
     #[inline]
     pub(super) fn walk<S>(
         &self,
@@ -238,7 +238,8 @@ struct TreeBuild<'a> {
 }
 
 impl TreeBuild<'_> {
-    /// What `free_segments` are parted by, so that the boxes around both parts are least. Judged by a sample, in their order.
+    /// What `free_segments` are parted by, so that the boxes around both parts are least. Judged by a sample, in their
+    /// order.
     fn best_key(self, free_segments: &[FreeSegment]) -> SegmentKey {
         let step = free_segments.len().div_ceil(SAMPLE);
         let mut sample: Vec<FreeSegment> = free_segments.iter().step_by(step).copied().collect();
@@ -255,7 +256,8 @@ impl TreeBuild<'_> {
         best.1
     }
 
-    /// Builds the node over `items`, whose first needle is number `first`, into `nodes[0]`, and what is below it behind.
+    /// Builds the node over `items`, whose first needle is number `first`, into `nodes[0]`, and what is below it
+    /// behind.
     fn node(self, items: &mut [FreeSegment], first: usize, nodes: &mut [SegmentNode], index: usize) {
         if items.len() > PARALLEL && self.stop.is_set() {
             return;

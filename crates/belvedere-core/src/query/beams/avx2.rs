@@ -1,4 +1,5 @@
-//! Eight lanes at once on machines with AVX2 and FMA: the same arithmetic as [`super::lanes::BeamScalar`] with fused products, in the same order.
+//! Eight lanes at once on machines with AVX2 and FMA: the same arithmetic as [`super::lanes::BeamScalar`] with fused
+//! products, in the same order.
 #![expect(
     unsafe_code,
     reason = "nearly all of the time of viewsheds of many observers goes into these tests (docs/methods/viewshed.md); tests compare them with \
@@ -13,7 +14,8 @@ use crate::instructions::Instructions;
 use crate::ray_index::PartSides;
 use std::arch::x86_64::*;
 
-/// Visits the places of the targets below `node` that no ball blocks; false on a machine without these instructions, where nothing is done.
+/// Visits the places of the targets below `node` that no ball blocks; false on a machine without these instructions,
+/// where nothing is done.
 pub(super) fn search(sweep: &TreeSweep<'_>, node: usize, visit: &mut impl FnMut(usize)) -> bool {
     #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
     fn run(sweep: &TreeSweep<'_>, node: usize, visit: &mut impl FnMut(usize)) {
@@ -30,8 +32,8 @@ pub(super) fn search(sweep: &TreeSweep<'_>, node: usize, visit: &mut impl FnMut(
 /// AVX2 and FMA.
 pub(super) struct BeamAvx2;
 
-// SAFETY of the blocks below: the methods are only used where AVX2 and FMA were found, and inlined into functions that enable them; `load` and `store` touch
-// arrays of exactly eight f32.
+// SAFETY of the blocks below: the methods are only used where AVX2 and FMA were found, and inlined into functions that
+// enable them; `load` and `store` touch arrays of exactly eight f32.
 
 #[inline(always)]
 fn load(lanes: &[f32; LANES]) -> __m256 {
@@ -163,7 +165,8 @@ mod tests {
     /// The scalar form with fused products.
     type Fused = BeamScalar<true>;
 
-    /// Balls, boxes, spaces and lines of all sizes; every fourth number is a round one, so that equal values and zeros occur.
+    /// Balls, boxes, spaces and lines of all sizes; every fourth number is a round one, so that equal values and zeros
+    /// occur.
     fn random(seed: u64, index: u64) -> f32 {
         let value = uniform(seed, index);
         #[expect(clippy::cast_possible_truncation, reason = "a test of f32")]

@@ -6,8 +6,9 @@ use super::sweep::{Apex, TreeSweep};
 use crate::query::target_tree::TargetNode;
 use belvedere_data::vector::{cross, dot, sub};
 
-/// A node of balls is opened where it is larger than so many widths of the beam: with less, balls that only a part of the beam meets
-/// are looked at by all of it, with more, parts of the beam open the same nodes again. For targets on the ground of a town 2 and 3.2 take 5 % longer.
+/// A node of balls is opened where it is larger than so many widths of the beam: with less, balls that only a part of
+/// the beam meets are looked at by all of it, with more, parts of the beam open the same nodes again. For targets on
+/// the ground of a town 2 and 3.2 take 5 % longer.
 const OPENED_SHARE: f32 = 2.5;
 
 /// All lines of sight of a box of targets lie between these planes.

@@ -12,11 +12,12 @@ use belvedere_data::vector::{dot, sub};
 use belvedere_data::{Error, Result};
 use std::ops::Range;
 
-/// What f32 may err by in the test of a beam, as a share of the largest coordinate: a dozen roundings of 6e-8, fewer where products are fused. Sides of
-/// boxes are rounded twice more; boxes are padded by at least as much ([`RayIndex`]).
+/// What f32 may err by in the test of a beam, as a share of the largest coordinate: a dozen roundings of 6e-8, fewer
+/// where products are fused. Sides of boxes are rounded twice more; boxes are padded by at least as much
+/// ([`RayIndex`]).
 const ROUNDING: f64 = 1e-6;
-/// How much smaller a ball counts where it is to hide a box, as a share of its squared radius and of squared distances: whatever f64
-/// rounds in the exact test, and then some.
+/// How much smaller a ball counts where it is to hide a box, as a share of its squared radius and of squared distances:
+/// whatever f64 rounds in the exact test, and then some.
 const COVER_MARGINS: [f64; 2] = [1e-9, 1e-14];
 /// Targets of a node that stand for their shape; of more, their box does. At least the corners of a box.
 const MAX_OUTLINED: usize = 24;
@@ -148,8 +149,8 @@ impl<'a> TreeSweep<'a> {
         }
     }
 
-    /// Answers the targets of a leaf one by one: by what blocked the last ones, then by the balls at hand, and only where these leave
-    /// them visible by those of the nodes too.
+    /// Answers the targets of a leaf one by one: by what blocked the last ones, then by the balls at hand, and only
+    /// where these leave them visible by those of the nodes too.
     #[inline(always)]
     fn finish<K: Kernels>(
         &self,
@@ -182,7 +183,8 @@ impl<'a> TreeSweep<'a> {
         }
     }
 
-    /// Asks for those targets of a leaf that are visible so far whether one of some balls blocks them; false when none is left.
+    /// Asks for those targets of a leaf that are visible so far whether one of some balls blocks them; false when none
+    /// is left.
     #[inline(always)]
     fn sift<K: Kernels>(&self, rays: &[Option<Ray>], visible: &mut [bool; LEAF], lists: &mut Lists, by: By) -> bool {
         let mut is_any_visible = false;
@@ -208,8 +210,8 @@ impl<'a> TreeSweep<'a> {
         is_any_visible
     }
 
-    /// Points around the targets of a node, moved outward by `room` metres: the targets themselves where they are few, whose hull is tighter than their
-    /// box, otherwise the corners of the box.
+    /// Points around the targets of a node, moved outward by `room` metres: the targets themselves where they are few,
+    /// whose hull is tighter than their box, otherwise the corners of the box.
     #[inline(always)]
     pub(super) fn outline(&self, target: &TargetNode, room: f64) -> Outline {
         let mut outline = Outline { points: [[0.0; 3]; MAX_OUTLINED], count: 8 };
@@ -230,7 +232,8 @@ impl<'a> TreeSweep<'a> {
         outline
     }
 
-    /// Appends those of the `given` blocks of balls that the beam may meet; true as soon as one hides all of the targets.
+    /// Appends those of the `given` blocks of balls that the beam may meet; true as soon as one hides all of the
+    /// targets.
     #[inline(always)]
     fn narrow_balls<K: Kernels>(
         &self,
@@ -257,8 +260,8 @@ impl<'a> TreeSweep<'a> {
         false
     }
 
-    /// Opens those of the `given` nodes that the beam may meet: appends the balls that it may meet, and nodes that need no opening; true as soon as
-    /// a ball hides all of the targets.
+    /// Opens those of the `given` nodes that the beam may meet: appends the balls that it may meet, and nodes that need
+    /// no opening; true as soon as a ball hides all of the targets.
     #[inline(always)]
     fn open_large_nodes<K: Kernels>(
         &self,
@@ -353,8 +356,8 @@ impl<'a> TreeSweep<'a> {
 
     /// Whether a ball blocks every line of sight of the targets, wherever in their box they lie.
     ///
-    /// The shadow of a ball is convex: a box lies in it if its corners do. Targets near its surface meet a ball smaller by up
-    /// to the shell, so the shadow of that one is asked; a target counts as `bias` nearer to the viewer.
+    /// The shadow of a ball is convex: a box lies in it if its corners do. Targets near its surface meet a ball smaller
+    /// by up to the shell, so the shadow of that one is asked; a target counts as `bias` nearer to the viewer.
     #[inline(always)]
     fn hides(&self, ball: u32, target: &TargetNode) -> bool {
         let params = self.scene.params();

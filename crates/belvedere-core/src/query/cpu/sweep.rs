@@ -105,8 +105,8 @@ pub(super) fn sweep_all(
 
 /// Sweeps a direction.
 ///
-/// Lines of sight are sorted by the cell in which they meet the lowest level. Each layer is added once for each stretch between two passages of
-/// sides of cells, moved by whole cells.
+/// Lines of sight are sorted by the cell in which they meet the lowest level. Each layer is added once for each stretch
+/// between two passages of sides of cells, moved by whole cells.
 fn sweep(space: &SpaceLayers, targets: &Descending, word_count: usize, heading: &SweptDirection) -> Swept {
     let depth = space.size[2];
     let ranges = [0, 1].map(|axis| heading.range(axis, depth));

@@ -1,9 +1,11 @@
-//! Targets and directions in whole numbers: the same line of sight has the same cell wherever it is asked for, because no step rounds.
+//! Targets and directions in whole numbers: the same line of sight has the same cell wherever it is asked for, because
+//! no step rounds.
 //!
-//! A line of sight belongs to the cell in which it meets the lowest level of the layers. With the place (x, y, z) of its target in cells and the
-//! slope s of its direction this is x − z·s. Heights have 18 bits of fraction and slopes 26, so that their product has 44, as x and y have: the
-//! difference is exact. What was rounded before, heights and slopes, moves the line by less than 24 · 2⁻¹⁸ + 4096 · 2⁻²⁷ < 2⁻¹² cells. A line
-//! closer than that to the border of its cell has none ([`TargetCell::cell`]) and stays open.
+//! A line of sight belongs to the cell in which it meets the lowest level of the layers. With the place (x, y, z) of
+//! its target in cells and the slope s of its direction this is x − z·s. Heights have 18 bits of fraction and slopes
+//! 26, so that their product has 44, as x and y have: the difference is exact. What was rounded before, heights and
+//! slopes, moves the line by less than 24 · 2⁻¹⁸ + 4096 · 2⁻²⁷ < 2⁻¹² cells. A line closer than that to the border of
+//! its cell has none ([`TargetCell::cell`]) and stays open.
 
 use super::space_layers::SpaceLayers;
 
@@ -15,7 +17,8 @@ const SLOPE_BITS: u32 = 26;
 const ACROSS_BITS: u32 = HEIGHT_BITS + SLOPE_BITS;
 /// A line closer than this part of a cell (2 to the power of minus this) to a border may belong to the next cell.
 const BORDER_BITS: u32 = 12;
-/// Most cells that a target lies above or below the lowest layer: 2 km where cells are 0.5 m. Lines of others stay open.
+/// Most cells that a target lies above or below the lowest layer: 2 km where cells are 0.5 m. Lines of others stay
+/// open.
 const MAX_HEIGHT: f64 = 4096.0;
 /// Most cells that a target lies from the corner along x or y: 131 km where cells are 0.5 m.
 const MAX_ACROSS: f64 = 262_144.0;
@@ -44,7 +47,8 @@ impl TargetCell {
         })
     }
 
-    /// The cell in which the line of sight of this target meets the lowest level, along x and y; `None` where it may be the next one.
+    /// The cell in which the line of sight of this target meets the lowest level, along x and y; `None` where it may be
+    /// the next one.
     #[must_use]
     #[inline]
     pub(super) fn cell(&self, heading: &SweptDirection) -> Option<[i32; 2]> {
@@ -77,7 +81,8 @@ pub(super) struct SweptDirection {
 }
 
 impl SweptDirection {
-    /// The unit vector `direction` for targets whose lines of sight are known up to `near` metres from them; `None` for one that is too flat.
+    /// The unit vector `direction` for targets whose lines of sight are known up to `near` metres from them; `None` for
+    /// one that is too flat.
     #[must_use]
     pub(super) fn new(space: &SpaceLayers, direction: [f64; 3], near: f64) -> Option<Self> {
         let slope = [direction[0] / direction[2], direction[1] / direction[2]];
@@ -99,8 +104,8 @@ impl SweptDirection {
 
     /// By how many whole cells along x and y lines of sight have moved in each stretch of a layer, into `moves`.
     ///
-    /// Those of a cell lie over two by two cells of the layer, the same ones until they pass a side of a cell to the east or north: a stretch
-    /// runs from one such passage to the next.
+    /// Those of a cell lie over two by two cells of the layer, the same ones until they pass a side of a cell to the
+    /// east or north: a stretch runs from one such passage to the next.
     pub(super) fn moves_in(&self, layer: usize, moves: &mut Vec<[i64; 2]>) {
         let slope = self.slope_exact;
         let layer = layer as f64;

@@ -6,16 +6,20 @@ use super::piece_over;
 use belvedere_data::ElevationGrid;
 use std::ops::ControlFlow;
 
-/// Smallest step of a line in cells for each metre: a line along an axis is turned by less than its rounding, so that no quotient is 0 / 0.
+/// Smallest step of a line in cells for each metre: a line along an axis is turned by less than its rounding, so that
+/// no quotient is 0 / 0.
 const MIN_SLOPE: f64 = 1e-14;
 
-/// Terrain nearer to the first end of a line of sight than this does not block it, metres: the ground at the feet of an eye that lies on it.
+/// Terrain nearer to the first end of a line of sight than this does not block it, metres: the ground at the feet of an
+/// eye that lies on it.
 const FOOT: f64 = 0.1;
 
-/// Halvings in which the place is found where terrain rises above a line: a patch of a kilometre becomes less than a nanometre.
+/// Halvings in which the place is found where terrain rises above a line: a patch of a kilometre becomes less than a
+/// nanometre.
 const HALVINGS: usize = 50;
 
-/// Heights between the nodes of a raster, bilinear in each patch of four nodes, with the highest node of all blocks of patches of 2, 4, 8, … a side.
+/// Heights between the nodes of a raster, bilinear in each patch of four nodes, with the highest node of all blocks of
+/// patches of 2, 4, 8, … a side.
 #[derive(Debug)]
 pub(super) struct TerrainHeights {
     grid: ElevationGrid,
@@ -48,8 +52,8 @@ pub(super) struct Top {
     pub(super) span: f64,
 }
 
-/// Lines from places in one direction on the map. Distances along them count from each place: there a line lies as far from that of the middle as its place
-/// from the middle.
+/// Lines from places in one direction on the map. Distances along them count from each place: there a line lies as far
+/// from that of the middle as its place from the middle.
 struct MapLines {
     /// The middle of the places in columns and rows of nodes, and their half size in both.
     start: [f64; 2],
@@ -57,7 +61,8 @@ struct MapLines {
     /// Columns and rows for each metre, and the inverse.
     step: [f64; 2],
     inverse: [f64; 2],
-    /// Distance that a line of another place than the middle needs more or less to the same column and row, metres at most.
+    /// Distance that a line of another place than the middle needs more or less to the same column and row, metres at
+    /// most.
     room: [f64; 2],
     /// The lowest height, metres.
     low: f64,
@@ -100,13 +105,14 @@ impl TerrainHeights {
         self.levels.last().and_then(|level| level.highest.first()).copied().unwrap_or(f32::NEG_INFINITY)
     }
 
-    /// The highest terrain from a place in a direction on the map, a unit vector. Exact for the bilinear surface over the curved earth, whatever
-    /// `guess` is: a distance where terrain may be high, which saves time if it is.
+    /// The highest terrain from a place in a direction on the map, a unit vector. Exact for the bilinear surface over
+    /// the curved earth, whatever `guess` is: a distance where terrain may be high, which saves time if it is.
     pub(super) fn top(&self, place: [f64; 3], along: [f64; 2], earth: &EarthParams, guess: Option<f64>) -> Option<Top> {
         let lines = self.lines(&LineStarts { low: place, high: place }, along, earth);
         let mut top = Top { tangent: f64::NEG_INFINITY, span: f64::NAN };
         if let Some(span) = guess {
-            /// Part of the distance on both sides that is looked through first: a cell or two of usual rasters where mountains are.
+            /// Part of the distance on both sides that is looked through first: a cell or two of usual rasters where
+            /// mountains are.
             const NEAR: f64 = 0.003;
             self.raise(&lines, [span * (1.0 - NEAR), span * (1.0 + NEAR)], &mut top);
         }
@@ -162,7 +168,8 @@ impl TerrainHeights {
         Some(above)
     }
 
-    /// The first patch in which terrain rises above a line of sight: its column and row, between which distances the line is over it, and the distance of its highest place.
+    /// The first patch in which terrain rises above a line of sight: its column and row, between which distances the
+    /// line is over it, and the distance of its highest place.
     fn first_patch(&self, line: &FarLine<'_>) -> Option<([usize; 2], [f64; 2], f64)> {
         let FarLine { observer: from, along, span, tangent, earth, .. } = *line;
         let lines = self.lines(&LineStarts { low: from, high: from }, along, earth);
@@ -186,7 +193,8 @@ impl TerrainHeights {
         first
     }
 
-    /// Whether terrain may rise above a line from any of these places. Never false where [`TerrainHeights::hides`] is true for one of them.
+    /// Whether terrain may rise above a line from any of these places. Never false where [`TerrainHeights::hides`] is
+    /// true for one of them.
     pub(super) fn may_hide(&self, places: &LineStarts, along: [f64; 2], tangent: f64, earth: &EarthParams) -> bool {
         let lines = self.lines(places, along, earth);
         let mut limit = Top { tangent: tangent - rounding(tangent), span: 0.0 };
@@ -199,8 +207,8 @@ impl TerrainHeights {
         hit.is_break()
     }
 
-    /// Whether terrain is known to rise above the lines from all of these places `span` metres away. Never true where [`TerrainHeights::hides`] is false for one
-    /// of them.
+    /// Whether terrain is known to rise above the lines from all of these places `span` metres away. Never true where
+    /// [`TerrainHeights::hides`] is false for one of them.
     pub(super) fn hides_all(
         &self,
         places: &LineStarts,
@@ -263,7 +271,8 @@ impl TerrainHeights {
         self.grid.cell()[0].max(self.grid.cell()[1])
     }
 
-    /// Where the line from a place leaves the box of the cloud, metres, and [`TerrainHeights::nearest`] at least; `None` for a place outside.
+    /// Where the line from a place leaves the box of the cloud, metres, and [`TerrainHeights::nearest`] at least;
+    /// `None` for a place outside.
     fn exit(&self, place: [f64; 2], along: [f64; 2]) -> Option<f64> {
         let [low, high] = self.within;
         let to_side = |axis: usize| match along[axis] {
@@ -280,7 +289,8 @@ impl TerrainHeights {
         [self.grid.heights().width() - 1, self.grid.heights().height() - 1]
     }
 
-    /// Calls `visit` for every patch within `spans` of the lines that may rise above `top`, nearest blocks first, until it breaks off.
+    /// Calls `visit` for every patch within `spans` of the lines that may rise above `top`, nearest blocks first, until
+    /// it breaks off.
     fn descend(
         &self,
         lines: &MapLines,
@@ -314,7 +324,8 @@ impl TerrainHeights {
         if !lines.may_rise(highest, spans, top.tangent) {
             return ControlFlow::Continue(());
         }
-        // where the lines pass the middle of the block: the nearer half of each axis ends there, and the farther one begins
+        // where the lines pass the middle of the block: the nearer half of each axis ends there, and the farther one
+        // begins
         let middle = [0, 1].map(|axis| {
             let line = ((2 * block[axis] + 1) << below) as f64;
             (line - lines.start[axis]) * lines.inverse[axis]
@@ -353,7 +364,8 @@ impl HeightLevel {
 }
 
 impl MapLines {
-    /// The part of `spans` in which any of the lines is over the first `size` patches; empty where the first is above the second.
+    /// The part of `spans` in which any of the lines is over the first `size` patches; empty where the first is above
+    /// the second.
     fn over(&self, size: [usize; 2], mut spans: [f64; 2]) -> [f64; 2] {
         for (axis, count) in size.into_iter().enumerate() {
             let one = -self.start[axis] * self.inverse[axis];
@@ -363,7 +375,8 @@ impl MapLines {
         spans
     }
 
-    /// Whether terrain as high as `highest` somewhere within `spans` may rise above the lines with the tangent `tangent`.
+    /// Whether terrain as high as `highest` somewhere within `spans` may rise above the lines with the tangent
+    /// `tangent`.
     #[inline]
     fn may_rise(&self, highest: f32, [from, to]: [f64; 2], tangent: f64) -> bool {
         let rise = f64::from(highest) - self.low;
@@ -371,7 +384,8 @@ impl MapLines {
         rise > slope * if slope > 0.0 { from } else { to }
     }
 
-    /// The highest place of a patch on the line between two distances, the tangent of its elevation and its distance; `None` where it is not known.
+    /// The highest place of a patch on the line between two distances, the tangent of its elevation and its distance;
+    /// `None` where it is not known.
     fn top_of_patch(&self, corners: [f32; 4], patch: [usize; 2], [from, to]: [f64; 2]) -> Option<Top> {
         let [a, b, c, d] = corners.map(f64::from);
         if !(a + b + c + d).is_finite() {

@@ -10,8 +10,8 @@ use std::f64::consts::TAU;
 /// Sectors of azimuth for each of which the distance of the last horizon is kept.
 const SECTORS: usize = 64;
 
-/// Unsets the bits of lines of sight that far terrain blocks, in rows of `words` for `targets`, (M, 3), neighbours together, and `directions`,
-/// (D, 3). For every pair the same as [`FarTerrain::hides`].
+/// Unsets the bits of lines of sight that far terrain blocks, in rows of `words` for `targets`, (M, 3), neighbours
+/// together, and `directions`, (D, 3). For every pair the same as [`FarTerrain::hides`].
 pub(in crate::query) fn hide_behind_terrain(
     far: &FarTerrain,
     targets: &[[f32; 3]],

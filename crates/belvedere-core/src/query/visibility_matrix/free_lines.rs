@@ -19,8 +19,9 @@ const BATCH: usize = 512;
 /// Targets that are looked at before the next: as many as keep what is settled of them below 100 MB.
 const MAX_TARGETS: usize = BLOCK << 10;
 
-/// Share of the lines of sight of targets that run near balls below which each is asked by itself: settling a line takes about a tenth of
-/// the time of asking one (6 and 53 ns on two cores before lines walked in packets, a strip of balls beside a tile of a village).
+/// Share of the lines of sight of targets that run near balls below which each is asked by itself: settling a line
+/// takes about a tenth of the time of asking one (6 and 53 ns on two cores before lines walked in packets, a strip of
+/// balls beside a tile of a village).
 const WORTH_SETTLING: f64 = 0.1;
 
 /// By how much the box around balls is taken for larger, metres: far more than is rounded.
@@ -44,9 +45,9 @@ struct OpenBlock {
 
 /// Which of many directions each of many targets sees, as far as obstacles were asked.
 ///
-/// A line of sight is free where no obstacle blocks it, so that neither their order nor how they are cut into parts matters: with the balls of a
-/// scene one part after the other, the bits at the end are those of [`MedialScene::visibility_matrix`]. A part is asked only about lines that
-/// are still free.
+/// A line of sight is free where no obstacle blocks it, so that neither their order nor how they are cut into parts
+/// matters: with the balls of a scene one part after the other, the bits at the end are those of
+/// [`MedialScene::visibility_matrix`]. A part is asked only about lines that are still free.
 #[derive(Clone)]
 pub struct FreeLines<'a> {
     tree: Arc<TargetTree>,
@@ -58,8 +59,8 @@ pub struct FreeLines<'a> {
 }
 
 impl<'a> FreeLines<'a> {
-    /// All lines of sight of `targets`, (M, 3) local metres, in `directions`, (D, 3) unit vectors, as if nothing stood anywhere. A target that is
-    /// not finite sees nothing.
+    /// All lines of sight of `targets`, (M, 3) local metres, in `directions`, (D, 3) unit vectors, as if nothing stood
+    /// anywhere. A target that is not finite sees nothing.
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] for a direction that is not of unit length (to a millionth).
@@ -95,8 +96,9 @@ impl<'a> FreeLines<'a> {
         self.tree.positions().len()
     }
 
-    /// Calls `visit` with the places on the map where lines of sight that are still free start: the number of their column among `columns`, which ascend, the lowest and
-    /// the highest corner of a rectangle, and the height that no target there is below, local metres. So many neighbours as `together` says, at least one, share a place.
+    /// Calls `visit` with the places on the map where lines of sight that are still free start: the number of their
+    /// column among `columns`, which ascend, the lowest and the highest corner of a rectangle, and the height that no
+    /// target there is below, local metres. So many neighbours as `together` says, at least one, share a place.
     pub fn each_start(&self, columns: &[usize], together: usize, mut visit: impl FnMut(usize, [[f32; 2]; 2], f32)) {
         // the words with any of the columns, these, and how many come before
         let mut queried: Vec<(usize, u64, usize)> = Vec::new();
@@ -126,10 +128,12 @@ impl<'a> FreeLines<'a> {
         }
     }
 
-    /// Takes away what the balls of `scene` block of the directions in `columns`, each given once. Progress counts targets.
+    /// Takes away what the balls of `scene` block of the directions in `columns`, each given once. Progress counts
+    /// targets.
     ///
     /// # Errors
-    /// [`Error::InvalidParameter`] for a column beyond the last, what the backend of the scene reports, and [`Error::Cancelled`].
+    /// [`Error::InvalidParameter`] for a column beyond the last, what the backend of the scene reports, and
+    /// [`Error::Cancelled`].
     pub fn hide_behind_balls(&mut self, scene: &MedialScene, columns: &[usize], control: &Control<'_>) -> Result<()> {
         if let Some(bad) = columns.iter().find(|&&column| column >= self.directions.len()) {
             let value = format!("of column {bad}");

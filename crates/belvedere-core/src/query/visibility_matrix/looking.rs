@@ -69,8 +69,9 @@ impl<'a> Sky<'a> {
         Self { tree, headings, settled, numbers }
     }
 
-    /// Unsets the bits of directions that are blocked in the rows of the targets of a block, which is the `block`-th of those that the backend was given. Only
-    /// those that are set are asked about, in columns that are set in `met`, the words of a row.
+    /// Unsets the bits of directions that are blocked in the rows of the targets of a block, which is the `block`-th of
+    /// those that the backend was given. Only those that are set are asked about, in columns that are set in `met`, the
+    /// words of a row.
     pub(super) fn look(&self, targets: &[[f32; 3]], block: usize, met: &[u64], rows: &mut [u64]) {
         let width = met.len();
         let groups: Vec<Group> = self.numbers.chunks(WORD).zip(met).enumerate().filter_map(Group::new).collect();
@@ -105,7 +106,8 @@ impl<'a> Sky<'a> {
         }
     }
 
-    /// Takes out those that any ball blocks. One direction after the other, so that lines of sight side by side meet the same balls.
+    /// Takes out those that any ball blocks. One direction after the other, so that lines of sight side by side meet
+    /// the same balls.
     fn ask(&self, targets: &[[f32; 3]], open: &mut [WordBits]) {
         debug_assert!(targets.len() <= BLOCK);
         // what blocked each target last

@@ -3,13 +3,14 @@
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 
-/// Points that are looked at, at most, or a sixteenth of all where that is more: the floor about a tripod has thousands in each square metre.
+/// Points that are looked at, at most, or a sixteenth of all where that is more: the floor about a tripod has thousands
+/// in each square metre.
 const SAMPLED: usize = 300_000;
 const MIN_SHARE: f64 = 1.0 / 16.0;
 /// Side of the cells that floors are looked at in, metres.
 const CELL: f32 = 0.2;
-/// Floor points in a cell from which on it is dense, and how many times as many it has as half of all cells. Measured: seen from a tripod the
-/// edge of the hole has 6 times as many in a room, and hundreds of times in a street.
+/// Floor points in a cell from which on it is dense, and how many times as many it has as half of all cells. Measured:
+/// seen from a tripod the edge of the hole has 6 times as many in a room, and hundreds of times in a street.
 const MIN_COUNT: u32 = 8;
 const MIN_CONTRAST: u32 = 5;
 const OF_CONTRAST: u32 = 2;
@@ -39,8 +40,8 @@ struct FloorCell {
     height: f32,
 }
 
-/// Middles of round holes in the floors of `points`, local metres, roundest first; one in a thousand of them is the foot of a tripod in a cloud
-/// of another kind. The result does not depend on the order of the points.
+/// Middles of round holes in the floors of `points`, local metres, roundest first; one in a thousand of them is the
+/// foot of a tripod in a cloud of another kind. The result does not depend on the order of the points.
 pub(super) fn floor_holes(points: &[[f32; 3]]) -> Vec<[f64; 3]> {
     let cells = cells(points);
     let mut counts: Vec<u32> = cells.iter().map(|cell| cell.count).collect();
@@ -99,7 +100,8 @@ fn cell_of(coordinate: f32) -> i32 {
     ((coordinate / CELL).floor() as i32).clamp(i32::MIN / 4, i32::MAX / 4)
 }
 
-/// Floor points of the cell at a place, if its floor is at about this height: below a ceiling nothing else may have been seen.
+/// Floor points of the cell at a place, if its floor is at about this height: below a ceiling nothing else may have
+/// been seen.
 fn count_at(cells: &[FloorCell], at: [i32; 2], height: f64, max_offset: f64) -> f64 {
     let found = cells.binary_search_by(|cell| cell.at.cmp(&at)).ok().and_then(|i| cells.get(i));
     let on_floor = found.filter(|cell| (f64::from(cell.height) - height).abs() <= max_offset);

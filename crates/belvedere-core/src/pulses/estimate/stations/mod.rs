@@ -16,13 +16,14 @@ use std::sync::atomic::{AtomicU32, Ordering};
 
 /// Points of a source id from which on a tripod is looked for.
 const MIN_POINTS: usize = 3000;
-/// Distances from the foot of a tripod up to which its grid is looked for, metres, tried in turn: the more the better, as long as few points are of
-/// another tripod.
+/// Distances from the foot of a tripod up to which its grid is looked for, metres, tried in turn: the more the better,
+/// as long as few points are of another tripod.
 const NEAR: [f64; 3] = [6.0, 3.5, 2.2];
 /// Distance below which the scanner's own parts and rounded coordinates disturb the grid, metres.
 const TOO_NEAR: f64 = 0.4;
-/// Points by which heights are tried, and those that a station is fitted to, about; and the wedges that are left out where there are more. A few wedges on all
-/// sides are kept of however many points: one side alone does not tell where the station is.
+/// Points by which heights are tried, and those that a station is fitted to, about; and the wedges that are left out
+/// where there are more. A few wedges on all sides are kept of however many points: one side alone does not tell where
+/// the station is.
 const TRIED: f64 = 10_000.0;
 const FITTED: f64 = 50_000.0;
 const WEDGES: f64 = 36.0;
@@ -36,12 +37,14 @@ const MAX_PAIRS: usize = 12_000;
 const ALLOWED_HEIGHTS: std::ops::RangeInclusive<f64> = 0.2..=4.0;
 /// Holes that are no station's, after which the search ends; the roundest come first.
 const MAX_FAILURES: usize = 12;
-/// Stations on one floor are farther apart than that, metres: the floor about a tripod has other holes, but no other tripod.
+/// Stations on one floor are farther apart than that, metres: the floor about a tripod has other holes, but no other
+/// tripod.
 const APART: f64 = 2.0;
 /// How far the station may be from above the middle of its hole, metres.
 const MAX_BESIDE: f64 = 0.6;
-/// Numbers of directions in a cell at which they must not be crowded, and how much they may be. Measured: stations of simulated tripods have less than 0.05 and 0.5,
-/// other places of their clouds and of clouds from the air 0.5 to 50 and 1 to 50.
+/// Numbers of directions in a cell at which they must not be crowded, and how much they may be. Measured: stations of
+/// simulated tripods have less than 0.05 and 0.5, other places of their clouds and of clouds from the air 0.5 to 50 and
+/// 1 to 50.
 const CROWDING: [(f64, f64); 2] = [(0.3, 0.25), (1.0, 0.7)];
 /// The same in the larger cells from the height that is tried first, some decimetres beside the station.
 const START_CROWDING: f64 = 1.8;
@@ -52,18 +55,20 @@ const MAX_SD: f64 = 0.03;
 /// Side of the cells of an image of ranges, in steps of the grid, and most columns of it.
 const IMAGE_STEPS: f64 = 1.5;
 const MAX_COLUMNS: f64 = 4096.0;
-/// How much farther than the nearest point in its cell a point may lie and be seen, metres, and in sides of the cell at its range: walls are seen at up to
-/// 80° from their normal.
+/// How much farther than the nearest point in its cell a point may lie and be seen, metres, and in sides of the cell at
+/// its range: walls are seen at up to 80° from their normal.
 const DEPTH: f64 = 0.05;
 const DEPTH_IN_SIDES: f64 = 6.0;
 /// Share of a group's points that may lie behind others seen from its only station: edges of things.
 const MAX_HIDDEN: f64 = 0.05;
 
-/// The stations of tripods in `cloud` and the one that each point was measured from, (N, 3) local metres, NaN where it is unknown.
+/// The stations of tripods in `cloud` and the one that each point was measured from, (N, 3) local metres, NaN where it
+/// is unknown.
 ///
-/// Points of different point source ids are looked at apart. A tripod leaves a round hole in the floor; seen from the true place above it, the pulses near by form a
-/// grid, each direction one step from the next. A place is a station only if that is so: seen from any other place some directions are crowded. Points belong to the
-/// nearest station of their group from which no other point lies before them.
+/// Points of different point source ids are looked at apart. A tripod leaves a round hole in the floor; seen from the
+/// true place above it, the pulses near by form a grid, each direction one step from the next. A place is a station
+/// only if that is so: seen from any other place some directions are crowded. Points belong to the nearest station of
+/// their group from which no other point lies before them.
 ///
 /// # Errors
 /// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
@@ -205,7 +210,8 @@ fn station_by_grid(near: &[[f64; 3]], hole: [f64; 3]) -> Option<StationFit> {
     is_proven.then_some(fit)
 }
 
-/// About `max` of these points, or a sixth of all where that is more: those in some wedges about the middle of the hole: within a wedge the grid is whole.
+/// About `max` of these points, or a sixth of all where that is more: those in some wedges about the middle of the
+/// hole: within a wedge the grid is whole.
 fn in_wedges(near: &[[f64; 3]], hole: [f64; 3], max: f64) -> Vec<[f64; 3]> {
     let share = (max / near.len() as f64).clamp(MIN_WEDGES / WEDGES, 1.0);
     let is_kept = |p: &&[f64; 3]| {
@@ -265,8 +271,8 @@ mod tests {
     const ROOM: [f64; 3] = [10.0, 6.0, 3.0];
     const STATIONS: [[f64; 3]; 2] = [[2.5, 3.2, 1.5], [7.4, 2.1, 1.7]];
 
-    /// The room as a scanner sees it in steps of `step` degrees down to 65° below the horizon, levelled to a thousandth and turned by `turn` radians; ranges have 3 mm of
-    /// noise, and coordinates are rounded to a millimetre.
+    /// The room as a scanner sees it in steps of `step` degrees down to 65° below the horizon, levelled to a thousandth
+    /// and turned by `turn` radians; ranges have 3 mm of noise, and coordinates are rounded to a millimetre.
     fn scanned(eye: [f64; 3], step: f64, turn: f64) -> Vec<[f32; 3]> {
         let steps = |degrees: f64| (0..).map(move |i| f64::from(i) * step).take_while(move |v| *v < degrees);
         let mut points = Vec::new();

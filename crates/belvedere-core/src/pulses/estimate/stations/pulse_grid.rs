@@ -62,8 +62,9 @@ fn cell_side(directions: &[([f64; 2], usize)], each: f64) -> f64 {
     (each * taken as f64 * coarse * coarse / count).sqrt()
 }
 
-/// How crowded the directions of `points` from `place` are, in cells that hold `each` of them on average: the mean number of others in the cell of one, by
-/// what chance would give. It is 1 where directions fall anywhere, more where some are preferred, and almost 0 on a grid of pulses that has one in each cell.
+/// How crowded the directions of `points` from `place` are, in cells that hold `each` of them on average: the mean
+/// number of others in the cell of one, by what chance would give. It is 1 where directions fall anywhere, more where
+/// some are preferred, and almost 0 on a grid of pulses that has one in each cell.
 pub(super) fn crowding(points: &[[f64; 3]], place: [f64; 3], each: f64) -> f64 {
     let directions = directions(points, place, [0.0; 2]);
     if directions.is_empty() {
@@ -154,11 +155,11 @@ fn misfit(points: &[[f64; 3]], pair: &GridPair, unknowns: &SVector<f64, UNKNOWNS
     [way[0] / steps[0] * from[1].cos(), way[1] / steps[1]]
 }
 
-/// The station from which neighbouring directions of `points` are one step of a grid apart, from a `start` a few decimetres away; `None` where none is
-/// found.
+/// The station from which neighbouring directions of `points` are one step of a grid apart, from a `start` a few
+/// decimetres away; `None` where none is found.
 ///
-/// Points of one row have the same elevation, those of one column the same azimuth, and steps are everywhere the same. Errors of ranges do not matter: they lie along the
-/// pulses.
+/// Points of one row have the same elevation, those of one column the same azimuth, and steps are everywhere the same.
+/// Errors of ranges do not matter: they lie along the pulses.
 ///
 /// # Source
 /// This project's own. Gauss–Newton with the weights of Huber 1964.
