@@ -267,7 +267,7 @@ pub fn carved_balls(input: &CarvedInput<'_>, params: &CarvedParams, control: &Co
 }
 
 /// The same for a part of a survey. The balls of points that lie far enough from its edge are those of any other part that holds them
-/// so, bit by bit; how far that is follows from the rules ([`crate::model::SurveyFacts::halo`]).
+/// so, bit by bit; how far that is follows from the rules ([`crate::model::SurveyStatistics::buffer`]).
 ///
 /// # Errors
 /// Those of [`carved_balls`].
