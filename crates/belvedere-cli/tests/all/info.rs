@@ -52,7 +52,7 @@ fn info_reports_counts_bounds_density_and_unit() {
 }
 
 #[test]
-fn what_info_says_can_be_served_can_be_served() {
+fn what_info_calls_usable_can_be_used() {
     let place = Workplace::new();
     let mut bare = house();
     bare.attributes.normals = None;

@@ -17,7 +17,7 @@ fn flown(truth: &[Vec<f64>], time: f64) -> [f64; 3] {
 }
 
 #[test]
-fn the_path_is_the_one_flown_and_serves_as_a_trajectory() {
+fn the_path_is_the_one_flown_and_is_read_as_a_trajectory() {
     let place = Workplace::new();
     place.summary("simulate town -o town --extent 100 --density 6");
     let made = place.summary("trajectory town/cloud.laz --time-step-s 0.25 -o found.csv");

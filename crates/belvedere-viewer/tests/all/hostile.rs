@@ -66,7 +66,7 @@ fn is_well(host: &str, token: &str) {
 }
 
 #[test]
-fn only_those_who_know_the_token_and_come_from_the_page_are_served() {
+fn only_those_who_know_the_token_and_come_from_the_page_get_answers() {
     let viewer = viewer();
     let (host, token) = address(&viewer);
     let own = format!("Host: {host}\r\n");

@@ -204,10 +204,10 @@ fn times_of_little_use_are_counted_and_lead_to_a_stated_assumption() {
     let (positions, report) = found(&cloud);
     assert!(report.is_assumed());
     assert!(report.remarks.iter().any(|remark| remark.contains("separate pulses")), "{:?}", report.remarks);
-    let served = positions.iter().filter(|p| p[0].is_finite()).count();
-    assert_eq!(report.found.get(&FoundBy::Assumed), Some(&served));
+    let located = positions.iter().filter(|p| p[0].is_finite()).count();
+    assert_eq!(report.found.get(&FoundBy::Assumed), Some(&located));
     // walls and what lies under crowns are left out
-    assert!(served > cloud.len() / 2 && served < cloud.len(), "{served} of {}", cloud.len());
+    assert!(located > cloud.len() / 2 && located < cloud.len(), "{located} of {}", cloud.len());
 }
 
 #[test]
@@ -283,9 +283,9 @@ fn means_that_are_not_there_are_refused_with_advice() {
 }
 
 #[test]
-fn real_clouds_are_served_by_what_they_have() {
+fn real_clouds_are_located_by_what_they_have() {
     let read = |file: &str| {
-        let path = crate::common::data("real_clouds_are_served_by_what_they_have", file)?;
+        let path = crate::common::data("real_clouds_are_located_by_what_they_have", file)?;
         Some(read_cloud(&[path], &ReadOptions::default(), &Control::none()).unwrap().0)
     };
     // scanners that look across the flight: angles alone put them where pulses with several returns do
@@ -297,8 +297,8 @@ fn real_clouds_are_served_by_what_they_have() {
         let (_, by_returns) = found(&cloud);
         let singles = singles(&cloud);
         let (by_angle, report) = found(&singles);
-        let served = report.found.get(&FoundBy::ScanAngle).copied().unwrap_or(0);
-        assert!(served as f64 > min_share * singles.len() as f64, "{file}: {report:?}");
+        let located = report.found.get(&FoundBy::ScanAngle).copied().unwrap_or(0);
+        assert!(located as f64 > min_share * singles.len() as f64, "{file}: {report:?}");
         let line = |row: usize| singles.attributes.point_source_id.as_ref().unwrap()[row];
         let times = singles.attributes.gps_time.as_ref().unwrap();
         let truth: Vec<[f32; 3]> = (0..singles.len())
@@ -319,7 +319,7 @@ fn real_clouds_are_served_by_what_they_have() {
     assert_eq!(report.found.get(&FoundBy::Returns), Some(&cloud.len()));
     let (_, report) = found(&singles(&cloud));
     assert!(report.is_assumed(), "{report:?}");
-    let Some(towns) = crate::common::data("real_clouds_are_served_by_what_they_have", "data/ign_decimated_towns")
+    let Some(towns) = crate::common::data("real_clouds_are_located_by_what_they_have", "data/ign_decimated_towns")
     else {
         return;
     };
