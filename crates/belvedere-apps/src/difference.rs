@@ -91,7 +91,7 @@ pub fn difference(before: &[f32], after: &[f32], cell_area: f64) -> Result<Diffe
     }
     let mut values: Vec<f32> = before.iter().zip(after).map(|(before, after)| after - before).collect();
     let scale =
-        before.iter().chain(after).filter(|v| v.is_finite()).fold(0.0_f64, |most, v| most.max(f64::from(v.abs())));
+        before.iter().chain(after).filter(|v| v.is_finite()).fold(0.0_f64, |max, v| max.max(f64::from(v.abs())));
     values.iter_mut().filter(|v| f64::from(v.abs()) <= ROUNDING * scale).for_each(|v| *v = 0.0);
     let mut report = DifferenceReport::default();
     let mut means = [0.0, 0.0];

@@ -1,9 +1,10 @@
 //! How much of a result depends on what stands beyond the cloud, of which nothing is known and which blocks nothing.
 //!
-//! A line to the sun or the sky leaves the box around the cloud at some height. Above the highest point of the cloud nothing of its kind
-//! could block it any more; below, an object beyond the edge as high as that point could. A target is near the edge if more than
-//! [`EDGE_SHARE`] of the light comes from directions that leave the cloud so low. A direction counts by the sine of its elevation, as what
-//! it sends on level ground does, so that flat directions, which leave every cloud low, count little beside steep ones.
+//! A line to the sun or the sky leaves the box around the cloud at some height. Above the highest point of the cloud
+//! nothing of its kind could block it any more; below, an object beyond the edge as high as that point could. A target
+//! is near the edge if more than [`EDGE_SHARE`] of the light comes from directions that leave the cloud so low. A
+//! direction counts by the sine of its elevation, as what it sends on level ground does, so that flat directions, which
+//! leave every cloud low, count little beside steep ones.
 
 use belvedere_core::query::{Coverage, SkylinePoint};
 use belvedere_data::Result;
@@ -13,8 +14,9 @@ use rayon::prelude::*;
 use serde::Serialize;
 use std::f64::consts::TAU;
 
-/// Share of the directions asked, weighted by the sines of their elevations, that may leave the cloud below its highest point before a target counts as
-/// near the edge. Under the whole sky this is a distance of 4.4 times the relief in all azimuths.
+/// Share of the directions asked, weighted by the sines of their elevations, that may leave the cloud below its highest
+/// point before a target counts as near the edge. Under the whole sky this is a distance of 4.4 times the relief in all
+/// azimuths.
 pub const EDGE_SHARE: f64 = 0.05;
 /// Targets handed to a thread at once.
 const CHUNK: usize = 1024;
@@ -33,13 +35,14 @@ impl EdgeReport {
     #[must_use]
     pub fn of(flags: &[Option<bool>]) -> Self {
         let count = flags.iter().filter(|flag| **flag == Some(true)).count();
-        let asked = flags.iter().flatten().count();
-        Self { targets_near_edge: count, targets_near_edge_percent: percent(count, asked) }
+        let target_count = flags.iter().flatten().count();
+        Self { targets_near_edge: count, targets_near_edge_percent: percent(count, target_count) }
     }
 }
 
-/// Whether each of `targets`, (M, 3) local metres, is near the edge of the cloud for lines of sight along `directions`, (D, 3) unit vectors;
-/// `None` for one that is not finite. Directions below the horizon do not count. Progress counts targets.
+/// Whether each of `targets`, (M, 3) local metres, is near the edge of the cloud for lines of sight along `directions`,
+/// (D, 3) unit vectors; `None` for one that is not finite. Directions below the horizon do not count. Progress counts
+/// targets.
 ///
 /// # Errors
 /// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
@@ -63,8 +66,9 @@ pub fn near_edge(
     Ok(chunks.collect::<Result<Vec<_>>>()?.concat())
 }
 
-/// Share of the azimuths of `skyline`, the first at `first` radians clockwise from grid north, at which an object beyond the edge, as high as the highest
-/// point of the cloud, would rise above the horizon that was found around `eye`, local metres; 0 for an empty skyline.
+/// Share of the azimuths of `skyline`, the first at `first` radians clockwise from grid north, at which an object
+/// beyond the edge, as high as the highest point of the cloud, would rise above the horizon that was found around
+/// `eye`, local metres; 0 for an empty skyline.
 #[must_use]
 pub fn horizon_share_near_edge(coverage: &Coverage, eye: [f64; 3], skyline: &[SkylinePoint], first: f64) -> f64 {
     let relief = relief_above(coverage, eye);
@@ -81,7 +85,8 @@ fn relief_above(coverage: &Coverage, place: [f64; 3]) -> f64 {
     (f64::from(coverage.bounds().high[2]) - place[2]).max(0.0)
 }
 
-/// Distance on the map from `place`, local metres, along the unit vector `along` to where the box around the cloud ends, metres; 0 outside.
+/// Distance on the map from `place`, local metres, along the unit vector `along` to where the box around the cloud
+/// ends, metres; 0 outside.
 fn distance_to_edge(coverage: &Coverage, place: [f64; 3], along: [f64; 2]) -> f64 {
     let (low, high) = coverage.bounds().on_map();
     let to_side = |axis: usize| match along[axis] {
@@ -186,7 +191,8 @@ mod tests {
     #[test]
     fn under_the_whole_sky_a_target_is_near_where_the_band_below_the_relief_is_wide() {
         let sky = SkyDirections::even(5000).unwrap();
-        // the middle sees 20 m at 50 m: the band up to atan(20 / d) sends the share (1/2π) ∫ sin²(atan(20 / d(φ))) dφ of the light
+        // the middle sees 20 m at 50 m: the band up to atan(20 / d) sends the share (1/2π) ∫ sin²(atan(20 / d(φ))) dφ
+        // of the light
         let steps = 3600;
         let band = |d: f64| (20.0 / d).atan().sin().powi(2);
         let of_azimuth = |i: i32| {

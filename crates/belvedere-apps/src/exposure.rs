@@ -1,4 +1,5 @@
-//! Exposure of routes and windows to sun and sky: what studies of thermal comfort, daylight and property value ask of them.
+//! Exposure of routes and windows to sun and sky: what studies of thermal comfort, daylight and property value ask of
+//! them.
 
 use crate::rows::{check_normals, fold_rows, normals_of};
 use crate::sky_view::{SkyDirections, SkyView, sky_view};
@@ -13,8 +14,8 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
-/// Height above the ground at which walkers are asked, metres: the middle of a standing body, for which PET and UTCI are defined (VDI 3787
-/// part 2, 1.1 m).
+/// Height above the ground at which walkers are asked, metres: the middle of a standing body, for which PET and UTCI
+/// are defined (VDI 3787 part 2, 1.1 m).
 pub const WALKER_HEIGHT: f64 = 1.1;
 /// Metres between places along a route: a few steps.
 pub const ROUTE_STEP: f64 = 2.0;
@@ -25,15 +26,16 @@ const WINDOW_SIDE: u32 = 3;
 /// Targets handed to a thread at once.
 const CHUNK: usize = 256;
 
-/// The outward unit normal of a plane that looks to `azimuth`, clockwise from grid north, and is tilted by `tilt` from level: 0 looks up,
-/// π/2 is upright, more looks down; radians.
+/// The outward unit normal of a plane that looks to `azimuth`, clockwise from grid north, and is tilted by `tilt` from
+/// level: 0 looks up, π/2 is upright, more looks down; radians.
 #[must_use]
 pub fn plane_normal(azimuth: f64, tilt: f64) -> [f64; 3] {
     [tilt.sin() * azimuth.sin(), tilt.sin() * azimuth.cos(), tilt.cos()]
 }
 
-/// Places that stand for a window around `center`, local metres, with the unit normal `normal`, a little in front of it: nine, in the
-/// middles of even parts of its width and height (`size`, metres), or its middle alone where it has none. Width runs level.
+/// Places that stand for a window around `center`, local metres, with the unit normal `normal`, a little in front of
+/// it: nine, in the middles of even parts of its width and height (`size`, metres), or its middle alone where it has
+/// none. Width runs level.
 ///
 /// # Errors
 /// [`Error::InvalidParameter`] for a centre or normal that is not finite, or a size that is below zero or above 1000 m.
@@ -68,9 +70,9 @@ pub enum WholeIs {
     /// Their mean by weight.
     Mean,
     /// The least of them.
-    Least,
+    Min,
     /// The greatest of them.
-    Most,
+    Max,
 }
 
 /// Whether the share of each group in shade is kept for each sun.
@@ -87,11 +89,11 @@ pub enum ShadeAtEachSun {
 /// What targets, in groups, get of sun and sky.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Exposure {
-    /// `sky_view_factor`, `sky_openness`, for targets with normals `sky_component`, then `sun_hours`, `sun_share`, `first_light`,
-    /// `last_light` and `longest`; and what a group has of each.
+    /// `sky_view_factor`, `sky_openness`, for targets with normals `sky_component`, then `sun_hours`, `sun_share`,
+    /// `first_light`, `last_light` and `longest`; and what a group has of each.
     pub measures: Vec<(Measure, WholeIs)>,
-    /// For each group the share of its weight that each direction of the sun does not reach, (groups) rows of (D); empty
-    /// unless kept.
+    /// For each group the share of its weight that each direction of the sun does not reach, (groups) rows of (D);
+    /// empty unless kept.
     pub shaded_shares: Vec<Vec<f64>>,
 }
 
@@ -101,8 +103,8 @@ impl Exposure {
     pub fn of_groups(&self, number: usize, targets: &Targets) -> Vec<f64> {
         match self.measures.get(number) {
             Some((measure, WholeIs::Mean)) => targets.group_means(&measure.values),
-            Some((measure, WholeIs::Least)) => targets.group_minima(&measure.values),
-            Some((measure, WholeIs::Most)) => targets.group_maxima(&measure.values),
+            Some((measure, WholeIs::Min)) => targets.group_minima(&measure.values),
+            Some((measure, WholeIs::Max)) => targets.group_maxima(&measure.values),
             None => Vec::new(),
         }
     }
@@ -120,7 +122,8 @@ impl Exposure {
     }
 }
 
-/// What `targets`, routes or windows, get of `sky` and of the suns of `schedule` in `scene`. Progress counts targets, twice each.
+/// What `targets`, routes or windows, get of `sky` and of the suns of `schedule` in `scene`. Progress counts targets,
+/// twice each.
 ///
 /// # Errors
 /// Those of [`fold_rows`], [`sky_view`], [`sky_component`] and [`sun_hours`].
@@ -171,8 +174,8 @@ pub fn scene_exposure(
     }
     push("sun_hours", "hours of sun a day", 3, sun.hours, WholeIs::Mean);
     push("sun_share", "share of possible sun", 4, sun.share, WholeIs::Mean);
-    push("first_light", "first sun, hour of the day", 3, sun.first, WholeIs::Least);
-    push("last_light", "last sun, hour of the day", 3, sun.last, WholeIs::Most);
+    push("first_light", "first sun, hour of the day", 3, sun.first, WholeIs::Min);
+    push("last_light", "last sun, hour of the day", 3, sun.last, WholeIs::Max);
     push("longest", "longest uninterrupted sun, hours", 3, sun.longest, WholeIs::Mean);
     Ok(Exposure { measures, shaded_shares: shaded.map(|shaded| shaded.shares(targets)).unwrap_or_default() })
 }
@@ -210,16 +213,17 @@ impl Shaded {
     }
 }
 
-/// The sky component of each target of `matrix`: the light that its plane (`normals`, (M, 3) unit vectors) gets straight from an overcast
-/// sky, as a share of what a free level plane gets, (M). For upright planes it is the vertical sky component; a free wall has 0.396, a
-/// free level plane 1. Light thrown back by the ground and by facades is not in it.
+/// The sky component of each target of `matrix`: the light that its plane (`normals`, (M, 3) unit vectors) gets
+/// straight from an overcast sky, as a share of what a free level plane gets, (M). For upright planes it is the
+/// vertical sky component; a free wall has 0.396, a free level plane 1. Light thrown back by the ground and by facades
+/// is not in it.
 ///
 /// # Errors
 /// [`Error::LengthMismatch`] where matrix, sky and normals differ.
 ///
 /// # Source
-/// Moon & Spencer 1942 (the overcast sky of CIE S 011: luminance 1 + 2 sin of the elevation, a third at the horizon); Littlefair 2011, Site
-/// layout planning for daylight and sunlight, BRE 209, appendix C.
+/// Moon & Spencer 1942 (the overcast sky of CIE S 011: luminance 1 + 2 sin of the elevation, a third at the horizon);
+/// Littlefair 2011, Site layout planning for daylight and sunlight, BRE 209, appendix C.
 pub fn sky_component(matrix: &VisibilityMatrix, sky: &SkyDirections, normals: &[[f32; 3]]) -> Result<Vec<f32>> {
     let sizes = [
         ("directions of the sky", matrix.direction_count(), sky.directions.len()),
@@ -247,8 +251,8 @@ pub fn sky_component(matrix: &VisibilityMatrix, sky: &SkyDirections, normals: &[
     Ok(normals.par_iter().enumerate().with_min_len(CHUNK).map(component).collect())
 }
 
-/// The length of route that each of `places`, (N, 3) along it, stands for, metres on the map: half the way to the place before and half to
-/// the next, (N). A route of a single place has no length: it stands for 1.
+/// The length of route that each of `places`, (N, 3) along it, stands for, metres on the map: half the way to the place
+/// before and half to the next, (N). A route of a single place has no length: it stands for 1.
 #[must_use]
 pub fn route_lengths(places: &[[f64; 3]]) -> Vec<f64> {
     if places.len() == 1 {
@@ -264,8 +268,8 @@ pub fn route_lengths(places: &[[f64; 3]]) -> Vec<f64> {
     lengths
 }
 
-/// For each direction of `matrix`, the share of `weights`, (M), whose targets do not see it free: that of a route in shade at each sun, (D);
-/// NaN where the weights add up to nothing.
+/// For each direction of `matrix`, the share of `weights`, (M), whose targets do not see it free: that of a route in
+/// shade at each sun, (D); NaN where the weights add up to nothing.
 ///
 /// # Errors
 /// [`Error::LengthMismatch`] unless there is a weight for each target.

@@ -8,8 +8,8 @@ use belvedere_data::report::rounded;
 use rayon::prelude::*;
 use serde::Serialize;
 
-/// How deep an eye may lie in an obstacle or below the ground, metres: what points and the surface tolerance of balls leave open. An eye
-/// on a wall or a roof is a usual question.
+/// How deep an eye may lie in an obstacle or below the ground, metres: what points and the surface tolerance of balls
+/// leave open. An eye on a wall or a roof is a usual question.
 const TOLERANCE: f64 = 0.2;
 
 /// Why nobody can look from a place.
@@ -81,8 +81,8 @@ impl EyesReport {
     }
 }
 
-/// Finds the `eyes`, (N) local metres, that cannot look in `scene`, and makes them NaN, so that others keep their rows. `ground` is asked
-/// where it is given.
+/// Finds the `eyes`, (N) local metres, that cannot look in `scene`, and makes them NaN, so that others keep their rows.
+/// `ground` is asked where it is given.
 ///
 /// # Errors
 /// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
@@ -95,7 +95,8 @@ pub fn skip_unfit_eyes(
     skip(eyes, control, |place| fault_of(scene, ground, place))
 }
 
-/// The same for eyes whose lines of sight may leave the cloud: those on far terrain ([`MedialScene::is_on_far_terrain`]) can look unless they lie below it.
+/// The same for eyes whose lines of sight may leave the cloud: those on far terrain
+/// ([`MedialScene::is_on_far_terrain`]) can look unless they lie below it.
 ///
 /// # Errors
 /// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
@@ -134,7 +135,8 @@ fn skip(
     })
 }
 
-/// Why nobody can look from `place`, local metres, whose height is NaN where no ground is known below it; `None` where somebody can.
+/// Why nobody can look from `place`, local metres, whose height is NaN where no ground is known below it; `None` where
+/// somebody can.
 #[must_use]
 pub fn fault_of(scene: &MedialScene, ground: Option<&Ground>, place: [f64; 3]) -> Option<EyeFault> {
     let [x, y, z] = place;
@@ -167,7 +169,8 @@ fn far_fault_of(scene: &MedialScene, ground: Option<&Ground>, place: [f64; 3]) -
     below.filter(|below| *below > TOLERANCE).map(|below| EyeFault::BelowGround(rounded(below, 3)))
 }
 
-/// Why a target at `place`, local metres, in the cloud or on far terrain, cannot be looked at from anywhere. Other than eyes, targets may lie inside an obstacle: often it is they that are seen.
+/// Why a target at `place`, local metres, in the cloud or on far terrain, cannot be looked at from anywhere. Other than
+/// eyes, targets may lie inside an obstacle: often it is they that are seen.
 #[must_use]
 pub fn fault_of_target(scene: &MedialScene, place: [f64; 3]) -> Option<EyeFault> {
     far_fault_of(scene, None, place).filter(|fault| !matches!(fault, EyeFault::InsideObstacle(_)))

@@ -12,8 +12,8 @@ use std::f64::consts::{PI, TAU};
 pub struct HorizonParams {
     /// Number of azimuths, equally far apart, 1 to 1 000 000. Default 360: one a degree.
     pub azimuth_count: usize,
-    /// Angle that is added to azimuths from grid north to make those that come out, radians: 0, the default, for grid north,
-    /// [`convergence`] for true north.
+    /// Angle that is added to azimuths from grid north to make those that come out, radians: 0, the default, for grid
+    /// north, [`convergence`] for true north.
     pub turn: f64,
     /// How lines of sight run over the earth.
     pub earth: EarthParams,
@@ -70,8 +70,8 @@ pub fn horizons(
 /// Number of azimuths for a step, radians, above 0: steps of a full circle are made equal.
 ///
 /// # Errors
-/// [`Error::InvalidParameter`] for a step that is not above zero, is more than a full circle, or does not part it evenly (to a
-/// millionth).
+/// [`Error::InvalidParameter`] for a step that is not above zero, is more than a full circle, or does not part it
+/// evenly (to a millionth).
 pub fn azimuth_count(step: f64) -> Result<usize> {
     let count = TAU / step;
     if !(1.0 - 1e-9..=1e6).contains(&count) || (count - count.round()).abs() > 1e-6 * count {
@@ -86,8 +86,8 @@ pub fn azimuth_count(step: f64) -> Result<usize> {
     Ok(count)
 }
 
-/// Meridian convergence at `position`, (x, y) metres in the system `crs`: the azimuth of grid north, clockwise from true north, radians.
-/// An azimuth from true north is that from grid north plus this.
+/// Meridian convergence at `position`, (x, y) metres in the system `crs`: the azimuth of grid north, clockwise from
+/// true north, radians. An azimuth from true north is that from grid north plus this.
 ///
 /// # Errors
 /// Those of [`Crs::geographic_projection`], and where the place has no latitude.

@@ -11,7 +11,7 @@ const REACH: f64 = 500.0;
 /// Rows between two looks at whether the work was cancelled: some milliseconds.
 const CHECKED: u32 = 256;
 /// Most rows of a profile.
-const MOST_ROWS: f64 = 1e6;
+const MAX_ROWS: f64 = 1e6;
 
 /// What a line of sight passes, one value for each of equally spaced places.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -30,12 +30,13 @@ pub struct SightProfile {
     pub blocked_at: Option<f64>,
 }
 
-/// The profile from `observer` to `target`, local metres, every `step` metres on the map; `None` for a thousandth of the line, 0.1 m
-/// at least. A line over far terrain ([`MedialScene::is_on_far_terrain`]) follows the curvature of the earth whatever its length.
+/// The profile from `observer` to `target`, local metres, every `step` metres on the map; `None` for a thousandth of
+/// the line, 0.1 m at least. A line over far terrain ([`MedialScene::is_on_far_terrain`]) follows the curvature of the
+/// earth whatever its length.
 ///
 /// # Errors
-/// [`Error::InvalidParameter`] for ends that are not finite or stand above each other, and for a step that is not above zero or makes
-/// more than a million rows; [`Error::Cancelled`].
+/// [`Error::InvalidParameter`] for ends that are not finite or stand above each other, and for a step that is not above
+/// zero or makes more than a million rows; [`Error::Cancelled`].
 pub fn sight_profile(
     scene: &MedialScene,
     ground: Option<&Ground>,
@@ -51,7 +52,7 @@ pub fn sight_profile(
         return Err(Error::InvalidParameter { parameter: Parameter::ProfileLine, value, expected });
     }
     let step = step.unwrap_or((span / 1000.0).max(0.1));
-    if !(step > 0.0 && span / step <= MOST_ROWS) {
+    if !(step > 0.0 && span / step <= MAX_ROWS) {
         let value = format!("{step} m on {span} m");
         let expected = "above zero, and large enough for a million rows";
         return Err(Error::InvalidParameter { parameter: Parameter::ProfileStep, value, expected });

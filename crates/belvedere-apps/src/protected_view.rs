@@ -3,7 +3,7 @@
 use crate::landmark::LandmarkParams;
 use crate::solar_envelope::ConvexPolygon;
 use belvedere_core::ground::{Ground, MapGrid};
-use belvedere_core::query::{Answer, BackFaces, MedialScene, Piece, Sides, SurfacePieces, Viewer};
+use belvedere_core::query::{Answer, BackFaces, MedialScene, Sides, SurfacePiece, SurfacePieces, Viewer};
 use belvedere_data::control::Control;
 use belvedere_data::raster::Raster;
 use belvedere_data::vector::{dot, length, sub};
@@ -13,7 +13,8 @@ use serde::Serialize;
 
 /// Rows of cells that a thread lowers at once.
 const BAND: usize = 16;
-/// A face whose area on the map is below this share of the square of its longest side stands upright: its neighbours bound the cells below it.
+/// A face whose area on the map is below this share of the square of its longest side stands upright: its neighbours
+/// bound the cells below it.
 const THINNEST: f64 = 1e-9;
 
 /// What is protected of the view from one place.
@@ -39,7 +40,8 @@ pub struct ProtectedView {
 }
 
 impl ProtectedView {
-    /// The limits above the ground of the same cells, metres, 0 where a view passes below it; NaN where no view passes and where no ground is known.
+    /// The limits above the ground of the same cells, metres, 0 where a view passes below it; NaN where no view passes
+    /// and where no ground is known.
     ///
     /// # Errors
     /// [`Error::LengthMismatch`] for a ground of other cells.
@@ -60,17 +62,21 @@ impl ProtectedView {
     }
 }
 
-/// How high one may build on each cell of `grid` without entering the view of `object` from any of `eyes`, local metres; an eye that is not finite looks at nothing.
+/// How high one may build on each cell of `grid` without entering the view of `object` from any of `eyes`, local
+/// metres; an eye that is not finite looks at nothing.
 ///
-/// Each piece of the object that is seen today is protected as a whole: the pyramid from the eye over its three corners stays free. The limit of a cell is the lowest height of all pyramids over
-/// its whole square, in closed form, so that what is built below it on every cell enters none. What is hidden today is not protected. Lines that are not proven
-/// count as `params.unproven` says; those that are reported are protected. Lines of sight are straight: the curvature of the earth is not in the limits. Progress counts eyes.
+/// Each piece of the object that is seen today is protected as a whole: the pyramid from the eye over its three corners
+/// stays free. The limit of a cell is the lowest height of all pyramids over its whole square, in closed form, so that
+/// what is built below it on every cell enters none. What is hidden today is not protected. Lines that are not proven
+/// count as `params.unproven` says; those that are reported are protected. Lines of sight are straight: the curvature
+/// of the earth is not in the limits. Progress counts eyes.
 ///
 /// # Errors
 /// [`Error::InvalidParameter`] for a range that is not above zero, and [`Error::Cancelled`].
 ///
 /// # Source
-/// Protected vistas as planning has them (Greater London Authority 2012, London View Management Framework); the pyramids and their limit over cells are this project's.
+/// Protected vistas as planning has them (Greater London Authority 2012, London View Management Framework); the
+/// pyramids and their limit over cells are this project's.
 pub fn protected_view(
     scene: &MedialScene,
     object: &SurfacePieces,
@@ -102,7 +108,7 @@ pub fn protected_view(
 }
 
 /// A triangle in space, local metres.
-type Face = [[f64; 3]; 3];
+type FaceCorners = [[f64; 3]; 3];
 
 /// The faces of the pyramids from an eye over the pieces that it sees.
 fn protected_faces(
@@ -111,8 +117,8 @@ fn protected_faces(
     eye: [f64; 3],
     params: &LandmarkParams,
     control: &Control<'_>,
-) -> Result<(Vec<Face>, ViewpointReport)> {
-    let answer = |piece: &Piece| {
+) -> Result<(Vec<FaceCorners>, ViewpointReport)> {
+    let answer = |piece: &SurfacePiece| {
         control.check()?;
         let is_turned_away = object.sides == Sides::Known
             && params.faces.back_faces != BackFaces::BothSides
@@ -142,7 +148,7 @@ fn protected_faces(
 }
 
 /// Lowers the limit of every cell below `faces` to them.
-fn lower(limits: &mut [f64], grid: &MapGrid, faces: &[Face], control: &Control<'_>) -> Result<()> {
+fn lower(limits: &mut [f64], grid: &MapGrid, faces: &[FaceCorners], control: &Control<'_>) -> Result<()> {
     let slopes: Vec<Slope> = faces.iter().filter_map(Slope::new).collect();
     limits.par_chunks_mut(BAND * grid.width.max(1)).enumerate().try_for_each(|(band, limits)| {
         control.check()?;
@@ -168,7 +174,7 @@ struct Slope {
 }
 
 impl Slope {
-    fn new(face: &Face) -> Option<Self> {
+    fn new(face: &FaceCorners) -> Option<Self> {
         let [a, b, c] = *face;
         let (u, v) = (sub(b, a), sub(c, a));
         let doubled = u[0] * v[1] - u[1] * v[0];
@@ -203,9 +209,9 @@ impl Slope {
         if south > north_of(first) || north < north_of(first + rows) {
             return;
         }
-        let at = |value: f64, most: usize| {
+        let at = |value: f64, max: usize| {
             #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to the grid")]
-            let number = value.clamp(0.0, most as f64) as usize;
+            let number = value.clamp(0.0, max as f64) as usize;
             number
         };
         let from = at((grid.corner[1] - north) / grid.cell - first as f64, rows);

@@ -1,10 +1,11 @@
 //! Rows of the visibility matrix as a stream: which directions each target sees, a block of targets at a time.
 //!
-//! Sun hours, sky views, shadows, irradiance and exposure are sums over the directions that a target sees. A sum needs the row of one target
-//! only, so that no application holds the matrix of all targets: memory stays bounded however many targets and directions there are. Rows do
-//! not depend on each other, and no result depends on how targets are cut into blocks.
+//! Sun hours, sky views, shadows, irradiance and exposure are sums over the directions that a target sees. A sum needs
+//! the row of one target only, so that no application holds the matrix of all targets: memory stays bounded however
+//! many targets and directions there are. Rows do not depend on each other, and no result depends on how targets are
+//! cut into blocks.
 
-use crate::tree_light::{Crowns, TreeLight};
+use crate::tree_light::{CrownLight, TreeLight};
 use belvedere_core::query::{MedialScene, VisibilityMatrix};
 use belvedere_data::control::Control;
 use belvedere_data::{Error, Parameter, Result};
@@ -32,17 +33,18 @@ impl Obstacles<'_> {
     /// How many matrices are asked for: one, or two where trees let light through.
     #[must_use]
     pub fn matrix_count(&self) -> usize {
-        Surroundings::from(*self).matrix_count()
+        SkyObstacles::from(*self).matrix_count()
     }
 }
 
 /// Obstacles that do not fit into memory, and are looked at part by part.
 pub trait ObstacleParts: Sync {
     /// What crowns let through, where they do; `None` where trees are opaque.
-    fn crowns(&self) -> Option<Crowns>;
+    fn crowns(&self) -> Option<CrownLight>;
 
-    /// Which of `directions`, (D, 3) unit vectors, each of `targets`, (M, 3) local metres, sees, and what each would see without trees where
-    /// these let light through: the bits that one scene of all parts would give. Progress counts targets, once for each matrix.
+    /// Which of `directions`, (D, 3) unit vectors, each of `targets`, (M, 3) local metres, sees, and what each would
+    /// see without trees where these let light through: the bits that one scene of all parts would give. Progress
+    /// counts targets, once for each matrix.
     ///
     /// # Errors
     /// Those of [`MedialScene::visibility_matrix`] and of reading the parts.
@@ -56,29 +58,29 @@ pub trait ObstacleParts: Sync {
 
 /// All that may stand between targets and the sky.
 #[derive(Clone, Copy)]
-pub enum Surroundings<'a> {
+pub enum SkyObstacles<'a> {
     /// At once.
     Whole(Obstacles<'a>),
     /// Part by part.
     InParts(&'a dyn ObstacleParts),
 }
 
-impl<'a> From<Obstacles<'a>> for Surroundings<'a> {
+impl<'a> From<Obstacles<'a>> for SkyObstacles<'a> {
     fn from(obstacles: Obstacles<'a>) -> Self {
         Self::Whole(obstacles)
     }
 }
 
-impl<'a> From<&'a MedialScene> for Surroundings<'a> {
+impl<'a> From<&'a MedialScene> for SkyObstacles<'a> {
     fn from(scene: &'a MedialScene) -> Self {
         Self::Whole(scene.into())
     }
 }
 
-impl Surroundings<'_> {
+impl SkyObstacles<'_> {
     /// What crowns let through, where they do; `None` where trees are opaque.
     #[must_use]
-    pub fn crowns(&self) -> Option<Crowns> {
+    pub fn crowns(&self) -> Option<CrownLight> {
         match self {
             Self::Whole(obstacles) => obstacles.trees.map(|trees| trees.crowns),
             Self::InParts(parts) => parts.crowns(),
@@ -119,14 +121,14 @@ pub struct RowBlock {
     pub without_trees: Option<VisibilityMatrix>,
 }
 
-/// Asks which of `directions`, (D, 3) unit vectors, each of `targets`, (M, 3) local metres, sees, and hands the rows to `fold`, block after
-/// block in the order of the targets. A target that is not finite sees nothing. Progress counts targets, twice each where trees let light
-/// through.
+/// Asks which of `directions`, (D, 3) unit vectors, each of `targets`, (M, 3) local metres, sees, and hands the rows to
+/// `fold`, block after block in the order of the targets. A target that is not finite sees nothing. Progress counts
+/// targets, twice each where trees let light through.
 ///
 /// # Errors
 /// Those of [`MedialScene::visibility_matrix`], of [`ObstacleParts::look`] and of `fold`, and [`Error::Cancelled`].
 pub fn fold_rows(
-    surroundings: Surroundings<'_>,
+    surroundings: SkyObstacles<'_>,
     targets: &[[f32; 3]],
     directions: &[[f64; 3]],
     control: &Control<'_>,
@@ -141,7 +143,7 @@ pub fn fold_rows(
 /// # Errors
 /// Those of [`fold_rows`], and [`Error::InvalidParameter`] for blocks without a target.
 pub fn fold_blocks(
-    surroundings: Surroundings<'_>,
+    surroundings: SkyObstacles<'_>,
     targets: &[[f32; 3]],
     directions: &[[f64; 3]],
     block: usize,

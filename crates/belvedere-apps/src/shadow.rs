@@ -1,6 +1,6 @@
 //! Shadow: what of the sun reaches a place, its disc taken as a point or as it is.
 
-use crate::rows::{Surroundings, check_normals, fold_rows, normals_of};
+use crate::rows::{SkyObstacles, check_normals, fold_rows, normals_of};
 use crate::targets::Targets;
 use crate::tree_light::{Season, through_crowns};
 use belvedere_core::query::{Answer, MedialScene, VisibilityMatrix};
@@ -32,7 +32,8 @@ pub enum Edges {
     /// The sun is a point: a place is lit or not.
     #[default]
     Hard,
-    /// The sun is a disc of half a degree, of which a place sees a share: edges are as wide as 1/107 of the way to what casts them.
+    /// The sun is a disc of half a degree, of which a place sees a share: edges are as wide as 1/107 of the way to what
+    /// casts them.
     Soft,
 }
 
@@ -63,13 +64,13 @@ impl ShadowSun {
     }
 }
 
-/// The share of each of `suns` that reaches each of `targets` among `obstacles`, 0 to 1, (suns) rows of (M); NaN for a target that is not asked
-/// about. Progress counts targets, once or twice each.
+/// The share of each of `suns` that reaches each of `targets` among `obstacles`, 0 to 1, (suns) rows of (M); NaN for a
+/// target that is not asked about. Progress counts targets, once or twice each.
 ///
 /// # Errors
 /// Those of [`fold_rows`] and [`lit_shares`].
 pub fn scene_shadow<'a>(
-    obstacles: impl Into<Surroundings<'a>>,
+    obstacles: impl Into<SkyObstacles<'a>>,
     targets: &Targets,
     suns: &[ShadowSun],
     edges: Edges,
@@ -98,7 +99,8 @@ pub fn scene_shadow<'a>(
     Ok(lit)
 }
 
-/// The same for one sun with hard edges: 1 for a target that is lit, 0 for one in shadow, NaN for one that is not asked about.
+/// The same for one sun with hard edges: 1 for a target that is lit, 0 for one in shadow, NaN for one that is not asked
+/// about.
 ///
 /// # Errors
 /// Those of [`scene_shadow`].
@@ -106,8 +108,8 @@ pub fn shadow(scene: &MedialScene, targets: &Targets, sun: ShadowSun, control: &
     Ok(scene_shadow(scene, targets, &[sun], Edges::Hard, control)?.pop().unwrap_or_default())
 }
 
-/// 1 for each of `targets` that `lit`, (M), says is lit, but whose line of sight to the sun the pulses of `scene` do not prove; 0 for others.
-/// `None` for a scene that knows no pulses.
+/// 1 for each of `targets` that `lit`, (M), says is lit, but whose line of sight to the sun the pulses of `scene` do
+/// not prove; 0 for others. `None` for a scene that knows no pulses.
 ///
 /// # Errors
 /// [`Error::LengthMismatch`] unless there is a share for each target, and [`Error::Cancelled`].
@@ -138,7 +140,8 @@ pub fn unproven_light(
     Ok(Some(chunks.map(chunk).collect::<Result<Vec<_>>>()?.concat()))
 }
 
-/// Directions that stand for a sun in the direction of the unit vector `to_sun`: itself, or 64 points of equal shares of its disc.
+/// Directions that stand for a sun in the direction of the unit vector `to_sun`: itself, or 64 points of equal shares
+/// of its disc.
 #[must_use]
 pub fn sun_directions(to_sun: [f64; 3], edges: Edges) -> Vec<[f64; 3]> {
     if edges == Edges::Hard {
@@ -157,9 +160,9 @@ pub fn sun_directions(to_sun: [f64; 3], edges: Edges) -> Vec<[f64; 3]> {
         .collect()
 }
 
-/// The share of a sun that each target of `matrix` sees, 0 to 1, (M), where `directions` stand for it, the first of them being column
-/// `first` of the matrix. What is below the horizon is not seen, nor is what stands behind a target that is turned away by its
-/// outward normal, (M, 3); `None` where targets have none.
+/// The share of a sun that each target of `matrix` sees, 0 to 1, (M), where `directions` stand for it, the first of
+/// them being column `first` of the matrix. What is below the horizon is not seen, nor is what stands behind a target
+/// that is turned away by its outward normal, (M, 3); `None` where targets have none.
 ///
 /// # Errors
 /// [`Error::LengthMismatch`] where the matrix has fewer columns, or normals are not as many as targets.

@@ -1,7 +1,8 @@
 //! Light through the crowns of trees: what share of it gets through, by season or as pulses measured it.
 //!
-//! Balls are opaque. Two matrices tell what all of them leave free and what those leave free that are not vegetation; every measure that is a
-//! sum over directions lies between its two values, by the share of the light that crowns let through.
+//! Balls are opaque. Two matrices tell what all of them leave free and what those leave free that are not vegetation;
+//! every measure that is a sum over directions lies between its two values, by the share of the light that crowns let
+//! through.
 
 use crate::sun::{Date, Site};
 use belvedere_core::medial::MedialBalls;
@@ -29,8 +30,8 @@ pub enum Foliage {
 }
 
 impl Foliage {
-    /// That of deciduous trees on a day of the year, 1 to 366, at a latitude in radians: in leaf from day 97 to day 300 north of the
-    /// tropics, half a year later south of them, and always between them, where no winter strips trees.
+    /// That of deciduous trees on a day of the year, 1 to 366, at a latitude in radians: in leaf from day 97 to day 300
+    /// north of the tropics, half a year later south of them, and always between them, where no winter strips trees.
     ///
     /// # Source
     /// The days are the defaults of SOLWEIG (Lindberg & Grimmond 2011), for Gothenburg.
@@ -55,8 +56,8 @@ pub struct Transmissivity {
 
 impl Default for Transmissivity {
     /// # Source
-    /// Konarska, Lindberg, Larsson, Thorsson & Holmer 2014, "Transmissivity of solar radiation through crowns of single urban trees",
-    /// Theoretical and Applied Climatology 117; SOLWEIG (Lindberg & Grimmond 2011).
+    /// Konarska, Lindberg, Larsson, Thorsson & Holmer 2014, "Transmissivity of solar radiation through crowns of single
+    /// urban trees", Theoretical and Applied Climatology 117; SOLWEIG (Lindberg & Grimmond 2011).
     fn default() -> Self {
         Self { in_leaf: 0.03, bare: 0.5 }
     }
@@ -78,11 +79,12 @@ impl Transmissivity {
         Ok(Self { in_leaf: share, bare: share })
     }
 
-    /// What the pulses measured: the mean of `transmission`, (B), as [`belvedere_core::medial::CarvedBalls`] has it, over the balls of crowns by
-    /// the area they cover; of the season that the survey was flown in, which is taken for both. `None` where no crown was measured.
+    /// What the pulses measured: the mean of `transmission`, (B), as [`belvedere_core::medial::CarvedBalls`] has it,
+    /// over the balls of crowns by the area they cover; of the season that the survey was flown in, which is taken for
+    /// both. `None` where no crown was measured.
     ///
-    /// A beam is as wide as a hand and returns from below a crown where part of it gets through, so that this is more than the share of
-    /// the light that does.
+    /// A beam is as wide as a hand and returns from below a crown where part of it gets through, so that this is more
+    /// than the share of the light that does.
     #[must_use]
     pub fn measured(balls: &MedialBalls, transmission: &[f32]) -> Option<Self> {
         let (mut through, mut covered) = (0.0, 0.0);
@@ -139,14 +141,14 @@ impl Season {
 
 /// What crowns let through, and when.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Crowns {
+pub struct CrownLight {
     /// What share of the light gets through a crown.
     pub transmissivity: Transmissivity,
     /// Whether trees carry leaves.
     pub leaves: Leaves,
 }
 
-impl Crowns {
+impl CrownLight {
     /// Share of the light that gets through crowns in a season; `None` where a question has no date.
     #[must_use]
     pub fn share(&self, season: Option<Season>) -> f64 {
@@ -164,7 +166,7 @@ pub struct TreeLight {
     /// The balls that are not vegetation.
     pub opaque: Arc<MedialScene>,
     /// What the vegetation lets through.
-    pub crowns: Crowns,
+    pub crowns: CrownLight,
 }
 
 impl TreeLight {
@@ -180,12 +182,13 @@ impl TreeLight {
         control: &Control<'_>,
     ) -> Result<Self> {
         let opaque = Arc::new(model.scene_without_vegetation(rule, control)?);
-        Ok(Self { opaque, crowns: Crowns { transmissivity, leaves } })
+        Ok(Self { opaque, crowns: CrownLight { transmissivity, leaves } })
     }
 }
 
-/// Measures that are sums over directions, (M), with trees that let a share of the light through: `all` are their values where
-/// nothing does, `opaque` those without vegetation. Sky view factors, openness, hours of sun and irradiance are such sums.
+/// Measures that are sums over directions, (M), with trees that let a share of the light through: `all` are their
+/// values where nothing does, `opaque` those without vegetation. Sky view factors, openness, hours of sun and
+/// irradiance are such sums.
 ///
 /// # Errors
 /// [`Error::LengthMismatch`] where the two differ in length, [`Error::InvalidParameter`] for a share outside 0 to 1.

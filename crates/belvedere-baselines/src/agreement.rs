@@ -5,7 +5,7 @@ use belvedere::random::uniform;
 
 /// Answers for targets of known truth, counted.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Counts {
+pub struct TruthCounts {
     /// Blocked in truth and answered so.
     pub blocked: u64,
     /// Blocked in truth, answered visible or unproven.
@@ -22,8 +22,9 @@ pub struct Counts {
     pub unanswered: u64,
 }
 
-impl Counts {
-    /// Counts one answer. Unproven counts as visible, since nothing blocks the line of sight, and beside that on its own.
+impl TruthCounts {
+    /// Counts one answer. Unproven counts as visible, since nothing blocks the line of sight, and beside that on its
+    /// own.
     pub fn add(&mut self, visible_in_truth: bool, answer: Answer) {
         if answer == Answer::Unproven {
             *if visible_in_truth { &mut self.unproven_visible } else { &mut self.unproven_blocked } += 1;
@@ -52,8 +53,8 @@ impl Counts {
         }
     }
 
-    /// Targets that got `answer`, as a share of all answered ones, and the share of them that are right: visible or blocked in
-    /// truth as it says, visible for [`Answer::Unproven`]. `None` where none was answered, or none so.
+    /// Targets that got `answer`, as a share of all answered ones, and the share of them that are right: visible or
+    /// blocked in truth as it says, visible for [`Answer::Unproven`]. `None` where none was answered, or none so.
     #[must_use]
     pub fn worth(&self, answer: Answer) -> [Option<f64>; 2] {
         let (right, wrong) = match answer {
@@ -68,7 +69,7 @@ impl Counts {
     }
 }
 
-/// A rate derived from [`Counts`]. Targets without an answer enter [`Rate::Unanswered`] only.
+/// A rate derived from [`TruthCounts`]. Targets without an answer enter [`Rate::Unanswered`] only.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rate {
     /// Share of the visible that is called blocked.
@@ -90,7 +91,7 @@ impl Rate {
 
     /// The rate, 0 to 1, or `None` where nothing of the kind was asked.
     #[must_use]
-    pub fn of(self, counts: &Counts) -> Option<f64> {
+    pub fn of(self, counts: &TruthCounts) -> Option<f64> {
         let share = |part: u64, whole: u64| (whole > 0).then(|| part as f64 / whole as f64);
         let visible = counts.visible + counts.false_blocked;
         let blocked = counts.blocked + counts.false_visible;
@@ -151,8 +152,8 @@ impl Tiles {
 ///
 /// `truth`, (M), is `None` for targets that are not scored.
 #[must_use]
-pub fn count_by_tile(tiles: &Tiles, truth: &[Option<bool>], answers: &[Answer]) -> Vec<Counts> {
-    let mut counts = vec![Counts::default(); tiles.count];
+pub fn count_by_tile(tiles: &Tiles, truth: &[Option<bool>], answers: &[Answer]) -> Vec<TruthCounts> {
+    let mut counts = vec![TruthCounts::default(); tiles.count];
     for ((&tile, &visible), &answer) in tiles.of_target.iter().zip(truth).zip(answers) {
         if let (Some(visible), Some(counts)) = (visible, counts.get_mut(tile as usize)) {
             counts.add(visible, answer);
@@ -161,12 +162,13 @@ pub fn count_by_tile(tiles: &Tiles, truth: &[Option<bool>], answers: &[Answer]) 
     counts
 }
 
-/// The rate of that view, over all its tiles, below which `share` of the views lie, 0 to 1: 0.1 for the tenth percentile. Views
-/// without the rate are left out; `None` where none has it.
+/// The rate of that view, over all its tiles, below which `share` of the views lie, 0 to 1: 0.1 for the tenth
+/// percentile. Views without the rate are left out; `None` where none has it.
 #[must_use]
-pub fn quantile(views: &[Vec<Counts>], rate: Rate, share: f64) -> Option<f64> {
-    let of_view =
-        |tiles: &Vec<Counts>| rate.of(&tiles.iter().fold(Counts::default(), |total, tile| total.plus(tile, 1)));
+pub fn quantile(views: &[Vec<TruthCounts>], rate: Rate, share: f64) -> Option<f64> {
+    let of_view = |tiles: &Vec<TruthCounts>| {
+        rate.of(&tiles.iter().fold(TruthCounts::default(), |total, tile| total.plus(tile, 1)))
+    };
     let mut rates: Vec<f64> = views.iter().filter_map(of_view).collect();
     rates.sort_by(f64::total_cmp);
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "an index into the list")]
@@ -181,20 +183,21 @@ const RESAMPLES: u64 = 400;
 /// view has the rate.
 ///
 /// Whole tiles are drawn with replacement, the same in every view, because errors come in patches: one wrong ball or
-/// one missing tree spoils all targets around it, and targets resampled one by one would look far more certain than they
-/// are.
+/// one missing tree spoils all targets around it, and targets resampled one by one would look far more certain than
+/// they are.
 ///
 /// # Source
 /// Efron & Tibshirani 1993, chapter 13 (percentile intervals); blocks as in Künsch 1989.
 #[must_use]
-pub fn interval(views: &[Vec<Counts>], rate: Rate, seed: u64) -> Option<Interval> {
+pub fn interval(views: &[Vec<TruthCounts>], rate: Rate, seed: u64) -> Option<Interval> {
     let tile_count = views.iter().map(Vec::len).min()?;
     let mean = |weights: Option<&[u32]>| {
         let rates = views.iter().filter_map(|tiles| {
-            let total = tiles.iter().take(tile_count).enumerate().fold(Counts::default(), |total, (tile, counts)| {
-                let times = weights.map_or(1, |weights| u64::from(weights[tile]));
-                total.plus(counts, times)
-            });
+            let total =
+                tiles.iter().take(tile_count).enumerate().fold(TruthCounts::default(), |total, (tile, counts)| {
+                    let times = weights.map_or(1, |weights| u64::from(weights[tile]));
+                    total.plus(counts, times)
+                });
             rate.of(&total)
         });
         let (sum, count) = rates.fold((0.0, 0_u32), |(sum, count), rate| (sum + rate, count + 1));
@@ -216,8 +219,8 @@ pub fn interval(views: &[Vec<Counts>], rate: Rate, seed: u64) -> Option<Interval
     Some(percentiles(value, resampled))
 }
 
-/// The mean of the rates of several places, with its 95 % interval. Places are drawn with replacement: they differ more than
-/// the tiles of one do. A single place keeps its own interval; `None` for none.
+/// The mean of the rates of several places, with its 95 % interval. Places are drawn with replacement: they differ more
+/// than the tiles of one do. A single place keeps its own interval; `None` for none.
 #[must_use]
 pub fn over_places(places: &[Interval], seed: u64) -> Option<Interval> {
     if let [one] = places {
@@ -258,7 +261,7 @@ mod tests {
 
     #[test]
     fn rates_of_a_small_table_are_those_computed_by_hand() {
-        let counts = Counts {
+        let counts = TruthCounts {
             blocked: 30,
             false_visible: 10,
             visible: 45,
@@ -276,8 +279,8 @@ mod tests {
             let [share, of_these] = counts.worth(answer).map(Option::unwrap);
             assert!((share - answered / 90.0).abs() < 1e-12 && (of_these - right / answered).abs() < 1e-12);
         }
-        assert_eq!(Counts::default().worth(Answer::Blocked), [None, None]);
-        let nothing_blocked = Counts { visible: 3, ..Counts::default() };
+        assert_eq!(TruthCounts::default().worth(Answer::Blocked), [None, None]);
+        let nothing_blocked = TruthCounts { visible: 3, ..TruthCounts::default() };
         assert_eq!(Rate::FalseVisible.of(&nothing_blocked), None);
         assert_eq!(Rate::Balanced.of(&nothing_blocked), None);
         assert_eq!(Rate::FalseBlocked.of(&nothing_blocked), Some(0.0));
@@ -285,19 +288,24 @@ mod tests {
 
     #[test]
     fn unproven_is_visible_and_counted_on_its_own() {
-        let mut counts = Counts::default();
+        let mut counts = TruthCounts::default();
         for (truth, answer) in [(true, Answer::Unproven), (false, Answer::Unproven), (true, Answer::Visible)] {
             counts.add(truth, answer);
         }
-        let expected =
-            Counts { visible: 2, false_visible: 1, unproven_visible: 1, unproven_blocked: 1, ..Counts::default() };
+        let expected = TruthCounts {
+            visible: 2,
+            false_visible: 1,
+            unproven_visible: 1,
+            unproven_blocked: 1,
+            ..TruthCounts::default()
+        };
         assert_eq!(counts, expected);
     }
 
     #[test]
     fn the_tenth_percentile_of_twenty_views_is_the_third_lowest() {
         // two of twenty, a tenth, lie below it
-        let view = |blocked: u64| vec![Counts { blocked, false_visible: 20 - blocked, ..Counts::default() }];
+        let view = |blocked: u64| vec![TruthCounts { blocked, false_visible: 20 - blocked, ..TruthCounts::default() }];
         let views: Vec<_> = (1..=20).rev().map(view).collect();
         assert_eq!(quantile(&views, Rate::FalseVisible, 0.1), Some(0.1));
         assert_eq!(quantile(&views, Rate::FalseVisible, 1.0), Some(0.95));
@@ -306,11 +314,12 @@ mod tests {
 
     #[test]
     fn the_interval_of_independent_tiles_is_that_of_the_binomial() {
-        // 400 tiles with one visible target each, of which 100 are called blocked: 0.25 ± 1.96·√(0.25·0.75/400) = ± 0.0424
-        let tile = |i: u64| Counts {
+        // 400 tiles with one visible target each, of which 100 are called blocked: 0.25 ± 1.96·√(0.25·0.75/400) = ±
+        // 0.0424
+        let tile = |i: u64| TruthCounts {
             false_blocked: u64::from(i.is_multiple_of(4)),
             visible: u64::from(!i.is_multiple_of(4)),
-            ..Counts::default()
+            ..TruthCounts::default()
         };
         let views = [(0..400).map(tile).collect::<Vec<_>>()];
         let found = interval(&views, Rate::FalseBlocked, 1).unwrap();
@@ -321,14 +330,14 @@ mod tests {
 
     #[test]
     fn errors_in_one_patch_make_a_wide_interval() {
-        let spread: Vec<Counts> =
-            (0..50).map(|_| Counts { false_blocked: 10, visible: 90, ..Counts::default() }).collect();
-        let patch: Vec<Counts> = (0..50)
+        let spread: Vec<TruthCounts> =
+            (0..50).map(|_| TruthCounts { false_blocked: 10, visible: 90, ..TruthCounts::default() }).collect();
+        let patch: Vec<TruthCounts> = (0..50)
             .map(|i| {
                 if i < 5 {
-                    Counts { false_blocked: 100, ..Counts::default() }
+                    TruthCounts { false_blocked: 100, ..TruthCounts::default() }
                 } else {
-                    Counts { visible: 100, ..Counts::default() }
+                    TruthCounts { visible: 100, ..TruthCounts::default() }
                 }
             })
             .collect();
@@ -343,7 +352,7 @@ mod tests {
         assert_eq!((tiles.of_target.as_slice(), tiles.count), ([0, 0, 1].as_slice(), 2));
         let (v, b) = (Answer::Visible, Answer::Blocked);
         let view = count_by_tile(&tiles, &[Some(true), None, Some(true)], &[b, b, v]);
-        assert_eq!(view[0], Counts { false_blocked: 1, ..Counts::default() });
+        assert_eq!(view[0], TruthCounts { false_blocked: 1, ..TruthCounts::default() });
         let all_blocked = count_by_tile(&tiles, &[Some(false); 3], &[b, b, Answer::OutsideView]);
         let found = interval(&[view.clone(), all_blocked.clone()], Rate::FalseBlocked, 3).unwrap();
         assert!((found.value - 0.5).abs() < 1e-12);

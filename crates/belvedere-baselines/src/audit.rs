@@ -9,7 +9,7 @@ const TILTED: f64 = 30.0 * std::f64::consts::PI / 180.0;
 
 /// What is known in truth of the point a ball is tangent at.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Source<K> {
+pub struct TruePoint<K> {
     /// Kind of surface, such as its material.
     pub kind: K,
     /// Outward unit normal of the exact surface.
@@ -39,26 +39,26 @@ impl Audit {
 
 /// What became of each ball of `balls`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Verdict {
+pub enum BallVerdict {
     /// Its centre lies in a solid or in the ground.
     Right,
     /// Its centre lies in free air.
     Wrong,
 }
 
-/// Holds each ball against the truth: `points`, (N, 3) local metres, are those the balls were made for, `sources`, (N), what
-/// is known of each of them, and `is_inside` tells whether a local position lies in a solid.
+/// Holds each ball against the truth: `points`, (N, 3) local metres, are those the balls were made for, `sources`, (N),
+/// what is known of each of them, and `is_inside` tells whether a local position lies in a solid.
 ///
-/// Returns a verdict for each ball, and the audit of each kind of surface in the order in which kinds occur first. Balls of
-/// points of which nothing is known get a verdict and enter no audit.
+/// Returns a verdict for each ball, and the audit of each kind of surface in the order in which kinds occur first.
+/// Balls of points of which nothing is known get a verdict and enter no audit.
 pub fn audit<K: Copy + PartialEq + Sync>(
     balls: &MedialBalls,
     points: &[[f32; 3]],
-    sources: &[Option<Source<K>>],
+    sources: &[Option<TruePoint<K>>],
     is_inside: impl Fn([f32; 3]) -> bool + Sync,
-) -> (Vec<Verdict>, Vec<(K, Audit)>) {
-    let verdict = |center: &[f32; 3]| if is_inside(*center) { Verdict::Right } else { Verdict::Wrong };
-    let verdicts: Vec<Verdict> = balls.centers.par_iter().map(verdict).collect();
+) -> (Vec<BallVerdict>, Vec<(K, Audit)>) {
+    let verdict = |center: &[f32; 3]| if is_inside(*center) { BallVerdict::Right } else { BallVerdict::Wrong };
+    let verdicts: Vec<BallVerdict> = balls.centers.par_iter().map(verdict).collect();
     let mut audits: Vec<(K, Audit)> = Vec::new();
     for (row, &verdict) in verdicts.iter().enumerate() {
         let Some(Some(source)) = sources.get(balls.source[row] as usize) else { continue };
@@ -68,7 +68,7 @@ pub fn audit<K: Copy + PartialEq + Sync>(
         });
         let audit = &mut audits[at].1;
         audit.count += 1;
-        if verdict == Verdict::Right {
+        if verdict == BallVerdict::Right {
             continue;
         }
         audit.wrong += 1;
@@ -87,7 +87,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn balls_of_a_slab_are_told_apart_by_what_is_wrong_with_them() {
+    fn balls_of_a_slab_are_separated_by_what_is_wrong_with_them() {
         // solid below z = 0; balls of radius 1 at points of its surface, by the normals they were made with
         let tilt = 60f32.to_radians();
         let normals = [[0.0, 0.0, 1.0], [0.0, 0.0, -1.0], [tilt.sin(), 0.0, tilt.cos()], [0.0, 0.0, 1.0_f32]];
@@ -100,11 +100,11 @@ mod tests {
             separation_angles: vec![1.0; 4],
         };
         let up = [0.0, 0.0, 1.0];
-        let mut sources = vec![Some(Source { kind: 'a', normal: up }); 4];
-        sources[3] = Some(Source { kind: 'b', normal: up });
+        let mut sources = vec![Some(TruePoint { kind: 'a', normal: up }); 4];
+        sources[3] = Some(TruePoint { kind: 'b', normal: up });
         // the ball of the third point reaches z = −0.3: where the solid begins only at −0.4, it stands in the air
         let (verdicts, audits) = audit(&balls, &points, &sources, |p| p[2] < -0.4);
-        let (right, wrong) = (Verdict::Right, Verdict::Wrong);
+        let (right, wrong) = (BallVerdict::Right, BallVerdict::Wrong);
         assert_eq!(verdicts, [right, wrong, wrong, wrong]);
         assert_eq!(audits[0], ('a', Audit { count: 3, wrong: 2, flipped: 1, tilted: 1 }));
         assert_eq!(audits[1], ('b', Audit { count: 1, wrong: 1, flipped: 0, tilted: 0 }));

@@ -17,43 +17,45 @@ pub use fill::GapFill;
 
 /// How the surface runs between the middles of the cells.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Relief {
+pub enum DsmSurface {
     /// Each cell is a column with a flat top.
     Columns,
-    /// The height is interpolated bilinearly between the middles of four cells, as GDAL, GRASS and WhiteboxTools do along
-    /// lines of sight.
+    /// The height is interpolated bilinearly between the middles of four cells, as GDAL, GRASS and WhiteboxTools do
+    /// along lines of sight.
     Bilinear,
 }
 
 /// How a [`Dsm`] is made and traced.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DsmParams {
-    /// Side of a cell, metres, above 0. Default 0.25: half of what GIS users take, but on a simulated town of 11 points/m² (seed 7,
-    /// not one that is reported) it is right for 94.5 % of sunlit and shaded pedestrian points where 0.5 m is for 92.9 %, and for
-    /// 94.6 instead of 91.1 % on facades (balanced). Gaps, filled from below, keep streets open.
+    /// Side of a cell, metres, above 0. Default 0.25: half of what GIS users take, but on a simulated town of 11
+    /// points/m² (seed 7, not one that is reported) it is right for 94.5 % of sunlit and shaded pedestrian points where
+    /// 0.5 m is for 92.9 %, and for 94.6 instead of 91.1 % on facades (balanced). Gaps, filled from below, keep streets
+    /// open.
     pub cell: f64,
-    /// How cells without points get a height. Default from below, which the same town found as good as the mean, and better on
-    /// facades by half a percent.
+    /// How cells without points get a height. Default from below, which the same town found as good as the mean, and
+    /// better on facades by half a percent.
     pub gap_fill: GapFill,
-    /// How the surface runs between the cells. Default columns: in the same town 0.6 % better for pedestrians and 4 % on roofs,
-    /// and an eye in a street sees out of its column, whereas bilinear slopes bury it.
-    pub relief: Relief,
-    /// The surface blocks only farther than this from the target, metres, 0 or more. Columns that hold the target or the eye
-    /// never block whatever the clearance, since the tools take the heights of both as given. Default 1: of 0.25 to 2 in the same town, where roofs and facades
-    /// (0.1 m off the surface) are wrong least often together.
+    /// How the surface runs between the cells. Default columns: in the same town 0.6 % better for pedestrians and 4 %
+    /// on roofs, and an eye in a street sees out of its column, whereas bilinear slopes bury it.
+    pub relief: DsmSurface,
+    /// The surface blocks only farther than this from the target, metres, 0 or more. Columns that hold the target or
+    /// the eye never block whatever the clearance, since the tools take the heights of both as given. Default 1: of
+    /// 0.25 to 2 in the same town, where roofs and facades (0.1 m off the surface) are wrong least often together.
     pub clearance: f64,
 }
 
 impl Default for DsmParams {
     fn default() -> Self {
-        Self { cell: 0.25, gap_fill: GapFill::Lowest, relief: Relief::Columns, clearance: 1.0 }
+        Self { cell: 0.25, gap_fill: GapFill::Lowest, relief: DsmSurface::Columns, clearance: 1.0 }
     }
 }
 
 /// A height field that blocks all below it.
 ///
-/// A target under the surface (below a crown, a deck or an eave) is in the solid, hence blocked unless it leaves it within
-/// the clearance, or among columns the one it is in. An eye under the surface sees nothing, but for what is as near.
+/// A target under the surface (below a crown, a deck or an eave) is in the solid, hence blocked unless it leaves it
+/// within the clearance, or among columns the one it is in. An eye under the surface sees nothing, but for what is as
+/// near.
 pub struct Dsm {
     grid: HeightGrid,
     params: DsmParams,
@@ -83,8 +85,8 @@ impl Dsm {
         Self::from_heights(corner, width, heights, params)
     }
 
-    /// The highest surface of `mesh`, metres of its reference system, at the middle of each cell, for local positions relative
-    /// to `origin`: what a perfect survey could give a raster, and so an upper bound.
+    /// The highest surface of `mesh`, metres of its reference system, at the middle of each cell, for local positions
+    /// relative to `origin`: what a perfect survey could give a raster, and so an upper bound.
     ///
     /// # Errors
     /// As [`Dsm::from_points`].
@@ -115,8 +117,8 @@ impl Dsm {
         Ok(Self { grid: HeightGrid::new(raster, corner, params.cell, params.relief), params: *params })
     }
 
-    /// Heights, local metres, gaps filled; row 0 is the southernmost, NaN where no height could be found. The lower left corner
-    /// of the first cell is at [`Dsm::corner`].
+    /// Heights, local metres, gaps filled; row 0 is the southernmost, NaN where no height could be found. The lower
+    /// left corner of the first cell is at [`Dsm::corner`].
     #[must_use]
     pub fn heights(&self) -> &Raster<f32> {
         self.grid.heights()

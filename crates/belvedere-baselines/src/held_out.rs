@@ -1,9 +1,10 @@
 //! A truth that every airborne cloud carries: pulses that were left out when the model was built.
 //!
-//! The way of a pulse to its first return is free, and what lies just behind its last return is not
-//! seen from the scanner. Behind trees, fences and wires that is less certain than behind ground and buildings: a part of the beam may pass beside them, too weak for
-//! another return. Pulses that a method never saw therefore tell how often it blocks what is free and sees through
-//! what is solid. Neighbouring pulses that it did see lie close by: the test says nothing of space that no pulse reached.
+//! The way of a pulse to its first return is free, and what lies just behind its last return is not seen from the
+//! scanner. Behind trees, fences and wires that is less certain than behind ground and buildings: a part of the beam
+//! may pass beside them, too weak for another return. Pulses that a method never saw therefore tell how often it blocks
+//! what is free and sees through what is solid. Neighbouring pulses that it did see lie close by: the test says nothing
+//! of space that no pulse reached.
 
 use belvedere::pulses::{Pulses, SensorPositions};
 use belvedere::query::{Answer, UnprovenAs, Viewer, Visibility};
@@ -34,7 +35,7 @@ impl Default for HeldOutParams {
 
 /// What a pulse met.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Surface {
+pub enum MetSurface {
     /// Ground or water, class 2 or 9.
     Ground,
     /// Building, class 6.
@@ -51,7 +52,7 @@ pub struct HeldOutPairs {
     /// Local metres, (M, 3).
     pub eyes: Vec<[f32; 3]>,
     /// What the pulse met at the return that the target lies at, (M).
-    pub surfaces: Vec<Surface>,
+    pub surfaces: Vec<MetSurface>,
 }
 
 /// A cloud without some of its pulses, and what those pulses know.
@@ -69,7 +70,7 @@ pub struct HeldOut {
 
 /// How many answers of a kind were wrong.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Tally {
+pub struct ErrorTally {
     /// Wrong answers.
     pub wrong_count: usize,
     /// Answers, right and wrong.
@@ -82,13 +83,13 @@ pub struct Tally {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct HeldOutScore {
     /// Free paths called blocked.
-    pub false_blocked: Tally,
+    pub false_blocked: ErrorTally,
     /// Those to ground or water.
-    pub false_blocked_ground: Tally,
+    pub false_blocked_ground: ErrorTally,
     /// Those to buildings.
-    pub false_blocked_building: Tally,
+    pub false_blocked_building: ErrorTally,
     /// Those to anything else.
-    pub false_blocked_other: Tally,
+    pub false_blocked_other: ErrorTally,
     /// Places behind last returns called visible, by depth.
     pub false_visible: Vec<FalseVisible>,
 }
@@ -99,14 +100,14 @@ pub struct FalseVisible {
     /// How far behind, metres.
     pub depth: f64,
     /// Behind ground or water.
-    pub ground: Tally,
+    pub ground: ErrorTally,
     /// Behind buildings.
-    pub building: Tally,
+    pub building: ErrorTally,
     /// Behind anything else, mostly trees.
-    pub other: Tally,
+    pub other: ErrorTally,
 }
 
-impl Tally {
+impl ErrorTally {
     /// Wrong answers as a share of all answers, 0 to 1; NaN without any.
     #[must_use]
     pub fn share(&self) -> f64 {
@@ -125,18 +126,19 @@ impl Tally {
 }
 
 impl HeldOutPairs {
-    fn push(&mut self, target: [f64; 3], eye: [f64; 3], surface: Surface) {
+    fn push(&mut self, target: [f64; 3], eye: [f64; 3], surface: MetSurface) {
         self.targets.push(belvedere::cloud::to_local(target, [0.0; 3]));
         self.eyes.push(belvedere::cloud::to_local(eye, [0.0; 3]));
         self.surfaces.push(surface);
     }
 }
 
-/// Holds out a random share of `pulses` with all their returns, and asks with those whose position in `scanner` is known.
+/// Holds out a random share of `pulses` with all their returns, and asks with those whose position in `scanner` is
+/// known.
 ///
-/// Which pulses are held out depends on the seed and their order alone. A pulse whose first return is missing asks nothing
-/// of the way to it, one whose last return is missing nothing of what is behind. A free path ends at the scanner if that is
-/// nearer than [`HeldOutParams::path_length`].
+/// Which pulses are held out depends on the seed and their order alone. A pulse whose first return is missing asks
+/// nothing of the way to it, one whose last return is missing nothing of what is behind. A free path ends at the
+/// scanner if that is nearer than [`HeldOutParams::path_length`].
 ///
 /// # Errors
 /// [`Error::InvalidParameter`] for a parameter outside its range, [`Error::LengthMismatch`] where `scanner` is of other
@@ -210,27 +212,27 @@ pub fn split(
 /// How `method`, built from [`HeldOut::kept`] alone, answers what the pulses held out know.
 ///
 /// # Errors
-/// What the method returns; those that know no [`Viewer::Each`] fail with [`Error::UnsupportedViewer`], those that answer
-/// for points of their own only with [`Error::UnsupportedTargets`].
+/// What the method returns; those that know no [`Viewer::Each`] fail with [`Error::UnsupportedViewer`], those that
+/// answer for points of their own only with [`Error::UnsupportedTargets`].
 pub fn score(method: &dyn Visibility, held_out: &HeldOut) -> Result<HeldOutScore> {
     let mut score = HeldOutScore::default();
     for (answer, surface) in answers(method, &held_out.free)? {
         score.false_blocked.count(answer, Answer::Blocked);
         let of_surface = match surface {
-            Surface::Ground => &mut score.false_blocked_ground,
-            Surface::Building => &mut score.false_blocked_building,
-            Surface::Other => &mut score.false_blocked_other,
+            MetSurface::Ground => &mut score.false_blocked_ground,
+            MetSurface::Building => &mut score.false_blocked_building,
+            MetSurface::Other => &mut score.false_blocked_other,
         };
         of_surface.count(answer, Answer::Blocked);
     }
     for (depth, pairs) in &held_out.behind {
-        let [ground, building, other] = [Tally::default(); 3];
+        let [ground, building, other] = [ErrorTally::default(); 3];
         let mut at_depth = FalseVisible { depth: *depth, ground, building, other };
         for (answer, surface) in answers(method, pairs)? {
             match surface {
-                Surface::Ground => at_depth.ground.count(answer, Answer::Visible),
-                Surface::Building => at_depth.building.count(answer, Answer::Visible),
-                Surface::Other => at_depth.other.count(answer, Answer::Visible),
+                MetSurface::Ground => at_depth.ground.count(answer, Answer::Visible),
+                MetSurface::Building => at_depth.building.count(answer, Answer::Visible),
+                MetSurface::Other => at_depth.other.count(answer, Answer::Visible),
             }
         }
         score.false_visible.push(at_depth);
@@ -241,16 +243,16 @@ pub fn score(method: &dyn Visibility, held_out: &HeldOut) -> Result<HeldOutScore
 fn answers<'a>(
     method: &dyn Visibility,
     pairs: &'a HeldOutPairs,
-) -> Result<impl Iterator<Item = (Answer, Surface)> + use<'a>> {
+) -> Result<impl Iterator<Item = (Answer, MetSurface)> + use<'a>> {
     let answers = method.visible(Viewer::Each(&pairs.eyes), &pairs.targets)?;
     Ok(answers.into_iter().zip(pairs.surfaces.iter().copied()))
 }
 
-fn surface(cloud: &PointCloud, row: u32) -> Surface {
+fn surface(cloud: &PointCloud, row: u32) -> MetSurface {
     match cloud.attributes.classification.as_deref().and_then(|classes| classes.get(row as usize)) {
-        Some(2 | 9) => Surface::Ground,
-        Some(6) => Surface::Building,
-        _ => Surface::Other,
+        Some(2 | 9) => MetSurface::Ground,
+        Some(6) => MetSurface::Building,
+        _ => MetSurface::Other,
     }
 }
 

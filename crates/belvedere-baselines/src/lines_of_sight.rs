@@ -8,11 +8,11 @@ use rayon::prelude::*;
 /// Least targets handed to a thread at once: enough to make handing over cheap, few enough to share slow ones out.
 const CHUNK: usize = 256;
 
-/// Answers targets by one ray each, from `clearance` metres before the target to the viewer; `blocks` says whether anything
-/// lies within the ranges of a ray, which count from the target.
+/// Answers targets by one ray each, from `clearance` metres before the target to the viewer; `blocks` says whether
+/// anything lies within the ranges of a ray, which count from the target.
 ///
-/// A target that is not finite, or is the eye itself, gets [`Answer::OutsideView`]. One nearer to its eye than the clearance
-/// is visible.
+/// A target that is not finite, or is the eye itself, gets [`Answer::OutsideView`]. One nearer to its eye than the
+/// clearance is visible.
 ///
 /// # Errors
 /// [`Error::InvalidParameter`] for a viewer that is not finite.
@@ -37,9 +37,9 @@ pub(crate) fn sight<'a>(
     }))
 }
 
-/// Checks that a parameter is finite and at least `least`.
-pub(crate) fn check_least(name: &'static str, value: f64, least: f64, expected: &'static str) -> Result<()> {
-    if value.is_finite() && value >= least {
+/// Checks that a parameter is finite and at least `min`.
+pub(crate) fn check_min(name: &'static str, value: f64, min: f64, expected: &'static str) -> Result<()> {
+    if value.is_finite() && value >= min {
         return Ok(());
     }
     Err(Error::InvalidParameter {
@@ -51,12 +51,12 @@ pub(crate) fn check_least(name: &'static str, value: f64, least: f64, expected: 
 
 /// Checks that a parameter is finite and above zero.
 pub(crate) fn check_positive(name: &'static str, value: f64) -> Result<()> {
-    check_least(name, value, f64::MIN_POSITIVE, "finite and above zero")
+    check_min(name, value, f64::MIN_POSITIVE, "finite and above zero")
 }
 
 /// Checks that a clearance is finite and not negative.
 pub(crate) fn check_clearance(value: f64) -> Result<()> {
-    check_least("clearance", value, 0.0, "finite and not negative, metres")
+    check_min("clearance", value, 0.0, "finite and not negative, metres")
 }
 
 /// A corner of a box in f32, rounded away from the inside: `outward` is −1 for the lowest corner and 1 for the highest.

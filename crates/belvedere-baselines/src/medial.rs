@@ -1,6 +1,6 @@
 //! The paper's method as published and its relatives: unions of medial balls that nothing but the points has shrunk.
 
-use crate::Survey;
+use crate::MethodInput;
 use belvedere::Bounds;
 use belvedere::clean::CleanParams;
 use belvedere::control::Control;
@@ -18,8 +18,8 @@ const PIXEL_SIZE: f64 = 0.25;
 
 /// How far a target may lie inside a ball and still count as visible where spheres are cut exactly, metres.
 ///
-/// Balls stand out over noisy surfaces by about a decimetre, and sight lines meet surfaces at a slant. It is the bias that
-/// `notes` on comparable scenes used for every point-based method; splats and voxels here have the same allowance.
+/// Balls stand out over noisy surfaces by about a decimetre, and sight lines meet surfaces at a slant. It is the bias
+/// that `notes` on comparable scenes used for every point-based method; splats and voxels here have the same allowance.
 pub const DEPTH_BIAS: f64 = 0.25;
 
 /// Which balls are made, and how they hide targets.
@@ -45,8 +45,8 @@ pub enum ParallelViews {
 }
 
 impl MedialParams {
-    /// Peters, Ledoux & Biljecki 2015 as published: normals from six neighbours, masbcpp's angles and initial radius, the
-    /// printed Algorithm 1 (a cone) and no bias.
+    /// Peters, Ledoux & Biljecki 2015 as published: normals from six neighbours, masbcpp's angles and initial radius,
+    /// the printed Algorithm 1 (a cone) and no bias.
     #[must_use]
     pub fn published() -> Self {
         Self {
@@ -67,8 +67,8 @@ impl MedialParams {
         }
     }
 
-    /// Jalba, Kustra & Telea 2013: the union of all medial balls of a dense cloud, none left out and none refused. Every ball
-    /// shrinks until it is empty; normals from sixteen neighbours, since the source presumes good ones.
+    /// Jalba, Kustra & Telea 2013: the union of all medial balls of a dense cloud, none left out and none refused.
+    /// Every ball shrinks until it is empty; normals from sixteen neighbours, since the source presumes good ones.
     #[must_use]
     pub fn unfiltered_union() -> Self {
         let method = ShrinkMethod::Angles { first_separation_angle: 0.0, next_separation_angle: 0.0 };
@@ -114,7 +114,7 @@ pub struct MedialBaseline {
 ///
 /// # Errors
 /// Those of [`SceneModel::build`]; an empty cloud is one.
-pub fn scene_model(survey: &Survey<'_>, outward: Outward<'_>, params: &MedialParams) -> Result<SceneModel> {
+pub fn scene_model(survey: &MethodInput<'_>, outward: Outward<'_>, params: &MedialParams) -> Result<SceneModel> {
     let orient = match outward {
         Outward::Model(mesh) => OrientBy::Mesh(mesh.clone()),
         // carving fails without a scanner rather than assume one
@@ -135,7 +135,7 @@ impl MedialBaseline {
     ///
     /// # Errors
     /// As [`scene_model`].
-    pub fn new(survey: &Survey<'_>, outward: Outward<'_>, params: &MedialParams) -> Result<Self> {
+    pub fn new(survey: &MethodInput<'_>, outward: Outward<'_>, params: &MedialParams) -> Result<Self> {
         Self::of_balls(survey, scene_model(survey, outward, params)?.into_parts().balls, params)
     }
 
@@ -155,7 +155,7 @@ impl MedialBaseline {
     ///
     /// # Errors
     /// [`belvedere::Error::NoPoints`] for an empty cloud.
-    pub fn of_balls(survey: &Survey<'_>, balls: MedialBalls, params: &MedialParams) -> Result<Self> {
+    pub fn of_balls(survey: &MethodInput<'_>, balls: MedialBalls, params: &MedialParams) -> Result<Self> {
         let Some(Bounds { low, high }) = survey.cloud.bounds() else {
             return Err(belvedere::Error::NoPoints { what: "a union of balls needs a cloud".to_owned() });
         };

@@ -10,9 +10,9 @@ use belvedere::{Mesh, Result};
 /// How [`MeshRays`] answers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MeshRaysParams {
-    /// A triangle blocks only if it lies farther than this from the target, metres, 0 or more. Default 0.001: targets are
-    /// f32, which is off by 0.1 mm within a kilometre of the origin, and a target computed to lie on a triangle must not be
-    /// hidden by it.
+    /// A triangle blocks only if it lies farther than this from the target, metres, 0 or more. Default 0.001: targets
+    /// are f32, which is off by 0.1 mm within a kilometre of the origin, and a target computed to lie on a triangle
+    /// must not be hidden by it.
     pub clearance: f64,
 }
 

@@ -11,7 +11,7 @@ use crate::shadow_map::{ShadowMap, ShadowMapParams};
 use crate::splatting::{SplatParams, Splats};
 use crate::tin::{Tin, TinParams};
 use crate::voxels::{VoxelParams, Voxels};
-use crate::{Model, Survey};
+use crate::{MethodInput, PlaceModel};
 use belvedere::medial::{CarvedParams, Rule, Trees};
 use belvedere::model::BallParams;
 use belvedere::query::{BlockRule, Visibility};
@@ -88,11 +88,12 @@ impl<'a> Method<'a> {
 /// scanners state.
 const NOISE: f64 = 0.06;
 
-/// How near to a target a mesh may lie without blocking it, metres: points of a cloud lie up to a decimetre behind the surface
-/// that the model gives them.
+/// How near to a target a mesh may lie without blocking it, metres: points of a cloud lie up to a decimetre behind the
+/// surface that the model gives them.
 const MESH_CLEARANCE: f64 = 0.1;
 
-/// Carved balls for surveys in winter, of which targets in the air are asked: crowns are twigs, and nothing gives way to targets.
+/// Carved balls for surveys in winter, of which targets in the air are asked: crowns are twigs, and nothing gives way
+/// to targets.
 fn carved_for_winter() -> MedialParams {
     let carving = CarvedParams::default().with_trees(Trees::Porous);
     let blocking = BlockRule { shell: 0.0, ..BlockRule::carved() };
@@ -109,10 +110,10 @@ fn carved_variants() -> impl Iterator<Item = (String, String, MedialParams)> {
     })
 }
 
-/// The methods that a survey allows, in the order of tables: those that need the cloud alone, then for each model those that
-/// trace it, then Belvedere's own and variants of them.
+/// The methods that a survey allows, in the order of tables: those that need the cloud alone, then for each model those
+/// that trace it, then Belvedere's own and variants of them.
 #[must_use]
-pub fn methods<'a>(survey: &'a Survey<'a>) -> Vec<Method<'a>> {
+pub fn methods<'a>(survey: &'a MethodInput<'a>) -> Vec<Method<'a>> {
     let (cloud, positions, origin) = (survey.cloud, &survey.cloud.positions, survey.cloud.frame.origin);
     let medial = |key: &str, title: &str, params: MedialParams| {
         Method::new(key, title, "medial-balls", move || MedialBaseline::new(survey, Outward::Survey, &params))
@@ -157,14 +158,14 @@ pub fn methods<'a>(survey: &'a Survey<'a>) -> Vec<Method<'a>> {
         Method::new("tin", "first-return TIN", "tin", move || Tin::new(cloud, &TinParams::default())),
     ];
     // as the paper did it: signs of normals from a city model
-    methods.extend(survey.models.first().map(|Model { name, mesh }| {
+    methods.extend(survey.models.first().map(|PlaceModel { name, mesh }| {
         let (key, title) = (format!("paper-cone-{name}"), format!("paper as published, signs by {name}"));
         Method::new(key, title, "medial-balls", move || {
             MedialBaseline::new(survey, Outward::Model(mesh), &MedialParams::published())
         })
     }));
     let on_mesh = MeshRaysParams { clearance: MESH_CLEARANCE };
-    for Model { name, mesh } in survey.models {
+    for PlaceModel { name, mesh } in survey.models {
         methods.push(Method::new(format!("mesh-{name}"), format!("rays on {name}"), "mesh-rays", move || {
             MeshRays::new(mesh, origin, &on_mesh)
         }));
@@ -187,8 +188,8 @@ pub fn methods<'a>(survey: &'a Survey<'a>) -> Vec<Method<'a>> {
 #[must_use]
 pub fn method_keys(models: &[&str]) -> Vec<String> {
     let cloud = PointCloud::default();
-    let model = |name: &&str| Model { name: (*name).to_owned(), mesh: Mesh::default() };
-    let models: Vec<Model> = models.iter().map(model).collect();
-    let survey = Survey { cloud: &cloud, scanner: &[], models: &models };
+    let model = |name: &&str| PlaceModel { name: (*name).to_owned(), mesh: Mesh::default() };
+    let models: Vec<PlaceModel> = models.iter().map(model).collect();
+    let survey = MethodInput { cloud: &cloud, scanner: &[], models: &models };
     methods(&survey).into_iter().map(|method| method.key).collect()
 }

@@ -7,8 +7,8 @@ use rayon::prelude::*;
 /// Points handed to a thread at once; their searches share the cache.
 const CHUNK: usize = 1024;
 
-/// Runs `describe` with the `k` nearest points of each point (their indices, itself first, and the distance to the last, metres)
-/// and returns what it gives, in the order of `positions`.
+/// Runs `describe` with the `k` nearest points of each point (their indices, itself first, and the distance to the
+/// last, metres) and returns what it gives, in the order of `positions`.
 pub(crate) fn for_neighborhoods<T: Send + Clone + Default>(
     positions: &[[f32; 3]],
     index: &NeighborIndex,
@@ -34,8 +34,8 @@ pub(crate) fn for_neighborhoods<T: Send + Clone + Default>(
     values
 }
 
-/// Distance of each point to its `k`-th nearest neighbour, (N), metres, but no more than `cap` times the median of those above
-/// zero: a point that stands alone would otherwise count for a wide surface.
+/// Distance of each point to its `k`-th nearest neighbour, (N), metres, but no more than `cap` times the median of
+/// those above zero: a point that stands alone would otherwise count for a wide surface.
 pub(crate) fn capped_spacing(positions: &[[f32; 3]], index: &NeighborIndex, k: usize, cap: f64) -> Vec<f32> {
     let mut spacing = for_neighborhoods(positions, index, k, |_, _, farthest| farthest);
     // duplicates have no spacing to tell
@@ -46,8 +46,8 @@ pub(crate) fn capped_spacing(positions: &[[f32; 3]], index: &NeighborIndex, k: u
     }
     let median = *sorted.select_nth_unstable_by(middle, f32::total_cmp).1;
     #[expect(clippy::cast_possible_truncation, reason = "saturates: no cap")]
-    let most = (f64::from(median) * cap) as f32;
-    spacing.iter_mut().for_each(|distance| *distance = distance.min(most));
+    let max = (f64::from(median) * cap) as f32;
+    spacing.iter_mut().for_each(|distance| *distance = distance.min(max));
     spacing
 }
 

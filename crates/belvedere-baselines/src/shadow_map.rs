@@ -1,6 +1,6 @@
 //! Shadow maps of a model: the depth of the first triangle per pixel, looked up instead of traced.
 
-use crate::lines_of_sight::{check_clearance, check_least, check_positive};
+use crate::lines_of_sight::{check_clearance, check_min, check_positive};
 use crate::mesh_rays::{MeshRays, MeshRaysParams};
 use belvedere::query::{Answer, Sight, Viewer, Visibility};
 use belvedere::ray_index::Ray;
@@ -12,20 +12,22 @@ use rayon::prelude::*;
 /// How a [`ShadowMap`] is drawn and looked up.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShadowMapParams {
-    /// Side of a pixel of a parallel view, metres, above 0. Default 0.25: half the spacing of airborne scans, as the depth
-    /// maps of medial balls have it.
+    /// Side of a pixel of a parallel view, metres, above 0. Default 0.25: half the spacing of airborne scans, as the
+    /// depth maps of medial balls have it.
     pub pixel_size: f64,
     /// Pixels along each side of the six faces around an eye, 1 to 16 384. Default 1024: 0.15 m at a range of 100 m.
     pub face_px: usize,
-    /// Constant depth bias: how far behind the depth of its pixel a target may lie and still be visible, metres, 0 or more.
-    /// Default 0.05: with the slope bias, any value to 0.1 does as well on a simulated town (seed 7, not one that is reported).
+    /// Constant depth bias: how far behind the depth of its pixel a target may lie and still be visible, metres, 0 or
+    /// more. Default 0.05: with the slope bias, any value to 0.1 does as well on a simulated town (seed 7, not one that
+    /// is reported).
     pub depth_bias: f64,
-    /// Slope-scaled depth bias, 0 or more: this many pixels along the surface drawn in a pixel, seen as depth, are added to
-    /// the bias. Default 0.71, half the diagonal of a pixel: just what a flat surface needs in order not to shade itself,
-    /// because the target may lie in a corner of the pixel and the depth is that of its middle. Without it, 5 instead of 1.5 % of that town's sunlit roof points are dark.
+    /// Slope-scaled depth bias, 0 or more: this many pixels along the surface drawn in a pixel, seen as depth, are
+    /// added to the bias. Default 0.71, half the diagonal of a pixel: just what a flat surface needs in order not to
+    /// shade itself, because the target may lie in a corner of the pixel and the depth is that of its middle. Without
+    /// it, 5 instead of 1.5 % of that town's sunlit roof points are dark.
     pub slope_bias: f64,
-    /// Most that `slope_bias` adds, metres, 0 or more. Default 0.5: a wall seen edge-on would otherwise reveal all behind it; 1 misses
-    /// half a percent more of the roofs an observer cannot see.
+    /// Most that `slope_bias` adds, metres, 0 or more. Default 0.5: a wall seen edge-on would otherwise reveal all
+    /// behind it; 1 misses half a percent more of the roofs an observer cannot see.
     pub max_slope_bias: f64,
 }
 
@@ -37,8 +39,8 @@ impl Default for ShadowMapParams {
 
 /// A model of which depth maps are drawn.
 ///
-/// A target beside the picture of a parallel view is visible, since the picture holds the whole model. An eye inside a solid
-/// sees its inside.
+/// A target beside the picture of a parallel view is visible, since the picture holds the whole model. An eye inside a
+/// solid sees its inside.
 pub struct ShadowMap {
     mesh: MeshRays,
     params: ShadowMapParams,
@@ -52,8 +54,8 @@ impl ShadowMap {
     pub fn new(mesh: &Mesh, origin: [f64; 3], params: &ShadowMapParams) -> Result<Self> {
         check_positive("pixel size", params.pixel_size)?;
         check_clearance(params.depth_bias)?;
-        check_least("slope bias", params.slope_bias, 0.0, "finite and not negative")?;
-        check_least("maximum slope bias", params.max_slope_bias, 0.0, "finite and not negative, metres")?;
+        check_min("slope bias", params.slope_bias, 0.0, "finite and not negative")?;
+        check_min("maximum slope bias", params.max_slope_bias, 0.0, "finite and not negative, metres")?;
         if !(1..=16_384).contains(&params.face_px) {
             return Err(Error::InvalidParameter {
                 parameter: Parameter::MethodSetting,
@@ -64,14 +66,15 @@ impl ShadowMap {
         Ok(Self { mesh: MeshRays::new(mesh, origin, &MeshRaysParams::default())?, params: *params })
     }
 
-    /// Depth beyond which the pixel of `ray` is dark: where the ray meets the first triangle, as depth along `forward`, plus
-    /// the bias of a pixel that is `footprint` metres wide per metre of depth or, for `Footprint::Metres`, everywhere.
-    fn dark_beyond(&self, ray: &Ray, forward: [f64; 3], footprint: Footprint) -> f64 {
+    /// Depth beyond which the pixel of `ray` is dark: where the ray meets the first triangle, as depth along `forward`,
+    /// plus the bias of a pixel that is `footprint` metres wide per metre of depth or, for `PixelWidth::Metres`,
+    /// everywhere.
+    fn dark_beyond(&self, ray: &Ray, forward: [f64; 3], footprint: PixelWidth) -> f64 {
         let Some((range, [a, b, c])) = self.mesh.first(ray) else { return f64::INFINITY };
         let depth = range * dot(ray.direction, forward);
         let width = match footprint {
-            Footprint::Metres(width) => width,
-            Footprint::PerMetre(width) => width * depth,
+            PixelWidth::Metres(width) => width,
+            PixelWidth::PerMetre(width) => width * depth,
         };
         let steepness = unit(cross(sub(b, a), sub(c, a))).map_or(f64::INFINITY, |normal| {
             let cosine = dot(normal, forward).abs();
@@ -96,7 +99,7 @@ impl ShadowMap {
                 let origin = frame.local_from_view([middle(column), middle(row), 0.0]);
                 // the plane of the picture touches the model: rounding must not put the model before it
                 let Some(ray) = Ray::new(origin, frame.forward, [-1.0, f64::INFINITY]) else { continue };
-                *depth = self.dark_beyond(&ray, frame.forward, Footprint::Metres(self.params.pixel_size));
+                *depth = self.dark_beyond(&ray, frame.forward, PixelWidth::Metres(self.params.pixel_size));
             }
         });
         Ok(Box::new(move |targets| {
@@ -128,7 +131,7 @@ impl ShadowMap {
                     continue;
                 };
                 let forward = face_direction(face, 0.0, 0.0);
-                *depth = self.dark_beyond(&ray, forward, Footprint::PerMetre(2.0 / size as f64));
+                *depth = self.dark_beyond(&ray, forward, PixelWidth::PerMetre(2.0 / size as f64));
             }
         });
         Box::new(move |targets| {
@@ -165,7 +168,7 @@ const CHUNK: usize = 16_384;
 
 /// Width of a pixel.
 #[derive(Clone, Copy)]
-enum Footprint {
+enum PixelWidth {
     Metres(f64),
     /// Metres per metre of depth.
     PerMetre(f64),
@@ -181,8 +184,8 @@ fn pixel_at(coordinate: f64) -> Option<usize> {
     (coordinate >= 0.0).then_some(coordinate as usize)
 }
 
-/// Direction through a face of the cube around an eye: faces 0 to 5 look along +x, −x, +y, −y, +z, −z; `x` and `y` run from
-/// −1 to 1 along the two other axes in cyclic order.
+/// Direction through a face of the cube around an eye: faces 0 to 5 look along +x, −x, +y, −y, +z, −z; `x` and `y` run
+/// from −1 to 1 along the two other axes in cyclic order.
 fn face_direction(face: usize, x: f64, y: f64) -> [f64; 3] {
     let axis = face / 2;
     let mut direction = [0.0; 3];
@@ -192,7 +195,8 @@ fn face_direction(face: usize, x: f64, y: f64) -> [f64; 3] {
     direction
 }
 
-/// Face, coordinates within it and depth of a position relative to the eye; `None` at the eye and where it is not finite.
+/// Face, coordinates within it and depth of a position relative to the eye; `None` at the eye and where it is not
+/// finite.
 fn face_of(position: [f64; 3]) -> Option<(usize, f64, f64, f64)> {
     let longer = |a: usize, b: usize| if position[b].abs() > position[a].abs() { b } else { a };
     let axis = longer(longer(0, 1), 2);

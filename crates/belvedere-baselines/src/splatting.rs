@@ -2,12 +2,12 @@
 
 mod splats;
 
-use crate::lines_of_sight::{check_clearance, check_least, check_positive, sight};
+use crate::lines_of_sight::{check_clearance, check_min, check_positive, sight};
 use crate::sampling::check_neighbor;
 use belvedere::query::{Sight, Viewer, Visibility};
 use belvedere::ray_index::{Ray, RayIndex};
 use belvedere::{PointCloud, Result};
-use splats::Splat;
+use splats::SurfaceSplat;
 
 /// What a point is drawn as.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,24 +23,25 @@ pub enum SplatShape {
 /// How splats are made and what they block.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SplatParams {
-    /// Neighbours whose principal components give the tangent plane, 3 to 256. Default 16; 8 and 12 do as well in the same town.
+    /// Neighbours whose principal components give the tangent plane, 3 to 256. Default 16; 8 and 12 do as well in the
+    /// same town.
     pub normal_neighbors: usize,
     /// Which neighbour's distance the radius is a multiple of, 1 to 256. Default 6.
     pub radius_neighbor: usize,
-    /// Radius as a multiple of that distance, above 0. Default 0.6, for sprites 0.4: of 0.3 to 1.2 on a simulated town of
-    /// 11 points/m² (seed 7, not one that is reported) where misses and false shadows balance. Pedestrian points are right 98.7 %
-    /// of the time; at 1, which others report, 97.2 %, and facades 93.6 instead of 87.1 %.
+    /// Radius as a multiple of that distance, above 0. Default 0.6, for sprites 0.4: of 0.3 to 1.2 on a simulated town
+    /// of 11 points/m² (seed 7, not one that is reported) where misses and false shadows balance. Pedestrian points are
+    /// right 98.7 % of the time; at 1, which others report, 97.2 %, and facades 93.6 instead of 87.1 %.
     pub radius_scale: f64,
-    /// Greatest radius as a multiple of the median radius, 1 or more: isolated points are no wide surfaces. Default 4: at 2,
-    /// the sparse walls of the same town leak (facade misses 10 instead of 4 %); 8 changes nothing.
+    /// Greatest radius as a multiple of the median radius, 1 or more: isolated points are no wide surfaces. Default 4:
+    /// at 2, the sparse walls of the same town leak (facade misses 10 instead of 4 %); 8 changes nothing.
     pub max_radius_in_medians: f64,
     /// Shape of a splat.
     pub shape: SplatShape,
     /// Most that one axis of an ellipse is longer than the other, 1 or more. Default 3.
     pub max_aspect: f64,
-    /// A splat blocks only farther than this from the target, metres, 0 or more. This is the depth offset ε of the visibility
-    /// pass of two-pass blending: what lies within it behind the first splat still counts as the same surface. Default 0.5,
-    /// for sprites 1: of 0.1 to 1 in the same town, best on roofs and facades together.
+    /// A splat blocks only farther than this from the target, metres, 0 or more. This is the depth offset ε of the
+    /// visibility pass of two-pass blending: what lies within it behind the first splat still counts as the same
+    /// surface. Default 0.5, for sprites 1: of 0.1 to 1 in the same town, best on roofs and facades together.
     pub clearance: f64,
 }
 
@@ -91,11 +92,11 @@ impl Default for SplatParams {
 
 /// Splats that block lines of sight from both sides, traced exactly instead of rasterised.
 ///
-/// A point whose neighbours determine no plane is drawn as [`SplatShape::Facing`]. Splats enclose nothing: an eye inside a house
-/// sees as far as the next splat.
+/// A point whose neighbours determine no plane is drawn as [`SplatShape::Facing`]. Splats enclose nothing: an eye
+/// inside a house sees as far as the next splat.
 pub struct Splats {
     /// In the order of the index.
-    splats: Vec<Splat>,
+    splats: Vec<SurfaceSplat>,
     index: RayIndex,
     params: SplatParams,
 }
@@ -104,16 +105,16 @@ impl Splats {
     /// Makes a splat of each point of `cloud`.
     ///
     /// # Errors
-    /// [`Error::InvalidParameter`](belvedere::Error::InvalidParameter) for a parameter out of its range or a position that is
-    /// not finite.
+    /// [`Error::InvalidParameter`](belvedere::Error::InvalidParameter) for a parameter out of its range or a position
+    /// that is not finite.
     pub fn new(cloud: &PointCloud, params: &SplatParams) -> Result<Self> {
         check_neighbor("neighbour that gives the radius", params.radius_neighbor)?;
         check_positive("radius of a splat as a multiple of its spacing", params.radius_scale)?;
-        check_least("maximum radius in medians", params.max_radius_in_medians, 1.0, "finite and at least 1")?;
-        check_least("maximum aspect ratio of a splat", params.max_aspect, 1.0, "finite and at least 1")?;
+        check_min("maximum radius in medians", params.max_radius_in_medians, 1.0, "finite and at least 1")?;
+        check_min("maximum aspect ratio of a splat", params.max_aspect, 1.0, "finite and at least 1")?;
         check_clearance(params.clearance)?;
         let splats = splats::make(&cloud.positions, params)?;
-        let boxes: Vec<_> = splats.iter().map(Splat::bounding_box).collect();
+        let boxes: Vec<_> = splats.iter().map(SurfaceSplat::bounding_box).collect();
         let index = RayIndex::new(&boxes)?;
         let splats = index.order().iter().map(|&i| splats[i as usize]).collect();
         Ok(Self { splats, index, params: *params })
@@ -126,11 +127,11 @@ impl Splats {
         self.index.any(ray, |row| self.splats[row].range(ray).is_some_and(within))
     }
 
-    /// Middles, (N, 3), local metres, and both half axes, (N, 2, 3), of the splats, in the order of the index; axes of length
-    /// zero where a splat faces the line of sight, whose radius is the third value.
+    /// Middles, (N, 3), local metres, and both half axes, (N, 2, 3), of the splats, in the order of the index; axes of
+    /// length zero where a splat faces the line of sight, whose radius is the third value.
     #[must_use]
     pub fn outlines(&self) -> Vec<([f32; 3], [[f32; 3]; 2], f32)> {
-        self.splats.iter().map(Splat::outline).collect()
+        self.splats.iter().map(SurfaceSplat::outline).collect()
     }
 }
 

@@ -1,4 +1,5 @@
-//! A triangulated surface through the highest returns: what surveyors' software makes of a cloud when asked for a model.
+//! A triangulated surface through the highest returns: what surveyors' software makes of a cloud when asked for a
+//! model.
 
 use crate::lines_of_sight::check_positive;
 use crate::mesh_rays::{MeshRays, MeshRaysParams};
@@ -11,12 +12,13 @@ use std::collections::hash_map::Entry;
 /// How a [`Tin`] is made and traced.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TinParams {
-    /// Side of the square cells of which each keeps its highest point, metres, above 0. Default 0.25: below the spacing of
-    /// airborne scans, so that it takes out the lower of two points on one wall and little else.
+    /// Side of the square cells of which each keeps its highest point, metres, above 0. Default 0.25: below the spacing
+    /// of airborne scans, so that it takes out the lower of two points on one wall and little else.
     pub cell: f64,
-    /// A triangle blocks only if it lies farther than this from the target, metres, 0 or more. Default 1: walls lean in a
-    /// triangulation, by about a cell and a point spacing. On a simulated town of 11 points/m² (seed 7, not one that is reported)
-    /// facade points 0.1 m off their wall are right 94.0 % of the time (balanced; 79.3 % at 0.1 m), roofs 94.3 % (95.5 %).
+    /// A triangle blocks only if it lies farther than this from the target, metres, 0 or more. Default 1: walls lean in
+    /// a triangulation, by about a cell and a point spacing. On a simulated town of 11 points/m² (seed 7, not one that
+    /// is reported) facade points 0.1 m off their wall are right 94.0 % of the time (balanced; 79.3 % at 0.1 m), roofs
+    /// 94.3 % (95.5 %).
     pub clearance: f64,
 }
 

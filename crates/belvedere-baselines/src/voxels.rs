@@ -9,14 +9,16 @@ use std::collections::HashMap;
 /// How [`Voxels`] are filled and traced.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VoxelParams {
-    /// Side of a voxel, metres, above 0. Default 0.5, as VOSTOK users take: on a simulated town of 11 points/m² (seed 7, not one
-    /// that is reported) pedestrian points are right 94.5 % of the time (balanced), at 1 m 91.6 %, and roofs and facades favour it.
+    /// Side of a voxel, metres, above 0. Default 0.5, as VOSTOK users take: on a simulated town of 11 points/m² (seed
+    /// 7, not one that is reported) pedestrian points are right 94.5 % of the time (balanced), at 1 m 91.6 %, and roofs
+    /// and facades favour it.
     pub size: f64,
-    /// Points that a voxel needs to be solid, 1 or more. Default 1: with 2, a third of the same town's shadows are missed.
+    /// Points that a voxel needs to be solid, 1 or more. Default 1: with 2, a third of the same town's shadows are
+    /// missed.
     pub min_points: u32,
-    /// A voxel blocks only if some of it lies farther than this from the target on the line of sight, metres, 0 or more. The
-    /// voxel that holds the target never blocks it. Default 1.5, three voxels: of 0 to 3 m in the same town, where roofs (92.9 %; 80.5 % at 0.5 m) and facades
-    /// (87.3 %) are right most often together.
+    /// A voxel blocks only if some of it lies farther than this from the target on the line of sight, metres, 0 or
+    /// more. The voxel that holds the target never blocks it. Default 1.5, three voxels: of 0 to 3 m in the same town,
+    /// where roofs (92.9 %; 80.5 % at 0.5 m) and facades (87.3 %) are right most often together.
     pub clearance: f64,
 }
 
@@ -43,8 +45,8 @@ const BRICK: i32 = 8;
 const MAX_INDEX: f64 = 1e9;
 
 impl Voxels {
-    /// Fills voxels with `positions`, (N, 3) local metres. Voxel borders lie at multiples of the size; positions that are not
-    /// finite are left out.
+    /// Fills voxels with `positions`, (N, 3) local metres. Voxel borders lie at multiples of the size; positions that
+    /// are not finite are left out.
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] for a parameter out of its range, or a position a thousand million voxels away.
@@ -98,12 +100,12 @@ impl Voxels {
         }
         let own = ray.origin.map(|v| cell(v / self.params.size));
         let eye = ray.ranges[1].is_finite().then(|| ray.at(ray.ranges[1]).map(|v| cell(v / self.params.size)));
-        let bricks = Walk::new(ray, self.params.size * f64::from(BRICK), self.bounds);
+        let bricks = VoxelWalk::new(ray, self.params.size * f64::from(BRICK), self.bounds);
         bricks.any(|brick, from, to| {
             let Some(bits) = self.bricks.get(&brick) else { return false };
             let within = Ray { ranges: [from, to], ..*ray };
             let first = brick.map(|b| b * BRICK);
-            let voxels = Walk::new(&within, self.params.size, [first, first.map(|v| v + BRICK)]);
+            let voxels = VoxelWalk::new(&within, self.params.size, [first, first.map(|v| v + BRICK)]);
             voxels.any(|voxel, _, _| {
                 let (word, bit) = bit_of(voxel);
                 bits[word] & bit != 0 && voxel != own && Some(voxel) != eye
@@ -132,16 +134,17 @@ fn cell(coordinate: f64) -> i32 {
 /// The cells of a grid that a ray meets within a box, one after the other.
 ///
 /// # Source
-/// Amanatides & Woo 1987, "A Fast Voxel Traversal Algorithm for Ray Tracing". The ranges of the borders are computed from their
-/// index rather than summed up, so that long rays do not drift.
-struct Walk<'a> {
+/// Amanatides & Woo 1987, "A Fast Voxel Traversal Algorithm for Ray Tracing". The ranges of the borders are computed
+/// from their index rather than summed up, so that long rays do not drift.
+struct VoxelWalk<'a> {
     ray: &'a Ray,
     size: f64,
     bounds: [[i32; 3]; 2],
 }
 
-impl<'a> Walk<'a> {
-    /// A walk through cells of `size` metres, from the lowest corner of `bounds`, in cells, to the highest, which is outside.
+impl<'a> VoxelWalk<'a> {
+    /// A walk through cells of `size` metres, from the lowest corner of `bounds`, in cells, to the highest, which is
+    /// outside.
     fn new(ray: &'a Ray, size: f64, bounds: [[i32; 3]; 2]) -> Self {
         Self { ray, size, bounds }
     }

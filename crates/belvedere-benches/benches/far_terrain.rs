@@ -1,5 +1,5 @@
-//! How much faster than a cast over every cell are the horizons of an elevation raster, and the question whether it blocks a direction, in 41 km of
-//! mountains at 10 m?
+//! How much faster than a cast over every cell are the horizons of an elevation raster, and the question whether it
+//! blocks a direction, in 41 km of mountains at 10 m?
 //!
 //! Run with `RAYON_NUM_THREADS=1`: only one of the two uses threads.
 #![allow(missing_docs, reason = "the macros of criterion write functions without")]
@@ -24,7 +24,8 @@ const COUNT: usize = 4097;
 const CELL: f64 = 10.0;
 const AZIMUTHS: usize = 360;
 
-/// The tangent of the horizon by a walk over all lines of the grid, with a height between two nodes on each, as far as the first that is above `limit`.
+/// The tangent of the horizon by a walk over all lines of the grid, with a height between two nodes on each, as far as
+/// the first that is above `limit`.
 fn cast(grid: &ElevationGrid, place: [f64; 3], azimuth: f64, limit: f64, earth: &EarthParams) -> f64 {
     let heights = grid.heights().values();
     let (sin, cos) = azimuth.sin_cos();

@@ -1,5 +1,5 @@
-//! Is the index faster than a kd-tree crate where it has to be: near the surface, and from the far centres of large balls?
-//! And what do AVX2 instructions give?
+//! Is the index faster than a kd-tree crate where it has to be: near the surface, and from the far centres of large
+//! balls? And what do AVX2 instructions give?
 #![allow(missing_docs, reason = "the macros of criterion write functions without")]
 #![allow(clippy::unwrap_used, reason = "a bench that cannot go on fails")]
 

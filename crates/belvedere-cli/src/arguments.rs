@@ -1,4 +1,5 @@
-//! What can be typed: flags as entered. What they build is made in `pipeline` and in each command. Texts longer than a line are in `help/`.
+//! What can be typed: flags as entered. What they build is made in `pipeline` and in each command. Texts longer than a
+//! line are in `help/`.
 
 mod balls;
 mod cameras;
@@ -24,34 +25,38 @@ mod view_page;
 mod window_views;
 
 pub(crate) use balls::{
-    Balls, Cleaning, MethodChoice, NeighborChoice, Normals, OrientChoice, Orienting, Shrinking, SideChoice,
+    BallsArguments, Cleaning, MethodChoice, NeighborChoice, NormalsArguments, OrientChoice, Orienting, Shrinking,
+    SideChoice,
 };
-pub(crate) use cameras::{CameraLens, CameraTargets, Cameras};
+pub(crate) use cameras::{CameraLensArguments, CameraTargetsArguments, CamerasArguments};
 pub(crate) use city::{CellFor, City, CityMerge, CityPlan, CityRun, CityStatus, CityStep};
 #[cfg(feature = "compare")]
 pub(crate) use compare::Compare;
-pub(crate) use difference::Difference;
-pub(crate) use envelope::{Comfort, Corners, Envelope};
-pub(crate) use irradiance::{ClearSkyChoice, Irradiance, RadiationModel};
+pub(crate) use difference::DifferenceArguments;
+pub(crate) use envelope::{ComfortArguments, CornersArgument, EnvelopeArguments};
+pub(crate) use irradiance::{ClearSkyChoice, IrradianceArguments, RadiationModel};
 pub(crate) use numbers::Numbers;
 use numbers::{above_zero, at_least_one, at_most, finite, height, known_crs, length, location};
-pub(crate) use observers::{Earth, GivingWay, GroundChoice, LineOfSight, Place, Radio, Shell, Viewshed};
-pub(crate) use query::{DepthMap, Query, UnprovenChoice};
-pub(crate) use scene::{
-    AreaChoice, BallShape, CloudInput, Plan, ProfileChoice, SceneBalls, SceneConfig, SceneInput, UpChoice,
+pub(crate) use observers::{
+    Earth, GivingWay, GroundChoice, LineOfSightArguments, MapPosition, Radio, Shell, ViewshedArguments,
 };
-pub(crate) use shadow::Shadow;
-pub(crate) use sky::{FacingChoice, FarTerrain, PatchesChoice, SkyOutputs, SkyPlaces, SkyView};
-pub(crate) use sun::{ElevationChoice, SunHours, SunPeriod, SunPlace, SunPosition};
+pub(crate) use query::{DepthMapArguments, Query, UnprovenChoice};
+pub(crate) use scene::{
+    AreaChoice, BallShape, CloudInput, PlanArguments, ProfileChoice, SceneBalls, SceneConfig, SceneInput, UpChoice,
+};
+pub(crate) use shadow::ShadowArguments;
+pub(crate) use sky::{FacingChoice, FarTerrainArguments, PatchesChoice, SkyOutputs, SkyPlaces, SkyViewArguments};
+pub(crate) use sun::{ElevationChoice, SunHoursArguments, SunPeriod, SunPlaceArguments, SunPositionArguments};
 pub(crate) use surroundings::{
-    BelowChoice, Eyes, Horizon, Isovist, Landmark, LandmarkShape, MeshTargets, ProtectedView,
+    BelowChoice, EyesArguments, HorizonArguments, IsovistArguments, LandmarkArguments, LandmarkShapeArguments,
+    MeshTargets, ProtectedViewArguments,
 };
 pub(crate) use towns::{PatternChoice, ScannerChoice, Simulate};
-pub(crate) use vegetation::{LeavesChoice, ThroughTrees, ThroughTreesChoice};
-pub(crate) use view::{North, SizeChoice, ViewChoice};
+pub(crate) use vegetation::{LeavesChoice, ThroughTreesArguments, ThroughTreesChoice};
+pub(crate) use view::{NorthArguments, SizeChoice, ViewChoice};
 #[cfg(feature = "view")]
 pub(crate) use view_page::ViewPage;
-pub(crate) use window_views::WindowViews;
+pub(crate) use window_views::WindowViewsArguments;
 
 use clap::{ArgAction, Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
@@ -92,7 +97,8 @@ pub(crate) struct Global {
     /// Number of threads, at most 1024; it does not change results [default: all processors]
     #[arg(long, global = true, value_name = "N", value_parser = at_most::<1024>)]
     pub(crate) threads: Option<usize>,
-    /// What tests many lines of sight and draws depth maps; it does not change results: auto, cpu, gpu, or the number of a device
+    /// What tests many lines of sight and draws depth maps; it does not change results: auto, cpu, gpu, or the number
+    /// of a device
     #[arg(long, global = true, value_name = "DEVICE", default_value = "auto", allow_negative_numbers = true)]
     pub(crate) device: DeviceChoice,
     /// Seed of the random numbers
@@ -164,54 +170,54 @@ pub(crate) enum Command {
     /// Report what a point cloud contains, what it lacks, and which commands can use it
     Info(Info),
     /// Estimate the scanner positions from the pulses of a cloud
-    Trajectory(Trajectory),
+    Trajectory(TrajectoryArguments),
     /// Estimate normals and orient them outward
-    Normals(Normals),
+    Normals(NormalsArguments),
     /// Build the medial balls of a scene and save them for other commands
-    Balls(Balls),
+    Balls(BallsArguments),
     /// Compute a depth map: the distance to the first surface for each pixel of a view
     #[command(name = "depth-map")]
-    DepthMap(DepthMap),
+    DepthMap(DepthMapArguments),
     /// Classify targets as visible or blocked from the sun, a direction or a camera
     Query(Query),
     /// Test lines of sight between pairs of points, and report the first obstacle
     #[command(name = "line-of-sight")]
-    LineOfSight(LineOfSight),
+    LineOfSight(LineOfSightArguments),
     /// Map what observers see, or from where a target is seen
-    Viewshed(Viewshed),
+    Viewshed(ViewshedArguments),
     /// Measure how much of a landmark observers see
-    Landmark(Landmark),
+    Landmark(LandmarkArguments),
     /// Map how high one may build without entering the view of a landmark
     #[command(name = "protected-view")]
-    ProtectedView(ProtectedView),
+    ProtectedView(ProtectedViewArguments),
     /// Choose where to put cameras, so that few of them cover much
-    Cameras(Cameras),
+    Cameras(CamerasArguments),
     /// Measure the space that is visible from a point: volume, area, openness
-    Isovist(Isovist),
+    Isovist(IsovistArguments),
     /// Compute the horizon elevation angle in each direction around a point
-    Horizon(Horizon),
+    Horizon(HorizonArguments),
     /// Map shadows at an instant, for a given sun direction, or through a day
-    Shadow(Shadow),
+    Shadow(ShadowArguments),
     /// Compute the sky view factor and the sky openness
     #[command(name = "sky-view")]
-    SkyView(SkyView),
+    SkyView(SkyViewArguments),
     /// Compute yearly solar irradiation and shading loss, also for each roof plane
-    Irradiance(Irradiance),
+    Irradiance(IrradianceArguments),
     /// Compute the hours of direct sun on a day, over a period, or for a daylight rule
     #[command(name = "sun-hours")]
-    SunHours(SunHours),
+    SunHours(SunHoursArguments),
     /// Compute where the sun stands at given times
     #[command(name = "sun-position")]
-    SunPosition(SunPosition),
+    SunPosition(SunPositionArguments),
     /// Compute the largest volume on a parcel that casts no shadow on its neighbours
-    Envelope(Envelope),
+    Envelope(EnvelopeArguments),
     /// Measure sun, shade and sky along walking routes and at windows
-    Comfort(Comfort),
+    Comfort(ComfortArguments),
     /// Measure what is seen from windows: sky, vegetation, water, buildings, ground
     #[command(name = "window-views")]
-    WindowViews(WindowViews),
+    WindowViews(WindowViewsArguments),
     /// Compute what changes between two rasters: gains and losses before and after a plan
-    Difference(Difference),
+    Difference(DifferenceArguments),
     /// Show clouds in the browser, and ask there what is seen, lit and shaded
     #[cfg(feature = "view")]
     View(ViewPage),
@@ -248,7 +254,7 @@ pub(crate) struct Info {
 }
 
 #[derive(Args)]
-pub(crate) struct Trajectory {
+pub(crate) struct TrajectoryArguments {
     /// Time between two positions in seconds, 0.01 to 2
     #[arg(
         long = "time-step-s",

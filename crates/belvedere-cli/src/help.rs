@@ -118,7 +118,8 @@ const RARE_IN: &[(&str, &[&str])] = &[
 /// Options of all commands that `-h` shows.
 const SHOWN_OF_ALL: [&str; 3] = ["json", "verbose", "help"];
 
-/// What a command does, its input, output, units and limits, and examples that work as printed on the files of the demo.
+/// What a command does, its input, output, units and limits, and examples that work as printed on the files of the
+/// demo.
 const TEXTS: &[(&str, &str)] = &[
     ("demo", include_str!("help/demo.txt")),
     ("simulate", include_str!("help/simulate.txt")),
@@ -206,7 +207,8 @@ fn parts(text: &str) -> (&str, &str) {
     (description.trim_end(), examples.trim_end())
 }
 
-/// The command lines under a heading of examples, without the remarks behind them. A line that ends in a backslash goes on in the next.
+/// The command lines under a heading of examples, without the remarks behind them. A line that ends in a backslash goes
+/// on in the next.
 pub(crate) fn examples(text: &str) -> Vec<String> {
     let joined = text.replace(" \\\n     ", "");
     let lines = joined.lines().filter_map(|line| line.strip_prefix("  "));

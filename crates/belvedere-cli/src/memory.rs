@@ -15,7 +15,8 @@ pub(crate) fn resident_and_peak_mib() -> Option<[f64; 2]> {
     Some([mib("VmRSS:")?, mib("VmHWM:")?])
 }
 
-/// Memory that this process can still take without others losing theirs, with what can be swapped out; `None` where the system does not tell.
+/// Memory that this process can still take without others losing theirs, with what can be swapped out; `None` where the
+/// system does not tell.
 pub(crate) fn available_bytes() -> Option<u64> {
     let computer = fs::read_to_string("/proc/meminfo").ok()?;
     Some((kib(&computer, "MemAvailable:")? + kib(&computer, "SwapFree:")?) * 1024)

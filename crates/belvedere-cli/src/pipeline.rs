@@ -10,7 +10,7 @@ use crate::arguments::{
     Usage, ViewChoice,
 };
 use crate::device::with_device;
-use crate::run::Run;
+use crate::run::CommandContext;
 use crate::scene_config::BallParameters;
 use crate::summary::Summary;
 use anyhow::{Result, bail};
@@ -26,12 +26,12 @@ use std::path::Path;
 use std::sync::Arc;
 
 /// Reads the cloud and reports on it.
-pub(crate) fn read(input: &CloudInput, run: &mut Run) -> Result<PointCloud> {
+pub(crate) fn read(input: &CloudInput, run: &mut CommandContext) -> Result<PointCloud> {
     Ok(read_counted(input, run)?.0)
 }
 
 /// Reads the cloud for results whose rows belong to the rows of the file, which a point left out would shift.
-pub(crate) fn read_every_row(input: &CloudInput, run: &mut Run) -> Result<PointCloud> {
+pub(crate) fn read_every_row(input: &CloudInput, run: &mut CommandContext) -> Result<PointCloud> {
     let (cloud, report) = read_counted(input, run)?;
     check_every_row(&report)?;
     Ok(cloud)
@@ -50,7 +50,7 @@ pub(crate) fn check_every_row(report: &ReadReport) -> Result<()> {
     )
 }
 
-fn read_counted(input: &CloudInput, run: &mut Run) -> Result<(PointCloud, ReadReport)> {
+fn read_counted(input: &CloudInput, run: &mut CommandContext) -> Result<(PointCloud, ReadReport)> {
     let mut options = ReadOptions::new();
     options.crs = input.crs.clone();
     options.up = input.up.into();
@@ -72,7 +72,8 @@ pub(crate) fn warn_of_missing(report: &ReadReport, summary: &mut Summary) {
     }
 }
 
-/// The error of building a model of these clouds, with their names where they have too few points, and with the flags that help.
+/// The error of building a model of these clouds, with their names where they have too few points, and with the flags
+/// that help.
 pub(crate) fn advised(input: &CloudInput, error: Error) -> anyhow::Error {
     let names = || input.clouds.iter().map(|path| path.display().to_string()).collect::<Vec<_>>().join(", ");
     match error {
@@ -86,7 +87,7 @@ pub(crate) fn advised(input: &CloudInput, error: Error) -> anyhow::Error {
 }
 
 /// A scene model, and the cloud it was made from unless it was read from a file.
-pub(crate) struct Scene {
+pub(crate) struct LoadedScene {
     pub(crate) model: SceneModel,
     /// In the frame of the model; without points where it was read from a file or its points are not needed.
     pub(crate) cloud: PointCloud,
@@ -96,16 +97,21 @@ pub(crate) struct Scene {
     pub(crate) profile: Profile,
 }
 
-impl Scene {
+impl LoadedScene {
     /// Local metres of a place in the coordinates and unit of the file.
     pub(crate) fn local_from_file(&self, place: [f64; 3]) -> [f64; 3] {
         self.model.frame().local_from_file(place)
     }
 }
 
-impl Scene {
+impl LoadedScene {
     /// The scene that questions are put to, with the ground and the shell of the flags.
-    pub(crate) fn into_asked(self, ground: Option<&GroundChoice>, shell: Option<f32>, run: &Run) -> Result<ask::Scene> {
+    pub(crate) fn into_question_scene(
+        self,
+        ground: Option<&GroundChoice>,
+        shell: Option<f32>,
+        run: &CommandContext,
+    ) -> Result<ask::Scene> {
         if shell.is_some() && !self.model.is_carved() {
             return Err(Usage("--shell applies only to carved balls, and these are not carved".to_owned()).into());
         }
@@ -133,25 +139,25 @@ pub(crate) fn scene_of_places(
     input: &SceneInput,
     places: &SkyPlaces,
     shell: Option<f32>,
-    run: &mut Run,
+    run: &mut CommandContext,
 ) -> Result<ask::Scene> {
-    let points = if places.needs_points() { Points::Keep } else { Points::LetGo };
+    let points = if places.needs_points() { KeepPoints::Keep } else { KeepPoints::LetGo };
     let mut scene = scene(input, points, run)?;
     places.far.set(&mut scene, run)?;
-    scene.into_asked(Some(&places.ground), shell, run)
+    scene.into_question_scene(Some(&places.ground), shell, run)
 }
 
 /// Whether a scene keeps the points that its balls were made from.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Points {
+pub(crate) enum KeepPoints {
     Keep,
     LetGo,
 }
 
 /// The scene of a ball file, or of a cloud, as it will be with what is planned.
-pub(crate) fn scene(arguments: &SceneInput, points: Points, run: &mut Run) -> Result<Scene> {
+pub(crate) fn scene(arguments: &SceneInput, points: KeepPoints, run: &mut CommandContext) -> Result<LoadedScene> {
     let clears = !arguments.plan.clear.is_empty();
-    let mut scene = present_scene(arguments, if clears { Points::Keep } else { points }, run)?;
+    let mut scene = present_scene(arguments, if clears { KeepPoints::Keep } else { points }, run)?;
     if clears {
         plan::clear(&mut scene, &arguments.plan, run)?;
     }
@@ -165,7 +171,7 @@ pub(crate) fn is_file(path: &Path) -> bool {
 }
 
 /// The scene of a ball file, or of a cloud, as it is.
-fn present_scene(arguments: &SceneInput, points: Points, run: &mut Run) -> Result<Scene> {
+fn present_scene(arguments: &SceneInput, points: KeepPoints, run: &mut CommandContext) -> Result<LoadedScene> {
     let parameters = arguments.balls.parameters()?;
     let profile = parameters.profile();
     if let [path] = &arguments.input.clouds[..]
@@ -183,22 +189,22 @@ fn present_scene(arguments: &SceneInput, points: Points, run: &mut Run) -> Resul
         run.summary.add("balls_read", parts.balls.len());
         let model = SceneModel::from_parts(parts)?;
         let cloud = PointCloud::in_frame(model.frame().clone());
-        return Ok(Scene { model, cloud, left_out: ReadReport::default(), profile });
+        return Ok(LoadedScene { model, cloud, left_out: ReadReport::default(), profile });
     }
     let balls = parameters.balls(MethodChoice::Carved)?;
     let (mut cloud, left_out) = read_counted(&arguments.input, run)?;
     let frame = cloud.frame.clone();
     let params = params::model(&parameters, balls, &frame.crs, run)?;
     let built = match points {
-        Points::Keep => SceneModel::build(&cloud, &params, &run.control()),
-        Points::LetGo => {
+        KeepPoints::Keep => SceneModel::build(&cloud, &params, &run.control()),
+        KeepPoints::LetGo => {
             let given = std::mem::replace(&mut cloud, PointCloud::in_frame(frame));
             SceneModel::build_owned(given, &params, &run.control())
         }
     };
     let (model, report) = built.map_err(|error| advised(&arguments.input, error))?;
     run.summary.add_report(&report);
-    Ok(Scene { model, cloud, left_out, profile })
+    Ok(LoadedScene { model, cloud, left_out, profile })
 }
 
 /// Flags that say how to make balls are of no use where they are made already.
@@ -261,7 +267,7 @@ impl From<ProfileChoice> for Profile {
 
 impl ViewChoice {
     /// The views on a scene, reported: one, or the two halves of a panorama.
-    pub(crate) fn views(&self, scene: &Scene, summary: &mut Summary) -> Result<Vec<View>> {
+    pub(crate) fn views(&self, scene: &LoadedScene, summary: &mut Summary) -> Result<Vec<View>> {
         let from = self.from(scene, summary)?;
         summary.remarks(from.remark(scene.model.coverage().as_ref()));
         summary.add("view", Summary::of(&from.section()));
@@ -272,7 +278,7 @@ impl ViewChoice {
     }
 
     /// From where a picture of a scene is taken.
-    pub(crate) fn from(&self, scene: &Scene, summary: &mut Summary) -> Result<ViewFrom> {
+    pub(crate) fn from(&self, scene: &LoadedScene, summary: &mut Summary) -> Result<ViewFrom> {
         match self.kind.panorama {
             Some(eye) => {
                 let (eye, width) = (scene.local_from_file(eye.0), self.panorama_width()?);
@@ -333,7 +339,7 @@ impl ViewChoice {
         Ok(View::perspective(eye, look_at, fov, size, near, far)?)
     }
 
-    fn view(&self, scene: &Scene, summary: &mut Summary) -> Result<View> {
+    fn view(&self, scene: &LoadedScene, summary: &mut Summary) -> Result<View> {
         let (low, high) = scene.model.bounds().corners();
         let pixel = self.pixel.unwrap_or_else(|| default_pixel_size(low, high));
         let view = if let Some(sun) = &self.kind.sun {

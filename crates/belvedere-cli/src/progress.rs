@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 const BETWEEN_LINES: Duration = Duration::from_millis(200);
 
 /// The stages of a command, one after the other: what the library reports to, and where it learns of Ctrl-C.
-pub(crate) struct Stages {
+pub(crate) struct CommandStages {
     progress: Progress,
 }
 
@@ -23,18 +23,18 @@ struct Progress {
     verbose: bool,
     /// Another watcher of the same stages.
     also: Option<Box<dyn Watcher + Send>>,
-    state: Mutex<State>,
+    state: Mutex<ProgressState>,
 }
 
 #[derive(Default)]
-struct State {
+struct ProgressState {
     /// Stages that have begun: the last one runs, the others wait for it.
-    open: Vec<Open>,
+    open: Vec<RunningStage>,
     /// Stages that are over, each name once, in the order of their first end.
     seconds: Vec<(&'static str, f64)>,
 }
 
-struct Open {
+struct RunningStage {
     name: &'static str,
     start: Instant,
     /// Time that stages within this one took.
@@ -46,7 +46,7 @@ struct Open {
     last_line: Instant,
 }
 
-impl Open {
+impl RunningStage {
     /// A line of JSON: how far this stage is, and the stage that it is a part of.
     fn line(&mut self, within: Option<&'static str>, is_finished: bool) {
         self.last_line = Instant::now();
@@ -65,7 +65,7 @@ impl Open {
 }
 
 impl Progress {
-    fn state(&self) -> MutexGuard<'_, State> {
+    fn state(&self) -> MutexGuard<'_, ProgressState> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
@@ -93,7 +93,8 @@ impl Watcher for Progress {
             waiting.bar.set_draw_target(ProgressDrawTarget::hidden());
         }
         let start = Instant::now();
-        let mut open = Open { name: stage, start, within: Duration::ZERO, total, done: 0, bar, last_line: start };
+        let mut open =
+            RunningStage { name: stage, start, within: Duration::ZERO, total, done: 0, bar, last_line: start };
         if self.json {
             open.line(state.open.last().map(|outer| outer.name), false);
         }
@@ -146,7 +147,7 @@ impl Watcher for Progress {
     }
 }
 
-impl Stages {
+impl CommandStages {
     pub(crate) fn new(global: &Global) -> Self {
         let json = global.progress == ProgressChoice::Json;
         let shown = global.progress == ProgressChoice::Bar && !global.quiet;

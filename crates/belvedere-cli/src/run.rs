@@ -1,27 +1,27 @@
 //! One run of a command: its stages, its summary, and the seed of its random numbers.
 
 use crate::arguments::Global;
-use crate::progress::Stages;
+use crate::progress::CommandStages;
 use crate::summary::Summary;
 use belvedere::apps::ask::Answers;
 use belvedere::control::{Control, Watcher};
 
 /// What every command has beside its arguments.
-pub(crate) struct Run {
-    stages: Stages,
+pub(crate) struct CommandContext {
+    stages: CommandStages,
     pub(crate) summary: Summary,
     pub(crate) seed: u64,
 }
 
-impl Run {
+impl CommandContext {
     pub(crate) fn new(global: &Global) -> Self {
-        Self { stages: Stages::new(global), summary: Summary::default(), seed: global.seed }
+        Self { stages: CommandStages::new(global), summary: Summary::default(), seed: global.seed }
     }
 
     /// A run that `watcher` follows too.
     #[cfg(feature = "view")]
     pub(crate) fn watched(global: &Global, watcher: impl Watcher + Send + 'static) -> Self {
-        Self { stages: Stages::new(global).watched(watcher), ..Self::new(global) }
+        Self { stages: CommandStages::new(global).watched(watcher), ..Self::new(global) }
     }
 
     /// What functions of the library report their stages to.

@@ -1,7 +1,8 @@
 //! How balls are made: flags, and the file of `--scene-config` that completes them.
 
 use crate::arguments::{
-    BallShape, Balls, Cleaning, Normals, Orienting, ProfileChoice, SceneBalls, SceneConfig, Shrinking, Usage,
+    BallShape, BallsArguments, Cleaning, NormalsArguments, Orienting, ProfileChoice, SceneBalls, SceneConfig,
+    Shrinking, Usage,
 };
 use crate::help::BALL_FLAGS;
 use crate::parameter_flags::flags_of;
@@ -35,11 +36,11 @@ struct File {
 /// The only key that has no group of flags.
 #[derive(Default, Deserialize)]
 #[serde(default)]
-struct Shape {
+struct SceneShape {
     ball_profile: Option<ProfileChoice>,
 }
 
-impl Balls {
+impl BallsArguments {
     /// How balls are made.
     pub(crate) fn parameters(&self) -> Result<BallParameters> {
         let (cleaning, orienting) = (self.cleaning.clone(), self.orienting.clone());
@@ -48,7 +49,7 @@ impl Balls {
     }
 }
 
-impl Normals {
+impl NormalsArguments {
     /// How normals are made.
     pub(crate) fn parameters(&self) -> Result<BallParameters> {
         let (cleaning, orienting) = (self.cleaning.clone(), self.orienting.clone());
@@ -134,7 +135,7 @@ impl BallParameters {
         let cleaning = Cleaning::deserialize(&object).map_err(part)?;
         let orienting = Orienting::deserialize(&object).map_err(part)?;
         let shrinking = Shrinking::deserialize(&object).map_err(part)?;
-        let shape = Shape::deserialize(&object).map_err(part)?;
+        let shape = SceneShape::deserialize(&object).map_err(part)?;
         Ok(Self {
             cleaning: self.cleaning.or(&cleaning),
             orienting: self.orienting.or(orienting),
@@ -202,7 +203,7 @@ fn check(key: &str, value: &Value) -> serde_json::Result<()> {
     Cleaning::deserialize(&alone)?;
     Orienting::deserialize(&alone)?;
     Shrinking::deserialize(&alone)?;
-    Shape::deserialize(&alone).map(drop)
+    SceneShape::deserialize(&alone).map(drop)
 }
 
 fn flag(key: &str) -> String {

@@ -12,7 +12,8 @@ use std::path::Path;
 /// Code of the reference system that simulated towns lie in: the Dutch grid with heights above NAP.
 pub(crate) const EPSG: u32 = 7415;
 
-/// Suns that answers are given for, azimuth and elevation in degrees: morning, noon and afternoon, from low to high and between.
+/// Suns that answers are given for, azimuth and elevation in degrees: morning, noon and afternoon, from low to high and
+/// between.
 pub(crate) const SUNS_DEG: [[f64; 2]; 3] = [[110.0, 20.0], [180.0, 65.0], [240.0, 35.0]];
 
 /// Reference system that simulated towns lie in.

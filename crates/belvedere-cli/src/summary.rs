@@ -19,12 +19,12 @@ const REMARKS: &str = "remarks";
 pub(crate) struct Summary {
     entries: Map<String, Value>,
     headlines: Vec<String>,
-    extent: Extent,
+    extent: SummaryDetail,
 }
 
 /// How much of a summary is printed as text.
 #[derive(Clone, Copy, Default, PartialEq, Eq)]
-enum Extent {
+enum SummaryDetail {
     /// The headlines, remarks and files; all of it with `--verbose`.
     #[default]
     Short,
@@ -47,7 +47,7 @@ impl Summary {
 
     /// Marks all figures as the answer.
     pub(crate) fn is_report(&mut self) -> &mut Self {
-        self.extent = Extent::Whole;
+        self.extent = SummaryDetail::Whole;
         self
     }
 
@@ -142,7 +142,7 @@ impl Summary {
         let text = match (global.json, global.quiet) {
             (true, _) => format!("{:#}\n", Value::Object(self.of_json())),
             (false, true) => String::new(),
-            (false, false) if global.verbose || self.extent == Extent::Whole => self.whole(),
+            (false, false) if global.verbose || self.extent == SummaryDetail::Whole => self.whole(),
             (false, false) => short::text(&self.headlines, &self.entries),
         };
         // a reader that stopped listening is not a failure

@@ -1,6 +1,7 @@
-//! Inputs are there, no output replaces an input, and no file gets two results. Checked for all commands at once, on what was typed, before anything is read.
+//! Inputs are there, no output replaces an input, and no file gets two results. Checked for all commands at once, on
+//! what was typed, before anything is read.
 
-use crate::arguments::{Corners, Usage};
+use crate::arguments::{CornersArgument, Usage};
 use anyhow::Result;
 use belvedere::io::{Source, web_address};
 use clap::parser::ValueSource;
@@ -15,7 +16,8 @@ struct Typed {
     path: PathBuf,
 }
 
-/// Refuses inputs beside the scene that are not there, and outputs that are the same file as an input or as another output of the command in `matches`.
+/// Refuses inputs beside the scene that are not there, and outputs that are the same file as an input or as another
+/// output of the command in `matches`.
 pub(crate) fn check(program: &Command, matches: &ArgMatches) -> Result<()> {
     let Some((name, of_command)) = matches.subcommand() else { return Ok(()) };
     let Some(command) = program.find_subcommand(name) else { return Ok(()) };
@@ -67,7 +69,8 @@ pub(crate) fn check_input(path: &Path) -> belvedere::Result<()> {
     }
 }
 
-/// Whether an argument names a file that is read after the scene is built, which may take hours. The files of the scene are read at once.
+/// Whether an argument names a file that is read after the scene is built, which may take hours. The files of the scene
+/// are read at once.
 fn is_beside_the_scene(argument: &Arg) -> bool {
     let is_of_scene = |name: &clap::builder::Str| ["CLOUD", "DIR"].contains(&name.as_str());
     // a page is written to
@@ -83,7 +86,7 @@ fn files_named(argument: &Arg, value: &OsStr) -> Vec<PathBuf> {
         Some(("trajectory" | "mesh" | "cloud", file)) => vec![file.into()],
         Some((_, file)) if argument.get_id() == "model" => vec![file.into()],
         // corners are typed, or in a file
-        _ if parsed == TypeId::of::<Corners>() && !text.contains(',') => vec![value.into()],
+        _ if parsed == TypeId::of::<CornersArgument>() && !text.contains(',') => vec![value.into()],
         _ => Vec::new(),
     }
 }

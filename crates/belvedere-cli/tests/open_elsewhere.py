@@ -30,7 +30,7 @@ x, y = 155000, 462985
 outputs = {name: folder / f"seen.{name}" for name in ("tif", "geojson", "laz", "png")}
 flags = [flag for path in outputs.values() for flag in ("-o", path)]
 heights, masks = folder / "heights.tif", folder / "masks.npy"
-told = run("viewshed", *scene, "--observer", f"{x},{y}", "--max-distance", 40, "--heights", heights, *flags)
+result = run("viewshed", *scene, "--observer", f"{x},{y}", "--max-distance", 40, "--heights", heights, *flags)
 
 with rasterio.open(outputs["tif"]) as raster:
     seen = raster.read(1)
@@ -41,7 +41,7 @@ with rasterio.open(outputs["tif"]) as raster:
     assert raster.res == (0.5, 0.5) and raster.bounds.left % 0.5 == 0, raster.transform
     assert set(numpy.unique(seen)) <= {0, 1, 255} and set(numpy.unique(unproven)) <= {0, 1, 255}
     proven = (seen == 1) & (unproven == 0)
-    assert proven.sum() == told["cells"]["visible"] and (unproven == 1).sum() == told["cells"]["unproven"]
+    assert proven.sum() == result["cells"]["visible"] and (unproven == 1).sum() == result["cells"]["unproven"]
     row, column = raster.index(x, y)
     near = seen[row - 2 : row + 2, column - 2 : column + 2]
     assert (near == 1).mean() > 0.5, near
@@ -70,8 +70,8 @@ assert set(numpy.unique(cloud["answer"])) <= {0, 1, 2, 3} and (cloud["answer"] =
 line = geopandas.GeoSeries.from_wkt([f"LINESTRING ({x} {y}, {x} {y + 20})"], crs=28992).to_crs(4326)
 line.to_file(folder / "walk.geojson", driver="GeoJSON")
 count = folder / "count.tif"
-told = run("viewshed", *scene, "--observers", folder / "walk.geojson", "--cell", 1, "--masks", masks, "-o", count)
-assert told["observers"]["count"] in (5, 6), told["observers"]
+result = run("viewshed", *scene, "--observers", folder / "walk.geojson", "--cell", 1, "--masks", masks, "-o", count)
+assert result["observers"]["count"] in (5, 6), result["observers"]
 with rasterio.open(count) as raster:
     counts, unproven = raster.read(1, masked=True), raster.read(2, masked=True)
     assert raster.dtypes == ("uint16", "uint16") and raster.nodatavals == (65535, 65535)
@@ -80,7 +80,7 @@ bits = numpy.load(masks)
 assert bits.shape == (1, *counts.shape) and (numpy.bitwise_count(bits[0]) == (counts - unproven).filled(0)).all()
 # a landmark as a raster, and a horizon as a table of one elevation an azimuth, from north on
 share = folder / "share.tif"
-told = run("landmark", *scene, "--targets", folder / "town.obj", "--max-distance", 60, "--cell", 10, "-o", share)
+result = run("landmark", *scene, "--targets", folder / "town.obj", "--max-distance", 60, "--cell", 10, "-o", share)
 with rasterio.open(share) as raster:
     values = raster.read(1, masked=True)
     assert raster.dtypes == ("float32",) and raster.crs.to_epsg() in (7415, 28992), (raster.dtypes, raster.crs)
@@ -94,9 +94,9 @@ assert 0 <= table[table.dtype.names[1]].min() and 10 < table[table.dtype.names[1
 # shadow at three hours of a morning: as rasters, a raster of one sun, and a film
 day = ["--from", "2026-06-21T08:00+02:00", "--to", "2026-06-21T11:00+02:00", "--time-step-min", 60, "--cell", 2]
 lit, film, rasters = folder / "lit.tif", folder / "film.png", folder / "lit"
-told = run("shadow", *scene, *day, "-o", lit, "--film", film, "--measures", rasters)
-suns = told["sun"]["suns"]
-assert suns in (3, 4), told["sun"]
+result = run("shadow", *scene, *day, "-o", lit, "--film", film, "--measures", rasters)
+suns = result["sun"]["suns"]
+assert suns in (3, 4), result["sun"]
 with rasterio.open(lit) as raster:
     values = raster.read(1, masked=True)
     assert raster.dtypes == ("uint8",) * suns and raster.nodata == 255 and raster.res == (2, 2), raster.meta
@@ -119,7 +119,7 @@ with Image.open(film) as frames:
 
 hours = folder / "hours.tif"
 measures = folder / "sun"
-told = run("sun-hours", *scene, "--date", "2026-06-21", "--time-step-min", 60, "--cell", 2, "-o", hours, "--measures", measures)
+result = run("sun-hours", *scene, "--date", "2026-06-21", "--time-step-min", 60, "--cell", 2, "-o", hours, "--measures", measures)
 with rasterio.open(hours) as raster, rasterio.open(measures / "sun_share.tif") as shares:
     values, share = raster.read(1, masked=True), shares.read(1, masked=True)
     assert raster.transform == shares.transform and raster.nodata == -9999

@@ -1,16 +1,16 @@
 //! When a ball blocks a line of sight: the one definition that rays, skylines, beams, depth maps and sweeps share.
 //!
-//! Everything here is scalar arithmetic on one ball and one line, so that another device can repeat it operation by operation.
-//! Lengths are metres, positions are local, directions are unit vectors. A line of sight runs from its *target* (range 0)
-//! *towards* its viewer (range `reach`, infinite for a viewer infinitely far away).
+//! Everything here is scalar arithmetic on one ball and one line, so that another device can repeat it operation by
+//! operation. Lengths are metres, positions are local, directions are unit vectors. A line of sight runs from its
+//! *target* (range 0) *towards* its viewer (range `reach`, infinite for a viewer infinitely far away).
 //!
-//! The rule: a ball blocks a line of sight if the line leaves it more than [`BlockRule::bias`] metres after the target and before the
-//! viewer. A ball that holds the viewer blocks nothing, so that one wrong ball does not blind an observer. A ball near the
-//! target counts with a smaller radius ([`BlockRule::radius_for`]).
+//! The rule: a ball blocks a line of sight if the line leaves it more than [`BlockRule::bias`] metres after the target
+//! and before the viewer. A ball that holds the viewer blocks nothing, so that one wrong ball does not blind an
+//! observer. A ball near the target counts with a smaller radius ([`BlockRule::radius_for`]).
 //!
 //! # Source
-//! Peters, Ledoux & Biljecki 2015, section 3 (balls that block, and the cone of [`Profile::PaperCone`]). Bias and shell are this
-//! project's.
+//! Peters, Ledoux & Biljecki 2015, section 3 (balls that block, and the cone of [`Profile::PaperCone`]). Bias and shell
+//! are this project's.
 
 use belvedere_data::model::FARTHEST;
 use belvedere_data::vector::{dot, length, sub};
@@ -18,11 +18,11 @@ use belvedere_data::{Error, Parameter, Result};
 
 /// The largest part of its radius by which a ball gives way to a target: a wire must not vanish.
 pub const SHELL_SHARE: f64 = 0.5;
-/// How far a point of an airborne scan may lie from the surface of the balls around it, metres: 0.05 of noise, and as much
-/// by which the default balls stand out over points.
+/// How far a point of an airborne scan may lie from the surface of the balls around it, metres: 0.05 of noise, and as
+/// much by which the default balls stand out over points.
 pub(crate) const SURFACE_DEVIATION: f64 = 0.1;
-/// Slope of a surface against the picture plane up to which its own points shall be visible: 63°, level ground under a sun
-/// 27° high.
+/// Slope of a surface against the picture plane up to which its own points shall be visible: 63°, level ground under a
+/// sun 27° high.
 pub(crate) const SLOPE: f64 = 2.0;
 
 /// A ball, local metres.
@@ -37,13 +37,14 @@ pub struct Ball {
 /// The surface that represents a ball.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Profile {
-    /// The sphere itself. In a depth map it is sampled at pixel centres at its exact sub-pixel place. Balls before the picture plane,
-    /// or the near limit, are not seen; one that the plane cuts blocks from there on. Balls that hold the eye are left out.
+    /// The sphere itself. In a depth map it is sampled at pixel centres at its exact sub-pixel place. Balls before the
+    /// picture plane, or the near limit, are not seen; one that the plane cuts blocks from there on. Balls that hold
+    /// the eye are left out.
     #[default]
     Sphere,
-    /// Algorithm 1 of the paper to the letter: a cone with its tip where the line through the centre meets the ball. In a depth map it
-    /// stands around the middle of the pixel that holds the centre, before and behind the picture plane alike, in
-    /// parallel views only.
+    /// Algorithm 1 of the paper to the letter: a cone with its tip where the line through the centre meets the ball. In
+    /// a depth map it stands around the middle of the pixel that holds the centre, before and behind the picture plane
+    /// alike, in parallel views only.
     PaperCone,
 }
 
@@ -52,11 +53,12 @@ pub enum Profile {
 pub struct BlockRule {
     /// Surface that represents a ball. Default the sphere.
     pub profile: Profile,
-    /// How far a target may lie inside a ball, along its line of sight, and still count as visible, metres, 0 or more. Default 0.
+    /// How far a target may lie inside a ball, along its line of sight, and still count as visible, metres, 0 or more.
+    /// Default 0.
     pub bias: f64,
-    /// How far a ball gives way to a target near its surface, metres, 0 or more: see [`BlockRule::radius_for`]. Balls bulge by
-    /// centimetres between the points of a surface, and what lies on that surface must not vanish in them. Default 0.
-    /// Depth maps have no shell: they do not know the target when balls are drawn.
+    /// How far a ball gives way to a target near its surface, metres, 0 or more: see [`BlockRule::radius_for`]. Balls
+    /// bulge by centimetres between the points of a surface, and what lies on that surface must not vanish in them.
+    /// Default 0. Depth maps have no shell: they do not know the target when balls are drawn.
     pub shell: f64,
 }
 
@@ -69,7 +71,8 @@ impl BlockRule {
         Self { profile: Profile::Sphere, bias: 0.0, shell: 0.2 }
     }
 
-    /// For balls that no pulse cut, which are seen from outside only: spheres with the bias of [`surface_bias`] and no shell.
+    /// For balls that no pulse cut, which are seen from outside only: spheres with the bias of [`surface_bias`] and no
+    /// shell.
     #[must_use]
     pub fn uncarved() -> Self {
         Self { profile: Profile::Sphere, bias: surface_bias(), shell: 0.0 }
@@ -102,22 +105,22 @@ impl BlockRule {
     /// The least radius that a ball of `radius` counts with, however near its surface a target lies.
     #[must_use]
     #[inline]
-    pub fn least_radius(&self, radius: f64) -> f64 {
+    pub fn min_radius(&self, radius: f64) -> f64 {
         radius - self.shell_of(radius)
     }
 
-    /// [`BlockRule::least_radius`] in single precision, in which depth maps are drawn.
+    /// [`BlockRule::min_radius`] in single precision, in which depth maps are drawn.
     #[must_use]
     #[inline]
     #[expect(clippy::cast_possible_truncation, reason = "a length and a share")]
-    pub fn least_radius_f32(&self, radius: f32) -> f32 {
+    pub fn min_radius_f32(&self, radius: f32) -> f32 {
         radius - (self.shell as f32).min(SHELL_SHARE as f32 * radius)
     }
 
     /// The radius that a ball of `radius` counts with for a target `distance` metres from its centre.
     ///
-    /// With s the lesser of the shell and half the radius: r − s for a target less than s inside the surface, r − (s − (distance − r))
-    /// for one less than s outside, and the whole r for all others.
+    /// With s the lesser of the shell and half the radius: r − s for a target less than s inside the surface, r − (s −
+    /// (distance − r)) for one less than s outside, and the whole r for all others.
     #[must_use]
     #[inline]
     pub fn radius_for(&self, radius: f64, distance: f64) -> f64 {
@@ -126,13 +129,13 @@ impl BlockRule {
         if outside.abs() < shell { radius - (shell - outside.max(0.0)) } else { radius }
     }
 
-    /// Where the line of sight from `target` along `towards` leaves a ball that blocks it, metres from the target; `None` for a ball that
-    /// does not block. The line ends at the viewer, `reach` metres from the target.
+    /// Where the line of sight from `target` along `towards` leaves a ball that blocks it, metres from the target;
+    /// `None` for a ball that does not block. The line ends at the viewer, `reach` metres from the target.
     #[must_use]
     #[inline]
     pub fn blocks_line(&self, ball: Ball, target: [f64; 3], towards: [f64; 3], reach: f64) -> Option<f64> {
         let whole = f64::from(ball.radius);
-        let Passing { along, beside_square, origin_square } = Passing::new(ball.center, target, towards);
+        let LinePassing { along, beside_square, origin_square } = LinePassing::new(ball.center, target, towards);
         if beside_square >= whole * whole {
             return None;
         }
@@ -148,8 +151,9 @@ impl BlockRule {
         (exit > self.bias).then_some(exit)
     }
 
-    /// The same for a chord of a line of sight that is curved: where the chord leaves the ball, metres from its start, or its end where the
-    /// ball reaches past it. Balls may reach over both ends of a chord; viewer and target are those of the whole line.
+    /// The same for a chord of a line of sight that is curved: where the chord leaves the ball, metres from its start,
+    /// or its end where the ball reaches past it. Balls may reach over both ends of a chord; viewer and target are
+    /// those of the whole line.
     #[must_use]
     #[inline]
     pub fn blocks_chord(&self, ball: Ball, chord: &Chord) -> Option<f64> {
@@ -157,7 +161,7 @@ impl BlockRule {
             return None;
         }
         let radius = self.radius_for(f64::from(ball.radius), ball.distance_to(chord.target));
-        let Passing { along, beside_square, .. } = Passing::new(ball.center, chord.start, chord.towards);
+        let LinePassing { along, beside_square, .. } = LinePassing::new(ball.center, chord.start, chord.towards);
         if radius <= 0.0 || beside_square >= radius * radius {
             return None;
         }
@@ -166,13 +170,13 @@ impl BlockRule {
         (along - half < to && along + half > from).then(|| (along + half).min(to))
     }
 
-    /// Where a viewer at `eye` who looks along `direction` meets a ball, metres from the eye; `None` for a ball that the ray misses or that
-    /// holds the eye. No ball gives way, since there is no target.
+    /// Where a viewer at `eye` who looks along `direction` meets a ball, metres from the eye; `None` for a ball that
+    /// the ray misses or that holds the eye. No ball gives way, since there is no target.
     #[must_use]
     #[inline]
     pub fn meets_ray(&self, ball: Ball, eye: [f64; 3], direction: [f64; 3]) -> Option<f64> {
         let radius = f64::from(ball.radius);
-        let Passing { along, beside_square, origin_square } = Passing::new(ball.center, eye, direction);
+        let LinePassing { along, beside_square, origin_square } = LinePassing::new(ball.center, eye, direction);
         if along <= 0.0 || origin_square <= radius * radius || beside_square >= radius * radius {
             return None;
         }
@@ -183,8 +187,8 @@ impl BlockRule {
         })
     }
 
-    /// The vector from `place` to the centre of a ball, and the radius that the ball counts with for a target at `place`; `None` where
-    /// `place` lies inside the ball even so.
+    /// The vector from `place` to the centre of a ball, and the radius that the ball counts with for a target at
+    /// `place`; `None` where `place` lies inside the ball even so.
     #[must_use]
     #[inline]
     pub fn seen_from(&self, ball: Ball, place: [f64; 3]) -> Option<([f64; 3], f64)> {
@@ -240,7 +244,8 @@ pub struct Chord {
 pub struct Cover {
     /// Direction to the centre of the ball.
     pub towards: [f64; 3],
-    /// Cosine of the angle between that direction and those that just touch the ball; −2 where the ball covers the whole sky.
+    /// Cosine of the angle between that direction and those that just touch the ball; −2 where the ball covers the
+    /// whole sky.
     pub cosine: f64,
     /// Sine of the highest elevation that is covered.
     pub highest: f64,
@@ -248,7 +253,7 @@ pub struct Cover {
 
 /// How a line passes the centre of a ball.
 #[derive(Clone, Copy)]
-struct Passing {
+struct LinePassing {
     /// From the start of the line to its point nearest to the centre, metres.
     along: f64,
     /// Square of the distance between that point and the centre, m².
@@ -257,7 +262,7 @@ struct Passing {
     origin_square: f64,
 }
 
-impl Passing {
+impl LinePassing {
     #[inline]
     fn new(center: [f32; 3], origin: [f64; 3], direction: [f64; 3]) -> Self {
         let offset = sub(center.map(f64::from), origin);
@@ -267,7 +272,8 @@ impl Passing {
 }
 
 impl Ball {
-    /// Whether the radius is above zero, and centre and radius are at most [`FARTHEST`], whose squares are still exact enough.
+    /// Whether the radius is above zero, and centre and radius are at most [`FARTHEST`], whose squares are still exact
+    /// enough.
     #[must_use]
     pub fn is_usable(&self) -> bool {
         self.radius > 0.0 && self.radius <= FARTHEST && self.center.iter().all(|v| v.abs() <= FARTHEST)
@@ -302,12 +308,12 @@ impl Ball {
         dot(offset, offset) <= radius * radius
     }
 
-    /// The piece of the line from `origin` along `direction` that lies in the whole ball, however it blocks: from and to, metres, below
-    /// zero before the origin; `None` for a line that misses it.
+    /// The piece of the line from `origin` along `direction` that lies in the whole ball, however it blocks: from and
+    /// to, metres, below zero before the origin; `None` for a line that misses it.
     #[must_use]
     #[inline]
     pub fn interval(&self, origin: [f64; 3], direction: [f64; 3]) -> Option<[f64; 2]> {
-        let Passing { along, beside_square, .. } = Passing::new(self.center, origin, direction);
+        let LinePassing { along, beside_square, .. } = LinePassing::new(self.center, origin, direction);
         let half_square = f64::from(self.radius).powi(2) - beside_square;
         let half = half_square.max(0.0).sqrt();
         (half_square > 0.0).then_some([along - half, along + half])
@@ -321,9 +327,9 @@ pub fn holds_at(radius: f64, distance: f64) -> bool {
     distance <= radius
 }
 
-/// The bias, metres, by which a target may lie inside a ball along its line of sight and still count as visible, where noise and balls
-/// are all that separates a point from its surface: [`DepthMap::default_depth_bias`](crate::depth::DepthMap::default_depth_bias)
-/// for pixels without extent, 0.22 m.
+/// The bias, metres, by which a target may lie inside a ball along its line of sight and still count as visible, where
+/// noise and balls are all that separates a point from its surface:
+/// [`DepthMap::default_depth_bias`](crate::depth::DepthMap::default_depth_bias) for pixels without extent, 0.22 m.
 #[must_use]
 pub fn surface_bias() -> f64 {
     SURFACE_DEVIATION * (1.0 + SLOPE * SLOPE).sqrt()

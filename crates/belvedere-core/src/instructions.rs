@@ -5,7 +5,8 @@
 pub enum Instructions {
     /// Eight lanes one after the other: every machine.
     Scalar,
-    /// Eight lanes at once (AVX2), with fused products (FMA) and instructions on single bits: nearly all machines with AVX2 have these too.
+    /// Eight lanes at once (AVX2), with fused products (FMA) and instructions on single bits: nearly all machines with
+    /// AVX2 have these too.
     #[cfg(target_arch = "x86_64")]
     Avx2,
 }

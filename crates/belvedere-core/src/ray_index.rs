@@ -6,7 +6,7 @@ mod opened;
 mod search_tree;
 mod walk;
 
-pub(crate) use opened::{OpenNode, Sides};
+pub(crate) use opened::{OpenNode, PartSides};
 pub(crate) use walk::Visit;
 
 use crate::instructions::Instructions;
@@ -15,12 +15,13 @@ use belvedere_data::{Error, Parameter, Result};
 use obvhs::aabb::Aabb;
 use obvhs::cwbvh::CwBvh;
 use search_tree::search_tree;
-use walk::{Scalar, TreeRay, walk};
+use walk::{RayScalar, TreeRay, walk};
 
-/// Padding of the boxes, as a share of the size of the scene: the tree works in f32 and a ray enters it at the box of the
-/// scene, so that its slab test errs by a few units of 6e-8 of that size.
+/// Padding of the boxes, as a share of the size of the scene: the tree works in f32 and a ray enters it at the box of
+/// the scene, so that its slab test errs by a few units of 6e-8 of that size.
 const BOX_PADDING: f64 = 1e-6;
-/// Least padding, and how much farther than asked the tree looks, metres: far more than f32 errs within some hundred metres.
+/// Least padding, and how much farther than asked the tree looks, metres: far more than f32 errs within some hundred
+/// metres.
 const TREE_SLACK: f64 = 1e-3;
 /// What ends a walk: no range is below zero.
 pub(crate) const END: f32 = -1.0;
@@ -37,8 +38,8 @@ pub struct Ray {
 }
 
 impl Ray {
-    /// The ray from `origin` along `direction` (any length) between two ranges, or `None` for one without direction or with a
-    /// number that is not finite (an infinite end excepted).
+    /// The ray from `origin` along `direction` (any length) between two ranges, or `None` for one without direction or
+    /// with a number that is not finite (an infinite end excepted).
     #[must_use]
     pub fn new(origin: [f64; 3], direction: [f64; 3], ranges: [f64; 2]) -> Option<Self> {
         let usable = origin.iter().all(|v| v.is_finite()) && ranges[0].is_finite() && !ranges[1].is_nan();
@@ -52,8 +53,8 @@ impl Ray {
     }
 }
 
-/// Boxes in a tree. It proposes boxes that a ray may meet and leaves the exact test to the caller, so that results never
-/// depend on the tree.
+/// Boxes in a tree. It proposes boxes that a ray may meet and leaves the exact test to the caller, so that results
+/// never depend on the tree.
 pub struct RayIndex {
     tree: CwBvh,
     center: [f64; 3],
@@ -62,9 +63,9 @@ pub struct RayIndex {
 }
 
 /// The parts of a node of a [`RayIndex`].
-pub struct Parts {
+pub struct NodeParts {
     /// What they are.
-    pub parts: [Part; PARTS],
+    pub parts: [NodePart; PARTS],
     /// Middles of their boxes, local metres, by axis.
     pub centers: [[f32; PARTS]; 3],
     /// Half sizes of their boxes, metres, by axis.
@@ -79,7 +80,7 @@ pub const NODE_WORDS: usize = 20;
 
 /// What a node of a [`RayIndex`] is made of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Part {
+pub enum NodePart {
     /// A place that is not taken.
     Nothing,
     /// Another node.
@@ -135,8 +136,8 @@ impl RayIndex {
         Ok(Self { tree, center, half_size, instructions: Instructions::detect() })
     }
 
-    /// For each row of the index, the box it was made from. Obstacles kept in this order lie close together in memory where
-    /// they lie close together in space.
+    /// For each row of the index, the box it was made from. Obstacles kept in this order lie close together in memory
+    /// where they lie close together in space.
     #[must_use]
     pub fn order(&self) -> &[u32] {
         &self.tree.primitive_indices
@@ -153,16 +154,16 @@ impl RayIndex {
         any
     }
 
-    /// Visits the rows whose boxes may be met by a ray that runs as `ray` does, between the same ranges, but starts up to `room` metres from its origin
-    /// along each axis, roughly from there on.
+    /// Visits the rows whose boxes may be met by a ray that runs as `ray` does, between the same ranges, but starts up
+    /// to `room` metres from its origin along each axis, roughly from there on.
     pub(crate) fn visit_beside(&self, ray: &Ray, room: [f64; 3], visit: impl Visit) {
         if let Some(entry) = self.enter(ray, room) {
             self.walk(entry.ray, visit);
         }
     }
 
-    /// The row whose `range` is least within the ranges of `ray`, and that range; the lowest row where several are equal.
-    /// `range` gives the range at which the ray meets the obstacle of a row first, if it does.
+    /// The row whose `range` is least within the ranges of `ray`, and that range; the lowest row where several are
+    /// equal. `range` gives the range at which the ray meets the obstacle of a row first, if it does.
     pub fn nearest(&self, ray: &Ray, mut range: impl FnMut(usize) -> Option<f64>) -> Option<(usize, f64)> {
         let entry = self.enter(ray, [0.0; 3])?;
         let mut best: Option<(usize, f64)> = None;
@@ -191,13 +192,14 @@ impl RayIndex {
     #[inline]
     fn walk(&self, ray: TreeRay, visit: impl Visit) {
         match self.instructions {
-            Instructions::Scalar => walk::<Scalar<false>>(&self.tree.nodes, ray, visit),
+            Instructions::Scalar => walk::<RayScalar<false>>(&self.tree.nodes, ray, visit),
             #[cfg(target_arch = "x86_64")]
             Instructions::Avx2 => avx2::run(&self.tree.nodes, ray, visit),
         }
     }
 
-    /// Calls `visit` for every row whose box may meet the box between two corners, local metres, in no particular order.
+    /// Calls `visit` for every row whose box may meet the box between two corners, local metres, in no particular
+    /// order.
     pub fn near(&self, low: [f64; 3], high: [f64; 3], mut visit: impl FnMut(usize)) {
         // what the corners of nodes are rounded by
         let slack = (0..3).map(|axis| self.center[axis].abs() + self.half_size[axis]).fold(0.0, f64::max) * BOX_PADDING;
@@ -210,8 +212,10 @@ impl RayIndex {
                     center - half - slack <= high[axis] && center + half + slack >= low[axis]
                 });
                 match part {
-                    Part::Rows { first, count } if meets => (first..first + count).for_each(|row| visit(row as usize)),
-                    Part::Node(node) if meets => nodes.push(node),
+                    NodePart::Rows { first, count } if meets => {
+                        (first..first + count).for_each(|row| visit(row as usize))
+                    }
+                    NodePart::Node(node) if meets => nodes.push(node),
                     _ => {}
                 }
             }
@@ -236,11 +240,11 @@ impl RayIndex {
         (!self.tree.nodes.is_empty()).then_some(0)
     }
 
-    /// The parts of a node and their boxes, each of which holds the boxes of all rows in it, but for what f32 rounds: a few units of
-    /// 6e-8 of the largest coordinate.
+    /// The parts of a node and their boxes, each of which holds the boxes of all rows in it, but for what f32 rounds: a
+    /// few units of 6e-8 of the largest coordinate.
     #[must_use]
     #[inline]
-    pub fn parts(&self, node: u32) -> Option<Parts> {
+    pub fn parts(&self, node: u32) -> Option<NodeParts> {
         let node = self.tree.nodes.get(node as usize)?;
         let parts = std::array::from_fn(|child| opened::part_of(node, child));
         let steps = node.compute_extent().to_array();
@@ -262,13 +266,14 @@ impl RayIndex {
                 half_sizes[axis][child] = half_step * (high - low);
             }
         }
-        Some(Parts { parts, centers, half_sizes })
+        Some(NodeParts { parts, centers, half_sizes })
     }
 
-    /// The nodes as words, for devices that trace rays themselves, in the layout of compressed nodes (Ylitie, Karras & Laine 2017) with lowest and highest sides
-    /// axis by axis: lowest corner from [`RayIndex::center`] (three f32); exponents of the steps along x, y, z and a bit for each part that is a
-    /// node (four bytes); first node; first row; the eight parts (a byte each, for rows their count as bits above five bits of their
-    /// offset); lowest and highest sides of the parts in steps, along x, y and z (eight bytes each).
+    /// The nodes as words, for devices that trace rays themselves, in the layout of compressed nodes (Ylitie, Karras &
+    /// Laine 2017) with lowest and highest sides axis by axis: lowest corner from [`RayIndex::center`] (three f32);
+    /// exponents of the steps along x, y, z and a bit for each part that is a node (four bytes); first node; first row;
+    /// the eight parts (a byte each, for rows their count as bits above five bits of their offset); lowest and highest
+    /// sides of the parts in steps, along x, y and z (eight bytes each).
     pub fn node_words(&self) -> impl ExactSizeIterator<Item = [u32; NODE_WORDS]> + '_ {
         self.tree.nodes.iter().map(|node| {
             let [x, y, z] = node.p.to_array().map(f32::to_bits);
@@ -294,8 +299,9 @@ impl RayIndex {
         })
     }
 
-    /// The part of a ray inside the box of the scene, larger by `room`, as the tree takes it, or `None` where it misses the box.
-    fn enter(&self, ray: &Ray, room: [f64; 3]) -> Option<Entry> {
+    /// The part of a ray inside the box of the scene, larger by `room`, as the tree takes it, or `None` where it misses
+    /// the box.
+    fn enter(&self, ray: &Ray, room: [f64; 3]) -> Option<PreparedRay> {
         let local: [f64; 3] = std::array::from_fn(|i| ray.origin[i] - self.center[i]);
         let [mut start, mut end] = ray.ranges;
         if self.tree.nodes.is_empty() {
@@ -304,7 +310,8 @@ impl RayIndex {
         for (axis, (local, direction)) in local.into_iter().zip(ray.direction).enumerate() {
             let half_size = self.half_size[axis] + room[axis];
             let (a, b) = ((-half_size - local) / direction, (half_size - local) / direction);
-            // a ray that runs in a face of the box gives 0 / 0 = NaN, which `min` and `max` pass over: not clipped there
+            // a ray that runs in a face of the box gives 0 / 0 = NaN, which `min` and `max` pass over: not clipped
+            // there
             start = start.max(a.min(b));
             end = end.min(a.max(b));
         }
@@ -313,12 +320,12 @@ impl RayIndex {
         }
         let origin = to_f32(std::array::from_fn(|i| local[i] + start * ray.direction[i]));
         let ray = TreeRay::new(origin, to_f32(ray.direction), to_f32(room), tree_reach(end - start));
-        Some(Entry { ray, start })
+        Some(PreparedRay { ray, start })
     }
 }
 
 /// A ray as the tree takes it.
-struct Entry {
+struct PreparedRay {
     ray: TreeRay,
     /// Range at which the tree's ray starts.
     start: f64,
@@ -454,7 +461,8 @@ mod tests {
         let mut counts = [0; 3];
         for (ray, room) in rays(2000).into_iter().zip([[0.0; 3], [0.7, 0.0, 0.2]].into_iter().cycle()) {
             let Some(entry) = index.enter(&ray, room) else { continue };
-            let fused = |visit: &mut dyn FnMut(usize) -> f32| walk::<Scalar<true>>(&index.tree.nodes, entry.ray, visit);
+            let fused =
+                |visit: &mut dyn FnMut(usize) -> f32| walk::<RayScalar<true>>(&index.tree.nodes, entry.ray, visit);
             let rows = visited(fused);
             assert_eq!(visited(|visit| index.walk(entry.ray, visit)), rows);
             counts.iter_mut().zip(&rows).for_each(|(count, rows)| *count += rows.len());

@@ -42,8 +42,8 @@ pub struct CloudSummary {
 /// Pulses of a cloud.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PulseCounts {
-    /// Each point counts as the part of a pulse that it is, 1 / its return count: a pulse cut at the rim of a tile counts in
-    /// part.
+    /// Each point counts as the part of a pulse that it is, 1 / its return count: a pulse cut at the rim of a tile
+    /// counts in part.
     pub count: f64,
     /// Those with several returns.
     pub multi_return_count: f64,
@@ -84,7 +84,7 @@ pub struct GpsTimes {
 impl GpsTimes {
     /// Whether times can tell pulses apart: a time shared by more than twenty points is no time of one pulse.
     #[must_use]
-    pub fn can_tell_pulses_apart(&self, point_count: usize) -> bool {
+    pub fn can_separate_pulses(&self, point_count: usize) -> bool {
         self.distinct_count * 20 > point_count - self.missing_count.min(point_count)
     }
 }
@@ -112,9 +112,9 @@ impl CloudSummary {
             .map(|counts| counts.iter().filter(|&&count| count > 1).count() as f64 / counts.len() as f64);
         let angles = attributes.scan_angle.as_ref().filter(|angles| !angles.is_empty());
         let scan_angle_deg = angles.map(|angles| {
-            let (least, most) =
+            let (min, max) =
                 angles.iter().fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), &a| (low.min(a), high.max(a)));
-            [least.to_degrees(), most.to_degrees()]
+            [min.to_degrees(), max.to_degrees()]
         });
         let cell_size = cell_size_for(cloud);
         let occupied_area = occupied_cell_count(cloud, cell_size) as f64 * cell_size * cell_size;
@@ -203,8 +203,8 @@ mod tests {
         // the rectangle of 100.3 x 0.2 m holds four points: cells of 6.718 m, two of which are occupied
         assert!((summary.cell_size - 6.718).abs() < 1e-3 && (summary.occupied_area - 2.0 * 45.13).abs() < 0.1);
         assert!((summary.density - 4.0 / 90.27).abs() < 1e-3);
-        let [least, most] = summary.scan_angle_deg.unwrap();
-        assert!((least + 14.32).abs() < 0.01 && (most - 28.65).abs() < 0.01);
+        let [min, max] = summary.scan_angle_deg.unwrap();
+        assert!((min + 14.32).abs() < 0.01 && (max - 28.65).abs() < 0.01);
     }
 
     #[test]

@@ -47,24 +47,26 @@ impl TriangleTree {
         }))
     }
 
-    /// Whether `ray` crosses a triangle within its ranges for which `counts` is true: it is given the row of the triangle.
+    /// Whether `ray` crosses a triangle within its ranges for which `counts` is true: it is given the row of the
+    /// triangle.
     #[must_use]
     pub fn any(&self, ray: &Ray, mut counts: impl FnMut(usize) -> bool) -> bool {
-        let crossing = Crossing::new(ray);
+        let crossing = RayAxes::new(ray);
         self.index.any(ray, |row| self.range(&crossing, row, ray).is_some() && counts(row))
     }
 
-    /// The triangle for which `counts` is true that `ray` crosses first within its ranges, by its row, and the range; the lowest row
-    /// where several are equal.
+    /// The triangle for which `counts` is true that `ray` crosses first within its ranges, by its row, and the range;
+    /// the lowest row where several are equal.
     #[must_use]
     pub fn nearest(&self, ray: &Ray, mut counts: impl FnMut(usize) -> bool) -> Option<(usize, f64)> {
-        let crossing = Crossing::new(ray);
+        let crossing = RayAxes::new(ray);
         self.index.nearest(ray, |row| self.range(&crossing, row, ray).filter(|_| counts(row)))
     }
 
-    /// Calls `visit` with the row of every triangle that `ray` crosses within its ranges, and the range, in no particular order.
+    /// Calls `visit` with the row of every triangle that `ray` crosses within its ranges, and the range, in no
+    /// particular order.
     pub fn each(&self, ray: &Ray, mut visit: impl FnMut(usize, f64)) {
-        let crossing = Crossing::new(ray);
+        let crossing = RayAxes::new(ray);
         self.index.each(ray, |row| {
             if let Some(range) = self.range(&crossing, row, ray) {
                 visit(row, range);
@@ -72,12 +74,13 @@ impl TriangleTree {
         });
     }
 
-    /// Calls `visit` with the row of every triangle whose box may meet the box between two corners, local metres, in no particular order.
+    /// Calls `visit` with the row of every triangle whose box may meet the box between two corners, local metres, in no
+    /// particular order.
     pub fn each_near(&self, low: [f64; 3], high: [f64; 3], visit: impl FnMut(usize)) {
         self.index.near(low, high, visit);
     }
 
-    fn range(&self, crossing: &Crossing, row: usize, ray: &Ray) -> Option<f64> {
+    fn range(&self, crossing: &RayAxes, row: usize, ray: &Ray) -> Option<f64> {
         let range = crossing.range(self.triangles.get(row)?)?;
         (ray.ranges[0] <= range && range <= ray.ranges[1]).then_some(range)
     }
@@ -95,16 +98,16 @@ fn bounding_box([a, b, c]: &Corners) -> [[f32; 3]; 2] {
 /// axes holds the origin.
 ///
 /// # Source
-/// Woop, Benthin & Wald 2013, "Watertight Ray/Triangle Intersection": it gives the barycentric coordinates
-/// of Möller & Trumbore 1997, but two triangles compute the side of a shared edge from the same numbers, so that no ray slips
+/// Woop, Benthin & Wald 2013, "Watertight Ray/Triangle Intersection": it gives the barycentric coordinates of Möller &
+/// Trumbore 1997, but two triangles compute the side of a shared edge from the same numbers, so that no ray slips
 /// between them. All in f64, hence without the paper's fallback.
-struct Crossing {
+struct RayAxes {
     origin: [f64; 3],
     axes: [usize; 3],
     shear: [f64; 3],
 }
 
-impl Crossing {
+impl RayAxes {
     fn new(ray: &Ray) -> Self {
         let d = ray.direction;
         let longest = |a: usize, b: usize| if d[b].abs() > d[a].abs() { b } else { a };
@@ -113,8 +116,8 @@ impl Crossing {
         Self { origin: ray.origin, axes: [x, y, z], shear: [d[x] / d[z], d[y] / d[z], 1.0 / d[z]] }
     }
 
-    /// Range at which the line of the ray crosses a triangle, negative behind its origin; `None` where it passes by or runs
-    /// within its plane.
+    /// Range at which the line of the ray crosses a triangle, negative behind its origin; `None` where it passes by or
+    /// runs within its plane.
     fn range(&self, corners: &Corners) -> Option<f64> {
         let [x, y, z] = self.axes;
         let [shear_x, shear_y, scale_z] = self.shear;

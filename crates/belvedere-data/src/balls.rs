@@ -22,9 +22,9 @@ pub enum Side {
 
 /// Medial balls, one per row.
 ///
-/// A ball is tangent at its source point p and touches a second point q. One that met no second point is cut to a limit, because the
-/// surface at p blocks all the same ([`LIMIT_TOUCH`]). Where there is no limit, as in the paper's method, it keeps its initial radius: its touch is
-/// [`NO_TOUCH`], and it is not used for visibility.
+/// A ball is tangent at its source point p and touches a second point q. One that met no second point is cut to a
+/// limit, because the surface at p blocks all the same ([`LIMIT_TOUCH`]). Where there is no limit, as in the paper's
+/// method, it keeps its initial radius: its touch is [`NO_TOUCH`], and it is not used for visibility.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MedialBalls {
     /// Centres, (B, 3), local metres.
@@ -33,7 +33,8 @@ pub struct MedialBalls {
     pub radii: Vec<f32>,
     /// Index of the point p each ball is tangent at, (B).
     pub source: Vec<u32>,
-    /// Index of the second point q each ball touches, [`PULSE_TOUCH`] where a pulse bounds it, [`LIMIT_TOUCH`] or [`NO_TOUCH`], (B).
+    /// Index of the second point q each ball touches, [`PULSE_TOUCH`] where a pulse bounds it, [`LIMIT_TOUCH`] or
+    /// [`NO_TOUCH`], (B).
     pub touch: Vec<u32>,
     /// Separation angle ∠pcq in radians, (B); NaN for a ball that no point bounds.
     pub separation_angles: Vec<f32>,

@@ -6,9 +6,9 @@ use crate::{Error, Parameter, Result};
 
 /// A point cloud.
 ///
-/// Positions are metres, x east, y north, z up, relative to the origin of its frame; f32 holds a tenth of a millimetre within a
-/// kilometre of the origin, whereas projected coordinates in f32 would be off by centimetres. Every attribute that is
-/// present has one value per point.
+/// Positions are metres, x east, y north, z up, relative to the origin of its frame; f32 holds a tenth of a millimetre
+/// within a kilometre of the origin, whereas projected coordinates in f32 would be off by centimetres. Every attribute
+/// that is present has one value per point.
 #[derive(Clone, Debug, Default)]
 pub struct PointCloud {
     /// Where local positions lie, with the reference system and unit of the file.
@@ -205,8 +205,8 @@ impl PointCloud {
 
     /// This cloud with the local coordinates of another frame, whose reference system it takes over.
     ///
-    /// A cloud that says nothing of its coordinates, neither a system nor a unit, is taken to have those of the frame's file. Set-ups of
-    /// scanners are left out.
+    /// A cloud that says nothing of its coordinates, neither a system nor a unit, is taken to have those of the frame's
+    /// file. Set-ups of scanners are left out.
     #[must_use]
     pub fn moved_to(mut self, frame: &Frame) -> Self {
         let is_silent = self.frame.crs == Crs::default();

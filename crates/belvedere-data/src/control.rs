@@ -12,8 +12,8 @@ pub enum StageEnd {
     Stopped,
 }
 
-/// What the owner of long work provides: a progress bar, a notebook, a page, a signal handler. Every method may be called from any
-/// thread and should return at once.
+/// What the owner of long work provides: a progress bar, a notebook, a page, a signal handler. Every method may be
+/// called from any thread and should return at once.
 ///
 /// Stages nest: a stage that begins while another is open is a part of it, and the outer one goes on when it ends.
 /// Finished items belong to the innermost open stage. [`OpenStages`] keeps account of this.
@@ -132,8 +132,8 @@ impl OpenStages {
     }
 }
 
-/// A place to leave a parallel loop whose results are gathered as values: once the work is cancelled its pieces are passed over,
-/// and what was gathered must be thrown away.
+/// A place to leave a parallel loop whose results are gathered as values: once the work is cancelled its pieces are
+/// passed over, and what was gathered must be thrown away.
 ///
 /// ```
 /// use belvedere_data::control::{Control, Stop};

@@ -1,7 +1,7 @@
 //! Coordinate reference systems as far as visibility needs them: which unit, degrees or not, where on the globe.
 //!
-//! The cargo feature `crs` (on by default) brings the database of systems. Without it a [`Crs`] can be carried, written and
-//! read from well-known text; codes alone are kept, but their names, units and projections are not known.
+//! The cargo feature `crs` (on by default) brings the database of systems. Without it a [`Crs`] can be carried, written
+//! and read from well-known text; codes alone are kept, but their names, units and projections are not known.
 
 #[cfg(not(feature = "crs"))]
 #[path = "crs/no_registry.rs"]
@@ -131,7 +131,8 @@ impl Crs {
         Some(crs)
     }
 
-    /// What names the system for other programs: the well-known text of the file, else the code as `EPSG:28992`; `None` where no system is known.
+    /// What names the system for other programs: the well-known text of the file, else the code as `EPSG:28992`; `None`
+    /// where no system is known.
     #[must_use]
     pub fn definition(&self) -> Option<String> {
         self.wkt.clone().or_else(|| self.epsg.map(|code| format!("EPSG:{code}")))
@@ -173,7 +174,8 @@ impl Crs {
         is_known(self) && is_known(other) && !self.same_system(other)
     }
 
-    /// Refuses what is in this system where it contradicts that of the scene it is for; `what` is what the file at `path` holds, such as "mesh".
+    /// Refuses what is in this system where it contradicts that of the scene it is for; `what` is what the file at
+    /// `path` holds, such as "mesh".
     ///
     /// # Errors
     /// [`Error::UnusableCrs`].
@@ -303,7 +305,7 @@ fn utm_zone(longitude: f64, latitude: f64) -> u32 {
 
 /// Turns latitude and longitude (WGS 84) into the metres of one reference system, and back.
 pub struct GeographicProjection {
-    projection: registry::Projection,
+    projection: registry::CrsProjection,
     metres_per_unit: f64,
 }
 
@@ -317,7 +319,7 @@ impl Crs {
         let by_code = self.epsg.map(|code| format!("EPSG:{code}"));
         let mut failure = None;
         for definition in [by_code.as_deref(), self.wkt.as_deref()].into_iter().flatten() {
-            match registry::Projection::new(definition) {
+            match registry::CrsProjection::new(definition) {
                 Ok(projection) => {
                     return Ok(GeographicProjection { projection, metres_per_unit: self.metres_per_unit });
                 }
@@ -364,8 +366,8 @@ impl GeographicProjection {
         Ok([x * self.metres_per_unit, y * self.metres_per_unit])
     }
 
-    /// Latitude and longitude in radians of an easting and northing in metres: what [`GeographicProjection::project`] takes
-    /// back to within a micrometre.
+    /// Latitude and longitude in radians of an easting and northing in metres: what [`GeographicProjection::project`]
+    /// takes back to within a micrometre.
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] for positions that the system cannot take back, and for systems without an inverse.

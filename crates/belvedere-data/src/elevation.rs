@@ -12,11 +12,12 @@ pub struct ElevationGrid {
 }
 
 impl ElevationGrid {
-    /// The grid of `heights`, local metres, rows from the north, NaN where nothing is known. The first height is that at `north_west`, local
-    /// metres; columns lie `cell[0]` metres apart to the east and rows `cell[1]` to the south.
+    /// The grid of `heights`, local metres, rows from the north, NaN where nothing is known. The first height is that
+    /// at `north_west`, local metres; columns lie `cell[0]` metres apart to the east and rows `cell[1]` to the south.
     ///
     /// # Errors
-    /// [`Error::InvalidParameter`] for fewer than 2 x 2 heights, none that is known, a cell that is not above zero, or a place that is not finite.
+    /// [`Error::InvalidParameter`] for fewer than 2 x 2 heights, none that is known, a cell that is not above zero, or
+    /// a place that is not finite.
     pub fn new(mut heights: Raster<f32>, north_west: [f64; 2], cell: [f64; 2]) -> Result<Self> {
         let invalid = |parameter, value: String, expected| Err(Error::InvalidParameter { parameter, value, expected });
         let (width, height) = (heights.width(), heights.height());
@@ -79,7 +80,8 @@ impl ElevationGrid {
         Some([west + column as f64 * self.cell[0], north - row as f64 * self.cell[1], f64::from(height)])
     }
 
-    /// The height at a place on the map, both local metres, bilinear between the four nodes around it; `None` beyond the outermost nodes and where one of the four is not known.
+    /// The height at a place on the map, both local metres, bilinear between the four nodes around it; `None` beyond
+    /// the outermost nodes and where one of the four is not known.
     #[must_use]
     pub fn height_at(&self, [x, y]: [f64; 2]) -> Option<f64> {
         let [west, north] = self.north_west;
@@ -118,7 +120,8 @@ impl ElevationGrid {
         ])
     }
 
-    /// Lowest and highest height of the nodes within a box on the map, local metres; `None` where it holds no node with a height.
+    /// Lowest and highest height of the nodes within a box on the map, local metres; `None` where it holds no node with
+    /// a height.
     #[must_use]
     pub fn height_range(&self, within: ([f64; 2], [f64; 2])) -> Option<[f32; 2]> {
         let [columns, rows] = self.nodes_within(within)?;

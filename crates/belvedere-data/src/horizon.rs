@@ -11,11 +11,12 @@ pub struct HorizonProfile {
 }
 
 impl HorizonProfile {
-    /// The profile of azimuths clockwise from north (any turns) and elevations, radians, in any order. Of equal azimuths the higher elevation
-    /// counts.
+    /// The profile of azimuths clockwise from north (any turns) and elevations, radians, in any order. Of equal
+    /// azimuths the higher elevation counts.
     ///
     /// # Errors
-    /// [`Error::InvalidParameter`] for a profile without rows, and for a number that is not finite or an elevation beyond a right angle.
+    /// [`Error::InvalidParameter`] for a profile without rows, and for a number that is not finite or an elevation
+    /// beyond a right angle.
     pub fn new(rows: impl IntoIterator<Item = [f64; 2]>) -> Result<Self> {
         let mut rows: Vec<[f64; 2]> = rows.into_iter().collect();
         let is_wrong = |row: &&[f64; 2]| !(row[0].is_finite() && row[1].abs() <= FRAC_PI_2 + 1e-9);

@@ -1,5 +1,5 @@
-//! Plain data that all of Belvedere shares: point clouds, reference systems, meshes, medial balls, rasters, views, errors,
-//! progress.
+//! Plain data that all of Belvedere shares: point clouds, reference systems, meshes, medial balls, rasters, views,
+//! errors, progress.
 //!
 //! Users add the crate `belvedere`, which holds everything here under the same names.
 
@@ -10,10 +10,10 @@ pub mod crs;
 pub mod elevation;
 pub mod error;
 pub mod frame;
+pub mod free_segments;
 pub mod horizon;
 pub mod mesh;
 pub mod model;
-pub mod needles;
 pub mod parameter;
 pub mod polygon;
 pub mod random;

@@ -2,12 +2,12 @@
 
 use crate::balls::MedialBalls;
 use crate::frame::{Bounds, Frame};
-use crate::needles::NeedleColumns;
+use crate::free_segments::FreeSegmentColumns;
 use crate::{Error, Parameter, Result};
 use std::collections::BTreeMap;
 
-/// How far from the origin anything of a scene may lie, and how large a ball may be, metres. Beyond lies damage: readers leave out points
-/// that are 1000 km away, and squares of much larger numbers leave the range of f32.
+/// How far from the origin anything of a scene may lie, and how large a ball may be, metres. Beyond lies damage:
+/// readers leave out points that are 1000 km away, and squares of much larger numbers leave the range of f32.
 pub const FARTHEST: f32 = 1e7;
 
 /// Whether a local position is one that a scene can hold.
@@ -22,16 +22,16 @@ pub(crate) fn is_near(position: [f32; 3]) -> bool {
 pub struct ModelParts {
     /// Local coordinates of everything here: the frame of the cloud that the model was made from.
     pub frame: Frame,
-    /// The smallest box around the points that the balls were made from, local metres: what a view must hold to show the scene.
-    /// The balls may reach far beyond it.
+    /// The smallest box around the points that the balls were made from, local metres: what a view must hold to show
+    /// the scene. The balls may reach far beyond it.
     pub bounds: Bounds,
     /// The balls that block lines of sight.
     pub balls: MedialBalls,
-    /// Share of the pulses that got through the part of a crown that a ball belongs to, (B), 0 to 1; NaN for a ball that is no
-    /// vegetation. Empty where this was not measured.
+    /// Share of the pulses that got through the part of a crown that a ball belongs to, (B), 0 to 1; NaN for a ball
+    /// that is no vegetation. Empty where this was not measured.
     pub transmission: Vec<f32>,
     /// The pulses that prove lines of sight free, where they are known.
-    pub pulses: Option<NeedleColumns>,
+    pub pulses: Option<FreeSegmentColumns>,
     /// How the model was made, by name: side, method, parameters, program, input.
     pub provenance: BTreeMap<String, String>,
 }
@@ -44,8 +44,8 @@ impl ModelParts {
         self
     }
 
-    /// Checks that all columns are equally long, centres, bounds and origin within [`FARTHEST`], radii too and not negative,
-    /// transmissions between 0 and 1, and the pulses.
+    /// Checks that all columns are equally long, centres, bounds and origin within [`FARTHEST`], radii too and not
+    /// negative, transmissions between 0 and 1, and the pulses.
     ///
     /// # Errors
     /// [`Error::LengthMismatch`] or [`Error::InvalidParameter`] for the first fault.
@@ -78,6 +78,6 @@ impl ModelParts {
         if let Some(t) = self.transmission.iter().find(|t| !(t.is_nan() || (0.0..=1.0).contains(*t))) {
             return invalid(Parameter::Ball, format!("of transmission {t}"), "of transmission 0 to 1, or NaN");
         }
-        self.pulses.as_ref().map_or(Ok(()), NeedleColumns::validate)
+        self.pulses.as_ref().map_or(Ok(()), FreeSegmentColumns::validate)
     }
 }

@@ -1,6 +1,7 @@
 //! Polygons on the map.
 
-/// Whether a place lies within a rim and outside its holes: the rule of odd crossings over all rings, which may be closed or not.
+/// Whether a place lies within a rim and outside its holes: the rule of odd crossings over all rings, which may be
+/// closed or not.
 #[must_use]
 pub fn is_inside(rings: &[Vec<[f64; 2]>], [x, y]: [f64; 2]) -> bool {
     let mut inside = false;
@@ -23,9 +24,9 @@ mod tests {
 
     #[test]
     fn holes_and_closed_rings_are_understood() {
-        let rim = vec![[0.0, 0.0], [10.0, 0.0], [10.0, 10.0], [0.0, 10.0], [0.0, 0.0]];
+        let outline = vec![[0.0, 0.0], [10.0, 0.0], [10.0, 10.0], [0.0, 10.0], [0.0, 0.0]];
         let hole = vec![[4.0, 4.0], [6.0, 4.0], [6.0, 6.0], [4.0, 6.0]];
-        let polygon = [rim, hole];
+        let polygon = [outline, hole];
         for (place, expected) in
             [([1.0, 1.0], true), ([5.0, 5.0], false), ([5.0, 3.0], true), ([11.0, 5.0], false), ([-1.0, 4.0], false)]
         {

@@ -1,4 +1,5 @@
-//! `with_…` methods for structs of parameters, which are `#[non_exhaustive]` so that they can gain fields without breaking programs.
+//! `with_…` methods for structs of parameters, which are `#[non_exhaustive]` so that they can gain fields without
+//! breaking programs.
 
 /// One method for each field named.
 #[doc(hidden)]

@@ -6,8 +6,8 @@ use crate::cloud::to_local;
 use crate::vector::length;
 use crate::{Error, GpsTimeKind, Parameter, PointCloud, Result};
 
-/// Longest gap between two positions that is interpolated over: recorders write at 1 Hz or faster, and in two seconds an
-/// aircraft in a turn leaves the chord by a few metres; beyond that the path is not known.
+/// Longest gap between two positions that is interpolated over: recorders write at 1 Hz or faster, and in two seconds
+/// an aircraft in a turn leaves the chord by a few metres; beyond that the path is not known.
 pub const MAX_GAP_S: f64 = 2.0;
 
 /// Seconds in a GPS week.
@@ -88,8 +88,9 @@ impl ClockOffset {
 }
 
 impl Trajectory {
-    /// A trajectory from times (seconds) and positions (metres) in any order, and how many records were left out because
-    /// another had the same time. Of those the first is kept. Records that are not finite are left out and counted too.
+    /// A trajectory from times (seconds) and positions (metres) in any order, and how many records were left out
+    /// because another had the same time. Of those the first is kept. Records that are not finite are left out and
+    /// counted too.
     #[must_use]
     pub fn from_records(mut records: Vec<(f64, [f64; 3])>) -> (Self, usize) {
         let given = records.len();
@@ -168,12 +169,12 @@ impl Trajectory {
         best.unwrap_or(ClockOffset { clock: Same, leap_seconds: 0.0, known_count: 0, time_count: times.len() })
     }
 
-    /// Local position of the scanner for each point of `cloud`, (N, 3), metres, NaN where the trajectory knows none; and how
-    /// the cloud's times became those of the trajectory.
+    /// Local position of the scanner for each point of `cloud`, (N, 3), metres, NaN where the trajectory knows none;
+    /// and how the cloud's times became those of the trajectory.
     ///
     /// # Errors
-    /// [`Error::MissingAttribute`] without GPS times, [`Error::InvalidParameter`] where it knows a position at none of them, is more than 50 km away from
-    /// all points, or above less than a tenth of them.
+    /// [`Error::MissingAttribute`] without GPS times, [`Error::InvalidParameter`] where it knows a position at none of
+    /// them, is more than 50 km away from all points, or above less than a tenth of them.
     pub fn scanner_positions(&self, cloud: &PointCloud) -> Result<(Vec<[f32; 3]>, ClockOffset)> {
         let times = cloud.attributes.gps_time.as_deref().ok_or(Error::MissingAttribute {
             attribute: "GPS time",
@@ -193,8 +194,8 @@ impl Trajectory {
         let offset = self.clock_offset_for(times, cloud.attributes.gps_time_kind);
         if offset.known_count == 0 && !times.is_empty() {
             let span = |times: &[f64]| {
-                let least = times.iter().copied().fold(f64::INFINITY, f64::min);
-                format!("{least} to {} s", times.iter().copied().fold(f64::NEG_INFINITY, f64::max))
+                let min = times.iter().copied().fold(f64::INFINITY, f64::min);
+                format!("{min} to {} s", times.iter().copied().fold(f64::NEG_INFINITY, f64::max))
             };
             return Err(Error::InvalidParameter {
                 parameter: Parameter::Trajectory,
@@ -217,13 +218,15 @@ impl Trajectory {
 }
 
 /// Farthest that a scanner may be from its points, metres: ten times what airborne scanners reach.
-const MOST_DISTANCE: f64 = 50_000.0;
+const MAX_DISTANCE: f64 = 50_000.0;
 /// How far below its scanner a point must be to count as below it, metres: more than points of the ground are rough.
 const CLEARLY_BELOW: f32 = 0.5;
-/// Least share of the points that are below their scanner: those of a vehicle measure the road, those of an aircraft everything.
-const LEAST_BELOW: f64 = 0.1;
+/// Least share of the points that are below their scanner: those of a vehicle measure the road, those of an aircraft
+/// everything.
+const MIN_BELOW: f64 = 0.1;
 
-/// Refuses scanner positions that cannot be those of points: in degrees, in another system, or at the height of the ground. Both (N, 3), local metres.
+/// Refuses scanner positions that cannot be those of points: in degrees, in another system, or at the height of the
+/// ground. Both (N, 3), local metres.
 fn check_above(positions: &[[f32; 3]], points: &[[f32; 3]]) -> Result<()> {
     let invalid = |value, expected| Err(Error::InvalidParameter { parameter: Parameter::Trajectory, value, expected });
     let known: Vec<(&[f32; 3], &[f32; 3])> =
@@ -233,12 +236,12 @@ fn check_above(positions: &[[f32; 3]], points: &[[f32; 3]]) -> Result<()> {
     }
     let distance = |(p, q): &(&[f32; 3], &[f32; 3])| length([0, 1, 2].map(|i| f64::from(p[i]) - f64::from(q[i])));
     let nearest = known.iter().map(distance).fold(f64::INFINITY, f64::min);
-    if !(nearest <= MOST_DISTANCE) {
+    if !(nearest <= MAX_DISTANCE) {
         let value = format!("at least {:.0} km away from the points", nearest / 1000.0);
         return invalid(value, "in the reference system of the cloud: easting, northing and height, not degrees");
     }
     let below = known.iter().filter(|(p, q)| p[2] - q[2] > CLEARLY_BELOW && p[2].is_finite()).count();
-    if (below as f64) < LEAST_BELOW * known.len() as f64 {
+    if (below as f64) < MIN_BELOW * known.len() as f64 {
         let value = format!("above {} of {} points only", below, known.len());
         return invalid(value, "above the points: heights are those of the scanner, not of the ground");
     }

@@ -38,8 +38,9 @@ pub fn unit(a: [f64; 3]) -> Option<[f64; 3]> {
     (length.is_finite() && length > 0.0).then(|| a.map(|v| v / length))
 }
 
-/// The piece of a ray that lies in a box: the first and the last of the multiples of its `step` within `piece`. The box is between two `sides` on each axis, as seen from
-/// where the ray starts. `None` where the ray passes beside it, and for a box whose sides are in the wrong order.
+/// The piece of a ray that lies in a box: the first and the last of the multiples of its `step` within `piece`. The box
+/// is between two `sides` on each axis, as seen from where the ray starts. `None` where the ray passes beside it, and
+/// for a box whose sides are in the wrong order.
 #[must_use]
 #[inline]
 pub fn piece_in_box<const N: usize>(sides: [[f64; 2]; N], step: [f64; N], piece: [f64; 2]) -> Option<[f64; 2]> {

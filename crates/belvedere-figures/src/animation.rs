@@ -1,4 +1,5 @@
-//! Several pictures after each other as one animated PNG, which browsers and viewers play like a GIF but in full colour.
+//! Several pictures after each other as one animated PNG, which browsers and viewers play like a GIF but in full
+//! colour.
 
 use std::path::Path;
 
@@ -6,17 +7,18 @@ use crate::picture::Picture;
 use crate::png::write_frames;
 use belvedere_data::{Error, Parameter, Result};
 
-/// Longest time that a frame stays, seconds: beyond it the file format, which counts milliseconds in 16 bits, has no number.
+/// Longest time that a frame stays, seconds: beyond it the file format, which counts milliseconds in 16 bits, has no
+/// number.
 const LONGEST: f64 = 65.535;
 
-/// Writes `frames`, all of one size, as an animated PNG that shows each for `seconds_per_frame` (to a millisecond) and starts over
-/// without end. Programs that know no animated PNG show the first frame.
+/// Writes `frames`, all of one size, as an animated PNG that shows each for `seconds_per_frame` (to a millisecond) and
+/// starts over without end. Programs that know no animated PNG show the first frame.
 ///
 /// Of each frame only the rectangle that differs from the frame before is stored.
 ///
 /// # Errors
-/// [`Error::InvalidParameter`] for no frame, frames of different sizes or without pixels, and a time that is not 0.001 to 65.535
-/// seconds; [`Error::Io`].
+/// [`Error::InvalidParameter`] for no frame, frames of different sizes or without pixels, and a time that is not 0.001
+/// to 65.535 seconds; [`Error::Io`].
 ///
 /// # Source
 /// W3C, Portable Network Graphics (PNG) Specification, third edition, 2025, sections 4.9 and 11.3.6.

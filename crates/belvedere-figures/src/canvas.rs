@@ -90,8 +90,8 @@ impl Canvas {
     /// metres, how it is curved there.
     ///
     /// # Errors
-    /// [`Error::LengthMismatch`] unless both rasters have the size of the picture, there is one radius for each centre, and
-    /// one colour or one for each ball.
+    /// [`Error::LengthMismatch`] unless both rasters have the size of the picture, there is one radius for each centre,
+    /// and one colour or one for each ball.
     pub fn draw_seen_balls(
         &mut self,
         (depth, items): (&Raster<f32>, &Raster<u32>),

@@ -17,11 +17,11 @@ const TITLE_GAP: usize = 6;
 /// Share of the colour that a surface edge-on shows.
 const AMBIENT: f64 = 0.35;
 /// Maps smaller than this are enlarged.
-const LEAST_SIDE: usize = 480;
+const MIN_SIDE: usize = 480;
 
-/// A picture of a depth map, metres: near yellow, far violet, light grey where nothing was hit (not finite), with `title`
-/// above and a legend at the right. The colours span the first to the last hundredth of the depths, so that a few far pixels
-/// do not flatten the rest. Small maps are enlarged by repeating pixels.
+/// A picture of a depth map, metres: near yellow, far violet, light grey where nothing was hit (not finite), with
+/// `title` above and a legend at the right. The colours span the first to the last hundredth of the depths, so that a
+/// few far pixels do not flatten the rest. Small maps are enlarged by repeating pixels.
 #[must_use]
 pub fn depth_picture(depth: &Raster<f32>, title: &str) -> Picture {
     let (near, far) =
@@ -30,8 +30,9 @@ pub fn depth_picture(depth: &Raster<f32>, title: &str) -> Picture {
     with_legend(&enlarged(colored(depth, &colors, |_| 1.0)), &colors, title, "depth (m)")
 }
 
-/// A picture of the depths that `view` shows, as [`depth_picture`], but for an eye: equal ratios of depth are equal steps of colour,
-/// since what is near would else be all one, and surfaces are shaded as if lit from the upper left behind the eye.
+/// A picture of the depths that `view` shows, as [`depth_picture`], but for an eye: equal ratios of depth are equal
+/// steps of colour, since what is near would else be all one, and surfaces are shaded as if lit from the upper left
+/// behind the eye.
 #[must_use]
 pub fn camera_picture(view: &View, depth: &Raster<f32>, title: &str) -> Picture {
     let position =
@@ -43,8 +44,8 @@ pub fn camera_picture(view: &View, depth: &Raster<f32>, title: &str) -> Picture 
     with_legend(&enlarged(shaded), &colors, title, "depth (m)")
 }
 
-/// A picture of the ranges around an eye, columns and rows as in [`panorama_direction`], coloured and shaded as [`camera_picture`],
-/// with the points of the compass below.
+/// A picture of the ranges around an eye, columns and rows as in [`panorama_direction`], coloured and shaded as
+/// [`camera_picture`], with the points of the compass below.
 #[must_use]
 pub fn panorama_picture(range: &Raster<f32>, title: &str) -> Picture {
     let width = range.width();
@@ -135,8 +136,8 @@ fn scaled(color: [u8; 3], share: f64) -> [u8; 3] {
     color.map(|channel| (f64::from(channel) * share.clamp(0.0, 1.0)).round() as u8)
 }
 
-/// Unit normal of the surface that a pixel shows, and unit vector towards the eye at the origin of `position`; `None` where no
-/// neighbour in one of both directions shows a surface.
+/// Unit normal of the surface that a pixel shows, and unit vector towards the eye at the origin of `position`; `None`
+/// where no neighbour in one of both directions shows a surface.
 fn facing(
     depth: &Raster<f32>,
     [column, row]: [usize; 2],
@@ -169,7 +170,7 @@ fn lit(normal: [f64; 3], to_eye: [f64; 3], aside: [f64; 3]) -> f64 {
 
 fn enlarged(map: Picture) -> Picture {
     let longest = map.width.max(map.height).max(1);
-    map.enlarged((LEAST_SIDE.div_ceil(longest)).clamp(1, LEAST_SIDE))
+    map.enlarged((MIN_SIDE.div_ceil(longest)).clamp(1, MIN_SIDE))
 }
 
 /// A panorama with the points of the compass below.
@@ -211,8 +212,8 @@ fn with_legend(map: &Picture, colors: &DepthColors, title: &str, legend: &str) -
     let left = margin * 2 + map.width;
     draw_text(&mut sheet, left, top, legend, scale, INK);
     let bar_top = top + line + HEIGHT * scale / 2;
-    let rim = scale.div_ceil(2);
-    sheet.fill_rectangle([left - rim, bar_top - rim], [bar_width + 2 * rim, bar_height + 2 * rim], INK);
+    let border = scale.div_ceil(2);
+    sheet.fill_rectangle([left - border, bar_top - border], [bar_width + 2 * border, bar_height + 2 * border], INK);
     for row in 0..bar_height {
         let color = ramp(1.0 - (row as f64 + 0.5) / bar_height as f64);
         sheet.fill_rectangle([left, bar_top + row], [bar_width, 1], color);
@@ -226,7 +227,7 @@ fn with_legend(map: &Picture, colors: &DepthColors, title: &str, legend: &str) -
         draw_text(&mut sheet, label_left, text_top, label, scale, INK);
     }
     let swatch_top = bar_top + bar_height + line;
-    sheet.fill_rectangle([left - rim, swatch_top - rim], [bar_width + 2 * rim, 8 * scale + 2 * rim], INK);
+    sheet.fill_rectangle([left - border, swatch_top - border], [bar_width + 2 * border, 8 * scale + 2 * border], INK);
     sheet.fill_rectangle([left, swatch_top], [bar_width, 8 * scale], NOTHING);
     draw_text(&mut sheet, label_left, swatch_top + scale / 2, NOTHING_LABEL, scale, INK);
     sheet

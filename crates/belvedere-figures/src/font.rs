@@ -1,7 +1,7 @@
 //! Text in pictures, in Roboto.
 //!
-//! The font is built in, so that legends need no font file. It has Latin, Greek and Cyrillic letters and common signs. A character that it lacks, such
-//! as an Arabic or a Chinese one, is drawn as a box.
+//! The font is built in, so that legends need no font file. It has Latin, Greek and Cyrillic letters and common signs.
+//! A character that it lacks, such as an Arabic or a Chinese one, is drawn as a box.
 
 use crate::picture::Picture;
 use ab_glyph::{Font, FontRef, Glyph, PxScale, ScaleFont, point};
@@ -11,7 +11,8 @@ pub(crate) const HEIGHT: usize = 8;
 
 /// Roboto, see `fonts/LICENSE`.
 const FONT: &[u8] = include_bytes!("../fonts/Roboto-Regular.ttf");
-/// Height of the font at scale 1, from the top of the highest letters to the bottom of the lowest, pixels: its capitals are then 7 pixels high.
+/// Height of the font at scale 1, from the top of the highest letters to the bottom of the lowest, pixels: its capitals
+/// are then 7 pixels high.
 const FONT_HEIGHT: f32 = 11.5;
 /// Where letters stand at scale 1, pixels below the upper edge of a line.
 const BASELINE: f32 = 7.0;

@@ -12,8 +12,9 @@ const GRID: [u8; 3] = [178, 190, 202];
 /// Names of azimuths, eighths of a circle apart from north.
 const COMPASS: [&str; 9] = ["N", "NE", "E", "SE", "S", "SW", "W", "NW", "N"];
 
-/// A diagram of `elevations_deg`, one for each of equal steps clockwise from north: the sky pale, what stands before it grey. It reaches
-/// from the horizon, or from the lowest elevation above -30 where one is below it, to the next ten degrees above the highest.
+/// A diagram of `elevations_deg`, one for each of equal steps clockwise from north: the sky pale, what stands before it
+/// grey. It reaches from the horizon, or from the lowest elevation above -30 where one is below it, to the next ten
+/// degrees above the highest.
 #[must_use]
 pub fn horizon_picture(elevations_deg: &[f64], title: &str) -> Picture {
     let margin = 8 * SCALE;

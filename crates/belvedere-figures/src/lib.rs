@@ -23,4 +23,4 @@ pub use horizon_picture::horizon_picture;
 pub use map_picture::{MapLegend, MapMark, MapPicture, map_picture};
 pub use picture::{Picture, side_by_side};
 pub use png::write_png;
-pub use profile_picture::{Profile, profile_picture};
+pub use profile_picture::{DistanceProfile, profile_picture};

@@ -12,7 +12,7 @@ use belvedere_io::Georeference;
 use belvedere_io::colors::ramp;
 
 /// Maps smaller than this are enlarged.
-const LEAST_SIDE: usize = 600;
+const MIN_SIDE: usize = 600;
 /// Where nothing is known of the relief.
 const UNKNOWN: [f64; 3] = [236.0, 237.0, 240.0];
 /// Share of a pixel that the colour of the map takes, the rest is relief.
@@ -31,7 +31,7 @@ const LABEL: f64 = 4.5;
 /// About so many coordinates along the longer side of a map.
 const COORDINATES: f64 = 5.0;
 /// Most round values beside a ramp.
-const MOST_TICKS: f64 = 9.0;
+const MAX_TICKS: f64 = 9.0;
 
 /// What a map shows.
 pub struct MapPicture<'a> {
@@ -39,9 +39,11 @@ pub struct MapPicture<'a> {
     pub relief: &'a Raster<f32>,
     /// Side of a pixel, metres.
     pub cell: f64,
-    /// Where the map lies, for coordinates along its sides, in the reference system and unit of the file; `None` draws none.
+    /// Where the map lies, for coordinates along its sides, in the reference system and unit of the file; `None` draws
+    /// none.
     pub place: Option<&'a Georeference>,
-    /// Colour of each pixel, as many as heights; `None`, where there is no answer, shows the bare relief, and the legend says so.
+    /// Colour of each pixel, as many as heights; `None`, where there is no answer, shows the bare relief, and the
+    /// legend says so.
     pub colors: &'a [Option<[u8; 3]>],
     /// Places to mark.
     pub marks: &'a [MapMark],
@@ -73,7 +75,8 @@ impl<'a> MapPicture<'a> {
 pub struct MapMark {
     /// Columns from the west and rows from the north.
     pub place: [f64; 2],
-    /// Azimuth that it looks to, clockwise from the north of the grid, and width of its view, radians: drawn as a wedge.
+    /// Azimuth that it looks to, clockwise from the north of the grid, and width of its view, radians: drawn as a
+    /// wedge.
     pub view: Option<[f64; 2]>,
     /// What stands beside it; empty for nothing.
     pub label: String,
@@ -83,8 +86,8 @@ pub struct MapMark {
 pub enum MapLegend<'a> {
     /// Each colour and its meaning.
     Colors(&'a [([u8; 3], &'a str)]),
-    /// Colours from dark violet to yellow, as [`belvedere_io::ramp`] has them, between two values, with the name of what is
-    /// measured, and further colours with their meanings.
+    /// Colours from dark violet to yellow, as [`belvedere_io::ramp`] has them, between two values, with the name of
+    /// what is measured, and further colours with their meanings.
     Ramp(&'a str, [f64; 2], &'a [([u8; 3], &'a str)]),
 }
 
@@ -121,7 +124,7 @@ pub fn map_picture(map: &MapPicture<'_>) -> Result<Picture> {
         }
     });
     let longest = width.max(height).max(1);
-    let factor = LEAST_SIDE.div_ceil(longest).clamp(1, LEAST_SIDE);
+    let factor = MIN_SIDE.div_ceil(longest).clamp(1, MIN_SIDE);
     let mut picture = picture.enlarged(factor);
     let radius = picture.width.max(picture.height) as f64 / 130.0 + 2.0;
     // many observers are dots, not a cover over the map
@@ -193,10 +196,10 @@ fn draw_label(picture: &mut Picture, [x, y]: [f64; 2], mark: &MapMark, radius: f
         reason = "`as` saturates, text is cut at the edge"
     )]
     let corner = [(middle - width as f64 / 2.0) as usize, (line - height as f64 / 2.0) as usize];
-    let rim = scale.div_ceil(2);
+    let border = scale.div_ceil(2);
     for right in 0..3 {
         for down in 0..3 {
-            let [left, top] = [corner[0] + right * rim, corner[1] + down * rim].map(|v| v.saturating_sub(rim));
+            let [left, top] = [corner[0] + right * border, corner[1] + down * border].map(|v| v.saturating_sub(border));
             draw_text(picture, left, top, &mark.label, scale, MARK[1]);
         }
     }
@@ -215,7 +218,7 @@ fn for_pixels_around(
         clippy::cast_sign_loss,
         reason = "`as` saturates, pixels are clamped at the edge"
     )]
-    let pixels = |v: f64, most: usize| (v - radius).max(0.0) as usize..most.min((v + radius + 1.0).max(0.0) as usize);
+    let pixels = |v: f64, max: usize| (v - radius).max(0.0) as usize..max.min((v + radius + 1.0).max(0.0) as usize);
     for row in pixels(y, picture.height) {
         for column in pixels(x, picture.width) {
             let offset = [column as f64 + 0.5 - x, row as f64 + 0.5 - y];
@@ -260,9 +263,9 @@ fn framed(map: &Picture, what: &MapPicture<'_>, pixel: f64) -> Picture {
         draw_text(&mut sheet, left, at, heading, scale, INK);
         at += line + 3 * scale;
     }
-    let rim = scale.div_ceil(2);
+    let border = scale.div_ceil(2);
     for (color, text) in &lines {
-        sheet.fill_rectangle([left - rim, at - rim], [swatch + 2 * rim, 9 * scale + 2 * rim], INK);
+        sheet.fill_rectangle([left - border, at - border], [swatch + 2 * border, 9 * scale + 2 * border], INK);
         sheet.fill_rectangle([left, at], [swatch, 9 * scale], *color);
         draw_text(&mut sheet, left + swatch + 5 * scale, at + scale, text, scale, INK);
         at += line + 3 * scale;
@@ -303,7 +306,8 @@ fn draw_north(sheet: &mut Picture, [left, top]: [usize; 2], scale: usize) {
     draw_text(sheet, left + 9 * scale, top + scale, "N", scale, INK);
 }
 
-/// Round coordinates along the sides of a map: pixels from its west side with their eastings, and from its north side with their northings.
+/// Round coordinates along the sides of a map: pixels from its west side with their eastings, and from its north side
+/// with their northings.
 #[derive(Default)]
 struct Axes {
     eastings: Vec<(usize, String)>,
@@ -376,8 +380,8 @@ impl Axes {
     }
 }
 
-/// Round values between `low` and `high`, and either end that is half a step or more from the next of them (counts begin at 1): the
-/// share of the way that each lies at, and how it is written.
+/// Round values between `low` and `high`, and either end that is half a step or more from the next of them (counts
+/// begin at 1): the share of the way that each lies at, and how it is written.
 fn ticks([low, high]: [f64; 2]) -> Vec<(f64, String)> {
     /// What rounding may take from a whole number of steps.
     const ROUNDING: f64 = 1e-6;
@@ -388,7 +392,7 @@ fn ticks([low, high]: [f64; 2]) -> Vec<(f64, String)> {
     let power = 10.0_f64.powf(span.log10().floor());
     // 0 is added so that 0 has no sign
     let whole = |step: f64| [(low / step - ROUNDING).ceil() + 0.0, (high / step + ROUNDING).floor()];
-    let is_few = |step: &f64| whole(*step)[1] - whole(*step)[0] < MOST_TICKS;
+    let is_few = |step: &f64| whole(*step)[1] - whole(*step)[0] < MAX_TICKS;
     // between whole numbers from two on lie whole numbers: half an observer sees nothing
     let is_count = low.fract() == 0.0 && high.fract() == 0.0 && span >= 2.0;
     let steps = [0.1, 0.2, 0.5].map(|m| m * power).into_iter();
@@ -411,10 +415,10 @@ fn ticks([low, high]: [f64; 2]) -> Vec<(f64, String)> {
     values.into_iter().map(|value| (((value - low) / span).clamp(0.0, 1.0), written(value))).collect()
 }
 
-/// The longest round length up to `most` metres, and how it is written.
-fn scale_bar(most: f64) -> (f64, String) {
-    let power = 10.0_f64.powf(most.max(1e-3).log10().floor());
-    let length = [5.0, 2.0, 1.0].map(|m| m * power).into_iter().find(|&l| l <= most).unwrap_or(power);
+/// The longest round length up to `max` metres, and how it is written.
+fn scale_bar(max: f64) -> (f64, String) {
+    let power = 10.0_f64.powf(max.max(1e-3).log10().floor());
+    let length = [5.0, 2.0, 1.0].map(|m| m * power).into_iter().find(|&l| l <= max).unwrap_or(power);
     let text = if length >= 1000.0 { format!("{} km", length / 1000.0) } else { format!("{length} m") };
     (length, text)
 }
@@ -433,18 +437,18 @@ mod tests {
         };
         let axes = Axes::new(&place, &Raster::filled(60, 40, 0.0), [600, 400], 1);
         // 30 m across: every ten metres would be three, every five too many
-        let told =
+        let labels =
             |ticks: &[(usize, String)]| ticks.iter().map(|(at, text)| format!("{at} {text}")).collect::<Vec<_>>();
-        assert_eq!(told(&axes.eastings), ["100 84990", "300 85000", "500 85010"]);
-        assert_eq!(told(&axes.northings), ["300 446000", "100 446010"]);
+        assert_eq!(labels(&axes.eastings), ["100 84990", "300 85000", "500 85010"]);
+        assert_eq!(labels(&axes.northings), ["300 446000", "100 446010"]);
         assert_eq!([0.3, 1.0, 6.1, 140.0].map(round_step), [0.5, 1.0, 10.0, 200.0]);
     }
 
     #[test]
     fn each_count_has_the_colour_of_the_legend_and_cells_without_an_answer_are_named() {
-        let (relief, most) = (Raster::filled(2, 2, 0.0), 3.0);
+        let (relief, max) = (Raster::filled(2, 2, 0.0), 3.0);
         let unproven = ([90, 150, 240], "unproven");
-        let colors = [Some(ramp(0.0)), Some(ramp(2.0 / most)), Some(ramp(1.0)), None];
+        let colors = [Some(ramp(0.0)), Some(ramp(2.0 / max)), Some(ramp(1.0)), None];
         let map = MapPicture {
             relief: &relief,
             cell: 1.0,
@@ -453,7 +457,7 @@ mod tests {
             marks: &[],
             mark_name: "",
             title: "",
-            legend: MapLegend::Ramp("observers", [0.0, most], &[unproven]),
+            legend: MapLegend::Ramp("observers", [0.0, max], &[unproven]),
         };
         let lines = legend_lines(&map);
         let texts: Vec<&str> = lines.iter().map(|(_, text)| text.as_str()).collect();

@@ -75,8 +75,8 @@ impl Picture {
     }
 }
 
-/// `pictures` in one row from left to right, each under its caption; a caption that is too wide is cut, missing ones stay
-/// empty. Pictures much smaller than the tallest are enlarged by a whole factor, so that they can be compared.
+/// `pictures` in one row from left to right, each under its caption; a caption that is too wide is cut, missing ones
+/// stay empty. Pictures much smaller than the tallest are enlarged by a whole factor, so that they can be compared.
 #[must_use]
 pub fn side_by_side(pictures: &[Picture], captions: &[&str]) -> Picture {
     let tallest = pictures.iter().map(|p| p.height).max().unwrap_or(0);

@@ -11,8 +11,8 @@ use belvedere_io::atomic;
 /// Writes `picture` with 8 bits per channel.
 ///
 /// # Errors
-/// [`Error::InvalidParameter`] for a picture without pixels, with a side of more than `u32` pixels or with the wrong number
-/// of bytes, [`Error::Io`].
+/// [`Error::InvalidParameter`] for a picture without pixels, with a side of more than `u32` pixels or with the wrong
+/// number of bytes, [`Error::Io`].
 pub fn write_png(path: &Path, picture: &Picture) -> Result<()> {
     let (width, height) = checked_size(picture)?;
     atomic::write(path, |output| {
@@ -22,8 +22,8 @@ pub fn write_png(path: &Path, picture: &Picture) -> Result<()> {
     })
 }
 
-/// Writes pictures of one size as the frames of an animation that starts over without end, each shown for `milliseconds`. A frame is
-/// stored as the rectangle that differs from the one before.
+/// Writes pictures of one size as the frames of an animation that starts over without end, each shown for
+/// `milliseconds`. A frame is stored as the rectangle that differs from the one before.
 ///
 /// # Errors
 /// Those of [`write_png`], and more than `u32` frames.

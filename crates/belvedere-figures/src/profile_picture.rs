@@ -14,7 +14,7 @@ const HIDDEN: [u8; 3] = [205, 45, 45];
 const GRID: [u8; 3] = [228, 229, 233];
 
 /// A profile, one value for each of equally spaced distances.
-pub struct Profile<'a> {
+pub struct DistanceProfile<'a> {
     /// Distance on the map from the observer, metres, rising.
     pub distances: &'a [f64],
     /// Height of the ground, metres, NaN where not known.
@@ -29,10 +29,10 @@ pub struct Profile<'a> {
     pub title: &'a str,
 }
 
-/// The profile as a diagram: ground brown, what blocks grey, the line green to where it is blocked and red behind. Heights are
-/// exaggerated to fill it; both axes have their scale.
+/// The profile as a diagram: ground brown, what blocks grey, the line green to where it is blocked and red behind.
+/// Heights are exaggerated to fill it; both axes have their scale.
 #[must_use]
-pub fn profile_picture(profile: &Profile<'_>) -> Picture {
+pub fn profile_picture(profile: &DistanceProfile<'_>) -> Picture {
     let margin = 8 * SCALE;
     let line_height = (HEIGHT + 4) * SCALE;
     let mut sheet = Picture::filled(SIZE[0], SIZE[1], PAPER);

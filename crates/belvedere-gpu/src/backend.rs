@@ -6,7 +6,7 @@ use crate::drawing::{self, Drawing};
 use crate::lines::{Liner, Loaded, Words};
 use belvedere_core::depth::{BoundsParams, DepthBounds};
 use belvedere_core::query::cpu::PreparedBalls;
-use belvedere_core::query::{Backend, BallTree, Drawable, Prepared, Profile, Settled, Viewers};
+use belvedere_core::query::{Backend, BallTree, Drawable, PreparedBackend, Profile, Settled, Viewers};
 use belvedere_data::balls::MedialBalls;
 use belvedere_data::control::Control;
 use belvedere_data::view::View;
@@ -225,7 +225,7 @@ impl Shared {
 }
 
 impl Backend for Gpu {
-    fn prepare(&self, balls: &Arc<BallTree>) -> Result<Box<dyn Prepared>> {
+    fn prepare(&self, balls: &Arc<BallTree>) -> Result<Box<dyn PreparedBackend>> {
         let (tree, cpu) = (Arc::clone(balls), PreparedBalls::new(balls));
         Ok(Box::new(OnDevice { tree, cpu, shared: Arc::clone(&self.shared), memory: Mutex::default() }))
     }
@@ -268,7 +268,7 @@ struct Memory {
     loaded: Option<(usize, Loaded)>,
 }
 
-impl Prepared for OnDevice {
+impl PreparedBackend for OnDevice {
     fn depth(&self, view: &View, start: f64, control: &Control<'_>) -> Result<DepthBounds> {
         let params = BoundsParams { shell: self.tree.rule().shell, start };
         match drawing::bounds(&self.shared, self.tree.balls(), view, &params, control)? {

@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::part::{Coordinates, Part, unquantise};
+use super::part::{Coordinates, FilePart, unquantise};
 use super::read_cloud::ReadReport;
 use super::read_options::{ReadOptions, RowNumbers};
 use belvedere_data::Frame;
@@ -13,28 +13,28 @@ use belvedere_data::{Error, Parameter, Result};
 /// Points further than this from the median (or from a fixed origin) along an axis are no part of any scene, in metres.
 const FARTHEST: f64 = 1e6;
 
-/// Only points this near to the median influence the origin, in metres: f32 keeps a millimetre up to 16 km, and one stray
-/// point must not coarsen all others.
+/// Only points this near to the median influence the origin, in metres: f32 keeps a millimetre up to 16 km, and one
+/// stray point must not coarsen all others.
 const NEAR: f64 = 1e4;
 
 /// The median is taken of about this many points, evenly spread: it only has to land among the points.
 const SAMPLE: usize = 200_000;
 
 /// Any position of the part, in the unit of its file; zero without points.
-pub(super) fn any_position(part: &Part) -> [f64; 3] {
+pub(super) fn any_position(part: &FilePart) -> [f64; 3] {
     middle(std::slice::from_ref(part), |_| [1.0; 3])
 }
 
 /// Joins `parts`, in order, in the frame of `options` where that is given.
-pub(super) fn assemble(mut parts: Vec<Part>, options: &ReadOptions) -> Result<(PointCloud, ReadReport)> {
+pub(super) fn assemble(mut parts: Vec<FilePart>, options: &ReadOptions) -> Result<(PointCloud, ReadReport)> {
     let mut report = ReadReport::default();
     let fixed = options.frame.as_ref();
     adopt_common_crs(&mut parts, fixed, &mut report);
     // Whether a point is far away must not depend on which other points were read with it where the frame is fixed.
     let middle = fixed.map_or_else(|| middle(&parts, |part| part.crs.metres_per_unit_xyz()), |frame| frame.origin);
 
-    let found: Vec<Found> = parts.iter().map(|part| look(part, middle)).collect();
-    let bounds = found.iter().fold(Extent::default(), |bounds, one| bounds.join(one.bounds));
+    let found: Vec<PartPass> = parts.iter().map(|part| look(part, middle)).collect();
+    let bounds = found.iter().fold(PointExtent::default(), |bounds, one| bounds.join(one.bounds));
     // Adding zero turns −0 into 0, which prints better.
     let chosen = || centre_rounded([bounds.low, bounds.high].into_iter()).map(|middle| middle + 0.0);
     let origin = fixed.map_or_else(chosen, |frame| frame.origin);
@@ -107,7 +107,7 @@ pub(super) fn assemble(mut parts: Vec<Part>, options: &ReadOptions) -> Result<(P
 }
 
 /// Gives the files without a system that of the frame, or else of the other files.
-fn adopt_common_crs(parts: &mut [Part], fixed: Option<&Frame>, report: &mut ReadReport) {
+fn adopt_common_crs(parts: &mut [FilePart], fixed: Option<&Frame>, report: &mut ReadReport) {
     let of_frame = fixed.map(|frame| &frame.crs).filter(|crs| crs.kind != CrsKind::Unknown);
     let of_files = || parts.iter().map(|part| &part.crs).find(|crs| crs.kind != CrsKind::Unknown);
     let Some(known) = of_frame.or_else(of_files).cloned() else { return };
@@ -131,7 +131,7 @@ fn nothing_left(report: &ReadReport) -> String {
 }
 
 /// Component-wise median of a sample of the finite points, scaled by `scale`.
-fn middle(parts: &[Part], scale: impl Fn(&Part) -> [f64; 3]) -> [f64; 3] {
+fn middle(parts: &[FilePart], scale: impl Fn(&FilePart) -> [f64; 3]) -> [f64; 3] {
     let total: usize = parts.iter().map(|part| part.coordinates.len()).sum();
     let step = total.div_ceil(SAMPLE).max(1);
     let mut sample: [Vec<f64>; 3] = Default::default();
@@ -154,26 +154,26 @@ fn middle(parts: &[Part], scale: impl Fn(&Part) -> [f64; 3]) -> [f64; 3] {
 
 /// What a pass over a part found.
 #[derive(Clone, Copy, Default)]
-struct Found {
-    bounds: Extent,
+struct PartPass {
+    bounds: PointExtent,
     not_finite: usize,
     far: usize,
     coarse: usize,
 }
 
 #[derive(Clone, Copy)]
-struct Extent {
+struct PointExtent {
     low: [f64; 3],
     high: [f64; 3],
 }
 
-impl Default for Extent {
+impl Default for PointExtent {
     fn default() -> Self {
         Self { low: [f64::INFINITY; 3], high: [f64::NEG_INFINITY; 3] }
     }
 }
 
-impl Extent {
+impl PointExtent {
     fn join(self, other: Self) -> Self {
         Self {
             low: std::array::from_fn(|i| self.low[i].min(other.low[i])),
@@ -191,63 +191,65 @@ impl Extent {
 }
 
 #[derive(PartialEq)]
-enum Fate {
+enum PointFate {
     Near,
     Coarse,
     Far,
     NotFinite,
 }
 
-fn fate(p: [f64; 3], middle: [f64; 3]) -> Fate {
+fn fate(p: [f64; 3], middle: [f64; 3]) -> PointFate {
     if !p.iter().all(|v| v.is_finite()) {
-        return Fate::NotFinite;
+        return PointFate::NotFinite;
     }
     let distance = (0..3).map(|i| (p[i] - middle[i]).abs()).fold(0.0, f64::max);
     if distance > FARTHEST {
-        Fate::Far
+        PointFate::Far
     } else if distance > NEAR {
-        Fate::Coarse
+        PointFate::Coarse
     } else {
-        Fate::Near
+        PointFate::Near
     }
 }
 
-fn look(part: &Part, middle: [f64; 3]) -> Found {
+fn look(part: &FilePart, middle: [f64; 3]) -> PartPass {
     let units = part.crs.metres_per_unit_xyz();
-    let add = |mut found: Found, p: [f64; 3]| {
+    let add = |mut found: PartPass, p: [f64; 3]| {
         let p: [f64; 3] = std::array::from_fn(|i| p[i] * units[i]);
         match fate(p, middle) {
-            Fate::NotFinite => found.not_finite += 1,
-            Fate::Far => found.far += 1,
-            Fate::Coarse => found.coarse += 1,
-            Fate::Near => found.bounds = found.bounds.join(Extent { low: p, high: p }),
+            PointFate::NotFinite => found.not_finite += 1,
+            PointFate::Far => found.far += 1,
+            PointFate::Coarse => found.coarse += 1,
+            PointFate::Near => found.bounds = found.bounds.join(PointExtent { low: p, high: p }),
         }
         found
     };
     // Counts, minima and maxima do not depend on how the points are split among threads.
-    let join = |a: Found, b: Found| Found {
+    let join = |a: PartPass, b: PartPass| PartPass {
         bounds: a.bounds.join(b.bounds),
         not_finite: a.not_finite + b.not_finite,
         far: a.far + b.far,
         coarse: a.coarse + b.coarse,
     };
     match &part.coordinates {
-        Coordinates::Real(values) => {
-            values.par_iter().with_min_len(1 << 14).fold(Found::default, |f, &p| add(f, p)).reduce(Found::default, join)
-        }
+        Coordinates::Real(values) => values
+            .par_iter()
+            .with_min_len(1 << 14)
+            .fold(PartPass::default, |f, &p| add(f, p))
+            .reduce(PartPass::default, join),
         Coordinates::Quantised { values, scale, offset } => values
             .par_iter()
             .with_min_len(1 << 14)
-            .fold(Found::default, |f, &q| add(f, unquantise(q, *scale, *offset)))
-            .reduce(Found::default, join),
+            .fold(PartPass::default, |f, &q| add(f, unquantise(q, *scale, *offset)))
+            .reduce(PartPass::default, join),
     }
 }
 
-fn kept_indices(part: &Part, middle: [f64; 3]) -> Vec<u32> {
+fn kept_indices(part: &FilePart, middle: [f64; 3]) -> Vec<u32> {
     let units = part.crs.metres_per_unit_xyz();
     let kept = |p: [f64; 3]| {
         let p: [f64; 3] = std::array::from_fn(|i| p[i] * units[i]);
-        matches!(fate(p, middle), Fate::Near | Fate::Coarse)
+        matches!(fate(p, middle), PointFate::Near | PointFate::Coarse)
     };
     (0..).zip(part.coordinates.positions()).filter(|&(_, p)| kept(p)).map(|(index, _)| index).collect()
 }
@@ -266,7 +268,7 @@ fn localise(coordinates: Coordinates, units: [f64; 3], origin: [f64; 3]) -> Vec<
 /// Moves the scanner positions of `part` into `cloud` and lets its indices point there.
 ///
 /// A scanner more than 10 km from the middle of the cloud is a header left at zero, and taken as unknown.
-fn join_scanners(cloud: &mut PointCloud, part: &mut Part) {
+fn join_scanners(cloud: &mut PointCloud, part: &mut FilePart) {
     let units = part.crs.metres_per_unit_xyz();
     let mut new_indices: Vec<u16> = Vec::new();
     for scanner in std::mem::take(&mut part.scanners) {

@@ -20,7 +20,8 @@ struct Temporary {
     kept: bool,
 }
 
-/// Temporary files that are being written. A program that ends without unwinding, as on Ctrl-C, has no other way to know of them.
+/// Temporary files that are being written. A program that ends without unwinding, as on Ctrl-C, has no other way to
+/// know of them.
 static UNFINISHED: Mutex<Unfinished> = Mutex::new(Unfinished { paths: Vec::new(), is_abandoned: false });
 
 struct Unfinished {
@@ -96,7 +97,8 @@ pub fn write<T>(path: &Path, body: impl FnOnce(&mut BufWriter<File>) -> Result<T
 #[cfg(unix)]
 fn sync_folder(file: &Path) {
     let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    // the file is complete under its name; a file system that cannot synchronise folders is no reason to report a failure
+    // the file is complete under its name; a file system that cannot synchronise folders is no reason to report a
+    // failure
     let _ = File::open(folder).and_then(|folder| folder.sync_all());
 }
 

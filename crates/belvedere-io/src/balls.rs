@@ -11,18 +11,18 @@ pub(crate) const SUPPORTED: &str = ".npz .ply .laz .las";
 
 /// Writes `balls` in the format that follows from the extension (.npz .ply .laz .las).
 ///
-/// An `.npz` file keeps every bit: arrays `centers` (B, 3) f32 in metres relative to `origin` (3) f64 metres, `radii` (B)
-/// f32 metres, `source` and `touch` (B) u32, `separation_angles` (B) f32 radians, and `metadata`, JSON text as u8, which
-/// holds reference system, bounds and provenance; where known also `transmission` (B) f32, and the pulses that prove what
-/// is visible: `pulse_starts` (P, 3) f32 metres relative to the origin, `pulse_slopes` (P, 2) i16 in steps of 0.0001,
-/// `pulse_top` (1) f32 metres, `pulse_lengths` (P) f32 metres unless all reach the top, and `pulse_ways` (P) u8 unless all go up: 16 to
-/// 21 bytes each.
+/// An `.npz` file keeps every bit: arrays `centers` (B, 3) f32 in metres relative to `origin` (3) f64 metres, `radii`
+/// (B) f32 metres, `source` and `touch` (B) u32, `separation_angles` (B) f32 radians, and `metadata`, JSON text as u8,
+/// which holds reference system, bounds and provenance; where known also `transmission` (B) f32, and the pulses that
+/// prove what is visible: `pulse_starts` (P, 3) f32 metres relative to the origin, `pulse_slopes` (P, 2) i16 in steps
+/// of 0.0001, `pulse_top` (1) f32 metres, `pulse_lengths` (P) f32 metres unless all reach the top, and `pulse_ways` (P)
+/// u8 unless all go up: 16 to 21 bytes each.
 ///
-/// `.ply`, `.las` and `.laz` files are point clouds of the centres in the reference system and unit of the cloud (doubles
-/// in PLY, steps of at most a millimetre in LAS) with the columns `radius`, in the horizontal unit of the file,
-/// `separation_angle` in radians, `source` and `touch`, −1 where a ball never shrank, and `transmission` where that is known.
-/// They are for looking at, with the radius as the size of a point, and answer as the balls alone do: they hold no
-/// pulses.
+/// `.ply`, `.las` and `.laz` files are point clouds of the centres in the reference system and unit of the cloud
+/// (doubles in PLY, steps of at most a millimetre in LAS) with the columns `radius`, in the horizontal unit of the
+/// file, `separation_angle` in radians, `source` and `touch`, −1 where a ball never shrank, and `transmission` where
+/// that is known. They are for looking at, with the radius as the size of a point, and answer as the balls alone do:
+/// they hold no pulses.
 ///
 /// # Errors
 /// [`Error::UnknownFormat`] for other extensions, [`Error::MissingFeature`], those of [`ModelParts::validate`], and
@@ -46,8 +46,8 @@ pub fn write_balls<'a>(output: impl Into<Output<'a>>, balls: &ModelParts) -> Res
 /// extended by columns since. Without a saved origin it is chosen near the middle of the centres.
 ///
 /// # Errors
-/// [`Error::UnknownFormat`], [`Error::MissingFeature`], [`Error::Io`], and [`Error::Malformed`] for a file that is damaged
-/// or holds no balls.
+/// [`Error::UnknownFormat`], [`Error::MissingFeature`], [`Error::Io`], and [`Error::Malformed`] for a file that is
+/// damaged or holds no balls.
 pub fn read_balls<'a>(source: impl Into<Source<'a>>) -> Result<ModelParts> {
     let source = source.into();
     let path = source.name().to_owned();
@@ -64,8 +64,8 @@ pub fn read_balls<'a>(source: impl Into<Source<'a>>) -> Result<ModelParts> {
     Ok(balls)
 }
 
-/// Whether a source holds balls rather than a cloud, judged by its header; `false` also for what cannot be understood. An `.npz` file is
-/// never a cloud: it is left to [`read_balls`] to say what is wrong with it.
+/// Whether a source holds balls rather than a cloud, judged by its header; `false` also for what cannot be understood.
+/// An `.npz` file is never a cloud: it is left to [`read_balls`] to say what is wrong with it.
 ///
 /// # Errors
 /// [`Error::Io`] when the file cannot be opened.

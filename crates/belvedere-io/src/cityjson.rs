@@ -27,8 +27,8 @@ pub enum LevelOfDetail {
 /// are taken as metres; an EPSG code in `metadata.referenceSystem` is kept in the mesh's `crs.epsg`.
 ///
 /// # Errors
-/// [`Error::Io`] where the file cannot be read, [`Error::Malformed`] for anything that is not CityJSON, indices without a
-/// vertex or template, nesting that does not fit the type of geometry, and files without a triangle.
+/// [`Error::Io`] where the file cannot be read, [`Error::Malformed`] for anything that is not CityJSON, indices without
+/// a vertex or template, nesting that does not fit the type of geometry, and files without a triangle.
 ///
 /// # Source
 /// CityJSON 2.0.1 specification, sections 2 to 5 and "Geometry templates".

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use super::assemble::assemble;
 #[cfg(feature = "las")]
 use super::las::{self, LasPoints};
-use super::part::Part;
+use super::part::FilePart;
 use super::read_cloud::{Systems, files_of, read_one};
 use super::read_options::{ReadOptions, Reading, UpAxis};
 use super::source::Source;
@@ -22,7 +22,8 @@ pub struct CloudBatch {
     pub cloud: PointCloud,
     /// Path or name of the source that they come from.
     pub source: PathBuf,
-    /// Row of each point among the points of its source, from 0, where [`ReadOptions::row_numbers`] asks for it; empty otherwise.
+    /// Row of each point among the points of its source, from 0, where [`ReadOptions::row_numbers`] asks for it; empty
+    /// otherwise.
     pub rows: Vec<u64>,
 }
 
@@ -34,16 +35,16 @@ pub struct CloudBatches<'a> {
     control: Control<'a>,
     systems: Systems,
     #[cfg(feature = "las")]
-    open: Option<(Part, LasPoints<'a>)>,
+    open: Option<(FilePart, LasPoints<'a>)>,
     failed: bool,
 }
 
 /// The points of `sources` in clouds of at most about a million points, in the order of the sources and their points.
 ///
-/// All clouds have the frame of [`ReadOptions::frame`]. Where that is not given, the first cloud chooses the origin for all. Only LAS
-/// and LAZ files are read piece by piece; a source in another format is read whole and becomes one cloud. Attributes are those of
-/// the file: what [`crate::read_cloud`] decides from all points together (whether colours have 8 bits, whether GPS times are of
-/// use) is not decided here for LAS and LAZ files.
+/// All clouds have the frame of [`ReadOptions::frame`]. Where that is not given, the first cloud chooses the origin for
+/// all. Only LAS and LAZ files are read piece by piece; a source in another format is read whole and becomes one cloud.
+/// Attributes are those of the file: what [`crate::read_cloud`] decides from all points together (whether colours have
+/// 8 bits, whether GPS times are of use) is not decided here for LAS and LAZ files.
 ///
 /// Batches without a point that the options ask for are skipped.
 ///
@@ -85,13 +86,13 @@ impl CloudBatches<'_> {
     }
 
     /// The next points, possibly none, or `None` at the end.
-    fn next_part(&mut self) -> Result<Option<Part>> {
+    fn next_part(&mut self) -> Result<Option<FilePart>> {
         self.control.check()?;
         let reading = Reading { options: &self.options, forced: self.forced.as_ref(), control: &self.control };
         #[cfg(feature = "las")]
         if let Some((whole, points)) = &mut self.open {
             if let Some(some) = points.next(&reading)? {
-                let mut part = Part::new(&whole.report.path, whole.report.format.clone());
+                let mut part = FilePart::new(&whole.report.path, whole.report.format.clone());
                 part.crs = whole.crs.clone();
                 (part.coordinates, part.attributes, part.rows) = (some.coordinates, some.attributes, Some(some.rows));
                 return Ok(Some(part));

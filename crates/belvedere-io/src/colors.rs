@@ -1,14 +1,14 @@
 //! Colours for numbers and classes.
 
-/// Colour of a value between 0 and 1: dark violet over green to yellow, even in lightness and readable by the colour-blind
-/// (viridis).
+/// Colour of a value between 0 and 1: dark violet over green to yellow, even in lightness and readable by the
+/// colour-blind (viridis).
 pub fn ramp(value: f64) -> [u8; 3] {
     let color = colorous::VIRIDIS.eval_continuous(value.clamp(0.0, 1.0));
     [color.r, color.g, color.b]
 }
 
-/// Colours of `values`, (N), such as heights: the lowest hundredth dark violet, the highest yellow, grey where a value is
-/// not finite.
+/// Colours of `values`, (N), such as heights: the lowest hundredth dark violet, the highest yellow, grey where a value
+/// is not finite.
 #[must_use]
 pub fn ramp_colors(values: &[f32]) -> Vec<[u8; 3]> {
     let Some((low, high)) = percentiles(values, 0.01, 0.99) else { return vec![[128; 3]; values.len()] };
@@ -23,7 +23,8 @@ pub fn ramp_colors(values: &[f32]) -> Vec<[u8; 3]> {
         .collect()
 }
 
-/// Colour of an ASPRS class: ground brown, vegetation green, buildings red, water blue, others shades of grey and violet.
+/// Colour of an ASPRS class: ground brown, vegetation green, buildings red, water blue, others shades of grey and
+/// violet.
 #[must_use]
 pub fn class_color(class: u8) -> [u8; 3] {
     match class {

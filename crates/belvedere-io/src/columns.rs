@@ -7,7 +7,7 @@ use belvedere_data::{Error, PointCloud, Result};
 
 /// Values of one column.
 #[derive(Clone, Debug)]
-pub(crate) enum Values<'a> {
+pub(crate) enum ColumnValues<'a> {
     U8(Cow<'a, [u8]>),
     U16(Cow<'a, [u16]>),
     U32(Cow<'a, [u32]>),
@@ -22,23 +22,23 @@ pub(crate) struct Column<'a> {
     pub(crate) name: Cow<'a, str>,
     #[cfg_attr(not(feature = "las"), expect(dead_code, reason = "only LAS files describe their columns"))]
     pub(crate) description: Cow<'a, str>,
-    pub(crate) values: Values<'a>,
+    pub(crate) values: ColumnValues<'a>,
 }
 
 macro_rules! with_values {
     ($values:expr, $v:ident => $body:expr) => {
         match $values {
-            Values::U8($v) => $body,
-            Values::U16($v) => $body,
-            Values::U32($v) => $body,
-            Values::I32($v) => $body,
-            Values::F32($v) => $body,
-            Values::F64($v) => $body,
+            ColumnValues::U8($v) => $body,
+            ColumnValues::U16($v) => $body,
+            ColumnValues::U32($v) => $body,
+            ColumnValues::I32($v) => $body,
+            ColumnValues::F32($v) => $body,
+            ColumnValues::F64($v) => $body,
         }
     };
 }
 
-impl Values<'_> {
+impl ColumnValues<'_> {
     pub(crate) fn len(&self) -> usize {
         with_values!(self, v => v.len())
     }
@@ -75,7 +75,7 @@ pub(crate) fn check_lengths(columns: &[Column<'_>], expected: usize) -> Result<(
     }
 }
 
-fn column<'a>(name: &'a str, values: Values<'a>) -> Column<'a> {
+fn column<'a>(name: &'a str, values: ColumnValues<'a>) -> Column<'a> {
     Column { name: name.into(), description: "".into(), values }
 }
 
@@ -85,7 +85,7 @@ pub(crate) fn attribute_columns(cloud: &PointCloud) -> Vec<Column<'_>> {
     let mut columns = Vec::new();
     if let Some(normals) = &a.normals {
         for (axis, name) in ["nx", "ny", "nz"].into_iter().enumerate() {
-            columns.push(column(name, Values::F32(normals.iter().map(|n| n[axis]).collect())));
+            columns.push(column(name, ColumnValues::F32(normals.iter().map(|n| n[axis]).collect())));
         }
     }
     if let Some(colors) = &a.color {
@@ -93,13 +93,13 @@ pub(crate) fn attribute_columns(cloud: &PointCloud) -> Vec<Column<'_>> {
         let shift = if colors.iter().flatten().any(|&c| c > 255) { 8 } else { 0 };
         for (channel, name) in ["red", "green", "blue"].into_iter().enumerate() {
             let bytes = colors.iter().map(|c| u8::try_from(c[channel] >> shift).unwrap_or(u8::MAX)).collect();
-            columns.push(column(name, Values::U8(bytes)));
+            columns.push(column(name, ColumnValues::U8(bytes)));
         }
     }
     macro_rules! add {
         ($($field:ident as $name:literal $kind:ident),* $(,)?) => {$(
             if let Some(values) = &a.$field {
-                columns.push(column($name, Values::$kind(Cow::Borrowed(values))));
+                columns.push(column($name, ColumnValues::$kind(Cow::Borrowed(values))));
             }
         )*};
     }
@@ -115,7 +115,7 @@ pub(crate) fn attribute_columns(cloud: &PointCloud) -> Vec<Column<'_>> {
         scanner_index as "scanner_index" U16,
     );
     if let Some(angles) = &a.scan_angle {
-        columns.push(column("scan_angle_deg", Values::F32(angles.iter().map(|v| v.to_degrees()).collect())));
+        columns.push(column("scan_angle_deg", ColumnValues::F32(angles.iter().map(|v| v.to_degrees()).collect())));
     }
     columns
 }

@@ -1,8 +1,8 @@
 //! Which chunks of a COPC file hold the points of a box: a walk through the hierarchy of the file.
 //!
-//! COPC is LAZ whose chunks are the nodes of an octree. The hierarchy names for each node where its chunk lies; it comes in pages, and
-//! only pages of nodes that meet the box are read. Everything the hierarchy claims is compared with the size of the file before it is
-//! used, and the chunks are decompressed by the same reader as those of any LAZ file.
+//! COPC is LAZ whose chunks are the nodes of an octree. The hierarchy names for each node where its chunk lies; it
+//! comes in pages, and only pages of nodes that meet the box are read. Everything the hierarchy claims is compared with
+//! the size of the file before it is used, and the chunks are decompressed by the same reader as those of any LAZ file.
 //!
 //! # Source
 //! COPC specification 1.0: info record, section 3.1; hierarchy, section 3.2 (Bell, Belcher & Manning 2021).
@@ -37,8 +37,8 @@ struct Octree {
     root: (u64, u64),
 }
 
-/// The chunks of nodes that meet `wanted`, in the order of the file, or `None` where the file is no COPC. `size` is that of the file in
-/// bytes.
+/// The chunks of nodes that meet `wanted`, in the order of the file, or `None` where the file is no COPC. `size` is
+/// that of the file in bytes.
 ///
 /// # Errors
 /// [`Error::Malformed`] for a hierarchy that does not fit the file.
@@ -66,7 +66,7 @@ pub(super) fn chunks_within(
         bytes.clear();
         file.seek(SeekFrom::Start(start)).map_err(Error::io(path))?;
         file.take(length).read_to_end(&mut bytes).map_err(Error::io(path))?;
-        for entry in bytes.as_chunks::<32>().0.iter().map(Entry::of) {
+        for entry in bytes.as_chunks::<32>().0.iter().map(HierarchyEntry::of) {
             if !octree.node_meets(&entry, room, wanted).ok_or_else(|| damaged(format!("node {:?}", entry.key)))? {
                 continue;
             }
@@ -99,7 +99,7 @@ pub(super) fn chunks_within(
 }
 
 /// An entry of the hierarchy.
-struct Entry {
+struct HierarchyEntry {
     /// Level, and number of the node along x, y and z.
     key: [i32; 4],
     start: u64,
@@ -108,7 +108,7 @@ struct Entry {
     points: i32,
 }
 
-impl Entry {
+impl HierarchyEntry {
     fn of(bytes: &[u8; 32]) -> Self {
         let [a, b, c, d, low, high, size, points] =
             std::array::from_fn(|i| std::array::from_fn(|byte| bytes[4 * i + byte])).map(u32::from_le_bytes);
@@ -133,7 +133,7 @@ impl Octree {
     }
 
     /// Whether the cell of the node of `entry`, widened by `room`, meets `wanted`; `None` for a node that cannot be.
-    fn node_meets(&self, entry: &Entry, room: [f64; 3], wanted: &FileBox) -> Option<bool> {
+    fn node_meets(&self, entry: &HierarchyEntry, room: [f64; 3], wanted: &FileBox) -> Option<bool> {
         let [level, place @ ..] = entry.key;
         if !(0..=DEEPEST).contains(&level) {
             return None;

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use ::e57::{E57Reader, PointCloud as Scan, Quaternion, Record, RecordDataType, RecordName, RecordValue};
 
-use super::part::Part;
+use super::part::FilePart;
 use super::read_options::Reading;
 use super::rows::{Role, Row, Rows, role_of};
 use super::source::Input;
@@ -16,22 +16,22 @@ use belvedere_data::{Error, Result};
 ///
 /// Poses are applied to points and normals. The scanner is where the pose puts it; without a pose at (0, 0, 0) if
 /// the scan is a grid or spherical, and is unknown otherwise, as in clouds that only passed through E57.
-pub(super) fn read(input: Input<'_>, reading: &Reading<'_>) -> Result<Part> {
+pub(super) fn read(input: Input<'_>, reading: &Reading<'_>) -> Result<FilePart> {
     let Input { name, reader, size } = input;
     let path = name.as_path();
     let damaged = |e: ::e57::Error| Error::malformed(path, format!("is not a readable E57 file: {e}"));
     let mut reader = E57Reader::new(reader).map_err(damaged)?;
     let scans = reader.pointclouds();
-    let mut part = Part::new(path, format!("E57, {} scan{}", scans.len(), if scans.len() == 1 { "" } else { "s" }));
+    let mut part = FilePart::new(path, format!("E57, {} scan{}", scans.len(), if scans.len() == 1 { "" } else { "s" }));
     if let Some(text) = reader.coordinate_metadata().map(str::trim).filter(|text| !text.is_empty()) {
         match Crs::parse(text) {
             Ok(crs) => part.set_crs(crs, "coordinate metadata"),
             Err(_) => part.note("its coordinate metadata do not define a known reference system"),
         }
     }
-    let plans: Vec<Plan> = scans.iter().map(Plan::new).collect();
+    let plans: Vec<ScanLayout> = scans.iter().map(ScanLayout::new).collect();
     let common = common_roles(&mut part, &plans, &scans);
-    let mut points = Points {
+    let mut points = ScanPoints {
         rows: Rows::new(common).with_numbers(reading.options.row_numbers),
         scanner_index: Vec::new(),
         invalid: 0,
@@ -58,17 +58,17 @@ pub(super) fn read(input: Input<'_>, reading: &Reading<'_>) -> Result<Part> {
 }
 
 /// The points of all scans as they are read.
-struct Points {
+struct ScanPoints {
     rows: Rows,
     scanner_index: Vec<u16>,
     invalid: usize,
 }
 
 /// How to read the records of one scan.
-struct Plan {
-    columns: Vec<Column>,
+struct ScanLayout {
+    columns: Vec<RecordColumn>,
     single_precision: bool,
-    pose: Pose,
+    pose: ScanPose,
     scanner: Option<[f64; 3]>,
 }
 
@@ -84,21 +84,21 @@ enum Meaning {
     Nothing,
 }
 
-struct Column {
+struct RecordColumn {
     meaning: Meaning,
     kind: RecordDataType,
 }
 
-impl Plan {
+impl ScanLayout {
     fn new(scan: &Scan) -> Self {
         let has = |name: &RecordName| scan.prototype.iter().any(|record| record.name == *name);
         let cartesian = has(&RecordName::CartesianX);
         let columns = scan
             .prototype
             .iter()
-            .map(|record| Column { meaning: meaning(record, scan, cartesian), kind: record.data_type.clone() })
+            .map(|record| RecordColumn { meaning: meaning(record, scan, cartesian), kind: record.data_type.clone() })
             .collect();
-        let pose = Pose::new(scan);
+        let pose = ScanPose::new(scan);
         let grid = has(&RecordName::RowIndex) || has(&RecordName::ColumnIndex) || has(&RecordName::SphericalRange);
         Self {
             columns,
@@ -220,7 +220,7 @@ fn type_limits(kind: &RecordDataType) -> (Option<f64>, Option<f64>) {
 }
 
 /// Roles that all scans with points have; the others are noted.
-fn common_roles(part: &mut Part, plans: &[Plan], scans: &[Scan]) -> Vec<Role> {
+fn common_roles(part: &mut FilePart, plans: &[ScanLayout], scans: &[Scan]) -> Vec<Role> {
     let all: Vec<Vec<Role>> =
         plans.iter().zip(scans).filter(|(_, scan)| scan.records > 0).map(|(plan, _)| plan.roles()).collect();
     let common: Vec<Role> =
@@ -236,9 +236,9 @@ fn read_scan<R: Read + Seek>(
     path: &Path,
     reader: &mut E57Reader<R>,
     scan: &Scan,
-    plan: &Plan,
+    plan: &ScanLayout,
     index: u16,
-    points: &mut Points,
+    points: &mut ScanPoints,
     reading: &Reading<'_>,
 ) -> Result<()> {
     let damaged = |e: ::e57::Error| Error::malformed(path, format!("has points that cannot be read: {e}"));
@@ -279,12 +279,12 @@ fn read_scan<R: Read + Seek>(
 }
 
 /// A rigid motion from scan to file coordinates.
-struct Pose {
+struct ScanPose {
     rotation: [[f64; 3]; 3],
     translation: [f64; 3],
 }
 
-impl Pose {
+impl ScanPose {
     fn new(scan: &Scan) -> Self {
         let Some(transform) = &scan.transform else {
             return Self { rotation: rotation(&Quaternion::default()), translation: [0.0; 3] };

@@ -17,8 +17,9 @@ const METRE_DECIMALS: i32 = 3;
 
 /// Polygons with properties in common.
 #[derive(Clone, Debug, Default)]
-pub struct Area {
-    /// For each polygon its outer ring, counter-clockwise, and its holes, clockwise, each closed; easting and northing in metres.
+pub struct PolygonArea {
+    /// For each polygon its outer ring, counter-clockwise, and its holes, clockwise, each closed; easting and northing
+    /// in metres.
     pub polygons: Vec<Vec<Vec<[f64; 2]>>>,
     /// What is known of it.
     pub properties: Map<String, Value>,
@@ -42,15 +43,20 @@ pub enum GeojsonCoordinates {
     OfTheFile,
 }
 
-/// Writes each of `areas` as a feature with a multipolygon, and tells in which coordinates: longitude and latitude where `crs`, the
-/// system of the areas, gives these; else easting and northing in the unit of `crs`, with a member `crs_note` that says so.
+/// Writes each of `areas` as a feature with a multipolygon, and tells in which coordinates: longitude and latitude
+/// where `crs`, the system of the areas, gives these; else easting and northing in the unit of `crs`, with a member
+/// `crs_note` that says so.
 ///
 /// # Errors
 /// [`Error::Io`], and [`Error::UnusableCrs`] for places that have no longitude and latitude.
 ///
 /// # Source
 /// RFC 7946, sections 3.1.7, 3.3 and 4.
-pub fn write_geojson_areas<'a>(output: impl Into<Output<'a>>, areas: &[Area], crs: &Crs) -> Result<GeojsonCoordinates> {
+pub fn write_geojson_areas<'a>(
+    output: impl Into<Output<'a>>,
+    areas: &[PolygonArea],
+    crs: &Crs,
+) -> Result<GeojsonCoordinates> {
     write_geojson(output, &[], areas, crs)
 }
 
@@ -61,7 +67,7 @@ pub fn write_geojson_areas<'a>(output: impl Into<Output<'a>>, areas: &[Area], cr
 pub fn write_geojson<'a>(
     output: impl Into<Output<'a>>,
     spots: &[Spot],
-    areas: &[Area],
+    areas: &[PolygonArea],
     crs: &Crs,
 ) -> Result<GeojsonCoordinates> {
     let output = output.into();

@@ -12,7 +12,7 @@ use belvedere_data::{Error, Result};
 
 /// What stands at a feature's place: absolute metres in the system of the cloud, height NaN where the file has none.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Shape {
+pub enum FeatureShape {
     /// A point.
     Point([f64; 3]),
     /// A line through corners.
@@ -25,20 +25,21 @@ pub enum Shape {
 #[derive(Clone, Debug, PartialEq)]
 pub struct GeojsonFeature {
     /// Its place.
-    pub shape: Shape,
+    pub shape: FeatureShape,
     /// Its properties.
     pub properties: Map<String, Value>,
 }
 
 /// Reads the shapes of a GeoJSON file and brings them into the system `crs` of the cloud.
 ///
-/// Coordinates are longitude and latitude of WGS 84 (RFC 7946) unless the file names a system in the older member `crs`. Then, or
-/// where `crs` gives no longitude and latitude, or where a coordinate can be neither, they are taken as those of the cloud's
-/// file. Heights are in the unit of the cloud's heights. Features without geometry are passed over.
+/// Coordinates are longitude and latitude of WGS 84 (RFC 7946) unless the file names a system in the older member
+/// `crs`. Then, or where `crs` gives no longitude and latitude, or where a coordinate can be neither, they are taken as
+/// those of the cloud's file. Heights are in the unit of the cloud's heights. Features without geometry are passed
+/// over.
 ///
 /// # Errors
-/// [`Error::Io`]; [`Error::Malformed`] for what is no GeoJSON and for coordinates that are not finite; [`Error::UnusableCrs`] where the
-/// file names another system than the cloud's.
+/// [`Error::Io`]; [`Error::Malformed`] for what is no GeoJSON and for coordinates that are not finite;
+/// [`Error::UnusableCrs`] where the file names another system than the cloud's.
 pub fn read_geojson<'a>(source: impl Into<Source<'a>>, crs: &Crs) -> Result<Vec<GeojsonFeature>> {
     let source = source.into();
     refuse_other_shapes(source.name())?;
@@ -70,9 +71,9 @@ pub fn read_geojson<'a>(source: impl Into<Source<'a>>, crs: &Crs) -> Result<Vec<
     let placing = Placing::new(named, &raw, path, crs)?;
     for feature in &mut raw {
         match &mut feature.shape {
-            Shape::Point(p) => *p = placing.place(*p, path)?,
-            Shape::Line(corners) => place_all(corners, &placing, path)?,
-            Shape::Polygon(rings) => {
+            FeatureShape::Point(p) => *p = placing.place(*p, path)?,
+            FeatureShape::Line(corners) => place_all(corners, &placing, path)?,
+            FeatureShape::Polygon(rings) => {
                 for ring in rings {
                     place_all(ring, &placing, path)?;
                 }
@@ -97,18 +98,18 @@ fn of_geometry(
 ) -> Result<()> {
     let mut push = |shape| found.push(GeojsonFeature { shape, properties: properties.clone() });
     match geometry.value {
-        GeometryValue::Point { coordinates } => push(Shape::Point(position(&coordinates, path)?)),
+        GeometryValue::Point { coordinates } => push(FeatureShape::Point(position(&coordinates, path)?)),
         GeometryValue::MultiPoint { coordinates } => {
-            positions(&coordinates, path)?.into_iter().for_each(|p| push(Shape::Point(p)));
+            positions(&coordinates, path)?.into_iter().for_each(|p| push(FeatureShape::Point(p)));
         }
-        GeometryValue::LineString { coordinates } => push(Shape::Line(positions(&coordinates, path)?)),
+        GeometryValue::LineString { coordinates } => push(FeatureShape::Line(positions(&coordinates, path)?)),
         GeometryValue::MultiLineString { coordinates } => {
-            rings(&coordinates, path)?.into_iter().for_each(|line| push(Shape::Line(line)));
+            rings(&coordinates, path)?.into_iter().for_each(|line| push(FeatureShape::Line(line)));
         }
-        GeometryValue::Polygon { coordinates } => push(Shape::Polygon(rings(&coordinates, path)?)),
+        GeometryValue::Polygon { coordinates } => push(FeatureShape::Polygon(rings(&coordinates, path)?)),
         GeometryValue::MultiPolygon { coordinates } => {
             for polygon in coordinates {
-                push(Shape::Polygon(rings(&polygon, path)?));
+                push(FeatureShape::Polygon(rings(&polygon, path)?));
             }
         }
         GeometryValue::GeometryCollection { geometries } => {
@@ -166,9 +167,9 @@ impl Placing {
             }
         }
         let all = features.iter().flat_map(|feature| match &feature.shape {
-            Shape::Point(p) => vec![*p],
-            Shape::Line(corners) => corners.clone(),
-            Shape::Polygon(rings) => rings.concat(),
+            FeatureShape::Point(p) => vec![*p],
+            FeatureShape::Line(corners) => corners.clone(),
+            FeatureShape::Polygon(rings) => rings.concat(),
         });
         let is_degrees = all.into_iter().all(|[x, y, _]| x.abs() <= 360.0 && y.abs() <= 90.0);
         let projection = if is_degrees { crs.geographic_projection().ok() } else { None };

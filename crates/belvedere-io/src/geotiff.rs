@@ -112,7 +112,8 @@ pub fn write_u8<'a>(
     write::<Gray8>(output.into(), from_ref(raster), &marks)
 }
 
-/// Writes `raster` as unsigned 16-bit integers, compressed without loss; `nodata` marks the value that stands for nothing.
+/// Writes `raster` as unsigned 16-bit integers, compressed without loss; `nodata` marks the value that stands for
+/// nothing.
 ///
 /// # Errors
 /// As [`write_f32`].

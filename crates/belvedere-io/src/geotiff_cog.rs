@@ -1,4 +1,5 @@
-//! Cloud-optimised GeoTIFF: tiles, coarser levels, and directories before the data, so that programs read what they show and no more.
+//! Cloud-optimised GeoTIFF: tiles, coarser levels, and directories before the data, so that programs read what they
+//! show and no more.
 //!
 //! # Source
 //! TIFF 6.0 (Adobe 1992), OGC GeoTIFF 1.1 (19-008r4), OGC Cloud Optimized GeoTIFF 1.0 (21-026).
@@ -45,27 +46,27 @@ pub fn write_cog<'a>(output: impl Into<Output<'a>>, bands: &Bands<'_>, place: &G
 }
 
 /// A pixel, as it is stored.
-trait Pixel: Copy + PartialEq + Send + Sync {
+trait PixelType: Copy + PartialEq + Send + Sync {
     /// Bits of a sample, and what kind of number it is by TIFF.
     const KIND: [u16; 2];
     fn put(self, bytes: &mut Vec<u8>);
 }
 
-impl Pixel for u8 {
+impl PixelType for u8 {
     const KIND: [u16; 2] = [8, 1];
     fn put(self, bytes: &mut Vec<u8>) {
         bytes.push(self);
     }
 }
 
-impl Pixel for u16 {
+impl PixelType for u16 {
     const KIND: [u16; 2] = [16, 1];
     fn put(self, bytes: &mut Vec<u8>) {
         bytes.extend(self.to_le_bytes());
     }
 }
 
-impl Pixel for f32 {
+impl PixelType for f32 {
     const KIND: [u16; 2] = [32, 3];
     fn put(self, bytes: &mut Vec<u8>) {
         bytes.extend(self.to_le_bytes());
@@ -73,7 +74,7 @@ impl Pixel for f32 {
 }
 
 /// A raster and the coarser ones of it, the finest first.
-struct Level {
+struct RasterLevel {
     width: u32,
     height: u32,
     kind: [u16; 2],
@@ -82,7 +83,11 @@ struct Level {
     tiles: Vec<Vec<u8>>,
 }
 
-fn levels<T: Pixel>(bands: &[Raster<T>], nodata: T, pick: impl Fn([T; 4], T) -> T + Sync) -> Result<Vec<Level>> {
+fn levels<T: PixelType>(
+    bands: &[Raster<T>],
+    nodata: T,
+    pick: impl Fn([T; 4], T) -> T + Sync,
+) -> Result<Vec<RasterLevel>> {
     let mut levels = vec![level(bands, nodata)?];
     let mut coarser;
     let mut last = bands;
@@ -95,7 +100,7 @@ fn levels<T: Pixel>(bands: &[Raster<T>], nodata: T, pick: impl Fn([T; 4], T) -> 
 }
 
 /// A raster of half the size, of each four pixels one.
-fn halved<T: Pixel>(raster: &Raster<T>, nodata: T, pick: &(impl Fn([T; 4], T) -> T + Sync)) -> Result<Raster<T>> {
+fn halved<T: PixelType>(raster: &Raster<T>, nodata: T, pick: &(impl Fn([T; 4], T) -> T + Sync)) -> Result<Raster<T>> {
     let (width, height) = (raster.width().div_ceil(2), raster.height().div_ceil(2));
     let pixel = |number: usize| {
         let [column, row] = [2 * (number % width), 2 * (number / width)];
@@ -106,7 +111,7 @@ fn halved<T: Pixel>(raster: &Raster<T>, nodata: T, pick: &(impl Fn([T; 4], T) ->
 }
 
 /// The value that most of four pixels with a value have, the first of them where several are as frequent.
-fn most_frequent<T: Pixel>(four: [T; 4], nodata: T) -> T {
+fn most_frequent<T: PixelType>(four: [T; 4], nodata: T) -> T {
     let count = |value: T| four.iter().filter(|&&other| other == value).count();
     let known = four.into_iter().filter(|&value| value != nodata);
     known.fold(nodata, |best, value| if best == nodata || count(value) > count(best) { value } else { best })
@@ -120,7 +125,7 @@ fn mean(four: [f32; 4], nodata: f32) -> f32 {
     }
 }
 
-fn level<T: Pixel>(bands: &[Raster<T>], nodata: T) -> Result<Level> {
+fn level<T: PixelType>(bands: &[Raster<T>], nodata: T) -> Result<RasterLevel> {
     let [width, height] = size_of_bands(bands)?;
     let [across, down] = [width, height].map(|side| (side as usize).div_ceil(TILE));
     let tile = |number: usize| {
@@ -134,7 +139,7 @@ fn level<T: Pixel>(bands: &[Raster<T>], nodata: T) -> Result<Level> {
         compressed(&bytes)
     };
     let tiles = (0..across * down).into_par_iter().map(tile).collect::<Result<_>>()?;
-    Ok(Level { width, height, kind: T::KIND, band_count: bands.len(), tiles })
+    Ok(RasterLevel { width, height, kind: T::KIND, band_count: bands.len(), tiles })
 }
 
 fn compressed(bytes: &[u8]) -> Result<Vec<u8>> {
@@ -176,7 +181,7 @@ impl Tag {
 
 /// The parts of the file: directories from the finest level on, and the tiles, which begin with the coarsest level.
 fn file<'a>(
-    levels: &'a [Level],
+    levels: &'a [RasterLevel],
     nodata: &str,
     place: &Georeference,
     bands: &Bands<'_>,
@@ -222,7 +227,7 @@ fn file<'a>(
 }
 
 /// The tags of each level.
-fn tags(level: &Level, offsets: &[u32], nodata: &str) -> Vec<Tag> {
+fn tags(level: &RasterLevel, offsets: &[u32], nodata: &str) -> Vec<Tag> {
     #[expect(clippy::cast_possible_truncation, reason = "tiles of a megabyte at most")]
     let sizes: Vec<u32> = level.tiles.iter().map(|tile| tile.len() as u32).collect();
     // one for each band

@@ -7,13 +7,13 @@ use tiff::tags::Tag;
 use tiff::{TiffError, TiffFormatError, TiffResult};
 
 use crate::geotiff::{GDAL_METADATA, Georeference, SOFTWARE};
-use crate::source::{Input, Reader, Source};
+use crate::source::{Input, Source, SourceReader};
 use belvedere_data::crs::Crs;
 use belvedere_data::raster::Raster;
 use belvedere_data::{Error, Result};
 
 /// Most bytes of values for each byte of a file: LZW comes to 1365, Deflate to 1032.
-const MOST_PACKED: u64 = 1400;
+const MAX_PACKED: u64 = 1400;
 
 /// All bands of a raster of one of the types that results have.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,7 +29,8 @@ pub enum ReadBands {
 /// The values of all bands of a raster, as they are stored.
 ///
 /// # Errors
-/// [`Error::Io`], and [`Error::Malformed`] for what is no such raster. More than 256 MB of values are refused, and more than the file can hold.
+/// [`Error::Io`], and [`Error::Malformed`] for what is no such raster. More than 256 MB of values are refused, and more
+/// than the file can hold.
 pub fn read_bands<'a>(source: impl Into<Source<'a>>) -> Result<ReadBands> {
     Ok(named_bands(source.into())?.1)
 }
@@ -195,27 +196,28 @@ fn name_of_band(metadata: &str, band: usize) -> String {
 }
 
 /// A decoder that allocates no more than a file of `size` bytes can hold.
-fn decoder(mut reader: Reader<'_>, size: u64) -> TiffResult<Decoder<Reader<'_>>> {
+fn decoder(mut reader: SourceReader<'_>, size: u64) -> TiffResult<Decoder<SourceReader<'_>>> {
     if longest_value(&mut reader).is_ok_and(|longest| longest > size) {
         return Err(TiffError::LimitsExceeded);
     }
     reader.rewind()?;
-    let most = usize::try_from(size.saturating_mul(MOST_PACKED)).unwrap_or(usize::MAX);
+    let max = usize::try_from(size.saturating_mul(MAX_PACKED)).unwrap_or(usize::MAX);
     let mut limits = Limits::default();
-    limits.decoding_buffer_size = limits.decoding_buffer_size.min(most);
-    limits.intermediate_buffer_size = limits.intermediate_buffer_size.min(most);
+    limits.decoding_buffer_size = limits.decoding_buffer_size.min(max);
+    limits.intermediate_buffer_size = limits.intermediate_buffer_size.min(max);
     Ok(Decoder::new(reader)?.with_limits(limits))
 }
 
-/// Bytes that the longest entry of the first directory claims to have. The decoder reads this directory, and allocates what it claims, before it takes limits.
+/// Bytes that the longest entry of the first directory claims to have. The decoder reads this directory, and allocates
+/// what it claims, before it takes limits.
 ///
 /// # Errors
 /// Those of reading; what is no TIFF file is left to the decoder.
-fn longest_value(reader: &mut Reader<'_>) -> io::Result<u64> {
+fn longest_value(reader: &mut SourceReader<'_>) -> io::Result<u64> {
     let mut start = [0; 4];
     reader.read_exact(&mut start)?;
     let is_large = start.contains(&43);
-    let number = |reader: &mut Reader<'_>, length: usize| {
+    let number = |reader: &mut SourceReader<'_>, length: usize| {
         let mut bytes = [0; 8];
         reader.read_exact(&mut bytes[..length])?;
         if start.starts_with(b"MM") {

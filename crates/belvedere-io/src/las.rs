@@ -1,5 +1,5 @@
-//! LAS 1.0 to 1.4 and LAZ (also COPC), all point formats. Points come in the order of the file. Of a box only those chunks of a COPC
-//! file are read that may hold points of it, and nothing of a file whose bounds do not meet it.
+//! LAS 1.0 to 1.4 and LAZ (also COPC), all point formats. Points come in the order of the file. Of a box only those
+//! chunks of a COPC file are read that may hold points of it, and nothing of a file whose bounds do not meet it.
 
 use std::collections::VecDeque;
 use std::io::{Read, Seek, SeekFrom};
@@ -11,13 +11,13 @@ use ::las::point::Format;
 use ::las::{PointData, PointDataBuilder, Transform, Vector};
 
 use super::copc::{self, ChunkPlace};
-use super::las_columns::Columns;
+use super::las_columns::LasColumns;
 use super::las_extra::{ExtraField, ExtraNormals, described, find_columns, find_extra_normals};
 use super::las_header::{LasHeader, read_header};
-use super::laz::{ExtraBytes, LazReader, Wanted, is_chunked};
-use super::part::{Coordinates, Part};
+use super::laz::{ExtraBytes, LazReader, NeededChunks, is_chunked};
+use super::part::{Coordinates, FilePart};
 use super::read_options::{FileBox, PassedOver, Reading, RowNumbers, Selection};
-use super::source::{Input, Reader, Source};
+use super::source::{Input, Source, SourceReader};
 use belvedere_data::cloud::{Attributes, GpsTimeKind};
 use belvedere_data::crs::{Crs, CrsKind};
 use belvedere_data::{Error, Result};
@@ -26,7 +26,7 @@ use belvedere_data::{Error, Result};
 const BATCH: u64 = 1_000_000;
 
 /// How far points may lie outside the bounds of a header, in its unit: what programs round them by.
-const LEAST_ROOM: f64 = 0.01;
+const MIN_ROOM: f64 = 0.01;
 
 /// Scales this fine are used for degrees, not for metres.
 const DEGREE_SCALE: f64 = 1.000_001e-6;
@@ -34,7 +34,7 @@ const DEGREE_SCALE: f64 = 1.000_001e-6;
 /// A LAS or LAZ file whose header has been checked.
 pub(super) struct LasFile<'a> {
     name: PathBuf,
-    reader: Reader<'a>,
+    reader: SourceReader<'a>,
     size: u64,
     pub(super) header: LasHeader,
     format: Format,
@@ -73,8 +73,8 @@ impl<'a> LasFile<'a> {
         self.batches_of(extra, rows, None)
     }
 
-    /// The points that may lie in `wanted`, many at a time in file order, and how many are passed over because they cannot: in COPC by its hierarchy, in
-    /// other files because they are in none of `rows`, where these are known.
+    /// The points that may lie in `wanted`, many at a time in file order, and how many are passed over because they
+    /// cannot: in COPC by its hierarchy, in other files because they are in none of `rows`, where these are known.
     fn batches_within(
         mut self,
         extra: ExtraBytes,
@@ -124,7 +124,7 @@ impl<'a> LasFile<'a> {
         let batch = PointDataBuilder::new().with_format(format).with_transforms(transforms).build();
         // Without points there need be no chunk table either.
         let records = if header.compressed && !rows.is_empty() {
-            let wanted = places.map_or_else(|| Wanted::Rows(rows.into()), Wanted::Places);
+            let wanted = places.map_or_else(|| NeededChunks::Rows(rows.into()), NeededChunks::Places);
             Records::Laz(Box::new(LazReader::new(&name, reader, &header, size, extra, wanted)?))
         } else {
             let (start, length) = (header.points_start, u64::from(header.record_length));
@@ -143,7 +143,7 @@ pub(super) struct Batches<'a> {
 
 enum Records<'a> {
     Plain {
-        reader: Reader<'a>,
+        reader: SourceReader<'a>,
         /// Byte of the first point, and bytes of each.
         start: u64,
         length: u64,
@@ -195,7 +195,7 @@ impl Batches<'_> {
 }
 
 /// The points of the source that `reading` asks for.
-pub(super) fn read(source: Source<'_>, reading: &Reading<'_>) -> Result<Part> {
+pub(super) fn read(source: Source<'_>, reading: &Reading<'_>) -> Result<FilePart> {
     let (mut part, mut points) = open(source, reading)?;
     // No more is reserved than the size of the file makes likely; columns grow where that is too little.
     let capacity = if points.selection.is_some() { 0 } else { usize::try_from(points.likely).unwrap_or(0) };
@@ -231,12 +231,12 @@ fn are_given(bounds: &[[f64; 2]; 3]) -> bool {
 
 /// How far points with coordinates in steps of `scale` may lie outside the bounds of their header.
 fn room(scale: [f64; 3]) -> [f64; 3] {
-    scale.map(|scale| (10.0 * scale.abs()).max(LEAST_ROOM))
+    scale.map(|scale| (10.0 * scale.abs()).max(MIN_ROOM))
 }
 
-/// Compares the points of a file with the bounds of its header, which follow from the same scale and offset: notes points outside, refuses a file
-/// all of whose points are.
-fn check_bounds(mut part: Part, bounds: [[f64; 2]; 3], scale: [f64; 3]) -> Result<Part> {
+/// Compares the points of a file with the bounds of its header, which follow from the same scale and offset: notes
+/// points outside, refuses a file all of whose points are.
+fn check_bounds(mut part: FilePart, bounds: [[f64; 2]; 3], scale: [f64; 3]) -> Result<FilePart> {
     let mut found = [[f64::INFINITY, f64::NEG_INFINITY]; 3];
     let mut outside = 0_usize;
     let room = room(scale);
@@ -251,11 +251,11 @@ fn check_bounds(mut part: Part, bounds: [[f64; 2]; 3], scale: [f64; 3]) -> Resul
     if !are_given(&bounds) || count == 0 || outside == 0 {
         return Ok(part);
     }
-    let told = |bounds: [[f64; 2]; 3]| bounds.map(|[low, high]| format!("{low:.2} to {high:.2}")).join(", ");
+    let ranges = |bounds: [[f64; 2]; 3]| bounds.map(|[low, high]| format!("{low:.2} to {high:.2}")).join(", ");
     let what = format!(
         "{outside} of {count} points are outside the bounds of the header ({}): they lie in {}",
-        told(bounds),
-        told(found)
+        ranges(bounds),
+        ranges(found)
     );
     if outside == count {
         return Err(Error::malformed(
@@ -268,12 +268,12 @@ fn check_bounds(mut part: Part, bounds: [[f64; 2]; 3], scale: [f64; 3]) -> Resul
 }
 
 /// The points of a source, batch by batch, and what is known of all of them.
-pub(super) fn open<'a>(mut source: Source<'a>, reading: &Reading<'_>) -> Result<(Part, LasPoints<'a>)> {
+pub(super) fn open<'a>(mut source: Source<'a>, reading: &Reading<'_>) -> Result<(FilePart, LasPoints<'a>)> {
     let rows = source.likely_rows.take();
     let mut source = LasFile::open(source.open()?)?;
     let path = source.name.clone();
     let header = &source.header;
-    let mut part = Part::new(&path, describe(&path, header));
+    let mut part = FilePart::new(&path, describe(&path, header));
     if header.counts_differ {
         part.note(format!("the two point counts of the header differ; {} is used", header.points));
     }
@@ -351,8 +351,8 @@ pub(super) struct SomePoints {
 }
 
 impl LasPoints<'_> {
-    fn columns(&self, capacity: usize) -> Columns {
-        Columns::new(&self.format, self.scale, self.offset, self.adjusted_gps_time, self.normals, capacity)
+    fn columns(&self, capacity: usize) -> LasColumns {
+        LasColumns::new(&self.format, self.scale, self.offset, self.adjusted_gps_time, self.normals, capacity)
     }
 
     /// The next points that `reading` asks for, possibly none of a batch, or `None` at the end.
@@ -413,7 +413,7 @@ fn point_format(path: &Path, header: &LasHeader) -> Result<Format> {
 }
 
 /// Takes the system from a WKT record, or else from GeoTIFF keys.
-fn find_crs(part: &mut Part, header: &LasHeader) {
+fn find_crs(part: &mut FilePart, header: &LasHeader) {
     const USER: &str = "LASF_Projection";
     let mut unread = false;
     for (user, source) in [(USER, "WKT record"), ("liblas", "WKT record of libLAS")] {
@@ -471,7 +471,8 @@ impl LasHeader {
 pub struct LasHead {
     /// Number of points.
     pub points: u64,
-    /// Points that the header announces but the file lacks: it is cut off. Of a LAZ file this is known when its points are read.
+    /// Points that the header announces but the file lacks: it is cut off. Of a LAZ file this is known when its points
+    /// are read.
     pub missing_points: u64,
     /// Size of the file, bytes.
     pub bytes: u64,
@@ -496,7 +497,7 @@ pub fn read_las_head<'a>(source: impl Into<Source<'a>>) -> Result<LasHead> {
     if header.points > 0 && (!are_given(&bounds) || !bounds.as_flattened().iter().all(|v| v.is_finite())) {
         return Err(Error::malformed(&file.name, "has no bounds in its header; write it again, for example with PDAL"));
     }
-    let mut part = Part::new(&file.name, "");
+    let mut part = FilePart::new(&file.name, "");
     find_crs(&mut part, header);
     let kind = if header.adjusted_gps_time { GpsTimeKind::AdjustedStandard } else { GpsTimeKind::SecondsOfWeek };
     Ok(LasHead {

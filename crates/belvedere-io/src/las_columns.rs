@@ -11,7 +11,7 @@ use belvedere_data::cloud::{Attributes, GpsTimeKind};
 const OVERLAP_CLASS: u8 = 12;
 
 /// The columns as they grow batch by batch.
-pub(super) struct Columns {
+pub(super) struct LasColumns {
     positions: Vec<[i32; 3]>,
     scale: [f64; 3],
     offset: [f64; 3],
@@ -20,7 +20,7 @@ pub(super) struct Columns {
     extra_normals: Option<ExtraNormals>,
 }
 
-impl Columns {
+impl LasColumns {
     pub(super) fn new(
         format: &Format,
         scale: [f64; 3],

@@ -3,7 +3,7 @@
 use ::las::point::Format;
 
 use super::las_header::LasHeader;
-use super::part::Part;
+use super::part::FilePart;
 
 /// Where in a record NormalX, NormalY and NormalZ lie, and how they are kept.
 pub(super) type ExtraNormals = [ExtraField; 3];
@@ -81,7 +81,7 @@ pub(super) fn find_columns<const N: usize>(
 }
 
 /// Finds normals among the extra bytes; the other extra bytes are noted as dropped.
-pub(super) fn find_extra_normals(part: &mut Part, header: &LasHeader, format: &Format) -> Option<ExtraNormals> {
+pub(super) fn find_extra_normals(part: &mut FilePart, header: &LasHeader, format: &Format) -> Option<ExtraNormals> {
     const NAMES: [&str; 3] = ["NormalX", "NormalY", "NormalZ"];
     let normals = find_columns(header, format, NAMES);
     let others: Vec<String> = described(header, format)

@@ -27,13 +27,13 @@ pub(super) struct LasHeader {
     pub(super) counts_differ: bool,
     /// Whether Belvedere wrote the file.
     pub(super) is_of_belvedere: bool,
-    pub(super) records: Vec<Record>,
+    pub(super) records: Vec<VariableRecord>,
     /// Records that could not be read whole.
     pub(super) broken_records: usize,
 }
 
 /// A variable-length record.
-pub(super) struct Record {
+pub(super) struct VariableRecord {
     pub(super) user: String,
     pub(super) id: u16,
     pub(super) data: Vec<u8>,
@@ -61,7 +61,7 @@ pub(super) fn read_header(path: &Path, file: &mut (impl Read + Seek), size: u64)
     if bytes.get(..4) != Some(b"LASF") {
         return Err(Error::malformed(path, "is not a LAS file: it does not begin with LASF"));
     }
-    let fields = Fields { path, bytes: &bytes };
+    let fields = HeaderFields { path, bytes: &bytes };
     let version = (fields.u8(24)?, fields.u8(25)?);
     if version.0 != 1 || version.1 > 4 {
         return Err(Error::malformed(
@@ -149,7 +149,11 @@ enum Length {
 }
 
 /// The next record, unless it is too large to be of interest, and its length; `None` where `room` bytes do not hold it.
-fn read_record(file: &mut impl Read, length: Length, room: u64) -> std::io::Result<Option<(Option<Record>, u64)>> {
+fn read_record(
+    file: &mut impl Read,
+    length: Length,
+    room: u64,
+) -> std::io::Result<Option<(Option<VariableRecord>, u64)>> {
     let head_length: u64 = if length == Length::Short { 54 } else { 60 };
     let mut head = Vec::new();
     file.take(head_length.min(room)).read_to_end(&mut head)?;
@@ -162,7 +166,7 @@ fn read_record(file: &mut impl Read, length: Length, room: u64) -> std::io::Resu
     let mut data = Vec::new();
     file.take(data_length).read_to_end(&mut data)?;
     let is_whole = data.len() as u64 == data_length;
-    Ok(is_whole.then_some((Some(Record { user, id, data }), total)))
+    Ok(is_whole.then_some((Some(VariableRecord { user, id, data }), total)))
 }
 
 /// User, number and length of a record; `None` for a head that is cut off.
@@ -177,12 +181,12 @@ fn record_head(head: &[u8], length: Length) -> Option<(String, u16, u64)> {
 }
 
 /// Little-endian fields of the fixed part.
-struct Fields<'a> {
+struct HeaderFields<'a> {
     path: &'a Path,
     bytes: &'a [u8],
 }
 
-impl Fields<'_> {
+impl HeaderFields<'_> {
     fn array<const N: usize>(&self, at: usize) -> Result<[u8; N]> {
         self.bytes
             .get(at..)

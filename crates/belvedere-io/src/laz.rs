@@ -11,7 +11,7 @@ use std::ops::Range;
 use std::path::Path;
 
 use super::copc::ChunkPlace;
-use super::source::{ReadSeek, Reader};
+use super::source::{ReadSeek, SourceReader};
 
 use ::laz::laszip::{ChunkTable, ChunkTableEntry, CompressorType, LazItemType};
 use ::laz::{DecompressionSelection, LazVlr};
@@ -22,8 +22,8 @@ use belvedere_data::{Error, Result};
 /// A chunk that would decompress to more bytes than this is no chunk that any writer makes (50 000 points are usual).
 const MAX_CHUNK_BYTES: u64 = 1 << 30;
 
-/// A chunk that decompresses to more than [`FREE_CHUNK_BYTES`] must not be shrunk more than this: points that are worth storing are
-/// shrunk 3 to 20 times, and what a file makes its reader allocate must depend on the size of the file.
+/// A chunk that decompresses to more than [`FREE_CHUNK_BYTES`] must not be shrunk more than this: points that are worth
+/// storing are shrunk 3 to 20 times, and what a file makes its reader allocate must depend on the size of the file.
 const MAX_RATIO: u64 = 256;
 const FREE_CHUNK_BYTES: u64 = 1 << 26;
 
@@ -35,7 +35,7 @@ pub(super) enum ExtraBytes {
 }
 
 /// Which chunks are wanted.
-pub(super) enum Wanted {
+pub(super) enum NeededChunks {
     /// Those that hold any of these rows, ranges in their order.
     Rows(Vec<Range<u64>>),
     /// Those that a COPC file has there.
@@ -49,7 +49,7 @@ pub(super) struct LazReader<'a> {
     /// Where the file is read next; `None` before the first chunk.
     place: Option<u64>,
     vlr: LazVlr,
-    chunks: std::vec::IntoIter<Chunk>,
+    chunks: std::vec::IntoIter<LazChunk>,
     layers: Option<usize>,
     selection: DecompressionSelection,
     record_length: usize,
@@ -58,7 +58,7 @@ pub(super) struct LazReader<'a> {
 
 /// A chunk and the byte of the file that it begins at.
 #[derive(Clone, Copy)]
-struct Chunk {
+struct LazChunk {
     start: u64,
     entry: ChunkTableEntry,
 }
@@ -67,11 +67,11 @@ impl<'a> LazReader<'a> {
     /// A reader of the `wanted` chunks of those that `header` announces in a file of `size` bytes.
     pub(super) fn new(
         path: &Path,
-        mut file: Reader<'a>,
+        mut file: SourceReader<'a>,
         header: &LasHeader,
         size: u64,
         extra: ExtraBytes,
-        wanted: Wanted,
+        wanted: NeededChunks,
     ) -> Result<Self> {
         let damaged = |what: String| Error::malformed(path, what);
         let record = header.record(LazVlr::USER_ID, LazVlr::RECORD_ID);
@@ -87,8 +87,8 @@ impl<'a> LazReader<'a> {
         }
         let layers = layer_count(&vlr);
         let chunks = match wanted {
-            Wanted::Places(places) => chunks_at(path, &places, header)?,
-            Wanted::Rows(rows) => {
+            NeededChunks::Places(places) => chunks_at(path, &places, header)?,
+            NeededChunks::Rows(rows) => {
                 file.seek(SeekFrom::Start(header.points_start)).map_err(Error::io(path))?;
                 check_chunk_count(path, &mut file, header, size)?;
                 let table = ChunkTable::read_from(&mut file, &vlr)
@@ -128,7 +128,7 @@ impl<'a> LazReader<'a> {
         let mut points = 0;
         self.compressed.clear();
         while points < wanted {
-            let Some(Chunk { start, entry }) = self.chunks.next() else { break };
+            let Some(LazChunk { start, entry }) = self.chunks.next() else { break };
             if self.place != Some(start) {
                 self.file.seek(SeekFrom::Start(start)).map_err(Error::io(path))?;
             }
@@ -183,8 +183,9 @@ impl<'a> LazReader<'a> {
     }
 }
 
-/// Whether an arithmetic-coded stream begins with a value below its interval. From 0xFFFFFFFF the decoder of the laz crate (0.13) yields the
-/// same symbol forever without consuming a byte, or looks for symbols that are not in its tables.
+/// Whether an arithmetic-coded stream begins with a value below its interval. From 0xFFFFFFFF the decoder of the laz
+/// crate (0.13) yields the same symbol forever without consuming a byte, or looks for symbols that are not in its
+/// tables.
 fn begins_soundly(stream: &[u8]) -> bool {
     stream.first_chunk() != Some(&[0xff; 4])
 }
@@ -216,10 +217,10 @@ fn layer_count(vlr: &LazVlr) -> Option<usize> {
 }
 
 /// Every chunk begins with an uncompressed point, so the file bounds the number of chunks.
-fn check_chunk_count(path: &Path, file: &mut Reader<'_>, header: &LasHeader, size: u64) -> Result<()> {
+fn check_chunk_count(path: &Path, file: &mut SourceReader<'_>, header: &LasHeader, size: u64) -> Result<()> {
     let broken = || Error::malformed(path, "has no LAZ chunk table: the file is cut off or was not finished");
     let mut bytes = [0; 8];
-    let mut table_start = |file: &mut Reader<'_>, from: SeekFrom| -> Result<u64> {
+    let mut table_start = |file: &mut SourceReader<'_>, from: SeekFrom| -> Result<u64> {
         file.seek(from).and_then(|_| file.read_exact(&mut bytes)).map_err(|_| broken())?;
         Ok(u64::from_le_bytes(bytes))
     };
@@ -245,8 +246,14 @@ fn check_chunk_count(path: &Path, file: &mut Reader<'_>, header: &LasHeader, siz
 }
 
 /// The chunks that hold the points `header` announces, each held against the size of the file.
-fn checked_chunks(path: &Path, table: &ChunkTable, vlr: &LazVlr, header: &LasHeader, size: u64) -> Result<Vec<Chunk>> {
-    let mut chunks: Vec<Chunk> = Vec::new();
+fn checked_chunks(
+    path: &Path,
+    table: &ChunkTable,
+    vlr: &LazVlr,
+    header: &LasHeader,
+    size: u64,
+) -> Result<Vec<LazChunk>> {
+    let mut chunks: Vec<LazChunk> = Vec::new();
     // the offset of the chunk table comes before the first chunk
     let mut start = header.points_start.saturating_add(8);
     let (mut points, mut bytes) = (0_u64, 0_u64);
@@ -265,7 +272,7 @@ fn checked_chunks(path: &Path, table: &ChunkTable, vlr: &LazVlr, header: &LasHea
         }
         check_size(path, &chunk, header)?;
         points += chunk.point_count;
-        chunks.push(Chunk { start, entry: chunk });
+        chunks.push(LazChunk { start, entry: chunk });
         start = start.saturating_add(chunk.byte_count);
     }
     if points < header.points {
@@ -276,7 +283,7 @@ fn checked_chunks(path: &Path, table: &ChunkTable, vlr: &LazVlr, header: &LasHea
 }
 
 /// Those of all chunks that hold any of `rows`.
-fn with_rows(mut chunks: Vec<Chunk>, rows: &[Range<u64>]) -> Vec<Chunk> {
+fn with_rows(mut chunks: Vec<LazChunk>, rows: &[Range<u64>]) -> Vec<LazChunk> {
     let mut next = 0_u64;
     chunks.retain(|chunk| {
         let first = next;
@@ -288,13 +295,13 @@ fn with_rows(mut chunks: Vec<Chunk>, rows: &[Range<u64>]) -> Vec<Chunk> {
 }
 
 /// The chunks at `places`, which lie in the file and do not overlap.
-fn chunks_at(path: &Path, places: &[ChunkPlace], header: &LasHeader) -> Result<Vec<Chunk>> {
+fn chunks_at(path: &Path, places: &[ChunkPlace], header: &LasHeader) -> Result<Vec<LazChunk>> {
     let mut left = header.points;
     let chunk = |place: &ChunkPlace| {
         let entry = ChunkTableEntry { point_count: place.points, byte_count: place.bytes };
         left = left.checked_sub(place.points).ok_or_else(|| unfit(path, &entry, header))?;
         check_size(path, &entry, header)?;
-        Ok(Chunk { start: place.start, entry })
+        Ok(LazChunk { start: place.start, entry })
     };
     places.iter().map(chunk).collect()
 }
@@ -302,8 +309,8 @@ fn chunks_at(path: &Path, places: &[ChunkPlace], header: &LasHeader) -> Result<V
 /// Refuses a chunk that would decompress to more than its bytes can be believed to hold.
 fn check_size(path: &Path, chunk: &ChunkTableEntry, header: &LasHeader) -> Result<()> {
     let decompressed = chunk.point_count.saturating_mul(u64::from(header.record_length));
-    let most = FREE_CHUNK_BYTES.max(chunk.byte_count.saturating_mul(MAX_RATIO)).min(MAX_CHUNK_BYTES);
-    if decompressed > most { Err(unfit(path, chunk, header)) } else { Ok(()) }
+    let max = FREE_CHUNK_BYTES.max(chunk.byte_count.saturating_mul(MAX_RATIO)).min(MAX_CHUNK_BYTES);
+    if decompressed > max { Err(unfit(path, chunk, header)) } else { Ok(()) }
 }
 
 fn unfit(path: &Path, chunk: &ChunkTableEntry, header: &LasHeader) -> Error {

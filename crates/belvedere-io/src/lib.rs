@@ -1,14 +1,15 @@
 //! Files in and out of Belvedere.
 //!
-//! Readers take a [`Source`]: a path, an address of the web, bytes in memory, or any `Read + Seek` with a name. Writers take an [`Output`]: a path or any
-//! `Write + Seek` with a name. The extension of the name selects the format. A file appears under its name only when it is
-//! complete ([`atomic`]).
+//! Readers take a [`Source`]: a path, an address of the web, bytes in memory, or any `Read + Seek` with a name. Writers
+//! take an [`Output`]: a path or any `Write + Seek` with a name. The extension of the name selects the format. A file
+//! appears under its name only when it is complete ([`atomic`]).
 //!
 //! # Features
-//! Formats that need crates of their own are features, all on by default: `las` (LAS, LAZ, COPC), `e57`, `ply` (reading), `npy`
-//! (NPY, NPZ ball files, masbcpp's folders), `tiff` (GeoTIFF), `obj` (reading). `http` reads files on web servers. `crs` (from `belvedere-data`) is the database of
-//! reference systems. Text, PCD, PTX, GeoJSON, CityJSON, tables, weather files and trajectories are always there. A format that
-//! was not built in gives [`belvedere_data::Error::MissingFeature`].
+//! Formats that need crates of their own are features, all on by default: `las` (LAS, LAZ, COPC), `e57`, `ply`
+//! (reading), `npy` (NPY, NPZ ball files, masbcpp's folders), `tiff` (GeoTIFF), `obj` (reading). `http` reads files on
+//! web servers. `crs` (from `belvedere-data`) is the database of reference systems. Text, PCD, PTX, GeoJSON, CityJSON,
+//! tables, weather files and trajectories are always there. A format that was not built in gives
+//! [`belvedere_data::Error::MissingFeature`].
 
 mod assemble;
 pub mod atomic;
@@ -102,8 +103,8 @@ pub use balls::{is_ball_file, read_balls, write_balls};
 pub use cityjson::{LevelOfDetail, read_cityjson};
 pub use cloud_batches::{CloudBatch, CloudBatches, read_batches};
 pub use colors::{class_color, in_shadow, ramp, ramp_colors};
-pub use geojson::{Area, GeojsonCoordinates, Spot, write_geojson, write_geojson_areas};
-pub use geojson_read::{GeojsonFeature, Shape, read_geojson};
+pub use geojson::{GeojsonCoordinates, PolygonArea, Spot, write_geojson, write_geojson_areas};
+pub use geojson_read::{FeatureShape, GeojsonFeature, read_geojson};
 #[cfg(feature = "tiff")]
 pub use geotiff::{
     BandValues, Bands, Georeference, write_bands as write_tif_bands, write_f32 as write_tif_f32,
@@ -134,7 +135,7 @@ pub use saved_matrix::{
 };
 pub use source::{ReadSeek, Source, web_address};
 pub use stations::read_stations;
-pub use table::{Cells, Table, read_table, write_table};
+pub use table::{Table, TableCells, read_table, write_table};
 #[cfg(feature = "tiff")]
 pub use terrain::read_terrain;
 pub use text_rows::{TextRows, read_text_rows, with_columns_read, write_text_rows};
@@ -147,4 +148,4 @@ pub use write_masbcpp::{MasbcppFolder, write_masbcpp};
 pub use write_mesh::write_mesh_values;
 #[cfg(feature = "npy")]
 pub use write_npy::{write_npy_f32, write_npy_f32_2d, write_npy_u8, write_npy_u32_2d, write_npy_u32_bands};
-pub use write_trajectory::{Heading, write_found_trajectory, write_trajectory};
+pub use write_trajectory::{VehicleHeading, write_found_trajectory, write_trajectory};

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::npy;
-use super::part::{Part, narrow};
+use super::part::{FilePart, narrow};
 use super::source::Source;
 use belvedere_data::{Error, Result};
 
@@ -12,7 +12,7 @@ pub(super) const COORDINATES: &str = "coords.npy";
 const NORMALS: &str = "normals.npy";
 
 /// The points, and normals if present, of the folder at `path`.
-pub(super) fn read(folder: &Path) -> Result<Part> {
+pub(super) fn read(folder: &Path) -> Result<FilePart> {
     let mut part = npy::read(Source::path(folder.join(COORDINATES)).open()?)?;
     part.report.format = format!("masbcpp folder, {}", part.report.format);
     let path = folder.join(NORMALS);

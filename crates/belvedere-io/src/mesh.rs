@@ -10,12 +10,13 @@ use super::source::{Source, unusable};
 use belvedere_data::crs::Crs;
 use belvedere_data::{Mesh, Result};
 
-/// The mesh of a source (`.obj`, `.ply`, or CityJSON as `.city.json`, `.json`, `.cityjson`) and what was left out of it.
-/// CityJSON is read at the highest level of detail of each object.
+/// The mesh of a source (`.obj`, `.ply`, or CityJSON as `.city.json`, `.json`, `.cityjson`) and what was left out of
+/// it. CityJSON is read at the highest level of detail of each object.
 ///
 /// # Errors
-/// [`belvedere_data::Error::UnknownFormat`] for other extensions, [`belvedere_data::Error::MissingFeature`]; [`belvedere_data::Error::Io`] where the source cannot be read;
-/// [`belvedere_data::Error::Malformed`] for syntax errors, indices without a vertex, coordinates that are not finite, and files without a triangle.
+/// [`belvedere_data::Error::UnknownFormat`] for other extensions, [`belvedere_data::Error::MissingFeature`];
+/// [`belvedere_data::Error::Io`] where the source cannot be read; [`belvedere_data::Error::Malformed`] for syntax
+/// errors, indices without a vertex, coordinates that are not finite, and files without a triangle.
 pub fn read_mesh<'a>(source: impl Into<Source<'a>>) -> Result<(Mesh, MeshReport)> {
     let source = source.into();
     match source.extension().as_str() {

@@ -5,15 +5,15 @@ use std::path::Path;
 use npyz::{NpyFile, Order};
 
 use super::npy_header::read_header;
-use super::part::{Coordinates, Part};
+use super::part::{Coordinates, FilePart};
 use super::source::Input;
 use belvedere_data::{Error, Result};
 
 /// The first three columns of the array as coordinates.
-pub(super) fn read(input: Input<'_>) -> Result<Part> {
+pub(super) fn read(input: Input<'_>) -> Result<FilePart> {
     let path = input.name.clone();
     let (rows, kind) = read_rows(input)?;
-    let mut part = Part::new(&path, format!("NPY, {} columns of {}", rows.width, kind));
+    let mut part = FilePart::new(&path, format!("NPY, {} columns of {}", rows.width, kind));
     if rows.width > 3 {
         part.note(format!("columns ignored: all after the third of {}", rows.width));
     }
@@ -23,13 +23,13 @@ pub(super) fn read(input: Input<'_>) -> Result<Part> {
 }
 
 /// The first three columns of an array, and how many it has.
-pub(super) struct Table {
+pub(super) struct NpyTable {
     pub(super) rows: Vec<[f64; 3]>,
     pub(super) width: usize,
 }
 
 /// Reads an (N, 3) or wider array of f32 or f64; gives its type too.
-pub(super) fn read_rows(input: Input<'_>) -> Result<(Table, &'static str)> {
+pub(super) fn read_rows(input: Input<'_>) -> Result<(NpyTable, &'static str)> {
     let Input { name, mut reader, size } = input;
     let path = name.as_path();
     let header = read_header(&mut reader).map_err(|e| Error::malformed(path, format!("is not a NumPy array: {e}")))?;
@@ -39,12 +39,11 @@ pub(super) fn read_rows(input: Input<'_>) -> Result<(Table, &'static str)> {
         return Err(Error::malformed(path, format!("has shape {shape:?}, but (N, 3) is needed")));
     };
     // Four bytes a number is the least that is read.
-    if width < 3 || count.checked_mul(width).and_then(|numbers| numbers.checked_mul(4)).is_none_or(|least| least > size)
-    {
+    if width < 3 || count.checked_mul(width).and_then(|numbers| numbers.checked_mul(4)).is_none_or(|min| min > size) {
         let what = format!("has shape {shape:?}, which is not an (N, 3) array that fits in its {size} bytes");
         return Err(Error::malformed(path, what));
     }
-    let layout = Layout {
+    let layout = ArrayLayout {
         count: usize::try_from(count).unwrap_or(0),
         width: usize::try_from(width).unwrap_or(0),
         order: array.order(),
@@ -61,14 +60,14 @@ pub(super) fn read_rows(input: Input<'_>) -> Result<(Table, &'static str)> {
     }
 }
 
-struct Layout {
+struct ArrayLayout {
     count: usize,
     width: usize,
     order: Order,
 }
 
-impl Layout {
-    fn collect(self, path: &Path, numbers: impl Iterator<Item = std::io::Result<f64>>) -> Result<Table> {
+impl ArrayLayout {
+    fn collect(self, path: &Path, numbers: impl Iterator<Item = std::io::Result<f64>>) -> Result<NpyTable> {
         let cut = |e: std::io::Error| Error::malformed(path, format!("ends within its numbers: {e}"));
         let mut rows = vec![[0.0; 3]; self.count];
         for (i, number) in numbers.enumerate() {
@@ -81,6 +80,6 @@ impl Layout {
                 *place = number;
             }
         }
-        Ok(Table { rows, width: self.width })
+        Ok(NpyTable { rows, width: self.width })
     }
 }

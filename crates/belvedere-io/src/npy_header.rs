@@ -1,7 +1,7 @@
 //! The header of a NumPy array, checked before the crate `npyz` sees it.
 //!
-//! That crate allocates the length that a header claims, descends into brackets without limit, and multiplies the sides of the
-//! array without looking for overflow.
+//! That crate allocates the length that a header claims, descends into brackets without limit, and multiplies the sides
+//! of the array without looking for overflow.
 
 use std::io::{self, Read};
 

@@ -53,15 +53,17 @@ pub(crate) fn begin_array<'a, T: AutoSerialize, W: Write + Seek>(
 }
 
 /// Bytes that all arrays of an archive may hold together, whatever its size.
-const MOST_BYTES_OF_SMALL: u64 = 1 << 26;
-/// Bytes that all arrays may hold for each byte of the archive. Compressed balls hold 2 to 4, matrices of open land at most 20.
-const MOST_BYTES_FOR_EACH: u64 = 100;
+const MAX_BYTES_OF_SMALL: u64 = 1 << 26;
+/// Bytes that all arrays may hold for each byte of the archive. Compressed balls hold 2 to 4, matrices of open land at
+/// most 20.
+const MAX_BYTES_FOR_EACH: u64 = 100;
 /// Bytes of an entry that are read at once.
 const BUFFER_BYTES: usize = 1 << 16;
 /// The record that ends an archive without a comment.
 const END_BYTES: usize = 22;
 
-/// Opens an archive of `size` bytes whose directory does not contradict itself, and whose arrays are not far larger than the archive.
+/// Opens an archive of `size` bytes whose directory does not contradict itself, and whose arrays are not far larger
+/// than the archive.
 ///
 /// # Errors
 /// [`io::ErrorKind::InvalidData`] where it is damaged or would expand beyond reason.
@@ -85,10 +87,10 @@ pub(crate) fn open<R: Read + Seek>(mut reader: R, size: u64) -> io::Result<NpzAr
     for index in 0..entries.len() {
         bytes = bytes.saturating_add(entries.by_index_raw(index)?.size());
     }
-    let most = size.saturating_mul(MOST_BYTES_FOR_EACH).max(MOST_BYTES_OF_SMALL);
-    if bytes > most {
+    let max = size.saturating_mul(MAX_BYTES_FOR_EACH).max(MAX_BYTES_OF_SMALL);
+    if bytes > max {
         return Err(invalid(format!(
-            "its {size} bytes would expand to {bytes}, more than {MOST_BYTES_FOR_EACH} times as many"
+            "its {size} bytes would expand to {bytes}, more than {MAX_BYTES_FOR_EACH} times as many"
         )));
     }
     Ok(archive)
@@ -114,15 +116,15 @@ pub(crate) fn invalid(what: String) -> io::Error {
     io::Error::new(io::ErrorKind::InvalidData, what)
 }
 
-/// Values and shape of an array of at most `most` values.
+/// Values and shape of an array of at most `max` values.
 pub(crate) fn values<T: Deserialize, R: Read + Seek>(
     archive: &mut NpzArchive<R>,
     name: &str,
-    most: u64,
+    max: u64,
 ) -> io::Result<(Vec<T>, Vec<u64>)> {
     read_array(archive, name, |shape, reader| {
         let count = shape.iter().try_fold(1_u64, |product, &n| product.checked_mul(n)).unwrap_or(u64::MAX);
-        if count > most {
+        if count > max {
             return Err(invalid(format!("the array {name} is too large")));
         }
         // the shape was held against the size of the entry, but not yet the size against what is really there
@@ -134,18 +136,18 @@ pub(crate) fn values<T: Deserialize, R: Read + Seek>(
     })
 }
 
-/// Hands the values of an array to `take`, `most` at a time.
+/// Hands the values of an array to `take`, `max` at a time.
 pub(crate) fn in_blocks<T: Deserialize, R: Read + Seek, E: From<io::Error>>(
     archive: &mut NpzArchive<R>,
     name: &str,
-    most: usize,
+    max: usize,
     mut take: impl FnMut(&[T]) -> Result<(), E>,
 ) -> Result<(), E> {
     read_array(archive, name, |_, reader| {
         let mut block = Vec::new();
         for value in reader {
             block.push(value?);
-            if block.len() == most {
+            if block.len() == max {
                 take(&block)?;
                 block.clear();
             }
@@ -155,13 +157,13 @@ pub(crate) fn in_blocks<T: Deserialize, R: Read + Seek, E: From<io::Error>>(
 }
 
 /// The values of an array, by way of a buffer: a value at a time, the entry of an archive is slow.
-type Values<'a, 'z, T> = NpyReader<T, &'a mut BufReader<Take<ZipFile<'z>>>>;
+type NpzValues<'a, 'z, T> = NpyReader<T, &'a mut BufReader<Take<ZipFile<'z>>>>;
 
 /// Lets `read` read an array, of which it is given the shape and the values, and checks the sum of the whole.
 fn read_array<T: Deserialize, R: Read + Seek, O, E: From<io::Error>>(
     archive: &mut NpzArchive<R>,
     name: &str,
-    read: impl FnOnce(&[u64], &mut Values<'_, '_, T>) -> Result<O, E>,
+    read: impl FnOnce(&[u64], &mut NpzValues<'_, '_, T>) -> Result<O, E>,
 ) -> Result<O, E> {
     if !has(archive, name) {
         return Err(invalid(format!("there is no array {name}")).into());

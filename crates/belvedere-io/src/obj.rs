@@ -8,7 +8,8 @@ use std::io::{BufRead, Seek};
 /// Name the parser gives to faces that come before any `o` or `g` line.
 const UNNAMED: &str = "unnamed_object";
 
-/// The line, from 1, of the first face with an index of a vertex that is not there, the index, and the number of vertices of the file.
+/// The line, from 1, of the first face with an index of a vertex that is not there, the index, and the number of
+/// vertices of the file.
 fn bad_face(reader: &mut (impl BufRead + Seek)) -> Option<(usize, i64, i64)> {
     reader.rewind().ok()?;
     let (mut count, mut faces) = (0_i64, Vec::new());

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde_json::{Map, Value};
 
-use crate::geojson_read::{Shape, read_geojson};
+use crate::geojson_read::{FeatureShape, read_geojson};
 use crate::source::{Source, refuse_other_shapes};
 use crate::table::read_table;
 use belvedere_data::crs::Crs;
@@ -59,14 +59,14 @@ pub enum RowsAre {
 
 /// Reads observers from a table (.csv .txt) or GeoJSON (.geojson .json).
 ///
-/// A table has columns x and y in the coordinates of the cloud's file, and may have z (height of the eye; empty where it follows from
-/// the ground), height (above the ground, metres), min_distance and max_distance (metres), azimuth_from, azimuth_to,
-/// elevation_from, elevation_to, heading, tilt and fov (degrees) and weight. GeoJSON has these as properties; points are observers, lines are paths, and
-/// the corners of polygons are walked around.
+/// A table has columns x and y in the coordinates of the cloud's file, and may have z (height of the eye; empty where
+/// it follows from the ground), height (above the ground, metres), min_distance and max_distance (metres),
+/// azimuth_from, azimuth_to, elevation_from, elevation_to, heading, tilt and fov (degrees) and weight. GeoJSON has
+/// these as properties; points are observers, lines are paths, and the corners of polygons are walked around.
 ///
 /// # Errors
-/// [`Error::UnknownFormat`], [`Error::Malformed`] for missing columns, text in place of numbers and files without observers, and
-/// what [`read_table`] and [`read_geojson`] refuse.
+/// [`Error::UnknownFormat`], [`Error::Malformed`] for missing columns, text in place of numbers and files without
+/// observers, and what [`read_table`] and [`read_geojson`] refuse.
 pub fn read_observers<'a>(source: impl Into<Source<'a>>, crs: &Crs, rows_are: RowsAre) -> Result<Vec<ObserverRow>> {
     let source = source.into();
     let name = source.name().to_owned();
@@ -113,9 +113,9 @@ fn of_geojson(source: Source<'_>, path: &Path, crs: &Crs) -> Result<Vec<Observer
     let mut rows = Vec::new();
     for feature in read_geojson(source, crs)? {
         let corners = match feature.shape {
-            Shape::Point(place) => vec![place],
-            Shape::Line(corners) => corners,
-            Shape::Polygon(rings) => rings.into_iter().next().unwrap_or_default(),
+            FeatureShape::Point(place) => vec![place],
+            FeatureShape::Line(corners) => corners,
+            FeatureShape::Polygon(rings) => rings.into_iter().next().unwrap_or_default(),
         };
         if corners.is_empty() {
             continue;
@@ -146,7 +146,7 @@ fn from_values(corners: Vec<[f64; 3]>, values: [Option<f64>; NAMES.len()], path:
     if let Some(corner) = corners.iter().find(|c| !(c[0].is_finite() && c[1].is_finite())) {
         return Err(Error::malformed(path, format!("an observer has the position {corner:?}")));
     }
-    let [height, least, most, azimuth_from, azimuth_to, elevation_from, elevation_to, heading, tilt, fov, weight] =
+    let [height, min, max, azimuth_from, azimuth_to, elevation_from, elevation_to, heading, tilt, fov, weight] =
         values.map(|value| value.filter(|v| !v.is_nan()));
     if let Some(height) = height.filter(|height| !(*height >= 0.0 && height.is_finite())) {
         let what = format!("an observer has the height {height}; heights above the ground are 0 metres or more");
@@ -155,7 +155,7 @@ fn from_values(corners: Vec<[f64; 3]>, values: [Option<f64>; NAMES.len()], path:
     Ok(ObserverRow {
         corners,
         height,
-        distance: [least, most],
+        distance: [min, max],
         azimuth_deg: [azimuth_from, azimuth_to],
         elevation_deg: [elevation_from, elevation_to],
         heading_deg: heading,

@@ -2,12 +2,13 @@
 
 use belvedere_data::raster::Raster;
 
-/// An area of cells that touch along sides: corners in columns from the west and rows from the north, first corner repeated at the
-/// end. Seen on a map with north up, the outer rim runs counter-clockwise and holes clockwise, as RFC 7946 wants.
+/// An area of cells that touch along sides: corners in columns from the west and rows from the north, first corner
+/// repeated at the end. Seen on a map with north up, the outer rim runs counter-clockwise and holes clockwise, as RFC
+/// 7946 wants.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct GridPolygon {
     /// Rim of the area.
-    pub rim: Vec<[usize; 2]>,
+    pub exterior: Vec<[usize; 2]>,
     /// Rims of its holes.
     pub holes: Vec<Vec<[usize; 2]>>,
     /// Number of cells.
@@ -17,7 +18,7 @@ pub struct GridPolygon {
 impl GridPolygon {
     /// Its rim and holes with the corners at their `place`.
     pub fn rings(&self, place: impl Fn([usize; 2]) -> [f64; 2]) -> Vec<Vec<[f64; 2]>> {
-        std::iter::once(&self.rim)
+        std::iter::once(&self.exterior)
             .chain(&self.holes)
             .map(|ring| ring.iter().map(|&corner| place(corner)).collect())
             .collect()
@@ -26,8 +27,8 @@ impl GridPolygon {
 
 const NONE: u32 = u32::MAX;
 
-/// The outlines of the cells that are `true`, in the order of their first cells. Cells that touch at a corner only are different
-/// areas; no rim touches itself.
+/// The outlines of the cells that are `true`, in the order of their first cells. Cells that touch at a corner only are
+/// different areas; no rim touches itself.
 #[must_use]
 pub fn outlines(cells: &Raster<bool>) -> Vec<GridPolygon> {
     let (width, height) = (cells.width(), cells.height());
@@ -38,7 +39,7 @@ pub fn outlines(cells: &Raster<bool>) -> Vec<GridPolygon> {
         inside.and_then(|(column, row)| labels.get(row * width + column).copied()).unwrap_or(NONE)
     };
     let mut polygons: Vec<GridPolygon> =
-        counts.iter().map(|&cell_count| GridPolygon { rim: Vec::new(), holes: Vec::new(), cell_count }).collect();
+        counts.iter().map(|&cell_count| GridPolygon { exterior: Vec::new(), holes: Vec::new(), cell_count }).collect();
     // every rim, outer or inner, has a side that runs west along the north of a cell
     let mut walked = vec![false; width * height];
     for row in 0..height {
@@ -51,7 +52,7 @@ pub fn outlines(cells: &Raster<bool>) -> Vec<GridPolygon> {
             for ring in simple_rings(walk([column, row], &label, &mut walked, width)) {
                 let Some(polygon) = polygons.get_mut(own as usize) else { continue };
                 if doubled_area(&ring) > 0 {
-                    polygon.rim = ring;
+                    polygon.exterior = ring;
                 } else {
                     polygon.holes.push(ring);
                 }
@@ -100,8 +101,8 @@ fn labelled(cells: &Raster<bool>) -> (Vec<u32>, Vec<usize>) {
 /// Steps to the west, south, east and north: turning left on a map whose rows count southward.
 const STEPS: [[isize; 2]; 4] = [[-1, 0], [0, 1], [1, 0], [0, -1]];
 
-/// Walks around an area with its cells at the left hand, from the north-east corner of `start` westward; the corners at which the
-/// walk turns, the first of them not repeated. Marks the cells whose north sides it ran along.
+/// Walks around an area with its cells at the left hand, from the north-east corner of `start` westward; the corners at
+/// which the walk turns, the first of them not repeated. Marks the cells whose north sides it ran along.
 fn walk(start: [usize; 2], label: &impl Fn(isize, isize) -> u32, walked: &mut [bool], width: usize) -> Vec<[usize; 2]> {
     let start = [start[0].cast_signed() + 1, start[1].cast_signed()];
     let (mut corner, mut heading) = (start, 0);
@@ -193,8 +194,8 @@ mod tests {
     fn a_frame_has_a_hole_and_runs_the_right_way() {
         let polygons = outlines(&raster(&["####", "#..#", "####"]));
         assert_eq!(polygons.len(), 1);
-        assert_eq!((doubled_area(&polygons[0].rim), polygons[0].cell_count), (24, 10));
-        assert_eq!(polygons[0].rim.len(), 5);
+        assert_eq!((doubled_area(&polygons[0].exterior), polygons[0].cell_count), (24, 10));
+        assert_eq!(polygons[0].exterior.len(), 5);
         assert_eq!(polygons[0].holes.iter().map(|h| doubled_area(h)).collect::<Vec<_>>(), [-4]);
     }
 
@@ -209,7 +210,7 @@ mod tests {
     }
 
     #[test]
-    fn areas_of_random_grids_add_up_and_no_rim_touches_itself() {
+    fn areas_of_random_grids_add_up_and_no_ring_touches_itself() {
         for seed in 0..40 {
             let (width, height) = (19, 13);
             let share = 0.3 + 0.01 * f64::from(seed);
@@ -219,12 +220,12 @@ mod tests {
             let polygons = outlines(&cells);
             let mut total = 0;
             for polygon in &polygons {
-                let own = doubled_area(&polygon.rim);
+                let own = doubled_area(&polygon.exterior);
                 let holes: i64 = polygon.holes.iter().map(|hole| doubled_area(hole)).sum();
                 assert!(own > 0 && holes <= 0);
                 assert_eq!(own + holes, 2 * polygon.cell_count as i64);
                 total += polygon.cell_count;
-                for ring in std::iter::once(&polygon.rim).chain(&polygon.holes) {
+                for ring in std::iter::once(&polygon.exterior).chain(&polygon.holes) {
                     assert_eq!(ring.first(), ring.last());
                     let distinct: std::collections::HashSet<_> = ring.iter().collect();
                     assert_eq!(distinct.len(), ring.len() - 1);

@@ -15,8 +15,8 @@ const BUFFER_BYTES: usize = 1 << 18;
 
 /// One output with a name. The extension of the name selects the format; messages about the output begin with the name.
 ///
-/// Paths become outputs by themselves: wherever an output is expected, a path will do. A file appears under its name only
-/// when it is complete; a writer may have received a part when an error is returned.
+/// Paths become outputs by themselves: wherever an output is expected, a path will do. A file appears under its name
+/// only when it is complete; a writer may have received a part when an error is returned.
 pub struct Output<'a> {
     name: PathBuf,
     writer: Option<&'a mut dyn WriteSeek>,
@@ -29,7 +29,8 @@ impl<'a> Output<'a> {
         Self { name: path.into(), writer: None }
     }
 
-    /// Anything that writes and seeks, from its present position on, such as a `Cursor<Vec<u8>>`. `name` needs an extension.
+    /// Anything that writes and seeks, from its present position on, such as a `Cursor<Vec<u8>>`. `name` needs an
+    /// extension.
     #[must_use]
     pub fn writer(name: impl Into<PathBuf>, writer: &'a mut dyn WriteSeek) -> Self {
         Self { name: name.into(), writer: Some(writer) }

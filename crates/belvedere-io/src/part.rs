@@ -17,7 +17,7 @@ const COARSE_STEP: f64 = 0.002;
 
 /// The points of one file in the unit of the file.
 #[derive(Debug, Default)]
-pub(super) struct Part {
+pub(super) struct FilePart {
     pub(super) coordinates: Coordinates,
     pub(super) attributes: Attributes,
     /// Scanner positions that `attributes.scanner_index` refers to.
@@ -95,7 +95,7 @@ pub(super) fn unquantise(q: [i32; 3], scale: [f64; 3], offset: [f64; 3]) -> [f64
     std::array::from_fn(|i| f64::from(q[i]) * scale[i] + offset[i])
 }
 
-impl Part {
+impl FilePart {
     pub(super) fn new(path: &Path, format: impl Into<String>) -> Self {
         let report = FileReport { path: path.to_owned(), format: format.into(), ..FileReport::default() };
         Self { report, ..Self::default() }

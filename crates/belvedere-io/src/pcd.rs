@@ -3,7 +3,7 @@
 use std::io::{BufRead, Read};
 use std::path::Path;
 
-use super::part::Part;
+use super::part::FilePart;
 use super::read_options::Reading;
 use super::rows::{Role, Row, Rows, role_of};
 use super::source::Input;
@@ -19,8 +19,8 @@ const MAX_LINE: u64 = 1 << 16;
 const MAX_LZF_RATIO: u64 = 88;
 
 #[derive(Debug, Default)]
-struct Header {
-    fields: Vec<Field>,
+struct PcdHeader {
+    fields: Vec<PcdField>,
     points: u64,
     data: String,
     /// Bytes of the header itself.
@@ -28,7 +28,7 @@ struct Header {
 }
 
 #[derive(Clone, Debug)]
-struct Field {
+struct PcdField {
     name: String,
     size: usize,
     kind: char,
@@ -36,23 +36,23 @@ struct Field {
 }
 
 /// The points of the source.
-pub(super) fn read(input: Input<'_>, reading: &Reading<'_>) -> Result<Part> {
+pub(super) fn read(input: Input<'_>, reading: &Reading<'_>) -> Result<FilePart> {
     let Input { name, reader: mut file, size } = input;
     let path = name.as_path();
-    let mut part = Part::new(path, "PCD");
+    let mut part = FilePart::new(path, "PCD");
     let header = read_header(path, &mut file, &mut part)?;
     part.report.format = format!("PCD, {}", header.data);
     let body = size.saturating_sub(header.length);
     let stride: u64 = header.fields.iter().map(|field| (field.size * field.count) as u64).sum();
     // In ascii a value takes a digit and a blank.
-    let least = if header.data == "ascii" { 2 * header.fields.len() as u64 } else { stride };
+    let min = if header.data == "ascii" { 2 * header.fields.len() as u64 } else { stride };
     let packed = header.data == "binary_compressed";
     let holds = if packed { body.saturating_mul(MAX_LZF_RATIO) } else { body + 1 };
-    if header.points.saturating_mul(least) > holds {
+    if header.points.saturating_mul(min) > holds {
         let what = format!("announces {} points, more than its {body} bytes can hold", header.points);
         return Err(Error::malformed(path, what));
     }
-    let roles: Vec<Role> = header.fields.iter().flat_map(Field::roles).collect();
+    let roles: Vec<Role> = header.fields.iter().flat_map(PcdField::roles).collect();
     let mut rows = Rows::new(roles).with_numbers(reading.options.row_numbers);
     if !rows.has_position() {
         return Err(Error::malformed(path, "has no fields x, y and z"));
@@ -77,8 +77,8 @@ pub(super) fn read(input: Input<'_>, reading: &Reading<'_>) -> Result<Part> {
     Ok(part)
 }
 
-fn read_header(path: &Path, file: &mut impl BufRead, part: &mut Part) -> Result<Header> {
-    let mut header = Header::default();
+fn read_header(path: &Path, file: &mut impl BufRead, part: &mut FilePart) -> Result<PcdHeader> {
+    let mut header = PcdHeader::default();
     let (mut names, mut sizes, mut kinds, mut counts) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     let (mut width, mut height) = (0_u64, 1_u64);
     for _ in 0..MAX_HEADER_LINES {
@@ -118,7 +118,13 @@ fn read_header(path: &Path, file: &mut impl BufRead, part: &mut Part) -> Result<
     Err(Error::malformed(path, "is not a PCD file: its header has no DATA line"))
 }
 
-fn fields(path: &Path, names: &[String], sizes: &[String], kinds: &[String], counts: &[String]) -> Result<Vec<Field>> {
+fn fields(
+    path: &Path,
+    names: &[String],
+    sizes: &[String],
+    kinds: &[String],
+    counts: &[String],
+) -> Result<Vec<PcdField>> {
     let damaged = |i: usize| Error::malformed(path, format!("has a PCD header that does not describe field {}", i + 1));
     let mut fields = Vec::new();
     for (i, name) in names.iter().enumerate() {
@@ -129,12 +135,12 @@ fn fields(path: &Path, names: &[String], sizes: &[String], kinds: &[String], cou
         if !matches!((kind, size), ('F', 4 | 8) | ('I' | 'U', 1 | 2 | 4 | 8)) {
             return Err(damaged(i));
         }
-        fields.push(Field { name: name.clone(), size, kind, count });
+        fields.push(PcdField { name: name.clone(), size, kind, count });
     }
     Ok(fields)
 }
 
-impl Field {
+impl PcdField {
     fn is_packed_color(&self) -> bool {
         (self.name == "rgb" || self.name == "rgba") && self.size == 4
     }
@@ -182,9 +188,9 @@ fn put_color(row: &mut Row, [red, green, blue]: [u8; 3]) {
 fn read_ascii(
     path: &Path,
     file: &mut impl BufRead,
-    header: &Header,
+    header: &PcdHeader,
     rows: &mut Rows,
-    part: &mut Part,
+    part: &mut FilePart,
     reading: &Reading<'_>,
 ) -> Result<()> {
     let (mut bad, mut good) = (0_usize, 0_usize);
@@ -218,7 +224,7 @@ fn read_ascii(
     Ok(())
 }
 
-fn ascii_row(line: &str, header: &Header) -> Option<Row> {
+fn ascii_row(line: &str, header: &PcdHeader) -> Option<Row> {
     let mut row = Row::default();
     let mut words = line.split_ascii_whitespace();
     for field in &header.fields {
@@ -244,7 +250,7 @@ fn to_bits(value: f64) -> u32 {
 fn read_binary(
     path: &Path,
     file: &mut impl Read,
-    header: &Header,
+    header: &PcdHeader,
     rows: &mut Rows,
     reading: &Reading<'_>,
 ) -> Result<()> {
@@ -269,7 +275,7 @@ fn read_binary(
 fn read_compressed(
     path: &Path,
     file: &mut impl Read,
-    header: &Header,
+    header: &PcdHeader,
     body: u64,
     rows: &mut Rows,
     reading: &Reading<'_>,

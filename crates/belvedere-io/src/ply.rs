@@ -8,10 +8,10 @@ use ply_rs_bw::ply::{
     ElementDef, Encoding, Header, Property, PropertyAccess, PropertyAccessResult, PropertyType, ScalarType,
 };
 
-use super::part::Part;
+use super::part::FilePart;
 use super::read_options::Reading;
 use super::rows::{Role, Row, Rows, role_of};
-use super::source::{Input, Reader};
+use super::source::{Input, SourceReader};
 use belvedere_data::crs::text::crs_from_comments;
 use belvedere_data::{Error, Result};
 
@@ -48,7 +48,7 @@ impl PropertyAccess for Vertex {
 /// A PLY file whose header has been checked against its size.
 pub(super) struct PlyFile<'a> {
     name: PathBuf,
-    reader: Reader<'a>,
+    reader: SourceReader<'a>,
     header: Header,
 }
 
@@ -92,9 +92,9 @@ impl<'a> PlyFile<'a> {
 }
 
 /// The vertices of the source.
-pub(super) fn read(input: Input<'_>, reading: &Reading<'_>) -> Result<Part> {
+pub(super) fn read(input: Input<'_>, reading: &Reading<'_>) -> Result<FilePart> {
     let mut file = PlyFile::open(input)?;
-    let mut part = Part::new(file.name(), format!("PLY, {}", file.header.encoding));
+    let mut part = FilePart::new(file.name(), format!("PLY, {}", file.header.encoding));
     if let Some(crs) = crs_from_comments(file.comments()) {
         part.set_crs(crs, "comments in the header");
     }
@@ -152,13 +152,13 @@ fn header_bytes(path: &Path, file: &mut impl BufRead) -> Result<Vec<u8>> {
 
 /// Holds the number of an element against the bytes there are: in ascii every value takes two.
 fn check_count(path: &Path, element: &ElementDef, encoding: Encoding, body: u64) -> Result<()> {
-    let least: u64 = if encoding == Encoding::Ascii {
+    let min: u64 = if encoding == Encoding::Ascii {
         2 * element.properties.len() as u64
     } else {
-        element.properties.values().map(|property| least_bytes(&property.data_type)).sum()
+        element.properties.values().map(|property| min_bytes(&property.data_type)).sum()
     };
     // The last line of a text may lack its line break.
-    if (element.count as u64).saturating_mul(least) > body + 1 || (least == 0 && element.count > 0) {
+    if (element.count as u64).saturating_mul(min) > body + 1 || (min == 0 && element.count > 0) {
         let what = format!(
             "announces {} elements {}, more than its {body} bytes can hold; it is cut off or damaged",
             element.count, element.name
@@ -168,7 +168,7 @@ fn check_count(path: &Path, element: &ElementDef, encoding: Encoding, body: u64)
     Ok(())
 }
 
-fn least_bytes(kind: &PropertyType) -> u64 {
+fn min_bytes(kind: &PropertyType) -> u64 {
     let scalar = match kind {
         PropertyType::Scalar(scalar) | PropertyType::List(scalar, _) => scalar,
     };
@@ -180,7 +180,7 @@ fn least_bytes(kind: &PropertyType) -> u64 {
     }
 }
 
-fn note_unknown(part: &mut Part, element: &ElementDef) {
+fn note_unknown(part: &mut FilePart, element: &ElementDef) {
     let unknown: Vec<&str> =
         element.properties.keys().filter(|name| role_of(name).is_none()).map(String::as_str).collect();
     if !unknown.is_empty() {

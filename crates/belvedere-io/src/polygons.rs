@@ -176,8 +176,8 @@ fn flatten(vertices: &[[f64; 3]], corners: &[u32], outline_length: usize) -> Opt
         return None;
     }
     let normal = normal.map(|v| v / size);
-    let least = if normal[2].abs() < 0.7 { [0.0, 0.0, 1.0] } else { [1.0, 0.0, 0.0] };
-    let u = cross(least, normal);
+    let min = if normal[2].abs() < 0.7 { [0.0, 0.0, 1.0] } else { [1.0, 0.0, 0.0] };
+    let u = cross(min, normal);
     let u = u.map(|v| v / length(u));
     let v = cross(normal, u);
     Some(points.iter().map(|&p| [dot(u, p), dot(v, p)]).collect())

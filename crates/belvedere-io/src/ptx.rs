@@ -3,7 +3,7 @@
 use std::io::{BufRead, Read};
 use std::path::Path;
 
-use super::part::Part;
+use super::part::FilePart;
 use super::read_options::Reading;
 use super::rows::{POSITION, Role, Row, Rows};
 use super::source::Input;
@@ -19,11 +19,11 @@ const HEADER_LINES: usize = 10;
 ///
 /// # Errors
 /// [`Error::Malformed`] for a header that is no scan's, an unreadable line, or a scan that is cut off.
-pub(super) fn read(input: Input<'_>, reading: &Reading<'_>) -> Result<Part> {
+pub(super) fn read(input: Input<'_>, reading: &Reading<'_>) -> Result<FilePart> {
     let Input { name, reader: file, size } = input;
     let path = name.as_path();
-    let mut lines = Lines { path, file, number: 0, bytes: Vec::new() };
-    let mut part = Part::new(path, "PTX");
+    let mut lines = PtxLines { path, file, number: 0, bytes: Vec::new() };
+    let mut part = FilePart::new(path, "PTX");
     let mut rows: Option<(usize, Rows)> = None;
     let mut scanner_index: Vec<u16> = Vec::new();
     let mut empty = 0;
@@ -64,7 +64,7 @@ pub(super) fn read(input: Input<'_>, reading: &Reading<'_>) -> Result<Part> {
     Ok(part)
 }
 
-struct Header {
+struct PtxHeader {
     cells: u64,
     scanner: [f64; 3],
     /// Rows of the matrix that turns scan into file coordinates; points are row vectors multiplied from the left.
@@ -72,7 +72,7 @@ struct Header {
 }
 
 /// The header of the next scan, or `None` at the end of the file.
-fn read_header<R: BufRead>(lines: &mut Lines<'_, R>) -> Result<Option<Header>> {
+fn read_header<R: BufRead>(lines: &mut PtxLines<'_, R>) -> Result<Option<PtxHeader>> {
     let Some(columns) = lines.next()? else { return Ok(None) };
     let mut all = vec![columns];
     while all.len() < HEADER_LINES {
@@ -89,7 +89,7 @@ fn read_header<R: BufRead>(lines: &mut Lines<'_, R>) -> Result<Option<Header>> {
     }
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "whole and below 1e18, as just seen")]
     let cells = (columns * rows) as u64;
-    Ok(Some(Header {
+    Ok(Some(PtxHeader {
         cells,
         scanner: std::array::from_fn(|i| value(9, i)),
         matrix: std::array::from_fn(|row| std::array::from_fn(|column| value(6 + row, column))),
@@ -102,7 +102,7 @@ fn roles(width: usize) -> impl Iterator<Item = Role> {
     ALL.into_iter().take(width)
 }
 
-fn row(header: &Header, values: &[f64]) -> Row {
+fn row(header: &PtxHeader, values: &[f64]) -> Row {
     let mut row = Row::default();
     for (role, &value) in roles(values.len()).zip(values) {
         row.set(role, value);
@@ -115,14 +115,14 @@ fn row(header: &Header, values: &[f64]) -> Row {
     row
 }
 
-struct Lines<'a, R> {
+struct PtxLines<'a, R> {
     path: &'a Path,
     file: R,
     number: usize,
     bytes: Vec<u8>,
 }
 
-impl<R: BufRead> Lines<'_, R> {
+impl<R: BufRead> PtxLines<'_, R> {
     /// The numbers of the next line that is not empty.
     fn next(&mut self) -> Result<Option<Vec<f64>>> {
         loop {

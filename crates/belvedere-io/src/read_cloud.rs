@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use super::e57;
 #[cfg(feature = "las")]
 use super::las;
-use super::part::Part;
+use super::part::FilePart;
 #[cfg(feature = "ply")]
 use super::ply;
 use super::read_options::{ReadOptions, Reading, UpAxis};
@@ -40,8 +40,8 @@ pub struct ReadReport {
     pub skipped_files: Vec<PathBuf>,
     /// What should be known before the cloud is used.
     pub notes: Vec<String>,
-    /// Row of each point among the points of its file, from 0, where [`ReadOptions::row_numbers`] asks for it; empty otherwise.
-    /// The points of the files follow each other as in `files`.
+    /// Row of each point among the points of its file, from 0, where [`ReadOptions::row_numbers`] asks for it; empty
+    /// otherwise. The points of the files follow each other as in `files`.
     pub rows: Vec<u64>,
 }
 
@@ -87,22 +87,25 @@ impl ReadReport {
 
 /// One cloud from `sources`, in that order and the order of their points, with a report.
 ///
-/// A path to a folder means all files in it with one of [`CLOUD_EXTENSIONS`], sorted by name; a folder with `coords.npy`
-/// has the layout of masbcpp and is one cloud with its normals. A catalogue of tiles (`.vpc`) means its files. Of a box ([`ReadOptions::within`])
-/// only those files of a catalogue are opened, those LAS and LAZ files are read beyond their header, and those chunks of COPC files are
-/// read, whose bounds meet it. The extension selects the format, in upper or lower case.
+/// A path to a folder means all files in it with one of [`CLOUD_EXTENSIONS`], sorted by name; a folder with
+/// `coords.npy` has the layout of masbcpp and is one cloud with its normals. A catalogue of tiles (`.vpc`) means its
+/// files. Of a box ([`ReadOptions::within`]) only those files of a catalogue are opened, those LAS and LAZ files are
+/// read beyond their header, and those chunks of COPC files are read, whose bounds meet it. The extension selects the
+/// format, in upper or lower case.
 ///
 /// Coordinates become metres by the unit of the reference system and f32 relative to a near origin: that of
-/// [`ReadOptions::frame`], or else the middle, in whole metres, of the points within 10 km of the median point of all files.
-/// Points more than 1000 km from the median (or from the given origin) along an axis, and points that are not finite, are left out
-/// and counted. An attribute that one of the files lacks is dropped; files without any point are ignored. The result does not
-/// depend on the number of threads. The items of progress are points. Tables without x, y and z in a folder are skipped and reported.
+/// [`ReadOptions::frame`], or else the middle, in whole metres, of the points within 10 km of the median point of all
+/// files. Points more than 1000 km from the median (or from the given origin) along an axis, and points that are not
+/// finite, are left out and counted. An attribute that one of the files lacks is dropped; files without any point are
+/// ignored. The result does not depend on the number of threads. The items of progress are points. Tables without x, y
+/// and z in a folder are skipped and reported.
 ///
 /// # Errors
-/// [`Error::Io`], [`Error::UnknownFormat`], [`Error::MissingFeature`] and [`Error::Malformed`] about the source at fault;
-/// [`Error::UnusableCrs`] for degrees, earth-centred coordinates and files whose systems differ from each other or from that of the
-/// frame; [`Error::NoPoints`] where no file has a point; [`Error::InvalidParameter`] for options that cannot be followed;
-/// [`Error::MissingAttribute`] where classes are asked for but a file has none; [`Error::Cancelled`].
+/// [`Error::Io`], [`Error::UnknownFormat`], [`Error::MissingFeature`] and [`Error::Malformed`] about the source at
+/// fault; [`Error::UnusableCrs`] for degrees, earth-centred coordinates and files whose systems differ from each other
+/// or from that of the frame; [`Error::NoPoints`] where no file has a point; [`Error::InvalidParameter`] for options
+/// that cannot be followed; [`Error::MissingAttribute`] where classes are asked for but a file has none;
+/// [`Error::Cancelled`].
 pub fn read_cloud<'a, S: Into<Source<'a>>>(
     sources: impl IntoIterator<Item = S>,
     options: &ReadOptions,
@@ -111,7 +114,7 @@ pub fn read_cloud<'a, S: Into<Source<'a>>>(
     let forced = options.forced_crs()?;
     let reading = Reading { options, forced: forced.as_ref(), control };
     let mut systems = Systems::new(options);
-    let mut parts: Vec<Part> = Vec::new();
+    let mut parts: Vec<FilePart> = Vec::new();
     let (sources, skipped_files) = files_of(sources.into_iter().map(Into::into), &reading)?;
     for source in sources {
         control.check()?;
@@ -142,7 +145,7 @@ impl Systems {
     }
 
     /// Gives `part` the system of the option, and refuses one that cannot be used together with the others.
-    pub(super) fn accept(&mut self, part: &mut Part, reading: &Reading<'_>) -> Result<()> {
+    pub(super) fn accept(&mut self, part: &mut FilePart, reading: &Reading<'_>) -> Result<()> {
         if let Some(crs) = reading.forced {
             part.set_crs(crs.clone(), "option");
         }
@@ -169,7 +172,8 @@ impl Systems {
     }
 }
 
-/// The files that `paths` mean: folders and catalogues of tiles (`.vpc`) replaced by their files, in the order that [`read_cloud`] has.
+/// The files that `paths` mean: folders and catalogues of tiles (`.vpc`) replaced by their files, in the order that
+/// [`read_cloud`] has.
 ///
 /// # Errors
 /// Those of [`read_cloud`] about folders and catalogues.
@@ -180,8 +184,8 @@ pub fn cloud_files(paths: &[PathBuf]) -> Result<Vec<PathBuf>> {
     Ok(sources.iter().map(|source| source.name().to_owned()).collect())
 }
 
-/// The sources with folders and catalogues replaced by their files, and the files of folders that are tables of something else. Tiles of
-/// catalogues that cannot have a point that `reading` asks for are left out.
+/// The sources with folders and catalogues replaced by their files, and the files of folders that are tables of
+/// something else. Tiles of catalogues that cannot have a point that `reading` asks for are left out.
 pub(super) fn files_of<'a>(
     sources: impl Iterator<Item = Source<'a>>,
     reading: &Reading<'_>,
@@ -216,7 +220,8 @@ pub(super) fn files_of<'a>(
     Ok((found, skipped))
 }
 
-/// Whether a file beside clouds is a table that belongs to them, such as a trajectory of other columns or a list of tiles.
+/// Whether a file beside clouds is a table that belongs to them, such as a trajectory of other columns or a list of
+/// tiles.
 fn is_stray(file: &Path) -> bool {
     ["xyz", "txt", "csv"].contains(&extension(file).as_str())
         && Source::path(file).open().is_ok_and(xyz::is_another_table)
@@ -243,7 +248,7 @@ fn is_masbcpp(folder: &Path) -> bool {
 }
 
 /// The points of one source, of which those that are not asked for are dropped.
-pub(super) fn read_one(source: Source<'_>, reading: &Reading<'_>) -> Result<Part> {
+pub(super) fn read_one(source: Source<'_>, reading: &Reading<'_>) -> Result<FilePart> {
     if let Some(folder) = source.folder() {
         #[cfg(feature = "npy")]
         let part = masbcpp::read(folder);
@@ -269,7 +274,7 @@ pub(super) fn read_one(source: Source<'_>, reading: &Reading<'_>) -> Result<Part
     selected(part?, reading)
 }
 
-fn selected(mut part: Part, reading: &Reading<'_>) -> Result<Part> {
+fn selected(mut part: FilePart, reading: &Reading<'_>) -> Result<FilePart> {
     reading.control.advance(part.coordinates.len());
     part.keep_selected(reading)?;
     Ok(part)

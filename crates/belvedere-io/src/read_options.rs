@@ -5,7 +5,7 @@ use belvedere_data::control::Control;
 use belvedere_data::crs::{Crs, CrsKind};
 use belvedere_data::{Bounds, Error, Frame, Parameter, Result};
 
-use super::part::{Coordinates, Part};
+use super::part::{Coordinates, FilePart};
 
 /// How often readers that go point by point look whether the work was cancelled: a few milliseconds of points.
 const POINTS_PER_CHECK: u64 = 1 << 14;
@@ -166,8 +166,8 @@ impl Reading<'_> {
         if done.is_multiple_of(POINTS_PER_CHECK) { self.control.check() } else { Ok(()) }
     }
 
-    /// A box that holds every point asked for, in the coordinates of files that were not opened yet; `None` without a box, and where the
-    /// unit of the files is not known.
+    /// A box that holds every point asked for, in the coordinates of files that were not opened yet; `None` without a
+    /// box, and where the unit of the files is not known.
     pub(super) fn box_of_unopened(&self) -> Option<FileBox> {
         let of_frame = self.options.frame.as_ref().map(|frame| &frame.crs).filter(|crs| crs.kind != CrsKind::Unknown);
         let known = self.forced.or(of_frame);
@@ -182,10 +182,10 @@ impl Reading<'_> {
     pub(super) fn selection(&self, crs: &Crs) -> Option<Selection> {
         let crs = self.forced.unwrap_or(crs);
         let place = match (self.options.within, &self.options.frame) {
-            (Some(Within::File { low, high }), _) => Some(Place::File { low, high }),
+            (Some(Within::File { low, high }), _) => Some(SelectedBox::File { low, high }),
             (Some(Within::Local(bounds)), Some(frame)) => {
                 let known = if *crs == Crs::default() { &frame.crs } else { crs };
-                Some(Place::Local { bounds, origin: frame.origin, units: known.metres_per_unit_xyz() })
+                Some(SelectedBox::Local { bounds, origin: frame.origin, units: known.metres_per_unit_xyz() })
             }
             _ => None,
         };
@@ -200,17 +200,17 @@ impl Reading<'_> {
 
 /// Which points of a file are read.
 pub(super) struct Selection {
-    place: Option<Place>,
+    place: Option<SelectedBox>,
     classes: Option<[bool; 256]>,
 }
 
-enum Place {
+enum SelectedBox {
     File { low: [f64; 3], high: [f64; 3] },
     Local { bounds: Bounds, origin: [f64; 3], units: [f64; 3] },
 }
 
 /// By how much a box in local coordinates is widened at least when files are looked through for it, metres.
-const LEAST_BOX_ROOM: f64 = 1e-3;
+const MIN_BOX_ROOM: f64 = 1e-3;
 
 /// Points that a selection passed over.
 #[derive(Clone, Copy, Debug, Default)]
@@ -227,7 +227,7 @@ impl PassedOver {
     }
 
     /// Counts them in the report of `part`.
-    pub(super) fn report(self, part: &mut Part) {
+    pub(super) fn report(self, part: &mut FilePart) {
         part.leave_out(self.outside, "outside the box to read");
         part.leave_out(self.other_class, "of a class that is not read");
     }
@@ -251,10 +251,10 @@ impl Selection {
     /// A box that every point of the selection lies in; `None` where points are not chosen by their place.
     pub(super) fn file_box(&self) -> Option<FileBox> {
         match self.place.as_ref()? {
-            Place::File { low, high } => Some(FileBox { low: *low, high: *high }),
-            Place::Local { bounds, origin, units } => {
+            SelectedBox::File { low, high } => Some(FileBox { low: *low, high: *high }),
+            SelectedBox::Local { bounds, origin, units } => {
                 // local positions are rounded to f32 before they are compared
-                let room = |v: f32| LEAST_BOX_ROOM + f64::from(v.abs()) * f64::from(f32::EPSILON);
+                let room = |v: f32| MIN_BOX_ROOM + f64::from(v.abs()) * f64::from(f32::EPSILON);
                 let file = |i: usize, v: f64| (v + origin[i]) / units[i];
                 Some(FileBox {
                     low: std::array::from_fn(|i| file(i, f64::from(bounds.low[i]) - room(bounds.low[i]))),
@@ -267,8 +267,8 @@ impl Selection {
     fn holds(&self, p: [f64; 3]) -> bool {
         match &self.place {
             None => true,
-            Some(Place::File { low, high }) => (0..3).all(|i| low[i] <= p[i] && p[i] <= high[i]),
-            Some(Place::Local { bounds, origin, units }) => {
+            Some(SelectedBox::File { low, high }) => (0..3).all(|i| low[i] <= p[i] && p[i] <= high[i]),
+            Some(SelectedBox::Local { bounds, origin, units }) => {
                 bounds.contains(to_local(std::array::from_fn(|i| p[i] * units[i]), *origin))
             }
         }

@@ -3,8 +3,8 @@
 use super::read_cloud::ReadReport;
 use serde::{Serialize, Serializer, ser::SerializeMap};
 
-/// Reference system, points left out by reason, attributes that only some files have, and notes that begin with the name of the file
-/// they are about.
+/// Reference system, points left out by reason, attributes that only some files have, and notes that begin with the
+/// name of the file they are about.
 impl Serialize for ReadReport {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let left_out: Vec<String> = self

@@ -15,16 +15,17 @@ use ureq::{Agent, Body};
 /// Bytes asked for at first: mostly a whole header. And those asked for behind a gap, where the reader wants no more:
 /// chunks and pages of COPC files may be small.
 const FIRST_BYTES: u64 = 1 << 14;
-const LEAST_BYTES: u64 = 1 << 12;
+const MIN_BYTES: u64 = 1 << 12;
 /// Most bytes asked for ahead of the reader: half of those that it read since the last gap, up to this.
-const MOST_AHEAD: u64 = 1 << 20;
+const MAX_AHEAD: u64 = 1 << 20;
 /// Most bytes of one request, however many the reader wants at once.
-const MOST_BYTES: u64 = 1 << 24;
+const MAX_BYTES: u64 = 1 << 24;
 /// Largest file of a server that gives no parts: it is kept in memory.
-const MOST_WHOLE: u64 = 1 << 28;
+const MAX_WHOLE: u64 = 1 << 28;
 /// Time to wait before asking again, where a server was busy or a connection broke.
 const PAUSES: [Duration; 3] = [Duration::from_millis(300), Duration::from_secs(1), Duration::from_secs(3)];
-/// Longest wait for a connection, for an answer, and for all of it: a whole file of the largest size at half a megabyte a second.
+/// Longest wait for a connection, for an answer, and for all of it: a whole file of the largest size at half a megabyte
+/// a second.
 const CONNECT: Duration = Duration::from_secs(20);
 const ANSWER: Duration = Duration::from_secs(60);
 const WHOLE_ANSWER: Duration = Duration::from_secs(600);
@@ -98,13 +99,14 @@ impl Remote {
         self.part_start + self.part.len() as u64
     }
 
-    /// Gets the part that starts at the position, of at least `wanted` bytes as far as the file and one request allow that.
+    /// Gets the part that starts at the position, of at least `wanted` bytes as far as the file and one request allow
+    /// that.
     fn fetch(&mut self, wanted: u64) -> Result<()> {
         if self.position != self.part_end() {
             self.run_start = self.position;
         }
-        let ahead = ((self.position - self.run_start) / 2).clamp(LEAST_BYTES, MOST_AHEAD);
-        let length = wanted.max(ahead).min(MOST_BYTES).min(self.size - self.position);
+        let ahead = ((self.position - self.run_start) / 2).clamp(MIN_BYTES, MAX_AHEAD);
+        let length = wanted.max(ahead).min(MAX_BYTES).min(self.size - self.position);
         let reply = patiently(|| request(&self.address, self.position, length))?;
         if reply.is_whole || reply.size != self.size || reply.version != self.version {
             return Err(Error::other("the file on the server changed while it was read; run again"));
@@ -162,7 +164,7 @@ fn request(address: &str, start: u64, length: u64) -> std::result::Result<Reply,
         .header(header::RANGE, format!("bytes={start}-{last}"))
         .header(header::ACCEPT_ENCODING, "identity")
         .call()
-        .map_err(|error| Failure { may_pass: is_passing(&error), error: Error::other(told(&error)) })?;
+        .map_err(|error| Failure { may_pass: is_passing(&error), error: Error::other(described(&error)) })?;
     let status = response.status().as_u16();
     let headers = response.headers().clone();
     let text = |name| text_of(&headers, name);
@@ -186,7 +188,7 @@ fn request(address: &str, start: u64, length: u64) -> std::result::Result<Reply,
             let size = text(header::CONTENT_LENGTH).and_then(|length| length.parse().ok());
             let no_parts = "the server gives no parts of files (HTTP ranges)";
             match size {
-                Some(size) if size <= MOST_WHOLE => {
+                Some(size) if size <= MAX_WHOLE => {
                     let bytes = body(response.body_mut(), size)?;
                     Ok(Reply { bytes, size, version, is_whole: true })
                 }
@@ -259,7 +261,7 @@ fn is_passing(error: &ureq::Error) -> bool {
 }
 
 /// What is wrong, and what to do.
-fn told(error: &ureq::Error) -> String {
+fn described(error: &ureq::Error) -> String {
     match error {
         ureq::Error::HostNotFound => "there is no such server; check the address and the connection".to_owned(),
         ureq::Error::Timeout(_) => "the server does not answer; try again later".to_owned(),

@@ -1,6 +1,6 @@
 //! Points that come one by one with named numbers, as in text, PLY, PCD and E57 files.
 
-use super::part::{Coordinates, Part, narrow, to_u8, to_u16};
+use super::part::{Coordinates, FilePart, narrow, to_u8, to_u16};
 use super::read_options::RowNumbers;
 use belvedere_data::cloud::{Attributes, GpsTimeKind};
 
@@ -196,7 +196,7 @@ impl Rows {
     }
 
     /// Moves the points into `part`. Intensities and colours from 0 to 1 become 0 to 65535.
-    pub(super) fn finish(self, part: &mut Part) {
+    pub(super) fn finish(self, part: &mut FilePart) {
         let has = |role: Role| self.has[role as usize];
         let (color, normal) = (self.has(&COLOR), self.has(&NORMAL));
         let colors: Option<Vec<[u16; 3]>> = color.then(|| {
@@ -232,7 +232,7 @@ impl Rows {
 }
 
 /// Numbers as u16, from 0 to 1 scaled to the whole range; noted where they were scaled or cut.
-fn to_16_bit(part: &mut Part, what: &str, values: &[f32]) -> Vec<u16> {
+fn to_16_bit(part: &mut FilePart, what: &str, values: &[f32]) -> Vec<u16> {
     let highest = values.iter().copied().fold(0.0_f32, f32::max);
     let fractions = highest <= 1.0 && values.iter().any(|v| v.fract() != 0.0);
     let scale = if fractions { 65535.0 } else { 1.0 };

@@ -7,7 +7,7 @@ use npyz::npz::{NpzArchive, NpzWriter};
 
 use crate::npz_arrays::{array, begin_array, in_blocks, open, rows, values, write_archive};
 use crate::output::Output;
-use crate::source::{Input, Reader, Source};
+use crate::source::{Input, Source, SourceReader};
 use belvedere_data::{Error, Parameter, Result};
 
 /// Bits in a word.
@@ -78,8 +78,8 @@ impl MatrixHead {
 pub struct SavedMatrix {
     /// What the bits are about.
     pub head: MatrixHead,
-    /// Bits, row after row, each of as many words of 64 as hold a bit for each direction, lowest first: 1 where the target sees the
-    /// sky. Bits beyond the last direction are 0.
+    /// Bits, row after row, each of as many words of 64 as hold a bit for each direction, lowest first: 1 where the
+    /// target sees the sky. Bits beyond the last direction are 0.
     pub words: Vec<u64>,
 }
 
@@ -87,7 +87,8 @@ impl SavedMatrix {
     /// Whether the parts fit each other.
     ///
     /// # Errors
-    /// [`Error::LengthMismatch`] where they do not, [`Error::InvalidParameter`] for directions that are not of unit length.
+    /// [`Error::LengthMismatch`] where they do not, [`Error::InvalidParameter`] for directions that are not of unit
+    /// length.
     pub fn validate(&self) -> Result<()> {
         self.head.check_count(self.words.len())?;
         self.head.check_directions()?;
@@ -98,7 +99,8 @@ impl SavedMatrix {
 /// Takes rows of a matrix, whole ones, in the order of the targets.
 pub type RowSink<'a> = dyn FnMut(&[u64]) -> Result<()> + 'a;
 
-/// Writes a matrix as a NumPy archive with the arrays `bits` (M, W) u64, `directions` (D, 3), `targets` (M, 3), `origin` (3) and `scene` (1).
+/// Writes a matrix as a NumPy archive with the arrays `bits` (M, W) u64, `directions` (D, 3), `targets` (M, 3),
+/// `origin` (3) and `scene` (1).
 ///
 /// # Errors
 /// [`Error::Io`], and those of [`SavedMatrix::validate`].
@@ -107,8 +109,8 @@ pub fn write_matrix<'a>(output: impl Into<Output<'a>>, matrix: &SavedMatrix) -> 
     write_matrix_rows(output, &matrix.head, |sink| sink(&matrix.words))
 }
 
-/// Writes the same with rows that `rows` hands to a sink as it makes them, so that the bits are never held all at once. The file appears
-/// once all rows are there.
+/// Writes the same with rows that `rows` hands to a sink as it makes them, so that the bits are never held all at once.
+/// The file appears once all rows are there.
 ///
 /// # Errors
 /// [`Error::Io`], those of `rows`, [`Error::LengthMismatch`] unless there is a row for each target, and
@@ -129,14 +131,14 @@ pub fn write_matrix_rows<'a>(
                 count += words.len();
                 bits.extend(words.iter().copied()).map_err(Error::io(path))
             })
-            .map_err(Stopped::BySink)?;
-            head.check_count(count).map_err(Stopped::BySink)?;
+            .map_err(RowsStopped::BySink)?;
+            head.check_count(count).map_err(RowsStopped::BySink)?;
             bits.finish()?;
             Ok(write_head(archive, head)?)
         });
         written.map_err(|stopped| match stopped {
-            Stopped::ByFile(error) => Error::io(path)(error),
-            Stopped::BySink(error) => error,
+            RowsStopped::ByFile(error) => Error::io(path)(error),
+            RowsStopped::BySink(error) => error,
         })
     })
 }
@@ -167,7 +169,7 @@ pub fn read_matrix_head<'a>(source: impl Into<Source<'a>>) -> Result<MatrixHead>
     head_of(&name, &mut archive)
 }
 
-fn head_of(path: &Path, archive: &mut NpzArchive<Reader<'_>>) -> Result<MatrixHead> {
+fn head_of(path: &Path, archive: &mut NpzArchive<SourceReader<'_>>) -> Result<MatrixHead> {
     let mut read = || -> io::Result<MatrixHead> {
         let one = |values: Vec<u64>| values.first().copied().unwrap_or(0);
         let origin = values::<f64, _>(archive, "origin", 3)?.0;
@@ -185,24 +187,25 @@ fn head_of(path: &Path, archive: &mut NpzArchive<Reader<'_>>) -> Result<MatrixHe
 }
 
 /// Why rows were read or written no further.
-enum Stopped {
+enum RowsStopped {
     ByFile(io::Error),
     BySink(Error),
 }
 
-impl From<io::Error> for Stopped {
+impl From<io::Error> for RowsStopped {
     fn from(error: io::Error) -> Self {
         Self::ByFile(error)
     }
 }
 
-impl From<Error> for Stopped {
+impl From<Error> for RowsStopped {
     fn from(error: Error) -> Self {
         Self::BySink(error)
     }
 }
 
-/// Reads the bits of a file whose `head` was read, and hands some whole rows at a time to `sink`, in the order of the targets.
+/// Reads the bits of a file whose `head` was read, and hands some whole rows at a time to `sink`, in the order of the
+/// targets.
 ///
 /// # Errors
 /// Those of [`read_matrix_head`] and of `sink`.
@@ -218,24 +221,24 @@ pub fn read_matrix_rows<'a>(
 
 fn rows_of(
     path: &Path,
-    archive: &mut NpzArchive<Reader<'_>>,
+    archive: &mut NpzArchive<SourceReader<'_>>,
     head: &MatrixHead,
     mut sink: impl FnMut(&[u64]) -> Result<()>,
 ) -> Result<()> {
-    let most = ROWS * head.words_of_row().max(1);
+    let max = ROWS * head.words_of_row().max(1);
     let mut count = 0;
-    let read = in_blocks(archive, "bits", most, |words: &[u64]| {
+    let read = in_blocks(archive, "bits", max, |words: &[u64]| {
         count += words.len();
         if count > head.targets.len().saturating_mul(head.words_of_row()) {
             head.check_count(count).map_err(damaged(path))?;
         }
         head.check_rows(words).map_err(damaged(path))?;
-        sink(words).map_err(Stopped::BySink)
+        sink(words).map_err(RowsStopped::BySink)
     });
     match read {
         Ok(()) => {}
-        Err(Stopped::ByFile(error)) => return Err(unreadable(path)(error)),
-        Err(Stopped::BySink(error)) => return Err(error),
+        Err(RowsStopped::ByFile(error)) => return Err(unreadable(path)(error)),
+        Err(RowsStopped::BySink(error)) => return Err(error),
     }
     head.check_count(count).map_err(damaged(path))
 }

@@ -11,13 +11,15 @@ use belvedere_data::{Error, Result};
 pub trait ReadSeek: Read + Seek + Send {}
 impl<T: Read + Seek + Send> ReadSeek for T {}
 
-/// Bytes read ahead of the parser: more than most headers, and little beside a window of a large file or a chunk of one.
+/// Bytes read ahead of the parser: more than most headers, and little beside a window of a large file or a chunk of
+/// one.
 const BUFFER_BYTES: usize = 1 << 12;
 
 /// One input with a name. The extension of the name selects the format; messages about the input begin with the name.
 ///
-/// Paths become sources by themselves: wherever a source is expected, a path will do. So will the address of a file on a web server (`https://…`, `http://…`),
-/// of which only those parts are transferred that are read, as far as the server gives parts of files (HTTP ranges).
+/// Paths become sources by themselves: wherever a source is expected, a path will do. So will the address of a file on
+/// a web server (`https://…`, `http://…`), of which only those parts are transferred that are read, as far as the
+/// server gives parts of files (HTTP ranges).
 ///
 /// ```
 /// use belvedere_io::{ReadOptions, Source, read_cloud};
@@ -62,9 +64,10 @@ impl<'a> Source<'a> {
         Self { name: name.into(), content: Content::Reader(Box::new(reader)), likely_rows: None }
     }
 
-    /// The same, of which it is known that the points of a window ([`crate::ReadOptions::within`]) lie in `rows` only: ranges of rows from 0, in their order and without
-    /// a row in two of them. Of LAS and LAZ files the pieces and chunks without such rows are then not read; other formats, and COPC, which has a hierarchy, know better or
-    /// are read whole. Points beside the window are left out as ever.
+    /// The same, of which it is known that the points of a window ([`crate::ReadOptions::within`]) lie in `rows` only:
+    /// ranges of rows from 0, in their order and without a row in two of them. Of LAS and LAZ files the pieces and
+    /// chunks without such rows are then not read; other formats, and COPC, which has a hierarchy, know better or are
+    /// read whole. Points beside the window are left out as ever.
     #[must_use]
     pub fn with_likely_rows(mut self, rows: Vec<Range<u64>>) -> Self {
         self.likely_rows = Some(rows);
@@ -132,13 +135,13 @@ impl<'a> Source<'a> {
 pub(crate) struct Input<'a> {
     /// For messages.
     pub(crate) name: PathBuf,
-    pub(crate) reader: Reader<'a>,
+    pub(crate) reader: SourceReader<'a>,
     /// Number of bytes.
     pub(crate) size: u64,
 }
 
 /// Reader of an open source.
-pub(crate) type Reader<'a> = BufReader<Box<dyn ReadSeek + 'a>>;
+pub(crate) type SourceReader<'a> = BufReader<Box<dyn ReadSeek + 'a>>;
 
 /// The file at an address of the web, and its size.
 #[cfg(feature = "http")]

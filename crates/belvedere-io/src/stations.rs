@@ -5,12 +5,12 @@ use crate::table::read_table;
 use belvedere_data::crs::Crs;
 use belvedere_data::{Error, Result};
 
-/// Reads where a scanner stood from a table (.csv .txt) with the columns station (the point source id of its points), x, y and z in the
-/// coordinates of the cloud's file, whose system is `crs`: ids and positions, metres in that system.
+/// Reads where a scanner stood from a table (.csv .txt) with the columns station (the point source id of its points),
+/// x, y and z in the coordinates of the cloud's file, whose system is `crs`: ids and positions, metres in that system.
 ///
 /// # Errors
-/// [`Error::UnknownFormat`], [`Error::Malformed`] for missing columns, empty cells, ids that are no whole number up to 65 535 or occur twice,
-/// and files without stations; what [`read_table`] refuses.
+/// [`Error::UnknownFormat`], [`Error::Malformed`] for missing columns, empty cells, ids that are no whole number up to
+/// 65 535 or occur twice, and files without stations; what [`read_table`] refuses.
 pub fn read_stations<'a>(source: impl Into<Source<'a>>, crs: &Crs) -> Result<Vec<(u16, [f64; 3])>> {
     let source = source.into();
     let name = source.name().to_owned();

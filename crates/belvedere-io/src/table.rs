@@ -74,8 +74,8 @@ impl Table {
     }
 }
 
-/// Reads a table with a header row, its cells parted by commas, semicolons or tabs, whichever the header has. Rows are counted from
-/// 1 below the header in messages.
+/// Reads a table with a header row, its cells parted by commas, semicolons or tabs, whichever the header has. Rows are
+/// counted from 1 below the header in messages.
 ///
 /// # Errors
 /// [`Error::Io`], and [`Error::Malformed`] for rows of different lengths and for text that is no UTF-8.
@@ -126,7 +126,7 @@ pub fn read_table<'a>(source: impl Into<Source<'a>>) -> Result<Table> {
 
 /// The cells of one column to be written.
 #[derive(Clone, Copy, Debug)]
-pub enum Cells<'a> {
+pub enum TableCells<'a> {
     /// Numbers with so many decimals; empty where not finite.
     Real(&'a [f64], usize),
     /// Whole numbers; empty where there is none.
@@ -137,7 +137,7 @@ pub enum Cells<'a> {
     Given(&'a [&'a str], &'a [f64], usize),
 }
 
-impl Cells<'_> {
+impl TableCells<'_> {
     fn len(&self) -> usize {
         match self {
             Self::Real(values, _) => values.len(),
@@ -182,7 +182,7 @@ pub(crate) fn quoted(word: &str, separator: char) -> Cow<'_, str> {
 ///
 /// # Errors
 /// [`Error::LengthMismatch`] unless all columns are equally long, [`Error::Io`].
-pub fn write_table<'a>(output: impl Into<Output<'a>>, columns: &[(&str, Cells<'_>)]) -> Result<()> {
+pub fn write_table<'a>(output: impl Into<Output<'a>>, columns: &[(&str, TableCells<'_>)]) -> Result<()> {
     let expected = columns.first().map_or(0, |(_, cells)| cells.len());
     if let Some((_, cells)) = columns.iter().find(|(_, cells)| cells.len() != expected) {
         return Err(Error::LengthMismatch { what: "cells of a column", expected, found: cells.len() });

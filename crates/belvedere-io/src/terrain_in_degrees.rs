@@ -11,18 +11,19 @@ const LIKE_WGS_84: [u32; 4] = [4326, 4979, 4258, 4269];
 const STEP: usize = 16;
 /// Places on each side of the raster whose projections give its extent.
 const PLACES: usize = 32;
-/// Most degrees that a raster may span: a zone of UTM, some 400 km. Formulas of projections err far from their area, without a word.
-const MOST_DEGREES: f64 = 6.0;
+/// Most degrees that a raster may span: a zone of UTM, some 400 km. Formulas of projections err far from their area,
+/// without a word.
+const MAX_DEGREES: f64 = 6.0;
 /// Most cells of the result, as for rasters that need no projection.
-const MOST_CELLS: f64 = 67e6;
+const MAX_CELLS: f64 = 67e6;
 
 /// Whether a raster in this system can be projected.
 pub(crate) fn is_like_wgs_84(code: Option<u32>) -> bool {
     code.is_some_and(|code| LIKE_WGS_84.contains(&code))
 }
 
-/// The terrain of `raster`, heights in metres at longitudes and latitudes in degrees, in the plane of `frame`: cells as large as those of the raster in its middle, with
-/// bilinear heights.
+/// The terrain of `raster`, heights in metres at longitudes and latitudes in degrees, in the plane of `frame`: cells as
+/// large as those of the raster in its middle, with bilinear heights.
 ///
 /// # Errors
 /// [`Error::Malformed`] for a raster that does not fit into the plane, or needs too many cells; those of
@@ -38,7 +39,7 @@ pub(crate) fn projected(
     // longitude and latitude, degrees, of columns and rows of the middles of cells
     let degrees = |[u, v]: [f64; 2]| [place.upper_left[0] + (u + 0.5) * east, place.upper_left[1] - (v + 0.5) * south];
     let last = [raster.width() as f64 - 1.0, raster.height() as f64 - 1.0];
-    if last[0] * east > MOST_DEGREES || last[1] * south > MOST_DEGREES {
+    if last[0] * east > MAX_DEGREES || last[1] * south > MAX_DEGREES {
         return Err(too_large(name));
     }
     let on_plane = |node: [f64; 2]| {
@@ -61,7 +62,7 @@ pub(crate) fn projected(
     let (at, beside, below) = (at?, beside?, below?);
     let cell = [beside, below].map(|other| (other[0] - at[0]).hypot(other[1] - at[1]));
     let counts = [0, 1].map(|i| ((high[i] - low[i]) / cell[i]).floor() + 1.0);
-    if !(counts[0] * counts[1] <= MOST_CELLS) {
+    if !(counts[0] * counts[1] <= MAX_CELLS) {
         return Err(too_large(name));
     }
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "whole numbers up to 67 million")]

@@ -6,7 +6,7 @@ use crate::columns::{Column, check_lengths};
 use crate::output::Output;
 use crate::rows::role_of;
 use crate::source::Source;
-use crate::table::{Cells, quoted, separator_of};
+use crate::table::{TableCells, quoted, separator_of};
 use crate::write_cloud::{ExtraColumn, to_column};
 use crate::xyz;
 use belvedere_data::{Error, Result};
@@ -67,32 +67,33 @@ impl TextRows {
     }
 }
 
-/// The columns of a table of `results` for rows that were `read` from a table ([`TextRows::columns`]). Results that are among the `given`
-/// names are written as they were read, with their number only where nothing was; the other columns read follow behind them, unless a
-/// result has their name.
+/// The columns of a table of `results` for rows that were `read` from a table ([`TextRows::columns`]). Results that are
+/// among the `given` names are written as they were read, with their number only where nothing was; the other columns
+/// read follow behind them, unless a result has their name.
 #[must_use]
 pub fn with_columns_read<'a>(
     read: &'a [(&'a str, Vec<&'a str>)],
     given: &[&str],
-    results: &[(&'a str, Cells<'a>)],
-) -> Vec<(&'a str, Cells<'a>)> {
+    results: &[(&'a str, TableCells<'a>)],
+) -> Vec<(&'a str, TableCells<'a>)> {
     let is_among = |names: &[&str], name: &str| names.iter().any(|own| own.eq_ignore_ascii_case(name));
     let (given, others): (Vec<_>, Vec<_>) = results.iter().partition(|(name, _)| is_among(given, name));
     let result_names: Vec<&str> = results.iter().map(|(name, _)| *name).collect();
-    let as_read = |(name, cells): (&'a str, Cells<'a>)| {
+    let as_read = |(name, cells): (&'a str, TableCells<'a>)| {
         let texts = read.iter().find(|(own, _)| own.eq_ignore_ascii_case(name)).map(|(_, texts)| texts.as_slice());
         match (texts, cells) {
-            (Some(texts), Cells::Real(values, decimals)) => (name, Cells::Given(texts, values, decimals)),
+            (Some(texts), TableCells::Real(values, decimals)) => (name, TableCells::Given(texts, values, decimals)),
             _ => (name, cells),
         }
     };
     let carried = read.iter().filter(|(name, _)| !is_among(&result_names, name));
-    let carried = carried.map(|(name, texts)| (*name, Cells::Words(texts.as_slice())));
+    let carried = carried.map(|(name, texts)| (*name, TableCells::Words(texts.as_slice())));
     given.into_iter().map(as_read).chain(carried).chain(others).collect()
 }
 
-/// Reads the rows of a text file of points (.csv .txt .xyz) as they are: one for each line that [`read_cloud`](crate::read_cloud) reads or
-/// leaves out. Columns without a name are called x, y, z, column_4 and so on.
+/// Reads the rows of a text file of points (.csv .txt .xyz) as they are: one for each line that
+/// [`read_cloud`](crate::read_cloud) reads or leaves out. Columns without a name are called x, y, z, column_4 and so
+/// on.
 ///
 /// # Errors
 /// Those of reading the points.
@@ -100,8 +101,8 @@ pub fn read_text_rows<'a>(source: impl Into<Source<'a>>) -> Result<TextRows> {
     xyz::read_text(source.into().open()?)
 }
 
-/// Writes rows as they were given, with `results` behind them, as a table: cells parted by commas (.csv) or blanks (.txt .xyz). A given column
-/// that has the name of a result is replaced by it.
+/// Writes rows as they were given, with `results` behind them, as a table: cells parted by commas (.csv) or blanks
+/// (.txt .xyz). A given column that has the name of a result is replaced by it.
 ///
 /// # Errors
 /// [`Error::LengthMismatch`] where a result does not have a value for each row, [`Error::Io`].

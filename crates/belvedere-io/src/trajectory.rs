@@ -19,18 +19,19 @@ pub struct TrajectoryReport {
     pub duplicate_count: usize,
 }
 
-/// The trajectory in a file, in the metres of the cloud's reference system and increasing in time, and what was left out.
+/// The trajectory in a file, in the metres of the cloud's reference system and increasing in time, and what was left
+/// out.
 ///
 /// `.sbet` and `.out` hold 136-byte records with latitude and longitude in radians, which are projected; their altitude
 /// is kept as it is, above the ellipsoid (tens of metres off the cloud's heights, harmless for the signs of normals).
-/// `.csv` and `.txt` hold time, x, y, z in the unit of the cloud's file: columns are found by a heading (time, gpstime or
-/// t; x or easting; y or northing; z, alt or height), without one the first four count. Commas, semicolons, tabs and
+/// `.csv` and `.txt` hold time, x, y, z in the unit of the cloud's file: columns are found by a heading (time, gpstime
+/// or t; x or easting; y or northing; z, alt or height), without one the first four count. Commas, semicolons, tabs and
 /// blanks separate; lines that begin with # are passed over.
 ///
 /// # Errors
 /// [`Error::Io`] where the file cannot be read, [`Error::UnknownFormat`] for other extensions, [`Error::UnusableCrs`]
-/// where SBET is to be projected but the cloud's system is unknown, [`Error::Malformed`] for values that are not finite,
-/// a size that is no multiple of 136, missing columns, and fewer than two different times.
+/// where SBET is to be projected but the cloud's system is unknown, [`Error::Malformed`] for values that are not
+/// finite, a size that is no multiple of 136, missing columns, and fewer than two different times.
 ///
 /// # Source
 /// Field order of SBET: PDAL, `io/SbetCommon.hpp`.
@@ -83,12 +84,12 @@ fn sbet_records(path: &Path, bytes: &[u8], cloud_crs: &Crs) -> Result<Vec<(f64, 
 }
 
 /// Which column holds time, x, y and z.
-type Columns = [usize; 4];
+type ColumnIndices = [usize; 4];
 
 fn table_records(path: &Path, bytes: &[u8], cloud_crs: &Crs) -> Result<Vec<(f64, [f64; 3])>> {
     let text = String::from_utf8_lossy(bytes);
     let scale = cloud_crs.metres_per_unit_xyz();
-    let mut columns: Option<Columns> = None;
+    let mut columns: Option<ColumnIndices> = None;
     let mut records = Vec::new();
     for (row, line) in text.trim_start_matches('\u{feff}').lines().enumerate() {
         let line = line.trim();
@@ -144,7 +145,7 @@ fn number(field: &str) -> Option<f64> {
     field.parse().ok()
 }
 
-fn heading_columns(fields: &[String]) -> Option<Columns> {
+fn heading_columns(fields: &[String]) -> Option<ColumnIndices> {
     let names: Vec<String> = fields
         .iter()
         .map(|field| {

@@ -1,8 +1,8 @@
 //! Catalogues of tiles (`.vpc`, virtual point clouds): which files belong to a cloud, and where each of them lies.
 //!
 //! # Source
-//! Virtual point cloud specification 1.0.0 (PDAL wrench, QGIS): a STAC collection of items with the asset `data` and the property
-//! `proj:bbox`.
+//! Virtual point cloud specification 1.0.0 (PDAL wrench, QGIS): a STAC collection of items with the asset `data` and
+//! the property `proj:bbox`.
 
 use std::path::{Path, PathBuf};
 
@@ -13,10 +13,10 @@ use super::source::{Source, web_address};
 use belvedere_data::{Error, Result};
 
 /// Largest catalogue that is read, bytes: a million tiles, and far below the memory of any machine.
-const MOST_BYTES: u64 = 1 << 30;
+const MAX_BYTES: u64 = 1 << 30;
 
-/// The files of the catalogue `source` that may have points in `wanted`, in its order; all of them without a box. Paths are those of
-/// the catalogue, from the folder that it lies in; addresses of the web stay what they are.
+/// The files of the catalogue `source` that may have points in `wanted`, in its order; all of them without a box. Paths
+/// are those of the catalogue, from the folder that it lies in; addresses of the web stay what they are.
 ///
 /// # Errors
 /// [`Error::Io`]; [`Error::Malformed`] for what is no catalogue.
@@ -24,7 +24,7 @@ pub(super) fn files_within(source: Source<'_>, wanted: Option<&FileBox>) -> Resu
     let input = source.open()?;
     let (name, size) = (input.name, input.size);
     let damaged = |what: String| Error::malformed(&name, what);
-    if size > MOST_BYTES {
+    if size > MAX_BYTES {
         return Err(damaged(format!("has {size} bytes, more than a catalogue of tiles; give the folder of the tiles")));
     }
     let catalogue: Value = serde_json::from_reader(input.reader)
@@ -60,7 +60,8 @@ fn place(folder: &Path, path: &str) -> PathBuf {
     }
 }
 
-/// Bounds of a tile in the coordinates of its file, unlimited in height where the catalogue gives none; `None` where it gives no bounds.
+/// Bounds of a tile in the coordinates of its file, unlimited in height where the catalogue gives none; `None` where it
+/// gives no bounds.
 fn bounds(tile: &Value) -> Option<([f64; 3], [f64; 3])> {
     let numbers = tile.pointer("/properties/proj:bbox")?.as_array()?;
     let numbers: Vec<f64> = numbers.iter().map(Value::as_f64).collect::<Option<_>>()?;

@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use crate::columns::{Column, Values, check_lengths};
+use crate::columns::{Column, ColumnValues, check_lengths};
 use crate::output::Output;
 use crate::source::unusable;
 #[cfg(feature = "las")]
@@ -48,12 +48,13 @@ pub struct WriteReport {
     pub clamped_count: usize,
 }
 
-/// The report of writing `cloud` to `output`, with its attributes and the `extra` columns, in a format that follows from
-/// the extension (.las .laz .ply .csv .xyz .txt .npy). Coordinates are those of the reference system and unit of the cloud's file.
+/// The report of writing `cloud` to `output`, with its attributes and the `extra` columns, in a format that follows
+/// from the extension (.las .laz .ply .csv .xyz .txt .npy). Coordinates are those of the reference system and unit of
+/// the cloud's file.
 ///
 /// LAS and LAZ files hold every attribute but normals, which go in as extra columns `NormalX`, `NormalY` and `NormalZ`
-/// where wanted. PLY files and tables hold scan angles in degrees (`scan_angle_deg`) and colours in 8 bits; tables have a
-/// header row. NPY files hold (N, 3) f64 coordinates and nothing else.
+/// where wanted. PLY files and tables hold scan angles in degrees (`scan_angle_deg`) and colours in 8 bits; tables have
+/// a header row. NPY files hold (N, 3) f64 coordinates and nothing else.
 ///
 /// # Errors
 /// [`Error::UnknownFormat`] for other extensions, [`Error::LengthMismatch`] when a column does not have one value per
@@ -88,9 +89,9 @@ pub fn write_cloud<'a>(
 
 pub(crate) fn to_column<'a>(extra: &ExtraColumn<'a>) -> Column<'a> {
     let values = match extra.values {
-        ExtraValues::U8(v) => Values::U8(Cow::Borrowed(v)),
-        ExtraValues::U32(v) => Values::U32(Cow::Borrowed(v)),
-        ExtraValues::F32(v) => Values::F32(Cow::Borrowed(v)),
+        ExtraValues::U8(v) => ColumnValues::U8(Cow::Borrowed(v)),
+        ExtraValues::U32(v) => ColumnValues::U32(Cow::Borrowed(v)),
+        ExtraValues::F32(v) => ColumnValues::F32(Cow::Borrowed(v)),
     };
     Column { name: extra.name.into(), description: extra.description.into(), values }
 }

@@ -7,8 +7,8 @@ use belvedere_data::{Error, Mesh, Result};
 /// Decimals of coordinates in text: a tenth of a millimetre.
 const DECIMALS: usize = 4;
 
-/// Writes `mesh` in the unit of its file, which `metres_per_unit` (x, y, z) tells: Wavefront (.obj, coordinates to a tenth of a millimetre)
-/// or binary PLY. Faces share their vertices, so that a closed mesh is closed in the file too.
+/// Writes `mesh` in the unit of its file, which `metres_per_unit` (x, y, z) tells: Wavefront (.obj, coordinates to a
+/// tenth of a millimetre) or binary PLY. Faces share their vertices, so that a closed mesh is closed in the file too.
 ///
 /// # Errors
 /// [`Error::UnknownFormat`] for another extension, [`Error::Io`].

@@ -9,7 +9,7 @@ use las::{Builder, GpsTimeType, PointDataBuilder, Transform, Vector, Vlr};
 use rayon::prelude::*;
 
 use crate::atomic;
-use crate::columns::{Column, Values};
+use crate::columns::{Column, ColumnValues};
 use crate::output::{Output, WriteSeek};
 use crate::write_cloud::WriteReport;
 use belvedere_data::Bounds;
@@ -24,8 +24,8 @@ const DEGREES_PER_SCAN_STEP: f64 = 0.006;
 /// Coarsest step between coordinates, metres.
 const MAX_STEP: f64 = 0.001;
 
-/// Writes `cloud` with its attributes, `extra` columns as extra bytes, and `records` as further variable length records;
-/// compressed where the extension is `laz`.
+/// Writes `cloud` with its attributes, `extra` columns as extra bytes, and `records` as further variable length
+/// records; compressed where the extension is `laz`.
 ///
 /// Attributes beyond the standard fields (scanner index) become extra bytes too. Where the cloud has no return numbers,
 /// each point is the only return of its pulse and the file says that these numbers are synthetic.
@@ -42,7 +42,7 @@ pub(crate) fn write(
         columns.push(Column {
             name: "scanner_index".into(),
             description: "scanner set-up, 65535 unknown".into(),
-            values: Values::U16(index.into()),
+            values: ColumnValues::U16(index.into()),
         });
     }
     let mut builder = Builder::from((1, 4));
@@ -91,8 +91,8 @@ pub(crate) fn write(
             Ok(clamped)
         })?
     };
-    let normals_asked = extra.iter().any(|c| c.name.eq_ignore_ascii_case("NormalX"));
-    let left_out = if cloud.attributes.normals.is_some() && !normals_asked { vec!["normals"] } else { Vec::new() };
+    let normals_requested = extra.iter().any(|c| c.name.eq_ignore_ascii_case("NormalX"));
+    let left_out = if cloud.attributes.normals.is_some() && !normals_requested { vec!["normals"] } else { Vec::new() };
     Ok(WriteReport { point_count: cloud.len(), left_out, clamped_count })
 }
 
@@ -218,12 +218,12 @@ fn crs_records(cloud: &PointCloud) -> Vec<Vlr> {
 fn descriptor(column: &Column<'_>) -> [u8; 192] {
     let mut bytes = [0; 192];
     bytes[2] = match column.values {
-        Values::U8(_) => 1,
-        Values::U16(_) => 3,
-        Values::U32(_) => 5,
-        Values::I32(_) => 6,
-        Values::F32(_) => 9,
-        Values::F64(_) => 10,
+        ColumnValues::U8(_) => 1,
+        ColumnValues::U16(_) => 3,
+        ColumnValues::U32(_) => 5,
+        ColumnValues::I32(_) => 6,
+        ColumnValues::F32(_) => 9,
+        ColumnValues::F64(_) => 10,
     };
     put_text(&mut bytes[4..36], &column.name);
     put_text(&mut bytes[160..192], &column.description);
@@ -249,9 +249,9 @@ impl Encoder<'_> {
     fn encode(&self, record: &mut [u8], index: usize) -> usize {
         let a = &self.cloud.attributes;
         let mut clamped = 0;
-        let mut cut = |value: u8, most: u8| {
-            clamped += usize::from(value > most);
-            value.min(most)
+        let mut cut = |value: u8, max: u8| {
+            clamped += usize::from(value > max);
+            value.min(max)
         };
         let xyz = self.cloud.frame.to_file_coordinates(self.cloud.positions[index]);
         let transforms = [self.transforms.x, self.transforms.y, self.transforms.z];

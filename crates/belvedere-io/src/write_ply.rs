@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use crate::columns::{Column, Values, attribute_columns};
+use crate::columns::{Column, ColumnValues, attribute_columns};
 use crate::output::Output;
 use crate::write_cloud::WriteReport;
 use belvedere_data::crs::text::comment_lines;
@@ -48,12 +48,12 @@ fn header(cloud: &PointCloud, columns: &[Column<'_>], comments: &[String]) -> St
     }
     for column in columns {
         let kind = match column.values {
-            Values::U8(_) => "uchar",
-            Values::U16(_) => "ushort",
-            Values::U32(_) => "uint",
-            Values::I32(_) => "int",
-            Values::F32(_) => "float",
-            Values::F64(_) => "double",
+            ColumnValues::U8(_) => "uchar",
+            ColumnValues::U16(_) => "ushort",
+            ColumnValues::U32(_) => "uint",
+            ColumnValues::I32(_) => "int",
+            ColumnValues::F32(_) => "float",
+            ColumnValues::F64(_) => "double",
         };
         text.push_str(&format!("property {kind} {}\n", column.name));
     }

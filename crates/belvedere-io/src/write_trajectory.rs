@@ -9,7 +9,7 @@ use belvedere_data::{Error, GpsTimeKind, Result};
 
 /// Where the vehicle points.
 #[derive(Clone, Copy, Debug, Default)]
-pub enum Heading<'a> {
+pub enum VehicleHeading<'a> {
     /// Where it moves to; north while it stands.
     #[default]
     Course,
@@ -19,20 +19,20 @@ pub enum Heading<'a> {
 
 /// Writes `trajectory`, whose positions are metres in the system `crs`, in a format that follows from the extension.
 ///
-/// `.csv` and `.txt` get the header `time,x,y,z` and a line per position, in the unit of the system with four decimals, and
-/// microseconds of the same clock.
+/// `.csv` and `.txt` get the header `time,x,y,z` and a line per position, in the unit of the system with four decimals,
+/// and microseconds of the same clock.
 ///
 /// `.sbet` and `.out` get 17 little-endian f64 a record: time, latitude and longitude (radians, WGS 84), altitude,
-/// velocities along x, y and z, roll, pitch, heading, wander angle, accelerations and angular rates. The wander angle is 0, so
-/// that x points to true north, y west and z up. Times count from the start of the GPS week of the first position, and on
-/// beyond the end of that week; where they already do (`kind`), they stay. Altitudes stay as they are, above the vertical
-/// datum of the system rather than the ellipsoid. Velocities are differences between neighbouring records (0 where none
-/// is near), headings are turned to true north. Roll, pitch, accelerations and rates are not known here and 0.
-/// [`crate::read_trajectory`] brings back times and positions.
+/// velocities along x, y and z, roll, pitch, heading, wander angle, accelerations and angular rates. The wander angle
+/// is 0, so that x points to true north, y west and z up. Times count from the start of the GPS week of the first
+/// position, and on beyond the end of that week; where they already do (`kind`), they stay. Altitudes stay as they are,
+/// above the vertical datum of the system rather than the ellipsoid. Velocities are differences between neighbouring
+/// records (0 where none is near), headings are turned to true north. Roll, pitch, accelerations and rates are not
+/// known here and 0. [`crate::read_trajectory`] brings back times and positions.
 ///
 /// # Errors
-/// [`Error::UnknownFormat`] for other extensions, [`Error::LengthMismatch`] where positions or headings are not as many as
-/// times, [`Error::UnusableCrs`] where SBET is asked for in a system that gives no latitude and longitude, and
+/// [`Error::UnknownFormat`] for other extensions, [`Error::LengthMismatch`] where positions or headings are not as many
+/// as times, [`Error::UnusableCrs`] where SBET is asked for in a system that gives no latitude and longitude, and
 /// [`Error::Io`]. An existing file is replaced only by a complete one.
 ///
 /// # Source
@@ -42,10 +42,10 @@ pub fn write_trajectory<'a>(
     trajectory: &Trajectory,
     kind: GpsTimeKind,
     crs: &Crs,
-    heading: Heading<'_>,
+    heading: VehicleHeading<'_>,
 ) -> Result<()> {
     let count = trajectory.times.len();
-    let given = if let Heading::Given(headings) = heading { headings.len() } else { count };
+    let given = if let VehicleHeading::Given(headings) = heading { headings.len() } else { count };
     for (what, found) in [("trajectory positions", trajectory.positions.len()), ("headings", given)] {
         if found != count {
             return Err(Error::LengthMismatch { what, expected: count, found });
@@ -75,11 +75,12 @@ fn write_table(output: Output<'_>, trajectory: &Trajectory, crs: &Crs) -> Result
 }
 
 /// Writes positions that were found as a table for people and for [`crate::read_trajectory`]: `.csv` or `.txt` with the
-/// columns time, x, y, z, sd_x, sd_y, sd_z, residual_deg and line. Positions and deviations are in the unit of the file of the
-/// cloud in the system `crs`; what is not known is left empty.
+/// columns time, x, y, z, sd_x, sd_y, sd_z, residual_deg and line. Positions and deviations are in the unit of the file
+/// of the cloud in the system `crs`; what is not known is left empty.
 ///
 /// # Errors
-/// [`Error::UnknownFormat`] for other extensions, and [`Error::Io`]. An existing file is replaced only by a complete one.
+/// [`Error::UnknownFormat`] for other extensions, and [`Error::Io`]. An existing file is replaced only by a complete
+/// one.
 pub fn write_found_trajectory<'a>(
     output: impl Into<Output<'a>>,
     samples: &[TrajectorySample],
@@ -112,7 +113,7 @@ fn write_sbet(
     trajectory: &Trajectory,
     kind: GpsTimeKind,
     crs: &Crs,
-    heading: Heading<'_>,
+    heading: VehicleHeading<'_>,
 ) -> Result<()> {
     let name = output.name().to_owned();
     let unusable = |e: Error| Error::UnusableCrs {
@@ -123,8 +124,8 @@ fn write_sbet(
     let places = trajectory
         .positions
         .iter()
-        .map(|&position| Place::new(&projection, position))
-        .collect::<Result<Vec<Place>>>()
+        .map(|&position| GlobePosition::new(&projection, position))
+        .collect::<Result<Vec<GlobePosition>>>()
         .map_err(unusable)?;
     let week_start = match (kind, trajectory.times.first()) {
         (GpsTimeKind::AdjustedStandard, Some(first)) => {
@@ -136,9 +137,9 @@ fn write_sbet(
         for (i, (time, place)) in trajectory.times.iter().zip(&places).enumerate() {
             let [north, east, up] = velocity(&trajectory.times, &places, i);
             let pointing = match heading {
-                Heading::Course if north == 0.0 && east == 0.0 => 0.0,
-                Heading::Course => east.atan2(north),
-                Heading::Given(headings) => headings.get(i).copied().unwrap_or(0.0) + place.grid_north,
+                VehicleHeading::Course if north == 0.0 && east == 0.0 => 0.0,
+                VehicleHeading::Course => east.atan2(north),
+                VehicleHeading::Given(headings) => headings.get(i).copied().unwrap_or(0.0) + place.grid_north,
             };
             let mut record = [0.0; 17];
             record[0] = time - week_start;
@@ -154,11 +155,12 @@ fn write_sbet(
 
 /// Semi-major axis of the ellipsoid of WGS 84, metres, and its squared eccentricity.
 const WGS84: [f64; 2] = [6_378_137.0, 6.694_379_990_141_33e-3];
-/// Distance over which the direction of grid north is measured, metres: short against its bending, long against rounding.
+/// Distance over which the direction of grid north is measured, metres: short against its bending, long against
+/// rounding.
 const NORTHWARD: f64 = 100.0;
 
 /// A position on the globe.
-struct Place {
+struct GlobePosition {
     latitude: f64,
     longitude: f64,
     altitude: f64,
@@ -168,7 +170,7 @@ struct Place {
     grid_north: f64,
 }
 
-impl Place {
+impl GlobePosition {
     fn new(projection: &GeographicProjection, [x, y, altitude]: [f64; 3]) -> Result<Self> {
         let [latitude, longitude] = projection.unproject([x, y])?;
         let [semi_major, eccentricity_2] = WGS84;
@@ -186,7 +188,7 @@ impl Place {
 
 /// Velocity to the north, to the east and up at record `index`, metres per second: between the records before and after
 /// it, as far as they are near in time.
-fn velocity(times: &[f64], places: &[Place], index: usize) -> [f64; 3] {
+fn velocity(times: &[f64], places: &[GlobePosition], index: usize) -> [f64; 3] {
     let record = |i: usize| Some((*times.get(i)?, places.get(i)?));
     let Some(own) = record(index) else { return [0.0; 3] };
     let near = |other: Option<(f64, _)>| other.filter(|(time, _)| (time - own.0).abs() <= MAX_GAP_S).unwrap_or(own);

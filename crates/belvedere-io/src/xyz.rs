@@ -3,7 +3,7 @@
 use std::io::BufRead;
 use std::path::Path;
 
-use super::part::Part;
+use super::part::FilePart;
 use super::read_options::Reading;
 use super::rows::{Role, Row, Rows, role_of};
 use super::source::Input;
@@ -35,7 +35,8 @@ impl Separator {
     }
 }
 
-/// Cells parted by a character, without surrounding blanks and quotation marks. Within quotation marks the character is a part of the cell.
+/// Cells parted by a character, without surrounding blanks and quotation marks. Within quotation marks the character is
+/// a part of the cell.
 struct Parted<'a> {
     rest: Option<&'a str>,
     by: char,
@@ -79,11 +80,11 @@ fn closing(inside: &str) -> Option<usize> {
 /// # Errors
 /// [`Error::Malformed`] for decimal commas, for a header without x, y and z, and where more than half of the lines
 /// cannot be read.
-pub(super) fn read(input: Input<'_>, reading: &Reading<'_>) -> Result<Part> {
+pub(super) fn read(input: Input<'_>, reading: &Reading<'_>) -> Result<FilePart> {
     let Input { name, reader: mut file, size } = input;
     let path = name.as_path();
-    let mut part = Part::new(path, "text");
-    let mut lines = Lines { path, file: &mut file, number: 0, bytes: Vec::new() };
+    let mut part = FilePart::new(path, "text");
+    let mut lines = XyzLines { path, file: &mut file, number: 0, bytes: Vec::new() };
     let Some(start) = find_start(path, &mut part, &mut lines)? else {
         part.report.format = "text, empty".to_owned();
         return Ok(part);
@@ -119,8 +120,8 @@ pub(super) fn read(input: Input<'_>, reading: &Reading<'_>) -> Result<Part> {
 pub(super) fn read_text(input: Input<'_>) -> Result<TextRows> {
     let Input { name, reader: mut file, .. } = input;
     let path = name.as_path();
-    let mut part = Part::new(path, "text");
-    let mut lines = Lines { path, file: &mut file, number: 0, bytes: Vec::new() };
+    let mut part = FilePart::new(path, "text");
+    let mut lines = XyzLines { path, file: &mut file, number: 0, bytes: Vec::new() };
     let Some(start) = find_start(path, &mut part, &mut lines)? else { return Ok(TextRows::default()) };
     let Start { separator, mut names, ahead, .. } = start;
     let width = ahead.first().map_or(0, |(_, line)| separator.split(line).count());
@@ -144,7 +145,7 @@ pub(super) fn read_text(input: Input<'_>) -> Result<TextRows> {
 /// Whether a text file is a table of something else: its first line has names, but not of x, y and z.
 pub(super) fn is_another_table(input: Input<'_>) -> bool {
     let Input { name, reader: mut file, .. } = input;
-    let mut lines = Lines { path: &name, file: &mut file, number: 0, bytes: Vec::new() };
+    let mut lines = XyzLines { path: &name, file: &mut file, number: 0, bytes: Vec::new() };
     let Ok(Some((_, line))) = lines.next_data() else { return false };
     is_names(&line) && header(&line).is_none()
 }
@@ -164,14 +165,14 @@ struct Start {
     ahead: Vec<(usize, String)>,
 }
 
-struct Lines<'a, R> {
+struct XyzLines<'a, R> {
     path: &'a Path,
     file: &'a mut R,
     number: usize,
     bytes: Vec<u8>,
 }
 
-impl<R: BufRead> Lines<'_, R> {
+impl<R: BufRead> XyzLines<'_, R> {
     /// The next line and its number, from 1, without surrounding blanks.
     fn next(&mut self) -> Result<Option<(usize, String)>> {
         self.bytes.clear();
@@ -200,8 +201,8 @@ fn is_comment(line: &str) -> bool {
 }
 
 /// Reads on to the data; `None` where there is none.
-fn find_start<R: BufRead>(path: &Path, part: &mut Part, lines: &mut Lines<'_, R>) -> Result<Option<Start>> {
-    let mut names: Option<Header> = None;
+fn find_start<R: BufRead>(path: &Path, part: &mut FilePart, lines: &mut XyzLines<'_, R>) -> Result<Option<Start>> {
+    let mut names: Option<XyzHeader> = None;
     let mut ahead: Vec<(usize, String)> = Vec::new();
     let mut header_seen = false;
     while ahead.len() < LOOK_AHEAD {
@@ -258,10 +259,10 @@ fn is_numeric(line: &str) -> bool {
 }
 
 /// The roles of columns, and their names.
-type Header = (Vec<Option<Role>>, Vec<String>);
+type XyzHeader = (Vec<Option<Role>>, Vec<String>);
 
 /// The names in a header line and their roles, or `None` where x, y and z are not among them.
-fn header(line: &str) -> Option<Header> {
+fn header(line: &str) -> Option<XyzHeader> {
     let names: Vec<String> = separator(line).split(line).map(str::to_owned).collect();
     let columns: Vec<Option<Role>> = names.iter().map(|name| role_of(name)).collect();
     [Role::X, Role::Y, Role::Z].iter().all(|&role| columns.contains(&Some(role))).then_some((columns, names))
@@ -295,7 +296,7 @@ fn refuse_decimal_comma(path: &Path, number: usize, line: &str, separator: Separ
 }
 
 /// What nameless columns are, from their number and values.
-fn guess_columns(part: &mut Part, separator: Separator, ahead: &[(usize, String)]) -> Vec<Option<Role>> {
+fn guess_columns(part: &mut FilePart, separator: Separator, ahead: &[(usize, String)]) -> Vec<Option<Role>> {
     let values: Vec<Vec<f64>> = ahead
         .iter()
         .map(|(_, line)| separator.split(line).map_while(|token| token.parse().ok()).collect::<Vec<f64>>())
@@ -350,7 +351,7 @@ impl Bad {
         }
     }
 
-    fn judge(&self, part: &mut Part, path: &Path) -> Result<()> {
+    fn judge(&self, part: &mut FilePart, path: &Path) -> Result<()> {
         let lines: Vec<String> = self.first.iter().map(ToString::to_string).collect();
         let lines = format!("lines {}{}", lines.join(", "), if self.count > NAMED_LINES { ", …" } else { "" });
         if self.count > self.good {

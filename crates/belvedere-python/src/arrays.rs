@@ -11,16 +11,16 @@ const CHUNK: usize = 1 << 14;
 
 /// Places, (N, 3), in the coordinates and unit of the file, 32 or 64 bit, with any strides.
 #[derive(FromPyObject)]
-pub(crate) enum Places<'py> {
+pub(crate) enum PositionArray<'py> {
     Double(PyReadonlyArray2<'py, f64>),
     Single(PyReadonlyArray2<'py, f32>),
 }
 
-impl Places<'_> {
+impl PositionArray<'_> {
     /// The rows as local positions, in one pass and without a copy between.
     ///
     /// # Errors
-    /// As [`Places::rows`].
+    /// As [`PositionArray::rows`].
     pub(crate) fn local(&self, what: &str, frame: &Frame) -> PyResult<Vec<[f32; 3]>> {
         let positions = match self {
             Self::Double(array) => converted(array, what, |row| frame.from_file_coordinates(row)),

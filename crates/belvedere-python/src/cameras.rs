@@ -2,16 +2,16 @@
 
 use crate::arrays::{to_1d, to_2d};
 use crate::errors::wrong;
-use crate::scene::{Scene, unproven_as};
+use crate::scene::{PyScene, unproven_as};
 use crate::sights::earth;
-use crate::sun::Place;
-use crate::targets::{Grid, Wanted, grid_of, ground_points, remarks_of};
+use crate::sun::SiteKeywords;
+use crate::targets::{Grid, RequestedTargets, grid_of, ground_points, remarks_of};
 use crate::work::run;
 use belvedere::Frame;
 use belvedere::apps::ask::{
-    self, CameraGoal, CameraLens, CamerasFound, Candidates, GivenCamera, North, PrivatePlaces, Standing,
+    self, CameraGoal, CameraLens, CamerasResults, Candidates, GivenCamera, North, PrivatePlaces, Standing,
 };
-use belvedere::apps::cameras::{Level, Pose};
+use belvedere::apps::cameras::{CameraPose, Level};
 use belvedere::query::UnprovenAs;
 use numpy::PyArray1;
 use pyo3::prelude::*;
@@ -20,7 +20,7 @@ use std::sync::Arc;
 
 /// Pixels per metre, or the name of a level.
 #[derive(FromPyObject)]
-enum Density {
+enum DensityKeyword {
     Level(String),
     Number(f64),
 }
@@ -28,7 +28,7 @@ enum Density {
 /// Cameras to choose from, and what is wanted of them.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
-pub(crate) struct Choice {
+pub(crate) struct CameraKeywords {
     /// x, y and z in the coordinates of the file, z NaN where it follows from the ground; `None` for a grid.
     candidates: Option<Vec<[f64; 3]>>,
     on_roofs: bool,
@@ -41,7 +41,7 @@ pub(crate) struct Choice {
     fov: Option<f64>,
     vertical_fov: Option<f64>,
     pixels: Option<f64>,
-    density: Option<Density>,
+    density: Option<DensityKeyword>,
     headings: Option<usize>,
     tilts: Option<Vec<f64>>,
     turning: bool,
@@ -57,9 +57,9 @@ pub(crate) struct Choice {
     fresnel_percent: Option<f64>,
 }
 
-impl Choice {
+impl CameraKeywords {
     /// The question, with places as the native part has them.
-    fn question(&self, scene: &ask::Scene, north: North, unproven: UnprovenAs) -> PyResult<ask::Cameras> {
+    fn question(&self, scene: &ask::Scene, north: North, unproven: UnprovenAs) -> PyResult<ask::CamerasQuestion> {
         let goal = match (self.count, self.coverage) {
             (Some(count), None) => CameraGoal::Count(count),
             (None, Some(percent)) => CameraGoal::CoveragePercent(percent),
@@ -74,7 +74,7 @@ impl Choice {
             ..camera([x, y, z])
         };
         let private = self.private.iter().map(|&place| Standing { place: local(place), height: None }).collect();
-        Ok(ask::Cameras {
+        Ok(ask::CamerasQuestion {
             goal,
             per_target: self.per_target,
             search_limit: self.search_limit,
@@ -102,9 +102,9 @@ impl Choice {
     fn lens(&self) -> PyResult<CameraLens> {
         let density = match &self.density {
             None => None,
-            Some(Density::Number(density)) => Some(*density),
-            Some(Density::Level(name)) if name == "none" => Some(0.0),
-            Some(Density::Level(name)) => match Level::ALL.iter().find(|(own, _)| own == name) {
+            Some(DensityKeyword::Number(density)) => Some(*density),
+            Some(DensityKeyword::Level(name)) if name == "none" => Some(0.0),
+            Some(DensityKeyword::Level(name)) => match Level::ALL.iter().find(|(own, _)| own == name) {
                 Some((_, level)) => Some(level.pixels_per_metre()),
                 None => {
                     let advice = "use a number, 'monitor', 'detect', 'observe', 'recognise', 'identify' or 'none'";
@@ -127,20 +127,20 @@ impl Choice {
 }
 
 /// Columns of the cameras, numbers of the whole, cameras of each target, the grid of the targets, and remarks.
-type Answer<'py> =
+type CamerasReply<'py> =
     (Bound<'py, PyDict>, Bound<'py, PyDict>, Bound<'py, PyArray1<u32>>, Option<Grid>, Vec<Bound<'py, PyDict>>);
 
 #[pymethods]
-impl Scene {
+impl PyScene {
     fn cameras<'py>(
         &self,
         py: Python<'py>,
-        choice: Choice,
-        targets: Wanted<'py>,
-        place: Place,
+        choice: CameraKeywords,
+        targets: RequestedTargets<'py>,
+        place: SiteKeywords,
         unproven: &str,
         progress: Option<Py<PyAny>>,
-    ) -> PyResult<Answer<'py>> {
+    ) -> PyResult<CamerasReply<'py>> {
         let scene = Arc::clone(&self.0);
         let mut question = choice.question(&scene, place.north(), unproven_as(unproven)?)?;
         question.targets.height = targets.height().unwrap_or(question.targets.height);
@@ -157,8 +157,8 @@ impl Scene {
 }
 
 /// A row for each camera.
-fn columns<'py>(py: Python<'py>, found: &CamerasFound, frame: &Frame) -> PyResult<Bound<'py, PyDict>> {
-    let of = |value: &dyn Fn(&Pose) -> f64| to_1d(py, found.cameras.iter().map(|one| value(&one.pose)).collect());
+fn columns<'py>(py: Python<'py>, found: &CamerasResults, frame: &Frame) -> PyResult<Bound<'py, PyDict>> {
+    let of = |value: &dyn Fn(&CameraPose) -> f64| to_1d(py, found.cameras.iter().map(|one| value(&one.pose)).collect());
     let places: Vec<[f64; 3]> = found.cameras.iter().map(|one| frame.file_from_local(one.pose.camera.eye)).collect();
     let cameras = PyDict::new(py);
     cameras.set_item("place", to_2d(py, &places)?)?;
@@ -173,7 +173,7 @@ fn columns<'py>(py: Python<'py>, found: &CamerasFound, frame: &Frame) -> PyResul
 }
 
 /// What is proven of the choice.
-fn whole<'py>(py: Python<'py>, found: &CamerasFound) -> PyResult<Bound<'py, PyDict>> {
+fn whole<'py>(py: Python<'py>, found: &CamerasResults) -> PyResult<Bound<'py, PyDict>> {
     let placed = &found.placed;
     let whole = PyDict::new(py);
     whole.set_item("coverage_percent", 100.0 * placed.coverage())?;
@@ -181,7 +181,7 @@ fn whole<'py>(py: Python<'py>, found: &CamerasFound) -> PyResult<Bound<'py, PyDi
     whole.set_item("is_proven_optimum", placed.is_optimal())?;
     whole.set_item("all_candidates_percent", 100.0 * placed.reachable)?;
     whole.set_item("existing_only_percent", 100.0 * placed.curve.first().copied().unwrap_or(0.0))?;
-    whole.set_item("least_possible_cameras", placed.least_count)?;
+    whole.set_item("least_possible_cameras", placed.min_count)?;
     whole.set_item("cameras_to_choose_from", found.candidates)?;
     let covered: Vec<_> = found.cameras.iter().map(|one| to_1d(py, one.covered.clone())).collect();
     whole.set_item("covered", covered)?;

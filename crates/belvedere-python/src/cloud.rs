@@ -1,6 +1,6 @@
 //! Point clouds.
 
-use crate::arrays::{Places, column, fixed_rows, to_1d, to_2d};
+use crate::arrays::{PositionArray, column, fixed_rows, to_1d, to_2d};
 use crate::errors::{belvedere_error, exception, wrong};
 use crate::system::System;
 use crate::work::run;
@@ -21,13 +21,13 @@ pub(crate) struct Cloud(pub(crate) Arc<PointCloud>);
 
 /// A path, or a name and the bytes of what would be there, or a file of Python that has them.
 #[derive(FromPyObject)]
-pub(crate) enum Input {
+pub(crate) enum PyInput {
     Bytes(PathBuf, Vec<u8>),
     File(PathBuf, Py<PyAny>),
     Path(PathBuf),
 }
 
-impl Input {
+impl PyInput {
     pub(crate) fn source(&self) -> Source<'_> {
         match self {
             Self::Path(path) => Source::path(path),
@@ -81,7 +81,7 @@ impl Seek for PythonFile<'_> {
 #[pyo3(signature = (inputs, crs, up, bounds, classes, progress))]
 pub(crate) fn read(
     py: Python<'_>,
-    inputs: Vec<Input>,
+    inputs: Vec<PyInput>,
     crs: Option<String>,
     up: &str,
     bounds: Option<[[f64; 3]; 2]>,
@@ -98,7 +98,7 @@ pub(crate) fn read(
     options.within = bounds.map(|[low, high]| Within::File { low, high });
     options.classes = classes;
     let (cloud, report) = run(py, progress, move |control| {
-        let sources = inputs.iter().map(Input::source);
+        let sources = inputs.iter().map(PyInput::source);
         control.stage("reading", 0, || read_cloud(sources, &options, control))
     })?;
     Ok((Cloud(Arc::new(cloud)), json(&report)?))
@@ -115,7 +115,7 @@ impl Cloud {
     #[new]
     #[pyo3(signature = (xyz, attributes, adjusted_gps_time, crs))]
     fn new(
-        xyz: Places<'_>,
+        xyz: PositionArray<'_>,
         attributes: &Bound<'_, PyDict>,
         adjusted_gps_time: bool,
         crs: Option<System>,

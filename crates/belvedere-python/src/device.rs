@@ -40,7 +40,8 @@ fn unknown(device: &str) -> Error {
     }
 }
 
-/// Name, kind, driver and interface of each device of this computer, in the order of their numbers; none without the feature `gpu`.
+/// Name, kind, driver and interface of each device of this computer, in the order of their numbers; none without the
+/// feature `gpu`.
 #[pyfunction]
 pub(crate) fn devices() -> Vec<[String; 4]> {
     #[cfg(feature = "gpu")]

@@ -2,8 +2,8 @@
 
 use crate::arrays::to_1d;
 use crate::errors::{exception, wrong};
-use crate::scene::Scene;
-use crate::targets::{Results, Wanted, ground_points, remarks_of};
+use crate::scene::PyScene;
+use crate::targets::{RequestedTargets, TargetResults, ground_points, remarks_of};
 use crate::trees::Through;
 use crate::work::run;
 use belvedere::apps::ask::{self, Roofs, SunPlace};
@@ -20,7 +20,7 @@ use std::sync::Arc;
 /// Where radiation comes from and how it is summed; what is not given is the library's default.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
-pub(crate) struct Radiation {
+pub(crate) struct RadiationKeywords {
     weather: Option<PathBuf>,
     clear_sky: Option<String>,
     linke: Option<f64>,
@@ -35,7 +35,7 @@ pub(crate) struct Radiation {
     location: Option<[f64; 2]>,
 }
 
-impl Radiation {
+impl RadiationKeywords {
     fn params(&self) -> PyResult<IrradianceParams> {
         let usual = IrradianceParams::default();
         let sky = match self.sky_model.as_deref() {
@@ -69,11 +69,11 @@ impl Radiation {
     }
 
     /// The question, with weather that is read.
-    fn question(&self, trees: &Through, roofs: Option<Roofs>) -> PyResult<ask::Irradiance> {
+    fn question(&self, trees: &Through, roofs: Option<Roofs>) -> PyResult<ask::IrradianceQuestion> {
         let params = self.params()?;
         let radiation = self.source(&params)?;
         let place = SunPlace { location: self.location, ..SunPlace::default() };
-        Ok(ask::Irradiance { radiation, params, place, trees: trees.chosen()?, roofs })
+        Ok(ask::IrradianceQuestion { radiation, params, place, trees: trees.chosen()?, roofs })
     }
 
     fn source(&self, params: &IrradianceParams) -> PyResult<ask::Radiation> {
@@ -108,13 +108,13 @@ impl Radiation {
 type RoofColumns<'py> = (Vec<(&'static str, Bound<'py, PyAny>)>, Vec<usize>, Vec<Bound<'py, PyDict>>);
 
 #[pymethods]
-impl Scene {
+impl PyScene {
     /// The columns of the planes of roofs, with the middle of each first, and the number of cells of each.
     #[expect(clippy::too_many_arguments, reason = "keywords in Python")]
     fn roof_planes<'py>(
         &self,
         py: Python<'py>,
-        radiation: Radiation,
+        radiation: RadiationKeywords,
         min_area: Option<f64>,
         panel: Option<f64>,
         ground: Option<&str>,
@@ -136,11 +136,11 @@ impl Scene {
     fn irradiance<'py>(
         &self,
         py: Python<'py>,
-        radiation: Radiation,
-        targets: Wanted<'py>,
+        radiation: RadiationKeywords,
+        targets: RequestedTargets<'py>,
         trees: Through,
         progress: Option<Py<PyAny>>,
-    ) -> PyResult<Results<'py>> {
+    ) -> PyResult<TargetResults<'py>> {
         let question = radiation.question(&trees, None)?;
         let scene = Arc::clone(&self.0);
         let chosen = targets.chosen(py, &scene)?;

@@ -1,13 +1,13 @@
 //! From where a landmark is seen, how much of it, and how high one may build before it.
 
 use crate::arrays::to_1d;
-use crate::mesh::Mesh;
+use crate::mesh::PyMesh;
 use crate::observers::standing_observers;
-use crate::outlook::Looking;
-use crate::scene::{Scene, unproven_as, unproven_choice};
-use crate::targets::{Column, Grid, grid_of, ground_points, remarks_of};
+use crate::outlook::LookingKeywords;
+use crate::scene::{PyScene, unproven_as, unproven_choice};
+use crate::targets::{Grid, PyColumn, grid_of, ground_points, remarks_of};
 use crate::work::run;
-use belvedere::apps::ask::{self, LandmarkShape, Shared};
+use belvedere::apps::ask::{self, LandmarkShape, SharedObject};
 use belvedere::apps::targets::Measure;
 use belvedere::control::Control;
 use belvedere::query::{BackFaces, SurfacePieces, UnprovenAs};
@@ -19,8 +19,8 @@ use std::sync::Arc;
 /// What the landmark is.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
-pub(crate) struct Landmark {
-    mesh: Option<Py<Mesh>>,
+pub(crate) struct LandmarkKeywords {
+    mesh: Option<Py<PyMesh>>,
     objects: Vec<String>,
     spacing: Option<f64>,
     seed: u64,
@@ -38,7 +38,7 @@ pub(crate) fn local_ring(inner: &ask::Scene, ring: &[[f64; 2]]) -> Vec<[f64; 2]>
     ring.iter().map(local).collect()
 }
 
-impl Landmark {
+impl LandmarkKeywords {
     fn shape(&self, scene: &ask::Scene) -> belvedere::Result<LandmarkShape> {
         if let Some(mesh) = &self.mesh {
             let mesh = Some(Arc::new(mesh.get().objects_in_metres(&self.objects, scene)?));
@@ -59,26 +59,26 @@ impl Landmark {
 }
 
 /// Columns, the grid of observers, and remarks.
-type Views<'py> = (Vec<Column<'py>>, Option<Grid>, Vec<Bound<'py, PyDict>>);
+type LandmarkReply<'py> = (Vec<PyColumn<'py>>, Option<Grid>, Vec<Bound<'py, PyDict>>);
 
 #[pymethods]
-impl Scene {
+impl PyScene {
     fn landmark<'py>(
         &self,
         py: Python<'py>,
-        landmark: Landmark,
+        landmark: LandmarkKeywords,
         observers: Option<PyReadonlyArray2<'py, f64>>,
-        looking: Looking,
+        looking: LookingKeywords,
         unproven: &str,
         progress: Option<Py<PyAny>>,
-    ) -> PyResult<Views<'py>> {
+    ) -> PyResult<LandmarkReply<'py>> {
         let (unproven, earth) = (unproven_choice(unproven)?, looking.earth()?);
         let ground = ground_points(looking.ground.as_deref())?;
         let observers = observers.as_ref().map(|array| standing_observers(array, &self.0)).transpose()?;
         let is_grid = observers.is_none();
         let scene = Arc::clone(&self.0);
         let answers = run(py, progress, move |control| {
-            let question = ask::Landmark {
+            let question = ask::LandmarkQuestion {
                 shape: landmark.shape(&scene)?,
                 observers,
                 observer_height: looking.observer_height,
@@ -101,16 +101,16 @@ impl Scene {
     fn protected_view<'py>(
         &self,
         py: Python<'py>,
-        landmark: Landmark,
+        landmark: LandmarkKeywords,
         observers: PyReadonlyArray2<'py, f64>,
-        looking: Looking,
+        looking: LookingKeywords,
         unproven: &str,
         progress: Option<Py<PyAny>>,
-    ) -> PyResult<(Vec<Column<'py>>, Grid, Vec<Bound<'py, PyDict>>)> {
+    ) -> PyResult<(Vec<PyColumn<'py>>, Grid, Vec<Bound<'py, PyDict>>)> {
         let unproven = Some(unproven_as(unproven)?).filter(|&choice| choice != UnprovenAs::Reported);
         let scene = Arc::clone(&self.0);
-        let usual = ask::ProtectedView::default();
-        let mut question = ask::ProtectedView {
+        let usual = ask::ProtectedViewQuestion::default();
+        let mut question = ask::ProtectedViewQuestion {
             observers: standing_observers(&observers, &scene)?,
             observer_height: looking.observer_height.unwrap_or(usual.observer_height),
             max_distance: looking.max_distance,
@@ -118,11 +118,11 @@ impl Scene {
             ..usual
         };
         let ground = ground_points(looking.ground.as_deref())?;
-        let cells = ask::Places::Cells(ask::Cells { cell: looking.cell, ground, ..ask::Cells::default() });
+        let cells = ask::Places::Cells(ask::GridCells { cell: looking.cell, ground, ..ask::GridCells::default() });
         let of_work = Arc::clone(&scene);
         let answers = run(py, progress, move |control| {
             ask::Ask::check(&question)?;
-            question.landmark = Some(Shared::new(landmark.surface(&of_work, control)?));
+            question.landmark = Some(SharedObject::new(landmark.surface(&of_work, control)?));
             ask::ask(&of_work, &question, &cells, control)
         })?;
         let found = answers.found;

@@ -1,7 +1,7 @@
 //! The native part of the Python package `belvedere`: calls the library, decides and computes nothing itself.
 //!
-//! The package in `python/belvedere` has the documentation and everything that does not need the library. Here arrays become columns, work
-//! is done without the interpreter, and results become arrays.
+//! The package in `python/belvedere` has the documentation and everything that does not need the library. Here arrays
+//! become columns, work is done without the interpreter, and results become arrays.
 
 mod arrays;
 mod cameras;
@@ -37,8 +37,8 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add("NO_VALUE", belvedere::results::ResultKind::NO_NUMBER)?;
     module.add_class::<cloud::Cloud>()?;
-    module.add_class::<mesh::Mesh>()?;
-    module.add_class::<scene::Scene>()?;
+    module.add_class::<mesh::PyMesh>()?;
+    module.add_class::<scene::PyScene>()?;
     module.add_class::<system::System>()?;
     module.add_function(wrap_pyfunction!(cloud::read, module)?)?;
     module.add_function(wrap_pyfunction!(device::devices, module)?)?;

@@ -1,7 +1,7 @@
 //! Triangle meshes: targets, landmarks and planned buildings.
 
 use crate::arrays::{column, fixed_rows, to_1d, to_2d};
-use crate::cloud::Input;
+use crate::cloud::PyInput;
 use crate::errors::{exception, wrong};
 use crate::system::System;
 use crate::work::run;
@@ -16,15 +16,15 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 /// A triangle mesh in the unit of its reference system.
-#[pyclass(frozen, module = "belvedere._core")]
-pub(crate) struct Mesh {
+#[pyclass(frozen, module = "belvedere._core", name = "Mesh")]
+pub(crate) struct PyMesh {
     mesh: Arc<belvedere::Mesh>,
     /// Its file, or what it is called in messages.
     pub(crate) name: PathBuf,
 }
 
 #[pymethods]
-impl Mesh {
+impl PyMesh {
     #[new]
     fn new(
         vertices: PyReadonlyArray2<'_, f64>,
@@ -66,7 +66,7 @@ impl Mesh {
 
     /// The mesh of a file.
     #[staticmethod]
-    fn read(py: Python<'_>, input: Input) -> PyResult<Self> {
+    fn read(py: Python<'_>, input: PyInput) -> PyResult<Self> {
         let (mesh, name) =
             run(py, None, move |_| Ok((read_mesh(input.source())?.0, input.source().name().to_owned())))?;
         Ok(Self { mesh: Arc::new(mesh), name })
@@ -102,7 +102,7 @@ impl Mesh {
     }
 }
 
-impl Mesh {
+impl PyMesh {
     /// The mesh in the metres of a scene.
     ///
     /// # Errors
@@ -116,7 +116,8 @@ impl Mesh {
     /// The same of these objects alone, of all where none is named.
     ///
     /// # Errors
-    /// Those of [`Mesh::in_metres`], and [`belvedere::Error::InvalidParameter`] for an object that the mesh does not have.
+    /// Those of [`Mesh::in_metres`], and [`belvedere::Error::InvalidParameter`] for an object that the mesh does not
+    /// have.
     pub(crate) fn objects_in_metres(
         &self,
         objects: &[String],
@@ -138,7 +139,7 @@ impl Mesh {
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub(crate) struct Faces {
-    mesh: Py<Mesh>,
+    mesh: Py<PyMesh>,
     spacing: Option<f64>,
     seed: u64,
     is_level: bool,

@@ -2,9 +2,9 @@
 
 use crate::arrays::{to_1d, to_2d};
 use crate::observers::standing_observers;
-use crate::scene::Scene;
+use crate::scene::PyScene;
 use crate::sights::earth;
-use crate::sun::Place;
+use crate::sun::SiteKeywords;
 use crate::targets::{ground_points, remarks_of};
 use crate::work::run;
 use belvedere::apps::ask::{self, BelowLevel};
@@ -17,12 +17,12 @@ use std::sync::Arc;
 /// How observers look over cells.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
-pub(crate) struct Looking {
+pub(crate) struct LookingKeywords {
     pub(crate) observer_height: Option<f64>,
     pub(crate) target_height: Option<f64>,
     pub(crate) cell: Option<f64>,
     pub(crate) ground: Option<String>,
-    /// Degrees from the north that `Place` says.
+    /// Degrees from the north that `SiteKeywords` says.
     pub(crate) azimuth_range: Option<[f64; 2]>,
     pub(crate) elevation_range: Option<[f64; 2]>,
     pub(crate) min_distance: Option<f64>,
@@ -35,7 +35,7 @@ pub(crate) struct Looking {
     pub(crate) is_far: bool,
 }
 
-impl Looking {
+impl LookingKeywords {
     pub(crate) fn earth(&self) -> PyResult<EarthParams> {
         earth(self.curvature.as_deref(), self.refraction)
     }
@@ -47,7 +47,7 @@ type Horizons<'py> = (Bound<'py, PyAny>, usize, Vec<Bound<'py, PyDict>>);
 type Described<'py> = (Bound<'py, PyDict>, Vec<Bound<'py, PyAny>>, Vec<Bound<'py, PyDict>>);
 
 #[pymethods]
-impl Scene {
+impl PyScene {
     /// Elevations of the horizon, degrees, a row for each observer and a column for each azimuth, NaN for those
     /// skipped; the number of azimuths; and remarks.
     fn horizon<'py>(
@@ -55,11 +55,11 @@ impl Scene {
         py: Python<'py>,
         observers: PyReadonlyArray2<'py, f64>,
         angle_step: Option<f64>,
-        looking: Looking,
-        place: Place,
+        looking: LookingKeywords,
+        place: SiteKeywords,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Horizons<'py>> {
-        let question = ask::Horizon {
+        let question = ask::HorizonQuestion {
             observer_height: looking.observer_height,
             ground: ground_points(looking.ground.as_deref())?,
             angle_step_deg: angle_step,
@@ -89,11 +89,11 @@ impl Scene {
         observers: PyReadonlyArray2<'py, f64>,
         angle_step: Option<f64>,
         min_jump: Option<f64>,
-        looking: Looking,
-        place: Place,
+        looking: LookingKeywords,
+        place: SiteKeywords,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Described<'py>> {
-        let question = ask::Isovists {
+        let question = ask::IsovistsQuestion {
             observer_height: looking.observer_height,
             ground: ground_points(looking.ground.as_deref())?,
             north: place.north(),

@@ -1,8 +1,8 @@
 //! Depth maps.
 
 use crate::errors::exception;
-use crate::scene::Scene;
-use crate::sun::Place;
+use crate::scene::PyScene;
+use crate::sun::SiteKeywords;
 use crate::targets::remarks_of;
 use crate::work::run;
 use belvedere::apps::ask::{self, Places, ViewFrom};
@@ -17,7 +17,7 @@ use std::sync::Arc;
 /// From where a picture is taken.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
-pub(crate) struct Camera {
+pub(crate) struct PictureCamera {
     sun: Option<[f64; 2]>,
     direction: Option<[f64; 3]>,
     eye: Option<[f64; 3]>,
@@ -39,9 +39,9 @@ fn to_array<T: numpy::Element + Copy>(py: Python<'_>, raster: Raster<T>) -> PyRe
     Ok(PyArray2::from_owned_array(py, array).into_any())
 }
 
-impl Camera {
+impl PictureCamera {
     /// From where the picture is taken, azimuths being from the north that `place` says.
-    fn from(&self, scene: &ask::Scene, place: &Place) -> belvedere::Result<ViewFrom> {
+    fn from(&self, scene: &ask::Scene, place: &SiteKeywords) -> belvedere::Result<ViewFrom> {
         let (low, high) = scene.model().bounds().corners();
         let pixel = self.pixel.unwrap_or_else(|| default_pixel_size(low, high));
         let local = |place| scene.frame().local_from_file(place);
@@ -77,18 +77,18 @@ impl Camera {
 type Depths<'py> = (Bound<'py, PyAny>, Option<Bound<'py, PyAny>>, Vec<Bound<'py, PyDict>>);
 
 #[pymethods]
-impl Scene {
+impl PyScene {
     /// Depths in metres, the rows of the balls that are seen, and remarks.
     fn depth_map<'py>(
         &self,
         py: Python<'py>,
-        camera: Camera,
-        place: Place,
+        camera: PictureCamera,
+        place: SiteKeywords,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Depths<'py>> {
         let scene = Arc::clone(&self.0);
         let from = camera.from(&scene, &place).map_err(exception)?;
-        let question = ask::DepthMap { from: Some(from), ball_ids: true };
+        let question = ask::DepthMapQuestion { from: Some(from), ball_ids: true };
         let answers = run(py, progress, move |control| ask::ask(&scene, &question, &Places::Scene, control))?;
         let remarks = remarks_of(py, &answers.remarks)?;
         let balls = answers.found.balls.map(|balls| to_array(py, balls)).transpose()?;

@@ -2,10 +2,10 @@
 
 use crate::arrays::{to_1d, to_2d};
 use crate::landmark::local_ring;
-use crate::scene::Scene;
-use crate::sky::{Days, sky_parts};
-use crate::sun::Place;
-use crate::targets::{Column, Grid, grid_of, ground_points, remarks_of};
+use crate::scene::PyScene;
+use crate::sky::{DaysKeywords, sky_parts};
+use crate::sun::SiteKeywords;
+use crate::targets::{Grid, PyColumn, grid_of, ground_points, remarks_of};
 use crate::windows::{WindowRow, given};
 use crate::work::run;
 use belvedere::Frame;
@@ -32,7 +32,7 @@ pub(crate) struct Walks {
 /// What an envelope protects, and what it bounds.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
-pub(crate) struct Build {
+pub(crate) struct EnvelopeKeywords {
     parcel: Vec<Vec<[f64; 2]>>,
     protect: Vec<Vec<[f64; 3]>>,
     /// Azimuths and elevations, degrees; empty for days.
@@ -51,12 +51,12 @@ fn local(corners: &[[f64; 3]], frame: &Frame) -> Vec<[f64; 3]> {
 }
 
 impl Walks {
-    fn question(&self, days: &Days, place: &Place, frame: &Frame) -> PyResult<ask::Comfort> {
+    fn question(&self, days: &DaysKeywords, place: &SiteKeywords, frame: &Frame) -> PyResult<ask::ComfortQuestion> {
         let along = match &self.windows[..] {
             [] => RoutesOrWindows::Routes(self.routes.iter().map(|corners| local(corners, frame)).collect()),
             windows => RoutesOrWindows::Windows(given(windows, frame)),
         };
-        Ok(ask::Comfort {
+        Ok(ask::ComfortQuestion {
             days: days.chosen(),
             place: place.chosen()?,
             sky: sky_parts(self.directions, None)?,
@@ -64,13 +64,18 @@ impl Walks {
             target_height: self.height,
             ground: ground_points(self.ground.as_deref())?,
             along,
-            ..ask::Comfort::default()
+            ..ask::ComfortQuestion::default()
         })
     }
 }
 
-impl Build {
-    fn question(&self, days: &Days, place: &Place, scene: &ask::Scene) -> PyResult<ask::Envelope> {
+impl EnvelopeKeywords {
+    fn question(
+        &self,
+        days: &DaysKeywords,
+        place: &SiteKeywords,
+        scene: &ask::Scene,
+    ) -> PyResult<ask::EnvelopeQuestion> {
         let suns = match &self.suns[..] {
             [] => ProtectedSuns::Days { days: days.chosen(), hours: self.between },
             suns => ProtectedSuns::Directions(suns.to_vec()),
@@ -83,7 +88,7 @@ impl Build {
             };
             Protected { name: format!("protected line {number}"), shape }
         };
-        Ok(ask::Envelope {
+        Ok(ask::EnvelopeQuestion {
             suns,
             place: place.chosen()?,
             fence_height: self.fence_height.unwrap_or(0.0),
@@ -94,25 +99,25 @@ impl Build {
             ground: ground_points(self.ground.as_deref())?,
             parcel: self.parcel.iter().map(|ring| local_ring(scene, ring)).collect(),
             protect: (1..).zip(&self.protect).map(protected).collect(),
-            ..ask::Envelope::default()
+            ..ask::EnvelopeQuestion::default()
         })
     }
 }
 
 /// Columns by name, and remarks.
-type Table<'py> = (Bound<'py, PyDict>, Vec<Bound<'py, PyDict>>);
+type PyTable<'py> = (Bound<'py, PyDict>, Vec<Bound<'py, PyDict>>);
 
 #[pymethods]
-impl Scene {
+impl PyScene {
     /// Columns of the places of routes, or of windows.
     fn comfort<'py>(
         &self,
         py: Python<'py>,
         walks: Walks,
-        days: Days,
-        place: Place,
+        days: DaysKeywords,
+        place: SiteKeywords,
         progress: Option<Py<PyAny>>,
-    ) -> PyResult<Table<'py>> {
+    ) -> PyResult<PyTable<'py>> {
         let scene = Arc::clone(&self.0);
         let question = walks.question(&days, &place, scene.frame())?;
         let answers = run(py, progress, move |control| ask::ask(&scene, &question, &ask::Places::Scene, control))?;
@@ -144,11 +149,11 @@ impl Scene {
     fn envelope<'py>(
         &self,
         py: Python<'py>,
-        build: Build,
-        days: Days,
-        place: Place,
+        build: EnvelopeKeywords,
+        days: DaysKeywords,
+        place: SiteKeywords,
         progress: Option<Py<PyAny>>,
-    ) -> PyResult<(Column<'py>, Grid, Vec<Bound<'py, PyDict>>)> {
+    ) -> PyResult<(PyColumn<'py>, Grid, Vec<Bound<'py, PyDict>>)> {
         let scene = Arc::clone(&self.0);
         let question = build.question(&days, &place, &scene)?;
         let answers = run(py, progress, move |control| ask::ask(&scene, &question, &ask::Places::Scene, control))?;

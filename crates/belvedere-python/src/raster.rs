@@ -10,7 +10,7 @@ use std::path::PathBuf;
 
 /// Values of a type that rasters have.
 #[derive(FromPyObject)]
-pub(crate) enum Values<'py> {
+pub(crate) enum RasterArray<'py> {
     F32(PyReadonlyArray2<'py, f32>),
     U8(PyReadonlyArray2<'py, u8>),
     U16(PyReadonlyArray2<'py, u16>),
@@ -23,7 +23,7 @@ pub(crate) enum Values<'py> {
 pub(crate) fn write_geotiff(
     py: Python<'_>,
     path: PathBuf,
-    bands: Vec<Values<'_>>,
+    bands: Vec<RasterArray<'_>>,
     names: Vec<String>,
     transform: [f64; 6],
     crs: System,
@@ -33,40 +33,43 @@ pub(crate) fn write_geotiff(
     let [a, b, west, d, e, north] = transform;
     let place = Georeference { upper_left: [west, north], column_step: [a, d], row_step: [b, e], crs: crs.0 };
     let (place, description) = (Some(&place), description.as_deref());
-    let number = |most: u16| match nodata {
+    let number = |max: u16| match nodata {
         None => Ok(None),
-        Some(v) if v >= 0.0 && v <= f64::from(most) && v.fract() == 0.0 => Ok(Some(v)),
-        Some(v) => Err(wrong("nodata", &v.to_string(), &format!("give a whole number from 0 to {most}"))),
+        Some(v) if v >= 0.0 && v <= f64::from(max) && v.fract() == 0.0 => Ok(Some(v)),
+        Some(v) => Err(wrong("nodata", &v.to_string(), &format!("give a whole number from 0 to {max}"))),
     };
     let write = |values: BandValues<'_>| {
         py.detach(|| write_tif_bands(&path, &Bands { values, names: &names, description }, place))
     };
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within the range of the type")]
     let written = match (&bands[..], nodata) {
-        ([Values::U8(one)], None) => {
+        ([RasterArray::U8(one)], None) => {
             let raster = raster(one)?;
             py.detach(|| write_tif_u8(&path, &raster, place, None, description))
         }
-        ([Values::U16(one)], None) => {
+        ([RasterArray::U16(one)], None) => {
             let raster = raster(one)?;
             py.detach(|| write_tif_u16(&path, &raster, place, None, description))
         }
-        ([Values::F32(one)], None) => {
+        ([RasterArray::F32(one)], None) => {
             let raster = raster(one)?;
             py.detach(|| write_tif_f32(&path, &raster, place, None, description))
         }
-        ([Values::U8(_), ..], _) => {
-            let of_type = |band: &Values<'_>| if let Values::U8(band) = band { Some(raster(band)) } else { None };
+        ([RasterArray::U8(_), ..], _) => {
+            let of_type =
+                |band: &RasterArray<'_>| if let RasterArray::U8(band) = band { Some(raster(band)) } else { None };
             let (bands, nodata) = (all(&bands, of_type)?, number(u16::from(u8::MAX))?.unwrap_or(255.0));
             write(BandValues::U8(&bands, nodata as u8))
         }
-        ([Values::U16(_), ..], _) => {
-            let of_type = |band: &Values<'_>| if let Values::U16(band) = band { Some(raster(band)) } else { None };
+        ([RasterArray::U16(_), ..], _) => {
+            let of_type =
+                |band: &RasterArray<'_>| if let RasterArray::U16(band) = band { Some(raster(band)) } else { None };
             let (bands, nodata) = (all(&bands, of_type)?, number(u16::MAX)?.unwrap_or(65_535.0));
             write(BandValues::U16(&bands, nodata as u16))
         }
         _ => {
-            let of_type = |band: &Values<'_>| if let Values::F32(band) = band { Some(raster(band)) } else { None };
+            let of_type =
+                |band: &RasterArray<'_>| if let RasterArray::F32(band) = band { Some(raster(band)) } else { None };
             let (bands, nodata) = (all(&bands, of_type)?, nodata.unwrap_or(-9999.0));
             write(BandValues::F32(&bands, nodata as f32))
         }
@@ -76,8 +79,8 @@ pub(crate) fn write_geotiff(
 
 /// Bands that all have the type of the first.
 fn all<T>(
-    bands: &[Values<'_>],
-    of_type: impl Fn(&Values<'_>) -> Option<PyResult<Raster<T>>>,
+    bands: &[RasterArray<'_>],
+    of_type: impl Fn(&RasterArray<'_>) -> Option<PyResult<Raster<T>>>,
 ) -> PyResult<Vec<Raster<T>>> {
     let other = || Err(wrong("bands", "of several types", "give all the same one"));
     bands.iter().map(|band| of_type(band).unwrap_or_else(other)).collect()

@@ -1,10 +1,10 @@
 //! Scenes: from clouds and ball files.
 
-use crate::cloud::{Cloud, Input, json};
+use crate::cloud::{Cloud, PyInput, json};
 use crate::device::backend;
 use crate::errors::{belvedere_error, exception, wrong};
 use crate::landmark::local_ring;
-use crate::mesh::Mesh;
+use crate::mesh::PyMesh;
 use crate::system::System;
 use crate::targets::remarks_of;
 use crate::work::run;
@@ -28,8 +28,8 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 /// A scene: balls, pulses, and the cloud that they were made from.
-#[pyclass(frozen, module = "belvedere._core")]
-pub(crate) struct Scene(pub(crate) Arc<ask::Scene>);
+#[pyclass(frozen, module = "belvedere._core", name = "Scene")]
+pub(crate) struct PyScene(pub(crate) Arc<ask::Scene>);
 
 /// What to make of targets that nothing blocks but that are not proven visible.
 pub(crate) fn unproven_as(text: &str) -> PyResult<UnprovenAs> {
@@ -56,12 +56,12 @@ fn named<T: Copy>(what: &'static str, name: &str, all: &[T], name_of: fn(T) -> &
 
 /// Where each station stood: a table, or the point source ids and places in the coordinates of the file.
 #[derive(FromPyObject)]
-enum Stations {
+enum StationKeywords {
     Table(PathBuf),
     Places(Vec<(u16, [f64; 3])>),
 }
 
-impl Stations {
+impl StationKeywords {
     /// Ids and places, metres in the system of the cloud.
     fn read(&self, crs: &Crs) -> PyResult<Vec<(u16, [f64; 3])>> {
         let scale = crs.metres_per_unit_xyz();
@@ -80,7 +80,7 @@ pub(crate) struct Choices {
     trees: Option<String>,
     orient: Option<String>,
     scanner: Option<[f64; 3]>,
-    stations: Option<Stations>,
+    stations: Option<StationKeywords>,
     trajectory: Option<PathBuf>,
     mesh: Option<PathBuf>,
     method: Option<String>,
@@ -182,7 +182,7 @@ impl Choices {
 }
 
 #[pymethods]
-impl Scene {
+impl PyScene {
     /// The scene of a cloud, and the report on making it as JSON.
     #[staticmethod]
     fn build(py: Python<'_>, cloud: &Cloud, choices: Choices, progress: Option<Py<PyAny>>) -> PyResult<(Self, String)> {
@@ -195,7 +195,7 @@ impl Scene {
 
     /// The scene of a ball file, with the cloud that shows its ground if there is one.
     #[staticmethod]
-    fn load(py: Python<'_>, input: Input, cloud: Option<&Cloud>, progress: Option<Py<PyAny>>) -> PyResult<Self> {
+    fn load(py: Python<'_>, input: PyInput, cloud: Option<&Cloud>, progress: Option<Py<PyAny>>) -> PyResult<Self> {
         let cloud = cloud.map(|cloud| Arc::clone(&cloud.0));
         let (name, system) = (input.source().name().display().to_string(), cloud.as_ref().map(|c| c.frame.clone()));
         let model = run(py, progress, move |control| {
@@ -222,7 +222,7 @@ impl Scene {
     }
 
     /// The same scene with meshes added.
-    fn with_added(&self, py: Python<'_>, meshes: Vec<Py<Mesh>>) -> PyResult<Self> {
+    fn with_added(&self, py: Python<'_>, meshes: Vec<Py<PyMesh>>) -> PyResult<Self> {
         let inner = Arc::clone(&self.0);
         let model = run(py, None, move |_| {
             meshes.iter().map(Py::get).try_fold(inner.model().clone(), |model, mesh| {

@@ -1,9 +1,9 @@
 //! Shadow.
 
 use crate::errors::wrong;
-use crate::scene::Scene;
-use crate::sun::{Place, SunChoice};
-use crate::targets::{Results, Wanted};
+use crate::scene::PyScene;
+use crate::sun::{SiteKeywords, SunChoice};
+use crate::targets::{RequestedTargets, TargetResults};
 use crate::trees::Through;
 use crate::work::run;
 use belvedere::apps::ask;
@@ -12,26 +12,31 @@ use pyo3::prelude::*;
 use std::sync::Arc;
 
 #[pymethods]
-impl Scene {
+impl PyScene {
     /// The share of each sun that reaches each target; of one sun with hard edges, also which light is unproven.
     #[expect(clippy::too_many_arguments, reason = "keywords in Python")]
     fn shadow<'py>(
         &self,
         py: Python<'py>,
         suns: SunChoice,
-        place: Place,
-        targets: Wanted<'py>,
+        place: SiteKeywords,
+        targets: RequestedTargets<'py>,
         edges: &str,
         trees: Through,
         progress: Option<Py<PyAny>>,
-    ) -> PyResult<Vec<Results<'py>>> {
+    ) -> PyResult<Vec<TargetResults<'py>>> {
         let edges = match edges {
             "hard" => Edges::Hard,
             "soft" => Edges::Soft,
             _ => return Err(wrong("edges", &format!("'{edges}'"), "use 'hard' or 'soft'")),
         };
-        let question =
-            ask::Shadow { suns: suns.into(), place: place.chosen()?, edges, trees: trees.chosen()?, unproven: None };
+        let question = ask::ShadowQuestion {
+            suns: suns.into(),
+            place: place.chosen()?,
+            edges,
+            trees: trees.chosen()?,
+            unproven: None,
+        };
         let scene = Arc::clone(&self.0);
         let chosen = targets.chosen(py, &scene)?;
         let places = chosen.places.clone();

@@ -4,10 +4,10 @@ use crate::arrays::{to_1d, to_2d};
 use crate::errors::{exception, wrong};
 use crate::mesh::{Faces, rows_of};
 use crate::observers::standing;
-use crate::scene::{Scene, unproven_as};
-use crate::targets::{Wanted, ground_points, remarks_of};
+use crate::scene::{PyScene, unproven_as};
+use crate::targets::{RequestedTargets, ground_points, remarks_of};
 use crate::work::run;
-use belvedere::apps::ask::{self, LinesOfSight};
+use belvedere::apps::ask::{self, LinesOfSightQuestion};
 use belvedere::query::{
     AnswerCounts, Curvature, EarthParams, MeshTargetParams, SurfacePieces, UnprovenAs, Viewer, seen_faces,
 };
@@ -20,14 +20,14 @@ use std::sync::Arc;
 /// Heights of the ends of lines that have none.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
-pub(crate) struct Ends {
+pub(crate) struct EndKeywords {
     observer_height: Option<f64>,
     target_height: Option<f64>,
     ground: Option<String>,
 }
 
 /// Columns of pairs, where their targets are, and remarks.
-type Sights<'py> = (Bound<'py, PyDict>, Bound<'py, PyAny>, Vec<Bound<'py, PyDict>>);
+type SightsReply<'py> = (Bound<'py, PyDict>, Bound<'py, PyAny>, Vec<Bound<'py, PyDict>>);
 
 /// How lines of sight run over the earth; what is not given is the library's default.
 pub(crate) fn earth(curvature: Option<&str>, refraction: Option<f64>) -> PyResult<EarthParams> {
@@ -44,7 +44,7 @@ pub(crate) fn earth(curvature: Option<&str>, refraction: Option<f64>) -> PyResul
     Ok(params)
 }
 
-impl Scene {
+impl PyScene {
     /// What to know of an eye, local metres, and of targets of which some are outside the cloud.
     fn remarks_on_viewer<'py>(
         &self,
@@ -59,13 +59,13 @@ impl Scene {
 }
 
 #[pymethods]
-impl Scene {
+impl PyScene {
     /// An answer for each target of one eye, and remarks.
     fn visible<'py>(
         &self,
         py: Python<'py>,
         eye: [f64; 3],
-        targets: Wanted<'py>,
+        targets: RequestedTargets<'py>,
         unproven: &str,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<(Bound<'py, PyAny>, Vec<Bound<'py, PyDict>>)> {
@@ -131,14 +131,14 @@ impl Scene {
         py: Python<'py>,
         observers: PyReadonlyArray2<'py, f64>,
         targets: PyReadonlyArray2<'py, f64>,
-        ends: Ends,
+        ends: EndKeywords,
         unproven: &str,
         curvature: Option<&str>,
         refraction: Option<f64>,
         frequency: Option<f64>,
         progress: Option<Py<PyAny>>,
-    ) -> PyResult<Sights<'py>> {
-        let question = LinesOfSight {
+    ) -> PyResult<SightsReply<'py>> {
+        let question = LinesOfSightQuestion {
             observer_height: ends.observer_height,
             target_height: ends.target_height,
             ground: ground_points(ends.ground.as_deref())?,

@@ -1,9 +1,9 @@
 //! Hours of sun, and how much of the sky is seen.
 
 use crate::errors::wrong;
-use crate::scene::Scene;
-use crate::sun::Place;
-use crate::targets::{Results, Wanted};
+use crate::scene::PyScene;
+use crate::sun::SiteKeywords;
+use crate::targets::{RequestedTargets, TargetResults};
 use crate::trees::Through;
 use crate::work::run;
 use belvedere::apps::ask::{self, SkyParts};
@@ -13,7 +13,7 @@ use std::sync::Arc;
 /// Days, as Python gives them.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
-pub(crate) struct Days {
+pub(crate) struct DaysKeywords {
     dates: Vec<String>,
     /// First and last day, or two times.
     between: Option<[String; 2]>,
@@ -26,7 +26,7 @@ pub(crate) struct Days {
     tolerance: Option<f64>,
 }
 
-impl Days {
+impl DaysKeywords {
     /// What was given, as the layer of questions takes it.
     pub(crate) fn chosen(&self) -> ask::Days {
         ask::Days {
@@ -50,19 +50,19 @@ pub(crate) fn sky_parts(directions: Option<usize>, patches: Option<&str>) -> PyR
 }
 
 #[pymethods]
-impl Scene {
+impl PyScene {
     #[expect(clippy::too_many_arguments, reason = "keywords in Python")]
     fn sun_hours<'py>(
         &self,
         py: Python<'py>,
-        days: Days,
+        days: DaysKeywords,
         rules: Vec<String>,
-        place: Place,
-        targets: Wanted<'py>,
+        place: SiteKeywords,
+        targets: RequestedTargets<'py>,
         trees: Through,
         progress: Option<Py<PyAny>>,
-    ) -> PyResult<Results<'py>> {
-        let question = ask::SunHours {
+    ) -> PyResult<TargetResults<'py>> {
+        let question = ask::SunHoursQuestion {
             days: days.chosen(),
             rules,
             place: place.chosen()?,
@@ -81,11 +81,11 @@ impl Scene {
         py: Python<'py>,
         directions: Option<usize>,
         patches: Option<&str>,
-        targets: Wanted<'py>,
+        targets: RequestedTargets<'py>,
         trees: Through,
         progress: Option<Py<PyAny>>,
-    ) -> PyResult<Results<'py>> {
-        let question = ask::SkyView { sky: sky_parts(directions, patches)?, trees: trees.chosen()? };
+    ) -> PyResult<TargetResults<'py>> {
+        let question = ask::SkyViewQuestion { sky: sky_parts(directions, patches)?, trees: trees.chosen()? };
         let scene = Arc::clone(&self.0);
         let chosen = targets.chosen(py, &scene)?;
         let places = chosen.places.clone();

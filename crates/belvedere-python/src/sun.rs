@@ -1,7 +1,7 @@
 //! Where the sun stands.
 
 use crate::errors::{exception, wrong};
-use belvedere::apps::ask::{self, North, SunPosition, Suns};
+use belvedere::apps::ask::{self, North, SunPositionQuestion, Suns};
 use belvedere::apps::sun::Refraction;
 use belvedere::control::Control;
 use pyo3::prelude::*;
@@ -9,7 +9,7 @@ use pyo3::prelude::*;
 /// Where on earth a scene lies, how clocks run there, and how azimuths are counted.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
-pub(crate) struct Place {
+pub(crate) struct SiteKeywords {
     /// Latitude and longitude, degrees.
     location: Option<[f64; 2]>,
     zone: Option<String>,
@@ -20,7 +20,7 @@ pub(crate) struct Place {
     air: Option<[f64; 2]>,
 }
 
-impl Place {
+impl SiteKeywords {
     /// What was given, as the layer of questions takes it.
     pub(crate) fn chosen(&self) -> PyResult<ask::SunPlace> {
         Ok(ask::SunPlace {
@@ -72,10 +72,10 @@ impl From<SunChoice> for Suns {
 }
 
 #[pymethods]
-impl crate::scene::Scene {
+impl crate::scene::PyScene {
     /// Azimuth and elevation of the sun, degrees, at each of some times.
-    fn sun_positions(&self, times: Vec<String>, place: Place) -> PyResult<Vec<(f64, f64)>> {
-        let question = SunPosition { times, place: place.chosen()? };
+    fn sun_positions(&self, times: Vec<String>, place: SiteKeywords) -> PyResult<Vec<(f64, f64)>> {
+        let question = SunPositionQuestion { times, place: place.chosen()? };
         let answers = ask::ask(&self.0, &question, &ask::Places::Scene, &Control::none()).map_err(exception)?;
         Ok(answers.found.into_iter().map(|sun| (sun.azimuth_deg, sun.elevation_deg)).collect())
     }

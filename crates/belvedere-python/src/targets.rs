@@ -1,6 +1,6 @@
 //! What is asked about: cells of a grid, points, a cloud, or the faces of a mesh.
 
-use crate::arrays::{Places, fixed_rows, to_1d};
+use crate::arrays::{PositionArray, fixed_rows, to_1d};
 use crate::cloud::Cloud;
 use crate::errors::wrong;
 use crate::mesh::{Faces, rows_of};
@@ -18,8 +18,8 @@ use std::sync::Arc;
 /// What Python asks about.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
-pub(crate) struct Wanted<'py> {
-    places: Option<Places<'py>>,
+pub(crate) struct RequestedTargets<'py> {
+    places: Option<PositionArray<'py>>,
     cloud: Option<Py<Cloud>>,
     faces: Option<Faces>,
     normals: Option<PyReadonlyArray2<'py, f32>>,
@@ -45,7 +45,7 @@ pub(crate) fn ground_points(text: Option<&str>) -> PyResult<GroundPoints> {
     }
 }
 
-impl Wanted<'_> {
+impl RequestedTargets<'_> {
     pub(crate) fn height(&self) -> Option<f64> {
         self.height
     }
@@ -77,12 +77,12 @@ impl Wanted<'_> {
             let (mesh, params) = faces.owned(scene)?;
             return Ok(Chosen { places: ask::Places::Mesh(Arc::clone(&mesh), params), mesh: Some(mesh) });
         }
-        of(ask::Places::Cells(ask::Cells {
+        of(ask::Places::Cells(ask::GridCells {
             cell: self.cell,
             level: if self.surface { CellLevel::Surface } else { CellLevel::Ground },
             height: self.height,
             ground: ground_points(self.ground.as_deref())?,
-            ..ask::Cells::default()
+            ..ask::GridCells::default()
         }))
     }
 }
@@ -103,10 +103,10 @@ pub(crate) fn grid_at([width, height]: [usize; 2], place: &Georeference) -> Grid
 /// Name, description and values of a measure, and whether it is an answer.
 pub(crate) type MeasureColumn<'py> = (String, &'static str, Bound<'py, PyAny>, bool);
 /// Name, description and values.
-pub(crate) type Column<'py> = (String, &'static str, Bound<'py, PyAny>);
+pub(crate) type PyColumn<'py> = (String, &'static str, Bound<'py, PyAny>);
 /// Columns of measures; then the grid where targets are cells; or, where they are the faces of a mesh, only their rows;
 /// then remarks.
-pub(crate) type Results<'py> =
+pub(crate) type TargetResults<'py> =
     (Vec<MeasureColumn<'py>>, Option<Grid>, Option<Bound<'py, PyDict>>, Vec<Bound<'py, PyDict>>);
 
 impl Chosen {
@@ -117,7 +117,7 @@ impl Chosen {
         targets: &Targets,
         measures: Vec<Measure>,
         remarks: &[Remark],
-    ) -> PyResult<Results<'py>> {
+    ) -> PyResult<TargetResults<'py>> {
         let remarks = remarks_of(py, remarks)?;
         if let (Some(mesh), Some(surface)) = (&self.mesh, targets.surface()) {
             let rows = rows_of(py, FaceRows::of_measures(mesh, surface, &measures))?;

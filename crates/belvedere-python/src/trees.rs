@@ -9,12 +9,12 @@ use pyo3::prelude::*;
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub(crate) struct Through {
-    share: Option<Share>,
+    share: Option<LightShare>,
     leaves: Option<String>,
 }
 
 #[derive(FromPyObject)]
-enum Share {
+enum LightShare {
     Number(f64),
     Name(String),
 }
@@ -23,7 +23,7 @@ impl Through {
     /// What was given, as the layer of questions takes it.
     pub(crate) fn chosen(&self) -> PyResult<ThroughTrees> {
         let refused = |what: &str, value: &str, advice: &str| Err(wrong(what, &format!("'{value}'"), advice));
-        let by_season = matches!(&self.share, Some(Share::Name(name)) if name == "seasons");
+        let by_season = matches!(&self.share, Some(LightShare::Name(name)) if name == "seasons");
         let leaves = match self.leaves.as_deref() {
             None => Leaves::ByDate,
             Some(leaves) if !by_season => {
@@ -36,8 +36,8 @@ impl Through {
         };
         match &self.share {
             None => Ok(ThroughTrees::Opaque),
-            Some(Share::Number(share)) => Ok(ThroughTrees::Share(*share)),
-            Some(Share::Name(name)) => match name.as_str() {
+            Some(LightShare::Number(share)) => Ok(ThroughTrees::Share(*share)),
+            Some(LightShare::Name(name)) => match name.as_str() {
                 "none" => Ok(ThroughTrees::Opaque),
                 "seasons" => Ok(ThroughTrees::Seasons(leaves)),
                 "pulses" => Ok(ThroughTrees::Pulses),

@@ -3,9 +3,9 @@
 use crate::arrays::to_1d;
 use crate::errors::{exception, wrong};
 use crate::observers::standing_observers;
-use crate::outlook::Looking;
-use crate::scene::{Scene, unproven_choice};
-use crate::sun::Place;
+use crate::outlook::LookingKeywords;
+use crate::scene::{PyScene, unproven_choice};
+use crate::sun::SiteKeywords;
 use crate::targets::{Grid, grid_at, grid_of, ground_points, remarks_of};
 use crate::work::run;
 use belvedere::apps::ask::{self, Places, Standing, StandingObserver, ViewLimits, ViewshedTargets};
@@ -17,10 +17,15 @@ use pyo3::types::PyDict;
 use std::sync::Arc;
 
 /// The bands of cells with their names, what they hold and their value for no data, their grid, and remarks.
-type Seen<'py> = (Vec<Bound<'py, PyAny>>, Vec<String>, (String, f64), Grid, Vec<Bound<'py, PyDict>>);
+type ViewshedReply<'py> = (Vec<Bound<'py, PyAny>>, Vec<String>, (String, f64), Grid, Vec<Bound<'py, PyDict>>);
 
-impl Looking {
-    fn question(&self, observers: Vec<Standing>, place: &Place, unproven: &str) -> PyResult<ask::Viewshed> {
+impl LookingKeywords {
+    fn question(
+        &self,
+        observers: Vec<Standing>,
+        place: &SiteKeywords,
+        unproven: &str,
+    ) -> PyResult<ask::ViewshedQuestion> {
         let limits = ViewLimits {
             azimuth_range_deg: self.azimuth_range,
             elevation_range_deg: self.elevation_range,
@@ -28,7 +33,7 @@ impl Looking {
             max_distance: self.max_distance,
         };
         let standing = observers.into_iter();
-        Ok(ask::Viewshed {
+        Ok(ask::ViewshedQuestion {
             observers: standing.map(|standing| StandingObserver { standing, limits: ViewLimits::default() }).collect(),
             reverse: self.is_reverse,
             observer_height: self.observer_height,
@@ -47,17 +52,17 @@ impl Looking {
 }
 
 #[pymethods]
-impl Scene {
+impl PyScene {
     /// The bands of cells with their names, what they hold and their value for no data, their grid, and remarks.
     fn viewshed<'py>(
         &self,
         py: Python<'py>,
         observers: PyReadonlyArray2<'py, f64>,
-        looking: Looking,
-        place: Place,
+        looking: LookingKeywords,
+        place: SiteKeywords,
         unproven: &str,
         progress: Option<Py<PyAny>>,
-    ) -> PyResult<Seen<'py>> {
+    ) -> PyResult<ViewshedReply<'py>> {
         let question = looking.question(standing_observers(&observers, &self.0)?, &place, unproven)?;
         if looking.is_far && self.0.model().far_terrain().grid().is_none() {
             return Err(wrong(

@@ -2,22 +2,23 @@
 
 use crate::arrays::{to_1d, to_2d};
 use crate::errors::{exception, wrong};
-use crate::mesh::Mesh;
-use crate::scene::{Scene, unproven_as};
-use crate::sun::Place;
-use crate::targets::{Column, remarks_of};
+use crate::mesh::PyMesh;
+use crate::scene::{PyScene, unproven_as};
+use crate::sun::SiteKeywords;
+use crate::targets::{PyColumn, remarks_of};
 use crate::work::run;
 use belvedere::Frame;
-use belvedere::apps::ask::{self, GivenWindow, GivenWindows, Shared};
+use belvedere::apps::ask::{self, GivenWindow, GivenWindows, SharedObject};
 use belvedere::apps::targets::Window;
-use belvedere::apps::window_views::{Seen, named_columns};
+use belvedere::apps::window_views::{SeenKind, named_columns};
 use belvedere::query::UnprovenAs;
 use numpy::PyArray2;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::Arc;
 
-/// x, y and z in the coordinates of the file, azimuth and tilt in degrees, width and height in metres (NaN where a window has none).
+/// x, y and z in the coordinates of the file, azimuth and tilt in degrees, width and height in metres (NaN where a
+/// window has none).
 pub(crate) type WindowRow = [f64; 7];
 
 /// Windows as questions take them.
@@ -34,7 +35,7 @@ pub(crate) fn given(rows: &[WindowRow], frame: &Frame) -> GivenWindows {
 #[pyo3(from_item_all)]
 pub(crate) struct Facades {
     windows: Vec<WindowRow>,
-    mesh: Option<Py<Mesh>>,
+    mesh: Option<Py<PyMesh>>,
     objects: Vec<String>,
     spacing: Option<f64>,
     seed: u64,
@@ -43,21 +44,26 @@ pub(crate) struct Facades {
 }
 
 impl Facades {
-    fn question(&self, scene: &ask::Scene, place: &Place, unproven: UnprovenAs) -> PyResult<ask::WindowViews> {
+    fn question(
+        &self,
+        scene: &ask::Scene,
+        place: &SiteKeywords,
+        unproven: UnprovenAs,
+    ) -> PyResult<ask::WindowViewsQuestion> {
         let meaning = |(class, name): &(u8, String)| {
             let advice = "use 'vegetation', 'water', 'building', 'ground' or 'other'";
-            let seen = Seen::thing_called(name).ok_or_else(|| wrong("classes", &format!("'{name}'"), advice))?;
+            let seen = SeenKind::thing_called(name).ok_or_else(|| wrong("classes", &format!("'{name}'"), advice))?;
             Ok((*class, seen))
         };
         let windows = match &self.mesh {
             Some(mesh) => {
                 let mesh = mesh.get().objects_in_metres(&self.objects, scene).map_err(exception)?;
-                GivenWindows::Faces(Shared::new(mesh))
+                GivenWindows::Faces(SharedObject::new(mesh))
             }
             None => given(&self.windows, scene.frame()),
         };
-        let usual = ask::WindowViews::default();
-        Ok(ask::WindowViews {
+        let usual = ask::WindowViewsQuestion::default();
+        Ok(ask::WindowViewsQuestion {
             windows,
             north: place.north(),
             spacing: self.spacing.unwrap_or(usual.spacing),
@@ -70,8 +76,8 @@ impl Facades {
 }
 
 /// Columns, places, names, columns of buildings with their names, and remarks.
-type Views<'py> = (
-    Vec<Column<'py>>,
+type WindowsReply<'py> = (
+    Vec<PyColumn<'py>>,
     Bound<'py, PyArray2<f64>>,
     Vec<String>,
     (Vec<String>, Vec<(&'static str, Bound<'py, PyAny>)>),
@@ -79,15 +85,15 @@ type Views<'py> = (
 );
 
 #[pymethods]
-impl Scene {
+impl PyScene {
     fn window_views<'py>(
         &self,
         py: Python<'py>,
         facades: Facades,
-        place: Place,
+        place: SiteKeywords,
         unproven: &str,
         progress: Option<Py<PyAny>>,
-    ) -> PyResult<Views<'py>> {
+    ) -> PyResult<WindowsReply<'py>> {
         let question = facades.question(&self.0, &place, unproven_as(unproven)?)?;
         let scene = Arc::clone(&self.0);
         let answers = run(py, progress, move |control| ask::ask(&scene, &question, &ask::Places::Scene, control))?;
@@ -95,7 +101,7 @@ impl Scene {
         #[expect(clippy::cast_possible_truncation, reason = "angles in degrees and square metres")]
         let floats = |values: Vec<f64>| to_1d(py, values.into_iter().map(|v| v as f32).collect()).into_any();
         let of = |value: &dyn Fn(&Window) -> f64| floats(found.windows.iter().map(value).collect());
-        let mut columns: Vec<Column<'py>> = vec![
+        let mut columns: Vec<PyColumn<'py>> = vec![
             ("azimuth".to_owned(), "azimuth, degrees", floats(found.azimuths_deg())),
             ("tilt".to_owned(), "tilt, degrees", of(&|window| window.tilt.to_degrees())),
         ];

@@ -32,8 +32,8 @@ def main() -> None:
         belvedere.simulate(extent=60, density=2).save(folder / "tile.laz")
         subprocess.run([sys.executable, "-c", lines], cwd=folder, check=True)
         assert (folder / "shadow.tif").stat().st_size > 1000
-        told = subprocess.run([program, "info", "tile.laz"], cwd=folder, check=True, capture_output=True, text=True)
-        assert re.search(r"points: \d+", told.stdout), told.stdout
+        result = subprocess.run([program, "info", "tile.laz"], cwd=folder, check=True, capture_output=True, text=True)
+        assert re.search(r"points: \d+", result.stdout), result.stdout
     for package in ("pandas", "xarray", "geopandas", "tqdm", "laspy"):
         assert package not in sys.modules
     # an optional package that is missing is named

@@ -65,9 +65,9 @@ def test_ctrl_c_stops_within_a_fifth_of_a_second(tile):
         # the scene still answers
         assert scene.shadow(sun=(180, 30)).values.size
     """)
-    told = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=120)
-    assert told.returncode == 0, told.stderr
-    assert float(told.stdout) < 0.2, told.stdout
+    result = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=120)
+    assert result.returncode == 0, result.stderr
+    assert float(result.stdout) < 0.2, result.stdout
 
 
 def test_progress_counts_to_the_end_and_what_it_raises_stops_the_work(scene):

@@ -127,20 +127,20 @@ def test_faces_of_a_mesh(scene, run_program, folder, block):
     assert np.array_equal(read.vertices[read.triangles], block.vertices[block.triangles])
     assert read.object_names == block.object_names and np.array_equal(read.objects, block.objects)
     again = pickle.loads(pickle.dumps(block.sampled(spacing=1)))
-    asked = ["tile.laz", "--targets", "block.obj", "-o"]
-    run_program("shadow", *asked, "lit_faces.csv", "--sun", "200,25")
+    arguments = ["tile.laz", "--targets", "block.obj", "-o"]
+    run_program("shadow", *arguments, "lit_faces.csv", "--sun", "200,25")
     lit = scene.shadow(sun=(200, 25), targets=block)
     assert_same_rows(lit, folder / "lit_faces.csv")
     # no point of the town is as high: faces turned to the sun are lit, the others are not
     assert lit["lit"][:10].tolist() == [1, 1, 0, 0, 0, 0, 1, 1, 1, 1]
-    run_program("sun-hours", *asked, "hours_faces.csv", "--date", "2026-03-21", "--zone", "Europe/Amsterdam")
+    run_program("sun-hours", *arguments, "hours_faces.csv", "--date", "2026-03-21", "--zone", "Europe/Amsterdam")
     day = {"date": "2026-03-21", "zone": "Europe/Amsterdam"}
     assert_same_rows(scene.sun_hours(targets=block, **day), folder / "hours_faces.csv")
-    run_program("sky-view", *asked, "sky_faces.csv", "--spacing", 1, "--facing", "level")
+    run_program("sky-view", *arguments, "sky_faces.csv", "--spacing", 1, "--facing", "level")
     assert_same_rows(scene.sky_view(targets=again.sampled(spacing=1, facing="level")), folder / "sky_faces.csv")
     x, y, z = block.vertices[0]
     run_program(
-        "query", *asked, "seen_faces.csv", "--eye", f"{x + 2},{y - 20},{z + 1}", "--look-at", f"{x + 2},{y},{z}"
+        "query", *arguments, "seen_faces.csv", "--eye", f"{x + 2},{y - 20},{z + 1}", "--look-at", f"{x + 2},{y},{z}"
     )
     seen = scene.visible((x + 2, y - 20, z + 1), read)
     # of the box only the wall before the eye is turned to it

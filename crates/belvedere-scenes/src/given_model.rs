@@ -1,6 +1,6 @@
 //! Scenes made of somebody's mesh, whose materials have to be guessed.
 
-use crate::scene::{Material, Scene};
+use crate::scene::{Material, TriangleScene};
 use crate::truth::Truth;
 use crate::vector::{add, scale};
 use rayon::prelude::*;
@@ -23,12 +23,12 @@ const NAMED: [(&str, Material); 12] = [
 /// Below this |n_z| a surface is a wall: it is steeper than 60°.
 const STEEP: f64 = 0.5;
 
-impl Scene {
-    /// A scene of the triangles of a mesh: `vertices`, (V, 3), absolute, metres; `triangles`, (T, 3), counter-clockwise seen
-    /// from outside; `objects`, (T), indices into `object_names`, empty where the mesh knows no objects.
+impl TriangleScene {
+    /// A scene of the triangles of a mesh: `vertices`, (V, 3), absolute, metres; `triangles`, (T, 3), counter-clockwise
+    /// seen from outside; `objects`, (T), indices into `object_names`, empty where the mesh knows no objects.
     ///
-    /// Materials follow the name of an object where it begins with a word such as `terrain`, `tree` or `bridge`; otherwise
-    /// steep triangles are facades, gentle ones with another surface below them roofs, and the rest terrain.
+    /// Materials follow the name of an object where it begins with a word such as `terrain`, `tree` or `bridge`;
+    /// otherwise steep triangles are facades, gentle ones with another surface below them roofs, and the rest terrain.
     #[must_use]
     pub fn from_model(
         vertices: Vec<[f64; 3]>,
@@ -74,8 +74,12 @@ mod tests {
     fn a_town_without_materials_gets_nearly_all_of_them_back() {
         let known = town(&TownParams::default());
         let names = known.object_names.iter().map(|n| n.replace("terrain", "surface").replace("tree", "plant"));
-        let guessed =
-            Scene::from_model(known.vertices.clone(), known.triangles.clone(), known.objects.clone(), names.collect());
+        let guessed = TriangleScene::from_model(
+            known.vertices.clone(),
+            known.triangles.clone(),
+            known.objects.clone(),
+            names.collect(),
+        );
         let of = |material| known.materials.iter().zip(&guessed.materials).filter(move |(k, _)| **k == material);
         for material in [Material::Terrain, Material::Roof, Material::Facade] {
             let right = of(material).filter(|(k, g)| k == g).count();
@@ -83,7 +87,7 @@ mod tests {
             // floors of houses, which count as facades, lie level over nothing
             assert!(right as f64 > 0.8 * all as f64, "{material:?}: {right} of {all}");
         }
-        let named = Scene::from_model(known.vertices, known.triangles, known.objects, known.object_names);
+        let named = TriangleScene::from_model(known.vertices, known.triangles, known.objects, known.object_names);
         let trees = known.materials.iter().zip(&named.materials).filter(|(k, _)| **k == Material::TreeCrown);
         assert!(trees.clone().count() > 1000 && trees.clone().all(|(_, g)| *g == Material::TreeCrown));
     }

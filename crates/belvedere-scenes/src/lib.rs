@@ -1,9 +1,10 @@
 //! Simulated towns with exact meshes, and simulated laser scans of them.
 //!
-//! Tests and demonstrations need scenes whose answers are known. This crate makes a town out of triangles ([`town`], from a
-//! description or a [`Preset`]) or a scene with a formula ([`closed_forms`]), generalises it to the blocks of a city model
-//! ([`blocks`]), answers exactly what blocks what in it ([`Truth`]), knows what is worth asking ([`QuerySite`]), and scans it
-//! from the air ([`scan_airborne`]), from tripods ([`scan_terrestrial`]) or from a car ([`scan_mobile`]). It knows no other crate of the project: what comes out are plain columns and meshes.
+//! Tests and demonstrations need scenes whose answers are known. This crate makes a town out of triangles ([`town`],
+//! from a description or a [`Preset`]) or a scene with a formula ([`closed_forms`]), generalises it to the blocks of a
+//! city model ([`blocks`]), answers exactly what blocks what in it ([`Truth`]), knows what is worth asking
+//! ([`QuerySite`]), and scans it from the air ([`scan_airborne`]), from tripods ([`scan_terrestrial`]) or from a car
+//! ([`scan_mobile`]). It knows no other crate of the project: what comes out are plain columns and meshes.
 //!
 //! ```
 //! use belvedere_scenes::{AirborneParams, TownParams, Truth, scan_airborne, town};
@@ -35,7 +36,7 @@ mod truth;
 mod vector;
 
 pub use lod1::blocks;
-pub use queries::{QuerySet, QuerySite, Targets};
+pub use queries::{QuerySet, QuerySite, TargetsOfKind};
 pub use scan::airborne::{AirborneParams, DENSITY, scan_airborne};
 pub use scan::beam::BeamParams;
 pub use scan::mobile::{MobileParams, scan_mobile};
@@ -43,10 +44,10 @@ pub use scan::regimes::Regime;
 pub use scan::scan_pattern::{MirrorMotion, ScanPattern};
 pub use scan::terrestrial::{Stations, TerrestrialParams, scan_terrestrial};
 pub use scan::{Scan, ScanReport, SensorPath};
-pub use scene::{Material, Part, Scene};
-pub use solids::{Placement, extruded, l_shaped_ridged, ridged};
+pub use scene::{Material, ObjectPart, TriangleScene};
+pub use solids::{PlanPlacement, extruded, l_shaped_ridged, ridged};
 pub use town::preset::{EXTENT, Preset};
 pub use town::terrain::Terrain;
-pub use town::trees::Crowns;
+pub use town::trees::CrownMaterial;
 pub use town::{BlockPlan, StreetTrees, TownParams, town};
 pub use truth::{CONTACT, Hit, Truth};

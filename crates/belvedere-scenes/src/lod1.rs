@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, HashMap};
 use std::ops::Range;
 
-use crate::scene::{Material, Part, Scene, index_u32};
+use crate::scene::{Material, ObjectPart, TriangleScene, index_u32};
 use crate::vector::{cross, length, sub};
 
 /// Share of the roof that lies below the top of a block.
@@ -18,24 +18,24 @@ const DOWNWARD: f64 = 0.5;
 const CELL: f64 = 8.0;
 
 /// The same scene generalised to LoD1: the terrain, and for each part of a building that stands on the ground the prism
-/// over its footprint, from its bottom to the height that 70 % of its roof lies below (by area seen from above; dormers,
-/// chimneys and what else sits on the footprint counts with it, and so does the roof beneath).
+/// over its footprint, from its bottom to the height that 70 % of its roof lies below (by area seen from above;
+/// dormers, chimneys and what else sits on the footprint counts with it, and so does the roof beneath).
 ///
 /// A building is what has faces of [`Material::Roof`]. What does not stand in the ground, overhangs the walls or is no
-/// building is left out: balconies, decks, canopies, bridges, trees, cars, fences, masts, wires. Floors over arcades belong
-/// to the footprint. Objects keep their names; those of which nothing is left are left out. Without terrain, every part
-/// with a roof counts as standing on the ground.
+/// building is left out: balconies, decks, canopies, bridges, trees, cars, fences, masts, wires. Floors over arcades
+/// belong to the footprint. Objects keep their names; those of which nothing is left are left out. Without terrain,
+/// every part with a roof counts as standing on the ground.
 ///
-/// Needs [`Scene::parts`]; without them each object counts as one part.
+/// Needs [`TriangleScene::parts`]; without them each object counts as one part.
 #[must_use]
-pub fn blocks(scene: &Scene) -> Scene {
-    let ground = Ground::new(scene);
+pub fn blocks(scene: &TriangleScene) -> TriangleScene {
+    let ground = TerrainLookup::new(scene);
     let mut objects: BTreeMap<u32, Vec<Range<usize>>> = BTreeMap::new();
     for range in scene.part_ranges() {
         let object = scene.objects.get(range.start).copied().unwrap_or(0);
         objects.entry(object).or_default().push(range);
     }
-    let mut generalised = Scene::default();
+    let mut generalised = TriangleScene::default();
     for (object, ranges) in objects {
         let mut parts = Vec::new();
         let mut standing = Vec::new();
@@ -52,7 +52,7 @@ pub fn blocks(scene: &Scene) -> Scene {
                 continue;
             }
             if ground.height(lowest).is_none_or(|ground| lowest[2] < ground) {
-                standing.push((Footprint::new(scene, range), lowest[2], roof));
+                standing.push((PartOutline::new(scene, range), lowest[2], roof));
             } else {
                 on_top.extend(roof);
             }
@@ -73,8 +73,8 @@ pub fn blocks(scene: &Scene) -> Scene {
 }
 
 /// The triangles of `range` as a part of their own.
-fn copy(scene: &Scene, range: Range<usize>) -> Part {
-    let mut part = Part::default();
+fn copy(scene: &TriangleScene, range: Range<usize>) -> ObjectPart {
+    let mut part = ObjectPart::default();
     let mut vertices = HashMap::new();
     for t in range {
         let (Some(&triangle), Some(corners)) = (scene.triangles.get(t), scene.corners(t)) else { continue };
@@ -94,7 +94,7 @@ fn copy(scene: &Scene, range: Range<usize>) -> Part {
 }
 
 /// Corners of triangle `t` where it is roof that the sky sees.
-fn roof_corners(scene: &Scene, t: usize) -> Option<[[f64; 3]; 3]> {
+fn roof_corners(scene: &TriangleScene, t: usize) -> Option<[[f64; 3]; 3]> {
     let corners = scene.corners(t).filter(|_| scene.materials.get(t) == Some(&Material::Roof))?;
     (upward_area(&corners) > 0.0).then_some(corners)
 }
@@ -138,16 +138,16 @@ fn share_below(corners: &[[f64; 3]; 3], height: f64) -> f64 {
 }
 
 /// Outline of a part on the ground, cut into triangles.
-struct Footprint {
+struct PartOutline {
     points: Vec<[f64; 2]>,
     /// Clockwise seen from above, as the floor they come from.
     triangles: Vec<[usize; 3]>,
 }
 
-impl Footprint {
+impl PartOutline {
     /// From the faces of a part that look down. Where they meet above each other, as the floor of an arcade and its
     /// ceiling do, their corners are the same numbers and count as one.
-    fn new(scene: &Scene, range: Range<usize>) -> Self {
+    fn new(scene: &TriangleScene, range: Range<usize>) -> Self {
         let mut numbers: HashMap<[u64; 2], usize> = HashMap::new();
         let mut footprint = Self { points: Vec::new(), triangles: Vec::new() };
         for corners in range.filter_map(|t| scene.corners(t)) {
@@ -173,8 +173,8 @@ impl Footprint {
     }
 
     /// Closed prism over the footprint. The sides stand on the edges that no second triangle shares.
-    fn prism(&self, bottom: f64, top: f64) -> Part {
-        let mut part = Part::default();
+    fn prism(&self, bottom: f64, top: f64) -> ObjectPart {
+        let mut part = ObjectPart::default();
         let count = self.points.len();
         for height in [bottom, top] {
             part.vertices.extend(self.points.iter().map(|&[x, y]| [x, y, height]));
@@ -201,13 +201,13 @@ fn left_of(from: [f64; 2], to: [f64; 2], point: [f64; 2]) -> f64 {
 }
 
 /// The terrain of a scene, looked up by position.
-struct Ground<'a> {
-    scene: &'a Scene,
+struct TerrainLookup<'a> {
+    scene: &'a TriangleScene,
     cells: HashMap<[i64; 2], Vec<u32>>,
 }
 
-impl<'a> Ground<'a> {
-    fn new(scene: &'a Scene) -> Self {
+impl<'a> TerrainLookup<'a> {
+    fn new(scene: &'a TriangleScene) -> Self {
         let mut cells: HashMap<[i64; 2], Vec<u32>> = HashMap::new();
         for (t, _) in scene.materials.iter().enumerate().filter(|&(_, &material)| material == Material::Terrain) {
             let Some(corners) = scene.corners(t) else { continue };

@@ -1,7 +1,7 @@
 //! Sets of targets whose visibility is worth asking for, and the viewers to ask from.
 
 use crate::random::Random;
-use crate::scene::{Material, Scene};
+use crate::scene::{Material, TriangleScene};
 use crate::truth::{CONTACT, Truth};
 use crate::vector::{add_scaled, cross, dot, length, scale, sub, unit};
 use rayon::prelude::*;
@@ -60,7 +60,7 @@ const SIGHT_LENGTHS: [f64; 5] = [5.0, 25.0, 50.0, 100.0, 200.0];
 /// Least distance between two surfaces that a ray crosses for both to count, metres: an edge or a doubled face is one.
 const SAME_SURFACE: f64 = 1e-4;
 /// Crossings after which a ray is given up; no place has so many floors.
-const MOST_CROSSINGS: usize = 64;
+const MAX_CROSSINGS: usize = 64;
 /// Draws tried for each target wanted, so that a scene without free ground ends.
 const DRAWS_PER_TARGET: u64 = 64;
 
@@ -68,7 +68,7 @@ const DRAWS_PER_TARGET: u64 = 64;
 #[derive(Clone, Copy, Debug)]
 pub struct QuerySite<'a> {
     /// The scene.
-    pub scene: &'a Scene,
+    pub scene: &'a TriangleScene,
     /// Its index.
     pub truth: &'a Truth,
     /// Lowest and highest corner of the box that targets lie in, absolute, metres: the box of the cloud.
@@ -77,7 +77,7 @@ pub struct QuerySite<'a> {
 
 /// Targets of one kind.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Targets {
+pub struct TargetsOfKind {
     /// Positions, (M, 3), absolute, metres.
     pub positions: Vec<[f64; 3]>,
     /// The other end of each line of sight, (M, 3), for [`QuerySet::LinesOfSight`]; empty otherwise.
@@ -87,10 +87,10 @@ pub struct Targets {
 impl QuerySite<'_> {
     /// `count` targets of a kind, fewer where the place has no room for them (no roof, say).
     ///
-    /// Every target draws from its own stream of `seed`, so that a longer list begins with the shorter one, whatever the
-    /// number of threads. Free air is what [`QuerySite::is_inside`] denies.
+    /// Every target draws from its own stream of `seed`, so that a longer list begins with the shorter one, whatever
+    /// the number of threads. Free air is what [`QuerySite::is_inside`] denies.
     #[must_use]
-    pub fn targets(&self, set: QuerySet, count: usize, seed: u64) -> Targets {
+    pub fn targets(&self, set: QuerySet, count: usize, seed: u64) -> TargetsOfKind {
         let surfaces = match set {
             QuerySet::Roofs => SurfaceSampler::new(self.scene, Material::Roof),
             QuerySet::Facades => SurfaceSampler::new(self.scene, Material::Facade),
@@ -115,7 +115,7 @@ impl QuerySite<'_> {
             })
         };
         let drawn: Vec<_> = (0..count).into_par_iter().filter_map(draw).collect();
-        Targets {
+        TargetsOfKind {
             positions: drawn.iter().map(|&(position, _)| position).collect(),
             eyes: drawn.iter().filter_map(|&(_, eye)| eye).collect(),
         }
@@ -123,16 +123,17 @@ impl QuerySite<'_> {
 
     /// Whether `point` lies within a solid or below the terrain.
     ///
-    /// Straight above the point, each surface left from within counts one more, each entered one less: the winding number
-    /// of the closed solids (and of the ground) around it, which overlapping solids do not confuse. Triangles must be
-    /// counter-clockwise seen from outside.
+    /// Straight above the point, each surface left from within counts one more, each entered one less: the winding
+    /// number of the closed solids (and of the ground) around it, which overlapping solids do not confuse. Triangles
+    /// must be counter-clockwise seen from outside.
     #[must_use]
     pub fn is_inside(&self, point: [f64; 3]) -> bool {
         let up = [0.0, 0.0, 1.0];
         self.crossings(point, up).map(|(_, facing)| if facing > 0.0 { 1 } else { -1 }).sum::<i32>() > 0
     }
 
-    /// Height of the terrain at absolute (x, y), metres, or `None` beyond its rim. The highest, where there are several.
+    /// Height of the terrain at absolute (x, y), metres, or `None` beyond its rim. The highest, where there are
+    /// several.
     #[must_use]
     pub fn ground_height(&self, [x, y]: [f64; 2]) -> Option<f64> {
         let top = self.bounds[1][2].max(self.scene_top()) + 1.0;
@@ -141,12 +142,12 @@ impl QuerySite<'_> {
             .map(|(hit, _)| top - hit.range)
     }
 
-    /// The surface that a laser return at `point` came from, for a scanner at `scanner`: the crossing of their line that lies
-    /// nearest to the return, its triangle, and a point 3 cm outside it; `None` where no surface lies within 0.3 m of the
-    /// return along the line. All absolute, metres.
+    /// The surface that a laser return at `point` came from, for a scanner at `scanner`: the crossing of their line
+    /// that lies nearest to the return, its triangle, and a point 3 cm outside it; `None` where no surface lies within
+    /// 0.3 m of the return along the line. All absolute, metres.
     ///
-    /// What is visible of a cloud's own points is asked of the point outside: the return itself lies behind or before the
-    /// surface by chance.
+    /// What is visible of a cloud's own points is asked of the point outside: the return itself lies behind or before
+    /// the surface by chance.
     #[must_use]
     pub fn surface_of_return(&self, scanner: [f64; 3], point: [f64; 3]) -> Option<(crate::Hit, [f64; 3])> {
         let direction = unit(sub(point, scanner))?;
@@ -159,8 +160,8 @@ impl QuerySite<'_> {
         Some((hit, add_scaled(add_scaled(scanner, direction, hit.range), normal, OUTSIDE)))
     }
 
-    /// Two observers: a person's eyes in the open near the middle of the place, and 6 m above its highest roof, absolute,
-    /// metres. The first is missing where no ground is free, the second where there is no roof.
+    /// Two observers: a person's eyes in the open near the middle of the place, and 6 m above its highest roof,
+    /// absolute, metres. The first is missing where no ground is free, the second where there is no roof.
     #[must_use]
     pub fn observers(&self, seed: u64) -> [Option<[f64; 3]>; 2] {
         let [low, high] = self.bounds;
@@ -177,8 +178,9 @@ impl QuerySite<'_> {
         [street, highest.map(|p| [p[0], p[1], p[2] + ABOVE_ROOF])]
     }
 
-    /// `count` people's eyes in the open anywhere in the place but for its outer twentieth, absolute, metres; fewer where little
-    /// ground is free. Where no ground has the sky above it, they stand under a ceiling. One street observer says little: an error near it spoils a whole sector of its view.
+    /// `count` people's eyes in the open anywhere in the place but for its outer twentieth, absolute, metres; fewer
+    /// where little ground is free. Where no ground has the sky above it, they stand under a ceiling. One street
+    /// observer says little: an error near it spoils a whole sector of its view.
     #[must_use]
     pub fn street_observers(&self, count: usize, seed: u64) -> Vec<[f64; 3]> {
         let [low, high] = self.bounds;
@@ -190,8 +192,8 @@ impl QuerySite<'_> {
         (0..count).into_par_iter().filter_map(eye).collect()
     }
 
-    /// Eyes with room to step, not in a hedge, a passage or a car, within `reach` of `middle`: under the open sky, or where none of the
-    /// ground is, as within a building, under a ceiling.
+    /// Eyes with room to step, not in a hedge, a passage or a car, within `reach` of `middle`: under the open sky, or
+    /// where none of the ground is, as within a building, under a ceiling.
     fn standing_in_the_open(&self, middle: [f64; 2], reach: [f64; 2], random: &mut Random) -> Option<[f64; 3]> {
         let is_under_the_sky = |eye: [f64; 3]| !self.truth.occluded_towards(eye, [0.0, 0.0, 1.0]);
         self.with_room_to_step(middle, reach, random, is_under_the_sky)
@@ -236,7 +238,7 @@ impl QuerySite<'_> {
             passed = hit.range + SAME_SURFACE;
             Some((hit, dot(self.scene.normal(hit.triangle as usize)?, direction)))
         })
-        .take(MOST_CROSSINGS)
+        .take(MAX_CROSSINGS)
     }
 
     fn anywhere(&self, random: &mut Random) -> [f64; 3] {
@@ -266,7 +268,7 @@ impl QuerySite<'_> {
     }
 }
 
-impl Scene {
+impl TriangleScene {
     /// Outward unit normal of triangle `index`, or `None` where it does not exist or has no area.
     #[must_use]
     pub fn normal(&self, index: usize) -> Option<[f64; 3]> {
@@ -284,7 +286,7 @@ struct SurfaceSampler {
 }
 
 impl SurfaceSampler {
-    fn new(scene: &Scene, material: Material) -> Self {
+    fn new(scene: &TriangleScene, material: Material) -> Self {
         let mut sampler = Self::default();
         let mut total = 0.0;
         for triangle in 0..scene.triangles.len() {
@@ -300,7 +302,7 @@ impl SurfaceSampler {
     }
 
     /// A point 0.1 m outside the surface.
-    fn draw(&self, scene: &Scene, random: &mut Random) -> Option<[f64; 3]> {
+    fn draw(&self, scene: &TriangleScene, random: &mut Random) -> Option<[f64; 3]> {
         let at = random.uniform() * self.areas.last()?;
         let chosen = self.areas.partition_point(|&area| area <= at);
         let [a, b, c] = scene.corners(*self.triangles.get(chosen)?)?;

@@ -3,8 +3,8 @@
 /// A stream of random numbers.
 ///
 /// # Source
-/// SplitMix64: Steele, Lea & Flood 2014, "Fast splittable pseudorandom number generators", section 5. It is used because
-/// any pulse can start its own stream from a hash of its number, so that threads need not share one.
+/// SplitMix64: Steele, Lea & Flood 2014, "Fast splittable pseudorandom number generators", section 5. It is used
+/// because any pulse can start its own stream from a hash of its number, so that threads need not share one.
 #[derive(Clone, Debug)]
 pub(crate) struct Random {
     state: u64,

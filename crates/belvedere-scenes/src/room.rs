@@ -1,8 +1,8 @@
 //! Two furnished rooms with a door between them and one to the outside: a scene that is scanned from inside.
 
 use crate::random::Random;
-use crate::scene::{Material, Part, Scene};
-use crate::solids::{Placement, extruded};
+use crate::scene::{Material, ObjectPart, TriangleScene};
+use crate::solids::{PlanPlacement, extruded};
 
 /// Centre of the floor, metres, in the grid that towns lie in.
 const ORIGIN: [f64; 3] = [155_000.0, 463_000.0, 0.0];
@@ -18,25 +18,27 @@ const TABLE: (f64, f64, f64) = (0.75, 0.04, 0.06);
 const INSTRUMENT: f64 = 1.6;
 
 /// Sizes of the rooms, metres: west and east of the wall between them, and south to north.
-struct Plan {
+struct RoomSizes {
     west: f64,
     east: f64,
     depth: f64,
 }
 
-impl Plan {
+impl RoomSizes {
     fn new(random: &mut Random) -> Self {
         Self { west: random.between(4.5, 6.0), east: random.between(4.0, 5.0), depth: random.between(4.5, 6.0) }
     }
 }
 
-/// The two rooms and where a scanner stands in each of them, (2, 3), metres, absolute. Another seed gives other sizes and other furniture.
+/// The two rooms and where a scanner stands in each of them, (2, 3), metres, absolute. Another seed gives other sizes
+/// and other furniture.
 ///
-/// The floor is terrain, walls and cupboards are facades, the ceiling and the tops of tables are slabs. All solids are closed.
-pub(crate) fn furnished_rooms(seed: u64) -> (Scene, [[f64; 3]; 2]) {
+/// The floor is terrain, walls and cupboards are facades, the ceiling and the tops of tables are slabs. All solids are
+/// closed.
+pub(crate) fn furnished_rooms(seed: u64) -> (TriangleScene, [[f64; 3]; 2]) {
     let mut random = Random::new(seed, 0);
-    let plan = Plan::new(&mut random);
-    let mut scene = Scene::default();
+    let plan = RoomSizes::new(&mut random);
+    let mut scene = TriangleScene::default();
     scene.add_object("floor", &[floor(&plan)]);
     let (door_between, door_out) = (random.between(-0.6, 0.6), random.between(-0.6, 0.6));
     let (south, north) = (-plan.depth / 2.0, plan.depth / 2.0);
@@ -69,15 +71,15 @@ pub(crate) fn furnished_rooms(seed: u64) -> (Scene, [[f64; 3]; 2]) {
 }
 
 /// A box between these coordinates east, north and up of the centre of the floor.
-fn solid([west, east]: [f64; 2], [south, north]: [f64; 2], [bottom, top]: [f64; 2]) -> Part {
+fn solid([west, east]: [f64; 2], [south, north]: [f64; 2], [bottom, top]: [f64; 2]) -> ObjectPart {
     let [x, y, z] = ORIGIN;
     let middle = [x + (west + east) / 2.0, y + (south + north) / 2.0];
-    let footprint = Placement { origin: middle, angle: 0.0 }.rectangle(east - west, north - south);
+    let footprint = PlanPlacement { origin: middle, angle: 0.0 }.rectangle(east - west, north - south);
     extruded(&footprint, z + bottom, z + top).with_material(Material::Facade)
 }
 
 /// A wall from south to north with a door in it, `door` metres north of the middle.
-fn wall_with_door(across: [f64; 2], [south, north]: [f64; 2], door: f64) -> [Part; 3] {
+fn wall_with_door(across: [f64; 2], [south, north]: [f64; 2], door: f64) -> [ObjectPart; 3] {
     let (half, height) = DOOR;
     [
         solid(across, [south, door - half], [-THICKNESS, HEIGHT]),
@@ -87,7 +89,7 @@ fn wall_with_door(across: [f64; 2], [south, north]: [f64; 2], door: f64) -> [Par
 }
 
 /// A table of 1.4 by 0.8 m on four legs.
-fn table_at([u, v]: [f64; 2]) -> [Part; 5] {
+fn table_at([u, v]: [f64; 2]) -> [ObjectPart; 5] {
     let (top, thickness, leg) = TABLE;
     let (length, width) = (0.7, 0.4);
     let leg_at = |side: f64, end: f64| {
@@ -99,9 +101,9 @@ fn table_at([u, v]: [f64; 2]) -> [Part; 5] {
 }
 
 /// The floor, a sheet.
-fn floor(plan: &Plan) -> Part {
+fn floor(plan: &RoomSizes) -> ObjectPart {
     let [x, y, z] = ORIGIN;
-    let mut part = Part::default();
+    let mut part = ObjectPart::default();
     let (west, east, half) = (x - plan.west, x + plan.east, plan.depth / 2.0);
     part.vertices = vec![[west, y - half, z], [east, y - half, z], [east, y + half, z], [west, y + half, z]];
     part.add_polygon(&[0, 1, 2, 3], Material::Terrain);

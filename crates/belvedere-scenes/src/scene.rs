@@ -48,8 +48,8 @@ impl Material {
         Self::Car,
     ];
 
-    /// Standard class of a laser point on this material: 1 unclassified, 2 ground, 5 high vegetation, 6 building, 14 wire
-    /// conductor, 17 bridge deck (ASPRS LAS 1.4, table 17).
+    /// Standard class of a laser point on this material: 1 unclassified, 2 ground, 5 high vegetation, 6 building, 14
+    /// wire conductor, 17 bridge deck (ASPRS LAS 1.4, table 17).
     #[must_use]
     pub fn asprs_class(self) -> u8 {
         match self {
@@ -95,9 +95,10 @@ impl Material {
     }
 }
 
-/// A piece of surface with a material per triangle: what the shape functions make and [`Scene::add_object`] takes.
+/// A piece of surface with a material per triangle: what the shape functions make and [`TriangleScene::add_object`]
+/// takes.
 #[derive(Clone, Debug, Default)]
-pub struct Part {
+pub struct ObjectPart {
     /// Vertices, (V, 3), metres, absolute.
     pub vertices: Vec<[f64; 3]>,
     /// Corners of each triangle, counter-clockwise seen from outside, (T, 3), indices into `vertices`.
@@ -106,7 +107,7 @@ pub struct Part {
     pub materials: Vec<Material>,
 }
 
-impl Part {
+impl ObjectPart {
     /// Adds a flat convex polygon, corners counter-clockwise seen from outside, as a fan about its first corner.
     pub(crate) fn add_polygon(&mut self, corners: &[usize], material: Material) {
         if let [first, rest @ ..] = corners {
@@ -137,11 +138,11 @@ impl Part {
 
 /// A scene of triangles, grouped in named objects.
 ///
-/// Everything but the terrain consists of closed solids, a part each (all leaves of a crown are one part); solids may overlap,
-/// as a trunk reaches into its crown and neighbouring houses into each other. The terrain is a sheet that ends at the rim of
-/// the scene.
+/// Everything but the terrain consists of closed solids, a part each (all leaves of a crown are one part); solids may
+/// overlap, as a trunk reaches into its crown and neighbouring houses into each other. The terrain is a sheet that ends
+/// at the rim of the scene.
 #[derive(Clone, Debug, Default)]
-pub struct Scene {
+pub struct TriangleScene {
     /// Vertices, (V, 3), metres, absolute (the projected frame, not local).
     pub vertices: Vec<[f64; 3]>,
     /// Corners of each triangle, counter-clockwise seen from outside, (T, 3), indices into `vertices`.
@@ -157,9 +158,9 @@ pub struct Scene {
     pub object_names: Vec<String>,
 }
 
-impl Scene {
+impl TriangleScene {
     /// Appends an object made of `parts`.
-    pub fn add_object(&mut self, name: impl Into<String>, parts: &[Part]) {
+    pub fn add_object(&mut self, name: impl Into<String>, parts: &[ObjectPart]) {
         let object = index_u32(self.object_names.len());
         self.object_names.push(name.into());
         let first_part = self.parts.last().map_or(0, |last| last + 1);

@@ -1,18 +1,18 @@
 //! Closed solids that buildings are made of.
 
-use crate::scene::{Material, Part, middle};
+use crate::scene::{Material, ObjectPart, middle};
 use crate::vector::{add_scaled, sub};
 
 /// Where a piece of the plan lies and how it is turned.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Placement {
+pub struct PlanPlacement {
     /// Local (0, 0), metres, absolute.
     pub origin: [f64; 2],
     /// Direction of the local u axis, radians counter-clockwise from east; v is a quarter turn further.
     pub angle: f64,
 }
 
-impl Placement {
+impl PlanPlacement {
     /// Absolute position of the local (u, v), metres.
     #[must_use]
     pub fn at(&self, u: f64, v: f64) -> [f64; 2] {
@@ -34,8 +34,8 @@ impl Placement {
         [self.at(-u, -v), self.at(u, -v), self.at(u, v), self.at(-u, v)]
     }
 
-    /// Corners of an L whose outer corner is the origin: one wing along u to `length_u`, one along v to `length_v`, both
-    /// `width` wide; counter-clockwise from the inner corner, (6, 2), metres.
+    /// Corners of an L whose outer corner is the origin: one wing along u to `length_u`, one along v to `length_v`,
+    /// both `width` wide; counter-clockwise from the inner corner, (6, 2), metres.
     #[must_use]
     pub fn l_shape(&self, length_u: f64, length_v: f64, width: f64) -> [[f64; 2]; 6] {
         [
@@ -55,8 +55,8 @@ impl Placement {
 /// All of the footprint must be in sight of its first corner, as it is in a convex polygon and in an L from its inner
 /// corner. Fewer than three corners give an empty part.
 #[must_use]
-pub fn extruded(footprint: &[[f64; 2]], bottom: f64, top: f64) -> Part {
-    let mut part = Part::default();
+pub fn extruded(footprint: &[[f64; 2]], bottom: f64, top: f64) -> ObjectPart {
+    let mut part = ObjectPart::default();
     let count = footprint.len();
     if count < 3 {
         return part;
@@ -66,14 +66,14 @@ pub fn extruded(footprint: &[[f64; 2]], bottom: f64, top: f64) -> Part {
     part
 }
 
-/// Closed house over the rectangle `footprint`, (4, 2), metres, counter-clockwise: walls from `bottom` to `eaves`, and a
-/// roof whose ridge at height `ridge` runs parallel to the first side.
+/// Closed house over the rectangle `footprint`, (4, 2), metres, counter-clockwise: walls from `bottom` to `eaves`, and
+/// a roof whose ridge at height `ridge` runs parallel to the first side.
 ///
 /// The ridge ends `hip` metres short of each end of the house: 0 gives gables (upright, facade), more gives hipped ends
 /// (roof); beyond half the length the ridge would cross itself.
 #[must_use]
-pub fn ridged(footprint: &[[f64; 2]; 4], bottom: f64, eaves: f64, ridge: f64, hip: f64) -> Part {
-    let mut part = Part::default();
+pub fn ridged(footprint: &[[f64; 2]; 4], bottom: f64, eaves: f64, ridge: f64, hip: f64) -> ObjectPart {
+    let mut part = ObjectPart::default();
     add_walls(&mut part, footprint, bottom, eaves);
     let [a, b, c, d] = footprint.map(|[x, y]| [x, y, ridge]);
     let (start, end) = (middle(d, a), middle(b, c));
@@ -90,18 +90,18 @@ pub fn ridged(footprint: &[[f64; 2]; 4], bottom: f64, eaves: f64, ridge: f64, hi
     part
 }
 
-/// Closed L-shaped house (see [`Placement::l_shape`]) with a gable at the end of each wing, a valley over the inner corner
-/// and a hip over the outer one. Lengths and heights in metres.
+/// Closed L-shaped house (see [`PlanPlacement::l_shape`]) with a gable at the end of each wing, a valley over the inner
+/// corner and a hip over the outer one. Lengths and heights in metres.
 #[must_use]
 pub fn l_shaped_ridged(
-    placement: &Placement,
+    placement: &PlanPlacement,
     lengths: [f64; 2],
     width: f64,
     bottom: f64,
     eaves: f64,
     ridge: f64,
-) -> Part {
-    let mut part = Part::default();
+) -> ObjectPart {
+    let mut part = ObjectPart::default();
     add_walls(&mut part, &placement.l_shape(lengths[0], lengths[1], width), bottom, eaves);
     let at_ridge = |u, v| {
         let [x, y] = placement.at(u, v);
@@ -120,14 +120,14 @@ pub fn l_shaped_ridged(
     part
 }
 
-/// Closed solid through `rings`, each of the same number of corners: sides between neighbouring rings, the first and the
-/// last ring as caps. An upright prism is two rings, a sagging wire many.
+/// Closed solid through `rings`, each of the same number of corners: sides between neighbouring rings, the first and
+/// the last ring as caps. An upright prism is two rings, a sagging wire many.
 ///
-/// Rings run counter-clockwise seen from the end that the sweep goes to; all of a cap must be in sight of its first corner.
-/// `side_materials` has one material per edge of a ring, edge k from corner k to the next; the last one holds for all
-/// that follow. Sides need not be flat. Fewer than two rings, or none with three corners, give an empty part.
-pub(crate) fn swept<R: AsRef<[[f64; 3]]>>(rings: &[R], side_materials: &[Material], cap: Material) -> Part {
-    let mut part = Part::default();
+/// Rings run counter-clockwise seen from the end that the sweep goes to; all of a cap must be in sight of its first
+/// corner. `side_materials` has one material per edge of a ring, edge k from corner k to the next; the last one holds
+/// for all that follow. Sides need not be flat. Fewer than two rings, or none with three corners, give an empty part.
+pub(crate) fn swept<R: AsRef<[[f64; 3]]>>(rings: &[R], side_materials: &[Material], cap: Material) -> ObjectPart {
+    let mut part = ObjectPart::default();
     let count = rings.iter().map(|ring| ring.as_ref().len()).min().unwrap_or(0);
     let material = |k: usize| side_materials.get(k).or(side_materials.last()).copied().unwrap_or(cap);
     if count < 3 || rings.len() < 2 {
@@ -151,32 +151,32 @@ pub(crate) fn swept<R: AsRef<[[f64; 3]]>>(rings: &[R], side_materials: &[Materia
 }
 
 /// Upright prism of one material over the convex `footprint`, (N, 2), counter-clockwise, heights in metres.
-pub(crate) fn prism(footprint: &[[f64; 2]], bottom: f64, top: f64, material: Material) -> Part {
+pub(crate) fn prism(footprint: &[[f64; 2]], bottom: f64, top: f64, material: Material) -> ObjectPart {
     let ring = |height: f64| footprint.iter().map(|&[x, y]| [x, y, height]).collect::<Vec<_>>();
     swept(&[ring(bottom), ring(top)], &[material], material)
 }
 
 /// Whether a course of wings comes back to where it starts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Course {
+pub(crate) enum WingCourse {
     /// With a gable at either end: one wing, an L, a U.
     Open,
     /// Around a courtyard.
     Closed,
 }
 
-/// Closed building of wings along a course, with the outer corners `outer`, (N, 2), on the right and `inner`, (N, 2), on the
-/// left; the opposite walls of a wing are parallel. The ridge runs midway between them; at the height of the eaves it makes
-/// a flat roof. Heights in metres.
+/// Closed building of wings along a course, with the outer corners `outer`, (N, 2), on the right and `inner`, (N, 2),
+/// on the left; the opposite walls of a wing are parallel. The ridge runs midway between them; at the height of the
+/// eaves it makes a flat roof. Heights in metres.
 pub(crate) fn winged(
     outer: &[[f64; 2]],
     inner: &[[f64; 2]],
-    course: Course,
+    course: WingCourse,
     bottom: f64,
     eaves: f64,
     ridge: f64,
-) -> Part {
-    let mut part = Part::default();
+) -> ObjectPart {
+    let mut part = ObjectPart::default();
     let count = outer.len().min(inner.len());
     if count < 2 {
         return part;
@@ -186,7 +186,7 @@ pub(crate) fn winged(
         part.vertices.push([(ox + ix) / 2.0, (oy + iy) / 2.0, ridge]);
     }
     let corner = |station: usize| [0, 1, 2, 3, 4].map(|k| 5 * station + k);
-    let wings = if course == Course::Closed { count } else { count - 1 };
+    let wings = if course == WingCourse::Closed { count } else { count - 1 };
     for station in 0..wings {
         let [outer_a, inner_a, outer_eaves_a, inner_eaves_a, ridge_a] = corner(station);
         let [outer_b, inner_b, outer_eaves_b, inner_eaves_b, ridge_b] = corner((station + 1) % count);
@@ -196,7 +196,7 @@ pub(crate) fn winged(
         part.add_polygon(&[outer_eaves_a, outer_eaves_b, ridge_b, ridge_a], Material::Roof);
         part.add_polygon(&[ridge_a, ridge_b, inner_eaves_b, inner_eaves_a], Material::Roof);
     }
-    if course == Course::Open {
+    if course == WingCourse::Open {
         let [outer, inner, outer_eaves, inner_eaves, ridge] = corner(0);
         part.add_polygon(&[outer, outer_eaves, ridge, inner_eaves, inner], Material::Facade);
         let [outer, inner, outer_eaves, inner_eaves, ridge] = corner(count - 1);
@@ -206,7 +206,7 @@ pub(crate) fn winged(
 }
 
 /// Starts `part` with the corners of `footprint` at `bottom`, then at `top`, the walls between them and the floor.
-fn add_walls(part: &mut Part, footprint: &[[f64; 2]], bottom: f64, top: f64) {
+fn add_walls(part: &mut ObjectPart, footprint: &[[f64; 2]], bottom: f64, top: f64) {
     let count = footprint.len();
     for height in [bottom, top] {
         part.vertices.extend(footprint.iter().map(|&[x, y]| [x, y, height]));

@@ -8,14 +8,14 @@ use obvhs::ray::{Ray, RayHit};
 use obvhs::{Boundable, BvhBuildParams};
 use rayon::prelude::*;
 
-use crate::scene::Scene;
+use crate::scene::TriangleScene;
 use crate::vector::{add_scaled, cross, dot, length, sub, unit};
 
 /// Surfaces nearer than this to the start of a ray, or to the end of a segment, block nothing: 1 µm.
 ///
-/// A point computed to lie on a triangle is off it by about 1e-9 m in a national grid; a µm absorbs that and is far below
-/// anything a scanner resolves. A point that lies on a surface is therefore not hidden by that surface, unless the ray
-/// starts on its far side.
+/// A point computed to lie on a triangle is off it by about 1e-9 m in a national grid; a µm absorbs that and is far
+/// below anything a scanner resolves. A point that lies on a surface is therefore not hidden by that surface, unless
+/// the ray starts on its far side.
 pub const CONTACT: f64 = 1e-6;
 
 /// Padding of the boxes of the search tree, as a share of the size of the scene.
@@ -38,9 +38,9 @@ pub struct Hit {
 
 /// Index of a scene that answers ray queries exactly.
 ///
-/// The search tree only proposes triangles; each is tested in f64 against its original corners. The test is watertight: a
-/// ray through a shared edge meets at least one of the two triangles. Results do not depend on the tree, hence not on the
-/// number of threads that built it. Both sides of a triangle block.
+/// The search tree only proposes triangles; each is tested in f64 against its original corners. The test is watertight:
+/// a ray through a shared edge meets at least one of the two triangles. Results do not depend on the tree, hence not on
+/// the number of threads that built it. Both sides of a triangle block.
 #[derive(Debug)]
 pub struct Truth {
     /// Triangles in the order of the tree's leaves, corners relative to `centre`.
@@ -66,9 +66,10 @@ impl Boundable for PaddedBox {
 }
 
 impl Truth {
-    /// Indexes `scene`. Triangles with missing or non-finite vertices are left out; a scene without triangles blocks nothing.
+    /// Indexes `scene`. Triangles with missing or non-finite vertices are left out; a scene without triangles blocks
+    /// nothing.
     #[must_use]
-    pub fn new(scene: &Scene) -> Self {
+    pub fn new(scene: &TriangleScene) -> Self {
         let given = (0_u32..).take(scene.triangles.len());
         let usable = given.filter_map(|index| {
             let corners = scene.corners(index as usize)?;
@@ -97,16 +98,16 @@ impl Truth {
         Self { triangles: in_tree_order, centre, half_size, tree }
     }
 
-    /// First triangle within `max_range` metres (may be infinite) from `origin` along `direction`, whose length does not
-    /// matter, or `None` where there is none. A direction of zero or non-finite length, like any other NaN, meets nothing. Surfaces nearer than
-    /// [`CONTACT`] to the origin are passed over.
+    /// First triangle within `max_range` metres (may be infinite) from `origin` along `direction`, whose length does
+    /// not matter, or `None` where there is none. A direction of zero or non-finite length, like any other NaN, meets
+    /// nothing. Surfaces nearer than [`CONTACT`] to the origin are passed over.
     #[must_use]
     pub fn first_hit(&self, origin: [f64; 3], direction: [f64; 3], max_range: f64) -> Option<Hit> {
         self.first_hit_between(origin, unit(direction)?, CONTACT, max_range)
     }
 
-    /// First hits of many rays in parallel: [`Truth::first_hit`] of each of `origins`, (N, 3), along the direction of the
-    /// same row, (N, 3). Rows that only one of the two has are left out.
+    /// First hits of many rays in parallel: [`Truth::first_hit`] of each of `origins`, (N, 3), along the direction of
+    /// the same row, (N, 3). Rows that only one of the two has are left out.
     #[must_use]
     pub fn first_hits(&self, origins: &[[f64; 3]], directions: &[[f64; 3]], max_range: f64) -> Vec<Option<Hit>> {
         origins
@@ -178,7 +179,7 @@ impl Truth {
     }
 
     /// The part of a ray inside the box of the scene, as the tree takes it, or `None` where it misses the box.
-    fn enter(&self, local: [f64; 3], direction: [f64; 3], min_range: f64, max_range: f64) -> Option<Entry> {
+    fn enter(&self, local: [f64; 3], direction: [f64; 3], min_range: f64, max_range: f64) -> Option<TruthRay> {
         let (mut start, mut end) = (min_range, max_range);
         if self.triangles.is_empty() || max_range.is_nan() || !local.iter().all(|v| v.is_finite()) {
             return None;
@@ -187,7 +188,8 @@ impl Truth {
             let inverse = 1.0 / direction[axis];
             let (a, b) =
                 ((-self.half_size[axis] - local[axis]) * inverse, (self.half_size[axis] - local[axis]) * inverse);
-            // A ray that runs in a face of the box gives 0 · ∞ = NaN, which `min` and `max` pass over: not clipped there.
+            // A ray that runs in a face of the box gives 0 · ∞ = NaN, which `min` and `max` pass over: not clipped
+            // there.
             start = start.max(a.min(b));
             end = end.min(a.max(b));
         }
@@ -202,12 +204,12 @@ impl Truth {
             0.0,
             tree_reach(end - start),
         );
-        Some(Entry { ray, start })
+        Some(TruthRay { ray, start })
     }
 }
 
 /// A ray as the search tree takes it.
-struct Entry {
+struct TruthRay {
     ray: Ray,
     /// Range at which the tree's ray starts.
     start: f64,
@@ -216,8 +218,8 @@ struct Entry {
 /// Range at which the line through `origin` along the unit vector `direction` crosses a triangle, negative behind the
 /// origin, or `None` where it passes by or runs within its plane.
 ///
-/// The three terms are the volumes between the ray and each edge. Two triangles compute the volume of a shared edge from
-/// the same numbers with opposite sign, so no ray slips between them.
+/// The three terms are the volumes between the ray and each edge. Two triangles compute the volume of a shared edge
+/// from the same numbers with opposite sign, so no ray slips between them.
 fn crossing(corners: &[[f64; 3]; 3], origin: [f64; 3], direction: [f64; 3]) -> Option<f64> {
     let [a, b, c] = corners.map(|corner| sub(corner, origin));
     let sides = [dot(direction, cross(b, c)), dot(direction, cross(c, a)), dot(direction, cross(a, b))];
@@ -231,9 +233,9 @@ fn crossing(corners: &[[f64; 3]; 3], origin: [f64; 3], direction: [f64; 3]) -> O
 
 /// Search tree over `boxes`, which must not be empty.
 ///
-/// These are the steps of the crate's own `build_cwbvh` without what that does after them in debug builds: a check of the
-/// boxes to a fixed 1e-5, which f32 does not keep farther than about 80 m from the centre, so that it would panic on sound
-/// trees of larger scenes.
+/// These are the steps of the crate's own `build_cwbvh` without what that does after them in debug builds: a check of
+/// the boxes to a fixed 1e-5, which f32 does not keep farther than about 80 m from the centre, so that it would panic
+/// on sound trees of larger scenes.
 fn search_tree(boxes: &[PaddedBox]) -> CwBvh {
     let params = BvhBuildParams::medium_build();
     let mut binary = PlocBuilder::with_capacity(boxes.len()).build(

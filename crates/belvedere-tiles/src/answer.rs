@@ -2,22 +2,22 @@
 
 use crate::cleared::{ClassedPoint, ClearedSurface, classed};
 use crate::grid::TileId;
-use crate::lines::Lines;
-use crate::obstacles::{Found, rule};
-use crate::parts::Parts;
+use crate::lines::AreaLines;
+use crate::obstacles::{ObstacleSearch, rule};
+use crate::parts::TileObstacles;
 use crate::plan::Plan;
 use crate::planned::Others;
-use crate::question::{Asked, Light, Question};
-use crate::record::{Outcome, Record, Stage, Stamp};
+use crate::question::{LightQuestion, PreparedQuestion, TileQuestion};
+use crate::record::{Stage, Stamp, TileOutcome, TileRecord};
 use crate::window;
 use belvedere::apps::edge::near_edge;
 use belvedere::apps::eyes::skip_unfit_eyes;
 use belvedere::apps::irradiance::{irradiation_measures, season_irradiation};
-use belvedere::apps::rows::Surroundings;
+use belvedere::apps::rows::SkyObstacles;
 use belvedere::apps::shadow::{Edges, scene_shadow};
 use belvedere::apps::sky_view::{SKY_TARGET_HEIGHT, scene_sky_view};
 use belvedere::apps::sun_hours::scene_sun_hours;
-use belvedere::apps::targets::{Layout, Measure, Targets};
+use belvedere::apps::targets::{Measure, TargetLayout, Targets};
 use belvedere::apps::viewshed::{Masks, Observer, Viewshed, ViewshedParams, viewshed};
 use belvedere::clean::clean;
 use belvedere::control::Control;
@@ -33,23 +33,23 @@ use rayon::prelude::*;
 use std::path::Path;
 
 /// Cells around a tile that the surface of its cells is taken from.
-const RIM: usize = 2;
+const EDGE_CELLS: usize = 2;
 /// Targets handed to a thread at once.
 const CHUNK: usize = 1024;
 
 /// What is asked of tiles.
 #[derive(Clone, Copy)]
-pub(crate) struct Task<'a> {
-    pub(crate) question: &'a Question,
-    pub(crate) asked: &'a Asked,
+pub(crate) struct TileTask<'a> {
+    pub(crate) question: &'a TileQuestion,
+    pub(crate) prepared: &'a PreparedQuestion,
     /// What blocks beside balls.
     pub(crate) others: &'a Others,
     /// Most balls that are asked together.
-    pub(crate) most_balls: usize,
+    pub(crate) max_balls: usize,
 }
 
 /// Cells of a tile on top of what stands there, or will.
-pub(crate) struct Surface {
+pub(crate) struct TileSurface {
     /// Side of a cell, metres.
     cell: f64,
     /// Points that were read for it.
@@ -58,88 +58,90 @@ pub(crate) struct Surface {
 }
 
 /// The area of the points that the cells of a tile need.
-fn area_of_cells(plan: &Plan, tile: TileId, cell: f64) -> crate::grid::Area {
-    let farthest = f64::from(plan.facts.farthest()) + plan.facts.isolation_radius.unwrap_or(0.0);
-    plan.grid().core(tile).widened(farthest + (RIM + 1) as f64 * cell)
+fn area_of_cells(plan: &Plan, tile: TileId, cell: f64) -> crate::grid::MapArea {
+    let farthest = f64::from(plan.statistics.farthest()) + plan.statistics.isolation_radius.unwrap_or(0.0);
+    plan.grid().core(tile).widened(farthest + (EDGE_CELLS + 1) as f64 * cell)
 }
 
-/// Answers a question for the cells of a tile on top of what stands there, with the balls that are in the folder of the run, and writes the answer; its
-/// record is to be written next. Where balls that can matter are missing, answers are unproven. `last` is the surface of the last answer for the tile,
-/// which may be on the same cells.
+/// Answers a question for the cells of a tile on top of what stands there, with the balls that are in the folder of the
+/// run, and writes the answer; its record is to be written next. Where balls that can matter are missing, answers are
+/// unproven. `last` is the surface of the last answer for the tile, which may be on the same cells.
 ///
 /// # Errors
 /// Those of reading the files and the balls, and of writing.
 pub(crate) fn answer(
     plan: &Plan,
     run: &Path,
-    task: Task<'_>,
+    task: TileTask<'_>,
     tile: TileId,
-    last: &mut Option<Surface>,
+    last: &mut Option<TileSurface>,
     control: &Control<'_>,
-) -> Result<Record> {
-    let Task { question, asked, others, most_balls } = task;
+) -> Result<TileRecord> {
+    let TileTask { question, prepared, others, max_balls } = task;
     let stage = Stage::Answer(question);
     atomic::make_folder(&stage.folder(run))?;
     let core = plan.grid().core(tile);
-    let nothing = |points: usize| Ok(Record { points, ..Record::default() });
-    if Lines::of(asked, core, 0.0).is_empty() {
+    let nothing = |points: usize| Ok(TileRecord { points, ..TileRecord::default() });
+    if AreaLines::of(prepared, core, 0.0).is_empty() {
         return nothing(0);
     }
     let cell = plan.cells.of(question);
     let surface = match last.take().filter(|last| last.cell == cell) {
         Some(surface) => surface,
-        None => Surface::new(plan, tile, cell, others, control)?,
+        None => TileSurface::new(plan, tile, cell, others, control)?,
     };
-    let Surface { points, targets, .. } = last.insert(surface);
+    let TileSurface { points, targets, .. } = last.insert(surface);
     let points = *points;
-    let (cells, Layout::Cells(ground)) = (targets.asked_count(), &targets.layout) else { return nothing(points) };
+    let (cells, TargetLayout::Cells(ground)) = (targets.target_count(), &targets.layout) else {
+        return nothing(points);
+    };
     if cells == 0 {
         return nothing(points);
     }
     let known = targets.positions.iter().filter(|p| p[2].is_finite());
     let lowest = known.map(|p| f64::from(p[2])).fold(f64::INFINITY, f64::min);
-    let lines = Lines::of(asked, core, lowest);
+    let lines = AreaLines::of(prepared, core, lowest);
     let size = [ground.grid.width, ground.grid.height];
-    let parts = Parts::around((plan, run, tile), &lines, others, most_balls, control)?;
-    let (found, balls) = match asked {
-        Asked::Viewshed(observers) => {
-            let mut sight = Sight::new(observers, &targets.positions);
+    let parts = TileObstacles::around((plan, run, tile), &lines, others, max_balls, control)?;
+    let (found, balls) = match prepared {
+        PreparedQuestion::Viewshed(observers) => {
+            let mut sight = PartialSight::new(observers, &targets.positions);
             parts.each_scene(&lines, control, |scene| sight.look(scene, control))?;
             let planned = MedialScene::new(&MedialBalls::default(), &rule(plan))?.with_added(others.added.clone());
             sight.look(&planned, control)?;
             let balls = parts.into_found();
             (sight.answered(&balls, size)?, balls)
         }
-        Asked::Light(light) => lit(light, parts, targets, size, control)?,
+        PreparedQuestion::Light(light) => lit(light, parts, targets, size, control)?,
     };
-    let near_edge_cells = match asked {
-        Asked::Light(light) => Some(near_edge_count(plan, targets, light.directions(), control)?),
-        Asked::Viewshed(_) => None,
+    let near_edge_cells = match prepared {
+        PreparedQuestion::Light(light) => Some(near_edge_count(plan, targets, light.directions(), control)?),
+        PreparedQuestion::Viewshed(_) => None,
     };
     if found.values.are_nothing() && found.unproven_cells == 0 {
-        return Ok(Record { points, damaged: balls.damaged, ..Record::default() });
+        return Ok(TileRecord { points, damaged: balls.damaged, ..TileRecord::default() });
     }
     let place = georeference(&ground.grid, &targets.frame);
     let path = stage.result(run, tile);
     let names = question.bands(found.values.kind());
     let raster = ResultRaster { pixels: found.values, names, description: question.description().to_owned() };
     raster.write(&path, Some(&place))?;
-    Ok(Record {
-        outcome: Outcome::Done,
+    Ok(TileRecord {
+        outcome: TileOutcome::Done,
         result: Some(Stamp::of(&path)?),
         damaged: balls.damaged,
         points,
         balls: balls.ball_count,
-        most_balls: balls.most_held,
+        max_balls: balls.max_held,
         cells,
         unproven_cells: found.unproven_cells,
         near_edge_cells,
         skipped_observers: found.skipped_observers,
-        ..Record::default()
+        ..TileRecord::default()
     })
 }
 
-impl Surface {
+impl TileSurface {
     fn new(plan: &Plan, tile: TileId, cell: f64, others: &Others, control: &Control<'_>) -> Result<Self> {
         let cloud = control.stage("reading", 0, || window::read(plan, &area_of_cells(plan, tile, cell), control))?;
         let added = others.added.as_ref();
@@ -157,7 +159,7 @@ fn near_edge_count(plan: &Plan, targets: &Targets, directions: &[[f64; 3]], cont
 }
 
 /// What was found of the cells of a tile.
-struct Answered {
+struct CellAnswers {
     values: Pixels,
     unproven_cells: usize,
     skipped_observers: usize,
@@ -165,32 +167,34 @@ struct Answered {
 
 /// What of the light reaches targets, and what became of the balls.
 fn lit(
-    light: &Light,
-    parts: Parts<'_>,
+    light: &LightQuestion,
+    parts: TileObstacles<'_>,
     targets: &Targets,
     size: [usize; 2],
     control: &Control<'_>,
-) -> Result<(Answered, Found)> {
-    let around = Surroundings::InParts(&parts);
+) -> Result<(CellAnswers, ObstacleSearch)> {
+    let around = SkyObstacles::InParts(&parts);
     let numbers = match light {
-        Light::Shadow(sun) => scene_shadow(around, targets, &[*sun], Edges::Hard, control)?.pop().unwrap_or_default(),
-        Light::SunRule { plan, site } => {
+        LightQuestion::Shadow(sun) => {
+            scene_shadow(around, targets, &[*sun], Edges::Hard, control)?.pop().unwrap_or_default()
+        }
+        LightQuestion::SunRule { plan, site } => {
             let sums = scene_sun_hours(around, targets, plan, Some(site), control)?;
             // the rule comes after the measures of its days
             sums.into_measures(plan, targets).pop().map(|measure| measure.values).unwrap_or_default()
         }
-        Light::Sky(sky) => first(scene_sky_view(around, targets, sky, control)?.into_measures()),
-        Light::SunHours { plan, site } => {
+        LightQuestion::Sky(sky) => first(scene_sky_view(around, targets, sky, control)?.into_measures()),
+        LightQuestion::SunHours { plan, site } => {
             first(scene_sun_hours(around, targets, plan, Some(site), control)?.into_measures(plan, targets))
         }
-        Light::Irradiance { seasons, .. } => {
+        LightQuestion::Irradiance { seasons, .. } => {
             first(irradiation_measures(&season_irradiation(around, targets, seasons, control)?, 1))
         }
     };
     let is_yes_or_no = match light {
-        Light::Shadow(_) => around.crowns().is_none(),
-        Light::SunRule { .. } => true,
-        Light::Sky(_) | Light::SunHours { .. } | Light::Irradiance { .. } => false,
+        LightQuestion::Shadow(_) => around.crowns().is_none(),
+        LightQuestion::SunRule { .. } => true,
+        LightQuestion::Sky(_) | LightQuestion::SunHours { .. } | LightQuestion::Irradiance { .. } => false,
     };
     let balls = parts.into_found();
     let is_unknown = unknown_towards(&balls, targets, light.directions());
@@ -200,10 +204,10 @@ fn lit(
 }
 
 /// Numbers of targets: those that missing balls may change are not known.
-fn measured(numbers: &[f32], is_unknown: &[bool], size: [usize; 2]) -> Result<Answered> {
+fn measured(numbers: &[f32], is_unknown: &[bool], size: [usize; 2]) -> Result<CellAnswers> {
     let unproven_cells = numbers.iter().zip(is_unknown).filter(|(v, is_unknown)| v.is_finite() && **is_unknown).count();
     let known = numbers.iter().zip(is_unknown).map(|(&v, &is_unknown)| if is_unknown { f32::NAN } else { v });
-    Ok(Answered { values: Pixels::numbers([known.collect()], size)?, unproven_cells, skipped_observers: 0 })
+    Ok(CellAnswers { values: Pixels::numbers([known.collect()], size)?, unproven_cells, skipped_observers: 0 })
 }
 
 /// The first measure is what a question is named after.
@@ -212,17 +216,17 @@ fn first(measures: Vec<Measure>) -> Vec<f32> {
 }
 
 /// Answers for targets that are lit or not, and which of the lit are unproven because missing balls may block them.
-fn yes_or_no(lit: &[f32], is_unknown: &[bool], size: [usize; 2]) -> Result<Answered> {
+fn yes_or_no(lit: &[f32], is_unknown: &[bool], size: [usize; 2]) -> Result<CellAnswers> {
     let answer = |lit: &f32| (!lit.is_nan()).then_some(*lit > 0.0);
     let unproven = |(lit, is_unknown): (&f32, &bool)| answer(lit).map(|is_lit| is_lit && *is_unknown);
     let answers = lit.iter().map(|lit| ResultKind::answer(answer(lit))).collect();
     let unproven: Vec<u8> = lit.iter().zip(is_unknown).map(|cell| ResultKind::answer(unproven(cell))).collect();
     let unproven_cells = unproven.iter().filter(|&&pixel| pixel == 1).count();
-    Ok(Answered { values: Pixels::answers([answers, unproven], size)?, unproven_cells, skipped_observers: 0 })
+    Ok(CellAnswers { values: Pixels::answers([answers, unproven], size)?, unproven_cells, skipped_observers: 0 })
 }
 
 /// Of each target, whether missing balls may block it in any of `directions`.
-fn unknown_towards(balls: &Found, targets: &Targets, directions: &[[f64; 3]]) -> Vec<bool> {
+fn unknown_towards(balls: &ObstacleSearch, targets: &Targets, directions: &[[f64; 3]]) -> Vec<bool> {
     let is_unknown = |position: &[f32; 3]| {
         let position = position.map(f64::from);
         !balls.missing.is_empty()
@@ -233,7 +237,7 @@ fn unknown_towards(balls: &Found, targets: &Targets, directions: &[[f64; 3]]) ->
 }
 
 /// What observers see of targets past one part of the obstacles after the other.
-struct Sight<'a> {
+struct PartialSight<'a> {
     /// Those inside an obstacle have an eye that is not finite.
     observers: Vec<Observer>,
     targets: &'a [[f32; 3]],
@@ -241,7 +245,7 @@ struct Sight<'a> {
     seen: Option<Viewshed>,
 }
 
-impl<'a> Sight<'a> {
+impl<'a> PartialSight<'a> {
     fn new(observers: &[Observer], targets: &'a [[f32; 3]]) -> Self {
         Self { observers: observers.to_vec(), targets, seen: None }
     }
@@ -264,7 +268,7 @@ impl<'a> Sight<'a> {
     }
 
     /// What is seen past all parts; unproven where missing `balls` may block it.
-    fn answered(self, balls: &Found, size: [usize; 2]) -> Result<Answered> {
+    fn answered(self, balls: &ObstacleSearch, size: [usize; 2]) -> Result<CellAnswers> {
         let Self { observers, targets, seen } = self;
         let (answers, masks) = seen.map(|seen| (seen.answers, seen.masks)).unwrap_or_default();
         let is_unknown = |target: [f32; 3], eye: [f64; 3]| {
@@ -280,8 +284,8 @@ impl<'a> Sight<'a> {
             [seen_by().count(), unproven]
         };
         let counts: Vec<[usize; 2]> = (0..targets.len()).into_par_iter().with_min_len(CHUNK).map(counts).collect();
-        let is_asked = |answer: Answer| !matches!(answer, Answer::OutsideView | Answer::OutsideCloud);
-        let cells = || answers.iter().zip(&counts).map(|(&answer, &counts)| is_asked(answer).then_some(counts));
+        let is_target = |answer: Answer| !matches!(answer, Answer::OutsideView | Answer::OutsideCloud);
+        let cells = || answers.iter().zip(&counts).map(|(&answer, &counts)| is_target(answer).then_some(counts));
         let values = match observers.len() {
             1 => {
                 let band = |i: usize| cells().map(|counts| ResultKind::answer(counts.map(|c| c[i] > 0))).collect();
@@ -293,7 +297,7 @@ impl<'a> Sight<'a> {
                 Pixels::counts([band(0), band(1)], size)?
             }
         };
-        Ok(Answered {
+        Ok(CellAnswers {
             values,
             unproven_cells: counts.iter().filter(|[_, unproven]| *unproven > 0).count(),
             skipped_observers: observers.iter().filter(|observer| !observer.eye.iter().all(|v| v.is_finite())).count(),
@@ -309,7 +313,7 @@ fn cells(
     added: Option<&AddedMeshes>,
     control: &Control<'_>,
 ) -> Result<Targets> {
-    let (kept, _) = clean(cloud, &plan.facts.cleaning(&plan.model().clean), control)?;
+    let (kept, _) = clean(cloud, &plan.statistics.cleaning(&plan.model().clean), control)?;
     let core = plan.grid().core(tile);
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a whole number of cells")]
     let count = (plan.tile_size / cell).round() as usize;
@@ -321,18 +325,19 @@ fn cells(
     let cleared = ClearedSurface::new(plan, areas, &points, &middles, control)?;
     let stays = |(point, is_cleared): (&ClassedPoint, &bool)| (!is_cleared).then_some(point.0);
     let positions: Vec<[f32; 3]> = points.iter().zip(&cleared.is_cleared).filter_map(stays).collect();
-    let rim = RIM as f64 * cell;
+    let edge = EDGE_CELLS as f64 * cell;
     let wide = MapGrid {
-        corner: [core.low[0] - rim, core.high[1] + rim],
+        corner: [core.low[0] - edge, core.high[1] + edge],
         cell,
-        width: count + 2 * RIM,
-        height: count + 2 * RIM,
+        width: count + 2 * EDGE_CELLS,
+        height: count + 2 * EDGE_CELLS,
     };
     let unknown = Raster::filled(wide.width, wide.height, f32::NAN);
     let flat = Ground { grid: wide, heights: unknown.clone(), gaps: unknown };
-    let params = SurfaceParams { farthest: plan.facts.farthest(), ..SurfaceParams::default() };
+    let params = SurfaceParams { farthest: plan.statistics.farthest(), ..SurfaceParams::default() };
     let heights = top_surface(&positions, &flat, &params, control)?;
-    let of_cell = |(column, row): (usize, usize)| heights.get(column + RIM, row + RIM).unwrap_or(f32::NAN);
+    let of_cell =
+        |(column, row): (usize, usize)| heights.get(column + EDGE_CELLS, row + EDGE_CELLS).unwrap_or(f32::NAN);
     let mut heights = Raster::from_values(count, count, places.clone().map(of_cell).collect())?;
     for (place, height) in cleared.ground {
         if let Some(value) = heights.values_mut().get_mut(place).filter(|value| value.is_nan()) {
@@ -352,7 +357,7 @@ fn cells(
     };
     let positions = places.map(position).collect();
     let gaps = Raster::filled(count, count, f32::NAN);
-    let layout = Layout::Cells(Box::new(Ground { grid, heights, gaps }));
+    let layout = TargetLayout::Cells(Box::new(Ground { grid, heights, gaps }));
     let frame = cloud.frame.clone();
     Ok(Targets { frame, positions, normals: None, weights: Vec::new(), groups: Vec::new(), layout })
 }
@@ -360,7 +365,7 @@ fn cells(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::grid::Area;
+    use crate::grid::MapArea;
     use belvedere::apps::viewshed::SightLimits;
     use belvedere::blocking::BlockRule;
 
@@ -371,8 +376,8 @@ mod tests {
         east.push(0, [10.0, 0.0, 2.0], 2.0, 0);
         let scene = MedialScene::new(&east, &BlockRule::carved()).unwrap();
         let nothing = MedialScene::new(&MedialBalls::default(), &BlockRule::carved()).unwrap();
-        let missing = vec![(Area { low: [-5.0, 10.0], high: [5.0, 20.0] }, 30.0)];
-        let balls = Found { missing, ..Found::default() };
+        let missing = vec![(MapArea { low: [-5.0, 10.0], high: [5.0, 20.0] }, 30.0)];
+        let balls = ObstacleSearch { missing, ..ObstacleSearch::default() };
         let positions = vec![
             [-20.0, 0.0, 2.0],  // free
             [20.0, 0.0, 2.0],   // behind the ball
@@ -384,7 +389,7 @@ mod tests {
         ];
         // the parts of the obstacles in any order
         let see = |observers: &[Observer], parts: [&MedialScene; 2]| {
-            let mut sight = Sight::new(observers, &positions);
+            let mut sight = PartialSight::new(observers, &positions);
             parts.into_iter().for_each(|scene| sight.look(scene, &Control::none()).unwrap());
             sight.answered(&balls, [7, 1]).unwrap()
         };

@@ -1,6 +1,6 @@
 //! Sides of the cells of results: one for all, and others where single results need finer or coarser ones.
 
-use crate::question::Question;
+use crate::question::TileQuestion;
 use belvedere::{Error, Parameter, Result};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -78,7 +78,7 @@ impl CellSizes {
 
     /// The side for the result of a question.
     #[must_use]
-    pub fn of(&self, question: &Question) -> f64 {
+    pub fn of(&self, question: &TileQuestion) -> f64 {
         self.others.get(&question.topic()).copied().unwrap_or(self.usual)
     }
 

@@ -1,9 +1,10 @@
 //! What is cleared of a survey, in blocks of 64 m that are the same for all tiles.
 //!
-//! What clearing does at a place follows from what is around: from the ground below, which is interpolated, and from what stands there. Each block is looked
-//! at by itself, with all points of the eight blocks around it, so that points and balls fare alike in all tiles that meet them.
+//! What clearing does at a place follows from what is around: from the ground below, which is interpolated, and from
+//! what stands there. Each block is looked at by itself, with all points of the eight blocks around it, so that points
+//! and balls fare alike in all tiles that meet them.
 
-use crate::grid::{Area, CELL, TileId, block_area, block_of};
+use crate::grid::{CELL, MapArea, TileId, block_area, block_of};
 use crate::plan::Plan;
 use crate::window;
 use belvedere::control::Control;
@@ -13,7 +14,8 @@ use belvedere::model::{ClearedArea, Clearing};
 use belvedere::{PointCloud, Result};
 use std::collections::HashMap;
 
-/// How far beyond a block its columns reach, metres: as far as a ball at one of its points, 10 m at most, and what is cleared around a point.
+/// How far beyond a block its columns reach, metres: as far as a ball at one of its points, 10 m at most, and what is
+/// cleared around a point.
 const BESIDE: f64 = 12.0;
 
 /// A point as clearing looks at it: local metres, and its class.
@@ -26,7 +28,8 @@ pub(crate) fn classed(cloud: &PointCloud, rows: impl Iterator<Item = usize>) -> 
 }
 
 impl Plan {
-    /// This without what stands in some areas now: points, the balls at them, and what balls beside a polygon reach into it. The ground below is closed.
+    /// This without what stands in some areas now: points, the balls at them, and what balls beside a polygon reach
+    /// into it. The ground below is closed.
     ///
     /// # Errors
     /// [`belvedere::Error::InvalidParameter`] for an area beside the survey and for the class of the ground.
@@ -38,7 +41,8 @@ impl Plan {
         Ok(self)
     }
 
-    /// Whether anything stands in the areas that are cleared. Tiles are looked at one after the other until something does.
+    /// Whether anything stands in the areas that are cleared. Tiles are looked at one after the other until something
+    /// does.
     ///
     /// # Errors
     /// Those of reading the files, of [`Clearing::new`], and [`belvedere::Error::Cancelled`].
@@ -60,11 +64,11 @@ impl Plan {
     }
 
     /// The areas that are cleared, with the rectangles around polygons on the survey.
-    fn cleared_areas(&self) -> Result<Vec<(&ClearedArea, Option<Area>)>> {
+    fn cleared_areas(&self) -> Result<Vec<(&ClearedArea, Option<MapArea>)>> {
         let (bounds, origin) = (self.bounds(), self.frame()?.origin);
         let mut areas = Vec::new();
         for cleared in &self.cleared {
-            areas.push((cleared, cleared.rectangle_on(&bounds, origin)?.map(|(low, high)| Area { low, high })));
+            areas.push((cleared, cleared.rectangle_on(&bounds, origin)?.map(|(low, high)| MapArea { low, high })));
         }
         Ok(areas)
     }
@@ -74,7 +78,8 @@ impl Plan {
         self.cleared.iter().all(|area| area.rectangle_on(&self.bounds(), origin).is_ok())
     }
 
-    /// Greatest distance from a point at which a cell of a side may get a height, metres: also where the ground is closed.
+    /// Greatest distance from a point at which a cell of a side may get a height, metres: also where the ground is
+    /// closed.
     pub(crate) fn reach(&self, cell: f64) -> f64 {
         let reach = SurfaceParams::reach(cell);
         if self.cleared.is_empty() { reach } else { reach.max(Clearing::REACH + cell) }
@@ -90,13 +95,14 @@ impl Plan {
     }
 }
 
-/// Clears the balls of a tile, which belong to `points`, and closes the ground in `core`. Transmissions are those of balls, or none.
+/// Clears the balls of a tile, which belong to `points`, and closes the ground in `core`. Transmissions are those of
+/// balls, or none.
 ///
 /// # Errors
 /// Those of reading the files, and of [`Clearing::new`].
 pub(crate) fn clear_balls(
     plan: &Plan,
-    core: &Area,
+    core: &MapArea,
     balls: &mut MedialBalls,
     transmission: &mut Vec<f32>,
     points: &[ClassedPoint],
@@ -154,7 +160,7 @@ impl ClearedSurface {
     /// Those of reading the files, and of [`Clearing::new`].
     pub(crate) fn new(
         plan: &Plan,
-        (area, core): (&Area, &Area),
+        (area, core): (&MapArea, &MapArea),
         points: &[ClassedPoint],
         places: &[[f64; 2]],
         control: &Control<'_>,
@@ -184,17 +190,18 @@ impl ClearedSurface {
     }
 }
 
-/// Gives `look` each block of `area` that polygons reach, and of `core` also those with points of cleared classes, with what clearing does there.
+/// Gives `look` each block of `area` that polygons reach, and of `core` also those with points of cleared classes, with
+/// what clearing does there.
 fn each_block(
     plan: &Plan,
-    area: &Area,
-    core: &Area,
+    area: &MapArea,
+    core: &MapArea,
     control: &Control<'_>,
     mut look: impl FnMut([i32; 2], &[Clearing]),
 ) -> Result<()> {
     let (areas, frame) = (plan.cleared_areas()?, plan.frame()?);
-    let reaches = |polygon: &Area, block: &Area| polygon.distance(block) <= BESIDE + Clearing::REACH;
-    let is_near = |block: &Area| {
+    let reaches = |polygon: &MapArea, block: &MapArea| polygon.distance(block) <= BESIDE + Clearing::REACH;
+    let is_near = |block: &MapArea| {
         areas.iter().any(|(_, polygon)| polygon.map_or_else(|| block.meets(core), |polygon| reaches(&polygon, block)))
     };
     let blocks: Vec<[i32; 2]> = area.blocks().filter(|&at| is_near(&block_area(at))).collect();

@@ -1,29 +1,31 @@
 //! What a run will take.
 
-use crate::grid::{Area, CELL, block_area};
+use crate::grid::{CELL, MapArea, block_area};
 use crate::plan::Plan;
-use crate::survey::Block;
+use crate::survey::SurveyBlock;
 use serde::Serialize;
 
 /// Memory for each point of a window while balls are made, and without any, bytes. As measured in docs/scale.md.
 const BYTES_PER_POINT: f64 = 450.0;
-const BYTES_AT_LEAST: f64 = 100e6;
+const MIN_BYTES: f64 = 100e6;
 /// Memory for each ball of those that are asked together, bytes: measured 290, and room for cells and their points.
 const BYTES_PER_BALL: f64 = 450.0;
 /// Balls that are always asked together: fewer would save no memory that counts.
-const LEAST_BALLS: usize = 100_000;
+const MIN_BALLS: usize = 100_000;
 /// Bytes of a ball file for each point of a tile.
 const DISK_PER_POINT: f64 = 30.0;
 
 /// What a plan will take.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Estimate {
+pub struct RunEstimate {
     /// Points of all tiles.
     pub points: u64,
     /// Points that are read, those around tiles among them.
-    pub points_with_halo: u64,
+    #[serde(rename = "points_with_halo")]
+    pub points_with_buffer: u64,
     /// Most points that one tile reads.
-    pub most_points_of_a_tile: u64,
+    #[serde(rename = "most_points_of_a_tile")]
+    pub max_points_of_a_tile: u64,
     /// Memory that this tile takes, bytes.
     pub memory_bytes: u64,
     /// Disk that balls take, bytes.
@@ -32,8 +34,8 @@ pub struct Estimate {
 
 impl Plan {
     /// Points that a tile reads, about.
-    fn window_points(&self, area: &Area) -> f64 {
-        let share = |block: &Block| {
+    fn window_points(&self, area: &MapArea) -> f64 {
+        let share = |block: &SurveyBlock| {
             let own = block_area(block.at);
             let side = |axis: usize| (area.high[axis].min(own.high[axis]) - area.low[axis].max(own.low[axis])).max(0.0);
             side(0) * side(1) / (CELL * CELL) * block.points as f64
@@ -44,15 +46,15 @@ impl Plan {
     /// What the run will take, about.
     #[must_use]
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "estimates; `as` saturates")]
-    pub fn estimate(&self) -> Estimate {
+    pub fn estimate(&self) -> RunEstimate {
         let windows: Vec<f64> = self.tiles.iter().map(|&tile| self.window_points(&self.window(tile))).collect();
-        let most = windows.iter().copied().fold(0.0, f64::max);
+        let max = windows.iter().copied().fold(0.0, f64::max);
         let points: u64 = self.blocks.iter().map(|block| block.points).sum();
-        Estimate {
+        RunEstimate {
             points,
-            points_with_halo: windows.iter().sum::<f64>() as u64,
-            most_points_of_a_tile: most as u64,
-            memory_bytes: memory_of(most) as u64,
+            points_with_buffer: windows.iter().sum::<f64>() as u64,
+            max_points_of_a_tile: max as u64,
+            memory_bytes: memory_of(max) as u64,
             disk_bytes: (points as f64 * DISK_PER_POINT) as u64,
         }
     }
@@ -60,11 +62,11 @@ impl Plan {
     /// Most balls that are asked together: as many as take no more memory than making those of the largest tile.
     pub(crate) fn balls_at_a_time(&self) -> usize {
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "an estimate; `as` saturates")]
-        let balls = ((self.estimate().memory_bytes as f64 - BYTES_AT_LEAST) / BYTES_PER_BALL) as usize;
-        balls.max(LEAST_BALLS)
+        let balls = ((self.estimate().memory_bytes as f64 - MIN_BYTES) / BYTES_PER_BALL) as usize;
+        balls.max(MIN_BALLS)
     }
 }
 
 fn memory_of(points: f64) -> f64 {
-    BYTES_AT_LEAST + points * BYTES_PER_POINT
+    MIN_BYTES + points * BYTES_PER_POINT
 }

@@ -34,19 +34,20 @@ pub struct TileGrid {
     pub origin: [f64; 2],
 }
 
-/// A rectangle on the map from its lowest to its highest corner, local metres. The lower sides belong to it, the upper ones do not.
+/// A rectangle on the map from its lowest to its highest corner, local metres. The lower sides belong to it, the upper
+/// ones do not.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Area {
+pub(crate) struct MapArea {
     pub(crate) low: [f64; 2],
     pub(crate) high: [f64; 2],
 }
 
 impl TileGrid {
     /// The core of a tile.
-    pub(crate) fn core(&self, tile: TileId) -> Area {
+    pub(crate) fn core(&self, tile: TileId) -> MapArea {
         #[expect(clippy::cast_precision_loss, reason = "tiles of a planet are far fewer than 2^53")]
         let low = [tile.east as f64 * self.size - self.origin[0], tile.north as f64 * self.size - self.origin[1]];
-        Area { low, high: low.map(|v| v + self.size) }
+        MapArea { low, high: low.map(|v| v + self.size) }
     }
 
     /// The tile whose core holds a local position.
@@ -57,7 +58,7 @@ impl TileGrid {
     }
 }
 
-impl Area {
+impl MapArea {
     pub(crate) fn holds(&self, [x, y]: [f64; 2]) -> bool {
         self.low[0] <= x && x < self.high[0] && self.low[1] <= y && y < self.high[1]
     }
@@ -134,7 +135,7 @@ impl Area {
 }
 
 /// The area of a block of 64 m.
-pub(crate) fn block_area(block: [i32; 2]) -> Area {
+pub(crate) fn block_area(block: [i32; 2]) -> MapArea {
     square_area(block, CELL)
 }
 
@@ -144,9 +145,9 @@ pub(crate) fn block_of(position: [f32; 2]) -> [i32; 2] {
 }
 
 /// The square of a side with a number, counted east and north from the origin of local coordinates.
-pub(crate) fn square_area(number: [i32; 2], side: f64) -> Area {
+pub(crate) fn square_area(number: [i32; 2], side: f64) -> MapArea {
     let low = number.map(|number| f64::from(number) * side);
-    Area { low, high: low.map(|v| v + side) }
+    MapArea { low, high: low.map(|v| v + side) }
 }
 
 /// The number of the square of a side that a local position lies in.
@@ -177,9 +178,9 @@ mod tests {
 
     #[test]
     fn areas_know_their_blocks_and_how_far_apart_they_are() {
-        let area = Area { low: [-10.0, 0.0], high: [64.0, 70.0] };
+        let area = MapArea { low: [-10.0, 0.0], high: [64.0, 70.0] };
         assert_eq!(area.blocks().collect::<Vec<_>>(), [[-1, 0], [0, 0], [-1, 1], [0, 1]]);
-        assert_eq!(area.in_blocks(), Area { low: [-64.0, 0.0], high: [64.0, 128.0] });
+        assert_eq!(area.in_blocks(), MapArea { low: [-64.0, 0.0], high: [64.0, 128.0] });
         assert_eq!(area.distance(&block_area([1, 1])), 0.0);
         assert_eq!(area.distance(&block_area([2, 2])), 64.0_f64.hypot(58.0));
         assert_eq!(block_of([-0.1, 64.0]), [-1, 1]);

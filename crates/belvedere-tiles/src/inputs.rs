@@ -23,23 +23,24 @@ pub struct InputFile {
     pub bounds: [[f64; 3]; 2],
     /// CRC-32 over its size and its first and last 64 KiB, as hexadecimal digits.
     pub fingerprint: String,
-    /// The rectangle around each piece of its rows: west, south, east and north, whole local metres. Empty where that is not known.
+    /// The rectangle around each piece of its rows: west, south, east and north, whole local metres. Empty where that
+    /// is not known.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub(crate) pieces: Vec<Piece>,
+    pub(crate) pieces: Vec<PieceCell>,
 }
 
 /// Rows of a file that one rectangle is kept for: a chunk of most LAZ files.
 pub(crate) const PIECE_ROWS: u64 = 50_000;
 
 /// West, south, east and north of a piece, whole local metres.
-pub(crate) type Piece = [i32; 4];
+pub(crate) type PieceCell = [i32; 4];
 
 /// The rectangle of a piece without points, which meets nothing.
-pub(crate) const NOWHERE: Piece = [i32::MAX, i32::MAX, i32::MIN, i32::MIN];
+pub(crate) const NOWHERE: PieceCell = [i32::MAX, i32::MAX, i32::MIN, i32::MIN];
 
 /// Widens a rectangle to hold a local position.
 #[expect(clippy::cast_possible_truncation, reason = "some kilometres; `as` saturates")]
-pub(crate) fn hold([west, south, east, north]: &mut Piece, [x, y, _]: [f32; 3]) {
+pub(crate) fn hold([west, south, east, north]: &mut PieceCell, [x, y, _]: [f32; 3]) {
     (*west, *south) = ((*west).min(x.floor() as i32), (*south).min(y.floor() as i32));
     (*east, *north) = ((*east).max(x.ceil() as i32), (*north).max(y.ceil() as i32));
 }
@@ -79,7 +80,7 @@ impl InputFile {
             return source;
         }
         let [low, high] = [column.low, column.high].map(|end| end.map(f64::from));
-        let meets = |&[west, south, east, north]: &Piece| {
+        let meets = |&[west, south, east, north]: &PieceCell| {
             let [west, south, east, north] = [west, south, east, north].map(f64::from);
             west <= high[0] && low[0] <= east && south <= high[1] && low[1] <= north
         };
@@ -137,14 +138,14 @@ pub(crate) fn hash(bytes: &[u8]) -> String {
 
 /// The columns of points that all files have and tiles need.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub(crate) struct Columns {
+pub(crate) struct PointColumns {
     /// GPS times of one kind.
     pub(crate) gps_times: bool,
     /// Channels of the scanner.
     pub(crate) channels: bool,
 }
 
-impl Columns {
+impl PointColumns {
     /// Those of all files with these headers.
     pub(crate) fn common(heads: &[LasHead]) -> Self {
         let kinds: Vec<Option<GpsTimeKind>> = heads.iter().map(|head| head.gps_times).collect();

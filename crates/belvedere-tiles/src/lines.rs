@@ -1,8 +1,8 @@
 //! Which lines of sight leave the cells of a tile, and what may stand in their way.
 
-use crate::grid::{Area, TileId, block_area};
+use crate::grid::{MapArea, TileId, block_area};
 use crate::plan::Plan;
-use crate::question::Asked;
+use crate::question::PreparedQuestion;
 use belvedere::query::EarthParams;
 use belvedere::vector::piece_in_box;
 use std::collections::BTreeSet;
@@ -12,11 +12,11 @@ const FEW: usize = 8;
 /// By how much lines of sight are taken for wider than they are, metres: more than f32 rounds.
 pub(crate) const ROOM: f64 = 0.25;
 /// How far above and beside its points any ball reaches at most, metres: twice the radius that they start with.
-pub(crate) const MOST_BALL: f64 = 10.0;
+pub(crate) const MAX_BALL: f64 = 10.0;
 
 /// Lines of sight from targets over an area, none lower than `lowest`.
-pub(crate) struct Lines<'a> {
-    pub(crate) targets: Area,
+pub(crate) struct AreaLines<'a> {
+    pub(crate) targets: MapArea,
     /// Local metres.
     pub(crate) lowest: f64,
     to: To<'a>,
@@ -32,13 +32,13 @@ pub(crate) enum To<'a> {
     Eyes(Vec<[f64; 3]>),
 }
 
-impl<'a> Lines<'a> {
+impl<'a> AreaLines<'a> {
     /// The lines of sight of a question from cells over an area.
-    pub(crate) fn of(asked: &'a Asked, targets: Area, lowest: f64) -> Self {
-        let to = match asked {
-            Asked::Light(light) => To::Directions(light.directions()),
-            Asked::Viewshed(observers) => {
-                let is_near = |eye: &[f64; 3], reach: f64| targets.distance(&Area::at(*eye)) <= reach;
+    pub(crate) fn of(prepared: &'a PreparedQuestion, targets: MapArea, lowest: f64) -> Self {
+        let to = match prepared {
+            PreparedQuestion::Light(light) => To::Directions(light.directions()),
+            PreparedQuestion::Viewshed(observers) => {
+                let is_near = |eye: &[f64; 3], reach: f64| targets.distance(&MapArea::at(*eye)) <= reach;
                 let near = observers.iter().filter(|observer| is_near(&observer.eye, observer.limits.distance[1]));
                 To::Eyes(near.map(|observer| observer.eye).collect())
             }
@@ -46,7 +46,7 @@ impl<'a> Lines<'a> {
         Self::new(targets, lowest, to)
     }
 
-    fn new(targets: Area, lowest: f64, to: To<'a>) -> Self {
+    fn new(targets: MapArea, lowest: f64, to: To<'a>) -> Self {
         let slope = |d: &[f64; 3]| d[2] / d[0].hypot(d[1]).max(1e-12);
         let flattest = match &to {
             To::Directions(directions) => directions.iter().map(slope).fold(f64::INFINITY, f64::min),
@@ -64,14 +64,14 @@ impl<'a> Lines<'a> {
     }
 
     /// Whether something over `area` that is no higher than `top`, local metres, may block one of them.
-    pub(crate) fn may_meet(&self, area: &Area, top: f64) -> bool {
+    pub(crate) fn may_meet(&self, area: &MapArea, top: f64) -> bool {
         match &self.to {
             To::Directions(directions) => self.may_meet_towards(directions, area, top),
             To::Eyes(eyes) => eyes.iter().any(|&eye| self.may_meet_from(eye, area, top)),
         }
     }
 
-    fn may_meet_towards(&self, directions: &[[f64; 3]], area: &Area, top: f64) -> bool {
+    fn may_meet_towards(&self, directions: &[[f64; 3]], area: &MapArea, top: f64) -> bool {
         let rise = top - self.lowest + ROOM;
         if rise < 0.0 {
             return false;
@@ -83,7 +83,7 @@ impl<'a> Lines<'a> {
     }
 
     /// The same for one direction, of which it is known which way on the map it runs.
-    fn meets_along(&self, direction: &[f64; 3], area: &Area, rise: f64) -> bool {
+    fn meets_along(&self, direction: &[f64; 3], area: &MapArea, rise: f64) -> bool {
         let level = direction[0].hypot(direction[1]);
         if level < 1e-9 {
             return self.targets.distance(area) <= ROOM;
@@ -98,8 +98,8 @@ impl<'a> Lines<'a> {
     }
 
     /// The same for lines that end in an eye.
-    fn may_meet_from(&self, eye: [f64; 3], area: &Area, top: f64) -> bool {
-        let place = Area::at(eye);
+    fn may_meet_from(&self, eye: [f64; 3], area: &MapArea, top: f64) -> bool {
+        let place = MapArea::at(eye);
         // on the map: apart if any direction separates the area from both the eye and the targets
         let sides = self.targets.corners().map(|corner| [eye[1] - corner[1], corner[0] - eye[0]]);
         let axes = sides.into_iter().map(|[x, y]| [x / x.hypot(y).max(1e-12), y / x.hypot(y).max(1e-12)]);
@@ -120,13 +120,13 @@ impl<'a> Lines<'a> {
 }
 
 /// The tiles whose balls may matter for `lines`.
-pub(crate) fn tiles(plan: &Plan, lines: &Lines<'_>) -> Vec<TileId> {
+pub(crate) fn tiles(plan: &Plan, lines: &AreaLines<'_>) -> Vec<TileId> {
     let grid = plan.grid();
     let is_planned = |tile: &TileId| plan.tiles.binary_search(tile).is_ok();
     let mut tiles = BTreeSet::new();
     for block in &plan.blocks {
-        let area = block_area(block.at).widened(MOST_BALL);
-        if !lines.may_meet(&area, f64::from(block.heights[1]) + MOST_BALL) {
+        let area = block_area(block.at).widened(MAX_BALL);
+        if !lines.may_meet(&area, f64::from(block.heights[1]) + MAX_BALL) {
             continue;
         }
         let (first, last) = (grid.tile_of(area.low), grid.tile_of(area.high));
@@ -137,9 +137,9 @@ pub(crate) fn tiles(plan: &Plan, lines: &Lines<'_>) -> Vec<TileId> {
     tiles.into_iter().collect()
 }
 
-/// Whether the line of sight from a target, local metres, may meet what stands over `area` up to `top`: the line runs along `way` and ends after
-/// `length` times that, or never.
-pub(crate) fn passes(target: [f64; 3], way: [f64; 3], length: f64, area: &Area, top: f64) -> bool {
+/// Whether the line of sight from a target, local metres, may meet what stands over `area` up to `top`: the line runs
+/// along `way` and ends after `length` times that, or never.
+pub(crate) fn passes(target: [f64; 3], way: [f64; 3], length: f64, area: &MapArea, top: f64) -> bool {
     let sides = [0, 1].map(|axis| [area.low[axis] - target[axis], area.high[axis] - target[axis]]);
     let over = piece_in_box(sides, [way[0], way[1]], [0.0, length]);
     over.is_some_and(|[from, to]| target[2] + way[2] * (if way[2] >= 0.0 { from } else { to }) <= top)
@@ -149,10 +149,10 @@ pub(crate) fn passes(target: [f64; 3], way: [f64; 3], length: f64, area: &Area, 
 mod tests {
     use super::*;
 
-    const TARGETS: Area = Area { low: [0.0, 0.0], high: [100.0, 100.0] };
+    const TARGETS: MapArea = MapArea { low: [0.0, 0.0], high: [100.0, 100.0] };
 
-    fn place(x: f64, y: f64) -> Area {
-        Area { low: [x, y], high: [x + 1.0, y + 1.0] }
+    fn place(x: f64, y: f64) -> MapArea {
+        MapArea { low: [x, y], high: [x + 1.0, y + 1.0] }
     }
 
     #[test]
@@ -160,7 +160,7 @@ mod tests {
         // a sun in the east, 45 degrees high
         let half = std::f64::consts::FRAC_1_SQRT_2;
         let directions = [[half, 0.0, half]];
-        let lines = Lines::new(TARGETS, 0.0, To::Directions(&directions));
+        let lines = AreaLines::new(TARGETS, 0.0, To::Directions(&directions));
         for (area, top, expected) in [
             (place(150.0, 50.0), 60.0, true),
             (place(150.0, 50.0), 40.0, false),
@@ -173,7 +173,7 @@ mod tests {
         }
         // many directions: whatever the azimuth
         let many = vec![[0.0, half, half]; FEW + 1];
-        let lines = Lines::new(TARGETS, 0.0, To::Directions(&many));
+        let lines = AreaLines::new(TARGETS, 0.0, To::Directions(&many));
         assert!(lines.may_meet(&place(150.0, 50.0), 60.0));
         assert!(!lines.may_meet(&place(150.0, 50.0), 40.0));
     }
@@ -181,7 +181,7 @@ mod tests {
     #[test]
     fn only_what_stands_between_eye_and_targets_and_high_enough_may_block_the_view() {
         // an eye 300 m east of the targets and 40 m above them
-        let lines = Lines::new(TARGETS, 0.0, To::Eyes(vec![[400.0, 50.0, 40.0]]));
+        let lines = AreaLines::new(TARGETS, 0.0, To::Eyes(vec![[400.0, 50.0, 40.0]]));
         for (area, top, expected) in [
             (place(110.0, 50.0), 3.0, true),
             (place(110.0, 50.0), -1.0, false),
@@ -197,7 +197,7 @@ mod tests {
             assert_eq!(lines.may_meet(&area, top), expected, "{area:?} {top}");
         }
         // an eye below the targets, among them
-        let lines = Lines::new(TARGETS, 10.0, To::Eyes(vec![[50.0, 50.0, 2.0]]));
+        let lines = AreaLines::new(TARGETS, 10.0, To::Eyes(vec![[50.0, 50.0, 2.0]]));
         assert!(lines.may_meet(&place(70.0, 70.0), 3.0));
         assert!(!lines.may_meet(&place(70.0, 70.0), 1.0));
         assert!(!lines.may_meet(&place(120.0, 70.0), 90.0));
@@ -205,7 +205,7 @@ mod tests {
 
     #[test]
     fn a_line_passes_what_stands_above_it_on_its_way() {
-        let area = Area { low: [10.0, -5.0], high: [20.0, 5.0] };
+        let area = MapArea { low: [10.0, -5.0], high: [20.0, 5.0] };
         let half = std::f64::consts::FRAC_1_SQRT_2;
         let towards = |target, way| passes(target, way, f64::INFINITY, &area, 30.0);
         assert!(towards([0.0; 3], [half, 0.0, half]));

@@ -1,9 +1,9 @@
 //! The balls of a tile.
 
 use crate::cleared::{ClassedPoint, classed, clear_balls};
-use crate::grid::{Area, TOP_SIDE, TileId, square_at};
+use crate::grid::{MapArea, TOP_SIDE, TileId, square_at};
 use crate::plan::Plan;
-use crate::record::{Outcome, Record, Stage, Stamp};
+use crate::record::{Stage, Stamp, TileOutcome, TileRecord};
 use crate::window;
 use belvedere::control::Control;
 use belvedere::io::{atomic, write_balls};
@@ -13,11 +13,12 @@ use belvedere::{PointCloud, Result};
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// Makes the balls of a tile and writes them and their record into the folder of the run. The same plan and tile give the same balls.
+/// Makes the balls of a tile and writes them and their record into the folder of the run. The same plan and tile give
+/// the same balls.
 ///
 /// # Errors
 /// Those of reading the files and of [`SceneModel::build`].
-pub fn make_balls(plan: &Plan, run: &Path, tile: TileId, control: &Control<'_>) -> Result<Record> {
+pub fn make_balls(plan: &Plan, run: &Path, tile: TileId, control: &Control<'_>) -> Result<TileRecord> {
     atomic::make_folder(&Stage::Balls.folder(run))?;
     let cloud = control.stage("reading", 0, || window::read(plan, &plan.window(tile), control))?;
     let record = made(plan, run, tile, cloud, control)?;
@@ -25,9 +26,9 @@ pub fn make_balls(plan: &Plan, run: &Path, tile: TileId, control: &Control<'_>) 
     Ok(record)
 }
 
-fn made(plan: &Plan, run: &Path, tile: TileId, cloud: PointCloud, control: &Control<'_>) -> Result<Record> {
+fn made(plan: &Plan, run: &Path, tile: TileId, cloud: PointCloud, control: &Control<'_>) -> Result<TileRecord> {
     let points = cloud.len();
-    let nothing = Record { points, ..Record::default() };
+    let nothing = TileRecord { points, ..TileRecord::default() };
     let core = plan.grid().core(tile);
     let is_in = |p: &[f32; 3]| core.holds([p[0].into(), p[1].into()]);
     let all = classed(&cloud, 0..points);
@@ -58,7 +59,7 @@ fn made(plan: &Plan, run: &Path, tile: TileId, cloud: PointCloud, control: &Cont
     let path = Stage::Balls.result(run, tile);
     control.stage("writing", 0, || write_balls(&path, &parts.with_provenance("tile", tile.name())))?;
     let result = Some(Stamp::of(&path)?);
-    Ok(Record { outcome: Outcome::Done, result, points, balls: count, tops, ..Record::default() })
+    Ok(TileRecord { outcome: TileOutcome::Done, result, points, balls: count, tops, ..TileRecord::default() })
 }
 
 /// The highest top of balls over each square of 16 m that any reaches into.
@@ -77,7 +78,7 @@ pub(crate) fn tops(balls: &MedialBalls) -> Vec<([i32; 2], f32)> {
 }
 
 /// The square on the map that a ball covers.
-pub(crate) fn square_of([x, y, _]: [f32; 3], radius: f32) -> Area {
+pub(crate) fn square_of([x, y, _]: [f32; 3], radius: f32) -> MapArea {
     let (middle, radius) = ([x, y].map(f64::from), f64::from(radius));
-    Area { low: middle.map(|v| v - radius), high: middle.map(|v| v + radius) }
+    MapArea { low: middle.map(|v| v - radius), high: middle.map(|v| v + radius) }
 }

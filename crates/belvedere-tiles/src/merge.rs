@@ -2,8 +2,8 @@
 
 use crate::grid::TileId;
 use crate::plan::Plan;
-use crate::question::Question;
-use crate::record::{Outcome, Record, Stage};
+use crate::question::TileQuestion;
+use crate::record::{Stage, TileOutcome, TileRecord};
 use belvedere::control::Control;
 use belvedere::crs::text::wkt_line;
 use belvedere::ground::MapGrid;
@@ -15,7 +15,7 @@ use std::io::Write as _;
 use std::path::Path;
 
 /// Most cells of a merged raster: a gigabyte of floats.
-const MOST_CELLS: usize = 1 << 28;
+const MAX_CELLS: usize = 1 << 28;
 
 /// What was merged.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -27,9 +27,10 @@ pub struct Merged {
 }
 
 /// Those of `tiles` with a result, and the grid of cells around all of them.
-fn results(plan: &Plan, folder: &Path, question: &Question, tiles: &[TileId]) -> Result<(Vec<TileId>, MapGrid)> {
+fn results(plan: &Plan, folder: &Path, question: &TileQuestion, tiles: &[TileId]) -> Result<(Vec<TileId>, MapGrid)> {
     let has_result = |tile: &TileId| {
-        Record::read(plan, folder, Stage::Answer(question), *tile).is_some_and(|record| record.outcome == Outcome::Done)
+        TileRecord::read(plan, folder, Stage::Answer(question), *tile)
+            .is_some_and(|record| record.outcome == TileOutcome::Done)
     };
     let grid = plan.grid();
     let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
@@ -60,11 +61,12 @@ fn in_xml(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('"', "&quot;")
 }
 
-/// Writes a catalogue (`.vrt`) of the results of a question that are there, which QGIS, GDAL and rasterio open as one raster that says what its values are.
+/// Writes a catalogue (`.vrt`) of the results of a question that are there, which QGIS, GDAL and rasterio open as one
+/// raster that says what its values are.
 ///
 /// # Errors
 /// [`Error::Io`].
-pub fn write_catalogue(plan: &Plan, folder: &Path, question: &Question) -> Result<Merged> {
+pub fn write_catalogue(plan: &Plan, folder: &Path, question: &TileQuestion) -> Result<Merged> {
     let planned = plan.tiles_of(question);
     let (tiles, cells) = results(plan, folder, question, &planned)?;
     let frame = plan.frame()?;
@@ -107,21 +109,29 @@ pub fn write_catalogue(plan: &Plan, folder: &Path, question: &Question) -> Resul
 ///
 /// # Errors
 /// [`Error::InvalidParameter`] for more cells than fit into memory; those of reading and writing rasters.
-pub fn merge(plan: &Plan, folder: &Path, question: &Question, output: &Path, control: &Control<'_>) -> Result<Merged> {
+pub fn merge(
+    plan: &Plan,
+    folder: &Path,
+    question: &TileQuestion,
+    output: &Path,
+    control: &Control<'_>,
+) -> Result<Merged> {
     let (pixels, place, merged) = gather(plan, folder, question, &plan.tiles_of(question), control)?;
     let names = question.bands(pixels.kind());
     ResultRaster { pixels, names, description: question.description().to_owned() }.write_cog(output, &place)?;
     Ok(merged)
 }
 
-/// The results of a question that are there, of the tiles that touch the box from `low` to `high` on the map, metres of the reference system.
+/// The results of a question that are there, of the tiles that touch the box from `low` to `high` on the map, metres of
+/// the reference system.
 ///
 /// # Errors
-/// [`Error::NoPoints`] where the plan has no tile there, [`Error::InvalidParameter`] for more cells than fit into memory; those of reading rasters.
+/// [`Error::NoPoints`] where the plan has no tile there, [`Error::InvalidParameter`] for more cells than fit into
+/// memory; those of reading rasters.
 pub fn merged_within(
     plan: &Plan,
     folder: &Path,
-    question: &Question,
+    question: &TileQuestion,
     (low, high): ([f64; 2], [f64; 2]),
     control: &Control<'_>,
 ) -> Result<PlacedRaster> {
@@ -145,13 +155,13 @@ pub fn merged_within(
 fn gather(
     plan: &Plan,
     folder: &Path,
-    question: &Question,
+    question: &TileQuestion,
     tiles: &[TileId],
     control: &Control<'_>,
 ) -> Result<(Pixels, Georeference, Merged)> {
     let (with_result, cells) = results(plan, folder, question, tiles)?;
     let (width, height) = (cells.width, cells.height);
-    if width.saturating_mul(height) > MOST_CELLS {
+    if width.saturating_mul(height) > MAX_CELLS {
         return Err(Error::InvalidParameter {
             parameter: Parameter::Raster,
             value: format!("{width} x {height} cells"),
@@ -163,7 +173,7 @@ fn gather(
     for &tile in &with_result {
         control.check()?;
         let stage = Stage::Answer(question);
-        let Some(record) = Record::read(plan, folder, stage, tile) else { continue };
+        let Some(record) = TileRecord::read(plan, folder, stage, tile) else { continue };
         let path = stage.result(folder, tile);
         let values = Pixels::read(Source::bytes(&path, &record.read_result(&path)?))?;
         all.put(&values, place_of(plan, &cells, tile))?;

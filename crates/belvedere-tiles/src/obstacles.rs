@@ -1,10 +1,10 @@
 //! What can block lines of sight from a tile: the balls of all tiles that are high and near enough.
 
-use crate::grid::{Area, CELL, TOP_SIDE, TileId, block_area, square_area};
-use crate::lines::{Lines, MOST_BALL, passes, tiles};
+use crate::grid::{CELL, MapArea, TOP_SIDE, TileId, block_area, square_area};
+use crate::lines::{AreaLines, MAX_BALL, passes, tiles};
 use crate::make_balls::{make_balls, square_of};
 use crate::plan::Plan;
-use crate::record::{Outcome, Record, Stage};
+use crate::record::{Stage, TileOutcome, TileRecord};
 use belvedere::blocking::BlockRule;
 use belvedere::control::Control;
 use belvedere::io::{Source, read_balls};
@@ -23,20 +23,20 @@ pub(crate) struct BallTile {
 
 /// What became of the balls that may matter for an answer.
 #[derive(Debug, Default)]
-pub(crate) struct Found {
+pub(crate) struct ObstacleSearch {
     /// Balls that were asked.
     pub(crate) ball_count: usize,
     /// Most of them that were held at a time, where they were asked in parts.
-    pub(crate) most_held: usize,
+    pub(crate) max_held: usize,
     /// Where balls are missing: what may stand there, and how high.
-    pub(crate) missing: Vec<(Area, f64)>,
+    pub(crate) missing: Vec<(MapArea, f64)>,
     /// Balls that were found damaged, and were made again.
     pub(crate) damaged: Vec<String>,
 }
 
-impl Found {
-    /// Whether a line of sight from a target, local metres, may meet what is missing: along `way`, to an end after `length` times that or without
-    /// end.
+impl ObstacleSearch {
+    /// Whether a line of sight from a target, local metres, may meet what is missing: along `way`, to an end after
+    /// `length` times that or without end.
     pub(crate) fn is_unknown(&self, target: [f64; 3], way: [f64; 3], length: f64) -> bool {
         self.missing.iter().any(|(area, top)| passes(target, way, length, area, *top))
     }
@@ -52,8 +52,8 @@ impl Found {
         tile: TileId,
         control: &Control<'_>,
     ) -> Result<Option<ModelParts>> {
-        let balls = match Record::read(plan, run, Stage::Balls, tile) {
-            Some(record) if record.outcome == Outcome::Done => {
+        let balls = match TileRecord::read(plan, run, Stage::Balls, tile) {
+            Some(record) if record.outcome == TileOutcome::Done => {
                 sound(plan, run, tile, &record, &mut self.damaged, control)?
             }
             _ => None,
@@ -72,20 +72,22 @@ impl Found {
 pub(crate) fn ball_tiles(
     plan: &Plan,
     run: &Path,
-    lines: &Lines<'_>,
-    found: &mut Found,
+    lines: &AreaLines<'_>,
+    found: &mut ObstacleSearch,
     control: &Control<'_>,
 ) -> Result<Vec<BallTile>> {
     let mut ball_tiles = Vec::new();
     let may_meet = |&(number, top): &([i32; 2], f32)| lines.may_meet(&square_area(number, TOP_SIDE), top.into());
     for tile in tiles(plan, lines) {
         control.check()?;
-        match Record::read(plan, run, Stage::Balls, tile) {
-            Some(Record { outcome: Outcome::Done, balls, tops, .. }) if tops.iter().any(may_meet) => {
+        match TileRecord::read(plan, run, Stage::Balls, tile) {
+            Some(TileRecord { outcome: TileOutcome::Done, balls, tops, .. }) if tops.iter().any(may_meet) => {
                 ball_tiles.push(BallTile { tile, ball_count: balls, tops });
             }
-            Some(Record { outcome: Outcome::Done | Outcome::Nothing, .. }) => {}
-            Some(Record { outcome: Outcome::Failed(_), .. }) | None => found.missing.extend(unknown(plan, tile)),
+            Some(TileRecord { outcome: TileOutcome::Done | TileOutcome::Nothing, .. }) => {}
+            Some(TileRecord { outcome: TileOutcome::Failed(_), .. }) | None => {
+                found.missing.extend(unknown(plan, tile))
+            }
         }
     }
     Ok(ball_tiles)
@@ -93,7 +95,7 @@ pub(crate) fn ball_tiles(
 
 /// How balls of tiles block.
 pub(crate) fn rule(plan: &Plan) -> BlockRule {
-    if plan.facts.carves { BlockRule::carved() } else { BlockRule::uncarved() }
+    if plan.statistics.carves { BlockRule::carved() } else { BlockRule::uncarved() }
 }
 
 /// The balls of a tile. Those that are not what was written are named and made again; `None` where that fails.
@@ -101,12 +103,12 @@ fn sound(
     plan: &Plan,
     run: &Path,
     tile: TileId,
-    record: &Record,
+    record: &TileRecord,
     damaged: &mut Vec<String>,
     control: &Control<'_>,
 ) -> Result<Option<ModelParts>> {
     let path = Stage::Balls.result(run, tile);
-    let read = |record: &Record| read_balls(Source::bytes(&path, &record.read_result(&path)?));
+    let read = |record: &TileRecord| read_balls(Source::bytes(&path, &record.read_result(&path)?));
     match read(record) {
         Ok(balls) => return Ok(Some(balls)),
         Err(Error::Cancelled) => return Err(Error::Cancelled),
@@ -116,7 +118,7 @@ fn sound(
         Ok(balls) => Ok(Some(balls)),
         Err(Error::Cancelled) => Err(Error::Cancelled),
         Err(error) => {
-            let record = Record { outcome: Outcome::Failed(error.to_string()), ..Record::default() };
+            let record = TileRecord { outcome: TileOutcome::Failed(error.to_string()), ..TileRecord::default() };
             record.write(plan, run, Stage::Balls, tile)?;
             Ok(None)
         }
@@ -124,7 +126,7 @@ fn sound(
 }
 
 /// The rows of balls that may block one of `lines`.
-pub(crate) fn may_block<'a>(balls: &'a MedialBalls, lines: &'a Lines<'_>) -> impl Iterator<Item = usize> + 'a {
+pub(crate) fn may_block<'a>(balls: &'a MedialBalls, lines: &'a AreaLines<'_>) -> impl Iterator<Item = usize> + 'a {
     let rows = balls.centers.iter().zip(&balls.radii).enumerate();
     rows.filter(|(_, (center, radius))| {
         lines.may_meet(&square_of(**center, **radius), f64::from(center[2]) + f64::from(**radius))
@@ -140,13 +142,13 @@ pub(crate) fn push(balls: &mut MedialBalls, more: &MedialBalls, row: usize) {
 }
 
 /// What may stand on a tile of which nothing is known but how high its points are.
-fn unknown(plan: &Plan, tile: TileId) -> Vec<(Area, f64)> {
+fn unknown(plan: &Plan, tile: TileId) -> Vec<(MapArea, f64)> {
     let core = plan.grid().core(tile);
-    let part = |block: &crate::survey::Block| {
+    let part = |block: &crate::survey::SurveyBlock| {
         let own = block_area(block.at);
         let low = [0, 1].map(|axis| own.low[axis].max(core.low[axis]));
         let high = [0, 1].map(|axis| (own.low[axis] + CELL).min(core.high[axis]));
-        (Area { low, high }.widened(MOST_BALL), f64::from(block.heights[1]) + MOST_BALL)
+        (MapArea { low, high }.widened(MAX_BALL), f64::from(block.heights[1]) + MAX_BALL)
     };
     plan.blocks_in(&core).map(part).collect()
 }

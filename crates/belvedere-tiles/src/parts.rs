@@ -1,19 +1,20 @@
 //! Obstacles of a tile part by part: memory does not grow with the area that its lines of sight cross.
 //!
-//! The lowest of many directions of the sky meets balls all over a city. But a line of sight is free where no ball blocks it, so that balls may be
-//! asked one part after the other, and the answer does not depend on how they are cut into parts. Parts are squares of tiles, nearest first: most lines end
-//! at the nearest, and of a distant part only balls are asked that are high enough to block a line that is still free. Lines of sight to observers are asked
-//! in parts as well.
+//! The lowest of many directions of the sky meets balls all over a city. But a line of sight is free where no ball
+//! blocks it, so that balls may be asked one part after the other, and the answer does not depend on how they are cut
+//! into parts. Parts are squares of tiles, nearest first: most lines end at the nearest, and of a distant part only
+//! balls are asked that are high enough to block a line that is still free. Lines of sight to observers are asked in
+//! parts as well.
 
-use crate::grid::{Area, TOP_SIDE, TileId, square_area};
-use crate::lines::{Lines, MOST_BALL};
-use crate::obstacles::{BallTile, Found, ball_tiles, may_block, push, rule};
+use crate::grid::{MapArea, TOP_SIDE, TileId, square_area};
+use crate::lines::{AreaLines, MAX_BALL};
+use crate::obstacles::{BallTile, ObstacleSearch, ball_tiles, may_block, push, rule};
 use crate::plan::Plan;
 use crate::planned::Others;
 use crate::strips::Strips;
 use belvedere::Result;
 use belvedere::apps::rows::ObstacleParts;
-use belvedere::apps::tree_light::Crowns;
+use belvedere::apps::tree_light::CrownLight;
 use belvedere::control::Control;
 use belvedere::medial::{MedialBalls, vegetation_of_transmission};
 use belvedere::model::ModelParts;
@@ -23,50 +24,53 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 
-/// Distances from the cells up to which the balls of a tile are asked before the others, metres: after the first, few lines of sight are left.
+/// Distances from the cells up to which the balls of a tile are asked before the others, metres: after the first, few
+/// lines of sight are left.
 const BANDS: [f64; 4] = [64.0, 192.0, 448.0, f64::INFINITY];
 /// Balls that are asked before more are looked up, if there are as many.
 const WORTH_ASKING: usize = 100_000;
 
 /// The balls that may matter for the cells of a tile, of which a part is in memory at a time.
-pub(crate) struct Parts<'a> {
+pub(crate) struct TileObstacles<'a> {
     plan: &'a Plan,
     run: &'a Path,
     /// Where the cells lie.
-    cells: Area,
+    cells: MapArea,
     /// What blocks beside balls.
     others: &'a Others,
     /// Most balls of a part.
-    most_balls: usize,
+    max_balls: usize,
     /// Squares of tiles, nearest first.
     squares: Vec<Vec<BallTile>>,
-    found: Mutex<Found>,
+    found: Mutex<ObstacleSearch>,
 }
 
-impl<'a> Parts<'a> {
-    /// Parts of at most `most_balls` of the balls that may matter for `lines` from the cells of `tile`, and the `others` that block.
+impl<'a> TileObstacles<'a> {
+    /// Parts of at most `max_balls` of the balls that may matter for `lines` from the cells of `tile`, and the `others`
+    /// that block.
     ///
     /// # Errors
     /// [`belvedere::Error::Cancelled`].
     pub(crate) fn around(
         (plan, run, tile): (&'a Plan, &'a Path, TileId),
-        lines: &Lines<'_>,
+        lines: &AreaLines<'_>,
         others: &'a Others,
-        most_balls: usize,
+        max_balls: usize,
         control: &Control<'_>,
     ) -> Result<Self> {
-        let mut found = Found::default();
-        let squares = squares(tile, ball_tiles(plan, run, lines, &mut found, control)?, most_balls);
-        Ok(Self { plan, run, cells: lines.targets, others, most_balls, squares, found: Mutex::new(found) })
+        let mut found = ObstacleSearch::default();
+        let squares = squares(tile, ball_tiles(plan, run, lines, &mut found, control)?, max_balls);
+        Ok(Self { plan, run, cells: lines.targets, others, max_balls, squares, found: Mutex::new(found) })
     }
 
-    /// Gives `look` scenes of at most so many balls that may block one of `lines`, until all were given. A line of sight is free where it is free in all.
+    /// Gives `look` scenes of at most so many balls that may block one of `lines`, until all were given. A line of
+    /// sight is free where it is free in all.
     ///
     /// # Errors
     /// Those of `look`, of writing records, and [`belvedere::Error::Cancelled`].
     pub(crate) fn each_scene(
         &self,
-        lines: &Lines<'_>,
+        lines: &AreaLines<'_>,
         control: &Control<'_>,
         mut look: impl FnMut(&MedialScene) -> Result<()>,
     ) -> Result<()> {
@@ -77,7 +81,7 @@ impl<'a> Parts<'a> {
             let read = control.stage("reading balls", 0, || found.read(self.plan, self.run, of_tile.tile, control))?;
             let Some(ModelParts { balls, .. }) = read else { continue };
             for row in may_block(&balls, lines) {
-                if part.len() == self.most_balls {
+                if part.len() == self.max_balls {
                     look(&self.scene(std::mem::take(&mut part), &mut found, control)?)?;
                 }
                 push(&mut part, &balls, row);
@@ -87,20 +91,26 @@ impl<'a> Parts<'a> {
     }
 
     /// The scene of balls that are asked together.
-    fn scene(&self, balls: MedialBalls, found: &mut Found, control: &Control<'_>) -> Result<MedialScene> {
+    fn scene(&self, balls: MedialBalls, found: &mut ObstacleSearch, control: &Control<'_>) -> Result<MedialScene> {
         found.ball_count += balls.len();
-        found.most_held = found.most_held.max(balls.len());
+        found.max_held = found.max_held.max(balls.len());
         control.stage("indexing balls", balls.len(), || MedialScene::new(&balls, &rule(self.plan)))
     }
 
     /// What became of the balls.
-    pub(crate) fn into_found(self) -> Found {
+    pub(crate) fn into_found(self) -> ObstacleSearch {
         self.found.into_inner().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Takes from `free` what a square of tiles hides, part by part.
-    fn hide(&self, free: &mut Free<'_>, square: &[BallTile], found: &mut Found, control: &Control<'_>) -> Result<()> {
-        let mut part = Part::default();
+    fn hide(
+        &self,
+        free: &mut Free<'_>,
+        square: &[BallTile],
+        found: &mut ObstacleSearch,
+        control: &Control<'_>,
+    ) -> Result<()> {
+        let mut part = BallBatch::default();
         for BallTile { tile, tops, .. } in square {
             control.check()?;
             if free.strips.meeting(tops).is_empty() {
@@ -109,12 +119,12 @@ impl<'a> Parts<'a> {
             let read = control.stage("reading balls", 0, || found.read(self.plan, self.run, *tile, control))?;
             let Some(ModelParts { balls, transmission, .. }) = read else { continue };
             let vegetation = self.plan.trees.map(|_| vegetation_of_transmission(&transmission)).unwrap_or_default();
-            let distance = |center: &[f32; 3]| self.cells.distance(&Area::at(center.map(f64::from)));
+            let distance = |center: &[f32; 3]| self.cells.distance(&MapArea::at(center.map(f64::from)));
             let distances: Vec<f64> = balls.centers.par_iter().map(distance).collect();
             let mut from = f64::NEG_INFINITY;
             for to in BANDS {
                 // as far as the far corner of a square that a ball reaches into
-                let reach = 1.5 * TOP_SIDE + MOST_BALL;
+                let reach = 1.5 * TOP_SIDE + MAX_BALL;
                 let may_reach = |&&(number, _): &&([i32; 2], f32)| {
                     let distance = self.cells.distance(&square_area(number, TOP_SIDE));
                     distance + reach > from && distance <= to + reach
@@ -122,13 +132,13 @@ impl<'a> Parts<'a> {
                 let tops: Vec<_> = tops.iter().filter(may_reach).copied().collect();
                 let met = free.strips.meeting(&tops);
                 part.columns.extend(&met);
-                let least_tops = free.strips.least_tops(&met, &tops);
+                let min_tops = free.strips.min_tops(&met, &tops);
                 let is_in = |row: &usize| distances[*row] > from && distances[*row] <= to;
-                let may_block = |row: &usize| least_tops.may_block(balls.centers[*row], balls.radii[*row]);
+                let may_block = |row: &usize| min_tops.may_block(balls.centers[*row], balls.radii[*row]);
                 let rows: Vec<usize> =
                     (0..balls.len()).into_par_iter().filter(|row| is_in(row) && may_block(row)).collect();
                 for row in rows {
-                    if part.ball_count() == self.most_balls {
+                    if part.ball_count() == self.max_balls {
                         part.hide(free, self.plan, found, control)?;
                     }
                     let is_vegetation = vegetation.get(row) == Some(&true);
@@ -145,8 +155,8 @@ impl<'a> Parts<'a> {
     }
 }
 
-impl ObstacleParts for Parts<'_> {
-    fn crowns(&self) -> Option<Crowns> {
+impl ObstacleParts for TileObstacles<'_> {
+    fn crowns(&self) -> Option<CrownLight> {
         self.plan.trees
     }
 
@@ -195,7 +205,7 @@ struct Free<'a> {
 
 /// Balls that are asked together.
 #[derive(Default)]
-struct Part {
+struct BallBatch {
     opaque: MedialBalls,
     /// Where trees let light through.
     vegetation: MedialBalls,
@@ -203,18 +213,24 @@ struct Part {
     columns: BTreeSet<usize>,
 }
 
-impl Part {
+impl BallBatch {
     fn ball_count(&self) -> usize {
         self.opaque.len() + self.vegetation.len()
     }
 
     /// Takes what the balls hide from `free`, and lets them go.
-    fn hide(&mut self, free: &mut Free<'_>, plan: &Plan, found: &mut Found, control: &Control<'_>) -> Result<()> {
+    fn hide(
+        &mut self,
+        free: &mut Free<'_>,
+        plan: &Plan,
+        found: &mut ObstacleSearch,
+        control: &Control<'_>,
+    ) -> Result<()> {
         if self.ball_count() == 0 {
             return Ok(());
         }
         found.ball_count += self.ball_count();
-        found.most_held = found.most_held.max(self.ball_count());
+        found.max_held = found.max_held.max(self.ball_count());
         let columns: Vec<usize> = self.columns.iter().copied().collect();
         let hide = |lines: &mut FreeLines<'_>, balls: &mut MedialBalls| {
             let balls = std::mem::take(balls);
@@ -237,8 +253,8 @@ impl Part {
     }
 }
 
-/// Tiles in squares, the nearest first, all as large as the largest around `tile` with no more than `most_balls`.
-fn squares(tile: TileId, ball_tiles: Vec<BallTile>, most_balls: usize) -> Vec<Vec<BallTile>> {
+/// Tiles in squares, the nearest first, all as large as the largest around `tile` with no more than `max_balls`.
+fn squares(tile: TileId, ball_tiles: Vec<BallTile>, max_balls: usize) -> Vec<Vec<BallTile>> {
     let away = |other: &BallTile| [other.tile.east - tile.east, other.tile.north - tile.north];
     // the number of a square, where one of `side` tiles has the tile in its middle
     let number = |other: &BallTile, side: i64| away(other).map(|away| (away + (side - 1) / 2).div_euclid(side));
@@ -246,7 +262,7 @@ fn squares(tile: TileId, ball_tiles: Vec<BallTile>, most_balls: usize) -> Vec<Ve
     let balls_around =
         |side: i64| ball_tiles.iter().filter(|other| is_in_first(other, side)).map(|other| other.ball_count).sum();
     let farthest = ball_tiles.iter().flat_map(away).map(i64::abs).max().unwrap_or(0);
-    let fits = |side: &i64| -> bool { most_balls >= balls_around(*side) };
+    let fits = |side: &i64| -> bool { max_balls >= balls_around(*side) };
     let side = (2..=2 * farthest + 1).take_while(fits).last().unwrap_or(1);
     let mut squares: BTreeMap<[i64; 3], Vec<BallTile>> = BTreeMap::new();
     for other in ball_tiles {

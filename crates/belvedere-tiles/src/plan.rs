@@ -1,20 +1,20 @@
 //! The plan of a run: everything that a tile must know beside its own points.
 
 use crate::cell_sizes::CellSizes;
-use crate::grid::{Area, TileGrid, TileId, block_area};
-use crate::inputs::{Columns, InputFile, NOWHERE, PIECE_ROWS, hash};
+use crate::grid::{MapArea, TileGrid, TileId, block_area};
+use crate::inputs::{InputFile, NOWHERE, PIECE_ROWS, PointColumns, hash};
 use crate::planned::{Others, SideFile, added_meshes, far_terrain};
-use crate::question::Question;
+use crate::question::TileQuestion;
 use crate::record::Stage;
-use crate::survey::{Block, survey};
+use crate::survey::{SurveyBlock, survey};
 use crate::window;
 use belvedere::apps::targets::{grid_around, set_on_ground};
-use belvedere::apps::tree_light::Crowns;
+use belvedere::apps::tree_light::CrownLight;
 use belvedere::control::Control;
 use belvedere::crs::Crs;
 use belvedere::ground::{Ground, GroundParams};
 use belvedere::io::{LasHead, atomic, cloud_files};
-use belvedere::model::{ClearedArea, ModelParams, SurveyFacts};
+use belvedere::model::{ClearedArea, ModelParams, SurveyStatistics};
 use belvedere::query::Coverage;
 use belvedere::results::ResultKind;
 use belvedere::{Bounds, Error, Frame, Parameter, Result};
@@ -26,12 +26,13 @@ use std::sync::Arc;
 
 /// Version of the layout of plans and records.
 const LAYOUT: u32 = 8;
-/// Corners that the origin of local coordinates is one of, metres: of blocks of 64 m, and few, so that neighbouring surveys share it.
+/// Corners that the origin of local coordinates is one of, metres: of blocks of 64 m, and few, so that neighbouring
+/// surveys share it.
 const ORIGIN_STEP: f64 = 1024.0;
 /// Farthest that a point may lie from the origin, metres: up to here f32 keeps a millimetre.
 const FARTHEST: f64 = 16_384.0;
 /// Smallest and largest side of a tile, metres.
-const LEAST_TILE: f64 = 16.0;
+const MIN_TILE: f64 = 16.0;
 const LARGEST_TILE: f64 = 8192.0;
 /// Points around a place that its ground is taken from, metres, beside the usual ones.
 const GROUND_AROUND: f64 = 32.0;
@@ -42,11 +43,13 @@ pub struct PlanParams {
     pub clouds: Vec<PathBuf>,
     /// Reference system in place of what the files say.
     pub crs: Option<String>,
-    /// Side of a tile, metres. Default 512: a multiple of the blocks of 64 m, so that no point is looked at for nothing.
+    /// Side of a tile, metres. Default 512: a multiple of the blocks of 64 m, so that no point is looked at for
+    /// nothing.
     pub tile_size: f64,
     /// Sides of the cells of results. Default 1 m.
     pub cells: CellSizes,
-    /// Places that the survey must hold, in its coordinates: one outside is refused before points are read. Default none.
+    /// Places that the survey must hold, in its coordinates: one outside is refused before points are read. Default
+    /// none.
     pub places: Vec<[f64; 2]>,
     /// Most memory that a tile may take, bytes: tiles are quartered until the largest fits. `None` for any.
     pub memory: Option<u64>,
@@ -79,15 +82,16 @@ pub struct Plan {
     /// Reference system that was given in place of what the files say.
     pub(crate) crs: Option<String>,
     frame: PlanFrame,
-    pub(crate) columns: Columns,
+    pub(crate) columns: PointColumns,
     /// Side of a tile, metres.
     pub tile_size: f64,
     /// Sides of the cells of results.
     pub cells: CellSizes,
     /// How far around a tile points are read, metres.
-    pub halo: f64,
+    #[serde(rename = "halo")]
+    pub buffer: f64,
     /// What is asked.
-    pub questions: Vec<Question>,
+    pub questions: Vec<TileQuestion>,
     /// Meshes of what is planned, which block beside what was surveyed.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     meshes: Vec<SideFile>,
@@ -102,13 +106,14 @@ pub struct Plan {
     horizon: Option<SideFile>,
     /// Trees, where they let light through.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) trees: Option<Crowns>,
+    pub(crate) trees: Option<CrownLight>,
     /// Tiles that may hold points, from the south-west.
     pub tiles: Vec<TileId>,
     low: [f32; 3],
     high: [f32; 3],
-    pub(crate) facts: SurveyFacts,
-    pub(crate) blocks: Vec<Block>,
+    #[serde(rename = "facts")]
+    pub(crate) statistics: SurveyStatistics,
+    pub(crate) blocks: Vec<SurveyBlock>,
     /// What records name the plan by that they belong to: a fingerprint of its file; empty before it was read from one.
     #[serde(skip)]
     pub(crate) name: String,
@@ -136,8 +141,8 @@ impl Plan {
     /// Looks at all points once, and plans the tiles, without a question.
     ///
     /// # Errors
-    /// [`Error::InvalidParameter`] for sizes out of range, places outside, a survey that is too wide for one frame, and memory into which no tile fits;
-    /// those of reading the files, and of [`SurveyFacts::estimate`].
+    /// [`Error::InvalidParameter`] for sizes out of range, places outside, a survey that is too wide for one frame, and
+    /// memory into which no tile fits; those of reading the files, and of [`SurveyStatistics::estimate`].
     pub fn make(params: &PlanParams, control: &Control<'_>) -> Result<Self> {
         check_sizes(params)?;
         let (mut inputs, heads) = inputs(&params.clouds)?;
@@ -179,11 +184,11 @@ impl Plan {
                 format!("its reference system, {}, is not known to this program; give it with --crs", crs.describe());
             return Err(Error::UnusableCrs { path: inputs[with_crs].path.clone(), what });
         }
-        let columns = Columns::common(&heads);
+        let columns = PointColumns::common(&heads);
         let files: Vec<PathBuf> = inputs.iter().map(|file| file.path.clone()).collect();
         let points = inputs.iter().map(|file| file.points).sum();
         let local = |v: [f64; 3]| [v[0] - origin[0], v[1] - origin[1]];
-        let area = Area { low: local(low), high: local(high) };
+        let area = MapArea { low: local(low), high: local(high) };
         let options = window::options(params.crs.as_deref(), frame.to_frame()?);
         let found = control.stage("surveying", usize::try_from(points).unwrap_or(0), || {
             survey(&files, &options, columns, points, &area, control)
@@ -195,8 +200,8 @@ impl Plan {
         }
         let bounds = found.bounds.ok_or_else(|| Error::NoPoints { what: "all points are noise".to_owned() })?;
         let model = ModelParams::default();
-        let facts =
-            SurveyFacts::estimate(&files[0], &found.along_lines, &found.places, &found.extremes, &model, control)?;
+        let statistics =
+            SurveyStatistics::estimate(&files[0], &found.along_lines, &found.places, &found.extremes, &model, control)?;
         let mut plan = Self {
             layout: LAYOUT,
             program: params.program.clone(),
@@ -206,7 +211,7 @@ impl Plan {
             tile_size: params.tile_size,
             cells: params.cells.clone(),
             // in steps, so that it does not look more exact than it is
-            halo: facts.halo(&model).ceil(),
+            buffer: statistics.buffer(&model).ceil(),
             questions: Vec::new(),
             meshes: Vec::new(),
             cleared: Vec::new(),
@@ -216,7 +221,7 @@ impl Plan {
             tiles: Vec::new(),
             low: bounds.low,
             high: bounds.high,
-            facts,
+            statistics,
             blocks: found.blocks,
             frame,
             name: String::new(),
@@ -231,7 +236,8 @@ impl Plan {
     /// Reads the plan of a run.
     ///
     /// # Errors
-    /// [`Error::Io`], and [`Error::Malformed`] for a folder without a plan, for what is no plan, and for one of another version.
+    /// [`Error::Io`], and [`Error::Malformed`] for a folder without a plan, for what is no plan, and for one of another
+    /// version.
     pub fn read(folder: &Path) -> Result<Self> {
         let path = Self::path(folder);
         let refused = |what: String| Err(Error::malformed(&path, format!("{what} again with `belvedere city plan`")));
@@ -309,11 +315,11 @@ impl Plan {
 
     /// How balls of tiles are made.
     pub(crate) fn model(&self) -> ModelParams {
-        ModelParams::default().with_facts(Some(Arc::new(self.facts.clone())))
+        ModelParams::default().with_statistics(Some(Arc::new(self.statistics.clone())))
     }
 
     /// Files that may have points in `area`.
-    pub(crate) fn files_meeting(&self, area: &Area) -> impl Iterator<Item = &InputFile> {
+    pub(crate) fn files_meeting(&self, area: &MapArea) -> impl Iterator<Item = &InputFile> {
         // what headers round bounds by
         let area = area.widened(0.1);
         let PlanFrame { origin, metres_per_unit, .. } = &self.frame;
@@ -328,20 +334,21 @@ impl Plan {
     }
 
     /// The area whose points a tile needs for its balls.
-    pub(crate) fn window(&self, tile: TileId) -> Area {
-        self.grid().core(tile).in_blocks().widened(self.halo)
+    pub(crate) fn window(&self, tile: TileId) -> MapArea {
+        self.grid().core(tile).in_blocks().widened(self.buffer)
     }
 
     /// Blocks of 64 m with points that meet `area`.
-    pub(crate) fn blocks_in(&self, area: &Area) -> impl Iterator<Item = &Block> {
+    pub(crate) fn blocks_in(&self, area: &MapArea) -> impl Iterator<Item = &SurveyBlock> {
         area.blocks().filter_map(|at| {
             let place = self.blocks.binary_search_by_key(&at, |block| block.at).ok()?;
             self.blocks.get(place)
         })
     }
 
-    /// The tiles with cells for the result of a question, from the south-west: all but some at the edge of the survey that only larger cells reach.
-    pub(crate) fn tiles_of(&self, question: &Question) -> Vec<TileId> {
+    /// The tiles with cells for the result of a question, from the south-west: all but some at the edge of the survey
+    /// that only larger cells reach.
+    pub(crate) fn tiles_of(&self, question: &TileQuestion) -> Vec<TileId> {
         let cell = self.cells.of(question);
         self.tiles.iter().copied().filter(|&tile| self.has_cells(tile, cell)).collect()
     }
@@ -349,7 +356,7 @@ impl Plan {
     /// Tiles with cells for any result.
     pub(crate) fn tiles_with_cells(&self) -> Vec<TileId> {
         let (grid, cell) = (self.grid(), self.cells.largest());
-        let of_block = |block: &Block| {
+        let of_block = |block: &SurveyBlock| {
             let area = block_area(block.at).widened(self.reach(cell));
             let (first, last) = (grid.tile_of(area.low), grid.tile_of(area.high));
             (first.north..=last.north)
@@ -371,11 +378,11 @@ impl Plan {
     /// This with other questions.
     ///
     /// # Errors
-    /// [`Error::InvalidParameter`] for two questions whose results would lie in one folder and for parameters outside their range; those of reading
-    /// weather.
-    pub fn with_questions(self, questions: Vec<Question>, control: &Control<'_>) -> Result<Self> {
+    /// [`Error::InvalidParameter`] for two questions whose results would lie in one folder and for parameters outside
+    /// their range; those of reading weather.
+    pub fn with_questions(self, questions: Vec<TileQuestion>, control: &Control<'_>) -> Result<Self> {
         let mut names = BTreeSet::from([Stage::Balls.name()]);
-        if let Some(name) = questions.iter().map(Question::name).find(|name| !names.insert(name)) {
+        if let Some(name) = questions.iter().map(TileQuestion::name).find(|name| !names.insert(name)) {
             let (value, expected) = (format!("{name} twice"), "each question once");
             return Err(Error::InvalidParameter { parameter: Parameter::Questions, value, expected });
         }
@@ -383,8 +390,8 @@ impl Plan {
         Ok(Self { questions, ..self })
     }
 
-    /// This with meshes of what is planned, such as buildings: their triangles block exactly, beside what was surveyed, and cells below them are
-    /// asked about on top of them.
+    /// This with meshes of what is planned, such as buildings: their triangles block exactly, beside what was surveyed,
+    /// and cells below them are asked about on top of them.
     ///
     /// # Errors
     /// Those of reading meshes, and [`Error::InvalidParameter`] for one that does not lie on the survey.
@@ -393,11 +400,13 @@ impl Plan {
         Ok(Self { meshes, ..self })
     }
 
-    /// This before far terrain, an elevation raster and a horizon as [`read_terrain`](belvedere::io::read_terrain) and [`read_horizon`](belvedere::io::read_horizon) take them: directions to the
-    /// sun and the sky below it are blocked. Within the box of the survey, and a cell of the raster around it, terrain blocks nothing.
+    /// This before far terrain, an elevation raster and a horizon as [`read_terrain`](belvedere::io::read_terrain) and
+    /// [`read_horizon`](belvedere::io::read_horizon) take them: directions to the sun and the sky below it are blocked.
+    /// Within the box of the survey, and a cell of the raster around it, terrain blocks nothing.
     ///
     /// # Errors
-    /// Those of reading the files, and [`Error::InvalidParameter`] for terrain that does not reach the survey or lies far above or below it.
+    /// Those of reading the files, and [`Error::InvalidParameter`] for terrain that does not reach the survey or lies
+    /// far above or below it.
     pub fn with_far_terrain(self, terrain: Option<SideFile>, horizon: Option<SideFile>) -> Result<Self> {
         far_terrain(terrain.as_ref(), horizon.as_ref(), &self.frame()?, self.bounds())?;
         Ok(Self { terrain, horizon, ..self })
@@ -407,8 +416,8 @@ impl Plan {
     ///
     /// # Errors
     /// [`Error::MissingAttribute`] for a survey whose pulses do not say what vegetation is.
-    pub fn with_light_through_trees(self, trees: Crowns) -> Result<Self> {
-        if !(self.facts.carves && self.facts.measures_crowns) {
+    pub fn with_light_through_trees(self, trees: CrownLight) -> Result<Self> {
+        if !(self.statistics.carves && self.statistics.measures_crowns) {
             return Err(Error::MissingAttribute {
                 attribute: "return numbers and GPS times",
                 needed_for: "knowing which balls are vegetation",
@@ -421,7 +430,7 @@ impl Plan {
     /// Share of the pulses that get through crowns, in the places that the plan looked at.
     #[must_use]
     pub fn share_of_pulses_through_crowns(&self) -> f64 {
-        self.facts.whole.transmission
+        self.statistics.whole.transmission
     }
 
     /// The meshes of what is planned, and far terrain.
@@ -437,11 +446,12 @@ impl Plan {
     }
 
     /// What the values of a result are.
-    pub(crate) fn kind_of(&self, question: &Question) -> ResultKind {
+    pub(crate) fn kind_of(&self, question: &TileQuestion) -> ResultKind {
         question.kind(self.trees.is_none())
     }
 
-    /// Puts places on the map, local metres, on the ground: each that has no height gets `height` metres above the ground there.
+    /// Puts places on the map, local metres, on the ground: each that has no height gets `height` metres above the
+    /// ground there.
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] for a place without ground, those of reading the files and of [`Ground::of_cloud`].
@@ -450,7 +460,7 @@ impl Plan {
         for place in places {
             let Some(grid) = grid_around([*place], origin)? else { continue };
             let corner = [grid.corner[0], grid.corner[1] - grid.cell * grid.height as f64];
-            let area = Area { low: corner, high: [corner[0] + grid.cell * grid.width as f64, grid.corner[1]] };
+            let area = MapArea { low: corner, high: [corner[0] + grid.cell * grid.width as f64, grid.corner[1]] };
             let cloud = window::read(self, &area.widened(GROUND_AROUND), control)?;
             let ground = match Ground::of_cloud(&cloud, grid, &GroundParams::default(), control) {
                 Err(error) if !window::is_nothing(&error) => return Err(error),
@@ -468,7 +478,7 @@ impl Plan {
     fn fitting(mut self, memory: u64) -> Result<Self> {
         let (size, needed) = (self.tile_size, self.estimate().memory_bytes);
         while self.estimate().memory_bytes > memory {
-            if self.tile_size / 2.0 < LEAST_TILE || !self.cells.divide(self.tile_size / 2.0) {
+            if self.tile_size / 2.0 < MIN_TILE || !self.cells.divide(self.tile_size / 2.0) {
                 let megabytes = |bytes: u64| bytes as f64 / 1e6;
                 return Err(Error::InvalidParameter {
                     parameter: Parameter::TileMemory,
@@ -524,7 +534,7 @@ fn inputs(clouds: &[PathBuf]) -> Result<(Vec<InputFile>, Vec<LasHead>)> {
 fn check_sizes(params: &PlanParams) -> Result<()> {
     params.cells.check()?;
     let size = params.tile_size;
-    if !((LEAST_TILE..=LARGEST_TILE).contains(&size) && params.cells.divide(size)) {
+    if !((MIN_TILE..=LARGEST_TILE).contains(&size) && params.cells.divide(size)) {
         let expected = "16 to 8192 m, and a whole number of cells";
         return Err(Error::InvalidParameter { parameter: Parameter::TileSize, value: format!("{size} m"), expected });
     }
@@ -533,11 +543,11 @@ fn check_sizes(params: &PlanParams) -> Result<()> {
 
 /// The numbers of a plan that must not be anything.
 fn check_numbers(plan: &Plan) -> Option<()> {
-    let finite = plan.frame.origin.iter().chain(&plan.frame.metres_per_unit).chain([&plan.halo, &plan.tile_size]);
+    let finite = plan.frame.origin.iter().chain(&plan.frame.metres_per_unit).chain([&plan.buffer, &plan.tile_size]);
     let sizes = PlanParams { tile_size: plan.tile_size, cells: plan.cells.clone(), ..PlanParams::default() };
     let are_whole = plan.inputs.iter().all(InputFile::has_sound_pieces);
     let are_sorted = plan.blocks.windows(2).all(|pair| pair[0].at < pair[1].at);
     let is_sound =
-        finite.clone().all(|v| v.is_finite()) && plan.halo > 0.0 && plan.halo < 1e4 && are_sorted && are_whole;
+        finite.clone().all(|v| v.is_finite()) && plan.buffer > 0.0 && plan.buffer < 1e4 && are_sorted && are_whole;
     (is_sound && plan.has_sound_areas(plan.frame.origin) && check_sizes(&sizes).is_ok()).then_some(())
 }

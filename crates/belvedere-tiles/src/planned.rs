@@ -75,7 +75,8 @@ impl Others {
     }
 }
 
-/// What lies beyond a survey between `survey`, local metres of `frame`: an elevation raster and a horizon, where they are given.
+/// What lies beyond a survey between `survey`, local metres of `frame`: an elevation raster and a horizon, where they
+/// are given.
 ///
 /// # Errors
 /// Those of [`SideFile::read`], of [`read_terrain`], [`read_horizon`] and [`check_terrain`].

@@ -3,13 +3,13 @@
 use crate::cell_sizes::Topic;
 use crate::planned::SideFile;
 use belvedere::apps::ask::scene::Whereabouts;
-use belvedere::apps::ask::{self, Context, SkyParts, SunHours};
+use belvedere::apps::ask::{self, Context, SkyParts, SunHoursQuestion};
 use belvedere::apps::irradiance::{self, ClearSky, IrradianceParams, RadiationSource, SeasonRadiation, period_seasons};
 use belvedere::apps::shadow::{self, ShadowSun};
 use belvedere::apps::sky_view::{self, SkyDirections};
 use belvedere::apps::sun::Site;
 use belvedere::apps::sun_hours::{self, SunPlan};
-use belvedere::apps::tree_light::{Crowns, Season};
+use belvedere::apps::tree_light::{CrownLight, Season};
 use belvedere::apps::viewshed::{Observer, SightLimits};
 use belvedere::control::Control;
 use belvedere::io::{Source, read_weather};
@@ -21,7 +21,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
-pub enum Question {
+pub enum TileQuestion {
     /// Which cells a sun lights: 1 lit, 0 in shadow.
     Shadow {
         /// Name of the folder of its results.
@@ -42,7 +42,7 @@ pub enum Question {
         /// Where the survey lies.
         site: Site,
         /// The days.
-        days: SunHours,
+        days: SunHoursQuestion,
     },
     /// Whether a rule of sunlight is met on all of its days: 1 met, 0 not.
     SunRule {
@@ -51,14 +51,14 @@ pub enum Question {
         /// Where the survey lies.
         site: Site,
         /// The rule with its days.
-        days: SunHours,
+        days: SunHoursQuestion,
     },
     /// Energy of sun and sky on level cells over a period, kWh/m².
     Irradiance {
         /// Where the survey lies.
         site: Site,
         /// Where the radiation comes from.
-        radiation: Radiation,
+        radiation: TileRadiation,
         /// How it is gathered.
         params: IrradianceParams,
     },
@@ -75,7 +75,7 @@ pub enum Question {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
-pub enum Radiation {
+pub enum TileRadiation {
     /// Rows of weather, each cut into parts.
     Weather {
         /// The file.
@@ -93,13 +93,13 @@ pub enum Radiation {
 }
 
 /// A question with all that follows from its parameters.
-pub(crate) enum Asked {
-    Light(Light),
+pub(crate) enum PreparedQuestion {
+    Light(LightQuestion),
     Viewshed(Vec<Observer>),
 }
 
 /// What of the light of some directions is asked for.
-pub(crate) enum Light {
+pub(crate) enum LightQuestion {
     Shadow(ShadowSun),
     Sky(SkyDirections),
     SunHours { plan: Box<SunPlan>, site: Site },
@@ -107,7 +107,7 @@ pub(crate) enum Light {
     Irradiance { seasons: Vec<SeasonRadiation>, directions: Vec<[f64; 3]> },
 }
 
-impl Light {
+impl LightQuestion {
     /// Where it comes from, unit vectors.
     pub(crate) fn directions(&self) -> &[[f64; 3]] {
         match self {
@@ -119,11 +119,11 @@ impl Light {
     }
 }
 
-impl Radiation {
+impl TileRadiation {
     fn seasons(
         &self,
         site: &Site,
-        crowns: Option<Crowns>,
+        crowns: Option<CrownLight>,
         params: &IrradianceParams,
         control: &Control<'_>,
     ) -> Result<Vec<SeasonRadiation>> {
@@ -141,7 +141,7 @@ impl Radiation {
     }
 }
 
-impl Question {
+impl TileQuestion {
     /// The questions about tiles that a question about a survey comes to, one for each result; figures and remarks go
     /// into `context`.
     ///
@@ -163,12 +163,12 @@ impl Question {
                 let site = hours.place.site_at(whereabouts, context, None)?;
                 let mut questions = Vec::new();
                 if !hours.days.is_empty() {
-                    let days = SunHours { rules: Vec::new(), ..hours.clone() };
+                    let days = SunHoursQuestion { rules: Vec::new(), ..hours.clone() };
                     questions.push(Self::SunHours { site, days });
                 }
                 for (text, (column, _)) in hours.rules.iter().zip(ask::rules(&hours.rules)?) {
                     let days = ask::Days { dates: Vec::new(), between: None, ..hours.days.clone() };
-                    let days = SunHours { days, rules: vec![text.clone()], ..hours.clone() };
+                    let days = SunHoursQuestion { days, rules: vec![text.clone()], ..hours.clone() };
                     questions.push(Self::SunRule { name: column.to_owned(), site, days });
                 }
                 Ok(questions)
@@ -247,29 +247,31 @@ impl Question {
     /// What follows from its parameters, where crowns of trees let light through or not.
     ///
     /// # Errors
-    /// [`Error::InvalidParameter`] for parameters outside their range, a sun that is not above the horizon and eyes that are nowhere; those of
-    /// reading weather.
-    pub(crate) fn prepare(&self, crowns: Option<Crowns>, control: &Control<'_>) -> Result<Asked> {
+    /// [`Error::InvalidParameter`] for parameters outside their range, a sun that is not above the horizon and eyes
+    /// that are nowhere; those of reading weather.
+    pub(crate) fn prepare(&self, crowns: Option<CrownLight>, control: &Control<'_>) -> Result<PreparedQuestion> {
         let invalid = |parameter, value: String, expected| Err(Error::InvalidParameter { parameter, value, expected });
         match self {
             Self::Shadow { to_sun, season, .. } if to_sun[2] > 0.0 => {
-                Ok(Asked::Light(Light::Shadow(ShadowSun { to_sun: *to_sun, season: *season })))
+                Ok(PreparedQuestion::Light(LightQuestion::Shadow(ShadowSun { to_sun: *to_sun, season: *season })))
             }
             Self::Shadow { to_sun, .. } => {
                 let elevation = to_sun[2].clamp(-1.0, 1.0).asin().to_degrees();
                 invalid(Parameter::SunElevation, format!("{elevation:.3} degrees"), "above the horizon")
             }
-            Self::SkyView { sky } => Ok(Asked::Light(Light::Sky(sky.directions()?))),
-            Self::SunHours { site, days } => {
-                Ok(Asked::Light(Light::SunHours { plan: Box::new(days.plan(site, None)?.0), site: *site }))
-            }
-            Self::SunRule { site, days, .. } => {
-                Ok(Asked::Light(Light::SunRule { plan: Box::new(days.plan(site, None)?.0), site: *site }))
-            }
+            Self::SkyView { sky } => Ok(PreparedQuestion::Light(LightQuestion::Sky(sky.directions()?))),
+            Self::SunHours { site, days } => Ok(PreparedQuestion::Light(LightQuestion::SunHours {
+                plan: Box::new(days.plan(site, None)?.0),
+                site: *site,
+            })),
+            Self::SunRule { site, days, .. } => Ok(PreparedQuestion::Light(LightQuestion::SunRule {
+                plan: Box::new(days.plan(site, None)?.0),
+                site: *site,
+            })),
             Self::Irradiance { site, radiation, params } => {
                 let seasons = radiation.seasons(&site.validate()?, crowns, params, control)?;
                 let directions = seasons.iter().flat_map(|season| season.radiation.directions()).collect();
-                Ok(Asked::Light(Light::Irradiance { seasons, directions }))
+                Ok(PreparedQuestion::Light(LightQuestion::Irradiance { seasons, directions }))
             }
             Self::Viewshed { eyes, .. } if eyes.is_empty() || !eyes.iter().flatten().all(|v| v.is_finite()) => {
                 invalid(Parameter::Observer, format!("{eyes:?}"), "one or more places with a height")
@@ -278,7 +280,7 @@ impl Question {
                 let limits =
                     SightLimits { distance: [0.0, max_distance.unwrap_or(f64::INFINITY)], ..SightLimits::default() };
                 limits.validate()?;
-                Ok(Asked::Viewshed(eyes.iter().map(|&eye| Observer { eye, limits }).collect()))
+                Ok(PreparedQuestion::Viewshed(eyes.iter().map(|&eye| Observer { eye, limits }).collect()))
             }
         }
     }

@@ -3,7 +3,7 @@
 use crate::grid::TileId;
 use crate::inputs::hash;
 use crate::plan::Plan;
-use crate::question::Question;
+use crate::question::TileQuestion;
 use belvedere::io::atomic;
 use belvedere::{Error, Result};
 use serde::{Deserialize, Serialize};
@@ -11,7 +11,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 /// Largest record that is believed, bytes.
-const MOST_BYTES: u64 = 1 << 26;
+const MAX_BYTES: u64 = 1 << 26;
 
 /// A step of the run of a tile.
 #[derive(Clone, Copy, Debug)]
@@ -19,7 +19,7 @@ pub enum Stage<'a> {
     /// Its balls.
     Balls,
     /// The answer to a question.
-    Answer(&'a Question),
+    Answer(&'a TileQuestion),
 }
 
 impl Stage<'_> {
@@ -50,7 +50,7 @@ impl Stage<'_> {
 /// What became of a tile.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Outcome {
+pub enum TileOutcome {
     /// Its result is there.
     Done,
     /// Nothing is there, and there is no result.
@@ -77,11 +77,11 @@ impl Stamp {
 
 /// The record of a tile.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Record {
+pub struct TileRecord {
     /// Name of the plan that it belongs to.
     pub(crate) plan: String,
     /// What became of the tile.
-    pub outcome: Outcome,
+    pub outcome: TileOutcome,
     /// The file of its result, where there is one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) result: Option<Stamp>,
@@ -90,8 +90,8 @@ pub struct Record {
     /// Balls that were made, or that could matter for the answer.
     pub balls: usize,
     /// Most balls that were held at a time for an answer.
-    #[serde(default, skip_serializing_if = "is_zero")]
-    pub most_balls: usize,
+    #[serde(rename = "most_balls", default, skip_serializing_if = "is_zero")]
+    pub max_balls: usize,
     /// Cells that are asked about.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub cells: usize,
@@ -120,11 +120,11 @@ fn is_zero(count: &usize) -> bool {
     *count == 0
 }
 
-impl Record {
+impl TileRecord {
     /// The record of a tile in a run; `None` where there is none that belongs to the plan.
     pub(crate) fn read(plan: &Plan, run: &Path, stage: Stage<'_>, tile: TileId) -> Option<Self> {
         let path = stage.record(run, tile);
-        if std::fs::metadata(&path).ok()?.len() > MOST_BYTES {
+        if std::fs::metadata(&path).ok()?.len() > MAX_BYTES {
             return None;
         }
         let record: Self = serde_json::from_slice(&std::fs::read(&path).ok()?).ok()?;
@@ -134,7 +134,7 @@ impl Record {
     /// Whether the tile need not be done again.
     #[must_use]
     pub fn is_settled(&self) -> bool {
-        !matches!(self.outcome, Outcome::Failed(_))
+        !matches!(self.outcome, TileOutcome::Failed(_))
     }
 
     /// What became of the file of its result since, as far as its size tells; `None` where nothing did.

@@ -22,7 +22,7 @@ pub(crate) fn write_report(plan: &Plan, folder: &Path) -> Result<()> {
         plan.inputs.len(),
         found.tiles,
         plan.tile_size,
-        plan.halo
+        plan.buffer
     );
     for question in &plan.questions {
         let _ = writeln!(text, "Cells of `{}`: {} m.", question.name(), plan.cells.of(question));

@@ -1,13 +1,13 @@
 //! A run: all tiles that are not done yet, one after the other.
 
-use crate::answer::{Surface, Task, answer};
+use crate::answer::{TileSurface, TileTask, answer};
 use crate::grid::TileId;
-use crate::lines::{Lines, tiles};
+use crate::lines::{AreaLines, tiles};
 use crate::make_balls::make_balls;
 use crate::merge::write_catalogue;
 use crate::plan::Plan;
 use crate::planned::Others;
-use crate::record::{Outcome, Record, Stage};
+use crate::record::{Stage, TileOutcome, TileRecord};
 use crate::report::write_report;
 use belvedere::apps::ask::{Remark, remark_on_edge};
 use belvedere::control::Control;
@@ -46,9 +46,9 @@ pub struct RunParams<'a> {
     pub shard: Shard,
     /// Which steps.
     pub steps: Steps,
-    /// Most balls that are held at a time for an answer; no answer depends on it. `None` for as many as take no more memory than
-    /// making the balls of the largest tile.
-    pub most_balls: Option<usize>,
+    /// Most balls that are held at a time for an answer; no answer depends on it. `None` for as many as take no more
+    /// memory than making the balls of the largest tile.
+    pub max_balls: Option<usize>,
     /// Seconds on a clock of the program, for records; the library has none.
     pub seconds: &'a dyn Fn() -> f64,
 }
@@ -69,7 +69,8 @@ pub struct RunReport {
     /// Of these, cells near the edge of the survey.
     pub cells_near_edge: usize,
     /// Most balls that were held at a time for an answer.
-    pub most_balls: usize,
+    #[serde(rename = "most_balls")]
+    pub max_balls: usize,
     /// Observers of viewsheds that stand inside an obstacle, and see nothing.
     pub skipped_observers: usize,
     /// Results that were damaged or gone, and were made again.
@@ -98,7 +99,7 @@ impl RunReport {
         damaged.chain(unproven).chain(skipped).chain(edge).collect()
     }
 
-    fn count_edge(&mut self, record: &Record) {
+    fn count_edge(&mut self, record: &TileRecord) {
         if let Some(near) = record.near_edge_cells {
             self.cells_near_edge += near;
             self.cells_of_light += record.cells;
@@ -109,7 +110,8 @@ impl RunReport {
 /// Most damaged results that are named.
 const MAX_NAMED: usize = 10;
 
-/// Makes the balls and the answers that a run lacks. What fails is named and recorded, and the rest goes on; the next run tries it again.
+/// Makes the balls and the answers that a run lacks. What fails is named and recorded, and the rest goes on; the next
+/// run tries it again.
 ///
 /// # Errors
 /// [`Error::InvalidParameter`] for a share that there is not, [`Error::Cancelled`], and those of writing records.
@@ -119,23 +121,23 @@ pub fn run(plan: &Plan, folder: &Path, params: &RunParams<'_>, control: &Control
         let value = format!("{number}/{of}");
         return Err(Error::InvalidParameter { parameter: Parameter::Shard, value, expected: "1/N to N/N" });
     }
-    let mut work = Work { plan, folder, params, control, report: RunReport::default() };
+    let mut work = RunWork { plan, folder, params, control, report: RunReport::default() };
     let own = || plan.tiles.iter().copied().skip(number - 1).step_by(of);
     for tile in own() {
         work.balls(tile)?;
     }
     let questions = if params.steps == Steps::All { &plan.questions[..] } else { &[] };
-    let most_balls = params.most_balls.unwrap_or_else(|| plan.balls_at_a_time());
+    let max_balls = params.max_balls.unwrap_or_else(|| plan.balls_at_a_time());
     let others = if questions.is_empty() { Others::none() } else { plan.others()? };
-    let mut prepared = Vec::new();
+    let mut ready = Vec::new();
     for question in questions {
-        prepared.push((plan.cells.of(question), question, question.prepare(plan.trees, control)?));
+        ready.push((plan.cells.of(question), question, question.prepare(plan.trees, control)?));
     }
     // those on cells of one size follow each other and share the surface of a tile
-    prepared.sort_by(|a, b| a.0.total_cmp(&b.0));
+    ready.sort_by(|a, b| a.0.total_cmp(&b.0));
     for tile in own() {
         let mut last = None;
-        for (cell, question, asked) in &prepared {
+        for (cell, question, prepared) in &ready {
             if !plan.has_cells(tile, *cell) {
                 continue;
             }
@@ -149,10 +151,10 @@ pub fn run(plan: &Plan, folder: &Path, params: &RunParams<'_>, control: &Control
             // other shares may not have come to them
             let core = plan.grid().core(tile);
             let lowest = plan.lowest_of_cells(tile, *cell);
-            for other in tiles(plan, &Lines::of(asked, core, lowest)) {
+            for other in tiles(plan, &AreaLines::of(prepared, core, lowest)) {
                 work.missing_balls(other)?;
             }
-            let task = Task { question, asked, others: &others, most_balls };
+            let task = TileTask { question, prepared, others: &others, max_balls };
             work.answer(task, tile, &mut last)?;
         }
     }
@@ -163,7 +165,7 @@ pub fn run(plan: &Plan, folder: &Path, params: &RunParams<'_>, control: &Control
     Ok(work.report)
 }
 
-struct Work<'a> {
+struct RunWork<'a> {
     plan: &'a Plan,
     folder: &'a Path,
     params: &'a RunParams<'a>,
@@ -171,10 +173,10 @@ struct Work<'a> {
     report: RunReport,
 }
 
-impl Work<'_> {
+impl RunWork<'_> {
     /// The record of a tile that is done and whose result is still there; what is damaged is named.
-    fn settled(&mut self, stage: Stage<'_>, tile: TileId) -> Option<Record> {
-        let record = Record::read(self.plan, self.folder, stage, tile).filter(Record::is_settled)?;
+    fn settled(&mut self, stage: Stage<'_>, tile: TileId) -> Option<TileRecord> {
+        let record = TileRecord::read(self.plan, self.folder, stage, tile).filter(TileRecord::is_settled)?;
         let Some(damage) = record.damage(self.folder, stage, tile) else { return Some(record) };
         self.report.damaged.push(damage);
         None
@@ -193,34 +195,39 @@ impl Work<'_> {
 
     /// The same for a tile that an answer needs: one that failed before is not tried again.
     fn missing_balls(&mut self, tile: TileId) -> Result<()> {
-        if Record::read(self.plan, self.folder, Stage::Balls, tile).is_none() {
+        if TileRecord::read(self.plan, self.folder, Stage::Balls, tile).is_none() {
             self.attempt(Stage::Balls, tile, || make_balls(self.plan, self.folder, tile, self.control))?;
             self.report.balls_made += 1;
         }
         Ok(())
     }
 
-    fn answer(&mut self, task: Task<'_>, tile: TileId, last: &mut Option<Surface>) -> Result<()> {
+    fn answer(&mut self, task: TileTask<'_>, tile: TileId, last: &mut Option<TileSurface>) -> Result<()> {
         let stage = Stage::Answer(task.question);
         let record = self.attempt(stage, tile, || answer(self.plan, self.folder, task, tile, last, self.control))?;
         self.report.answers_made += 1;
         self.report.unproven_cells += record.unproven_cells;
         self.report.count_edge(&record);
         self.report.damaged.extend(record.damaged);
-        self.report.most_balls = self.report.most_balls.max(record.most_balls);
+        self.report.max_balls = self.report.max_balls.max(record.max_balls);
         self.report.skipped_observers = self.report.skipped_observers.max(record.skipped_observers);
         Ok(())
     }
 
     /// Does something with a tile, and records how long it took or why it failed.
-    fn attempt(&mut self, stage: Stage<'_>, tile: TileId, work: impl FnOnce() -> Result<Record>) -> Result<Record> {
+    fn attempt(
+        &mut self,
+        stage: Stage<'_>,
+        tile: TileId,
+        work: impl FnOnce() -> Result<TileRecord>,
+    ) -> Result<TileRecord> {
         let start = (self.params.seconds)();
         let mut record = match work() {
             Ok(record) => record,
             Err(Error::Cancelled) => return Err(Error::Cancelled),
             Err(error) => {
                 self.report.failed.push(format!("{} of tile {}: {error}", stage.name(), tile.name()));
-                Record { outcome: Outcome::Failed(error.to_string()), ..Record::default() }
+                TileRecord { outcome: TileOutcome::Failed(error.to_string()), ..TileRecord::default() }
             }
         };
         record.seconds = (self.params.seconds)() - start;

@@ -1,7 +1,7 @@
 //! How far a run has come.
 
 use crate::plan::Plan;
-use crate::record::{Outcome, Record, Stage};
+use crate::record::{Stage, TileOutcome, TileRecord};
 use serde::Serialize;
 use std::path::Path;
 
@@ -57,15 +57,15 @@ fn of_stage(plan: &Plan, folder: &Path, stage: Stage<'_>) -> StageStatus {
         Stage::Answer(question) => Some(plan.tiles_of(question)),
     };
     for &tile in with_cells.as_ref().unwrap_or(&plan.tiles) {
-        let record = Record::read(plan, folder, stage, tile);
+        let record = TileRecord::read(plan, folder, stage, tile);
         let Some(record) = record.filter(|record| record.damage(folder, stage, tile).is_none()) else {
             status.left += 1;
             continue;
         };
         match &record.outcome {
-            Outcome::Done => status.done += 1,
-            Outcome::Nothing => status.empty += 1,
-            Outcome::Failed(why) => status.failed.push(format!("tile {}: {why}", tile.name())),
+            TileOutcome::Done => status.done += 1,
+            TileOutcome::Nothing => status.empty += 1,
+            TileOutcome::Failed(why) => status.failed.push(format!("tile {}: {why}", tile.name())),
         }
         status.points_read += record.points;
         status.unproven_cells += record.unproven_cells;

@@ -1,23 +1,25 @@
 //! Where lines of sight that are still free run, and what is high enough to block one of them.
 //!
-//! Seen along a direction, the lines from a tile lie side by side in strips. What stands in a strip must be higher than the lowest line there. Few lines reach
-//! far: so most of what stands far away never needs to be looked at, let alone indexed.
+//! Seen along a direction, the lines from a tile lie side by side in strips. What stands in a strip must be higher than
+//! the lowest line there. Few lines reach far: so most of what stands far away never needs to be looked at, let alone
+//! indexed.
 
-use crate::grid::{Area, TOP_SIDE, square_area, square_at};
-use crate::lines::{MOST_BALL, ROOM};
+use crate::grid::{MapArea, TOP_SIDE, square_area, square_at};
+use crate::lines::{MAX_BALL, ROOM};
 use belvedere::query::FreeLines;
 use rayon::prelude::*;
 use std::collections::HashMap;
 
 /// Least width of a strip, metres, and most strips of a direction.
 const WIDTH: f64 = 4.0;
-const MOST_STRIPS: f64 = 1024.0;
-/// Slope in place of that of lines that are steeper, metres of height for each metre on the map: in the highest scene they move by less than [`ROOM`].
+const MAX_STRIPS: f64 = 1024.0;
+/// Slope in place of that of lines that are steeper, metres of height for each metre on the map: in the highest scene
+/// they move by less than [`ROOM`].
 const STEEPEST: f64 = 1e6;
 /// Slope below which lines reach far: 11 degrees.
 const LOW_SLOPE: f64 = 0.2;
 /// Lines of these up to which each has its own start, and neighbours that share one where lines are steeper.
-const MOST_STARTS: usize = 1 << 24;
+const MAX_STARTS: usize = 1 << 24;
 const NEIGHBOURS: usize = 256;
 /// Directions handed to a thread at once.
 const TOGETHER: usize = 64;
@@ -25,55 +27,58 @@ const TOGETHER: usize = 64;
 const PARTS: i32 = 2;
 const CELL: f64 = TOP_SIDE / PARTS as f64;
 /// Radii up to which balls are looked up together, metres.
-const RADII: [f64; 2] = [1.0, MOST_BALL];
+const RADII: [f64; 2] = [1.0, MAX_BALL];
 
 /// The lines of sight in one direction.
-struct Course {
+struct DirectionLines {
     /// Unit vector on the map that they run along.
     along: [f64; 2],
     slope: f64,
     /// Where the first strip begins to the left of that.
     left: f64,
-    strips: Vec<Strip>,
+    strips: Vec<LineStrip>,
 }
 
 /// Lines of sight side by side.
 #[derive(Clone, Copy)]
-struct Strip {
+struct LineStrip {
     /// Where the first starts along the direction.
     start: f64,
     /// Height of the lowest, continued back to where the distance along the direction is zero.
     height: f64,
 }
 
-const NO_LINES: Strip = Strip { start: f64::INFINITY, height: f64::INFINITY };
+const NO_LINES: LineStrip = LineStrip { start: f64::INFINITY, height: f64::INFINITY };
 
 /// Lines of sight that are still free.
 pub(crate) struct Strips {
     width: f64,
     /// Those of each direction.
-    courses: Vec<Course>,
+    courses: Vec<DirectionLines>,
 }
 
 impl Strips {
     /// No lines yet, in `directions` from targets over an area.
-    pub(crate) fn new(directions: &[[f64; 3]], targets: &Area) -> Self {
+    pub(crate) fn new(directions: &[[f64; 3]], targets: &MapArea) -> Self {
         let extent = (targets.high[0] - targets.low[0]).hypot(targets.high[1] - targets.low[1]);
-        let width = WIDTH.max(extent / MOST_STRIPS);
-        Self { width, courses: directions.iter().map(|direction| Course::new(*direction, targets, width)).collect() }
+        let width = WIDTH.max(extent / MAX_STRIPS);
+        Self {
+            width,
+            courses: directions.iter().map(|direction| DirectionLines::new(*direction, targets, width)).collect(),
+        }
     }
 
     /// Looks up where the lines of `free` in the directions of `columns` run, which ascend.
     pub(crate) fn look_up(&mut self, free: &FreeLines<'_>, columns: &[usize]) {
         let (width, courses) = (self.width, self.courses.iter_mut().enumerate());
-        let mut looked_up: Vec<(usize, &mut Course)> =
+        let mut looked_up: Vec<(usize, &mut DirectionLines)> =
             courses.filter(|(column, _)| columns.binary_search(column).is_ok()).collect();
         let low_count = looked_up.iter().filter(|(_, course)| course.is_low()).count();
         // where lines reach far each has its own start
-        let of_low = (free.target_count() * low_count).div_ceil(MOST_STARTS);
+        let of_low = (free.target_count() * low_count).div_ceil(MAX_STARTS);
         looked_up.par_chunks_mut(TOGETHER).for_each(|courses| {
             for (is_low, together) in [(true, of_low), (false, NEIGHBOURS)] {
-                let (columns, mut courses): (Vec<usize>, Vec<&mut Course>) = courses
+                let (columns, mut courses): (Vec<usize>, Vec<&mut DirectionLines>) = courses
                     .iter_mut()
                     .filter(|(_, course)| course.is_low() == is_low)
                     .map(|(column, course)| (*column, &mut **course))
@@ -82,54 +87,59 @@ impl Strips {
                 free.each_start(&columns, together, |number, corners, lowest| {
                     let [low, high] = corners.map(|corner| corner.map(f64::from));
                     if let Some(course) = courses.get_mut(number) {
-                        course.add(&Area { low, high }, f64::from(lowest), width);
+                        course.add(&MapArea { low, high }, f64::from(lowest), width);
                     }
                 });
             }
         });
     }
 
-    /// The columns of the directions in which something on one of the squares of 16 m with the highest `tops` may block a line.
+    /// The columns of the directions in which something on one of the squares of 16 m with the highest `tops` may block
+    /// a line.
     pub(crate) fn meeting(&self, tops: &[([i32; 2], f32)]) -> Vec<usize> {
-        let squares: Vec<(Area, f64)> =
+        let squares: Vec<(MapArea, f64)> =
             tops.iter().map(|&(number, top)| (square_area(number, TOP_SIDE), f64::from(top))).collect();
-        let meets = |course: &Course| squares.iter().any(|(area, top)| *top >= course.least_top(area, self.width));
+        let meets =
+            |course: &DirectionLines| squares.iter().any(|(area, top)| *top >= course.min_top(area, self.width));
         let courses = self.courses.par_iter().enumerate();
         courses.filter(|(_, course)| meets(course)).map(|(column, _)| column).collect()
     }
 
-    /// How high balls on squares of 16 m with the highest `tops` must be to block a line in the directions of any of `columns`.
-    pub(crate) fn least_tops(&self, columns: &[usize], tops: &[([i32; 2], f32)]) -> LeastTops {
-        let courses: Vec<&Course> = columns.iter().filter_map(|&column| self.courses.get(column)).collect();
-        let least =
-            |area: &Area| courses.iter().map(|course| course.least_top(area, self.width)).fold(f64::INFINITY, f64::min);
+    /// How high balls on squares of 16 m with the highest `tops` must be to block a line in the directions of any of
+    /// `columns`.
+    pub(crate) fn min_tops(&self, columns: &[usize], tops: &[([i32; 2], f32)]) -> MinTops {
+        let courses: Vec<&DirectionLines> = columns.iter().filter_map(|&column| self.courses.get(column)).collect();
+        let min = |area: &MapArea| {
+            courses.iter().map(|course| course.min_top(area, self.width)).fold(f64::INFINITY, f64::min)
+        };
         let of_square = |&(number, top): &([i32; 2], f32)| {
-            let reached = f64::from(top) >= least(&square_area(number, TOP_SIDE).widened(MOST_BALL));
+            let reached = f64::from(top) >= min(&square_area(number, TOP_SIDE).widened(MAX_BALL));
             // numbers in a damaged record may be any
             let [east, north] = number.map(|number| number.wrapping_mul(PARTS));
             let cells =
                 (0..PARTS * PARTS).map(move |part| [east.wrapping_add(part % PARTS), north.wrapping_add(part / PARTS)]);
-            let with_least = move |cell| (cell, RADII.map(|radius| least(&square_area(cell, CELL).widened(radius))));
-            cells.filter(move |_| reached).map(with_least)
+            let with_min = move |cell| (cell, RADII.map(|radius| min(&square_area(cell, CELL).widened(radius))));
+            cells.filter(move |_| reached).map(with_min)
         };
-        LeastTops(tops.par_iter().flat_map_iter(of_square).collect())
+        MinTops(tops.par_iter().flat_map_iter(of_square).collect())
     }
 }
 
-/// How high balls must be to block a line: by the cell of their centre, those of small and those of any radius. In other cells none blocks.
-pub(crate) struct LeastTops(HashMap<[i32; 2], [f64; 2]>);
+/// How high balls must be to block a line: by the cell of their centre, those of small and those of any radius. In
+/// other cells none blocks.
+pub(crate) struct MinTops(HashMap<[i32; 2], [f64; 2]>);
 
-impl LeastTops {
+impl MinTops {
     pub(crate) fn may_block(&self, [x, y, z]: [f32; 3], radius: f32) -> bool {
         let radius = f64::from(radius);
-        let Some(kind) = RADII.iter().position(|most| radius <= *most) else { return true };
-        let least = self.0.get(&square_at([x, y], CELL));
-        least.is_some_and(|least| f64::from(z) + radius >= least[kind])
+        let Some(kind) = RADII.iter().position(|max| radius <= *max) else { return true };
+        let min = self.0.get(&square_at([x, y], CELL));
+        min.is_some_and(|min| f64::from(z) + radius >= min[kind])
     }
 }
 
-impl Course {
-    fn new(direction: [f64; 3], targets: &Area, width: f64) -> Self {
+impl DirectionLines {
+    fn new(direction: [f64; 3], targets: &MapArea, width: f64) -> Self {
         let level = direction[0].hypot(direction[1]);
         let slope = direction[2] / level;
         let (along, slope) = if slope < STEEPEST {
@@ -149,7 +159,7 @@ impl Course {
     }
 
     /// From where to where an area reaches along the lines and across.
-    fn spans(&self, area: &Area) -> [[f64; 2]; 2] {
+    fn spans(&self, area: &MapArea) -> [[f64; 2]; 2] {
         [area.span(self.along), area.span([-self.along[1], self.along[0]])]
     }
 
@@ -162,17 +172,17 @@ impl Course {
     }
 
     /// Adds lines that start over an area, none lower than `lowest`.
-    fn add(&mut self, area: &Area, lowest: f64, width: f64) {
+    fn add(&mut self, area: &MapArea, lowest: f64, width: f64) {
         let [[first, last], across] = self.spans(area);
         let met = self.met(across, width);
         let height = lowest - last * self.slope;
         for strip in self.strips.get_mut(met).into_iter().flatten() {
-            *strip = Strip { start: strip.start.min(first), height: strip.height.min(height) };
+            *strip = LineStrip { start: strip.start.min(first), height: strip.height.min(height) };
         }
     }
 
     /// How high something over `area` must be to block a line, local metres.
-    fn least_top(&self, area: &Area, width: f64) -> f64 {
+    fn min_top(&self, area: &MapArea, width: f64) -> f64 {
         let [[near, far], [left, right]] = self.spans(area);
         let met = self.strips.get(self.met([left - ROOM, right + ROOM], width)).unwrap_or_default();
         let ahead = met.iter().filter(|strip| far >= strip.start - ROOM);
@@ -207,7 +217,7 @@ mod tests {
         for count in [3, 300, 40_000] {
             let targets: Vec<[f32; 3]> = (0..count).map(|i| place(3, i, [0.0, 200.0], [0.0, 8.0])).collect();
             let free = FreeLines::new(&targets, &directions).unwrap();
-            let area = Area { low: [0.0; 2], high: [200.0; 2] };
+            let area = MapArea { low: [0.0; 2], high: [200.0; 2] };
             let mut strips = Strips::new(&directions, &area);
             strips.look_up(&free, &columns);
             let balls = MedialBalls {
@@ -218,8 +228,8 @@ mod tests {
                 separation_angles: vec![1.0; 2000],
             };
             let tops = tops(&balls);
-            let least_tops = strips.least_tops(&strips.meeting(&tops), &tops);
-            let may_block = |row: &usize| least_tops.may_block(balls.centers[*row], balls.radii[*row]);
+            let min_tops = strips.min_tops(&strips.meeting(&tops), &tops);
+            let may_block = |row: &usize| min_tops.may_block(balls.centers[*row], balls.radii[*row]);
             let rows: Vec<usize> = (0..2000).filter(may_block).collect();
             let blocks = |row: usize| {
                 let (center, radius) = (balls.centers[row].map(f64::from), f64::from(balls.radii[row]));

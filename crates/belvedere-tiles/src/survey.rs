@@ -1,7 +1,7 @@
 //! One pass over all points: where they lie, how high, and samples of them.
 
-use crate::grid::{Area, block_of};
-use crate::inputs::{Columns, NOWHERE, PIECE_ROWS, Piece, hold};
+use crate::grid::{MapArea, block_of};
+use crate::inputs::{NOWHERE, PIECE_ROWS, PieceCell, PointColumns, hold};
 use crate::window;
 use belvedere::control::Control;
 use belvedere::io::{CloudBatch, ReadOptions, read_batches};
@@ -12,7 +12,7 @@ use std::collections::{BTreeMap, HashMap};
 use std::path::PathBuf;
 
 /// Most points of the sample along flight lines.
-const MOST_SAMPLED: u64 = 4_000_000;
+const MAX_SAMPLED: u64 = 4_000_000;
 /// Places whose points are all kept, along each side of the survey, and their side, metres.
 const PLACES: u32 = 5;
 const PLACE_M: f64 = 40.0;
@@ -28,7 +28,7 @@ const NOISE: [u8; 2] = [7, 18];
 
 /// The points of a block of 64 m.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Block {
+pub(crate) struct SurveyBlock {
     /// Number east and north from the origin of local coordinates.
     pub at: [i32; 2],
     /// Number of points.
@@ -38,8 +38,8 @@ pub(crate) struct Block {
 }
 
 /// What a pass over a survey found.
-pub(crate) struct Survey {
-    pub(crate) blocks: Vec<Block>,
+pub(crate) struct SurveyOverview {
+    pub(crate) blocks: Vec<SurveyBlock>,
     pub(crate) bounds: Option<Bounds>,
     pub(crate) extremes: SurveyExtremes,
     /// Whole pulses at random.
@@ -47,11 +47,11 @@ pub(crate) struct Survey {
     /// All points of some places.
     pub(crate) places: PointCloud,
     /// The rectangles around the pieces of each file.
-    pub(crate) pieces: HashMap<PathBuf, Vec<Piece>>,
+    pub(crate) pieces: HashMap<PathBuf, Vec<PieceCell>>,
 }
 
 #[derive(Default)]
-struct Counted {
+struct PointCounts {
     points: u64,
     /// By number of the level: points, lowest and highest.
     levels: BTreeMap<i32, (u32, f32, f32)>,
@@ -61,20 +61,20 @@ struct Counted {
 pub(crate) fn survey(
     files: &[PathBuf],
     options: &ReadOptions,
-    columns: Columns,
+    columns: PointColumns,
     point_count: u64,
-    area: &Area,
+    area: &MapArea,
     control: &Control<'_>,
-) -> Result<Survey> {
-    let every = point_count.div_ceil(MOST_SAMPLED).max(1);
+) -> Result<SurveyOverview> {
+    let every = point_count.div_ceil(MAX_SAMPLED).max(1);
     let places = places(area);
-    let mut blocks: BTreeMap<[i32; 2], Counted> = BTreeMap::new();
+    let mut blocks: BTreeMap<[i32; 2], PointCounts> = BTreeMap::new();
     let frame = options.frame.clone().unwrap_or_default();
     let mut along_lines = PointCloud::in_frame(frame.clone());
     let mut of_places = PointCloud::in_frame(frame);
     let mut extremes = SurveyExtremes { top: f32::NEG_INFINITY, ..SurveyExtremes::default() };
     let mut bounds: Option<Bounds> = None;
-    let mut pieces: HashMap<PathBuf, Vec<Piece>> = HashMap::new();
+    let mut pieces: HashMap<PathBuf, Vec<PieceCell>> = HashMap::new();
     // sources live as long as the work
     for batch in read_batches(files.to_vec(), &options.clone().with_row_numbers(), control)? {
         let CloudBatch { cloud, source, rows } = batch?;
@@ -116,7 +116,7 @@ pub(crate) fn survey(
         window::append(&mut along_lines, cloud.select(&sampled), columns);
         window::append(&mut of_places, cloud.select(&in_places), columns);
     }
-    let blocks: Vec<Block> = blocks.into_iter().filter_map(|(at, counted)| counted.into_block(at)).collect();
+    let blocks: Vec<SurveyBlock> = blocks.into_iter().filter_map(|(at, counted)| counted.into_block(at)).collect();
     let by_place: BTreeMap<[i32; 2], f32> = blocks.iter().map(|block| (block.at, block.heights[0])).collect();
     for block in &blocks {
         extremes.top = extremes.top.max(block.heights[1]);
@@ -126,17 +126,17 @@ pub(crate) fn survey(
         let lowest = around.filter_map(|at| by_place.get(&at)).copied().fold(f32::INFINITY, f32::min);
         extremes.relief = extremes.relief.max(f64::from(block.heights[1]) - f64::from(lowest));
     }
-    Ok(Survey { blocks, bounds, extremes, along_lines, places: of_places, pieces })
+    Ok(SurveyOverview { blocks, bounds, extremes, along_lines, places: of_places, pieces })
 }
 
-impl Counted {
-    fn into_block(self, at: [i32; 2]) -> Option<Block> {
+impl PointCounts {
+    fn into_block(self, at: [i32; 2]) -> Option<SurveyBlock> {
         let count = |level: i32| self.levels.get(&level).map_or(0, |level| level.0);
         let is_kept = |level: &i32| count(level - 1) + count(*level) + count(level + 1) >= FEWEST;
         let kept = || self.levels.iter().filter(|(level, _)| is_kept(level)).map(|(_, found)| found);
         let low = kept().map(|found| found.1).reduce(f32::min)?;
         let high = kept().map(|found| found.2).reduce(f32::max)?;
-        Some(Block { at, points: self.points, heights: [low, high] })
+        Some(SurveyBlock { at, points: self.points, heights: [low, high] })
     }
 }
 
@@ -148,13 +148,13 @@ fn joined(a: &Bounds, b: &Bounds) -> Bounds {
 }
 
 /// Squares spread evenly over `area`.
-fn places(area: &Area) -> Vec<Area> {
+fn places(area: &MapArea) -> Vec<MapArea> {
     let side = |axis: usize| area.high[axis] - area.low[axis];
     let middle = |number: u32, axis: usize| area.low[axis] + (f64::from(number) + 0.5) / f64::from(PLACES) * side(axis);
     let numbers = (0..PLACES).flat_map(|north| (0..PLACES).map(move |east| (east, north)));
     let place = |(east, north)| {
         let middle = [middle(east, 0), middle(north, 1)];
-        Area { low: middle.map(|v| v - PLACE_M / 2.0), high: middle.map(|v| v + PLACE_M / 2.0) }
+        MapArea { low: middle.map(|v| v - PLACE_M / 2.0), high: middle.map(|v| v + PLACE_M / 2.0) }
     };
     numbers.map(place).collect()
 }

@@ -1,7 +1,7 @@
 //! The points of a rectangle of the survey, the same in every tile that reads them.
 
-use crate::grid::Area;
-use crate::inputs::Columns;
+use crate::grid::MapArea;
+use crate::inputs::PointColumns;
 use crate::plan::Plan;
 use belvedere::control::Control;
 use belvedere::io::{ReadOptions, Within, read_batches};
@@ -11,7 +11,7 @@ use belvedere::{Attributes, Error, Frame, PointCloud, Result};
 ///
 /// # Errors
 /// Those of [`read_batches`], and [`Error::Malformed`] for a file that is no longer what it was.
-pub(crate) fn read(plan: &Plan, area: &Area, control: &Control<'_>) -> Result<PointCloud> {
+pub(crate) fn read(plan: &Plan, area: &MapArea, control: &Control<'_>) -> Result<PointCloud> {
     let column = area.column();
     let mut files = Vec::new();
     for file in plan.files_meeting(area) {
@@ -38,7 +38,7 @@ pub(crate) fn options(crs: Option<&str>, frame: Frame) -> ReadOptions {
 }
 
 /// Adds the points of `more`, with the columns that tiles need and all files have.
-pub(crate) fn append(cloud: &mut PointCloud, more: PointCloud, columns: Columns) {
+pub(crate) fn append(cloud: &mut PointCloud, more: PointCloud, columns: PointColumns) {
     let count = more.len();
     let attributes = needed(more.attributes, columns);
     cloud.attributes.append(cloud.positions.len(), attributes, count);
@@ -47,7 +47,7 @@ pub(crate) fn append(cloud: &mut PointCloud, more: PointCloud, columns: Columns)
 }
 
 /// The columns that tiles need and all files have.
-pub(crate) fn needed(attributes: Attributes, columns: Columns) -> Attributes {
+pub(crate) fn needed(attributes: Attributes, columns: PointColumns) -> Attributes {
     Attributes {
         classification: attributes.classification,
         gps_time: attributes.gps_time.filter(|_| columns.gps_times),

@@ -1,4 +1,5 @@
-// Clicks through the page in Chromium: pictures, each question, files, keyboard, two tabs, bad files, a lost connection.
+// Clicks through the page in Chromium: pictures, each question, files, keyboard, two tabs, bad files, a lost
+// connection.
 import assert from "node:assert/strict";
 import { execFileSync, spawn } from "node:child_process";
 import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
@@ -123,12 +124,12 @@ async function main() {
     assert.equal(readFileSync(await picture.path()).subarray(1, 4).toString(), "PNG");
   });
   await step("of many points a sample is answered first", async () => {
-    const asked = [];
-    page.on("request", (request) => { if (request.method() === "POST") asked.push(request.postDataJSON()?.points); });
+    const requested = [];
+    page.on("request", (request) => { if (request.method() === "POST") requested.push(request.postDataJSON()?.points); });
     await page.evaluate(() => { belvedere.scene.samples_first = true; });
     await ask("seen", [ground], /is visible/);
     await page.waitForFunction(() => belvedere.last && !/About/.test(document.getElementById("card").innerText), null, { timeout: 5000 });
-    assert.deepEqual(asked, ["sample", undefined]);
+    assert.deepEqual(requested, ["sample", undefined]);
     await page.evaluate(() => { belvedere.scene.samples_first = false; });
   });
   await step("is B seen from A", async () => {

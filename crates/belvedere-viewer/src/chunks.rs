@@ -9,8 +9,9 @@ use std::ops::Range;
 /// Side of a square, metres: 16 bits then part it in steps of 2 mm.
 const SIDE: f32 = 128.0;
 /// Most points of a chunk, so that pictures appear while others are on their way.
-const MOST: usize = 250_000;
-/// Points of the first chunk of a square with many: these come before all others, so that the whole cloud is seen at once.
+const MAX: usize = 250_000;
+/// Points of the first chunk of a square with many: these come before all others, so that the whole cloud is seen at
+/// once.
 const FIRST: usize = 20_000;
 /// A square has many points from so many times [`FIRST`] on.
 const MANY: usize = 5;
@@ -21,7 +22,7 @@ const BRIGHTEST: f64 = 0.02;
 
 /// Some points of a square of the map.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Chunk {
+pub(crate) struct PointChunk {
     /// Lowest corner, local metres.
     pub(crate) low: [f32; 3],
     /// Length of a step along each axis, metres.
@@ -32,7 +33,7 @@ pub(crate) struct Chunk {
 
 /// All points in the order in which they are sent.
 pub(crate) struct Chunks {
-    pub(crate) chunks: Vec<Chunk>,
+    pub(crate) chunks: Vec<PointChunk>,
     /// Row of each point sent in the cloud, (N).
     rows: Vec<u32>,
     /// Intensity that is shown as the brightest.
@@ -40,7 +41,8 @@ pub(crate) struct Chunks {
 }
 
 impl Chunks {
-    /// Parts the points of a cloud. The first points of a chunk are a fair sample of all of it, and the first chunks lie all over the cloud.
+    /// Parts the points of a cloud. The first points of a chunk are a fair sample of all of it, and the first chunks
+    /// lie all over the cloud.
     pub(crate) fn new(cloud: &PointCloud) -> Self {
         let mut squares: BTreeMap<[i64; 2], Vec<u32>> = BTreeMap::new();
         for (row, position) in (0..).zip(&cloud.positions) {
@@ -66,7 +68,8 @@ impl Chunks {
         Self { chunks, rows: all, brightest }
     }
 
-    /// Eight bytes for each point of a chunk, little endian: its steps along x, y and z with 16 bits each, its class and its intensity.
+    /// Eight bytes for each point of a chunk, little endian: its steps along x, y and z with 16 bits each, its class
+    /// and its intensity.
     pub(crate) fn points(&self, number: usize, cloud: &PointCloud) -> Option<Vec<u8>> {
         let chunk = self.chunks.get(number)?;
         let rows = self.rows.get(chunk.points.clone())?;
@@ -103,28 +106,28 @@ impl Chunks {
     }
 
     /// At most so many points, the same share of each chunk.
-    pub(crate) fn sample(self, most: usize) -> Self {
-        if self.rows.len() <= most {
+    pub(crate) fn sample(self, max: usize) -> Self {
+        if self.rows.len() <= max {
             return self;
         }
-        let mut rows = Vec::with_capacity(most);
-        let sampled = |chunk: &Chunk| {
+        let mut rows = Vec::with_capacity(max);
+        let sampled = |chunk: &PointChunk| {
             let first = rows.len();
-            rows.extend_from_slice(self.share(chunk, most));
-            Chunk { points: first..rows.len(), ..chunk.clone() }
+            rows.extend_from_slice(self.share(chunk, max));
+            PointChunk { points: first..rows.len(), ..chunk.clone() }
         };
         let chunks = self.chunks.iter().map(sampled).collect();
         Self { chunks, rows, brightest: self.brightest }
     }
 
     /// Rows in the cloud of at most so many points, the same share of each chunk.
-    pub(crate) fn sampled_rows(&self, most: usize) -> impl Iterator<Item = u32> {
-        self.chunks.iter().flat_map(move |chunk| self.share(chunk, most)).copied()
+    pub(crate) fn sampled_rows(&self, max: usize) -> impl Iterator<Item = u32> {
+        self.chunks.iter().flat_map(move |chunk| self.share(chunk, max)).copied()
     }
 
-    fn share(&self, chunk: &Chunk, most: usize) -> &[u32] {
+    fn share(&self, chunk: &PointChunk, max: usize) -> &[u32] {
         let whole = self.rows.len().max(1);
-        &self.rows[chunk.points.start..chunk.points.start + chunk.points.len() * most.min(whole) / whole]
+        &self.rows[chunk.points.start..chunk.points.start + chunk.points.len() * max.min(whole) / whole]
     }
 
     /// Number of points sent.
@@ -148,7 +151,7 @@ impl Chunks {
 /// The points of a square, chunk by chunk.
 fn parts_of(rows: &[u32]) -> impl Iterator<Item = &[u32]> {
     let (first, rest) = rows.split_at(if rows.len() > MANY * FIRST { FIRST } else { 0 });
-    Some(first).into_iter().filter(|first| !first.is_empty()).chain(rest.chunks(MOST))
+    Some(first).into_iter().filter(|first| !first.is_empty()).chain(rest.chunks(MAX))
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "numbers of squares")]
@@ -156,7 +159,7 @@ fn square([x, y, _]: [f32; 3]) -> [i64; 2] {
     [x, y].map(|v| (v / SIDE).floor() as i64)
 }
 
-fn chunk(cloud: &PointCloud, rows: &[u32], first: usize) -> Chunk {
+fn chunk(cloud: &PointCloud, rows: &[u32], first: usize) -> PointChunk {
     let (mut low, mut high) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
     for position in rows.iter().map(|&row| cloud.positions[row as usize]) {
         for axis in 0..3 {
@@ -166,7 +169,7 @@ fn chunk(cloud: &PointCloud, rows: &[u32], first: usize) -> Chunk {
     }
     // a flat chunk must not part by zero
     let step = [0, 1, 2].map(|axis| ((high[axis] - low[axis]) / STEPS).max(1e-6));
-    Chunk { low, step, points: first..first + rows.len() }
+    PointChunk { low, step, points: first..first + rows.len() }
 }
 
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to 16 bits")]

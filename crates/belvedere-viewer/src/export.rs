@@ -1,8 +1,9 @@
-//! The page as one file that needs no server: its points, the shadows of the hours of a day, and what is seen from viewpoints.
+//! The page as one file that needs no server: its points, the shadows of the hours of a day, and what is seen from
+//! viewpoints.
 
 use crate::chunks::Chunks;
 use crate::page;
-use crate::scene::{Scene, Shown};
+use crate::scene::{PageScene, ShownCloud};
 use crate::scene_text::{SceneText, typed};
 use belvedere::apps::ask::ThroughTrees;
 use belvedere::apps::eyes::fault_of;
@@ -21,7 +22,7 @@ use serde_json::{Value, json};
 use std::sync::Arc;
 
 /// Most points of a file: it then has 35 MB, which browsers open in a second.
-const MOST_POINTS: usize = 3_000_000;
+const MAX_POINTS: usize = 3_000_000;
 const ALPHABET: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
 
 /// What a file shows.
@@ -53,17 +54,17 @@ pub struct ExportReport {
 /// The page of a cloud and its model as one file.
 ///
 /// # Errors
-/// [`Error::MissingAttribute`] for a day without a known location, [`Error::InvalidParameter`] for a viewpoint that nobody can look
-/// from, and [`Error::Cancelled`].
+/// [`Error::MissingAttribute`] for a day without a known location, [`Error::InvalidParameter`] for a viewpoint that
+/// nobody can look from, and [`Error::Cancelled`].
 pub fn export(
     cloud: &Arc<PointCloud>,
     model: SceneModel,
     params: &ExportParams,
     control: &Control<'_>,
 ) -> Result<(String, ExportReport)> {
-    let chunks = Chunks::new(cloud).sample(MOST_POINTS);
-    let shown = Arc::new(Shown::of(Arc::clone(cloud), chunks));
-    let scene = Scene::new(model, Arc::clone(&shown));
+    let chunks = Chunks::new(cloud).sample(MAX_POINTS);
+    let shown = Arc::new(ShownCloud::of(Arc::clone(cloud), chunks));
+    let scene = PageScene::new(model, Arc::clone(&shown));
     let mut sent = PointCloud::in_frame(scene.model().frame().clone());
     sent.positions = scene.shown.chunks.positions(&scene.shown.cloud);
     let suns = match &params.day {
@@ -94,7 +95,7 @@ pub fn export(
 
 /// The suns of the whole hours of a day, and a bit for each point in the order in which points are sent: 1 for lit.
 fn suns(
-    scene: &Scene,
+    scene: &PageScene,
     sent: &PointCloud,
     (date, zone): (Date, &Zone),
     text: &SceneText,
@@ -129,8 +130,14 @@ fn suns(
     Ok(hours.iter().zip(&lit).map(of_hour).collect())
 }
 
-/// The viewpoints, and two bits for each point in the order in which points are sent: 0 blocked, 1 visible, 2 unproven, 3 no answer.
-fn viewpoints(scene: &Scene, sent: &PointCloud, params: &ExportParams, control: &Control<'_>) -> Result<Vec<Value>> {
+/// The viewpoints, and two bits for each point in the order in which points are sent: 0 blocked, 1 visible, 2 unproven,
+/// 3 no answer.
+fn viewpoints(
+    scene: &PageScene,
+    sent: &PointCloud,
+    params: &ExportParams,
+    control: &Control<'_>,
+) -> Result<Vec<Value>> {
     if params.viewpoints.is_empty() {
         return Ok(Vec::new());
     }

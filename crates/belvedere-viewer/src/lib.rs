@@ -1,22 +1,21 @@
 //! A local page in the browser: it shows a point cloud and asks the library what is seen, lit and shaded there.
 //!
-//! The server listens on 127.0.0.1 alone. It answers requests that know its token, name it as their host, and come from its own page
-//! (`guard`). It computes nothing itself: each question is one file in `questions` that calls the library as the command line does, and
-//! every answer comes with the command line that gives the same.
+//! The server listens on 127.0.0.1 alone. It answers requests that know its token, name it as their host, and come from
+//! its own page (`guard`). It computes nothing itself: each question is one file in `questions` that calls the library
+//! as the command line does, and every answer comes with the command line that gives the same.
 //!
 //! The page is embedded in the program. Its sources and the script that bundles them are in `page/`.
 //!
 //! ```no_run
-//! use belvedere_viewer::{Viewer, ViewerParams};
+//! use belvedere_viewer::{PageServer, ViewerParams};
 //!
-//! let viewer = Viewer::start(&ViewerParams::default())?;
+//! let viewer = PageServer::start(&ViewerParams::default())?;
 //! println!("{}", viewer.url());
 //! let loading = viewer.loading();
 //! // read a cloud, show it, build its balls, hand them over
 //! # Ok::<(), std::io::Error>(())
 //! ```
 
-mod asked_points;
 mod chunks;
 mod export;
 mod guard;
@@ -30,10 +29,11 @@ mod routes;
 mod scene;
 mod scene_text;
 mod server;
+mod target_points;
 
 pub use export::{ExportParams, ExportReport, export};
 pub use loading::Loading;
 pub use plans::quoted;
 pub use results::PointsOf;
 pub use scene_text::SceneText;
-pub use server::{Viewer, ViewerParams};
+pub use server::{PageServer, ViewerParams};

@@ -1,7 +1,7 @@
 //! What happens to the files while the page is open already: reading, building, and what the page is told of it.
 
 use crate::results::{PointsOf, ResultFile};
-use crate::scene::{Scene, Shown};
+use crate::scene::{PageScene, ShownCloud};
 use belvedere::cloud::to_local;
 use belvedere::control::{Control, OpenStages, StageEnd, Watcher};
 use belvedere::io::{GeojsonFeature, PlacedRaster, PointResults};
@@ -12,14 +12,14 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// Takes what is read and built, and shows it on the page. As a [`Watcher`] it shows progress there.
 #[derive(Clone, Default)]
-pub struct Loading(Arc<Mutex<State>>);
+pub struct Loading(Arc<Mutex<LoadingState>>);
 
 /// What there is so far.
 #[derive(Clone, Default)]
-pub(crate) struct State {
+pub(crate) struct LoadingState {
     pub(crate) stages: OpenStages,
-    pub(crate) shown: Option<Arc<Shown>>,
-    pub(crate) scene: Option<Arc<Scene>>,
+    pub(crate) shown: Option<Arc<ShownCloud>>,
+    pub(crate) scene: Option<Arc<PageScene>>,
     /// Corners of the triangles of meshes, local metres, nine f32 each, little endian.
     pub(crate) meshes: Vec<Arc<[u8]>>,
     /// Results of other commands.
@@ -32,7 +32,7 @@ pub(crate) struct State {
 impl Loading {
     /// Shows a cloud whose balls are not built yet.
     pub fn show(&self, cloud: &Arc<PointCloud>) {
-        let shown = Arc::new(Shown::new(Arc::clone(cloud)));
+        let shown = Arc::new(ShownCloud::new(Arc::clone(cloud)));
         self.state().shown = Some(shown);
     }
 
@@ -63,7 +63,8 @@ impl Loading {
     /// Shows a raster on the ground.
     ///
     /// # Errors
-    /// [`belvedere::Error::Malformed`] for one without a place or beside the cloud, [`belvedere::Error::UnusableCrs`] for one in another system.
+    /// [`belvedere::Error::Malformed`] for one without a place or beside the cloud, [`belvedere::Error::UnusableCrs`]
+    /// for one in another system.
     pub fn show_raster(&self, path: &Path, raster: PlacedRaster, frame: &Frame, bounds: &Bounds) -> Result<()> {
         let file = ResultFile::of_raster(path, raster, frame, bounds)?;
         self.state().results.push(Arc::new(file));
@@ -86,13 +87,14 @@ impl Loading {
         // what cannot be indexed is said by the questions
         let _ = model.index(&Control::none());
         let shown =
-            shown.unwrap_or_else(|| Arc::new(Shown::new(Arc::new(PointCloud::in_frame(model.frame().clone())))));
-        let scene = Arc::new(Scene::new(model, Arc::clone(&shown)));
+            shown.unwrap_or_else(|| Arc::new(ShownCloud::new(Arc::new(PointCloud::in_frame(model.frame().clone())))));
+        let scene = Arc::new(PageScene::new(model, Arc::clone(&shown)));
         let mut state = self.state();
         state.shown = Some(shown);
         state.scene = Some(Arc::clone(&scene));
         drop(state);
-        // what the first questions need is made while people still look; not on a thread of the pool, which must not wait for locks
+        // what the first questions need is made while people still look; not on a thread of the pool, which must not
+        // wait for locks
         std::thread::spawn(move || scene.prepare());
     }
 
@@ -108,17 +110,17 @@ impl Loading {
     }
 
     /// The state for a page, which reads it four times a second.
-    pub(crate) fn read(&self) -> State {
+    pub(crate) fn read(&self) -> LoadingState {
         let mut state = self.state();
         state.is_failure_read = state.failure.is_some();
         state.clone()
     }
 
-    pub(crate) fn now(&self) -> State {
+    pub(crate) fn now(&self) -> LoadingState {
         self.state().clone()
     }
 
-    fn state(&self) -> MutexGuard<'_, State> {
+    fn state(&self) -> MutexGuard<'_, LoadingState> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

@@ -1,7 +1,7 @@
 //! What if: plans that were drawn on the page, and the scenes with them.
 
 use crate::replies::Refusal;
-use crate::scene::Scene;
+use crate::scene::PageScene;
 use crate::scene_text::SceneText;
 use belvedere::control::Control;
 use belvedere::io::{Source, read_mesh_in};
@@ -13,9 +13,9 @@ use std::fmt::Write;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// Plans that are kept: one for each of a few tabs. Each holds as much as the scene.
-const MOST_PLANS: usize = 4;
+const MAX_PLANS: usize = 4;
 /// Meshes that are kept.
-const MOST_MESHES: usize = 16;
+const MAX_MESHES: usize = 16;
 /// File in which the drawn buildings are saved, and that in which the cleared areas are.
 const BUILDINGS: &str = "planned.obj";
 const AREAS: &str = "cleared.geojson";
@@ -23,7 +23,7 @@ const AREAS: &str = "cleared.geojson";
 /// What was drawn, in the coordinates of the file.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
-pub(crate) struct Plan {
+pub(crate) struct DrawnPlan {
     /// Corners of areas without what stands there now.
     clear: Vec<Vec<[f64; 2]>>,
     buildings: Vec<Building>,
@@ -31,7 +31,7 @@ pub(crate) struct Plan {
     meshes: Vec<usize>,
 }
 
-impl Plan {
+impl DrawnPlan {
     /// Whether there are areas without what stands there now.
     pub(crate) fn is_clearing(&self) -> bool {
         !self.clear.is_empty()
@@ -52,8 +52,8 @@ struct Building {
 /// A plan and the scene with it.
 pub(crate) struct Planned {
     pub(crate) number: usize,
-    plan: Plan,
-    pub(crate) scene: Arc<Scene>,
+    plan: DrawnPlan,
+    pub(crate) scene: Arc<PageScene>,
     /// The scene on command lines.
     pub(crate) text: SceneText,
     pub(crate) report: ClearReport,
@@ -65,10 +65,10 @@ pub(crate) struct Planned {
 
 /// Plans and loaded meshes of all tabs.
 #[derive(Default)]
-pub(crate) struct Plans(Mutex<Kept>);
+pub(crate) struct Plans(Mutex<KeptPlans>);
 
 #[derive(Default)]
-struct Kept {
+struct KeptPlans {
     made: usize,
     plans: Vec<Arc<Planned>>,
     meshes: Vec<(String, Arc<Mesh>)>,
@@ -85,8 +85,8 @@ impl Plans {
     pub(crate) fn load(&self, name: &str, bytes: &[u8], frame: &Frame) -> Result<usize, Refusal> {
         let (mesh, _) = read_mesh_in(Source::bytes(name, bytes), &frame.crs)?;
         let mut kept = self.kept();
-        if kept.meshes.len() >= MOST_MESHES {
-            return Err(Refusal(format!("No more than {MOST_MESHES} meshes can be loaded: start the program again.")));
+        if kept.meshes.len() >= MAX_MESHES {
+            return Err(Refusal(format!("No more than {MAX_MESHES} meshes can be loaded: start the program again.")));
         }
         kept.meshes.push((name.to_owned(), Arc::new(mesh)));
         Ok(kept.meshes.len() - 1)
@@ -95,8 +95,8 @@ impl Plans {
     /// The scene with a plan.
     pub(crate) fn make(
         &self,
-        plan: Plan,
-        scene: &Scene,
+        plan: DrawnPlan,
+        scene: &PageScene,
         text: &SceneText,
         control: &Control<'_>,
     ) -> Result<Arc<Planned>, Refusal> {
@@ -146,7 +146,7 @@ impl Plans {
             files,
             added: meshes.into_iter().map(|(_, mesh)| mesh).collect(),
         });
-        if kept.plans.len() >= MOST_PLANS {
+        if kept.plans.len() >= MAX_PLANS {
             kept.plans.remove(0);
         }
         kept.plans.push(Arc::clone(&planned));
@@ -156,7 +156,7 @@ impl Plans {
         Ok(planned)
     }
 
-    fn kept(&self) -> MutexGuard<'_, Kept> {
+    fn kept(&self) -> MutexGuard<'_, KeptPlans> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

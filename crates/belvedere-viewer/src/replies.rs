@@ -6,7 +6,7 @@ use axum::response::{IntoResponse, Response};
 use serde_json::{Value, json};
 
 /// What a question is answered with.
-pub(crate) struct Answer {
+pub(crate) struct QuestionReply {
     /// Named values.
     pub(crate) head: Value,
     /// A value for each of many places.
@@ -32,15 +32,16 @@ impl From<String> for Refusal {
     }
 }
 
-impl Answer {
+impl QuestionReply {
     /// Named values alone.
     pub(crate) fn of(head: Value) -> Self {
         Self { head, body: Vec::new() }
     }
 }
 
-impl IntoResponse for Answer {
-    /// The length of the head as JSON in 4 bytes, little endian, the head filled up with blanks to a multiple of 4 bytes, and the body.
+impl IntoResponse for QuestionReply {
+    /// The length of the head as JSON in 4 bytes, little endian, the head filled up with blanks to a multiple of 4
+    /// bytes, and the body.
     fn into_response(self) -> Response {
         let mut head = self.head.to_string().into_bytes();
         head.resize(head.len().next_multiple_of(4), b' ');

@@ -1,11 +1,11 @@
 //! Results of commands beside the cloud: points and cells with values, and shapes on the ground.
 
-use crate::replies::Answer;
-use crate::scene::Scene;
+use crate::replies::QuestionReply;
+use crate::scene::PageScene;
 use belvedere::apps::ask::scene::KnownGround;
 use belvedere::cloud::to_local;
 use belvedere::control::Control;
-use belvedere::io::{GeojsonFeature, Georeference, PlacedRaster, PointResults, Shape};
+use belvedere::io::{FeatureShape, GeojsonFeature, Georeference, PlacedRaster, PointResults};
 use belvedere::{Bounds, Error, Frame, Result};
 use serde_json::{Value, json};
 use std::path::Path;
@@ -17,13 +17,14 @@ const NONE: u8 = 255;
 /// Byte of the greatest value.
 const GREATEST: f32 = 253.0;
 /// Most cells of a raster that are sent; of larger ones every second, third … row and column is.
-const MOST_CELLS: usize = 4_000_000;
-/// How far above the ground cells are drawn, metres: high enough for points that scatter around it. Lines are drawn above cells.
+const MAX_CELLS: usize = 4_000_000;
+/// How far above the ground cells are drawn, metres: high enough for points that scatter around it. Lines are drawn
+/// above cells.
 const ABOVE: f64 = 0.15;
 const LINES_ABOVE: f64 = 0.6;
 /// Piece of a line that follows the ground, metres, and most of them.
 const PIECE: f64 = 2.0;
-const MOST_PIECES: f64 = 1e4;
+const MAX_PIECES: f64 = 1e4;
 /// Height of a pin that marks a point, metres.
 const PIN: f64 = 4.0;
 
@@ -37,16 +38,16 @@ pub enum PointsOf {
 }
 
 /// What a file of results holds, local metres on the map.
-pub(crate) enum Results {
+pub(crate) enum ResultsFile {
     Points { positions: Vec<[f32; 3]>, columns: Vec<(String, Vec<f32>)> },
     Cells(PlacedRaster),
-    Shapes(Vec<Shape>),
+    Shapes(Vec<FeatureShape>),
 }
 
 /// A file of results.
 pub(crate) struct ResultFile {
     name: String,
-    results: Results,
+    results: ResultsFile,
     /// Whether it is shown before anybody chooses it.
     is_shown_first: bool,
 }
@@ -65,15 +66,15 @@ impl ResultFile {
         check_places(path, results.places.iter().map(|&place| frame.local_from_file(place)), bounds)?;
         let local = |&place: &[f64; 3]| to_local(frame.local_from_file(place), [0.0; 3]);
         let positions = results.places.iter().map(local).collect();
-        let results = Results::Points { positions, columns: results.columns };
+        let results = ResultsFile::Points { positions, columns: results.columns };
         Ok(Self { name: named(path), results, is_shown_first: points == PointsOf::Other })
     }
 
     /// A raster that lies on the map.
     ///
     /// # Errors
-    /// [`Error::Malformed`] for one that says nothing of its place or lies beside the scene, and [`Error::UnusableCrs`] for one in another
-    /// system.
+    /// [`Error::Malformed`] for one that says nothing of its place or lies beside the scene, and [`Error::UnusableCrs`]
+    /// for one in another system.
     pub(crate) fn of_raster(path: &Path, raster: PlacedRaster, frame: &Frame, bounds: &Bounds) -> Result<Self> {
         let Some(place) = &raster.place else {
             return Err(Error::malformed(path, "does not say where it lies on the map: write it as a GeoTIFF"));
@@ -82,7 +83,7 @@ impl ResultFile {
         let size = [raster.values.width(), raster.values.height()];
         let all = (0..size[1]).flat_map(|row| (0..size[0]).map(move |column| [column, row]));
         check_places(path, all.map(|cell| center(place, cell, frame)).map(|[x, y]| [x, y, 0.0]), bounds)?;
-        Ok(Self { name: named(path), results: Results::Cells(raster), is_shown_first: true })
+        Ok(Self { name: named(path), results: ResultsFile::Cells(raster), is_shown_first: true })
     }
 
     /// Shapes in absolute metres.
@@ -95,38 +96,38 @@ impl ResultFile {
         frame: &Frame,
         bounds: &Bounds,
     ) -> Result<Self> {
-        let shapes: Vec<Shape> = features.into_iter().map(|feature| feature.shape).collect();
+        let shapes: Vec<FeatureShape> = features.into_iter().map(|feature| feature.shape).collect();
         let corners = shapes.iter().flat_map(|shape| match shape {
-            Shape::Point(place) => vec![*place],
-            Shape::Line(corners) => corners.clone(),
-            Shape::Polygon(rings) => rings.concat(),
+            FeatureShape::Point(place) => vec![*place],
+            FeatureShape::Line(corners) => corners.clone(),
+            FeatureShape::Polygon(rings) => rings.concat(),
         });
         check_places(path, corners.map(|corner| std::array::from_fn(|i| corner[i] - frame.origin[i])), bounds)?;
-        Ok(Self { name: named(path), results: Results::Shapes(shapes), is_shown_first: false })
+        Ok(Self { name: named(path), results: ResultsFile::Shapes(shapes), is_shown_first: false })
     }
 
     /// What the menu of the page needs.
     pub(crate) fn describe(&self) -> Value {
         let columns: Vec<&str> = match &self.results {
-            Results::Points { columns, .. } => columns.iter().map(|(name, _)| name.as_str()).collect(),
-            Results::Cells(_) => vec![""],
-            Results::Shapes(_) => Vec::new(),
+            ResultsFile::Points { columns, .. } => columns.iter().map(|(name, _)| name.as_str()).collect(),
+            ResultsFile::Cells(_) => vec![""],
+            ResultsFile::Shapes(_) => Vec::new(),
         };
-        json!({ "name": self.name, "columns": columns, "covers_cloud": matches!(self.results, Results::Points { .. }), "is_shown_first": self.is_shown_first })
+        json!({ "name": self.name, "columns": columns, "covers_cloud": matches!(self.results, ResultsFile::Points { .. }), "is_shown_first": self.is_shown_first })
     }
 
     /// Places and values, or lines. What has no height lies on the ground of the scene.
-    pub(crate) fn drawn(&self, scene: &Scene, control: &Control<'_>) -> Result<Answer> {
+    pub(crate) fn drawn(&self, scene: &PageScene, control: &Control<'_>) -> Result<QuestionReply> {
         let on_ground = OnGround { ground: scene.ground(control).ok(), low: f64::from(scene.model().bounds().low[2]) };
         let frame = scene.model().frame();
         match &self.results {
-            Results::Points { positions, columns } => Ok(layer(positions, columns, None)),
-            Results::Cells(raster) => Ok(cells(raster, frame, &on_ground)),
-            Results::Shapes(shapes) => {
+            ResultsFile::Points { positions, columns } => Ok(layer(positions, columns, None)),
+            ResultsFile::Cells(raster) => Ok(cells(raster, frame, &on_ground)),
+            ResultsFile::Shapes(shapes) => {
                 let segments = shapes.iter().flat_map(|shape| segments(shape, frame, &on_ground));
                 let body: Vec<u8> =
                     segments.flatten().flat_map(|place| to_local(place, [0.0; 3])).flat_map(f32::to_le_bytes).collect();
-                Ok(Answer { head: json!({ "lines": body.len() / 24 }), body })
+                Ok(QuestionReply { head: json!({ "lines": body.len() / 24 }), body })
             }
         }
     }
@@ -171,10 +172,10 @@ impl OnGround {
     }
 }
 
-fn cells(raster: &PlacedRaster, frame: &Frame, on_ground: &OnGround) -> Answer {
+fn cells(raster: &PlacedRaster, frame: &Frame, on_ground: &OnGround) -> QuestionReply {
     let Some(place) = &raster.place else { return layer(&[], &[], None) };
     let (width, height) = (raster.values.width(), raster.values.height());
-    let stride = (1..).find(|stride| width.div_ceil(*stride) * height.div_ceil(*stride) <= MOST_CELLS).unwrap_or(1);
+    let stride = (1..).find(|stride| width.div_ceil(*stride) * height.div_ceil(*stride) <= MAX_CELLS).unwrap_or(1);
     let (mut positions, mut values) = (Vec::new(), Vec::new());
     for row in (0..height).step_by(stride) {
         for column in (0..width).step_by(stride) {
@@ -188,8 +189,9 @@ fn cells(raster: &PlacedRaster, frame: &Frame, on_ground: &OnGround) -> Answer {
     layer(&positions, &[(String::new(), values)], Some(size))
 }
 
-/// Eight bytes for each point as chunks have them, and a byte for the value of each column: 0 for the least, 253 for the greatest, 255 for none.
-fn layer(positions: &[[f32; 3]], columns: &[(String, Vec<f32>)], size: Option<f64>) -> Answer {
+/// Eight bytes for each point as chunks have them, and a byte for the value of each column: 0 for the least, 253 for
+/// the greatest, 255 for none.
+fn layer(positions: &[[f32; 3]], columns: &[(String, Vec<f32>)], size: Option<f64>) -> QuestionReply {
     let end = |pick: fn(f32, f32) -> f32, start: f32| {
         positions.iter().fold([start; 3], |end, place| std::array::from_fn(|i| pick(end[i], place[i])))
     };
@@ -207,11 +209,10 @@ fn layer(positions: &[[f32; 3]], columns: &[(String, Vec<f32>)], size: Option<f6
     let mut described = Vec::new();
     for (name, values) in columns {
         let finite = values.iter().copied().filter(|value| value.is_finite());
-        let [least, greatest] =
-            finite.clone().fold([f32::INFINITY, f32::NEG_INFINITY], |[a, b], v| [a.min(v), b.max(v)]);
+        let [min, greatest] = finite.clone().fold([f32::INFINITY, f32::NEG_INFINITY], |[a, b], v| [a.min(v), b.max(v)]);
         // answers are codes of their own
-        let are_codes = least >= 0.0 && greatest <= 4.0 && finite.into_iter().all(|value| value.fract() == 0.0);
-        let (from, to) = if are_codes { (0.0, GREATEST) } else { (least, greatest.max(least + f32::MIN_POSITIVE)) };
+        let are_codes = min >= 0.0 && greatest <= 4.0 && finite.into_iter().all(|value| value.fract() == 0.0);
+        let (from, to) = if are_codes { (0.0, GREATEST) } else { (min, greatest.max(min + f32::MIN_POSITIVE)) };
         body.extend(values.iter().map(|&value| {
             #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 253")]
             let byte = ((value - from) / (to - from) * GREATEST).round() as u8;
@@ -220,29 +221,30 @@ fn layer(positions: &[[f32; 3]], columns: &[(String, Vec<f32>)], size: Option<f6
         described.push(json!({
             "name": name,
             "are_codes": are_codes,
-            "least": least.is_finite().then_some(least),
+            "least": min.is_finite().then_some(min),
             "greatest": greatest.is_finite().then_some(greatest),
         }));
     }
     let head = json!({ "count": positions.len(), "low": low, "step": step, "size_m": size, "columns": described });
-    Answer { head, body }
+    QuestionReply { head, body }
 }
 
-/// The lines that draw a shape, local metres: pairs of ends. Lines without heights follow the ground, points stand on it as pins.
-fn segments(shape: &Shape, frame: &Frame, on_ground: &OnGround) -> Vec<[[f64; 3]; 2]> {
+/// The lines that draw a shape, local metres: pairs of ends. Lines without heights follow the ground, points stand on
+/// it as pins.
+fn segments(shape: &FeatureShape, frame: &Frame, on_ground: &OnGround) -> Vec<[[f64; 3]; 2]> {
     let local = |place: &[f64; 3]| {
         let [x, y, z] = std::array::from_fn(|i| place[i] - frame.origin[i]);
         [x, y, if z.is_finite() { z } else { on_ground.height([x, y]) }]
     };
     match shape {
-        Shape::Point(place) => {
+        FeatureShape::Point(place) => {
             let [x, y, z] = local(place);
             let top = [x, y, z + PIN];
             let bar = |dx: f64, dy: f64| [[x - dx, y - dy, z + PIN], [x + dx, y + dy, z + PIN]];
             vec![[[x, y, z], top], bar(0.4, 0.0), bar(0.0, 0.4)]
         }
-        Shape::Line(corners) => line(corners, &local, on_ground),
-        Shape::Polygon(rings) => rings.iter().flat_map(|ring| line(ring, &local, on_ground)).collect(),
+        FeatureShape::Line(corners) => line(corners, &local, on_ground),
+        FeatureShape::Polygon(rings) => rings.iter().flat_map(|ring| line(ring, &local, on_ground)).collect(),
     }
 }
 
@@ -252,11 +254,8 @@ fn line(corners: &[[f64; 3]], local: &dyn Fn(&[f64; 3]) -> [f64; 3], on_ground: 
         let [a, b] = [&pair[0], &pair[1]].map(local);
         let is_flat = pair.iter().any(|corner| !corner[2].is_finite());
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped")]
-        let count = if is_flat {
-            ((b[0] - a[0]).hypot(b[1] - a[1]) / PIECE).ceil().clamp(1.0, MOST_PIECES) as usize
-        } else {
-            1
-        };
+        let count =
+            if is_flat { ((b[0] - a[0]).hypot(b[1] - a[1]) / PIECE).ceil().clamp(1.0, MAX_PIECES) as usize } else { 1 };
         let at = |part: usize| -> [f64; 3] {
             let share = part as f64 / count as f64;
             let [x, y, z] = std::array::from_fn(|i| a[i] + share * (b[i] - a[i]));

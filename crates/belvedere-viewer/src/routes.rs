@@ -4,9 +4,9 @@ use crate::guard::Guard;
 use crate::loading::Loading;
 use crate::page;
 use crate::plans::Plans;
-use crate::questions::{self, Asked};
-use crate::replies::{Answer, Refusal, binary, refused};
-use crate::scene::Scene;
+use crate::questions::{self, RequestContext};
+use crate::replies::{QuestionReply, Refusal, binary, refused};
+use crate::scene::PageScene;
 use crate::scene_text::SceneText;
 use crate::server::ViewerParams;
 use axum::body::Bytes;
@@ -24,18 +24,18 @@ use std::time::Duration;
 use tokio::sync::Semaphore;
 
 /// Most bytes of a question: a polygon with a thousand corners.
-const MOST_BYTES: usize = 65_536;
+const MAX_BYTES: usize = 65_536;
 /// Most bytes of a mesh that is loaded.
-const MOST_MESH_BYTES: usize = 32 << 20;
+const MAX_MESH_BYTES: usize = 32 << 20;
 /// How long the rest of a request may take.
 const PATIENCE: Duration = Duration::from_secs(10);
 /// Questions that wait or are answered; more are refused.
-const MOST_QUESTIONS: usize = 24;
+const MAX_QUESTIONS: usize = 24;
 /// The page may load what is its own, and nothing else; nobody may show it in a frame.
 const POLICY: &str = "default-src 'self'; img-src 'self' blob: data:; style-src 'self' 'unsafe-inline'; frame-ancestors 'none'; base-uri 'none'; form-action 'none'";
 
 /// What all requests share.
-struct Shared {
+struct ServerState {
     loading: Loading,
     text: SceneText,
     title: String,
@@ -46,12 +46,12 @@ struct Shared {
 }
 
 pub(crate) fn app(guard: Arc<Guard>, loading: Loading, params: &ViewerParams) -> Router {
-    let shared = Shared {
+    let shared = ServerState {
         loading,
         text: params.scene.clone(),
         title: params.title.clone(),
         turn: Arc::new(Semaphore::new(1)),
-        places: Arc::new(Semaphore::new(MOST_QUESTIONS)),
+        places: Arc::new(Semaphore::new(MAX_QUESTIONS)),
         plans: Arc::default(),
     };
     Router::new()
@@ -67,7 +67,7 @@ pub(crate) fn app(guard: Arc<Guard>, loading: Loading, params: &ViewerParams) ->
         .route("/{token}/plans/{plan}/ask/{question}", post(ask_of_plan))
         .route("/{token}/plan-meshes/{name}", post(plan_mesh))
         .fallback(|| async { refused(StatusCode::NOT_FOUND, "there is nothing at this address") })
-        .layer(DefaultBodyLimit::max(MOST_BYTES))
+        .layer(DefaultBodyLimit::max(MAX_BYTES))
         .layer(from_fn_with_state(guard, check))
         .layer(from_fn(with_headers))
         .with_state(Arc::new(shared))
@@ -99,7 +99,7 @@ fn file(path: &str) -> Response {
     }
 }
 
-async fn state(State(shared): State<Arc<Shared>>) -> Json<Value> {
+async fn state(State(shared): State<Arc<ServerState>>) -> Json<Value> {
     let now = shared.loading.read();
     let stage = now.stages.current();
     Json(json!({
@@ -115,22 +115,22 @@ async fn state(State(shared): State<Arc<Shared>>) -> Json<Value> {
     }))
 }
 
-async fn points(State(shared): State<Arc<Shared>>, Path((_, chunk)): Path<(String, usize)>) -> Response {
+async fn points(State(shared): State<Arc<ServerState>>, Path((_, chunk)): Path<(String, usize)>) -> Response {
     let shown = shared.loading.now().shown;
     off_thread(move || shown.and_then(|shown| shown.chunks.points(chunk, &shown.cloud))).await
 }
 
-async fn colors(State(shared): State<Arc<Shared>>, Path((_, chunk)): Path<(String, usize)>) -> Response {
+async fn colors(State(shared): State<Arc<ServerState>>, Path((_, chunk)): Path<(String, usize)>) -> Response {
     let shown = shared.loading.now().shown;
     off_thread(move || shown.and_then(|shown| shown.chunks.colors(chunk, &shown.cloud))).await
 }
 
-async fn balls(State(shared): State<Arc<Shared>>) -> Response {
+async fn balls(State(shared): State<Arc<ServerState>>) -> Response {
     let scene = shared.loading.now().scene;
     off_thread(move || scene.map(|scene| questions::balls(&scene))).await
 }
 
-async fn meshes(State(shared): State<Arc<Shared>>, Path((_, mesh)): Path<(String, usize)>) -> Response {
+async fn meshes(State(shared): State<Arc<ServerState>>, Path((_, mesh)): Path<(String, usize)>) -> Response {
     let meshes = shared.loading.now().meshes;
     off_thread(move || meshes.get(mesh).map(|mesh| mesh.to_vec())).await
 }
@@ -166,12 +166,12 @@ impl Drop for StopWhenDropped {
     }
 }
 
-async fn ask(state: State<Arc<Shared>>, Path((_, name)): Path<(String, String)>, request: Request) -> Response {
+async fn ask(state: State<Arc<ServerState>>, Path((_, name)): Path<(String, String)>, request: Request) -> Response {
     answer(state, None, name, request).await
 }
 
 async fn ask_of_plan(
-    state: State<Arc<Shared>>,
+    state: State<Arc<ServerState>>,
     Path((_, plan, name)): Path<(String, usize, String)>,
     request: Request,
 ) -> Response {
@@ -179,8 +179,13 @@ async fn ask_of_plan(
 }
 
 /// Answers a question of the scene as it is, or of that with a plan.
-async fn answer(State(shared): State<Arc<Shared>>, plan: Option<usize>, name: String, request: Request) -> Response {
-    let body = match body(request, "application/json", MOST_BYTES).await {
+async fn answer(
+    State(shared): State<Arc<ServerState>>,
+    plan: Option<usize>,
+    name: String,
+    request: Request,
+) -> Response {
+    let body = match body(request, "application/json", MAX_BYTES).await {
         Ok(body) => body,
         Err(response) => return response,
     };
@@ -188,13 +193,13 @@ async fn answer(State(shared): State<Arc<Shared>>, plan: Option<usize>, name: St
     in_turn(&shared, move |scene, control| {
         let planned = plan.map(|number| plans.get(number)).transpose()?;
         let (scene, text) = planned.as_ref().map_or((scene, &text), |planned| (&*planned.scene, &planned.text));
-        questions::answer(&name, &body, &Asked { scene, text, plans: &plans, control })
+        questions::answer(&name, &body, &RequestContext { scene, text, plans: &plans, control })
     })
     .await
 }
 
 /// What is drawn of a file of results.
-async fn results(State(shared): State<Arc<Shared>>, Path((_, number)): Path<(String, usize)>) -> Response {
+async fn results(State(shared): State<Arc<ServerState>>, Path((_, number)): Path<(String, usize)>) -> Response {
     let Some(file) = shared.loading.now().results.get(number).cloned() else {
         return refused(StatusCode::NOT_FOUND, "there is no such file of results");
     };
@@ -203,34 +208,34 @@ async fn results(State(shared): State<Arc<Shared>>, Path((_, number)): Path<(Str
 
 /// Takes a mesh file for plans.
 async fn plan_mesh(
-    State(shared): State<Arc<Shared>>,
+    State(shared): State<Arc<ServerState>>,
     Path((_, name)): Path<(String, String)>,
     request: Request,
 ) -> Response {
-    let body = match body(request, "application/octet-stream", MOST_MESH_BYTES).await {
+    let body = match body(request, "application/octet-stream", MAX_MESH_BYTES).await {
         Ok(body) => body,
         Err(response) => return response,
     };
     let plans = Arc::clone(&shared.plans);
     in_turn(&shared, move |scene, _| {
         let number = plans.load(&name, &body, scene.model().frame())?;
-        Ok(Answer::of(json!({ "mesh": number, "name": name })))
+        Ok(QuestionReply::of(json!({ "mesh": number, "name": name })))
     })
     .await
 }
 
 /// The body of a request of one type, which forms of other pages cannot send.
-async fn body(request: Request, kind: &str, most: usize) -> Result<Bytes, Response> {
+async fn body(request: Request, kind: &str, max: usize) -> Result<Bytes, Response> {
     let is_kind =
         request.headers().get(header::CONTENT_TYPE).is_some_and(|own| own.as_bytes().starts_with(kind.as_bytes()));
     if !is_kind {
         return Err(refused(StatusCode::UNSUPPORTED_MEDIA_TYPE, &format!("this must be sent as {kind}")));
     }
-    match tokio::time::timeout(PATIENCE, axum::body::to_bytes(request.into_body(), most)).await {
+    match tokio::time::timeout(PATIENCE, axum::body::to_bytes(request.into_body(), max)).await {
         Ok(Ok(body)) => Ok(body),
         Ok(Err(_)) => Err(refused(
             StatusCode::PAYLOAD_TOO_LARGE,
-            &format!("what was sent is too long: the most is {} kB", most >> 10),
+            &format!("what was sent is too long: the most is {} kB", max >> 10),
         )),
         Err(_) => Err(refused(StatusCode::REQUEST_TIMEOUT, "what was sent took too long to arrive")),
     }
@@ -238,8 +243,8 @@ async fn body(request: Request, kind: &str, most: usize) -> Result<Bytes, Respon
 
 /// Does work on the scene when its turn comes, and stops when nobody waits for it any more.
 async fn in_turn(
-    shared: &Shared,
-    work: impl FnOnce(&Scene, &Control<'_>) -> Result<Answer, Refusal> + Send + 'static,
+    shared: &ServerState,
+    work: impl FnOnce(&PageScene, &Control<'_>) -> Result<QuestionReply, Refusal> + Send + 'static,
 ) -> Response {
     let Some(scene) = shared.loading.now().scene else {
         return refused(StatusCode::SERVICE_UNAVAILABLE, "the scene is not ready yet");

@@ -1,10 +1,10 @@
 //! What is shown and asked about, with what takes long to make made once.
 
-use crate::asked_points::{AskedPoints, SAMPLE};
 use crate::chunks::Chunks;
-use crate::questions::Roofs;
+use crate::questions::RoofPlanes;
+use crate::target_points::{SAMPLE, TargetPoints};
 use belvedere::apps::ask::scene::KnownGround;
-use belvedere::apps::ask::{self, Cells, North, SunPlace};
+use belvedere::apps::ask::{self, GridCells, North, SunPlace};
 use belvedere::apps::eyes::fault_of;
 use belvedere::apps::sun::Site;
 use belvedere::control::Control;
@@ -17,7 +17,7 @@ use serde_json::{Value, json};
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// A cloud, and its points as the page gets them.
-pub(crate) struct Shown {
+pub(crate) struct ShownCloud {
     pub(crate) cloud: Arc<PointCloud>,
     pub(crate) chunks: Chunks,
     /// What the page must know before it draws.
@@ -25,20 +25,20 @@ pub(crate) struct Shown {
 }
 
 /// The scene that questions are put to, with what the page shows of it.
-pub(crate) struct Scene {
-    pub(crate) asked: ask::Scene,
-    pub(crate) shown: Arc<Shown>,
+pub(crate) struct PageScene {
+    pub(crate) inner: ask::Scene,
+    pub(crate) shown: Arc<ShownCloud>,
     /// For each point that is shown its row among those that are there; `None` where no plan clears any.
     rows_there: Option<Vec<u32>>,
-    points: Kept<AskedPoints>,
-    sample: Kept<AskedPoints>,
-    roofs: Kept<Roofs>,
+    points: LazyResult<TargetPoints>,
+    sample: LazyResult<TargetPoints>,
+    roofs: LazyResult<RoofPlanes>,
 }
 
 /// Something that is made when first needed, and can fail.
-struct Kept<T>(Mutex<Option<Arc<T>>>);
+struct LazyResult<T>(Mutex<Option<Arc<T>>>);
 
-impl<T> Kept<T> {
+impl<T> LazyResult<T> {
     fn new() -> Self {
         Self(Mutex::new(None))
     }
@@ -54,7 +54,7 @@ impl<T> Kept<T> {
     }
 }
 
-impl Shown {
+impl ShownCloud {
     pub(crate) fn new(cloud: Arc<PointCloud>) -> Self {
         let chunks = Chunks::new(&cloud);
         Self::of(cloud, chunks)
@@ -100,18 +100,25 @@ impl Shown {
     }
 }
 
-impl Scene {
-    pub(crate) fn new(model: SceneModel, shown: Arc<Shown>) -> Self {
+impl PageScene {
+    pub(crate) fn new(model: SceneModel, shown: Arc<ShownCloud>) -> Self {
         let cloud = Arc::clone(&shown.cloud);
         Self::of(ask::Scene::new(model, cloud), shown)
     }
 
-    fn of(asked: ask::Scene, shown: Arc<Shown>) -> Self {
-        Self { asked, shown, rows_there: None, points: Kept::new(), sample: Kept::new(), roofs: Kept::new() }
+    fn of(inner: ask::Scene, shown: Arc<ShownCloud>) -> Self {
+        Self {
+            inner,
+            shown,
+            rows_there: None,
+            points: LazyResult::new(),
+            sample: LazyResult::new(),
+            roofs: LazyResult::new(),
+        }
     }
 
     pub(crate) fn model(&self) -> &SceneModel {
-        self.asked.model()
+        self.inner.model()
     }
 
     /// The scene with a plan: what stands in areas is cleared, then meshes in metres are added.
@@ -122,7 +129,7 @@ impl Scene {
         control: &Control<'_>,
     ) -> Result<(Self, ClearReport)> {
         let (mut model, mut report) = (self.model().clone(), ClearReport::default());
-        let own = self.asked.cloud();
+        let own = self.inner.cloud();
         let mut cloud = Arc::clone(own);
         for area in areas {
             let (cleared, kept, of_area) = model.without(area, &cloud, control)?;
@@ -136,8 +143,8 @@ impl Scene {
         let rows_there = (cloud.len() < own.len()).then(|| rows_there(own, &cloud));
         // the pulses are indexed once for all plans
         let proof = self.blockers(UnprovenAs::Reported, control)?.proof().cloned();
-        let asked = ask::Scene::new(model, cloud).with_proof(proof);
-        Ok((Self { rows_there, ..Self::of(asked, Arc::clone(&self.shown)) }, report))
+        let inner = ask::Scene::new(model, cloud).with_proof(proof);
+        Ok((Self { rows_there, ..Self::of(inner, Arc::clone(&self.shown)) }, report))
     }
 
     /// A byte for each point in the order in which points are sent: 1 for one that the plan clears.
@@ -152,10 +159,10 @@ impl Scene {
     pub(crate) fn prepare(&self) {
         let control = Control::none();
         let _ = self.blockers(UnprovenAs::Visible, &control);
-        if !self.asked.cloud().is_empty() {
+        if !self.inner.cloud().is_empty() {
             let _ = self.ground(&control);
-            let _ = self.points(Points::Sample, &control);
-            let _ = self.points(Points::All, &control);
+            let _ = self.points(PointChoice::Sample, &control);
+            let _ = self.points(PointChoice::All, &control);
         }
         if let Ok(proving) = self.blockers(UnprovenAs::Reported, &control) {
             let _ = proving.proof().map(|proof| proof.prepare_all(&control));
@@ -180,12 +187,12 @@ impl Scene {
 
     /// What blocks lines of sight. Pulses are left out where they make no difference.
     pub(crate) fn blockers(&self, unproven: UnprovenAs, control: &Control<'_>) -> Result<Arc<MedialScene>> {
-        self.asked.blockers(unproven, control)
+        self.inner.blockers(unproven, control)
     }
 
     /// The points of the cloud, which the questions about all of it need.
     pub(crate) fn cloud(&self) -> Result<&PointCloud> {
-        let cloud = self.asked.cloud();
+        let cloud = self.inner.cloud();
         if cloud.is_empty() {
             return Err(Error::NoPoints { what: "a ball file has none; open it together with its cloud".to_owned() });
         }
@@ -193,7 +200,7 @@ impl Scene {
     }
 
     /// The points that a question about all of the cloud asks about.
-    pub(crate) fn points(&self, points: Points, control: &Control<'_>) -> Result<Arc<AskedPoints>> {
+    pub(crate) fn points(&self, points: PointChoice, control: &Control<'_>) -> Result<Arc<TargetPoints>> {
         let cloud = self.cloud()?;
         let chunks = &self.shown.chunks;
         let place = |row: u32| match &self.rows_there {
@@ -201,31 +208,31 @@ impl Scene {
             None => Some(row),
         };
         match points {
-            Points::All => self.points.get(|| Ok(AskedPoints::all(cloud, chunks, place))),
-            Points::Sample => self.sample.get(|| AskedPoints::sample(cloud, chunks, place, control)),
+            PointChoice::All => self.points.get(|| Ok(TargetPoints::all(cloud, chunks, place))),
+            PointChoice::Sample => self.sample.get(|| TargetPoints::sample(cloud, chunks, place, control)),
         }
     }
 
     /// The ground of the cloud on the grid that the command line takes.
     pub(crate) fn ground(&self, control: &Control<'_>) -> Result<Arc<KnownGround>> {
-        self.asked.ground(Cells::default().grid(&self.asked)?, GroundPoints::Auto, control)
+        self.inner.ground(GridCells::default().grid(&self.inner)?, GroundPoints::Auto, control)
     }
 
     /// The planes of roofs.
-    pub(crate) fn roofs(&self, control: &Control<'_>) -> Result<Arc<Roofs>> {
-        self.roofs.get(|| Roofs::of(self, control))
+    pub(crate) fn roofs(&self, control: &Control<'_>) -> Result<Arc<RoofPlanes>> {
+        self.roofs.get(|| RoofPlanes::of(self, control))
     }
 
     /// Where the scene lies on earth.
     pub(crate) fn site(&self) -> Result<Site> {
-        Ok(SunPlace::default().site_of(self.asked.frame(), &self.model().bounds(), None)?.0)
+        Ok(SunPlace::default().site_of(self.inner.frame(), &self.model().bounds(), None)?.0)
     }
 
-    /// Azimuth of grid north from true north at a local place, or at the middle of the scene; grid north counts where true north is
-    /// unknown.
+    /// Azimuth of grid north from true north at a local place, or at the middle of the scene; grid north counts where
+    /// true north is unknown.
     pub(crate) fn grid_north(&self, place: Option<[f64; 3]>) -> f64 {
-        let place = place.map_or_else(|| self.asked.middle(), |place| [place[0], place[1]]);
-        North::True.at(&self.asked, place).of_grid
+        let place = place.map_or_else(|| self.inner.middle(), |place| [place[0], place[1]]);
+        North::True.at(&self.inner, place).of_grid
     }
 
     /// Refuses an eye that cannot look, in words.
@@ -255,7 +262,7 @@ fn rows_there(cloud: &PointCloud, kept: &PointCloud) -> Vec<u32> {
 /// Which points of the cloud are asked about.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub(crate) enum Points {
+pub(crate) enum PointChoice {
     #[default]
     All,
     /// A fair sample, which answers for its neighbours.

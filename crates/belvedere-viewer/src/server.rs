@@ -15,7 +15,7 @@ use tokio::runtime::Runtime;
 use tokio::sync::Semaphore;
 
 /// Connections at once: a browser opens six for each tab. Others wait.
-const MOST_CONNECTIONS: usize = 256;
+const MAX_CONNECTIONS: usize = 256;
 /// How long the head of a request may take, and a connection may rest before the next.
 const PATIENCE: Duration = Duration::from_secs(15);
 /// Threads that serve; questions have their own.
@@ -34,7 +34,7 @@ pub struct ViewerParams {
 
 /// A running server. It ends when it is dropped.
 #[derive(Debug)]
-pub struct Viewer {
+pub struct PageServer {
     guard: Arc<Guard>,
     loading: Loading,
     runtime: Option<Runtime>,
@@ -46,7 +46,7 @@ impl std::fmt::Debug for Loading {
     }
 }
 
-impl Viewer {
+impl PageServer {
     /// Begins to serve a page without a scene on 127.0.0.1.
     ///
     /// # Errors
@@ -84,7 +84,7 @@ impl Viewer {
     }
 }
 
-impl Drop for Viewer {
+impl Drop for PageServer {
     fn drop(&mut self) {
         // a question under way is left behind: nothing of it is written
         if let Some(runtime) = self.runtime.take() {
@@ -94,7 +94,7 @@ impl Drop for Viewer {
 }
 
 async fn accept(listener: TcpListener, app: axum::Router) {
-    let places = Arc::new(Semaphore::new(MOST_CONNECTIONS));
+    let places = Arc::new(Semaphore::new(MAX_CONNECTIONS));
     loop {
         let Ok(place) = Arc::clone(&places).acquire_owned().await else { return };
         let Ok((stream, _)) = listener.accept().await else {

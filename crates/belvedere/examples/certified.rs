@@ -1,10 +1,11 @@
-//! Do certified maps answer as exact lines of sight do, what share of the targets do they settle, and how fast are they?
+//! Do certified maps answer as exact lines of sight do, what share of the targets do they settle, and how fast are
+//! they?
 //!
 //!     belvedere demo -o demo
 //!     cargo run --release --example certified -- demo/balls.npz [TARGETS]
 //!
-//! Ten million targets, unless told otherwise, spread evenly over the box of the balls' points, by three projections; exit status 1
-//! if one answer differs.
+//! Ten million targets, unless told otherwise, spread evenly over the box of the balls' points, by three projections;
+//! exit status 1 if one answer differs.
 #![allow(clippy::print_stdout, reason = "the table is what this example is for")]
 
 use belvedere::Bounds;
@@ -34,7 +35,8 @@ fn main() -> Result<ExitCode, Box<dyn std::error::Error>> {
     let [l, h] = [low, high].map(|corner| corner.map(f64::from));
     let middle: [f64; 3] = std::array::from_fn(|i| (l[i] + h[i]) / 2.0);
     let sun = to_sun(235f64.to_radians(), 30f64.to_radians());
-    // an eye above the roofs at a corner, for which no pixel is wider than the 0.25 m of the parallel view anywhere in the scene
+    // an eye above the roofs at a corner, for which no pixel is wider than the 0.25 m of the parallel view anywhere in
+    // the scene
     let corner = [l[0], l[1], h[2] + 10.0];
     let distance = (0..3).map(|i| (if i == 2 { l[i] } else { h[i] } - corner[i]).powi(2)).sum::<f64>().sqrt();
     let width = (4.0 * distance * 2.0 * 0.7f64.tan()).round();
@@ -68,11 +70,11 @@ fn main() -> Result<ExitCode, Box<dyn std::error::Error>> {
             depth_map(balls, view, Profile::Sphere, ItemBuffer::Without, &Control::none())?;
         }
         let plain = start.elapsed();
-        let (mut settled, mut differ, mut visible, mut asked) = (0, 0, 0, 0);
+        let (mut settled, mut differ, mut visible, mut queried) = (0, 0, 0, 0);
         let (mut by_map, mut by_rays) = (0.0, 0.0);
-        while asked < count {
-            let seed = u64::try_from(asked)?;
-            let targets = random_targets(low, high, BATCH.min(count - asked), seed);
+        while queried < count {
+            let seed = u64::try_from(queried)?;
+            let targets = random_targets(low, high, BATCH.min(count - queried), seed);
             let start = Instant::now();
             let (answers, report) = map.answers(&targets, &Control::none())?;
             by_map += start.elapsed().as_secs_f64();
@@ -82,7 +84,7 @@ fn main() -> Result<ExitCode, Box<dyn std::error::Error>> {
             settled += report.settled_count;
             differ += answers.iter().zip(&exact).filter(|(a, b)| a != b).count();
             visible += exact.iter().filter(|&&a| a == Answer::Visible).count();
-            asked += targets.len();
+            queried += targets.len();
         }
         let percent = |n: usize| 100.0 * n as f64 / count as f64;
         let pixels: usize = views.iter().map(|v| v.size_px[0] * v.size_px[1]).sum();

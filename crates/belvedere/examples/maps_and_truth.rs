@@ -1,9 +1,10 @@
-//! How far do depth maps of the medial balls of an exact mesh lie from the mesh, as it is sampled more densely and pixels shrink?
+//! How far do depth maps of the medial balls of an exact mesh lie from the mesh, as it is sampled more densely and
+//! pixels shrink?
 //!
 //!     cargo run --release --example maps_and_truth
 //!
-//! A simulated town of 60 m, its triangles sampled evenly at random with their exact normals; seen by the sun and by a camera over a
-//! corner. Errors are depth minus truth through the middle of each pixel, where both see something.
+//! A simulated town of 60 m, its triangles sampled evenly at random with their exact normals; seen by the sun and by a
+//! camera over a corner. Errors are depth minus truth through the middle of each pixel, where both see something.
 #![allow(clippy::print_stdout, reason = "the table is what this example is for")]
 
 use belvedere::Bounds;
@@ -17,9 +18,10 @@ use belvedere::normals::OrientedCloud;
 use belvedere::random::uniform;
 use belvedere::vector::{cross, length, sub, unit};
 use belvedere::view::{View, to_sun};
-use belvedere_scenes::{Material, Scene, TownParams, Truth, town};
+use belvedere_scenes::{Material, TownParams, TriangleScene, Truth, town};
 
-/// The ground is a sheet without thickness: a ball below it touches nothing. Its underside is put this far below, metres.
+/// The ground is a sheet without thickness: a ball below it touches nothing. Its underside is put this far below,
+/// metres.
 const UNDERSIDE: f64 = 3.0;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -92,10 +94,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 let median = errors.get(errors.len() / 2).copied().unwrap_or(f64::NAN);
                 let mut sizes: Vec<f64> = errors.iter().map(|e| e.abs()).collect();
                 sizes.sort_by(f64::total_cmp);
-                let most = sizes.get(sizes.len() * 9 / 10).copied().unwrap_or(f64::NAN);
+                let max = sizes.get(sizes.len() * 9 / 10).copied().unwrap_or(f64::NAN);
                 let percent = |n: usize| 100.0 * n as f64 / count;
                 println!(
-                    "| {spacing} | {pixel} | {name} | {median:.4} | {most:.3} | {:.1} % | {:.1} % | {:.1} % |",
+                    "| {spacing} | {pixel} | {name} | {median:.4} | {max:.3} | {:.1} % | {:.1} % | {:.1} % |",
                     percent(beyond),
                     percent(within),
                     percent(narrow)
@@ -107,7 +109,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 }
 
 /// Points on all triangles, evenly at random, as many as a grid of `spacing` metres would have, with outward normals.
-fn sampled(scene: &Scene, spacing: f64) -> (Vec<[f64; 3]>, Vec<[f32; 3]>) {
+fn sampled(scene: &TriangleScene, spacing: f64) -> (Vec<[f64; 3]>, Vec<[f32; 3]>) {
     let (mut positions, mut normals) = (Vec::new(), Vec::new());
     let mut owed = 0.0;
     let mut draw = 0;

@@ -1,4 +1,5 @@
-//! The shadow on a tile at an instant, as a raster: `cargo run --release --example shadow -- TILE.laz EPSG:7415 shadow.tif`.
+//! The shadow on a tile at an instant, as a raster: `cargo run --release --example shadow -- TILE.laz EPSG:7415
+//! shadow.tif`.
 
 use belvedere::prelude::*;
 

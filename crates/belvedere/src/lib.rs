@@ -1,7 +1,8 @@
 //! Visibility analysis directly on point clouds: no city model, no height raster in between.
 //!
-//! A scene is a union of medial balls (Peters, Ledoux & Biljecki 2015), cut with the space that laser pulses prove empty. The balls
-//! block lines of sight. The answer for a place is visible, blocked, or unproven where no pulse saw the space between.
+//! A scene is a union of medial balls (Peters, Ledoux & Biljecki 2015), cut with the space that laser pulses prove
+//! empty. The balls block lines of sight. The answer for a place is visible, blocked, or unproven where no pulse saw
+//! the space between.
 //!
 //! This program writes a raster of the shadow on a LAZ tile on a summer afternoon:
 //!
@@ -44,16 +45,18 @@
 //! | `figures` | pictures; needs `io` | yes |
 //! | `gpu` | sky views, sun hours, irradiance and depth maps on a graphics processor, with the same bits | no |
 //! | `las` `e57` `ply` `npy` `tiff` `obj` | single file formats; need `io` | yes |
-//! | `scanner-estimate` | finding the scanner from pulses with several returns and from scan angles; without it, clouds without scanner positions count as scanned from straight above | yes |
-//! | `crs` | the database of reference systems; without it a system can be carried, but not looked up by its code | yes |
+//! | `scanner-estimate` | finding scanner positions; without it, clouds without count as scanned from above | yes |
+//! | `crs` | the database of reference systems; without it, a system is carried, but not found by its code | yes |
 //!
-//! Without default features the crate builds balls and answers lines of sight for positions that the program has itself.
+//! Without default features the crate builds balls and answers lines of sight for positions that the program has
+//! itself.
 //!
 //! # Conventions
 //!
-//! Units are metres and radians. x is east, y north, z up. Positions are local f32 on an f64 origin ([`Frame`]). Every result
-//! is the same, bit by bit, for any number of threads. The crate prints nothing and reads neither clock nor environment.
-//! Parameters are structs with defaults; those that may grow are `#[non_exhaustive]` and have `with_…` methods.
+//! Units are metres and radians. x is east, y north, z up. Positions are local f32 on an f64 origin ([`Frame`]). Every
+//! result is the same, bit by bit, for any number of threads. The crate prints nothing and reads neither clock nor
+//! environment. Parameters are structs with defaults; those that may grow are `#[non_exhaustive]` and have `with_…`
+//! methods.
 
 #[cfg(feature = "apps")]
 pub use belvedere_apps as apps;

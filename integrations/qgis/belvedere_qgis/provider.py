@@ -10,7 +10,8 @@ from . import program
 from .algorithm import SETTING, BelvedereAlgorithm, path_setting
 from .description import commands
 
-# What the program described when the plugin was packed: shows the algorithms, and how to get the program, where there is none.
+# What the program described when the plugin was packed: shows the algorithms, and how to get the program, where there
+# is none.
 PACKED = program.PLUGIN / "describe.json"
 
 

@@ -197,7 +197,8 @@ def check_results():
     subprocess.run([PROGRAM, *typed], check=True, capture_output=True)
     assert direct.read_bytes() == (FOLDER / "viewshed.tif").read_bytes()
 
-    # areas lie on the visible cells of the raster: brought back from longitude and latitude they may be off by the rounding of degrees
+    # areas lie on the visible cells of the raster: brought back from longitude and latitude they may be off by the
+    # rounding of degrees
     cells = values(layers["viewshed.tif"])
     visible = [feature for feature in layers["areas.gpkg"].getFeatures() if feature["answer"] == "visible"]
     assert len(visible) == 1 and abs(visible[0].geometry().area() - cells.count(1)) < 0.01 * cells.count(1)

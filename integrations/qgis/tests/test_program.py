@@ -82,8 +82,8 @@ def test_a_run_reports_its_stages_and_returns_its_summary(binary, tmp_path):
     )
     assert summary and (tmp_path / "town").is_dir()
     assert steps and all(total is None or 0 <= done <= total for _, done, total in steps)
-    facts = program.run(binary, ["info", "--", str(tmp_path / "town" / "cloud.laz")])
-    assert facts["points"] > 1000
+    info = program.run(binary, ["info", "--", str(tmp_path / "town" / "cloud.laz")])
+    assert info["points"] > 1000
 
 
 def test_an_error_has_the_words_of_the_program(binary, tmp_path):

@@ -1,7 +1,7 @@
 //! Comfort: what walkers on routes, and windows, get of sun and sky.
 
 use super::places::{leave_out_outside, test_edge};
-use super::report::{GroundSection, LinesSection, Named, PeriodSection};
+use super::report::{GroundSection, LinesSection, NamedValues, PeriodSection};
 use super::sun::{Days, SunPlace};
 use super::sun_hours::days_in_words;
 use super::windows::{GivenWindows, WindowTargets};
@@ -20,7 +20,7 @@ use serde::{Deserialize, Serialize};
 /// What routes and windows get of sun and sky.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
-pub struct Comfort {
+pub struct ComfortQuestion {
     /// The days.
     pub days: Days,
     /// Where on earth, how clocks run, and which north the azimuths of windows and suns count from.
@@ -62,7 +62,7 @@ impl Default for RoutesOrWindows {
 
 /// What was found along routes or at windows.
 #[derive(Clone, Debug)]
-pub struct ComfortFound {
+pub struct ComfortResults {
     /// The places, a group for each route or window.
     pub targets: Targets,
     /// Whether each is near the edge of the cloud; `None` where that is not known.
@@ -86,15 +86,15 @@ pub struct ComfortFound {
 pub struct ExposureSection {
     /// How many routes or windows there are.
     #[serde(flatten)]
-    groups: Named<usize>,
+    groups: NamedValues<usize>,
     targets: usize,
     sky_directions: usize,
     /// Means by weight.
     #[serde(flatten)]
-    means: Named<f64>,
+    means: NamedValues<f64>,
 }
 
-impl Comfort {
+impl ComfortQuestion {
     fn targets(
         &self,
         grid_north: f64,
@@ -168,8 +168,8 @@ fn refused<T>(parameter: Parameter, value: String, expected: &'static str) -> Re
     Err(Error::InvalidParameter { parameter, value, expected })
 }
 
-impl Ask for Comfort {
-    type Found = ComfortFound;
+impl Ask for ComfortQuestion {
+    type Found = ComfortResults;
 
     fn check(&self) -> Result<()> {
         if self.days.is_empty() {
@@ -195,7 +195,7 @@ impl Ask for Comfort {
         _places: &Places,
         context: &mut Context,
         control: &Control<'_>,
-    ) -> Result<Answers<ComfortFound>> {
+    ) -> Result<Answers<ComfortResults>> {
         let sky = self.sky.directions()?;
         let (schedule, zone) = self.schedule(scene, context)?;
         let north = self.place.north.of_scene(scene);
@@ -217,13 +217,13 @@ impl Ask for Comfort {
         })?;
         let measures = exposure.measures.iter().map(|(measure, _)| measure.clone()).collect();
         let grid_north = north.of_grid;
-        let found = ComfortFound { targets, near_edge, exposure, routes, windows, names, schedule, grid_north };
+        let found = ComfortResults { targets, near_edge, exposure, routes, windows, names, schedule, grid_north };
         found.summarise(sky.directions.len(), &zone, context);
         Ok(Answers::new(found, measures))
     }
 }
 
-impl ComfortFound {
+impl ComfortResults {
     fn summarise(&self, sky_directions: usize, zone: &Zone, context: &mut Context) {
         let count = self.targets.groups.len();
         let kind = if self.windows.is_empty() { "route" } else { "window" };
@@ -233,7 +233,7 @@ impl ComfortFound {
         context.headline(format!(
             "sun and sky of {count} {} with {} places, {}",
             if count == 1 { kind } else { &kinds },
-            self.targets.asked_count(),
+            self.targets.target_count(),
             days_in_words(&self.schedule, zone)
         ));
         if let Some(factor) = mean("sky_view_factor") {
@@ -250,8 +250,8 @@ impl ComfortFound {
         let named = means
             .iter()
             .map(|(measure, mean)| (format!("mean_{}", measure.name), rounded(*mean, digits(measure.decimals))));
-        let means = Named(named.collect());
-        let groups = Named(vec![(kinds, count)]);
+        let means = NamedValues(named.collect());
+        let groups = NamedValues(vec![(kinds, count)]);
         context.report.exposure = Some(ExposureSection { groups, targets: self.targets.len(), sky_directions, means });
     }
 }

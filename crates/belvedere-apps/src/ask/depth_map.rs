@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 /// The distance to the first surface for each pixel of a view.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
-pub struct DepthMap {
+pub struct DepthMapQuestion {
     /// From where the picture is taken; whoever reads a question from text gives it.
     #[serde(skip)]
     pub from: Option<ViewFrom>,
@@ -38,7 +38,7 @@ pub enum ViewFrom {
 
 /// A picture of depths.
 #[derive(Clone, Debug)]
-pub struct DepthMapFound {
+pub struct DepthMapResults {
     /// Distances, metres: along the axis of a view, from the eye of a panorama; infinite where nothing is hit.
     pub depth: Raster<f32>,
     /// The row of the ball that each pixel shows, where that was wanted.
@@ -54,12 +54,12 @@ pub struct ViewSection {
     pixel_m: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pixel_m_at_100_m: Option<f64>,
-    view_direction: Looking,
+    view_direction: ViewDirection,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
-enum Looking {
+enum ViewDirection {
     Along(Vec<f64>),
     Around(&'static str),
 }
@@ -99,7 +99,7 @@ impl ViewFrom {
                     height_px: view.size_px[1],
                     pixel_m: pixels_per_metre.map(|count| rounded(1.0 / count, 4)),
                     pixel_m_at_100_m: pixels_per_metre.is_none().then(|| rounded(view.pixel_width(100.0), 4)),
-                    view_direction: Looking::Along(view.frame.forward.map(|v| rounded(v, 4)).to_vec()),
+                    view_direction: ViewDirection::Along(view.frame.forward.map(|v| rounded(v, 4)).to_vec()),
                 }
             }
             Self::Panorama { width, .. } => {
@@ -109,15 +109,15 @@ impl ViewFrom {
                     height_px: width / 2,
                     pixel_m: None,
                     pixel_m_at_100_m: None,
-                    view_direction: Looking::Around("all around"),
+                    view_direction: ViewDirection::Around("all around"),
                 }
             }
         }
     }
 }
 
-impl Ask for DepthMap {
-    type Found = DepthMapFound;
+impl Ask for DepthMapQuestion {
+    type Found = DepthMapResults;
 
     fn check(&self) -> Result<()> {
         Ok(())
@@ -129,7 +129,7 @@ impl Ask for DepthMap {
         _: &Places,
         context: &mut Context,
         control: &Control<'_>,
-    ) -> Result<Answers<DepthMapFound>> {
+    ) -> Result<Answers<DepthMapResults>> {
         let Some(from) = self.from else {
             return Err(Error::InvalidParameter {
                 parameter: Parameter::View,
@@ -168,6 +168,6 @@ impl Ask for DepthMap {
         context.report.view = Some(view);
         let balls_around_eye_ignored = from.eye().map(|_| around_eye_count);
         context.report.picture = Some(PictureSection { pixels_hit_percent, balls_around_eye_ignored });
-        Ok(Answers::new(DepthMapFound { depth, balls }, Vec::new()))
+        Ok(Answers::new(DepthMapResults { depth, balls }, Vec::new()))
     }
 }

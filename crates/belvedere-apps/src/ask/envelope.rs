@@ -3,7 +3,7 @@
 use super::report::{GroundSection, LinesSection, PeriodSection};
 use super::scene::KnownGround;
 use super::sun::{Days, SunPlace};
-use super::{Answers, Ask, Context, Places, Remark, Scene, Shared};
+use super::{Answers, Ask, Context, Places, Remark, Scene, SharedObject};
 use crate::solar_envelope::{
     EnvelopeParams, Parcel, ProtectedPiece, SolarEnvelope, check_fence, check_hours, envelope_suns, existing_shade,
     protected_faces, protected_line, solar_envelope,
@@ -29,7 +29,7 @@ const SUN_EXPECTED: &str = "azimuth and elevation in degrees, the elevation abov
 /// How high one may build on a parcel without taking protected sun from others.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
-pub struct Envelope {
+pub struct EnvelopeQuestion {
     /// The suns that are protected.
     pub suns: ProtectedSuns,
     /// Where on earth, how clocks run, and which north azimuths count from.
@@ -98,11 +98,11 @@ pub enum ProtectedShape {
     /// Lines through corners, local metres.
     Lines(Vec<Vec<[f64; 3]>>),
     /// The faces of a mesh, metres.
-    Faces(Shared<Mesh>),
+    Faces(SharedObject<Mesh>),
 }
 
 /// The envelope, and the ground that its heights count from.
-pub struct EnvelopeFound {
+pub struct EnvelopeResults {
     /// The envelope.
     pub envelope: SolarEnvelope,
     /// The ground over the parcel.
@@ -139,7 +139,7 @@ pub struct EnvelopeSection {
 }
 
 /// Directions to suns, and what to call each.
-struct Suns {
+struct NamedSuns {
     directions: Vec<[f64; 3]>,
     names: Vec<String>,
 }
@@ -158,7 +158,7 @@ fn refused<T>(parameter: Parameter, value: impl Into<String>, expected: &'static
     Err(Error::InvalidParameter { parameter, value: value.into(), expected })
 }
 
-impl Envelope {
+impl EnvelopeQuestion {
     fn dates(&self, days: &Days, site: &Site, zone: &Zone) -> Result<Vec<Date>> {
         match days.period(&self.place, site, zone)? {
             Some(Period::Days(dates)) => Ok(dates),
@@ -167,7 +167,7 @@ impl Envelope {
         }
     }
 
-    fn suns(&self, scene: &Scene, context: &mut Context) -> Result<Suns> {
+    fn suns(&self, scene: &Scene, context: &mut Context) -> Result<NamedSuns> {
         match &self.suns {
             ProtectedSuns::Directions(directions) => {
                 let north = self.place.north.of_scene(scene);
@@ -176,7 +176,7 @@ impl Envelope {
                     to_sun(azimuth.to_radians() - north.of_grid, elevation.to_radians())
                 };
                 let name = |[azimuth, elevation]: &[f64; 2]| format!("azimuth {azimuth}, elevation {elevation}");
-                Ok(Suns {
+                Ok(NamedSuns {
                     directions: directions.iter().map(to_one).collect(),
                     names: directions.iter().map(name).collect(),
                 })
@@ -188,7 +188,7 @@ impl Envelope {
                 let params = days.params(&self.place);
                 let (suns, low) = envelope_suns(&site, &zone, &dates, hours.unwrap_or(ALL_DAY), &params)?;
                 context.report.period = Some(PeriodSection::of_dates(&dates, &zone, &params, [suns.len(), low]));
-                Ok(Suns {
+                Ok(NamedSuns {
                     directions: suns.iter().map(|sun| sun.direction).collect(),
                     names: suns.iter().map(|sun| zone.display(sun.unix_s)).collect(),
                 })
@@ -296,8 +296,8 @@ impl Land {
     }
 }
 
-impl Ask for Envelope {
-    type Found = EnvelopeFound;
+impl Ask for EnvelopeQuestion {
+    type Found = EnvelopeResults;
 
     fn check(&self) -> Result<()> {
         let anywhere = self.place.check()?;
@@ -327,7 +327,7 @@ impl Ask for Envelope {
         _places: &Places,
         context: &mut Context,
         control: &Control<'_>,
-    ) -> Result<Answers<EnvelopeFound>> {
+    ) -> Result<Answers<EnvelopeResults>> {
         let suns = self.suns(scene, context)?;
         let parcel = Parcel::new(&self.parcel)?;
         let [wide, narrow] = self.grids(&parcel, scene)?;
@@ -355,19 +355,19 @@ impl Ask for Envelope {
         self.summarise(&envelope, &land, &suns, context);
         let height = Measure::new("height", envelope.heights().values().to_vec())
             .with_description("height of the solar envelope above the ground, metres");
-        Ok(Answers::new(EnvelopeFound { envelope, ground: below }, vec![height]))
+        Ok(Answers::new(EnvelopeResults { envelope, ground: below }, vec![height]))
     }
 }
 
-impl Envelope {
-    fn summarise(&self, found: &SolarEnvelope, land: &Land, suns: &Suns, context: &mut Context) {
+impl EnvelopeQuestion {
+    fn summarise(&self, found: &SolarEnvelope, land: &Land, suns: &NamedSuns, context: &mut Context) {
         let section = self.section(found, land, suns);
         let (count, unlimited) = (section.columns, section.columns_unlimited.unwrap_or(0));
         let (area, no_room, suns) = (section.area_m2, section.columns_of_zero_height, suns.names.len());
         let heights = section.volume_m3.zip(section.mean_height_m).zip(section.max_height_m);
-        if let Some(((volume, mean), most)) = heights {
+        if let Some(((volume, mean), max)) = heights {
             context.headline(format!("solar envelope for {suns} suns: {volume} m3 on {area} m2"));
-            context.headline(format!("height above the ground: mean {mean} m, highest {most} m"));
+            context.headline(format!("height above the ground: mean {mean} m, highest {max} m"));
         } else {
             context.headline(format!("solar envelope for {suns} suns: {unlimited} of {count} columns without limit"));
         }
@@ -383,7 +383,7 @@ impl Envelope {
         context.report.envelope = Some(section);
     }
 
-    fn section(&self, found: &SolarEnvelope, land: &Land, suns: &Suns) -> EnvelopeSection {
+    fn section(&self, found: &SolarEnvelope, land: &Land, suns: &NamedSuns) -> EnvelopeSection {
         let report = found.report;
         let unlimited = found.unbounded_count();
         let limited = |value: f64, digits| (unlimited == 0).then(|| rounded(value, digits));

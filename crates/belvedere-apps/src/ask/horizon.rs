@@ -17,7 +17,7 @@ use serde::{Deserialize, Serialize};
 /// Above which elevation the sky is free around observers.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
-pub struct Horizon {
+pub struct HorizonQuestion {
     /// Height above the ground of eyes without one, metres, 0 or more; `None` for 1.7.
     pub observer_height: Option<f64>,
     /// Which points are ground.
@@ -45,7 +45,7 @@ pub enum BelowLevel {
 
 /// Horizons.
 #[derive(Clone, Debug)]
-pub struct HorizonFound {
+pub struct HorizonResults {
     /// Who looks.
     pub eyes: Eyes,
     /// Azimuths of each, equally far apart, clockwise from north.
@@ -64,7 +64,7 @@ pub struct HorizonsSection {
     azimuths_near_edge_percent: Option<f64>,
 }
 
-impl Horizon {
+impl HorizonQuestion {
     fn azimuth_count(&self) -> Result<usize> {
         match self.angle_step_deg {
             Some(step) => azimuth_count(step.to_radians()),
@@ -73,8 +73,8 @@ impl Horizon {
     }
 }
 
-impl Ask for Horizon {
-    type Found = HorizonFound;
+impl Ask for HorizonQuestion {
+    type Found = HorizonResults;
 
     fn check(&self) -> Result<()> {
         check_height(self.observer_height)?;
@@ -88,7 +88,7 @@ impl Ask for Horizon {
         places: &Places,
         context: &mut Context,
         control: &Control<'_>,
-    ) -> Result<Answers<HorizonFound>> {
+    ) -> Result<Answers<HorizonResults>> {
         let azimuth_count = self.azimuth_count()?;
         let Observers { eyes, blockers } =
             Observers::of(places, (self.observer_height, self.ground), scene, context, control)?;
@@ -102,16 +102,16 @@ impl Ask for Horizon {
             HorizonParams::default().with_azimuth_count(azimuth_count).with_turn(north.of_grid).with_earth(self.earth);
         let skylines = control
             .stage("computing horizons", eyes.eyes.len(), || horizons(&blockers, &eyes.eyes, &params, control))?;
-        let least = if self.below == BelowLevel::Zero { 0.0 } else { -90.0 };
+        let min = if self.below == BelowLevel::Zero { 0.0 } else { -90.0 };
         let elevations_deg: Vec<Vec<f64>> = skylines
             .iter()
-            .map(|skyline| skyline.iter().map(|point| point.elevation.to_degrees().max(least)).collect())
+            .map(|skyline| skyline.iter().map(|point| point.elevation.to_degrees().max(min)).collect())
             .collect();
         let near_edge = near_edge_percent(scene, &eyes, &skylines, -north.of_grid);
         let section = HorizonsSection::of(&elevations_deg, near_edge);
         context.report.horizons = Some(section);
         section.summarise(eyes.eyes.len(), context);
-        Ok(Answers::new(HorizonFound { eyes, azimuth_count, elevations_deg }, Vec::new()))
+        Ok(Answers::new(HorizonResults { eyes, azimuth_count, elevations_deg }, Vec::new()))
     }
 }
 

@@ -11,7 +11,7 @@ use crate::irradiance::{
 use crate::roof_planes::{GROUND_CELL, RoofPlane, RoofPlaneParams, RoofsFrom, roof_planes, roof_points};
 use crate::rows::Obstacles;
 use crate::sun::Site;
-use crate::tree_light::{Crowns, TreeLight};
+use crate::tree_light::{CrownLight, TreeLight};
 use belvedere_core::ground::{GroundPoints, MapGrid};
 use belvedere_core::query::{MedialScene, UnprovenAs};
 use belvedere_data::control::Control;
@@ -26,7 +26,7 @@ const FAR: f64 = 50_000.0;
 
 /// How much energy sun and sky send to places and roofs over a period.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Irradiance {
+pub struct IrradianceQuestion {
     /// Where the radiation comes from.
     pub radiation: Radiation,
     /// How it is gathered.
@@ -100,11 +100,11 @@ impl Default for Roofs {
 }
 
 /// What was found of places and roofs.
-pub struct IrradianceFound {
+pub struct IrradianceResults {
     /// The places; `None` where only roofs are wanted.
     pub on: Option<OnTargets>,
     /// The roofs; `None` where they are not wanted.
-    pub roofs: Option<RoofsFound>,
+    pub roofs: Option<RoofsResults>,
     /// Where on earth the scene lies.
     pub site: Site,
     /// What blocks.
@@ -112,7 +112,7 @@ pub struct IrradianceFound {
 }
 
 /// The planes of roofs with their energy.
-pub struct RoofsFound {
+pub struct RoofsResults {
     /// The planes.
     pub planes: Vec<RoofPlane>,
     /// The energy of each.
@@ -156,12 +156,12 @@ impl Radiation {
     }
 }
 
-impl Irradiance {
+impl IrradianceQuestion {
     /// What a period sends to a site, in parts by what crowns let through, with what is known of it.
     fn gather(
         &self,
         site: &Site,
-        crowns: Option<Crowns>,
+        crowns: Option<CrownLight>,
         context: &mut Context,
         control: &Control<'_>,
     ) -> Result<Vec<SeasonRadiation>> {
@@ -232,7 +232,7 @@ fn remark_on(weather: &Weather, site: &Site, context: &mut Context) {
 impl Roofs {
     fn params(&self) -> RoofPlaneParams {
         let usual = RoofPlaneParams::default();
-        usual.with_least_area(self.min_area.unwrap_or(usual.least_area)).with_cell(self.panel.unwrap_or(usual.cell))
+        usual.with_min_area(self.min_area.unwrap_or(usual.min_area)).with_cell(self.panel.unwrap_or(usual.cell))
     }
 
     /// The planes of a scene.
@@ -258,8 +258,8 @@ impl Roofs {
     }
 }
 
-impl Ask for Irradiance {
-    type Found = IrradianceFound;
+impl Ask for IrradianceQuestion {
+    type Found = IrradianceResults;
 
     fn check(&self) -> Result<()> {
         self.params.validate()?;
@@ -272,7 +272,7 @@ impl Ask for Irradiance {
         places: &Places,
         context: &mut Context,
         control: &Control<'_>,
-    ) -> Result<Answers<IrradianceFound>> {
+    ) -> Result<Answers<IrradianceResults>> {
         let station = self.radiation.weather().map(|weather| [weather.latitude, weather.longitude]);
         let site = self.place.site(scene, context, station)?;
         let trees = self.trees.of(scene, context, control)?;
@@ -310,7 +310,7 @@ impl Ask for Irradiance {
             Some(planes) => Some(roofs_found(planes, (&blockers, trees.as_ref()), &seasons, context, control)?),
             None => None,
         };
-        Ok(Answers::new(IrradianceFound { on, roofs, site, blockers }, measures))
+        Ok(Answers::new(IrradianceResults { on, roofs, site, blockers }, measures))
     }
 }
 
@@ -320,12 +320,12 @@ fn roofs_found(
     seasons: &[SeasonRadiation],
     context: &mut Context,
     control: &Control<'_>,
-) -> Result<RoofsFound> {
+) -> Result<RoofsResults> {
     let obstacles = Obstacles { scene, trees };
     let energies = control
         .stage("testing sun and sky", planes.len(), || roof_irradiation(obstacles, &planes, seasons, control))?;
     let report = RoofsReport::new(&planes, &energies);
     let area: f64 = planes.iter().map(|plane| plane.area).sum();
     context.headline(format!("{} roof planes, {area:.0} m²", planes.len()));
-    Ok(RoofsFound { planes, energies, report })
+    Ok(RoofsResults { planes, energies, report })
 }

@@ -1,7 +1,7 @@
 //! Isovist: the space that observers see, in numbers.
 
 use super::observers::{Eyes, Observers, check_height};
-use super::report::{LinesSection, Named};
+use super::report::{LinesSection, NamedValues};
 use super::scene::Scene;
 use super::{Answers, Ask, Context, North, Places, spread};
 use crate::isovist::{Isovist, IsovistFigure, IsovistParams, isovist};
@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 /// The space that observers see, in numbers.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
-pub struct Isovists {
+pub struct IsovistsQuestion {
     /// Height above the ground of eyes without one, metres, 0 or more; `None` for 1.7.
     pub observer_height: Option<f64>,
     /// Which points are ground.
@@ -31,7 +31,7 @@ pub struct Isovists {
 
 /// Isovists.
 #[derive(Clone, Debug)]
-pub struct IsovistsFound {
+pub struct IsovistsResults {
     /// Who looks.
     pub eyes: Eyes,
     /// What each sees; `None` for an eye that cannot look.
@@ -51,7 +51,7 @@ pub struct IsovistColumn {
     pub values: Vec<f64>,
 }
 
-impl Isovists {
+impl IsovistsQuestion {
     fn params(&self) -> IsovistParams {
         let usual = IsovistParams::default();
         usual
@@ -61,8 +61,8 @@ impl Isovists {
     }
 }
 
-impl Ask for Isovists {
-    type Found = IsovistsFound;
+impl Ask for IsovistsQuestion {
+    type Found = IsovistsResults;
 
     fn check(&self) -> Result<()> {
         check_height(self.observer_height)?;
@@ -75,7 +75,7 @@ impl Ask for Isovists {
         places: &Places,
         context: &mut Context,
         control: &Control<'_>,
-    ) -> Result<Answers<IsovistsFound>> {
+    ) -> Result<Answers<IsovistsResults>> {
         let params = self.params();
         let Observers { eyes, blockers } =
             Observers::of(places, (self.observer_height, self.ground), scene, context, control)?;
@@ -90,13 +90,13 @@ impl Ask for Isovists {
             };
             eyes.eyes.iter().map(look).collect::<Result<Vec<_>>>()
         })?;
-        let found = IsovistsFound { eyes, isovists, grid_north: north.of_grid };
+        let found = IsovistsResults { eyes, isovists, grid_north: north.of_grid };
         found.summarise(scene, context);
         Ok(Answers::new(found, Vec::new()))
     }
 }
 
-impl IsovistsFound {
+impl IsovistsResults {
     /// The numbers that describe each; none where nobody looks.
     #[must_use]
     pub fn columns(&self) -> Vec<IsovistColumn> {
@@ -124,7 +124,7 @@ impl IsovistsFound {
                 let digits = i32::try_from(column.decimals).unwrap_or(4);
                 Some((column.name.to_owned(), rounded(*column.values.first()?, digits)))
             };
-            context.report.isovist = Some(Named(place.chain(columns.iter().filter_map(figure)).collect()));
+            context.report.isovist = Some(NamedValues(place.chain(columns.iter().filter_map(figure)).collect()));
         }
         let values = |name: &str| -> Vec<f32> {
             let column = columns.iter().find(|column| column.name == name);

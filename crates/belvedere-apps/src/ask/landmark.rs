@@ -21,7 +21,7 @@ use std::sync::Arc;
 
 /// From where a landmark is seen, and how much of it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Landmark {
+pub struct LandmarkQuestion {
     /// The landmark.
     pub shape: LandmarkShape,
     /// Who looks; `None` for an observer in the middle of each cell of a grid over the scene.
@@ -92,7 +92,7 @@ impl PartialEq for LandmarkShape {
 }
 
 /// What was seen of a landmark.
-pub struct LandmarkFound {
+pub struct LandmarkResults {
     /// What each observer sees.
     pub views: Vec<LandmarkView>,
     /// Where each observer stands, local metres; NaN where nobody can stand in a cell.
@@ -173,7 +173,7 @@ impl LandmarkSection {
     }
 }
 
-impl Landmark {
+impl LandmarkQuestion {
     fn params(&self) -> LandmarkParams {
         let usual = LandmarkParams::default();
         usual
@@ -237,8 +237,8 @@ impl Landmark {
     }
 }
 
-impl Ask for Landmark {
-    type Found = LandmarkFound;
+impl Ask for LandmarkQuestion {
+    type Found = LandmarkResults;
 
     fn check(&self) -> Result<()> {
         check_height(self.observer_height)?;
@@ -251,7 +251,7 @@ impl Ask for Landmark {
         _: &Places,
         context: &mut Context,
         control: &Control<'_>,
-    ) -> Result<Answers<LandmarkFound>> {
+    ) -> Result<Answers<LandmarkResults>> {
         if self.unproven.is_some_and(|unproven| unproven != UnprovenAs::Visible) {
             scene.check_proof()?;
         }
@@ -283,7 +283,7 @@ impl Ask for Landmark {
         context.report.landmark_views = Some(report);
         let middle = surface.middle_on_map();
         let measures = measures_of(&views);
-        Ok(Answers::new(LandmarkFound { views, places, ground: known, middle }, measures))
+        Ok(Answers::new(LandmarkResults { views, places, ground: known, middle }, measures))
     }
 }
 

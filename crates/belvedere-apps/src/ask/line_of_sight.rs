@@ -3,13 +3,13 @@
 use super::observers::{Standing, check_height, note_enclosed, stand};
 use super::report::{GroundSection, LinesSection};
 use super::scene::Scene;
-use super::{Answers, Ask, Cells, Context, Places, Remark};
+use super::{Answers, Ask, Context, GridCells, Places, Remark};
 use crate::eyes::skip_unfit_eyes;
 use crate::profile::{SightProfile, sight_profile};
 use crate::viewshed::{OBSERVER_HEIGHT, TARGET_HEIGHT};
 use belvedere_core::ground::GroundPoints;
 use belvedere_core::query::{
-    Answer, AnswerCounts, Block, Blocker, EarthParams, LineOfSight, MedialScene, RadioWave, UnprovenAs,
+    Answer, AnswerCounts, Blocker, EarthParams, LineOfSight, MedialScene, Obstruction, RadioWave, UnprovenAs,
 };
 use belvedere_data::control::Control;
 use belvedere_data::report::{percent, rounded};
@@ -23,7 +23,7 @@ const OUTSIDE_CLOUD_AND_TERRAIN: &str =
 /// Whether the observers of pairs see their targets.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
-pub struct LinesOfSight {
+pub struct LinesOfSightQuestion {
     /// Height above the ground of observers without one, metres, 0 or more; `None` for 1.7.
     pub observer_height: Option<f64>,
     /// Height above the ground of targets without one, metres, 0 or more; `None` for 0.
@@ -50,7 +50,7 @@ pub struct ProfileRows {
 
 /// What is known of the line of sight of each pair.
 #[derive(Clone, Debug)]
-pub struct SightsFound {
+pub struct SightsResults {
     /// Observer and target of each, local metres; a height is NaN where it is not known.
     pub pairs: Vec<[[f64; 3]; 2]>,
     /// The answers, with unproven ones taken for what they are to be.
@@ -123,7 +123,7 @@ pub struct LineSection {
     fresnel_free_percent: Option<f64>,
 }
 
-impl LinesOfSight {
+impl LinesOfSightQuestion {
     fn wave(&self) -> Result<Option<RadioWave>> {
         self.frequency_ghz.map(RadioWave::of_frequency).transpose()
     }
@@ -161,7 +161,7 @@ impl LinesOfSight {
     ) -> Result<Option<SightProfile>> {
         let (Some(rows), &[pair]) = (self.profile, pairs) else { return Ok(None) };
         let known = match scene.ground_cloud() {
-            Ok(_) => Some(scene.ground(Cells::default().grid(scene)?, self.ground, control)?),
+            Ok(_) => Some(scene.ground(GridCells::default().grid(scene)?, self.ground, control)?),
             Err(_) => None,
         };
         if let Some(known) = &known {
@@ -186,8 +186,8 @@ impl LinesOfSight {
     }
 }
 
-impl Ask for LinesOfSight {
-    type Found = SightsFound;
+impl Ask for LinesOfSightQuestion {
+    type Found = SightsResults;
 
     fn check(&self) -> Result<()> {
         check_height(self.observer_height)?;
@@ -209,7 +209,7 @@ impl Ask for LinesOfSight {
         places: &Places,
         context: &mut Context,
         control: &Control<'_>,
-    ) -> Result<Answers<SightsFound>> {
+    ) -> Result<Answers<SightsResults>> {
         if self.unproven.is_some() {
             scene.check_proof()?;
         }
@@ -242,7 +242,7 @@ impl Ask for LinesOfSight {
         context.add(Remark::of_share("lines-outside-cloud", outside, answers.len(), "lines of sight", is_outside));
         let profile = self.profile(&pairs, (scene, &blockers), context, control)?;
         let is_proof_tested = blockers.proof().is_some();
-        let found = SightsFound { pairs, answers, sights, fresnel, is_proof_tested, profile };
+        let found = SightsResults { pairs, answers, sights, fresnel, is_proof_tested, profile };
         match &found.pairs[..] {
             [[observer, _]] => {
                 note_enclosed(&blockers, &[*observer], "observer", context);
@@ -256,10 +256,10 @@ impl Ask for LinesOfSight {
     }
 }
 
-impl SightsFound {
+impl SightsResults {
     /// What blocks the line of that row first.
     #[must_use]
-    pub fn block(&self, row: usize) -> Option<Block> {
+    pub fn block(&self, row: usize) -> Option<Obstruction> {
         self.sights.get(row).copied().flatten()?.first_block
     }
 
@@ -268,11 +268,11 @@ impl SightsFound {
     pub fn columns<'a>(&self, scene: &'a Scene) -> SightColumns<'a> {
         let (model, frame) = (scene.model(), scene.frame());
         let blocks = || (0..self.sights.len()).map(|row| self.block(row));
-        let ball = |block: Option<Block>| block.and_then(|block| block.blocker.ball());
+        let ball = |block: Option<Obstruction>| block.and_then(|block| block.blocker.ball());
         let unproven = |sight: &Option<LineOfSight>| {
             sight.filter(|sight| sight.first_block.is_none()).map_or(f64::NAN, |sight| sight.unproven_length)
         };
-        let is_terrain = |block: Block| block.blocker == Blocker::Terrain;
+        let is_terrain = |block: Obstruction| block.blocker == Blocker::Terrain;
         SightColumns {
             ranges: blocks().map(|block| block.map_or(f64::NAN, |block| block.range)).collect(),
             unproven: self.is_proof_tested.then(|| self.sights.iter().map(unproven).collect()),
@@ -331,7 +331,7 @@ impl PairsSection {
 
 impl LineSection {
     /// The only line.
-    fn of(found: &SightsFound, scene: &Scene) -> Self {
+    fn of(found: &SightsResults, scene: &Scene) -> Self {
         let free = found.fresnel.as_ref().and_then(|all| all.first()).filter(|free| free.is_finite());
         let fresnel_free_percent = free.map(|free| rounded(100.0 * free, 1));
         let (Some(&answer), Some(&Some(sight))) = (found.answers.first(), found.sights.first()) else {
@@ -340,7 +340,7 @@ impl LineSection {
         let block = sight.first_block;
         let ball = block.and_then(|block| block.blocker.ball());
         let source = |ball: usize| scene.model().balls().source.get(ball).copied().unwrap_or_default();
-        let place = |block: Block| scene.frame().file_from_local(block.place).map(|v| rounded(v, 3));
+        let place = |block: Obstruction| scene.frame().file_from_local(block.place).map(|v| rounded(v, 3));
         let has_unproven = found.is_proof_tested && sight.answer != Answer::OutsideCloud;
         Self {
             answer: Some(name_of(answer)),

@@ -45,34 +45,37 @@ mod window_views;
 pub mod windows;
 
 pub use cameras::{
-    CameraGoal, CameraLens, CameraTargets, Cameras, CamerasFound, Candidates, ChosenCamera, GivenCamera, PrivatePlaces,
+    CameraGoal, CameraLens, CameraTargets, CamerasQuestion, CamerasResults, Candidates, ChosenCamera, GivenCamera,
+    PrivatePlaces,
 };
-pub use comfort::{Comfort, ComfortFound, ExposureSection, RoutesOrWindows};
-pub use depth_map::{DepthMap, DepthMapFound, PictureSection, ViewFrom, ViewSection};
-pub use envelope::{Envelope, EnvelopeFound, EnvelopeSection, Protected, ProtectedShape, ProtectedSuns};
-pub use horizon::{BelowLevel, Horizon, HorizonFound};
-pub use irradiance::{Irradiance, IrradianceFound, Radiation, Roofs, RoofsFound};
-pub use isovist::{IsovistColumn, Isovists, IsovistsFound};
-pub use landmark::{Landmark, LandmarkFound, LandmarkSection, LandmarkShape};
+pub use comfort::{ComfortQuestion, ComfortResults, ExposureSection, RoutesOrWindows};
+pub use depth_map::{DepthMapQuestion, DepthMapResults, PictureSection, ViewFrom, ViewSection};
+pub use envelope::{EnvelopeQuestion, EnvelopeResults, EnvelopeSection, Protected, ProtectedShape, ProtectedSuns};
+pub use horizon::{BelowLevel, HorizonQuestion, HorizonResults};
+pub use irradiance::{IrradianceQuestion, IrradianceResults, Radiation, Roofs, RoofsResults};
+pub use isovist::{IsovistColumn, IsovistsQuestion, IsovistsResults};
+pub use landmark::{LandmarkQuestion, LandmarkResults, LandmarkSection, LandmarkShape};
 pub use light::OnTargets;
-pub use line_of_sight::{LinesOfSight, ProfileRows, SightColumns, SightsFound};
+pub use line_of_sight::{LinesOfSightQuestion, ProfileRows, SightColumns, SightsResults};
 pub use north::North;
 pub use observers::{Eyes, Standing};
-pub use places::{Cells, Places, Turned, remark_on_edge};
-pub use protected_view::{ProtectedView, ProtectedViewFound};
+pub use places::{GridCells, Places, Turned, remark_on_edge};
+pub use protected_view::{ProtectedViewQuestion, ProtectedViewResults};
 pub use remark::{Remark, Severity};
 pub use report::Report;
 pub use scene::Scene;
-pub use shadow::{Shadow, ShadowFound, UNPROVEN};
-pub use shared::Shared;
-pub use sky_view::{SkyParts, SkyView};
+pub use shadow::{ShadowQuestion, ShadowResults, UNPROVEN};
+pub use shared::SharedObject;
+pub use sky_view::{SkyParts, SkyViewQuestion};
 pub use sun::{Days, NamedSun, SunPlace, Suns};
-pub use sun_hours::{Prepared, SunHours, rules};
-pub use sun_position::{SunPosition, SunStands};
+pub use sun_hours::{PreparedSun, SunHoursQuestion, rules};
+pub use sun_position::{SunPositionQuestion, SunStands};
 pub use trees::ThroughTrees;
 pub use viewer::{remark_on_cleared, remark_on_eye, remark_on_outside};
-pub use viewshed::{FarSeen, SeenSection, StandingObserver, ViewLimits, Viewshed, ViewshedFound, ViewshedTargets};
-pub use window_views::{WindowViews, WindowViewsFound};
+pub use viewshed::{
+    FarSeen, SeenSection, StandingObserver, ViewLimits, ViewshedQuestion, ViewshedResults, ViewshedTargets,
+};
+pub use window_views::{WindowViewsQuestion, WindowViewsResults};
 pub use windows::{GivenWindow, GivenWindows};
 
 use crate::targets::Measure;
@@ -88,77 +91,77 @@ use serde::{Deserialize, Serialize};
 #[non_exhaustive]
 pub enum Question {
     /// Which places the sun reaches.
-    Shadow(Shadow),
+    Shadow(ShadowQuestion),
     /// How long the sun reaches places.
-    SunHours(SunHours),
+    SunHours(SunHoursQuestion),
     /// How much of the sky places see.
-    SkyView(SkyView),
+    SkyView(SkyViewQuestion),
     /// How much energy sun and sky send.
-    Irradiance(Irradiance),
+    Irradiance(IrradianceQuestion),
     /// Where the sun stands.
-    SunPosition(SunPosition),
+    SunPosition(SunPositionQuestion),
     /// Whether observers see targets, pair by pair.
-    LineOfSight(LinesOfSight),
+    LineOfSight(LinesOfSightQuestion),
     /// Above which elevation the sky is free.
-    Horizon(Horizon),
+    Horizon(HorizonQuestion),
     /// The space that observers see.
-    Isovist(Isovists),
+    Isovist(IsovistsQuestion),
     /// What observers see, or from where a target is seen.
-    Viewshed(Viewshed),
+    Viewshed(ViewshedQuestion),
     /// From where a landmark is seen, and how much of it.
-    Landmark(Landmark),
+    Landmark(LandmarkQuestion),
     /// What is seen from windows.
-    WindowViews(WindowViews),
+    WindowViews(WindowViewsQuestion),
     /// How high one may build without entering the view of a landmark.
-    ProtectedView(ProtectedView),
+    ProtectedView(ProtectedViewQuestion),
     /// Which of many possible cameras to put up.
-    Cameras(Cameras),
+    Cameras(CamerasQuestion),
     /// The distance to the first surface for each pixel of a view.
-    DepthMap(DepthMap),
+    DepthMap(DepthMapQuestion),
     /// What routes and windows get of sun and sky.
-    Comfort(Comfort),
+    Comfort(ComfortQuestion),
     /// How high one may build without taking protected sun.
-    Envelope(Envelope),
+    Envelope(EnvelopeQuestion),
 }
 
 /// What was found, of any question.
 #[non_exhaustive]
-pub enum Found {
+pub enum QuestionResults {
     /// Of [`Question::Shadow`].
-    Shadow(ShadowFound),
+    Shadow(ShadowResults),
     /// Of [`Question::SunHours`] and [`Question::SkyView`].
     OnTargets(OnTargets),
     /// Of [`Question::Irradiance`].
-    Irradiance(IrradianceFound),
+    Irradiance(IrradianceResults),
     /// Of [`Question::SunPosition`].
     SunPosition(Vec<SunStands>),
     /// Of [`Question::LineOfSight`].
-    LineOfSight(SightsFound),
+    LineOfSight(SightsResults),
     /// Of [`Question::Horizon`].
-    Horizon(HorizonFound),
+    Horizon(HorizonResults),
     /// Of [`Question::Isovist`].
-    Isovist(IsovistsFound),
+    Isovist(IsovistsResults),
     /// Of [`Question::Viewshed`].
-    Viewshed(Box<ViewshedFound>),
+    Viewshed(Box<ViewshedResults>),
     /// Of [`Question::Landmark`].
-    Landmark(LandmarkFound),
+    Landmark(LandmarkResults),
     /// Of [`Question::WindowViews`].
-    WindowViews(WindowViewsFound),
+    WindowViews(WindowViewsResults),
     /// Of [`Question::ProtectedView`].
-    ProtectedView(ProtectedViewFound),
+    ProtectedView(ProtectedViewResults),
     /// Of [`Question::Cameras`].
-    Cameras(CamerasFound),
+    Cameras(CamerasResults),
     /// Of [`Question::DepthMap`].
-    DepthMap(DepthMapFound),
+    DepthMap(DepthMapResults),
     /// Of [`Question::Comfort`].
-    Comfort(Box<ComfortFound>),
+    Comfort(Box<ComfortResults>),
     /// Of [`Question::Envelope`].
-    Envelope(EnvelopeFound),
+    Envelope(EnvelopeResults),
 }
 
 /// The answers to a question.
 #[derive(Clone, Debug)]
-pub struct Answers<F = Found> {
+pub struct Answers<F = QuestionResults> {
     /// What was found beside measures.
     pub found: F,
     /// A value for each target, of each thing that was measured.
@@ -259,7 +262,7 @@ impl Context {
 }
 
 impl Ask for Question {
-    type Found = Found;
+    type Found = QuestionResults;
 
     fn check(&self) -> Result<()> {
         match self {
@@ -284,28 +287,46 @@ impl Ask for Question {
 
     fn answer(&self, scene: &Scene, places: &Places, context: &mut Context, control: &Control<'_>) -> Result<Answers> {
         Ok(match self {
-            Self::Shadow(question) => question.answer(scene, places, context, control)?.map(Found::Shadow),
-            Self::SunHours(question) => question.answer(scene, places, context, control)?.map(Found::OnTargets),
-            Self::SkyView(question) => question.answer(scene, places, context, control)?.map(Found::OnTargets),
-            Self::Irradiance(question) => question.answer(scene, places, context, control)?.map(Found::Irradiance),
-            Self::SunPosition(question) => question.answer(scene, places, context, control)?.map(Found::SunPosition),
-            Self::LineOfSight(question) => question.answer(scene, places, context, control)?.map(Found::LineOfSight),
-            Self::Horizon(question) => question.answer(scene, places, context, control)?.map(Found::Horizon),
-            Self::Isovist(question) => question.answer(scene, places, context, control)?.map(Found::Isovist),
-            Self::Viewshed(question) => {
-                question.answer(scene, places, context, control)?.map(|found| Found::Viewshed(Box::new(found)))
+            Self::Shadow(question) => question.answer(scene, places, context, control)?.map(QuestionResults::Shadow),
+            Self::SunHours(question) => {
+                question.answer(scene, places, context, control)?.map(QuestionResults::OnTargets)
             }
-            Self::Landmark(question) => question.answer(scene, places, context, control)?.map(Found::Landmark),
-            Self::WindowViews(question) => question.answer(scene, places, context, control)?.map(Found::WindowViews),
+            Self::SkyView(question) => {
+                question.answer(scene, places, context, control)?.map(QuestionResults::OnTargets)
+            }
+            Self::Irradiance(question) => {
+                question.answer(scene, places, context, control)?.map(QuestionResults::Irradiance)
+            }
+            Self::SunPosition(question) => {
+                question.answer(scene, places, context, control)?.map(QuestionResults::SunPosition)
+            }
+            Self::LineOfSight(question) => {
+                question.answer(scene, places, context, control)?.map(QuestionResults::LineOfSight)
+            }
+            Self::Horizon(question) => question.answer(scene, places, context, control)?.map(QuestionResults::Horizon),
+            Self::Isovist(question) => question.answer(scene, places, context, control)?.map(QuestionResults::Isovist),
+            Self::Viewshed(question) => question
+                .answer(scene, places, context, control)?
+                .map(|found| QuestionResults::Viewshed(Box::new(found))),
+            Self::Landmark(question) => {
+                question.answer(scene, places, context, control)?.map(QuestionResults::Landmark)
+            }
+            Self::WindowViews(question) => {
+                question.answer(scene, places, context, control)?.map(QuestionResults::WindowViews)
+            }
             Self::ProtectedView(question) => {
-                question.answer(scene, places, context, control)?.map(Found::ProtectedView)
+                question.answer(scene, places, context, control)?.map(QuestionResults::ProtectedView)
             }
-            Self::Cameras(question) => question.answer(scene, places, context, control)?.map(Found::Cameras),
-            Self::DepthMap(question) => question.answer(scene, places, context, control)?.map(Found::DepthMap),
+            Self::Cameras(question) => question.answer(scene, places, context, control)?.map(QuestionResults::Cameras),
+            Self::DepthMap(question) => {
+                question.answer(scene, places, context, control)?.map(QuestionResults::DepthMap)
+            }
             Self::Comfort(question) => {
-                question.answer(scene, places, context, control)?.map(|found| Found::Comfort(Box::new(found)))
+                question.answer(scene, places, context, control)?.map(|found| QuestionResults::Comfort(Box::new(found)))
             }
-            Self::Envelope(question) => question.answer(scene, places, context, control)?.map(Found::Envelope),
+            Self::Envelope(question) => {
+                question.answer(scene, places, context, control)?.map(QuestionResults::Envelope)
+            }
         })
     }
 }
@@ -352,7 +373,7 @@ mod tests {
         let (scene, control) = (scene(), Control::none());
         let answers = ask(&scene, &question, &Places::Scene, &control).unwrap();
         let of_type = ask(&scene, own, &Places::Scene, &control).unwrap();
-        let Found::SunPosition(found) = &answers.found else { panic!("another question was answered") };
+        let QuestionResults::SunPosition(found) = &answers.found else { panic!("another question was answered") };
         assert_eq!((found, &answers.headline), (&of_type.found, &of_type.headline));
         // on the longest day the sun at noon is 90 - latitude + 23.44 degrees high
         assert!((found[0].elevation_deg - (90.0 - 52.0 + 23.44)).abs() < 0.05, "{found:?}");
@@ -361,16 +382,19 @@ mod tests {
     #[test]
     fn questions_come_back_from_text_as_they_were() {
         let questions = [
-            Question::LineOfSight(LinesOfSight { target_height: Some(2.0), ..LinesOfSight::default() }),
-            Question::Viewshed(Viewshed { reverse: true, cell: Some(0.5), ..Viewshed::default() }),
-            Question::Horizon(Horizon { angle_step_deg: Some(5.0), ..Horizon::default() }),
-            Question::Isovist(Isovists { min_jump: Some(0.5), ..Isovists::default() }),
-            Question::SkyView(SkyView { sky: SkyParts::Reinhart, ..SkyView::default() }),
-            Question::SunHours(SunHours { rules: vec!["bre-equinox".to_owned()], ..SunHours::default() }),
-            Question::DepthMap(DepthMap { ball_ids: true, ..DepthMap::default() }),
-            Question::SunPosition(SunPosition {
+            Question::LineOfSight(LinesOfSightQuestion { target_height: Some(2.0), ..LinesOfSightQuestion::default() }),
+            Question::Viewshed(ViewshedQuestion { reverse: true, cell: Some(0.5), ..ViewshedQuestion::default() }),
+            Question::Horizon(HorizonQuestion { angle_step_deg: Some(5.0), ..HorizonQuestion::default() }),
+            Question::Isovist(IsovistsQuestion { min_jump: Some(0.5), ..IsovistsQuestion::default() }),
+            Question::SkyView(SkyViewQuestion { sky: SkyParts::Reinhart, ..SkyViewQuestion::default() }),
+            Question::SunHours(SunHoursQuestion {
+                rules: vec!["bre-equinox".to_owned()],
+                ..SunHoursQuestion::default()
+            }),
+            Question::DepthMap(DepthMapQuestion { ball_ids: true, ..DepthMapQuestion::default() }),
+            Question::SunPosition(SunPositionQuestion {
                 times: vec!["2026-06-21T13:00Z".to_owned()],
-                ..SunPosition::default()
+                ..SunPositionQuestion::default()
             }),
         ];
         for question in questions {
@@ -381,7 +405,8 @@ mod tests {
 
     #[test]
     fn what_cannot_be_is_refused_through_the_enum_too() {
-        let cannot = Question::Viewshed(Viewshed { observer_height: Some(-1.0), ..Viewshed::default() });
+        let cannot =
+            Question::Viewshed(ViewshedQuestion { observer_height: Some(-1.0), ..ViewshedQuestion::default() });
         assert!(ask(&scene(), &cannot, &Places::Scene, &Control::none()).is_err() && cannot.check().is_err());
     }
 

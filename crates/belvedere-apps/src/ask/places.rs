@@ -5,7 +5,7 @@ use super::report::{GroundSection, PlacesReport};
 use super::scene::Scene;
 use super::{Context, Remark, remark_on_outside};
 use crate::edge::{EdgeReport, near_edge};
-use crate::targets::{CellLevel, CellParams, Layout, MeshParams, Targets};
+use crate::targets::{CellLevel, CellParams, MeshParams, TargetLayout, Targets};
 use crate::viewshed::cell_for;
 use belvedere_core::ground::{Ground, GroundPoints, MapGrid};
 use belvedere_data::control::Control;
@@ -25,7 +25,7 @@ pub enum Places {
     /// Nothing but the scene as a whole.
     Scene,
     /// The cells of a grid.
-    Cells(Cells),
+    Cells(GridCells),
     /// The points of the scene itself, in their order.
     Own(Turned),
     /// Points in local metres, with the unit normals that they are turned to, (N, 3) each.
@@ -54,7 +54,7 @@ pub enum Turned {
 
 /// Cells of a grid over the scene.
 #[derive(Clone, Debug, Default)]
-pub struct Cells {
+pub struct GridCells {
     /// Side, metres; `None` for 0.5 m, doubled until there are at most 4 million cells.
     pub cell: Option<f64>,
     /// What they stand on.
@@ -119,7 +119,7 @@ fn other<T>(parameter: Parameter, value: &str, expected: &'static str) -> Result
 
 /// Leaves out targets outside the cloud, which is reported and warned of.
 pub(super) fn leave_out_outside(targets: &mut Targets, scene: &Scene, context: &mut Context) {
-    let count = targets.asked_count();
+    let count = targets.target_count();
     let outside = scene.model().coverage().map_or(0, |coverage| targets.leave_out_outside(&coverage));
     context.report.places.targets_outside_cloud = Some(outside);
     context.add(remark_on_outside(outside, count, "targets"));
@@ -184,7 +184,7 @@ pub(super) fn cells_of(
     Ok(targets)
 }
 
-impl Cells {
+impl GridCells {
     /// The grid of these cells over all of a scene.
     ///
     /// # Errors
@@ -216,7 +216,7 @@ impl Cells {
 
     /// Leaves out cells beside the area.
     fn keep_within(&self, targets: &mut Targets) {
-        let Layout::Cells(ground) = &targets.layout else { return };
+        let TargetLayout::Cells(ground) = &targets.layout else { return };
         if self.within.is_empty() {
             return;
         }
@@ -244,7 +244,7 @@ pub(super) fn test_edge(
     })?;
     let report = EdgeReport::of(&flags);
     context.report.places.edge = Some(report);
-    context.add(remark_on_edge(report.targets_near_edge, targets.asked_count()));
+    context.add(remark_on_edge(report.targets_near_edge, targets.target_count()));
     Ok(flags)
 }
 
@@ -258,11 +258,11 @@ pub fn remark_on_edge(near: usize, count: usize) -> Option<Remark> {
 impl PlacesReport {
     /// Targets in words, such as "14400 cells of 1 m".
     pub(super) fn in_words(targets: &Targets) -> String {
-        let count = targets.asked_count();
+        let count = targets.target_count();
         match &targets.layout {
-            Layout::Cells(ground) => format!("{count} cells of {} m", ground.grid.cell),
-            Layout::Points => format!("{count} points"),
-            Layout::Surface(_) => format!("{} faces", targets.groups.len()),
+            TargetLayout::Cells(ground) => format!("{count} cells of {} m", ground.grid.cell),
+            TargetLayout::Points => format!("{count} points"),
+            TargetLayout::Surface(_) => format!("{} faces", targets.groups.len()),
         }
     }
 }

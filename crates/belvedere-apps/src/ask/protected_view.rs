@@ -3,7 +3,7 @@
 use super::observers::{Eyes, ObserversSection, Reach, Standing, note_enclosed, skip_unfit, stand};
 use super::report::{GroundSection, LinesSection};
 use super::scene::KnownGround;
-use super::{Answers, Ask, Context, Places, Remark, Scene, Shared};
+use super::{Answers, Ask, Context, Places, Remark, Scene, SharedObject};
 use crate::landmark::LandmarkParams;
 use crate::protected_view::{self as limits, ViewpointReport, protected_view};
 use crate::viewshed::OBSERVER_HEIGHT;
@@ -21,10 +21,10 @@ const MAX_LISTED: usize = 10;
 /// How high one may build on cells of the ground ([`Places::Cells`]) without entering the view of a landmark.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
-pub struct ProtectedView {
+pub struct ProtectedViewQuestion {
     /// The landmark.
     #[serde(skip)]
-    pub landmark: Option<Shared<SurfacePieces>>,
+    pub landmark: Option<SharedObject<SurfacePieces>>,
     /// From where it is seen today.
     #[serde(skip)]
     pub observers: Vec<Standing>,
@@ -37,7 +37,7 @@ pub struct ProtectedView {
     pub unproven: Option<UnprovenAs>,
 }
 
-impl Default for ProtectedView {
+impl Default for ProtectedViewQuestion {
     fn default() -> Self {
         let observer_height = OBSERVER_HEIGHT;
         Self { landmark: None, observers: Vec::new(), observer_height, max_distance: None, unproven: None }
@@ -45,7 +45,7 @@ impl Default for ProtectedView {
 }
 
 /// How high one may build.
-pub struct ProtectedViewFound {
+pub struct ProtectedViewResults {
     /// Greatest heights above the ground, metres; NaN where no protected view passes and where no ground is known.
     pub heights: Raster<f32>,
     /// The same in the vertical system of the file.
@@ -74,7 +74,7 @@ pub struct ProtectedViewSection {
     viewpoint: Vec<ViewpointReport>,
 }
 
-impl ProtectedView {
+impl ProtectedViewQuestion {
     /// Figures of what was found on cells of `cell` metres, and the answer in words.
     fn sum_up(&self, found: &limits::ProtectedView, heights: &Raster<f32>, cell: f64, context: &mut Context) {
         let sum = |of: fn(&ViewpointReport) -> usize| found.viewpoints.iter().map(of).sum::<usize>();
@@ -110,8 +110,8 @@ impl ProtectedView {
     }
 }
 
-impl Ask for ProtectedView {
-    type Found = ProtectedViewFound;
+impl Ask for ProtectedViewQuestion {
+    type Found = ProtectedViewResults;
 
     fn check(&self) -> Result<()> {
         let invalid = |parameter, value: f64, expected| {
@@ -132,7 +132,7 @@ impl Ask for ProtectedView {
         places: &Places,
         context: &mut Context,
         control: &Control<'_>,
-    ) -> Result<Answers<ProtectedViewFound>> {
+    ) -> Result<Answers<ProtectedViewResults>> {
         let Places::Cells(cells) = places else {
             let what = "what protected views limit are the cells of a grid";
             return Err(Error::UnsupportedTargets { method: "protected view", what });
@@ -172,7 +172,7 @@ impl Ask for ProtectedView {
             let of_file = scene.frame().file_from_local([0.0, 0.0, f64::from(*top)])[2] as f32;
             *top = of_file;
         }
-        Ok(Answers::new(ProtectedViewFound { heights, tops, ground, eyes }, Vec::new()))
+        Ok(Answers::new(ProtectedViewResults { heights, tops, ground, eyes }, Vec::new()))
     }
 }
 
@@ -182,12 +182,12 @@ mod tests {
 
     #[test]
     fn distances_and_heights_that_cannot_be_are_refused() {
-        let usual = ProtectedView::default;
+        let usual = ProtectedViewQuestion::default;
         assert!(usual().check().is_ok());
         for wrong in [
-            ProtectedView { max_distance: Some(0.0), ..usual() },
-            ProtectedView { max_distance: Some(f64::NAN), ..usual() },
-            ProtectedView { observer_height: f64::INFINITY, ..usual() },
+            ProtectedViewQuestion { max_distance: Some(0.0), ..usual() },
+            ProtectedViewQuestion { max_distance: Some(f64::NAN), ..usual() },
+            ProtectedViewQuestion { observer_height: f64::INFINITY, ..usual() },
         ] {
             assert!(matches!(wrong.check(), Err(Error::InvalidParameter { .. })), "{wrong:?}");
         }

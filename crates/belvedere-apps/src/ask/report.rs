@@ -81,7 +81,7 @@ pub struct Report {
     pub horizons: Option<HorizonsSection>,
     /// The numbers of a single isovist.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub isovist: Option<Named<f64>>,
+    pub isovist: Option<NamedValues<f64>>,
     /// What is seen of cells.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub cells: Option<SeenSection>,
@@ -122,15 +122,15 @@ pub struct Report {
 
 /// Values by name, in order.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Named<T>(pub Vec<(String, T)>);
+pub struct NamedValues<T>(pub Vec<(String, T)>);
 
-impl<T> Default for Named<T> {
+impl<T> Default for NamedValues<T> {
     fn default() -> Self {
         Self(Vec::new())
     }
 }
 
-impl<T: Serialize> Serialize for Named<T> {
+impl<T: Serialize> Serialize for NamedValues<T> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut map = serializer.serialize_map(Some(self.0.len()))?;
         for (name, value) in &self.0 {
@@ -198,7 +198,7 @@ pub struct PeriodSection {
     pub(super) rms_direction_error_deg: Option<f64>,
     /// What each rule says.
     #[serde(flatten)]
-    pub(super) rules: Named<String>,
+    pub(super) rules: NamedValues<String>,
 }
 
 impl PeriodSection {
@@ -240,7 +240,7 @@ impl PeriodSection {
 pub struct SunSection {
     /// Where the sun stands at each instant, of a few.
     #[serde(flatten)]
-    pub(super) instants: Named<SunAt>,
+    pub(super) instants: NamedValues<SunAt>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) time_zone: Option<String>,
     pub(super) suns: usize,
@@ -383,12 +383,12 @@ pub struct MeasuresSection {
     pub targets: usize,
     /// The spread of each measure.
     #[serde(flatten)]
-    pub spread: Named<Option<MeasureStatistics>>,
+    pub spread: NamedValues<Option<MeasureStatistics>>,
 }
 
 impl MeasuresSection {
     pub(super) fn of<'a>(targets: &Targets, measures: impl IntoIterator<Item = &'a Measure>) -> Self {
         let spread = measures.into_iter().map(|measure| (measure.name.clone(), measure.rounded_statistics()));
-        Self { targets: targets.asked_count(), spread: Named(spread.collect()) }
+        Self { targets: targets.target_count(), spread: NamedValues(spread.collect()) }
     }
 }

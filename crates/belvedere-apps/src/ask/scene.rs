@@ -20,9 +20,9 @@ pub struct Scene {
     rule: BlockRule,
     /// Pulses of another scene, indexed already.
     proof: Option<Proof>,
-    proving: Kept<MedialScene>,
-    plain: Kept<MedialScene>,
-    without_vegetation: Kept<MedialScene>,
+    proving: OnceResult<MedialScene>,
+    plain: OnceResult<MedialScene>,
+    without_vegetation: OnceResult<MedialScene>,
     ground: Mutex<Option<(MapGrid, GroundPoints, Arc<KnownGround>)>>,
 }
 
@@ -66,15 +66,15 @@ pub struct KnownGround {
 }
 
 /// Something that is made when first needed, and can fail.
-struct Kept<T>(Mutex<Option<Arc<T>>>);
+struct OnceResult<T>(Mutex<Option<Arc<T>>>);
 
-impl<T> Default for Kept<T> {
+impl<T> Default for OnceResult<T> {
     fn default() -> Self {
         Self(Mutex::new(None))
     }
 }
 
-impl<T> Kept<T> {
+impl<T> OnceResult<T> {
     fn get(&self, make: impl FnOnce() -> Result<T>) -> Result<Arc<T>> {
         let mut kept = locked(&self.0);
         if let Some(made) = &*kept {
@@ -101,9 +101,9 @@ impl Scene {
             model,
             cloud,
             proof: None,
-            proving: Kept::default(),
-            plain: Kept::default(),
-            without_vegetation: Kept::default(),
+            proving: OnceResult::default(),
+            plain: OnceResult::default(),
+            without_vegetation: OnceResult::default(),
             ground: Mutex::new(None),
         }
     }
@@ -117,14 +117,15 @@ impl Scene {
     /// This, with balls that block by another rule.
     #[must_use]
     pub fn with_rule(self, rule: BlockRule) -> Self {
-        let (proving, plain, without_vegetation) = (Kept::default(), Kept::default(), Kept::default());
+        let (proving, plain, without_vegetation) =
+            (OnceResult::default(), OnceResult::default(), OnceResult::default());
         Self { rule, proving, plain, without_vegetation, ..self }
     }
 
     /// This, with pulses that another scene has indexed already.
     #[must_use]
     pub fn with_proof(self, proof: Option<Proof>) -> Self {
-        Self { proof, proving: Kept::default(), ..self }
+        Self { proof, proving: OnceResult::default(), ..self }
     }
 
     /// The model.

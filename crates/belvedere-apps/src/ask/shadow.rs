@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 
 /// Which places the sun reaches.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Shadow {
+pub struct ShadowQuestion {
     /// The suns.
     pub suns: Suns,
     /// Where on earth, and how clocks run.
@@ -33,7 +33,7 @@ pub struct Shadow {
 
 /// The suns of an answer.
 #[derive(Clone, Debug)]
-pub struct ShadowFound {
+pub struct ShadowResults {
     /// The targets.
     pub on: OnTargets,
     /// The suns; the first measures are theirs, one each.
@@ -43,7 +43,7 @@ pub struct ShadowFound {
 /// Name of the measure that says which light is unproven.
 pub const UNPROVEN: &str = "unproven";
 
-impl Shadow {
+impl ShadowQuestion {
     /// Whether pulses are tested: of one sun that is a point; of many it would take long.
     fn proof(&self, suns: usize) -> Result<UnprovenAs> {
         let is_possible = suns == 1 && self.edges == Edges::Hard;
@@ -61,8 +61,8 @@ impl Shadow {
     }
 }
 
-impl Ask for Shadow {
-    type Found = ShadowFound;
+impl Ask for ShadowQuestion {
+    type Found = ShadowResults;
 
     fn check(&self) -> Result<()> {
         self.suns.check(&self.place)
@@ -74,7 +74,7 @@ impl Ask for Shadow {
         places: &Places,
         context: &mut Context,
         control: &Control<'_>,
-    ) -> Result<Answers<ShadowFound>> {
+    ) -> Result<Answers<ShadowResults>> {
         let suns = self.suns.over(&self.place, &scene.whereabouts(), context)?;
         let kinds: Vec<ShadowSun> = suns.iter().map(|sun| sun.sun).collect();
         let directions: Vec<[f64; 3]> = kinds.iter().flat_map(|sun| sun_directions(sun.to_sun, self.edges)).collect();
@@ -112,7 +112,7 @@ impl Ask for Shadow {
         context.report.measures = Some(MeasuresSection::of(targets, listed));
         summarise(&suns, &measures, &PlacesReport::in_words(targets), context);
         let title = suns.first().map(|sun| sun.title.clone()).unwrap_or_default();
-        Ok(Answers::new(ShadowFound { on: light.titled(title), suns }, measures))
+        Ok(Answers::new(ShadowResults { on: light.titled(title), suns }, measures))
     }
 }
 

@@ -5,28 +5,28 @@ use std::sync::Arc;
 
 /// Something large that a question shares with its copies; two are equal if they are the same object.
 #[derive(Debug)]
-pub struct Shared<T>(Arc<T>);
+pub struct SharedObject<T>(Arc<T>);
 
-impl<T> Shared<T> {
+impl<T> SharedObject<T> {
     /// Shares `value`.
     pub fn new(value: T) -> Self {
         Self(Arc::new(value))
     }
 }
 
-impl<T> Clone for Shared<T> {
+impl<T> Clone for SharedObject<T> {
     fn clone(&self) -> Self {
         Self(Arc::clone(&self.0))
     }
 }
 
-impl<T> PartialEq for Shared<T> {
+impl<T> PartialEq for SharedObject<T> {
     fn eq(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.0, &other.0)
     }
 }
 
-impl<T> Deref for Shared<T> {
+impl<T> Deref for SharedObject<T> {
     type Target = T;
 
     fn deref(&self) -> &T {

@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 /// How much of the sky places see.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
-pub struct SkyView {
+pub struct SkyViewQuestion {
     /// The directions of the sky.
     pub sky: SkyParts,
     /// What gets through trees.
@@ -51,7 +51,7 @@ impl SkyParts {
     }
 }
 
-impl Ask for SkyView {
+impl Ask for SkyViewQuestion {
     type Found = OnTargets;
 
     fn check(&self) -> Result<()> {

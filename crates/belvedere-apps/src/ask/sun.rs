@@ -167,7 +167,7 @@ impl Days {
         let usual = DayParams::default();
         usual
             .with_step(self.time_step_min.map_or(usual.step, |minutes| minutes * 60.0))
-            .with_least_elevation(self.min_sun_elevation_deg.map_or(usual.least_elevation, f64::to_radians))
+            .with_min_elevation(self.min_sun_elevation_deg.map_or(usual.min_elevation, f64::to_radians))
             .with_refraction(place.refraction)
     }
 
@@ -233,9 +233,9 @@ impl Days {
         if !steps.is_empty() {
             return Ok(steps);
         }
-        let from_horizon = sun_days(site, zone, &period, &params.with_least_elevation(0.0))?;
+        let from_horizon = sun_days(site, zone, &period, &params.with_min_elevation(0.0))?;
         if from_horizon.iter().any(|day| !day.steps.is_empty()) {
-            let lowest = format!("{} degrees", params.least_elevation.to_degrees());
+            let lowest = format!("{} degrees", params.min_elevation.to_degrees());
             return refused(Parameter::MinSunElevation, lowest, "lower: the sun stays below it there in this period");
         }
         refused(Parameter::Period, "without sun", "other days: the sun does not rise there in this period")

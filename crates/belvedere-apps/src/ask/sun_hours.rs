@@ -1,7 +1,7 @@
 //! Sun hours: how long the sun reaches places on days, and whether rules of daylight are met.
 
 use super::light::{Light, OnTargets};
-use super::report::{MeasuresSection, Named, PeriodSection, PlacesReport};
+use super::report::{MeasuresSection, NamedValues, PeriodSection, PlacesReport};
 use super::sun::{Days, SunPlace};
 use super::{Answers, Ask, Context, Places, Scene, ThroughTrees, spread};
 use crate::rows::Obstacles;
@@ -20,7 +20,7 @@ const OWN_RULES: [&str; 8] = ["rule_1", "rule_2", "rule_3", "rule_4", "rule_5", 
 /// How long the sun reaches places.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
-pub struct SunHours {
+pub struct SunHoursQuestion {
     /// The days; none for those of the first rule.
     pub days: Days,
     /// Rules of daylight, by name or as HOURS@DAYS.
@@ -34,8 +34,8 @@ pub struct SunHours {
     pub trees: ThroughTrees,
 }
 
-/// What is known before the sun is tested. [`Prepared::answers`] makes answers of what it lit.
-pub struct Prepared {
+/// What is known before the sun is tested. [`PreparedSun::answers`] makes answers of what it lit.
+pub struct PreparedSun {
     /// The suns.
     pub plan: SunPlan,
     /// Where on earth the scene lies.
@@ -68,7 +68,7 @@ pub fn rules(texts: &[String]) -> Result<Vec<(&'static str, SunRule)>> {
     Ok(rules)
 }
 
-impl SunHours {
+impl SunHoursQuestion {
     fn binning(&self) -> Binning {
         match self.sun_tolerance_deg {
             None => Binning::Auto,
@@ -97,8 +97,8 @@ impl SunHours {
         let mut of_rules = Vec::new();
         for (column, rule) in rules(&self.rules)? {
             let dates = self.days.dates_of(rule.days, site, &zone)?;
-            let least_elevation = self.days.min_sun_elevation_deg.map_or(rule.least_elevation, f64::to_radians);
-            let schedule = schedule(&Period::Days(dates), &params.with_least_elevation(least_elevation))?;
+            let min_elevation = self.days.min_sun_elevation_deg.map_or(rule.min_elevation, f64::to_radians);
+            let schedule = schedule(&Period::Days(dates), &params.with_min_elevation(min_elevation))?;
             of_rules.push((column.to_owned(), rule, schedule));
         }
         let main = match (self.days.period(&self.place, site, &zone)?, of_rules.first()) {
@@ -112,7 +112,7 @@ impl SunHours {
     /// All that is known before the sun is tested.
     ///
     /// # Errors
-    /// Those of [`SunHours::plan`], of finding the targets, and of building what blocks.
+    /// Those of [`SunHoursQuestion::plan`], of finding the targets, and of building what blocks.
     pub fn prepare(
         &self,
         scene: &Scene,
@@ -120,7 +120,7 @@ impl SunHours {
         among: Option<&[[f64; 3]]>,
         context: &mut Context,
         control: &Control<'_>,
-    ) -> Result<Prepared> {
+    ) -> Result<PreparedSun> {
         let site = self.place.site(scene, context, None)?;
         let (plan, zone) = self.plan(&site, among)?;
         context.report.period = Some(section(&plan, &zone, &self.days.params(&self.place)));
@@ -136,7 +136,7 @@ impl SunHours {
             None => "Sun hours".to_owned(),
         };
         let title = format!("{what}, {days}{}", scene.far_in_words());
-        Ok(Prepared { plan, site, light, title })
+        Ok(PreparedSun { plan, site, light, title })
     }
 }
 
@@ -148,7 +148,7 @@ fn missing_period<T>() -> Result<T> {
     })
 }
 
-impl Prepared {
+impl PreparedSun {
     /// The targets.
     #[must_use]
     pub fn targets(&self) -> &Arc<Targets> {
@@ -192,7 +192,7 @@ impl Prepared {
     }
 }
 
-impl Ask for SunHours {
+impl Ask for SunHoursQuestion {
     type Found = OnTargets;
 
     fn check(&self) -> Result<()> {
@@ -232,6 +232,6 @@ fn section(plan: &SunPlan, zone: &Zone, params: &DayParams) -> PeriodSection {
         let text = format!("{} on {} days", planned.rule.description, planned.schedule.days.len());
         (planned.column.clone(), text)
     };
-    let rules = Named(plan.rules().iter().map(rule).collect());
+    let rules = NamedValues(plan.rules().iter().map(rule).collect());
     PeriodSection { rules, ..PeriodSection::of(plan.period(), zone, params) }
 }

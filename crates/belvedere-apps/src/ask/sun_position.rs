@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 /// Where the sun stands at some times.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
-pub struct SunPosition {
+pub struct SunPositionQuestion {
     /// Instants, ISO 8601, with an offset unless the zone says how clocks run.
     pub times: Vec<String>,
     /// Where on earth, and how clocks run.
@@ -29,7 +29,7 @@ pub struct SunStands {
     pub elevation_deg: f64,
 }
 
-impl Ask for SunPosition {
+impl Ask for SunPositionQuestion {
     type Found = Vec<SunStands>;
 
     fn check(&self) -> Result<()> {

@@ -3,7 +3,7 @@
 use super::Context;
 use super::report::TreesSection;
 use super::scene::Scene;
-use crate::tree_light::{Crowns, Leaves, Transmissivity, TreeLight};
+use crate::tree_light::{CrownLight, Leaves, Transmissivity, TreeLight};
 use belvedere_data::control::Control;
 use belvedere_data::{Error, Parameter, Result};
 use serde::{Deserialize, Serialize};
@@ -34,7 +34,7 @@ impl ThroughTrees {
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] for a share out of range, and for pulses that measured nothing.
-    pub fn crowns(&self, measured: impl FnOnce() -> Option<Transmissivity>) -> Result<Option<Crowns>> {
+    pub fn crowns(&self, measured: impl FnOnce() -> Option<Transmissivity>) -> Result<Option<CrownLight>> {
         let (transmissivity, leaves) = match self {
             Self::Opaque => return Ok(None),
             Self::Seasons(leaves) => (Transmissivity::default(), *leaves),
@@ -49,7 +49,7 @@ impl ThroughTrees {
                 }
             },
         };
-        Ok(Some(Crowns { transmissivity, leaves }))
+        Ok(Some(CrownLight { transmissivity, leaves }))
     }
 
     /// The light through the trees of a scene; `None` where they are opaque.

@@ -33,7 +33,7 @@ const MAX_NAMED: usize = 5;
 /// What observers see, or from where a target is seen.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
-pub struct Viewshed {
+pub struct ViewshedQuestion {
     /// Who looks; of a reverse viewshed the one target, which is looked at.
     #[serde(skip)]
     pub observers: Vec<StandingObserver>,
@@ -76,7 +76,7 @@ pub enum ViewshedTargets {
 }
 
 /// What was seen.
-pub struct ViewshedFound {
+pub struct ViewshedResults {
     /// The eyes of observers, or the target of a reverse viewshed, local metres; NaN for those that are skipped.
     pub eyes: Vec<[f64; 3]>,
     /// Whether the viewshed is a reverse one.
@@ -90,11 +90,11 @@ pub struct ViewshedFound {
     /// Of far terrain, where it was wanted.
     pub far: Option<FarSeen>,
     /// Lowest visible heights above the ground, metres, where they were wanted
-    /// ([`crate::viewshed::least_visible_heights`]).
+    /// ([`crate::viewshed::min_visible_heights`]).
     pub heights: Option<Raster<f32>>,
 }
 
-impl Default for Viewshed {
+impl Default for ViewshedQuestion {
     fn default() -> Self {
         Self {
             observers: Vec::new(),
@@ -114,7 +114,7 @@ impl Default for Viewshed {
     }
 }
 
-impl Viewshed {
+impl ViewshedQuestion {
     fn who(&self) -> &'static str {
         if self.reverse { "target" } else { "observer" }
     }
@@ -273,8 +273,8 @@ impl Viewshed {
     }
 }
 
-impl Ask for Viewshed {
-    type Found = ViewshedFound;
+impl Ask for ViewshedQuestion {
+    type Found = ViewshedResults;
 
     fn check(&self) -> Result<()> {
         self.earth.validate()?;
@@ -311,7 +311,7 @@ impl Ask for Viewshed {
         _: &Places,
         context: &mut Context,
         control: &Control<'_>,
-    ) -> Result<Answers<ViewshedFound>> {
+    ) -> Result<Answers<ViewshedResults>> {
         self.check_observers()?;
         if self.unproven.is_some_and(|unproven| unproven != UnprovenAs::Visible) {
             scene.check_proof()?;
@@ -354,7 +354,7 @@ impl Ask for Viewshed {
         };
         self.headline_of_eyes(&eyes.report, context);
         let (eyes, reverse) = (eyes.eyes, self.reverse);
-        Ok(Answers::new(ViewshedFound { eyes, reverse, ground: known, cells, points, far, heights }, Vec::new()))
+        Ok(Answers::new(ViewshedResults { eyes, reverse, ground: known, cells, points, far, heights }, Vec::new()))
     }
 }
 
@@ -366,16 +366,16 @@ mod tests {
     fn what_no_viewshed_can_have_is_refused_before_a_scene_is_known() {
         let range = ViewLimits { azimuth_range_deg: Some([0.0, 90.0]), ..ViewLimits::default() };
         let far = ViewLimits { min_distance: Some(9.0), max_distance: Some(5.0), ..ViewLimits::default() };
-        let usual = Viewshed::default();
+        let usual = ViewshedQuestion::default();
         assert!(usual.check().is_ok());
-        assert!(Viewshed { limits: range, ..usual.clone() }.check().is_ok());
+        assert!(ViewshedQuestion { limits: range, ..usual.clone() }.check().is_ok());
         for wrong in [
-            Viewshed { limits: range, reverse: true, ..usual.clone() },
-            Viewshed { limits: far, ..usual.clone() },
-            Viewshed { observer_height: Some(-1.0), ..usual.clone() },
-            Viewshed { target_height: Some(f64::NAN), ..usual.clone() },
-            Viewshed { max_height: Some(-1.0), ..usual.clone() },
-            Viewshed { earth: EarthParams { refraction: 1.0, ..EarthParams::default() }, ..usual },
+            ViewshedQuestion { limits: range, reverse: true, ..usual.clone() },
+            ViewshedQuestion { limits: far, ..usual.clone() },
+            ViewshedQuestion { observer_height: Some(-1.0), ..usual.clone() },
+            ViewshedQuestion { target_height: Some(f64::NAN), ..usual.clone() },
+            ViewshedQuestion { max_height: Some(-1.0), ..usual.clone() },
+            ViewshedQuestion { earth: EarthParams { refraction: 1.0, ..EarthParams::default() }, ..usual },
         ] {
             assert!(wrong.check().is_err(), "{wrong:?}");
         }

@@ -1,12 +1,12 @@
 //! Window views: what is seen from windows, and how far.
 
 use super::places::{leave_out_outside, test_edge};
-use super::report::{LinesSection, Named};
+use super::report::{LinesSection, NamedValues};
 use super::windows::{GivenWindows, WindowTargets};
 use super::{Answers, Ask, Context, North, Places, Remark, Scene, spread};
 use crate::targets::{Measure, MeasureStatistics, Window};
 use crate::window_views::{
-    ClassMeanings, Kinds, NamedView, Proving, Seen, VIEW_DIRECTIONS, VIEW_SPACING, WindowView, are_made_from,
+    ClassMeanings, Kinds, NamedView, Proving, SeenKind, VIEW_DIRECTIONS, VIEW_SPACING, WindowView, are_made_from,
     balls_seen, leave_out_level, leave_out_walled_up, view_directions, view_measures, views_by_name, window_views,
 };
 use belvedere_core::query::UnprovenAs;
@@ -21,7 +21,7 @@ const OTHER_WARNING_PERCENT: f64 = 50.0;
 /// What is seen from windows.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
-pub struct WindowViews {
+pub struct WindowViewsQuestion {
     /// The windows.
     #[serde(skip)]
     pub windows: GivenWindows,
@@ -34,13 +34,13 @@ pub struct WindowViews {
     /// Number of directions in front of each place, 1 to 100 000. Default 1000.
     pub directions: usize,
     /// What classes of points are, where that is not what ASPRS says.
-    pub classes: Vec<(u8, Seen)>,
+    pub classes: Vec<(u8, SeenKind)>,
     /// Whether views through space that no pulse came near are reported (`None` too) or count as visible. What is given
     /// needs pulses.
     pub unproven: Option<UnprovenAs>,
 }
 
-impl Default for WindowViews {
+impl Default for WindowViewsQuestion {
     fn default() -> Self {
         Self {
             windows: GivenWindows::default(),
@@ -55,7 +55,7 @@ impl Default for WindowViews {
 }
 
 /// What was found of windows.
-pub struct WindowViewsFound {
+pub struct WindowViewsResults {
     /// Where each is and looks to.
     pub windows: Vec<Window>,
     /// Name of the object that each is a face of; empty where that is not known.
@@ -66,7 +66,7 @@ pub struct WindowViewsFound {
     pub grid_north: f64,
 }
 
-impl WindowViewsFound {
+impl WindowViewsResults {
     /// The mean views of the windows of each name; windows count by their area where they are faces.
     #[must_use]
     pub fn by_name(&self, names: &[String]) -> Vec<NamedView> {
@@ -97,10 +97,10 @@ pub struct WindowsSection {
 pub struct ViewsSection {
     directions: usize,
     #[serde(flatten)]
-    measures: Named<Option<MeasureStatistics>>,
+    measures: NamedValues<Option<MeasureStatistics>>,
 }
 
-impl WindowViews {
+impl WindowViewsQuestion {
     /// The windows of a scene, without roofs, floors and what lies outside the cloud.
     fn targets(
         &self,
@@ -131,7 +131,7 @@ impl WindowViews {
     }
 
     /// The kind of each ball of a scene.
-    fn kinds(&self, scene: &Scene, context: &mut Context) -> Result<Vec<Seen>> {
+    fn kinds(&self, scene: &Scene, context: &mut Context) -> Result<Vec<SeenKind>> {
         let (model, cloud) = (scene.model(), scene.cloud());
         let classes = cloud.attributes.classification.as_deref();
         let of_balls = classes.filter(|_| are_made_from(model.balls(), &cloud.positions));
@@ -149,8 +149,8 @@ impl WindowViews {
     }
 }
 
-impl Ask for WindowViews {
-    type Found = WindowViewsFound;
+impl Ask for WindowViewsQuestion {
+    type Found = WindowViewsResults;
 
     fn check(&self) -> Result<()> {
         let invalid = |parameter, value: String, expected| Err(Error::InvalidParameter { parameter, value, expected });
@@ -161,7 +161,8 @@ impl Ask for WindowViews {
         if !(self.spacing > 0.0 && self.spacing.is_finite()) {
             return invalid(Parameter::Spacing, self.spacing.to_string(), "above zero metres");
         }
-        if let Some((class, seen)) = self.classes.iter().find(|(_, seen)| Seen::thing_called(seen.name()).is_none()) {
+        if let Some((class, seen)) = self.classes.iter().find(|(_, seen)| SeenKind::thing_called(seen.name()).is_none())
+        {
             let value = format!("{class} as {}", seen.name());
             return invalid(Parameter::ClassMeaning, value, "vegetation, water, building, ground or other");
         }
@@ -175,7 +176,7 @@ impl Ask for WindowViews {
         _: &Places,
         context: &mut Context,
         control: &Control<'_>,
-    ) -> Result<Answers<WindowViewsFound>> {
+    ) -> Result<Answers<WindowViewsResults>> {
         if self.unproven.is_some() {
             scene.check_proof()?;
         }
@@ -187,9 +188,9 @@ impl Ask for WindowViews {
         let kinds = self.kinds(scene, context)?;
         let blockers = scene.blockers(self.unproven.unwrap_or(UnprovenAs::Reported), control)?;
         context.report.lines_of_sight = Some(LinesSection::of(&blockers, None));
-        let count = targets.asked_count();
+        let count = targets.target_count();
         let inside = control.stage("testing targets", 0, || leave_out_walled_up(&mut targets, &blockers, control))?;
-        if targets.asked_count() == 0 {
+        if targets.target_count() == 0 {
             let what = "all are outside the cloud, inside obstacles, or faces of roofs and floors. Are they in the coordinates of the cloud?";
             return Err(Error::NoObserver { who: "window", what: what.to_owned() });
         }
@@ -203,34 +204,34 @@ impl Ask for WindowViews {
             let kinds = Kinds { balls: &kinds, meshes: &[] };
             window_views(&blockers, &targets, kinds, &directions, control)
         })?;
-        let proving = if blockers.proof().is_some() { Proving::Asked } else { Proving::NotAsked };
+        let proving = if blockers.proof().is_some() { Proving::Tested } else { Proving::NotTested };
         let measures = view_measures(&views, proving);
         self.sum_up(&views, &measures, context);
-        Ok(Answers::new(WindowViewsFound { windows, names, views, grid_north: north.of_grid }, measures))
+        Ok(Answers::new(WindowViewsResults { windows, names, views, grid_north: north.of_grid }, measures))
     }
 }
 
-impl WindowViews {
+impl WindowViewsQuestion {
     /// Figures, the answer in words, and a warning where most things seen are of no known kind.
     fn sum_up(&self, views: &[WindowView], measures: &[Measure], context: &mut Context) {
         let statistics = measures.iter().map(|measure| (measure.name.clone(), measure.rounded_statistics()));
         context.report.views =
-            Some(ViewsSection { directions: self.directions, measures: Named(statistics.collect()) });
-        let known = || views.iter().filter(|view| view.shares[Seen::Sky as usize].is_finite());
+            Some(ViewsSection { directions: self.directions, measures: NamedValues(statistics.collect()) });
+        let known = || views.iter().filter(|view| view.shares[SeenKind::Sky as usize].is_finite());
         context.headline(format!(
             "view from {} of {} windows, in percent of what is in front",
             known().count(),
             views.len()
         ));
-        for seen in [Seen::Sky, Seen::Vegetation, Seen::Building] {
+        for seen in [SeenKind::Sky, SeenKind::Vegetation, SeenKind::Building] {
             if let Some(measure) = measures.iter().find(|measure| measure.name == seen.name()) {
                 context.headline(format!("{}: {}", seen.name(), spread(&measure.values, 1, "%")));
             }
         }
-        let sum = |seen: Seen| known().map(|view| view.shares[seen as usize]).sum::<f64>();
-        let is_thing = |seen: &Seen| Seen::thing_called(seen.name()).is_some();
-        let things: f64 = Seen::ALL.into_iter().filter(is_thing).map(sum).sum();
-        let other = 100.0 * sum(Seen::Other) / things;
+        let sum = |seen: SeenKind| known().map(|view| view.shares[seen as usize]).sum::<f64>();
+        let is_thing = |seen: &SeenKind| SeenKind::thing_called(seen.name()).is_some();
+        let things: f64 = SeenKind::ALL.into_iter().filter(is_thing).map(sum).sum();
+        let other = 100.0 * sum(SeenKind::Other) / things;
         if other >= OTHER_WARNING_PERCENT {
             let other = rounded(other, 1);
             let text = format!(
@@ -247,18 +248,22 @@ mod tests {
 
     #[test]
     fn views_that_cannot_be_are_refused_before_a_scene_is_needed() {
-        let usual = WindowViews::default;
+        let usual = WindowViewsQuestion::default;
         assert!(usual().check().is_ok());
         for wrong in [
-            WindowViews { directions: 0, ..usual() },
-            WindowViews { directions: 1_000_000, ..usual() },
-            WindowViews { spacing: 0.0, ..usual() },
-            WindowViews { classes: vec![(6, Seen::Building), (7, Seen::Sky)], ..usual() },
-            WindowViews { unproven: Some(UnprovenAs::Blocked), ..usual() },
+            WindowViewsQuestion { directions: 0, ..usual() },
+            WindowViewsQuestion { directions: 1_000_000, ..usual() },
+            WindowViewsQuestion { spacing: 0.0, ..usual() },
+            WindowViewsQuestion { classes: vec![(6, SeenKind::Building), (7, SeenKind::Sky)], ..usual() },
+            WindowViewsQuestion { unproven: Some(UnprovenAs::Blocked), ..usual() },
         ] {
             assert!(matches!(wrong.check(), Err(Error::InvalidParameter { .. })), "{wrong:?}");
         }
-        let other = WindowViews { classes: vec![(26, Seen::Ground)], unproven: Some(UnprovenAs::Visible), ..usual() };
+        let other = WindowViewsQuestion {
+            classes: vec![(26, SeenKind::Ground)],
+            unproven: Some(UnprovenAs::Visible),
+            ..usual()
+        };
         assert!(other.check().is_ok());
     }
 }

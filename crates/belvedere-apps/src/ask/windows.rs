@@ -1,6 +1,6 @@
 //! Windows: from what a user gives to the targets in front of them.
 
-use super::Shared;
+use super::SharedObject;
 use crate::targets::{Targets, Window, objects_of_windows};
 use belvedere_data::frame::Frame;
 use belvedere_data::{Error, Mesh, Parameter, Result};
@@ -11,7 +11,7 @@ pub enum GivenWindows {
     /// One by one.
     Each(Vec<GivenWindow>),
     /// The faces of a mesh in metres.
-    Faces(Shared<Mesh>),
+    Faces(SharedObject<Mesh>),
 }
 
 /// A window as it is given.

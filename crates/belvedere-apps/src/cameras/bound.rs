@@ -1,14 +1,17 @@
 //! What no selection of cameras can exceed: the linear relaxation, by prices on the targets.
 //!
-//! Each target t has a price between 0 and its worth w. A selection S of at most k cameras, each target needing r of them, is worth
-//! Σ w·min(count, r) ≤ Σ r·(w − price) + Σ over S of the prices that a camera covers: for one count each, w·min(count, r) ≤ r·(w − price) + price·count. The k
-//! cameras that cover the highest prices bound the last sum for any S. So any prices give a bound that holds, and the least of these bounds is that of the linear relaxation.
-//! Prices that are the worth of what a greedy selection leaves open, and 0 elsewhere, give a bound no worse than that of Nemhauser, Wolsey & Fisher (1978).
+//! Each target t has a price between 0 and its worth w. A selection S of at most k cameras, each target needing r of
+//! them, is worth Σ w·min(count, r) ≤ Σ r·(w − price) + Σ over S of the prices that a camera covers: for one count
+//! each, w·min(count, r) ≤ r·(w − price) + price·count. The k cameras that cover the highest prices bound the last sum
+//! for any S. So any prices give a bound that holds, and the least of these bounds is that of the linear relaxation.
+//! Prices that are the worth of what a greedy selection leaves open, and 0 elsewhere, give a bound no worse than that
+//! of Nemhauser, Wolsey & Fisher (1978).
 //!
 //! # Source
-//! Galvão & ReVelle 1996 (Lagrangean relaxation of maximal covering), Held, Wolfe & Crowder 1974 (subgradients), Camerini, Fratta & Maffioli 1975 (their direction).
+//! Galvão & ReVelle 1996 (Lagrangean relaxation of maximal covering), Held, Wolfe & Crowder 1974 (subgradients),
+//! Camerini, Fratta & Maffioli 1975 (their direction).
 
-use super::problem::{Problem, Selection, TOLERANCE};
+use super::problem::{CameraSelection, Problem, TOLERANCE};
 use belvedere_data::Result;
 use belvedere_data::control::Control;
 use rayon::prelude::*;
@@ -17,23 +20,24 @@ use rayon::prelude::*;
 const CHUNK: usize = 32;
 /// Rounds without a better bound after which steps are halved.
 const PATIENCE: usize = 12;
-/// Share of the last direction that the next one keeps. Of 0, 0.3, 0.5 and 0.7, the last gave the lowest bound in seven of eight random towns.
+/// Share of the last direction that the next one keeps. Of 0, 0.3, 0.5 and 0.7, the last gave the lowest bound in seven
+/// of eight random towns.
 const MEMORY: f64 = 0.7;
 /// Steps below this share of their size at the start move nothing.
-const LEAST_STEP: f64 = 1e-4;
+const MIN_STEP: f64 = 1e-4;
 
 /// What is decided of a candidate.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Fate {
+pub(super) enum CandidateFate {
     Open,
     In,
     Out,
 }
 
 /// Candidates with what is decided of each, and how many more may be chosen.
-pub(super) struct Question<'q> {
+pub(super) struct BranchNode<'q> {
     pub(super) problem: &'q Problem<'q>,
-    pub(super) fates: &'q [Fate],
+    pub(super) fates: &'q [CandidateFate],
     pub(super) left: usize,
 }
 
@@ -62,26 +66,28 @@ struct AtPrices {
     picked: Vec<usize>,
 }
 
-impl Question<'_> {
+impl BranchNode<'_> {
     fn at(&self, prices: &[f64]) -> AtPrices {
-        let covered_by = |(camera, fate): (usize, &Fate)| match fate {
-            Fate::Out => 0.0,
+        let covered_by = |(camera, fate): (usize, &CandidateFate)| match fate {
+            CandidateFate::Out => 0.0,
             _ => self.problem.table.covered_by(camera).map(|target| prices[target]).sum(),
         };
         let covered: Vec<f64> = self.fates.par_iter().enumerate().with_min_len(CHUNK).map(covered_by).collect();
-        let with = |fate: Fate| (0..self.fates.len()).filter(move |&camera| self.fates[camera] == fate);
-        let mut picked: Vec<usize> = with(Fate::Open).collect();
+        let with = |fate: CandidateFate| (0..self.fates.len()).filter(move |&camera| self.fates[camera] == fate);
+        let mut picked: Vec<usize> = with(CandidateFate::Open).collect();
         if self.left < picked.len() {
             let order = |a: &usize, b: &usize| covered[*b].total_cmp(&covered[*a]).then(a.cmp(b));
             picked.select_nth_unstable_by(self.left, order);
             picked.truncate(self.left);
         }
         let free: f64 = self.problem.worth.iter().zip(prices).map(|(worth, price)| worth - price).sum();
-        let covered_all: f64 = with(Fate::In).chain(picked.iter().copied()).map(|camera| covered[camera]).sum();
+        let covered_all: f64 =
+            with(CandidateFate::In).chain(picked.iter().copied()).map(|camera| covered[camera]).sum();
         AtPrices { bound: f64::from(self.problem.required) * free + covered_all, covered, picked }
     }
 
-    /// Lowers the bound from `prices` for so many rounds, or until nothing better than `best` remains; better selections met on the way replace it.
+    /// Lowers the bound from `prices` for so many rounds, or until nothing better than `best` remains; better
+    /// selections met on the way replace it.
     pub(super) fn relax(
         &self,
         prices: Vec<f64>,
@@ -90,8 +96,8 @@ impl Question<'_> {
         control: &Control<'_>,
     ) -> Result<Relaxation> {
         let problem = self.problem;
-        let ins: Vec<usize> = (0..self.fates.len()).filter(|&camera| self.fates[camera] == Fate::In).collect();
-        let base = Selection::of(problem, &ins);
+        let ins: Vec<usize> = (0..self.fates.len()).filter(|&camera| self.fates[camera] == CandidateFate::In).collect();
+        let base = CameraSelection::of(problem, &ins);
         let mut at = self.at(&prices);
         let mut found = Relaxation {
             bound: at.bound,
@@ -116,7 +122,7 @@ impl Question<'_> {
             if self.left == 0 {
                 found.bound = value;
             }
-            if !problem.is_better(found.bound, best.value) || scale < LEAST_STEP || self.left == 0 {
+            if !problem.is_better(found.bound, best.value) || scale < MIN_STEP || self.left == 0 {
                 break;
             }
             let mut size = 0.0;
@@ -161,7 +167,7 @@ impl Question<'_> {
 }
 
 /// Prices that are the worth of what a selection leaves open.
-pub(super) fn prices_of(selection: &Selection<'_>) -> Vec<f64> {
+pub(super) fn prices_of(selection: &CameraSelection<'_>) -> Vec<f64> {
     let problem = selection.problem;
     let price = |(count, worth): (&u32, &f64)| if *count < problem.required { *worth } else { 0.0 };
     selection.counts.iter().zip(&problem.worth).map(price).collect()

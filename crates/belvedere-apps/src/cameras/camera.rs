@@ -54,10 +54,11 @@ impl Level {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Lens {
-    /// Horizontal field of view, radians, above 0 to 2π. Below π the picture is flat; from π on the lens is a fisheye, a panorama, or a person
-    /// or mast, without a density. Default π/2.
+    /// Horizontal field of view, radians, above 0 to 2π. Below π the picture is flat; from π on the lens is a fisheye,
+    /// a panorama, or a person or mast, without a density. Default π/2.
     pub width: f64,
-    /// Vertical field of view, radians, above 0 to π and below π for a flat picture. `None`, the default: of a picture of 16 : 9, and π where the width is π or more.
+    /// Vertical field of view, radians, above 0 to π and below π for a flat picture. `None`, the default: of a picture
+    /// of 16 : 9, and π where the width is π or more.
     pub height: Option<f64>,
     /// Pixels across the picture. Default 1920.
     pub pixels: f64,
@@ -111,13 +112,15 @@ impl Lens {
         self.height.unwrap_or(if self.is_flat() { 2.0 * ((self.width / 2.0).tan() / ASPECT).atan() } else { PI })
     }
 
-    /// Pixels per metre of a surface at a range of one metre that faces the camera: W / (2 tan(width / 2)). `None` without a flat picture.
+    /// Pixels per metre of a surface at a range of one metre that faces the camera: W / (2 tan(width / 2)). `None`
+    /// without a flat picture.
     #[must_use]
     pub fn density(&self) -> Option<f64> {
         self.is_flat().then(|| self.pixels / (2.0 * (self.width / 2.0).tan()))
     }
 
-    /// Pixels per metre that are required: those given, or else those of [`Level::Detect`]; 0, for no requirement, without a flat picture.
+    /// Pixels per metre that are required: those given, or else those of [`Level::Detect`]; 0, for no requirement,
+    /// without a flat picture.
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] for a density below 0, and for one above 0 without a flat picture.
@@ -144,14 +147,14 @@ pub struct Camera {
     /// Distances that it is good for, and the directions that it sees, by turning or by its lens.
     pub limits: SightLimits,
     /// The flat picture of a camera that is not turned.
-    pub picture: Option<Picture>,
+    pub picture: Option<PictureDirection>,
     /// Pixels per metre at a range of one metre; `None` where density is no question.
     pub density: Option<f64>,
 }
 
 /// Where a flat picture is turned to.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Picture {
+pub struct PictureDirection {
     /// Azimuth of its middle, radians clockwise from grid north.
     pub heading: f64,
     /// Angle of its middle below the horizon, radians.
@@ -160,7 +163,7 @@ pub struct Picture {
     pub half: [f64; 2],
 }
 
-impl Picture {
+impl PictureDirection {
     /// Whether a direction, of any length, is in the picture.
     #[must_use]
     pub fn holds(&self, direction: [f64; 3]) -> bool {
@@ -174,12 +177,14 @@ impl Picture {
 }
 
 impl Camera {
-    /// A camera that keeps looking to `heading` and `tilt` below the horizon, radians, good for horizontal distances from and to these metres.
+    /// A camera that keeps looking to `heading` and `tilt` below the horizon, radians, good for horizontal distances
+    /// from and to these metres.
     #[must_use]
     pub fn fixed(eye: [f64; 3], heading: f64, tilt: f64, lens: &Lens, distance: [f64; 2]) -> Self {
         let limits = SightLimits { distance, ..SightLimits::default() };
         if lens.is_flat() {
-            let picture = Picture { heading, tilt, half: [(lens.width / 2.0).tan(), (lens.height() / 2.0).tan()] };
+            let picture =
+                PictureDirection { heading, tilt, half: [(lens.width / 2.0).tan(), (lens.height() / 2.0).tan()] };
             return Self { eye, limits, picture: Some(picture), density: lens.density() };
         }
         let azimuth = (lens.width < TAU - 1e-9).then(|| [heading - lens.width / 2.0, heading + lens.width / 2.0]);
@@ -194,9 +199,9 @@ impl Camera {
         Self { eye, limits, picture: None, density: lens.density() }
     }
 
-    /// Whether a target that nothing hides, local metres, is in the picture with at least so many pixels per metre; 0 asks for none. Pixels
-    /// per metre are those at the range of the target, times the cosine of the angle at which its unit `normal` is seen, where it has one. A target
-    /// whose back is seen is not covered.
+    /// Whether a target that nothing hides, local metres, is in the picture with at least so many pixels per metre; 0
+    /// asks for none. Pixels per metre are those at the range of the target, times the cosine of the angle at which its
+    /// unit `normal` is seen, where it has one. A target whose back is seen is not covered.
     #[must_use]
     pub fn covers(&self, target: [f64; 3], normal: Option<[f64; 3]>, density: f64) -> bool {
         if !self.limits.allow(self.eye, target) {

@@ -17,7 +17,7 @@ pub const ROOF_CAMERA_HEIGHT: f64 = 1.0;
 /// Height of what cameras look at above the ground, metres: the head of a person.
 pub const CAMERA_TARGET_HEIGHT: f64 = 1.5;
 /// Least height of a roof above the ground, metres: lower ones are cars and hedges.
-const LEAST_ROOF: f64 = 2.0;
+const MIN_ROOF: f64 = 2.0;
 
 /// Whether cameras are turned.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -37,7 +37,8 @@ pub struct MountingParams {
     pub lens: Lens,
     /// Whether they are turned.
     pub motion: Motion,
-    /// Headings to choose from at each place, evenly spread from north on, 1 or more. Default 8. One is enough for cameras that see or turn all around.
+    /// Headings to choose from at each place, evenly spread from north on, 1 or more. Default 8. One is enough for
+    /// cameras that see or turn all around.
     pub headings: usize,
     /// Angles below the horizon to choose from, radians, −π/2 to π/2. Default: 15 degrees.
     pub tilts: Vec<f64>,
@@ -86,7 +87,7 @@ pub struct Mount {
 
 /// A camera with its heading and tilt, for reports; NaN for one that turns or sees all around.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Pose {
+pub struct CameraPose {
     /// The camera.
     pub camera: Camera,
     /// Azimuth that it looks to, radians clockwise from grid north.
@@ -102,7 +103,7 @@ impl MountingParams {
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] for angles, pixels and distances outside their range.
-    pub fn poses_at(&self, mount: &Mount) -> Result<Vec<Pose>> {
+    pub fn poses_at(&self, mount: &Mount) -> Result<Vec<CameraPose>> {
         let lens = Lens { width: mount.width.unwrap_or(self.lens.width), ..self.lens };
         lens.validate()?;
         let distance = [0, 1].map(|i| mount.distance[i].unwrap_or(self.distance[i]));
@@ -110,7 +111,7 @@ impl MountingParams {
         limits.validate()?;
         if self.motion == Motion::Turning {
             let camera = Camera::turning(mount.eye, &lens, limits);
-            return Ok(vec![Pose { camera, heading: f64::NAN, tilt: f64::NAN, width: lens.width }]);
+            return Ok(vec![CameraPose { camera, heading: f64::NAN, tilt: f64::NAN, width: lens.width }]);
         }
         let invalid = |parameter, value: String, expected| Err(Error::InvalidParameter { parameter, value, expected });
         if self.headings == 0 || self.headings > 360 {
@@ -131,7 +132,7 @@ impl MountingParams {
             }
             let camera = Camera::fixed(mount.eye, heading, tilt, &lens, distance);
             let heading = if sees_all_around { f64::NAN } else { heading };
-            poses.push(Pose { camera, heading, tilt, width: lens.width });
+            poses.push(CameraPose { camera, heading, tilt, width: lens.width });
         }
         Ok(poses)
     }
@@ -139,8 +140,9 @@ impl MountingParams {
     /// The camera that stands at a place.
     ///
     /// # Errors
-    /// Those of [`MountingParams::poses_at`], and [`Error::InvalidParameter`] for a place that leaves open where its camera looks.
-    pub fn existing_at(&self, mount: &Mount) -> Result<Pose> {
+    /// Those of [`MountingParams::poses_at`], and [`Error::InvalidParameter`] for a place that leaves open where its
+    /// camera looks.
+    pub fn existing_at(&self, mount: &Mount) -> Result<CameraPose> {
         match self.poses_at(mount)?[..] {
             [pose] => Ok(pose),
             _ => Err(Error::InvalidParameter {
@@ -152,20 +154,22 @@ impl MountingParams {
     }
 }
 
-/// Places for cameras `height` metres above the ground, in the middle of the cells of `ground`, local metres. There are none below roofs.
+/// Places for cameras `height` metres above the ground, in the middle of the cells of `ground`, local metres. There are
+/// none below roofs.
 ///
 /// # Errors
 /// Those of [`Targets::of_cells`].
 pub fn ground_places(cloud: &PointCloud, ground: Ground, height: f64, control: &Control<'_>) -> Result<Vec<[f64; 3]>> {
     let (targets, _) = Targets::of_cells(cloud, ground, &CellParams::default().with_height(height), control)?;
     Ok((0..targets.len())
-        .filter(|&row| targets.is_asked(row))
+        .filter(|&row| targets.is_target(row))
         .map(|row| targets.positions[row].map(f64::from))
         .collect())
 }
 
-/// Places for cameras `height` metres above roofs, in the middle of the cells of `ground`, local metres: where something is at least 2 m high. In a
-/// cloud that knows buildings (class 6), the highest point of the cell must be one.
+/// Places for cameras `height` metres above roofs, in the middle of the cells of `ground`, local metres: where
+/// something is at least 2 m high. In a cloud that knows buildings (class 6), the highest point of the cell must be
+/// one.
 ///
 /// # Errors
 /// Those of [`Targets::of_cells`].
@@ -181,10 +185,10 @@ pub fn roof_places(cloud: &PointCloud, ground: Ground, height: f64, control: &Co
     let (targets, _) = Targets::of_cells(cloud, ground, &params, control)?;
     let is_roof = |row: usize| {
         let place = targets.positions[row];
-        let is_high = f64::from(place[2] - levels.values()[row]) - height >= LEAST_ROOF;
+        let is_high = f64::from(place[2] - levels.values()[row]) - height >= MIN_ROOF;
         is_high && of_buildings.as_ref().is_none_or(|tops| tops.values()[row] >= highest.values()[row])
     };
-    let rows = (0..targets.len()).filter(|&row| targets.is_asked(row) && is_roof(row));
+    let rows = (0..targets.len()).filter(|&row| targets.is_target(row) && is_roof(row));
     Ok(rows.map(|row| targets.positions[row].map(f64::from)).collect())
 }
 
@@ -204,7 +208,7 @@ pub fn keep_within(targets: &mut Targets, areas: &[WeightedArea]) {
         let place = [position[0], position[1]].map(f64::from);
         let found = areas.iter().filter(|area| is_inside(&area.rings, place)).map(|area| area.weight);
         match found.reduce(f64::max) {
-            Some(most) => *weight = most,
+            Some(max) => *weight = max,
             None => *position = [f32::NAN; 3],
         }
     }
@@ -213,7 +217,7 @@ pub fn keep_within(targets: &mut Targets, areas: &[WeightedArea]) {
 /// How much each target counts for [`super::place_cameras`]: its weight, and 0 for one that is not asked about.
 #[must_use]
 pub fn counted_weights(targets: &Targets) -> Vec<f64> {
-    (0..targets.len()).map(|row| if targets.is_asked(row) { targets.weight(row) } else { 0.0 }).collect()
+    (0..targets.len()).map(|row| if targets.is_target(row) { targets.weight(row) } else { 0.0 }).collect()
 }
 
 #[cfg(test)]
@@ -227,8 +231,8 @@ mod tests {
         let poses = usual.poses_at(&Mount::default()).unwrap();
         assert_eq!(poses.len(), 16);
         assert!((poses[15].heading - 7.0 * TAU / 8.0).abs() < 1e-12 && poses[15].tilt == 0.4);
-        let told = Mount { heading: Some(1.0), tilt: Some(0.2), width: Some(PI), ..Mount::default() };
-        let one = usual.existing_at(&told).unwrap();
+        let existing = Mount { heading: Some(1.0), tilt: Some(0.2), width: Some(PI), ..Mount::default() };
+        let one = usual.existing_at(&existing).unwrap();
         assert_eq!((one.heading, one.tilt, one.camera.picture), (1.0, 0.2, None));
         assert!(usual.existing_at(&Mount { heading: Some(1.0), ..Mount::default() }).is_err());
         // all around, headings are no choice

@@ -1,6 +1,6 @@
 //! Good selections of cameras: the best next one again and again, then exchanges.
 
-use super::problem::{Loss, Selection, TOLERANCE};
+use super::problem::{CameraSelection, Loss, TOLERANCE};
 use belvedere_data::Result;
 use belvedere_data::control::Control;
 use rayon::prelude::*;
@@ -28,15 +28,15 @@ impl PartialOrd for Gain {
     }
 }
 
-/// Adds the camera of `candidates` that gains most until `is_enough` or no camera gains anything. What a camera gains only shrinks as others
-/// are added, so that few gains are computed anew.
+/// Adds the camera of `candidates` that gains most until `is_enough` or no camera gains anything. What a camera gains
+/// only shrinks as others are added, so that few gains are computed anew.
 ///
 /// # Source
 /// Nemhauser, Wolsey & Fisher 1978: at least 1 − 1/e of the best possible gain. Minoux 1978: the lazy order.
 pub(super) fn fill(
-    selection: &mut Selection<'_>,
+    selection: &mut CameraSelection<'_>,
     candidates: &[usize],
-    mut is_enough: impl FnMut(&Selection<'_>) -> bool,
+    mut is_enough: impl FnMut(&CameraSelection<'_>) -> bool,
     control: &Control<'_>,
 ) -> Result<()> {
     let gain = |&camera: &usize| Gain(selection.gain(camera), Reverse(camera));
@@ -50,7 +50,7 @@ pub(super) fn fill(
 }
 
 /// The camera that gains most; `None` if none gains anything.
-fn next(selection: &Selection<'_>, queue: &mut BinaryHeap<Gain>) -> Option<usize> {
+fn next(selection: &CameraSelection<'_>, queue: &mut BinaryHeap<Gain>) -> Option<usize> {
     loop {
         let Gain(_, Reverse(camera)) = queue.pop()?;
         let now = Gain(selection.gain(camera), Reverse(camera));
@@ -64,9 +64,10 @@ fn next(selection: &Selection<'_>, queue: &mut BinaryHeap<Gain>) -> Option<usize
     }
 }
 
-/// Exchanges chosen cameras, but not the first `fixed`, for others of `candidates` as long as that gains anything: the best exchange first.
+/// Exchanges chosen cameras, but not the first `fixed`, for others of `candidates` as long as that gains anything: the
+/// best exchange first.
 pub(super) fn exchange(
-    selection: &mut Selection<'_>,
+    selection: &mut CameraSelection<'_>,
     fixed: usize,
     candidates: &[usize],
     control: &Control<'_>,
@@ -79,10 +80,10 @@ pub(super) fn exchange(
             let gain = if is_chosen(&camera) { return None } else { selection.gain(camera) };
             let mut best: Option<(f64, usize)> = None;
             for (place, loss) in losses.iter().enumerate() {
-                let least = best.map_or(TOLERANCE, |(better, _)| better);
-                if gain + loss.tight_worth - loss.worth > least {
+                let min = best.map_or(TOLERANCE, |(better, _)| better);
+                if gain + loss.tight_worth - loss.worth > min {
                     let better = gain + selection.saved(camera, loss) - loss.worth;
-                    if better > least {
+                    if better > min {
                         best = Some((better, place));
                     }
                 }

@@ -7,8 +7,9 @@
 //! | which of them covers what | [`coverage`], and [`leave_out_private`] for those that must not be put up |
 //! | which to choose | [`place_cameras`] |
 //!
-//! A target is covered by a camera if it is in its picture, near enough for the wanted pixels per metre, and nothing hides it. Selections are made greedily and
-//! improved by exchanges; the linear relaxation bounds what any selection could cover, and a search closes the gap where the problem is small enough.
+//! A target is covered by a camera if it is in its picture, near enough for the wanted pixels per metre, and nothing
+//! hides it. Selections are made greedily and improved by exchanges; the linear relaxation bounds what any selection
+//! could cover, and a search closes the gap where the problem is small enough.
 
 mod bound;
 mod camera;
@@ -20,9 +21,9 @@ mod search;
 mod sights;
 mod table;
 
-pub use camera::{Camera, Lens, Level, Picture};
+pub use camera::{Camera, Lens, Level, PictureDirection};
 pub use candidates::{
-    CAMERA_HEIGHT, CAMERA_TARGET_HEIGHT, Motion, Mount, MountingParams, Pose, ROOF_CAMERA_HEIGHT, WeightedArea,
+    CAMERA_HEIGHT, CAMERA_TARGET_HEIGHT, CameraPose, Motion, Mount, MountingParams, ROOF_CAMERA_HEIGHT, WeightedArea,
     counted_weights, ground_places, keep_within, roof_places,
 };
 pub use placement::{Goal, Placement, PlacementParams, place_cameras};

@@ -1,8 +1,8 @@
 //! Which cameras to choose.
 
-use super::bound::{Best, Fate, Question, prices_of};
+use super::bound::{Best, BranchNode, CandidateFate, prices_of};
 use super::greedy::{exchange, fill};
-use super::problem::{Problem, Selection, TOLERANCE};
+use super::problem::{CameraSelection, Problem, TOLERANCE};
 use super::search::{improve, search};
 use super::table::CoverageTable;
 use belvedere_data::control::Control;
@@ -10,14 +10,15 @@ use belvedere_data::{Error, Parameter, Result};
 
 /// Rounds of a bound before the cameras that it would choose are improved by exchanges.
 const ROUNDS: usize = 80;
-/// How often that is done again with the prices that were found. With 6 in place of 1, selections of random towns are up to 1.8 % better.
+/// How often that is done again with the prices that were found. With 6 in place of 1, selections of random towns are
+/// up to 1.8 % better.
 const RESTARTS: usize = 6;
 /// Words, targets and covered pairs that the search may look at, if no limit is given: about half a minute.
-const MOST_LOOKS: usize = 4_000_000_000;
+const MAX_LOOKS: usize = 4_000_000_000;
 /// How often a branch looks at each of them: the rounds of its bound.
 const LOOKS_PER_BRANCH: usize = 40;
 /// Most branches of a search, if no limit is given.
-const MOST_BRANCHES: usize = 20_000;
+const MAX_BRANCHES: usize = 20_000;
 
 /// What cameras are chosen for.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,7 +39,8 @@ pub struct PlacementParams {
     pub existing: Vec<usize>,
     /// How many cameras each target needs, 1 or more. A target with fewer counts in proportion. Default 1.
     pub required: u32,
-    /// Most branches of the search for the proven optimum; 0 for none. `None`, the default: by the size of the problem, about half a minute.
+    /// Most branches of the search for the proven optimum; 0 for none. `None`, the default: by the size of the problem,
+    /// about half a minute.
     pub search_limit: Option<usize>,
 }
 
@@ -61,13 +63,13 @@ impl PlacementParams {
 pub struct Placement {
     /// New cameras, those that add most first.
     pub chosen: Vec<usize>,
-    /// Share of all weight that is covered by the existing cameras, and after each new one, (chosen + 1). A target with fewer cameras than it needs counts in
-    /// proportion.
+    /// Share of all weight that is covered by the existing cameras, and after each new one, (chosen + 1). A target with
+    /// fewer cameras than it needs counts in proportion.
     pub curve: Vec<f64>,
     /// The share that no selection of as many cameras can exceed.
     pub bound: f64,
     /// The number of new cameras below which no selection reaches the goal; for [`Goal::Coverage`].
-    pub least_count: Option<usize>,
+    pub min_count: Option<usize>,
     /// The share that all candidates together cover.
     pub reachable: f64,
     /// Branches of the search for the optimum.
@@ -92,18 +94,19 @@ impl Placement {
     /// Whether no other selection is better: none covers more, or none needs fewer cameras.
     #[must_use]
     pub fn is_optimal(&self) -> bool {
-        match self.least_count {
-            Some(least) => self.chosen.len() == least,
+        match self.min_count {
+            Some(min) => self.chosen.len() == min,
             None => self.bound <= self.coverage() + TOLERANCE,
         }
     }
 }
 
-/// Chooses cameras of `table` for targets with these `weights`, (M), 0 for one that does not count. The same for any number of threads.
+/// Chooses cameras of `table` for targets with these `weights`, (M), 0 for one that does not count. The same for any
+/// number of threads.
 ///
 /// # Errors
-/// [`Error::InvalidParameter`] for weights and parameters outside their range and for a coverage that all candidates together do not reach;
-/// [`Error::LengthMismatch`]; [`Error::Cancelled`].
+/// [`Error::InvalidParameter`] for weights and parameters outside their range and for a coverage that all candidates
+/// together do not reach; [`Error::LengthMismatch`]; [`Error::Cancelled`].
 pub fn place_cameras(
     table: &CoverageTable,
     weights: &[f64],
@@ -115,10 +118,10 @@ pub fn place_cameras(
         let expected = "the number of a camera of the table, counted from 0";
         return Err(Error::InvalidParameter { parameter: Parameter::ExistingCamera, value: bad.to_string(), expected });
     }
-    let solver = Solver::new(&problem, params);
+    let solver = PlacementSolver::new(&problem, params);
     match params.goal {
         Goal::Count(count) => {
-            let found = solver.most_with(count, &|_, _| false, control)?;
+            let found = solver.best_with(count, &|_, _| false, control)?;
             Ok(solver.placement(&found.best.chosen, found.bound, None, found.branches, control)?)
         }
         Goal::Coverage(share) => solver.fewest_for(share, control),
@@ -126,42 +129,49 @@ pub fn place_cameras(
 }
 
 /// A problem with what is decided of it from the start.
-struct Solver<'a> {
+struct PlacementSolver<'a> {
     problem: &'a Problem<'a>,
     existing: Vec<usize>,
     candidates: Vec<usize>,
-    fates: Vec<Fate>,
+    fates: Vec<CandidateFate>,
     limit: usize,
 }
 
 /// The best selection for a number of cameras.
-struct Found {
+struct BestSelection {
     best: Best,
     bound: f64,
     branches: usize,
 }
 
-impl<'a> Solver<'a> {
+impl<'a> PlacementSolver<'a> {
     fn new(problem: &'a Problem<'a>, params: &PlacementParams) -> Self {
-        let mut fates = vec![Fate::Open; problem.table.camera_count()];
-        params.existing.iter().for_each(|&camera| fates[camera] = Fate::In);
-        let with = |fate: Fate| (0..fates.len()).filter(|&camera| fates[camera] == fate).collect::<Vec<usize>>();
+        let mut fates = vec![CandidateFate::Open; problem.table.camera_count()];
+        params.existing.iter().for_each(|&camera| fates[camera] = CandidateFate::In);
+        let with =
+            |fate: CandidateFate| (0..fates.len()).filter(|&camera| fates[camera] == fate).collect::<Vec<usize>>();
         let (cameras, targets) = (problem.table.camera_count(), problem.table.target_count());
         let looks = LOOKS_PER_BRANCH * (problem.table.pair_count() + targets + cameras * targets.div_ceil(64)).max(1);
-        let limit = params.search_limit.unwrap_or((MOST_LOOKS / looks).min(MOST_BRANCHES));
-        Self { problem, existing: with(Fate::In), candidates: with(Fate::Open), limit, fates }
+        let limit = params.search_limit.unwrap_or((MAX_LOOKS / looks).min(MAX_BRANCHES));
+        Self { problem, existing: with(CandidateFate::In), candidates: with(CandidateFate::Open), limit, fates }
     }
 
-    /// The most that `count` new cameras cover, as far as it is found; stops early where `is_enough` of a value and a bound.
-    fn most_with(&self, count: usize, is_enough: &dyn Fn(f64, f64) -> bool, control: &Control<'_>) -> Result<Found> {
+    /// The most that `count` new cameras cover, as far as it is found; stops early where `is_enough` of a value and a
+    /// bound.
+    fn best_with(
+        &self,
+        count: usize,
+        is_enough: &dyn Fn(f64, f64) -> bool,
+        control: &Control<'_>,
+    ) -> Result<BestSelection> {
         let (problem, fixed) = (self.problem, self.existing.len());
-        let mut selection = Selection::of(problem, &self.existing);
+        let mut selection = CameraSelection::of(problem, &self.existing);
         fill(&mut selection, &self.candidates, |selection| selection.chosen.len() >= fixed + count, control)?;
         let prices = prices_of(&selection);
         exchange(&mut selection, fixed, &self.candidates, control)?;
         let value = selection.value();
         let mut best = Best { chosen: selection.chosen, value };
-        let question = Question { problem, fates: &self.fates, left: count };
+        let question = BranchNode { problem, fates: &self.fates, left: count };
         let mut root = question.relax(prices, ROUNDS, &mut best, control)?;
         for _ in 0..RESTARTS {
             for picked in [root.picked.clone(), best.chosen.clone()] {
@@ -179,7 +189,7 @@ impl<'a> Solver<'a> {
             search(problem, self.fates.clone(), count, root, &mut best, how, control)?
         };
         let bound = problem.rounded_down(bound).max(best.value);
-        Ok(Found { best, bound, branches })
+        Ok(BestSelection { best, bound, branches })
     }
 
     /// The fewest new cameras that cover `share`, as far as they are found, and a number below which none do.
@@ -195,43 +205,47 @@ impl<'a> Solver<'a> {
             return invalid(value, "at most what all candidates cover: lower it, or add candidates");
         }
         let fixed = self.existing.len();
-        let mut selection = Selection::of(self.problem, &self.existing);
+        let mut selection = CameraSelection::of(self.problem, &self.existing);
         fill(&mut selection, &self.candidates, |selection| selection.value() >= goal, control)?;
-        let mut best =
-            Found { bound: reachable, best: Best { value: selection.value(), chosen: selection.chosen }, branches: 0 };
-        let (mut least, mut branches) = (0, 0);
+        let mut best = BestSelection {
+            bound: reachable,
+            best: Best { value: selection.value(), chosen: selection.chosen },
+            branches: 0,
+        };
+        let (mut min, mut branches) = (0, 0);
         let mut count = best.best.chosen.len() - fixed;
         let mut is_proven_above = false;
         while count > 0 && !is_proven_above {
-            let found = self.most_with(count - 1, &|value, bound| value >= goal || bound < goal, control)?;
+            let found = self.best_with(count - 1, &|value, bound| value >= goal || bound < goal, control)?;
             branches += found.branches;
             count -= 1;
             if found.best.value >= goal {
                 count = found.best.chosen.len() - fixed;
                 best = found;
             } else if found.bound < goal {
-                (is_proven_above, least) = (true, count + 1);
+                (is_proven_above, min) = (true, count + 1);
             } else {
                 break;
             }
         }
         if !is_proven_above {
-            least = self.least_count(count, goal, control)?;
+            min = self.min_count(count, goal, control)?;
         }
         let bound = best.bound.min(reachable);
-        self.placement(&best.best.chosen, bound, Some(least), branches, control)
+        self.placement(&best.best.chosen, bound, Some(min), branches, control)
     }
 
-    /// The least number of cameras, at most `most`, whose bound reaches `goal`: found by halving, for a bound never falls with more cameras.
-    fn least_count(&self, most: usize, goal: f64, control: &Control<'_>) -> Result<usize> {
-        let (mut low, mut high) = (0, most);
+    /// The least number of cameras, at most `max`, whose bound reaches `goal`: found by halving, for a bound never
+    /// falls with more cameras.
+    fn min_count(&self, max: usize, goal: f64, control: &Control<'_>) -> Result<usize> {
+        let (mut low, mut high) = (0, max);
         while low < high {
             let count = low.midpoint(high);
-            let mut selection = Selection::of(self.problem, &self.existing);
+            let mut selection = CameraSelection::of(self.problem, &self.existing);
             let enough = self.existing.len() + count;
             fill(&mut selection, &self.candidates, |selection| selection.chosen.len() >= enough, control)?;
             let mut best = Best { value: selection.value(), chosen: selection.chosen.clone() };
-            let question = Question { problem: self.problem, fates: &self.fates, left: count };
+            let question = BranchNode { problem: self.problem, fates: &self.fates, left: count };
             let bound = question.relax(prices_of(&selection), ROUNDS, &mut best, control)?.bound;
             if self.problem.rounded_down(bound) < goal { low = count + 1 } else { high = count }
         }
@@ -240,7 +254,7 @@ impl<'a> Solver<'a> {
 
     fn reachable(&self) -> f64 {
         let all: Vec<usize> = (0..self.fates.len()).collect();
-        Selection::of(self.problem, &all).value()
+        CameraSelection::of(self.problem, &all).value()
     }
 
     /// The result, with the cameras in the order of what they add.
@@ -248,15 +262,16 @@ impl<'a> Solver<'a> {
         &self,
         chosen: &[usize],
         bound: f64,
-        least_count: Option<usize>,
+        min_count: Option<usize>,
         branches: usize,
         control: &Control<'_>,
     ) -> Result<Placement> {
-        let new: Vec<usize> = chosen.iter().copied().filter(|&camera| self.fates[camera] == Fate::Open).collect();
-        let mut selection = Selection::of(self.problem, &self.existing);
+        let new: Vec<usize> =
+            chosen.iter().copied().filter(|&camera| self.fates[camera] == CandidateFate::Open).collect();
+        let mut selection = CameraSelection::of(self.problem, &self.existing);
         let fixed = self.existing.len();
         let mut curve = Vec::with_capacity(new.len() + 1);
-        let note = |selection: &Selection<'_>| {
+        let note = |selection: &CameraSelection<'_>| {
             curve.push(selection.value());
             selection.chosen.len() >= fixed + new.len()
         };
@@ -266,7 +281,7 @@ impl<'a> Solver<'a> {
             chosen: selection.chosen[fixed..].to_vec(),
             curve,
             bound: bound.min(reachable),
-            least_count,
+            min_count,
             reachable,
             branches,
             counts: selection.counts,

@@ -79,7 +79,7 @@ impl<'a> Problem<'a> {
 
 /// Cameras, and how many of them cover each target.
 #[derive(Clone)]
-pub(super) struct Selection<'a> {
+pub(super) struct CameraSelection<'a> {
     pub(super) problem: &'a Problem<'a>,
     pub(super) chosen: Vec<usize>,
     pub(super) counts: Vec<u32>,
@@ -87,7 +87,7 @@ pub(super) struct Selection<'a> {
     open: Vec<u64>,
 }
 
-impl<'a> Selection<'a> {
+impl<'a> CameraSelection<'a> {
     pub(super) fn of(problem: &'a Problem<'a>, cameras: &[usize]) -> Self {
         let counts = vec![0; problem.worth.len()];
         let mut selection = Self { problem, chosen: Vec::new(), counts, open: problem.counted.clone() };

@@ -1,8 +1,8 @@
 //! The search for the proven optimum: branch and bound.
 
-use super::bound::{Best, Fate, Question, Relaxation};
+use super::bound::{Best, BranchNode, CandidateFate, Relaxation};
 use super::greedy::exchange;
-use super::problem::{Problem, Selection};
+use super::problem::{CameraSelection, Problem};
 use belvedere_data::Result;
 use belvedere_data::control::Control;
 use std::cmp::Ordering;
@@ -16,7 +16,7 @@ struct Branch {
     bound: f64,
     /// Branches made before this one.
     number: usize,
-    fates: Vec<Fate>,
+    fates: Vec<CandidateFate>,
     left: usize,
     prices: Vec<f64>,
     /// The candidate to decide on next.
@@ -43,19 +43,19 @@ impl Ord for Branch {
     }
 }
 
-/// Improves `best` and lowers its bound until they meet, `limit` branches were looked at, or `is_enough` of value and bound; returns the bound and the number
-/// of branches.
+/// Improves `best` and lowers its bound until they meet, `limit` branches were looked at, or `is_enough` of value and
+/// bound; returns the bound and the number of branches.
 pub(super) fn search(
     problem: &Problem<'_>,
-    fates: Vec<Fate>,
+    fates: Vec<CandidateFate>,
     left: usize,
     root: Relaxation,
     best: &mut Best,
     (limit, is_enough): (usize, &dyn Fn(f64, f64) -> bool),
     control: &Control<'_>,
 ) -> Result<(f64, usize)> {
-    let fixed = fates.iter().filter(|fate| **fate == Fate::In).count();
-    let candidates: Vec<usize> = (0..fates.len()).filter(|&camera| fates[camera] == Fate::Open).collect();
+    let fixed = fates.iter().filter(|fate| **fate == CandidateFate::In).count();
+    let candidates: Vec<usize> = (0..fates.len()).filter(|&camera| fates[camera] == CandidateFate::Open).collect();
     let root_bound = root.bound;
     let mut made = 0;
     let mut open = BinaryHeap::new();
@@ -65,13 +65,13 @@ pub(super) fn search(
             break;
         }
         let Some(Branch { fates, left, prices, next, .. }) = open.pop() else { break };
-        for fate in [Fate::In, Fate::Out] {
+        for fate in [CandidateFate::In, CandidateFate::Out] {
             control.check()?;
             let mut fates = fates.clone();
             fates[next] = fate;
-            let left = left - usize::from(fate == Fate::In);
+            let left = left - usize::from(fate == CandidateFate::In);
             let before = best.value;
-            let question = Question { problem, fates: &fates, left };
+            let question = BranchNode { problem, fates: &fates, left };
             let relaxed = question.relax(prices.clone(), ROUNDS, best, control)?;
             if best.value > before {
                 let better = best.chosen.clone();
@@ -98,7 +98,7 @@ pub(super) fn improve(
     // those that must stay come first
     let mut order = picked.to_vec();
     order.sort_by_key(|camera| candidates.binary_search(camera).is_ok());
-    let mut selection = Selection::of(problem, &order);
+    let mut selection = CameraSelection::of(problem, &order);
     exchange(&mut selection, fixed, candidates, control)?;
     let value = selection.value();
     if value > best.value {
@@ -110,7 +110,7 @@ pub(super) fn improve(
 /// What remains to be decided after a bound; `None` where nothing better than `best` remains.
 fn branch(
     problem: &Problem<'_>,
-    mut fates: Vec<Fate>,
+    mut fates: Vec<CandidateFate>,
     mut left: usize,
     relaxed: Relaxation,
     best: &mut Best,
@@ -120,7 +120,7 @@ fn branch(
         return None;
     }
     decide(problem, &mut fates, &mut left, &relaxed, best);
-    let is_open = |camera: &usize| fates[*camera] == Fate::Open;
+    let is_open = |camera: &usize| fates[*camera] == CandidateFate::Open;
     let undecided = |camera: &usize| (relaxed.shares[*camera] - 0.5).abs();
     let next = (0..fates.len())
         .filter(is_open)
@@ -130,8 +130,8 @@ fn branch(
             Some(Branch { bound: relaxed.bound, number, fates, left, prices: relaxed.prices, next })
         }
         _ => {
-            let chosen: Vec<usize> = (0..fates.len()).filter(|&camera| fates[camera] == Fate::In).collect();
-            let value = Selection::of(problem, &chosen).value();
+            let chosen: Vec<usize> = (0..fates.len()).filter(|&camera| fates[camera] == CandidateFate::In).collect();
+            let value = CameraSelection::of(problem, &chosen).value();
             if value > best.value {
                 (best.value, best.chosen) = (value, chosen);
             }
@@ -141,8 +141,8 @@ fn branch(
 }
 
 /// Decides on candidates whose other fate could give nothing better than `best`.
-fn decide(problem: &Problem<'_>, fates: &mut [Fate], left: &mut usize, relaxed: &Relaxation, best: &Best) {
-    let mut order: Vec<usize> = (0..fates.len()).filter(|&camera| fates[camera] == Fate::Open).collect();
+fn decide(problem: &Problem<'_>, fates: &mut [CandidateFate], left: &mut usize, relaxed: &Relaxation, best: &Best) {
+    let mut order: Vec<usize> = (0..fates.len()).filter(|&camera| fates[camera] == CandidateFate::Open).collect();
     order.sort_by(|a, b| relaxed.covered[*b].total_cmp(&relaxed.covered[*a]).then(a.cmp(b)));
     if order.len() <= *left || *left == 0 {
         return;
@@ -157,9 +157,9 @@ fn decide(problem: &Problem<'_>, fates: &mut [Fate], left: &mut usize, relaxed: 
         .collect();
     for &camera in others {
         if !problem.is_better(relaxed.bound - lowest + relaxed.covered[camera], best.value) {
-            fates[camera] = Fate::Out;
+            fates[camera] = CandidateFate::Out;
         }
     }
     *left -= decided_in.len();
-    decided_in.into_iter().for_each(|camera| fates[camera] = Fate::In);
+    decided_in.into_iter().for_each(|camera| fates[camera] = CandidateFate::In);
 }

@@ -1,7 +1,7 @@
 //! What cameras cover: lines of sight for what is in their pictures.
 
 use super::camera::Camera;
-use super::candidates::Pose;
+use super::candidates::CameraPose;
 use super::table::{CoverageTable, check_size};
 use crate::targets::Targets;
 use crate::viewshed::{Observer, SightLimits, ViewshedParams, viewshed};
@@ -19,7 +19,8 @@ pub struct CoverageParams {
     pub density: f64,
     /// How lines of sight run over the earth.
     pub earth: EarthParams,
-    /// What to make of lines of sight that nothing blocks but that are not proven: they cover if they count as visible. Default: reported, which covers nothing.
+    /// What to make of lines of sight that nothing blocks but that are not proven: they cover if they count as visible.
+    /// Default: reported, which covers nothing.
     pub unproven: UnprovenAs,
     /// The Fresnel zone that must be free too. Default: none.
     pub zone: Option<FresnelZone>,
@@ -35,7 +36,8 @@ pub struct FresnelZone {
 }
 
 impl FresnelZone {
-    /// The zone of a link with this wave, of which `share` of the radius must be free: above 0 to 1, usually [`FREE_FRESNEL_SHARE`].
+    /// The zone of a link with this wave, of which `share` of the radius must be free: above 0 to 1, usually
+    /// [`FREE_FRESNEL_SHARE`].
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] for another share.
@@ -84,7 +86,8 @@ pub struct CoverageReport {
     pub fresnel_zone_blocked: Option<usize>,
 }
 
-/// Which of `cameras` cover which of `targets`; control counts cameras. Cameras at one place should follow each other: their lines of sight are asked once.
+/// Which of `cameras` cover which of `targets`; control counts cameras. Cameras at one place should follow each other:
+/// their lines of sight are asked once.
 ///
 /// # Errors
 /// Those of [`viewshed`], and [`belvedere_data::Error::InvalidParameter`] for a table of more than 8 GiB.
@@ -96,10 +99,10 @@ pub fn coverage(
     control: &Control<'_>,
 ) -> Result<(CoverageTable, CoverageReport)> {
     check_size(cameras.len(), targets.len())?;
-    let asked = Asked { scene, targets, eastward: eastward(targets), params };
+    let query = TargetQuery { scene, targets, eastward: eastward(targets), params };
     let groups: Vec<&[Camera]> = cameras.chunk_by(|a, b| a.eye == b.eye).collect();
     let rows: Vec<(Vec<u64>, CoverageReport)> =
-        groups.par_iter().map(|group| asked.rows(group, control)).collect::<Result<_>>()?;
+        groups.par_iter().map(|group| query.rows(group, control)).collect::<Result<_>>()?;
     let mut report = CoverageReport { fresnel_zone_blocked: params.zone.map(|_| 0), ..CoverageReport::default() };
     for (_, of_group) in &rows {
         if let (Some(all), Some(blocked)) = (&mut report.fresnel_zone_blocked, of_group.fresnel_zone_blocked) {
@@ -113,8 +116,8 @@ pub fn coverage(
     Ok((CoverageTable::of_bits(targets.len(), bits), report))
 }
 
-/// Which of `cameras` have any of the `private` places in their picture, at whatever distance and density: one that cannot be proven hidden counts as
-/// seen. Control counts cameras.
+/// Which of `cameras` have any of the `private` places in their picture, at whatever distance and density: one that
+/// cannot be proven hidden counts as seen. Control counts cameras.
 ///
 /// # Errors
 /// Those of [`coverage`].
@@ -143,7 +146,7 @@ pub fn sees_private(
 /// Those of [`coverage`].
 pub fn leave_out_private(
     scene: &MedialScene,
-    poses: &mut Vec<Pose>,
+    poses: &mut Vec<CameraPose>,
     private: &Targets,
     earth: &EarthParams,
     control: &Control<'_>,
@@ -155,7 +158,7 @@ pub fn leave_out_private(
 }
 
 /// Targets, and how they are asked about.
-struct Asked<'a> {
+struct TargetQuery<'a> {
     scene: &'a MedialScene,
     targets: &'a Targets,
     eastward: Vec<(f32, u32)>,
@@ -166,14 +169,14 @@ struct Asked<'a> {
 fn eastward(targets: &Targets) -> Vec<(f32, u32)> {
     let mut order: Vec<(f32, u32)> = (0..)
         .zip(&targets.positions)
-        .filter(|&(row, _)| targets.is_asked(row as usize))
+        .filter(|&(row, _)| targets.is_target(row as usize))
         .map(|(row, p)| (p[0], row))
         .collect();
     order.par_sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
     order
 }
 
-impl Asked<'_> {
+impl TargetQuery<'_> {
     /// The rows of cameras at one place.
     fn rows(&self, cameras: &[Camera], control: &Control<'_>) -> Result<(Vec<u64>, CoverageReport)> {
         control.check()?;

@@ -8,8 +8,8 @@ pub const SOLAR_CONSTANT: f64 = 1366.1;
 /// Pressure at sea level, Pa.
 const SEA_LEVEL_PRESSURE: f64 = 101_325.0;
 
-/// Radiation on a plane that faces the sun above the atmosphere, W/m², at `unix_s` seconds since 1970-01-01 UTC; NaN for an instant that
-/// is not in the years 1 to 9999.
+/// Radiation on a plane that faces the sun above the atmosphere, W/m², at `unix_s` seconds since 1970-01-01 UTC; NaN
+/// for an instant that is not in the years 1 to 9999.
 ///
 /// # Source
 /// Spencer 1971, Fourier series representation of the position of the sun.
@@ -22,8 +22,8 @@ pub fn extraterrestrial(unix_s: f64) -> f64 {
     SOLAR_CONSTANT * (1.000_11 + 0.034_221 * cos + 0.001_28 * sin + 0.000_719 * cos_twice + 0.000_077 * sin_twice)
 }
 
-/// Air that the radiation of a sun at `zenith`, radians (apparent), passes, relative to that of a sun at the zenith; `None` for a sun
-/// below the horizon.
+/// Air that the radiation of a sun at `zenith`, radians (apparent), passes, relative to that of a sun at the zenith;
+/// `None` for a sun below the horizon.
 ///
 /// # Source
 /// Kasten & Young 1989, Revised optical air mass tables and approximation formula.
@@ -40,7 +40,8 @@ pub fn air_mass(zenith: f64) -> Option<f64> {
 /// Pressure of the air at a height above the sea, metres, in Pa.
 ///
 /// # Source
-/// Standard atmosphere in the form of the Portland State Aerospace Society 2004, A quick derivation relating altitude to air pressure.
+/// Standard atmosphere in the form of the Portland State Aerospace Society 2004, A quick derivation relating altitude
+/// to air pressure.
 #[must_use]
 pub fn pressure(height: f64) -> f64 {
     100.0 * ((44_331.514 - height).max(0.0) / 11_880.516).powf(1.0 / 0.190_263_2)

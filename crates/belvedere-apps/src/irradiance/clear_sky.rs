@@ -65,7 +65,8 @@ impl ClearSky {
     /// Checks the parameters.
     ///
     /// # Errors
-    /// [`Error::InvalidParameter`] for a turbidity that is not 1 to 20, and for what Bird's model knows outside its range.
+    /// [`Error::InvalidParameter`] for a turbidity that is not 1 to 20, and for what Bird's model knows outside its
+    /// range.
     pub fn validate(&self) -> Result<()> {
         let invalid = |parameter: Parameter, value: f64, expected: &'static str| {
             Err(Error::InvalidParameter { parameter, value: value.to_string(), expected })
@@ -89,8 +90,8 @@ impl ClearSky {
         }
     }
 
-    /// Radiation of a clear sky for a sun at `zenith`, radians (apparent), above a place at `height` metres above the sea, where
-    /// `extraterrestrial` W/m² arrive above the atmosphere. Nothing for a sun at or below the horizon.
+    /// Radiation of a clear sky for a sun at `zenith`, radians (apparent), above a place at `height` metres above the
+    /// sea, where `extraterrestrial` W/m² arrive above the atmosphere. Nothing for a sun at or below the horizon.
     #[must_use]
     pub fn irradiance(&self, zenith: f64, height: f64, extraterrestrial: f64) -> Irradiance {
         let cosine = zenith.cos();
@@ -108,21 +109,23 @@ impl ClearSky {
 }
 
 /// # Source
-/// Ineichen & Perez 2002, A new airmass independent formulation for the Linke turbidity coefficient, with the coefficient b as printed
-/// there (0.664 + 0.163 / fh1) and without the exponent that Perez et al. 2002 add for global radiation.
+/// Ineichen & Perez 2002, A new airmass independent formulation for the Linke turbidity coefficient, with the
+/// coefficient b as printed there (0.664 + 0.163 / fh1) and without the exponent that Perez et al. 2002 add for global
+/// radiation.
 fn ineichen(cosine: f64, absolute: f64, linke: f64, height: f64, extraterrestrial: f64) -> Irradiance {
     let (low, high) = ((-height / 8000.0).exp(), (-height / 1250.0).exp());
     let (gain, loss) = (5.09e-5 * height + 0.868, 3.92e-5 * height + 0.0387);
     let ghi = gain * extraterrestrial * cosine * (-loss * absolute * (low + high * (linke - 1.0))).exp();
     let beam = extraterrestrial * (0.664 + 0.163 / low) * (-0.09 * absolute * (linke - 1.0)).exp();
     // of a low sun the first form gives more than all that arrives
-    let most = ghi * ((1.0 - (0.1 - 0.2 * (-linke).exp()) / (0.1 + 0.882 / low)) / cosine).max(0.0);
-    let dni = beam.max(0.0).min(most);
+    let max = ghi * ((1.0 - (0.1 - 0.2 * (-linke).exp()) / (0.1 + 0.882 / low)) / cosine).max(0.0);
+    let dni = beam.max(0.0).min(max);
     Irradiance { ghi, dni, dhi: (ghi - dni * cosine).max(0.0) }
 }
 
 /// # Source
-/// Bird & Hulstrom 1981, A simplified clear sky model for direct and diffuse insolation on horizontal surfaces, SERI/TR-642-761.
+/// Bird & Hulstrom 1981, A simplified clear sky model for direct and diffuse insolation on horizontal surfaces,
+/// SERI/TR-642-761.
 fn bird(params: &BirdParams, cosine: f64, relative: f64, pressure: f64, extraterrestrial: f64) -> Irradiance {
     let absolute = relative * pressure / 101_325.0;
     let rayleigh = (-0.0903 * absolute.powf(0.84) * (1.0 + absolute - absolute.powf(1.01))).exp();

@@ -15,8 +15,8 @@ pub enum SkyModel {
     HayDavies,
     /// Perez et al. 1990: a part from the sun, a part from the horizon, the rest evenly.
     Perez,
-    /// Perez et al. 1993: a radiance for each patch of the sky, each asked whether it is seen. Default: of the four the one that knows
-    /// which part of an uneven sky an obstacle takes away.
+    /// Perez et al. 1993: a radiance for each patch of the sky, each asked whether it is seen. Default: of the four the
+    /// one that knows which part of an uneven sky an obstacle takes away.
     #[default]
     Patches,
 }
@@ -32,9 +32,9 @@ impl std::fmt::Display for SkyModel {
     }
 }
 
-/// Parts of diffuse radiation, W/m², that add up on a plane as
-/// `even · s + sun · max(cos a, 0) + horizon · sin t`: `s` is the share of the sky that the plane faces, (1 + cos t)/2 where nothing stands
-/// before it, `a` the angle between sun and normal, `t` the tilt. `sun` is given for a plane that faces the sun.
+/// Parts of diffuse radiation, W/m², that add up on a plane as `even · s + sun · max(cos a, 0) + horizon · sin t`: `s`
+/// is the share of the sky that the plane faces, (1 + cos t)/2 where nothing stands before it, `a` the angle between
+/// sun and normal, `t` the tilt. `sun` is given for a plane that faces the sun.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct DiffuseParts {
     /// The same from all of the sky.
@@ -46,7 +46,8 @@ pub struct DiffuseParts {
 }
 
 impl DiffuseParts {
-    /// What a plane gets that sees all before it, W/m²: its tilt, radians, and the cosine between its normal and the sun.
+    /// What a plane gets that sees all before it, W/m²: its tilt, radians, and the cosine between its normal and the
+    /// sun.
     #[must_use]
     pub fn unshaded(&self, tilt: f64, cosine: f64) -> f64 {
         let (sin, cos) = tilt.sin_cos();
@@ -54,7 +55,8 @@ impl DiffuseParts {
     }
 }
 
-/// Coefficients of Perez et al. 1990, all sites together: F11, F12, F13, F21, F22, F23 for each of eight classes of clearness.
+/// Coefficients of Perez et al. 1990, all sites together: F11, F12, F13, F21, F22, F23 for each of eight classes of
+/// clearness.
 const PEREZ: [[f64; 6]; 8] = [
     [-0.008, 0.588, -0.062, -0.060, 0.072, -0.022],
     [0.130, 0.683, -0.151, -0.019, 0.066, -0.029],
@@ -70,7 +72,7 @@ const CLASSES: [f64; 7] = [1.065, 1.23, 1.5, 1.95, 2.8, 4.5, 6.2];
 /// Weight of the zenith's cube in the clearness, for angles in radians.
 const KAPPA: f64 = 1.041;
 /// Least cosine of the zenith that Hay & Davies' ratio divides by: a sun of one degree, as in pvlib.
-const HAY_DAVIES_LEAST: f64 = 0.01745;
+const HAY_DAVIES_MIN: f64 = 0.01745;
 
 /// Clearness and brightness of a sky, and the class of its clearness.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -81,8 +83,8 @@ pub(super) struct SkyState {
     pub(super) class: usize,
 }
 
-/// The state of a sky under a sun at `zenith`, radians (apparent): Perez et al. 1990, equations 1 and 2. `None` at night and without
-/// diffuse radiation.
+/// The state of a sky under a sun at `zenith`, radians (apparent): Perez et al. 1990, equations 1 and 2. `None` at
+/// night and without diffuse radiation.
 pub(super) fn sky_state(irradiance: &Irradiance, zenith: f64, extraterrestrial: f64) -> Option<SkyState> {
     let air_mass = air_mass(zenith)?;
     let cube = KAPPA * zenith.powi(3);
@@ -96,13 +98,14 @@ pub(super) fn sky_state(irradiance: &Irradiance, zenith: f64, extraterrestrial: 
     })
 }
 
-/// The parts of the diffuse radiation of `irradiance` under a sun at `zenith`, radians (apparent), where `extraterrestrial` W/m² arrive
-/// above the atmosphere. All zero where Perez's model does not know the sky: for a sun below the horizon and without diffuse radiation.
-/// [`SkyModel::Patches`], whose sky has more than three parts, gives none.
+/// The parts of the diffuse radiation of `irradiance` under a sun at `zenith`, radians (apparent), where
+/// `extraterrestrial` W/m² arrive above the atmosphere. All zero where Perez's model does not know the sky: for a sun
+/// below the horizon and without diffuse radiation. [`SkyModel::Patches`], whose sky has more than three parts, gives
+/// none.
 ///
 /// # Source
-/// Hay & Davies 1980; Perez, Ineichen, Seals, Michalsky & Stewart 1990, Modeling daylight availability and irradiance components from direct
-/// and global irradiance, equations 9 to 11 and table 6.
+/// Hay & Davies 1980; Perez, Ineichen, Seals, Michalsky & Stewart 1990, Modeling daylight availability and irradiance
+/// components from direct and global irradiance, equations 9 to 11 and table 6.
 #[must_use]
 pub fn diffuse_parts(model: SkyModel, irradiance: &Irradiance, zenith: f64, extraterrestrial: f64) -> DiffuseParts {
     let dhi = irradiance.dhi.max(0.0);
@@ -112,7 +115,7 @@ pub fn diffuse_parts(model: SkyModel, irradiance: &Irradiance, zenith: f64, extr
         SkyModel::Isotropic => DiffuseParts { even: dhi, sun: 0.0, horizon: 0.0 },
         SkyModel::HayDavies => {
             let from_sun = if zenith < FRAC_PI_2 { (irradiance.dni / extraterrestrial).clamp(0.0, 1.0) } else { 0.0 };
-            let sun = dhi * from_sun / cosine.max(HAY_DAVIES_LEAST);
+            let sun = dhi * from_sun / cosine.max(HAY_DAVIES_MIN);
             DiffuseParts { even: dhi * (1.0 - from_sun), sun, horizon: 0.0 }
         }
         SkyModel::Perez => {

@@ -5,16 +5,17 @@ use belvedere_data::weather::Irradiance;
 /// Sun below which the split is all diffuse, radians of zenith: the division by the cosine would make beams of noise.
 const LOWEST_SUN: f64 = 87.0 * std::f64::consts::PI / 180.0;
 /// Least cosine of the zenith that clearness is judged with: a sun of 3.7 degrees.
-const LEAST_COSINE: f64 = 0.065;
+const MIN_COSINE: f64 = 0.065;
 
-/// Splits global radiation on a level plane, W/m², for a sun at `zenith`, radians, where `extraterrestrial` W/m² arrive above the
-/// atmosphere. All of it is diffuse for a sun within 3 degrees of the horizon and below.
+/// Splits global radiation on a level plane, W/m², for a sun at `zenith`, radians, where `extraterrestrial` W/m² arrive
+/// above the atmosphere. All of it is diffuse for a sun within 3 degrees of the horizon and below.
 ///
 /// # Source
-/// Erbs, Klein & Duffie 1982, Estimation of the diffuse radiation fraction for hourly, daily and monthly-average global radiation.
+/// Erbs, Klein & Duffie 1982, Estimation of the diffuse radiation fraction for hourly, daily and monthly-average global
+/// radiation.
 #[must_use]
 pub fn split_global(ghi: f64, zenith: f64, extraterrestrial: f64) -> Irradiance {
-    let clearness = (ghi / (extraterrestrial * zenith.cos().max(LEAST_COSINE))).clamp(0.0, 1.0);
+    let clearness = (ghi / (extraterrestrial * zenith.cos().max(MIN_COSINE))).clamp(0.0, 1.0);
     let share = if clearness <= 0.22 {
         1.0 - 0.09 * clearness
     } else if clearness <= 0.8 {
@@ -31,8 +32,8 @@ pub fn split_global(ghi: f64, zenith: f64, extraterrestrial: f64) -> Irradiance 
     Irradiance { ghi, dni, dhi }
 }
 
-/// Radiation of a row of which `dni` or `dhi` may be missing: the one follows from the other and `ghi`, and both from [`split_global`]
-/// where neither is known. What is given stays as it is.
+/// Radiation of a row of which `dni` or `dhi` may be missing: the one follows from the other and `ghi`, and both from
+/// [`split_global`] where neither is known. What is given stays as it is.
 #[must_use]
 pub fn complete(ghi: f64, dni: Option<f64>, dhi: Option<f64>, zenith: f64, extraterrestrial: f64) -> Irradiance {
     let cosine = zenith.cos();

@@ -13,21 +13,23 @@ use std::f64::consts::FRAC_PI_2;
 /// Parts that rows of weather are cut into by default: of an hour 15 minutes, in which the sun moves 4 degrees.
 pub const PARTS: usize = 4;
 /// Most parts of a row: of an hour half a minute each.
-const MOST_PARTS: usize = 120;
+const MAX_PARTS: usize = 120;
 /// Instants of a clear sky beyond which something is mistyped: 20 years of minutes.
-const MOST_INSTANTS: f64 = 1.1e7;
+const MAX_INSTANTS: f64 = 1.1e7;
 
 /// The rows of `weather` under the sun of `site`, each cut into `parts` of equal length, 1 to 120.
 ///
-/// Every part has the radiation of its row. Of a row in which the sun rises or sets, the parts with the sun below the horizon give their
-/// direct radiation to the others, so that what was measured arrives. What the file does not tell is made by [`complete`] for the sun of
-/// the row's instant. With one part these are the sums that pvlib makes with the sun of each row's instant.
+/// Every part has the radiation of its row. Of a row in which the sun rises or sets, the parts with the sun below the
+/// horizon give their direct radiation to the others, so that what was measured arrives. What the file does not tell is
+/// made by [`complete`] for the sun of the row's instant. With one part these are the sums that pvlib makes with the
+/// sun of each row's instant.
 ///
 /// # Errors
-/// [`Error::InvalidParameter`] for a number of parts outside its range, and those of [`Weather::validate`] and [`sun_position`].
+/// [`Error::InvalidParameter`] for a number of parts outside its range, and those of [`Weather::validate`] and
+/// [`sun_position`].
 pub fn weather_instants(weather: &Weather, site: &Site, parts: usize) -> Result<Vec<Instant>> {
     weather.validate()?;
-    if !(1..=MOST_PARTS).contains(&parts) {
+    if !(1..=MAX_PARTS).contains(&parts) {
         let value = parts.to_string();
         return Err(Error::InvalidParameter { parameter: Parameter::WeatherParts, value, expected: "1 to 120" });
     }
@@ -61,12 +63,12 @@ fn of_step(step: &WeatherStep, site: &Site, parts: usize) -> Result<Vec<Instant>
     Ok(instants)
 }
 
-/// A clear sky over `site` from `from` to `to`, seconds since 1970-01-01 UTC, in steps of `step` seconds, each under the sun of its middle;
-/// months are those of `zone`. Steps at night are left out.
+/// A clear sky over `site` from `from` to `to`, seconds since 1970-01-01 UTC, in steps of `step` seconds, each under
+/// the sun of its middle; months are those of `zone`. Steps at night are left out.
 ///
 /// # Errors
-/// [`Error::InvalidParameter`] for a period that is empty or longer than 11 million steps, and those of [`ClearSky::validate`] and
-/// [`sun_position`].
+/// [`Error::InvalidParameter`] for a period that is empty or longer than 11 million steps, and those of
+/// [`ClearSky::validate`] and [`sun_position`].
 pub fn clear_instants(
     clear_sky: &ClearSky,
     site: &Site,
@@ -76,7 +78,7 @@ pub fn clear_instants(
 ) -> Result<Vec<Instant>> {
     clear_sky.validate()?;
     let count = ((to - from) / step).ceil();
-    if !(step > 0.0 && (1.0..=MOST_INSTANTS).contains(&count)) {
+    if !(step > 0.0 && (1.0..=MAX_INSTANTS).contains(&count)) {
         return Err(Error::InvalidParameter {
             parameter: Parameter::Period,
             value: format!("{from} to {to} in steps of {step} s"),

@@ -10,7 +10,8 @@ use rayon::prelude::*;
 
 /// Targets handed to a thread at once.
 const CHUNK: usize = 64;
-/// Height, as a sine, below which patches of the sky stand for its horizon: Perez et al. 1990 take a band of 6.5 degrees.
+/// Height, as a sine, below which patches of the sky stand for its horizon: Perez et al. 1990 take a band of 6.5
+/// degrees.
 const HORIZON_BAND: f64 = 0.1132;
 
 /// Energy that a plane gets over a period, kWh/m².
@@ -57,9 +58,10 @@ impl Irradiation {
         self
     }
 
-    /// What arrives where crowns of trees let `transmissivity`, 0 to 1, of the light through: `self` is what does where they let nothing
-    /// through, `opaque` what does without them. Both are sums over directions, and so is all between. Strings limited by their worst cell
-    /// are as well: what gets to all cells of one is the same share, or nothing, or all.
+    /// What arrives where crowns of trees let `transmissivity`, 0 to 1, of the light through: `self` is what does where
+    /// they let nothing through, `opaque` what does without them. Both are sums over directions, and so is all between.
+    /// Strings limited by their worst cell are as well: what gets to all cells of one is the same share, or nothing, or
+    /// all.
     #[must_use]
     pub fn through_crowns(&self, opaque: &Self, transmissivity: f64) -> Self {
         let between = |all: f64, opaque: f64| all + transmissivity * (opaque - all);
@@ -81,8 +83,8 @@ impl Irradiation {
     }
 }
 
-/// The energy of each of `targets`, (M, 3) local metres, among the balls of `scene`: rows as those of [`irradiation`], NaN for a target that is
-/// not finite. Progress counts targets.
+/// The energy of each of `targets`, (M, 3) local metres, among the balls of `scene`: rows as those of [`irradiation`],
+/// NaN for a target that is not finite. Progress counts targets.
 ///
 /// # Errors
 /// Those of [`fold_rows`] and [`irradiation`].
@@ -107,9 +109,9 @@ pub fn scene_irradiation(
     Ok(sums)
 }
 
-/// The energy of each target of `matrix`, whose directions must be those of [`PeriodRadiation::directions`]: (M) rows of
-/// [`PeriodRadiation::group_count`] sums each, row by row. `normals`, (M, 3) unit vectors, tilt the targets; `None` for level ones. A target
-/// without a normal, (0, 0, 0), or whose normal is not finite gets NaN.
+/// The energy of each target of `matrix`, whose directions must be those of [`PeriodRadiation::directions`]: (M) rows
+/// of [`PeriodRadiation::group_count`] sums each, row by row. `normals`, (M, 3) unit vectors, tilt the targets; `None`
+/// for level ones. A target without a normal, (0, 0, 0), or whose normal is not finite gets NaN.
 ///
 /// # Errors
 /// [`Error::LengthMismatch`] where matrix, directions and normals differ.
@@ -158,7 +160,7 @@ pub(super) fn on_plane(
         }
     }
     let first = radiation.sun_directions.len();
-    let (mut sky, mut horizon) = (Seen::default(), Seen::default());
+    let (mut sky, mut horizon) = (SeenWeights::default(), SeenWeights::default());
     let group_count = groups.len();
     for (patch, (&direction, &solid_angle)) in
         radiation.sky.directions.iter().zip(&radiation.sky.solid_angles).enumerate()
@@ -201,12 +203,12 @@ pub(super) fn on_plane(
 
 /// Weights of all directions and of those seen.
 #[derive(Clone, Copy, Default)]
-struct Seen {
+struct SeenWeights {
     all: f64,
     seen: f64,
 }
 
-impl Seen {
+impl SeenWeights {
     fn add(&mut self, weight: f64, is_free: bool) {
         self.all += weight;
         if is_free {

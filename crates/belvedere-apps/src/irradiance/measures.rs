@@ -26,8 +26,8 @@ pub const ENERGY_NAME: &str = "kwh_m2";
 const ENERGY_DECIMALS: usize = 2;
 const SHARE_DECIMALS: usize = 4;
 
-/// The energies of targets, whose rows of `group_count` sums are `sums`, as measures: the whole, the share lost, the parts, what an open plane
-/// gets, and the months where groups are months.
+/// The energies of targets, whose rows of `group_count` sums are `sums`, as measures: the whole, the share lost, the
+/// parts, what an open plane gets, and the months where groups are months.
 #[must_use]
 pub fn irradiation_measures(sums: &[Irradiation], group_count: usize) -> Vec<Measure> {
     let group_count = group_count.max(1);

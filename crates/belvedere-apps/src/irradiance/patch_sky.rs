@@ -5,7 +5,8 @@ use crate::sky_view::SkyDirections;
 use belvedere_data::vector::dot;
 use belvedere_data::weather::Irradiance;
 
-/// For each class of clearness a1 to a4, b1 to b4, c1 to c4, d1 to d4 and e1 to e4 of Perez, Seals & Michalsky 1993, table 1.
+/// For each class of clearness a1 to a4, b1 to b4, c1 to c4, d1 to d4 and e1 to e4 of Perez, Seals & Michalsky 1993,
+/// table 1.
 const SHAPES: [[[f64; 4]; 5]; 8] = [
     [
         [1.3525, -0.2576, -0.2690, -1.4366],
@@ -67,17 +68,18 @@ const SHAPES: [[[f64; 4]; 5]; 8] = [
 /// Range of brightness that the coefficients were fitted in.
 const BRIGHTNESS: [f64; 2] = [0.01, 0.6];
 /// Least brightness of the classes between overcast and clear, below which the fit gives darkness around the sun.
-const LEAST_BETWEEN: f64 = 0.2;
+const MIN_BETWEEN: f64 = 0.2;
 /// Least height of a place of the sky, since the gradation divides by it.
-const LEAST_UP: f64 = 0.01;
+const MIN_UP: f64 = 0.01;
 
-/// Radiation of each patch of `sky` on a plane that faces it, W/m², (D): its radiance times its solid angle, scaled so that a level plane gets
-/// the diffuse radiation of `irradiance` exactly. `sun` is the unit vector to the sun in the axes of the sky, `zenith` its angle from
-/// straight up, radians (apparent). A sky without a sun above the horizon is even. Put into `patches`, which is overwritten.
+/// Radiation of each patch of `sky` on a plane that faces it, W/m², (D): its radiance times its solid angle, scaled so
+/// that a level plane gets the diffuse radiation of `irradiance` exactly. `sun` is the unit vector to the sun in the
+/// axes of the sky, `zenith` its angle from straight up, radians (apparent). A sky without a sun above the horizon is
+/// even. Put into `patches`, which is overwritten.
 ///
 /// # Source
-/// Perez, Seals & Michalsky 1993, All-weather model for sky luminance distribution — preliminary configuration and validation, equations 1 to
-/// 8; the bounds of brightness are those of Delaunay 1994 in Radiance's gendaylit.
+/// Perez, Seals & Michalsky 1993, All-weather model for sky luminance distribution — preliminary configuration and
+/// validation, equations 1 to 8; the bounds of brightness are those of Delaunay 1994 in Radiance's gendaylit.
 pub fn patch_radiation(
     sky: &SkyDirections,
     irradiance: &Irradiance,
@@ -87,8 +89,8 @@ pub fn patch_radiation(
     patches: &mut Vec<f64>,
 ) {
     patches.clear();
-    let shape =
-        sky_state(irradiance, zenith, extraterrestrial).map(|state| Shape::new(state.class, state.brightness, zenith));
+    let shape = sky_state(irradiance, zenith, extraterrestrial)
+        .map(|state| RadianceShape::new(state.class, state.brightness, zenith));
     let mut level = 0.0;
     for (&direction, &solid_angle) in sky.directions.iter().zip(&sky.solid_angles) {
         let radiance = shape.as_ref().map_or(1.0, |shape| shape.radiance(direction[2], dot(direction, sun)));
@@ -100,7 +102,7 @@ pub fn patch_radiation(
 }
 
 /// How radiance varies over the sky.
-struct Shape {
+struct RadianceShape {
     a: f64,
     b: f64,
     c: f64,
@@ -108,11 +110,11 @@ struct Shape {
     e: f64,
 }
 
-impl Shape {
+impl RadianceShape {
     fn new(class: usize, brightness: f64, zenith: f64) -> Self {
         let mut brightness = brightness.clamp(BRIGHTNESS[0], BRIGHTNESS[1]);
         if (1..=4).contains(&class) {
-            brightness = brightness.max(LEAST_BETWEEN);
+            brightness = brightness.max(MIN_BETWEEN);
         }
         let [a, b, c, d, e] = SHAPES[class];
         let linear = |k: [f64; 4]| k[0] + k[1] * zenith + brightness * (k[2] + k[3] * zenith);
@@ -125,10 +127,11 @@ impl Shape {
         Self { a: linear(a), b: linear(b), c, d, e: linear(e) }
     }
 
-    /// Radiance relative to the others at a height `up`, the sine of its elevation, and a cosine of the angle to the sun.
+    /// Radiance relative to the others at a height `up`, the sine of its elevation, and a cosine of the angle to the
+    /// sun.
     fn radiance(&self, up: f64, cosine_to_sun: f64) -> f64 {
         let cosine = cosine_to_sun.clamp(-1.0, 1.0);
-        let gradation = 1.0 + self.a * (self.b / up.max(LEAST_UP)).exp();
+        let gradation = 1.0 + self.a * (self.b / up.max(MIN_UP)).exp();
         let around_sun = 1.0 + self.c * (self.d * cosine.acos()).exp() + self.e * cosine * cosine;
         (gradation * around_sun).max(0.0)
     }

@@ -1,4 +1,5 @@
-//! What sun and sky send over a period, gathered by direction, so that cost follows distinct directions and not instants.
+//! What sun and sky send over a period, gathered by direction, so that cost follows distinct directions and not
+//! instants.
 
 use super::diffuse::{SkyModel, diffuse_parts};
 use super::patch_sky::patch_radiation;
@@ -15,7 +16,7 @@ const MONTHS: usize = 12;
 /// Share of direct radiation with the sun below the horizon from which on the times of a file are doubtful.
 const DOUBTFUL: f64 = 0.01;
 /// Sun directions beyond which their bits would fill the memory of a usual machine.
-const MOST_SUN_DIRECTIONS: f64 = 200_000.0;
+const MAX_SUN_DIRECTIONS: f64 = 200_000.0;
 
 /// How the radiation of a period is gathered and falls on planes.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -24,12 +25,15 @@ const MOST_SUN_DIRECTIONS: f64 = 200_000.0;
 pub struct IrradianceParams {
     /// Model of the sky's diffuse radiation.
     pub sky: SkyModel,
-    /// Division of the sky into patches, 1 to 26: 145 patches for 1, 577 for 2, the default, whose sky view factor errs by 0.004.
+    /// Division of the sky into patches, 1 to 26: 145 patches for 1, 577 for 2, the default, whose sky view factor errs
+    /// by 0.004.
     pub patch_division: usize,
-    /// Side of the cells that directions of the sun are gathered in, radians, above 0 to a tenth of a circle. Default 3 degrees: against 1
-    /// degree the energy of a year on cells in Delft differs by 0.02 % on the mean and 0.9 % (RMS) of it, in a third of the time.
+    /// Side of the cells that directions of the sun are gathered in, radians, above 0 to a tenth of a circle. Default 3
+    /// degrees: against 1 degree the energy of a year on cells in Delft differs by 0.02 % on the mean and 0.9 % (RMS)
+    /// of it, in a third of the time.
     pub sun_cell: f64,
-    /// Share of the global radiation that the ground reflects, 0 to 1. Default 0.2: grass, and what PVGIS and GRASS take.
+    /// Share of the global radiation that the ground reflects, 0 to 1. Default 0.2: grass, and what PVGIS and GRASS
+    /// take.
     pub albedo: f64,
     /// What stands before a plane and hides the sky.
     pub surroundings: Surroundings,
@@ -94,17 +98,18 @@ impl IrradianceParams {
             return invalid(Parameter::Albedo, self.albedo, "0 to 1");
         }
         let cells = 2.0 * TAU / (self.sun_cell * self.sun_cell);
-        if !(self.sun_cell > 0.0 && self.sun_cell <= TAU / 10.0 && cells <= MOST_SUN_DIRECTIONS) {
+        if !(self.sun_cell > 0.0 && self.sun_cell <= TAU / 10.0 && cells <= MAX_SUN_DIRECTIONS) {
             return invalid(Parameter::SunCell, self.sun_cell.to_degrees(), "0.5 to 36");
         }
         Ok(())
     }
 }
 
-/// Sine of the elevation below which it is night, −12°: within an hour around sunset the sun sinks to here where days are shortest.
+/// Sine of the elevation below which it is night, −12°: within an hour around sunset the sun sinks to here where days
+/// are shortest.
 const NIGHT: f64 = -0.208;
 /// Most radiation that sensors show at night, W/m².
-const MOST_AT_NIGHT: f64 = 20.0;
+const MAX_AT_NIGHT: f64 = 20.0;
 
 /// An instant, or a part of an interval, of a period.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -189,8 +194,8 @@ impl PeriodReport {
         self.sun_direction_count += other.sun_direction_count;
     }
 
-    /// Whether so much direct radiation comes with the sun below the horizon, a hundredth of all, that the place or the time zone of the
-    /// weather is probably wrong.
+    /// Whether so much direct radiation comes with the sun below the horizon, a hundredth of all, that the place or the
+    /// time zone of the weather is probably wrong.
     #[must_use]
     pub fn is_doubtful(&self) -> bool {
         self.dni_without_sun > DOUBTFUL * self.dni
@@ -200,13 +205,13 @@ impl PeriodReport {
 impl PeriodRadiation {
     /// Gathers `instants`.
     ///
-    /// Directions of the sun are gathered in cells of equal width and height; each is asked once, along its mean weighted by radiation, and
-    /// keeps the sum of radiation times direction, so that planes of any tilt get what single instants would give unless the sun crosses
-    /// their plane within the cell.
+    /// Directions of the sun are gathered in cells of equal width and height; each is asked once, along its mean
+    /// weighted by radiation, and keeps the sum of radiation times direction, so that planes of any tilt get what
+    /// single instants would give unless the sun crosses their plane within the cell.
     ///
     /// # Errors
-    /// [`Error::InvalidParameter`] for parameters outside their range and for instants that are not finite or below zero,
-    /// [`Error::NoPoints`] without instants.
+    /// [`Error::InvalidParameter`] for parameters outside their range and for instants that are not finite or below
+    /// zero, [`Error::NoPoints`] without instants.
     pub fn gather(instants: &[Instant], params: &IrradianceParams) -> Result<Self> {
         params.validate()?;
         if instants.is_empty() {
@@ -244,7 +249,7 @@ impl PeriodRadiation {
                     patches[patch * group_count + group] += radiation * instant.hours;
                 }
             }
-            if instant.sun[2] < NIGHT && ghi > MOST_AT_NIGHT {
+            if instant.sun[2] < NIGHT && ghi > MAX_AT_NIGHT {
                 report.night_hours += instant.hours;
             }
             if instant.sun[2] <= 0.0 {
@@ -270,7 +275,8 @@ impl PeriodRadiation {
         Ok(Self { params: *params, sky, sun_directions, sun, evenly, patches, report })
     }
 
-    /// Directions that targets must be asked about, unit vectors, (D, 3): those of the sun, then the middles of the patches of the sky.
+    /// Directions that targets must be asked about, unit vectors, (D, 3): those of the sun, then the middles of the
+    /// patches of the sky.
     #[must_use]
     pub fn directions(&self) -> Vec<[f64; 3]> {
         self.sun_directions.iter().chain(&self.sky.directions).copied().collect()

@@ -15,7 +15,7 @@ use serde::Serialize;
 /// Height of panels above their roof, metres: that of usual rails, which balls of a rough roof do not reach.
 pub const PANEL_HEIGHT: f64 = 0.1;
 /// Cells of a plane that are tried for the place of its horizon.
-const MOST_TRIES: usize = 16;
+const MAX_TRIES: usize = 16;
 
 /// Energy of a plane over a period.
 #[derive(Clone, Debug, PartialEq)]
@@ -82,8 +82,9 @@ pub fn above_roof(place: [f64; 3], normal: [f64; 3]) -> [f32; 3] {
     crate::targets::to_f32([0, 1, 2].map(|i| place[i] + PANEL_HEIGHT * normal[i]))
 }
 
-/// Where the horizon of each of `planes` is measured: above the middle of the cell nearest to the middle of the plane that lies in no ball of
-/// `scene`, of the nearest 16; above the nearest cell where all do. With it whether it lies in none.
+/// Where the horizon of each of `planes` is measured: above the middle of the cell nearest to the middle of the plane
+/// that lies in no ball of `scene`, of the nearest 16; above the nearest cell where all do. With it whether it lies in
+/// none.
 #[must_use]
 pub fn horizon_places(planes: &[RoofPlane], scene: &MedialScene) -> Vec<([f32; 3], bool)> {
     let of_plane = |plane: &RoofPlane| {
@@ -91,7 +92,7 @@ pub fn horizon_places(planes: &[RoofPlane], scene: &MedialScene) -> Vec<([f32; 3
         let mut places: Vec<[f64; 3]> = plane.cells.middles().into_iter().map(|(place, _)| place).collect();
         places.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
         let places: Vec<[f32; 3]> =
-            places.into_iter().take(MOST_TRIES).map(|place| above_roof(place, plane.normal)).collect();
+            places.into_iter().take(MAX_TRIES).map(|place| above_roof(place, plane.normal)).collect();
         let is_open = |place: &&[f32; 3]| scene.enclosure(place.map(f64::from)).ball_count == 0;
         match (places.iter().find(is_open), places.first()) {
             (Some(open), _) => (*open, true),
@@ -105,7 +106,8 @@ pub fn horizon_places(planes: &[RoofPlane], scene: &MedialScene) -> Vec<([f32; 3
 /// The energy of each of `planes` over all of `seasons` among `obstacles`. Progress counts planes.
 ///
 /// # Errors
-/// Those of [`crate::rows::fold_rows`] and [`plane_irradiation`]; [`belvedere_data::Error::NoPoints`] without any season.
+/// Those of [`crate::rows::fold_rows`] and [`plane_irradiation`]; [`belvedere_data::Error::NoPoints`] without any
+/// season.
 pub fn roof_irradiation<'a>(
     obstacles: impl Into<Obstacles<'a>>,
     planes: &[RoofPlane],
@@ -115,11 +117,11 @@ pub fn roof_irradiation<'a>(
     let obstacles = obstacles.into();
     group_count(seasons)?;
     let directions = seasons.iter().map(|season| season.radiation.directions().len()).max().unwrap_or(1).max(1);
-    let most_cells = BLOCK_BITS / (directions * obstacles.matrix_count());
+    let max_cells = BLOCK_BITS / (directions * obstacles.matrix_count());
     let mut found = Vec::with_capacity(planes.len());
     let mut rest = planes;
     while !rest.is_empty() {
-        let (some, others) = rest.split_at(planes_at_once(rest, most_cells));
+        let (some, others) = rest.split_at(planes_at_once(rest, max_cells));
         found.extend(of_planes(obstacles, some, seasons, control)?);
         control.advance(some.len());
         rest = others;
@@ -128,11 +130,11 @@ pub fn roof_irradiation<'a>(
 }
 
 /// How many of the first planes have at most so many cells together, at least one.
-fn planes_at_once(planes: &[RoofPlane], most_cells: usize) -> usize {
+fn planes_at_once(planes: &[RoofPlane], max_cells: usize) -> usize {
     let mut cells = 0;
     let fits = |plane: &&RoofPlane| {
         cells += plane.cells.filled.values().iter().filter(|&&filled| filled).count();
-        cells <= most_cells
+        cells <= max_cells
     };
     planes.iter().take_while(fits).count().max(1)
 }

@@ -4,10 +4,10 @@ use super::ClearSky;
 use super::instants::{clear_instants, weather_instants};
 use super::irradiation::{Irradiation, irradiation};
 use super::period::{Instant, IrradianceParams, PeriodRadiation, PeriodReport};
-use crate::rows::{Obstacles, Surroundings, check_normals, fold_rows, normals_of};
+use crate::rows::{Obstacles, SkyObstacles, check_normals, fold_rows, normals_of};
 use crate::sun::{Date, Site, Zone};
 use crate::targets::Targets;
-use crate::tree_light::{Crowns, Season};
+use crate::tree_light::{CrownLight, Season};
 use belvedere_data::control::Control;
 use belvedere_data::weather::Weather;
 use belvedere_data::{Error, Result};
@@ -45,14 +45,15 @@ pub struct SeasonRadiation {
     pub share: f64,
 }
 
-/// A period in parts by what crowns let through; one part where they let nothing through. The report is that of all parts.
+/// A period in parts by what crowns let through; one part where they let nothing through. The report is that of all
+/// parts.
 ///
 /// # Errors
 /// Those of [`weather_instants`], [`clear_instants`] and [`PeriodRadiation::gather`], and [`Error::Cancelled`].
 pub fn period_seasons(
     source: &RadiationSource<'_>,
     site: &Site,
-    crowns: Option<Crowns>,
+    crowns: Option<CrownLight>,
     params: &IrradianceParams,
     control: &Control<'_>,
 ) -> Result<(Vec<SeasonRadiation>, PeriodReport)> {
@@ -123,13 +124,13 @@ fn split_year(year: i16, zone: &Zone, share: impl Fn(Date) -> f64) -> Result<Vec
     Ok(spans)
 }
 
-/// The energy of `targets` over all of `seasons` among `obstacles`: (M) rows of as many sums as the seasons have groups, NaN for a target that is
-/// not asked about. Progress counts targets, [`look_count`] times each.
+/// The energy of `targets` over all of `seasons` among `obstacles`: (M) rows of as many sums as the seasons have
+/// groups, NaN for a target that is not asked about. Progress counts targets, [`look_count`] times each.
 ///
 /// # Errors
 /// Those of [`fold_rows`] and [`irradiation`]; [`Error::NoPoints`] without any season.
 pub fn season_irradiation<'a>(
-    obstacles: impl Into<Surroundings<'a>>,
+    obstacles: impl Into<SkyObstacles<'a>>,
     targets: &Targets,
     seasons: &[SeasonRadiation],
     control: &Control<'_>,
@@ -151,7 +152,7 @@ pub fn season_irradiation<'a>(
             Ok(())
         })?;
     }
-    for (_, sums) in sums.chunks_mut(group_count).enumerate().filter(|(row, _)| !targets.is_asked(*row)) {
+    for (_, sums) in sums.chunks_mut(group_count).enumerate().filter(|(row, _)| !targets.is_target(*row)) {
         sums.fill(Irradiation::unknown());
     }
     Ok(sums)

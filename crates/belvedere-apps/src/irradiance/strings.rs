@@ -11,19 +11,19 @@ const WORD: usize = 64;
 /// Energy of a plane of cells over a period.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PlaneIrradiation {
-    /// Mean of its cells for each group of the period, kWh/m². Its loss is the least that a plant loses: that of panels that each work for
-    /// themselves.
+    /// Mean of its cells for each group of the period, kWh/m². Its loss is the least that a plant loses: that of panels
+    /// that each work for themselves.
     pub mean: Vec<Irradiation>,
-    /// The same where a row of cells gets what all of its cells get at once: the most that a plant loses whose rows are strings without
-    /// bypass diodes.
+    /// The same where a row of cells gets what all of its cells get at once: the most that a plant loses whose rows are
+    /// strings without bypass diodes.
     pub string_limited: Vec<Irradiation>,
     /// Cells that are counted: those that see anything of the sky.
     pub cell_count: usize,
 }
 
-/// The energy of a plane with a unit `normal`, upward, whose cells are rows of `matrix` from `first` on: `strings`, (C), numbers the string
-/// of each, those of a string together. Cells that see nothing at all lie inside an obstacle or under a roof, where no panel is put: they do not count.
-/// A plane without cells gets nothing.
+/// The energy of a plane with a unit `normal`, upward, whose cells are rows of `matrix` from `first` on: `strings`,
+/// (C), numbers the string of each, those of a string together. Cells that see nothing at all lie inside an obstacle or
+/// under a roof, where no panel is put: they do not count. A plane without cells gets nothing.
 ///
 /// # Errors
 /// [`Error::LengthMismatch`] where the matrix has fewer rows or other directions.

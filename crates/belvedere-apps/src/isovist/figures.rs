@@ -14,7 +14,8 @@ pub struct IsovistFigure {
 }
 
 impl Isovist {
-    /// All numbers that describe it. `grid_north` is the azimuth of grid north from the north that azimuths are counted from, radians.
+    /// All numbers that describe it. `grid_north` is the azimuth of grid north from the north that azimuths are counted
+    /// from, radians.
     pub fn figures(&self, grid_north: f64) -> impl Iterator<Item = IsovistFigure> {
         let plan = &self.plan;
         let [east, north, up] = self.drift;
@@ -49,6 +50,6 @@ impl Isovist {
 }
 
 fn statistics(names: [&'static str; 5], ranges: &RadialStatistics) -> [(&'static str, f64, usize); 5] {
-    let values = [ranges.least, ranges.mean, ranges.greatest, ranges.variance, ranges.skewness];
+    let values = [ranges.min, ranges.mean, ranges.greatest, ranges.variance, ranges.skewness];
     std::array::from_fn(|i| (names[i], values[i], 4))
 }

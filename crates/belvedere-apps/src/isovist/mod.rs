@@ -21,10 +21,11 @@ const CHECKED: usize = 1024;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct IsovistParams {
-    /// Angle between rays of the panorama, and between the first rays of the plan, radians, a ten-thousandth to a quarter of a circle.
-    /// Default 1°: 64 800 rays.
+    /// Angle between rays of the panorama, and between the first rays of the plan, radians, a ten-thousandth to a
+    /// quarter of a circle. Default 1°: 64 800 rays.
     pub step: f64,
-    /// Range at which sight ends where nothing blocks, metres, above 0. Default 100: beyond it streets are no longer read as a space.
+    /// Range at which sight ends where nothing blocks, metres, above 0. Default 100: beyond it streets are no longer
+    /// read as a space.
     pub max_range: f64,
     /// Least jump in range that makes an edge of the plan, metres, above 0. Default 0.25: balls bulge by centimetres.
     pub jump: f64,
@@ -67,8 +68,9 @@ impl IsovistParams {
 /// What an eye sees around itself.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Isovist {
-    /// Ranges in metres, +∞ where nothing blocks within the greatest range. A column is an azimuth, clockwise from south at the left edge
-    /// over west, north in the middle and east to south again; a row is an elevation, from the zenith down to the nadir.
+    /// Ranges in metres, +∞ where nothing blocks within the greatest range. A column is an azimuth, clockwise from
+    /// south at the left edge over west, north in the middle and east to south again; a row is an elevation, from the
+    /// zenith down to the nadir.
     pub panorama: Raster<f32>,
     /// Volume seen, m³.
     pub volume: f64,
@@ -88,7 +90,7 @@ pub struct Isovist {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RadialStatistics {
     /// Least.
-    pub least: f64,
+    pub min: f64,
     /// Mean.
     pub mean: f64,
     /// Greatest.
@@ -111,7 +113,7 @@ impl RadialStatistics {
         // rounding leaves about 1e-16 of the square of the mean where all ranges are equal
         let is_even = variance <= 1e-14 * mean * mean;
         Self {
-            least: weighted.iter().map(|w| w.0).fold(f64::INFINITY, f64::min),
+            min: weighted.iter().map(|w| w.0).fold(f64::INFINITY, f64::min),
             mean,
             greatest: weighted.iter().map(|w| w.0).fold(0.0, f64::max),
             variance,
@@ -120,10 +122,12 @@ impl RadialStatistics {
     }
 }
 
-/// What an eye at `eye`, local metres, sees of `scene`. Balls that hold the eye are left out ([`MedialScene::enclosure`] tells of them).
+/// What an eye at `eye`, local metres, sees of `scene`. Balls that hold the eye are left out
+/// ([`MedialScene::enclosure`] tells of them).
 ///
 /// # Errors
-/// [`Error::InvalidParameter`] for an eye that is not finite and for parameters outside their range, and [`Error::Cancelled`].
+/// [`Error::InvalidParameter`] for an eye that is not finite and for parameters outside their range, and
+/// [`Error::Cancelled`].
 pub fn isovist(scene: &MedialScene, eye: [f64; 3], params: &IsovistParams, control: &Control<'_>) -> Result<Isovist> {
     if !eye.iter().all(|v| v.is_finite()) {
         return Err(Error::InvalidParameter {
@@ -136,18 +140,19 @@ pub fn isovist(scene: &MedialScene, eye: [f64; 3], params: &IsovistParams, contr
     isovist_of(&range, params, control)
 }
 
-/// The isovist of whatever `range` tells: the range of what blocks along a unit vector, metres, `None` where nothing does. It is asked
-/// of a regular grid of azimuths and elevations, each ray standing for its cell, and along the horizon.
+/// The isovist of whatever `range` tells: the range of what blocks along a unit vector, metres, `None` where nothing
+/// does. It is asked of a regular grid of azimuths and elevations, each ray standing for its cell, and along the
+/// horizon.
 ///
-/// The volume is the sum of r³ / 3 over solid angles: exact where ranges are equal, otherwise right to the order of the square of the
-/// step.
+/// The volume is the sum of r³ / 3 over solid angles: exact where ranges are equal, otherwise right to the order of the
+/// square of the step.
 ///
 /// # Errors
 /// [`Error::InvalidParameter`] for parameters outside their range, and [`Error::Cancelled`].
 ///
 /// # Source
-/// Benedikt 1979 (To take hold of space: isovists and isovist fields); in three dimensions Fisher-Gewirtzman & Wagner 2003 (visible
-/// volume). Drift: Conroy Dalton 2001. Openness and occlusivity: Benedikt 1979; Dalton & Dalton 2001.
+/// Benedikt 1979 (To take hold of space: isovists and isovist fields); in three dimensions Fisher-Gewirtzman & Wagner
+/// 2003 (visible volume). Drift: Conroy Dalton 2001. Openness and occlusivity: Benedikt 1979; Dalton & Dalton 2001.
 pub fn isovist_of(
     range: &(impl Fn([f64; 3]) -> Option<f64> + Sync),
     params: &IsovistParams,

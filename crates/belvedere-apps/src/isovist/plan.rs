@@ -13,8 +13,8 @@ const RAYS_PER_STEP: usize = 4;
 /// What is seen in the level plane through the eye.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PlanIsovist {
-    /// Corners of what is seen: azimuth clockwise from north, radians, and range, metres, the greatest where nothing blocks. In
-    /// rising order of azimuth; two corners close together stand on both sides of a jump.
+    /// Corners of what is seen: azimuth clockwise from north, radians, and range, metres, the greatest where nothing
+    /// blocks. In rising order of azimuth; two corners close together stand on both sides of a jump.
     pub corners: Vec<[f64; 2]>,
     /// Area, m².
     pub area: f64,
@@ -99,8 +99,8 @@ pub(super) fn plan(
     plan
 }
 
-/// Adds corners between two, the first of which is there already, until neighbours differ by no more than `jump` or no angle is left
-/// between them.
+/// Adds corners between two, the first of which is there already, until neighbours differ by no more than `jump` or no
+/// angle is left between them.
 fn refine(
     range: &impl Fn(f64) -> f64,
     from: [f64; 2],

@@ -19,10 +19,11 @@ use belvedere_data::{Error, Parameter, Result};
 use extent::{Arcs, SkyBox, sky_box};
 use rayon::prelude::*;
 
-/// Pieces that a landmark is cut into where nothing is said: a share of it is then known to 1.6 % at worst, mostly to much less.
+/// Pieces that a landmark is cut into where nothing is said: a share of it is then known to 1.6 % at worst, mostly to
+/// much less.
 const USUAL_PIECES: f64 = 1000.0;
 /// Least spacing where nothing is said, metres: balls know walls to about a decimetre.
-const LEAST_SPACING: f64 = 0.25;
+const MIN_SPACING: f64 = 0.25;
 /// Least range that measures are made of, metres: a piece that touches the eye would fill half of its view.
 const NEAREST: f64 = 1e-3;
 
@@ -30,9 +31,11 @@ const NEAREST: f64 = 1e-3;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct LandmarkParams {
-    /// How its faces are asked. Default: those turned away are not visible, so that shares are those of the whole landmark.
+    /// How its faces are asked. Default: those turned away are not visible, so that shares are those of the whole
+    /// landmark.
     pub faces: MeshTargetParams,
-    /// What to make of pieces that nothing blocks but whose view is not proven. Default: reported apart from the visible.
+    /// What to make of pieces that nothing blocks but whose view is not proven. Default: reported apart from the
+    /// visible.
     pub unproven: UnprovenAs,
     /// How lines of sight run over the earth.
     pub earth: EarthParams,
@@ -111,8 +114,8 @@ const OBSERVER_CELL: f64 = 2.0;
 /// Most cells of a default grid of observers: a thousand lines of sight each take about a minute.
 const USUAL_OBSERVERS: f64 = 40_000.0;
 
-/// The side of the cells of a default grid of observers over the box on the map from `low` to `high`, metres: 2, doubled until there are
-/// at most 40 000.
+/// The side of the cells of a default grid of observers over the box on the map from `low` to `high`, metres: 2,
+/// doubled until there are at most 40 000.
 #[must_use]
 pub fn observer_cell_for(low: [f64; 2], high: [f64; 2]) -> f64 {
     let area = (high[0] - low[0]).max(0.0) * (high[1] - low[1]).max(0.0);
@@ -127,18 +130,18 @@ pub fn observer_cell_for(low: [f64; 2], high: [f64; 2]) -> f64 {
 #[must_use]
 pub fn spacing_for(area: f64) -> f64 {
     // most pieces are half a cell, whose diagonal is the spacing
-    (4.0 * area / USUAL_PIECES).sqrt().max(LEAST_SPACING)
+    (4.0 * area / USUAL_PIECES).sqrt().max(MIN_SPACING)
 }
 
 /// What an eye at `eye`, local metres, sees of `landmark`.
 ///
-/// Each piece counts as its place does; angles and ranges are those of whole pieces, so that they err outward by up to a piece. The
-/// solid angle of a piece is exact. Lines of sight are those of [`MedialScene::sight_answer`]: the landmark's own balls hide its far
-/// side.
+/// Each piece counts as its place does; angles and ranges are those of whole pieces, so that they err outward by up to
+/// a piece. The solid angle of a piece is exact. Lines of sight are those of [`MedialScene::sight_answer`]: the
+/// landmark's own balls hide its far side.
 ///
 /// # Source
-/// Measures after Bartie, Reitsma, Kingham & Mills 2010 (Computers, Environment and Urban Systems 34), who took them from rasters of
-/// heights. Solid angle of a triangle: Van Oosterom & Strackee 1983.
+/// Measures after Bartie, Reitsma, Kingham & Mills 2010 (Computers, Environment and Urban Systems 34), who took them
+/// from rasters of heights. Solid angle of a triangle: Van Oosterom & Strackee 1983.
 #[must_use]
 pub fn landmark_view(
     scene: &MedialScene,
@@ -199,11 +202,12 @@ fn measured(
     view
 }
 
-/// What each of `eyes`, (N) local metres, sees of `landmark`; control counts eyes. An eye that is not finite sees nothing and has an
-/// area of 0.
+/// What each of `eyes`, (N) local metres, sees of `landmark`; control counts eyes. An eye that is not finite sees
+/// nothing and has an area of 0.
 ///
 /// # Errors
-/// [`Error::NoPoints`] for a landmark without area, [`Error::InvalidParameter`] for parameters outside their range, [`Error::Cancelled`].
+/// [`Error::NoPoints`] for a landmark without area, [`Error::InvalidParameter`] for parameters outside their range,
+/// [`Error::Cancelled`].
 pub fn landmark_views(
     scene: &MedialScene,
     landmark: &SurfacePieces,
@@ -215,7 +219,7 @@ pub fn landmark_views(
     if landmark.pieces.is_empty() {
         return Err(Error::NoPoints { what: "the landmark has no surface".to_owned() });
     }
-    let places = Places::new(landmark, params);
+    let places = LandmarkPieces::new(landmark, params);
     let look = |&eye: &[f64; 3]| {
         control.check()?;
         let view = if !eye.iter().all(|v| v.is_finite()) {
@@ -237,14 +241,14 @@ pub fn landmark_views(
 }
 
 /// Where the pieces of a landmark are asked about, in trees that serve all eyes.
-struct Places {
+struct LandmarkPieces {
     /// For eyes before the face of a piece.
     fronts: TargetTree,
     /// For eyes behind it, where these count.
     backs: TargetTree,
 }
 
-impl Places {
+impl LandmarkPieces {
     fn new(landmark: &SurfacePieces, params: &LandmarkParams) -> Self {
         let both = params.faces.back_faces == BackFaces::BothSides || landmark.sides == Sides::Both;
         let lifted = |side: f64| -> Vec<[f32; 3]> {

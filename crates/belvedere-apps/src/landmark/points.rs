@@ -8,24 +8,26 @@ use belvedere_data::control::Control;
 use belvedere_data::polygon::is_inside;
 use belvedere_data::{Error, PointCloud, Result};
 
-/// Greatest radius of the surface that a point stands for, metres: walls that few pulses reach have points a metre apart.
-const MOST_RADIUS: f64 = 1.0;
+/// Greatest radius of the surface that a point stands for, metres: walls that few pulses reach have points a metre
+/// apart.
+const MAX_RADIUS: f64 = 1.0;
 
 /// Which points of a cloud are the landmark.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LandmarkPoints<'a> {
     /// Those of an ASPRS class.
     Class(u8),
-    /// Those above one of several polygons that are not ground: each a rim and holes of (x, y), local metres, closed or not.
+    /// Those above one of several polygons that are not ground: each a rim and holes of (x, y), local metres, closed or
+    /// not.
     Inside(&'a [Vec<Vec<[f64; 2]>>]),
 }
 
-/// Rows of the points of `cloud` that are the landmark, in rising order, and their surface ([`SurfacePieces::of_points`] with normals
-/// from 16 neighbours, a point standing for a disc of 1 m radius at most).
+/// Rows of the points of `cloud` that are the landmark, in rising order, and their surface
+/// ([`SurfacePieces::of_points`] with normals from 16 neighbours, a point standing for a disc of 1 m radius at most).
 ///
 /// # Errors
-/// [`Error::MissingAttribute`] for a class where the cloud has none, [`Error::NoPoints`] where no point is meant, and what
-/// estimating normals and finding the ground refuse.
+/// [`Error::MissingAttribute`] for a class where the cloud has none, [`Error::NoPoints`] where no point is meant, and
+/// what estimating normals and finding the ground refuse.
 pub fn landmark_points(cloud: &PointCloud, which: &LandmarkPoints<'_>) -> Result<(Vec<u32>, SurfacePieces)> {
     let rows: Vec<u32> = match which {
         LandmarkPoints::Class(class) => {
@@ -67,6 +69,6 @@ pub fn landmark_points(cloud: &PointCloud, which: &LandmarkPoints<'_>) -> Result
     let points: Vec<[f32; 3]> = rows.iter().filter_map(|&row| cloud.positions.get(row as usize).copied()).collect();
     let index = NeighborIndex::new(&points, &Control::none())?;
     let normals = estimate(&points, &index, Neighborhood::default(), &Control::none())?;
-    let surface = SurfacePieces::of_points(&points, &normals.vectors, MOST_RADIUS, &Control::none())?;
+    let surface = SurfacePieces::of_points(&points, &normals.vectors, MAX_RADIUS, &Control::none())?;
     Ok((rows, surface))
 }

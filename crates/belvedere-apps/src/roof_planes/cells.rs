@@ -5,7 +5,7 @@ use belvedere_data::raster::Raster;
 use belvedere_data::vector::{dot, sub};
 
 /// Cells along one side beyond which a plane is none of a building.
-const MOST_CELLS: f64 = 20_000.0;
+const MAX_CELLS: f64 = 20_000.0;
 /// Shares of a side by which cells are shifted to measure an area.
 const SHIFTS: [f64; 4] = [0.125, 0.375, 0.625, 0.875];
 
@@ -20,13 +20,14 @@ pub struct PlaneCells {
     pub along: [f64; 3],
     /// Unit vector from row to row, up the slope.
     pub up: [f64; 3],
-    /// On which cells a panel can lie: their middle is among points of the plane, and nothing stands on them; row 0 lowest.
+    /// On which cells a panel can lie: their middle is among points of the plane, and nothing stands on them; row 0
+    /// lowest.
     pub filled: Raster<bool>,
 }
 
 impl PlaneCells {
-    /// The cells of a plane that hold some of `rows` among `points`, from its lowest and outermost points on, and of which
-    /// `is_usable`, given the middle of a cell, says yes.
+    /// The cells of a plane that hold some of `rows` among `points`, from its lowest and outermost points on, and of
+    /// which `is_usable`, given the middle of a cell, says yes.
     pub(super) fn of(
         points: &[[f32; 3]],
         rows: &[u32],
@@ -74,9 +75,10 @@ impl PlaneCells {
 
 /// Area of the plane that `rows` among `points` were drawn from, m², by cells of about the given side.
 ///
-/// Of a cell that a rim crosses, a share f lies within, which is anything from 0 to 1 whichever way the rim runs; it holds a point with a
-/// chance of 1 - exp(-n f), n being the points of a whole cell. On average such cells reach k = 1/2 - (1 - exp(-n))/n of their side over the
-/// rim, which Steiner's formula takes off again. Cells are laid several times, since rims may run along them.
+/// Of a cell that a rim crosses, a share f lies within, which is anything from 0 to 1 whichever way the rim runs; it
+/// holds a point with a chance of 1 - exp(-n f), n being the points of a whole cell. On average such cells reach k =
+/// 1/2 - (1 - exp(-n))/n of their side over the rim, which Steiner's formula takes off again. Cells are laid several
+/// times, since rims may run along them.
 pub(super) fn area(points: &[[f32; 3]], rows: &[u32], plane: &PlaneFit, cell: f64) -> f64 {
     let flat = in_plane(points, rows, plane);
     let of_shift = |shift: &f64| {
@@ -96,13 +98,14 @@ fn in_plane(points: &[[f32; 3]], rows: &[u32], plane: &PlaneFit) -> Vec<[f64; 2]
     rows.iter().map(place).collect()
 }
 
-/// Cells that hold points, the first of them `shift` of a side below and left of the outermost; their lower corner, and their side.
+/// Cells that hold points, the first of them `shift` of a side below and left of the outermost; their lower corner, and
+/// their side.
 fn filled(flat: &[[f64; 2]], cell: f64, shift: f64) -> (Raster<bool>, [f64; 2], f64) {
-    let least = |axis: usize| flat.iter().map(|p| p[axis]).fold(f64::INFINITY, f64::min);
-    let most = |axis: usize| flat.iter().map(|p| p[axis]).fold(f64::NEG_INFINITY, f64::max);
-    let span = [0, 1].map(|axis| most(axis) - least(axis));
-    let cell = cell.max(span[0].max(span[1]) / MOST_CELLS);
-    let low = [0, 1].map(|axis| least(axis) - shift * cell);
+    let min = |axis: usize| flat.iter().map(|p| p[axis]).fold(f64::INFINITY, f64::min);
+    let max = |axis: usize| flat.iter().map(|p| p[axis]).fold(f64::NEG_INFINITY, f64::max);
+    let span = [0, 1].map(|axis| max(axis) - min(axis));
+    let cell = cell.max(span[0].max(span[1]) / MAX_CELLS);
+    let low = [0, 1].map(|axis| min(axis) - shift * cell);
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "20 000 cells at most")]
     let [width, height] = span.map(|span| (span / cell + shift).floor() as usize + 1);
     let mut filled = Raster::filled(width, height, false);
@@ -142,7 +145,8 @@ fn cells_covered(cells: &Raster<bool>, point_count: usize) -> f64 {
     area.max(0.25 * count)
 }
 
-/// Cells with the gaps filled that chance leaves between sparse points: empty ones with at least three of four neighbours filled.
+/// Cells with the gaps filled that chance leaves between sparse points: empty ones with at least three of four
+/// neighbours filled.
 fn without_gaps(cells: &Raster<bool>) -> Raster<bool> {
     let mut filled = cells.clone();
     let width = cells.width();

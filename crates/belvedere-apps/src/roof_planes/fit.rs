@@ -11,15 +11,16 @@ pub(super) struct PlaneFit {
     pub(super) roughness: f64,
 }
 
-/// Two unit vectors in a plane with a unit `normal` that is not level: along its contour lines, and up its slope. Of a level plane east and
-/// north.
+/// Two unit vectors in a plane with a unit `normal` that is not level: along its contour lines, and up its slope. Of a
+/// level plane east and north.
 pub(super) fn axes(normal: [f64; 3]) -> [[f64; 3]; 2] {
     let along = unit(cross([0.0, 0.0, 1.0], normal)).filter(|_| normal[2].abs() < 1.0 - 1e-9);
     let along = along.unwrap_or([1.0, 0.0, 0.0]);
     [along, cross(normal, along)]
 }
 
-/// The plane near one with a unit normal `about` that fits `places` best by its offsets along `about`, or `None` where they lie on a line.
+/// The plane near one with a unit normal `about` that fits `places` best by its offsets along `about`, or `None` where
+/// they lie on a line.
 pub(super) fn fit(places: impl Iterator<Item = [f64; 3]> + Clone, about: [f64; 3]) -> Option<PlaneFit> {
     let mut count = 0.0;
     let mut sum = [0.0; 3];

@@ -9,14 +9,14 @@ use belvedere_data::control::Control;
 use belvedere_data::vector::{dot, sub};
 
 /// Points that a plane has at least: fewer make one of anything.
-const LEAST_POINTS: usize = 12;
+const MIN_POINTS: usize = 12;
 /// Points at which a plane is first fitted anew; then each time it has grown by half.
 const FIRST_FIT: usize = 12;
 /// Times that the points near a grown plane are taken anew: the first fit leans to where it began.
 const ROUNDS: usize = 2;
-/// Least share of the points within reach of a plane's points that lie on it, too: in a crown, where planes pass through by chance, a fifth
-/// do, and on a roof between others more than two thirds.
-const LEAST_SHARE: f64 = 0.5;
+/// Least share of the points within reach of a plane's points that lie on it, too: in a crown, where planes pass
+/// through by chance, a fifth do, and on a roof between others more than two thirds.
+const MIN_SHARE: f64 = 0.5;
 
 const FREE: u32 = u32::MAX;
 /// Of a plane that is no roof: no seed, but may join one that is.
@@ -55,8 +55,8 @@ pub(super) fn regions(
     Ok(regions)
 }
 
-/// Gives points that were left because their normals bend, as near ridges, to the plane next to them that they lie on: to the nearest, of
-/// planes equally near to the first.
+/// Gives points that were left because their normals bend, as near ridges, to the plane next to them that they lie on:
+/// to the nearest, of planes equally near to the first.
 fn absorb(
     points: &[[f32; 3]],
     index: &NeighborIndex,
@@ -128,7 +128,7 @@ impl Region<'_> {
         for round in 0..ROUNDS {
             let (rows, fit, share) = self.grow(seed, plane);
             let is_last = round + 1 == ROUNDS;
-            let is_plane = rows.len() >= LEAST_POINTS && share >= LEAST_SHARE;
+            let is_plane = rows.len() >= MIN_POINTS && share >= MIN_SHARE;
             let fit = fit.filter(|fit| is_plane && fit.roughness <= self.params.distance);
             if !is_last || fit.is_none() {
                 for &row in &rows {
@@ -144,9 +144,10 @@ impl Region<'_> {
         None
     }
 
-    /// The points that are found from `seed`, their plane, and the share of all points within reach of them that lie on it.
+    /// The points that are found from `seed`, their plane, and the share of all points within reach of them that lie on
+    /// it.
     fn grow(&mut self, seed: u32, start: PlaneFit) -> (Vec<u32>, Option<PlaneFit>, f64) {
-        let least_cosine = self.params.angle.cos();
+        let min_cosine = self.params.angle.cos();
         #[expect(clippy::cast_possible_truncation, reason = "a length in metres")]
         let reach = self.params.reach as f32;
         let mut plane = start;
@@ -168,7 +169,7 @@ impl Region<'_> {
                 let is_near = dot(sub(place, plane.middle), plane.normal).abs() <= self.params.distance;
                 near_count += 1.0;
                 on_count += f64::from(u8::from(is_near));
-                if owner[row as usize] == FREE && is_near && dot(normal, plane.normal) >= least_cosine {
+                if owner[row as usize] == FREE && is_near && dot(normal, plane.normal) >= min_cosine {
                     owner[row as usize] = self.number;
                     rows.push(row);
                 }

@@ -1,4 +1,5 @@
-//! Roofs as planes: the plane parts of what stands above the ground, with tilt, azimuth, area and the cells that solar panels would lie on.
+//! Roofs as planes: the plane parts of what stands above the ground, with tilt, azimuth, area and the cells that solar
+//! panels would lie on.
 
 mod cells;
 mod fit;
@@ -20,23 +21,25 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 pub const BUILDING: u8 = 6;
 
 /// Least side of a cell, metres: points do not tell more, and the cells of a whole town would fill the memory.
-const LEAST_CELL: f64 = 0.1;
+const MIN_CELL: f64 = 0.1;
 
 /// How planes are found.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct RoofPlaneParams {
-    /// Farthest that a point of a plane lies from it, metres, above 0. Default 0.12: four times the noise of airborne scans.
+    /// Farthest that a point of a plane lies from it, metres, above 0. Default 0.12: four times the noise of airborne
+    /// scans.
     pub distance: f64,
-    /// Most that the normal of a point differs from that of its plane, radians, above 0 to π/2. Default 25 degrees: wide, since normals
-    /// bend near ridges and eaves; distance decides.
+    /// Most that the normal of a point differs from that of its plane, radians, above 0 to π/2. Default 25 degrees:
+    /// wide, since normals bend near ridges and eaves; distance decides.
     pub angle: f64,
-    /// Farthest step from point to point of a plane, metres, above 0. Default 1: what two points a square metre reach over.
+    /// Farthest step from point to point of a plane, metres, above 0. Default 1: what two points a square metre reach
+    /// over.
     pub reach: f64,
     /// Steepest plane that counts, radians from level, below π/2. Default 75 degrees: walls are no roofs.
-    pub most_tilt: f64,
+    pub max_tilt: f64,
     /// Least area of a plane, m². Default 4: two panels.
-    pub least_area: f64,
+    pub min_area: f64,
     /// Side of the cells that a plane is cut into, metres, 0.1 to 1000. Default 1: the width of a panel.
     pub cell: f64,
 }
@@ -45,8 +48,8 @@ belvedere_data::setters!(RoofPlaneParams {
     with_distance(distance: f64),
     with_angle(angle: f64),
     with_reach(reach: f64),
-    with_most_tilt(most_tilt: f64),
-    with_least_area(least_area: f64),
+    with_max_tilt(max_tilt: f64),
+    with_min_area(min_area: f64),
     with_cell(cell: f64),
 });
 
@@ -56,8 +59,8 @@ impl Default for RoofPlaneParams {
             distance: 0.12,
             angle: 25f64.to_radians(),
             reach: 1.0,
-            most_tilt: 75f64.to_radians(),
-            least_area: 4.0,
+            max_tilt: 75f64.to_radians(),
+            min_area: 4.0,
             cell: 1.0,
         }
     }
@@ -75,7 +78,7 @@ impl RoofPlaneParams {
                 expected: "above 0 to 1000 m",
             });
         }
-        if self.cell < LEAST_CELL {
+        if self.cell < MIN_CELL {
             return Err(Error::InvalidParameter {
                 parameter: Parameter::RoofLength,
                 value: format!("cells of {} m", self.cell),
@@ -83,10 +86,10 @@ impl RoofPlaneParams {
             });
         }
         let is_angle = |v: f64| v > 0.0 && v <= FRAC_PI_2;
-        if !is_angle(self.angle) || !is_angle(self.most_tilt) || !(self.least_area >= 0.0) {
+        if !is_angle(self.angle) || !is_angle(self.max_tilt) || !(self.min_area >= 0.0) {
             return Err(Error::InvalidParameter {
                 parameter: Parameter::RoofAngle,
-                value: format!("{} and {} rad, {} m²", self.angle, self.most_tilt, self.least_area),
+                value: format!("{} and {} rad, {} m²", self.angle, self.max_tilt, self.min_area),
                 expected: "angles above 0 to 90 degrees, an area of 0 or more",
             });
         }
@@ -131,26 +134,27 @@ impl RoofPlane {
     }
 }
 
-/// The plane parts of `points`, (N, 3) local metres, those of roofs being given; largest first. Points of no plane are left out, and so
-/// are planes without room for a panel.
+/// The plane parts of `points`, (N, 3) local metres, those of roofs being given; largest first. Points of no plane are
+/// left out, and so are planes without room for a panel.
 ///
-/// From points whose surroundings are flattest on, a plane takes in neighbours that lie near it and look the same way, and is fitted anew
-/// as it grows. Its area is that of the cells that hold points, less what cells at its rim reach over it.
+/// From points whose surroundings are flattest on, a plane takes in neighbours that lie near it and look the same way,
+/// and is fitted anew as it grows. Its area is that of the cells that hold points, less what cells at its rim reach
+/// over it.
 ///
 /// # Errors
 /// [`Error::InvalidParameter`] for parameters outside their range and points that are not finite; [`Error::Cancelled`].
 ///
 /// # Source
-/// Region growing with a smoothness constraint: Rabbani, van den Heuvel & Vosselman 2006. The area of a set from the number of squares it
-/// meets and the length of their outline is Steiner's formula.
+/// Region growing with a smoothness constraint: Rabbani, van den Heuvel & Vosselman 2006. The area of a set from the
+/// number of squares it meets and the length of their outline is Steiner's formula.
 pub fn roof_planes(points: &[[f32; 3]], params: &RoofPlaneParams, control: &Control<'_>) -> Result<Vec<RoofPlane>> {
     params.validate()?;
     let index = NeighborIndex::new(points, &Control::none())?;
     // near ridges and eaves few neighbours are on one plane
     let normals = estimate(points, &index, Neighborhood::adaptive(), &Control::none())?;
     let is_roof = |rows: &[u32], fit: &fit::PlaneFit| {
-        let is_flat_enough = fit.normal[2].clamp(-1.0, 1.0).acos() <= params.most_tilt;
-        is_flat_enough && cells::area(points, rows, fit, params.cell) >= params.least_area
+        let is_flat_enough = fit.normal[2].clamp(-1.0, 1.0).acos() <= params.max_tilt;
+        is_flat_enough && cells::area(points, rows, fit, params.cell) >= params.min_area
     };
     let regions = grow::regions(points, &index, &normals, params, is_roof, control)?;
     let room = Room::new(points, &index, &regions, params);

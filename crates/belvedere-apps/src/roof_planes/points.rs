@@ -4,10 +4,11 @@ use super::BUILDING;
 use belvedere_core::ground::Ground;
 use belvedere_data::{Error, PointCloud, Result};
 
-/// ASPRS classes that are no roofs: ground, low to high vegetation, noise, water, rail, road, wires and towers, bridges, and high noise.
+/// ASPRS classes that are no roofs: ground, low to high vegetation, noise, water, rail, road, wires and towers,
+/// bridges, and high noise.
 const NO_ROOFS: [u8; 15] = [2, 3, 4, 5, 7, 9, 10, 11, 13, 14, 15, 16, 17, 18, 19];
 /// Height above the ground from which something is a roof where classes do not tell, metres: that of low sheds.
-const LEAST_HEIGHT: f64 = 2.0;
+const MIN_HEIGHT: f64 = 2.0;
 /// One point in so many must be classed as a building for that class to be believed.
 const FEW: usize = 1000;
 
@@ -23,8 +24,8 @@ pub enum RoofsFrom {
     Height,
 }
 
-/// Rows of the points of `cloud` that may lie on roofs, rising: those of class 6, where at least one in a thousand has it; else those at least
-/// 2 m above `ground` whose class is nothing else.
+/// Rows of the points of `cloud` that may lie on roofs, rising: those of class 6, where at least one in a thousand has
+/// it; else those at least 2 m above `ground` whose class is nothing else.
 ///
 /// # Errors
 /// [`Error::NoPoints`] where there is none.
@@ -38,7 +39,7 @@ pub fn roof_points(cloud: &PointCloud, ground: &Ground) -> Result<(Vec<u32>, Roo
     let is_high = |row: usize, p: &[f32; 3]| {
         let [x, y, z] = p.map(f64::from);
         let other = classes.get(row).is_some_and(|class| NO_ROOFS.contains(class));
-        !other && ground.height_at([x, y]).is_some_and(|height| z - height >= LEAST_HEIGHT)
+        !other && ground.height_at([x, y]).is_some_and(|height| z - height >= MIN_HEIGHT)
     };
     let high: Vec<u32> = (0_u32..)
         .zip(cloud.positions.iter().enumerate())

@@ -7,11 +7,11 @@ use belvedere_core::neighbors::NeighborIndex;
 use belvedere_data::vector::{dot, sub};
 use std::f64::consts::{PI, TAU};
 
-/// How far above its plane something must lie to be in the way of a panel, metres: twice the distance up to which points count as on the
-/// plane. Parapets, chimneys and dormers are higher.
+/// How far above its plane something must lie to be in the way of a panel, metres: twice the distance up to which
+/// points count as on the plane. Parapets, chimneys and dormers are higher.
 const CLEARANCE: f64 = 0.25;
-/// Height above a plane up to which something over a cell is in the way, metres: chimneys and the walls of higher parts are lower, or have points
-/// below that height.
+/// Height above a plane up to which something over a cell is in the way, metres: chimneys and the walls of higher parts
+/// are lower, or have points below that height.
 const OVERHEAD: f64 = 6.0;
 /// A point of no plane.
 const NO_PLANE: u32 = u32::MAX;
@@ -40,8 +40,8 @@ impl<'a> Room<'a> {
         Self { points, index, owner, reach: params.reach.max(params.cell) }
     }
 
-    /// Whether a panel can lie on the cell of plane `number` with this middle: points of the plane lie all around the middle, so that
-    /// it is not beyond the edge, and nothing stands on the cell.
+    /// Whether a panel can lie on the cell of plane `number` with this middle: points of the plane lie all around the
+    /// middle, so that it is not beyond the edge, and nothing stands on the cell.
     pub(super) fn fits(&self, number: u32, cells: &PlaneCells, normal: [f64; 3], middle: [f64; 3]) -> bool {
         let offset = |row: usize| {
             let offset = sub(self.points[row].map(f64::from), middle);

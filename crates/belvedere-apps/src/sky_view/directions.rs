@@ -6,7 +6,7 @@ use std::f64::consts::{PI, TAU};
 /// Patches of each row of Tregenza's sky, from the horizon up; one more lies around the zenith.
 const TREGENZA: [usize; 7] = [30, 30, 24, 24, 18, 12, 6];
 /// Most directions of a sky: their bits of a million targets still fit into the memory of a usual machine.
-const MOST_DIRECTIONS: usize = 100_000;
+const MAX_DIRECTIONS: usize = 100_000;
 
 /// Parts of the upper hemisphere, a direction for each.
 #[derive(Clone, Debug, PartialEq)]
@@ -18,9 +18,9 @@ pub struct SkyDirections {
 }
 
 impl SkyDirections {
-    /// `count` parts of equal solid angle along a spiral. Of 400 street canyons the sky view factor at 577 directions errs by 0.0041 (root
-    /// mean square), openness by 0.0036, and the sky view factor of walls by 0.0020; at 145 by 0.0118, 0.0106 and 0.0062, at 2305 by
-    /// 0.0015, 0.0013 and 0.0008.
+    /// `count` parts of equal solid angle along a spiral. Of 400 street canyons the sky view factor at 577 directions
+    /// errs by 0.0041 (root mean square), openness by 0.0036, and the sky view factor of walls by 0.0020; at 145 by
+    /// 0.0118, 0.0106 and 0.0062, at 2305 by 0.0015, 0.0013 and 0.0008.
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] for no direction and for more than 100 000.
@@ -28,7 +28,7 @@ impl SkyDirections {
     /// # Source
     /// González 2010, Measurement of areas on a sphere using Fibonacci and latitude–longitude lattices.
     pub fn even(count: usize) -> Result<Self> {
-        if !(1..=MOST_DIRECTIONS).contains(&count) {
+        if !(1..=MAX_DIRECTIONS).contains(&count) {
             return Err(Error::InvalidParameter {
                 parameter: Parameter::DirectionCount,
                 value: count.to_string(),
@@ -43,8 +43,8 @@ impl SkyDirections {
         Ok(Self { directions: (0..count).map(direction).collect(), solid_angles: vec![TAU / count as f64; count] })
     }
 
-    /// The middles of Reinhart's patches, rows from the horizon up, each from north clockwise, the zenith last: the 145 of Tregenza for
-    /// `division` 1, 577 for 2, 2305 for 4.
+    /// The middles of Reinhart's patches, rows from the horizon up, each from north clockwise, the zenith last: the 145
+    /// of Tregenza for `division` 1, 577 for 2, 2305 for 4.
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] for a division that is not 1 to 26.

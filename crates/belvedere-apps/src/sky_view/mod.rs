@@ -4,7 +4,7 @@ mod directions;
 
 pub use directions::SkyDirections;
 
-use crate::rows::{Surroundings, check_normals, fold_rows, normals_of};
+use crate::rows::{SkyObstacles, check_normals, fold_rows, normals_of};
 use crate::targets::{Measure, Targets};
 use crate::tree_light::through_crowns;
 use belvedere_core::query::VisibilityMatrix;
@@ -28,11 +28,11 @@ const CHUNK: usize = 256;
 /// How much of the sky each of many targets sees.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SkyView {
-    /// Cosine-weighted share of the sky, 0 to 1, (M): (1/π) ∫ V cos θ dΩ, θ being the angle to the target's normal. The share of the
-    /// radiation of an even sky that arrives, as energy models want it. A free plane has 1, a free wall ½.
+    /// Cosine-weighted share of the sky, 0 to 1, (M): (1/π) ∫ V cos θ dΩ, θ being the angle to the target's normal. The
+    /// share of the radiation of an even sky that arrives, as energy models want it. A free plane has 1, a free wall ½.
     pub factors: Vec<f32>,
-    /// Share of the hemisphere above the horizon that is seen, 0 to 1, (M): (1/2π) ∫ V dΩ, whatever the normal. A free plane has 1, and a
-    /// free wall ½ too.
+    /// Share of the hemisphere above the horizon that is seen, 0 to 1, (M): (1/2π) ∫ V dΩ, whatever the normal. A free
+    /// plane has 1, and a free wall ½ too.
     pub openness: Vec<f32>,
 }
 
@@ -50,13 +50,13 @@ impl SkyView {
     }
 }
 
-/// How much of `sky` each of `targets` sees among `obstacles`; NaN for a target that is not asked about. Where trees let light through they are
-/// in leaf, unless they are said to be bare. Progress counts targets, once or twice each.
+/// How much of `sky` each of `targets` sees among `obstacles`; NaN for a target that is not asked about. Where trees
+/// let light through they are in leaf, unless they are said to be bare. Progress counts targets, once or twice each.
 ///
 /// # Errors
 /// Those of [`fold_rows`] and [`sky_view`].
 pub fn scene_sky_view<'a>(
-    obstacles: impl Into<Surroundings<'a>>,
+    obstacles: impl Into<SkyObstacles<'a>>,
     targets: &Targets,
     sky: &SkyDirections,
     control: &Control<'_>,
@@ -83,8 +83,8 @@ pub fn scene_sky_view<'a>(
     Ok(seen)
 }
 
-/// Sums up which of the directions of `sky` each target of `matrix` sees. `normals`, (M, 3) unit vectors, tilt the target for the sky view
-/// factor; `None` for level ones. Directions behind a tilted target count as unseen.
+/// Sums up which of the directions of `sky` each target of `matrix` sees. `normals`, (M, 3) unit vectors, tilt the
+/// target for the sky view factor; `None` for level ones. Directions behind a tilted target count as unseen.
 ///
 /// # Errors
 /// [`Error::LengthMismatch`] where matrix, sky and normals differ.

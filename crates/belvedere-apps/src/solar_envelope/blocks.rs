@@ -5,16 +5,16 @@ use belvedere_data::{Error, Mesh, Parameter, Result};
 use std::collections::HashMap;
 
 /// Columns lower than this have no room for anything, metres.
-const LEAST_HEIGHT: f64 = 1e-3;
+const MIN_HEIGHT: f64 = 1e-3;
 
 /// Vertices that are shared where they are the same number for number.
 #[derive(Default)]
-struct Builder {
+struct VertexMerger {
     mesh: Mesh,
     known: HashMap<[u64; 3], u32>,
 }
 
-impl Builder {
+impl VertexMerger {
     fn vertex(&mut self, place: [f64; 3]) -> u32 {
         let count = u32::try_from(self.mesh.vertices.len()).unwrap_or(u32::MAX);
         // zero has two signs
@@ -86,9 +86,9 @@ fn distinct(corners: &[[f64; 2]]) -> Vec<[f64; 2]> {
 }
 
 impl SolarEnvelope {
-    /// The envelope as a mesh in metres of the system that `origin` counts from, in closed solids whose volumes add up to
-    /// [`SolarEnvelope::volume`]: the whole cells of the parcel as blocks that touch each other without gap, and the cells that its rim cuts as
-    /// prisms beside them. Columns lower than a millimetre are left out.
+    /// The envelope as a mesh in metres of the system that `origin` counts from, in closed solids whose volumes add up
+    /// to [`SolarEnvelope::volume`]: the whole cells of the parcel as blocks that touch each other without gap, and the
+    /// cells that its rim cuts as prisms beside them. Columns lower than a millimetre are left out.
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] where a column is bounded by nothing.
@@ -100,9 +100,9 @@ impl SolarEnvelope {
                 expected: "limited, to be a solid; give a maximum height",
             });
         }
-        let mut builder = Builder::default();
+        let mut builder = VertexMerger::default();
         let mut blocks: HashMap<usize, [f64; 2]> = HashMap::new();
-        for column in self.columns.iter().filter(|column| column.height() >= LEAST_HEIGHT) {
+        for column in self.columns.iter().filter(|column| column.height() >= MIN_HEIGHT) {
             if column.footprint.is_whole {
                 blocks.insert(column.footprint.cell, [column.ground, column.top]);
             } else {
@@ -130,7 +130,13 @@ impl SolarEnvelope {
     }
 
     /// Top, bottom and those parts of the walls of a whole cell that no neighbour covers.
-    fn block(&self, column: &EnvelopeColumn, span: [f64; 2], blocks: &HashMap<usize, [f64; 2]>, builder: &mut Builder) {
+    fn block(
+        &self,
+        column: &EnvelopeColumn,
+        span: [f64; 2],
+        blocks: &HashMap<usize, [f64; 2]>,
+        builder: &mut VertexMerger,
+    ) {
         let width = self.grid.width;
         let (x, y) = (column.footprint.cell % width, column.footprint.cell / width);
         let at = |x: Option<usize>, y: Option<usize>| {

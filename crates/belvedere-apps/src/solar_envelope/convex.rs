@@ -1,12 +1,13 @@
 //! Convex pieces of the map, small enough to live on the stack.
 
-/// Most corners: a piece between two edges of a parcel and the rims of a cell has six, three cuts add one each; the rest is spare.
-const MOST_CORNERS: usize = 12;
+/// Most corners: a piece between two edges of a parcel and the rims of a cell has six, three cuts add one each; the
+/// rest is spare.
+const MAX_CORNERS: usize = 12;
 
 /// A convex polygon on the map, counter-clockwise, local metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ConvexPolygon {
-    corners: [[f64; 2]; MOST_CORNERS],
+    corners: [[f64; 2]; MAX_CORNERS],
     count: usize,
 }
 
@@ -14,7 +15,7 @@ impl ConvexPolygon {
     /// The polygon through `corners`, counter-clockwise; corners beyond the twelfth are dropped.
     #[must_use]
     pub fn new(corners: &[[f64; 2]]) -> Self {
-        let mut polygon = Self { corners: [[0.0; 2]; MOST_CORNERS], count: 0 };
+        let mut polygon = Self { corners: [[0.0; 2]; MAX_CORNERS], count: 0 };
         corners.iter().for_each(|&corner| polygon.push(corner));
         polygon
     }
@@ -48,7 +49,7 @@ impl ConvexPolygon {
     /// Sutherland & Hodgman 1974.
     #[must_use]
     pub fn clipped(&self, side: impl Fn([f64; 2]) -> f64) -> Self {
-        let mut part = Self { corners: [[0.0; 2]; MOST_CORNERS], count: 0 };
+        let mut part = Self { corners: [[0.0; 2]; MAX_CORNERS], count: 0 };
         let Some(&last) = self.corners().last() else { return part };
         let (mut from, mut before) = (last, side(last));
         for &to in self.corners() {
@@ -72,10 +73,10 @@ impl ConvexPolygon {
         [values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max)]
     }
 
-    /// Between which multiples of `step`, 0 to `most`, a line from `start` runs within the polygon, where it does.
+    /// Between which multiples of `step`, 0 to `max`, a line from `start` runs within the polygon, where it does.
     #[must_use]
-    pub fn crossing(&self, start: [f64; 2], step: [f64; 2], most: f64) -> Option<[f64; 2]> {
-        let (mut from, mut to) = (0.0_f64, most);
+    pub fn crossing(&self, start: [f64; 2], step: [f64; 2], max: f64) -> Option<[f64; 2]> {
+        let (mut from, mut to) = (0.0_f64, max);
         for (i, &a) in self.corners().iter().enumerate() {
             let b = self.corners()[(i + 1) % self.count];
             let edge = [b[0] - a[0], b[1] - a[1]];
@@ -94,7 +95,7 @@ impl ConvexPolygon {
     }
 
     fn push(&mut self, corner: [f64; 2]) {
-        if self.count < MOST_CORNERS {
+        if self.count < MAX_CORNERS {
             self.corners[self.count] = corner;
             self.count += 1;
         }

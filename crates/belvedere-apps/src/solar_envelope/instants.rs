@@ -4,7 +4,7 @@ use crate::sun::{Date, DayParams, Site, Zone, sun_position_with};
 use belvedere_data::{Error, Parameter, Result};
 
 /// Most instants: three years at 10 minutes.
-const MOST_INSTANTS: usize = 200_000;
+const MAX_INSTANTS: usize = 200_000;
 
 /// A sun that must reach what is protected.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,13 +15,14 @@ pub struct EnvelopeSun {
     pub direction: [f64; 3],
 }
 
-/// The suns of each of `dates` at a site, from the first to the last of the hours `between` on the clocks of `zone`, both included: the
-/// first and the last sun of a day cast the longest shadows, and bind. Steps are made a little shorter where they do not fill the time.
-/// Suns at or below the least elevation of `params` are left out; their number is returned too.
+/// The suns of each of `dates` at a site, from the first to the last of the hours `between` on the clocks of `zone`,
+/// both included: the first and the last sun of a day cast the longest shadows, and bind. Steps are made a little
+/// shorter where they do not fill the time. Suns at or below the least elevation of `params` are left out; their number
+/// is returned too.
 ///
 /// # Errors
-/// [`Error::InvalidParameter`] for hours that are not 0 to 24 in rising order, a step that is not 10 to 3600 seconds, and more than 200 000
-/// instants; those of [`Zone::instant_of`] and [`sun_position_with`].
+/// [`Error::InvalidParameter`] for hours that are not 0 to 24 in rising order, a step that is not 10 to 3600 seconds,
+/// and more than 200 000 instants; those of [`Zone::instant_of`] and [`sun_position_with`].
 pub fn envelope_suns(
     site: &Site,
     zone: &Zone,
@@ -36,7 +37,7 @@ pub fn envelope_suns(
     }
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "8640 at most")]
     let count = ((between[1] - between[0]) * 3600.0 / params.step - 1e-9).ceil() as usize;
-    if dates.len().saturating_mul(count + 1) > MOST_INSTANTS {
+    if dates.len().saturating_mul(count + 1) > MAX_INSTANTS {
         return invalid(Parameter::InstantCount, format!("{} x {}", dates.len(), count + 1), "at most 200 000");
     }
     let (mut suns, mut low_count) = (Vec::new(), 0);
@@ -46,7 +47,7 @@ pub fn envelope_suns(
         for i in 0..=count {
             let unix_s = first + (last - first) * i as f64 / count.max(1) as f64;
             let sun = sun_position_with(site, unix_s, params.refraction)?;
-            if sun.elevation > params.least_elevation {
+            if sun.elevation > params.min_elevation {
                 suns.push(EnvelopeSun { unix_s, direction: sun.to_sun(site) });
             } else {
                 low_count += 1;

@@ -1,8 +1,9 @@
 //! The solar envelope: the largest volume over a parcel that casts no shadow on what is protected, at any of the suns.
 //!
-//! A sun at elevation e shades the place g up to the height h − d tan e from a thing of height h that stands d metres toward the sun. So
-//! that it does not, h may be z(g) + d tan e at most. A protected edge swept toward the sun makes a strip of the map, over which
-//! that bound is linear: the least of it over a column of the grid is found in closed form, without sampling the line or marching.
+//! A sun at elevation e shades the place g up to the height h − d tan e from a thing of height h that stands d metres
+//! toward the sun. So that it does not, h may be z(g) + d tan e at most. A protected edge swept toward the sun makes a
+//! strip of the map, over which that bound is linear: the least of it over a column of the grid is found in closed
+//! form, without sampling the line or marching.
 
 mod blocks;
 mod convex;
@@ -14,7 +15,7 @@ mod strip;
 pub use convex::ConvexPolygon;
 pub(crate) use instants::check_hours;
 pub use instants::{EnvelopeSun, envelope_suns};
-pub use parcel::{Footprint, Parcel};
+pub use parcel::{Parcel, ParcelCell};
 pub(crate) use protected::check_fence;
 pub use protected::{ProtectedPiece, protected_faces, protected_line};
 
@@ -26,20 +27,20 @@ use belvedere_data::vector::{dot, length};
 use belvedere_data::{Error, Parameter, Result};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
-use strip::Strip;
+use strip::ShadingStrip;
 
 /// A sun that stands this near to the zenith shades nothing beside a thing: cosine of its elevation.
 const OVERHEAD: f64 = 1e-9;
 /// Most pairs of a protected piece and a sun: some minutes of work.
-const MOST_PAIRS: usize = 200_000_000;
+const MAX_PAIRS: usize = 200_000_000;
 
 /// What bounds an envelope besides the sun.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 #[non_exhaustive]
 pub struct EnvelopeParams {
-    /// Greatest height above the ground, metres, above 0: what zoning allows anyway. Default `None`: columns that no sun bounds are
-    /// infinitely high.
+    /// Greatest height above the ground, metres, above 0: what zoning allows anyway. Default `None`: columns that no
+    /// sun bounds are infinitely high.
     pub ceiling: Option<f64>,
 }
 
@@ -79,11 +80,11 @@ pub struct SolarEnvelope {
 #[derive(Clone, Debug, PartialEq)]
 pub struct EnvelopeColumn {
     /// The part of the cell.
-    pub footprint: Footprint,
+    pub footprint: ParcelCell,
     /// Height of the ground in the middle of the cell, local metres.
     pub ground: f64,
-    /// Height of the envelope, local metres, the ground at least; infinite where nothing bounds it. It holds over the whole footprint, so
-    /// that the columns together shade nothing.
+    /// Height of the envelope, local metres, the ground at least; infinite where nothing bounds it. It holds over the
+    /// whole footprint, so that the columns together shade nothing.
     pub top: f64,
     /// What bounds it; `None` for the ceiling, or nothing.
     pub binding: Option<Binding>,
@@ -121,20 +122,20 @@ pub struct EnvelopeReport {
     pub without_ground_count: usize,
 }
 
-/// The solar envelope of `parcel` over the cells of `ground`, that keeps the sun for each piece of `protected` at each of `suns`, (S, 3) unit
-/// vectors from the scene to the sun (x east, y grid north, z up).
+/// The solar envelope of `parcel` over the cells of `ground`, that keeps the sun for each piece of `protected` at each
+/// of `suns`, (S, 3) unit vectors from the scene to the sun (x east, y grid north, z up).
 ///
-/// Each column is bounded by the least bound over its whole footprint: nothing built within the columns shades what is protected,
-/// and no column can be raised without that. Where a bound lies below the ground nothing may be built, and the height is 0.
-/// Protected edges that only touch a column from beside do not bound it.
+/// Each column is bounded by the least bound over its whole footprint: nothing built within the columns shades what is
+/// protected, and no column can be raised without that. Where a bound lies below the ground nothing may be built, and
+/// the height is 0. Protected edges that only touch a column from beside do not bound it.
 ///
-/// `free`, a row for each piece's sample and a column for each sun, credits shade that is there already: where it is not free, the piece
-/// is in shade at that sun, and the pair bounds nothing.
+/// `free`, a row for each piece's sample and a column for each sun, credits shade that is there already: where it is
+/// not free, the piece is in shade at that sun, and the pair bounds nothing.
 ///
 /// # Errors
-/// [`Error::InvalidParameter`] for a sun that is not of unit length, a piece that is not finite, a ceiling that is not above zero, and more
-/// than 200 million pairs; [`Error::LengthMismatch`] where `free` has other rows and columns; [`Error::NoPoints`] where no ground is
-/// known below the parcel; [`Error::Cancelled`].
+/// [`Error::InvalidParameter`] for a sun that is not of unit length, a piece that is not finite, a ceiling that is not
+/// above zero, and more than 200 million pairs; [`Error::LengthMismatch`] where `free` has other rows and columns;
+/// [`Error::NoPoints`] where no ground is known below the parcel; [`Error::Cancelled`].
 ///
 /// # Source
 /// Knowles 2003, The solar envelope: its meaning for energy and buildings, Energy and Buildings 35.
@@ -188,8 +189,8 @@ pub fn solar_envelope(
     Ok(SolarEnvelope { grid, columns, report })
 }
 
-/// Which of `suns` each of `protected` sees in `scene`: the shade that is there already, for [`solar_envelope`] to credit. It has at most 200
-/// million bits. Progress counts pieces.
+/// Which of `suns` each of `protected` sees in `scene`: the shade that is there already, for [`solar_envelope`] to
+/// credit. It has at most 200 million bits. Progress counts pieces.
 ///
 /// # Errors
 /// [`Error::InvalidParameter`] for more than 200 million pairs, and those of [`MedialScene::visibility_matrix`].
@@ -205,7 +206,7 @@ pub fn existing_shade(
 }
 
 fn check_pairs(pieces: usize, suns: usize) -> Result<()> {
-    if pieces.saturating_mul(suns) <= MOST_PAIRS {
+    if pieces.saturating_mul(suns) <= MAX_PAIRS {
         return Ok(());
     }
     Err(Error::InvalidParameter {
@@ -221,7 +222,7 @@ fn strips(
     direction: [f64; 3],
     is_free: impl Fn(usize) -> bool,
     report: &mut EnvelopeReport,
-) -> Vec<(Strip, usize)> {
+) -> Vec<(ShadingStrip, usize)> {
     let across = direction[0].hypot(direction[1]);
     let to_sun = [direction[0] / across, direction[1] / across];
     let slope = direction[2] / across;
@@ -238,7 +239,7 @@ fn strips(
         if across < OVERHEAD {
             continue;
         }
-        let mut add = |a, b| strips.push((Strip::new(a, b, to_sun, slope), number));
+        let mut add = |a, b| strips.push((ShadingStrip::new(a, b, to_sun, slope), number));
         // over a face the bound is linear too, hence least at its rim
         match piece.corners[..] {
             [a] => add(a, a),
@@ -251,7 +252,7 @@ fn strips(
 }
 
 /// Lowers the columns of one row of cells to what the strips of a sun allow.
-fn bound(columns: &mut [EnvelopeColumn], grid: &MapGrid, strips: &[(Strip, usize)], sun: usize) {
+fn bound(columns: &mut [EnvelopeColumn], grid: &MapGrid, strips: &[(ShadingStrip, usize)], sun: usize) {
     let (Some(first), Some(last)) = (columns.first(), columns.last()) else { return };
     let column_of = |column: &EnvelopeColumn| column.footprint.cell % grid.width;
     let row = first.footprint.cell / grid.width;
@@ -260,9 +261,9 @@ fn bound(columns: &mut [EnvelopeColumn], grid: &MapGrid, strips: &[(Strip, usize
     let band = ConvexPolygon::of_box([west, south], [east, north]);
     let edges: Vec<f64> = columns.iter().map(|column| grid.corner_at([column_of(column), row])[0]).collect();
     for &(strip, piece) in strips {
-        let Some([least, most]) = strip.span_x(&band) else { continue };
-        let from = edges.partition_point(|west| west + grid.cell < least);
-        let to = edges.partition_point(|west| *west <= most);
+        let Some([min, max]) = strip.span_x(&band) else { continue };
+        let from = edges.partition_point(|west| west + grid.cell < min);
+        let to = edges.partition_point(|west| *west <= max);
         for column in columns.get_mut(from..to).unwrap_or_default() {
             let limit = column.footprint.pieces.iter().filter_map(|piece| strip.limit(piece)).reduce(f64::min);
             if let Some(limit) = limit.filter(|limit| *limit < column.top) {
@@ -307,8 +308,8 @@ impl SolarEnvelope {
         self.raster(EnvelopeColumn::height)
     }
 
-    /// Height of the envelope in each cell above where heights of the system of the cloud count from, metres: `origin_height` is that of the
-    /// local origin. NaN beside the parcel, infinite where nothing bounds it.
+    /// Height of the envelope in each cell above where heights of the system of the cloud count from, metres:
+    /// `origin_height` is that of the local origin. NaN beside the parcel, infinite where nothing bounds it.
     #[must_use]
     pub fn tops(&self, origin_height: f64) -> Raster<f32> {
         self.raster(|column| column.top + origin_height)

@@ -5,9 +5,9 @@ use belvedere_core::ground::MapGrid;
 use belvedere_data::{Error, Parameter, Result};
 
 /// Most corners of a parcel: more are a slipped file, and every pair of sides is tested for crossing.
-const MOST_CORNERS: usize = 10_000;
+const MAX_CORNERS: usize = 10_000;
 /// Least area of a parcel, m²: below it the corners lie in a line.
-const LEAST_AREA: f64 = 0.01;
+const MIN_AREA: f64 = 0.01;
 /// Strips and pieces thinner than this are rounding, metres.
 const THIN: f64 = 1e-9;
 
@@ -19,7 +19,7 @@ pub struct Parcel {
 
 /// The part of a cell of a grid that lies on a parcel.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Footprint {
+pub struct ParcelCell {
     /// Number of the cell, rows from the north.
     pub cell: usize,
     /// Pieces that make it up: the square itself where the cell lies wholly on the parcel.
@@ -31,12 +31,12 @@ pub struct Footprint {
 }
 
 impl Parcel {
-    /// The parcel within `rings`, local metres on the map, each a rim or a hole, of any sense, the first corner repeated at the end or
-    /// not: what lies within an odd number of rings belongs to it.
+    /// The parcel within `rings`, local metres on the map, each a rim or a hole, of any sense, the first corner
+    /// repeated at the end or not: what lies within an odd number of rings belongs to it.
     ///
     /// # Errors
-    /// [`Error::InvalidParameter`] for a corner that is not finite, a ring with less than three corners, sides that cross each other, more
-    /// than 10 000 corners, and rings that enclose nothing.
+    /// [`Error::InvalidParameter`] for a corner that is not finite, a ring with less than three corners, sides that
+    /// cross each other, more than 10 000 corners, and rings that enclose nothing.
     pub fn new(rings: &[Vec<[f64; 2]>]) -> Result<Self> {
         let invalid =
             |value: String, expected| Err(Error::InvalidParameter { parameter: Parameter::Parcel, value, expected });
@@ -62,7 +62,7 @@ impl Parcel {
             kept.push(ring);
         }
         let count: usize = kept.iter().map(Vec::len).sum();
-        if count == 0 || count > MOST_CORNERS {
+        if count == 0 || count > MAX_CORNERS {
             return invalid(format!("of {count} corners"), "a polygon of 3 to 10 000 corners");
         }
         let parcel = Self { rings: kept };
@@ -80,7 +80,7 @@ impl Parcel {
         }
         // sides that run over each other cancel by pairs, as do the strips below
         let area = parcel.area();
-        if !(area >= LEAST_AREA) {
+        if !(area >= MIN_AREA) {
             return invalid(format!("of {area} m2"), "an area: its corners must not lie in one line");
         }
         Ok(parcel)
@@ -114,7 +114,7 @@ impl Parcel {
 
     /// The cells of `grid` that have a part on the parcel, in their order.
     #[must_use]
-    pub fn footprints(&self, grid: &MapGrid) -> Vec<Footprint> {
+    pub fn footprints(&self, grid: &MapGrid) -> Vec<ParcelCell> {
         let mut footprints = Vec::new();
         let cell_area = grid.cell * grid.cell;
         for row in 0..grid.height {
@@ -142,7 +142,7 @@ impl Parcel {
                     pieces = vec![ConvexPolygon::of_box([west, south], [east, north])];
                     area = cell_area;
                 }
-                footprints.push(Footprint { cell: row * grid.width + column, pieces, area, is_whole });
+                footprints.push(ParcelCell { cell: row * grid.width + column, pieces, area, is_whole });
             }
         }
         footprints
@@ -152,8 +152,8 @@ impl Parcel {
         self.rings.iter().flat_map(|ring| (0..ring.len()).map(|i| [ring[i], ring[(i + 1) % ring.len()]]))
     }
 
-    /// The part between two northings as trapezoids with level sides: between two heights of corners no two sides cross, so that every
-    /// second gap between them is inside.
+    /// The part between two northings as trapezoids with level sides: between two heights of corners no two sides
+    /// cross, so that every second gap between them is inside.
     fn trapezoids(&self, south: f64, north: f64) -> Vec<ConvexPolygon> {
         let mut levels: Vec<f64> =
             self.rings.iter().flatten().map(|corner| corner[1]).filter(|y| (south..north).contains(y)).collect();
@@ -204,7 +204,7 @@ mod tests {
 
     #[test]
     fn footprints_add_up_to_the_area_of_the_parcel() {
-        let rim = ring(&[[0.3, 0.2], [9.7, 1.1], [8.2, 9.4], [5.0, 4.0], [1.1, 8.8]]);
+        let outline = ring(&[[0.3, 0.2], [9.7, 1.1], [8.2, 9.4], [5.0, 4.0], [1.1, 8.8]]);
         let hole = ring(&[[3.0, 2.0], [3.5, 3.5], [4.5, 2.2]]);
         // shoelace formula, by hand of the test
         let shoelace = |ring: &[[f64; 2]]| {
@@ -216,8 +216,8 @@ mod tests {
                 .sum();
             (sum / 2.0).abs()
         };
-        let expected = shoelace(&rim) - shoelace(&hole);
-        let parcel = Parcel::new(&[rim, hole]).unwrap();
+        let expected = shoelace(&outline) - shoelace(&hole);
+        let parcel = Parcel::new(&[outline, hole]).unwrap();
         let footprints = parcel.footprints(&grid());
         let area: f64 = footprints.iter().map(|f| f.area).sum();
         assert!((area - expected).abs() < 1e-6 && (parcel.area() - expected).abs() < 1e-9, "{area} {expected}");
@@ -239,9 +239,9 @@ mod tests {
         assert!(refused(&[ring(&[[0.0, 0.0], [4.0, f64::NAN], [4.0, 0.0]])]).contains("finite"));
         assert!(refused(&[ring(&[[0.0, 0.0], [f64::INFINITY, 1.0], [4.0, 0.0]])]).contains("finite"));
         // a hole that crosses the rim
-        let rim = ring(&[[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]]);
+        let outline = ring(&[[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]]);
         let hole = ring(&[[3.0, 1.0], [5.0, 1.0], [5.0, 2.0], [3.0, 2.0]]);
-        assert!(refused(&[rim, hole]).contains("crossing itself"));
+        assert!(refused(&[outline, hole]).contains("crossing itself"));
         assert!(refused(&[vec![[0.0, 0.0]; 20_000]]).contains("1 corners"));
     }
 }

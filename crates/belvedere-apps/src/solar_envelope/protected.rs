@@ -6,14 +6,15 @@ use belvedere_core::query::SurfacePieces;
 use belvedere_data::{Error, Parameter, Result};
 
 /// Most pieces of lines: every sun sweeps each over the parcel.
-const MOST_PIECES: usize = 1_000_000;
+const MAX_PIECES: usize = 1_000_000;
 
 /// A piece of what is protected: a point, an edge or a triangle.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ProtectedPiece {
     /// One, two or three corners, local metres.
     pub corners: Vec<[f64; 3]>,
-    /// Outward unit normal of a face: suns behind it do not light it anyway. `None` for lines and points, which every sun lights.
+    /// Outward unit normal of a face: suns behind it do not light it anyway. `None` for lines and points, which every
+    /// sun lights.
     pub normal: Option<[f64; 3]>,
     /// Place that is asked whether something else shades the piece already, local metres.
     pub sample: [f32; 3],
@@ -30,13 +31,14 @@ impl ProtectedPiece {
     }
 }
 
-/// The top of a fence of `fence` metres along a line through `corners`, local metres, in pieces of at most `spacing` metres. Shadows may
-/// fall on the fence and stay below its top. Where a corner has no height (NaN), the ground below each piece's ends counts: the
-/// line follows the terrain; pieces whose ground is not known are left out, and their number returned too.
+/// The top of a fence of `fence` metres along a line through `corners`, local metres, in pieces of at most `spacing`
+/// metres. Shadows may fall on the fence and stay below its top. Where a corner has no height (NaN), the ground below
+/// each piece's ends counts: the line follows the terrain; pieces whose ground is not known are left out, and their
+/// number returned too.
 ///
 /// # Errors
-/// [`Error::InvalidParameter`] for a corner whose place on the map is not finite, a fence that is below zero or not finite, a spacing that
-/// is not above zero, and lines of more than a million pieces.
+/// [`Error::InvalidParameter`] for a corner whose place on the map is not finite, a fence that is below zero or not
+/// finite, a spacing that is not above zero, and lines of more than a million pieces.
 pub fn protected_line(
     corners: &[[f64; 3]],
     fence: f64,
@@ -62,7 +64,7 @@ pub fn protected_line(
     for pair in corners.windows(2) {
         let &[a, b] = pair else { continue };
         let count = ((b[0] - a[0]).hypot(b[1] - a[1]) / spacing).ceil().max(1.0);
-        if count + pieces.len() as f64 > MOST_PIECES as f64 {
+        if count + pieces.len() as f64 > MAX_PIECES as f64 {
             return invalid(Parameter::Spacing, spacing.to_string(), "enough for at most a million pieces");
         }
         let at = |share: f64| [0, 1, 2].map(|i| a[i] + share * (b[i] - a[i]));
@@ -98,10 +100,11 @@ pub(crate) fn check_fence(fence: f64, spacing: f64) -> Result<()> {
     Ok(())
 }
 
-/// The pieces of a surface, such as facades, each asked a little outside of itself (`lift`, metres); the source is the number of the face.
+/// The pieces of a surface, such as facades, each asked a little outside of itself (`lift`, metres); the source is the
+/// number of the face.
 #[must_use]
 pub fn protected_faces(surface: &SurfacePieces, lift: f64) -> Vec<ProtectedPiece> {
-    let of_piece = |piece: &belvedere_core::query::Piece| ProtectedPiece {
+    let of_piece = |piece: &belvedere_core::query::SurfacePiece| ProtectedPiece {
         corners: piece.corners.map(|corner| corner.map(f64::from)).to_vec(),
         normal: Some(piece.normal.map(f64::from)),
         sample: piece.lifted_along_normal(lift),

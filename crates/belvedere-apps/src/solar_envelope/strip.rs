@@ -1,16 +1,18 @@
-//! How high a column may stand so that its shadow stays off one protected edge at one sun: in closed form, the edge being swept toward the
-//! sun.
+//! How high a column may stand so that its shadow stays off one protected edge at one sun: in closed form, the edge
+//! being swept toward the sun.
 
 use super::convex::ConvexPolygon;
 
 /// An edge that sweeps less than this across the sun's direction is swept as a ray, metres.
 const NARROW: f64 = 1e-6;
-/// A column must share more than this with a strip, m², or with a ray, metres: a wall that stands flush with a fence shades beside it.
+/// A column must share more than this with a strip, m², or with a ray, metres: a wall that stands flush with a fence
+/// shades beside it.
 const TOUCH: f64 = 1e-9;
 
-/// The strip of the map from which things shade a protected edge at one sun, and the plane of heights above it up to which they do not.
+/// The strip of the map from which things shade a protected edge at one sun, and the plane of heights above it up to
+/// which they do not.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Strip {
+pub(super) struct ShadingStrip {
     start: [f64; 3],
     along: [f64; 3],
     /// Unit vector on the map to the sun.
@@ -21,9 +23,9 @@ pub(super) struct Strip {
     across: f64,
 }
 
-impl Strip {
-    /// The strip of the edge from `a` to `b`, local metres, at a sun that stands in the direction `to_sun` on the map, with the tangent of
-    /// its elevation.
+impl ShadingStrip {
+    /// The strip of the edge from `a` to `b`, local metres, at a sun that stands in the direction `to_sun` on the map,
+    /// with the tangent of its elevation.
     pub(super) fn new(a: [f64; 3], b: [f64; 3], to_sun: [f64; 2], slope: f64) -> Self {
         let along = [b[0] - a[0], b[1] - a[1], b[2] - a[2]];
         Self { start: a, along, to_sun, slope, across: along[0] * to_sun[1] - along[1] * to_sun[0] }
@@ -73,8 +75,8 @@ impl Strip {
         [self.start, [0, 1, 2].map(|i| self.start[i] + self.along[i])]
     }
 
-    /// Greatest height, local metres, up to which everything over a piece of the map may stand without shading the edge; `None` where
-    /// nothing that stands there can shade it.
+    /// Greatest height, local metres, up to which everything over a piece of the map may stand without shading the
+    /// edge; `None` where nothing that stands there can shade it.
     pub(super) fn limit(&self, piece: &ConvexPolygon) -> Option<f64> {
         if self.is_ray() {
             return self.limit_of_ray(piece);

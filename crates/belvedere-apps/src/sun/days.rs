@@ -7,10 +7,11 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 const DAY: f64 = 86_400.0;
-/// Longest time between two looks at the elevation, seconds: a sun that shows between two of them and is gone again rises 0.02° at most.
+/// Longest time between two looks at the elevation, seconds: a sun that shows between two of them and is gone again
+/// rises 0.02° at most.
 const SAMPLING: f64 = 300.0;
 /// Most days of a period: ten years.
-const MOST_DAYS: usize = 3700;
+const MAX_DAYS: usize = 3700;
 /// How exactly the moment is found at which the sun passes the least elevation, seconds.
 const MOMENT: f64 = 0.01;
 
@@ -18,25 +19,26 @@ const MOMENT: f64 = 0.01;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct DayParams {
-    /// Length of a step, seconds, 10 to 3600; steps are made a little shorter where they do not fill the day. Default 600: shadows of edges
-    /// come and go within half a step of the truth, ±5 minutes each.
+    /// Length of a step, seconds, 10 to 3600; steps are made a little shorter where they do not fill the day. Default
+    /// 600: shadows of edges come and go within half a step of the truth, ±5 minutes each.
     pub step: f64,
-    /// Elevation above which the middle of the sun counts, radians, 0 to just below π/2, apparent unless `refraction` is left out. Default
-    /// 0: the flat horizon. Some rules leave out low suns.
-    pub least_elevation: f64,
+    /// Elevation above which the middle of the sun counts, radians, 0 to just below π/2, apparent unless `refraction`
+    /// is left out. Default 0: the flat horizon. Some rules leave out low suns.
+    #[serde(rename = "least_elevation")]
+    pub min_elevation: f64,
     /// By how much air lifts the sun. Default [`Refraction::Standard`].
     pub refraction: Refraction,
 }
 
 belvedere_data::setters!(DayParams {
     with_step(step: f64),
-    with_least_elevation(least_elevation: f64),
+    with_min_elevation(min_elevation: f64),
     with_refraction(refraction: Refraction),
 });
 
 impl Default for DayParams {
     fn default() -> Self {
-        Self { step: 600.0, least_elevation: 0.0, refraction: Refraction::Standard }
+        Self { step: 600.0, min_elevation: 0.0, refraction: Refraction::Standard }
     }
 }
 
@@ -53,8 +55,8 @@ pub struct SunStep {
     pub direction: [f64; 3],
 }
 
-/// A day of the sun at a site: from its midnight (half-way between two culminations) to the next, so that it holds the whole light of the
-/// place whatever clocks show, and days follow each other without gap.
+/// A day of the sun at a site: from its midnight (half-way between two culminations) to the next, so that it holds the
+/// whole light of the place whatever clocks show, and days follow each other without gap.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SunDay {
     /// What the calendar of the zone calls it at noon.
@@ -78,15 +80,16 @@ impl SunDay {
         self.steps.iter().map(|step| step.end - step.start).sum::<f64>() / 3600.0
     }
 
-    /// Time of day of an instant on the clocks of the zone, hours; below 0 or above 24 where the day of the sun reaches beyond the date.
+    /// Time of day of an instant on the clocks of the zone, hours; below 0 or above 24 where the day of the sun reaches
+    /// beyond the date.
     #[must_use]
     pub fn clock_hours(&self, unix_s: f64) -> f64 {
         (unix_s - self.clock_start) / 3600.0
     }
 }
 
-/// The day of the sun that a date names at a site. Of the true noons of the site it is the one whose mean noon comes next to 12 o'clock
-/// in the `zone`. Where `within` is given, only what lies between the two instants counts.
+/// The day of the sun that a date names at a site. Of the true noons of the site it is the one whose mean noon comes
+/// next to 12 o'clock in the `zone`. Where `within` is given, only what lies between the two instants counts.
 ///
 /// # Errors
 /// [`Error::InvalidParameter`] for parameters outside their range, and those of [`sun_position_with`].
@@ -126,8 +129,8 @@ pub enum Period {
     Between([f64; 2]),
 }
 
-/// The days of the sun of a period, 3700 at most (ten years), in the order given; of days at both ends of a span between instants only the
-/// part within it has steps.
+/// The days of the sun of a period, 3700 at most (ten years), in the order given; of days at both ends of a span
+/// between instants only the part within it has steps.
 ///
 /// # Errors
 /// [`Error::InvalidParameter`] for a period without days or that ends before it begins, and those of [`sun_day`].
@@ -136,7 +139,7 @@ pub fn sun_days(site: &Site, zone: &Zone, period: &Period, params: &DayParams) -
         |value: String, expected| Err(Error::InvalidParameter { parameter: Parameter::Period, value, expected });
     let (dates, within) = match period {
         Period::Days(dates) => (dates.clone(), None),
-        Period::Between([from, to]) if to > from && to - from <= DAY * MOST_DAYS as f64 => {
+        Period::Between([from, to]) if to > from && to - from <= DAY * MAX_DAYS as f64 => {
             // a day of the sun may begin a clock's day early or late
             let [first, last] = [zone.date_at(from - DAY)?, zone.date_at(to + DAY)?];
             (first.to(last).collect(), Some([*from, *to]))
@@ -145,7 +148,7 @@ pub fn sun_days(site: &Site, zone: &Zone, period: &Period, params: &DayParams) -
             return invalid(format!("{} to {}", zone.display(*from), zone.display(*to)), "forward, at most ten years");
         }
     };
-    if !(1..=MOST_DAYS).contains(&dates.len()) {
+    if !(1..=MAX_DAYS).contains(&dates.len()) {
         return invalid(format!("{} days", dates.len()), "1 to 3700 days, and the last day not before the first");
     }
     let days: Result<Vec<SunDay>> =
@@ -166,8 +169,8 @@ impl DayParams {
         if !(10.0..=3600.0).contains(&self.step) {
             return invalid(Parameter::TimeStep, self.step, "10 to 3600 seconds");
         }
-        if !(0.0..1.57).contains(&self.least_elevation) {
-            return invalid(Parameter::MinSunElevation, self.least_elevation.to_degrees(), "0 to below 90 degrees");
+        if !(0.0..1.57).contains(&self.min_elevation) {
+            return invalid(Parameter::MinSunElevation, self.min_elevation.to_degrees(), "0 to below 90 degrees");
         }
         Ok(())
     }
@@ -175,8 +178,7 @@ impl DayParams {
 
 /// The parts of a span of time during which the sun is up.
 fn light(site: &Site, [start, end]: [f64; 2], params: &DayParams) -> Result<Vec<[f64; 2]>> {
-    let above =
-        |t: f64| sun_position_with(site, t, params.refraction).map(|sun| sun.elevation > params.least_elevation);
+    let above = |t: f64| sun_position_with(site, t, params.refraction).map(|sun| sun.elevation > params.min_elevation);
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "an hour of samples at most")]
     let count = ((end - start) / SAMPLING - 1e-9).ceil().max(1.0) as u32;
     let mut parts: Vec<[f64; 2]> = Vec::new();

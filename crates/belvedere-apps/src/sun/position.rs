@@ -62,7 +62,8 @@ impl SunPosition {
 /// [`Error::InvalidParameter`] for a site out of range, and for instants before the year 1000 or after 3000.
 ///
 /// # Source
-/// Reda & Andreas 2004, Solar position algorithm for solar radiation applications: ±0.0003° for the years −2000 to 6000.
+/// Reda & Andreas 2004, Solar position algorithm for solar radiation applications: ±0.0003° for the years −2000 to
+/// 6000.
 pub fn sun_position(site: &Site, unix_s: f64) -> Result<SunPosition> {
     sun_position_with(site, unix_s, Refraction::Standard)
 }
@@ -107,10 +108,12 @@ pub fn sun_distance(unix_s: f64) -> Result<f64> {
     Ok(prepared.earth_radius_vector().unwrap_or(1.0))
 }
 
-/// When the sun rises, culminates and sets, seconds of UTC since 1970, each in ascending order; empty where it does not.
+/// When the sun rises, culminates and sets, seconds of UTC since 1970, each in ascending order; empty where it does
+/// not.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SunTimes {
-    /// Its upper edge appears: the middle of the disc is 50′ below the horizon, 34′ of refraction and 16′ of radius, as almanacs have it.
+    /// Its upper edge appears: the middle of the disc is 50′ below the horizon, 34′ of refraction and 16′ of radius, as
+    /// almanacs have it.
     pub rises: Vec<f64>,
     /// It crosses the meridian.
     pub transits: Vec<f64>,
@@ -121,7 +124,8 @@ pub struct SunTimes {
 /// When the sun rises, culminates and sets from the instant `from` up to `to`, seen from the level of the sea.
 ///
 /// # Errors
-/// As [`sun_position`], and [`Error::InvalidParameter`] for spans of time that end before they begin or last more than 400 days.
+/// As [`sun_position`], and [`Error::InvalidParameter`] for spans of time that end before they begin or last more than
+/// 400 days.
 pub fn sun_times(site: &Site, from: f64, to: f64) -> Result<SunTimes> {
     let site = site.validate()?;
     if !(to >= from && to - from <= 400.0 * DAY) {
@@ -146,7 +150,8 @@ pub fn sun_times(site: &Site, from: f64, to: f64) -> Result<SunTimes> {
     Ok(SunTimes { rises: instants(events.rises), transits: instants(events.transits), sets: instants(events.sets) })
 }
 
-/// When the sun crosses the meridian of a site next to its mean noon at `mean_noon`: within 17 minutes, the equation of time.
+/// When the sun crosses the meridian of a site next to its mean noon at `mean_noon`: within 17 minutes, the equation of
+/// time.
 pub(super) fn transit(site: &Site, mean_noon: f64) -> Result<f64> {
     let julian = julian(mean_noon)?;
     let [start, end] = [-1.0, 1.0].map(|hours| julian.julian_date() + hours / 24.0);

@@ -7,8 +7,9 @@ use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
 /// Most steps for which each has its own direction where that is left to [`SunSchedule::new`].
-const MOST_EXACT: usize = 2000;
-/// Angle within which a direction stands for others where it is left to [`SunSchedule::new`]: 1°, two diameters of the sun.
+const MAX_EXACT: usize = 2000;
+/// Angle within which a direction stands for others where it is left to [`SunSchedule::new`]: 1°, two diameters of the
+/// sun.
 const USUAL_ANGLE: f64 = 0.017_453_292_519_943_295;
 
 /// Whether suns that stand close together share a direction.
@@ -20,8 +21,8 @@ pub enum Binning {
     Auto,
     /// Each step its own direction.
     Exact,
-    /// Suns of different days at the same hour angle share a direction that is nowhere farther from them than this angle, radians, above 0
-    /// to 5°.
+    /// Suns of different days at the same hour angle share a direction that is nowhere farther from them than this
+    /// angle, radians, above 0 to 5°.
     Within(f64),
 }
 
@@ -81,9 +82,9 @@ struct Member {
 impl SunSchedule {
     /// The schedule of `days`, whose steps must have been cut alike (with the same step) for suns to be shared.
     ///
-    /// Directions are shared by rows of declination, which the sun passes twice a year, at the same step from noon, hence the same hour
-    /// angle: in a row no wider than twice the angle the mean of the suns is within the angle of them all, but for steps that the horizon
-    /// cuts short; what is farther gets a direction of its own.
+    /// Directions are shared by rows of declination, which the sun passes twice a year, at the same step from noon,
+    /// hence the same hour angle: in a row no wider than twice the angle the mean of the suns is within the angle of
+    /// them all, but for steps that the horizon cuts short; what is farther gets a direction of its own.
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] for an angle outside its range, and where there is no day.
@@ -98,7 +99,7 @@ impl SunSchedule {
         let step_count: usize = days.iter().map(|day| day.steps.len()).sum();
         let angle = match binning {
             Binning::Exact => None,
-            Binning::Auto => (step_count > MOST_EXACT).then_some(USUAL_ANGLE),
+            Binning::Auto => (step_count > MAX_EXACT).then_some(USUAL_ANGLE),
             Binning::Within(angle) => Some(checked(angle)?),
         };
         let mut schedule = Self {
@@ -121,11 +122,12 @@ impl SunSchedule {
         Ok(schedule)
     }
 
-    /// The schedule of `days` with `directions` that are there already, (D, 3) unit vectors: each sun is stood for by the next of them.
+    /// The schedule of `days` with `directions` that are there already, (D, 3) unit vectors: each sun is stood for by
+    /// the next of them.
     ///
     /// # Errors
-    /// [`Error::InvalidParameter`] where there is no day, for an angle that is not above 0 to 5°, and for a sun that stands farther than
-    /// `angle`, radians, from all directions.
+    /// [`Error::InvalidParameter`] where there is no day, for an angle that is not above 0 to 5°, and for a sun that
+    /// stands farther than `angle`, radians, from all directions.
     pub fn among(days: &[SunDay], directions: &[[f64; 3]], angle: f64) -> Result<Self> {
         // the checks of a schedule that shares suns are those here
         let mut schedule = Self::new(days, Binning::Exact)?;
@@ -152,7 +154,8 @@ impl SunSchedule {
         Ok(schedule)
     }
 
-    /// Azimuth clockwise from grid north, 0 to 2π, and elevation of a direction, radians; NaN for one that is not there.
+    /// Azimuth clockwise from grid north, 0 to 2π, and elevation of a direction, radians; NaN for one that is not
+    /// there.
     #[must_use]
     pub fn grid_azimuth_and_elevation(&self, direction: usize) -> [f64; 2] {
         let Some(&[east, north, up]) = self.directions.get(direction) else { return [f64::NAN; 2] };
@@ -191,7 +194,8 @@ impl SunSchedule {
         }
         members.sort_by_key(|(key, member)| (*key, member.day, member.step));
         let [mut squares, mut weights] = [0.0, 0.0];
-        // by row, by how many directions the step has already, by step: so most steps of a day have directions in one run
+        // by row, by how many directions the step has already, by step: so most steps of a day have directions in one
+        // run
         let mut places: Vec<(u32, u32, u32)> = Vec::new();
         for shared in members.chunk_by(|a, b| a.0 == b.0) {
             let mut left: Vec<&Member> = shared.iter().map(|(_, member)| member).collect();

@@ -42,9 +42,10 @@ pub enum SiteFrom {
 impl Site {
     /// The site of a scene: the middle of its `bounds`.
     ///
-    /// Where it lies on earth follows from `location`, latitude and longitude in radians, where given; else from the reference system of
-    /// `frame`; else from `elsewhere`, such as the place of a weather station. The height is that of the middle of the scene, and the
-    /// axes of its grid lie as its reference system says, whatever names the place; along the meridian where that is not known.
+    /// Where it lies on earth follows from `location`, latitude and longitude in radians, where given; else from the
+    /// reference system of `frame`; else from `elsewhere`, such as the place of a weather station. The height is that
+    /// of the middle of the scene, and the axes of its grid lie as its reference system says, whatever names the place;
+    /// along the meridian where that is not known.
     ///
     /// # Errors
     /// Those of [`Site::of`] where nothing says where the scene lies, and of [`Site::validate`].
@@ -76,8 +77,8 @@ impl Site {
         EARTH_RADIUS * north.hypot(east)
     }
 
-    /// The site at `position`, (x, y) metres in the system `crs`, with the convergence there, at a height in metres, of which no more than
-    /// the range is taken: heights of a cloud may be wild, and matter little.
+    /// The site at `position`, (x, y) metres in the system `crs`, with the convergence there, at a height in metres, of
+    /// which no more than the range is taken: heights of a cloud may be wild, and matter little.
     ///
     /// # Errors
     /// [`Error::MissingAttribute`] for a cloud that does not say where on earth it lies, and those of
@@ -101,7 +102,8 @@ impl Site {
     /// The same site with its longitude within ±π.
     ///
     /// # Errors
-    /// [`Error::InvalidParameter`] for what is out of range or not finite; longitudes of up to one more turn are taken back.
+    /// [`Error::InvalidParameter`] for what is out of range or not finite; longitudes of up to one more turn are taken
+    /// back.
     pub fn validate(self) -> Result<Self> {
         let invalid = |parameter, value: f64, expected| {
             Err(Error::InvalidParameter { parameter, value: value.to_string(), expected })

@@ -1,4 +1,5 @@
-//! Instants, dates and zones as people write them, by the crate `jiff` and the zones it holds: no file of the system is asked.
+//! Instants, dates and zones as people write them, by the crate `jiff` and the zones it holds: no file of the system is
+//! asked.
 
 use super::Site;
 use belvedere_data::{Error, Parameter, Result};
@@ -72,8 +73,8 @@ impl Zone {
         timestamp(unix_s).map_or(0.0, |t| f64::from(self.zone.to_offset(t).seconds()))
     }
 
-    /// An instant as its clocks and calendar show it, to the second, with the offset: "2026-06-21T12:00:00+02:00"; empty for instants that
-    /// no calendar holds.
+    /// An instant as its clocks and calendar show it, to the second, with the offset: "2026-06-21T12:00:00+02:00";
+    /// empty for instants that no calendar holds.
     #[must_use]
     pub fn display(&self, unix_s: f64) -> String {
         let Some(t) = timestamp(unix_s.round()) else { return String::new() };
@@ -98,9 +99,9 @@ impl Zone {
         Ok(Date(self.zone.to_datetime(t).date()))
     }
 
-    /// The instant at which its clocks show an hour of a date: hours are added to the midnight of the calendar, so that they are what clocks
-    /// show, summer time or not. Where clocks jump over the hour, what the hour would have been by the time before; where they show it
-    /// twice, the first.
+    /// The instant at which its clocks show an hour of a date: hours are added to the midnight of the calendar, so that
+    /// they are what clocks show, summer time or not. Where clocks jump over the hour, what the hour would have been by
+    /// the time before; where they show it twice, the first.
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] for an hour that is not from −48 to 48, and at the end of the calendar.
@@ -200,12 +201,13 @@ impl fmt::Display for Date {
 }
 
 /// An instant written by ISO 8601, as seconds of UTC since 1970: "2026-06-21T12:00+02:00", "2026-06-21T10:00Z",
-/// "2026-06-21T12:00[Europe/Amsterdam]", or with neither where a `zone` is given. A blank may stand for the T, seconds may have a fraction,
-/// and a leap second 23:59:60 counts as the second before it, as UTC since 1970 has none.
+/// "2026-06-21T12:00[Europe/Amsterdam]", or with neither where a `zone` is given. A blank may stand for the T, seconds
+/// may have a fraction, and a leap second 23:59:60 counts as the second before it, as UTC since 1970 has none.
 ///
 /// # Errors
-/// [`Error::InvalidParameter`] for what is no instant; for times without zone or offset where `zone` is `None`; where offset and named zone
-/// contradict each other; and for times that clocks skip or show twice when summer time begins or ends: an offset tells which is meant.
+/// [`Error::InvalidParameter`] for what is no instant; for times without zone or offset where `zone` is `None`; where
+/// offset and named zone contradict each other; and for times that clocks skip or show twice when summer time begins or
+/// ends: an offset tells which is meant.
 pub fn parse_instant(text: &str, zone: Option<&Zone>) -> Result<f64> {
     let text = text.trim();
     let invalid = |expected| Error::InvalidParameter { parameter: Parameter::Time, value: shortened(text), expected };

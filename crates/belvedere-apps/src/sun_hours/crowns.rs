@@ -1,6 +1,6 @@
 //! Hours of sun where crowns of trees let a share of it through.
 
-use super::stretches::{Lit, Run, runs_of};
+use super::stretches::{DayStretch, Lit, runs_of};
 use super::{CHUNK, ROUNDING, SunHours, SunHoursParams, sun_hours};
 use crate::sun::SunSchedule;
 use belvedere_core::query::VisibilityMatrix;
@@ -8,14 +8,15 @@ use belvedere_data::vector::dot;
 use belvedere_data::{Error, Parameter, Result};
 use rayon::prelude::*;
 
-/// As [`sun_hours`], where only vegetation stands in the way of a sun an hour counting as much as crowns let through on that day:
-/// `transmissivities`, 0 to 1, has one for each day of `schedule`. `all` is the matrix of all balls, `opaque` that of those that are not
-/// vegetation, of the same targets and directions. Hours, share, the least day and the days that suffice are those of the light that
-/// arrives; first, last and longest are of the sun that nothing stands before, since light through leaves has no such hour.
+/// As [`sun_hours`], where only vegetation stands in the way of a sun an hour counting as much as crowns let through on
+/// that day: `transmissivities`, 0 to 1, has one for each day of `schedule`. `all` is the matrix of all balls, `opaque`
+/// that of those that are not vegetation, of the same targets and directions. Hours, share, the least day and the days
+/// that suffice are those of the light that arrives; first, last and longest are of the sun that nothing stands before,
+/// since light through leaves has no such hour.
 ///
 /// # Errors
-/// Those of [`sun_hours`], [`Error::LengthMismatch`] where the matrices differ or there is not a share for each day, and
-/// [`Error::InvalidParameter`] for a share outside 0 to 1.
+/// Those of [`sun_hours`], [`Error::LengthMismatch`] where the matrices differ or there is not a share for each day,
+/// and [`Error::InvalidParameter`] for a share outside 0 to 1.
 pub fn sun_hours_through_crowns(
     all: &VisibilityMatrix,
     opaque: &VisibilityMatrix,
@@ -39,9 +40,10 @@ pub fn sun_hours_through_crowns(
             expected: "0 (opaque) to 1",
         });
     }
-    let days: Vec<(Vec<Run>, f64)> = schedule.days.iter().map(runs_of).zip(transmissivities.iter().copied()).collect();
+    let days: Vec<(Vec<DayStretch>, f64)> =
+        schedule.days.iter().map(runs_of).zip(transmissivities.iter().copied()).collect();
     let count = schedule.directions.len();
-    let sums: Vec<Sum> = (0..all.target_count())
+    let sums: Vec<CrownSum> = (0..all.target_count())
         .into_par_iter()
         .with_min_len(CHUNK)
         .map_init(
@@ -54,35 +56,35 @@ pub fn sun_hours_through_crowns(
                         faces && matrix.is_free(target, params.first_direction + number)
                     });
                 }
-                Sum::over(&days, free, through, params.sufficient_hours - ROUNDING)
+                CrownSum::over(&days, free, through, params.sufficient_hours - ROUNDING)
             },
         )
         .collect();
     let (day_count, possible) = (schedule.days.len().max(1) as f64, schedule.possible_hours());
     #[expect(clippy::cast_possible_truncation, reason = "hours of a day and shares of one")]
-    let column = |of: &dyn Fn(&Sum) -> f64| sums.iter().map(|sum| of(sum) as f32).collect();
+    let column = |of: &dyn Fn(&CrownSum) -> f64| sums.iter().map(|sum| of(sum) as f32).collect();
     found.hours = column(&|sum| sum.total / day_count);
     found.share = column(&|sum| if possible > 0.0 { (sum.total / possible).min(1.0) } else { f64::NAN });
-    found.least = column(&|sum| sum.least);
+    found.min = column(&|sum| sum.min);
     found.days = sums.iter().map(|sum| sum.days).collect();
     Ok(found)
 }
 
 /// What is summed up at one target.
-struct Sum {
+struct CrownSum {
     total: f64,
-    least: f64,
+    min: f64,
     days: u32,
 }
 
-impl Sum {
-    fn over(days: &[(Vec<Run>, f64)], free: &Lit, through: &Lit, sufficient: f64) -> Self {
-        let mut sum = Self { total: 0.0, least: 24.0, days: 0 };
+impl CrownSum {
+    fn over(days: &[(Vec<DayStretch>, f64)], free: &Lit, through: &Lit, sufficient: f64) -> Self {
+        let mut sum = Self { total: 0.0, min: 24.0, days: 0 };
         for (runs, share) in days {
             let [free, through] = [free, through].map(|lit| runs.iter().map(|run| lit_hours(run, lit)).sum::<f64>());
             let hours = free + share * (through - free);
             sum.total += hours;
-            sum.least = sum.least.min(hours);
+            sum.min = sum.min.min(hours);
             sum.days += u32::from(hours >= sufficient);
         }
         sum
@@ -90,7 +92,7 @@ impl Sum {
 }
 
 /// Hours of a run that are lit.
-fn lit_hours(run: &Run, lit: &Lit) -> f64 {
+fn lit_hours(run: &DayStretch, lit: &Lit) -> f64 {
     let (mut hours, mut from) = (0.0, run.first);
     while from < run.end {
         let start = lit.next_lit(from).min(run.end);

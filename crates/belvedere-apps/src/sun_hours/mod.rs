@@ -1,4 +1,5 @@
-//! How long the sun reaches a place: hours and share of a day or of many days, first and last light, longest stretch, rules.
+//! How long the sun reaches a place: hours and share of a day or of many days, first and last light, longest stretch,
+//! rules.
 
 mod crowns;
 mod plan;
@@ -14,7 +15,7 @@ use belvedere_core::query::VisibilityMatrix;
 use belvedere_data::vector::dot;
 use belvedere_data::{Error, Parameter, Result};
 use rayon::prelude::*;
-use stretches::{Lit, Run, runs_of};
+use stretches::{DayStretch, Lit, runs_of};
 
 /// What rasters of hours of sun, and of whether a rule is met, say of themselves.
 pub const SUN_HOURS: &str = "hours of sun a day";
@@ -23,7 +24,8 @@ pub const RULE_IS_MET: &str = "rule is met";
 
 /// Targets handed to a thread at once.
 const CHUNK: usize = 64;
-/// By how much the hours of a day may stay below what is asked and yet suffice, hours: what f32 rounds in a sum of steps.
+/// By how much the hours of a day may stay below what is asked and yet suffice, hours: what f32 rounds in a sum of
+/// steps.
 const ROUNDING: f64 = 1e-4;
 
 /// The sun at each of many targets over the days of a [`SunSchedule`]; each array has a value for each target, (M).
@@ -33,15 +35,15 @@ pub struct SunHours {
     pub hours: Vec<f32>,
     /// Share of the hours of sun above a flat horizon, 0 to 1; NaN where the sun does not rise on any day.
     pub share: Vec<f32>,
-    /// When the sun first arrives, hours on the clocks of the zone: the earliest of the days; NaN where it never does. True to within a
-    /// step.
+    /// When the sun first arrives, hours on the clocks of the zone: the earliest of the days; NaN where it never does.
+    /// True to within a step.
     pub first: Vec<f32>,
     /// When it last leaves: the latest of the days; NaN where it never came.
     pub last: Vec<f32>,
     /// Longest stretch without a break on any day, hours.
     pub longest: Vec<f32>,
     /// Hours on the day with the least.
-    pub least: Vec<f32>,
+    pub min: Vec<f32>,
     /// Number of days on which the hours suffice.
     pub days: Vec<u32>,
 }
@@ -54,7 +56,7 @@ impl SunHours {
         self.first.extend(other.first);
         self.last.extend(other.last);
         self.longest.extend(other.longest);
-        self.least.extend(other.least);
+        self.min.extend(other.min);
         self.days.extend(other.days);
     }
 }
@@ -80,12 +82,13 @@ impl Default for SunHoursParams {
     }
 }
 
-/// Sums up when the suns of `schedule` reach each target of `matrix`, whose columns from `first_direction` on are the directions of the
-/// schedule. `normals`, (M, 3) unit vectors, are given for surfaces, which a sun behind them does not light; with `None` a target is lit
-/// from all sides.
+/// Sums up when the suns of `schedule` reach each target of `matrix`, whose columns from `first_direction` on are the
+/// directions of the schedule. `normals`, (M, 3) unit vectors, are given for surfaces, which a sun behind them does not
+/// light; with `None` a target is lit from all sides.
 ///
 /// # Errors
-/// [`Error::LengthMismatch`] where matrix, schedule and normals differ, [`Error::InvalidParameter`] for hours outside their range.
+/// [`Error::LengthMismatch`] where matrix, schedule and normals differ, [`Error::InvalidParameter`] for hours outside
+/// their range.
 pub fn sun_hours(
     matrix: &VisibilityMatrix,
     schedule: &SunSchedule,
@@ -108,8 +111,8 @@ pub fn sun_hours(
     let sufficient = params.sufficient_hours - ROUNDING;
     let day_count = schedule.days.len().max(1) as f64;
     let possible = schedule.possible_hours();
-    let days: Vec<Vec<Run>> = schedule.days.iter().map(runs_of).collect();
-    let sums: Vec<Sum> = (0..matrix.target_count())
+    let days: Vec<Vec<DayStretch>> = schedule.days.iter().map(runs_of).collect();
+    let sums: Vec<TargetSum> = (0..matrix.target_count())
         .into_par_iter()
         .with_min_len(CHUNK)
         .map_init(
@@ -120,38 +123,38 @@ pub fn sun_hours(
                     let faces = normal.is_none_or(|normal| dot(normal, schedule.directions[number]) > 0.0);
                     faces && matrix.is_free(target, columns.start + number)
                 });
-                Sum::over(&days, lit, sufficient)
+                TargetSum::over(&days, lit, sufficient)
             },
         )
         .collect();
     #[expect(clippy::cast_possible_truncation, reason = "hours of a day and shares of one")]
-    let column = |of: &dyn Fn(&Sum) -> f64| sums.iter().map(|sum| of(sum) as f32).collect();
-    let if_lit = |sum: &Sum, value: f64| if sum.total > 0.0 { value } else { f64::NAN };
+    let column = |of: &dyn Fn(&TargetSum) -> f64| sums.iter().map(|sum| of(sum) as f32).collect();
+    let if_lit = |sum: &TargetSum, value: f64| if sum.total > 0.0 { value } else { f64::NAN };
     Ok(SunHours {
         hours: column(&|sum| sum.total / day_count),
         share: column(&|sum| if possible > 0.0 { (sum.total / possible).min(1.0) } else { f64::NAN }),
         first: column(&|sum| if_lit(sum, f64::from(sum.first))),
         last: column(&|sum| if_lit(sum, f64::from(sum.last))),
         longest: column(&|sum| f64::from(sum.longest)),
-        least: column(&|sum| sum.least),
+        min: column(&|sum| sum.min),
         days: sums.iter().map(|sum| sum.days).collect(),
     })
 }
 
 /// What is summed up at one target.
-struct Sum {
+struct TargetSum {
     total: f64,
-    least: f64,
+    min: f64,
     first: f32,
     last: f32,
     longest: f32,
     days: u32,
 }
 
-impl Sum {
-    fn over(days: &[Vec<Run>], lit: &Lit, sufficient: f64) -> Self {
+impl TargetSum {
+    fn over(days: &[Vec<DayStretch>], lit: &Lit, sufficient: f64) -> Self {
         let mut sum =
-            Self { total: 0.0, least: 24.0, first: f32::INFINITY, last: f32::NEG_INFINITY, longest: 0.0, days: 0 };
+            Self { total: 0.0, min: 24.0, first: f32::INFINITY, last: f32::NEG_INFINITY, longest: 0.0, days: 0 };
         for runs in days {
             let [mut hours, mut stretch] = [0.0_f32; 2];
             for run in runs {
@@ -176,7 +179,7 @@ impl Sum {
             }
             let hours = f64::from(hours);
             sum.total += hours;
-            sum.least = sum.least.min(hours);
+            sum.min = sum.min.min(hours);
             sum.days += u32::from(hours >= sufficient);
         }
         sum

@@ -1,10 +1,10 @@
 //! Suns of a period and of rules, asked about together, and the measures that follow.
 
 use super::{RULE_IS_MET, SUN_HOURS, SunHours, SunHoursParams, SunRule, sun_hours, sun_hours_through_crowns};
-use crate::rows::{RowBlock, Surroundings, check_normals, fold_rows, normals_of};
+use crate::rows::{RowBlock, SkyObstacles, check_normals, fold_rows, normals_of};
 use crate::sun::{Site, SunSchedule};
 use crate::targets::{Measure, ResultKind, Targets};
-use crate::tree_light::{Crowns, Season};
+use crate::tree_light::{CrownLight, Season};
 use belvedere_data::control::Control;
 use belvedere_data::{Error, Result};
 
@@ -29,8 +29,8 @@ pub struct SunPlan {
 }
 
 impl SunPlan {
-    /// A plan for the suns of `period` and of `rules`, each with the name of its column and its suns. Rules whose directions are those of the
-    /// period share them.
+    /// A plan for the suns of `period` and of `rules`, each with the name of its column and its suns. Rules whose
+    /// directions are those of the period share them.
     #[must_use]
     pub fn new(period: SunSchedule, rules: Vec<(String, SunRule, SunSchedule)>) -> Self {
         let mut directions = period.directions.clone();
@@ -77,9 +77,9 @@ pub struct SunSums {
 }
 
 impl SunSums {
-    /// Adds the targets of `block`, whose columns are the directions of `plan` and which follow those added before. `normals`, (M, 3), are
-    /// those of all targets. Where `block` says what is seen without trees, `crowns` with the site say what share of the light of each
-    /// day these let through.
+    /// Adds the targets of `block`, whose columns are the directions of `plan` and which follow those added before.
+    /// `normals`, (M, 3), are those of all targets. Where `block` says what is seen without trees, `crowns` with the
+    /// site say what share of the light of each day these let through.
     ///
     /// # Errors
     /// Those of [`sun_hours`] and [`sun_hours_through_crowns`].
@@ -88,7 +88,7 @@ impl SunSums {
         plan: &SunPlan,
         block: &RowBlock,
         normals: Option<&[[f32; 3]]>,
-        crowns: Option<(Crowns, &Site)>,
+        crowns: Option<(CrownLight, &Site)>,
     ) -> Result<()> {
         let normals = normals_of(normals, &block.rows);
         let of = |schedule: &SunSchedule, params: &SunHoursParams| match (&block.without_trees, crowns) {
@@ -109,12 +109,13 @@ impl SunSums {
         Ok(())
     }
 
-    /// All figures as measures of `targets`: `sun_hours`, `sun_share`, `first_light`, `last_light`, `longest`; of several days also
-    /// `min_sun_hours` and `total_hours`; and for each rule whether it is met on all of its days, 1 or 0.
+    /// All figures as measures of `targets`: `sun_hours`, `sun_share`, `first_light`, `last_light`, `longest`; of
+    /// several days also `min_sun_hours` and `total_hours`; and for each rule whether it is met on all of its days, 1
+    /// or 0.
     #[must_use]
     pub fn into_measures(self, plan: &SunPlan, targets: &Targets) -> Vec<Measure> {
-        let most = plan.period.days.iter().map(|day| day.possible_hours).fold(0.0, f64::max);
-        let hours = Some([0.0, most.max(0.1)]);
+        let max = plan.period.days.iter().map(|day| day.possible_hours).fold(0.0, f64::max);
+        let hours = Some([0.0, max.max(0.1)]);
         let (clock, share) = (Some([0.0, 24.0]), Some([0.0, 1.0]));
         let measure = |name: &str, description, range, values| {
             Measure::new(name, values).with_description(description).with_decimals(3).with_range(range)
@@ -132,7 +133,7 @@ impl SunSums {
             measure("longest", "longest uninterrupted sun, hours", hours, self.period.longest),
         ];
         if day_count > 1 {
-            measures.push(measure("min_sun_hours", "hours of the day with the least sun", hours, self.period.least));
+            measures.push(measure("min_sun_hours", "hours of the day with the least sun", hours, self.period.min));
             measures.push(measure("total_hours", "hours of sun in all", None, total));
         }
         for (planned, found) in plan.rules.iter().zip(self.rules) {
@@ -145,13 +146,13 @@ impl SunSums {
     }
 }
 
-/// The sun of `plan` at each of `targets` among `obstacles`. Where trees let light through, `site` says when they carry leaves. Progress counts
-/// targets, once or twice each.
+/// The sun of `plan` at each of `targets` among `obstacles`. Where trees let light through, `site` says when they carry
+/// leaves. Progress counts targets, once or twice each.
 ///
 /// # Errors
 /// Those of [`fold_rows`] and [`SunSums::add`], and [`Error::MissingAttribute`] for trees without a site.
 pub fn scene_sun_hours<'a>(
-    obstacles: impl Into<Surroundings<'a>>,
+    obstacles: impl Into<SkyObstacles<'a>>,
     targets: &Targets,
     plan: &SunPlan,
     site: Option<&Site>,

@@ -28,17 +28,17 @@ pub struct SunRule {
     /// Hours of sun that a day must have, 0 to 24.
     pub hours: f64,
     /// Elevation of the sun from which on hours count, radians.
-    pub least_elevation: f64,
+    pub min_elevation: f64,
 }
 
 /// A rule with a name: name, name of its column, days, hours, least elevation in degrees, what it asks for.
-struct Named(&'static str, &'static str, RuleDays, f64, f64, &'static str);
+struct NamedRule(&'static str, &'static str, RuleDays, f64, f64, &'static str);
 
 const EIGHT_MONTHS: RuleDays = RuleDays::Each([[2, 19], [10, 21]]);
 
-const NAMED: [Named; 4] = [
-    Named("nl-light", "nl_light", EIGHT_MONTHS, 2.0, 0.0, "2 h a day from 19 February to 21 October (TNO, light)"),
-    Named(
+const NAMED: [NamedRule; 4] = [
+    NamedRule("nl-light", "nl_light", EIGHT_MONTHS, 2.0, 0.0, "2 h a day from 19 February to 21 October (TNO, light)"),
+    NamedRule(
         "nl-strict",
         "nl_strict",
         RuleDays::Each([[1, 21], [11, 22]]),
@@ -46,7 +46,7 @@ const NAMED: [Named; 4] = [
         0.0,
         "3 h a day from 21 January to 22 November (TNO, strict)",
     ),
-    Named(
+    NamedRule(
         "the-hague",
         "the_hague",
         EIGHT_MONTHS,
@@ -54,7 +54,7 @@ const NAMED: [Named; 4] = [
         10.0,
         "2 h a day from 19 February to 21 October with the sun above 10 degrees (The Hague)",
     ),
-    Named(
+    NamedRule(
         "bre-equinox",
         "bre_equinox",
         RuleDays::On([3, 21]),
@@ -70,21 +70,22 @@ impl SunRule {
         NAMED.iter().map(|named| (named.0, named.1))
     }
 
-    /// A rule by its name, or one's own, written as HOURS@DAYS with days as in [`RuleDays::parse`], and where low suns do not count, with
-    /// the least elevation in degrees behind a sign: "2@02-19..10-21>10".
+    /// A rule by its name, or one's own, written as HOURS@DAYS with days as in [`RuleDays::parse`], and where low suns
+    /// do not count, with the least elevation in degrees behind a sign: "2@02-19..10-21>10".
     ///
     /// # Errors
-    /// [`Error::InvalidParameter`] for a name that is not known, and for days, hours (above 0 to 24) and elevations (0 to below 90°) that do
-    /// not exist.
+    /// [`Error::InvalidParameter`] for a name that is not known, and for days, hours (above 0 to 24) and elevations (0
+    /// to below 90°) that do not exist.
     pub fn parse(text: &str) -> Result<Self> {
         let text = text.trim();
-        if let Some(Named(name, _, days, hours, degrees, description)) = NAMED.iter().find(|named| named.0 == text) {
+        if let Some(NamedRule(name, _, days, hours, degrees, description)) = NAMED.iter().find(|named| named.0 == text)
+        {
             return Ok(Self {
                 name: (*name).to_owned(),
                 description: (*description).to_owned(),
                 days: *days,
                 hours: *hours,
-                least_elevation: degrees.to_radians(),
+                min_elevation: degrees.to_radians(),
             });
         }
         Self::of_text(text).ok_or_else(|| Error::InvalidParameter {
@@ -102,14 +103,14 @@ impl SunRule {
             None => (rest, 0.0_f64),
         };
         let days = RuleDays::parse(days)?;
-        let (name, description) = (text.to_owned(), format!("{hours} h {}", told(days, degrees)));
-        Some(Self { name, description, days, hours, least_elevation: degrees.to_radians() })
+        let (name, description) = (text.to_owned(), format!("{hours} h {}", described(days, degrees)));
+        Some(Self { name, description, days, hours, min_elevation: degrees.to_radians() })
     }
 }
 
 impl RuleDays {
-    /// Days written as MM-DD or MM-DD..MM-DD, or by a name: "equinox" (21 March, as rules have it), "shortest-day" or "winter-solstice",
-    /// "longest-day" or "summer-solstice"; `None` for what is neither.
+    /// Days written as MM-DD or MM-DD..MM-DD, or by a name: "equinox" (21 March, as rules have it), "shortest-day" or
+    /// "winter-solstice", "longest-day" or "summer-solstice"; `None` for what is neither.
     #[must_use]
     pub fn parse(text: &str) -> Option<Self> {
         match text {
@@ -124,8 +125,8 @@ impl RuleDays {
         })
     }
 
-    /// These days in a year, in the order of the calendar, of a span over the turn of the year its end first. 29 February is 28 February in
-    /// years without.
+    /// These days in a year, in the order of the calendar, of a span over the turn of the year its end first. 29
+    /// February is 28 February in years without.
     ///
     /// # Errors
     /// Those of [`Date::new`], and of the position of the sun.
@@ -169,7 +170,7 @@ fn month_and_day(text: &str) -> Option<[i8; 2]> {
     Some([date.month(), date.day()])
 }
 
-fn told(days: RuleDays, degrees: f64) -> String {
+fn described(days: RuleDays, degrees: f64) -> String {
     let day = |[month, day]: [i8; 2]| format!("{month:02}-{day:02}");
     let days = match days {
         RuleDays::On(one) => format!("on {}", day(one)),

@@ -1,4 +1,5 @@
-//! Stretches of light: steps that follow each other are counted at once, so that a day costs as much as the sun comes and goes.
+//! Stretches of light: steps that follow each other are counted at once, so that a day costs as much as the sun comes
+//! and goes.
 
 use crate::sun::DayOfLight;
 
@@ -7,7 +8,7 @@ const EQUAL: f32 = 1e-5;
 
 /// Steps of a day that follow each other without gap, are equally long and have directions that follow each other.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Run {
+pub(super) struct DayStretch {
     /// Direction of the first step.
     pub(super) first: u32,
     /// One beyond the direction of the last.
@@ -21,14 +22,14 @@ pub(super) struct Run {
 }
 
 /// The runs that make up a day.
-pub(super) fn runs_of(day: &DayOfLight) -> Vec<Run> {
-    let mut runs: Vec<Run> = Vec::new();
+pub(super) fn runs_of(day: &DayOfLight) -> Vec<DayStretch> {
+    let mut runs: Vec<DayStretch> = Vec::new();
     for step in &day.steps {
         match runs.last_mut() {
             Some(run) if step.continues && step.direction == run.end && (step.hours - run.hours).abs() < EQUAL => {
                 run.end += 1;
             }
-            _ => runs.push(Run {
+            _ => runs.push(DayStretch {
                 first: step.direction,
                 end: step.direction + 1,
                 start: step.start,

@@ -1,6 +1,6 @@
 //! Cells of a grid on the ground, or on top of what stands on it.
 
-use super::{Layout, Targets};
+use super::{TargetLayout, Targets};
 use crate::sky_view::SKY_TARGET_HEIGHT;
 use crate::viewshed::cell_targets;
 use belvedere_core::ground::{Ground, GroundParams, MapGrid, SurfaceParams, hidden_ground, top_surface};
@@ -79,7 +79,8 @@ impl Targets {
     /// another cover is left out.
     ///
     /// # Errors
-    /// [`Error::InvalidParameter`] for a height that is negative or not finite, those of [`top_surface`], and [`Error::Cancelled`].
+    /// [`Error::InvalidParameter`] for a height that is negative or not finite, those of [`top_surface`], and
+    /// [`Error::Cancelled`].
     pub fn of_cells(
         cloud: &PointCloud,
         mut ground: Ground,
@@ -108,13 +109,13 @@ impl Targets {
                 report.cells_below_objects_excluded += 1;
             }
         }
-        Ok((Self::at(cloud.frame.clone(), positions, None, Layout::Cells(Box::new(ground))), report))
+        Ok((Self::at(cloud.frame.clone(), positions, None, TargetLayout::Cells(Box::new(ground))), report))
     }
 
-    /// Sets cells made with `params` on the meshes that were added: those on a surface on top of what is higher, cloud or mesh. Cells on the
-    /// ground inside a mesh are left out; returns how many.
+    /// Sets cells made with `params` on the meshes that were added: those on a surface on top of what is higher, cloud
+    /// or mesh. Cells on the ground inside a mesh are left out; returns how many.
     pub fn set_on_added(&mut self, added: &AddedMeshes, params: &CellParams) -> usize {
-        let Layout::Cells(ground) = &mut self.layout else { return 0 };
+        let TargetLayout::Cells(ground) = &mut self.layout else { return 0 };
         if params.level == CellLevel::Surface {
             added.raise(&mut ground.heights, &ground.grid);
             self.positions = cell_targets(ground, params.height);

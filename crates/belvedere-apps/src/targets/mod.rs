@@ -1,15 +1,16 @@
-//! What is asked about: cells of a grid, points, pieces of a surface, places along routes and on windows, all as one type.
+//! What is asked about: cells of a grid, points, pieces of a surface, places along routes and on windows, all as one
+//! type.
 //!
 //! | targets | made by |
 //! |---|---|
-//! | cells on the ground or on what stands on it | [`Targets::ground_cells`], [`Targets::surface_cells`], [`Targets::of_cells`] |
+//! | cells on ground or obstacles | [`Targets::ground_cells`], [`Targets::surface_cells`], [`Targets::of_cells`] |
 //! | points of a cloud or of a file | [`Targets::of_points`], [`Targets::of_places`] |
 //! | faces of a mesh, in pieces | [`Targets::of_mesh`] |
 //! | places along routes | [`Targets::along_routes`] |
 //! | windows with a size, faces as windows | [`Targets::of_windows`], [`Targets::of_window_faces`] |
 //!
-//! Results are [`Measure`]s with a value for each target. A target without a position (NaN: no ground is known, or it lies inside an obstacle)
-//! has no value.
+//! Results are [`Measure`]s with a value for each target. A target without a position (NaN: no ground is known, or it
+//! lies inside an obstacle) has no value.
 
 mod cells;
 mod measure;
@@ -52,12 +53,12 @@ pub struct Targets {
     /// Rows of the targets of each route, window or object; empty where each target is on its own.
     pub groups: Vec<Range<usize>>,
     /// What targets are.
-    pub layout: Layout,
+    pub layout: TargetLayout,
 }
 
 /// What targets are, with what is needed to write their values.
 #[derive(Clone, Debug)]
-pub enum Layout {
+pub enum TargetLayout {
     /// Cells of a grid, row by row from the north, and the heights that they stand on.
     Cells(Box<Ground>),
     /// Points.
@@ -70,16 +71,16 @@ impl Targets {
     /// The points of `cloud`, all of them and in their order. They are turned as `normals`, (M, 3), say; level without.
     #[must_use]
     pub fn of_points(cloud: &PointCloud, normals: Option<Vec<[f32; 3]>>) -> Self {
-        Self::at(cloud.frame.clone(), cloud.positions.clone(), normals, Layout::Points)
+        Self::at(cloud.frame.clone(), cloud.positions.clone(), normals, TargetLayout::Points)
     }
 
     /// Places in local metres, level; one that is not finite is not asked about.
     #[must_use]
     pub fn of_places(places: &[[f64; 3]], frame: Frame) -> Self {
-        Self::at(frame, places.iter().map(|&place| to_f32(place)).collect(), None, Layout::Points)
+        Self::at(frame, places.iter().map(|&place| to_f32(place)).collect(), None, TargetLayout::Points)
     }
 
-    fn at(frame: Frame, positions: Vec<[f32; 3]>, normals: Option<Vec<[f32; 3]>>, layout: Layout) -> Self {
+    fn at(frame: Frame, positions: Vec<[f32; 3]>, normals: Option<Vec<[f32; 3]>>, layout: TargetLayout) -> Self {
         Self { frame, positions, normals, weights: Vec::new(), groups: Vec::new(), layout }
     }
 
@@ -97,21 +98,21 @@ impl Targets {
 
     /// Whether a target is asked about: it has a position.
     #[must_use]
-    pub fn is_asked(&self, row: usize) -> bool {
+    pub fn is_target(&self, row: usize) -> bool {
         self.positions.get(row).is_some_and(|position| position.iter().all(|v| v.is_finite()))
     }
 
     /// Number of targets that are asked about.
     #[must_use]
-    pub fn asked_count(&self) -> usize {
-        (0..self.len()).filter(|&row| self.is_asked(row)).count()
+    pub fn target_count(&self) -> usize {
+        (0..self.len()).filter(|&row| self.is_target(row)).count()
     }
 
     /// The ground below cells; `None` where targets are no cells.
     #[must_use]
     pub fn ground(&self) -> Option<&Ground> {
         match &self.layout {
-            Layout::Cells(ground) => Some(ground),
+            TargetLayout::Cells(ground) => Some(ground),
             _ => None,
         }
     }
@@ -147,8 +148,8 @@ impl Targets {
     pub fn leave_out_enclosed(&mut self, scene: &MedialScene, control: &Control<'_>) -> Result<usize> {
         let is_enclosed = |position: &[f32; 3]| {
             control.check()?;
-            let is_asked = position.iter().all(|v| v.is_finite());
-            Ok(is_asked && scene.enclosure(position.map(f64::from)).ball_count > 0)
+            let is_target = position.iter().all(|v| v.is_finite());
+            Ok(is_target && scene.enclosure(position.map(f64::from)).ball_count > 0)
         };
         let enclosed: Vec<bool> = self.positions.par_iter().map(is_enclosed).collect::<Result<_>>()?;
         for (position, _) in self.positions.iter_mut().zip(&enclosed).filter(|(_, is_enclosed)| **is_enclosed) {
@@ -169,8 +170,8 @@ impl Targets {
         self.groups.iter().map(|group| group.clone().map(|row| self.weight(row)).sum()).collect()
     }
 
-    /// Mean of `values`, (M), over each group, by the weights of its targets; targets without a value do not count, and a group without any
-    /// value has NaN.
+    /// Mean of `values`, (M), over each group, by the weights of its targets; targets without a value do not count, and
+    /// a group without any value has NaN.
     #[must_use]
     pub fn group_means(&self, values: &[f32]) -> Vec<f64> {
         let mean = |group: &Range<usize>| {
@@ -224,7 +225,7 @@ mod tests {
 
     #[test]
     fn groups_weigh_their_known_targets_and_keep_their_extremes() {
-        let mut targets = Targets::at(Frame::default(), vec![[0.0; 3]; 6], None, Layout::Points);
+        let mut targets = Targets::at(Frame::default(), vec![[0.0; 3]; 6], None, TargetLayout::Points);
         targets.groups = vec![0..3, 3..5, 5..6];
         let values = [1.0, 4.0, f32::NAN, 2.0, 6.0, f32::NAN];
         // without weights all count alike
@@ -242,10 +243,10 @@ mod tests {
     #[test]
     fn targets_without_a_position_have_no_value() {
         let positions = vec![[0.0; 3], [f32::NAN, 0.0, 0.0], [1.0, 2.0, f32::INFINITY]];
-        let targets = Targets::at(Frame::default(), positions, None, Layout::Points);
+        let targets = Targets::at(Frame::default(), positions, None, TargetLayout::Points);
         let mut values = [1.0, 2.0, 3.0];
         targets.clear_unasked(&mut values);
         assert!(values[0] == 1.0 && values[1].is_nan() && values[2].is_nan());
-        assert_eq!((targets.len(), targets.asked_count()), (3, 1));
+        assert_eq!((targets.len(), targets.target_count()), (3, 1));
     }
 }

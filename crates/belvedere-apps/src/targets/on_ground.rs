@@ -8,8 +8,8 @@ use belvedere_data::Result;
 /// Ground made around places that need it, metres.
 const MARGIN: f64 = 10.0;
 
-/// A grid of default cells over the `places`, (N, 3) local metres, that have no height (NaN), with a margin of 10 m; `None` where all have
-/// one. `origin`, metres, is that of the frame.
+/// A grid of default cells over the `places`, (N, 3) local metres, that have no height (NaN), with a margin of 10 m;
+/// `None` where all have one. `origin`, metres, is that of the frame.
 ///
 /// # Errors
 /// Those of [`MapGrid::covering`].
@@ -30,8 +30,8 @@ pub fn grid_around(places: impl IntoIterator<Item = [f64; 3]>, origin: [f64; 3])
     MapGrid::covering(low, high, cell_for(low, high), [origin[0], origin[1]]).map(Some)
 }
 
-/// Gives each of `places`, local metres with its height above the ground, that has no height of its own (NaN) the one of the ground below plus
-/// that. Returns the numbers of those below which no ground is known.
+/// Gives each of `places`, local metres with its height above the ground, that has no height of its own (NaN) the one
+/// of the ground below plus that. Returns the numbers of those below which no ground is known.
 pub fn set_on_ground<'a>(places: impl IntoIterator<Item = (&'a mut [f64; 3], f64)>, ground: &Ground) -> Vec<usize> {
     let mut unknown = Vec::new();
     for (number, (place, height)) in places.into_iter().enumerate().filter(|(_, (place, _))| place[2].is_nan()) {
@@ -43,7 +43,8 @@ pub fn set_on_ground<'a>(places: impl IntoIterator<Item = (&'a mut [f64; 3], f64
     unknown
 }
 
-/// The same for places that lie beyond the cloud, on the far terrain of `model`: they stand on its raster. The height of the others stays.
+/// The same for places that lie beyond the cloud, on the far terrain of `model`: they stand on its raster. The height
+/// of the others stays.
 pub fn set_on_terrain<'a>(places: impl IntoIterator<Item = (&'a mut [f64; 3], f64)>, model: &SceneModel) {
     let (Some(coverage), Some(terrain)) = (model.coverage(), model.far_terrain().grid()) else { return };
     for (place, height) in places {

@@ -1,6 +1,6 @@
 //! Places along routes.
 
-use super::{Layout, Targets, to_f32};
+use super::{TargetLayout, Targets, to_f32};
 use crate::exposure::route_lengths;
 use belvedere_data::frame::Frame;
 
@@ -34,8 +34,8 @@ impl Route {
 }
 
 impl Targets {
-    /// The places of `routes`, one group each, weighted by the length of route that they stand for; a place without a height has no
-    /// weight.
+    /// The places of `routes`, one group each, weighted by the length of route that they stand for; a place without a
+    /// height has no weight.
     #[must_use]
     pub fn along_routes(routes: &[Route], frame: Frame) -> Self {
         let (mut positions, mut weights, mut groups) = (Vec::new(), Vec::new(), Vec::new());
@@ -46,7 +46,7 @@ impl Targets {
                 positions.push(to_f32(*place));
             }
         }
-        Self { weights, groups, ..Self::at(frame, positions, None, Layout::Points) }
+        Self { weights, groups, ..Self::at(frame, positions, None, TargetLayout::Points) }
     }
 }
 
@@ -62,6 +62,6 @@ mod tests {
         let targets = Targets::along_routes(&[route, single], Frame::default());
         assert_eq!(targets.weights, [2.5, 7.5, 0.0, 1.0]);
         assert_eq!(targets.groups, [0..3, 3..4]);
-        assert_eq!(targets.asked_count(), 3);
+        assert_eq!(targets.target_count(), 3);
     }
 }

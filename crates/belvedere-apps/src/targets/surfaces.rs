@@ -1,6 +1,6 @@
 //! Faces of a mesh as targets, and what their pieces say of faces and objects.
 
-use super::{Layout, Targets};
+use super::{TargetLayout, Targets};
 use belvedere_core::query::{MeshTargetParams, SurfacePieces};
 use belvedere_data::frame::Frame;
 use belvedere_data::{Mesh, Result};
@@ -52,7 +52,8 @@ pub struct FaceMeans {
 }
 
 impl Targets {
-    /// The faces of `mesh`, metres, cut into pieces. Each piece is a target that weighs its area; the pieces of a face are a group.
+    /// The faces of `mesh`, metres, cut into pieces. Each piece is a target that weighs its area; the pieces of a face
+    /// are a group.
     ///
     /// # Errors
     /// Those of [`SurfacePieces::of_mesh`].
@@ -70,7 +71,7 @@ impl Targets {
             let start = groups.last().map_or(0, |last| last.end);
             groups.push(start..start + run.len());
         }
-        let layout = Layout::Surface(surface);
+        let layout = TargetLayout::Surface(surface);
         Ok(Self { weights, groups, ..Self::at(frame.clone(), positions, normals, layout) })
     }
 
@@ -78,15 +79,15 @@ impl Targets {
     #[must_use]
     pub fn surface(&self) -> Option<&SurfacePieces> {
         match &self.layout {
-            Layout::Surface(surface) => Some(surface),
+            TargetLayout::Surface(surface) => Some(surface),
             _ => None,
         }
     }
 }
 
 impl FaceMeans {
-    /// The means of `values`, one for each piece of `surface`, over the faces of `mesh` and, by their area, over its objects. What has no
-    /// value does not count.
+    /// The means of `values`, one for each piece of `surface`, over the faces of `mesh` and, by their area, over its
+    /// objects. What has no value does not count.
     #[must_use]
     pub fn new(mesh: &Mesh, surface: &SurfacePieces, values: &[f32]) -> Self {
         let areas = surface.face_areas();
@@ -100,8 +101,8 @@ impl FaceMeans {
     }
 }
 
-/// Sums of `values`, one for each face of `mesh`, over its objects; over all faces where it knows no objects. Values that are not finite
-/// do not count.
+/// Sums of `values`, one for each face of `mesh`, over its objects; over all faces where it knows no objects. Values
+/// that are not finite do not count.
 pub(crate) fn object_sums(mesh: &Mesh, values: &[f64]) -> Vec<f64> {
     let is_whole = mesh.object_names.is_empty();
     let mut sums = vec![0.0; mesh.object_names.len().max(1)];

@@ -1,8 +1,8 @@
 //! Windows as targets: planes with a size, or the faces of a mesh.
 
-use super::{Facing, Layout, MeshParams, Targets, to_f32};
+use super::{Facing, MeshParams, TargetLayout, Targets, to_f32};
 use crate::exposure::{WINDOW_LIFT, plane_normal, window_places};
-use belvedere_core::query::Piece;
+use belvedere_core::query::SurfacePiece;
 use belvedere_data::frame::Frame;
 use belvedere_data::{Mesh, Result};
 
@@ -67,37 +67,38 @@ impl Targets {
             normals.extend(places.iter().map(|_| to_f32(normal)));
             positions.extend(places.iter().map(|&place| to_f32(place)));
         }
-        Ok(Self { weights, groups, ..Self::at(frame, positions, Some(normals), Layout::Points) })
+        Ok(Self { weights, groups, ..Self::at(frame, positions, Some(normals), TargetLayout::Points) })
     }
 
-    /// The faces of `mesh`, metres, as windows: the targets, in pieces of `spacing` metres at most, and what each window is.
+    /// The faces of `mesh`, metres, as windows: the targets, in pieces of `spacing` metres at most, and what each
+    /// window is.
     ///
     /// # Errors
     /// Those of [`Targets::of_mesh`].
     pub fn of_window_faces(mesh: &Mesh, frame: &Frame, spacing: f64, seed: u64) -> Result<(Self, Vec<Window>)> {
         let params = MeshParams { spacing, seed, facing: Facing::Normals, lift: WINDOW_LIFT };
         let targets = Self::of_mesh(mesh, frame, &params)?;
-        let Layout::Surface(surface) = &targets.layout else { return Ok((targets, Vec::new())) };
+        let TargetLayout::Surface(surface) = &targets.layout else { return Ok((targets, Vec::new())) };
         let windows = surface.pieces.chunk_by(|a, b| a.face == b.face).filter_map(window_of_face).collect();
         Ok((targets, windows))
     }
 }
 
 /// Below this share of the normal that is level, a face looks straight up or down and has no azimuth.
-const LEAST_LEVEL_SHARE: f64 = 1e-6;
+const MIN_LEVEL_SHARE: f64 = 1e-6;
 
-fn window_of_face(pieces: &[Piece]) -> Option<Window> {
+fn window_of_face(pieces: &[SurfacePiece]) -> Option<Window> {
     let first = pieces.first()?;
     let area: f64 = pieces.iter().map(|piece| f64::from(piece.area)).sum();
     let middle = |axis: usize| {
-        let of_piece = |piece: &Piece| {
+        let of_piece = |piece: &SurfacePiece| {
             f64::from(piece.area) * piece.corners.iter().map(|corner| f64::from(corner[axis])).sum::<f64>() / 3.0
         };
         pieces.iter().map(of_piece).sum::<f64>() / area
     };
     let [nx, ny, nz] = first.normal.map(f64::from);
     let level = nx.hypot(ny);
-    let azimuth = if level > LEAST_LEVEL_SHARE { nx.atan2(ny) } else { f64::NAN };
+    let azimuth = if level > MIN_LEVEL_SHARE { nx.atan2(ny) } else { f64::NAN };
     Some(Window {
         center: [middle(0), middle(1), middle(2)],
         azimuth,

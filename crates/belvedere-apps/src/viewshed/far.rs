@@ -31,11 +31,13 @@ fn is_beyond(scene: &MedialScene, node: [f64; 3]) -> bool {
     scene.coverage().is_none_or(|coverage| !coverage.holds_on_map(node))
 }
 
-/// What `observers` see of the nodes of `terrain` that lie beyond the cloud of `scene`, at `height` metres above them, in the order of the nodes; control counts rows. The answers are those of
-/// [`MedialScene::far_sight_answer`]; [`Answer::OutsideCloud`] for nodes over the cloud or without a height, which are not asked about, and [`Answer::OutsideView`] for what no observer is turned to.
-/// Masks are not kept.
+/// What `observers` see of the nodes of `terrain` that lie beyond the cloud of `scene`, at `height` metres above them,
+/// in the order of the nodes; control counts rows. The answers are those of [`MedialScene::far_sight_answer`];
+/// [`Answer::OutsideCloud`] for nodes over the cloud or without a height, which are not asked about, and
+/// [`Answer::OutsideView`] for what no observer is turned to. Masks are not kept.
 ///
-/// As for [`viewshed`](super::viewshed), an observer whose eye is not finite sees nothing, and from where a target is seen is the viewshed of an observer in its place.
+/// As for [`viewshed`](super::viewshed), an observer whose eye is not finite sees nothing, and from where a target is
+/// seen is the viewshed of an observer in its place.
 ///
 /// # Errors
 /// [`Error::InvalidParameter`] for parameters outside their range, and [`Error::Cancelled`].

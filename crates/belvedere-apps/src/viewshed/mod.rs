@@ -1,4 +1,5 @@
-//! Viewsheds: what one or many observers see of cells or points, from where a target is seen, and how high a thing must stand.
+//! Viewsheds: what one or many observers see of cells or points, from where a target is seen, and how high a thing must
+//! stand.
 
 mod far;
 mod observers;
@@ -54,16 +55,16 @@ pub enum Masks {
 /// What observers see of targets.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Viewshed {
-    /// The best of the observers' answers for each target: visible before unproven before blocked; [`Answer::OutsideView`] for what
-    /// none of them is turned to, (M).
+    /// The best of the observers' answers for each target: visible before unproven before blocked;
+    /// [`Answer::OutsideView`] for what none of them is turned to, (M).
     pub answers: Vec<Answer>,
     /// How many observers see each target, (M).
     pub counts: Vec<u32>,
     /// How many more observers have a line of sight to each target that nothing blocks, but that is not proven, (M);
     /// empty where proof is not tested.
     pub unproven_counts: Vec<u32>,
-    /// Bands of 32 observers: bit i of band b tells whether observer 32 · b + i sees each target, (bands, M); empty where masks are not
-    /// kept.
+    /// Bands of 32 observers: bit i of band b tells whether observer 32 · b + i sees each target, (bands, M); empty
+    /// where masks are not kept.
     pub masks: Vec<Vec<u32>>,
     /// Number of targets that each observer sees, (N).
     pub seen_counts: Vec<usize>,
@@ -73,9 +74,10 @@ pub struct Viewshed {
 pub const OBSERVER_HEIGHT: f64 = 1.7;
 /// Default height of targets above the ground, metres.
 pub const TARGET_HEIGHT: f64 = 0.0;
-/// Height above the ground at which targets that stand on it are tested, metres. The height of the ground is known to a few centimetres, and
-/// balls bulge by as much between its points: over tens of metres a line of sight at the ground itself would run in and out of them. On simulated towns 0.05 halves
-/// the false-blocked cells (6.9 to 3.7 %); 0.1 gains no more and sees more of what is hidden.
+/// Height above the ground at which targets that stand on it are tested, metres. The height of the ground is known to a
+/// few centimetres, and balls bulge by as much between its points: over tens of metres a line of sight at the ground
+/// itself would run in and out of them. On simulated towns 0.05 halves the false-blocked cells (6.9 to 3.7 %); 0.1
+/// gains no more and sees more of what is hidden.
 pub const GROUND_TOLERANCE: f64 = 0.05;
 
 /// The height above the ground at which a target of `height` metres is tested: no lower than [`GROUND_TOLERANCE`].
@@ -95,8 +97,8 @@ pub const CELL: f64 = 0.5;
 /// Most cells of a default grid.
 const USUAL_CELLS: f64 = 4e6;
 
-/// The side of the cells of a default grid over the box on the map from `low` to `high`, metres: [`CELL`], doubled until there are at
-/// most 4 million cells.
+/// The side of the cells of a default grid over the box on the map from `low` to `high`, metres: [`CELL`], doubled
+/// until there are at most 4 million cells.
 #[must_use]
 pub fn cell_for(low: [f64; 2], high: [f64; 2]) -> f64 {
     let area = (high[0] - low[0]).max(0.0) * (high[1] - low[1]).max(0.0);
@@ -107,8 +109,8 @@ pub fn cell_for(low: [f64; 2], high: [f64; 2]) -> f64 {
     cell
 }
 
-/// The part of a box on the map, `low` and `high` corner, that is within reach, metres, of any of the places, local metres; the whole box
-/// where none is.
+/// The part of a box on the map, `low` and `high` corner, that is within reach, metres, of any of the places, local
+/// metres; the whole box where none is.
 #[must_use]
 pub fn box_within_reach(
     (low, high): ([f64; 2], [f64; 2]),
@@ -126,8 +128,8 @@ pub fn box_within_reach(
     if is_some { within } else { (low, high) }
 }
 
-/// A target in the middle of each cell of `ground`, `height` metres above it, (M, 3) local metres, rows from the north; NaN where no
-/// ground is known.
+/// A target in the middle of each cell of `ground`, `height` metres above it, (M, 3) local metres, rows from the north;
+/// NaN where no ground is known.
 #[must_use]
 pub fn cell_targets(ground: &Ground, height: f64) -> Vec<[f32; 3]> {
     let grid = ground.grid;
@@ -140,12 +142,13 @@ pub fn cell_targets(ground: &Ground, height: f64) -> Vec<[f32; 3]> {
     ground.heights.values().par_iter().enumerate().with_min_len(CHUNK).map(target).collect()
 }
 
-/// What `observers` see of `targets`, (M, 3) local metres; control counts observers. An observer whose eye is not finite
-/// ([`crate::eyes::skip_unfit_eyes`]) sees nothing and keeps its number. Observers may stand on far terrain ([`MedialScene::is_on_far_terrain`]); for targets there,
-/// see [`far_viewshed`].
+/// What `observers` see of `targets`, (M, 3) local metres; control counts observers. An observer whose eye is not
+/// finite ([`crate::eyes::skip_unfit_eyes`]) sees nothing and keeps its number. Observers may stand on far terrain
+/// ([`MedialScene::is_on_far_terrain`]); for targets there, see [`far_viewshed`].
 ///
-/// A reverse viewshed, from where a target is seen, is the viewshed of an observer in its place, of the eyes that might see it: a
-/// line of sight is the same both ways. Balls that hold the target are then left out, and those at the eyes give way.
+/// A reverse viewshed, from where a target is seen, is the viewshed of an observer in its place, of the eyes that might
+/// see it: a line of sight is the same both ways. Balls that hold the target are then left out, and those at the eyes
+/// give way.
 ///
 /// # Errors
 /// [`Error::InvalidParameter`] for parameters outside their range, and [`Error::Cancelled`].
@@ -159,7 +162,8 @@ pub fn viewshed(
     viewshed_among(scene, observers, targets, &TargetTree::new(targets), params, control)
 }
 
-/// The same for targets that are ordered in a tree already, which saves most of the time where the same ones are asked about again and again.
+/// The same for targets that are ordered in a tree already, which saves most of the time where the same ones are asked
+/// about again and again.
 ///
 /// # Errors
 /// Those of [`viewshed`], and [`Error::LengthMismatch`] for a tree of other targets.
@@ -176,23 +180,24 @@ pub fn viewshed_among(
     if expected != found {
         return Err(Error::LengthMismatch { what: "tree of targets", expected, found });
     }
-    let asked = Asked { scene, tree, targets, params };
+    let queried = ViewshedTree { scene, tree, targets, params };
     let mut result = Viewshed {
-        answers: asked.before_anybody_sees(observers),
+        answers: queried.before_anybody_sees(observers),
         counts: vec![0; targets.len()],
         unproven_counts: if tests_proof(scene, params) { vec![0; targets.len()] } else { Vec::new() },
         masks: Vec::new(),
         seen_counts: Vec::with_capacity(observers.len()),
     };
-    // few observers share the threads, each of many has one to itself; as many bands at once as there are threads bound the memory,
-    // and more of small ones leave no thread waiting
+    // few observers share the threads, each of many has one to itself; as many bands at once as there are threads bound
+    // the memory, and more of small ones leave no thread waiting
     let threads = rayon::current_num_threads();
     let at_once = if targets.len() <= SMALL { 4 * threads } else { threads };
     let (threading, at_once) =
         if observers.len() < 2 * threads { (Threading::Shared, 1) } else { (Threading::OneEach, at_once) };
     let bands: Vec<&[Observer]> = observers.chunks(BAND).collect();
     for round in bands.chunks(at_once) {
-        let seen: Result<Vec<Band>> = round.par_iter().map(|band| asked.band(band, threading, control)).collect();
+        let seen: Result<Vec<ObserverBand>> =
+            round.par_iter().map(|band| queried.band(band, threading, control)).collect();
         for band in seen? {
             add(&mut result, band, params.masks);
         }
@@ -211,7 +216,7 @@ const SMALL: usize = 1_000_000;
 const BAND: usize = 32;
 
 /// Targets in a tree, and how they are asked about.
-struct Asked<'a> {
+struct ViewshedTree<'a> {
     scene: &'a MedialScene,
     tree: &'a TargetTree,
     targets: &'a [[f32; 3]],
@@ -228,7 +233,7 @@ enum Threading {
 }
 
 /// What up to 32 observers see.
-struct Band {
+struct ObserverBand {
     /// Bit i: observer i sees the target, (M).
     seen: Vec<u32>,
     /// Rows of targets that one of them sees without proof, once for each that does.
@@ -236,7 +241,7 @@ struct Band {
     seen_counts: Vec<usize>,
 }
 
-impl Asked<'_> {
+impl ViewshedTree<'_> {
     /// Blocked for what somebody looks at, otherwise outside the view; outside the cloud for what lies there.
     fn before_anybody_sees(&self, observers: &[Observer]) -> Vec<Answer> {
         let lookers: Vec<&Observer> =
@@ -253,7 +258,7 @@ impl Asked<'_> {
         self.targets.par_iter().with_min_len(CHUNK).map(answer).collect()
     }
 
-    fn band(&self, observers: &[Observer], threading: Threading, control: &Control<'_>) -> Result<Band> {
+    fn band(&self, observers: &[Observer], threading: Threading, control: &Control<'_>) -> Result<ObserverBand> {
         let (mut seen, mut unproven) = (vec![0; self.targets.len()], Vec::new());
         let mut seen_counts = vec![0; observers.len()];
         let mut note = |number: usize, row: usize, answer: Answer| match self.params.unproven.settle(answer) {
@@ -290,7 +295,7 @@ impl Asked<'_> {
             };
             self.scene.visible_among_each(&eyes, self.tree, control, visit, |_| control.advance(1))?;
         }
-        Ok(Band { seen, unproven, seen_counts })
+        Ok(ObserverBand { seen, unproven, seen_counts })
     }
 
     /// Whether any line of sight of an observer is curved, or crosses far terrain.
@@ -329,7 +334,7 @@ impl Asked<'_> {
 }
 
 /// Adds what a band sees.
-fn add(result: &mut Viewshed, band: Band, masks: Masks) {
+fn add(result: &mut Viewshed, band: ObserverBand, masks: Masks) {
     for row in band.unproven {
         let answer = &mut result.answers[row as usize];
         if *answer != Answer::Visible {
@@ -350,14 +355,15 @@ fn add(result: &mut Viewshed, band: Band, masks: Masks) {
     }
 }
 
-/// How high above the ground a thing must reach in each cell for its top to be seen by one of the observers, metres: 0 where the
-/// ground is seen, +∞ where nothing up to `ceiling` metres is, NaN where no ground is known or no observer is turned to the
-/// cell. At most 2 mm above the exact figure for the balls, and 0 where targets on the ground are visible ([`GROUND_TOLERANCE`]); pulses are not used. Limits of elevation are
-/// those of the ground.
+/// How high above the ground a thing must reach in each cell for its top to be seen by one of the observers, metres: 0
+/// where the ground is seen, +∞ where nothing up to `ceiling` metres is, NaN where no ground is known or no observer is
+/// turned to the cell. At most 2 mm above the exact figure for the balls, and 0 where targets on the ground are visible
+/// ([`GROUND_TOLERANCE`]); pulses are not used. Limits of elevation are those of the ground.
 ///
 /// # Errors
-/// As [`viewshed`], and for a ceiling below zero, and for an observer on far terrain: the terrain before it is not asked here.
-pub fn least_visible_heights(
+/// As [`viewshed`], and for a ceiling below zero, and for an observer on far terrain: the terrain before it is not
+/// asked here.
+pub fn min_visible_heights(
     scene: &MedialScene,
     observers: &[Observer],
     ground: &Ground,
@@ -392,7 +398,7 @@ pub fn least_visible_heights(
             let bound = if height.is_finite() { f64::from(*height) } else { ceiling };
             // from where targets on the ground are tested, so that 0 is what a viewshed calls visible
             let lowest = [foot[0], foot[1], foot[2] + GROUND_TOLERANCE];
-            let seen = scene.least_visible_height(observer.eye, lowest, (bound - GROUND_TOLERANCE).max(0.0), earth);
+            let seen = scene.min_visible_height(observer.eye, lowest, (bound - GROUND_TOLERANCE).max(0.0), earth);
             let seen = seen.map(|above| if above > 0.0 { above + GROUND_TOLERANCE } else { 0.0 });
             #[expect(clippy::cast_possible_truncation, reason = "metres above the ground")]
             let seen = seen.map_or(f32::INFINITY, |seen| seen as f32);

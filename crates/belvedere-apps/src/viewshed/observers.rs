@@ -15,7 +15,8 @@ pub struct Observer {
 /// Directions and distances that an observer looks at; what lies outside is not asked.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SightLimits {
-    /// From and to, radians clockwise from grid north: from 5.2 to 1 runs through north. `None`, the default: all around.
+    /// From and to, radians clockwise from grid north: from 5.2 to 1 runs through north. `None`, the default: all
+    /// around.
     pub azimuth: Option<[f64; 2]>,
     /// Least and greatest angle above the horizon, radians, −π/2 to π/2. `None`, the default: all.
     pub elevation: Option<[f64; 2]>,
@@ -53,8 +54,8 @@ impl SightLimits {
                 "in ascending order, from -90 to 90 degrees",
             );
         }
-        let [least, most] = self.distance;
-        if !(least >= 0.0 && least.is_finite() && most > least) {
+        let [min, max] = self.distance;
+        if !(min >= 0.0 && min.is_finite() && max > min) {
             return invalid(Parameter::Distance, self.distance, "in ascending order, from 0 metres");
         }
         Ok(())
@@ -74,27 +75,27 @@ impl SightLimits {
         {
             return false;
         }
-        self.elevation.is_none_or(|[least, most]| {
+        self.elevation.is_none_or(|[min, max]| {
             let elevation = z.atan2(distance);
-            (least..=most).contains(&elevation)
+            (min..=max).contains(&elevation)
         })
     }
 }
 
-/// Places `step` metres apart along a path through `corners`, measured on the map, local metres: its first and last corner are
-/// among them, so that the last piece may be shorter. Heights run linearly between corners; NaN stays NaN.
+/// Places `step` metres apart along a path through `corners`, measured on the map, local metres: its first and last
+/// corner are among them, so that the last piece may be shorter. Heights run linearly between corners; NaN stays NaN.
 ///
 /// # Errors
 /// [`Error::InvalidParameter`] for a step that is not above zero or gives more than a million places.
 pub fn places_along(corners: &[[f64; 3]], step: f64) -> Result<Vec<[f64; 3]>> {
     /// Observers of more than this are a slipped digit.
-    const MOST_PLACES: f64 = 1e6;
+    const MAX_PLACES: f64 = 1e6;
     let size = |pair: &[[f64; 3]]| match pair {
         [a, b] => (b[0] - a[0]).hypot(b[1] - a[1]),
         _ => 0.0,
     };
     let total: f64 = corners.windows(2).map(size).sum();
-    if !(step > 0.0 && total / step <= MOST_PLACES) {
+    if !(step > 0.0 && total / step <= MAX_PLACES) {
         return Err(Error::InvalidParameter {
             parameter: Parameter::PathStep,
             value: format!("{step} m on {total} m"),

@@ -4,7 +4,7 @@ mod names;
 mod seen;
 
 pub use names::{NamedView, named_columns, views_by_name};
-pub use seen::{ClassMeanings, Seen, are_made_from, balls_seen};
+pub use seen::{ClassMeanings, SeenKind, are_made_from, balls_seen};
 
 use crate::eyes::skip_unfit_eyes;
 use crate::rows::check_normals;
@@ -23,20 +23,22 @@ pub const VIEW_SPACING: f64 = 2.0;
 /// A face whose normal rises or falls by more than this, as a sine, is a roof or a floor and no facade: 45°.
 const STEEPEST_NORMAL: f32 = std::f32::consts::FRAC_1_SQRT_2;
 /// Kinds of what is seen.
-const KINDS: usize = Seen::ALL.len();
+const KINDS: usize = SeenKind::ALL.len();
 
 /// What one window has before it. All is NaN for a window that is not asked about.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WindowView {
-    /// Share of the half space before the window that is each of [`Seen::ALL`], by solid angle, 0 to 1; 1 together.
+    /// Share of the half space before the window that is each of [`SeenKind::ALL`], by solid angle, 0 to 1; 1 together.
     pub shares: [f64; KINDS],
     /// The same, weighted by the cosine to the normal of the window, as light arrives through it; 1 together.
     pub cosine_shares: [f64; KINDS],
-    /// Mean range of the things seen, metres, by solid angle; sky and what is beyond the cloud do not count, far terrain neither. NaN where no thing is seen.
+    /// Mean range of the things seen, metres, by solid angle; sky and what is beyond the cloud do not count, far
+    /// terrain neither. NaN where no thing is seen.
     pub mean_range: f64,
     /// Half of the solid angle of the things seen is nearer than this, metres; NaN where no thing is seen.
     pub median_range: f64,
-    /// Share of the half space that is seen through space that no pulse came near to, 0 to 1, whatever is seen there; 0 where pulses are not known.
+    /// Share of the half space that is seen through space that no pulse came near to, 0 to 1, whatever is seen there; 0
+    /// where pulses are not known.
     pub unproven: f64,
 }
 
@@ -44,12 +46,13 @@ pub struct WindowView {
 #[derive(Clone, Copy, Debug)]
 pub struct Kinds<'a> {
     /// Kind of each ball of the model, (B), as [`balls_seen`] has it.
-    pub balls: &'a [Seen],
+    pub balls: &'a [SeenKind],
     /// Kind of each mesh that was added, by its number; a building where nothing is said.
-    pub meshes: &'a [Seen],
+    pub meshes: &'a [SeenKind],
 }
 
-/// `count` directions of the upper half of the sphere as [`SkyDirections::even`] has them, and their opposites: before every window lie `count` of them, each with the same solid angle.
+/// `count` directions of the upper half of the sphere as [`SkyDirections::even`] has them, and their opposites: before
+/// every window lie `count` of them, each with the same solid angle.
 ///
 /// # Errors
 /// Those of [`SkyDirections::even`].
@@ -60,14 +63,17 @@ pub fn view_directions(count: usize) -> Result<Vec<[f64; 3]>> {
     Ok(directions)
 }
 
-/// What each of the groups of `targets`, windows with normals, sees of `scene` in `directions`, unit vectors that each have the same solid angle ([`view_directions`]): those behind the plane
-/// of a window do not count. Places of a window count by their weight. Progress counts targets.
+/// What each of the groups of `targets`, windows with normals, sees of `scene` in `directions`, unit vectors that each
+/// have the same solid angle ([`view_directions`]): those behind the plane of a window do not count. Places of a window
+/// count by their weight. Progress counts targets.
 ///
 /// # Errors
-/// [`Error::UnsupportedTargets`] for targets without normals, [`Error::LengthMismatch`] unless each target has one and each ball has a kind, and [`Error::Cancelled`].
+/// [`Error::UnsupportedTargets`] for targets without normals, [`Error::LengthMismatch`] unless each target has one and
+/// each ball has a kind, and [`Error::Cancelled`].
 ///
 /// # Source
-/// This project's own. Laser scans for the value of homes: Helbich, Jochem, Mücke & Höfle 2013, Computers, Environment and Urban Systems 39.
+/// This project's own. Laser scans for the value of homes: Helbich, Jochem, Mücke & Höfle 2013, Computers, Environment
+/// and Urban Systems 39.
 pub fn window_views(
     scene: &MedialScene,
     targets: &Targets,
@@ -89,7 +95,7 @@ pub fn window_views(
         for row in group.clone() {
             control.check()?;
             if let (true, Some(&place), Some(&normal)) =
-                (targets.is_asked(row), targets.positions.get(row), normals.get(row))
+                (targets.is_target(row), targets.positions.get(row), normals.get(row))
             {
                 let window = (place.map(f64::from), normal.map(f64::from));
                 sums.add(scene, window, targets.weight(row), kinds, directions);
@@ -101,7 +107,8 @@ pub fn window_views(
     targets.groups.par_iter().map(of_group).collect()
 }
 
-/// Leaves out the targets of a mesh that are no facade: roofs, floors, and all else nearer to level than to upright. Returns how many.
+/// Leaves out the targets of a mesh that are no facade: roofs, floors, and all else nearer to level than to upright.
+/// Returns how many.
 pub fn leave_out_level(targets: &mut Targets) -> usize {
     let Targets { positions, normals, .. } = targets;
     let is_level = |normal: &[f32; 3]| !(normal[2].abs() <= STEEPEST_NORMAL);
@@ -109,7 +116,8 @@ pub fn leave_out_level(targets: &mut Targets) -> usize {
     level.map(|(position, _)| *position = [f32::NAN; 3]).count()
 }
 
-/// Leaves out the targets that lie deep in an obstacle and have no view: a window lies on a wall, whose balls reach a little beyond it. Returns how many.
+/// Leaves out the targets that lie deep in an obstacle and have no view: a window lies on a wall, whose balls reach a
+/// little beyond it. Returns how many.
 ///
 /// # Errors
 /// [`Error::Cancelled`].
@@ -122,7 +130,8 @@ pub fn leave_out_walled_up(targets: &mut Targets, scene: &MedialScene, control: 
     Ok(report.skipped_inside_obstacle)
 }
 
-/// The figures of windows as measures: shares in percent, ranges in metres. Cosine-weighted shares have names that end in `_cos`; what is unproven is left out where `proof` says that pulses are not asked.
+/// The figures of windows as measures: shares in percent, ranges in metres. Cosine-weighted shares have names that end
+/// in `_cos`; what is unproven is left out where `proof` says that pulses are not asked.
 #[must_use]
 pub fn view_measures(views: &[WindowView], proof: Proving) -> Vec<Measure> {
     let mut measures = Vec::new();
@@ -133,16 +142,16 @@ pub fn view_measures(views: &[WindowView], proof: Proving) -> Vec<Measure> {
         measures.push(measure.with_range(range));
     };
     let percent = Some([0.0, 100.0]);
-    for (i, seen) in Seen::ALL.into_iter().enumerate() {
+    for (i, seen) in SeenKind::ALL.into_iter().enumerate() {
         push(seen.name().to_owned(), "percent of the view", 3, percent, &|view| 100.0 * view.shares[i]);
     }
-    for (i, seen) in Seen::ALL.into_iter().enumerate() {
+    for (i, seen) in SeenKind::ALL.into_iter().enumerate() {
         let name = format!("{}_cos", seen.name());
         push(name, "percent, cosine-weighted", 3, percent, &|view| 100.0 * view.cosine_shares[i]);
     }
     push("mean_range_m".to_owned(), "mean range of things seen", 2, None, &|view| view.mean_range);
     push("median_range_m".to_owned(), "median range of things seen", 2, None, &|view| view.median_range);
-    if proof == Proving::Asked {
+    if proof == Proving::Tested {
         push("unproven".to_owned(), "percent of the view not proven", 3, percent, &|view| 100.0 * view.unproven);
     }
     measures
@@ -152,9 +161,9 @@ pub fn view_measures(views: &[WindowView], proof: Proving) -> Vec<Measure> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Proving {
     /// They were.
-    Asked,
+    Tested,
     /// They were not, or are not known.
-    NotAsked,
+    NotTested,
 }
 
 /// What the places of a window add up to.
@@ -186,18 +195,18 @@ impl Sums {
                 Some((blocker, range)) => {
                     let kind = match blocker {
                         Blocker::Ball(row) => kinds.balls.get(row).copied().unwrap_or_default(),
-                        Blocker::Mesh(number) => kinds.meshes.get(number).copied().unwrap_or(Seen::Building),
-                        Blocker::Terrain => Seen::Ground,
+                        Blocker::Mesh(number) => kinds.meshes.get(number).copied().unwrap_or(SeenKind::Building),
+                        Blocker::Terrain => SeenKind::Ground,
                     };
                     (kind, range, scene.is_unproven(place, direction, range))
                 }
                 None => {
                     let seen = if scene.far_terrain().hides(place, direction) {
-                        Seen::Ground
+                        SeenKind::Ground
                     } else if direction[2] >= 0.0 {
-                        Seen::Sky
+                        SeenKind::Sky
                     } else {
-                        Seen::Beyond
+                        SeenKind::Beyond
                     };
                     (seen, f64::INFINITY, scene.is_unproven(place, direction, f64::INFINITY))
                 }

@@ -1,6 +1,6 @@
 //! Views of windows summed up by the building that they belong to.
 
-use super::{Seen, WindowView};
+use super::{SeenKind, WindowView};
 use serde::Serialize;
 
 /// The mean view from the windows of one building, by their weight.
@@ -10,13 +10,15 @@ pub struct NamedView {
     pub name: String,
     /// Number of its windows, those without a view left out.
     pub windows: usize,
-    /// Mean share of each of [`Seen::ALL`], 0 to 1; NaN where no window has a view.
-    pub shares: [f64; Seen::ALL.len()],
-    /// Least and greatest share of vegetation and water of a window: the green and blue of the worst and of the best view.
+    /// Mean share of each of [`SeenKind::ALL`], 0 to 1; NaN where no window has a view.
+    pub shares: [f64; SeenKind::ALL.len()],
+    /// Least and greatest share of vegetation and water of a window: the green and blue of the worst and of the best
+    /// view.
     pub green_and_blue: [f64; 2],
 }
 
-/// The mean views of `views`, (W), by the name of each, (W), and its weight, (W), such as the area of a window; in the order in which names come first.
+/// The mean views of `views`, (W), by the name of each, (W), and its weight, (W), such as the area of a window; in the
+/// order in which names come first.
 #[must_use]
 pub fn views_by_name(views: &[WindowView], names: &[&str], weights: &[f64]) -> Vec<NamedView> {
     let mut rows: std::collections::HashMap<&str, usize> = std::collections::HashMap::new();
@@ -24,7 +26,7 @@ pub fn views_by_name(views: &[WindowView], names: &[&str], weights: &[f64]) -> V
     for ((view, &name), &weight) in views.iter().zip(names).zip(weights) {
         let row = *rows.entry(name).or_insert(found.len());
         if row == found.len() {
-            let (shares, green_and_blue) = ([0.0; Seen::ALL.len()], [f64::INFINITY, f64::NEG_INFINITY]);
+            let (shares, green_and_blue) = ([0.0; SeenKind::ALL.len()], [f64::INFINITY, f64::NEG_INFINITY]);
             found.push((NamedView { name: name.to_owned(), windows: 0, shares, green_and_blue }, 0.0));
         }
         let (named, whole) = &mut found[row];
@@ -32,7 +34,7 @@ pub fn views_by_name(views: &[WindowView], names: &[&str], weights: &[f64]) -> V
             named.windows += 1;
             *whole += weight;
             named.shares.iter_mut().zip(view.shares).for_each(|(sum, share)| *sum += weight * share);
-            let pleasant = view.shares[Seen::Vegetation as usize] + view.shares[Seen::Water as usize];
+            let pleasant = view.shares[SeenKind::Vegetation as usize] + view.shares[SeenKind::Water as usize];
             named.green_and_blue = [named.green_and_blue[0].min(pleasant), named.green_and_blue[1].max(pleasant)];
         }
     }
@@ -46,11 +48,12 @@ pub fn views_by_name(views: &[WindowView], names: &[&str], weights: &[f64]) -> V
     found.into_iter().map(finished).collect()
 }
 
-/// The figures of buildings by name, percent: mean shares of each of [`Seen::ALL`], then the green and blue of the worst and of the best view.
+/// The figures of buildings by name, percent: mean shares of each of [`SeenKind::ALL`], then the green and blue of the
+/// worst and of the best view.
 #[must_use]
 pub fn named_columns(views: &[NamedView]) -> Vec<(&'static str, Vec<f64>)> {
     let percent = |share: &dyn Fn(&NamedView) -> f64| views.iter().map(|named| 100.0 * share(named)).collect();
-    let shares = Seen::ALL.iter().enumerate().map(|(i, seen)| (seen.name(), percent(&|named| named.shares[i])));
+    let shares = SeenKind::ALL.iter().enumerate().map(|(i, seen)| (seen.name(), percent(&|named| named.shares[i])));
     let pleasant = ["least_green_and_blue", "most_green_and_blue"].into_iter().enumerate();
     let pleasant = pleasant.map(|(i, name)| (name, percent(&|named| named.green_and_blue[i])));
     shares.chain(pleasant).collect()

@@ -5,13 +5,14 @@ use belvedere_data::vector::{length, sub};
 use belvedere_data::{Error, Result};
 use serde::{Deserialize, Serialize};
 
-/// How far the surface of a ball may lie from the point that it was made at, metres: rules of carving move balls by less.
+/// How far the surface of a ball may lie from the point that it was made at, metres: rules of carving move balls by
+/// less.
 const FARTHEST_FROM_POINT: f64 = 1.0;
 
 /// A kind of what is seen from a window.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Seen {
+pub enum SeenKind {
     /// Nothing blocks, at the horizon or above it.
     Sky,
     /// Trees, hedges and lower plants.
@@ -25,11 +26,12 @@ pub enum Seen {
     /// Whatever else blocks: cars, bridges, wires, and points without a class.
     #[default]
     Other,
-    /// Nothing in the cloud blocks, but this is no sky: below the horizon, where the cloud ends and no far terrain is known.
+    /// Nothing in the cloud blocks, but this is no sky: below the horizon, where the cloud ends and no far terrain is
+    /// known.
     Beyond,
 }
 
-impl Seen {
+impl SeenKind {
     /// All kinds, in the order of shares.
     pub const ALL: [Self; 7] =
         [Self::Sky, Self::Vegetation, Self::Water, Self::Building, Self::Ground, Self::Other, Self::Beyond];
@@ -58,21 +60,22 @@ impl Seen {
 
 /// What the classes of points are.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct ClassMeanings([Option<Seen>; 256]);
+pub struct ClassMeanings([Option<SeenKind>; 256]);
 
 impl Default for ClassMeanings {
-    /// Vegetation is 3 to 5, a building 6, water 9, ground 2, rails 10 and roads 11; nothing is said of 0 and 1, and all else is other.
+    /// Vegetation is 3 to 5, a building 6, water 9, ground 2, rails 10 and roads 11; nothing is said of 0 and 1, and
+    /// all else is other.
     ///
     /// # Source
     /// ASPRS LAS 1.4, table 17.
     fn default() -> Self {
         Self(std::array::from_fn(|class| match class {
             0 | 1 => None,
-            2 | 10 | 11 => Some(Seen::Ground),
-            3..=5 => Some(Seen::Vegetation),
-            6 => Some(Seen::Building),
-            9 => Some(Seen::Water),
-            _ => Some(Seen::Other),
+            2 | 10 | 11 => Some(SeenKind::Ground),
+            3..=5 => Some(SeenKind::Vegetation),
+            6 => Some(SeenKind::Building),
+            9 => Some(SeenKind::Water),
+            _ => Some(SeenKind::Other),
         }))
     }
 }
@@ -80,20 +83,22 @@ impl Default for ClassMeanings {
 impl ClassMeanings {
     /// The same, where `class` means `seen`.
     #[must_use]
-    pub fn with(mut self, class: u8, seen: Seen) -> Self {
+    pub fn with(mut self, class: u8, seen: SeenKind) -> Self {
         self.0[usize::from(class)] = Some(seen);
         self
     }
 
     /// What `class` means; `None` where it says nothing.
     #[must_use]
-    pub fn of(&self, class: u8) -> Option<Seen> {
+    pub fn of(&self, class: u8) -> Option<SeenKind> {
         self.0[usize::from(class)]
     }
 }
 
-/// The kind of each of `balls`, (B): that of the class of the point that it was made at. `classes`, (N), are those of the cloud that the balls were made from; `None` where they
-/// are not known. Where a class says nothing, balls that are `vegetation` ([`SceneModel::vegetation`](belvedere_core::model::SceneModel::vegetation)) are that, and others are other.
+/// The kind of each of `balls`, (B): that of the class of the point that it was made at. `classes`, (N), are those of
+/// the cloud that the balls were made from; `None` where they are not known. Where a class says nothing, balls that are
+/// `vegetation` ([`SceneModel::vegetation`](belvedere_core::model::SceneModel::vegetation)) are that, and others are
+/// other.
 ///
 /// # Errors
 /// [`Error::LengthMismatch`] for a ball whose point has no class.
@@ -102,21 +107,22 @@ pub fn balls_seen(
     classes: Option<&[u8]>,
     vegetation: &[bool],
     meanings: &ClassMeanings,
-) -> Result<Vec<Seen>> {
-    let least = balls.source.iter().map(|&row| row as usize + 1).max().unwrap_or(0);
-    if let Some(found) = classes.map(<[_]>::len).filter(|&found| found < least) {
-        return Err(Error::LengthMismatch { what: "classes of the points of balls", expected: least, found });
+) -> Result<Vec<SeenKind>> {
+    let min = balls.source.iter().map(|&row| row as usize + 1).max().unwrap_or(0);
+    if let Some(found) = classes.map(<[_]>::len).filter(|&found| found < min) {
+        return Err(Error::LengthMismatch { what: "classes of the points of balls", expected: min, found });
     }
     let kind = |(row, &source): (usize, &u32)| {
         let class = classes.and_then(|classes| classes.get(source as usize));
         let is_vegetation = vegetation.get(row) == Some(&true);
-        let unsaid = if is_vegetation { Seen::Vegetation } else { Seen::Other };
+        let unsaid = if is_vegetation { SeenKind::Vegetation } else { SeenKind::Other };
         class.and_then(|&class| meanings.of(class)).unwrap_or(unsaid)
     };
     Ok(balls.source.iter().enumerate().map(kind).collect())
 }
 
-/// Whether `balls` were made from points at `positions`, (N, 3) in the same frame: most of them touch the point of their row to a metre.
+/// Whether `balls` were made from points at `positions`, (N, 3) in the same frame: most of them touch the point of
+/// their row to a metre.
 #[must_use]
 pub fn are_made_from(balls: &MedialBalls, positions: &[[f32; 3]]) -> bool {
     let touches = |row: &usize| {
@@ -146,15 +152,24 @@ mod tests {
         };
         let usual = ClassMeanings::default();
         // a class that says something comes before what pulses tell
-        assert_eq!(kinds(Some(&[6, 1, 0, 9]), &usual), [Seen::Building, Seen::Other, Seen::Vegetation, Seen::Water]);
-        let own = usual.clone().with(1, Seen::Ground).with(0, Seen::Other);
-        assert_eq!(kinds(Some(&[6, 1, 0, 9]), &own), [Seen::Building, Seen::Ground, Seen::Other, Seen::Water]);
-        assert_eq!(kinds(None, &usual), [Seen::Vegetation, Seen::Other, Seen::Vegetation, Seen::Vegetation]);
+        assert_eq!(
+            kinds(Some(&[6, 1, 0, 9]), &usual),
+            [SeenKind::Building, SeenKind::Other, SeenKind::Vegetation, SeenKind::Water]
+        );
+        let own = usual.clone().with(1, SeenKind::Ground).with(0, SeenKind::Other);
+        assert_eq!(
+            kinds(Some(&[6, 1, 0, 9]), &own),
+            [SeenKind::Building, SeenKind::Ground, SeenKind::Other, SeenKind::Water]
+        );
+        assert_eq!(
+            kinds(None, &usual),
+            [SeenKind::Vegetation, SeenKind::Other, SeenKind::Vegetation, SeenKind::Vegetation]
+        );
         assert!(balls_seen(&balls(), Some(&[6, 1, 0]), &[], &usual).is_err());
     }
 
     #[test]
-    fn balls_are_told_from_those_of_another_cloud() {
+    fn balls_of_another_cloud_are_recognised() {
         let mut points = [[0.0, 0.0, 0.0], [10.0, 0.0, 0.0], [20.0, 0.0, 0.0], [30.0, 0.0, 0.0]];
         assert!(are_made_from(&balls(), &points));
         points.reverse();
@@ -163,7 +178,7 @@ mod tests {
 
     #[test]
     fn things_have_the_names_of_their_columns() {
-        assert_eq!(Seen::thing_called("water"), Some(Seen::Water));
-        assert!(["sky", "beyond", "Water", ""].iter().all(|name| Seen::thing_called(name).is_none()));
+        assert_eq!(SeenKind::thing_called("water"), Some(SeenKind::Water));
+        assert!(["sky", "beyond", "Water", ""].iter().all(|name| SeenKind::thing_called(name).is_none()));
     }
 }

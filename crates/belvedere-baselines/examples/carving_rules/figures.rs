@@ -1,6 +1,6 @@
 //! The pictures of docs/methods/carving.md: a section through a street, and its shade, with balls made in three ways.
 
-use crate::place::{Missing, Place};
+use crate::place::{CarvingSite, Missing};
 use belvedere::Bounds;
 use belvedere::figures::{Picture, side_by_side, write_png};
 use belvedere::medial::{MedialBalls, ShrinkParams};
@@ -32,7 +32,7 @@ const CHEST: f32 = 1.5;
 /// Draws them into `folder`.
 pub(crate) fn draw(folder: &Path) -> Result<()> {
     std::fs::create_dir_all(folder).map_err(|source| Error::Io { path: folder.to_owned(), source })?;
-    let place = Place::simulated(Preset::OldTown, 7, None, Missing::default())?;
+    let place = CarvingSite::simulated(Preset::OldTown, 7, None, Missing::default())?;
     let uncarved = MedialParams {
         making: BallParams::Shrunk(ShrinkParams { max_radius: f32::INFINITY, ..ShrinkParams::tau() }),
         ..MedialParams::cut_to_half_a_metre()
@@ -70,7 +70,7 @@ fn pixels(length: f32, pixel: f32) -> usize {
 }
 
 /// An upright section from west to east through the middle of the place.
-fn section(place: &Place, balls: &MedialBalls) -> Picture {
+fn section(place: &CarvingSite, balls: &MedialBalls) -> Picture {
     let [width, bottom, top] = SECTION;
     let size = [pixels(width, SECTION_PIXEL), pixels(top - bottom, SECTION_PIXEL)];
     let Bounds { low, high } = place.bounds();
@@ -119,7 +119,7 @@ fn section(place: &Place, balls: &MedialBalls) -> Picture {
 }
 
 /// What lies in shade 1.5 m above the ground, seen from above.
-fn shade(place: &Place, model: &MedialBaseline) -> Result<Picture> {
+fn shade(place: &CarvingSite, model: &MedialBaseline) -> Result<Picture> {
     let size = pixels(SHADE_SIDE, SHADE_PIXEL);
     let Bounds { low, high } = place.bounds();
     let corner = [low[0] + high[0] - SHADE_SIDE, low[1] + high[1] + SHADE_SIDE].map(|v| v / 2.0);

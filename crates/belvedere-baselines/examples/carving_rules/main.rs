@@ -1,13 +1,16 @@
 //! What each rule of carved balls is worth: the same towns and questions with all rules, and with each left out.
 //!
 //! ```sh
-//! cargo run --release -p belvedere-baselines --example carving_rules -- village,town,old-town,towers 1,2,3 [VARIANT,…] \
+//! cargo run --release -p belvedere-baselines --example carving_rules -- \
+//!   village,town,old-town,towers 1,2,3 [VARIANT,…] \
 //!     [SCANNER] [unclassified] [water] [blame]
 //! ```
 //!
-//! prints the table of docs/methods/carving.md. With a scanner of `belvedere compare --regimes`, such as `leaves` or `bare`, the town and its survey are those
-//! of the comparison, and `unclassified` takes away the classes of vegetation. With `water` pulses do not return from the ground in strips of 12 m. With `blame` it says which surfaces hide what is called visible, at which
-//! surfaces the balls sit that hide what is visible, and what share of these errors lies at edges or in space that no pulse came near. `-- figures FOLDER` draws its pictures.
+//! prints the table of docs/methods/carving.md. With a scanner of `belvedere compare --regimes`, such as `leaves` or
+//! `bare`, the town and its survey are those of the comparison, and `unclassified` takes away the classes of
+//! vegetation. With `water` pulses do not return from the ground in strips of 12 m. With `blame` it says which surfaces
+//! hide what is called visible, at which surfaces the balls sit that hide what is visible, and what share of these
+//! errors lies at edges or in space that no pulse came near. `-- figures FOLDER` draws its pictures.
 #![allow(clippy::print_stdout, reason = "an example talks")]
 
 mod figures;
@@ -18,10 +21,10 @@ use belvedere::medial::{CarvedParams, CrownParams, Rule, Trees};
 use belvedere::model::BallParams;
 use belvedere::query::{Answer, BlockRule, UnprovenAs, Viewer, Visibility};
 use belvedere::{Error, Parameter, Result};
-use belvedere_baselines::agreement::{Counts, Rate};
+use belvedere_baselines::agreement::{Rate, TruthCounts};
 use belvedere_baselines::medial::{MedialBaseline, MedialParams, Outward, scene_model};
 use belvedere_scenes::{Preset, Regime};
-use place::{Missing, Place, Question};
+use place::{CarvingSite, Missing, ViewerTargets};
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::time::Instant;
@@ -86,7 +89,7 @@ fn main() -> Result<()> {
     let mut sums: BTreeMap<usize, Vec<Scores>> = BTreeMap::new();
     for &preset in &presets {
         for &seed in &seeds {
-            let place = Place::simulated(preset, seed, regime, missing)?;
+            let place = CarvingSite::simulated(preset, seed, regime, missing)?;
             for (number, (name, params)) in variants().into_iter().enumerate() {
                 if !wanted.is_empty() && !wanted.contains(&name) {
                     continue;
@@ -136,13 +139,13 @@ impl std::fmt::Display for Scores {
 }
 
 /// Counts of one question.
-fn counts(question: &Question, answers: &[Answer]) -> Counts {
-    let mut counts = Counts::default();
+fn counts(question: &ViewerTargets, answers: &[Answer]) -> TruthCounts {
+    let mut counts = TruthCounts::default();
     question.visible.iter().zip(answers).for_each(|(&visible, &answer)| counts.add(visible, answer));
     counts
 }
 
-fn judge(place: &Place, model: &MedialBaseline, seconds: f64) -> Result<Scores> {
+fn judge(place: &CarvingSite, model: &MedialBaseline, seconds: f64) -> Result<Scores> {
     let mean = |set: &str, views: &str, rate: Rate| -> Result<f64> {
         let mut values = Vec::new();
         for question in place.questions.iter().filter(|q| q.set == set && q.views == views) {

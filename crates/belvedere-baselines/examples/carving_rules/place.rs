@@ -11,9 +11,9 @@ use belvedere::query::{Answer, MedialScene, Viewer, Visibility};
 use belvedere::vector::{cross, unit};
 use belvedere::view::to_sun;
 use belvedere::{PointCloud, Result};
-use belvedere_baselines::Survey;
+use belvedere_baselines::MethodInput;
 use belvedere_baselines::medial::MedialBaseline;
-use belvedere_scenes::{AirborneParams, Preset, QuerySet, QuerySite, Regime, Scene, Truth};
+use belvedere_scenes::{AirborneParams, Preset, QuerySet, QuerySite, Regime, TriangleScene, Truth};
 use canals::without_returns_from_water;
 use flown::{flown, surveyed};
 use std::collections::BTreeMap;
@@ -36,7 +36,7 @@ const THIN: [f64; 2] = [0.2, 0.5];
 const SKIN: f64 = 1e-3;
 
 /// What one viewer asks of one set of targets.
-pub(crate) struct Question {
+pub(crate) struct ViewerTargets {
     pub(crate) set: &'static str,
     pub(crate) views: &'static str,
     pub(crate) viewer: Viewer<'static>,
@@ -44,15 +44,15 @@ pub(crate) struct Question {
     pub(crate) visible: Vec<bool>,
 }
 
-pub(crate) struct Place {
+pub(crate) struct CarvingSite {
     cloud: PointCloud,
     bounds: Bounds,
     scanner: Vec<[f32; 3]>,
-    scene: Scene,
+    scene: TriangleScene,
     truth: Truth,
     /// Local positions by name of the set.
     pub(crate) targets: BTreeMap<&'static str, Vec<[f32; 3]>>,
-    pub(crate) questions: Vec<Question>,
+    pub(crate) questions: Vec<ViewerTargets>,
 }
 
 /// What a survey lacks.
@@ -64,14 +64,15 @@ pub(crate) struct Missing {
     pub(crate) water: bool,
 }
 
-/// Where lines of sight lie that are alike in truth, the wrongly answered ones and all: how many, how many at edges, along unproven lines, and at either.
+/// Where lines of sight lie that are alike in truth, the wrongly answered ones and all: how many, how many at edges,
+/// along unproven lines, and at either.
 #[derive(Clone, Copy, Default)]
-struct Tally {
+struct LineTally {
     wrong: [usize; 4],
     all: [usize; 4],
 }
 
-impl Tally {
+impl LineTally {
     fn add(&mut self, [is_at_edge, is_unproven]: [bool; 2], is_wrong: bool) {
         let counts = [true, is_at_edge, is_unproven, is_at_edge || is_unproven];
         for (k, is_counted) in counts.into_iter().enumerate() {
@@ -81,7 +82,7 @@ impl Tally {
     }
 }
 
-impl std::fmt::Display for Tally {
+impl std::fmt::Display for LineTally {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let shares = |counts: [usize; 4]| {
             let percent = |k: usize| 100.0 * counts[k] as f64 / counts[0].max(1) as f64;
@@ -91,7 +92,7 @@ impl std::fmt::Display for Tally {
     }
 }
 
-impl Place {
+impl CarvingSite {
     /// A town with the usual survey from the air, or as `regime` has it, and with what is `missing` in it.
     pub(crate) fn simulated(preset: Preset, seed: u64, regime: Option<Regime>, missing: Missing) -> Result<Self> {
         let usual = preset.params(EXTENT, seed);
@@ -155,7 +156,7 @@ impl Place {
                     Viewer::Each(_) => continue,
                 };
                 let visible = blocked.into_iter().map(|blocked| !blocked).collect();
-                questions.push(Question { set, views, viewer, visible });
+                questions.push(ViewerTargets { set, views, viewer, visible });
             }
         }
         (self.targets, self.questions) = (sets_of_targets, questions);
@@ -193,12 +194,13 @@ impl Place {
         !self.truth.occluded_towards(self.absolute(p), sun)
     }
 
-    pub(crate) fn survey(&self) -> Survey<'_> {
-        Survey { cloud: &self.cloud, scanner: &self.scanner, models: &[] }
+    pub(crate) fn survey(&self) -> MethodInput<'_> {
+        MethodInput { cloud: &self.cloud, scanner: &self.scanner, models: &[] }
     }
 
-    /// Whether a line of sight half a spacing of pulses beside this one, on any side, is blocked in truth where this one is free, or free where it is blocked. What is nearer to
-    /// the target than the surface tolerance does not count.
+    /// Whether a line of sight half a spacing of pulses beside this one, on any side, is blocked in truth where this
+    /// one is free, or free where it is blocked. What is nearer to the target than the surface tolerance does not
+    /// count.
     fn is_at_edge(&self, target: [f32; 3], towards: [f64; 3], range: f64, is_free: bool) -> bool {
         let across = unit(cross(towards, [0.0, 0.0, 1.0])).unwrap_or([1.0, 0.0, 0.0]);
         let up = cross(across, towards);
@@ -214,8 +216,8 @@ impl Place {
         })
     }
 
-    /// Prints by surface what hides what a model calls visible, and at what its balls sit that hide what is visible; and what share of both lies at edges or along lines that
-    /// the pulses of `with_pulses` do not prove.
+    /// Prints by surface what hides what a model calls visible, and at what its balls sit that hide what is visible;
+    /// and what share of both lies at edges or along lines that the pulses of `with_pulses` do not prove.
     pub(crate) fn blame(&self, model: &MedialBaseline, with_pulses: &MedialScene) -> Result<()> {
         let absolute = |p| self.absolute(p);
         let site = self.site();
@@ -225,7 +227,7 @@ impl Place {
                 let (mut missed, mut blocking) = (BTreeMap::<&str, usize>::new(), BTreeMap::<String, usize>::new());
                 let (mut visible_count, mut blocked_count) = (0, 0);
                 // those that are blocked in truth, and those that are visible
-                let mut tallies = [Tally::default(); 2];
+                let mut tallies = [LineTally::default(); 2];
                 let mut thin = [0; 2];
                 for question in self.questions.iter().filter(|q| q.set == set && q.views == views) {
                     let targets = &self.targets[set];
@@ -245,8 +247,8 @@ impl Place {
                             let enters = hit.map_or(0.0, |hit| hit.range) + SKIN;
                             let inside = std::array::from_fn(|i| absolute(target)[i] + enters * towards[i]);
                             let solid = self.truth.first_hit(inside, towards, f64::INFINITY).map(|hit| hit.range);
-                            for (count, most) in thin.iter_mut().zip(THIN) {
-                                *count += usize::from(solid.is_some_and(|solid| solid < most));
+                            for (count, max) in thin.iter_mut().zip(THIN) {
+                                *count += usize::from(solid.is_some_and(|solid| solid < max));
                             }
                         }
                         if visible && answer == Answer::Blocked {

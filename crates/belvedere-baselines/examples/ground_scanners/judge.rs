@@ -5,7 +5,7 @@ use belvedere::medial::CarvedParams;
 use belvedere::model::{BallParams, BallsReport, BuildReport, ModelParams, OrientBy, SceneModel};
 use belvedere::query::{Answer, MedialScene, UnprovenAs, Viewer, Visibility};
 use belvedere::{Bounds, PointCloud, Result};
-use belvedere_scenes::{QuerySet, QuerySite, Scene, Truth};
+use belvedere_scenes::{QuerySet, QuerySite, TriangleScene, Truth};
 use std::collections::BTreeMap;
 use std::fmt;
 use std::sync::{Mutex, PoisonError};
@@ -18,23 +18,29 @@ const OWN: usize = 4000;
 
 /// Answers to targets that are visible in truth, and to those that are blocked: blocked, visible, unproven.
 #[derive(Default)]
-struct Counts([[usize; 3]; 2]);
+struct AnswerTally([[usize; 3]; 2]);
 
 /// What was found.
-pub(crate) struct Found {
+pub(crate) struct ScannerResults {
     build_seconds: f64,
     query_seconds: f64,
     peak_mib: Option<f64>,
     balls: usize,
     report: BuildReport,
-    streets: Counts,
-    own: Counts,
-    /// For lines in streets that are falsely blocked: what the point of the ball lies on, how many, and the mean radius.
+    streets: AnswerTally,
+    own: AnswerTally,
+    /// For lines in streets that are falsely blocked: what the point of the ball lies on, how many, and the mean
+    /// radius.
     blockers: BTreeMap<&'static str, (usize, f64)>,
 }
 
 /// Builds the default model of `cloud`, whose points were measured from `scanner`, and asks what people in streets see.
-pub(crate) fn judge(scene: &Scene, cloud: &PointCloud, scanner: &[[f32; 3]], seed: u64) -> Result<Found> {
+pub(crate) fn judge(
+    scene: &TriangleScene,
+    cloud: &PointCloud,
+    scanner: &[[f32; 3]],
+    seed: u64,
+) -> Result<ScannerResults> {
     let params = ModelParams::default()
         .with_orient(OrientBy::ScannerOfEachPoint(scanner.to_vec()))
         .with_balls(BallParams::Carved(CarvedParams::default()));
@@ -63,7 +69,7 @@ pub(crate) fn judge(scene: &Scene, cloud: &PointCloud, scanner: &[[f32; 3]], see
             Some((p, site.surface_of_return(absolute(*scanner.get(row)?), absolute(p))?.1))
         })
         .unzip();
-    let (mut streets, mut of_own, mut blockers) = (Counts::default(), Counts::default(), BTreeMap::new());
+    let (mut streets, mut of_own, mut blockers) = (AnswerTally::default(), AnswerTally::default(), BTreeMap::new());
     let mut query_seconds = 0.0;
     for eye in site.street_observers(EYES, seed) {
         let local: [f64; 3] = std::array::from_fn(|i| eye[i] - origin[i]);
@@ -83,7 +89,7 @@ pub(crate) fn judge(scene: &Scene, cloud: &PointCloud, scanner: &[[f32; 3]], see
         }
     }
     let balls = model.balls().len();
-    Ok(Found { build_seconds, query_seconds, peak_mib, balls, report, streets, own: of_own, blockers })
+    Ok(ScannerResults { build_seconds, query_seconds, peak_mib, balls, report, streets, own: of_own, blockers })
 }
 
 /// Counts what lies at the point of the ball that blocks a line.
@@ -109,7 +115,7 @@ fn blame(
     of.1 += f64::from(model.balls().radii[ball]);
 }
 
-impl Counts {
+impl AnswerTally {
     fn count(&mut self, is_blocked: bool, answer: Answer) {
         let column = match answer {
             Answer::Blocked => 0,
@@ -121,7 +127,7 @@ impl Counts {
     }
 }
 
-impl fmt::Display for Counts {
+impl fmt::Display for AnswerTally {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [visible, blocked] = self.0;
         let share = |part: usize, of: [usize; 3]| 100.0 * part as f64 / of.iter().sum::<usize>().max(1) as f64;
@@ -140,7 +146,7 @@ impl fmt::Display for Counts {
     }
 }
 
-impl fmt::Display for Found {
+impl fmt::Display for ScannerResults {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let peak = self.peak_mib.map_or("unknown".to_owned(), |mib| format!("{mib:.0} MiB"));
         writeln!(
@@ -150,7 +156,7 @@ impl fmt::Display for Found {
         )?;
         if let Some(pulses) = &self.report.pulses {
             let blocked = pulses.blocked.map_or(f64::NAN, |blocked| blocked.percent);
-            writeln!(f, "  pulses used {}, blocked {blocked:.3} %", pulses.needles.used)?;
+            writeln!(f, "  pulses used {}, blocked {blocked:.3} %", pulses.free_segments.used)?;
         }
         if let Some(BallsReport::Carved(carved)) = &self.report.interior_balls {
             writeln!(f, "  {carved:?}")?;

@@ -4,8 +4,8 @@
 //! cargo run --release -p belvedere-baselines --example ground_scanners -- tripods,car town 110 77
 //! ```
 //!
-//! prints the table of docs/methods/scanners.md: scanners, kinds of towns, their extent in metres, seeds. A last number makes the angles
-//! between pulses so many times as large, for a quick look.
+//! prints the table of docs/methods/scanners.md: scanners, kinds of towns, their extent in metres, seeds. A last number
+//! makes the angles between pulses so many times as large, for a quick look.
 #![allow(clippy::print_stdout, reason = "an example talks")]
 
 #[path = "../../tests/all/common/flown.rs"]
@@ -14,7 +14,7 @@ mod judge;
 
 use belvedere::PointCloud;
 use belvedere_scenes::{
-    AirborneParams, MobileParams, Preset, Scene, Stations, TerrestrialParams, TownParams, scan_mobile,
+    AirborneParams, MobileParams, Preset, Stations, TerrestrialParams, TownParams, TriangleScene, scan_mobile,
     scan_terrestrial, town,
 };
 use flown::{flown, surveyed};
@@ -22,9 +22,9 @@ use flown::{flown, surveyed};
 /// Places of a tripod in a town.
 const STATIONS: u16 = 12;
 
-type Outcome<T> = Result<T, Box<dyn std::error::Error>>;
+type AnyResult<T> = Result<T, Box<dyn std::error::Error>>;
 
-fn main() -> Outcome<()> {
+fn main() -> AnyResult<()> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let word = |i: usize, usual: &'static str| arguments.get(i).map_or(usual, String::as_str);
     let extent: f64 = word(2, "110").parse()?;
@@ -44,7 +44,12 @@ fn main() -> Outcome<()> {
 }
 
 /// The cloud that a scanner makes of a town, and where it was at each point.
-fn scanned(scanner: &str, scene: &Scene, params: &TownParams, coarser: f64) -> Outcome<(PointCloud, Vec<[f32; 3]>)> {
+fn scanned(
+    scanner: &str,
+    scene: &TriangleScene,
+    params: &TownParams,
+    coarser: f64,
+) -> AnyResult<(PointCloud, Vec<[f32; 3]>)> {
     let seed = params.seed;
     Ok(match scanner {
         "air" => flown(scene, &AirborneParams { seed, ..AirborneParams::covering(scene, 10.0) })?,

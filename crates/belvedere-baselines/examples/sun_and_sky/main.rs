@@ -4,8 +4,9 @@
 //! cargo run --release -p belvedere-baselines --example sun_and_sky -- village,town,old-town 150 0.5 4000 11
 //! ```
 //!
-//! prints the table of docs/methods/sun-and-sky-accuracy.md: kinds of towns, their extent and the side of a cell in metres, targets of each kind, and
-//! the seed. Sun hours are those of 21 June at 52° N in steps of ten minutes, sky views those of 577 directions.
+//! prints the table of docs/methods/sun-and-sky-accuracy.md: kinds of towns, their extent and the side of a cell in
+//! metres, targets of each kind, and the seed. Sun hours are those of 21 June at 52° N in steps of ten minutes, sky
+//! views those of 577 directions.
 #![allow(clippy::print_stdout, reason = "an example talks")]
 
 mod judge;
@@ -13,18 +14,18 @@ mod judge;
 use belvedere::query::BlockRule;
 use belvedere_baselines::dsm::{Dsm, DsmParams};
 use belvedere_scenes::Preset;
-use judge::score::{ELEVATIONS_DEG, Light, Score, Setting};
-use judge::{Places, Tops, Town};
+use judge::score::{ELEVATIONS_DEG, LightDirections, LightScore, Setting};
+use judge::{CellTops, JudgedTargets, LightTown};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let word = |i: usize, usual: &'static str| arguments.get(i).map_or(usual, String::as_str);
     let (extent, cell): (f64, f64) = (word(1, "150").parse()?, word(2, "0.5").parse()?);
     let (count, seed): (usize, u64) = (word(3, "4000").parse()?, word(4, "11").parse()?);
-    let light = Light::of_day(52f64.to_radians(), 23.44f64.to_radians(), 10.0, 577)?;
+    let light = LightDirections::of_day(52f64.to_radians(), 23.44f64.to_radians(), 10.0, 577)?;
     for name in word(0, "village,town,old-town").split(',') {
         let preset = Preset::ALL.into_iter().find(|preset| preset.name() == name).ok_or("no such town")?;
-        let town = Town::new(preset, extent, cell, seed)?;
+        let town = LightTown::new(preset, extent, cell, seed)?;
         println!("{name}: {} points, {} balls", town.cloud.len(), town.balls.len());
         let carved = BlockRule::carved();
         let raster = Dsm::from_points(&town.cloud.positions, &DsmParams { cell: 0.5, ..DsmParams::default() })?;
@@ -36,14 +37,17 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             ("0.1 m above ground", &town.ground_cells(0.1, count, &light)),
             ("1.5 m above ground", &town.ground_cells(1.5, count, &light)),
             ("0.1 m off roofs", &roofs),
-            ("0.1 m above the highest points of cells of roofs", &town.roof_cells(Tops::Highest, 0.1, count, &light)?),
-            ("0.1 m above the surface at cells of roofs", &town.roof_cells(Tops::Surface, 0.1, count, &light)?),
+            (
+                "0.1 m above the highest points of cells of roofs",
+                &town.roof_cells(CellTops::Highest, 0.1, count, &light)?,
+            ),
+            ("0.1 m above the surface at cells of roofs", &town.roof_cells(CellTops::Surface, 0.1, count, &light)?),
             ("returns of roofs, asked 0.1 m higher", &returns),
         ] {
             let lift = if what.ends_with("higher") { 0.1 } else { 0.0 };
             let score = town.judge(places, &light, lift, &carved)?;
             println!("  {what} ({})", places.len());
-            let [mean, absolute] = Town::heights_off(places, town.cloud.frame.origin[2]);
+            let [mean, absolute] = LightTown::heights_off(places, town.cloud.frame.origin[2]);
             println!("    asked {mean:+.3} m too high, {absolute:.3} m off");
             print_score(&score);
             let raster = town.judge_other(&raster, places, &light)?;
@@ -62,7 +66,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-fn print_score(score: &Score) {
+fn print_score(score: &LightScore) {
     for (what, [lit, error, false_lit, false_shaded]) in [("", score.sun), (" above 5 deg", score.sun_above_5)] {
         println!(
             "    sun{what}: {lit:.2} h, MAE {error:.3} h, bias {:+.3}, wrongly lit {false_lit:.3}, wrongly shaded {false_shaded:.3}",
@@ -85,7 +89,7 @@ fn print_score(score: &Score) {
     }
 }
 
-fn print_lifts(town: &Town, what: &str, places: &Places, light: &Light) -> belvedere::Result<()> {
+fn print_lifts(town: &LightTown, what: &str, places: &JudgedTargets, light: &LightDirections) -> belvedere::Result<()> {
     for shell in [0.1, 0.2, 0.3] {
         for lift in [0.0, 0.05, 0.1, 0.2] {
             let score = town.judge(places, light, lift, &BlockRule { shell, ..BlockRule::carved() })?;

@@ -1,6 +1,6 @@
 //! How far answers are from the truth, in hours of sun and shares of the sky.
 
-use super::Places;
+use super::JudgedTargets;
 use belvedere::Result;
 use belvedere::apps::sky_view::SkyDirections;
 use std::f64::consts::{PI, TAU};
@@ -22,7 +22,7 @@ impl Setting {
 }
 
 /// Directions of the sun through a day, and of the sky.
-pub(crate) struct Light {
+pub(crate) struct LightDirections {
     pub(crate) directions: Vec<[f64; 3]>,
     /// How many of them are of the sun; those of the sky follow.
     pub(crate) sun_count: usize,
@@ -30,9 +30,9 @@ pub(crate) struct Light {
     pub(super) hours: f64,
 }
 
-impl Light {
-    /// The sun of a declination at a latitude (radians) every `minutes` of a day while it is above the horizon, and `sky_count` directions
-    /// of the sky.
+impl LightDirections {
+    /// The sun of a declination at a latitude (radians) every `minutes` of a day while it is above the horizon, and
+    /// `sky_count` directions of the sky.
     pub(crate) fn of_day(latitude: f64, declination: f64, minutes: f64, sky_count: usize) -> Result<Self> {
         let steps = (24.0 * 60.0 / minutes).round();
         let ((sin, cos), (sin_d, cos_d)) = (latitude.sin_cos(), declination.sin_cos());
@@ -54,13 +54,13 @@ impl Light {
     /// Class of elevation of a direction.
     fn class(&self, direction: usize) -> usize {
         let elevation = self.directions.get(direction).map_or(0.0, |d| d[2].asin().to_degrees());
-        ELEVATIONS_DEG.iter().position(|&most| elevation < most).unwrap_or(ELEVATIONS_DEG.len() - 1)
+        ELEVATIONS_DEG.iter().position(|&max| elevation < max).unwrap_or(ELEVATIONS_DEG.len() - 1)
     }
 }
 
 /// How far answers are from the truth.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Score {
+pub(crate) struct LightScore {
     /// Hours of sun: mean true, mean absolute error, and mean hours wrongly lit and wrongly shaded.
     pub(crate) sun: [f64; 4],
     /// The same with the sun above 5 degrees.
@@ -70,15 +70,15 @@ pub(crate) struct Score {
     pub(crate) openness: [f64; 3],
     /// Mean hours wrongly lit and wrongly shaded by class of elevation of the sun.
     pub(crate) by_elevation: [[f64; 2]; ELEVATIONS_DEG.len()],
-    /// By what is above or beside: share of the targets, and what of the mean absolute error, of the hours wrongly lit and of the hours
-    /// wrongly shaded they make; sky view factors likewise.
+    /// By what is above or beside: share of the targets, and what of the mean absolute error, of the hours wrongly lit
+    /// and of the hours wrongly shaded they make; sky view factors likewise.
     pub(crate) by_setting: [[f64; 5]; Setting::ALL.len()],
 }
 
-impl Score {
+impl LightScore {
     /// Of what `is_free` says of each target and direction.
-    pub(super) fn new(places: &Places, light: &Light, is_free: &dyn Fn(usize, usize) -> bool) -> Self {
-        let mut score = Score::default();
+    pub(super) fn new(places: &JudgedTargets, light: &LightDirections, is_free: &dyn Fn(usize, usize) -> bool) -> Self {
+        let mut score = LightScore::default();
         let width = light.directions.len();
         let one = 1.0 / places.len().max(1) as f64;
         let sky_count = (width - light.sun_count) as f64;

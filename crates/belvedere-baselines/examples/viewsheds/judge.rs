@@ -8,10 +8,10 @@ use belvedere::apps::viewshed::{Observer, SightLimits, ViewshedParams, cell_targ
 use belvedere::control::Control;
 use belvedere::ground::{Ground, GroundParams, MapGrid};
 use belvedere::medial::MedialBalls;
-use belvedere::pulses::{NeedleParams, Needles};
+use belvedere::pulses::{FreeSegmentParams, FreeSegments};
 use belvedere::query::{Answer, BlockRule, MedialScene, Proof, ProofParams};
 use belvedere::{PointCloud, Result};
-use belvedere_baselines::Survey;
+use belvedere_baselines::MethodInput;
 use belvedere_baselines::medial::{MedialBaseline, MedialParams, Outward};
 use belvedere_scenes::{AirborneParams, Preset, QuerySite, Truth, town};
 use flown::flown;
@@ -20,7 +20,7 @@ use flown::flown;
 const REACH: f64 = 150.0;
 
 /// A town, its survey and the balls made of it.
-pub(crate) struct Town {
+pub(crate) struct ViewshedTown {
     pub(crate) cloud: PointCloud,
     pub(crate) balls: MedialBalls,
     pub(crate) ground: Ground,
@@ -32,21 +32,22 @@ pub(crate) struct Town {
     pub(crate) eyes: Vec<[f64; 3]>,
 }
 
-/// Cells by what they truly are and by what they were taken for, over all observers: unproven ones for visible in the first counts, and
-/// left out of the second.
+/// Cells by what they truly are and by what they were taken for, over all observers: unproven ones for visible in the
+/// first counts, and left out of the second.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Score {
+pub(crate) struct ViewshedScore {
     pub(crate) truly_visible: usize,
     pub(crate) truly_blocked: usize,
     pub(crate) false_visible: usize,
     pub(crate) false_blocked: usize,
-    /// Sum over observers of the cells seen by both by those seen by either, unproven ones taken for visible, and left out.
+    /// Sum over observers of the cells seen by both by those seen by either, unproven ones taken for visible, and left
+    /// out.
     pub(crate) iou_sums: [f64; 2],
     pub(crate) unproven: usize,
     pub(crate) observers: usize,
 }
 
-impl Score {
+impl ViewshedScore {
     /// Mean share of the cells seen by both in those seen by either: unproven ones taken for visible, and left out.
     pub(crate) fn ious(&self) -> [f64; 2] {
         self.iou_sums.map(|sum| sum / self.observers.max(1) as f64)
@@ -61,13 +62,13 @@ impl Score {
     }
 }
 
-impl Town {
+impl ViewshedTown {
     /// A town of `extent` metres with cells of `cell` metres, and `eyes` people in its streets.
     pub(crate) fn new(preset: Preset, extent: f64, cell: f64, eyes: usize, seed: u64) -> Result<Self> {
         let scene = town(&preset.params(extent, seed));
         let (cloud, scanner) = flown(&scene, &AirborneParams { seed, ..AirborneParams::covering(&scene, 8.0) })?;
         let origin = cloud.frame.origin;
-        let survey = Survey { cloud: &cloud, scanner: &scanner, models: &[] };
+        let survey = MethodInput { cloud: &cloud, scanner: &scanner, models: &[] };
         let balls = MedialBaseline::new(&survey, Outward::Survey, &MedialParams::carved())?.balls().clone();
         let truth = Truth::new(&scene);
         let Bounds { low, high } = cloud.bounds().unwrap_or_default();
@@ -91,30 +92,31 @@ impl Town {
     }
 
     /// What people in the streets see of targets `height` metres above the ground.
-    pub(crate) fn judge(&self, height: f64) -> Result<Score> {
+    pub(crate) fn judge(&self, height: f64) -> Result<ViewshedScore> {
         let scene = MedialScene::new(&self.balls, &BlockRule::carved())?;
-        let (needles, _) = Needles::of_cloud(&self.cloud, &self.scanner, &NeedleParams::default(), &Control::none())?;
-        let scene = scene.with_pulses(Proof::new(needles, &ProofParams::default())?);
+        let (free_segments, _) =
+            FreeSegments::of_cloud(&self.cloud, &self.scanner, &FreeSegmentParams::default(), &Control::none())?;
+        let scene = scene.with_pulses(Proof::new(free_segments, &ProofParams::default())?);
         let targets = cell_targets(&self.ground, tested_height(height));
         let origin = self.cloud.frame.origin;
-        let mut score = Score::default();
+        let mut score = ViewshedScore::default();
         for &eye in &self.eyes {
             let limits = SightLimits { distance: [0.0, REACH], ..SightLimits::default() };
             let observer = Observer { eye, limits };
             let seen = viewshed(&scene, &[observer], &targets, &ViewshedParams::default(), &Control::none())?;
             let absolute = |p: [f64; 3]| -> [f64; 3] { std::array::from_fn(|i| p[i] + origin[i]) };
             let (mut both, mut either) = ([0, 0], [0, 0]);
-            let asked = targets.iter().zip(&self.exact_ground).zip(&seen.answers);
-            let asked: Vec<([f64; 3], Answer)> = asked
+            let queried = targets.iter().zip(&self.exact_ground).zip(&seen.answers);
+            let queried: Vec<([f64; 3], Answer)> = queried
                 .filter(|(_, answer)| **answer != Answer::OutsideView)
                 .filter_map(|((target, ground), answer)| {
                     let [x, y, _] = absolute(target.map(f64::from));
                     Some(([x, y, (*ground)? + height], *answer))
                 })
                 .collect();
-            let places: Vec<[f64; 3]> = asked.iter().map(|(place, _)| *place).collect();
+            let places: Vec<[f64; 3]> = queried.iter().map(|(place, _)| *place).collect();
             let occluded = self.truth.occluded_each(&places, absolute(eye));
-            for ((_, answer), occluded) in asked.iter().zip(occluded) {
+            for ((_, answer), occluded) in queried.iter().zip(occluded) {
                 let (seen, truly) = (*answer != Answer::Blocked, !occluded);
                 for i in 0..if *answer == Answer::Unproven { 1 } else { 2 } {
                     both[i] += usize::from(seen && truly);

@@ -4,7 +4,8 @@
 //! cargo run --release -p belvedere-baselines --example viewsheds -- village,town,old-town 300 0.5 10
 //! ```
 //!
-//! prints the table of docs/methods/viewshed.md: kinds of towns, their extent and the side of a cell in metres, people in streets.
+//! prints the table of docs/methods/viewshed.md: kinds of towns, their extent and the side of a cell in metres, people
+//! in streets.
 #![allow(clippy::print_stdout, reason = "an example talks")]
 
 mod judge;
@@ -14,7 +15,7 @@ use belvedere::apps::viewshed::{Observer, ViewshedParams, cell_targets, viewshed
 use belvedere::control::Control;
 use belvedere::query::{BlockRule, EarthParams, MedialScene, random_pairs};
 use belvedere_scenes::Preset;
-use judge::Town;
+use judge::ViewshedTown;
 use std::time::Instant;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -24,7 +25,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let eyes: usize = word(3, "10").parse()?;
     for name in word(0, "village,town,old-town").split(',') {
         let preset = Preset::ALL.into_iter().find(|preset| preset.name() == name).ok_or("no such town")?;
-        let town = Town::new(preset, extent, cell, eyes, 11)?;
+        let town = ViewshedTown::new(preset, extent, cell, eyes, 11)?;
         println!("{name}: {} points, {} balls, {} eyes", town.cloud.len(), town.balls.len(), town.eyes.len());
         for height in [0.0, 0.5, 1.7] {
             let score = town.judge(height)?;

@@ -6,7 +6,7 @@ use super::{NONE, Tetrahedron, in_sphere, number, orient};
 const INFINITE: u32 = u32::MAX;
 
 /// A tetrahedralisation that grows. Tetrahedra with the corner at infinity close it, so that each has four neighbours.
-pub(super) struct Builder<'a> {
+pub(super) struct DelaunayBuilder<'a> {
     points: &'a [[f64; 3]],
     tetrahedra: Vec<Tetrahedron>,
     /// Unused places among `tetrahedra`; their corners are all infinite.
@@ -23,7 +23,7 @@ pub(super) struct Builder<'a> {
     edges: Vec<(u64, u32, usize)>,
 }
 
-impl<'a> Builder<'a> {
+impl<'a> DelaunayBuilder<'a> {
     /// Starts with a tetrahedron in positive order.
     pub(super) fn new(points: &'a [[f64; 3]], first: [u32; 4]) -> Self {
         let mut tetrahedra = vec![Tetrahedron { corners: first, neighbors: [1, 2, 3, 4] }];
@@ -43,8 +43,8 @@ impl<'a> Builder<'a> {
         Self { points, tetrahedra, free, tested, insertion: 0, last: 0, turns: 0, cavity, boundary, edges }
     }
 
-    /// Adds a point: the tetrahedra whose circumsphere holds it give way to a fan about it. A second point at one place is
-    /// left out.
+    /// Adds a point: the tetrahedra whose circumsphere holds it give way to a fan about it. A second point at one place
+    /// is left out.
     pub(super) fn insert(&mut self, index: u32) {
         let point = self.points[index as usize];
         let found = self.locate(point);
@@ -100,8 +100,9 @@ impl<'a> Builder<'a> {
         self.tetrahedra[tetrahedron as usize].corners.iter().position(|&corner| corner == INFINITE)
     }
 
-    /// Whether `point` lies strictly inside the circumsphere. That of a tetrahedron at infinity is the half-space beyond its
-    /// face, with the circle of the face in its boundary, which is also in the circumsphere of the neighbour.
+    /// Whether `point` lies strictly inside the circumsphere. That of a tetrahedron at infinity is the half-space
+    /// beyond its face, with the circle of the face in its boundary, which is also in the circumsphere of the
+    /// neighbour.
     fn is_in_conflict(&self, tetrahedron: u32, point: [f64; 3]) -> bool {
         let Tetrahedron { corners, neighbors } = self.tetrahedra[tetrahedron as usize];
         let Some(i) = self.infinite_corner(tetrahedron) else {

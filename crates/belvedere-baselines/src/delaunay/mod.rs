@@ -8,12 +8,12 @@ use crate::curve::{Curve, insertion_order, number};
 use belvedere::vector::{cross, dot, sub};
 use robust::{Coord3D, insphere, orient3d};
 
-use insert::Builder;
+use insert::DelaunayBuilder;
 
 /// No tetrahedron: what lies beyond a face of the convex hull.
 pub(crate) const NONE: u32 = u32::MAX;
 /// More points could have more tetrahedra than there are numbers of 32 bits.
-pub(crate) const MOST_POINTS: usize = 1 << 27;
+pub(crate) const MAX_POINTS: usize = 1 << 27;
 
 /// A tetrahedron, its corners in positive order: seen from the first, the others turn counter-clockwise.
 #[derive(Clone, Copy, Debug)]
@@ -34,19 +34,19 @@ pub(crate) struct Delaunay {
 }
 
 impl Delaunay {
-    /// Tetrahedralises `points`, (N, 3), finite and of f32 precision, at most [`MOST_POINTS`]. Points in one plane have no
-    /// tetrahedra. Of points at one place one is used.
+    /// Tetrahedralises `points`, (N, 3), finite and of f32 precision, at most [`MAX_POINTS`]. Points in one plane have
+    /// no tetrahedra. Of points at one place one is used.
     ///
     /// # Source
-    /// Bowyer 1981 and Watson 1981, with one corner at infinity for what lies outside; insertion in rounds: Amenta, Choi &
-    /// Rote 2003; exact signs: Shewchuk 1997.
+    /// Bowyer 1981 and Watson 1981, with one corner at infinity for what lies outside; insertion in rounds: Amenta,
+    /// Choi & Rote 2003; exact signs: Shewchuk 1997.
     pub(crate) fn new(points: Vec<[f64; 3]>) -> Self {
         let Some(first) = first_tetrahedron(&points) else {
             let at_point = vec![NONE; points.len()];
             return Self { points, tetrahedra: Vec::new(), at_point };
         };
         let curve = Curve::new(&points);
-        let mut builder = Builder::new(&points, first);
+        let mut builder = DelaunayBuilder::new(&points, first);
         for point in insertion_order(&points, &first, &curve) {
             builder.insert(point);
         }

@@ -14,8 +14,8 @@ fn lattice(side: i32) -> Vec<[f64; 3]> {
     range().flat_map(|x| range().flat_map(move |y| range().map(move |z| [x, y, z].map(f64::from)))).collect()
 }
 
-/// Checks what a Delaunay tetrahedralisation is by definition, over all pairs of a tetrahedron and a point, and returns its
-/// volume.
+/// Checks what a Delaunay tetrahedralisation is by definition, over all pairs of a tetrahedron and a point, and returns
+/// its volume.
 fn checked_volume(points: &[[f64; 3]]) -> f64 {
     let delaunay = Delaunay::new(points.to_vec());
     let (mut edges, mut faces, mut hull_faces, mut used) = (BTreeSet::new(), 0, 0, BTreeSet::new());
@@ -82,7 +82,8 @@ fn walls_and_floors_with_points_in_their_planes_are_filled() {
     // a floor of 8 × 8 and two walls 4 high on it, all in planes of the lattice
     let mut points: Vec<[f64; 3]> = lattice(8).into_iter().filter(|p| p[2] == 0.0).collect();
     points.extend(lattice(8).into_iter().filter(|p| (p[0] == 2.0 || p[0] == 5.0) && (1.0..=4.0).contains(&p[2])));
-    // walls of 8 × 4 three apart hold 96; each slope from a wall to the edge of the floor is a wedge, at 2 and at 3 metres
+    // walls of 8 × 4 three apart hold 96; each slope from a wall to the edge of the floor is a wedge, at 2 and at 3
+    // metres
     assert!((checked_volume(&points) - (96.0 + 32.0 + 48.0)).abs() < 1e-9);
 }
 
@@ -99,16 +100,9 @@ fn points_in_one_plane_have_no_tetrahedra() {
 
 #[test]
 fn the_least_and_greatest_numbers_of_f32_are_no_trouble() {
-    let (most, least) = (f64::from(f32::MAX), f64::from(f32::MIN_POSITIVE));
+    let (max, min) = (f64::from(f32::MAX), f64::from(f32::MIN_POSITIVE));
     let mut points = scattered(40, [1.0; 3]);
-    points.extend([
-        [most, 0.0, 0.0],
-        [0.0, most, -most],
-        [least, least, 0.0],
-        [-most; 3],
-        [0.0, 0.0, -least],
-        [0.0; 3],
-    ]);
+    points.extend([[max, 0.0, 0.0], [0.0, max, -max], [min, min, 0.0], [-max; 3], [0.0, 0.0, -min], [0.0; 3]]);
     let delaunay = Delaunay::new(points.clone());
     assert!(delaunay.at_point.iter().all(|&at| at != NONE));
 }

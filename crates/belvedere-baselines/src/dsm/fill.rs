@@ -1,6 +1,7 @@
 //! Heights for cells without points.
 
-/// How a cell without points gets its height. Both work inward from the rim of a gap, one ring of cells after the other.
+/// How a cell without points gets its height. Both work inward from the rim of a gap, one ring of cells after the
+/// other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum GapFill {
     /// The lowest of the eight neighbours that have one: gaps are mostly ground behind a building.

@@ -1,6 +1,6 @@
 //! Rays over a height field, with a pyramid of greatest heights that lets them step over what lies far below.
 
-use super::Relief;
+use super::DsmSurface;
 use belvedere::raster::Raster;
 use belvedere::ray_index::Ray;
 
@@ -9,7 +9,7 @@ pub(super) struct HeightGrid {
     heights: Raster<f32>,
     corner: [f64; 2],
     cell: f64,
-    relief: Relief,
+    relief: DsmSurface,
     /// Greatest height of each patch, then of 2 × 2, 4 × 4… patches; −∞ where there is none.
     greatest: Vec<Raster<f32>>,
     lowest: f32,
@@ -35,11 +35,12 @@ impl Track {
 }
 
 impl HeightGrid {
-    /// `heights` with row 0 in the south, NaN where there is none; `corner` is the south-western corner of the first cell.
-    pub(super) fn new(heights: Raster<f32>, corner: [f64; 2], cell: f64, relief: Relief) -> Self {
+    /// `heights` with row 0 in the south, NaN where there is none; `corner` is the south-western corner of the first
+    /// cell.
+    pub(super) fn new(heights: Raster<f32>, corner: [f64; 2], cell: f64, relief: DsmSurface) -> Self {
         let base = match relief {
-            Relief::Columns => pooled(&heights, [heights.width(), heights.height()], 1, 1),
-            Relief::Bilinear => pooled(&heights, [heights.width() - 1, heights.height() - 1], 1, 2),
+            DsmSurface::Columns => pooled(&heights, [heights.width(), heights.height()], 1, 1),
+            DsmSurface::Bilinear => pooled(&heights, [heights.width() - 1, heights.height() - 1], 1, 2),
         };
         let mut greatest = vec![base];
         while let Some(finest) = greatest.last().filter(|level| level.width() > 1 || level.height() > 1) {
@@ -58,15 +59,15 @@ impl HeightGrid {
         self.corner
     }
 
-    /// Whether the surface lies above some part of `ray` within its ranges; of columns, those that hold the two ends of the
-    /// line of sight (the origin of the ray and the end of its ranges) do not count.
+    /// Whether the surface lies above some part of `ray` within its ranges; of columns, those that hold the two ends of
+    /// the line of sight (the origin of the ray and the end of its ranges) do not count.
     ///
     /// # Source
-    /// Maximum mipmaps: Tevs, Ihrke & Seidel 2008, "Maximum Mipmaps for Fast, Accurate, and Scalable Dynamic Height Field
-    /// Rendering".
+    /// Maximum mipmaps: Tevs, Ihrke & Seidel 2008, "Maximum Mipmaps for Fast, Accurate, and Scalable Dynamic Height
+    /// Field Rendering".
     pub(super) fn blocks(&self, ray: &Ray) -> bool {
         let Some(top) = self.greatest.last().and_then(|level| level.get(0, 0)) else { return false };
-        let offset = if self.relief == Relief::Bilinear { 0.5 } else { 0.0 };
+        let offset = if self.relief == DsmSurface::Bilinear { 0.5 } else { 0.0 };
         let mut track = Track {
             at: [0, 1].map(|axis| (ray.origin[axis] - self.corner[axis]) / self.cell - offset),
             step: [0, 1].map(|axis| ray.direction[axis] / self.cell),
@@ -100,7 +101,7 @@ impl HeightGrid {
                     level -= 1;
                     continue;
                 }
-                let counts = self.relief == Relief::Bilinear || !ends.contains(&Some(patch));
+                let counts = self.relief == DsmSurface::Bilinear || !ends.contains(&Some(patch));
                 if counts && self.patch_blocks(patch, &track, [range, leave]) {
                     return true;
                 }
@@ -162,7 +163,7 @@ impl HeightGrid {
     /// Whether the surface of a patch lies above the track between two ranges.
     fn patch_blocks(&self, patch: [i64; 2], track: &Track, ranges: [f64; 2]) -> bool {
         let (Ok(column), Ok(row)) = (usize::try_from(patch[0]), usize::try_from(patch[1])) else { return false };
-        if self.relief == Relief::Columns {
+        if self.relief == DsmSurface::Columns {
             // the greatest height of a column is its height, which the caller has compared
             return true;
         }
@@ -188,7 +189,8 @@ impl HeightGrid {
     }
 }
 
-/// The greatest value of each window of `window` × `window` values, `stride` apart; windows that hold NaN are lower than all.
+/// The greatest value of each window of `window` × `window` values, `stride` apart; windows that hold NaN are lower
+/// than all.
 fn pooled(values: &Raster<f32>, size: [usize; 2], stride: usize, window: usize) -> Raster<f32> {
     let [width, height] = size;
     let mut pooled = Raster::filled(width, height, f32::NEG_INFINITY);

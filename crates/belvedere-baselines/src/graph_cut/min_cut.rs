@@ -15,7 +15,7 @@ pub(super) struct Graph {
 
 /// Which of the two trees a node belongs to.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Tree {
+enum CutTree {
     None,
     Source,
     Sink,
@@ -28,7 +28,7 @@ const ORPHAN: u8 = 5;
 /// Augments paths between two search trees that are kept from one path to the next.
 struct Flow {
     graph: Graph,
-    tree: Vec<Tree>,
+    tree: Vec<CutTree>,
     parent: Vec<u8>,
     /// Distance to the terminal, correct where `checked` is the present `time`.
     distance: Vec<u32>,
@@ -42,12 +42,12 @@ struct Flow {
 /// Whether each node lies on the side of the sink of a minimum cut. Nodes that can reach neither terminal do not.
 ///
 /// # Source
-/// Boykov & Kolmogorov 2004, "An Experimental Comparison of Min-Cut/Max-Flow Algorithms for Energy Minimization in Vision",
-/// section 3; time stamps and distances: Kolmogorov 2003.
+/// Boykov & Kolmogorov 2004, "An Experimental Comparison of Min-Cut/Max-Flow Algorithms for Energy Minimization in
+/// Vision", section 3; time stamps and distances: Kolmogorov 2003.
 pub(super) fn sink_side(graph: Graph) -> Vec<bool> {
     let count = graph.terminal.len();
     let mut flow = Flow {
-        tree: vec![Tree::None; count],
+        tree: vec![CutTree::None; count],
         parent: vec![ORPHAN; count],
         distance: vec![0; count],
         checked: vec![0; count],
@@ -58,7 +58,7 @@ pub(super) fn sink_side(graph: Graph) -> Vec<bool> {
         graph,
     };
     flow.run();
-    flow.tree.into_iter().map(|tree| tree == Tree::Sink).collect()
+    flow.tree.into_iter().map(|tree| tree == CutTree::Sink).collect()
 }
 
 impl Flow {
@@ -66,13 +66,13 @@ impl Flow {
         for node in (0..).take(self.tree.len()) {
             let n = node as usize;
             if self.graph.terminal[n] != 0 {
-                self.tree[n] = if self.graph.terminal[n] > 0 { Tree::Source } else { Tree::Sink };
+                self.tree[n] = if self.graph.terminal[n] > 0 { CutTree::Source } else { CutTree::Sink };
                 (self.parent[n], self.distance[n]) = (TERMINAL, 1);
                 self.activate(node);
             }
         }
         while let Some(&node) = self.active.front() {
-            let path = if self.tree[node as usize] == Tree::None { None } else { self.grow(node) };
+            let path = if self.tree[node as usize] == CutTree::None { None } else { self.grow(node) };
             let Some((from, slot)) = path else {
                 self.active.pop_front();
                 self.is_active[node as usize] = false;
@@ -100,17 +100,17 @@ impl Flow {
         Some((other, back))
     }
 
-    /// What can still flow away from the terminal of `tree` through a slot of `node`: out of it in the tree of the source,
-    /// into it in that of the sink.
-    fn residual_outward(&self, node: u32, slot: usize, (other, back): (u32, usize), tree: Tree) -> i64 {
+    /// What can still flow away from the terminal of `tree` through a slot of `node`: out of it in the tree of the
+    /// source, into it in that of the sink.
+    fn residual_outward(&self, node: u32, slot: usize, (other, back): (u32, usize), tree: CutTree) -> i64 {
         match tree {
-            Tree::Sink => self.graph.capacity[other as usize][back],
+            CutTree::Sink => self.graph.capacity[other as usize][back],
             _ => self.graph.capacity[node as usize][slot],
         }
     }
 
-    /// Lets the tree of `node` grow by its neighbours; returns the arc from the source's tree to the sink's where it meets
-    /// the other.
+    /// Lets the tree of `node` grow by its neighbours; returns the arc from the source's tree to the sink's where it
+    /// meets the other.
     fn grow(&mut self, node: u32) -> Option<(u32, usize)> {
         let n = node as usize;
         for slot in 0..4 {
@@ -119,12 +119,12 @@ impl Flow {
                 continue;
             }
             let m = other as usize;
-            if self.tree[m] == Tree::None {
+            if self.tree[m] == CutTree::None {
                 self.tree[m] = self.tree[n];
                 self.hang(other, back, n);
                 self.activate(other);
             } else if self.tree[m] != self.tree[n] {
-                return Some(if self.tree[n] == Tree::Source { (node, slot) } else { (other, back) });
+                return Some(if self.tree[n] == CutTree::Source { (node, slot) } else { (other, back) });
             } else if self.checked[m] <= self.checked[n] && self.distance[m] > self.distance[n] + 1 {
                 self.hang(other, back, n);
             }
@@ -153,7 +153,8 @@ impl Flow {
         }
     }
 
-    /// Calls `visit` with each node of the path from `node` to its terminal and what can still flow between it and its parent.
+    /// Calls `visit` with each node of the path from `node` to its terminal and what can still flow between it and its
+    /// parent.
     fn along_path(&self, mut node: u32, mut visit: impl FnMut(u32, i64)) {
         let tree = self.tree[node as usize];
         loop {
@@ -174,7 +175,7 @@ impl Flow {
             let n = node as usize;
             let slot = usize::from(self.parent[n]);
             let Some((parent, back)) = (slot < 4).then(|| self.across(node, slot)).flatten() else {
-                self.graph.terminal[n] -= if tree == Tree::Source { amount } else { -amount };
+                self.graph.terminal[n] -= if tree == CutTree::Source { amount } else { -amount };
                 if self.graph.terminal[n] == 0 {
                     self.parent[n] = ORPHAN;
                     self.orphans.push_front(node);
@@ -182,7 +183,7 @@ impl Flow {
                 return;
             };
             let p = parent as usize;
-            let sign = if tree == Tree::Source { 1 } else { -1 };
+            let sign = if tree == CutTree::Source { 1 } else { -1 };
             self.graph.capacity[p][back] -= sign * amount;
             self.graph.capacity[n][slot] += sign * amount;
             if self.residual_outward(parent, back, (node, slot), tree) == 0 {
@@ -204,7 +205,7 @@ impl Flow {
                 continue;
             }
             if let Some(distance) = self.distance_to_terminal(other)
-                && best.is_none_or(|(least, _)| distance < least)
+                && best.is_none_or(|(min, _)| distance < min)
             {
                 best = Some((distance, slot));
             }
@@ -228,7 +229,7 @@ impl Flow {
                 self.orphans.push_back(other);
             }
         }
-        self.tree[n] = Tree::None;
+        self.tree[n] = CutTree::None;
         self.parent[n] = ORPHAN;
     }
 
@@ -270,10 +271,10 @@ mod tests {
     /// A graph without pattern: pairs of nodes that have a slot left are joined.
     fn random_graph(count: u32, seed: u64) -> Graph {
         let mut counter = 0;
-        let mut random = |most: u32| {
+        let mut random = |max: u32| {
             counter += 1;
             #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "below `most`")]
-            let number = (belvedere::random::uniform(seed, counter) * f64::from(most)) as u32;
+            let number = (belvedere::random::uniform(seed, counter) * f64::from(max)) as u32;
             number
         };
         let mut graph = Graph {
@@ -315,9 +316,9 @@ mod tests {
         for seed in 0..300 {
             let count = 2 + u32::try_from(seed % 10).unwrap();
             let graph = random_graph(count, seed);
-            let least = (0..1_u32 << count).map(|cut| cost(&graph, |n| cut >> n & 1 == 1)).min().unwrap();
+            let min = (0..1_u32 << count).map(|cut| cost(&graph, |n| cut >> n & 1 == 1)).min().unwrap();
             let found = sink_side(graph.clone());
-            assert_eq!(cost(&graph, |n| found[n]), least, "seed {seed}");
+            assert_eq!(cost(&graph, |n| found[n]), min, "seed {seed}");
         }
     }
 

@@ -3,9 +3,9 @@
 mod min_cut;
 mod votes;
 
-use crate::Survey;
-use crate::delaunay::{Delaunay, MOST_POINTS, NONE};
-use crate::lines_of_sight::{check_clearance, check_least, check_positive};
+use crate::MethodInput;
+use crate::delaunay::{Delaunay, MAX_POINTS, NONE};
+use crate::lines_of_sight::{check_clearance, check_min, check_positive};
 use crate::mesh_rays::{MeshRays, MeshRaysParams};
 use belvedere::query::{Sight, Viewer, Visibility};
 use belvedere::vector::{cross, dot, length, sub};
@@ -17,24 +17,25 @@ use votes::Votes;
 
 /// How a [`GraphCut`] is made and traced.
 ///
-/// Chosen on two simulated towns of 9 points/m² (seeds 7 and 77, not ones that are reported). The mean error is that of both
-/// kinds over targets in the air, pedestrians, roofs and facades under suns, and of what observers above and in streets see.
+/// Chosen on two simulated towns of 9 points/m² (seeds 7 and 77, not ones that are reported). The mean error is that of
+/// both kinds over targets in the air, pedestrians, roofs and facades under suns, and of what observers above and in
+/// streets see.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GraphCutParams {
-    /// Side of the cubes of which each keeps its first point, metres, above 0. Default 0.1: thins clouds of more than a hundred
-    /// points/m² only. 0.3 changes the mean error by 0.1 points or less.
+    /// Side of the cubes of which each keeps its first point, metres, above 0. Default 0.1: thins clouds of more than a
+    /// hundred points/m² only. 0.3 changes the mean error by 0.1 points or less.
     pub cell: f64,
-    /// Standard deviation of points across the surface, metres, above 0. Default 0.05; 0.02 to 0.2 change the mean error by 0.1
-    /// points or less.
+    /// Standard deviation of points across the surface, metres, above 0. Default 0.05; 0.02 to 0.2 change the mean
+    /// error by 0.1 points or less.
     pub noise: f64,
-    /// How far behind a first return a pulse says that space is solid, as a multiple of `noise`, 0 or more. Default 3, as in the
-    /// source.
+    /// How far behind a first return a pulse says that space is solid, as a multiple of `noise`, 0 or more. Default 3,
+    /// as in the source.
     pub depth_in_noises: f64,
-    /// What the shape of triangles counts against one line of sight, 0 or more. Default 0.3: mean errors are 6.3 % at 0.2, 6.2 % at
-    /// 0.3 and 7.2 % at 0.5. At 1 four of ten shaded pedestrians are called lit.
+    /// What the shape of triangles counts against one line of sight, 0 or more. Default 0.3: mean errors are 6.3 % at
+    /// 0.2, 6.2 % at 0.3 and 7.2 % at 0.5. At 1 four of ten shaded pedestrians are called lit.
     pub quality: f64,
-    /// A triangle blocks only if it lies farther than this from the target, metres, 0 or more. Default 0.5, as for splats; 0.3 changes
-    /// the mean error by less than 0.1 points.
+    /// A triangle blocks only if it lies farther than this from the target, metres, 0 or more. Default 0.5, as for
+    /// splats; 0.3 changes the mean error by less than 0.1 points.
     pub clearance: f64,
 }
 
@@ -46,9 +47,10 @@ impl Default for GraphCutParams {
 
 /// The faces between outside and inside of the Delaunay tetrahedra of the points. They block from both sides.
 ///
-/// Which tetrahedra are inside is the minimum of the lines of sight that a surface would cross and of the shape of its triangles.
-/// Everything beyond the convex hull of the points is outside. All returns are corners; only first returns have lines of sight,
-/// because a crown lets a part of the pulse through. Points whose scanner is not known are taken to be seen from straight above.
+/// Which tetrahedra are inside is the minimum of the lines of sight that a surface would cross and of the shape of its
+/// triangles. Everything beyond the convex hull of the points is outside. All returns are corners; only first returns
+/// have lines of sight, because a crown lets a part of the pulse through. Points whose scanner is not known are taken
+/// to be seen from straight above.
 ///
 /// # Source
 /// Labatut, Pons & Keriven 2009, "Robust and efficient surface reconstruction from range data", sections 3 and 4 (soft
@@ -64,20 +66,20 @@ impl GraphCut {
     /// Reconstructs the surface of the cloud of `survey`, whose scanner positions and return numbers it uses.
     ///
     /// # Errors
-    /// [`Error::InvalidParameter`] for a parameter out of its range, for a position that is not finite and for more than 2^27 points,
-    /// [`Error::LengthMismatch`] for a column of another length.
-    pub fn new(survey: &Survey<'_>, params: &GraphCutParams) -> Result<Self> {
+    /// [`Error::InvalidParameter`] for a parameter out of its range, for a position that is not finite and for more
+    /// than 2^27 points, [`Error::LengthMismatch`] for a column of another length.
+    pub fn new(survey: &MethodInput<'_>, params: &GraphCutParams) -> Result<Self> {
         check_positive("cell of the thinned cloud", params.cell)?;
         check_positive("noise", params.noise)?;
-        check_least("depth behind a return in noises", params.depth_in_noises, 0.0, "finite and not negative")?;
-        check_least("weight of the shape of triangles", params.quality, 0.0, "finite and not negative")?;
+        check_min("depth behind a return in noises", params.depth_in_noises, 0.0, "finite and not negative")?;
+        check_min("weight of the shape of triangles", params.quality, 0.0, "finite and not negative")?;
         check_clearance(params.clearance)?;
         survey.cloud.validate()?;
         let (expected, found) = (survey.cloud.len(), survey.scanner.len());
         if found != 0 && found != expected {
             return Err(Error::LengthMismatch { what: "scanner positions of the points", expected, found });
         }
-        if expected > MOST_POINTS {
+        if expected > MAX_POINTS {
             let value = expected.to_string();
             return Err(Error::InvalidParameter { parameter: Parameter::PointCount, value, expected: "at most 2^27" });
         }
@@ -115,7 +117,7 @@ fn first_per_cell(positions: &[[f32; 3]], cell: f64) -> Vec<usize> {
 }
 
 /// Whether each tetrahedron is inside.
-fn inside(delaunay: &Delaunay, survey: &Survey<'_>, kept: &[usize], params: &GraphCutParams) -> Vec<bool> {
+fn inside(delaunay: &Delaunay, survey: &MethodInput<'_>, kept: &[usize], params: &GraphCutParams) -> Vec<bool> {
     let votes = Votes::new(delaunay, survey, kept, params);
     let (mut capacity, mut terminal) = votes.into_capacities();
     let count = delaunay.tetrahedra.len();
@@ -124,7 +126,7 @@ fn inside(delaunay: &Delaunay, survey: &Survey<'_>, kept: &[usize], params: &Gra
         let corners = delaunay.corners(index);
         let own = index as usize;
         for (i, &neighbor) in tetrahedron.neighbors.iter().enumerate() {
-            let face = Face::opposite(&corners, i);
+            let face = TetrahedronFace::opposite(&corners, i);
             // beyond the hull the sphere is a half-space, which meets its face at no angle
             let beyond = spheres.get(neighbor as usize).map_or(1.0, |sphere| -face.cosine(sphere));
             let quality = params.quality * (1.0 - face.cosine(&spheres[own]).min(beyond));
@@ -153,7 +155,7 @@ fn boundary(delaunay: &Delaunay, inside: &[bool]) -> Vec<[[f64; 3]; 3]> {
         let corners = delaunay.corners(index);
         for (i, &neighbor) in tetrahedron.neighbors.iter().enumerate() {
             if inside.get(neighbor as usize).is_none_or(|&inside| !inside) {
-                triangles.push(Face::opposite(&corners, i).corners);
+                triangles.push(TetrahedronFace::opposite(&corners, i).corners);
             }
         }
     }
@@ -166,13 +168,13 @@ struct Sphere {
 }
 
 /// A face of a tetrahedron.
-struct Face {
+struct TetrahedronFace {
     corners: [[f64; 3]; 3],
     /// Towards the inside of the tetrahedron, unit length or zero.
     inward: [f64; 3],
 }
 
-impl Face {
+impl TetrahedronFace {
     fn opposite(corners: &[[f64; 3]; 4], apex: usize) -> Self {
         let face: [[f64; 3]; 3] = std::array::from_fn(|k| corners[(apex + 1 + k) % 4]);
         let normal = cross(sub(face[1], face[0]), sub(face[2], face[0]));
@@ -181,7 +183,8 @@ impl Face {
         Self { corners: face, inward: normal.map(|v| scale * v) }
     }
 
-    /// Cosine of the angle at which a sphere through the corners meets the plane: 1 where nearly all of it lies on the inward side.
+    /// Cosine of the angle at which a sphere through the corners meets the plane: 1 where nearly all of it lies on the
+    /// inward side.
     fn cosine(&self, sphere: &Sphere) -> f64 {
         let height = dot(self.inward, sub(sphere.center, self.corners[0]));
         if sphere.radius > 0.0 { (height / sphere.radius).clamp(-1.0, 1.0) } else { 1.0 }

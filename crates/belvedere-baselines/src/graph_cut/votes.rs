@@ -1,7 +1,7 @@
 //! What lines of sight say of the tetrahedra that they pass.
 
 use super::{GraphCutParams, PARTS};
-use crate::Survey;
+use crate::MethodInput;
 use crate::delaunay::{Delaunay, NONE};
 use belvedere::vector::{cross, dot, length, sub};
 use rayon::prelude::*;
@@ -18,7 +18,7 @@ pub(super) struct Votes<'a> {
 }
 
 /// A way from a point through tetrahedra.
-struct Way {
+struct TetrahedronPath {
     from: [f64; 3],
     /// Unit length.
     direction: [f64; 3],
@@ -27,9 +27,14 @@ struct Way {
 }
 
 impl<'a> Votes<'a> {
-    /// Counts the votes of first returns among the points, which are the rows `kept` of the cloud: the way to each is free, what lies
-    /// just behind is solid.
-    pub(super) fn new(delaunay: &'a Delaunay, survey: &Survey<'_>, kept: &[usize], params: &GraphCutParams) -> Self {
+    /// Counts the votes of first returns among the points, which are the rows `kept` of the cloud: the way to each is
+    /// free, what lies just behind is solid.
+    pub(super) fn new(
+        delaunay: &'a Delaunay,
+        survey: &MethodInput<'_>,
+        kept: &[usize],
+        params: &GraphCutParams,
+    ) -> Self {
         let count = delaunay.tetrahedra.len();
         let zeros = || std::array::from_fn(|_| AtomicI64::new(0));
         let votes = Self {
@@ -47,16 +52,16 @@ impl<'a> Votes<'a> {
             let range = length(towards);
             if is_first && range > 0.0 && range.is_finite() && delaunay.at_point[point] != NONE {
                 let direction = towards.map(|v| v / range);
-                votes.free(point, &Way { from, direction, end: range });
+                votes.free(point, &TetrahedronPath { from, direction, end: range });
                 let depth = params.depth_in_noises * params.noise;
-                votes.solid(point, &Way { from, direction: direction.map(|v| -v), end: depth });
+                votes.solid(point, &TetrahedronPath { from, direction: direction.map(|v| -v), end: depth });
             }
         });
         votes
     }
 
-    /// Capacities from each tetrahedron to its neighbours, in the order of its faces, where what comes from beyond the hull
-    /// stands at that face; and capacities from the source less those to the sink.
+    /// Capacities from each tetrahedron to its neighbours, in the order of its faces, where what comes from beyond the
+    /// hull stands at that face; and capacities from the source less those to the sink.
     pub(super) fn into_capacities(self) -> (Vec<[i64; 4]>, Vec<i64>) {
         let terminal = self.inside.iter().map(|votes| -votes.load(Ordering::Relaxed)).collect();
         let tetrahedra = &self.delaunay.tetrahedra;
@@ -74,7 +79,7 @@ impl<'a> Votes<'a> {
     }
 
     /// A line of sight runs along `way` towards the point where it starts.
-    fn free(&self, point: usize, way: &Way) {
+    fn free(&self, point: usize, way: &TetrahedronPath) {
         let last = self.walk(point, way, |tetrahedron, face, _, range| {
             self.inward[tetrahedron as usize][face].fetch_add(self.weight(range), Ordering::Relaxed);
         });
@@ -84,7 +89,7 @@ impl<'a> Votes<'a> {
     }
 
     /// A line of sight would go on along `way`, and is known to have ended before its end.
-    fn solid(&self, point: usize, way: &Way) {
+    fn solid(&self, point: usize, way: &TetrahedronPath) {
         let last = self.walk(point, way, |_, _, next, range| {
             if let Some((tetrahedron, face)) = next {
                 self.inward[tetrahedron as usize][face].fetch_add(self.weight(range), Ordering::Relaxed);
@@ -103,12 +108,13 @@ impl<'a> Votes<'a> {
         weight
     }
 
-    /// Follows a way from a point and calls `leave` with each tetrahedron left, through which face, the next one with the
-    /// face of entry, and how far from the point. Returns the tetrahedron in which the way ends, or `None` beyond the hull.
+    /// Follows a way from a point and calls `leave` with each tetrahedron left, through which face, the next one with
+    /// the face of entry, and how far from the point. Returns the tetrahedron in which the way ends, or `None` beyond
+    /// the hull.
     fn walk(
         &self,
         point: usize,
-        way: &Way,
+        way: &TetrahedronPath,
         mut leave: impl FnMut(u32, usize, Option<(u32, usize)>, f64),
     ) -> Option<u32> {
         let (mut at, apex) = self.start(point, way.direction)?;
@@ -166,9 +172,9 @@ impl<'a> Votes<'a> {
         None
     }
 
-    /// How far along a way the plane of a face lies through which it leaves a tetrahedron; infinite for one through which it
-    /// does not.
-    fn range_of_face(&self, tetrahedron: u32, face: usize, way: &Way) -> f64 {
+    /// How far along a way the plane of a face lies through which it leaves a tetrahedron; infinite for one through
+    /// which it does not.
+    fn range_of_face(&self, tetrahedron: u32, face: usize, way: &TetrahedronPath) -> f64 {
         let corners = self.delaunay.corners(tetrahedron);
         let [a, b, c]: [[f64; 3]; 3] = std::array::from_fn(|k| corners[(face + 1 + k) % 4]);
         let normal = cross(sub(b, a), sub(c, a));

@@ -3,7 +3,7 @@
 use belvedere::vector::length;
 use rayon::prelude::*;
 
-use super::hull::{Hull, Walk};
+use super::hull::{Hull, HullWalk};
 
 /// Targets handed to a thread at once.
 const CHUNK: usize = 16_384;
@@ -16,7 +16,8 @@ pub(crate) struct FlippedView {
 }
 
 impl FlippedView {
-    /// Flips `positions`, (N, 3) local metres, about `eye`; the radius is `10^exponent` times the range of the farthest.
+    /// Flips `positions`, (N, 3) local metres, about `eye`; the radius is `10^exponent` times the range of the
+    /// farthest.
     pub(crate) fn new(positions: &[[f32; 3]], eye: [f64; 3], exponent: f64) -> Self {
         let from_eye = |p: &[f32; 3]| -> [f64; 3] { std::array::from_fn(|i| f64::from(p[i]) - eye[i]) };
         let farthest = positions.iter().map(|p| length(from_eye(p))).fold(0.0, f64::max);
@@ -46,7 +47,7 @@ impl FlippedView {
         let found: Vec<bool> = order
             .par_chunks(CHUNK)
             .flat_map_iter(|rows| {
-                let mut walk = Walk::default();
+                let mut walk = HullWalk::default();
                 let images = &images;
                 rows.iter().map(move |&row| {
                     let Some(image) = images[row as usize] else { return true };
@@ -65,8 +66,8 @@ impl FlippedView {
     }
 }
 
-/// The image of `p`, relative to the eye: on the same ray, as far beyond the sphere of `radius` as `p` is before it. `None`
-/// at the eye, which has no ray.
+/// The image of `p`, relative to the eye: on the same ray, as far beyond the sphere of `radius` as `p` is before it.
+/// `None` at the eye, which has no ray.
 fn flip(p: [f64; 3], radius: f64) -> Option<[f64; 3]> {
     let range = length(p);
     (range > 0.0).then(|| p.map(|v| v * (2.0 * radius / range - 1.0)))

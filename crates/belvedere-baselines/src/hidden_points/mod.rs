@@ -10,17 +10,17 @@ use std::sync::OnceLock;
 use belvedere::query::{Answer, Sight, Viewer, Visibility};
 use belvedere::{Error, Parameter, Result};
 
-use crate::Survey;
+use crate::MethodInput;
 use flip::FlippedView;
 pub use radius::RadiusChoice;
 
-/// How far away the eye of a direction is put, in diagonals of the cloud: lines of sight then differ by at most 1/400 rad =
-/// 0.14° from parallel, less than the 0.27° that the sun is in radius, and the flipped coordinates, some 1e12 m, still hold
-/// a tenth of a millimetre.
+/// How far away the eye of a direction is put, in diagonals of the cloud: lines of sight then differ by at most 1/400
+/// rad = 0.14° from parallel, less than the 0.27° that the sun is in radius, and the flipped coordinates, some 1e12 m,
+/// still hold a tenth of a millimetre.
 const FAR_EYE_DIAGONALS: f64 = 200.0;
 
-/// Highest elevation of the direction that another one from above is compared with, radians: two that both come from near
-/// the zenith see the same points.
+/// Highest elevation of the direction that another one from above is compared with, radians: two that both come from
+/// near the zenith see the same points.
 const HIGHEST_OPPOSITE: f64 = std::f64::consts::FRAC_PI_3;
 
 /// How the radius of the sphere is chosen, as the exponent γ of R = 10^γ · range of the farthest point.
@@ -46,8 +46,8 @@ pub enum ForeignTargets {
 pub struct HiddenPointsParams {
     /// Radius of the sphere. Default: by Katz's rule, for each view.
     pub radius: FlipRadius,
-    /// Bound of the noise along a line of sight, metres, 0 to 10. 0 is the operator of Katz, more that of Mehra: a point
-    /// whose image lies no deeper than twice the bound below the hull counts as visible. Default 0.
+    /// Bound of the noise along a line of sight, metres, 0 to 10. 0 is the operator of Katz, more that of Mehra: a
+    /// point whose image lies no deeper than twice the bound below the hull counts as visible. Default 0.
     pub noise: f64,
     /// Targets that are no points of the cloud. Default: refused.
     pub foreign_targets: ForeignTargets,
@@ -61,9 +61,9 @@ impl Default for HiddenPointsParams {
 
 /// Hidden point removal on the points of a cloud.
 ///
-/// Every point moves along its ray from the eye to the other side of a sphere that holds the whole cloud; those that become
-/// corners of the convex hull of all images and the eye are visible. Two points at the same place get the same answer, a
-/// point at the eye is visible, and a target that is not finite gets [`Answer::OutsideView`].
+/// Every point moves along its ray from the eye to the other side of a sphere that holds the whole cloud; those that
+/// become corners of the convex hull of all images and the eye are visible. Two points at the same place get the same
+/// answer, a point at the eye is visible, and a target that is not finite gets [`Answer::OutsideView`].
 ///
 /// Answers do not depend on the order of the points, nor on the number of threads.
 ///
@@ -79,14 +79,14 @@ impl<'a> HiddenPoints<'a> {
     /// The method on the cloud of `survey`; nothing is computed yet.
     ///
     /// # Errors
-    /// [`Error::NoPoints`], [`Error::InvalidParameter`] for a parameter outside its range, a position that is not finite, and
-    /// more than 2^30 points.
-    pub fn new(survey: &Survey<'a>, params: HiddenPointsParams) -> Result<Self> {
+    /// [`Error::NoPoints`], [`Error::InvalidParameter`] for a parameter outside its range, a position that is not
+    /// finite, and more than 2^30 points.
+    pub fn new(survey: &MethodInput<'a>, params: HiddenPointsParams) -> Result<Self> {
         survey.cloud.validate()?;
         if survey.cloud.is_empty() {
             return Err(Error::NoPoints { what: "hidden point removal needs the points of a cloud".to_owned() });
         }
-        if survey.cloud.len() > hull::MOST_POINTS {
+        if survey.cloud.len() > hull::MAX_POINTS {
             return Err(invalid("number of points", survey.cloud.len(), "at most 2^30"));
         }
         if !(0.0..=10.0).contains(&params.noise) {
@@ -103,8 +103,8 @@ impl<'a> HiddenPoints<'a> {
     /// Where the eye of `viewer` is, local metres, and the viewpoint opposite it that Katz's rule compares with.
     ///
     /// For an eye that is its image in the centre of the cloud. For a direction from above it is the same elevation, at
-    /// most [`HIGHEST_OPPOSITE`], in the opposite azimuth: seen from straight below, all the ground would be visible, from
-    /// both sides, and the rule would take a radius ten times too small.
+    /// most [`HIGHEST_OPPOSITE`], in the opposite azimuth: seen from straight below, all the ground would be visible,
+    /// from both sides, and the rule would take a radius ten times too small.
     fn viewpoints(&self, viewer: Viewer<'_>) -> Result<[[f64; 3]; 2]> {
         viewer.validate()?;
         let (centre, diagonal) = radius::extent(self.positions);

@@ -5,8 +5,8 @@ use belvedere::vector::{length, sub};
 
 use super::flip::FlippedView;
 
-/// Exponents tried first, in halves: 0, where the sphere just holds the cloud, to 9, where all but hidden duplicates are
-/// visible even for the far eye of a direction.
+/// Exponents tried first, in halves: 0, where the sphere just holds the cloud, to 9, where all but hidden duplicates
+/// are visible even for the far eye of a direction.
 const LAST_HALF: u32 = 18;
 
 /// Between the best exponents for eyes in a street and above a roof in simulated towns (2 to 4).
@@ -28,10 +28,11 @@ pub(crate) fn extent(positions: &[[f32; 3]]) -> ([f64; 3], f64) {
     (centre, length(sub(high, low)))
 }
 
-/// The exponent that makes most points visible from exactly one of two opposite viewpoints; the lower of two equals. All
-/// of the cloud is used: the best radius grows with the density of points, so that a thinned cloud would find one that is
-/// too small. Beyond the best radius ever more points are
-/// visible from both sides, so larger ones are not tried once the number has fallen by half. Where no radius tells the two viewpoints apart, because they are the same, it is [`FALLBACK_EXPONENT`].
+/// The exponent that makes most points visible from exactly one of two opposite viewpoints; the lower of two equals.
+/// All of the cloud is used: the best radius grows with the density of points, so that a thinned cloud would find one
+/// that is too small. Beyond the best radius ever more points are visible from both sides, so larger ones are not tried
+/// once the number has fallen by half. Where no radius tells the two viewpoints apart, because they are the same, it is
+/// [`FALLBACK_EXPONENT`].
 ///
 /// # Source
 /// Katz, Tal & Basri 2007, section 4: no point of a closed surface is visible from both sides. The grid is ours.

@@ -1,14 +1,14 @@
 //! Where a ray crosses an implicit surface: the samples whose balls it meets, swept from near to far.
 
-use super::{ImplicitSurfaceParams, NormalSigns, Sample};
+use super::{ImplicitSurfaceParams, NormalSigns, SurfaceSample};
 use belvedere::ray_index::{Ray, RayIndex};
 use belvedere::vector::{dot, length, sub};
 
 /// Halvings of the step in which the sign changes: of a step of 0.2 m they leave a millimetre.
 const HALVINGS: usize = 8;
 
-/// How near the surface the aim of a local plane must come, as a share of the step: of 0.025 and 0.1 the latter missed fewer
-/// shadows of a simulated town (2.4 instead of 2.7 % of those in free space) at equal false ones.
+/// How near the surface the aim of a local plane must come, as a share of the step: of 0.025 and 0.1 the latter missed
+/// fewer shadows of a simulated town (2.4 instead of 2.7 % of those in free space) at equal false ones.
 const AIM_TOLERANCE: f64 = 0.1;
 
 /// A sample met by a ray, and the ranges between which the ray is in its ball.
@@ -34,12 +34,12 @@ struct Value {
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum OnSurface {
     Supported,
-    BeyondRim,
+    BeyondEdge,
 }
 
 /// Crossings of one ray with the surface, from near to far.
 pub(super) struct Crossings<'a> {
-    samples: &'a [Sample],
+    samples: &'a [SurfaceSample],
     ray: &'a Ray,
     params: &'a ImplicitSurfaceParams,
     /// By range of entry.
@@ -54,7 +54,7 @@ pub(super) struct Crossings<'a> {
 
 impl<'a> Crossings<'a> {
     pub(super) fn new(
-        samples: &'a [Sample],
+        samples: &'a [SurfaceSample],
         index: &RayIndex,
         ray: &'a Ray,
         params: &'a ImplicitSurfaceParams,
@@ -129,17 +129,17 @@ impl<'a> Crossings<'a> {
             normal_sum = normal_sum.map(|v| -v);
         }
         let normal = normal_sum.map(|v| v / weight_sum);
-        let supported = count >= self.params.min_samples && length(to_mean) <= self.params.rim * support / weight_sum;
+        let supported = count >= self.params.min_samples && length(to_mean) <= self.params.edge * support / weight_sum;
         Some(Value {
             range,
             distance: -dot(normal, to_mean),
             normal,
-            on_surface: if supported { OnSurface::Supported } else { OnSurface::BeyondRim },
+            on_surface: if supported { OnSurface::Supported } else { OnSurface::BeyondEdge },
         })
     }
 
-    /// Where the local plane of either end of a step meets the ray, if that is within the step and nearly on the surface: at ridges
-    /// and corners, signs that agree along the ray cannot tell the two sides apart.
+    /// Where the local plane of either end of a step meets the ray, if that is within the step and nearly on the
+    /// surface: at ridges and corners, signs that agree along the ray cannot tell the two sides apart.
     fn aimed_at(&self, near: Value, far: Value) -> Option<Value> {
         let tolerance = AIM_TOLERANCE * (far.range - near.range);
         [near, far].into_iter().find_map(|end| {

@@ -1,6 +1,6 @@
 //! The indicator function on grids from coarse to fine: the first fills the box, each finer one lies around the points.
 
-use super::Sample;
+use super::OrientedSample;
 use rayon::prelude::*;
 
 /// No node.
@@ -11,13 +11,13 @@ const BITS: u32 = 21;
 const REACH: i64 = 1;
 /// Steps of the solver at most, and by how much it makes the residual smaller: the surface then moves by less than a
 /// hundredth of a cell.
-const MOST_STEPS: usize = 200;
+const MAX_STEPS: usize = 200;
 const RESIDUAL: f64 = 1e-3;
 /// Values summed at once, so that sums do not depend on threads.
 const CHUNK: usize = 4096;
 
 /// Values at nodes of a grid.
-pub(super) struct Level {
+pub(super) struct GridLevel {
     /// Place of the node 0, 0, 0, metres; the same for all levels.
     corner: [f64; 3],
     /// Side of a cell, metres; half of the level before.
@@ -38,7 +38,7 @@ pub(super) fn node(key: u64) -> [i64; 3] {
     [2 * BITS, BITS, 0].map(|shift| (key >> shift & ((1 << BITS) - 1)).cast_signed())
 }
 
-impl Level {
+impl GridLevel {
     /// All nodes of a box of `size` cells.
     pub(super) fn whole(corner: [f64; 3], cell: f64, size: [f64; 3]) -> Self {
         #[expect(clippy::cast_possible_truncation, reason = "the coarsest level has few cells")]
@@ -49,7 +49,7 @@ impl Level {
     }
 
     /// The nodes around samples: those of the cell of each and of the cells next to it.
-    pub(super) fn around(corner: [f64; 3], cell: f64, samples: &[Sample]) -> Self {
+    pub(super) fn around(corner: [f64; 3], cell: f64, samples: &[OrientedSample]) -> Self {
         let mut level = Self { corner, cell, keys: Vec::new(), last: [0; 3], values: Vec::new() };
         let mut keys: Vec<u64> = samples.par_iter().map(|sample| key(level.locate(sample.position).0)).collect();
         for axis in 0..3 {
@@ -97,7 +97,7 @@ impl Level {
 
 /// The value at a node of level `number`, from the finest level up to that one which has it; halfway between nodes of a
 /// coarser level, their mean.
-pub(super) fn value(levels: &[Level], number: usize, node: [i64; 3]) -> f64 {
+pub(super) fn value(levels: &[GridLevel], number: usize, node: [i64; 3]) -> f64 {
     let level = &levels[number];
     if number == 0 {
         let within = std::array::from_fn(|axis| node[axis].clamp(0, level.last[axis]));
@@ -110,7 +110,7 @@ pub(super) fn value(levels: &[Level], number: usize, node: [i64; 3]) -> f64 {
 }
 
 /// The value that the levels before `number` give a node of it.
-fn coarser_value(levels: &[Level], number: usize, node: [i64; 3]) -> f64 {
+fn coarser_value(levels: &[GridLevel], number: usize, node: [i64; 3]) -> f64 {
     let (mut sum, mut count) = (0.0, 0.0);
     for corner in 0..8_i64 {
         let step = [corner & 1, corner >> 1 & 1, corner >> 2];
@@ -124,7 +124,7 @@ fn coarser_value(levels: &[Level], number: usize, node: [i64; 3]) -> f64 {
 }
 
 /// The value at a place, linear between the nodes of the finest level there.
-pub(super) fn value_at(levels: &[Level], place: [f64; 3]) -> f64 {
+pub(super) fn value_at(levels: &[GridLevel], place: [f64; 3]) -> f64 {
     let Some(last) = levels.last() else { return 0.0 };
     let (cell, share) = last.locate(place);
     corners(share).map(|(step, weight)| weight * value(levels, levels.len() - 1, plus(cell, step))).sum()
@@ -143,7 +143,7 @@ fn corners(share: [f64; 3]) -> impl Iterator<Item = ([i64; 3], f64)> {
 }
 
 /// The linear equations of a level: conjugate gradients with the diagonal as preconditioner (Hestenes & Stiefel 1952).
-pub(super) struct Solver {
+pub(super) struct LevelSolver {
     /// For each node those before and after it along each axis, or [`NONE`].
     neighbors: Vec<[u32; 6]>,
     /// Neighbours that count, on this level or with the value of a coarser one.
@@ -160,9 +160,9 @@ pub(super) struct Solver {
     values: Vec<f64>,
 }
 
-impl Solver {
+impl LevelSolver {
     /// The equations of `level`, whose coarser levels are solved.
-    pub(super) fn new(level: &Level, coarser: &[Level], samples: &[Sample], screening: f64) -> Self {
+    pub(super) fn new(level: &GridLevel, coarser: &[GridLevel], samples: &[OrientedSample], screening: f64) -> Self {
         let count = level.keys.len();
         let neighbors = neighbors(&level.keys);
         let values: Vec<f64> = if coarser.is_empty() {
@@ -237,7 +237,7 @@ impl Solver {
         let mut direction = scaled.clone();
         let mut size = product(&residual, &scaled);
         let enough = RESIDUAL * RESIDUAL * product(&self.right, &precondition(&self.right));
-        for _ in 0..MOST_STEPS {
+        for _ in 0..MAX_STEPS {
             if !(size > enough) {
                 break;
             }
@@ -282,7 +282,7 @@ impl Solver {
 }
 
 /// What the coarser levels give a node of the next one.
-fn coarser_of(coarser: &[Level], node: [i64; 3]) -> f64 {
+fn coarser_of(coarser: &[GridLevel], node: [i64; 3]) -> f64 {
     coarser_value(coarser, coarser.len(), node)
 }
 

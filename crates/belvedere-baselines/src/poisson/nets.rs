@@ -1,7 +1,8 @@
-//! Triangles where a function on a grid crosses a value: a vertex in each cell that the surface crosses, a square across each edge.
+//! Triangles where a function on a grid crosses a value: a vertex in each cell that the surface crosses, a square
+//! across each edge.
 
-use super::Sample;
-use super::level::{Level, key, node, value};
+use super::OrientedSample;
+use super::level::{GridLevel, key, node, value};
 use rayon::prelude::*;
 use std::collections::{HashMap, HashSet};
 
@@ -13,14 +14,15 @@ struct Crossed {
     below: u8,
 }
 
-/// The triangles where the levels have the value `iso`, found from the cells of the samples on, as far as `is_near` holds.
+/// The triangles where the levels have the value `iso`, found from the cells of the samples on, as far as `is_near`
+/// holds.
 ///
 /// # Source
-/// Gibson 1998, "Constrained Elastic Surface Nets", section 3, with vertices at the mean of the crossings of their cell; from cell to
-/// cell as in Bloomenthal 1988.
+/// Gibson 1998, "Constrained Elastic Surface Nets", section 3, with vertices at the mean of the crossings of their
+/// cell; from cell to cell as in Bloomenthal 1988.
 pub(super) fn triangles(
-    levels: &[Level],
-    samples: &[Sample],
+    levels: &[GridLevel],
+    samples: &[OrientedSample],
     iso: f64,
     is_near: impl Fn([f64; 3]) -> bool + Sync,
 ) -> Vec<[[f64; 3]; 3]> {
@@ -55,7 +57,7 @@ fn step(k: usize) -> [i64; 3] {
 }
 
 /// What the surface does in a cell; `None` where it does not cross it.
-fn cross(levels: &[Level], cell: u64, iso: f64) -> Option<Crossed> {
+fn cross(levels: &[GridLevel], cell: u64, iso: f64) -> Option<Crossed> {
     let (finest, number) = (levels.last()?, levels.len() - 1);
     let first = node(cell);
     if !levels[0].holds(first.map(|v| v >> number)) {
@@ -101,8 +103,8 @@ impl Crossed {
         })
     }
 
-    /// Two triangles across each edge at the first corner that the surface crosses, between the vertices of the four cells
-    /// around it.
+    /// Two triangles across each edge at the first corner that the surface crosses, between the vertices of the four
+    /// cells around it.
     fn squares(&self, vertices: &HashMap<u64, [f64; 3]>) -> impl Iterator<Item = [[f64; 3]; 3]> {
         let first = node(self.cell);
         (0..3)

@@ -12,7 +12,7 @@ use belvedere::vector::{cross, dot, length, sub, unit};
 
 /// A piece of surface about a point.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Splat {
+pub(super) struct SurfaceSplat {
     center: [f32; 3],
     /// Half axes, at right angles to each other; zero where the splat faces the line of sight.
     axes: [[f32; 3]; 2],
@@ -20,7 +20,7 @@ pub(super) struct Splat {
     radius: f32,
 }
 
-impl Splat {
+impl SurfaceSplat {
     /// Range at which the line of `ray` passes through the splat, or `None` where it passes by.
     pub(super) fn range(&self, ray: &Ray) -> Option<f64> {
         let to_center = sub(self.center.map(f64::from), ray.origin);
@@ -55,16 +55,16 @@ impl Splat {
 /// One splat per position, (N, 3) local metres.
 ///
 /// # Errors
-/// [`Error::InvalidParameter`](belvedere::Error::InvalidParameter) for a number of neighbours out of its range or a position
-/// that is not finite.
-pub(super) fn make(positions: &[[f32; 3]], params: &SplatParams) -> Result<Vec<Splat>> {
+/// [`Error::InvalidParameter`](belvedere::Error::InvalidParameter) for a number of neighbours out of its range or a
+/// position that is not finite.
+pub(super) fn make(positions: &[[f32; 3]], params: &SplatParams) -> Result<Vec<SurfaceSplat>> {
     let index = NeighborIndex::new(positions, &Control::none())?;
     let normals = estimate(positions, &index, Neighborhood::Fixed { k: params.normal_neighbors }, &Control::none())?;
     let spacing = capped_spacing(positions, &index, params.radius_neighbor, params.max_radius_in_medians);
     Ok(for_neighborhoods(positions, &index, params.normal_neighbors, |point, neighbors, _| {
         let center = positions[point];
         let radius = f64::from(spacing[point]) * params.radius_scale;
-        let facing = Splat { center, axes: [[0.0; 3]; 2], radius: to_f32([radius; 3])[0] };
+        let facing = SurfaceSplat { center, axes: [[0.0; 3]; 2], radius: to_f32([radius; 3])[0] };
         let normal = unit(normals.vectors[point].map(f64::from)).filter(|_| params.shape != SplatShape::Facing);
         let Some((normal, first)) = normal.and_then(|normal| Some((normal, any_tangent(normal)?))) else {
             return facing;
@@ -85,20 +85,20 @@ pub(super) fn make(positions: &[[f32; 3]], params: &SplatParams) -> Result<Vec<S
         };
         let longer = length(axes[0]);
         // duplicates of one point have no extent, hence no axes
-        Splat { center, axes: axes.map(to_f32), radius: to_f32([longer; 3])[0] }
+        SurfaceSplat { center, axes: axes.map(to_f32), radius: to_f32([longer; 3])[0] }
     }))
 }
 
 /// A unit vector at right angles to a unit vector.
 fn any_tangent(normal: [f64; 3]) -> Option<[f64; 3]> {
-    let least = |a: usize, b: usize| if normal[b].abs() < normal[a].abs() { b } else { a };
+    let min = |a: usize, b: usize| if normal[b].abs() < normal[a].abs() { b } else { a };
     let mut axis = [0.0; 3];
-    axis[least(least(0, 1), 2)] = 1.0;
+    axis[min(min(0, 1), 2)] = 1.0;
     unit(cross(normal, axis))
 }
 
-/// Direction in which points of a plane spread most, radians from the first axis, and how many times farther they spread that
-/// way than across (a ratio of standard deviations; infinite on a line).
+/// Direction in which points of a plane spread most, radians from the first axis, and how many times farther they
+/// spread that way than across (a ratio of standard deviations; infinite on a line).
 fn spread(points: &[[f64; 2]]) -> (f64, f64) {
     let count = points.len().max(1) as f64;
     let mean = [0, 1].map(|i| points.iter().map(|p| p[i]).sum::<f64>() / count);

@@ -1,10 +1,11 @@
-//! What every method must keep: its viewers agree with each other, threads and more obstacles change nothing for the worse.
+//! What every method must keep: its viewers agree with each other, threads and more obstacles change nothing for the
+//! worse.
 
 use crate::common::{blocked, count_true, scan, small_town, targets};
 use belvedere::query::{Answer, Viewer, Visibility};
 use belvedere::{Error, Mesh, PointCloud};
-use belvedere_baselines::Survey;
-use belvedere_baselines::dsm::{Dsm, DsmParams, GapFill, Relief};
+use belvedere_baselines::MethodInput;
+use belvedere_baselines::dsm::{Dsm, DsmParams, DsmSurface, GapFill};
 use belvedere_baselines::implicit_surface::{ImplicitSurface, ImplicitSurfaceParams};
 use belvedere_baselines::mesh_rays::{MeshRays, MeshRaysParams};
 use belvedere_baselines::shadow_map::{ShadowMap, ShadowMapParams};
@@ -12,16 +13,16 @@ use belvedere_baselines::splatting::{SplatParams, Splats};
 use belvedere_baselines::tin::{Tin, TinParams};
 use belvedere_baselines::voxels::{VoxelParams, Voxels};
 
-type Method = (&'static str, Box<dyn Visibility>);
+type NamedMethod = (&'static str, Box<dyn Visibility>);
 
 /// Every method that answers each kind of viewer, of one place.
-fn ray_methods(cloud: &PointCloud, mesh: &Mesh) -> Vec<Method> {
-    let survey = Survey { cloud, scanner: &[], models: &[] };
+fn ray_methods(cloud: &PointCloud, mesh: &Mesh) -> Vec<NamedMethod> {
+    let survey = MethodInput { cloud, scanner: &[], models: &[] };
     let dsm = |relief| Dsm::from_points(&cloud.positions, &DsmParams { relief, ..DsmParams::default() }).unwrap();
     vec![
         ("mesh rays", Box::new(MeshRays::new(mesh, cloud.frame.origin, &MeshRaysParams::default()).unwrap())),
-        ("columns", Box::new(dsm(Relief::Columns))),
-        ("bilinear", Box::new(dsm(Relief::Bilinear))),
+        ("columns", Box::new(dsm(DsmSurface::Columns))),
+        ("bilinear", Box::new(dsm(DsmSurface::Bilinear))),
         ("exact DSM", Box::new(Dsm::from_mesh(mesh, cloud.frame.origin, &DsmParams::default()).unwrap())),
         ("TIN", Box::new(Tin::new(cloud, &TinParams::default()).unwrap())),
         ("voxels", Box::new(Voxels::new(&cloud.positions, &VoxelParams::default()).unwrap())),
@@ -32,7 +33,7 @@ fn ray_methods(cloud: &PointCloud, mesh: &Mesh) -> Vec<Method> {
     ]
 }
 
-fn all_methods(cloud: &PointCloud, mesh: &Mesh) -> Vec<Method> {
+fn all_methods(cloud: &PointCloud, mesh: &Mesh) -> Vec<NamedMethod> {
     let mut methods = ray_methods(cloud, mesh);
     methods.push(("shadow map", Box::new(small_shadow_map(cloud, mesh))));
     methods
@@ -77,7 +78,7 @@ fn any_number_of_threads_gives_the_same_answers() {
     let run = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
-            let answer = |(name, method): Method| {
+            let answer = |(name, method): NamedMethod| {
                 let viewers = [Viewer::Direction(SUN), Viewer::Eye([1.0, 2.0, 9.0])];
                 (name, viewers.map(|viewer| method.visible(viewer, &targets).unwrap()))
             };
@@ -90,7 +91,7 @@ fn any_number_of_threads_gives_the_same_answers() {
 }
 
 #[test]
-fn targets_that_cannot_be_told_are_outside_the_view_and_wrong_viewers_are_errors() {
+fn targets_without_an_answer_are_outside_the_view_and_wrong_viewers_are_errors() {
     let (scene, mesh) = small_town();
     let cloud = scan(&scene);
     let eye = [1.0_f32, 2.0, 30.0];
@@ -128,8 +129,8 @@ fn adding_obstacles_never_reveals() {
     let (scene, mesh) = small_town();
     let cloud = scan(&scene);
     let targets = targets(&cloud, 3000, 5);
-    // as a second obstacle a copy of the town, 128 m up: the neighbours of each point stay the same, so that what is made of
-    // them does too
+    // as a second obstacle a copy of the town, 128 m up: the neighbours of each point stay the same, so that what is
+    // made of them does too
     let mut more = cloud.clone();
     more.positions.extend(cloud.positions.iter().map(|p| [p[0], p[1], p[2] + 128.0]));
     more.attributes.return_number = None;
@@ -137,7 +138,7 @@ fn adding_obstacles_never_reveals() {
     let count = u32::try_from(mesh.vertices.len()).unwrap();
     more_mesh.vertices.extend(mesh.vertices.iter().map(|v| [v[0], v[1], v[2] + 128.0]));
     more_mesh.triangles.extend(mesh.triangles.iter().map(|t| t.map(|corner| corner + count)));
-    let methods = |cloud: &PointCloud, mesh: &Mesh| -> Vec<Method> {
+    let methods = |cloud: &PointCloud, mesh: &Mesh| -> Vec<NamedMethod> {
         let dsm = |relief| {
             let params = DsmParams { relief, gap_fill: GapFill::Leave, ..DsmParams::default() };
             Box::new(Dsm::from_points(&cloud.positions, &params).unwrap())
@@ -145,8 +146,8 @@ fn adding_obstacles_never_reveals() {
         let mut methods = all_methods(cloud, mesh);
         // what is filled into gaps may sink; triangles of other points are other triangles: `mesh rays` stands for both
         methods.retain(|(name, _)| !["columns", "bilinear", "TIN"].contains(name));
-        methods.push(("columns, no gaps filled", dsm(Relief::Columns)));
-        methods.push(("bilinear, no gaps filled", dsm(Relief::Bilinear)));
+        methods.push(("columns, no gaps filled", dsm(DsmSurface::Columns)));
+        methods.push(("bilinear, no gaps filled", dsm(DsmSurface::Bilinear)));
         methods
     };
     // a sun high enough to reach the town under its copy, and an eye between the two

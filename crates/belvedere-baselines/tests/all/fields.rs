@@ -1,10 +1,10 @@
 //! Height fields and voxels against brute force over all their cells and triangles.
 
-use crate::common::{Lcg, blocked, cloud_of, count_true, moeller_trumbore};
+use crate::common::{TestRandom, blocked, cloud_of, count_true, moeller_trumbore};
 use belvedere::Mesh;
 use belvedere::query::Viewer;
 use belvedere::ray_index::Ray;
-use belvedere_baselines::dsm::{Dsm, DsmParams, GapFill, Relief};
+use belvedere_baselines::dsm::{Dsm, DsmParams, DsmSurface, GapFill};
 use belvedere_baselines::tin::{Tin, TinParams};
 use belvedere_baselines::voxels::{VoxelParams, Voxels};
 
@@ -26,7 +26,7 @@ fn within_box(origin: [f64; 3], direction: [f64; 3], low: [f64; 3], high: [f64; 
 }
 
 /// Directions and eyes, straight up and along the axes among them.
-fn lines(random: &mut Lcg, count: usize, size: [f64; 3]) -> Vec<([f32; 3], Viewer<'static>)> {
+fn lines(random: &mut TestRandom, count: usize, size: [f64; 3]) -> Vec<([f32; 3], Viewer<'static>)> {
     (0..count)
         .map(|i| {
             let target = random.point([-2.0, -2.0, 0.0], size);
@@ -42,7 +42,7 @@ fn lines(random: &mut Lcg, count: usize, size: [f64; 3]) -> Vec<([f32; 3], Viewe
 }
 
 /// Rough heights, (rows, columns), and one point in the middle of each cell.
-fn heights(random: &mut Lcg, columns: usize, rows: usize, cell: f64) -> (Vec<Vec<f64>>, Vec<[f32; 3]>) {
+fn heights(random: &mut TestRandom, columns: usize, rows: usize, cell: f64) -> (Vec<Vec<f64>>, Vec<[f32; 3]>) {
     let heights: Vec<Vec<f64>> =
         (0..rows).map(|_| (0..columns).map(|_| f64::from(random.between(0.0, 3.0).powi(2) as f32)).collect()).collect();
     let middle = |i: usize| ((i as f64 + 0.5) * cell) as f32;
@@ -55,10 +55,10 @@ fn heights(random: &mut Lcg, columns: usize, rows: usize, cell: f64) -> (Vec<Vec
 
 #[test]
 fn columns_of_a_dsm_block_as_brute_force_over_all_columns_says() {
-    let mut random = Lcg(1);
+    let mut random = TestRandom(1);
     let cell = 0.5;
     let (heights, points) = heights(&mut random, 37, 22, cell);
-    let params = DsmParams { cell, relief: Relief::Columns, clearance: 0.3, gap_fill: GapFill::Leave };
+    let params = DsmParams { cell, relief: DsmSurface::Columns, clearance: 0.3, gap_fill: GapFill::Leave };
     let dsm = Dsm::from_points(&points, &params).unwrap();
     assert_eq!((dsm.heights().width(), dsm.heights().height(), dsm.corner()), (37, 22, [0.0; 2]));
     let mut seen = [0; 2];
@@ -87,10 +87,10 @@ fn columns_of_a_dsm_block_as_brute_force_over_all_columns_says() {
 
 #[test]
 fn a_bilinear_dsm_blocks_where_small_steps_along_the_line_dip_below_it() {
-    let mut random = Lcg(2);
+    let mut random = TestRandom(2);
     let cell = 0.5;
     let (heights, points) = heights(&mut random, 21, 17, cell);
-    let params = DsmParams { cell, relief: Relief::Bilinear, clearance: 0.3, gap_fill: GapFill::Leave };
+    let params = DsmParams { cell, relief: DsmSurface::Bilinear, clearance: 0.3, gap_fill: GapFill::Leave };
     let dsm = Dsm::from_points(&points, &params).unwrap();
     let surface = |x: f64, y: f64| {
         let (u, v) = (x / cell - 0.5, y / cell - 0.5);
@@ -107,7 +107,7 @@ fn a_bilinear_dsm_blocks_where_small_steps_along_the_line_dip_below_it() {
         let (direction, range) = viewer.line_of_sight(0, target).unwrap();
         let step = 0.002;
         let end = range.min(30.0);
-        let least = (0..)
+        let min = (0..)
             .map(|i| params.clearance + f64::from(i) * step)
             .take_while(|&t| t < end)
             .map(|t| {
@@ -115,20 +115,20 @@ fn a_bilinear_dsm_blocks_where_small_steps_along_the_line_dip_below_it() {
                 p[2] - surface(p[0], p[1])
             })
             .fold(f64::INFINITY, f64::min);
-        // slopes reach 9 m in 0.5 m: within a step of 2 mm the surface falls by 4 cm at most, but between two samples only
-        // by half of it
-        if least.abs() < 0.03 {
+        // slopes reach 9 m in 0.5 m: within a step of 2 mm the surface falls by 4 cm at most, but between two samples
+        // only by half of it
+        if min.abs() < 0.03 {
             close += 1;
             continue;
         }
-        assert_eq!(blocked(&dsm, viewer, &[target])[0], least < 0.0, "{target:?} {viewer:?} {least}");
-        seen[usize::from(least < 0.0)] += 1;
+        assert_eq!(blocked(&dsm, viewer, &[target])[0], min < 0.0, "{target:?} {viewer:?} {min}");
+        seen[usize::from(min < 0.0)] += 1;
     }
     assert!(seen.iter().all(|&n| n > 500) && close < 100, "{seen:?}, {close} close");
 }
 
 #[test]
-fn a_dsm_keeps_the_highest_point_and_fills_gaps_from_their_rim() {
+fn a_dsm_keeps_the_highest_point_and_fills_gaps_from_their_edge() {
     let mut points: Vec<[f32; 3]> = Vec::new();
     for row in 0..5 {
         for column in 0..5 {
@@ -179,7 +179,7 @@ fn a_dsm_of_a_mesh_has_the_heights_of_its_highest_surface() {
 
 #[test]
 fn a_tin_blocks_as_all_empty_circumcircle_triangles_do() {
-    let mut random = Lcg(4);
+    let mut random = TestRandom(4);
     // one point per cell of 2 m, well inside it, so that thinning keeps all
     let points: Vec<[f32; 3]> = (0..49)
         .map(|i| {
@@ -236,7 +236,7 @@ fn outside_circle(corners: [[f64; 3]; 3], p: [f64; 3]) -> bool {
 
 #[test]
 fn voxels_block_as_brute_force_over_all_boxes_says() {
-    let mut random = Lcg(6);
+    let mut random = TestRandom(6);
     for (size, min_points) in [(0.5, 1), (1.3, 2)] {
         let points: Vec<[f32; 3]> = (0..300).map(|_| random.point([-6.0, -5.0, -4.0], [7.0, 8.0, 9.0])).collect();
         let doubled: Vec<[f32; 3]> = points.iter().flat_map(|&p| vec![p; min_points as usize]).collect();

@@ -6,13 +6,13 @@ use belvedere::query::{Answer, Sight, Viewer, Visibility};
 use belvedere::trajectory::Trajectory;
 use belvedere::vector::{length, sub};
 use belvedere::{Attributes, Error, GpsTimeKind, PointCloud, Result};
-use belvedere_baselines::Survey;
+use belvedere_baselines::MethodInput;
 use belvedere_baselines::held_out::{FalseVisible, HeldOut, HeldOutParams, HeldOutScore, score, split};
 use belvedere_baselines::hidden_points::{HiddenPoints, HiddenPointsParams};
-use belvedere_scenes::{AirborneParams, Material, Scene, TownParams, Truth, scan_airborne, town};
+use belvedere_scenes::{AirborneParams, Material, TownParams, TriangleScene, Truth, scan_airborne, town};
 
 struct Flown {
-    scene: Scene,
+    scene: TriangleScene,
     cloud: PointCloud,
     pulses: Pulses,
     scanner: SensorPositions,
@@ -157,7 +157,7 @@ fn answers_that_never_change_are_all_right_or_all_wrong() {
 fn methods_and_clouds_that_cannot_take_part_say_so() {
     let flown = flown(is_solid);
     let held_out = held_out(&flown);
-    let survey = Survey { cloud: &flown.cloud, scanner: &[], models: &[] };
+    let survey = MethodInput { cloud: &flown.cloud, scanner: &[], models: &[] };
     let hidden_points = HiddenPoints::new(&survey, HiddenPointsParams::default()).unwrap();
     assert!(matches!(score(&hidden_points, &held_out), Err(Error::UnsupportedViewer { .. })));
     let attempt = |scanner: &SensorPositions, params| split(&flown.cloud, &flown.pulses, scanner, &params);

@@ -2,7 +2,7 @@
 
 use belvedere::query::{Answer, Viewer, Visibility};
 use belvedere::{Error, PointCloud};
-use belvedere_baselines::Survey;
+use belvedere_baselines::MethodInput;
 use belvedere_baselines::hidden_points::{FlipRadius, ForeignTargets, HiddenPoints, HiddenPointsParams};
 
 /// Answers of Open3D and the truth, see `data/README.md`.
@@ -44,7 +44,7 @@ fn reference() -> Reference {
 }
 
 fn method<'a>(cloud: &'a PointCloud, params: HiddenPointsParams) -> HiddenPoints<'a> {
-    HiddenPoints::new(&Survey { cloud, scanner: &[], models: &[] }, params).unwrap()
+    HiddenPoints::new(&MethodInput { cloud, scanner: &[], models: &[] }, params).unwrap()
 }
 
 fn with_exponent(exponent: f64) -> HiddenPointsParams {
@@ -108,8 +108,8 @@ fn a_roof_hides_what_is_below_it() {
     let ground_count = positions.len();
     positions.extend(roof);
     let cloud = cloud_of(positions);
-    // flipped level ground stands out by R t²/L² between points t = 0.25 m apart: with L = 5.7 km and R = 10^5 L that is
-    // 1.1 m, so roof points 5 m up hide what is between them
+    // flipped level ground stands out by R t²/L² between points t = 0.25 m apart: with L = 5.7 km and R = 10^5 L that
+    // is 1.1 m, so roof points 5 m up hide what is between them
     let method = method(&cloud, with_exponent(5.0));
     let found = seen(&method, Viewer::Direction([0.0, 0.0, 1.0]), &cloud.positions);
     for (p, found) in cloud.positions.iter().zip(&found).take(ground_count) {
@@ -209,7 +209,7 @@ fn odd_clouds_and_viewers_have_defined_answers() {
     assert!(matches!(flat.visible(each, &ground.positions[..1]), Err(Error::UnsupportedViewer { .. })));
     let nowhere = Viewer::Eye([f64::NAN; 3]);
     assert!(matches!(flat.visible(nowhere, &ground.positions), Err(Error::InvalidParameter { .. })));
-    let survey = |cloud| Survey { cloud, scanner: &[], models: &[] };
+    let survey = |cloud| MethodInput { cloud, scanner: &[], models: &[] };
     let empty = PointCloud::default();
     assert!(matches!(HiddenPoints::new(&survey(&empty), with_exponent(1.0)), Err(Error::NoPoints { .. })));
     assert!(matches!(HiddenPoints::new(&survey(&ground), with_exponent(-1.0)), Err(Error::InvalidParameter { .. })));
@@ -223,8 +223,8 @@ fn the_rule_on_two_sides_of_a_ball_takes_half_of_its_points() {
     let point = |i: u16| {
         let z = 1.0 - (2.0 * f64::from(i) + 1.0) / f64::from(count);
         let turn = f64::from(i) * 2.399_963_229_728_653;
-        let rim = (1.0 - z * z).sqrt();
-        [rim * turn.cos(), rim * turn.sin(), z].map(|v| (10.0 * v) as f32)
+        let ring_radius = (1.0 - z * z).sqrt();
+        [ring_radius * turn.cos(), ring_radius * turn.sin(), z].map(|v| (10.0 * v) as f32)
     };
     let ball = cloud_of((0..count).map(point).collect());
     let katz = method(&ball, HiddenPointsParams::default());

@@ -8,9 +8,9 @@ use belvedere::query::{
     seen_faces, seen_objects,
 };
 use belvedere::view::to_sun;
-use belvedere_baselines::Survey;
+use belvedere_baselines::MethodInput;
 use belvedere_baselines::medial::{MedialBaseline, MedialParams, Outward};
-use belvedere_scenes::{AirborneParams, Material, Preset, QuerySite, Scene, Truth, town};
+use belvedere_scenes::{AirborneParams, Material, Preset, QuerySite, TriangleScene, Truth, town};
 
 /// How far outside its face a place is asked in truth, metres: places are f32, to hundredths of a millimetre here.
 const OUTSIDE: f64 = 0.01;
@@ -18,7 +18,7 @@ const OUTSIDE: f64 = 0.01;
 const SPACING: f64 = 1.0;
 
 /// The faces of buildings of one material.
-fn buildings(scene: &Scene, material: Material) -> Mesh {
+fn buildings(scene: &TriangleScene, material: Material) -> Mesh {
     let is_wanted = |&t: &usize| {
         scene.materials[t] == material && scene.object_names[scene.objects[t] as usize].starts_with("building")
     };
@@ -34,7 +34,7 @@ fn buildings(scene: &Scene, material: Material) -> Mesh {
 
 /// Areas, m², over all viewers, and errors of the shares of buildings.
 #[derive(Clone, Copy, Debug, Default)]
-struct Score {
+struct MeshScore {
     truly_visible: f64,
     truly_blocked: f64,
     false_visible: f64,
@@ -49,7 +49,7 @@ fn shares_of_buildings_that_are_seen_are_those_of_the_mesh() {
     let params = AirborneParams { seed: 11, ..AirborneParams::covering(&scene, 8.0) };
     let (cloud, scanner) = flown(&scene, &params).unwrap();
     let origin = cloud.frame.origin;
-    let survey = Survey { cloud: &cloud, scanner: &scanner, models: &[] };
+    let survey = MethodInput { cloud: &cloud, scanner: &scanner, models: &[] };
     let made = MedialBaseline::new(&survey, Outward::Survey, &MedialParams::carved()).unwrap();
     let truth = Truth::new(&scene);
     let Bounds { low, high } = cloud.bounds().unwrap();
@@ -69,7 +69,7 @@ fn shares_of_buildings_that_are_seen_are_those_of_the_mesh() {
         let mesh = buildings(&scene, material);
         let surface = SurfacePieces::of_mesh(&mesh, origin, SPACING, 1).unwrap();
         for kind in ["street", "sun"] {
-            let mut score = Score::default();
+            let mut score = MeshScore::default();
             for (_, viewer) in viewers.iter().filter(|(own, _)| *own == kind) {
                 judge(&balls, &truth, &mesh, &surface, *viewer, origin, &mut score);
             }
@@ -81,14 +81,15 @@ fn shares_of_buildings_that_are_seen_are_those_of_the_mesh() {
                      false-blocked {false_blocked:.4}, share of a building off by {error:.4} over {}",
                 score.truly_visible, score.truly_blocked, score.buildings
             );
-            let [most_visible, most_blocked, most_error] = bars(name, kind);
-            assert!(false_visible < most_visible && false_blocked < most_blocked, "{name} {kind}");
-            assert!(error < most_error, "{name} {kind}: {error}");
+            let [max_visible, max_blocked, max_error] = bars(name, kind);
+            assert!(false_visible < max_visible && false_blocked < max_blocked, "{name} {kind}");
+            assert!(error < max_error, "{name} {kind}: {error}");
         }
     }
 }
 
-/// Greatest false-visible and false-blocked share and error of the share of a building: half as much again as was measured.
+/// Greatest false-visible and false-blocked share and error of the share of a building: half as much again as was
+/// measured.
 fn bars(name: &str, kind: &str) -> [f64; 3] {
     match (name, kind) {
         ("facades", "street") => [0.046, 0.21, 0.11],
@@ -98,7 +99,8 @@ fn bars(name: &str, kind: &str) -> [f64; 3] {
     }
 }
 
-/// Adds what the balls make of the faces turned to `viewer`, against the rays of the mesh; shares are of buildings with 10 m² turned to it.
+/// Adds what the balls make of the faces turned to `viewer`, against the rays of the mesh; shares are of buildings with
+/// 10 m² turned to it.
 fn judge(
     balls: &MedialScene,
     truth: &Truth,
@@ -106,7 +108,7 @@ fn judge(
     surface: &SurfacePieces,
     viewer: Viewer<'_>,
     origin: [f64; 3],
-    score: &mut Score,
+    score: &mut MeshScore,
 ) {
     let facing = belvedere::query::facing(surface, viewer).unwrap();
     let exact: Vec<Answer> = surface

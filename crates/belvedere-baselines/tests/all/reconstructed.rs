@@ -1,11 +1,11 @@
 //! Reconstructed surfaces against a sphere and the exact mesh of a town.
 
 use crate::common::flown::flown;
-use crate::common::{Lcg, blocked, cloud_of, count_true, dot, targets};
+use crate::common::{TestRandom, blocked, cloud_of, count_true, dot, targets};
 use belvedere::query::{Viewer, Visibility};
 use belvedere::ray_index::Ray;
 use belvedere::{Error, PointCloud};
-use belvedere_baselines::Survey;
+use belvedere_baselines::MethodInput;
 use belvedere_baselines::graph_cut::{GraphCut, GraphCutParams};
 use belvedere_baselines::mesh_rays::MeshRays;
 use belvedere_baselines::poisson::{Poisson, PoissonParams};
@@ -27,7 +27,7 @@ fn seen_sphere(radius: f64, count: u32) -> (PointCloud, Vec<[f32; 3]>) {
 
 /// Follows rays that hit and miss a sphere of 5 m; hits are within `tolerance`.
 fn check_sphere(rays: &MeshRays, tolerance: f64) {
-    let mut random = Lcg(4);
+    let mut random = TestRandom(4);
     let mut seen = [0; 2];
     for _ in 0..12_000 {
         let direction = random.direction();
@@ -51,7 +51,7 @@ fn check_sphere(rays: &MeshRays, tolerance: f64) {
 #[test]
 fn rays_meet_reconstructed_spheres_where_the_sphere_is() {
     let (cloud, scanner) = seen_sphere(5.0, 3000);
-    let survey = Survey { cloud: &cloud, scanner: &scanner, models: &[] };
+    let survey = MethodInput { cloud: &cloud, scanner: &scanner, models: &[] };
     let spacing = (4.0 * std::f64::consts::PI * 25.0 / 3000.0_f64).sqrt();
     let cut = GraphCut::new(&survey, &GraphCutParams { cell: 0.01, ..GraphCutParams::default() }).unwrap();
     // a triangle of sides up to two spacings lies below its sphere by a third of their square over twice the radius
@@ -65,8 +65,8 @@ fn rays_meet_reconstructed_spheres_where_the_sphere_is() {
 #[test]
 fn any_number_of_threads_reconstructs_the_same_surface() {
     let (cloud, scanner) = seen_sphere(5.0, 1000);
-    let survey = Survey { cloud: &cloud, scanner: &scanner, models: &[] };
-    let mut random = Lcg(6);
+    let survey = MethodInput { cloud: &cloud, scanner: &scanner, models: &[] };
+    let mut random = TestRandom(6);
     let rays: Vec<Ray> = (0..500)
         .map(|_| Ray::new(random.point([-1.0; 3], [1.0; 3]).map(f64::from), random.direction(), [0.0, 99.0]).unwrap())
         .collect();
@@ -89,7 +89,7 @@ fn any_number_of_threads_reconstructs_the_same_surface() {
 fn most_of_a_town_is_reconstructed() {
     let scene = town(&TownParams { extent: 60.0, seed: 5, ..TownParams::default() });
     let (cloud, scanner) = flown(&scene, &AirborneParams { pulses_per_m2: 2.0, ..AirborneParams::default() }).unwrap();
-    let survey = Survey { cloud: &cloud, scanner: &scanner, models: &[] };
+    let survey = MethodInput { cloud: &cloud, scanner: &scanner, models: &[] };
     let truth = Truth::new(&scene);
     let targets = targets(&cloud, 3000, 8);
     let exact: Vec<[f64; 3]> =
@@ -114,7 +114,7 @@ fn clouds_that_have_no_surface_block_nothing_and_wrong_parameters_are_refused() 
     let scanner = [[0.0, 0.0, 100.0]; 5];
     for positions in [Vec::new(), vec![[0.0; 3]], vec![[1.0; 3]; 5], vec![[0.0; 3], [1.0; 3], [2.0; 3], [3.0; 3]]] {
         let cloud = cloud_of(positions);
-        let survey = Survey { cloud: &cloud, scanner: &scanner[..cloud.len()], models: &[] };
+        let survey = MethodInput { cloud: &cloud, scanner: &scanner[..cloud.len()], models: &[] };
         let cut = GraphCut::new(&survey, &GraphCutParams::default()).unwrap();
         let smooth = Poisson::new(&survey, &PoissonParams::default()).unwrap();
         for method in [&cut as &dyn Visibility, &smooth] {
@@ -122,7 +122,7 @@ fn clouds_that_have_no_surface_block_nothing_and_wrong_parameters_are_refused() 
         }
     }
     let cloud = cloud_of(vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [f32::NAN; 3]]);
-    let survey = Survey { cloud: &cloud, scanner: &[], models: &[] };
+    let survey = MethodInput { cloud: &cloud, scanner: &[], models: &[] };
     for error in [
         GraphCut::new(&survey, &GraphCutParams::default()).err().unwrap(),
         Poisson::new(&survey, &PoissonParams::default()).err().unwrap(),
@@ -130,8 +130,8 @@ fn clouds_that_have_no_surface_block_nothing_and_wrong_parameters_are_refused() 
         assert!(error.to_string().contains("finite"), "{error}");
     }
     let cloud = cloud_of(cloud.positions[..4].to_vec());
-    let survey = Survey { cloud: &cloud, scanner: &[], models: &[] };
-    let short = Survey { cloud: &cloud, scanner: &scanner[..2], models: &[] };
+    let survey = MethodInput { cloud: &cloud, scanner: &[], models: &[] };
+    let short = MethodInput { cloud: &cloud, scanner: &scanner[..2], models: &[] };
     assert!(matches!(GraphCut::new(&short, &GraphCutParams::default()), Err(Error::LengthMismatch { .. })));
     assert!(matches!(Poisson::new(&short, &PoissonParams::default()), Err(Error::LengthMismatch { .. })));
     let default = GraphCutParams::default;
@@ -148,7 +148,7 @@ fn clouds_that_have_no_surface_block_nothing_and_wrong_parameters_are_refused() 
     for params in [
         PoissonParams { area_neighbor: 0, ..default() },
         PoissonParams { cell_in_spacings: 0.1, ..default() },
-        PoissonParams { least_cell: f64::NAN, ..default() },
+        PoissonParams { min_cell: f64::NAN, ..default() },
         PoissonParams { screening: -1.0, ..default() },
         PoissonParams { trim: 0.0, ..default() },
         PoissonParams { clearance: f64::NAN, ..default() },
@@ -159,7 +159,7 @@ fn clouds_that_have_no_surface_block_nothing_and_wrong_parameters_are_refused() 
     let floor = |x: f32| (0..100_i16).map(move |i| [x + f32::from(i % 10), f32::from(i / 10), 0.0]);
     let far: Vec<[f32; 3]> = floor(0.0).chain(floor(1e7)).collect();
     let cloud = cloud_of(far);
-    let survey = Survey { cloud: &cloud, scanner: &[], models: &[] };
+    let survey = MethodInput { cloud: &cloud, scanner: &[], models: &[] };
     let error = Poisson::new(&survey, &PoissonParams::default()).err().unwrap();
     assert!(error.to_string().contains("stray points"), "{error}");
 }

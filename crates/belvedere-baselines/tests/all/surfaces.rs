@@ -1,10 +1,10 @@
 //! Splats against brute force and known spacings; the implicit surface against a sphere and a plane.
 
-use crate::common::{Lcg, blocked, cloud_of, cross, dot, scan, small_town, sub, targets};
+use crate::common::{TestRandom, blocked, cloud_of, cross, dot, scan, small_town, sub, targets};
 use belvedere::PointCloud;
 use belvedere::query::Viewer;
 use belvedere::ray_index::Ray;
-use belvedere_baselines::Survey;
+use belvedere_baselines::MethodInput;
 use belvedere_baselines::implicit_surface::{ImplicitSurface, ImplicitSurfaceParams, NormalSigns};
 use belvedere_baselines::splatting::{SplatParams, SplatShape, Splats};
 
@@ -66,8 +66,8 @@ fn splats_of_a_grid_have_the_radius_and_shape_of_its_spacing() {
         assert!((length(axis) - expected).abs() < 1e-7 && axis[2] == 0.0, "{axis:?}");
     }
     assert!((f64::from(radius) - expected).abs() < 1e-7);
-    // rows twice as far apart as points within them: the ellipse reaches farther across the rows than along them, and keeps
-    // the area of the disc
+    // rows twice as far apart as points within them: the ellipse reaches farther across the rows than along them, and
+    // keeps the area of the disc
     let rows = grid(12, 1.0, 0.25);
     let [disc, ellipse] = [SplatParams::surfels(), SplatParams::object_space()].map(|params| middle(&rows, &params).1);
     let area = |[u, v]: [[f32; 3]; 2]| length(cross(u.map(f64::from), v.map(f64::from)).map(|v| v as f32));
@@ -85,7 +85,7 @@ fn splats_of_a_grid_have_the_radius_and_shape_of_its_spacing() {
 #[test]
 fn a_wide_enough_splatted_plane_blocks_and_narrow_splats_leave_holes() {
     let plane = grid(20, 0.5, 0.5);
-    let mut random = Lcg(8);
+    let mut random = TestRandom(8);
     let below: Vec<[f32; 3]> = (0..2000).map(|_| random.point([-9.0, -9.0, -3.0], [9.0, 9.0, -1.1])).collect();
     let up = Viewer::Direction([0.0, 0.0, 1.0]);
     let share = |radius_scale: f64, shape: SplatShape| {
@@ -122,9 +122,10 @@ fn rays_meet_the_implicit_surface_where_the_sphere_is() {
     let scanner = vec![[0.0, 0.0, 500.0]; cloud.len()];
     for signs in [NormalSigns::Agreeing, NormalSigns::Outward] {
         let params = ImplicitSurfaceParams { signs, ..ImplicitSurfaceParams::default() };
-        let surface = ImplicitSurface::new(&Survey { cloud: &cloud, scanner: &scanner, models: &[] }, &params).unwrap();
+        let surface =
+            ImplicitSurface::new(&MethodInput { cloud: &cloud, scanner: &scanner, models: &[] }, &params).unwrap();
         assert_eq!(surface.left_out(), 0);
-        let mut random = Lcg(3);
+        let mut random = TestRandom(3);
         for _ in 0..2000 {
             let from = random.direction().map(|v| 20.0 * v);
             let aim = random.direction().map(|v| 0.9 * radius * v);
@@ -139,8 +140,8 @@ fn rays_meet_the_implicit_surface_where_the_sphere_is() {
                 if signs == NormalSigns::Outward && hit[2].abs() < 2.0 {
                     continue;
                 }
-                // over a spacing the sphere falls away by spacing² / 2 radius, a fiftieth of the spacing; means over a support, the
-                // plane of 16 neighbours and the bisection err by a few times that
+                // over a spacing the sphere falls away by spacing² / 2 radius, a fiftieth of the spacing; means over a
+                // support, the plane of 16 neighbours and the bisection err by a few times that
                 assert!(height.abs() < 0.1 * spacing, "{height} of {spacing} at {hit:?}");
             } else {
                 panic!("{signs:?}: the ray to {aim:?} from {from:?} met nothing");
@@ -157,12 +158,12 @@ fn rays_meet_the_implicit_surface_where_the_sphere_is() {
 }
 
 #[test]
-fn the_implicit_plane_ends_at_its_rim_and_at_a_hole() {
+fn the_implicit_plane_ends_at_its_edge_and_at_a_hole() {
     let mut cloud = grid(20, 0.5, 0.5);
     cloud.positions.retain(|p| p[0].hypot(p[1]) > 3.0);
-    let survey = Survey { cloud: &cloud, scanner: &[], models: &[] };
+    let survey = MethodInput { cloud: &cloud, scanner: &[], models: &[] };
     let surface = ImplicitSurface::new(&survey, &ImplicitSurfaceParams::default()).unwrap();
-    let mut random = Lcg(11);
+    let mut random = TestRandom(11);
     // support: 0.9 diagonals of 0.5 m; twice that is beyond doubt on either side of the rim
     let margin = 2.0 * 0.9 * 0.5 * 2.0_f64.sqrt();
     let mut seen = [0; 2];
@@ -189,7 +190,7 @@ fn the_implicit_plane_ends_at_its_rim_and_at_a_hole() {
 #[test]
 fn the_implicit_surface_refuses_parameters_out_of_range() {
     let cloud = grid(3, 1.0, 1.0);
-    let survey = Survey { cloud: &cloud, scanner: &[], models: &[] };
+    let survey = MethodInput { cloud: &cloud, scanner: &[], models: &[] };
     let default = ImplicitSurfaceParams::default;
     for params in [
         ImplicitSurfaceParams { step: 0.0, ..default() },
@@ -197,7 +198,7 @@ fn the_implicit_surface_refuses_parameters_out_of_range() {
         ImplicitSurfaceParams { step: f64::NAN, ..default() },
         ImplicitSurfaceParams { support_scale: -1.0, ..default() },
         ImplicitSurfaceParams { support_neighbor: 0, ..default() },
-        ImplicitSurfaceParams { rim: 0.0, ..default() },
+        ImplicitSurfaceParams { edge: 0.0, ..default() },
         ImplicitSurfaceParams { normal_neighbors: 2, ..default() },
     ] {
         assert!(ImplicitSurface::new(&survey, &params).is_err(), "{params:?}");
@@ -205,6 +206,6 @@ fn the_implicit_surface_refuses_parameters_out_of_range() {
     assert!(Splats::new(&cloud, &SplatParams { radius_neighbor: 0, ..SplatParams::surfels() }).is_err());
     assert!(Splats::new(&cloud, &SplatParams { radius_scale: f64::NAN, ..SplatParams::surfels() }).is_err());
     let empty = cloud_of(Vec::new());
-    let nothing = ImplicitSurface::new(&Survey { cloud: &empty, scanner: &[], models: &[] }, &default()).unwrap();
+    let nothing = ImplicitSurface::new(&MethodInput { cloud: &empty, scanner: &[], models: &[] }, &default()).unwrap();
     assert!(!blocked(&nothing, Viewer::Eye([1.0; 3]), &[[0.0; 3]])[0]);
 }

@@ -5,14 +5,14 @@
 mod judge;
 
 use belvedere_scenes::Preset;
-use judge::Town;
+use judge::ViewshedTown;
 
 #[test]
 fn what_people_in_streets_see_is_what_the_mesh_lets_them_see() {
-    let town = Town::new(Preset::Town, 120.0, 1.0, 6, 11).unwrap();
+    let town = ViewshedTown::new(Preset::Town, 120.0, 1.0, 6, 11).unwrap();
     assert!(town.eyes.len() >= 4, "{}", town.eyes.len());
     // what blocks people's sight of the ground here and no pulse reaches: trunks, fences and arcades
-    for (height, least) in [(0.0, [0.65, 0.68]), (1.7, [0.75, 0.75])] {
+    for (height, min) in [(0.0, [0.65, 0.68]), (1.7, [0.75, 0.75])] {
         let score = town.judge(height).unwrap();
         println!(
             "{height} m: IoU {:.3?}, false-visible {:.4}, false-blocked {:.4}, {} unproven",
@@ -21,6 +21,6 @@ fn what_people_in_streets_see_is_what_the_mesh_lets_them_see() {
             score.false_blocked_share(),
             score.unproven
         );
-        assert!(score.ious().iter().zip(least).all(|(iou, least)| *iou >= least), "{height}: {score:?}");
+        assert!(score.ious().iter().zip(min).all(|(iou, min)| *iou >= min), "{height}: {score:?}");
     }
 }

@@ -1,24 +1,24 @@
 //! Water returns no pulses, and balls do not reach over it: on a simulated town with canals, against its exact mesh.
 
 use crate::common::canals::without_returns_from_water;
-use crate::common::place::Place;
+use crate::common::place::TownWithLight;
 use belvedere::medial::{CarvedParams, Rule};
 use belvedere::model::BallParams;
 use belvedere::query::{Viewer, Visibility};
-use belvedere_baselines::Survey;
-use belvedere_baselines::agreement::{Counts, Rate};
+use belvedere_baselines::MethodInput;
+use belvedere_baselines::agreement::{Rate, TruthCounts};
 use belvedere_baselines::medial::{MedialBaseline, MedialParams, Outward};
 use belvedere_scenes::Preset;
 
 #[test]
 fn canals_hide_few_suns_that_pedestrians_see() {
-    let place = Place::new(Preset::OldTown);
+    let place = TownWithLight::new(Preset::OldTown);
     let (cloud, scanner) = without_returns_from_water(&place.cloud, &place.scanner);
     let errors = |carving: CarvedParams| {
         let params = MedialParams { making: BallParams::Carved(carving), ..MedialParams::carved() };
-        let survey = Survey { cloud: &cloud, scanner: &scanner, models: &[] };
+        let survey = MethodInput { cloud: &cloud, scanner: &scanner, models: &[] };
         let model = MedialBaseline::new(&survey, Outward::Survey, &params).unwrap();
-        let mut counts = Counts::default();
+        let mut counts = TruthCounts::default();
         for (direction, visible) in &place.suns {
             let answers = model.visible(Viewer::Direction(*direction), &place.targets).unwrap();
             visible.iter().zip(answers).for_each(|(&visible, answer)| counts.add(visible, answer));

@@ -1,42 +1,44 @@
-//! What it costs carved balls that the scanner is known badly, or not at all, and that normals come with the wrong sign: on a
-//! simulated town, against its exact mesh.
+//! What it costs carved balls that the scanner is known badly, or not at all, and that normals come with the wrong
+//! sign: on a simulated town, against its exact mesh.
 
-use crate::common::place::Place;
+use crate::common::place::TownWithLight;
 use belvedere::control::Control;
 use belvedere::medial::{CarvedInput, CarvedParams, OrientByCarvingParams, carved_balls, orient_by_carving};
 use belvedere::neighbors::NeighborIndex;
 use belvedere::normals::estimate::{Neighborhood, estimate};
 use belvedere::normals::{Orientation, OrientedCloud, orient};
-use belvedere::pulses::{NeedleParams, Needles, VerticalParams, vertical_pulses};
+use belvedere::pulses::{FreeSegmentParams, FreeSegments, VerticalParams, vertical_pulses};
 use belvedere::query::{BlockRule, MedialScene, Viewer, Visibility};
-use belvedere_baselines::agreement::{Counts, Rate};
+use belvedere_baselines::agreement::{Rate, TruthCounts};
 use belvedere_baselines::medial::DEPTH_BIAS;
 use belvedere_scenes::Preset;
 
-impl Place {
-    /// Percent of answers that are right, balanced over lit and shaded places, mean over the suns, for a scanner at `scanner` and
-    /// normals that `turn` has had its way with after pulses gave them their signs.
+impl TownWithLight {
+    /// Percent of answers that are right, balanced over lit and shaded places, mean over the suns, for a scanner at
+    /// `scanner` and normals that `turn` has had its way with after pulses gave them their signs.
     fn score(
         &self,
         scanner: &[[f32; 3]],
         before: impl Fn([f32; 3]) -> [f32; 3],
-        turn: impl Fn(OrientedCloud, &NeighborIndex, &Needles) -> OrientedCloud,
+        turn: impl Fn(OrientedCloud, &NeighborIndex, &FreeSegments) -> OrientedCloud,
     ) -> f64 {
         let index = NeighborIndex::new(&self.cloud.positions, &Control::none()).unwrap();
         let mut normals =
             estimate(&self.cloud.positions, &index, Neighborhood::Fixed { k: 16 }, &Control::none()).unwrap();
         normals.vectors.iter_mut().for_each(|normal| *normal = before(*normal));
         let (oriented, _) = orient(&self.cloud, normals, &Orientation::Pulses(scanner), &Control::none()).unwrap();
-        let (needles, _) = Needles::of_cloud(&self.cloud, scanner, &NeedleParams::default(), &Control::none()).unwrap();
-        let oriented = turn(oriented, &index, &needles);
+        let (free_segments, _) =
+            FreeSegments::of_cloud(&self.cloud, scanner, &FreeSegmentParams::default(), &Control::none()).unwrap();
+        let oriented = turn(oriented, &index, &free_segments);
         let attributes = &self.cloud.attributes;
-        let input = CarvedInput { oriented: &oriented, index: &index, attributes, needles: &needles, pulses: None };
+        let input =
+            CarvedInput { oriented: &oriented, index: &index, attributes, needles: &free_segments, pulses: None };
         let balls = carved_balls(&input, &CarvedParams::default(), &Control::none()).unwrap().balls;
         let blocking = BlockRule { bias: DEPTH_BIAS, ..BlockRule::default() };
         let scene = MedialScene::new(&balls, &blocking).unwrap();
         let balanced = |(direction, visible): &([f64; 3], Vec<bool>)| {
             let answers = scene.visible(Viewer::Direction(*direction), &self.targets).unwrap();
-            let mut counts = Counts::default();
+            let mut counts = TruthCounts::default();
             visible.iter().zip(answers).for_each(|(&visible, answer)| counts.add(visible, answer));
             100.0 * Rate::Balanced.of(&counts).unwrap()
         };
@@ -44,7 +46,7 @@ impl Place {
     }
 }
 
-fn as_it_is(oriented: OrientedCloud, _: &NeighborIndex, _: &Needles) -> OrientedCloud {
+fn as_it_is(oriented: OrientedCloud, _: &NeighborIndex, _: &FreeSegments) -> OrientedCloud {
     oriented
 }
 
@@ -56,7 +58,7 @@ fn all_flipped(oriented: &OrientedCloud) -> OrientedCloud {
 
 #[test]
 fn a_scanner_known_badly_and_normals_turned_wrongly_cost_less_than_a_point() {
-    let place = Place::new(Preset::Town);
+    let place = TownWithLight::new(Preset::Town);
     let same = |normal: [f32; 3]| normal;
     let exact = place.score(&place.scanner, same, as_it_is);
     // lateral error at an angle to the flight, and height
@@ -71,8 +73,8 @@ fn a_scanner_known_badly_and_normals_turned_wrongly_cost_less_than_a_point() {
     assert!((flipped - exact).abs() < 1.0, "{flipped} of {exact}");
     // and what pulses leave of balls on either side turns them without that
     let params = OrientByCarvingParams { least_confidence: 1.0, ..OrientByCarvingParams::default() };
-    let turn = |oriented: OrientedCloud, index: &NeighborIndex, needles: &Needles| {
-        orient_by_carving(&all_flipped(&oriented), index, needles, &params, &Control::none()).unwrap().0
+    let turn = |oriented: OrientedCloud, index: &NeighborIndex, free_segments: &FreeSegments| {
+        orient_by_carving(&all_flipped(&oriented), index, free_segments, &params, &Control::none()).unwrap().0
     };
     let carved = place.score(&place.scanner, same, turn);
     let wrong = place.score(&place.scanner, same, |oriented, _, _| all_flipped(&oriented));
@@ -83,7 +85,7 @@ fn a_scanner_known_badly_and_normals_turned_wrongly_cost_less_than_a_point() {
 
 #[test]
 fn pulses_that_are_merely_assumed_to_be_vertical_are_worth_carving_with() {
-    let place = Place::new(Preset::Town);
+    let place = TownWithLight::new(Preset::Town);
     let same = |normal: [f32; 3]| normal;
     let exact = place.score(&place.scanner, same, as_it_is);
     let assumed = vertical_pulses(&place.cloud.positions, &VerticalParams::default(), &Control::none()).unwrap();

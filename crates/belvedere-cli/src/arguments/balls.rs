@@ -9,7 +9,7 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 #[derive(Args, Clone)]
-pub(crate) struct Normals {
+pub(crate) struct NormalsArguments {
     #[command(flatten)]
     pub(crate) cleaning: Cleaning,
     #[command(flatten)]
@@ -24,7 +24,7 @@ pub(crate) struct Normals {
 }
 
 #[derive(Args, Clone)]
-pub(crate) struct Balls {
+pub(crate) struct BallsArguments {
     #[command(flatten)]
     pub(crate) cleaning: Cleaning,
     #[command(flatten)]
@@ -38,9 +38,9 @@ pub(crate) struct Balls {
     pub(crate) side: SideChoice,
     /// Ball file (.npz, or .ply .laz .las to look at), or a folder in the layout of masbcpp
     ///
-    /// .npz keeps everything that later commands use, including the pulses. .ply, .laz and .las keep only the balls; the radius is an
-    /// attribute. A folder gets ma_coords_*.npy and ma_qidx_*.npy with one row for each input point; no point is removed, and the
-    /// default method is `angles`.
+    /// .npz keeps everything that later commands use, including the pulses. .ply, .laz and .las keep only the balls;
+    /// the radius is an attribute. A folder gets ma_coords_*.npy and ma_qidx_*.npy with one row for each input point;
+    /// no point is removed, and the default method is `angles`.
     #[arg(short, long, value_name = "OUT", help_heading = "Result")]
     pub(crate) output: PathBuf,
     /// In a folder: write NaN as the centre of balls that never shrank
@@ -48,7 +48,8 @@ pub(crate) struct Balls {
     pub(crate) nan: bool,
     /// In a folder: also write the local feature size and a thinning of the points
     ///
-    /// Writes lfs.npy, and decimate_lfs.npy, which marks the points that a thinning to this share of the local feature size keeps.
+    /// Writes lfs.npy, and decimate_lfs.npy, which marks the points that a thinning to this share of the local feature
+    /// size keeps.
     #[arg(long, value_name = "EPSILON", help_heading = "Result", value_parser = above_zero::<f32>, allow_negative_numbers = true)]
     pub(crate) simplify: Option<f32>,
     /// Side of the cells in which --simplify counts points, in metres
@@ -88,13 +89,14 @@ pub(crate) struct Orienting {
     /// Orientation: auto, given, up, scanner, scanner=X,Y,Z, stations=FILE, trajectory=FILE, pulses, mesh=FILE
     /// [default: auto]
     ///
-    /// auto: the normals of the file if it has them, else the scanner positions of the file, else up; `normals` always estimates new ones. For
-    /// carving, auto also searches for the scanner in the data: in pulses with several returns, in scan angles, and by the grid of pulses around each
-    /// place where a tripod stood.
-    /// given: the normals of the file. up: toward the sky. scanner: toward the scanner positions of the file. scanner=X,Y,Z: toward one
-    /// position. stations=FILE: toward the station of each point, from a table with the columns station (the point source id), x, y and z
-    /// (.csv .txt). trajectory=FILE: toward the scanner positions in a table or SBET file (.csv .txt .sbet). pulses: toward scanner positions
-    /// estimated from pulses with several returns. mesh=FILE: as the nearest face of a mesh (.obj .ply .json).
+    /// auto: the normals of the file if it has them, else the scanner positions of the file, else up; `normals` always
+    /// estimates new ones. For carving, auto also searches for the scanner in the data: in pulses with several returns,
+    /// in scan angles, and by the grid of pulses around each place where a tripod stood. given: the normals of the
+    /// file. up: toward the sky. scanner: toward the scanner positions of the file. scanner=X,Y,Z: toward one position.
+    /// stations=FILE: toward the station of each point, from a table with the columns station (the point source id), x,
+    /// y and z (.csv .txt). trajectory=FILE: toward the scanner positions in a table or SBET file (.csv .txt .sbet).
+    /// pulses: toward scanner positions estimated from pulses with several returns. mesh=FILE: as the nearest face of a
+    /// mesh (.obj .ply .json).
     #[arg(long, value_name = "HOW")]
     pub(crate) orient: Option<OrientChoice>,
 }

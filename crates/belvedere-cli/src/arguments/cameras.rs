@@ -1,7 +1,8 @@
 //! Flags of camera placement.
 
 use super::{
-    Earth, GivingWay, GroundChoice, North, Radio, SceneInput, above_zero, at_least_one, at_most, finite, height, length,
+    Earth, GivingWay, GroundChoice, NorthArguments, Radio, SceneInput, above_zero, at_least_one, at_most, finite,
+    height, length,
 };
 use belvedere::apps::cameras::Level;
 use clap::Args;
@@ -9,9 +10,9 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 #[derive(Args)]
-pub(crate) struct Cameras {
+pub(crate) struct CamerasArguments {
     #[command(flatten)]
-    pub(crate) candidates: Candidates,
+    pub(crate) candidates: CandidatesArguments,
     /// Distance between candidates on a line of GeoJSON, in metres [default: 5]
     #[arg(long = "distance-step-m", value_name = "M", requires = "file", value_parser = above_zero::<f64>, allow_negative_numbers = true,
         help_heading = "Candidates (one of)")]
@@ -21,38 +22,42 @@ pub(crate) struct Cameras {
     pub(crate) camera_height: Option<f64>,
     /// Cameras that exist already and stay, from a table (.csv) or GeoJSON; they do not count towards --count
     ///
-    /// The columns are those of --candidates. Each row needs heading and tilt, unless the cameras turn or see all around.
+    /// The columns are those of --candidates. Each row needs heading and tilt, unless the cameras turn or see all
+    /// around.
     #[arg(long, value_name = "FILE", help_heading = "Candidates (one of)")]
     pub(crate) existing: Option<PathBuf>,
     #[command(flatten)]
-    pub(crate) lens: CameraLens,
+    pub(crate) lens: CameraLensArguments,
     #[command(flatten)]
-    pub(crate) goal: CameraGoal,
+    pub(crate) goal: CameraGoalArguments,
     /// Number of cameras that each target needs
     ///
     /// A target with fewer cameras counts in proportion.
     #[arg(long = "per-target", value_name = "N", default_value_t = 1, value_parser = at_most::<1000>, help_heading = "Goal (one of)")]
     pub(crate) required: usize,
-    /// Maximum number of branches in the search for the proven optimum; 0 for no search [default: for about half a minute]
+    /// Maximum number of branches in the search for the proven optimum; 0 for no search
+    /// [default: for about half a minute]
     #[arg(long, value_name = "N", help_heading = "Goal (one of)")]
     pub(crate) search_limit: Option<usize>,
     #[command(flatten)]
-    pub(crate) targets: CameraTargets,
+    pub(crate) targets: CameraTargetsArguments,
     #[command(flatten)]
     pub(crate) earth: Earth,
     #[command(flatten)]
     pub(crate) radio: Radio,
-    /// Percentage of the radius of the first Fresnel zone that must be free, above 0 to 100 [default: 60, as ITU-R P.530]
+    /// Percentage of the radius of the first Fresnel zone that must be free, above 0 to 100
+    /// [default: 60, as ITU-R P.530]
     #[arg(long, value_name = "PERCENT", requires = "frequency", value_parser = above_zero::<f64>, allow_negative_numbers = true, help_heading = "Lines of sight")]
     pub(crate) fresnel_percent: Option<f64>,
     #[command(flatten)]
     pub(crate) giving_way: GivingWay,
     #[command(flatten)]
-    pub(crate) north: North,
+    pub(crate) north: NorthArguments,
     /// Cameras (.geojson), cameras per cell (.tif), map (.png) or a table of the targets (.csv); repeatable
     ///
-    /// .geojson: a point in WGS 84 for each camera with its pose and what it adds; it can be used as --existing. .tif: the number of cameras that cover
-    /// each cell, 0 for blind spots, nodata 65535. .csv: a row for each target with the number of cameras that cover it and their numbers.
+    /// .geojson: a point in WGS 84 for each camera with its pose and what it adds; it can be used as --existing. .tif:
+    /// the number of cameras that cover each cell, 0 for blind spots, nodata 65535. .csv: a row for each target with
+    /// the number of cameras that cover it and their numbers.
     #[arg(short, long, value_name = "OUT", required = true, help_heading = "Result")]
     pub(crate) output: Vec<PathBuf>,
     /// Also write the cells that each camera covers as areas in WGS 84 (.geojson)
@@ -68,11 +73,11 @@ pub(crate) struct Cameras {
 #[derive(Args)]
 #[command(next_help_heading = "Candidates (one of)")]
 #[group(id = "candidate_places", required = true, multiple = false)]
-pub(crate) struct Candidates {
+pub(crate) struct CandidatesArguments {
     /// Places for cameras from a table with columns x and y (.csv) or from GeoJSON, whose lines are walked along
     ///
-    /// Columns or properties z, height, heading, tilt, fov, min_distance, max_distance, azimuth_from, azimuth_to, elevation_from and elevation_to override the flags. The
-    /// last four are the range of a camera that turns.
+    /// Columns or properties z, height, heading, tilt, fov, min_distance, max_distance, azimuth_from, azimuth_to,
+    /// elevation_from and elevation_to override the flags. The last four are the range of a camera that turns.
     #[arg(long = "candidates", value_name = "FILE")]
     pub(crate) file: Option<PathBuf>,
     /// Places for cameras above the ground, in the middle of each cell of this side in metres
@@ -87,7 +92,7 @@ pub(crate) struct Candidates {
 
 #[derive(Args)]
 #[command(next_help_heading = "Cameras")]
-pub(crate) struct CameraLens {
+pub(crate) struct CameraLensArguments {
     /// Horizontal field of view in degrees, above 0 to 360 [default: 90]
     ///
     /// Below 180 the picture is flat. From 180 on the camera has no pixel density: a fisheye lens, a person, a mast.
@@ -99,11 +104,12 @@ pub(crate) struct CameraLens {
     /// Pixels across the picture [default: 1920]
     #[arg(long, value_name = "N", value_parser = at_least_one)]
     pub(crate) pixels: Option<usize>,
-    /// Required pixels per metre: a number, a level such as identify, or none [default: detect; none where --fov is 180 or more]
+    /// Required pixels per metre: a number, a level such as identify, or none
+    /// [default: detect; none where --fov is 180 or more]
     ///
     /// The levels of EN 62676-4 are monitor (12.5), detect (25), observe (62.5), recognise (125) and identify (250).
     #[arg(long, value_name = "LEVEL")]
-    pub(crate) density: Option<Density>,
+    pub(crate) density: Option<PixelDensity>,
     /// Number of headings to choose from at each place, evenly spread, 1 to 360 [default: 8]
     #[arg(long, value_name = "N", value_parser = at_most::<360>)]
     pub(crate) headings: Option<usize>,
@@ -121,7 +127,8 @@ pub(crate) struct CameraLens {
     pub(crate) min_distance: Option<f32>,
     /// Places that no camera may see: points (.csv) or polygons (.geojson)
     ///
-    /// Cells of polygons and points without Z are --target-height above the ground. A heading is not used if any of these places could be in its picture, at any distance.
+    /// Cells of polygons and points without Z are --target-height above the ground. A heading is not used if any of
+    /// these places could be in its picture, at any distance.
     #[arg(long, value_name = "FILE")]
     pub(crate) private: Option<PathBuf>,
 }
@@ -129,7 +136,7 @@ pub(crate) struct CameraLens {
 #[derive(Args)]
 #[command(next_help_heading = "Goal (one of)")]
 #[group(id = "camera_goal", required = true, multiple = false)]
-pub(crate) struct CameraGoal {
+pub(crate) struct CameraGoalArguments {
     /// Cover as much as possible with this number of new cameras
     #[arg(long, value_name = "N", value_parser = at_most::<100_000>)]
     pub(crate) count: Option<usize>,
@@ -140,11 +147,12 @@ pub(crate) struct CameraGoal {
 
 #[derive(Args)]
 #[command(next_help_heading = "Targets [default: cells on the ground]")]
-pub(crate) struct CameraTargets {
+pub(crate) struct CameraTargetsArguments {
     /// Polygons with cells (.geojson), points (.csv .geojson or a cloud), or a mesh (.obj .json .ply with faces)
     ///
-    /// Column or property weight: how much each target counts; a cell in several polygons has the largest. Surfaces with normals (meshes, points of a cloud) count
-    /// with the pixels per metre at the angle at which they are seen, and not from behind.
+    /// Column or property weight: how much each target counts; a cell in several polygons has the largest. Surfaces
+    /// with normals (meshes, points of a cloud) count with the pixels per metre at the angle at which they are seen,
+    /// and not from behind.
     #[arg(long, value_name = "FILE")]
     pub(crate) targets: Option<PathBuf>,
     /// Side of a cell in metres [default: 2, doubled until there are at most 40000]
@@ -158,17 +166,17 @@ pub(crate) struct CameraTargets {
     pub(crate) spacing: Option<f64>,
     /// Source of the ground heights: auto, classed, found or cloud=FILE
     ///
-    /// auto: ground points (class 2) if the cloud has them, else found. classed: class 2 only. found: detected from the shape of the cloud.
-    /// cloud=FILE: the ground of another cloud, which a ball file needs.
+    /// auto: ground points (class 2) if the cloud has them, else found. classed: class 2 only. found: detected from the
+    /// shape of the cloud. cloud=FILE: the ground of another cloud, which a ball file needs.
     #[arg(long, value_name = "HOW", default_value = "auto")]
     pub(crate) ground: GroundChoice,
 }
 
 /// Pixels per metre; 0 for none.
 #[derive(Clone, Copy)]
-pub(crate) struct Density(pub(crate) f64);
+pub(crate) struct PixelDensity(pub(crate) f64);
 
-impl FromStr for Density {
+impl FromStr for PixelDensity {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {

@@ -1,8 +1,8 @@
 //! Flags of runs over whole cities.
 
 use super::{
-    AreaChoice, ClearSkyChoice, FarTerrain, North, Numbers, Place, RadiationModel, SunPeriod, SunPlace, ThroughTrees,
-    above_zero, at_least_one, height, known_crs,
+    AreaChoice, ClearSkyChoice, FarTerrainArguments, MapPosition, NorthArguments, Numbers, RadiationModel, SunPeriod,
+    SunPlaceArguments, ThroughTreesArguments, above_zero, at_least_one, height, known_crs,
 };
 use belvedere_tiles::Topic;
 use clap::{Args, Subcommand};
@@ -32,7 +32,8 @@ pub(crate) enum CityStep {
 pub(crate) struct CityPlan {
     /// Tiles of the survey (.las .laz .copc.laz), a catalogue of tiles (.vpc), or a folder of tiles
     ///
-    /// Tiles may lie on a web server (https://...): only the parts near each tile of the plan are transferred, after one look at the whole.
+    /// Tiles may lie on a web server (https://...): only the parts near each tile of the plan are transferred, after
+    /// one look at the whole.
     #[arg(value_name = "CLOUD", required = true)]
     pub(crate) clouds: Vec<PathBuf>,
     /// Coordinate reference system, as EPSG:CODE or WKT [default: that of the files]
@@ -51,7 +52,8 @@ pub(crate) struct CityPlan {
     pub(crate) sun_hours: bool,
     /// Map where a daylight rule is met; repeatable
     ///
-    /// nl-light, nl-strict, the-hague, bre-equinox, or your own as HOURS@DAYS, such as 1.5@03-21, 1@shortest-day, and with a minimum sun elevation of 10 degrees 2@02-19..10-21>10.
+    /// nl-light, nl-strict, the-hague, bre-equinox, or your own as HOURS@DAYS, such as 1.5@03-21, 1@shortest-day, and
+    /// with a minimum sun elevation of 10 degrees 2@02-19..10-21>10.
     #[arg(long, value_name = "RULE", help_heading = "Questions")]
     pub(crate) rule: Vec<String>,
     /// Map the solar energy of a year in kWh for each square metre, with --weather or --clear-sky
@@ -62,9 +64,10 @@ pub(crate) struct CityPlan {
     pub(crate) sky_view: bool,
     /// Map what an observer sees who stands at a place in file coordinates; repeatable
     ///
-    /// Without Z, an observer is --observer-height above the ground. Of several observers, the map has the number that see each cell.
+    /// Without Z, an observer is --observer-height above the ground. Of several observers, the map has the number that
+    /// see each cell.
     #[arg(long = "observer", value_name = "X,Y[,Z]", allow_hyphen_values = true, help_heading = "Questions")]
-    pub(crate) observers: Vec<Place>,
+    pub(crate) observers: Vec<MapPosition>,
     /// Height of observers above the ground in metres [default: 1.7]
     #[arg(long, value_name = "M", value_parser = height::<f64>, requires = "observers", allow_negative_numbers = true,
         help_heading = "Questions")]
@@ -80,7 +83,7 @@ pub(crate) struct CityPlan {
     #[command(flatten)]
     pub(crate) when: SunPeriod,
     #[command(flatten)]
-    pub(crate) sun: SunPlace,
+    pub(crate) sun: SunPlaceArguments,
     /// Weather file: EPW, TMY3, CSV of PVGIS (typical year, or series on a horizontal plane), or CSV of NSRDB
     #[arg(
         long,
@@ -103,9 +106,9 @@ pub(crate) struct CityPlan {
     #[command(flatten)]
     pub(crate) model: RadiationModel,
     #[command(flatten)]
-    pub(crate) north: North,
+    pub(crate) north: NorthArguments,
     #[command(flatten)]
-    pub(crate) trees: ThroughTrees,
+    pub(crate) trees: ThroughTreesArguments,
     /// Add a mesh to the survey, such as a planned building (.obj .ply .json); repeatable
     ///
     /// Its triangles block exactly as they are, and cells lie on top of it. Coordinates are those of the survey.
@@ -113,12 +116,13 @@ pub(crate) struct CityPlan {
     pub(crate) add: Vec<PathBuf>,
     /// Clear what stands in an area: POLYGON.geojson, X0,Y0,X1,Y1 or class:N; repeatable
     ///
-    /// Polygons, a box from the lowest to the highest x and y, or the points of a class, in the coordinates of the survey. What goes is as in other commands (belvedere shadow
-    /// --help). It comes before --add, so that a building can replace another.
+    /// Polygons, a box from the lowest to the highest x and y, or the points of a class, in the coordinates of the
+    /// survey. What goes is as in other commands (belvedere shadow --help). It comes before --add, so that a building
+    /// can replace another.
     #[arg(long, value_name = "AREA", help_heading = "Plan", allow_hyphen_values = true)]
     pub(crate) clear: Vec<AreaChoice>,
     #[command(flatten)]
-    pub(crate) far_terrain: FarTerrain,
+    pub(crate) far_terrain: FarTerrainArguments,
     /// Side of the cells of results in metres: a whole number of sixty-fourths, such as 0.25, 0.5, 1 or 2
     #[arg(long, value_name = "M", default_value_t = 1.0, value_parser = above_zero::<f64>, allow_negative_numbers = true,
         help_heading = "Tiles")]
@@ -138,7 +142,7 @@ pub(crate) struct CityPlan {
     ///
     /// If the largest tile is estimated to need more, the side of all tiles is halved until it fits.
     #[arg(long, value_name = "SIZE", help_heading = "Tiles")]
-    pub(crate) memory: Option<Memory>,
+    pub(crate) memory: Option<MemoryAmount>,
     /// Folder for the plan and the results; created if it does not exist
     #[arg(short, long, value_name = "DIR", help_heading = "Result")]
     pub(crate) output: PathBuf,
@@ -151,7 +155,7 @@ pub(crate) struct CityRun {
     pub(crate) run: PathBuf,
     /// Compute only a share of the tiles, such as 3/64, for the jobs of a cluster
     #[arg(long, value_name = "I/N")]
-    pub(crate) shard: Option<Share>,
+    pub(crate) shard: Option<TileShare>,
     /// Build only the balls, so that jobs that compute results later find those of all tiles
     #[arg(long)]
     pub(crate) balls_only: bool,
@@ -179,9 +183,9 @@ pub(crate) struct CityMerge {
 
 /// An amount of memory, bytes.
 #[derive(Clone, Copy)]
-pub(crate) struct Memory(pub(crate) u64);
+pub(crate) struct MemoryAmount(pub(crate) u64);
 
-impl FromStr for Memory {
+impl FromStr for MemoryAmount {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, Self::Err> {
@@ -216,12 +220,12 @@ impl FromStr for CellFor {
 
 /// A share of the tiles.
 #[derive(Clone, Copy)]
-pub(crate) struct Share {
+pub(crate) struct TileShare {
     pub(crate) number: usize,
     pub(crate) of: usize,
 }
 
-impl FromStr for Share {
+impl FromStr for TileShare {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, Self::Err> {

@@ -27,8 +27,8 @@ pub(crate) struct Compare {
     pub(crate) density: Vec<f64>,
     /// Simulated scanners, separated by commas
     ///
-    /// Each but the first differs from it in one way. room is two furnished rooms instead of a town, with a tripod in each. tripods, car and
-    /// room have no density. A car needs a street: --extent 100 or more.
+    /// Each but the first differs from it in one way. room is two furnished rooms instead of a town, with a tripod in
+    /// each. tripods, car and room have no density. A car needs a street: --extent 100 or more.
     #[arg(long, value_name = "LIST", value_delimiter = ',', default_value = "air", value_parser = regimes(), help_heading = "Simulated towns")]
     pub(crate) regimes: Vec<Regime>,
     /// Point clouds of a real place, instead of simulated towns; needs --mesh
@@ -41,8 +41,8 @@ pub(crate) struct Compare {
     pub(crate) mesh: Option<PathBuf>,
     /// Scanner positions for --clouds or --held-out (.csv .txt .sbet)
     ///
-    /// Without it, normals of --clouds are oriented upward and their own points are not queried. For --held-out, scanner positions are estimated
-    /// from pulses with several returns.
+    /// Without it, normals of --clouds are oriented upward and their own points are not queried. For --held-out,
+    /// scanner positions are estimated from pulses with several returns.
     #[arg(long, value_name = "FILE", help_heading = "Real place with ground truth")]
     pub(crate) trajectory: Option<PathBuf>,
     /// City model or reconstructed surface that is compared as another method; repeatable
@@ -50,8 +50,8 @@ pub(crate) struct Compare {
     pub(crate) model: Vec<NamedFile>,
     /// Point clouds that are tested with their own laser pulses
     ///
-    /// A tenth of the pulses is kept from the methods. The path of each such pulse was free, and what lies behind its return is hidden; the
-    /// methods must answer both. Needs GPS times, return numbers and pulses with several returns.
+    /// A tenth of the pulses is kept from the methods. The path of each such pulse was free, and what lies behind its
+    /// return is hidden; the methods must answer both. Needs GPS times, return numbers and pulses with several returns.
     #[arg(long, value_name = "CLOUD", num_args = 1.., help_heading = "Real clouds without ground truth")]
     pub(crate) held_out: Vec<PathBuf>,
     /// Methods to compare, by the start of their names [default: all except variants, which need their full names]

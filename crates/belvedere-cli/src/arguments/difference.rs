@@ -4,7 +4,7 @@ use clap::Args;
 use std::path::PathBuf;
 
 #[derive(Args)]
-pub(crate) struct Difference {
+pub(crate) struct DifferenceArguments {
     /// Raster of the scene as it is (.tif)
     #[arg(value_name = "BEFORE")]
     pub(crate) before: PathBuf,

@@ -1,8 +1,8 @@
 //! Flags of solar envelopes, routes and windows.
 
 use super::{
-    GroundChoice, North, Numbers, PatchesChoice, SceneInput, Shell, SunPeriod, SunPlace, above_zero, at_least_one,
-    height,
+    GroundChoice, NorthArguments, Numbers, PatchesChoice, SceneInput, Shell, SunPeriod, SunPlaceArguments, above_zero,
+    at_least_one, height,
 };
 use clap::Args;
 use std::path::PathBuf;
@@ -10,13 +10,13 @@ use std::str::FromStr;
 
 /// Corners of a shape, typed, or the file that has them.
 #[derive(Clone)]
-pub(crate) enum Corners {
+pub(crate) enum CornersArgument {
     /// As X,Y or X,Y,Z each, in the coordinates of the scene's file; a height that is not given is NaN.
     Typed(Vec<[f64; 3]>),
     File(PathBuf),
 }
 
-impl FromStr for Corners {
+impl FromStr for CornersArgument {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
@@ -62,16 +62,16 @@ impl FromStr for Hours {
 }
 
 #[derive(Args)]
-pub(crate) struct Envelope {
+pub(crate) struct EnvelopeArguments {
     /// Parcel: polygons (GeoJSON), a table of corners with columns x and y (.csv), or "X,Y X,Y X,Y ..."
     #[arg(long, value_name = "FILE|CORNERS", required = true, allow_hyphen_values = true, help_heading = "Land")]
-    pub(crate) parcel: Corners,
+    pub(crate) parcel: CornersArgument,
     /// Lines, polygon outlines, points (GeoJSON) or facades that stay free of new shadows; repeatable
     ///
-    /// Also a line from a table with columns x, y and optionally z (.csv) or as "X,Y X,Y ..."; or facades as a mesh (.obj .json .ply
-    /// with faces).
+    /// Also a line from a table with columns x, y and optionally z (.csv) or as "X,Y X,Y ..."; or facades as a mesh
+    /// (.obj .json .ply with faces).
     #[arg(long, value_name = "FILE|CORNERS", required = true, allow_hyphen_values = true, help_heading = "Land")]
-    pub(crate) protect: Vec<Corners>,
+    pub(crate) protect: Vec<CornersArgument>,
     /// Height of a fence on protected lines and points, in metres; shadows may reach its top [default: 0]
     #[arg(long = "fence-height", value_name = "M", allow_negative_numbers = true, value_parser = height::<f32>, help_heading = "Land")]
     pub(crate) fence: Option<f32>,
@@ -88,8 +88,8 @@ pub(crate) struct Envelope {
     pub(crate) spacing: Option<f64>,
     /// Source of the ground heights: auto, classed, found or cloud=FILE
     ///
-    /// auto: ground points (class 2) if the cloud has them, else found. classed: class 2 only. found: detected from the shape of the cloud.
-    /// cloud=FILE: the ground of another cloud, which a ball file needs.
+    /// auto: ground points (class 2) if the cloud has them, else found. classed: class 2 only. found: detected from the
+    /// shape of the cloud. cloud=FILE: the ground of another cloud, which a ball file needs.
     #[arg(long, value_name = "HOW", default_value = "auto", help_heading = "Land")]
     pub(crate) ground: GroundChoice,
     /// Ignore parts that are already in shadow of the scene, including buildings and trees on the parcel
@@ -101,19 +101,20 @@ pub(crate) struct Envelope {
     #[arg(long, value_name = "AZ,EL", allow_hyphen_values = true, conflicts_with_all = ["date", "between"], help_heading = "Period")]
     pub(crate) sun: Vec<Numbers<2>>,
     #[command(flatten, next_help_heading = "Period")]
-    pub(crate) north: North,
+    pub(crate) north: NorthArguments,
     /// Hours of each day in which sun is protected, on the clocks of --zone, both included [default: sunrise to sunset]
     #[arg(long, value_name = "HH:MM,HH:MM", help_heading = "Period")]
     pub(crate) between: Option<Hours>,
     #[command(flatten)]
     pub(crate) when: SunPeriod,
     #[command(flatten)]
-    pub(crate) place: SunPlace,
+    pub(crate) place: SunPlaceArguments,
     #[command(flatten)]
     pub(crate) shell: Shell,
     /// Heights above ground (.tif .npy), a map (.png), or closed solids (.ply .obj); repeatable
     ///
-    /// .tif: nodata -9999 outside the parcel and where no sun limits the height. .npy: NaN outside, infinity where nothing limits.
+    /// .tif: nodata -9999 outside the parcel and where no sun limits the height. .npy: NaN outside, infinity where
+    /// nothing limits.
     #[arg(short, long, value_name = "OUT", required = true, help_heading = "Result")]
     pub(crate) output: Vec<PathBuf>,
     /// Also write the top of the envelope in the vertical system of the cloud (.tif .npy)
@@ -124,11 +125,11 @@ pub(crate) struct Envelope {
 }
 
 #[derive(Args)]
-pub(crate) struct Comfort {
+pub(crate) struct ComfortArguments {
     #[command(flatten)]
     pub(crate) places: ComfortPlaces,
     #[command(flatten, next_help_heading = "Targets")]
-    pub(crate) north: North,
+    pub(crate) north: NorthArguments,
     /// Distance between targets along a route, in metres [default: 2]
     #[arg(long = "distance-step-m", value_name = "M", requires = "route", value_parser = above_zero::<f64>, allow_negative_numbers = true,
         help_heading = "Targets")]
@@ -142,14 +143,14 @@ pub(crate) struct Comfort {
     pub(crate) spacing: Option<f64>,
     /// Source of the ground heights: auto, classed, found or cloud=FILE
     ///
-    /// auto: ground points (class 2) if the cloud has them, else found. classed: class 2 only. found: detected from the shape of the cloud.
-    /// cloud=FILE: the ground of another cloud, which a ball file needs.
+    /// auto: ground points (class 2) if the cloud has them, else found. classed: class 2 only. found: detected from the
+    /// shape of the cloud. cloud=FILE: the ground of another cloud, which a ball file needs.
     #[arg(long, value_name = "HOW", default_value = "auto", help_heading = "Targets")]
     pub(crate) ground: GroundChoice,
     #[command(flatten)]
     pub(crate) when: SunPeriod,
     #[command(flatten)]
-    pub(crate) place: SunPlace,
+    pub(crate) place: SunPlaceArguments,
     #[command(flatten)]
     pub(crate) shell: Shell,
     /// Number of directions, evenly spread over the sky, 1 to 100000 [default: 577]
@@ -179,11 +180,11 @@ pub(crate) struct ComfortPlaces {
     ///
     /// z is the height of the eye.
     #[arg(long, value_name = "FILE|CORNERS", allow_hyphen_values = true)]
-    pub(crate) route: Option<Corners>,
+    pub(crate) route: Option<CornersArgument>,
     /// Windows: a table (.csv), or the faces of a mesh (.obj .json .ply)
     ///
-    /// The table has the columns x, y, z of the middle and azimuth in degrees from true north (see --grid-north). It may have tilt (90: vertical),
-    /// width and height in metres.
+    /// The table has the columns x, y, z of the middle and azimuth in degrees from true north (see --grid-north). It
+    /// may have tilt (90: vertical), width and height in metres.
     #[arg(long, value_name = "FILE")]
     pub(crate) windows: Option<PathBuf>,
 }

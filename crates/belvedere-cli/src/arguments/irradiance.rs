@@ -1,18 +1,21 @@
 //! Flags of irradiance and of photovoltaic loss.
 
-use super::{Numbers, SceneInput, Shell, SkyOutputs, SkyPlaces, ThroughTrees, above_zero, at_least_one, location};
+use super::{
+    Numbers, SceneInput, Shell, SkyOutputs, SkyPlaces, ThroughTreesArguments, above_zero, at_least_one, location,
+};
 use belvedere::apps::irradiance::{SkyModel, Surroundings};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
 #[derive(Args)]
-pub(crate) struct Irradiance {
+pub(crate) struct IrradianceArguments {
     #[command(flatten)]
     pub(crate) radiation: RadiationChoice,
     /// Year of the clear sky [default: 2026]
     #[arg(long, value_name = "YEAR", requires = "clear_sky", help_heading = "Radiation")]
     pub(crate) year: Option<i16>,
-    /// Latitude and longitude in degrees, north and east positive [default: from the reference system, else the weather file]
+    /// Latitude and longitude in degrees, north and east positive
+    /// [default: from the reference system, else the weather file]
     #[arg(long, value_name = "LAT,LON", value_parser = location, allow_hyphen_values = true, help_heading = "Radiation")]
     pub(crate) location: Option<Numbers<2>>,
     #[command(flatten)]
@@ -22,10 +25,11 @@ pub(crate) struct Irradiance {
     #[command(flatten)]
     pub(crate) shell: Shell,
     #[command(flatten)]
-    pub(crate) trees: ThroughTrees,
+    pub(crate) trees: ThroughTreesArguments,
     /// Also write the roof planes, as a table (.csv) or outlines (.geojson); repeatable
     ///
-    /// Columns: tilt, azimuth from true north, area, energy, and the minimum and maximum shading loss of a photovoltaic plant there.
+    /// Columns: tilt, azimuth from true north, area, energy, and the minimum and maximum shading loss of a photovoltaic
+    /// plant there.
     #[arg(long, value_name = "OUT", help_heading = "Roofs")]
     pub(crate) planes: Vec<PathBuf>,
     /// Minimum area of a roof plane in square metres [default: 4]
@@ -36,7 +40,7 @@ pub(crate) struct Irradiance {
         allow_negative_numbers = true,
         help_heading = "Roofs"
     )]
-    pub(crate) least_area: Option<f64>,
+    pub(crate) min_area: Option<f64>,
     /// Side of the panels that a roof plane is divided into, in metres; a row of panels is a string [default: 1]
     #[arg(long, value_name = "M", requires = "planes", value_parser = above_zero::<f64>, allow_negative_numbers = true,
         help_heading = "Roofs")]
@@ -99,8 +103,9 @@ pub(crate) struct RadiationChoice {
 pub(crate) struct IrradianceOutputs {
     /// Raster (.tif), map (.png), points (.laz .las .ply .csv) or mesh table (.csv .ply); repeatable
     ///
-    /// On a grid: .tif is the raster of the total with nodata -9999, and .png a map with a legend. Cells and points: all measures as columns. A
-    /// mesh: a table with a row for each object and each face (.csv), or the mesh coloured by the total (.ply).
+    /// On a grid: .tif is the raster of the total with nodata -9999, and .png a map with a legend. Cells and points:
+    /// all measures as columns. A mesh: a table with a row for each object and each face (.csv), or the mesh coloured
+    /// by the total (.ply).
     #[arg(short, long, value_name = "OUT", required_unless_present = "planes", help_heading = "Result")]
     pub(crate) output: Vec<PathBuf>,
     /// Also write a raster of each measure of a grid into this folder; created if it does not exist

@@ -14,10 +14,10 @@ pub(super) fn at_least_one(text: &str) -> Result<usize, String> {
     }
 }
 
-/// A whole number from 1 to `MOST`.
-pub(super) fn at_most<const MOST: usize>(text: &str) -> Result<usize, String> {
-    let count = at_least_one(text).ok().filter(|&count| count <= MOST);
-    count.ok_or_else(|| format!("must be a whole number from 1 to {MOST}"))
+/// A whole number from 1 to `MAX`.
+pub(super) fn at_most<const MAX: usize>(text: &str) -> Result<usize, String> {
+    let count = at_least_one(text).ok().filter(|&count| count <= MAX);
+    count.ok_or_else(|| format!("must be a whole number from 1 to {MAX}"))
 }
 
 /// Latitude and longitude in degrees.

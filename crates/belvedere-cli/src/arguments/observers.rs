@@ -1,16 +1,16 @@
 //! Flags of lines of sight and viewsheds.
 
-use super::{North, Numbers, SceneInput, UnprovenChoice, Usage, above_zero, at_most, height, length};
+use super::{NorthArguments, Numbers, SceneInput, UnprovenChoice, Usage, above_zero, at_most, height, length};
 use belvedere::ground::GroundPoints;
-use belvedere::query::{Curvature, MOST_RANDOM_PAIRS};
+use belvedere::query::{Curvature, MAX_RANDOM_PAIRS};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 use std::str::FromStr;
 
 #[derive(Args)]
-pub(crate) struct LineOfSight {
+pub(crate) struct LineOfSightArguments {
     #[command(flatten)]
-    pub(crate) lines: Lines,
+    pub(crate) lines: LinesArguments,
     #[command(flatten)]
     pub(crate) heights: EndHeights,
     #[command(flatten)]
@@ -28,20 +28,23 @@ pub(crate) struct LineOfSight {
     pub(crate) profile_step: Option<f64>,
     /// Source of the ground heights: auto, classed, found or cloud=FILE
     ///
-    /// For the profile, and for ends without a height. auto: ground points (class 2) if the cloud has them, else found. classed: class 2 only. found:
-    /// detected from the shape of the cloud. cloud=FILE: the ground of another cloud, which a ball file needs.
+    /// For the profile, and for ends without a height. auto: ground points (class 2) if the cloud has them, else found.
+    /// classed: class 2 only. found: detected from the shape of the cloud. cloud=FILE: the ground of another cloud,
+    /// which a ball file needs.
     #[arg(long, value_name = "HOW", default_value = "auto", help_heading = "Result")]
     pub(crate) ground: GroundChoice,
     /// Terrain beyond the cloud: elevation raster (DTM) in the coordinate system of the cloud or in degrees (.tif)
     ///
-    /// Ends of lines may then lie on it, and the terrain blocks beyond the cloud. Its heights are bilinear between the middles of its cells. Within the extent of the
-    /// cloud, and one cell around it, the raster blocks nothing. Cells without a value block nothing.
+    /// Ends of lines may then lie on it, and the terrain blocks beyond the cloud. Its heights are bilinear between the
+    /// middles of its cells. Within the extent of the cloud, and one cell around it, the raster blocks nothing. Cells
+    /// without a value block nothing.
     #[arg(long, value_name = "DTM", help_heading = "Far terrain")]
     pub(crate) terrain: Option<PathBuf>,
     /// Table with a row for each pair, in their order (.csv)
     ///
-    /// Columns: ax,ay,az,bx,by,bz, answer (0 blocked, 1 visible, 2 unproven, 3 no line, 4 outside the cloud), first_block_range_m from A, unproven_m (not with
-    /// --unproven as-visible, which is faster), fresnel_free_percent (with --frequency-ghz), block_x, block_y, block_z, and block_ball and block_source: the rows of the first
+    /// Columns: ax,ay,az,bx,by,bz, answer (0 blocked, 1 visible, 2 unproven, 3 no line, 4 outside the cloud),
+    /// first_block_range_m from A, unproven_m (not with --unproven as-visible, which is faster), fresnel_free_percent
+    /// (with --frequency-ghz), block_x, block_y, block_z, and block_ball and block_source: the rows of the first
     /// blocking ball and of the point that it touches. With --terrain: block_terrain, 1 where the terrain blocks first.
     #[arg(short, long, value_name = "OUT", required_unless_present = "from", help_heading = "Result")]
     pub(crate) output: Option<PathBuf>,
@@ -52,22 +55,22 @@ pub(crate) struct LineOfSight {
 #[derive(Args)]
 #[command(next_help_heading = "Lines of sight (one of)")]
 #[group(id = "lines", required = true, multiple = true)]
-pub(crate) struct Lines {
+pub(crate) struct LinesArguments {
     /// Table with columns ax,ay,az,bx,by,bz in file coordinates: observer A, target B (.csv), or lines (.geojson)
     ///
-    /// Of a line the first corner is the observer, and the last the target. An end without a height is --observer-height or --target-height
-    /// above the ground.
+    /// Of a line the first corner is the observer, and the last the target. An end without a height is
+    /// --observer-height or --target-height above the ground.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["from", "to", "random"])]
     pub(crate) pairs: Option<PathBuf>,
     /// N random pairs, at most 10 million, uniform in the bounding box of the cloud (see --seed)
-    #[arg(long, value_name = "N", value_parser = at_most::<MOST_RANDOM_PAIRS>, conflicts_with_all = ["from", "to"])]
+    #[arg(long, value_name = "N", value_parser = at_most::<MAX_RANDOM_PAIRS>, conflicts_with_all = ["from", "to"])]
     pub(crate) random: Option<usize>,
     /// Observer of one line, in file coordinates; without Z it is --observer-height above the ground
     #[arg(long = "observer", value_name = "X,Y[,Z]", requires = "to", allow_hyphen_values = true)]
-    pub(crate) from: Option<Place>,
+    pub(crate) from: Option<MapPosition>,
     /// Target of one line, in file coordinates; without Z it is --target-height above the ground
     #[arg(long = "target", value_name = "X,Y[,Z]", requires = "from", allow_hyphen_values = true)]
-    pub(crate) to: Option<Place>,
+    pub(crate) to: Option<MapPosition>,
 }
 
 /// Heights of ends that have none of their own.
@@ -114,8 +117,8 @@ pub(crate) struct GivingWay {
     pub(crate) shell: Option<f32>,
     /// How unproven targets are reported [default: report]
     ///
-    /// Nothing blocks an unproven target, but more than 0.5 m of its line of sight runs through space that no pulse came near. This
-    /// needs carved balls with their pulses: a cloud, or an .npz file.
+    /// Nothing blocks an unproven target, but more than 0.5 m of its line of sight runs through space that no pulse
+    /// came near. This needs carved balls with their pulses: a cloud, or an .npz file.
     #[arg(long, value_enum)]
     pub(crate) unproven: Option<UnprovenChoice>,
 }
@@ -152,19 +155,19 @@ impl From<CurvatureChoice> for Curvature {
 }
 
 #[derive(Args)]
-pub(crate) struct Viewshed {
+pub(crate) struct ViewshedArguments {
     #[command(flatten)]
     pub(crate) who: Who,
     #[command(flatten)]
-    pub(crate) looking: Looking,
+    pub(crate) looking: LookingArguments,
     #[command(flatten)]
     pub(crate) earth: Earth,
     #[command(flatten)]
     pub(crate) giving_way: GivingWay,
     /// Source of the ground heights: auto, classed, found or cloud=FILE
     ///
-    /// auto: ground points (class 2) if the cloud has them, else found. classed: class 2 only. found: detected from the shape of the cloud.
-    /// cloud=FILE: the ground of another cloud, which a ball file needs.
+    /// auto: ground points (class 2) if the cloud has them, else found. classed: class 2 only. found: detected from the
+    /// shape of the cloud. cloud=FILE: the ground of another cloud, which a ball file needs.
     #[arg(long, value_name = "HOW", default_value = "auto", help_heading = "Cells")]
     pub(crate) ground: GroundChoice,
     /// Side of a cell in metres [default: 0.5, doubled until there are at most 4 million cells]
@@ -172,27 +175,28 @@ pub(crate) struct Viewshed {
     pub(crate) cell: Option<f64>,
     /// Raster (.tif), map (.png), visible areas (.geojson) or points (.laz .las .ply .csv); repeatable
     ///
-    /// On a grid: .tif has 1 visible, 0 blocked, 2 unproven, 255 nodata; with several observers it has their number, 65535 nodata. .png is a
-    /// map with a legend. .geojson has the visible areas in WGS 84. Points of the cloud: column answer has 0 blocked, 1 visible,
-    /// 2 unproven, 3 outside the view; with several observers also column observers, their number.
+    /// On a grid: .tif has 1 visible, 0 blocked, 2 unproven, 255 nodata; with several observers it has their number,
+    /// 65535 nodata. .png is a map with a legend. .geojson has the visible areas in WGS 84. Points of the cloud: column
+    /// answer has 0 blocked, 1 visible, 2 unproven, 3 outside the view; with several observers also column observers,
+    /// their number.
     #[arg(short, long, value_name = "OUT", required_unless_present = "far_output", help_heading = "Result")]
     pub(crate) output: Vec<PathBuf>,
     /// Raster (.tif), map (.png) or visible areas (.geojson) of the terrain beyond the cloud; repeatable
     ///
-    /// Values are those of -o. Cells are those of --terrain within --max-distance; nodata within the extent of the cloud and where the terrain has no height. Targets are
-    /// --target-height above the terrain.
+    /// Values are those of -o. Cells are those of --terrain within --max-distance; nodata within the extent of the
+    /// cloud and where the terrain has no height. Targets are --target-height above the terrain.
     #[arg(long, value_name = "OUT", requires = "terrain", help_heading = "Far terrain")]
     pub(crate) far_output: Vec<PathBuf>,
     /// Terrain beyond the cloud: elevation raster (DTM) in the coordinate system of the cloud or in degrees (.tif)
     ///
-    /// Observers, or the target, may then be on it. Its heights are bilinear between the middles of its cells. Within the extent of the cloud, and one cell around it, the
-    /// raster blocks nothing. Cells without a value block nothing.
+    /// Observers, or the target, may then be on it. Its heights are bilinear between the middles of its cells. Within
+    /// the extent of the cloud, and one cell around it, the raster blocks nothing. Cells without a value block nothing.
     #[arg(long, value_name = "DTM", help_heading = "Far terrain")]
     pub(crate) terrain: Option<PathBuf>,
     /// Also write the minimum visible height above ground of each cell, in metres (.tif .npy)
     ///
-    /// How high an object in the cell must be to be seen. Cells where nothing up to --max-height is visible: nodata -9999 in .tif, infinity in
-    /// .npy. Cells without ground: nodata in .tif, NaN in .npy.
+    /// How high an object in the cell must be to be seen. Cells where nothing up to --max-height is visible: nodata
+    /// -9999 in .tif, infinity in .npy. Cells without ground: nodata in .tif, NaN in .npy.
     #[arg(long, value_name = "OUT", help_heading = "Result")]
     pub(crate) heights: Option<PathBuf>,
     /// Maximum height above the ground for --heights, in metres
@@ -214,23 +218,26 @@ pub(crate) struct Viewshed {
 pub(crate) struct Who {
     /// An observer in file coordinates; without Z it is --observer-height above the ground; repeatable
     #[arg(long, value_name = "X,Y[,Z]", allow_hyphen_values = true)]
-    pub(crate) observer: Vec<Place>,
+    pub(crate) observer: Vec<MapPosition>,
     /// Observers from a table with columns x and y (.csv) or from GeoJSON, whose lines are paths
     ///
-    /// Columns or properties z, height, min_distance, max_distance, azimuth_from, azimuth_to, elevation_from and elevation_to override the flags.
+    /// Columns or properties z, height, min_distance, max_distance, azimuth_from, azimuth_to, elevation_from and
+    /// elevation_to override the flags.
     #[arg(long, value_name = "FILE")]
     pub(crate) observers: Option<PathBuf>,
     /// Reverse viewshed: the cells from which this target is seen
     ///
-    /// The target is --target-height above the ground if it has no Z. The observers are --observer-height above the ground of each cell.
+    /// The target is --target-height above the ground if it has no Z. The observers are --observer-height above the
+    /// ground of each cell.
     #[arg(long, value_name = "X,Y[,Z]", allow_hyphen_values = true)]
-    pub(crate) target: Option<Place>,
+    pub(crate) target: Option<MapPosition>,
 }
 
 #[derive(Args)]
 #[command(next_help_heading = "Limits of sight")]
-pub(crate) struct Looking {
-    /// Distance between observers on a path, in metres; a table then has the corners of one path [default for GeoJSON: 5]
+pub(crate) struct LookingArguments {
+    /// Distance between observers on a path, in metres; a table then has the corners of one path
+    /// [default for GeoJSON: 5]
     #[arg(long = "distance-step-m", value_name = "M", requires = "observers", value_parser = above_zero::<f64>, allow_negative_numbers = true)]
     pub(crate) step: Option<f64>,
     /// Height of observers above the ground in metres [default: 1.7]
@@ -254,14 +261,14 @@ pub(crate) struct Looking {
     #[arg(long = "elevation-range", value_name = "FROM,TO", allow_hyphen_values = true)]
     pub(crate) elevation: Option<Numbers<2>>,
     #[command(flatten)]
-    pub(crate) north: North,
+    pub(crate) north: NorthArguments,
 }
 
 /// A place on the map, with a height or without.
 #[derive(Clone, Copy, PartialEq)]
-pub(crate) struct Place(pub(crate) [f64; 2], pub(crate) Option<f64>);
+pub(crate) struct MapPosition(pub(crate) [f64; 2], pub(crate) Option<f64>);
 
-impl Place {
+impl MapPosition {
     /// Refuses a place that `flag` gives twice: it would count twice.
     pub(crate) fn refuse_twice(flag: &str, places: &[Self]) -> Result<(), Usage> {
         let again = places.iter().enumerate().find(|(number, place)| places[..*number].contains(place));
@@ -275,7 +282,7 @@ impl Place {
     }
 }
 
-impl FromStr for Place {
+impl FromStr for MapPosition {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {

@@ -11,8 +11,8 @@ use std::path::PathBuf;
 pub(crate) struct CloudInput {
     /// Point clouds (.las .laz .copc.laz .ply .xyz .txt .csv .pcd .e57 .ptx .npy), a catalogue (.vpc), or a folder
     ///
-    /// Several files, a folder, or the files of a catalogue of tiles (.vpc) are read as one cloud. A file may lie on a web server (https://...).
-    /// A folder with coords.npy is read in the layout of masbcpp.
+    /// Several files, a folder, or the files of a catalogue of tiles (.vpc) are read as one cloud. A file may lie on a
+    /// web server (https://...). A folder with coords.npy is read in the layout of masbcpp.
     #[arg(value_name = "CLOUD", required = true, help_heading = None::<&'static str>)]
     pub(crate) clouds: Vec<PathBuf>,
     /// Coordinate reference system, as EPSG:CODE or WKT [default: that of the file]
@@ -20,7 +20,8 @@ pub(crate) struct CloudInput {
     pub(crate) crs: Option<String>,
     /// Axis of the clouds that is up: z, or y as in computer graphics
     ///
-    /// With y, coordinates x, y, z are read as x, -z, y. Results are in these coordinates, and so are observers and targets.
+    /// With y, coordinates x, y, z are read as x, -z, y. Results are in these coordinates, and so are observers and
+    /// targets.
     #[arg(long, value_enum, value_name = "AXIS", default_value_t = UpChoice::Z, help_heading = "Scene", hide_short_help = true)]
     pub(crate) up: UpChoice,
 }
@@ -39,7 +40,7 @@ pub(crate) struct SceneInput {
     #[command(flatten)]
     pub(crate) input: CloudInput,
     #[command(flatten)]
-    pub(crate) plan: Plan,
+    pub(crate) plan: PlanArguments,
     #[command(flatten)]
     pub(crate) balls: SceneBalls,
 }
@@ -78,20 +79,22 @@ pub(crate) struct BallShape {
 
 /// What is planned: the scene as it will be.
 #[derive(Args, Clone)]
-pub(crate) struct Plan {
+pub(crate) struct PlanArguments {
     /// Add a mesh to the scene, such as a planned building (.obj .ply .json); repeatable
     ///
-    /// Its triangles block lines of sight exactly as they are, from both sides, whether they enclose a volume or not. Coordinates are those of
-    /// the cloud. A target within 1 mm of the plane of a triangle is not blocked by that triangle. With --surface cells lie on top of the mesh, and
-    /// cells on the ground inside it are left out. What pulses prove stays as it was.
+    /// Its triangles block lines of sight exactly as they are, from both sides, whether they enclose a volume or not.
+    /// Coordinates are those of the cloud. A target within 1 mm of the plane of a triangle is not blocked by that
+    /// triangle. With --surface cells lie on top of the mesh, and cells on the ground inside it are left out. What
+    /// pulses prove stays as it was.
     #[arg(long, value_name = "MESH", help_heading = "Plan")]
     pub(crate) add: Vec<PathBuf>,
     /// Clear what stands in an area: POLYGON.geojson, X0,Y0,X1,Y1 or class:N; repeatable
     ///
-    /// Polygons, a box from the lowest to the highest x and y, or the points of a class. Points more than 0.3 m above the ground are gone, and what is lower
-    /// beside them unless it is ground, with the balls at them; balls beside the area are cut to its edge, and the ground is closed
-    /// at the height interpolated from the ground around. Lines of sight through the space that was freed count as proven. It comes before
-    /// --add, so that a building can replace another. Ball files have no points: give the cloud.
+    /// Polygons, a box from the lowest to the highest x and y, or the points of a class. Points more than 0.3 m above
+    /// the ground are gone, and what is lower beside them unless it is ground, with the balls at them; balls beside the
+    /// area are cut to its edge, and the ground is closed at the height interpolated from the ground around. Lines of
+    /// sight through the space that was freed count as proven. It comes before --add, so that a building can replace
+    /// another. Ball files have no points: give the cloud.
     #[arg(long, value_name = "AREA", help_heading = "Plan", allow_hyphen_values = true)]
     pub(crate) clear: Vec<AreaChoice>,
 }
@@ -128,8 +131,9 @@ impl std::str::FromStr for AreaChoice {
 pub(crate) struct SceneConfig {
     /// JSON file with the parameters of balls that `belvedere balls --help` lists
     ///
-    /// Keys are the names of the flags with underscores, for example {"orient": "pulses", "max_radius": 2, "keep_noise": true}. A flag on
-    /// the command line overrides the file. A ball file refuses them, because its balls are already built.
+    /// Keys are the names of the flags with underscores, for example {"orient": "pulses", "max_radius": 2,
+    /// "keep_noise": true}. A flag on the command line overrides the file. A ball file refuses them, because its balls
+    /// are already built.
     #[arg(long, value_name = "FILE", help_heading = "Scene")]
     pub(crate) scene_config: Option<PathBuf>,
 }

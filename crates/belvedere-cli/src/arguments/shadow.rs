@@ -1,25 +1,26 @@
 //! Flags of shadows.
 
 use super::{
-    GivingWay, North, Numbers, SceneInput, SkyOutputs, SkyPlaces, SunPeriod, SunPlace, ThroughTrees, above_zero,
+    GivingWay, NorthArguments, Numbers, SceneInput, SkyOutputs, SkyPlaces, SunPeriod, SunPlaceArguments,
+    ThroughTreesArguments, above_zero,
 };
 use clap::Args;
 use std::path::PathBuf;
 
 #[derive(Args)]
-pub(crate) struct Shadow {
+pub(crate) struct ShadowArguments {
     #[command(flatten)]
-    pub(crate) suns: Suns,
+    pub(crate) suns: SunsArguments,
     #[command(flatten)]
     pub(crate) when: SunPeriod,
     #[command(flatten)]
-    pub(crate) sun: SunPlace,
+    pub(crate) sun: SunPlaceArguments,
     #[command(flatten)]
     pub(crate) places: SkyPlaces,
     #[command(flatten)]
     pub(crate) giving_way: GivingWay,
     #[command(flatten)]
-    pub(crate) trees: ThroughTrees,
+    pub(crate) trees: ThroughTreesArguments,
     #[command(flatten)]
     pub(crate) outputs: SkyOutputs,
     /// Also write an animation of the shadows on a grid: one frame for each sun (.png .apng)
@@ -40,10 +41,11 @@ pub(crate) struct Shadow {
 
 #[derive(Args)]
 #[command(next_help_heading = "Period")]
-pub(crate) struct Suns {
+pub(crate) struct SunsArguments {
     /// An instant: 2026-06-21T15:00+02:00, or 2026-06-21T15:00 with --zone; repeatable
     ///
-    /// 2026-06-21T15:00[Europe/Amsterdam] works as well. For several instants in equal steps use --date, or --from and --to.
+    /// 2026-06-21T15:00[Europe/Amsterdam] works as well. For several instants in equal steps use --date, or --from and
+    /// --to.
     #[arg(long, value_name = "TIME", conflicts_with_all = ["date", "from", "to"])]
     pub(crate) time: Vec<String>,
     /// A sun direction: azimuth clockwise from true north and elevation, in degrees; repeatable
@@ -57,5 +59,5 @@ pub(crate) struct Suns {
     #[arg(long)]
     pub(crate) soft: bool,
     #[command(flatten)]
-    pub(crate) north: North,
+    pub(crate) north: NorthArguments,
 }

@@ -1,6 +1,6 @@
 //! Flags of the targets of sun and sky commands, and of the sky view.
 
-use super::{GroundChoice, SceneInput, Shell, ThroughTrees, above_zero, at_least_one, length};
+use super::{GroundChoice, SceneInput, Shell, ThroughTreesArguments, above_zero, at_least_one, length};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
@@ -19,8 +19,8 @@ pub(crate) struct SkyPlaces {
     pub(crate) height: Option<f32>,
     /// Source of the ground heights: auto, classed, found or cloud=FILE
     ///
-    /// auto: ground points (class 2) if the cloud has them, else found. classed: class 2 only. found: detected from the shape of the cloud.
-    /// cloud=FILE: the ground of another cloud, which a ball file needs.
+    /// auto: ground points (class 2) if the cloud has them, else found. classed: class 2 only. found: detected from the
+    /// shape of the cloud. cloud=FILE: the ground of another cloud, which a ball file needs.
     #[arg(long, value_name = "HOW", default_value = "auto", help_heading = "Targets")]
     pub(crate) ground: GroundChoice,
     /// Maximum side of the triangles that a mesh is cut into, in metres [default: 0.5]
@@ -34,28 +34,30 @@ pub(crate) struct SkyPlaces {
     #[arg(long, value_enum, value_name = "HOW", help_heading = "Targets")]
     pub(crate) facing: Option<FacingChoice>,
     #[command(flatten)]
-    pub(crate) far: FarTerrain,
+    pub(crate) far: FarTerrainArguments,
     /// Also write a mask of the cells near the edge of the cloud (.tif): 1 near the edge, 0 not, nodata 255
     ///
-    /// A cell is near the edge if more than 5 % of the light comes from directions that leave the cloud below its highest point: objects beyond the
-    /// cloud, as high as that, could block them. Directions count by the sine of their elevation.
+    /// A cell is near the edge if more than 5 % of the light comes from directions that leave the cloud below its
+    /// highest point: objects beyond the cloud, as high as that, could block them. Directions count by the sine of
+    /// their elevation.
     #[arg(long = "edge-mask", value_name = "OUT", help_heading = "Targets")]
     pub(crate) edge_mask: Option<PathBuf>,
 }
 
 /// What stands beyond the cloud.
 #[derive(Args)]
-pub(crate) struct FarTerrain {
+pub(crate) struct FarTerrainArguments {
     /// Terrain beyond the cloud: elevation raster (DTM) in the coordinate system of the cloud or in degrees (.tif)
     ///
-    /// Each place has its own horizon, exact for the cells of the raster, with the curvature of the earth and refraction. Within the extent of the cloud, and one cell
-    /// around it, the raster blocks nothing. Cells without a value block nothing.
+    /// Each place has its own horizon, exact for the cells of the raster, with the curvature of the earth and
+    /// refraction. Within the extent of the cloud, and one cell around it, the raster blocks nothing. Cells without a
+    /// value block nothing.
     #[arg(long, value_name = "DTM", help_heading = "Far terrain")]
     pub(crate) terrain: Option<PathBuf>,
     /// Horizon of far terrain: a file of PVGIS (.json .csv), or a table of azimuth and elevation in degrees (.csv)
     ///
-    /// Directions below it are blocked for all targets. Azimuths of PVGIS count from south and those of other tables clockwise from true north;
-    /// between rows the elevation is linear.
+    /// Directions below it are blocked for all targets. Azimuths of PVGIS count from south and those of other tables
+    /// clockwise from true north; between rows the elevation is linear.
     #[arg(long, value_name = "FILE", help_heading = "Far terrain")]
     pub(crate) horizon: Option<PathBuf>,
 }
@@ -66,8 +68,9 @@ pub(crate) struct FarTerrain {
 pub(crate) struct SkyPlacesChoice {
     /// Query cells on the top surface: roofs, the ground between them, and tree crowns
     ///
-    /// Roofs and ground use the height in the middle of each cell; crowns use their highest point. Without this flag the cells lie on the ground.
-    /// Cells below buildings are then left out: those without a measured point within 1 m below an object higher than 2 m.
+    /// Roofs and ground use the height in the middle of each cell; crowns use their highest point. Without this flag
+    /// the cells lie on the ground. Cells below buildings are then left out: those without a measured point within 1 m
+    /// below an object higher than 2 m.
     #[arg(long)]
     pub(crate) surface: bool,
     /// Query all points of the cloud, in their order
@@ -91,8 +94,8 @@ pub(crate) struct SkyOutputs {
     /// Raster (.tif), map (.png), points (.laz .las .ply .csv) or mesh table (.csv .ply); repeatable
     ///
     /// On a grid: .tif is the raster of the first measure (nodata: 255 of yes or no, -9999 of numbers), and .png a map
-    /// with a legend. Cells and points: all measures as
-    /// columns. A mesh: a table with a row for each object and each face (.csv), or the mesh coloured by the first measure (.ply).
+    /// with a legend. Cells and points: all measures as columns. A mesh: a table with a row for each object and each
+    /// face (.csv), or the mesh coloured by the first measure (.ply).
     #[arg(short, long, value_name = "OUT", required = true, help_heading = "Result")]
     pub(crate) output: Vec<PathBuf>,
     /// Also write a raster of each measure of a grid into this folder; created if it does not exist
@@ -101,14 +104,15 @@ pub(crate) struct SkyOutputs {
 }
 
 #[derive(Args)]
-pub(crate) struct SkyView {
+pub(crate) struct SkyViewArguments {
     #[command(flatten)]
     pub(crate) places: SkyPlaces,
     #[command(flatten)]
     pub(crate) shell: Shell,
     /// Number of directions, evenly spread over the sky, 1 to 100000 [default: 577]
     ///
-    /// Root mean square error of either measure in street canyons: 0.012 with 145 directions, 0.004 with 577, 0.0015 with 2305.
+    /// Root mean square error of either measure in street canyons: 0.012 with 145 directions, 0.004 with 577, 0.0015
+    /// with 2305.
     #[arg(long, value_name = "N", value_parser = at_least_one, conflicts_with = "patches", help_heading = "Sky",
         allow_negative_numbers = true)]
     pub(crate) directions: Option<usize>,
@@ -116,7 +120,7 @@ pub(crate) struct SkyView {
     #[arg(long, value_enum, value_name = "NAME", help_heading = "Sky")]
     pub(crate) patches: Option<PatchesChoice>,
     #[command(flatten)]
-    pub(crate) trees: ThroughTrees,
+    pub(crate) trees: ThroughTreesArguments,
     #[command(flatten)]
     pub(crate) outputs: SkyOutputs,
     #[command(flatten)]

@@ -1,23 +1,27 @@
 //! Flags of the location, the time zone, the days and the sun hours.
 
-use super::{CloudInput, Numbers, SceneInput, Shell, SkyOutputs, SkyPlaces, ThroughTrees, above_zero, location};
+use super::{
+    CloudInput, Numbers, SceneInput, Shell, SkyOutputs, SkyPlaces, ThroughTreesArguments, above_zero, location,
+};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
 /// The place on earth, its clocks and its air.
 #[derive(Args)]
 #[command(next_help_heading = "Sun")]
-pub(crate) struct SunPlace {
+pub(crate) struct SunPlaceArguments {
     /// Latitude and longitude of the scene in degrees, north and east positive [default: from its reference system]
     #[arg(long, value_name = "LAT,LON", value_parser = location, allow_hyphen_values = true)]
     pub(crate) location: Option<Numbers<2>>,
-    /// Time zone of times and days, such as Europe/Amsterdam or +02:00 [default: that of a given time, else mean solar time]
+    /// Time zone of times and days, such as Europe/Amsterdam or +02:00
+    /// [default: that of a given time, else mean solar time]
     #[arg(long, value_name = "ZONE", allow_hyphen_values = true)]
     pub(crate) zone: Option<String>,
     /// Elevation of the sun: apparent (with refraction of the air) or geometric
     #[arg(long = "sun-elevation", value_enum, value_name = "KIND", default_value_t = ElevationChoice::Apparent)]
     pub(crate) elevation: ElevationChoice,
-    /// Air pressure in hPa and temperature in degrees Celsius, for refraction [default: standard atmosphere, 10 degrees]
+    /// Air pressure in hPa and temperature in degrees Celsius, for refraction
+    /// [default: standard atmosphere, 10 degrees]
     ///
     /// The default pressure is that of the standard atmosphere at the height of the scene.
     #[arg(long, value_name = "HPA,C", allow_hyphen_values = true)]
@@ -25,12 +29,12 @@ pub(crate) struct SunPlace {
 }
 
 #[derive(Args)]
-pub(crate) struct SunPosition {
+pub(crate) struct SunPositionArguments {
     /// Time in ISO 8601, with an offset unless --zone is given: 2026-06-21T15:00+02:00; repeatable
     #[arg(long = "time", value_name = "TIME", required = true, help_heading = "Sun")]
     pub(crate) times: Vec<String>,
     #[command(flatten)]
-    pub(crate) sun: SunPlace,
+    pub(crate) sun: SunPlaceArguments,
     /// Table of times, azimuths and elevations (.csv)
     #[arg(short, long, value_name = "OUT", help_heading = "Result")]
     pub(crate) output: Option<PathBuf>,
@@ -66,35 +70,36 @@ pub(crate) struct SunPeriod {
     pub(crate) step: Option<f64>,
     /// Minimum elevation of the sun in degrees; lower suns are ignored [default: 0, or that of a rule]
     #[arg(long = "min-sun-elevation", value_name = "DEG", allow_negative_numbers = true)]
-    pub(crate) least_elevation: Option<f64>,
+    pub(crate) min_elevation: Option<f64>,
     /// Year of days that are given without a year
     #[arg(long, value_name = "Y", default_value_t = 2026)]
     pub(crate) year: i16,
 }
 
 #[derive(Args)]
-pub(crate) struct SunHours {
+pub(crate) struct SunHoursArguments {
     #[command(flatten)]
     pub(crate) when: SunPeriod,
     /// Daylight rule: nl-light, nl-strict, the-hague, bre-equinox, or your own as HOURS@DAYS; repeatable
     ///
-    /// Examples of your own: 1.5@03-21, 1@shortest-day, and with a minimum sun elevation of 10 degrees 2@02-19..10-21>10. Without --date or
-    /// --from, the results are for the days of the first rule.
+    /// Examples of your own: 1.5@03-21, 1@shortest-day, and with a minimum sun elevation of 10 degrees
+    /// 2@02-19..10-21>10. Without --date or --from, the results are for the days of the first rule.
     #[arg(long, value_name = "RULE", help_heading = "Period")]
     pub(crate) rule: Vec<String>,
-    /// Maximum angle between a sun and the direction used for it, in degrees, 0 to 5 [default: 0 up to 2000 suns, else 1]
+    /// Maximum angle between a sun and the direction used for it, in degrees, 0 to 5
+    /// [default: 0 up to 2000 suns, else 1]
     ///
     /// 0 uses the exact direction of each sun. Larger values let several suns share one direction, which is faster.
     #[arg(long = "sun-tolerance-deg", value_name = "DEG", allow_negative_numbers = true, help_heading = "Period")]
     pub(crate) within: Option<f64>,
     #[command(flatten)]
-    pub(crate) sun: SunPlace,
+    pub(crate) sun: SunPlaceArguments,
     #[command(flatten)]
     pub(crate) places: SkyPlaces,
     #[command(flatten)]
     pub(crate) shell: Shell,
     #[command(flatten)]
-    pub(crate) trees: ThroughTrees,
+    pub(crate) trees: ThroughTreesArguments,
     #[command(flatten)]
     pub(crate) outputs: SkyOutputs,
     /// Also save the visibility matrix, for other days and rules with --load-matrix (.npz)

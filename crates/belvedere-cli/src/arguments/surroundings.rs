@@ -1,6 +1,8 @@
 //! Flags of mesh targets, landmarks, protected views, isovists and horizons.
 
-use super::{Earth, FarTerrain, GivingWay, GroundChoice, North, Place, SceneInput, above_zero, height};
+use super::{
+    Earth, FarTerrainArguments, GivingWay, GroundChoice, MapPosition, NorthArguments, SceneInput, above_zero, height,
+};
 use belvedere::query::BackFaces;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
@@ -40,9 +42,9 @@ impl From<BackFacesChoice> for BackFaces {
 }
 
 #[derive(Args)]
-pub(crate) struct Landmark {
+pub(crate) struct LandmarkArguments {
     #[command(flatten)]
-    pub(crate) shape: LandmarkShape,
+    pub(crate) shape: LandmarkShapeArguments,
     /// How faces that are turned away from the observer are counted [default: not-visible]
     ///
     /// With the default, shares refer to the whole surface of the landmark.
@@ -62,8 +64,8 @@ pub(crate) struct Landmark {
     pub(crate) observer_height: Option<f64>,
     /// Source of the ground heights: auto, classed, found or cloud=FILE
     ///
-    /// auto: ground points (class 2) if the cloud has them, else found. classed: class 2 only. found: detected from the shape of the cloud.
-    /// cloud=FILE: the ground of another cloud, which a ball file needs.
+    /// auto: ground points (class 2) if the cloud has them, else found. classed: class 2 only. found: detected from the
+    /// shape of the cloud. cloud=FILE: the ground of another cloud, which a ball file needs.
     #[arg(long, value_name = "HOW", default_value = "auto", help_heading = "Observers")]
     pub(crate) ground: GroundChoice,
     /// Maximum distance to the landmark in metres [default: no limit]
@@ -87,13 +89,14 @@ pub(crate) struct Landmark {
 
 /// The landmark, and how a mesh of it is cut into pieces.
 #[derive(Args)]
-pub(crate) struct LandmarkShape {
+pub(crate) struct LandmarkShapeArguments {
     #[command(flatten)]
     pub(crate) what: What,
     /// Name of an object of the mesh that is the landmark; repeatable [default: all]
     #[arg(long, value_name = "NAME", requires = "target", help_heading = "Landmark (one of)")]
     pub(crate) object: Vec<String>,
-    /// Maximum side of the triangles that the mesh is cut into, in metres [default: for about 1000 triangles, at least 0.25]
+    /// Maximum side of the triangles that the mesh is cut into, in metres
+    /// [default: for about 1000 triangles, at least 0.25]
     #[arg(long, value_name = "M", requires = "target", value_parser = above_zero::<f64>, allow_negative_numbers = true,
         help_heading = "Landmark (one of)")]
     pub(crate) spacing: Option<f64>,
@@ -116,10 +119,10 @@ pub(crate) struct What {
 
 #[derive(Args)]
 #[command(next_help_heading = "Observers")]
-pub(crate) struct Eyes {
+pub(crate) struct EyesArguments {
     /// An observer in file coordinates; without Z it is --observer-height above the ground; repeatable
     #[arg(long = "observer", value_name = "X,Y[,Z]", allow_hyphen_values = true, required_unless_present = "eyes")]
-    pub(crate) eye: Vec<Place>,
+    pub(crate) eye: Vec<MapPosition>,
     /// Observers from a table with columns x and y (.csv) or from GeoJSON
     ///
     /// Columns or properties z and height override the flags.
@@ -130,18 +133,18 @@ pub(crate) struct Eyes {
     pub(crate) height: Option<f64>,
     /// Source of the ground heights for observers without Z: auto, classed, found or cloud=FILE
     ///
-    /// auto: ground points (class 2) if the cloud has them, else found. classed: class 2 only. found: detected from the shape of the cloud.
-    /// cloud=FILE: the ground of another cloud, which a ball file needs.
+    /// auto: ground points (class 2) if the cloud has them, else found. classed: class 2 only. found: detected from the
+    /// shape of the cloud. cloud=FILE: the ground of another cloud, which a ball file needs.
     #[arg(long, value_name = "HOW", default_value = "auto")]
     pub(crate) ground: GroundChoice,
 }
 
 #[derive(Args)]
-pub(crate) struct ProtectedView {
+pub(crate) struct ProtectedViewArguments {
     #[command(flatten)]
-    pub(crate) shape: LandmarkShape,
+    pub(crate) shape: LandmarkShapeArguments,
     #[command(flatten)]
-    pub(crate) eyes: Eyes,
+    pub(crate) eyes: EyesArguments,
     /// Maximum distance from an observer to the landmark in metres [default: no limit]
     #[arg(long, value_name = "M", value_parser = above_zero::<f64>, allow_negative_numbers = true, help_heading = "Observers")]
     pub(crate) max_distance: Option<f64>,
@@ -163,11 +166,11 @@ pub(crate) struct ProtectedView {
 }
 
 #[derive(Args)]
-pub(crate) struct Isovist {
+pub(crate) struct IsovistArguments {
     #[command(flatten)]
-    pub(crate) eyes: Eyes,
+    pub(crate) eyes: EyesArguments,
     #[command(flatten)]
-    pub(crate) north: North,
+    pub(crate) north: NorthArguments,
     /// Maximum distance of sight in metres [default: 100]
     #[arg(long, value_name = "M", value_parser = above_zero::<f64>, allow_negative_numbers = true, help_heading = "Rays")]
     pub(crate) max_distance: Option<f64>,
@@ -187,25 +190,25 @@ pub(crate) struct Isovist {
 }
 
 #[derive(Args)]
-pub(crate) struct Horizon {
+pub(crate) struct HorizonArguments {
     #[command(flatten)]
-    pub(crate) eyes: Eyes,
+    pub(crate) eyes: EyesArguments,
     #[command(flatten)]
     pub(crate) earth: Earth,
     /// Angle between two azimuths in degrees; it must divide 360 [default: 1]
     #[arg(long = "angle-step-deg", value_name = "DEG", value_parser = above_zero::<f64>, allow_negative_numbers = true, help_heading = "Result")]
     pub(crate) step: Option<f64>,
     #[command(flatten)]
-    pub(crate) far: FarTerrain,
+    pub(crate) far: FarTerrainArguments,
     #[command(flatten)]
-    pub(crate) north: North,
+    pub(crate) north: NorthArguments,
     /// Elevations below the horizontal plane through the observer
     #[arg(long, value_enum, default_value_t = BelowChoice::Zero, help_heading = "Result")]
     pub(crate) below: BelowChoice,
     /// Horizon elevations (.csv), in the format of PVGIS (.txt), or a diagram (.png); repeatable
     ///
-    /// .csv: azimuth and elevation in degrees, with one elevation column for each observer. .txt: the elevations of one observer, one on each
-    /// line, clockwise from north. .png: one observer.
+    /// .csv: azimuth and elevation in degrees, with one elevation column for each observer. .txt: the elevations of one
+    /// observer, one on each line, clockwise from north. .png: one observer.
     #[arg(short, long, value_name = "OUT", required = true, help_heading = "Result")]
     pub(crate) output: Vec<PathBuf>,
     #[command(flatten)]

@@ -6,11 +6,12 @@ use std::str::FromStr;
 /// The share of light that passes through trees.
 #[derive(Args)]
 #[command(next_help_heading = "Trees")]
-pub(crate) struct ThroughTrees {
+pub(crate) struct ThroughTreesArguments {
     /// Share of light that passes through tree crowns: none, seasons, pulses, or a number from 0 to 1
     ///
-    /// seasons: 0.03 in leaf and 0.5 without leaves (Konarska et al. 2014). pulses: the share of laser pulses that passed, which is higher than
-    /// that of light. Gaps that --trees leaves in crowns let light through in addition; --trees opaque closes them.
+    /// seasons: 0.03 in leaf and 0.5 without leaves (Konarska et al. 2014). pulses: the share of laser pulses that
+    /// passed, which is higher than that of light. Gaps that --trees leaves in crowns let light through in addition;
+    /// --trees opaque closes them.
     #[arg(long, value_name = "SHARE", default_value = "none", allow_negative_numbers = true)]
     pub(crate) through_trees: ThroughTreesChoice,
     /// Whether trees have leaves, with --through-trees seasons [default: auto with a date, else on]

@@ -10,8 +10,9 @@ use std::str::FromStr;
 pub(crate) struct ViewKind {
     /// The viewport of the paper: "p0 v_x v_y s", corner, row vector, column vector, pixels per unit
     ///
-    /// p0 is the upper left corner; v_x runs along the rows and v_y down the columns; all in file coordinates. The lengths of the vectors are
-    /// the size of the picture. The view direction is v_x x v_y. Points behind the plane of the picture are outside the view.
+    /// p0 is the upper left corner; v_x runs along the rows and v_y down the columns; all in file coordinates. The
+    /// lengths of the vectors are the size of the picture. The view direction is v_x x v_y. Points behind the plane of
+    /// the picture are outside the view.
     #[arg(long, value_name = "\"X,Y,Z X,Y,Z X,Y,Z S\"", allow_hyphen_values = true)]
     pub(crate) viewport: Option<ViewportChoice>,
     /// Parallel view from the sun: azimuth clockwise from true north and elevation, in degrees
@@ -34,10 +35,11 @@ pub(crate) struct ViewKind {
 
 /// The north that azimuths are counted from.
 #[derive(Args)]
-pub(crate) struct North {
+pub(crate) struct NorthArguments {
     /// Count azimuths clockwise from grid north instead of true north
     ///
-    /// Azimuths are also from grid north if the scene has no coordinate reference system. The summary states which north was used.
+    /// Azimuths are also from grid north if the scene has no coordinate reference system. The summary states which
+    /// north was used.
     #[arg(long)]
     pub(crate) grid_north: bool,
 }
@@ -47,7 +49,7 @@ pub(crate) struct ViewChoice {
     #[command(flatten)]
     pub(crate) kind: ViewKind,
     #[command(flatten)]
-    pub(crate) north: North,
+    pub(crate) north: NorthArguments,
     /// Pixel size with --sun and --direction, in metres [default: 0.25, smaller for small objects]
     #[arg(long, value_name = "M", conflicts_with_all = ["viewport", "eye", "panorama"], value_parser = above_zero::<f64>,
         allow_negative_numbers = true)]

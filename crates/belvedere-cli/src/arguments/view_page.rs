@@ -1,6 +1,6 @@
 //! Flags of the page in the browser.
 
-use super::{Place, SceneInput};
+use super::{MapPosition, SceneInput};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -14,7 +14,8 @@ pub(crate) struct ViewPage {
     pub(crate) no_browser: bool,
     /// Write the page as one file that needs no server (.html), and end
     ///
-    /// The file holds at most 3 million points. It answers no other questions than the shadows of --date and the views of --observer.
+    /// The file holds at most 3 million points. It answers no other questions than the shadows of --date and the views
+    /// of --observer.
     #[arg(long, value_name = "OUT", help_heading = "File")]
     pub(crate) export: Option<PathBuf>,
     /// Day whose shadows are in the file, at each full hour
@@ -25,7 +26,7 @@ pub(crate) struct ViewPage {
     pub(crate) zone: Option<String>,
     /// Viewpoint in file coordinates whose view is in the file; without Z it is 1.7 m above the ground; repeatable
     #[arg(long, value_name = "X,Y[,Z]", help_heading = "File", requires = "export", allow_hyphen_values = true)]
-    pub(crate) observer: Vec<Place>,
+    pub(crate) observer: Vec<MapPosition>,
     #[command(flatten)]
     pub(crate) scene: SceneInput,
 }

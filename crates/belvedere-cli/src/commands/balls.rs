@@ -1,9 +1,9 @@
 //! `belvedere balls`.
 
 use super::{check_output, check_parent, extension, is_folder, is_written_back};
-use crate::arguments::{Balls, CloudInput, Global, MethodChoice, SideChoice, Usage};
+use crate::arguments::{BallsArguments, CloudInput, Global, MethodChoice, SideChoice, Usage};
 use crate::pipeline::{self, params};
-use crate::run::Run;
+use crate::run::CommandContext;
 use crate::summary::{Summary, percent};
 use anyhow::Result;
 use belvedere::PointCloud;
@@ -12,7 +12,7 @@ use belvedere::medial::feature_size::{FeatureSizeParams, SimplifyParams, local_f
 use belvedere::medial::{MedialBalls, NO_TOUCH, Side};
 use belvedere::model::{BallParams, ModelParams, ModelParts, OrientedSurvey, SceneModel};
 
-pub(crate) fn run(arguments: &Balls, global: &Global) -> Result<Summary> {
+pub(crate) fn run(arguments: &BallsArguments, global: &Global) -> Result<Summary> {
     let is_folder = is_folder(&arguments.output);
     if !is_folder && (arguments.nan || arguments.simplify.is_some()) {
         return Err(
@@ -37,7 +37,7 @@ pub(crate) fn run(arguments: &Balls, global: &Global) -> Result<Summary> {
             "--method carved builds interior balls in a ball file; a folder and --side exterior need tau or angles";
         return Err(Usage(what.to_owned()).into());
     }
-    let mut run = Run::new(global);
+    let mut run = CommandContext::new(global);
     let cloud = if is_folder {
         pipeline::read_every_row(&arguments.input, &mut run)?
     } else {
@@ -75,7 +75,12 @@ pub(crate) fn run(arguments: &Balls, global: &Global) -> Result<Summary> {
 }
 
 /// The scene model, as it is saved.
-fn interior(input: &CloudInput, cloud: PointCloud, params: &ModelParams, run: &mut Run) -> Result<ModelParts> {
+fn interior(
+    input: &CloudInput,
+    cloud: PointCloud,
+    params: &ModelParams,
+    run: &mut CommandContext,
+) -> Result<ModelParts> {
     let built = SceneModel::build_owned(cloud, params, &run.control());
     let (model, report) = built.map_err(|error| pipeline::advised(input, error))?;
     run.summary.add_report(&report);
@@ -83,7 +88,12 @@ fn interior(input: &CloudInput, cloud: PointCloud, params: &ModelParams, run: &m
 }
 
 /// Balls in free space, which are for looking at and for other programs: no scene is made of them.
-fn exterior(input: &CloudInput, cloud: &PointCloud, params: &ModelParams, run: &mut Run) -> Result<ModelParts> {
+fn exterior(
+    input: &CloudInput,
+    cloud: &PointCloud,
+    params: &ModelParams,
+    run: &mut CommandContext,
+) -> Result<ModelParts> {
     let prepared = OrientedSurvey::prepare(cloud, params, &run.control());
     let (survey, report) = prepared.map_err(|error| pipeline::advised(input, error))?;
     run.summary.add_report(&report);
@@ -93,11 +103,11 @@ fn exterior(input: &CloudInput, cloud: &PointCloud, params: &ModelParams, run: &
 }
 
 fn write_folder(
-    arguments: &Balls,
+    arguments: &BallsArguments,
     global: &Global,
     cloud: &PointCloud,
     params: &ModelParams,
-    run: &mut Run,
+    run: &mut CommandContext,
 ) -> Result<()> {
     let prepared = OrientedSurvey::prepare(cloud, params, &run.control());
     let (survey, report) = prepared.map_err(|error| pipeline::advised(&arguments.input, error))?;

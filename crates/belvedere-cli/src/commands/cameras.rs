@@ -5,27 +5,27 @@ mod results;
 mod what;
 
 use super::{check_output, warn_of_geojson};
-use crate::arguments::{Cameras, Global, Usage};
-use crate::pipeline::{self, Points};
-use crate::run::Run;
+use crate::arguments::{CamerasArguments, Global, Usage};
+use crate::pipeline::{self, KeepPoints};
+use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::Result;
 use belvedere::apps::ask::{self, Ask, CameraGoal, Candidates};
 use belvedere::query::UnprovenAs;
-use results::Shown;
+use results::CameraOutput;
 use std::path::PathBuf;
 
-pub(crate) fn run(arguments: &Cameras, global: &Global) -> Result<Summary> {
+pub(crate) fn run(arguments: &CamerasArguments, global: &Global) -> Result<Summary> {
     check(arguments)?;
     let mut question = question(arguments)?;
     question.check()?;
-    let mut run = Run::new(global);
-    let scene = pipeline::scene(&arguments.scene, Points::Keep, &mut run)?;
+    let mut run = CommandContext::new(global);
+    let scene = pipeline::scene(&arguments.scene, KeepPoints::Keep, &mut run)?;
     let written: Vec<PathBuf> =
         arguments.output.iter().chain(&arguments.curve).chain(&arguments.footprints).cloned().collect();
     let frame = scene.cloud.frame.clone();
     warn_of_geojson(&written, &frame.crs, &mut run.summary);
-    let scene = scene.into_asked(Some(&arguments.targets.ground), arguments.giving_way.shell, &run)?;
+    let scene = scene.into_question_scene(Some(&arguments.targets.ground), arguments.giving_way.shell, &run)?;
     let places = what::places(&arguments.targets, &frame, &mut question.targets, &mut run)?;
     if let Some(path) = &arguments.lens.private {
         question.targets.private = what::private(path, &frame)?;
@@ -38,7 +38,7 @@ pub(crate) fn run(arguments: &Cameras, global: &Global) -> Result<Summary> {
     }
     let answers = ask::ask(&scene, &question, &places, &run.control())?;
     run.answered(&answers);
-    let shown = Shown { found: &answers.found, scene: &scene };
+    let shown = CameraOutput { found: &answers.found, scene: &scene };
     for output in &arguments.output {
         run.stage("writing", 0, |_| shown.write(output))?;
     }
@@ -53,15 +53,15 @@ pub(crate) fn run(arguments: &Cameras, global: &Global) -> Result<Summary> {
 }
 
 /// The question, before files are read.
-fn question(arguments: &Cameras) -> Result<ask::Cameras> {
-    let usual = ask::Cameras::default();
+fn question(arguments: &CamerasArguments) -> Result<ask::CamerasQuestion> {
+    let usual = ask::CamerasQuestion::default();
     let flags = &arguments.candidates;
     let candidates = match (flags.on_roofs, flags.on_ground) {
         (Some(cell), _) => Candidates::Roofs(cell),
         (None, Some(cell)) => Candidates::Ground(cell),
         (None, None) => Candidates::default(),
     };
-    Ok(ask::Cameras {
+    Ok(ask::CamerasQuestion {
         goal: match (arguments.goal.count, arguments.goal.coverage) {
             (_, Some(percent)) => CameraGoal::CoveragePercent(percent),
             (count, None) => CameraGoal::Count(count.unwrap_or(0)),
@@ -85,7 +85,7 @@ fn question(arguments: &Cameras) -> Result<ask::Cameras> {
     })
 }
 
-fn check(arguments: &Cameras) -> Result<()> {
+fn check(arguments: &CamerasArguments) -> Result<()> {
     let are_cells = what::are_cells(&arguments.targets);
     for output in &arguments.output {
         check_output("-o", output, &["geojson", "tif", "tiff", "png", "csv"])?;

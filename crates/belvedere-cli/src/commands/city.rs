@@ -5,20 +5,20 @@ mod questions;
 use super::{check_folder, check_output};
 use crate::arguments::{City, CityMerge, CityPlan, CityRun, CityStatus, CityStep, Global, Usage};
 use crate::pipeline::areas;
-use crate::run::Run;
+use crate::run::CommandContext;
 use crate::summary::{Summary, rounded};
 use anyhow::{Result, bail};
 use belvedere::apps::ask::remark_on_cleared;
 use belvedere::apps::tree_light::Transmissivity;
 use belvedere::{Error, Parameter};
 use belvedere_tiles::{
-    Plan, PlanParams, Question, RunParams, Shard, SideFile, Steps, merge, run as run_tiles, status as status_of,
+    Plan, PlanParams, RunParams, Shard, SideFile, Steps, TileQuestion, merge, run as run_tiles, status as status_of,
 };
 use std::path::PathBuf;
 use std::time::Instant;
 
 /// Most failures that are listed one by one.
-const MOST_LISTED: usize = 10;
+const MAX_LISTED: usize = 10;
 
 pub(crate) fn run(arguments: &City, global: &Global) -> Result<Summary> {
     match &arguments.step {
@@ -32,7 +32,7 @@ pub(crate) fn run(arguments: &City, global: &Global) -> Result<Summary> {
 fn plan(arguments: &CityPlan, global: &Global) -> Result<Summary> {
     questions::check(arguments)?;
     check_folder(&arguments.output)?;
-    let mut run = Run::new(global);
+    let mut run = CommandContext::new(global);
     let params = PlanParams {
         clouds: arguments.clouds.clone(),
         crs: arguments.crs.clone(),
@@ -58,11 +58,11 @@ fn plan(arguments: &CityPlan, global: &Global) -> Result<Summary> {
         .add("files", plan.inputs.len())
         .add("tiles", plan.tiles.len())
         .add("tile_size_m", plan.tile_size)
-        .add("halo_m", plan.halo)
-        .add("results", plan.questions.iter().map(Question::name).collect::<Vec<_>>())
+        .add("halo_m", plan.buffer)
+        .add("results", plan.questions.iter().map(TileQuestion::name).collect::<Vec<_>>())
         .add("points", estimate.points)
-        .add("points_read_with_halo", estimate.points_with_halo)
-        .add("points_of_the_largest_tile", estimate.most_points_of_a_tile)
+        .add("points_read_with_halo", estimate.points_with_buffer)
+        .add("points_of_the_largest_tile", estimate.max_points_of_a_tile)
         .add("estimated_memory_gb", rounded(estimate.memory_bytes as f64 / 1e9, 2))
         .add("estimated_disk_gb", rounded(estimate.disk_bytes as f64 / 1e9, 2))
         .add("written", arguments.output.display().to_string())
@@ -94,15 +94,15 @@ fn planned(plan: Plan, arguments: &CityPlan) -> Result<Plan> {
 
 fn run_plan(arguments: &CityRun, global: &Global) -> Result<Summary> {
     let plan = Plan::read(&arguments.run)?;
-    let mut run = Run::new(global);
+    let mut run = CommandContext::new(global);
     let start = Instant::now();
     let shard = arguments.shard.map_or_else(Shard::default, |share| Shard { number: share.number, of: share.of });
     let steps = if arguments.balls_only { Steps::Balls } else { Steps::All };
-    let params = RunParams { shard, steps, most_balls: None, seconds: &|| start.elapsed().as_secs_f64() };
+    let params = RunParams { shard, steps, max_balls: None, seconds: &|| start.elapsed().as_secs_f64() };
     let report = run_tiles(&plan, &arguments.run, &params, &run.control())?;
     if let Some((first, _)) = report.failed.split_first() {
-        let listed = report.failed.iter().take(MOST_LISTED).map(|why| format!("\n  {why}")).collect::<String>();
-        let more = report.failed.len().saturating_sub(MOST_LISTED);
+        let listed = report.failed.iter().take(MAX_LISTED).map(|why| format!("\n  {why}")).collect::<String>();
+        let more = report.failed.len().saturating_sub(MAX_LISTED);
         let more = if more > 0 { format!("\n  and {more} more (belvedere city status)") } else { String::new() };
         if report.failed.len() == 1 {
             bail!("{first}; all else is done, and the next run tries it again");
@@ -139,7 +139,7 @@ fn status(arguments: &CityStatus) -> Result<Summary> {
 fn merge_tiles(arguments: &CityMerge, global: &Global) -> Result<Summary> {
     check_output("-o", &arguments.output, &["tif"])?;
     let plan = Plan::read(&arguments.run)?;
-    let names = || plan.questions.iter().map(Question::name).collect::<Vec<_>>().join(", ");
+    let names = || plan.questions.iter().map(TileQuestion::name).collect::<Vec<_>>().join(", ");
     let question = match (&arguments.result, &plan.questions[..]) {
         (None, [only]) => only,
         (None, _) => return Err(Usage(format!("--result is missing: give one of {}", names())).into()),
@@ -148,7 +148,7 @@ fn merge_tiles(arguments: &CityMerge, global: &Global) -> Result<Summary> {
             .find(|question| question.name() == name)
             .ok_or_else(|| Usage(format!("--result {name}: the results are {}", names())))?,
     };
-    let mut run = Run::new(global);
+    let mut run = CommandContext::new(global);
     let merged =
         run.stage("merging", 0, |control| merge(&plan, &arguments.run, question, &arguments.output, control))?;
     run.summary.add("tiles", merged.tiles).add("tiles_without_result", merged.without_result);

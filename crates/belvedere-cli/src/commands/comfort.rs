@@ -3,20 +3,20 @@
 use super::check_output;
 use super::shapes::{TypedAre, shapes, wrong_shape};
 use super::sky_view::sky_parts;
-use super::windows::{Column, FaceChoice, WindowFile, coordinates};
-use crate::arguments::{Comfort, Corners, Global, Usage};
-use crate::pipeline::{self, Points};
-use crate::run::Run;
+use super::windows::{FaceChoice, WindowColumn, WindowFile, coordinates};
+use crate::arguments::{ComfortArguments, CornersArgument, Global, Usage};
+use crate::pipeline::{self, KeepPoints};
+use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::Result;
 use belvedere::Frame;
-use belvedere::apps::ask::{self, Ask, ComfortFound, Places, RoutesOrWindows};
+use belvedere::apps::ask::{self, Ask, ComfortResults, Places, RoutesOrWindows};
 use belvedere::apps::exposure::ShadeAtEachSun;
 use belvedere::apps::targets::{Measure, Route};
-use belvedere::io::{Cells, Shape, TextRows, with_columns_read, write_table};
+use belvedere::io::{FeatureShape, TableCells, TextRows, with_columns_read, write_table};
 use std::path::Path;
 
-pub(crate) fn run(arguments: &Comfort, global: &Global) -> Result<Summary> {
+pub(crate) fn run(arguments: &ComfortArguments, global: &Global) -> Result<Summary> {
     let outputs = [
         ("-o", Some(&arguments.output)),
         ("--routes", arguments.routes.as_ref()),
@@ -30,28 +30,28 @@ pub(crate) fn run(arguments: &Comfort, global: &Global) -> Result<Summary> {
     }
     let mut question = question(arguments, global)?;
     question.check()?;
-    let mut run = Run::new(global);
+    let mut run = CommandContext::new(global);
     let route = arguments.places.route.as_ref();
-    let points = if route.is_some() { Points::Keep } else { Points::LetGo };
+    let points = if route.is_some() { KeepPoints::Keep } else { KeepPoints::LetGo };
     let scene = pipeline::scene(&arguments.scene, points, &mut run)?;
-    let scene = scene.into_asked(route.map(|_| &arguments.ground), arguments.shell.shell, &run)?;
+    let scene = scene.into_question_scene(route.map(|_| &arguments.ground), arguments.shell.shell, &run)?;
     let source = match (route, &arguments.places.windows) {
         (Some(route), _) => {
             let named = routes(route, scene.frame())?;
             question.along = RoutesOrWindows::Routes(named.corners);
-            Source::Routes(named.names)
+            PlaceSource::Routes(named.names)
         }
         (None, Some(path)) => {
             let choice = FaceChoice { spacing: arguments.spacing, objects: &[] };
             let file = WindowFile::read(path, &choice, scene.frame(), &mut run)?;
             question.along = RoutesOrWindows::Windows(file.given.clone());
-            Source::Windows(file)
+            PlaceSource::Windows(file)
         }
         (None, None) => return Err(Usage("targets are missing: give --route or --windows".to_owned()).into()),
     };
     let answers = ask::ask(&scene, &question, &Places::Scene, &run.control())?;
     run.answered(&answers);
-    let shown = Shown { found: &answers.found, source, frame: scene.frame() };
+    let shown = ComfortOutput { found: &answers.found, source, frame: scene.frame() };
     shown.write_rows(&arguments.output)?;
     if let Some(output) = &arguments.routes {
         shown.write_groups(output)?;
@@ -64,8 +64,8 @@ pub(crate) fn run(arguments: &Comfort, global: &Global) -> Result<Summary> {
     Ok(run.finish())
 }
 
-fn question(arguments: &Comfort, global: &Global) -> Result<ask::Comfort> {
-    Ok(ask::Comfort {
+fn question(arguments: &ComfortArguments, global: &Global) -> Result<ask::ComfortQuestion> {
+    Ok(ask::ComfortQuestion {
         days: arguments.when.days(),
         place: arguments.place.place(&arguments.north)?,
         sky: sky_parts(arguments.patches, arguments.directions),
@@ -87,10 +87,10 @@ struct NamedRoutes {
     names: Vec<String>,
 }
 
-fn routes(route: &Corners, frame: &Frame) -> Result<NamedRoutes> {
+fn routes(route: &CornersArgument, frame: &Frame) -> Result<NamedRoutes> {
     let mut routes = NamedRoutes::default();
     for named in shapes("--route", route, TypedAre::Line, frame)? {
-        let Shape::Line(corners) = named.shape else {
+        let FeatureShape::Line(corners) = named.shape else {
             return wrong_shape("--route", route, "a route is a line, but this file has a point or a polygon");
         };
         if corners.len() < 2 {
@@ -103,28 +103,29 @@ fn routes(route: &Corners, frame: &Frame) -> Result<NamedRoutes> {
 }
 
 /// What places were taken from.
-enum Source {
+enum PlaceSource {
     /// Routes with these names.
     Routes(Vec<String>),
     Windows(WindowFile),
 }
 
 /// What was found, to be written.
-struct Shown<'a> {
-    found: &'a ComfortFound,
-    source: Source,
+struct ComfortOutput<'a> {
+    found: &'a ComfortResults,
+    source: PlaceSource,
     frame: &'a Frame,
 }
 
-impl Shown<'_> {
+impl ComfortOutput<'_> {
     /// A row for each place of routes, or for each window.
     fn write_rows(&self, output: &Path) -> Result<()> {
-        if matches!(self.source, Source::Windows(_)) {
+        if matches!(self.source, PlaceSource::Windows(_)) {
             return self.write_groups(output);
         }
-        let ComfortFound { targets, exposure, routes, .. } = self.found;
+        let ComfortResults { targets, exposure, routes, .. } = self.found;
         let places: Vec<[f64; 3]> = routes.iter().flat_map(|route| route.places.iter().copied()).collect();
-        let mut columns: Vec<Column> = vec![("distance_m", routes.iter().flat_map(Route::distances).collect(), 2)];
+        let mut columns: Vec<WindowColumn> =
+            vec![("distance_m", routes.iter().flat_map(Route::distances).collect(), 2)];
         columns.extend(coordinates(self.frame, &places));
         let of_measure =
             |(measure, _): &(Measure, _)| -> Vec<f64> { measure.values.iter().copied().map(f64::from).collect() };
@@ -132,22 +133,22 @@ impl Shown<'_> {
         let numbered = targets.groups.iter().zip(1_u64..);
         let groups: Vec<Option<u64>> =
             numbered.flat_map(|(group, number)| group.clone().map(move |_| Some(number))).collect();
-        let mut cells = vec![("route", Cells::Whole(&groups))];
-        cells.extend(columns.iter().map(|(name, values, decimals)| (*name, Cells::Real(values, *decimals))));
+        let mut cells = vec![("route", TableCells::Whole(&groups))];
+        cells.extend(columns.iter().map(|(name, values, decimals)| (*name, TableCells::Real(values, *decimals))));
         cells.extend(self.of_measures(&values));
         Ok(write_table(output, &cells)?)
     }
 
     /// A row for each route or window.
     fn write_groups(&self, output: &Path) -> Result<()> {
-        let ComfortFound { targets, exposure, routes, windows, grid_north, .. } = self.found;
+        let ComfortResults { targets, exposure, routes, windows, grid_north, .. } = self.found;
         let no_rows = TextRows::default();
         let (name, names, given, columns) = match &self.source {
-            Source::Routes(names) => {
+            PlaceSource::Routes(names) => {
                 let lengths = routes.iter().map(Route::length).collect();
                 ("route", names, &no_rows, vec![("length_m", lengths, 2)])
             }
-            Source::Windows(file) => {
+            PlaceSource::Windows(file) => {
                 ("window", &self.found.names, &file.rows, file.columns(windows, self.frame, *grid_north))
             }
         };
@@ -155,25 +156,25 @@ impl Shown<'_> {
             (0..exposure.measures.len()).map(|number| exposure.of_groups(number, targets)).collect();
         let numbers: Vec<Option<u64>> = (1..).take(targets.groups.len()).map(Some).collect();
         let names: Vec<&str> = names.iter().map(String::as_str).collect();
-        let mut cells = vec![(name, Cells::Whole(&numbers))];
+        let mut cells = vec![(name, TableCells::Whole(&numbers))];
         if !names.is_empty() {
-            cells.push(("name", Cells::Words(&names)));
+            cells.push(("name", TableCells::Words(&names)));
         }
-        cells.extend(columns.iter().map(|(name, values, decimals)| (*name, Cells::Real(values, *decimals))));
+        cells.extend(columns.iter().map(|(name, values, decimals)| (*name, TableCells::Real(values, *decimals))));
         cells.extend(self.of_measures(&values));
         let read = given.columns(0..given.row_count());
         Ok(write_table(output, &with_columns_read(&read, &["x", "y", "z", "azimuth", "tilt"], &cells))?)
     }
 
     /// Values of each measure as columns.
-    fn of_measures<'a>(&'a self, values: &'a [Vec<f64>]) -> impl Iterator<Item = (&'a str, Cells<'a>)> {
+    fn of_measures<'a>(&'a self, values: &'a [Vec<f64>]) -> impl Iterator<Item = (&'a str, TableCells<'a>)> {
         let measures = self.found.exposure.measures.iter().zip(values);
-        measures.map(|((measure, _), values)| (measure.name.as_str(), Cells::Real(values, measure.decimals)))
+        measures.map(|((measure, _), values)| (measure.name.as_str(), TableCells::Real(values, measure.decimals)))
     }
 
     /// A row for each route and sun.
     fn write_times(&self, output: &Path) -> Result<()> {
-        let ComfortFound { exposure, schedule, grid_north, .. } = self.found;
+        let ComfortResults { exposure, schedule, grid_north, .. } = self.found;
         let (mut numbers, mut dates) = (Vec::new(), Vec::new());
         let mut columns: [Vec<f64>; 4] = std::array::from_fn(|_| Vec::new());
         for (shares, number) in exposure.shaded_shares.iter().zip(1_u64..) {
@@ -194,12 +195,12 @@ impl Shown<'_> {
         Ok(write_table(
             output,
             &[
-                ("route", Cells::Whole(&numbers)),
-                ("date", Cells::Words(&dates)),
-                ("hour", Cells::Real(hours, 4)),
-                ("azimuth_deg", Cells::Real(azimuths, 3)),
-                ("elevation_deg", Cells::Real(elevations, 3)),
-                ("shaded_share", Cells::Real(shares, 4)),
+                ("route", TableCells::Whole(&numbers)),
+                ("date", TableCells::Words(&dates)),
+                ("hour", TableCells::Real(hours, 4)),
+                ("azimuth_deg", TableCells::Real(azimuths, 3)),
+                ("elevation_deg", TableCells::Real(elevations, 3)),
+                ("shaded_share", TableCells::Real(shares, 4)),
             ],
         )?)
     }

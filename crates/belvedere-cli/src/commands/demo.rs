@@ -2,7 +2,7 @@
 
 use crate::arguments::{CloudInput, Demo, Global, UpChoice};
 use crate::pipeline;
-use crate::run::Run;
+use crate::run::CommandContext;
 use crate::simulated::{cloud_of, write_text};
 use crate::summary::{Summary, percent};
 use anyhow::Result;
@@ -18,7 +18,9 @@ use belvedere::model::{BallParams, ModelParams, OrientBy, SceneModel};
 use belvedere::query::{Answer, MedialScene, UnprovenAs, Viewer, Visibility};
 use belvedere::raster::Raster;
 use belvedere::view::{View, default_pixel_size, to_sun};
-use belvedere_scenes::{AirborneParams, Placement, Scan, Scene, TownParams, Truth, extruded, scan_airborne, town};
+use belvedere_scenes::{
+    AirborneParams, PlanPlacement, Scan, TownParams, TriangleScene, Truth, extruded, scan_airborne, town,
+};
 use std::io::Write;
 use std::path::Path;
 
@@ -36,7 +38,7 @@ const PEDESTRIAN: f64 = 1.5;
 
 pub(crate) fn run(arguments: &Demo, global: &Global) -> Result<Summary> {
     let folder = &arguments.output;
-    let mut run = Run::new(global);
+    let mut run = CommandContext::new(global);
     atomic::make_folder(folder)?;
 
     let params = TownParams { extent: arguments.extent, seed: global.seed, ..TownParams::default() };
@@ -109,7 +111,7 @@ pub(crate) fn run(arguments: &Demo, global: &Global) -> Result<Summary> {
     Ok(summary)
 }
 
-fn town_section(scene: &Scene, scan: &Scan) -> Summary {
+fn town_section(scene: &TriangleScene, scan: &Scan) -> Summary {
     let mut section = Summary::default();
     section
         .add("ground_truth_triangles", scene.triangles.len())
@@ -118,7 +120,7 @@ fn town_section(scene: &Scene, scan: &Scan) -> Summary {
     section
 }
 
-fn write_town(folder: &Path, scene: &Scene, scan: &Scan) -> Result<()> {
+fn write_town(folder: &Path, scene: &TriangleScene, scan: &Scan) -> Result<()> {
     let cloud = cloud_of(scan)?;
     write_cloud(&folder.join("town.laz"), &cloud, &[])?;
     write_terrain(&folder.join("terrain.tif"), scene, &cloud.frame)?;
@@ -131,7 +133,7 @@ fn write_town(folder: &Path, scene: &Scene, scan: &Scan) -> Result<()> {
 }
 
 /// Hills around the plain in which the town lies, as an elevation raster.
-fn write_terrain(path: &Path, town: &Scene, frame: &Frame) -> Result<()> {
+fn write_terrain(path: &Path, town: &TriangleScene, frame: &Frame) -> Result<()> {
     let Some((low, high)) = town.bounds() else { return Ok(()) };
     let half = TERRAIN_CELL_M * TERRAIN_CELLS as f64 / 2.0;
     let place = Georeference {
@@ -157,36 +159,42 @@ fn write_terrain(path: &Path, town: &Scene, frame: &Frame) -> Result<()> {
 }
 
 /// A building that is not there, in the middle of the town.
-fn planned_building(town: &Scene) -> Scene {
-    let mut planned = Scene::default();
+fn planned_building(town: &TriangleScene) -> TriangleScene {
+    let mut planned = TriangleScene::default();
     let Some((low, high)) = town.bounds() else { return planned };
     let middle = std::array::from_fn(|axis| f64::midpoint(low[axis], high[axis]));
-    let footprint = Placement { origin: middle, angle: 0.0 }.rectangle(PLANNED_M[0], PLANNED_M[1]);
+    let footprint = PlanPlacement { origin: middle, angle: 0.0 }.rectangle(PLANNED_M[0], PLANNED_M[1]);
     let ground = town.mean_ground_height();
     planned.add_object("planned", &[extruded(&footprint, ground - 1.0, ground + PLANNED_M[2])]);
     planned
 }
 
 /// How many answers the exact mesh contradicts, each kind of error for itself.
-fn agreement(scene: &Scene, scan: &Scan, cloud: &PointCloud, blockers: &MedialScene, sun: [f64; 3]) -> Result<Summary> {
+fn agreement(
+    scene: &TriangleScene,
+    scan: &Scan,
+    cloud: &PointCloud,
+    blockers: &MedialScene,
+    sun: [f64; 3],
+) -> Result<Summary> {
     let truth = Truth::new(scene);
     let ground = scan.exact_positions.iter().zip(&scan.classification).filter(|(_, class)| **class == 2);
     let pedestrians: Vec<[f64; 3]> = ground.map(|(p, _)| [p[0], p[1], p[2] + PEDESTRIAN]).collect();
     let mut section = Summary::default();
     for (name, exact) in [("pedestrians", &pedestrians), ("cloud_points", &scan.exact_positions)] {
         let shadowed = truth.occluded_towards_each(exact, sun);
-        let asked: Vec<[f32; 3]> = exact.iter().map(|&p| to_local(p, cloud.frame.origin)).collect();
-        let answers = blockers.visible(Viewer::Direction(sun), &asked)?;
+        let queried: Vec<[f32; 3]> = exact.iter().map(|&p| to_local(p, cloud.frame.origin)).collect();
+        let answers = blockers.visible(Viewer::Direction(sun), &queried)?;
         let lit_count = shadowed.iter().filter(|s| !**s).count();
         let wrong = |answer: Answer, truly_shadowed: bool| {
             answers.iter().zip(&shadowed).filter(|&(a, s)| *a == answer && *s == truly_shadowed).count()
         };
         let mut scores = Summary::default();
         scores
-            .add("targets", asked.len())
-            .add("ground_truth_in_shadow_percent", percent(asked.len() - lit_count, asked.len()))
+            .add("targets", queried.len())
+            .add("ground_truth_in_shadow_percent", percent(queried.len() - lit_count, queried.len()))
             .add("false_blocked_percent", percent(wrong(Answer::Blocked, false), lit_count))
-            .add("false_visible_percent", percent(wrong(Answer::Visible, true), asked.len() - lit_count));
+            .add("false_visible_percent", percent(wrong(Answer::Visible, true), queried.len() - lit_count));
         section.add(name, scores);
     }
     Ok(section)

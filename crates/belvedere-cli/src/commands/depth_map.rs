@@ -1,9 +1,9 @@
 //! `belvedere depth-map`.
 
 use super::{check_output, extension};
-use crate::arguments::{DepthMap, Global, Usage};
-use crate::pipeline::{self, Points};
-use crate::run::Run;
+use crate::arguments::{DepthMapArguments, Global, Usage};
+use crate::pipeline::{self, KeepPoints};
+use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::Result;
 use belvedere::Frame;
@@ -17,7 +17,7 @@ use belvedere::view::View;
 /// What GIS programs expect where a raster of heights or depths has no value.
 const NOTHING_HIT: f32 = -9999.0;
 
-pub(crate) fn run(arguments: &DepthMap, global: &Global) -> Result<Summary> {
+pub(crate) fn run(arguments: &DepthMapArguments, global: &Global) -> Result<Summary> {
     for output in &arguments.output {
         check_output("-o", output, &["tif", "tiff", "npy", "png"])?;
     }
@@ -28,12 +28,12 @@ pub(crate) fn run(arguments: &DepthMap, global: &Global) -> Result<Summary> {
         return Err(Usage("--add: depth maps show only balls; use `belvedere query`".to_owned()).into());
     }
     arguments.view.check()?;
-    let mut run = Run::new(global);
-    let mut scene = pipeline::scene(&arguments.scene, Points::LetGo, &mut run)?;
+    let mut run = CommandContext::new(global);
+    let mut scene = pipeline::scene(&arguments.scene, KeepPoints::LetGo, &mut run)?;
     scene.profile = arguments.shape.profile.map_or(scene.profile, Profile::from);
     let from = arguments.view.from(&scene, &mut run.summary)?;
-    let question = ask::DepthMap { from: Some(from), ball_ids: arguments.balls_id.is_some() };
-    let scene = scene.into_asked(None, None, &run)?;
+    let question = ask::DepthMapQuestion { from: Some(from), ball_ids: arguments.balls_id.is_some() };
+    let scene = scene.into_question_scene(None, None, &run)?;
     let answers = ask::ask(&scene, &question, &Places::Scene, &run.control())?;
     run.answered(&answers);
     let map = &answers.found;

@@ -1,13 +1,13 @@
 //! `belvedere difference`.
 
 use super::{check_output, extension};
-use crate::arguments::{Difference, Global};
-use crate::run::Run;
+use crate::arguments::{DifferenceArguments, Global};
+use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::{Result, bail};
 use belvedere::apps::difference::{clear_unproven, difference};
 use belvedere::figures::write_png;
-use belvedere::io::{Cells, Georeference, PlacedRaster, read_tif, write_table, write_tif_f32};
+use belvedere::io::{Georeference, PlacedRaster, TableCells, read_tif, write_table, write_tif_f32};
 use belvedere::raster::Raster;
 use belvedere::results::{ResultKind, UNPROVEN_BAND, difference_map};
 use std::path::Path;
@@ -15,12 +15,12 @@ use std::path::Path;
 /// Share of a cell by which two rasters may lie apart and still have the same cells.
 const SAME_PLACE: f64 = 1e-3;
 
-pub(crate) fn run(arguments: &Difference, global: &Global) -> Result<Summary> {
+pub(crate) fn run(arguments: &DifferenceArguments, global: &Global) -> Result<Summary> {
     for output in &arguments.output {
         check_output("-o", output, &["tif", "tiff", "png", "csv"])?;
     }
-    let mut run = Run::new(global);
-    let read = |path: &Path, run: &mut Run| run.stage("reading", 0, |_| read_tif(path));
+    let mut run = CommandContext::new(global);
+    let read = |path: &Path, run: &mut CommandContext| run.stage("reading", 0, |_| read_tif(path));
     let mut before = read(&arguments.before, &mut run)?;
     let mut after = read(&arguments.after, &mut run)?;
     check_same_cells(&before, &after, arguments)?;
@@ -66,10 +66,10 @@ pub(crate) fn run(arguments: &Difference, global: &Global) -> Result<Summary> {
                 let figures = change.report.figures();
                 let cells: Vec<[f64; 1]> = figures.iter().map(|(_, value)| [*value]).collect();
                 let decimals = |name: &str| if name.starts_with("cells") { 0 } else { 4 };
-                let columns: Vec<(&str, Cells<'_>)> = figures
+                let columns: Vec<(&str, TableCells<'_>)> = figures
                     .iter()
                     .zip(&cells)
-                    .map(|((name, _), value)| (*name, Cells::Real(value, decimals(name))))
+                    .map(|((name, _), value)| (*name, TableCells::Real(value, decimals(name))))
                     .collect();
                 write_table(output, &columns)
             }
@@ -88,7 +88,7 @@ pub(crate) fn run(arguments: &Difference, global: &Global) -> Result<Summary> {
 }
 
 /// Refuses rasters whose cells are not the same.
-fn check_same_cells(before: &PlacedRaster, after: &PlacedRaster, arguments: &Difference) -> Result<()> {
+fn check_same_cells(before: &PlacedRaster, after: &PlacedRaster, arguments: &DifferenceArguments) -> Result<()> {
     let sizes = [before, after].map(|raster| [raster.values.width(), raster.values.height()]);
     let (first, second) = (arguments.before.display(), arguments.after.display());
     if sizes[0] != sizes[1] {

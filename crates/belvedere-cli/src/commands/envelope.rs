@@ -3,32 +3,32 @@
 use super::check_output;
 use super::heights::write_heights;
 use super::mesh_targets::{is_mesh, start_of};
-use super::shapes::{Named, TypedAre, shapes, wrong_shape};
-use crate::arguments::{Corners, Envelope, Global, Usage};
-use crate::pipeline::{self, Points, Scene, is_file, mesh_in};
-use crate::run::Run;
+use super::shapes::{NamedShape, TypedAre, shapes, wrong_shape};
+use crate::arguments::{CornersArgument, EnvelopeArguments, Global, Usage};
+use crate::pipeline::{self, KeepPoints, LoadedScene, is_file, mesh_in};
+use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::Result;
 use belvedere::Frame;
 use belvedere::apps::ask::{
-    self, Answers, Ask, EnvelopeFound, Places, Protected, ProtectedShape, ProtectedSuns, Shared,
+    self, Answers, Ask, EnvelopeResults, Places, Protected, ProtectedShape, ProtectedSuns, SharedObject,
 };
 use belvedere::apps::solar_envelope::EnvelopeParams;
 use belvedere::apps::targets::Measure;
 use belvedere::figures::write_png;
 use belvedere::ground::highest_points;
-use belvedere::io::{ReadReport, Shape, is_ball_file, write_mesh};
+use belvedere::io::{FeatureShape, ReadReport, is_ball_file, write_mesh};
 use belvedere::model::{ModelParts, SceneModel};
 use belvedere::results::{georeference, measure_map};
 use std::path::Path;
 
-pub(crate) fn run(arguments: &Envelope, global: &Global) -> Result<Summary> {
+pub(crate) fn run(arguments: &EnvelopeArguments, global: &Global) -> Result<Summary> {
     check_outputs(arguments)?;
     let mut question = question(arguments, global)?;
     question.check()?;
-    let mut run = Run::new(global);
+    let mut run = CommandContext::new(global);
     let scene = scene(arguments, &mut run)?;
-    let scene = scene.into_asked(Some(&arguments.ground), arguments.shell.shell, &run)?;
+    let scene = scene.into_question_scene(Some(&arguments.ground), arguments.shell.shell, &run)?;
     question.parcel = parcel(arguments, scene.frame())?;
     question.protect = protect(arguments, scene.frame(), &mut run)?;
     let answers = ask::ask(&scene, &question, &Places::Scene, &run.control())?;
@@ -58,7 +58,7 @@ fn in_unit(height: f32, metres_per_unit: f64) -> f32 {
     (f64::from(height) / metres_per_unit) as f32
 }
 
-fn check_outputs(arguments: &Envelope) -> Result<()> {
+fn check_outputs(arguments: &EnvelopeArguments) -> Result<()> {
     for output in &arguments.output {
         check_output("-o", output, &["tif", "tiff", "npy", "png", "ply", "obj"])?;
     }
@@ -76,12 +76,12 @@ fn check_outputs(arguments: &Envelope) -> Result<()> {
     Ok(())
 }
 
-fn question(arguments: &Envelope, global: &Global) -> Result<ask::Envelope> {
+fn question(arguments: &EnvelopeArguments, global: &Global) -> Result<ask::EnvelopeQuestion> {
     let suns = match &arguments.sun[..] {
         [] => ProtectedSuns::Days { days: arguments.when.days(), hours: arguments.between.map(|hours| hours.0) },
         suns => ProtectedSuns::Directions(suns.iter().map(|sun| sun.0).collect()),
     };
-    Ok(ask::Envelope {
+    Ok(ask::EnvelopeQuestion {
         suns,
         place: arguments.place.place(&arguments.north)?,
         fence_height: arguments.fence.map_or(0.0, f64::from),
@@ -91,28 +91,28 @@ fn question(arguments: &Envelope, global: &Global) -> Result<ask::Envelope> {
         credit_shade: arguments.credit_shade,
         ground: arguments.ground.points(),
         seed: global.seed,
-        ..ask::Envelope::default()
+        ..ask::EnvelopeQuestion::default()
     })
 }
 
 /// The scene, with balls only where these are needed.
-fn scene(arguments: &Envelope, run: &mut Run) -> Result<Scene> {
+fn scene(arguments: &EnvelopeArguments, run: &mut CommandContext) -> Result<LoadedScene> {
     let is_balls = matches!(&arguments.scene.input.clouds[..], [path] if is_file(path) && is_ball_file(path)?);
     if arguments.credit_shade || is_balls {
-        return pipeline::scene(&arguments.scene, Points::Keep, run);
+        return pipeline::scene(&arguments.scene, KeepPoints::Keep, run);
     }
     let cloud = pipeline::read(&arguments.scene.input, run)?;
     let bounds = pipeline::bounds_of(&cloud)?;
     let parts = ModelParts { frame: cloud.frame.clone(), bounds, ..ModelParts::default() };
     let profile = arguments.scene.balls.parameters()?.profile();
-    Ok(Scene { model: SceneModel::from_parts(parts)?, cloud, left_out: ReadReport::default(), profile })
+    Ok(LoadedScene { model: SceneModel::from_parts(parts)?, cloud, left_out: ReadReport::default(), profile })
 }
 
 /// Rings of the parcel, local metres.
-fn parcel(arguments: &Envelope, frame: &Frame) -> Result<Vec<Vec<[f64; 2]>>> {
+fn parcel(arguments: &EnvelopeArguments, frame: &Frame) -> Result<Vec<Vec<[f64; 2]>>> {
     let mut rings: Vec<Vec<[f64; 2]>> = Vec::new();
     for named in shapes("--parcel", &arguments.parcel, TypedAre::Polygon, frame)? {
-        let Shape::Polygon(polygon) = named.shape else {
+        let FeatureShape::Polygon(polygon) = named.shape else {
             let what = "a parcel is a polygon, but this file has a line or a point";
             return wrong_shape("--parcel", &arguments.parcel, what);
         };
@@ -122,23 +122,23 @@ fn parcel(arguments: &Envelope, frame: &Frame) -> Result<Vec<Vec<[f64; 2]>>> {
 }
 
 /// What keeps its sun.
-fn protect(arguments: &Envelope, frame: &Frame, run: &mut Run) -> Result<Vec<Protected>> {
+fn protect(arguments: &EnvelopeArguments, frame: &Frame, run: &mut CommandContext) -> Result<Vec<Protected>> {
     let mut all = Vec::new();
     for protect in &arguments.protect {
-        if let Corners::File(path) = protect
+        if let CornersArgument::File(path) = protect
             && super::extension(path) != "geojson"
             && is_mesh(path)
             && !is_geojson(path)
         {
-            let shape = ProtectedShape::Faces(Shared::new(mesh_in(path, &frame.crs, run)?));
+            let shape = ProtectedShape::Faces(SharedObject::new(mesh_in(path, &frame.crs, run)?));
             all.push(Protected { name: path.display().to_string(), shape });
             continue;
         }
-        let on_map = |Named { shape, name }: Named| {
+        let on_map = |NamedShape { shape, name }: NamedShape| {
             let shape = match shape {
-                Shape::Point(place) => ProtectedShape::Point(place),
-                Shape::Line(corners) => ProtectedShape::Lines(vec![corners]),
-                Shape::Polygon(rings) => ProtectedShape::Lines(rings),
+                FeatureShape::Point(place) => ProtectedShape::Point(place),
+                FeatureShape::Line(corners) => ProtectedShape::Lines(vec![corners]),
+                FeatureShape::Polygon(rings) => ProtectedShape::Lines(rings),
             };
             Protected { name, shape }
         };
@@ -152,8 +152,8 @@ fn is_geojson(path: &Path) -> bool {
     super::extension(path) == "json" && start_of(path).is_some_and(|start| !start.contains("CityJSON"))
 }
 
-fn write_one(output: &Path, answers: &Answers<EnvelopeFound>, scene: &ask::Scene) -> Result<()> {
-    let (frame, EnvelopeFound { envelope, ground }) = (scene.frame(), &answers.found);
+fn write_one(output: &Path, answers: &Answers<EnvelopeResults>, scene: &ask::Scene) -> Result<()> {
+    let (frame, EnvelopeResults { envelope, ground }) = (scene.frame(), &answers.found);
     match super::extension(output).as_str() {
         "ply" | "obj" => {
             let mut mesh = envelope.to_mesh(frame.origin)?;

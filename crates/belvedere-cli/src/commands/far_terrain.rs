@@ -1,15 +1,15 @@
 //! Flags of what stands beyond the cloud.
 
-use crate::arguments::{FarTerrain, North};
-use crate::pipeline::Scene;
-use crate::run::Run;
+use crate::arguments::{FarTerrainArguments, NorthArguments};
+use crate::pipeline::LoadedScene;
+use crate::run::CommandContext;
 use crate::summary::{Summary, rounded};
 use anyhow::Result;
 use belvedere::io::{read_horizon, read_terrain};
 use belvedere::model::TerrainReport;
 use std::path::Path;
 
-impl FarTerrain {
+impl FarTerrainArguments {
     /// The title of a map, which says that far terrain counts where it does.
     pub(crate) fn titled(&self, title: &str) -> String {
         let counts = self.terrain.is_some() || self.horizon.is_some();
@@ -17,13 +17,13 @@ impl FarTerrain {
     }
 
     /// Puts the scene before the far terrain that was given.
-    pub(crate) fn set(&self, scene: &mut Scene, run: &mut Run) -> Result<()> {
+    pub(crate) fn set(&self, scene: &mut LoadedScene, run: &mut CommandContext) -> Result<()> {
         if let Some(path) = &self.terrain {
             set_terrain(path, scene, run)?;
         }
         if let Some(path) = &self.horizon {
             let horizon = run.stage("reading horizon", 0, |_| read_horizon(path))?;
-            let north = North { grid_north: false }.of_scene(scene);
+            let north = NorthArguments { grid_north: false }.of_scene(scene);
             let highest = horizon.rows().iter().map(|row| row[1]).fold(f64::NEG_INFINITY, f64::max);
             let mut section = Summary::default();
             section.add("azimuths", horizon.rows().len()).add("max_elevation_deg", rounded(highest.to_degrees(), 3));
@@ -35,7 +35,7 @@ impl FarTerrain {
 }
 
 /// Puts the scene before the terrain of an elevation raster.
-pub(super) fn set_terrain(path: &Path, scene: &mut Scene, run: &mut Run) -> Result<()> {
+pub(super) fn set_terrain(path: &Path, scene: &mut LoadedScene, run: &mut CommandContext) -> Result<()> {
     let model = std::mem::take(&mut scene.model);
     let frame = model.frame().clone();
     let terrain = run.stage("reading terrain", 0, |_| read_terrain(path, &frame))?;

@@ -1,22 +1,22 @@
 //! `belvedere horizon`.
 
-use super::surroundings::least_count;
+use super::surroundings::min_count;
 use super::{check_output, extension};
-use crate::arguments::{BelowChoice, Global, Horizon, Usage};
-use crate::run::Run;
+use crate::arguments::{BelowChoice, Global, HorizonArguments, Usage};
+use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::Result;
-use belvedere::apps::ask::{self, Ask, BelowLevel, HorizonFound, Places};
+use belvedere::apps::ask::{self, Ask, BelowLevel, HorizonResults, Places};
 use belvedere::figures::{horizon_picture, write_png};
 use belvedere::io::atomic;
 use std::io::Write;
 use std::path::Path;
 
-pub(crate) fn run(arguments: &Horizon, global: &Global) -> Result<Summary> {
+pub(crate) fn run(arguments: &HorizonArguments, global: &Global) -> Result<Summary> {
     for output in &arguments.output {
         check_output("-o", output, &["csv", "txt", "png"])?;
     }
-    let question = ask::Horizon {
+    let question = ask::HorizonQuestion {
         observer_height: arguments.eyes.height,
         ground: arguments.eyes.ground.points(),
         angle_step_deg: arguments.step,
@@ -25,14 +25,14 @@ pub(crate) fn run(arguments: &Horizon, global: &Global) -> Result<Summary> {
         below: if arguments.below == BelowChoice::Zero { BelowLevel::Zero } else { BelowLevel::Keep },
     };
     question.check()?;
-    check_formats(arguments, least_count(arguments.eyes.eye.len(), arguments.eyes.eyes.as_deref())?)?;
-    let mut run = Run::new(global);
+    check_formats(arguments, min_count(arguments.eyes.eye.len(), arguments.eyes.eyes.as_deref())?)?;
+    let mut run = CommandContext::new(global);
     let scene = arguments.eyes.scene(&arguments.scene, Some(&arguments.far), &mut run)?;
     let standing = arguments.eyes.standing(scene.frame())?;
     check_formats(arguments, standing.len())?;
     let answers = ask::ask(&scene, &question, &Places::Eyes(standing), &run.control())?;
     run.answered(&answers);
-    let HorizonFound { azimuth_count, elevations_deg: elevations, .. } = &answers.found;
+    let HorizonResults { azimuth_count, elevations_deg: elevations, .. } = &answers.found;
     for output in &arguments.output {
         run.stage("writing", 0, |_| match (extension(output).as_str(), elevations.first()) {
             ("png", Some(one)) => write_png(output, &horizon_picture(one, "Horizon elevation, degrees")),
@@ -45,7 +45,7 @@ pub(crate) fn run(arguments: &Horizon, global: &Global) -> Result<Summary> {
 }
 
 /// Refuses formats that hold one observer where there are more.
-fn check_formats(arguments: &Horizon, count: usize) -> Result<()> {
+fn check_formats(arguments: &HorizonArguments, count: usize) -> Result<()> {
     match arguments.output.iter().find(|output| count > 1 && extension(output) != "csv") {
         Some(output) => {
             let output = output.display();

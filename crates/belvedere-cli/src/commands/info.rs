@@ -2,7 +2,7 @@
 
 use crate::arguments::{Global, Info};
 use crate::pipeline::{self, is_file};
-use crate::run::Run;
+use crate::run::CommandContext;
 use crate::summary::{Summary, rounded, sections, whole};
 use anyhow::Result;
 use belvedere::io::{ReadOptions, is_ball_file, read_balls, read_cloud};
@@ -12,7 +12,7 @@ use belvedere::summary::{CloudSummary, FacadeSummary, SurveyKind};
 use belvedere::{Error, PointCloud};
 
 pub(crate) fn run(arguments: &Info, global: &Global) -> Result<Summary> {
-    let run = Run::new(global);
+    let run = CommandContext::new(global);
     if let [path] = &arguments.input.clouds[..]
         && is_file(path)
         && is_ball_file(path)?
@@ -39,7 +39,7 @@ pub(crate) fn run(arguments: &Info, global: &Global) -> Result<Summary> {
     });
     summary.add("file", files.collect::<Vec<_>>());
     summary.add("points", cloud.len());
-    let facts = run.stage("counting points", 0, |control| CloudSummary::of(&cloud, control))?;
+    let statistics = run.stage("counting points", 0, |control| CloudSummary::of(&cloud, control))?;
     let (positions, scanner) = match run.stage("estimating scanner positions", 0, |control| {
         locate(&cloud, &Means::Automatic, &LocateParams::default(), control)
     }) {
@@ -50,8 +50,8 @@ pub(crate) fn run(arguments: &Info, global: &Global) -> Result<Summary> {
         }
         Err(error) => return Err(error.into()),
     };
-    summary.add("survey", SurveyKind::of(&cloud, &facts, &positions, &scanner).to_string());
-    if let Some((low, high)) = facts.bounds {
+    summary.add("survey", SurveyKind::of(&cloud, &statistics, &positions, &scanner).to_string());
+    if let Some((low, high)) = statistics.bounds {
         summary.add("min_corner", low.map(|v| rounded(v, 3)).to_vec());
         summary.add("max_corner", high.map(|v| rounded(v, 3)).to_vec());
     }
@@ -60,8 +60,8 @@ pub(crate) fn run(arguments: &Info, global: &Global) -> Result<Summary> {
         summary.add("metres_per_vertical_unit", cloud.frame.crs.vertical_metres_per_unit);
     }
     summary.add("crs", cloud.frame.crs.definition());
-    summary.add("covered_ground_m2", rounded(facts.occupied_area, 1));
-    summary.add("points_per_m2_of_covered_ground", rounded(facts.density, 2));
+    summary.add("covered_ground_m2", rounded(statistics.occupied_area, 1));
+    summary.add("points_per_m2_of_covered_ground", rounded(statistics.density, 2));
     if let Some(facades) = run.stage("measuring facades", 0, |control| FacadeSummary::of(&cloud, control))? {
         let mut section = Summary::default();
         section.add("steep_points", facades.steep_point_count).add("building_points", facades.building_point_count);
@@ -73,20 +73,20 @@ pub(crate) fn run(arguments: &Info, global: &Global) -> Result<Summary> {
         };
         summary.add("facades", section);
     }
-    if let Some(pulses) = facts.pulses {
+    if let Some(pulses) = statistics.pulses {
         summary.add("pulses", whole(pulses.count));
         summary.add("pulses_with_several_returns_percent", rounded(100.0 * pulses.multi_return_share(), 2));
-        if facts.occupied_area > 0.0 {
-            summary.add("pulses_per_m2_of_covered_ground", rounded(pulses.count / facts.occupied_area, 2));
+        if statistics.occupied_area > 0.0 {
+            summary.add("pulses_per_m2_of_covered_ground", rounded(pulses.count / statistics.occupied_area, 2));
         }
     }
     summary.add("scanner", Summary::of(&scanner));
     summary.add("scanner_by_line", sections(&scanner.lines()));
     summary.add("reading", Summary::of(&report));
-    summary.add("attributes", attributes(&cloud, &facts));
-    summary.add("missing", missing(&cloud, &facts));
-    summary.add("usable_for", can_serve(&cloud, &facts, &scanner));
-    summary.add("duplicate_points", facts.duplicate_count);
+    summary.add("attributes", attributes(&cloud, &statistics));
+    summary.add("missing", missing(&cloud, &statistics));
+    summary.add("usable_for", can_serve(&cloud, &statistics, &scanner));
+    summary.add("duplicate_points", statistics.duplicate_count);
     crate::device::list(&mut summary);
     Ok(summary)
 }
@@ -112,7 +112,7 @@ fn of_balls(model: &ModelParts) -> Summary {
     summary
 }
 
-fn attributes(cloud: &PointCloud, facts: &CloudSummary) -> Summary {
+fn attributes(cloud: &PointCloud, statistics: &CloudSummary) -> Summary {
     let mut section = Summary::default();
     for (name, _) in cloud.attributes.columns() {
         section.add(name, "yes");
@@ -124,28 +124,31 @@ fn attributes(cloud: &PointCloud, facts: &CloudSummary) -> Summary {
         });
         counts
     };
-    if !facts.classes.is_empty() {
-        section.add("classification", counts(facts.classes.iter().map(|(c, &n)| (format!("class {c}"), n)).collect()));
-    }
-    if !facts.flight_lines.is_empty() {
+    if !statistics.classes.is_empty() {
         section.add(
-            "point_source_id",
-            counts(facts.flight_lines.iter().map(|(l, &n)| (format!("line {l}"), n)).collect()),
+            "classification",
+            counts(statistics.classes.iter().map(|(c, &n)| (format!("class {c}"), n)).collect()),
         );
     }
-    if let Some(share) = facts.multi_return_share {
+    if !statistics.flight_lines.is_empty() {
+        section.add(
+            "point_source_id",
+            counts(statistics.flight_lines.iter().map(|(l, &n)| (format!("line {l}"), n)).collect()),
+        );
+    }
+    if let Some(share) = statistics.multi_return_share {
         section
             .add("return_count", format!("{:.1} % of the points belong to pulses with several returns", 100.0 * share));
     }
-    if let Some([least, most]) = facts.scan_angle_deg {
-        section.add("scan_angle", format!("{least:.1} to {most:.1} degrees"));
+    if let Some([min, max]) = statistics.scan_angle_deg {
+        section.add("scan_angle", format!("{min:.1} to {max:.1} degrees"));
     }
-    if let Some(times) = facts.gps_time {
+    if let Some(times) = statistics.gps_time {
         let mut text = format!("{:.3} to {:.3} s, {} different values", times.first, times.last, times.distinct_count);
         if times.missing_count > 0 {
             text.push_str(&format!(", {} missing", times.missing_count));
         }
-        if !times.can_tell_pulses_apart(cloud.len()) {
+        if !times.can_separate_pulses(cloud.len()) {
             text.push_str(": too few to separate pulses");
         }
         section.add("gps_time", text);
@@ -157,11 +160,11 @@ fn attributes(cloud: &PointCloud, facts: &CloudSummary) -> Summary {
 }
 
 /// Attributes that would make more possible.
-fn missing(cloud: &PointCloud, facts: &CloudSummary) -> Vec<&'static str> {
+fn missing(cloud: &PointCloud, statistics: &CloudSummary) -> Vec<&'static str> {
     let a = &cloud.attributes;
     // LAS files always have these fields; 0 says that nobody filled them, class 1 that the point was not classified
-    let classes_say_nothing = facts.classes.keys().all(|&class| class <= 1);
-    let lines_say_nothing = facts.flight_lines.keys().all(|&line| line == 0);
+    let classes_say_nothing = statistics.classes.keys().all(|&class| class <= 1);
+    let lines_say_nothing = statistics.flight_lines.keys().all(|&line| line == 0);
     let wanted = [
         (a.classification.is_none() || classes_say_nothing, "classes (noise cannot be detected by its class)"),
         (a.gps_time.is_none(), "GPS time (a trajectory cannot orient normals)"),
@@ -176,7 +179,7 @@ fn missing(cloud: &PointCloud, facts: &CloudSummary) -> Vec<&'static str> {
     wanted.into_iter().filter_map(|(is_missing, name)| is_missing.then_some(name)).collect()
 }
 
-fn can_serve(cloud: &PointCloud, facts: &CloudSummary, scanner: &ScannerReport) -> Summary {
+fn can_serve(cloud: &PointCloud, statistics: &CloudSummary, scanner: &ScannerReport) -> Summary {
     let mut section = Summary::default();
     let enough = cloud.len() >= 4;
     let yes_if = |able: bool, why_not: &str| if able { "yes".to_owned() } else { format!("no: {why_not}") };
@@ -185,7 +188,7 @@ fn can_serve(cloud: &PointCloud, facts: &CloudSummary, scanner: &ScannerReport) 
     }
     section.add("--orient given", yes_if(cloud.attributes.normals.is_some(), "the file has no normals"));
     section.add("--orient scanner", yes_if(!cloud.scanner_positions.is_empty(), "the file has no scanner positions"));
-    let times = facts.gps_time.is_some_and(|t| t.can_tell_pulses_apart(cloud.len()));
+    let times = statistics.gps_time.is_some_and(|t| t.can_separate_pulses(cloud.len()));
     section.add("--orient trajectory=FILE", yes_if(times, "the file has no usable GPS times"));
     let by_pulses = [FoundBy::Returns, FoundBy::ScanAngle].iter().any(|means| scanner.found.contains_key(means));
     section.add("--orient pulses", yes_if(by_pulses, "the pulses do not determine the scanner positions"));

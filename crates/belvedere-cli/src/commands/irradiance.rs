@@ -3,17 +3,17 @@
 mod planes;
 pub(super) mod radiation;
 
-use super::targets::Shown;
+use super::targets::TargetOutput;
 use super::warn_of_geojson;
-use crate::arguments::{Global, Irradiance, Usage};
-use crate::pipeline::{self, Points};
-use crate::run::Run;
+use crate::arguments::{Global, IrradianceArguments, Usage};
+use crate::pipeline::{self, KeepPoints};
+use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::Result;
 use belvedere::apps::ask::{self, Ask, Places, Roofs, SunPlace};
 use belvedere::apps::irradiance::Grouping;
 
-pub(crate) fn run(arguments: &Irradiance, global: &Global) -> Result<Summary> {
+pub(crate) fn run(arguments: &IrradianceArguments, global: &Global) -> Result<Summary> {
     let outputs = arguments.outputs.of_places();
     arguments.places.check(&outputs)?;
     let wants_places = !outputs.output.is_empty();
@@ -21,12 +21,12 @@ pub(crate) fn run(arguments: &Irradiance, global: &Global) -> Result<Summary> {
         return Err(Usage("--measures needs -o".to_owned()).into());
     }
     planes::check(arguments)?;
-    let mut run = Run::new(global);
+    let mut run = CommandContext::new(global);
     let grouping = if arguments.months { Grouping::Months } else { Grouping::Whole };
     let params = radiation::params(&arguments.model).with_grouping(grouping);
     let roofs =
-        Roofs { min_area: arguments.least_area, panel: arguments.panel, ground: arguments.places.ground.points() };
-    let question = ask::Irradiance {
+        Roofs { min_area: arguments.min_area, panel: arguments.panel, ground: arguments.places.ground.points() };
+    let question = ask::IrradianceQuestion {
         // a mistyped weather file must not be found out after the balls were made
         radiation: radiation::of(arguments, &params, &run)?,
         params,
@@ -36,11 +36,11 @@ pub(crate) fn run(arguments: &Irradiance, global: &Global) -> Result<Summary> {
     };
     question.check()?;
     let needs_points = question.roofs.is_some() || arguments.places.needs_points();
-    let points = if needs_points { Points::Keep } else { Points::LetGo };
+    let points = if needs_points { KeepPoints::Keep } else { KeepPoints::LetGo };
     let mut scene = pipeline::scene(&arguments.scene, points, &mut run)?;
     arguments.places.far.set(&mut scene, &mut run)?;
     warn_of_geojson(&arguments.planes, &scene.cloud.frame.crs, &mut run.summary);
-    let scene = scene.into_asked(Some(&arguments.places.ground), arguments.shell.shell, &run)?;
+    let scene = scene.into_question_scene(Some(&arguments.places.ground), arguments.shell.shell, &run)?;
     let (places, source) = match wants_places {
         true => arguments.places.places(&scene, &mut run).map(|(places, source)| (places, Some(source)))?,
         false => (Places::Scene, None),
@@ -48,7 +48,7 @@ pub(crate) fn run(arguments: &Irradiance, global: &Global) -> Result<Summary> {
     let answers = ask::ask(&scene, &question, &places, &run.control())?;
     run.answered(&answers);
     if let (Some(on), Some(source)) = (&answers.found.on, source) {
-        let shown = Shown::new(on, source, &scene);
+        let shown = TargetOutput::new(on, source, &scene);
         shown.write(&outputs, &answers.measures, &mut run)?;
         shown.write_edge_mask(arguments.places.edge_mask.as_deref(), &mut run)?;
     }

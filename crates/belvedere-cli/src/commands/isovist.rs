@@ -1,23 +1,23 @@
 //! `belvedere isovist`.
 
-use super::surroundings::{least_count, rows_as_given};
+use super::surroundings::{min_count, rows_as_given};
 use super::{check_output, extension};
-use crate::arguments::{Global, Isovist, Usage};
-use crate::run::Run;
+use crate::arguments::{Global, IsovistArguments, Usage};
+use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::Result;
-use belvedere::apps::ask::{self, Ask, IsovistColumn, IsovistsFound, Places, Scene};
+use belvedere::apps::ask::{self, Ask, IsovistColumn, IsovistsResults, Places, Scene};
 use belvedere::figures::{panorama_picture, write_png};
-use belvedere::io::{Cells, TextRows, atomic, with_columns_read, write_table};
+use belvedere::io::{TableCells, TextRows, atomic, with_columns_read, write_table};
 use serde_json::{Map, Value, json};
 use std::io::Write;
 use std::path::Path;
 
-pub(crate) fn run(arguments: &Isovist, global: &Global) -> Result<Summary> {
+pub(crate) fn run(arguments: &IsovistArguments, global: &Global) -> Result<Summary> {
     for output in &arguments.output {
         check_output("-o", output, &["csv", "json", "png"])?;
     }
-    let question = ask::Isovists {
+    let question = ask::IsovistsQuestion {
         observer_height: arguments.eyes.height,
         ground: arguments.eyes.ground.points(),
         north: arguments.north.choice(),
@@ -26,8 +26,8 @@ pub(crate) fn run(arguments: &Isovist, global: &Global) -> Result<Summary> {
         min_jump: arguments.jump,
     };
     question.check()?;
-    check_pictures(arguments, least_count(arguments.eyes.eye.len(), arguments.eyes.eyes.as_deref())?)?;
-    let mut run = Run::new(global);
+    check_pictures(arguments, min_count(arguments.eyes.eye.len(), arguments.eyes.eyes.as_deref())?)?;
+    let mut run = CommandContext::new(global);
     let scene = arguments.eyes.scene(&arguments.scene, None, &mut run)?;
     let standing = arguments.eyes.standing(scene.frame())?;
     check_pictures(arguments, standing.len())?;
@@ -51,7 +51,7 @@ pub(crate) fn run(arguments: &Isovist, global: &Global) -> Result<Summary> {
 }
 
 /// Refuses pictures of several observers.
-fn check_pictures(arguments: &Isovist, count: usize) -> Result<()> {
+fn check_pictures(arguments: &IsovistArguments, count: usize) -> Result<()> {
     match arguments.output.iter().find(|output| count > 1 && extension(output) == "png") {
         Some(output) => {
             let output = output.display();
@@ -62,7 +62,7 @@ fn check_pictures(arguments: &Isovist, count: usize) -> Result<()> {
 }
 
 /// Where each eye is, in the coordinates of the file, and all that describes what it sees.
-fn columns(found: &IsovistsFound, scene: &Scene) -> Vec<IsovistColumn> {
+fn columns(found: &IsovistsResults, scene: &Scene) -> Vec<IsovistColumn> {
     let places: Vec<[f64; 3]> = found.eyes.places.iter().map(|&place| scene.frame().file_from_local(place)).collect();
     let place = |(axis, name): (usize, &'static str)| IsovistColumn {
         name,
@@ -74,13 +74,13 @@ fn columns(found: &IsovistsFound, scene: &Scene) -> Vec<IsovistColumn> {
 
 /// A row for each observer, with what a table said of it.
 fn write_rows(output: &Path, columns: &[IsovistColumn], given: &TextRows) -> belvedere::Result<()> {
-    let named: Vec<(&'static str, Cells<'_>)> =
-        columns.iter().map(|column| (column.name, Cells::Real(&column.values, column.decimals))).collect();
+    let named: Vec<(&'static str, TableCells<'_>)> =
+        columns.iter().map(|column| (column.name, TableCells::Real(&column.values, column.decimals))).collect();
     let read = given.columns(0..given.row_count());
     write_table(output, &with_columns_read(&read, &["x", "y", "z"], &named))
 }
 
-fn write_json(output: &Path, columns: &[IsovistColumn], found: &IsovistsFound) -> belvedere::Result<()> {
+fn write_json(output: &Path, columns: &[IsovistColumn], found: &IsovistsResults) -> belvedere::Result<()> {
     let object = |(row, isovist): (usize, &Option<belvedere::apps::isovist::Isovist>)| {
         let value = |column: &IsovistColumn| (column.name.to_owned(), json!(column.values.get(row)));
         let mut object: Map<String, Value> = columns.iter().map(value).collect();

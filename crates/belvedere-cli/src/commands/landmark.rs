@@ -5,9 +5,9 @@ pub(super) mod what;
 
 use super::surroundings::rows_as_given;
 use super::{check_output, extension};
-use crate::arguments::{Global, Landmark, Usage};
-use crate::pipeline::{self, Points};
-use crate::run::Run;
+use crate::arguments::{Global, LandmarkArguments, Usage};
+use crate::pipeline::{self, KeepPoints};
+use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::Result;
 use belvedere::Frame;
@@ -15,13 +15,13 @@ use belvedere::apps::ask::{self, LandmarkShape, Places, Standing};
 use belvedere::io::{RowsAre, read_observers};
 use belvedere::query::{BackFaces, UnprovenAs};
 
-pub(crate) fn run(arguments: &Landmark, global: &Global) -> Result<Summary> {
+pub(crate) fn run(arguments: &LandmarkArguments, global: &Global) -> Result<Summary> {
     check_outputs(arguments)?;
     // refused before a scene is read
     arguments.earth.params()?;
-    let mut run = Run::new(global);
-    let scene = pipeline::scene(&arguments.scene, Points::Keep, &mut run)?;
-    let scene = scene.into_asked(Some(&arguments.ground), arguments.giving_way.shell, &run)?;
+    let mut run = CommandContext::new(global);
+    let scene = pipeline::scene(&arguments.scene, KeepPoints::Keep, &mut run)?;
+    let scene = scene.into_question_scene(Some(&arguments.ground), arguments.giving_way.shell, &run)?;
     let shape = what::shape(&arguments.shape, scene.frame(), &mut run)?;
     let question = question(arguments, shape, scene.frame())?;
     let answers = ask::ask(&scene, &question, &Places::Scene, &run.control())?;
@@ -44,8 +44,8 @@ pub(crate) fn run(arguments: &Landmark, global: &Global) -> Result<Summary> {
     Ok(run.finish())
 }
 
-fn question(arguments: &Landmark, shape: LandmarkShape, frame: &Frame) -> Result<ask::Landmark> {
-    Ok(ask::Landmark {
+fn question(arguments: &LandmarkArguments, shape: LandmarkShape, frame: &Frame) -> Result<ask::LandmarkQuestion> {
+    Ok(ask::LandmarkQuestion {
         shape,
         observers: observers(arguments, frame)?,
         observer_height: arguments.observer_height,
@@ -58,7 +58,7 @@ fn question(arguments: &Landmark, shape: LandmarkShape, frame: &Frame) -> Result
     })
 }
 
-fn check_outputs(arguments: &Landmark) -> Result<()> {
+fn check_outputs(arguments: &LandmarkArguments) -> Result<()> {
     for output in &arguments.output {
         check_output("-o", output, &["csv", "tif", "tiff", "png"])?;
         if arguments.observers.is_some() && extension(output) != "csv" {
@@ -73,7 +73,7 @@ fn check_outputs(arguments: &Landmark) -> Result<()> {
 }
 
 /// Observers of a file, if one was named.
-fn observers(arguments: &Landmark, frame: &Frame) -> Result<Option<Vec<Standing>>> {
+fn observers(arguments: &LandmarkArguments, frame: &Frame) -> Result<Option<Vec<Standing>>> {
     let Some(path) = &arguments.observers else { return Ok(None) };
     let mut observers = Vec::new();
     for row in read_observers(path, &frame.crs, RowsAre::Places)? {

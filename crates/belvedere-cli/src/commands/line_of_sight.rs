@@ -2,32 +2,36 @@
 
 use super::far_terrain::set_terrain;
 use super::{check_output, extension};
-use crate::arguments::{Global, LineOfSight, Place, Usage};
-use crate::pipeline::{self, Points};
-use crate::run::Run;
+use crate::arguments::{Global, LineOfSightArguments, MapPosition, Usage};
+use crate::pipeline::{self, KeepPoints};
+use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::{Result, bail};
-use belvedere::apps::ask::{self, Ask, LinesOfSight, Places, ProfileRows, Scene, SightColumns, SightsFound, Standing};
+use belvedere::apps::ask::{
+    self, Ask, LinesOfSightQuestion, Places, ProfileRows, Scene, SightColumns, SightsResults, Standing,
+};
 use belvedere::apps::profile::SightProfile;
-use belvedere::figures::{Profile, profile_picture, write_png};
-use belvedere::io::{Cells, GeojsonFeature, Shape, TextRows, read_geojson, read_table, with_columns_read, write_table};
+use belvedere::figures::{DistanceProfile, profile_picture, write_png};
+use belvedere::io::{
+    FeatureShape, GeojsonFeature, TableCells, TextRows, read_geojson, read_table, with_columns_read, write_table,
+};
 use belvedere::query::{UnprovenAs, random_pairs};
 use std::path::Path;
 
 /// Columns of a table of pairs.
 const ENDS: [&str; 6] = ["ax", "ay", "az", "bx", "by", "bz"];
 
-pub(crate) fn run(arguments: &LineOfSight, global: &Global) -> Result<Summary> {
+pub(crate) fn run(arguments: &LineOfSightArguments, global: &Global) -> Result<Summary> {
     let question = question(arguments)?;
     check(arguments, &question)?;
-    let mut run = Run::new(global);
+    let mut run = CommandContext::new(global);
     // ends may need the ground
-    let points = if arguments.lines.random.is_some() { Points::LetGo } else { Points::Keep };
+    let points = if arguments.lines.random.is_some() { KeepPoints::LetGo } else { KeepPoints::Keep };
     let mut scene = pipeline::scene(&arguments.scene, points, &mut run)?;
     if let Some(path) = &arguments.terrain {
         set_terrain(path, &mut scene, &mut run)?;
     }
-    let scene = scene.into_asked(Some(&arguments.ground), arguments.giving_way.shell, &run)?;
+    let scene = scene.into_question_scene(Some(&arguments.ground), arguments.giving_way.shell, &run)?;
     let (pairs, rows) = pairs(arguments, &scene, &run)?;
     let answers = ask::ask(&scene, &question, &Places::Pairs(pairs), &run.control())?;
     run.answered(&answers);
@@ -43,8 +47,8 @@ pub(crate) fn run(arguments: &LineOfSight, global: &Global) -> Result<Summary> {
     Ok(run.finish())
 }
 
-fn question(arguments: &LineOfSight) -> Result<LinesOfSight> {
-    Ok(LinesOfSight {
+fn question(arguments: &LineOfSightArguments) -> Result<LinesOfSightQuestion> {
+    Ok(LinesOfSightQuestion {
         observer_height: arguments.heights.observer_height,
         target_height: arguments.heights.target_height,
         ground: arguments.ground.points(),
@@ -55,7 +59,7 @@ fn question(arguments: &LineOfSight) -> Result<LinesOfSight> {
     })
 }
 
-fn check(arguments: &LineOfSight, question: &LinesOfSight) -> Result<()> {
+fn check(arguments: &LineOfSightArguments, question: &LinesOfSightQuestion) -> Result<()> {
     if let Some(output) = &arguments.output {
         check_output("-o", output, &["csv"])?;
     }
@@ -76,10 +80,15 @@ fn standing(place: [f64; 3]) -> Standing {
 }
 
 /// Observer and target of each line, and the rows of the table they are from.
-fn pairs(arguments: &LineOfSight, scene: &Scene, run: &Run) -> Result<(Vec<[Standing; 2]>, TextRows)> {
+fn pairs(
+    arguments: &LineOfSightArguments,
+    scene: &Scene,
+    run: &CommandContext,
+) -> Result<(Vec<[Standing; 2]>, TextRows)> {
     let (lines, frame) = (&arguments.lines, scene.frame());
     if let (Some(from), Some(to)) = (&lines.from, &lines.to) {
-        let local = |&Place([x, y], z): &Place| standing(frame.local_from_file([x, y, z.unwrap_or(f64::NAN)]));
+        let local =
+            |&MapPosition([x, y], z): &MapPosition| standing(frame.local_from_file([x, y, z.unwrap_or(f64::NAN)]));
         return Ok((vec![[local(from), local(to)]], TextRows::default()));
     }
     if let Some(count) = lines.random {
@@ -114,7 +123,7 @@ fn pairs(arguments: &LineOfSight, scene: &Scene, run: &Run) -> Result<(Vec<[Stan
 fn ends_of_lines(path: &Path, features: &[GeojsonFeature], origin: [f64; 3]) -> Result<Vec<[Standing; 2]>> {
     let local = |corner: &[f64; 3]| standing(std::array::from_fn(|axis| corner[axis] - origin[axis]));
     let ends = |(number, feature): (usize, &GeojsonFeature)| match &feature.shape {
-        Shape::Line(corners) if corners.len() > 1 => Ok([&corners[0], &corners[corners.len() - 1]].map(local)),
+        FeatureShape::Line(corners) if corners.len() > 1 => Ok([&corners[0], &corners[corners.len() - 1]].map(local)),
         _ => bail!("{}: feature {} is not a line; lines of sight need lines", path.display(), number + 1),
     };
     let pairs: Vec<_> = features.iter().enumerate().map(ends).collect::<Result<_>>()?;
@@ -124,7 +133,7 @@ fn ends_of_lines(path: &Path, features: &[GeojsonFeature], origin: [f64; 3]) -> 
     Ok(pairs)
 }
 
-fn write(output: &Path, found: &SightsFound, scene: &Scene, rows: &TextRows) -> belvedere::Result<()> {
+fn write(output: &Path, found: &SightsResults, scene: &Scene, rows: &TextRows) -> belvedere::Result<()> {
     let frame = scene.frame();
     let end = |column: usize| found.pairs.iter().map(move |pair| frame.file_from_local(pair[column / 3])[column % 3]);
     let ends: [Vec<f64>; 6] = std::array::from_fn(|column| end(column).collect());
@@ -135,17 +144,17 @@ fn write(output: &Path, found: &SightsFound, scene: &Scene, rows: &TextRows) -> 
     let balls: Vec<Option<u64>> = balls.into_iter().map(|ball| ball.map(|ball| ball as u64)).collect();
     let sources: Vec<Option<u64>> = sources.into_iter().map(|source| source.map(u64::from)).collect();
     let terrain: Option<Vec<Option<u64>>> = is_terrain.map(|all| all.into_iter().map(|is| is.map(u64::from)).collect());
-    let mut columns: Vec<(&'static str, Cells<'_>)> =
-        ENDS.iter().zip(&ends).map(|(&name, values)| (name, Cells::Real(values, 4))).collect();
-    columns.push(("answer", Cells::Whole(&codes)));
-    columns.push(("first_block_range_m", Cells::Real(&ranges, 3)));
-    columns.extend(unproven.as_ref().map(|lengths| ("unproven_m", Cells::Real(lengths, 3))));
-    columns.extend(fresnel_free_percent.as_ref().map(|free| ("fresnel_free_percent", Cells::Real(free, 1))));
-    columns.extend(["block_x", "block_y", "block_z"].into_iter().zip(&place).map(|(n, v)| (n, Cells::Real(v, 3))));
-    columns.push(("block_ball", Cells::Whole(&balls)));
-    columns.push(("block_source", Cells::Whole(&sources)));
-    columns.extend(meshes.as_ref().map(|names| ("block_mesh", Cells::Words(names))));
-    columns.extend(terrain.as_ref().map(|terrain| ("block_terrain", Cells::Whole(terrain))));
+    let mut columns: Vec<(&'static str, TableCells<'_>)> =
+        ENDS.iter().zip(&ends).map(|(&name, values)| (name, TableCells::Real(values, 4))).collect();
+    columns.push(("answer", TableCells::Whole(&codes)));
+    columns.push(("first_block_range_m", TableCells::Real(&ranges, 3)));
+    columns.extend(unproven.as_ref().map(|lengths| ("unproven_m", TableCells::Real(lengths, 3))));
+    columns.extend(fresnel_free_percent.as_ref().map(|free| ("fresnel_free_percent", TableCells::Real(free, 1))));
+    columns.extend(["block_x", "block_y", "block_z"].into_iter().zip(&place).map(|(n, v)| (n, TableCells::Real(v, 3))));
+    columns.push(("block_ball", TableCells::Whole(&balls)));
+    columns.push(("block_source", TableCells::Whole(&sources)));
+    columns.extend(meshes.as_ref().map(|names| ("block_mesh", TableCells::Words(names))));
+    columns.extend(terrain.as_ref().map(|terrain| ("block_terrain", TableCells::Whole(terrain))));
     let read = rows.columns(0..rows.row_count());
     write_table(output, &with_columns_read(&read, &ENDS, &columns))
 }
@@ -164,7 +173,7 @@ fn write_profile(output: &Path, profile: &SightProfile, scene: &Scene) -> belved
             Some(at) => format!("Line of sight, {length:.1} m: blocked after {at:.1} m"),
             None => format!("Line of sight, {length:.1} m: nothing blocks"),
         };
-        let picture = profile_picture(&Profile {
+        let picture = profile_picture(&DistanceProfile {
             distances: &profile.distances,
             ground: &ground,
             line: &line,
@@ -180,11 +189,11 @@ fn write_profile(output: &Path, profile: &SightProfile, scene: &Scene) -> belved
         solid.iter().map(|pieces| pieces.iter().map(in_words).collect::<Vec<_>>().join(" ")).collect();
     let blocks: Vec<&str> = blocks.iter().map(String::as_str).collect();
     let columns = [
-        ("distance_m", Cells::Real(&profile.distances, 3)),
-        ("ground", Cells::Real(&ground, 3)),
-        ("line", Cells::Real(&line, 3)),
-        ("blocked", Cells::Whole(&blocked)),
-        ("blocks", Cells::Words(&blocks)),
+        ("distance_m", TableCells::Real(&profile.distances, 3)),
+        ("ground", TableCells::Real(&ground, 3)),
+        ("line", TableCells::Real(&line, 3)),
+        ("blocked", TableCells::Whole(&blocked)),
+        ("blocks", TableCells::Words(&blocks)),
     ];
     write_table(output, &columns)
 }

@@ -2,8 +2,8 @@
 
 use super::{check_output, extension, sights};
 use crate::arguments::{GivingWay, Global, MeshTargets, Query, Usage};
-use crate::pipeline::{self, Points, Scene, mesh_in};
-use crate::run::Run;
+use crate::pipeline::{self, KeepPoints, LoadedScene, mesh_in};
+use crate::run::CommandContext;
 use crate::summary::{Summary, rounded};
 use anyhow::{Result, bail};
 use belvedere::Mesh;
@@ -49,7 +49,7 @@ pub(super) fn refuse_flags(flags: &MeshTargets) -> Result<()> {
 }
 
 /// Reads a mesh in the coordinates of a scene, as metres.
-pub(super) fn mesh_of(path: &Path, scene: &Scene, run: &mut Run) -> Result<Mesh> {
+pub(super) fn mesh_of(path: &Path, scene: &LoadedScene, run: &mut CommandContext) -> Result<Mesh> {
     mesh_in(path, &scene.cloud.frame.crs, run)
 }
 
@@ -60,8 +60,8 @@ pub(super) fn run(arguments: &Query, path: &Path, global: &Global) -> Result<Sum
         return Err(Usage("--bias applies only to point targets; for a mesh use --shell".to_owned()).into());
     }
     let profile = arguments.shape.of(&arguments.scene.balls)?;
-    let mut run = Run::new(global);
-    let scene = pipeline::scene(&arguments.scene, Points::LetGo, &mut run)?;
+    let mut run = CommandContext::new(global);
+    let scene = pipeline::scene(&arguments.scene, KeepPoints::LetGo, &mut run)?;
     let mesh = mesh_of(path, &scene, &mut run)?;
     let views = arguments.view.views(&scene, &mut run.summary)?;
     let giving_way = GivingWay { shell: arguments.shell, unproven: arguments.unproven };
@@ -92,7 +92,7 @@ pub(super) fn run(arguments: &Query, path: &Path, global: &Global) -> Result<Sum
             Ok(answers.into_iter().map(|answer| unproven.settle(answer)).collect())
         })
     })?;
-    run.summary.add("faces", told(&faces, &surface, spacing));
+    run.summary.add("faces", face_summary(&faces, &surface, spacing));
     let places: Vec<[f32; 3]> = surface.pieces.iter().map(|piece| piece.place).collect();
     let outside = scene.model.coverage().map_or(0, |coverage| coverage.outside_count(&places));
     run.summary.remarks(ask::remark_on_outside(outside, places.len(), "sample points of the mesh"));
@@ -111,7 +111,7 @@ pub(super) fn run(arguments: &Query, path: &Path, global: &Global) -> Result<Sum
     Ok(run.finish())
 }
 
-fn told(faces: &[SeenArea], surface: &SurfacePieces, spacing: f64) -> Summary {
+fn face_summary(faces: &[SeenArea], surface: &SurfacePieces, spacing: f64) -> Summary {
     let all = seen_in_all(faces);
     let mut section = Summary::default();
     section

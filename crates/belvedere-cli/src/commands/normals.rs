@@ -1,16 +1,16 @@
 //! `belvedere normals`.
 
 use super::{NormalColumns, check_output, check_parent, is_folder, is_written_back};
-use crate::arguments::{Global, Normals, OrientChoice};
+use crate::arguments::{Global, NormalsArguments, OrientChoice};
 use crate::pipeline::{self, params};
-use crate::run::Run;
+use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::Result;
 use belvedere::io::{ExtraColumn, ExtraValues, MasbcppFolder, WriteReport, write_cloud, write_masbcpp};
 use belvedere::medial::ShrinkParams;
 use belvedere::model::{BallParams, OrientedSurvey};
 
-pub(crate) fn run(arguments: &Normals, global: &Global) -> Result<Summary> {
+pub(crate) fn run(arguments: &NormalsArguments, global: &Global) -> Result<Summary> {
     let output = &arguments.output;
     let is_folder = is_folder(output);
     if is_folder {
@@ -19,7 +19,7 @@ pub(crate) fn run(arguments: &Normals, global: &Global) -> Result<Summary> {
         check_output("-o", output, &["laz", "las", "ply", "csv", "xyz", "txt"])?;
     }
     let mut parameters = arguments.parameters()?;
-    let mut run = Run::new(global);
+    let mut run = CommandContext::new(global);
     let mut cloud = if is_folder {
         pipeline::read_every_row(&arguments.input, &mut run)?
     } else {

@@ -3,12 +3,12 @@
 use super::heights::write_heights;
 use super::landmark::what;
 use super::{check_output, extension};
-use crate::arguments::{Global, ProtectedView};
-use crate::pipeline::{self, Points};
-use crate::run::Run;
+use crate::arguments::{Global, ProtectedViewArguments};
+use crate::pipeline::{self, KeepPoints};
+use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::Result;
-use belvedere::apps::ask::{self, Ask, Cells, Places, ProtectedViewFound, Scene, Shared};
+use belvedere::apps::ask::{self, Ask, GridCells, Places, ProtectedViewResults, Scene, SharedObject};
 use belvedere::figures::{MapLegend, MapMark, MapPicture, map_picture, ramp, write_png};
 use belvedere::ground::highest_points;
 use belvedere::query::UnprovenAs;
@@ -18,28 +18,28 @@ use std::path::Path;
 /// Colour of cells that no protected view crosses.
 const NO_LIMIT_COLOR: [u8; 3] = [226; 3];
 
-pub(crate) fn run(arguments: &ProtectedView, global: &Global) -> Result<Summary> {
+pub(crate) fn run(arguments: &ProtectedViewArguments, global: &Global) -> Result<Summary> {
     for output in &arguments.output {
         check_output("-o", output, &["tif", "tiff", "npy", "png"])?;
     }
     if let Some(output) = &arguments.tops {
         check_output("--tops", output, &["tif", "tiff", "npy"])?;
     }
-    let usual = ask::ProtectedView::default();
-    let mut question = ask::ProtectedView {
+    let usual = ask::ProtectedViewQuestion::default();
+    let mut question = ask::ProtectedViewQuestion {
         observer_height: arguments.eyes.height.unwrap_or(usual.observer_height),
         max_distance: arguments.max_distance,
         unproven: arguments.giving_way.unproven.map(UnprovenAs::from),
         ..usual
     };
     question.check()?;
-    let mut run = Run::new(global);
-    let scene = pipeline::scene(&arguments.scene, Points::Keep, &mut run)?;
-    question.landmark = Some(Shared::new(what::surface(&arguments.shape, &scene, &mut run)?.0));
+    let mut run = CommandContext::new(global);
+    let scene = pipeline::scene(&arguments.scene, KeepPoints::Keep, &mut run)?;
+    question.landmark = Some(SharedObject::new(what::surface(&arguments.shape, &scene, &mut run)?.0));
     question.observers = arguments.eyes.standing(&scene.cloud.frame)?;
     let ground = &arguments.eyes.ground;
-    let scene = scene.into_asked(Some(ground), arguments.giving_way.shell, &run)?;
-    let places = Places::Cells(Cells { cell: arguments.cell, ground: ground.points(), ..Cells::default() });
+    let scene = scene.into_question_scene(Some(ground), arguments.giving_way.shell, &run)?;
+    let places = Places::Cells(GridCells { cell: arguments.cell, ground: ground.points(), ..GridCells::default() });
     let answers = ask::ask(&scene, &question, &places, &run.control())?;
     run.answered(&answers);
     let found = &answers.found;
@@ -58,14 +58,14 @@ pub(crate) fn run(arguments: &ProtectedView, global: &Global) -> Result<Summary>
     Ok(run.finish())
 }
 
-fn write_map(output: &Path, found: &ProtectedViewFound, scene: &Scene) -> Result<()> {
+fn write_map(output: &Path, found: &ProtectedViewResults, scene: &Scene) -> Result<()> {
     let ground = &found.ground.ground;
     let relief = highest_points(&scene.ground_cloud()?.positions, ground);
     let heights = found.heights.values();
-    let most = heights.iter().copied().filter(|v| v.is_finite()).fold(0.0, f32::max).max(1.0);
+    let max = heights.iter().copied().filter(|v| v.is_finite()).fold(0.0, f32::max).max(1.0);
     // where no ground is known there is no answer; elsewhere a cell without a limit is one that no view crosses
     let color = |(&height, &ground): (&f32, &f32)| match height.is_finite() {
-        true => Some(ramp(f64::from(height / most))),
+        true => Some(ramp(f64::from(height / max))),
         false => ground.is_finite().then_some(NO_LIMIT_COLOR),
     };
     let colors: Vec<Option<[u8; 3]>> = heights.iter().zip(ground.heights.values()).map(color).collect();
@@ -82,7 +82,7 @@ fn write_map(output: &Path, found: &ProtectedViewFound, scene: &Scene) -> Result
         marks: &marks,
         mark_name: "observer",
         title: "Maximum height below the protected views",
-        legend: MapLegend::Ramp("metres above the ground", [0.0, f64::from(most)], &[(NO_LIMIT_COLOR, "no limit")]),
+        legend: MapLegend::Ramp("metres above the ground", [0.0, f64::from(max)], &[(NO_LIMIT_COLOR, "no limit")]),
     };
     Ok(write_png(output, &map_picture(&map)?)?)
 }

@@ -2,8 +2,8 @@
 
 use super::{NormalColumns, check_output, extension, is_las, mesh_targets, sights};
 use crate::arguments::{Global, Query, Usage};
-use crate::pipeline::{self, Points, Scene};
-use crate::run::Run;
+use crate::pipeline::{self, KeepPoints, LoadedScene};
+use crate::run::CommandContext;
 use crate::summary::{Summary, percent, rounded};
 use anyhow::{Result, bail};
 use belvedere::apps::ask;
@@ -33,8 +33,8 @@ pub(crate) fn run(arguments: &Query, global: &Global) -> Result<Summary> {
     if is_central && profile != Profile::Sphere {
         return Err(Usage("--ball-profile: the paper's cone is for parallel views only".to_owned()).into());
     }
-    let mut run = Run::new(global);
-    let points = if arguments.targets.own { Points::Keep } else { Points::LetGo };
+    let mut run = CommandContext::new(global);
+    let points = if arguments.targets.own { KeepPoints::Keep } else { KeepPoints::LetGo };
     let scene = pipeline::scene(&arguments.scene, points, &mut run)?;
     if arguments.unproven.is_some() && scene.model.pulses().is_none() {
         let what = "--unproven needs pulses: a cloud with known scanner positions (see `belvedere info`), or an .npz file from such a cloud";
@@ -48,7 +48,7 @@ pub(crate) fn run(arguments: &Query, global: &Global) -> Result<Summary> {
         pipeline::check_every_row(&scene.left_out)?;
     }
     let rows = rows_as_given(arguments, &scene, &mut run.summary)?;
-    let Scene { model, cloud, .. } = scene;
+    let LoadedScene { model, cloud, .. } = scene;
     let mut targets = targets(arguments, cloud, model.bounds(), &mut run)?;
     if arguments.view.kind.viewport.is_none() {
         // a view that fits the scene has no plane of its own that a target could lie before
@@ -106,7 +106,7 @@ pub(crate) fn run(arguments: &Query, global: &Global) -> Result<Summary> {
 }
 
 /// The rows of the targets as they were given, where they go from a table to a table.
-fn rows_as_given(arguments: &Query, scene: &Scene, summary: &mut Summary) -> Result<Option<TextRows>> {
+fn rows_as_given(arguments: &Query, scene: &LoadedScene, summary: &mut Summary) -> Result<Option<TextRows>> {
     let clouds = &arguments.scene.input.clouds;
     match (&arguments.targets.targets, &clouds[..]) {
         (Some(path), _) => text_rows_for(path, &arguments.output, summary),
@@ -117,7 +117,8 @@ fn rows_as_given(arguments: &Query, scene: &Scene, summary: &mut Summary) -> Res
     }
 }
 
-/// The rows of a table of points for an output that is a table too. Columns that another output has no place for are reported.
+/// The rows of a table of points for an output that is a table too. Columns that another output has no place for are
+/// reported.
 pub(super) fn text_rows_for(path: &Path, output: &Path, summary: &mut Summary) -> Result<Option<TextRows>> {
     let is_table = |path: &Path| ["csv", "txt", "xyz"].contains(&extension(path).as_str());
     if !is_table(path) {
@@ -140,7 +141,7 @@ fn by_lines_of_sight(
     model: &SceneModel,
     views: &[View],
     targets: &[[f32; 3]],
-    run: &mut Run,
+    run: &mut CommandContext,
     section: &mut Summary,
 ) -> Result<Vec<Answer>> {
     let usual = model.rule();
@@ -196,7 +197,7 @@ fn targets(
     arguments: &Query,
     scene: PointCloud,
     belvedere::Bounds { low, high }: belvedere::Bounds,
-    run: &mut Run,
+    run: &mut CommandContext,
 ) -> Result<PointCloud> {
     let frame = |positions| PointCloud { positions, ..PointCloud::in_frame(scene.frame.clone()) };
     if let Some(count) = arguments.targets.random {
@@ -212,7 +213,12 @@ fn targets(
 }
 
 /// The points of a file as a cloud in the frame of the scene, which is in `crs` where the file says nothing.
-pub(super) fn points_of_file(path: &Path, crs: Option<String>, frame: &Frame, run: &mut Run) -> Result<PointCloud> {
+pub(super) fn points_of_file(
+    path: &Path,
+    crs: Option<String>,
+    frame: &Frame,
+    run: &mut CommandContext,
+) -> Result<PointCloud> {
     let mut options = ReadOptions::new();
     options.crs = crs;
     let (cloud, report) =

@@ -1,13 +1,13 @@
 //! `belvedere shadow`.
 
-use super::targets::{Relief, Shown};
+use super::targets::{HighestPoints, TargetOutput};
 use super::{check_output, extension};
-use crate::arguments::{Global, Shadow, Usage};
+use crate::arguments::{Global, ShadowArguments, Usage};
 use crate::pipeline;
-use crate::run::Run;
+use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::Result;
-use belvedere::apps::ask::{self, Answers, NamedSun, ShadowFound, Suns, UNPROVEN};
+use belvedere::apps::ask::{self, Answers, NamedSun, ShadowResults, Suns, UNPROVEN};
 use belvedere::apps::shadow::Edges;
 use belvedere::apps::targets::Measure;
 use belvedere::figures::{MapLegend, MapPicture, Picture, map_picture, write_apng, write_png};
@@ -19,15 +19,15 @@ const HALF_COLOR: [u8; 3] = [147, 136, 93];
 const UNPROVEN_COLOR: [u8; 3] = [90, 150, 240];
 const LIT_COLOR: [u8; 3] = [255, 220, 90];
 
-pub(crate) fn run(arguments: &Shadow, global: &Global) -> Result<Summary> {
+pub(crate) fn run(arguments: &ShadowArguments, global: &Global) -> Result<Summary> {
     let question = question(arguments)?;
     check(arguments, &question)?;
-    let mut run = Run::new(global);
+    let mut run = CommandContext::new(global);
     let scene = pipeline::scene_of_places(&arguments.scene, &arguments.places, arguments.giving_way.shell, &mut run)?;
     let (places, source) = arguments.places.places(&scene, &mut run)?;
     let answers = ask::ask(&scene, &question, &places, &run.control())?;
     run.answered(&answers);
-    let shown = Shown::new(&answers.found.on, source, &scene);
+    let shown = TargetOutput::new(&answers.found.on, source, &scene);
     let maps = Maps::of(&answers);
     shown.write_with(&arguments.outputs, &answers.measures, &|relief| maps.draw(0, relief), &mut run)?;
     shown.write_edge_mask(arguments.places.edge_mask.as_deref(), &mut run)?;
@@ -43,14 +43,14 @@ pub(crate) fn run(arguments: &Shadow, global: &Global) -> Result<Summary> {
     Ok(run.finish())
 }
 
-fn question(arguments: &Shadow) -> Result<ask::Shadow> {
-    let Shadow { suns, when, sun, .. } = arguments;
+fn question(arguments: &ShadowArguments) -> Result<ask::ShadowQuestion> {
+    let ShadowArguments { suns, when, sun, .. } = arguments;
     let chosen = match (&suns.direction[..], &suns.time[..]) {
         ([], []) => Suns::Days(when.days()),
         ([], times) => Suns::Times(times.to_vec()),
         (directions, _) => Suns::Directions(directions.iter().map(|direction| direction.0).collect()),
     };
-    Ok(ask::Shadow {
+    Ok(ask::ShadowQuestion {
         suns: chosen,
         place: sun.place(&suns.north)?,
         edges: if suns.soft { Edges::Soft } else { Edges::Hard },
@@ -59,7 +59,7 @@ fn question(arguments: &Shadow) -> Result<ask::Shadow> {
     })
 }
 
-fn check(arguments: &Shadow, question: &ask::Shadow) -> Result<()> {
+fn check(arguments: &ShadowArguments, question: &ask::ShadowQuestion) -> Result<()> {
     arguments.places.check(&arguments.outputs)?;
     if matches!(&question.suns, Suns::Days(days) if days.is_empty()) {
         let what = "suns are missing: give --time TIME, --date DAY, --from and --to, or --sun AZ,EL";
@@ -86,7 +86,7 @@ struct Maps<'a> {
 }
 
 impl<'a> Maps<'a> {
-    fn of(answers: &'a Answers<ShadowFound>) -> Self {
+    fn of(answers: &'a Answers<ShadowResults>) -> Self {
         let suns = &answers.found.suns[..];
         let (measures, rest) = answers.measures.split_at(suns.len().min(answers.measures.len()));
         let doubts = rest.iter().find(|measure| measure.name == UNPROVEN).map(|measure| &measure.values[..]);
@@ -96,7 +96,7 @@ impl<'a> Maps<'a> {
     }
 
     /// The map of the sun of that number.
-    fn draw(&self, number: usize, relief: &Relief) -> belvedere::Result<Picture> {
+    fn draw(&self, number: usize, relief: &HighestPoints) -> belvedere::Result<Picture> {
         let doubts = self.doubts.filter(|_| number == 0);
         let color = |(row, &share): (usize, &f32)| match share {
             _ if doubts.and_then(|doubts| doubts.get(row)).is_some_and(|&doubt| doubt > 0.0) => Some(UNPROVEN_COLOR),
@@ -119,13 +119,13 @@ impl<'a> Maps<'a> {
             meanings.push((UNPROVEN_COLOR, "lit, unproven"));
         }
         let title = self.suns.get(number).map_or("", |sun| &sun.title);
-        let Relief { heights, cell, place } = relief;
+        let HighestPoints { heights, cell, place } = relief;
         map_picture(&MapPicture::of_colors(heights, *cell, Some(place), &colors, title, MapLegend::Colors(&meanings)))
     }
 }
 
 /// Writes a picture of each sun, after each other or apart.
-fn films(arguments: &Shadow, shown: &Shown<'_>, maps: &Maps<'_>, run: &Run) -> Result<()> {
+fn films(arguments: &ShadowArguments, shown: &TargetOutput<'_>, maps: &Maps<'_>, run: &CommandContext) -> Result<()> {
     let Some(relief) = shown.relief() else { return Ok(()) };
     if let Some(folder) = &arguments.frames {
         atomic::make_folder(folder)?;

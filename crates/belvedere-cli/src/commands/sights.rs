@@ -1,8 +1,8 @@
 //! What commands about views have in common: what blocks, and the earth.
 
 use crate::arguments::{Earth, GivingWay, Usage};
-use crate::pipeline::Scene;
-use crate::run::Run;
+use crate::pipeline::LoadedScene;
+use crate::run::CommandContext;
 use crate::summary::{Summary, rounded};
 use anyhow::Result;
 use belvedere::depth::Profile;
@@ -10,10 +10,10 @@ use belvedere::query::{BlockRule, EarthParams, MedialScene, UnprovenAs};
 
 /// Balls that lines of sight are cut with, and what to make of what is not proven; reported.
 pub(crate) fn proving_blockers(
-    scene: &Scene,
+    scene: &LoadedScene,
     profile: Profile,
     flags: &GivingWay,
-    run: &mut Run,
+    run: &mut CommandContext,
 ) -> Result<(MedialScene, UnprovenAs)> {
     if flags.unproven.is_some() && scene.model.pulses().is_none() {
         let what = "--unproven needs pulses: a cloud with known scanner positions (see `belvedere info`), or an .npz file from such a cloud";

@@ -1,28 +1,29 @@
 //! `belvedere simulate`: a town, a survey of it, and what is true about both.
 
 use crate::arguments::{Global, PatternChoice, ScannerChoice, Simulate, Usage};
-use crate::run::Run;
+use crate::run::CommandContext;
 use crate::simulated::{EPSG, SUNS_DEG, cloud_of, crs, write_text};
 use crate::summary::{Summary, percent, rounded, whole};
 use anyhow::{Result, bail};
 use belvedere::cloud::GpsTimeKind;
-use belvedere::io::{ExtraColumn, ExtraValues, Heading, atomic, write_cloud, write_trajectory};
+use belvedere::io::{ExtraColumn, ExtraValues, VehicleHeading, atomic, write_cloud, write_trajectory};
 use belvedere::trajectory::Trajectory;
 use belvedere::view::to_sun;
 use belvedere_scenes::{
-    AirborneParams, BeamParams, DENSITY, MirrorMotion, Scan, ScanPattern, Scene, Stations, TerrestrialParams, Truth,
-    blocks, scan_airborne, scan_terrestrial, town,
+    AirborneParams, BeamParams, DENSITY, MirrorMotion, Scan, ScanPattern, Stations, TerrestrialParams, TriangleScene,
+    Truth, blocks, scan_airborne, scan_terrestrial, town,
 };
 use std::path::Path;
 
-/// Most pulses: a scan of more would fill the memory of most machines, so that a slipped digit is an error and no crash.
-const MOST_PULSES: f64 = 5e8;
+/// Most pulses: a scan of more would fill the memory of most machines, so that a slipped digit is an error and no
+/// crash.
+const MAX_PULSES: f64 = 5e8;
 
 pub(crate) fn run(arguments: &Simulate, global: &Global) -> Result<Summary> {
     check_flags(arguments)?;
     check_pulses(arguments)?;
     let folder = &arguments.output;
-    let mut run = Run::new(global);
+    let mut run = CommandContext::new(global);
 
     let town_params = arguments.scene.params(arguments.extent, global.seed);
     let scene = run.compute("building town", || town(&town_params));
@@ -111,13 +112,13 @@ fn check_pulses(arguments: &Simulate) -> Result<()> {
             (stations * params.pulses_per_station() as f64, "use a larger --angle-step-deg or fewer --stations")
         }
     };
-    if count <= MOST_PULSES {
+    if count <= MAX_PULSES {
         return Ok(());
     }
-    Err(Usage(format!("{count:.1e} pulses are more than the {MOST_PULSES:.0e} that fit into memory; {advice}")).into())
+    Err(Usage(format!("{count:.1e} pulses are more than the {MAX_PULSES:.0e} that fit into memory; {advice}")).into())
 }
 
-fn airborne(arguments: &Simulate, scene: &Scene, seed: u64) -> AirborneParams {
+fn airborne(arguments: &Simulate, scene: &TriangleScene, seed: u64) -> AirborneParams {
     let flags = &arguments.airborne;
     let density = flags.density.unwrap_or(DENSITY);
     let usual = AirborneParams::default();
@@ -228,7 +229,7 @@ fn write_paths(folder: &Path, scan: &Scan) -> Result<Vec<&'static str>> {
     let trajectory = Trajectory { times: path.times.clone(), positions: path.positions.clone() };
     let mut files = vec!["trajectory.csv", "trajectory.sbet"];
     for name in &files {
-        let headings = Heading::Given(&path.headings);
+        let headings = VehicleHeading::Given(&path.headings);
         write_trajectory(&folder.join(name), &trajectory, GpsTimeKind::AdjustedStandard, &crs()?, headings)?;
     }
     if !scan.stations.is_empty() {
@@ -239,7 +240,7 @@ fn write_paths(folder: &Path, scan: &Scan) -> Result<Vec<&'static str>> {
 }
 
 /// Writes what was scanned; the names of the files.
-fn write_meshes(folder: &Path, scene: &Scene) -> Result<Vec<&'static str>> {
+fn write_meshes(folder: &Path, scene: &TriangleScene) -> Result<Vec<&'static str>> {
     let files = vec!["mesh.obj", "mesh.city.json", "blocks.obj"];
     let texts = [scene.to_obj(), scene.to_cityjson(&scene.parts, EPSG), blocks(scene).to_obj()];
     for (name, text) in files.iter().zip(texts) {

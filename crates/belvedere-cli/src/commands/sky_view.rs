@@ -1,24 +1,24 @@
 //! `belvedere sky-view`.
 
-use super::targets::Shown;
-use crate::arguments::{Global, PatchesChoice, SkyView};
+use super::targets::TargetOutput;
+use crate::arguments::{Global, PatchesChoice, SkyViewArguments};
 use crate::pipeline;
-use crate::run::Run;
+use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::Result;
 use belvedere::apps::ask::{self, Ask, SkyParts};
 
-pub(crate) fn run(arguments: &SkyView, global: &Global) -> Result<Summary> {
+pub(crate) fn run(arguments: &SkyViewArguments, global: &Global) -> Result<Summary> {
     arguments.places.check(&arguments.outputs)?;
     let sky = sky_parts(arguments.patches, arguments.directions);
-    let question = ask::SkyView { sky, trees: arguments.trees.choice()? };
+    let question = ask::SkyViewQuestion { sky, trees: arguments.trees.choice()? };
     question.check()?;
-    let mut run = Run::new(global);
+    let mut run = CommandContext::new(global);
     let scene = pipeline::scene_of_places(&arguments.scene, &arguments.places, arguments.shell.shell, &mut run)?;
     let (places, source) = arguments.places.places(&scene, &mut run)?;
     let answers = ask::ask(&scene, &question, &places, &run.control())?;
     run.answered(&answers);
-    let shown = Shown::new(&answers.found, source, &scene);
+    let shown = TargetOutput::new(&answers.found, source, &scene);
     shown.write(&arguments.outputs, &answers.measures, &mut run)?;
     shown.write_edge_mask(arguments.places.edge_mask.as_deref(), &mut run)?;
     Ok(run.finish())

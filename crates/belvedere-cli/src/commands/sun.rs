@@ -1,13 +1,13 @@
 //! Where on earth a scene lies, how clocks run there, and which days were typed.
 
-use crate::arguments::{ElevationChoice, North, SunPeriod, SunPlace, Usage};
+use crate::arguments::{ElevationChoice, NorthArguments, SunPeriod, SunPlaceArguments, Usage};
 use anyhow::Result;
 use belvedere::apps::ask;
 use belvedere::apps::sun::Refraction;
 
-impl SunPlace {
+impl SunPlaceArguments {
     /// What was typed, with the north of azimuths.
-    pub(crate) fn place(&self, north: &North) -> Result<ask::SunPlace> {
+    pub(crate) fn place(&self, north: &NorthArguments) -> Result<ask::SunPlace> {
         Ok(ask::SunPlace {
             location: self.location.as_ref().map(|location| location.0),
             zone: self.zone.clone(),
@@ -18,7 +18,7 @@ impl SunPlace {
 
     /// What was typed, where no azimuth is.
     pub(crate) fn place_from_true_north(&self) -> Result<ask::SunPlace> {
-        self.place(&North { grid_north: false })
+        self.place(&NorthArguments { grid_north: false })
     }
 
     /// By how much air lifts the sun.
@@ -45,7 +45,7 @@ impl SunPeriod {
             between: self.from.clone().zip(self.to.clone()).map(|(from, to)| [from, to]),
             year: Some(self.year),
             time_step_min: self.step,
-            min_sun_elevation_deg: self.least_elevation,
+            min_sun_elevation_deg: self.min_elevation,
         }
     }
 

@@ -1,13 +1,13 @@
 //! `belvedere sun-hours`.
 
 use super::check_output;
-use super::targets::Shown;
-use crate::arguments::{Global, SunHours, Usage};
+use super::targets::TargetOutput;
+use crate::arguments::{Global, SunHoursArguments, Usage};
 use crate::pipeline;
-use crate::run::Run;
+use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::{Result, bail};
-use belvedere::apps::ask::{self, Answers, Ask, Context, OnTargets, Places, Prepared, Scene};
+use belvedere::apps::ask::{self, Answers, Ask, Context, OnTargets, Places, PreparedSun, Scene};
 use belvedere::apps::rows::{RowBlock, fold_rows};
 use belvedere::apps::sun_hours::SunSums;
 use belvedere::apps::targets::Targets;
@@ -15,9 +15,9 @@ use belvedere::io::{MatrixHead, read_matrix_head, read_matrix_rows, write_matrix
 use belvedere::query::{VisibilityMatrix, scene_fingerprint};
 use std::path::Path;
 
-pub(crate) fn run(arguments: &SunHours, global: &Global) -> Result<Summary> {
+pub(crate) fn run(arguments: &SunHoursArguments, global: &Global) -> Result<Summary> {
     arguments.places.check(&arguments.outputs)?;
-    let question = ask::SunHours {
+    let question = ask::SunHoursQuestion {
         days: arguments.when.days(),
         rules: arguments.rule.clone(),
         place: arguments.sun.place_from_true_north()?,
@@ -32,7 +32,7 @@ pub(crate) fn run(arguments: &SunHours, global: &Global) -> Result<Summary> {
         let what = "--through-trees does not work with --save-matrix and --load-matrix: a matrix does not separate trees from other obstacles";
         return Err(Usage(what.to_owned()).into());
     }
-    let mut run = Run::new(global);
+    let mut run = CommandContext::new(global);
     let head = match &arguments.from_matrix {
         Some(path) => Some((path.as_path(), read_matrix_head(path)?)),
         None => None,
@@ -48,7 +48,7 @@ pub(crate) fn run(arguments: &SunHours, global: &Global) -> Result<Summary> {
         }
     };
     run.answered(&answers);
-    let shown = Shown::new(&answers.found, source, &scene);
+    let shown = TargetOutput::new(&answers.found, source, &scene);
     shown.write(&arguments.outputs, &answers.measures, &mut run)?;
     shown.write_edge_mask(arguments.places.edge_mask.as_deref(), &mut run)?;
     Ok(run.finish())
@@ -57,10 +57,10 @@ pub(crate) fn run(arguments: &SunHours, global: &Global) -> Result<Summary> {
 /// The sun at each target; what targets see of the directions is kept in a file.
 fn with_matrix(
     scene: &Scene,
-    question: &ask::SunHours,
+    question: &ask::SunHoursQuestion,
     places: &Places,
     file: &Path,
-    run: &Run,
+    run: &CommandContext,
 ) -> Result<Answers<OnTargets>> {
     let mut context = Context::default();
     let prepared = question.prepare(scene, places, None, &mut context, &run.control())?;
@@ -86,10 +86,10 @@ fn with_matrix(
 /// The sun at each target, from what an earlier run found that targets see.
 fn from_matrix(
     scene: &Scene,
-    question: &ask::SunHours,
+    question: &ask::SunHoursQuestion,
     places: &Places,
     (file, head): (&Path, &MatrixHead),
-    run: &Run,
+    run: &CommandContext,
 ) -> Result<Answers<OnTargets>> {
     let mut context = Context::default();
     let prepared = question.prepare(scene, places, Some(&head.directions), &mut context, &run.control())?;
@@ -117,7 +117,12 @@ fn from_matrix(
 }
 
 /// Adds rows of a matrix from number `first` on.
-fn add_rows(sums: &mut SunSums, prepared: &Prepared, first: usize, matrix: VisibilityMatrix) -> belvedere::Result<()> {
+fn add_rows(
+    sums: &mut SunSums,
+    prepared: &PreparedSun,
+    first: usize,
+    matrix: VisibilityMatrix,
+) -> belvedere::Result<()> {
     let block = RowBlock { rows: first..first + matrix.target_count(), matrix, without_trees: None };
     sums.add(&prepared.plan, &block, prepared.targets().normals.as_deref(), None)
 }

@@ -1,23 +1,23 @@
 //! `belvedere sun-position`.
 
 use super::{check_output, horizon::write_lines};
-use crate::arguments::{Global, SunPosition};
+use crate::arguments::{Global, SunPositionArguments};
 use crate::pipeline;
-use crate::run::Run;
+use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::Result;
 use belvedere::apps::ask::{self, Ask, Places};
 use belvedere::model::{ModelParts, SceneModel};
 use std::sync::Arc;
 
-pub(crate) fn run(arguments: &SunPosition, global: &Global) -> Result<Summary> {
+pub(crate) fn run(arguments: &SunPositionArguments, global: &Global) -> Result<Summary> {
     if let Some(output) = &arguments.output {
         check_output("-o", output, &["csv"])?;
     }
     let place = arguments.sun.place_from_true_north()?;
-    let question = ask::SunPosition { times: arguments.times.clone(), place };
+    let question = ask::SunPositionQuestion { times: arguments.times.clone(), place };
     question.check()?;
-    let mut run = Run::new(global);
+    let mut run = CommandContext::new(global);
     let cloud = pipeline::read(&arguments.input, &mut run)?;
     let bounds = pipeline::bounds_of(&cloud)?;
     let parts = ModelParts { frame: cloud.frame.clone(), bounds, ..ModelParts::default() };

@@ -1,19 +1,19 @@
 //! Eyes of isovists and horizons: from flags and files to places.
 
 use super::extension;
-use crate::arguments::{Eyes, FarTerrain, Place, SceneInput};
-use crate::pipeline::{self, Points};
-use crate::run::Run;
+use crate::arguments::{EyesArguments, FarTerrainArguments, MapPosition, SceneInput};
+use crate::pipeline::{self, KeepPoints};
+use crate::run::CommandContext;
 use anyhow::Result;
 use belvedere::Frame;
 use belvedere::apps::ask::{self, Standing};
 use belvedere::io::{RowsAre, TextRows, read_observers, read_table};
 use std::path::Path;
 
-impl Eyes {
+impl EyesArguments {
     /// The observers that were typed or are in the file named.
     pub(super) fn standing(&self, frame: &Frame) -> Result<Vec<Standing>> {
-        let typed = |&Place([x, y], z): &Place| Standing {
+        let typed = |&MapPosition([x, y], z): &MapPosition| Standing {
             place: frame.local_from_file([x, y, z.unwrap_or(f64::NAN)]),
             height: None,
         };
@@ -29,19 +29,24 @@ impl Eyes {
     }
 
     /// The scene around the observers, before far terrain if there is any.
-    pub(super) fn scene(&self, input: &SceneInput, far: Option<&FarTerrain>, run: &mut Run) -> Result<ask::Scene> {
+    pub(super) fn scene(
+        &self,
+        input: &SceneInput,
+        far: Option<&FarTerrainArguments>,
+        run: &mut CommandContext,
+    ) -> Result<ask::Scene> {
         let needs_ground = self.eyes.is_some() || self.eye.iter().any(|place| place.1.is_none());
-        let points = if needs_ground { Points::Keep } else { Points::LetGo };
+        let points = if needs_ground { KeepPoints::Keep } else { KeepPoints::LetGo };
         let mut scene = pipeline::scene(input, points, run)?;
         if let Some(far) = far {
             far.set(&mut scene, run)?;
         }
-        scene.into_asked(needs_ground.then_some(&self.ground), None, run)
+        scene.into_question_scene(needs_ground.then_some(&self.ground), None, run)
     }
 }
 
 /// How many observers there are at least: those typed, or the rows of a table; one for other files.
-pub(super) fn least_count(typed: usize, observers: Option<&Path>) -> Result<usize> {
+pub(super) fn min_count(typed: usize, observers: Option<&Path>) -> Result<usize> {
     Ok(typed.max(rows_as_given(observers)?.row_count()).max(1))
 }
 

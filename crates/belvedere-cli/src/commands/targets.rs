@@ -5,10 +5,10 @@ use super::query::{points_of_file, text_rows_for};
 use super::{check_output, extension};
 use crate::arguments::{FacingChoice, GroundChoice, SkyOutputs, SkyPlaces, Usage};
 use crate::pipeline::mesh_in;
-use crate::run::Run;
+use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::Result;
-use belvedere::apps::ask::{Cells, OnTargets, Places, Scene, Turned};
+use belvedere::apps::ask::{GridCells, OnTargets, Places, Scene, Turned};
 use belvedere::apps::targets::{CellLevel, Facing, Measure, MeshParams};
 use belvedere::figures::{Picture, write_png};
 use belvedere::ground::{GroundPoints, highest_points};
@@ -20,7 +20,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// What targets were taken from.
-pub(crate) enum Source {
+pub(crate) enum TargetSource {
     Cells,
     /// The points of the scene.
     Own,
@@ -30,14 +30,14 @@ pub(crate) enum Source {
 }
 
 /// Targets of which something was found, to be shown.
-pub(crate) struct Shown<'a> {
+pub(crate) struct TargetOutput<'a> {
     on: &'a OnTargets,
-    source: Source,
+    source: TargetSource,
     scene: &'a Scene,
 }
 
 /// Heights of the highest points of cells, and where these lie.
-pub(crate) struct Relief {
+pub(crate) struct HighestPoints {
     pub(crate) heights: Raster<f32>,
     /// Side of a cell, metres.
     pub(crate) cell: f64,
@@ -99,27 +99,27 @@ impl SkyPlaces {
     }
 
     /// The places that were typed, and what they are taken from.
-    pub(crate) fn places(&self, scene: &Scene, run: &mut Run) -> Result<(Places, Source)> {
+    pub(crate) fn places(&self, scene: &Scene, run: &mut CommandContext) -> Result<(Places, TargetSource)> {
         let Some(path) = &self.places.targets else {
             if self.places.own {
                 let is_turned = self.facing == Some(FacingChoice::Normals);
-                return Ok((Places::Own(if is_turned { Turned::Normals } else { Turned::Level }), Source::Own));
+                return Ok((Places::Own(if is_turned { Turned::Normals } else { Turned::Level }), TargetSource::Own));
             }
-            let cells = Cells {
+            let cells = GridCells {
                 cell: self.cell,
                 level: if self.places.surface { CellLevel::Surface } else { CellLevel::Ground },
                 height: self.height.map(f64::from),
                 ground: self.ground.points(),
-                ..Cells::default()
+                ..GridCells::default()
             };
-            return Ok((Places::Cells(cells), Source::Cells));
+            return Ok((Places::Cells(cells), TargetSource::Cells));
         };
         if mesh_targets::is_mesh(path) {
             let mesh = Arc::new(mesh_in(path, &scene.frame().crs, run)?);
             let facing = if self.facing == Some(FacingChoice::Level) { Facing::Level } else { Facing::Normals };
             let usual = MeshParams::default().with_seed(run.seed).with_facing(facing);
             let params = self.spacing.map_or(usual, |spacing| usual.with_spacing(spacing));
-            return Ok((Places::Mesh(Arc::clone(&mesh), params), Source::Mesh(mesh)));
+            return Ok((Places::Mesh(Arc::clone(&mesh), params), TargetSource::Mesh(mesh)));
         }
         let cloud = Arc::new(points_of_file(path, None, scene.frame(), run)?);
         let normals = match (self.facing, &cloud.attributes.normals) {
@@ -130,27 +130,31 @@ impl SkyPlaces {
             (Some(FacingChoice::Normals), Some(normals)) => Some(normals.clone()),
             _ => None,
         };
-        Ok((Places::Cloud(Arc::clone(&cloud), normals), Source::File(cloud, path.clone())))
+        Ok((Places::Cloud(Arc::clone(&cloud), normals), TargetSource::File(cloud, path.clone())))
     }
 }
 
-impl<'a> Shown<'a> {
-    pub(crate) fn new(on: &'a OnTargets, source: Source, scene: &'a Scene) -> Self {
+impl<'a> TargetOutput<'a> {
+    pub(crate) fn new(on: &'a OnTargets, source: TargetSource, scene: &'a Scene) -> Self {
         Self { on, source, scene }
     }
 
     /// What maps are drawn on; `None` where targets are no cells.
-    pub(crate) fn relief(&self) -> Option<Relief> {
+    pub(crate) fn relief(&self) -> Option<HighestPoints> {
         let (ground, cloud) = (self.on.targets.ground()?, self.scene.ground_cloud().ok()?);
         let mut heights = highest_points(&cloud.positions, ground);
         if let Some(added) = self.scene.model().added() {
             added.raise(&mut heights, &ground.grid);
         }
-        Some(Relief { heights, cell: ground.grid.cell, place: georeference(&ground.grid, &self.on.targets.frame) })
+        Some(HighestPoints {
+            heights,
+            cell: ground.grid.cell,
+            place: georeference(&ground.grid, &self.on.targets.frame),
+        })
     }
 
     /// Writes which cells are near the edge of the cloud.
-    pub(crate) fn write_edge_mask(&self, path: Option<&Path>, run: &mut Run) -> Result<()> {
+    pub(crate) fn write_edge_mask(&self, path: Option<&Path>, run: &mut CommandContext) -> Result<()> {
         let (Some(path), Some(ground)) = (path, self.on.targets.ground()) else { return Ok(()) };
         let values = self.on.near_edge.iter().map(|&flag| ResultKind::answer(flag)).collect();
         let raster = Raster::from_values(ground.grid.width, ground.grid.height, values)?;
@@ -163,9 +167,10 @@ impl<'a> Shown<'a> {
     }
 
     /// Writes all measures to each of the outputs; maps show the first.
-    pub(crate) fn write(&self, outputs: &SkyOutputs, measures: &[Measure], run: &mut Run) -> Result<()> {
-        let map =
-            |relief: &Relief| measure_map(&measures[0], &relief.heights, relief.cell, &relief.place, &self.on.title);
+    pub(crate) fn write(&self, outputs: &SkyOutputs, measures: &[Measure], run: &mut CommandContext) -> Result<()> {
+        let map = |relief: &HighestPoints| {
+            measure_map(&measures[0], &relief.heights, relief.cell, &relief.place, &self.on.title)
+        };
         self.write_with(outputs, measures, &map, run)
     }
 
@@ -174,8 +179,8 @@ impl<'a> Shown<'a> {
         &self,
         outputs: &SkyOutputs,
         measures: &[Measure],
-        map: &dyn Fn(&Relief) -> belvedere::Result<Picture>,
-        run: &mut Run,
+        map: &dyn Fn(&HighestPoints) -> belvedere::Result<Picture>,
+        run: &mut CommandContext,
     ) -> Result<()> {
         let mut written: Vec<String> = Vec::new();
         for output in &outputs.output {
@@ -184,7 +189,7 @@ impl<'a> Shown<'a> {
             run.summary.add_all(section);
             written.push(output.display().to_string());
         }
-        if let (Some(folder), Source::Cells) = (&outputs.measures, &self.source) {
+        if let (Some(folder), TargetSource::Cells) = (&outputs.measures, &self.source) {
             atomic::make_folder(folder)?;
             for measure in measures {
                 let path = folder.join(format!("{}.tif", measure.name));
@@ -200,21 +205,21 @@ impl<'a> Shown<'a> {
         &self,
         output: &Path,
         measures: &[Measure],
-        map: &dyn Fn(&Relief) -> belvedere::Result<Picture>,
+        map: &dyn Fn(&HighestPoints) -> belvedere::Result<Picture>,
         summary: &mut Summary,
     ) -> Result<()> {
         if let (Some(relief), "png") = (self.relief(), extension(output).as_str()) {
             return Ok(write_png(output, &map(&relief)?)?);
         }
         let rows = match &self.source {
-            Source::File(_, file) => text_rows_for(file, output, summary)?,
+            TargetSource::File(_, file) => text_rows_for(file, output, summary)?,
             _ => None,
         };
         let from = match &self.source {
-            Source::Cells => TakenFrom::Nothing,
-            Source::Own => TakenFrom::Cloud(self.scene.cloud()),
-            Source::File(cloud, _) => rows.as_ref().map_or(TakenFrom::Cloud(cloud), TakenFrom::Rows),
-            Source::Mesh(mesh) => TakenFrom::Mesh(mesh),
+            TargetSource::Cells => TakenFrom::Nothing,
+            TargetSource::Own => TakenFrom::Cloud(self.scene.cloud()),
+            TargetSource::File(cloud, _) => rows.as_ref().map_or(TakenFrom::Cloud(cloud), TakenFrom::Rows),
+            TargetSource::Mesh(mesh) => TakenFrom::Mesh(mesh),
         };
         summary.add_writing(&write_measures(output, &self.on.targets, from, measures)?);
         Ok(())

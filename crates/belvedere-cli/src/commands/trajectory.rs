@@ -1,15 +1,15 @@
 //! `belvedere trajectory`.
 
 use super::check_output;
-use crate::arguments::{Global, Trajectory, Usage};
+use crate::arguments::{Global, TrajectoryArguments, Usage};
 use crate::pipeline;
-use crate::run::Run;
+use crate::run::CommandContext;
 use crate::summary::{Summary, sections};
 use anyhow::Result;
 use belvedere::io::write_found_trajectory;
 use belvedere::pulses::{LocateParams, Means, locate, path_samples};
 
-pub(crate) fn run(arguments: &Trajectory, global: &Global) -> Result<Summary> {
+pub(crate) fn run(arguments: &TrajectoryArguments, global: &Global) -> Result<Summary> {
     check_output("-o", &arguments.output, &["csv", "txt"])?;
     if !(0.01..=2.0).contains(&arguments.step) {
         let step = arguments.step;
@@ -18,7 +18,7 @@ pub(crate) fn run(arguments: &Trajectory, global: &Global) -> Result<Summary> {
         ))
         .into());
     }
-    let mut run = Run::new(global);
+    let mut run = CommandContext::new(global);
     let cloud = pipeline::read(&arguments.input, &mut run)?;
     let (_, report) = run.stage("estimating scanner positions", 0, |control| {
         locate(&cloud, &Means::Pulses, &LocateParams::default(), control)

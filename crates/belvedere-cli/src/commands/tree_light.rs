@@ -1,11 +1,11 @@
 //! What gets through trees, as typed.
 
-use crate::arguments::{LeavesChoice, ThroughTrees, ThroughTreesChoice, Usage};
+use crate::arguments::{LeavesChoice, ThroughTreesArguments, ThroughTreesChoice, Usage};
 use anyhow::Result;
 use belvedere::apps::ask;
 use belvedere::apps::tree_light::Leaves;
 
-impl ThroughTrees {
+impl ThroughTreesArguments {
     /// What was typed.
     pub(crate) fn choice(&self) -> Result<ask::ThroughTrees> {
         if self.leaves.is_some() && self.through_trees != ThroughTreesChoice::Seasons {

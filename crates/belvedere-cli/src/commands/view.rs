@@ -2,11 +2,11 @@
 
 use super::check_output;
 use super::mesh_targets::is_mesh;
-use crate::arguments::{Global, MethodChoice, Place, SceneInput, Usage, ViewPage};
+use crate::arguments::{Global, MapPosition, MethodChoice, SceneInput, Usage, ViewPage};
 use crate::interrupt;
 use crate::memory::available_bytes;
-use crate::pipeline::{self, Points, is_file, params};
-use crate::run::Run;
+use crate::pipeline::{self, KeepPoints, is_file, params};
+use crate::run::CommandContext;
 use crate::summary::{Summary, note};
 use crate::written_files::check_input;
 use anyhow::{Context, Result, anyhow};
@@ -16,13 +16,14 @@ use belvedere::model::SceneModel;
 use belvedere::query::{AddedMeshes, Coverage};
 use belvedere::{Bounds, Error, Frame, PointCloud};
 use belvedere_tiles::{Plan, merged_within};
-use belvedere_viewer::{ExportParams, Loading, PointsOf, SceneText, Viewer, ViewerParams, export, quoted};
+use belvedere_viewer::{ExportParams, Loading, PageServer, PointsOf, SceneText, ViewerParams, export, quoted};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// Memory that making balls takes beside the cloud, bytes for each of its points: 600 were measured with 10 million points of AHN3.
+/// Memory that making balls takes beside the cloud, bytes for each of its points: 600 were measured with 10 million
+/// points of AHN3.
 const BYTES_PER_POINT: u64 = 650;
 /// How long a page may take to open and to read why nothing is shown.
 const PATIENCE: Duration = Duration::from_secs(3);
@@ -34,14 +35,14 @@ pub(crate) fn run(arguments: &ViewPage, global: &Global) -> Result<Summary> {
     files.iter().try_for_each(|path| check_input(path))?;
     let files = Files::of(files)?;
     refuse_flags_of_files(arguments)?;
-    Place::refuse_twice("--observer", &arguments.observer)?;
+    MapPosition::refuse_twice("--observer", &arguments.observer)?;
     if let Some(output) = &arguments.export {
         return write_page(output, arguments, &files, global);
     }
     let scene = SceneText { input: files.typed(), cloud_beside: files.cloud_beside() };
     let title = title(&arguments.scene.input.clouds);
     let params = ViewerParams { port: arguments.port.unwrap_or(0), scene, title };
-    let viewer = Viewer::start(&params).context("--port: the program cannot listen there")?;
+    let viewer = PageServer::start(&params).context("--port: the program cannot listen there")?;
     print_url(&viewer.url(), global)?;
     if !arguments.no_browser
         && let Err(error) = viewer.open_browser()
@@ -49,7 +50,7 @@ pub(crate) fn run(arguments: &ViewPage, global: &Global) -> Result<Summary> {
         note(&format!("the browser cannot be opened ({error}): open the address above"));
     }
     let loading = viewer.loading();
-    let mut run = Run::watched(global, loading.clone());
+    let mut run = CommandContext::watched(global, loading.clone());
     match load(&arguments.scene, &files, &loading, &|_, _| Ok(()), &mut run) {
         Ok((_, model)) => {
             run.summary.print_remarks(global);
@@ -136,7 +137,7 @@ fn write_page(output: &Path, arguments: &ViewPage, files: &Files, global: &Globa
     let date = arguments.date.as_deref().map(Date::parse).transpose()?;
     let zone = arguments.zone.as_deref().map(Zone::parse).transpose()?;
     let loading = Loading::default();
-    let mut run = Run::new(global);
+    let mut run = CommandContext::new(global);
     let day = |frame: &Frame, bounds: &Bounds| -> Result<Option<(Date, Zone)>> {
         Ok(match (date, &zone) {
             (None, _) => None,
@@ -163,7 +164,7 @@ fn write_page(output: &Path, arguments: &ViewPage, files: &Files, global: &Globa
         title: title(&arguments.scene.input.clouds),
         scene: SceneText { input: files.typed(), cloud_beside: files.cloud_beside() },
         day,
-        viewpoints: arguments.observer.iter().map(|&Place([x, y], z)| [x, y, z.unwrap_or(f64::NAN)]).collect(),
+        viewpoints: arguments.observer.iter().map(|&MapPosition([x, y], z)| [x, y, z.unwrap_or(f64::NAN)]).collect(),
     };
     let (page, report) = run.stage("making the page", 0, |control| export(&cloud, model, &params, control))?;
     run.stage("writing", 0, |_| {
@@ -217,7 +218,8 @@ impl Files {
         }
     }
 
-    /// The scene as other commands take it: its files, and the flags that were typed unless a ball file holds what they say.
+    /// The scene as other commands take it: its files, and the flags that were typed unless a ball file holds what they
+    /// say.
     fn typed(&self) -> String {
         if let Some(balls) = &self.balls {
             return quoted(&balls.to_string_lossy());
@@ -245,7 +247,7 @@ fn load(
     files: &Files,
     loading: &Loading,
     check: &Check<'_>,
-    run: &mut Run,
+    run: &mut CommandContext,
 ) -> Result<(Option<Arc<PointCloud>>, SceneModel)> {
     if !arguments.plan.clear.is_empty() {
         return Err(Usage("--clear: the page shows the cloud as it is; use the commands for maps".to_owned()).into());
@@ -269,7 +271,7 @@ fn load(
         return Ok((Some(cloud), pipeline::planned(model, &arguments.plan, run)?));
     };
     input.input.clouds = vec![balls.clone()];
-    let scene = pipeline::scene(&input, Points::Keep, run)?;
+    let scene = pipeline::scene(&input, KeepPoints::Keep, run)?;
     let bounds = scene.model.bounds();
     show_meshes(files, &arguments.plan.add, (scene.model.frame(), &bounds), loading, run)?;
     show_results(files, scene.model.frame(), &bounds, loading, run)?;
@@ -291,7 +293,7 @@ fn show_meshes(
     planned: &[PathBuf],
     (frame, bounds): (&Frame, &Bounds),
     loading: &Loading,
-    run: &mut Run,
+    run: &mut CommandContext,
 ) -> Result<()> {
     for path in files.meshes.iter().chain(planned) {
         let mesh = pipeline::mesh_in(path, &frame.crs, run)?;
@@ -307,7 +309,13 @@ fn show_meshes(
     Ok(())
 }
 
-fn show_results(files: &Files, frame: &Frame, bounds: &Bounds, loading: &Loading, run: &mut Run) -> Result<()> {
+fn show_results(
+    files: &Files,
+    frame: &Frame,
+    bounds: &Bounds,
+    loading: &Loading,
+    run: &mut CommandContext,
+) -> Result<()> {
     for path in &files.results {
         run.stage("reading results", 0, |_| {
             if has_extension(path, &["tif", "tiff"]) {

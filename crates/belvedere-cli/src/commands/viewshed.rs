@@ -6,14 +6,14 @@ mod who;
 use super::far_terrain::set_terrain;
 use super::heights::write_heights;
 use super::{check_output, warn_of_geojson};
-use crate::arguments::{Global, Viewshed};
-use crate::pipeline::{self, Points};
-use crate::run::Run;
+use crate::arguments::{Global, ViewshedArguments};
+use crate::pipeline::{self, KeepPoints};
+use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::Result;
-use belvedere::apps::ask::{self, Ask, Places, Scene, ViewshedFound, ViewshedTargets};
+use belvedere::apps::ask::{self, Ask, Places, Scene, ViewshedResults, ViewshedTargets};
 use belvedere::query::UnprovenAs;
-use results::{Field, SeenCells, on_points, write_masks};
+use results::{CellSurface, SeenCells, on_points, write_masks};
 use std::path::{Path, PathBuf};
 
 /// Outputs that hold points rather than cells.
@@ -21,17 +21,17 @@ const OF_POINTS: [&str; 4] = ["laz", "las", "ply", "csv"];
 /// What --heights writes.
 const VISIBLE_HEIGHTS: &str = "minimum visible height above the ground in metres; -9999: none, or nodata";
 
-pub(crate) fn run(arguments: &Viewshed, global: &Global) -> Result<Summary> {
+pub(crate) fn run(arguments: &ViewshedArguments, global: &Global) -> Result<Summary> {
     check_outputs(arguments)?;
     who::check(arguments)?;
     let mut question = question(arguments)?;
     question.check()?;
-    let mut run = Run::new(global);
-    let mut scene = pipeline::scene(&arguments.scene, Points::Keep, &mut run)?;
+    let mut run = CommandContext::new(global);
+    let mut scene = pipeline::scene(&arguments.scene, KeepPoints::Keep, &mut run)?;
     if let Some(path) = &arguments.terrain {
         set_terrain(path, &mut scene, &mut run)?;
     }
-    let scene = scene.into_asked(Some(&arguments.ground), arguments.giving_way.shell, &run)?;
+    let scene = scene.into_question_scene(Some(&arguments.ground), arguments.giving_way.shell, &run)?;
     let areas: Vec<PathBuf> = arguments.output.iter().chain(&arguments.far_output).cloned().collect();
     warn_of_geojson(&areas, &scene.frame().crs, &mut run.summary);
     question.observers = who::observers(arguments, scene.frame())?;
@@ -44,7 +44,7 @@ pub(crate) fn run(arguments: &Viewshed, global: &Global) -> Result<Summary> {
     Ok(run.finish())
 }
 
-fn question(arguments: &Viewshed) -> Result<ask::Viewshed> {
+fn question(arguments: &ViewshedArguments) -> Result<ask::ViewshedQuestion> {
     let looking = &arguments.looking;
     let mut targets = Vec::new();
     if arguments.output.iter().any(|path| !is_of_points(path)) {
@@ -56,7 +56,7 @@ fn question(arguments: &Viewshed) -> Result<ask::Viewshed> {
     if !arguments.far_output.is_empty() {
         targets.push(ViewshedTargets::FarTerrain);
     }
-    Ok(ask::Viewshed {
+    Ok(ask::ViewshedQuestion {
         // they need the frame of the scene
         observers: Vec::new(),
         reverse: arguments.who.target.is_some(),
@@ -78,7 +78,7 @@ fn is_of_points(path: &Path) -> bool {
     OF_POINTS.contains(&super::extension(path).as_str())
 }
 
-fn check_outputs(arguments: &Viewshed) -> Result<()> {
+fn check_outputs(arguments: &ViewshedArguments) -> Result<()> {
     for output in &arguments.output {
         check_output("-o", output, &["tif", "tiff", "png", "geojson", "laz", "las", "ply", "csv"])?;
     }
@@ -94,11 +94,16 @@ fn check_outputs(arguments: &Viewshed) -> Result<()> {
     Ok(())
 }
 
-fn write(arguments: &Viewshed, found: &ViewshedFound, scene: &Scene, run: &mut Run) -> Result<()> {
+fn write(
+    arguments: &ViewshedArguments,
+    found: &ViewshedResults,
+    scene: &Scene,
+    run: &mut CommandContext,
+) -> Result<()> {
     let (ground, cloud, frame) = (&found.ground.ground, scene.ground_cloud()?, scene.frame());
     let (eyes, is_reverse) = (&found.eyes[..], found.reverse);
     if let Some(seen) = &found.cells {
-        let cells = SeenCells { seen, eyes, frame, on: Field::Ground(ground, cloud), is_reverse };
+        let cells = SeenCells { seen, eyes, frame, on: CellSurface::Ground(ground, cloud), is_reverse };
         for output in arguments.output.iter().filter(|path| !is_of_points(path)) {
             run.stage("writing", 0, |_| cells.write(output))?;
         }
@@ -113,7 +118,7 @@ fn write(arguments: &Viewshed, found: &ViewshedFound, scene: &Scene, run: &mut R
         }
     }
     if let Some(far) = &found.far {
-        let cells = SeenCells { seen: &far.seen, eyes, frame, on: Field::Terrain(&far.terrain), is_reverse };
+        let cells = SeenCells { seen: &far.seen, eyes, frame, on: CellSurface::Terrain(&far.terrain), is_reverse };
         for output in &arguments.far_output {
             run.stage("writing", 0, |_| cells.write(output))?;
         }

@@ -4,21 +4,21 @@ mod results;
 
 use super::windows::{FaceChoice, WindowFile};
 use super::{check_output, extension, warn_of_geojson};
-use crate::arguments::{Global, Usage, WindowViews};
-use crate::pipeline::{self, Points, Scene};
-use crate::run::Run;
+use crate::arguments::{Global, Usage, WindowViewsArguments};
+use crate::pipeline::{self, KeepPoints, LoadedScene};
+use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::{Result, bail};
 use belvedere::Error;
 use belvedere::apps::ask::{self, Ask, Places};
-use belvedere::apps::window_views::{Seen, are_made_from};
+use belvedere::apps::window_views::{SeenKind, are_made_from};
 use belvedere::query::UnprovenAs;
-use results::Shown;
+use results::WindowOutput;
 
-pub(crate) fn run(arguments: &WindowViews, global: &Global) -> Result<Summary> {
+pub(crate) fn run(arguments: &WindowViewsArguments, global: &Global) -> Result<Summary> {
     check(arguments)?;
-    let usual = ask::WindowViews::default();
-    let mut question = ask::WindowViews {
+    let usual = ask::WindowViewsQuestion::default();
+    let mut question = ask::WindowViewsQuestion {
         north: arguments.north.choice(),
         spacing: arguments.spacing.unwrap_or(usual.spacing),
         seed: global.seed,
@@ -28,8 +28,8 @@ pub(crate) fn run(arguments: &WindowViews, global: &Global) -> Result<Summary> {
         ..usual
     };
     question.check()?;
-    let mut run = Run::new(global);
-    let mut scene = pipeline::scene(&arguments.scene, Points::Keep, &mut run)?;
+    let mut run = CommandContext::new(global);
+    let mut scene = pipeline::scene(&arguments.scene, KeepPoints::Keep, &mut run)?;
     arguments.far.set(&mut scene, &mut run)?;
     take_classes(arguments, &mut scene, &mut run)?;
     if scene.cloud.is_empty() && arguments.output.iter().any(|output| extension(output) == "png") {
@@ -43,13 +43,13 @@ pub(crate) fn run(arguments: &WindowViews, global: &Global) -> Result<Summary> {
         bail!("--buildings: {path} does not name buildings; a table needs the column name, a mesh named objects");
     }
     question.windows = file.given.clone();
-    let scene = scene.into_asked(None, arguments.giving_way.shell, &run)?;
+    let scene = scene.into_question_scene(None, arguments.giving_way.shell, &run)?;
     let answers = ask::ask(&scene, &question, &Places::Scene, &run.control()).map_err(|error| match error {
         Error::NoObserver { .. } => anyhow::Error::from(error).context(arguments.windows.display().to_string()),
         other => other.into(),
     })?;
     run.answered(&answers);
-    let shown = Shown {
+    let shown = WindowOutput {
         scene: &scene,
         columns: file.columns(&answers.found.windows, scene.frame(), answers.found.grid_north),
         names: file.buildings(&answers.found.names),
@@ -59,7 +59,7 @@ pub(crate) fn run(arguments: &WindowViews, global: &Global) -> Result<Summary> {
     };
     for output in &arguments.output {
         if extension(output) == "png" {
-            let seen = arguments.map_of.unwrap_or(Seen::Vegetation);
+            let seen = arguments.map_of.unwrap_or(SeenKind::Vegetation);
             let title = arguments.far.titled(&format!("View from windows: {}", seen.name()));
             shown.write_map(output, &title, seen, &mut run)?;
         } else {
@@ -75,7 +75,7 @@ pub(crate) fn run(arguments: &WindowViews, global: &Global) -> Result<Summary> {
     Ok(run.finish())
 }
 
-fn check(arguments: &WindowViews) -> Result<()> {
+fn check(arguments: &WindowViewsArguments) -> Result<()> {
     for output in &arguments.output {
         check_output("-o", output, &["csv", "geojson", "laz", "las", "ply", "png"])?;
     }
@@ -89,7 +89,7 @@ fn check(arguments: &WindowViews) -> Result<()> {
 }
 
 /// Gives the scene of a ball file the cloud that its balls were built from.
-fn take_classes(arguments: &WindowViews, scene: &mut Scene, run: &mut Run) -> Result<()> {
+fn take_classes(arguments: &WindowViewsArguments, scene: &mut LoadedScene, run: &mut CommandContext) -> Result<()> {
     let Some(path) = &arguments.classes_of else { return Ok(()) };
     if !scene.cloud.is_empty() {
         return Err(

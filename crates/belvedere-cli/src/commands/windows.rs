@@ -4,16 +4,16 @@ use super::landmark::what::objects_of;
 use super::mesh_targets::is_mesh;
 use crate::arguments::Usage;
 use crate::pipeline::mesh_in;
-use crate::run::Run;
+use crate::run::CommandContext;
 use anyhow::{Result, bail};
 use belvedere::Frame;
-use belvedere::apps::ask::{GivenWindow, GivenWindows, Shared};
+use belvedere::apps::ask::{GivenWindow, GivenWindows, SharedObject};
 use belvedere::apps::targets::Window;
 use belvedere::io::{TextRows, read_table};
 use std::path::Path;
 
 /// Name, values and decimals.
-pub(crate) type Column = (&'static str, Vec<f64>, usize);
+pub(crate) type WindowColumn = (&'static str, Vec<f64>, usize);
 
 /// Which faces of a mesh are windows, and how they are cut.
 pub(crate) struct FaceChoice<'a> {
@@ -27,17 +27,17 @@ pub(crate) struct FaceChoice<'a> {
 pub(crate) struct WindowFile {
     pub(crate) given: GivenWindows,
     /// What a table says of each window.
-    columns: Vec<Column>,
+    columns: Vec<WindowColumn>,
     /// The rows of a table.
     pub(crate) rows: TextRows,
 }
 
 impl WindowFile {
     /// Windows of a table, or the faces of a mesh, in a frame.
-    pub(crate) fn read(path: &Path, choice: &FaceChoice<'_>, frame: &Frame, run: &mut Run) -> Result<Self> {
+    pub(crate) fn read(path: &Path, choice: &FaceChoice<'_>, frame: &Frame, run: &mut CommandContext) -> Result<Self> {
         if is_mesh(path) {
             let mesh = objects_of(mesh_in(path, &frame.crs, run)?, choice.objects, path)?;
-            let given = GivenWindows::Faces(Shared::new(mesh));
+            let given = GivenWindows::Faces(SharedObject::new(mesh));
             return Ok(Self { given, columns: Vec::new(), rows: TextRows::default() });
         }
         for (flag, is_given) in [("--spacing", choice.spacing.is_some()), ("--object", !choice.objects.is_empty())] {
@@ -69,7 +69,7 @@ impl WindowFile {
     }
 
     /// Where and what each window is; the azimuth of grid north is `grid_north`, radians.
-    pub(crate) fn columns(&self, windows: &[Window], frame: &Frame, grid_north: f64) -> Vec<Column> {
+    pub(crate) fn columns(&self, windows: &[Window], frame: &Frame, grid_north: f64) -> Vec<WindowColumn> {
         if matches!(self.given, GivenWindows::Each(_)) {
             return self.columns.clone();
         }
@@ -116,7 +116,7 @@ fn table(path: &Path, frame: &Frame) -> Result<WindowFile> {
 }
 
 /// Coordinates of the file.
-pub(crate) fn coordinates(frame: &Frame, places: &[[f64; 3]]) -> Vec<Column> {
+pub(crate) fn coordinates(frame: &Frame, places: &[[f64; 3]]) -> Vec<WindowColumn> {
     let of_file: Vec<[f64; 3]> = places.iter().map(|&place| frame.file_from_local(place)).collect();
     let axis = |i: usize| of_file.iter().map(|place| place[i]).collect();
     vec![("x", axis(0), 3), ("y", axis(1), 3), ("z", axis(2), 3)]

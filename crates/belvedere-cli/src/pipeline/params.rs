@@ -1,7 +1,7 @@
 //! From flags to the parameters of a scene model.
 
 use crate::arguments::{Cleaning, MethodChoice, NeighborChoice, OrientChoice, Shrinking, Usage};
-use crate::run::Run;
+use crate::run::CommandContext;
 use crate::scene_config::BallParameters;
 use anyhow::Result;
 use belvedere::clean::CleanParams;
@@ -12,7 +12,12 @@ use belvedere::model::{BallParams, ModelParams, OrientBy};
 use belvedere::normals::estimate::Neighborhood;
 
 /// Parameters of a model as typed, with the trajectory or the mesh that they name, for a cloud in `crs`.
-pub(crate) fn model(parameters: &BallParameters, balls: BallParams, crs: &Crs, run: &mut Run) -> Result<ModelParams> {
+pub(crate) fn model(
+    parameters: &BallParameters,
+    balls: BallParams,
+    crs: &Crs,
+    run: &mut CommandContext,
+) -> Result<ModelParams> {
     let defaults = ModelParams::default();
     let neighborhood = match parameters.orienting.neighbors {
         None => defaults.neighborhood,

@@ -1,19 +1,19 @@
 //! Flags of what is planned: a scene as it will be.
 
-use super::Scene;
-use crate::arguments::{AreaChoice, Plan};
-use crate::run::Run;
+use super::LoadedScene;
+use crate::arguments::{AreaChoice, PlanArguments};
+use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::{Result, bail};
 use belvedere::apps::ask::remark_on_cleared;
 use belvedere::crs::Crs;
-use belvedere::io::{Shape, read_geojson, read_mesh_in};
+use belvedere::io::{FeatureShape, read_geojson, read_mesh_in};
 use belvedere::model::{ClearReport, ClearedArea, SceneModel};
 use belvedere::{Frame, Mesh};
 use std::path::Path;
 
 /// Clears areas of a scene that has its points.
-pub(super) fn clear(scene: &mut Scene, plan: &Plan, run: &mut Run) -> Result<()> {
+pub(super) fn clear(scene: &mut LoadedScene, plan: &PlanArguments, run: &mut CommandContext) -> Result<()> {
     if scene.cloud.is_empty() {
         bail!("--clear needs points, and a ball file has none: give the cloud that it was made from");
     }
@@ -50,7 +50,7 @@ pub(crate) fn areas(choice: &AreaChoice, frame: &Frame) -> Result<Vec<ClearedAre
     };
     let local = |ring: &Vec<[f64; 3]>| ring.iter().map(|c| [c[0] - frame.origin[0], c[1] - frame.origin[1]]).collect();
     let polygons = read_geojson(path, &frame.crs)?.into_iter().filter_map(|feature| match feature.shape {
-        Shape::Polygon(rings) => Some(ClearedArea::Polygon(rings.iter().map(local).collect())),
+        FeatureShape::Polygon(rings) => Some(ClearedArea::Polygon(rings.iter().map(local).collect())),
         _ => None,
     });
     let polygons: Vec<ClearedArea> = polygons.collect();
@@ -61,7 +61,7 @@ pub(crate) fn areas(choice: &AreaChoice, frame: &Frame) -> Result<Vec<ClearedAre
 }
 
 /// The model of a scene as it will be.
-pub(crate) fn planned(mut model: SceneModel, plan: &Plan, run: &mut Run) -> Result<SceneModel> {
+pub(crate) fn planned(mut model: SceneModel, plan: &PlanArguments, run: &mut CommandContext) -> Result<SceneModel> {
     if plan.add.is_empty() {
         return Ok(model);
     }
@@ -78,7 +78,7 @@ pub(crate) fn planned(mut model: SceneModel, plan: &Plan, run: &mut Run) -> Resu
 }
 
 /// Reads a mesh in the coordinates of a reference system, as metres.
-pub(crate) fn mesh_in(path: &Path, crs: &Crs, run: &mut Run) -> Result<Mesh> {
+pub(crate) fn mesh_in(path: &Path, crs: &Crs, run: &mut CommandContext) -> Result<Mesh> {
     let (mesh, report) = run.stage("reading mesh", 0, |_| read_mesh_in(path, crs))?;
     let mut section = Summary::default();
     section

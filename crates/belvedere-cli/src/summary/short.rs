@@ -54,11 +54,11 @@ pub(super) fn text(headlines: &[String], entries: &Map<String, Value>) -> String
     lines.into_iter().map(|line| line + "\n").collect()
 }
 
-/// At most `most` lines, of which the last counts those left out.
-fn limited(mut lines: Vec<String>, most: usize, what: &str) -> Vec<String> {
-    if lines.len() > most {
-        let more = lines.len() + 1 - most;
-        lines.truncate(most - 1);
+/// At most `max` lines, of which the last counts those left out.
+fn limited(mut lines: Vec<String>, max: usize, what: &str) -> Vec<String> {
+    if lines.len() > max {
+        let more = lines.len() + 1 - max;
+        lines.truncate(max - 1);
         lines.push(format!("and {more} more {what}"));
     }
     lines

@@ -1,4 +1,5 @@
-//! `--method carved`: balls cut by the pulses of the cloud, against the exact light that the simulation wrote beside each point.
+//! `--method carved`: balls cut by the pulses of the cloud, against the exact light that the simulation wrote beside
+//! each point.
 
 use crate::common::Workplace;
 use std::fs;
@@ -10,8 +11,8 @@ fn answers(place: &Workplace, flags: &str) -> Vec<u8> {
     npyz::NpyFile::new(&fs::read(place.path("answers.npy")).unwrap()[..]).unwrap().into_vec().unwrap()
 }
 
-/// What is true of each point, and whether it lies on something else than a tree: crowns let pulses in, where points have no
-/// light by the mesh.
+/// What is true of each point, and whether it lies on something else than a tree: crowns let pulses in, where points
+/// have no light by the mesh.
 fn truth(place: &Workplace) -> Vec<(bool, bool)> {
     let mut reader = las::Reader::from_path(place.path("town/cloud.laz")).unwrap();
     let points = reader.read_all().unwrap();
@@ -54,8 +55,8 @@ fn a_carved_ball_file_answers_as_the_cloud_does_and_reports_what_was_cut() {
     let cut = made["interior_balls"]["balls_cut_by_pulses"].as_u64().unwrap();
     assert!(cut > 1000 && made["scanner"]["scanner_known_percent"].as_f64().unwrap() > 90.0, "{made}");
     assert!(made["pulses"]["pulses_used"].as_u64().unwrap() > 10_000);
-    let asked = "--sun 200,40 --random 20000";
-    let run = place.summary(&format!("query town/cloud.laz --scene-config ../carved.json {asked} -o from_cloud.npy"));
+    let query = "--sun 200,40 --random 20000";
+    let run = place.summary(&format!("query town/cloud.laz --scene-config ../carved.json {query} -o from_cloud.npy"));
     let cloud = place.npy::<u8>("from_cloud.npy").1;
     let answers = &run["answers"];
     assert_eq!(answers["method"], "lines of sight");
@@ -64,7 +65,7 @@ fn a_carved_ball_file_answers_as_the_cloud_does_and_reports_what_was_cut() {
     assert!(counts.iter().all(|&count| count > 10) && counts.iter().sum::<u64>() == 20_000, "{counts:?}");
     for file in ["balls.npz", "balls.ply", "balls.laz"] {
         let written = place.summary(&format!("balls town/cloud.laz --method carved -o {file}"));
-        place.summary(&format!("query {file} {asked} -o from_file.npy"));
+        place.summary(&format!("query {file} {query} -o from_file.npy"));
         let saved = place.npy::<u8>("from_file.npy").1;
         let has_pulses = file == "balls.npz";
         assert_eq!(written["not_written"].is_string(), !has_pulses);
@@ -74,14 +75,14 @@ fn a_carved_ball_file_answers_as_the_cloud_does_and_reports_what_was_cut() {
         assert!(cloud.len() == saved.len() && differ <= if file == "balls.laz" { 20 } else { 0 }, "{file}: {differ}");
     }
     for (choice, as_code) in [("report", 2), ("as-visible", 1), ("as-blocked", 0)] {
-        let run = place.summary(&format!("query balls.npz {asked} --unproven {choice} -o settled.npy"));
+        let run = place.summary(&format!("query balls.npz {query} --unproven {choice} -o settled.npy"));
         let expected: Vec<u8> = cloud.iter().map(|&answer| if answer == 2 { as_code } else { answer }).collect();
         assert_eq!(place.npy::<u8>("settled.npy").1, expected, "{choice}");
         let visible = expected.iter().filter(|&&answer| answer == 1).count() as u64;
         assert_eq!(run["answers"]["visible"].as_u64().unwrap(), visible, "{choice}");
     }
     // the column of a table holds the same
-    place.summary(&format!("query balls.npz {asked} -o answers.csv"));
+    place.summary(&format!("query balls.npz {query} -o answers.csv"));
     let column: Vec<u8> = place
         .text("answers.csv")
         .lines()
@@ -89,10 +90,10 @@ fn a_carved_ball_file_answers_as_the_cloud_does_and_reports_what_was_cut() {
         .map(|line| line.rsplit(',').next().unwrap().parse().unwrap())
         .collect();
     assert_eq!(column, cloud);
-    place.refusal(2, &format!("query balls.ply {asked} --unproven as-blocked -o no.npy"), &["--unproven", ".npz"]);
+    place.refusal(2, &format!("query balls.ply {query} --unproven as-blocked -o no.npy"), &["--unproven", ".npz"]);
     place.refusal(
         2,
-        &format!("query town/cloud.laz --scene-config ../tau.json {asked} --unproven report -o no.npy"),
+        &format!("query town/cloud.laz --scene-config ../tau.json {query} --unproven report -o no.npy"),
         &["--unproven"],
     );
 }
@@ -114,7 +115,7 @@ fn proven_light_is_right_more_often_than_unproven_light() {
 }
 
 #[test]
-fn a_viewport_bounds_what_carved_balls_are_asked() {
+fn a_viewport_bounds_the_queries_of_carved_balls() {
     let place = Workplace::new();
     place.summary("simulate village -o town --extent 100 --density 6");
     let made = place.summary("balls town/cloud.laz --method carved -o balls.npz");
@@ -179,7 +180,7 @@ fn without_times_and_angles_carving_goes_on_with_an_assumption_that_is_stated() 
     let mean = |errors: [f64; 2]| (errors[0] + errors[1]) / 2.0;
     // the classes are gone as well as the pulses; guessing answers half of the points right
     assert!(mean(assumed) < mean(known) + 0.12, "{assumed:?} {known:?}");
-    let facts = place.summary("info bare.csv");
-    assert!(facts["usable_for"]["--method carved"].as_str().unwrap().contains("assumed"), "{facts}");
-    assert!(facts["usable_for"]["--orient pulses"].as_str().unwrap().starts_with("no: "), "{facts}");
+    let info = place.summary("info bare.csv");
+    assert!(info["usable_for"]["--method carved"].as_str().unwrap().contains("assumed"), "{info}");
+    assert!(info["usable_for"]["--orient pulses"].as_str().unwrap().starts_with("no: "), "{info}");
 }

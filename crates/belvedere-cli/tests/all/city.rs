@@ -276,10 +276,10 @@ fn questions_are_those_of_the_commands_they_are_named_after() {
         belvedere::io::read_tif_f32(&place).unwrap()
     };
     let (hours, energy) = (grey("sun_hours"), grey("irradiance"));
-    let most = |values: &[f32]| values.iter().copied().fold(0.0, f32::max);
+    let max = |values: &[f32]| values.iter().copied().fold(0.0, f32::max);
     // half of a day at an equinox, and the energy of a clear year at 52 degrees, about 1700 kWh
-    assert!((11.0..12.4).contains(&most(hours.values())), "{}", most(hours.values()));
-    assert!((1600.0..1800.0).contains(&most(energy.values())), "{}", most(energy.values()));
+    assert!((11.0..12.4).contains(&max(hours.values())), "{}", max(hours.values()));
+    assert!((1600.0..1800.0).contains(&max(energy.values())), "{}", max(energy.values()));
     place.summary("city merge run --result viewshed -o seen.tif");
     let seen = belvedere::io::read_tif_u8(&place.path("seen.tif")).unwrap();
     let of_code = |code: u8| seen.values().iter().filter(|&&value| value == code).count();
@@ -288,7 +288,8 @@ fn questions_are_those_of_the_commands_they_are_named_after() {
     assert!(of_code(1) > 20 && of_code(2) == 0, "{}", of_code(1));
     let raster = |name: &str| belvedere::io::read_tif(place.path(&format!("{name}.tif")).as_path()).unwrap();
     let width = |name: &str| raster(name).values.width();
-    // rasters say what they hold, as those of single scenes do: other quantities are neither subtracted without a word nor taken for terrain
+    // rasters say what they hold, as those of single scenes do: other quantities are neither subtracted without a word
+    // nor taken for terrain
     let shadow = "shadow_20260320_124500";
     place.summary(&format!("city merge run --result {shadow} -o {shadow}.tif"));
     let what = |name: &str| belvedere::io::read_tif(place.path(name).as_path()).unwrap().description.unwrap();

@@ -53,14 +53,14 @@ fn every_method_gets_scores_costs_and_pictures() {
         let row = answers.iter().find(|row| row["set"] == set && row["views"] == views).unwrap();
         ["visible", "unproven", "blocked"].map(|name| [0, 1].map(|i| row[name][i].as_u64().unwrap()))
     };
-    for (set, views, asked) in [
+    for (set, views, expected) in [
         ("PED", "sun at 20°", 1500),
         ("AIR", "sun at 65°", 1500),
         ("PED", "observers", 3000),
         ("STREET", "street", 12_000),
     ] {
         let found = row(set, views);
-        assert_eq!(found.iter().map(|[given, _]| given).sum::<u64>(), asked, "{set} {views}");
+        assert_eq!(found.iter().map(|[given, _]| given).sum::<u64>(), expected, "{set} {views}");
         assert!(found.iter().all(|[given, right]| right <= given && *given > 0), "{set} {views}: {found:?}");
     }
     let [visible, unproven, _] = row("PED", "sun at 65°").map(|[given, right]| right as f64 / given as f64);

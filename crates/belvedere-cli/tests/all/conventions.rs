@@ -1,4 +1,5 @@
-//! What holds on every command: where azimuths are counted from, the file of ball parameters, progress, and the list of commands.
+//! What holds on every command: where azimuths are counted from, the file of ball parameters, progress, and the list of
+//! commands.
 
 use crate::common::{EAST, NORTH, Workplace, at, house};
 use serde_json::Value;

@@ -60,7 +60,8 @@ fn depths_from_above_are_heights_below_the_plane() {
         // the ground is rough by 0.08 m
         (10.125, 5.125, 20.0, 0.2),
         (-12.125, -8.125, 20.0, 0.2),
-        // 0.05 m that a point may lie in a ball, and as much for the sag of balls between points half a metre apart; the roof drops 0.75 m a metre from a ridge of 9 m
+        // 0.05 m that a point may lie in a ball, and as much for the sag of balls between points half a metre apart;
+        // the roof drops 0.75 m a metre from a ridge of 9 m
         (0.125, 2.125, 20.0 - (9.0 - 0.75 * 2.125), 0.1),
         (3.125, -3.125, 20.0 - (9.0 - 0.75 * 3.125), 0.1),
     ] {
@@ -220,8 +221,8 @@ fn a_camera_sees_a_wall_at_its_depth_wherever_it_looks_at_it() {
         (f64::from(depth[pixel]), ids[pixel])
     };
     for (x, z) in [(0.0, 3.0), (-4.0, 1.5), (4.0, 5.0), (2.0, 4.0)] {
-        // depth runs along the axis: the same over all of the wall; 0.05 m that a point may lie in a ball, and the sag of balls between
-        // points half a metre apart
+        // depth runs along the axis: the same over all of the wall; 0.05 m that a point may lie in a ball, and the sag
+        // of balls between points half a metre apart
         assert!((at(x, z).0 - 16.0).abs() < 0.15, "{:?} at {x}, {z}", at(x, z));
         assert_ne!(at(x, z).1, NO_BALL);
     }

@@ -29,7 +29,7 @@ fn an_envelope_rises_from_the_fence_at_the_elevation_of_the_sun_and_its_solid_ha
     let parcel = corners(&[[-5.0, -18.0], [5.0, -18.0], [5.0, -10.0], [-5.0, -10.0]]);
     let fence = corners(&[[-19.0, -10.0], [19.0, -10.0]]);
     let with = ["--parcel", &parcel, "--protect", &fence];
-    let told = place.summary_with(
+    let summary = place.summary_with(
         "envelope house.laz --fence-height 2 --sun 180,45 --max-height 50 -o heights.npy -o solid.obj -o solid.ply -o map.png -o heights.tif --tops tops.npy",
         &with,
     );
@@ -42,7 +42,7 @@ fn an_envelope_rises_from_the_fence_at_the_elevation_of_the_sun_and_its_solid_ha
     // columns of half a metre: 2 m at the fence, half a metre more each step; the ground is flat to a few centimetres
     let expected = 80.0 * (2.0 + 3.75);
     assert!((volume / expected - 1.0).abs() < 0.03, "{volume} {expected}");
-    assert!((told["envelope"]["volume_m3"].as_f64().unwrap() - volume).abs() < 0.1 + 1e-4 * volume);
+    assert!((summary["envelope"]["volume_m3"].as_f64().unwrap() - volume).abs() < 0.1 + 1e-4 * volume);
     assert_eq!(tops.iter().filter(|top| top.is_finite()).count(), bounded.len());
     // the solid as another reader has it, through the divergence theorem
     for name in ["solid.obj", "solid.ply"] {
@@ -55,12 +55,12 @@ fn an_envelope_rises_from_the_fence_at_the_elevation_of_the_sun_and_its_solid_ha
         assert!((solid - volume).abs() < 0.01 * volume, "{name}: {solid} {volume}");
     }
     // days and hours by clocks: the suns at both ends are among them
-    let told = place.summary_with(
+    let summary = place.summary_with(
         "envelope house.laz --date 2026-12-21 --between 10:00,14:00 --time-step-min 60 --location 52,5 --zone +01:00 --max-height 40 -o day.tif",
         &with,
     );
-    assert_eq!(told["period"]["suns"].as_u64(), Some(5), "{told}");
-    assert!(told["envelope"]["limiting_suns"][0].as_str().unwrap().starts_with("2026-12-21T1"), "{told}");
+    assert_eq!(summary["period"]["suns"].as_u64(), Some(5), "{summary}");
+    assert!(summary["envelope"]["limiting_suns"][0].as_str().unwrap().starts_with("2026-12-21T1"), "{summary}");
 }
 
 #[test]
@@ -90,11 +90,11 @@ fn envelopes_refuse_what_is_no_parcel_and_suns_that_are_not_up() {
 fn a_route_past_a_house_sees_less_sky_and_lies_in_its_shade_in_part() {
     let place = place();
     let route = corners(&[[-15.0, 7.0], [15.0, 7.0]]);
-    let asked = format!(
+    let command = format!(
         "comfort {HOUSE} --date 2026-03-21 --time-step-min 60 --location 52,5 -o places.csv --routes routes.csv --times times.csv"
     );
-    let told = place.summary_with(&asked, &["--route", &route]);
-    assert_eq!(told["exposure"]["routes"].as_u64(), Some(1));
+    let summary = place.summary_with(&command, &["--route", &route]);
+    assert_eq!(summary["exposure"]["routes"].as_u64(), Some(1));
     let (sky, hours) = (column(&place, "places.csv", "sky_view_factor"), column(&place, "places.csv", "sun_hours"));
     assert_eq!(sky.len(), 16);
     // before the middle of the house and at the ends of the street
@@ -122,9 +122,9 @@ fn windows_before_nothing_have_the_vertical_sky_component_of_a_free_wall() {
     // high above the house: a wall to the south, a skylight, a large window to the north
     let rows = [row(0.0, 0.0, 60.0, "180,,,"), row(0.0, 0.0, 60.0, "0,0,,"), row(0.0, 0.0, 60.0, "0,90,4,2")].concat();
     place.write("windows.csv", format!("x,y,z,azimuth,tilt,width,height\n{rows}"));
-    let asked =
+    let command =
         format!("comfort {HOUSE} --windows windows.csv --date 2026-12-21 --location 52,5 --zone +01:00 -o found.csv");
-    place.summary(&asked);
+    place.summary(&command);
     let component = column(&place, "found.csv", "sky_component");
     let factor = column(&place, "found.csv", "sky_view_factor");
     // BRE 209: 39.6 %; 577 directions

@@ -103,7 +103,8 @@ fn terrain_beyond_the_cloud_is_visible_where_nothing_hides_it() {
     let (width, rows, [blocked, visible, without]) = codes(&format!("--observer {x},{y},{z}"));
     assert_eq!((width, rows, blocked, blocked + visible + without), (200, 176, 24 * 200, 200 * 200));
     assert!((1..20).contains(&without), "{without}");
-    // a line from 12 m to 408 m lies 402.8 m high over the crest on its way to the next row, and 397.8 m to the one after it
+    // a line from 12 m to 408 m lies 402.8 m high over the crest on its way to the next row, and 397.8 m to the one
+    // after it
     let (_, rows, [blocked, ..]) = codes(&format!("--observer {x},{y},{z} --target-height 8"));
     assert_eq!((rows, blocked), (177, 23 * 200));
     // to 420 m: 404.4 m on the way to the third row, 399.5 m to the fourth
@@ -138,7 +139,8 @@ fn lines_of_sight_reach_the_terrain_beyond_the_cloud() {
     write_terrain(&place, "dtm.tif", 28992, 0.0, range);
     let ([x, y, z], [_, mast, _]) = (at(0.0, 0.0, 12.0), at(0.0, -1800.0, 0.0));
     let flags = format!("line-of-sight {HOUSE} --terrain dtm.tif");
-    // a mast 290 m behind the crest: from h above it the line to 12 m lies 62.51 m lower over the crest, and 29 mm for the earth: h (1 - 290 / 1800) = 62.54
+    // a mast 290 m behind the crest: from h above it the line to 12 m lies 62.51 m lower over the crest, and 29 mm for
+    // the earth: h (1 - 290 / 1800) = 62.54
     for (height, answer) in [(74.4, "blocked"), (74.7, "visible")] {
         let ends = format!("--observer {x},{mast} --observer-height {height} --target {x},{y},{z}");
         assert_eq!(place.summary(&format!("{flags} {ends}"))["line"]["answer"], answer);
@@ -190,7 +192,8 @@ fn observers_and_targets_of_viewsheds_stand_on_the_terrain() {
     let run = place.summary(&format!("{flags} --target {x},{hill},401.7 --observer-height 0 --far-output from.tif"));
     assert_eq!(run["far_cells"]["visible"], 5000);
     assert_eq!(place.bytes("far.tif"), place.bytes("from.tif"));
-    // of the cloud, cells are seen from a mast of 90 m, and none from the ground (75 m: the line to 0 m lies 0.4 m above the crest at 77 m)
+    // of the cloud, cells are seen from a mast of 90 m, and none from the ground (75 m: the line to 0 m lies 0.4 m
+    // above the crest at 77 m)
     let codes = |observer: &str| {
         let run = place.run(&format!("{flags} {observer} --cell 1 -o seen.tif"));
         assert_eq!(run.status, 0, "{run:?}");

@@ -86,8 +86,8 @@ fn a_hole_of_the_survey_has_no_value_in_any_raster() {
             let [in_hole, elsewhere] = with_a_value(&read_tif(path.as_path()).unwrap());
             // some measures have a value in few cells: distances to a landmark where it is visible, hours of sun where
             // there is sun
-            let least = if path.ends_with("one.tif") { 300 } else { 50 };
-            assert!(in_hole == 0 && elsewhere > least, "{command} {flags} {path:?}: {in_hole} {elsewhere}");
+            let min = if path.ends_with("one.tif") { 300 } else { 50 };
+            assert!(in_hole == 0 && elsewhere > min, "{command} {flags} {path:?}: {in_hole} {elsewhere}");
         }
         std::fs::remove_dir_all(place.path("all")).unwrap();
     }

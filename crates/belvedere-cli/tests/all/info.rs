@@ -23,44 +23,44 @@ fn scan() -> PointCloud {
 }
 
 #[test]
-fn info_tells_counts_bounds_density_and_unit() {
+fn info_reports_counts_bounds_density_and_unit() {
     let place = Workplace::new();
     let cloud = scan();
     let n = cloud.len();
     place.write_cloud("scan.laz", &cloud);
-    let facts = place.summary("info scan.laz");
-    assert_eq!(facts["points"], n);
-    assert_eq!(facts["file"][0]["path"], "scan.laz");
-    assert_eq!(facts["file"][0]["points"], n);
-    assert!(facts["reading"]["reference_system"].as_str().unwrap().contains("EPSG:28992"));
-    assert_eq!(facts["metres_per_unit"], 1.0);
-    assert_eq!(numbers(&facts["min_corner"]), [84_985.0, 445_985.0, -0.08]);
-    assert_eq!(numbers(&facts["max_corner"]), [85_015.0, 446_015.0, 8.813]);
+    let info = place.summary("info scan.laz");
+    assert_eq!(info["points"], n);
+    assert_eq!(info["file"][0]["path"], "scan.laz");
+    assert_eq!(info["file"][0]["points"], n);
+    assert!(info["reading"]["reference_system"].as_str().unwrap().contains("EPSG:28992"));
+    assert_eq!(info["metres_per_unit"], 1.0);
+    assert_eq!(numbers(&info["min_corner"]), [84_985.0, 445_985.0, -0.08]);
+    assert_eq!(numbers(&info["max_corner"]), [85_015.0, 446_015.0, 8.813]);
     // 30 m by 30 m; cells of a metre or two on the rim count as a whole
-    let area = facts["covered_ground_m2"].as_f64().unwrap();
+    let area = info["covered_ground_m2"].as_f64().unwrap();
     assert!((900.0..1100.0).contains(&area), "{area}");
-    let density = facts["points_per_m2_of_covered_ground"].as_f64().unwrap();
+    let density = info["points_per_m2_of_covered_ground"].as_f64().unwrap();
     assert!((density - n as f64 / area).abs() < 0.01, "{density}");
-    assert_eq!(facts["attributes"]["point_source_id"]["line 11"], 1000);
-    assert_eq!(facts["attributes"]["point_source_id"]["line 12"], n - 1000);
-    assert_eq!(facts["attributes"]["classification"]["class 2"], 100);
-    assert_eq!(facts["duplicate_points"], 0);
+    assert_eq!(info["attributes"]["point_source_id"]["line 11"], 1000);
+    assert_eq!(info["attributes"]["point_source_id"]["line 12"], n - 1000);
+    assert_eq!(info["attributes"]["classification"]["class 2"], 100);
+    assert_eq!(info["duplicate_points"], 0);
     for command in ["normals", "balls", "depth-map", "query", "--orient trajectory=FILE", "--orient given"] {
-        assert_eq!(facts["usable_for"][command], "yes", "{command}");
+        assert_eq!(info["usable_for"][command], "yes", "{command}");
     }
-    assert!(facts["usable_for"]["--orient scanner"].as_str().unwrap().starts_with("no: "));
+    assert!(info["usable_for"]["--orient scanner"].as_str().unwrap().starts_with("no: "));
 }
 
 #[test]
-fn what_info_says_can_be_served_can_be_served() {
+fn what_info_calls_usable_can_be_used() {
     let place = Workplace::new();
     let mut bare = house();
     bare.attributes.normals = None;
     place.write_cloud("bare.laz", &bare);
     place.write_cloud("house.laz", &house());
     for (name, given) in [("bare.laz", false), ("house.laz", true)] {
-        let facts = place.summary(&format!("info {name}"));
-        assert_eq!(facts["usable_for"]["--orient given"] == "yes", given);
+        let info = place.summary(&format!("info {name}"));
+        assert_eq!(info["usable_for"]["--orient given"] == "yes", given);
         let run = place.run(&format!("balls {name} --orient given -o out.npz"));
         assert_eq!(run.status == 0, given, "{run:?}");
         place.refusal(1, &format!("balls {name} --orient scanner -o out.npz"), &["scanner"]);
@@ -73,21 +73,21 @@ fn what_info_says_can_be_served_can_be_served() {
 }
 
 #[test]
-fn feet_are_told_and_bounds_stay_in_them() {
+fn feet_are_reported_and_bounds_stay_in_them() {
     let place = Workplace::new();
     let feet = PointCloud {
         frame: Frame { origin: [200_000.0, 300_000.0, 0.0], crs: Crs::from_epsg(2992).unwrap() },
         ..house()
     };
     place.write_cloud("feet.laz", &feet);
-    let facts = place.summary("info feet.laz");
-    assert_eq!(facts["metres_per_unit"], 0.3048);
-    assert!(facts["reading"]["reference_system"].as_str().unwrap().contains("international feet"));
-    let low = numbers(&facts["min_corner"]);
+    let info = place.summary("info feet.laz");
+    assert_eq!(info["metres_per_unit"], 0.3048);
+    assert!(info["reading"]["reference_system"].as_str().unwrap().contains("international feet"));
+    let low = numbers(&info["min_corner"]);
     // a thousandth of a foot is what is printed
     assert!((low[0] - 199_985.0 / 0.3048).abs() < 2e-3 && (low[1] - 299_985.0 / 0.3048).abs() < 2e-3, "{low:?}");
     // the ground is counted in square metres all the same
-    let area = facts["covered_ground_m2"].as_f64().unwrap();
+    let area = info["covered_ground_m2"].as_f64().unwrap();
     assert!((900.0..1100.0).contains(&area), "{area}");
 }
 
@@ -96,10 +96,10 @@ fn a_reference_system_can_be_given() {
     let place = Workplace::new();
     let cloud = house().with_crs(Crs::default());
     place.write_cloud("house.xyz", &cloud);
-    let missing = |facts: &Value| facts["missing"].to_string().contains("reference system");
+    let missing = |info: &Value| info["missing"].to_string().contains("reference system");
     assert!(missing(&place.summary("info house.xyz")));
-    let facts = place.summary("info house.xyz --crs EPSG:28992");
-    assert!(!missing(&facts) && facts["reading"]["reference_system"].as_str().unwrap().contains("EPSG:28992"));
+    let info = place.summary("info house.xyz --crs EPSG:28992");
+    assert!(!missing(&info) && info["reading"]["reference_system"].as_str().unwrap().contains("EPSG:28992"));
     place.refusal(1, "info house.xyz --crs EPSG:4326", &["house.xyz", "degrees"]);
     place.refusal(2, "info house.xyz --crs nonsense", &["--crs", "nonsense", "EPSG:28992"]);
 }
@@ -108,9 +108,9 @@ fn a_reference_system_can_be_given() {
 fn duplicates_and_left_out_points_are_counted() {
     let place = Workplace::new();
     place.write("points.xyz", "1 1 1\n2 2 2\n1 1 1\nnan 1 1\n3 3 oops\n4 4 4\n5 5 5\n");
-    let facts = place.summary("info points.xyz");
-    assert_eq!((&facts["points"], &facts["duplicate_points"]), (&5.into(), &1.into()));
-    let left_out = facts["reading"]["left_out"].to_string();
+    let info = place.summary("info points.xyz");
+    assert_eq!((&info["points"], &info["duplicate_points"]), (&5.into(), &1.into()));
+    let left_out = info["reading"]["left_out"].to_string();
     assert!(
         left_out.contains("1 unreadable: lines 5") && left_out.contains("1 coordinates are not finite"),
         "{left_out}"
@@ -122,17 +122,16 @@ fn info_of_a_ball_file_says_where_it_is_and_how_it_was_built() {
     let place = Workplace::new();
     place.write_cloud("house.laz", &house());
     let built = place.summary("balls house.laz --orient given --method tau -o balls.npz");
-    let (facts, cloud) = (place.summary("info balls.npz"), place.summary("info house.laz"));
+    let (info, cloud) = (place.summary("info balls.npz"), place.summary("info house.laz"));
     let counted = &built["interior_balls"];
     let count = counted["balls_shrunk"].as_u64().unwrap() + counted["balls_of_maximum_radius"].as_u64().unwrap();
-    assert_eq!(facts["balls"], count, "{built}");
-    assert_eq!(facts["pulses"], 0);
+    assert_eq!(info["balls"], count, "{built}");
+    assert_eq!(info["pulses"], 0);
     assert!(cloud["crs"].as_str().unwrap().contains("28992"), "{cloud}");
-    assert_eq!(facts["crs"], cloud["crs"]);
-    assert_eq!(facts["made"]["input"], "house.laz");
+    assert_eq!(info["crs"], cloud["crs"]);
+    assert_eq!(info["made"]["input"], "house.laz");
     // isolated points are left out before balls are built
-    for (of_balls, of_cloud) in ["min_corner", "max_corner"].map(|name| (numbers(&facts[name]), numbers(&cloud[name])))
-    {
+    for (of_balls, of_cloud) in ["min_corner", "max_corner"].map(|name| (numbers(&info[name]), numbers(&cloud[name]))) {
         assert!(of_balls.iter().zip(&of_cloud).all(|(a, b)| (a - b).abs() < 2.0), "{of_balls:?} {of_cloud:?}");
     }
 }

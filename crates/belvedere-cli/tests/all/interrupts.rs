@@ -6,8 +6,8 @@ use crate::common::Workplace;
 use std::io::{BufRead, BufReader};
 use std::process::{Command, Stdio};
 
-/// Runs the program, sends SIGINT once it has finished its first stage, and gives the exit status and the lines that it printed to
-/// standard error.
+/// Runs the program, sends SIGINT once it has finished its first stage, and gives the exit status and the lines that it
+/// printed to standard error.
 fn interrupted(place: &Workplace, arguments: &str) -> (Option<i32>, Vec<String>) {
     let mut run = place
         .command(&format!("--progress json {arguments}"))
@@ -38,7 +38,7 @@ fn a_run_that_is_interrupted_while_it_builds_a_model_writes_nothing() {
 }
 
 #[test]
-fn work_that_cannot_be_asked_to_stop_ends_with_the_program() {
+fn work_that_cannot_be_cancelled_ends_with_the_program() {
     let place = Workplace::new();
     // a town of 3 km: far longer than anybody waits for a test
     let (status, lines) = interrupted(&place, "simulate town -o town --extent 3000");

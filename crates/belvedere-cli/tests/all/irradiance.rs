@@ -56,9 +56,9 @@ fn roofs_are_planes_with_bounds_of_their_loss() {
     let south = azimuth.iter().position(|azimuth| (azimuth - 180.0).abs() < 5.0).unwrap();
     let energy = numbers(&text, "kwh_m2");
     assert!(energy[south] > 1.3 * energy[1 - south], "{energy:?}");
-    for (least, most) in numbers(&text, "min_loss").iter().zip(numbers(&text, "max_loss")) {
+    for (min, max) in numbers(&text, "min_loss").iter().zip(numbers(&text, "max_loss")) {
         // nothing stands before these roofs but their own roughness
-        assert!((0.0..=most).contains(least) && *least < 0.1, "{least} {most}");
+        assert!((0.0..=max).contains(min) && *min < 0.1, "{min} {max}");
     }
     let area = numbers(&text, "area_m2");
     assert!(area.iter().all(|area| (area - 50.0).abs() < 8.0), "10 m by 5 m each: {area:?}");

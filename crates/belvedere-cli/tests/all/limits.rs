@@ -76,7 +76,7 @@ fn options_are_refused_before_a_cloud_is_read() {
 }
 
 #[test]
-fn files_that_are_not_there_are_told_before_a_cloud_is_read() {
+fn missing_files_are_reported_before_a_cloud_is_read() {
     let place = Workplace::new();
     place.write("junk.laz", "no point cloud");
     for (arguments, file) in [

@@ -4,7 +4,8 @@ use crate::common::{Workplace, at, house_in_a_field};
 
 const BALLS: &str = "--orient given --scene-config ../tau.json";
 
-/// A house in a field, and a wall of 10 m by 6 m as a mesh 30 m east of it that faces west and stands 3 m above the ground.
+/// A house in a field, and a wall of 10 m by 6 m as a mesh 30 m east of it that faces west and stands 3 m above the
+/// ground.
 fn place() -> Workplace {
     let place = Workplace::new();
     place.write_cloud("house.laz", &house_in_a_field());
@@ -38,13 +39,14 @@ fn the_view_of_a_wall_limits_what_may_be_built_before_it_and_not_behind_the_hous
     // a fan of 20 m by 10 m at its end, and the cells that its sides cross
     assert!((95..150).contains(&limited.len()), "{}", limited.len());
     // the plane from 1.7 m at the eye to 3 m at the lower edge of the wall; the ground is flat to a few centimetres
-    let (least, most) = limited.iter().fold((f32::INFINITY, 0.0_f32), |(a, b), &v| (a.min(v), b.max(v)));
-    assert!((least - 1.7).abs() < 0.15 && (most - 3.0).abs() < 0.15, "{least} {most}");
+    let (min, max) = limited.iter().fold((f32::INFINITY, 0.0_f32), |(a, b), &v| (a.min(v), b.max(v)));
+    assert!((min - 1.7).abs() < 0.15 && (max - 3.0).abs() < 0.15, "{min} {max}");
     assert_eq!(shape.iter().product::<u64>() as usize, tops.len());
     assert!(tops.iter().zip(&heights).all(|(top, height)| top.is_nan() || (top - height).abs() < 0.1));
     assert!(place.bytes("limits.png").starts_with(b"\x89PNG") && place.bytes("limits.tif").starts_with(b"II"));
 
-    // from behind the house most of the wall is hidden, and less is protected; from a file with a height above the ground
+    // from behind the house most of the wall is hidden, and less is protected; from a file with a height above the
+    // ground
     let [x, y, _] = at(-20.0, 0.0, 0.0);
     place.write("eyes.csv", format!("x,y,height\n{x},{y},1.7\n"));
     let hidden = place.summary(&format!(

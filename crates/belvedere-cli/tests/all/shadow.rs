@@ -30,13 +30,14 @@ fn the_shadow_of_a_house_is_the_exact_one() {
         assert_eq!(run["sun"]["suns"], 1);
         let [x, y, z, lit] = ["x", "y", "z", "lit"].map(|name| column(&place, "lit.csv", name));
         let sun = to_sun(azimuth, elevation);
-        let (mut shaded, mut asked) = (0, 0);
+        let (mut shaded, mut queried) = (0, 0);
         for i in 0..lit.len() {
             let spot = [x[i] - EAST, y[i] - NORTH, z[i]];
             if spot[0].abs() < 5.8 && spot[1].abs() < 4.8 {
                 continue;
             }
-            // balls end up to half a metre beside edges where points stand half a metre apart: the outline itself is not asked
+            // balls end up to half a metre beside edges where points stand half a metre apart: the outline itself is
+            // not asked
             let hidden = |east: f64, north: f64| is_hidden([spot[0] + east, spot[1] + north, spot[2]], sun);
             let expected = hidden(0.0, 0.0);
             if [(-0.7, 0.0), (0.7, 0.0), (0.0, -0.7), (0.0, 0.7)].iter().any(|&(e, n)| hidden(e, n) != expected) {
@@ -44,9 +45,9 @@ fn the_shadow_of_a_house_is_the_exact_one() {
             }
             assert_eq!(lit[i], if expected { 0.0 } else { 1.0 }, "sun {azimuth},{elevation} at {spot:?}");
             shaded += usize::from(expected);
-            asked += 1;
+            queried += 1;
         }
-        assert!(shaded > 30 && asked > 2000, "{shaded} of {asked}");
+        assert!(shaded > 30 && queried > 2000, "{shaded} of {queried}");
         assert!(place.bytes("lit.png").starts_with(b"\x89PNG") && place.path("lit.tif").is_file());
     }
 }
@@ -109,7 +110,8 @@ fn soft_edges_are_as_wide_as_the_sun_and_hard_ones_cut_them_in_half() {
     assert_eq!((soft[0], soft[199], hard[0], hard[199]), (0.0, 1.0, 0.0, 1.0));
     assert!(soft.windows(2).all(|pair| pair[0] <= pair[1]), "{soft:?}");
     let partly = soft.iter().filter(|lit| **lit > 0.0 && **lit < 1.0).count();
-    // half a degree over the 8.4 m from the eaves, laid on level ground at 45 degrees, is 0.11 m; the edge of a ball is as sharp as a wall's
+    // half a degree over the 8.4 m from the eaves, laid on level ground at 45 degrees, is 0.11 m; the edge of a ball is
+    // as sharp as a wall's
     assert!((7..=15).contains(&partly), "{partly} of a centimetre");
     let (edge, half) = (hard.iter().position(|&lit| lit == 1.0), soft.iter().position(|&lit| lit > 0.5));
     assert!(edge.unwrap().abs_diff(half.unwrap()) <= 2, "{edge:?} {half:?}");

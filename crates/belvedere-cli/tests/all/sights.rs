@@ -52,7 +52,8 @@ fn pairs_around_a_house_are_blocked_where_its_walls_stand() {
 #[test]
 fn lines_without_heights_run_from_the_eye_of_a_person_to_the_ground() {
     let place = place();
-    // through the house, and past its north side; once as lines, and once as a table with the heights that follow from the ground
+    // through the house, and past its north side; once as lines, and once as a table with the heights that follow from
+    // the ground
     let lines = [[[-12.0, 0.0], [12.0, 0.0]], [[-12.0, 7.0], [12.0, 7.0]]];
     let corner = |[x, y]: [f64; 2]| format!("[{}, {}]", EAST + x, NORTH + y);
     let feature = |&[a, b]: &[[f64; 2]; 2]| {
@@ -145,8 +146,8 @@ fn a_viewshed_hides_what_lies_behind_the_house() {
     assert_eq!((cell(-8.5, 0.5), cell(8.5, 0.5), cell(0.5, 0.5), cell(-6.5, 10.5)), (1, 0, 255, 1));
     let (shape, heights) = place.npy::<f32>("heights.npy");
     assert_eq!(shape, [u64::from(height), u64::from(width)]);
-    // the eye at 1.7 m looks over the west end of the ridge, 7 m off and 8.9 m high where the line passes: 20.5 m off a thing must reach
-    // 1.7 + 20.5 · 7.2/7 = 22.8 m; balls lie inside the roof by what points half a metre apart leave
+    // the eye at 1.7 m looks over the west end of the ridge, 7 m off and 8.9 m high where the line passes: 20.5 m off a
+    // thing must reach 1.7 + 20.5 · 7.2/7 = 22.8 m; balls lie inside the roof by what points half a metre apart leave
     let behind = heights[index(at(8.5, 0.5, 0.0))];
     assert!((21.8..23.1).contains(&behind), "{behind}");
     assert_eq!(heights[index(at(-8.5, 0.5, 0.0))], 0.0);

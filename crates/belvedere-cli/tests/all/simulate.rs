@@ -61,10 +61,10 @@ fn an_airborne_survey_comes_with_all_that_one_delivers() {
     assert_eq!([obj.triangles.len(), city.triangles.len()], [scene.triangles.len(); 2]);
     assert_eq!(city.crs.epsg, Some(7415));
     // And other commands take it as it is.
-    let facts = place.summary("info out/cloud.laz");
-    assert_eq!(facts["pulses"], summary["pulses"]["pulses_recorded"]);
-    assert!(facts["pulses_with_several_returns_percent"].as_f64().unwrap() > 1.0);
-    assert!(facts["facades"]["points_per_m2_of_wall"].as_f64().unwrap() > 0.05);
+    let info = place.summary("info out/cloud.laz");
+    assert_eq!(info["pulses"], summary["pulses"]["pulses_recorded"]);
+    assert!(info["pulses_with_several_returns_percent"].as_f64().unwrap() > 1.0);
+    assert!(info["facades"]["points_per_m2_of_wall"].as_f64().unwrap() > 0.05);
     place.summary("normals out/cloud.laz --orient trajectory=out/trajectory.sbet -o normals.laz");
 }
 
@@ -94,7 +94,7 @@ fn flags_of_the_airborne_scanner_do_what_they_say() {
     };
     let greatest_angle = |cloud: &PointCloud| {
         let angles = cloud.attributes.scan_angle.as_ref().unwrap();
-        f64::from(angles.iter().fold(0.0_f32, |most, a| most.max(a.abs()))).to_degrees()
+        f64::from(angles.iter().fold(0.0_f32, |max, a| max.max(a.abs()))).to_degrees()
     };
     let (summary, conical) = with("--pattern conical");
     assert_eq!(summary["survey"]["pattern"], "conical");

@@ -40,21 +40,22 @@ fn cells_and_points_see_as_much_sky_as_beside_the_exact_house() {
     let columns = ["x", "y", "z", "sky_view_factor", "sky_openness"];
     let [x, y, z, factor, openness] = columns.map(|name| column(&place, "sky.csv", name));
     assert!(factor.len() > 200);
-    let (mut asked, mut least) = (0, 1.0_f64);
+    let (mut queried, mut min) = (0, 1.0_f64);
     for i in 0..factor.len() {
         let spot = [x[i] - EAST, y[i] - NORTH, z[i]];
         if spot[0].abs() < 6.0 && spot[1].abs() < 5.0 {
             continue;
         }
-        // walls stand a quarter of a metre forward or back where points are half a metre apart: 0.02 of the sky at a metre from them
+        // walls stand a quarter of a metre forward or back where points are half a metre apart: 0.02 of the sky at a
+        // metre from them
         for (found, expected) in [factor[i], openness[i]].into_iter().zip(exact(spot)) {
             assert!((found - expected).abs() < 0.03, "{spot:?}: {found} instead of {expected}");
         }
         assert!((z[i] - 0.5).abs() < 0.2, "cells are asked above the ground: {}", z[i]);
-        asked += 1;
-        least = least.min(openness[i]);
+        queried += 1;
+        min = min.min(openness[i]);
     }
-    assert!(asked > 150 && least < 0.75, "{asked} {least}");
+    assert!(queried > 150 && min < 0.75, "{queried} {min}");
     assert!(place.path("all/sky_view_factor.tif").is_file() && place.path("all/sky_openness.tif").is_file());
     assert!(place.path("sky.tif").is_file() && place.bytes("sky.png").starts_with(b"\x89PNG"));
 

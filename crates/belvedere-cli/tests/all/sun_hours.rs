@@ -39,7 +39,8 @@ fn hours_are_those_of_the_exact_house() {
     let found = ["sun_hours", "first_light", "last_light"].map(|name| column(&place, "hours.csv", name));
     for (i, expected) in expected.iter().enumerate() {
         for k in 0..3 {
-            // balls end a quarter of a metre beside edges here (points half a metre apart): 2° of the sun's way from 8 m, two steps at each end
+            // balls end a quarter of a metre beside edges here (points half a metre apart): 2° of the sun's way from 8
+            // m, two steps at each end
             let tolerance = if k == 0 { 0.7 } else { 0.4 };
             assert!(
                 (found[k][i] - expected[k]).abs() < tolerance,
@@ -109,10 +110,10 @@ fn rules_and_periods_have_columns_and_a_kept_matrix_answers_the_same() {
     place.summary(&format!(
         "sun-hours {HOUSE} --from 2026-03-20T12:00+01:00 --to 2026-03-22T12:00+01:00 --time-step-min 30 --cell 4 -o grid.csv -o grid.tif -o grid.png"
     ));
-    let [hours, total, least] =
+    let [hours, total, min] =
         ["sun_hours", "total_hours", "min_sun_hours"].map(|name| column(&place, "grid.csv", name));
     assert!(hours.iter().zip(&total).all(|(hours, total)| (3.0 * hours - total).abs() < 5e-3));
-    assert!(hours.iter().zip(&least).all(|(hours, least)| *least <= hours + 1e-3));
+    assert!(hours.iter().zip(&min).all(|(hours, min)| *min <= hours + 1e-3));
     assert!(!place.names().iter().any(|name| name == "no.csv"));
 }
 

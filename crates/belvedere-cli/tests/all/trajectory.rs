@@ -17,7 +17,7 @@ fn flown(truth: &[Vec<f64>], time: f64) -> [f64; 3] {
 }
 
 #[test]
-fn the_path_is_the_one_flown_and_serves_as_a_trajectory() {
+fn the_path_is_the_one_flown_and_is_read_as_a_trajectory() {
     let place = Workplace::new();
     place.summary("simulate town -o town --extent 100 --density 6");
     let made = place.summary("trajectory town/cloud.laz --time-step-s 0.25 -o found.csv");
@@ -46,13 +46,13 @@ fn the_path_is_the_one_flown_and_serves_as_a_trajectory() {
     // half a microsecond at either end of a line is rounded off
     assert!(used["scanner"]["scanner_known_percent"].as_f64().unwrap() > 99.9, "{used}");
     assert_eq!(used["scanner"]["trajectory_height_offset_corrected"].as_str().unwrap().get(..2), Some("no"), "{used}");
-    let facts = place.summary("info town/cloud.laz");
-    assert_eq!(facts["scanner"]["found_by"], made["scanner"]["found_by"]);
-    assert_eq!(facts["scanner_by_line"], made["scanner_by_line"]);
+    let info = place.summary("info town/cloud.laz");
+    assert_eq!(info["scanner"]["found_by"], made["scanner"]["found_by"]);
+    assert_eq!(info["scanner_by_line"], made["scanner_by_line"]);
 }
 
 #[test]
-fn what_tells_no_path_is_refused() {
+fn files_without_a_path_are_refused() {
     let place = Workplace::new();
     place.write("bare.xyz", "1 1 1\n2 2 2\n3 4 4\n4 4 5\n");
     place.refusal(1, "trajectory bare.xyz -o found.csv", &["GPS time"]);

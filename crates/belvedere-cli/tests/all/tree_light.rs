@@ -1,4 +1,5 @@
-//! Light through trees on the command line: below a crown, what arrives lies between shade and the open sky by the share given.
+//! Light through trees on the command line: below a crown, what arrives lies between shade and the open sky by the
+//! share given.
 
 use crate::common::{Workplace, at, column, house};
 use belvedere::PointCloud;
@@ -155,12 +156,12 @@ fn planes_of_roofs_get_light_through_crowns() {
     };
     let [opaque, .., opaque_loss, opaque_most] = energy("");
     let [quarter, ..] = energy("--through-trees 0.25");
-    let [free, unshaded, loss, most] = energy("--through-trees 1");
+    let [free, unshaded, loss, max] = energy("--through-trees 1");
     assert_eq!(opaque.len(), 2);
     for i in 0..2 {
         assert!(opaque[i] < free[i] && free[i] <= unshaded[i] + 0.1, "{opaque:?} {free:?}");
         assert!((quarter[i] - opaque[i] - 0.25 * (free[i] - opaque[i])).abs() < 0.15, "{quarter:?}");
-        assert!(loss[i] < opaque_loss[i] && most[i] < opaque_most[i] && loss[i] <= most[i] + 1e-4);
+        assert!(loss[i] < opaque_loss[i] && max[i] < opaque_most[i] && loss[i] <= max[i] + 1e-4);
     }
 }
 

@@ -90,7 +90,7 @@ fn quiet_prints_nothing_but_does_the_work() {
 }
 
 #[test]
-fn verbose_tells_the_time_of_each_stage_on_standard_error() {
+fn verbose_prints_the_time_of_each_stage_on_standard_error() {
     let place = with_house();
     let run = place.run("balls house.laz -o balls.npz -v");
     assert!(run.stderr.contains("shrinking balls: ") && run.stderr.ends_with(" s\n"), "{}", run.stderr);
@@ -297,7 +297,7 @@ fn errors_about_parameters_name_the_flag_that_gave_them() {
 }
 
 #[test]
-fn sizes_beyond_reason_are_refused_before_memory_is_asked_for() {
+fn sizes_beyond_reason_are_refused_before_memory_is_reserved() {
     let place = with_house();
     for flags in ["--sun 180,30 --pixel 1e-9", "--direction 0,0,-1 --pixel 1e-300"] {
         let words = ["error: --pixel: ", "268435456 pixels"];

@@ -7,7 +7,8 @@ use serde_json::Value;
 
 const BALLS: &str = "--orient given --scene-config ../tau.json";
 
-/// A house in a field with classes, and three windows: one that looks at the house, one that looks away from it, one inside it.
+/// A house in a field with classes, and three windows: one that looks at the house, one that looks away from it, one
+/// inside it.
 fn place() -> Workplace {
     let place = Workplace::new();
     let mut cloud = house_in_a_field();

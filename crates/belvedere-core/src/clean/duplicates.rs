@@ -8,8 +8,8 @@ use super::grid::{SortedGrid, squared_distance};
 use belvedere_data::Result;
 use belvedere_data::control::{Control, Stop};
 
-/// Cells this many times the distance: a point then mostly has to look into its own cell only, and even a heap of points
-/// in one cell keeps no more than some hundreds of them.
+/// Cells this many times the distance: a point then mostly has to look into its own cell only, and even a heap of
+/// points in one cell keeps no more than some hundreds of them.
 const CELL_PER_DISTANCE: f64 = 8.0;
 /// Points looked at between two looks at whether to go on.
 const CHUNK: usize = 4096;
@@ -28,7 +28,8 @@ pub(super) fn drop_exact(positions: &[[f32; 3]], kept: &mut Vec<u32>) -> usize {
     remove_sorted(kept, &repeated)
 }
 
-/// Leaves out of `kept` (ascending) every point within `distance` metres of an earlier one that stays; returns how many.
+/// Leaves out of `kept` (ascending) every point within `distance` metres of an earlier one that stays; returns how
+/// many.
 ///
 /// # Errors
 /// [`Error::Cancelled`](belvedere_data::Error::Cancelled).

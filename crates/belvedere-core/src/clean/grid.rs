@@ -24,8 +24,8 @@ impl SortedGrid {
         Self { cell_size, entries }
     }
 
-    /// Calls `visit` with every point that may lie within `radius` of `position`, each once, until it breaks. The points
-    /// come by row of cells; callers check the distance.
+    /// Calls `visit` with every point that may lie within `radius` of `position`, each once, until it breaks. The
+    /// points come by row of cells; callers check the distance.
     pub(super) fn visit_near(
         &self,
         position: [f32; 3],

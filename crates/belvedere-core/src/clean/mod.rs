@@ -125,13 +125,14 @@ fn in_centimetres<S: Serializer>(radius: &Option<f64>, serializer: S) -> std::re
 
 /// Indices of the points worth keeping, ascending, and how many each step left out.
 ///
-/// Steps run in the order of the fields of [`CleanParams`], each on what the ones before kept. Of points in one place the
-/// first in the file stays. Flags and classes are looked at where the cloud has them. An empty cloud gives no index. The
-/// result is the same for any number of threads.
+/// Steps run in the order of the fields of [`CleanParams`], each on what the ones before kept. Of points in one place
+/// the first in the file stays. Flags and classes are looked at where the cloud has them. An empty cloud gives no
+/// index. The result is the same for any number of threads.
 ///
 /// # Errors
 /// [`Error::LengthMismatch`] where an attribute has another length than the cloud, [`Error::InvalidParameter`] for a
-/// distance, radius or multiple that is not positive and finite or that is too large, and for more points than u32 counts; [`Error::Cancelled`].
+/// distance, radius or multiple that is not positive and finite or that is too large, and for more points than u32
+/// counts; [`Error::Cancelled`].
 pub fn clean(cloud: &PointCloud, params: &CleanParams, control: &Control<'_>) -> Result<(Vec<u32>, CleanReport)> {
     let expected = cloud.len();
     if let Some((what, found)) = cloud.attributes.columns().into_iter().find(|&(_, length)| length != expected) {

@@ -21,8 +21,8 @@ const SPACING_DOUBLINGS: i32 = 5;
 pub struct IsolatedPoints {
     /// How far to look for other points.
     pub radius: IsolationRadius,
-    /// A point stays with this many others within the radius, at least 1. Default 2: two birds, or the two returns of one
-    /// stray pulse, still go, whereas points on a wire or a sparse facade have more.
+    /// A point stays with this many others within the radius, at least 1. Default 2: two birds, or the two returns of
+    /// one stray pulse, still go, whereas points on a wire or a sparse facade have more.
     pub min_neighbors: usize,
 }
 
@@ -34,8 +34,8 @@ pub enum IsolationRadius {
     /// A multiple of the median distance of a point to its nearest neighbour, but no less than a metre.
     ///
     /// Default: 10. A facade seen from the air has a tenth of the density of a roof, so three times its spacing; ten
-    /// leaves room for wires. The metre protects terrestrial scans, whose spacing at the median range is millimetres but
-    /// at the far end decimetres.
+    /// leaves room for wires. The metre protects terrestrial scans, whose spacing at the median range is millimetres
+    /// but at the far end decimetres.
     SpacingMultiple(f64),
 }
 
@@ -118,8 +118,8 @@ pub(super) fn drop_isolated(
     Ok(remove_sorted(kept, &alone))
 }
 
-/// Median distance in metres from a sample of points to their nearest neighbours, or `None` for fewer than two points or
-/// where half of them are farther apart than any guess.
+/// Median distance in metres from a sample of points to their nearest neighbours, or `None` for fewer than two points
+/// or where half of them are farther apart than any guess.
 fn median_spacing(positions: &[[f32; 3]], kept: &[u32], control: &Control<'_>) -> Result<Option<f64>> {
     if kept.len() < 2 {
         return Ok(None);
@@ -158,15 +158,15 @@ fn nearest_distance(grid: &SortedGrid, positions: &[[f32; 3]], index: u32, guess
     let p = positions[index as usize];
     for doubling in 0..=SPACING_DOUBLINGS {
         let radius = guess * 2.0_f64.powi(doubling);
-        let mut least = f64::INFINITY;
+        let mut min = f64::INFINITY;
         let _ = grid.visit_near(p, radius, |other| {
             if other != index {
-                least = least.min(squared_distance(p, positions[other as usize]));
+                min = min.min(squared_distance(p, positions[other as usize]));
             }
             ControlFlow::Continue(())
         });
-        if least <= radius * radius {
-            return least.sqrt();
+        if min <= radius * radius {
+            return min.sqrt();
         }
     }
     f64::INFINITY

@@ -10,21 +10,21 @@ use belvedere_data::raster::Raster;
 use belvedere_data::view::{Projection, View};
 use belvedere_data::{Error, Parameter, Result};
 
-/// Rounding of f32 as a share of the coordinates it works on: 32 units of 2⁻²³. Positions in the view, directions of pixels and
-/// products of both err by fewer than 16 of them together.
+/// Rounding of f32 as a share of the coordinates it works on: 32 units of 2⁻²³. Positions in the view, directions of
+/// pixels and products of both err by fewer than 16 of them together.
 const ROUNDING: f64 = 4e-6;
 /// The same near the origin of the view, metres.
-const LEAST_ROUNDING: f64 = 1e-6;
+const MIN_ROUNDING: f64 = 1e-6;
 
 /// What bounds of depth are to allow for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BoundsParams {
-    /// How far balls may give way to a target near their surface, metres, 0 or more, never more than half their radius: see
-    /// [`BlockRule::shell`]. Default 0.
+    /// How far balls may give way to a target near their surface, metres, 0 or more, never more than half their radius:
+    /// see [`BlockRule::shell`]. Default 0.
     pub shell: f64,
-    /// Where lines of sight end on the viewer's side, as a depth or, in a view from an eye, as a range in metres: balls that reach
-    /// before it block nothing. −∞ for a viewer infinitely far away. Default 0, the picture plane or the eye. In a perspective view
-    /// a plane of this depth.
+    /// Where lines of sight end on the viewer's side, as a depth or, in a view from an eye, as a range in metres: balls
+    /// that reach before it block nothing. −∞ for a viewer infinitely far away. Default 0, the picture plane or the
+    /// eye. In a perspective view a plane of this depth.
     pub start: f64,
 }
 
@@ -35,37 +35,39 @@ impl Default for BoundsParams {
 }
 
 impl BoundsParams {
-    /// Where lines of sight of `view` end on the viewer's side, the nearest and the farthest of them: depths in a parallel view, ranges in
-    /// all others, metres.
+    /// Where lines of sight of `view` end on the viewer's side, the nearest and the farthest of them: depths in a
+    /// parallel view, ranges in all others, metres.
     #[must_use]
     pub fn starts(&self, view: &View) -> [f64; 2] {
-        let most_range_per_depth = match view.projection {
+        let max_range_per_depth = match view.projection {
             Projection::Perspective { .. } => 1.0 / view.direction([0.0; 2])[2],
             _ => 1.0,
         };
-        [self.start, if self.start > 0.0 { self.start * most_range_per_depth } else { self.start }]
+        [self.start, if self.start > 0.0 { self.start * max_range_per_depth } else { self.start }]
     }
 }
 
-/// For each pixel of a view, between which depths the first surface lies that any line of sight through the pixel meets.
+/// For each pixel of a view, between which depths the first surface lies that any line of sight through the pixel
+/// meets.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DepthBounds {
     /// The view they were made for.
     pub view: View,
-    /// For each pixel, metres (depth in parallel views, range from the eye in all others): at most the depth of the first surface at
-    /// any point of it, +∞ where no ball touches it; and at least that depth at every point of it, even where balls give way
-    /// by the shell, +∞ where no single ball covers it.
+    /// For each pixel, metres (depth in parallel views, range from the eye in all others): at most the depth of the
+    /// first surface at any point of it, +∞ where no ball touches it; and at least that depth at every point of it,
+    /// even where balls give way by the shell, +∞ where no single ball covers it.
     pub bounds: Raster<[f32; 2]>,
 }
 
-/// Bounds of depth in `view` over the balls given as centre (local) and radius, metres; those that are not finite are left out, and
-/// those that hold the eye of the view.
+/// Bounds of depth in `view` over the balls given as centre (local) and radius, metres; those that are not finite are
+/// left out, and those that hold the eye of the view.
 ///
-/// Over the square of a pixel the front of a ball is nearest at the point nearest to the ball's middle and farthest at a
-/// corner. The lower bound is the least of the former over all balls that touch the square, the upper bound the least of
-/// the latter over all balls that cover it even when they give way by the shell. Balls that cover it only with all of their radius count
-/// too, but from the depth on from which no target lies within the shell of them. In views from an eye the circle of directions around the square takes its place. Balls
-/// are drawn a little too large for the one and too small for the other, by more than f32 can err.
+/// Over the square of a pixel the front of a ball is nearest at the point nearest to the ball's middle and farthest at
+/// a corner. The lower bound is the least of the former over all balls that touch the square, the upper bound the least
+/// of the latter over all balls that cover it even when they give way by the shell. Balls that cover it only with all
+/// of their radius count too, but from the depth on from which no target lies within the shell of them. In views from
+/// an eye the circle of directions around the square takes its place. Balls are drawn a little too large for the one
+/// and too small for the other, by more than f32 can err.
 ///
 /// # Errors
 /// [`Error::InvalidParameter`] for 2³² balls or more, and [`Error::Cancelled`].
@@ -86,12 +88,12 @@ pub fn depth_bounds(balls: &[Ball], view: &View, params: &BoundsParams, control:
         let bound = BallBound { side, rule, start };
         let drawn = match view.projection {
             Projection::Orthographic { pixels_per_metre } => {
-                let surface = parallel::Bound::new(bound, pixels_per_metre);
+                let surface = parallel::ParallelBound::new(bound, pixels_per_metre);
                 let shape = Parallel::new(&unlimited, pixels_per_metre, surface);
                 tiles::draw(&shape, view.size_px, balls.len(), ball, ItemBuffer::Without, control)
             }
             _ => {
-                let shape = Central::new(&unlimited, central::Bound(bound));
+                let shape = Central::new(&unlimited, central::CentralBound(bound));
                 tiles::draw(&shape, view.size_px, balls.len(), ball, ItemBuffer::Without, control)
             }
         };
@@ -120,18 +122,19 @@ pub(super) struct BallBound {
 }
 
 impl BallBound {
-    /// The radius to draw a ball with, `None` where it does not count. `size` is at least the largest of its coordinates, metres;
-    /// `fronts` the least and the most depth of its front; nothing smaller than `least_cover` covers a pixel at its distance.
+    /// The radius to draw a ball with, `None` where it does not count. `size` is at least the largest of its
+    /// coordinates, metres; `fronts` the least and the most depth of its front; nothing smaller than `min_cover` covers
+    /// a pixel at its distance.
     #[expect(clippy::cast_possible_truncation, reason = "rounded outward on purpose")]
-    pub(super) fn radius(&self, radius: f32, size: f64, [least, most]: [f64; 2], least_cover: f64) -> Option<f32> {
+    pub(super) fn radius(&self, radius: f32, size: f64, [min, max]: [f64; 2], min_cover: f64) -> Option<f32> {
         let radius = f64::from(radius);
         let margin = margin(size, radius);
         match self.side {
-            BoundSide::Lower => (most + margin > self.start[0]).then(|| ((radius + margin) as f32).next_up()),
+            BoundSide::Lower => (max + margin > self.start[0]).then(|| ((radius + margin) as f32).next_up()),
             BoundSide::Upper => {
                 // twice, since giving way halves what is left of one
                 let drawn = radius - 2.0 * margin;
-                (drawn > least_cover && least - margin > self.start[1]).then(|| (drawn as f32).next_down())
+                (drawn > min_cover && min - margin > self.start[1]).then(|| (drawn as f32).next_down())
             }
         }
     }
@@ -140,12 +143,12 @@ impl BallBound {
 impl BallBound {
     /// The radius that is left of a ball drawn with `radius` for any target, however near to its surface.
     #[inline(always)]
-    pub(super) fn least_radius(&self, radius: f32) -> f32 {
-        self.rule.least_radius_f32(radius)
+    pub(super) fn min_radius(&self, radius: f32) -> f32 {
+        self.rule.min_radius_f32(radius)
     }
 
-    /// A depth behind which every target lies farther than the shell from a ball drawn with `radius` around `center` deep, so that
-    /// it counts with all of its radius.
+    /// A depth behind which every target lies farther than the shell from a ball drawn with `radius` around `center`
+    /// deep, so that it counts with all of its radius.
     #[inline(always)]
     #[expect(clippy::cast_possible_truncation, reason = "a length")]
     pub(super) fn behind(&self, center: f32, radius: f32, margin: f32) -> f32 {
@@ -155,5 +158,5 @@ impl BallBound {
 
 /// By how much a ball is drawn too large or too small, metres.
 pub(super) fn margin(size: f64, radius: f64) -> f64 {
-    ROUNDING * (size + radius) + LEAST_ROUNDING
+    ROUNDING * (size + radius) + MIN_ROUNDING
 }

@@ -1,17 +1,17 @@
 //! Balls in views from an eye: how far away a ball's surface is in the direction of a pixel.
 //!
-//! All that matters is the angle between that direction and the ball's centre, so that one test serves every projection; only
-//! the directions of the pixels and the outline of a ball differ.
+//! All that matters is the angle between that direction and the ball's centre, so that one test serves every
+//! projection; only the directions of the pixels and the outline of a ball differ.
 
 use super::bounds::{BallBound, BoundSide, margin};
 use super::outline::{ALL, outline};
-use super::tiles::{BLOCK, Shape, TILE};
+use super::tiles::{BLOCK, SplatSurface, TILE};
 use belvedere_data::vector::{cross, length};
 use belvedere_data::view::{Projection, View};
 
 /// A ball as seen from the eye.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Splat {
+pub(super) struct CentralSplat {
     /// Centre along right, down and forward, metres.
     center: [f32; 3],
     radius: f32,
@@ -25,9 +25,10 @@ pub(super) struct Splat {
     ball: u32,
 }
 
-/// Where a direction of sight runs past a ball: along it to the point nearest to the centre, and from there to the centre, metres.
+/// Where a direction of sight runs past a ball: along it to the point nearest to the centre, and from there to the
+/// centre, metres.
 #[derive(Clone, Copy)]
-struct Passing {
+struct DirectionPassing {
     along: f32,
     beside_square: f32,
 }
@@ -63,12 +64,12 @@ impl Turn {
 
     /// The passing of the direction nearest to the centre.
     #[inline(always)]
-    fn nearest(self, passing: Passing, distance: f32) -> Passing {
+    fn nearest(self, passing: DirectionPassing, distance: f32) -> DirectionPassing {
         let beside = passing.beside_square.sqrt();
         let turned = beside * self.cos - passing.along * self.sin;
         let along = passing.along * self.cos + beside * self.sin;
         let reaches_middle = turned <= 0.0;
-        Passing {
+        DirectionPassing {
             along: if reaches_middle { distance } else { along },
             beside_square: if reaches_middle { 0.0 } else { turned * turned },
         }
@@ -76,10 +77,10 @@ impl Turn {
 
     /// The passing of the direction farthest from the centre.
     #[inline(always)]
-    fn farthest(self, passing: Passing) -> Passing {
+    fn farthest(self, passing: DirectionPassing) -> DirectionPassing {
         let beside = passing.beside_square.sqrt();
         let turned = beside * self.cos + passing.along * self.sin;
-        Passing { along: passing.along * self.cos - beside * self.sin, beside_square: turned * turned }
+        DirectionPassing { along: passing.along * self.cos - beside * self.sin, beside_square: turned * turned }
     }
 }
 
@@ -89,7 +90,7 @@ pub(super) struct Directions {
     directions: [[f32; TILE * TILE]; 3],
     /// Depth per range of each pixel, and the least of them.
     depth_per_range: [f32; TILE * TILE],
-    least_depth_per_range: f32,
+    min_depth_per_range: f32,
     /// From the middle of a block to anywhere within its pixels.
     block: Turn,
     /// From the middle of a pixel to anywhere within it.
@@ -97,14 +98,14 @@ pub(super) struct Directions {
 }
 
 /// What is drawn of a ball in a view from an eye.
-pub(super) trait Surface: Sync {
+pub(super) trait CentralSurface: Sync {
     /// Pixels beyond the rim of a ball whose depth may be finite.
     const BEYOND_PX: f32;
     /// Whether depths are ranges whatever the view.
     const IN_RANGE: bool;
-    /// The radius to draw with, or `None` where a ball does not count. `fronts` is the least and the most range of its front; nothing
-    /// smaller than `least_cover` covers a pixel at its range.
-    fn radius(&self, radius: f32, size: f64, fronts: [f64; 2], least_cover: f64) -> Option<f32>;
+    /// The radius to draw with, or `None` where a ball does not count. `fronts` is the least and the most range of its
+    /// front; nothing smaller than `min_cover` covers a pixel at its range.
+    fn radius(&self, radius: f32, size: f64, fronts: [f64; 2], min_cover: f64) -> Option<f32>;
     /// Limits of depth of what is drawn.
     fn limits(&self, view: &View) -> [f64; 2];
     /// What a ball covers whose outline says nothing because its surface runs through the eye, as far as can be told.
@@ -112,12 +113,12 @@ pub(super) trait Surface: Sync {
         None
     }
     /// Depth in one direction, +∞ beside the ball.
-    fn depth(&self, pixel: &Pixel<'_>, splat: &Splat) -> f32;
+    fn depth(&self, pixel: &PixelRay<'_>, splat: &CentralSplat) -> f32;
 }
 
 /// One direction past one ball.
-pub(super) struct Pixel<'a> {
-    passing: Passing,
+pub(super) struct PixelRay<'a> {
+    passing: DirectionPassing,
     distance: f32,
     depth_per_range: f32,
     limits: [f32; 2],
@@ -129,27 +130,27 @@ pub(super) struct Central<S> {
     view: View,
     limits: [f32; 2],
     /// At most the sine of the angle from the middle of any pixel to its corners.
-    least_pixel: f64,
+    min_pixel: f64,
     surface: S,
 }
 
-impl<S: Surface> Central<S> {
+impl<S: CentralSurface> Central<S> {
     #[expect(clippy::cast_possible_truncation, reason = "limits of depth in metres")]
     pub(super) fn new(view: &View, surface: S) -> Self {
         let limits = surface.limits(view).map(|v| v as f32);
         // pixels are smallest at the corners of a perspective picture and at those of a stereographic map
         let corner = view.direction([0.0; 2]);
         let inward = view.direction([0.5; 2]);
-        let least_pixel = length(cross(corner, inward)) * 0.5;
-        Self { view: *view, limits, least_pixel, surface }
+        let min_pixel = length(cross(corner, inward)) * 0.5;
+        Self { view: *view, limits, min_pixel, surface }
     }
 
     fn is_in_range(&self) -> bool {
         S::IN_RANGE || matches!(self.view.projection, Projection::Hemispherical { .. })
     }
 
-    /// At least the angle between two directions through places of the picture, per pixel between them, where the nearer of all
-    /// such places to the middle of the picture lies this far from it, pixels.
+    /// At least the angle between two directions through places of the picture, per pixel between them, where the
+    /// nearer of all such places to the middle of the picture lies this far from it, pixels.
     fn angle_per_pixel(&self, off_middle: f64) -> f64 {
         let (scale, steepness) = match self.view.projection {
             Projection::Orthographic { pixels_per_metre } => (pixels_per_metre, 0.0),
@@ -165,12 +166,12 @@ impl<S: Surface> Central<S> {
     }
 }
 
-impl<S: Surface> Shape for Central<S> {
-    type Splat = Splat;
-    type Tile = Box<Directions>;
+impl<S: CentralSurface> SplatSurface for Central<S> {
+    type Splat = CentralSplat;
+    type PixelTile = Box<Directions>;
 
     #[expect(clippy::cast_possible_truncation, reason = "view coordinates relative to the eye")]
-    fn place(&self, center: [f32; 3], radius: f32, ball: u32) -> Option<Splat> {
+    fn place(&self, center: [f32; 3], radius: f32, ball: u32) -> Option<CentralSplat> {
         let center = self.view.frame.view_from_local(center);
         let distance = center.map(|v| v * v).iter().sum::<f64>().sqrt();
         let whole = f64::from(radius);
@@ -180,17 +181,17 @@ impl<S: Surface> Shape for Central<S> {
         let size = center.iter().map(|v| v.abs()).sum();
         let margin = margin(size, whole);
         let silhouette = ((distance - whole) * (distance + whole)).max(0.0).sqrt();
-        let radius = self.surface.radius(radius, size, [distance - whole, silhouette], distance * self.least_pixel)?;
+        let radius = self.surface.radius(radius, size, [distance - whole, silhouette], distance * self.min_pixel)?;
         let extent = outline(&self.view, center, whole).or_else(|| self.surface.at_eye(distance, whole, margin))?;
-        let inside = |[least, most]: [f64; 2], size: usize| most > -1.0 && least < size as f64 + 1.0;
+        let inside = |[min, max]: [f64; 2], size: usize| max > -1.0 && min < size as f64 + 1.0;
         if !(inside(extent[0], self.view.size_px[0]) && inside(extent[1], self.view.size_px[1])) {
             return None;
         }
-        let least = if self.is_in_range() { distance - f64::from(radius) } else { center[2] - f64::from(radius) };
+        let min = if self.is_in_range() { distance - f64::from(radius) } else { center[2] - f64::from(radius) };
         let [near, far] = self.limits;
-        let near = ((least - margin) as f32).max(near);
-        let beyond = |[least, most]: [f64; 2]| [least as f32 - S::BEYOND_PX, most as f32 + S::BEYOND_PX];
-        (near <= far).then_some(Splat {
+        let near = ((min - margin) as f32).max(near);
+        let beyond = |[min, max]: [f64; 2]| [min as f32 - S::BEYOND_PX, max as f32 + S::BEYOND_PX];
+        (near <= far).then_some(CentralSplat {
             center: center.map(|v| v as f32),
             radius,
             margin: margin as f32,
@@ -200,15 +201,15 @@ impl<S: Surface> Shape for Central<S> {
         })
     }
 
-    fn ball(splat: &Splat) -> u32 {
+    fn ball(splat: &CentralSplat) -> u32 {
         splat.ball
     }
 
-    fn near(splat: &Splat) -> f32 {
+    fn near(splat: &CentralSplat) -> f32 {
         splat.near
     }
 
-    fn extent(&self, splat: &Splat) -> [[f32; 2]; 2] {
+    fn extent(&self, splat: &CentralSplat) -> [[f32; 2]; 2] {
         splat.extent
     }
 
@@ -221,7 +222,7 @@ impl<S: Surface> Shape for Central<S> {
         let mut tile = Box::new(Directions {
             directions: [[0.0; TILE * TILE]; 3],
             depth_per_range: [1.0; TILE * TILE],
-            least_depth_per_range: 1.0,
+            min_depth_per_range: 1.0,
             block: Turn::towards(pixel * (1.0 + BLOCK as f64)),
             pixel: [Turn::towards(pixel), Turn::away(pixel)],
         });
@@ -235,14 +236,14 @@ impl<S: Surface> Shape for Central<S> {
                 }
                 if !self.is_in_range() {
                     tile.depth_per_range[at] = direction[2] as f32;
-                    tile.least_depth_per_range = tile.least_depth_per_range.min(direction[2] as f32);
+                    tile.min_depth_per_range = tile.min_depth_per_range.min(direction[2] as f32);
                 }
             }
         }
         tile
     }
 
-    fn least_depth(&self, tile: &Self::Tile, splat: &Splat, [column, row]: [usize; 2]) -> f32 {
+    fn min_depth(&self, tile: &Self::PixelTile, splat: &CentralSplat, [column, row]: [usize; 2]) -> f32 {
         // the pixel right and below of the middle: half a pixel's diagonal off it
         let at = (row + BLOCK / 2) * TILE + column + BLOCK / 2;
         let direction = [0, 1, 2].map(|axis: usize| tile.directions[axis][at]);
@@ -252,20 +253,20 @@ impl<S: Surface> Shape for Central<S> {
         let square = radius * radius - passing.beside_square;
         let half_chord = square.max(0.0).sqrt();
         if square > 0.0 && passing.along + half_chord >= 0.0 {
-            (passing.along - half_chord).max(0.0) * tile.least_depth_per_range * (1.0 - 1e-6)
+            (passing.along - half_chord).max(0.0) * tile.min_depth_per_range * (1.0 - 1e-6)
         } else {
             f32::INFINITY
         }
     }
 
     #[inline(always)]
-    fn depths(&self, tile: &Self::Tile, splat: &Splat, [column, row]: [usize; 2]) -> [f32; BLOCK] {
+    fn depths(&self, tile: &Self::PixelTile, splat: &CentralSplat, [column, row]: [usize; 2]) -> [f32; BLOCK] {
         let first = row * TILE + column;
         let [x, y, z] = [0, 1, 2].map(|axis: usize| &tile.directions[axis][first..][..BLOCK]);
         let depth_per_range = &tile.depth_per_range[first..][..BLOCK];
         let distance = splat.center.map(|v| v * v).iter().sum::<f32>().sqrt();
         std::array::from_fn(|lane| {
-            let pixel = Pixel {
+            let pixel = PixelRay {
                 passing: passing(splat.center, [x[lane], y[lane], z[lane]]),
                 distance,
                 depth_per_range: depth_per_range[lane],
@@ -277,23 +278,27 @@ impl<S: Surface> Shape for Central<S> {
     }
 }
 
-/// How a unit vector of sight passes a centre. The distance beside it is that of a vector product, which does not cancel.
+/// How a unit vector of sight passes a centre. The distance beside it is that of a vector product, which does not
+/// cancel.
 #[inline(always)]
-fn passing([cx, cy, cz]: [f32; 3], [x, y, z]: [f32; 3]) -> Passing {
+fn passing([cx, cy, cz]: [f32; 3], [x, y, z]: [f32; 3]) -> DirectionPassing {
     let (across, down, forward) = (cy * z - cz * y, cz * x - cx * z, cx * y - cy * x);
-    Passing { along: cx * x + cy * y + cz * z, beside_square: across * across + down * down + forward * forward }
+    DirectionPassing {
+        along: cx * x + cy * y + cz * z,
+        beside_square: across * across + down * down + forward * forward,
+    }
 }
 
 /// The sphere, sampled in the directions of pixel centres.
-pub(super) struct Sphere;
+pub(super) struct CentralSphere;
 
-impl Surface for Sphere {
+impl CentralSurface for CentralSphere {
     const BEYOND_PX: f32 = 0.1;
     const IN_RANGE: bool = false;
 
-    fn radius(&self, radius: f32, _: f64, [least, _]: [f64; 2], _: f64) -> Option<f32> {
+    fn radius(&self, radius: f32, _: f64, [min, _]: [f64; 2], _: f64) -> Option<f32> {
         // a ball that holds the eye is left out
-        (least > 0.0).then_some(radius)
+        (min > 0.0).then_some(radius)
     }
 
     fn limits(&self, view: &View) -> [f64; 2] {
@@ -301,7 +306,7 @@ impl Surface for Sphere {
     }
 
     #[inline(always)]
-    fn depth(&self, pixel: &Pixel<'_>, splat: &Splat) -> f32 {
+    fn depth(&self, pixel: &PixelRay<'_>, splat: &CentralSplat) -> f32 {
         let [near, far] = pixel.limits;
         let square = splat.radius * splat.radius - pixel.passing.beside_square;
         let half_chord = square.max(0.0).sqrt();
@@ -313,15 +318,15 @@ impl Surface for Sphere {
 }
 
 /// Bounds of the range of a ball over each pixel.
-pub(super) struct Bound(pub(super) BallBound);
+pub(super) struct CentralBound(pub(super) BallBound);
 
-impl Surface for Bound {
+impl CentralSurface for CentralBound {
     /// A square reaches √½ of a pixel beyond its centre.
     const BEYOND_PX: f32 = 1.0;
     const IN_RANGE: bool = true;
 
-    fn radius(&self, radius: f32, size: f64, fronts: [f64; 2], least_cover: f64) -> Option<f32> {
-        self.0.radius(radius, size, fronts, least_cover)
+    fn radius(&self, radius: f32, size: f64, fronts: [f64; 2], min_cover: f64) -> Option<f32> {
+        self.0.radius(radius, size, fronts, min_cover)
     }
 
     fn limits(&self, _: &View) -> [f64; 2] {
@@ -334,7 +339,7 @@ impl Surface for Bound {
     }
 
     #[inline(always)]
-    fn depth(&self, pixel: &Pixel<'_>, splat: &Splat) -> f32 {
+    fn depth(&self, pixel: &PixelRay<'_>, splat: &CentralSplat) -> f32 {
         let passing = match self.0.side {
             BoundSide::Lower => pixel.turns[0].nearest(pixel.passing, pixel.distance),
             BoundSide::Upper => pixel.turns[1].farthest(pixel.passing),
@@ -350,7 +355,7 @@ impl Surface for Bound {
             BoundSide::Upper => {
                 let is_covered = (passing.beside_square < splat.radius * splat.radius) & (passing.along > 0.0);
                 let behind = self.0.behind(pixel.distance, splat.radius, splat.margin);
-                front(self.0.least_radius(splat.radius)).min(if is_covered { behind } else { f32::INFINITY })
+                front(self.0.min_radius(splat.radius)).min(if is_covered { behind } else { f32::INFINITY })
             }
         }
     }

@@ -31,25 +31,26 @@ pub struct DepthMap {
     pub view: View,
     /// The surface that was drawn.
     pub profile: Profile,
-    /// Depth in metres: along the view's forward vector, from its picture plane or its eye, and straight from the eye for
-    /// [`Projection::Hemispherical`]; +∞ where nothing is hit.
+    /// Depth in metres: along the view's forward vector, from its picture plane or its eye, and straight from the eye
+    /// for [`Projection::Hemispherical`]; +∞ where nothing is hit.
     pub depth: Raster<f32>,
-    /// Row of the ball each pixel shows, [`NO_BALL`] where nothing is hit; of equally near balls the one with the lowest
-    /// row. Only where asked for.
+    /// Row of the ball each pixel shows, [`NO_BALL`] where nothing is hit; of equally near balls the one with the
+    /// lowest row. Only where asked for.
     pub balls: Option<Raster<u32>>,
     /// Balls that hold the eye of a view: left out, so that a wrong ball does not blind it.
     pub around_eye_count: usize,
 }
 
-/// The depth map of `balls` in `view`. Balls that never shrank, or whose centre or radius is not finite, are left out, and those that
-/// hold the eye of the view (its distance to their centre is at most their radius), which are counted.
+/// The depth map of `balls` in `view`. Balls that never shrank, or whose centre or radius is not finite, are left out,
+/// and those that hold the eye of the view (its distance to their centre is at most their radius), which are counted.
 ///
 /// Cost: reading every ball once, then work in proportion to what is seen. Balls are drawn tile by tile from front to
 /// back, and blocks of pixels that are already nearer than a ball can come are skipped. The result is the same for any
 /// number of threads and any order of balls.
 ///
 /// # Errors
-/// [`Error::LengthMismatch`] for columns of unequal length, [`Error::InvalidParameter`] for 2³² balls or more, and for [`Profile::PaperCone`] in a view that is not parallel, and [`Error::Cancelled`].
+/// [`Error::LengthMismatch`] for columns of unequal length, [`Error::InvalidParameter`] for 2³² balls or more, and for
+/// [`Profile::PaperCone`] in a view that is not parallel, and [`Error::Cancelled`].
 ///
 /// # Source
 /// Peters, Ledoux & Biljecki 2015, section 3.2 and Algorithm 1 (`WRITEBALL`), of which [`Profile::PaperCone`] is the
@@ -76,15 +77,22 @@ pub fn depth_map(
     };
     let (size, count) = (view.size_px, balls.len());
     let drawn = match (view.projection, profile) {
-        (Projection::Orthographic { pixels_per_metre }, Profile::Sphere) => {
-            tiles::draw(&Parallel::new(view, pixels_per_metre, parallel::Sphere), size, count, usable, items, control)
-        }
+        (Projection::Orthographic { pixels_per_metre }, Profile::Sphere) => tiles::draw(
+            &Parallel::new(view, pixels_per_metre, parallel::ParallelSphere),
+            size,
+            count,
+            usable,
+            items,
+            control,
+        ),
         (Projection::Orthographic { pixels_per_metre }, Profile::PaperCone) => {
             #[expect(clippy::cast_possible_truncation, reason = "pixels per metre")]
             let cone = parallel::Cone { pixels_per_metre: pixels_per_metre as f32 };
             tiles::draw(&Parallel::new(view, pixels_per_metre, cone), size, count, usable, items, control)
         }
-        (_, Profile::Sphere) => tiles::draw(&Central::new(view, central::Sphere), size, count, usable, items, control),
+        (_, Profile::Sphere) => {
+            tiles::draw(&Central::new(view, central::CentralSphere), size, count, usable, items, control)
+        }
         (_, Profile::PaperCone) => {
             return Err(Error::InvalidParameter {
                 parameter: Parameter::BallProfile,
@@ -109,12 +117,13 @@ impl DepthMap {
     /// The bias, metres, by which a target may lie behind the depth of its pixel and still count as visible, unless the
     /// caller knows better.
     ///
-    /// A target on a surface lies behind the depth at its pixel's centre by what noise and balls deviate along the normal
-    /// (0.1 m, or a pixel where pixels are finer, as for small objects), seen at a slope of 2, and by that slope over half
-    /// the diagonal of the pixel. On simulated towns this is close to the best for the cloud's own points under suns 15° to
-    /// 60° high, with pixels of 0.05 and of 0.25 m; targets in free air hardly depend on it. The paper's algorithm has no
-    /// bias, so [`Profile::PaperCone`] has 0. In views from an eye, where pixels widen with the range, that of a pixel as far
-    /// away as the mean of what is seen: where that matters, ask exact lines of sight.
+    /// A target on a surface lies behind the depth at its pixel's centre by what noise and balls deviate along the
+    /// normal (0.1 m, or a pixel where pixels are finer, as for small objects), seen at a slope of 2, and by that slope
+    /// over half the diagonal of the pixel. On simulated towns this is close to the best for the cloud's own points
+    /// under suns 15° to 60° high, with pixels of 0.05 and of 0.25 m; targets in free air hardly depend on it. The
+    /// paper's algorithm has no bias, so [`Profile::PaperCone`] has 0. In views from an eye, where pixels widen with
+    /// the range, that of a pixel as far away as the mean of what is seen: where that matters, ask exact lines of
+    /// sight.
     #[must_use]
     #[expect(clippy::cast_possible_truncation, reason = "a length in metres")]
     pub fn default_depth_bias(&self) -> f32 {

@@ -5,8 +5,9 @@ use belvedere_data::view::{Projection, View};
 /// The outline of what covers everything.
 pub(super) const ALL: [[f64; 2]; 2] = [[f64::NEG_INFINITY, f64::INFINITY]; 2];
 
-/// Least and most column, and least and most row, in pixels from the upper left corner, of the outline of a ball in a view from
-/// an eye; `None` where nothing of it lies beyond the near limit or it holds the eye. Infinite where the outline has no end.
+/// Least and most column, and least and most row, in pixels from the upper left corner, of the outline of a ball in a
+/// view from an eye; `None` where nothing of it lies beyond the near limit or it holds the eye. Infinite where the
+/// outline has no end.
 ///
 /// The ball is given by its centre along right, down and forward of the view's frame, and its radius, metres.
 pub(super) fn outline(view: &View, center: [f64; 3], radius: f64) -> Option<[[f64; 2]; 2]> {
@@ -44,9 +45,10 @@ pub(super) fn outline(view: &View, center: [f64; 3], radius: f64) -> Option<[[f6
     }
 }
 
-/// Least and most slope across / forward at which a circle of `radius` around (`across`, `forward`) is seen from the origin beyond
-/// the depth `near`. The circle is the ball's shadow on the plane of that axis and forward, so that these are the
-/// exact bounds of the ball: where a tangent touches before the near limit, the circle's chord there takes its place.
+/// Least and most slope across / forward at which a circle of `radius` around (`across`, `forward`) is seen from the
+/// origin beyond the depth `near`. The circle is the ball's shadow on the plane of that axis and forward, so that these
+/// are the exact bounds of the ball: where a tangent touches before the near limit, the circle's chord there takes its
+/// place.
 ///
 /// # Source
 /// Mara & McGuire 2013, section 2.
@@ -56,7 +58,8 @@ fn slopes(across: f64, forward: f64, radius: f64, near: f64) -> [f64; 2] {
     let chord = (radius * radius - (near - forward).powi(2)).max(0.0).sqrt();
     [-1.0, 1.0].map(|side| {
         if tangent > 0.0 {
-            // the tangent's direction, up to its length: the centre's turned by the angle whose sine is radius / distance
+            // the tangent's direction, up to its length: the centre's turned by the angle whose sine is radius /
+            // distance
             let length = tangent.sqrt();
             let at = [across * length + side * radius * forward, forward * length - side * radius * across];
             // the touching point is that direction times length / square

@@ -1,12 +1,12 @@
 //! Balls in parallel views: where a ball lies on the picture plane and how deep its surface is at a pixel.
 
 use super::bounds::{BallBound, BoundSide, margin};
-use super::tiles::{BLOCK, Shape};
+use super::tiles::{BLOCK, SplatSurface};
 use belvedere_data::view::View;
 
-/// A ball in view space, in the units of its [`Surface`].
+/// A ball in view space, in the units of its [`ParallelSurface`].
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Splat {
+pub(super) struct ParallelSplat {
     /// Centre in pixels from the upper left corner of the picture.
     x: f32,
     y: f32,
@@ -18,7 +18,7 @@ pub(super) struct Splat {
 }
 
 /// A surface that stands for a ball, in units of its own.
-pub(super) trait Surface: Sync {
+pub(super) trait ParallelSurface: Sync {
     /// Pixels beyond the rim of a ball whose depth may be finite.
     const BEYOND_PX: f32 = 0.0;
     /// Units of depth in a metre.
@@ -26,10 +26,10 @@ pub(super) trait Surface: Sync {
         1.0
     }
     /// The ball whose centre lies at `x`, `y` pixels and `z` metres, or `None` where it cannot be seen.
-    fn place(&self, x: f64, y: f64, z: f64, radius: f32, ball: u32) -> Option<Splat>;
-    /// Depth at the offset `dx`, `dy` from the centre, +∞ beside the ball. It must not fall as the size of either offset grows, not
-    /// even by rounding.
-    fn depth(&self, splat: &Splat, dx: f32, dy: f32) -> f32;
+    fn place(&self, x: f64, y: f64, z: f64, radius: f32, ball: u32) -> Option<ParallelSplat>;
+    /// Depth at the offset `dx`, `dy` from the centre, +∞ beside the ball. It must not fall as the size of either
+    /// offset grows, not even by rounding.
+    fn depth(&self, splat: &ParallelSplat, dx: f32, dy: f32) -> f32;
 }
 
 /// Balls in a parallel view.
@@ -40,7 +40,7 @@ pub(super) struct Parallel<S> {
     surface: S,
 }
 
-impl<S: Surface> Parallel<S> {
+impl<S: ParallelSurface> Parallel<S> {
     #[expect(clippy::cast_possible_truncation, reason = "a pixel size in metres")]
     pub(super) fn new(view: &View, pixels_per_metre: f64, surface: S) -> Self {
         let units_per_pixel = match surface.units_per_metre() {
@@ -51,31 +51,32 @@ impl<S: Surface> Parallel<S> {
     }
 }
 
-impl<S: Surface> Shape for Parallel<S> {
-    type Splat = Splat;
+impl<S: ParallelSurface> SplatSurface for Parallel<S> {
+    type Splat = ParallelSplat;
     /// First column and row.
-    type Tile = [usize; 2];
+    type PixelTile = [usize; 2];
 
-    fn place(&self, center: [f32; 3], radius: f32, ball: u32) -> Option<Splat> {
+    fn place(&self, center: [f32; 3], radius: f32, ball: u32) -> Option<ParallelSplat> {
         let [width, height] = self.view.size_px.map(|v| v as f64);
         let [x, y, z] = self.view.frame.view_from_local(center);
         let (x, y) = (x * self.pixels_per_metre, y * self.pixels_per_metre);
-        // a pixel more than the ball reaches: the cone's centre moves by up to half of one, and bounds look at whole pixels
+        // a pixel more than the ball reaches: the cone's centre moves by up to half of one, and bounds look at whole
+        // pixels
         let reach = f64::from(radius) * self.pixels_per_metre + 1.0;
         // a comparison with NaN is false, so centres that are not finite fall out here
         let inside = x + reach > 0.0 && x - reach < width && y + reach > 0.0 && y - reach < height && z.is_finite();
         if inside { self.surface.place(x, y, z, radius, ball) } else { None }
     }
 
-    fn ball(splat: &Splat) -> u32 {
+    fn ball(splat: &ParallelSplat) -> u32 {
         splat.ball
     }
 
-    fn near(splat: &Splat) -> f32 {
+    fn near(splat: &ParallelSplat) -> f32 {
         splat.z - splat.radius
     }
 
-    fn extent(&self, splat: &Splat) -> [[f32; 2]; 2] {
+    fn extent(&self, splat: &ParallelSplat) -> [[f32; 2]; 2] {
         let reach = splat.radius / self.units_per_pixel + S::BEYOND_PX;
         [[splat.x - reach, splat.x + reach], [splat.y - reach, splat.y + reach]]
     }
@@ -86,7 +87,7 @@ impl<S: Surface> Shape for Parallel<S> {
 
     /// This is the depth at the offset within the block that is nearest to the centre. Every operation from offset to
     /// depth is monotone in f32, so no pixel of the block can come out nearer, not even by rounding.
-    fn least_depth(&self, &[left, top]: &[usize; 2], splat: &Splat, [column, row]: [usize; 2]) -> f32 {
+    fn min_depth(&self, &[left, top]: &[usize; 2], splat: &ParallelSplat, [column, row]: [usize; 2]) -> f32 {
         let offset = |first: usize, center: f32| {
             let [first, last] = [first, first + BLOCK - 1].map(|pixel| pixel as f32 + 0.5 - center);
             0f32.clamp(first, last) * self.units_per_pixel
@@ -97,7 +98,7 @@ impl<S: Surface> Shape for Parallel<S> {
     }
 
     #[inline(always)]
-    fn depths(&self, &[left, top]: &[usize; 2], splat: &Splat, [column, row]: [usize; 2]) -> [f32; BLOCK] {
+    fn depths(&self, &[left, top]: &[usize; 2], splat: &ParallelSplat, [column, row]: [usize; 2]) -> [f32; BLOCK] {
         let dy = ((top + row) as f32 + 0.5 - splat.y) * self.units_per_pixel;
         std::array::from_fn(|lane| {
             let dx = ((left + column + lane) as f32 + 0.5 - splat.x) * self.units_per_pixel;
@@ -111,16 +112,16 @@ impl<S: Surface> Shape for Parallel<S> {
 }
 
 /// The sphere, in metres.
-pub(super) struct Sphere;
+pub(super) struct ParallelSphere;
 
-impl Surface for Sphere {
+impl ParallelSurface for ParallelSphere {
     #[expect(clippy::cast_possible_truncation, reason = "view coordinates relative to the picture's corner")]
-    fn place(&self, x: f64, y: f64, z: f64, radius: f32, ball: u32) -> Option<Splat> {
-        (z + f64::from(radius) >= 0.0).then_some(Splat { x: x as f32, y: y as f32, z: z as f32, radius, ball })
+    fn place(&self, x: f64, y: f64, z: f64, radius: f32, ball: u32) -> Option<ParallelSplat> {
+        (z + f64::from(radius) >= 0.0).then_some(ParallelSplat { x: x as f32, y: y as f32, z: z as f32, radius, ball })
     }
 
     #[inline(always)]
-    fn depth(&self, splat: &Splat, dx: f32, dy: f32) -> f32 {
+    fn depth(&self, splat: &ParallelSplat, dx: f32, dy: f32) -> f32 {
         let square = (splat.radius * splat.radius - dy * dy) - dx * dx;
         let half_chord = square.max(0.0).sqrt();
         let front = (splat.z - half_chord).max(0.0);
@@ -133,34 +134,40 @@ pub(super) struct Cone {
     pub(super) pixels_per_metre: f32,
 }
 
-impl Surface for Cone {
+impl ParallelSurface for Cone {
     fn units_per_metre(&self) -> f32 {
         self.pixels_per_metre
     }
 
     #[expect(clippy::cast_possible_truncation, reason = "view coordinates relative to the picture's corner")]
-    fn place(&self, x: f64, y: f64, z: f64, radius: f32, ball: u32) -> Option<Splat> {
+    fn place(&self, x: f64, y: f64, z: f64, radius: f32, ball: u32) -> Option<ParallelSplat> {
         let s = self.pixels_per_metre;
         // the middle of the pixel that holds the centre, so that offsets to pixel centres are the paper's integers
-        Some(Splat { x: x.floor() as f32 + 0.5, y: y.floor() as f32 + 0.5, z: z as f32 * s, radius: radius * s, ball })
+        Some(ParallelSplat {
+            x: x.floor() as f32 + 0.5,
+            y: y.floor() as f32 + 0.5,
+            z: z as f32 * s,
+            radius: radius * s,
+            ball,
+        })
     }
 
     #[inline(always)]
-    fn depth(&self, splat: &Splat, dx: f32, dy: f32) -> f32 {
+    fn depth(&self, splat: &ParallelSplat, dx: f32, dy: f32) -> f32 {
         let h = (dx * dx + dy * dy).sqrt();
         if h < splat.radius { splat.z - (splat.radius - h) } else { f32::INFINITY }
     }
 }
 
 /// Bounds of the depth of a ball over the square of each pixel.
-pub(super) struct Bound {
+pub(super) struct ParallelBound {
     bound: BallBound,
     /// Half a pixel, metres, and a little more so that rounding leaves no gap.
     half_px: f32,
     metres_per_px: f64,
 }
 
-impl Bound {
+impl ParallelBound {
     #[expect(clippy::cast_possible_truncation, reason = "a pixel size in metres")]
     pub(super) fn new(bound: BallBound, pixels_per_metre: f64) -> Self {
         let metres_per_px = 1.0 / pixels_per_metre;
@@ -168,20 +175,20 @@ impl Bound {
     }
 }
 
-impl Surface for Bound {
+impl ParallelSurface for ParallelBound {
     /// A square reaches half a pixel beyond its centre.
     const BEYOND_PX: f32 = 1.0;
 
     #[expect(clippy::cast_possible_truncation, reason = "view coordinates relative to the picture's corner")]
-    fn place(&self, x: f64, y: f64, z: f64, radius: f32, ball: u32) -> Option<Splat> {
+    fn place(&self, x: f64, y: f64, z: f64, radius: f32, ball: u32) -> Option<ParallelSplat> {
         let size = (x.abs() + y.abs()) * self.metres_per_px + z.abs();
         let whole = f64::from(radius);
         let radius = self.bound.radius(radius, size, [z - whole, z], f64::from(self.half_px))?;
-        Some(Splat { x: x as f32, y: y as f32, z: z as f32, radius, ball })
+        Some(ParallelSplat { x: x as f32, y: y as f32, z: z as f32, radius, ball })
     }
 
     #[inline(always)]
-    fn depth(&self, splat: &Splat, dx: f32, dy: f32) -> f32 {
+    fn depth(&self, splat: &ParallelSplat, dx: f32, dy: f32) -> f32 {
         let [dx, dy] = match self.bound.side {
             BoundSide::Lower => [dx, dy].map(|d| (d.abs() - self.half_px).max(0.0)),
             BoundSide::Upper => [dx, dy].map(|d| d.abs() + self.half_px),
@@ -199,7 +206,7 @@ impl Surface for Bound {
                 #[expect(clippy::cast_possible_truncation, reason = "a length")]
                 let behind = self.bound.behind(splat.z, splat.radius, margin as f32);
                 let behind = if beside < splat.radius * splat.radius { behind } else { f32::INFINITY };
-                front(self.bound.least_radius(splat.radius)).min(behind)
+                front(self.bound.min_radius(splat.radius)).min(behind)
             }
         }
     }

@@ -1,9 +1,9 @@
 //! Drawing balls tile by tile, from front to back, leaving out what is hidden.
 //!
-//! Balls are sorted into the tiles they may touch. Each tile then draws its own from the nearest to the farthest and stops
-//! at the first that begins behind everything drawn so far. Within a tile, blocks of 8 x 8 pixels know their farthest depth,
-//! and a ball skips those it cannot come nearer in. Large balls (a 30 m ball covers thousands of pixels) thus cost what
-//! is seen of them.
+//! Balls are sorted into the tiles they may touch. Each tile then draws its own from the nearest to the farthest and
+//! stops at the first that begins behind everything drawn so far. Within a tile, blocks of 8 x 8 pixels know their
+//! farthest depth, and a ball skips those it cannot come nearer in. Large balls (a 30 m ball covers thousands of
+//! pixels) thus cost what is seen of them.
 
 use super::depth_map::{ItemBuffer, NO_BALL};
 use crate::blocking::Ball;
@@ -18,16 +18,17 @@ pub(super) const TILE: usize = 64;
 pub(super) const BLOCK: usize = 8;
 const BLOCKS: usize = TILE / BLOCK;
 /// A ball over more tiles than this is not listed in each but offered to all, which bounds the memory of the lists.
-const MOST_LISTED_TILES: usize = 16;
+const MAX_LISTED_TILES: usize = 16;
 /// Balls handed to a thread at once.
 const CHUNK: usize = 8192;
 
-/// A surface that stands for a ball in a view, and what it needs to be drawn. All depths are in one unit of its own choice.
-pub(super) trait Shape: Sync {
+/// A surface that stands for a ball in a view, and what it needs to be drawn. All depths are in one unit of its own
+/// choice.
+pub(super) trait SplatSurface: Sync {
     /// A ball in the view.
     type Splat: Copy + Send + Sync;
     /// What the pixels of one tile have in common.
-    type Tile;
+    type PixelTile;
     /// A ball, its centre local, or `None` where it cannot be seen or is no ball of finite size.
     fn place(&self, center: [f32; 3], radius: f32, ball: u32) -> Option<Self::Splat>;
     /// Row of the ball.
@@ -37,23 +38,24 @@ pub(super) trait Shape: Sync {
     /// Least and most column, and least and most row, that pixel centres on the ball may have, in pixels.
     fn extent(&self, splat: &Self::Splat) -> [[f32; 2]; 2];
     /// The tile whose upper left pixel stands at a column and a row.
-    fn tile(&self, left: usize, top: usize) -> Self::Tile;
-    /// At most the least depth of the ball at any pixel of the block at a column and a row of the tile, +∞ where it touches none.
-    fn least_depth(&self, tile: &Self::Tile, splat: &Self::Splat, block: [usize; 2]) -> f32;
+    fn tile(&self, left: usize, top: usize) -> Self::PixelTile;
+    /// At most the least depth of the ball at any pixel of the block at a column and a row of the tile, +∞ where it
+    /// touches none.
+    fn min_depth(&self, tile: &Self::PixelTile, splat: &Self::Splat, block: [usize; 2]) -> f32;
     /// Depths at the pixels of one row of a block, which starts at a column and a row of the tile; +∞ beside the ball.
-    fn depths(&self, tile: &Self::Tile, splat: &Self::Splat, first: [usize; 2]) -> [f32; BLOCK];
+    fn depths(&self, tile: &Self::PixelTile, splat: &Self::Splat, first: [usize; 2]) -> [f32; BLOCK];
     /// Units of depth in a metre.
     fn units_per_metre(&self) -> f32 {
         1.0
     }
 }
 
-/// The least depth of `count` balls, given by centre (local) and radius, at each pixel of a picture, metres; +∞ where there is
-/// none. `ball` is `None` for those to be left out.
+/// The least depth of `count` balls, given by centre (local) and radius, at each pixel of a picture, metres; +∞ where
+/// there is none. `ball` is `None` for those to be left out.
 ///
 /// # Errors
 /// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
-pub(super) fn draw<S: Shape>(
+pub(super) fn draw<S: SplatSurface>(
     shape: &S,
     [width, height]: [usize; 2],
     count: usize,
@@ -121,7 +123,7 @@ struct TileLists {
 
 impl TileLists {
     #[expect(clippy::cast_possible_truncation, reason = "there are fewer splats than 2^32")]
-    fn new<S: Shape>(shape: &S, splats: &[S::Splat], [width, height]: [usize; 2]) -> Self {
+    fn new<S: SplatSurface>(shape: &S, splats: &[S::Splat], [width, height]: [usize; 2]) -> Self {
         let (columns, rows) = (width.div_ceil(TILE), height.div_ceil(TILE));
         let tiles_of = |splat: &S::Splat| {
             let [across, down] = shape.extent(splat);
@@ -135,7 +137,7 @@ impl TileLists {
         let mut wide = Vec::new();
         for (i, splat) in splats.iter().enumerate() {
             let (across, down) = tiles_of(splat);
-            if across.len() * down.len() > MOST_LISTED_TILES {
+            if across.len() * down.len() > MAX_LISTED_TILES {
                 wide.push(i as u32);
                 continue;
             }
@@ -152,7 +154,7 @@ impl TileLists {
         let mut listed = vec![0; counts[columns * rows]];
         for (i, splat) in splats.iter().enumerate() {
             let (across, down) = tiles_of(splat);
-            if across.len() * down.len() > MOST_LISTED_TILES {
+            if across.len() * down.len() > MAX_LISTED_TILES {
                 continue;
             }
             for row in down {
@@ -166,14 +168,14 @@ impl TileLists {
         Self { columns, starts, listed, wide }
     }
 
-    /// The splats of one tile, nearest first, equally near ones by row of the ball: places in `splats` in the low half of
-    /// each key.
-    fn of_tile<S: Shape>(&self, shape: &S, splats: &[S::Splat], column: usize, row: usize) -> Vec<u64> {
+    /// The splats of one tile, nearest first, equally near ones by row of the ball: places in `splats` in the low half
+    /// of each key.
+    fn of_tile<S: SplatSurface>(&self, shape: &S, splats: &[S::Splat], column: usize, row: usize) -> Vec<u64> {
         let tile = row * self.columns + column;
         let listed = &self.listed[self.starts[tile]..self.starts[tile + 1]];
-        let touches = |from: usize, [least, most]: [f32; 2]| {
+        let touches = |from: usize, [min, max]: [f32; 2]| {
             let from = from as f32 * TILE as f32;
-            most > from && least < from + TILE as f32
+            max > from && min < from + TILE as f32
         };
         let wide = self.wide.iter().filter(|&&i| {
             let [across, down] = shape.extent(&splats[i as usize]);
@@ -196,21 +198,21 @@ fn ascending_bits(value: f32) -> u32 {
     if bits >> 31 == 0 { bits | 1 << 31 } else { !bits }
 }
 
-/// First and one past the last pixel whose centre may lie from `least` to `most`; one or two pixels too many at most.
+/// First and one past the last pixel whose centre may lie from `min` to `max`; one or two pixels too many at most.
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates and is clamped to the picture")]
-fn pixel_range([least, most]: [f32; 2], size: usize) -> [usize; 2] {
-    let end = most + 1.5;
+fn pixel_range([min, max]: [f32; 2], size: usize) -> [usize; 2] {
+    let end = max + 1.5;
     if end < 1.0 {
         return [0, 0];
     }
     // a cast rounds towards zero, which is down for what is not negative
-    [((least - 0.5).max(0.0) as usize).min(size), (end as usize).min(size)]
+    [((min - 0.5).max(0.0) as usize).min(size), (end as usize).min(size)]
 }
 
-struct Tile<'a, S: Shape> {
+struct Tile<'a, S: SplatSurface> {
     shape: &'a S,
     /// What its pixels have in common.
-    pixels: S::Tile,
+    pixels: S::PixelTile,
     /// First pixel.
     left: usize,
     top: usize,
@@ -222,7 +224,7 @@ struct Tile<'a, S: Shape> {
     stale: [bool; BLOCKS * BLOCKS],
 }
 
-impl<'a, S: Shape> Tile<'a, S> {
+impl<'a, S: SplatSurface> Tile<'a, S> {
     fn new(shape: &'a S, column: usize, row: usize) -> Self {
         let (left, top) = (column * TILE, row * TILE);
         Self {
@@ -261,7 +263,7 @@ impl<'a, S: Shape> Tile<'a, S> {
                 let block = block_row * BLOCKS + block_column;
                 let corner = [block_column * BLOCK, block_row * BLOCK];
                 if S::near(splat) > self.farthest_of(block)
-                    || self.shape.least_depth(&self.pixels, splat, corner) > self.farthest[block]
+                    || self.shape.min_depth(&self.pixels, splat, corner) > self.farthest[block]
                 {
                     continue;
                 }

@@ -11,7 +11,8 @@ use belvedere_data::{Error, Parameter, PointCloud, Result};
 const NOISE: [u8; 2] = [7, 18];
 /// LAS flag of points that the supplier withdrew.
 const WITHHELD: u8 = 4;
-/// How far below its surroundings a cell is taken for an error, metres (Pingel et al.: a slope of 500 % from cell to cell).
+/// How far below its surroundings a cell is taken for an error, metres (Pingel et al.: a slope of 500 % from cell to
+/// cell).
 const PIT: f32 = 5.0;
 
 /// Points between two looks at whether to go on.
@@ -20,18 +21,19 @@ const CHUNK: usize = 65_536;
 /// How ground is found among all points.
 ///
 /// # Source
-/// Pingel, Clarke & McBride 2013, "An improved simple morphological filter for the terrain classification of airborne LIDAR data":
-/// SMRF. Here windows are squares, grow faster beyond 18 cells, and what is missing is triangulated.
+/// Pingel, Clarke & McBride 2013, "An improved simple morphological filter for the terrain classification of airborne
+/// LIDAR data": SMRF. Here windows are squares, grow faster beyond 18 cells, and what is missing is triangulated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FinderParams {
     /// Side of the cells whose lowest points are looked at, metres, above 0. Default 1, as in the source.
     pub cell: f64,
     /// Steepest slope of the ground, metres a metre, above 0. Default 0.15, as in the source.
     pub slope: f64,
-    /// Half the width of the widest building, metres, above 0. Default 40: halls and blocks of 80 m (the source has 18).
+    /// Half the width of the widest building, metres, above 0. Default 40: halls and blocks of 80 m (the source has
+    /// 18).
     pub window: f64,
-    /// How far a ground point may lie from the surface found, metres, 0 or more, on level ground. Default 0.3: the source's 0.5
-    /// takes cars' bonnets and low hedges for ground.
+    /// How far a ground point may lie from the surface found, metres, 0 or more, on level ground. Default 0.3: the
+    /// source's 0.5 takes cars' bonnets and low hedges for ground.
     pub tolerance: f64,
     /// How much farther on a slope, metres for a slope of 1, 0 or more. Default 1.25, as in the source.
     pub slope_tolerance: f64,
@@ -76,12 +78,12 @@ impl FinderParams {
     }
 }
 
-/// Rows of the points of `cloud` that are ground, in rising order: those near the surface through the cells that no window takes for
-/// something standing on it. Noise and withheld points are none.
+/// Rows of the points of `cloud` that are ground, in rising order: those near the surface through the cells that no
+/// window takes for something standing on it. Noise and withheld points are none.
 ///
 /// # Errors
-/// [`Error::InvalidParameter`] for a parameter outside its range or a cloud too wide for its cells, [`Error::NoPoints`] where no point
-/// is left to be ground, [`Error::Cancelled`].
+/// [`Error::InvalidParameter`] for a parameter outside its range or a cloud too wide for its cells, [`Error::NoPoints`]
+/// where no point is left to be ground, [`Error::Cancelled`].
 pub fn find_ground(cloud: &PointCloud, params: &FinderParams, control: &Control<'_>) -> Result<Vec<u32>> {
     params.validate()?;
     let classes = cloud.attributes.classification.as_deref();

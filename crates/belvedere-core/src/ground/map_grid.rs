@@ -3,9 +3,9 @@
 use belvedere_data::{Error, Parameter, Result};
 
 /// Most cells of a grid: what a few bytes each still fit into the memory of a usual machine.
-const MOST_CELLS: f64 = 1e8;
+const MAX_CELLS: f64 = 1e8;
 /// Cells up to this side may be larger than the area that they divide, metres: a small area still is one cell.
-const LEAST_SIDE: f64 = 100.0;
+const MIN_SIDE: f64 = 100.0;
 
 /// Share of a cell by which a place may lie beyond an edge of a grid and still count as on it: local coordinates are
 /// rounded to f32.
@@ -32,7 +32,8 @@ impl MapGrid {
     /// extent gets one cell.
     ///
     /// # Errors
-    /// [`Error::InvalidParameter`] for a cell that is not above zero or longer than the box and than 100 m, a box that is not finite, and more than 100 million cells.
+    /// [`Error::InvalidParameter`] for a cell that is not above zero or longer than the box and than 100 m, a box that
+    /// is not finite, and more than 100 million cells.
     pub fn covering(low: [f64; 2], high: [f64; 2], cell: f64, origin: [f64; 2]) -> Result<Self> {
         let invalid = |parameter, value: String, expected| Err(Error::InvalidParameter { parameter, value, expected });
         if !(cell.is_finite() && cell > 0.0) {
@@ -42,7 +43,7 @@ impl MapGrid {
             return invalid(Parameter::GridBox, format!("{low:?} to {high:?}"), "finite");
         }
         let side = (high[0] - low[0]).max(high[1] - low[1]);
-        if cell > side.max(LEAST_SIDE) {
+        if cell > side.max(MIN_SIDE) {
             return invalid(Parameter::Cell, format!("{cell} m"), "at most as long as the area that it divides");
         }
         let edge = |local: f64, origin: f64, outward: fn(f64) -> f64| {
@@ -54,7 +55,7 @@ impl MapGrid {
         let east = edge(high[0], origin[0], f64::ceil).max(west + 1.0);
         let north = edge(high[1], origin[1], f64::ceil).max(south + 1.0);
         let (columns, rows) = (east - west, north - south);
-        if !(columns * rows <= MOST_CELLS) {
+        if !(columns * rows <= MAX_CELLS) {
             return invalid(
                 Parameter::Cell,
                 format!("{cell} m, which makes {columns} x {rows} cells"),

@@ -23,8 +23,9 @@ use serde::{Deserialize, Serialize};
 
 /// ASPRS class of ground.
 const GROUND: u8 = 2;
-/// Ground points beyond the outermost of which the nearest one's height is still taken, metres: a few spacings of sparse surveys.
-const RIM: f32 = 5.0;
+/// Ground points beyond the outermost of which the nearest one's height is still taken, metres: a few spacings of
+/// sparse surveys.
+const MAX_EXTRAPOLATION: f32 = 5.0;
 
 /// How the ground of a cloud is made.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,8 +34,8 @@ pub struct GroundParams {
     pub points: GroundPoints,
     /// How ground is found.
     pub finder: FinderParams,
-    /// How far from the next ground point a height is still given, metres, above 0. Default 60: the middle of large halls has a ground
-    /// below it.
+    /// How far from the next ground point a height is still given, metres, above 0. Default 60: the middle of large
+    /// halls has a ground below it.
     pub reach: f64,
     /// How far on the map the middle of a cell may lie from the nearest return, a point of the cloud of any class, and
     /// still have a height, metres, above 0. Default 5: a hole in the survey, such as a missing tile or wide water, has
@@ -84,14 +85,16 @@ pub struct Ground {
     pub grid: MapGrid,
     /// Height of the ground at the middle of each cell, local metres; NaN where nothing is known.
     pub heights: Raster<f32>,
-    /// Horizontal distance of the middle of each cell to the next ground point, metres: how far the height is interpolated.
+    /// Horizontal distance of the middle of each cell to the next ground point, metres: how far the height is
+    /// interpolated.
     pub gaps: Raster<f32>,
 }
 
 /// Rows of the points of `cloud` that are ground, in rising order, and which way they were told.
 ///
 /// # Errors
-/// [`Error::NoPoints`] for an empty cloud, and for [`GroundPoints::Classed`] without class 2; otherwise those of [`find_ground`].
+/// [`Error::NoPoints`] for an empty cloud, and for [`GroundPoints::Classed`] without class 2; otherwise those of
+/// [`find_ground`].
 pub fn ground_points(
     cloud: &PointCloud,
     params: &GroundParams,
@@ -125,8 +128,8 @@ pub fn ground_points(
 }
 
 impl Ground {
-    /// The ground of `cloud` on `grid`: heights of the triangulated ground points at the middles of the cells, and the nearest
-    /// ground point's within 5 m beyond the outermost. A hole of the survey has none
+    /// The ground of `cloud` on `grid`: heights of the triangulated ground points at the middles of the cells, and the
+    /// nearest ground point's within 5 m beyond the outermost. A hole of the survey has none
     /// ([`GroundParams::max_gap_from_returns`]); where points were cleared ([`PointCloud::cleared_places`]) there is no
     /// hole.
     ///
@@ -158,7 +161,8 @@ impl Ground {
         Ok((ground, GroundReport { from, point_count: points.len(), cell_count }))
     }
 
-    /// The ground through `points`, (N, 3) local metres, on `grid`, given as far as `reach` metres from the next of them.
+    /// The ground through `points`, (N, 3) local metres, on `grid`, given as far as `reach` metres from the next of
+    /// them.
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] for a point that is not finite, [`Error::Cancelled`].
@@ -187,7 +191,7 @@ impl Ground {
                     *gap = near.distance_squared.sqrt();
                     if *gap > reach {
                         *height = f32::NAN;
-                    } else if height.is_nan() && *gap <= RIM {
+                    } else if height.is_nan() && *gap <= MAX_EXTRAPOLATION {
                         *height = points.get(near.index as usize).map_or(f32::NAN, |p| p[2]);
                     }
                 }
@@ -196,8 +200,8 @@ impl Ground {
         Ok(Self { grid, heights, gaps })
     }
 
-    /// Height of the ground at a local position on the map, between the middles of cells linearly, local metres; `None` outside and
-    /// where nothing is known.
+    /// Height of the ground at a local position on the map, between the middles of cells linearly, local metres; `None`
+    /// outside and where nothing is known.
     #[must_use]
     pub fn height_at(&self, [x, y]: [f64; 2]) -> Option<f64> {
         let [column, row] = self.grid.cell_position([x, y])?;

@@ -6,17 +6,18 @@ use rayon::prelude::*;
 /// What a square window is replaced by.
 #[derive(Clone, Copy)]
 enum Extreme {
-    Least,
-    Most,
+    Min,
+    Max,
 }
 
-/// `heights` without what is narrower than `2 · radius + 1` cells and higher than its surroundings: the least of each square, then
-/// the most of those. No height may be NaN.
+/// `heights` without what is narrower than `2 · radius + 1` cells and higher than its surroundings: the least of each
+/// square, then the most of those. No height may be NaN.
 pub(super) fn opened(heights: &Raster<f32>, radius: usize) -> Raster<f32> {
-    window(&window(heights, radius, Extreme::Least), radius, Extreme::Most)
+    window(&window(heights, radius, Extreme::Min), radius, Extreme::Max)
 }
 
-/// The extreme of the square of `2 · radius + 1` cells around each cell, cut at the rim: along rows, then along columns.
+/// The extreme of the square of `2 · radius + 1` cells around each cell, cut at the rim: along rows, then along
+/// columns.
 fn window(heights: &Raster<f32>, radius: usize, extreme: Extreme) -> Raster<f32> {
     let (width, height) = (heights.width(), heights.height());
     let mut along_rows = heights.clone();
@@ -49,12 +50,12 @@ fn transposed(raster: &Raster<f32>, width: usize, height: usize) -> Vec<f32> {
 /// van Herk 1992, "A fast algorithm for local minimum and maximum filters on rectangular and octagonal kernels".
 fn line(values: &mut [f32], radius: usize, extreme: Extreme) {
     let pick = |a: f32, b: f32| match extreme {
-        Extreme::Least => a.min(b),
-        Extreme::Most => a.max(b),
+        Extreme::Min => a.min(b),
+        Extreme::Max => a.max(b),
     };
     let neutral = match extreme {
-        Extreme::Least => f32::INFINITY,
-        Extreme::Most => f32::NEG_INFINITY,
+        Extreme::Min => f32::INFINITY,
+        Extreme::Max => f32::NEG_INFINITY,
     };
     let size = 2 * radius + 1;
     let count = values.len();
@@ -91,7 +92,7 @@ mod tests {
         let values: Vec<f32> = (0..width * height).map(|i| uniform(5, i as u64) as f32).collect();
         let raster = Raster::from_values(width, height, values).unwrap();
         for radius in [0, 1, 3, 30] {
-            let least = window(&raster, radius, Extreme::Least);
+            let min = window(&raster, radius, Extreme::Min);
             for row in 0..height {
                 for column in 0..width {
                     let mut expected = f32::INFINITY;
@@ -100,7 +101,7 @@ mod tests {
                             expected = expected.min(raster.get(c, r).unwrap());
                         }
                     }
-                    assert_eq!(least.get(column, row), Some(expected), "{radius} {column} {row}");
+                    assert_eq!(min.get(column, row), Some(expected), "{radius} {column} {row}");
                 }
             }
         }

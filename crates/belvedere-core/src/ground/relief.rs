@@ -3,8 +3,8 @@
 use super::Ground;
 use belvedere_data::raster::Raster;
 
-/// Height of the highest of `positions`, (N, 3) local metres, in each cell of `ground`; in cells without any the mean of the filled
-/// neighbours, else the ground, NaN where that is not known.
+/// Height of the highest of `positions`, (N, 3) local metres, in each cell of `ground`; in cells without any the mean
+/// of the filled neighbours, else the ground, NaN where that is not known.
 #[must_use]
 pub fn highest_points(positions: &[[f32; 3]], ground: &Ground) -> Raster<f32> {
     let grid = ground.grid;
@@ -40,13 +40,14 @@ pub fn highest_points(positions: &[[f32; 3]], ground: &Ground) -> Raster<f32> {
     highest
 }
 
-/// Least distance to the next ground point for a cell to count as hidden, metres: a few spacings of usual airborne surveys.
+/// Least distance to the next ground point for a cell to count as hidden, metres: a few spacings of usual airborne
+/// surveys.
 const HIDDEN_GAP: f32 = 1.0;
 /// Least height of what hides it, metres: more than cars and hedges.
 const HIDDEN_BELOW: f32 = 2.0;
 
-/// Which cells of `ground` no survey saw the ground of: nothing was measured on it within a metre, and something of more than 2 m stands
-/// there, (cells). Mostly these lie under buildings, where a height of the ground is no place.
+/// Which cells of `ground` no survey saw the ground of: nothing was measured on it within a metre, and something of
+/// more than 2 m stands there, (cells). Mostly these lie under buildings, where a height of the ground is no place.
 #[must_use]
 pub fn hidden_ground(positions: &[[f32; 3]], ground: &Ground) -> Vec<bool> {
     let highest = highest_points(positions, ground);

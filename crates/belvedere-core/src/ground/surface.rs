@@ -7,9 +7,11 @@ use belvedere_data::raster::Raster;
 use belvedere_data::{Error, Parameter, Result};
 use rayon::prelude::*;
 
-/// Greatest distance from the middle of a cell at which a point tells what covers the middle, metres: half of a cell that is larger.
+/// Greatest distance from the middle of a cell at which a point tells what covers the middle, metres: half of a cell
+/// that is larger.
 const NEAR: f64 = 0.5;
-/// Distance to the next point up to which it tells of the middle of a cell, metres: that of sparse surveys, or the side of a larger cell.
+/// Distance to the next point up to which it tells of the middle of a cell, metres: that of sparse surveys, or the side
+/// of a larger cell.
 const REACH: f64 = 1.0;
 /// Fewest points of a layer that make a plane: two more than any three points have.
 const FEWEST: usize = 5;
@@ -21,11 +23,11 @@ const ON_A_LINE: f64 = 1e-3;
 pub struct SurfaceParams {
     /// Points around the middle that are looked at, 3 to 256. Default 12: a square metre of usual airborne surveys.
     pub neighbors: usize,
-    /// Greatest step between the heights of points of one layer, metres, above 0. Default 0.4: twelve points on a roof of 60 degrees lie
-    /// closer than that, eaves and chimneys stand higher.
+    /// Greatest step between the heights of points of one layer, metres, above 0. Default 0.4: twelve points on a roof
+    /// of 60 degrees lie closer than that, eaves and chimneys stand higher.
     pub step: f64,
-    /// Root mean squared distance in height of the points of a layer from their plane beyond which it is no plane, metres, 0 or more.
-    /// Default 0.12: ranging noise and a ridge stay below it, crowns and shrubs do not.
+    /// Root mean squared distance in height of the points of a layer from their plane beyond which it is no plane,
+    /// metres, 0 or more. Default 0.12: ranging noise and a ridge stay below it, crowns and shrubs do not.
     pub roughness: f64,
     /// How far from the middle a point may lie and still be looked at, metres, above 0. Default: any distance.
     pub farthest: f32,
@@ -71,11 +73,11 @@ impl SurfaceParams {
 
 /// Height of the top surface of `positions`, (N, 3) local metres, at the middle of each cell of `ground`.
 ///
-/// The layer on top at the middle is that of the highest point near it. Where its points, five at least, lie on a plane, as on roofs and streets, the
-/// plane's height at the middle is given, never beyond the heights of the points themselves; where they do not, as in crowns, the highest
-/// point of the cell, so that a place above it is outside. Cells far from any point are as in [`highest_points`], but
-/// for those in a hole of the survey ([`SurfaceParams::max_gap_from_returns`]), which have no height unless the ground
-/// has.
+/// The layer on top at the middle is that of the highest point near it. Where its points, five at least, lie on a
+/// plane, as on roofs and streets, the plane's height at the middle is given, never beyond the heights of the points
+/// themselves; where they do not, as in crowns, the highest point of the cell, so that a place above it is outside.
+/// Cells far from any point are as in [`highest_points`], but for those in a hole of the survey
+/// ([`SurfaceParams::max_gap_from_returns`]), which have no height unless the ground has.
 ///
 /// # Errors
 /// [`Error::InvalidParameter`] for a parameter outside its range or a point that is not finite, [`Error::Cancelled`].
@@ -163,8 +165,9 @@ fn at_middle(around: &[Around], near: f64, params: &SurfaceParams) -> Option<f32
     (roughness <= params.roughness).then(|| height.clamp(lowest, highest) as f32)
 }
 
-/// Height at the middle of the plane through a layer by weighted least squares, nearer points counting more, and the root mean squared
-/// distance of the points from it; the mean height where there is no plane; `None` for a layer without points.
+/// Height at the middle of the plane through a layer by weighted least squares, nearer points counting more, and the
+/// root mean squared distance of the points from it; the mean height where there is no plane; `None` for a layer
+/// without points.
 fn plane(layer: &[Around]) -> Option<(f64, f64)> {
     let reach = layer.iter().map(|point| point.distance_squared).fold(0.0, f64::max) * 1.1 + 1e-6;
     let weight = |point: &Around| 1.0 - point.distance_squared / reach;

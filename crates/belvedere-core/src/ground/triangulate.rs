@@ -5,8 +5,8 @@ use belvedere_data::raster::Raster;
 use belvedere_data::{Error, Parameter, Result};
 use delaunator::{Point, triangulate};
 
-/// Height at the middle of each cell of `grid` on the triangulated `points`, (N, 3) local metres; NaN outside their hull, and
-/// everywhere with fewer than three points or all in one line.
+/// Height at the middle of each cell of `grid` on the triangulated `points`, (N, 3) local metres; NaN outside their
+/// hull, and everywhere with fewer than three points or all in one line.
 ///
 /// # Errors
 /// [`Error::InvalidParameter`] for a point that is not finite.
@@ -35,10 +35,10 @@ fn fill(heights: &mut [f32], width: usize, grid: &MapGrid, [a, b, c]: [[f64; 3];
     if doubled_area == 0.0 {
         return;
     }
-    let least = |axis: usize| a[axis].min(b[axis]).min(c[axis]);
-    let most = |axis: usize| a[axis].max(b[axis]).max(c[axis]);
-    let columns = cells((least(0) - grid.corner[0]) / grid.cell, (most(0) - grid.corner[0]) / grid.cell, grid.width);
-    let rows = cells((grid.corner[1] - most(1)) / grid.cell, (grid.corner[1] - least(1)) / grid.cell, grid.height);
+    let min = |axis: usize| a[axis].min(b[axis]).min(c[axis]);
+    let max = |axis: usize| a[axis].max(b[axis]).max(c[axis]);
+    let columns = cells((min(0) - grid.corner[0]) / grid.cell, (max(0) - grid.corner[0]) / grid.cell, grid.width);
+    let rows = cells((grid.corner[1] - max(1)) / grid.cell, (grid.corner[1] - min(1)) / grid.cell, grid.height);
     for row in rows {
         for column in columns.clone() {
             let [x, y] = grid.center(column, row);

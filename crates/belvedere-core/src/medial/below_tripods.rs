@@ -1,7 +1,7 @@
 //! Floors below tripods: a scanner does not measure the place that it stands on, and the floor goes on there.
 
 use crate::neighbors::NeighborIndex;
-use crate::pulses::Needles;
+use crate::pulses::FreeSegments;
 use belvedere_data::vector::sub;
 use std::collections::BTreeMap;
 use std::f32::consts::TAU;
@@ -39,7 +39,7 @@ pub(super) struct FloorPlace {
 pub(super) fn floors_below(
     positions: &[[f32; 3]],
     index: &NeighborIndex,
-    needles: &Needles,
+    needles: &FreeSegments,
     spacing: f32,
 ) -> Vec<FloorPlace> {
     let floor_below =
@@ -48,7 +48,7 @@ pub(super) fn floors_below(
 }
 
 /// Where many needles end in one place.
-fn tripods(needles: &Needles) -> Vec<[f32; 3]> {
+fn tripods(needles: &FreeSegments) -> Vec<[f32; 3]> {
     let mut found: BTreeMap<[i64; 3], (usize, [f32; 3])> = BTreeMap::new();
     for (start, direction, length) in (0..needles.len()).step_by(SAMPLE).filter_map(|number| needles.segment(number)) {
         let end: [f32; 3] = std::array::from_fn(|axis| start[axis] + direction[axis] * length);
@@ -101,7 +101,12 @@ struct Edge {
 }
 
 /// Where the floor begins in each sector about the foot of the tripod, by its own pulses; empty where it does in too few.
-fn nearest_around(index: &NeighborIndex, positions: &[[f32; 3]], needles: &Needles, tripod: [f32; 3]) -> Vec<Edge> {
+fn nearest_around(
+    index: &NeighborIndex,
+    positions: &[[f32; 3]],
+    needles: &FreeSegments,
+    tripod: [f32; 3],
+) -> Vec<Edge> {
     let mut lowest = [None::<(f32, [f32; 3])>; SECTORS];
     for (start, direction, length) in (0..needles.len()).filter_map(|number| needles.segment(number)) {
         let [x, y, height] = sub(start, tripod);
@@ -141,7 +146,7 @@ fn nearest_around(index: &NeighborIndex, positions: &[[f32; 3]], needles: &Needl
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::pulses::NeedleParams;
+    use crate::pulses::FreeSegmentParams;
     use belvedere_data::control::Control;
 
     const TRIPOD: [f32; 3] = [3.0, -2.0, 1.6];
@@ -149,7 +154,7 @@ mod tests {
     const BLIND: f32 = 0.8;
 
     /// A floor that rises by a tenth to the east, measured but for what lies below the tripod, in sectors for which `is_open`.
-    fn floor(is_open: impl Fn(f32) -> bool) -> (Vec<[f32; 3]>, NeighborIndex, Needles) {
+    fn floor(is_open: impl Fn(f32) -> bool) -> (Vec<[f32; 3]>, NeighborIndex, FreeSegments) {
         let mut positions = Vec::new();
         for ring in 0_u8..20 {
             for step in 0_u8..200 {
@@ -162,8 +167,8 @@ mod tests {
             }
         }
         let scanner = vec![TRIPOD; positions.len()];
-        let params = NeedleParams::default();
-        let (needles, _) = Needles::new(&positions, &scanner, &params, &Control::none()).unwrap();
+        let params = FreeSegmentParams::default();
+        let (needles, _) = FreeSegments::new(&positions, &scanner, &params, &Control::none()).unwrap();
         let index = NeighborIndex::new(&positions, &Control::none()).unwrap();
         (positions, index, needles)
     }
@@ -199,8 +204,8 @@ mod tests {
         let (positions, index, _) = floor(|_| true);
         let scanner: Vec<[f32; 3]> =
             (0..positions.len()).map(|i| [TRIPOD[0] + 0.001 * i as f32, TRIPOD[1], TRIPOD[2]]).collect();
-        let params = NeedleParams::default();
-        let (needles, _) = Needles::new(&positions, &scanner, &params, &Control::none()).unwrap();
+        let params = FreeSegmentParams::default();
+        let (needles, _) = FreeSegments::new(&positions, &scanner, &params, &Control::none()).unwrap();
         assert!(floors_below(&positions, &index, &needles, 0.05).is_empty());
     }
 }

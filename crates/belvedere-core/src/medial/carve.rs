@@ -3,7 +3,7 @@
 use super::bounds::RadiusBounds;
 use crate::neighbors::Tangent;
 use crate::normals::OrientedCloud;
-use crate::pulses::{GAP_M, Needles};
+use crate::pulses::{FreeSegments, GAP_M};
 use belvedere_data::balls::{LIMIT_TOUCH, MedialBalls, NO_TOUCH, PULSE_TOUCH};
 use belvedere_data::control::Control;
 use belvedere_data::{Error, Result};
@@ -39,7 +39,7 @@ pub struct CarveReport {
 pub fn carve(
     balls: &mut MedialBalls,
     oriented: &OrientedCloud,
-    needles: &Needles,
+    needles: &FreeSegments,
     bounds: &RadiusBounds,
     control: &Control<'_>,
 ) -> Result<CarveReport> {

@@ -18,7 +18,7 @@ use super::vegetation::{VegetationParams, tell_vegetation};
 use super::whole_survey::{SurveyPart, WholeSurvey};
 use crate::neighbors::NeighborIndex;
 use crate::normals::OrientedCloud;
-use crate::pulses::{Needles, Pulses};
+use crate::pulses::{FreeSegments, Pulses};
 use belvedere_data::balls::{MedialBalls, Side};
 use belvedere_data::control::Control;
 use belvedere_data::{Attributes, Result};
@@ -187,7 +187,7 @@ pub struct CarvedInput<'a> {
     /// Class, return number and return count are used where present.
     pub attributes: &'a Attributes,
     /// What the pulses prove empty.
-    pub needles: &'a Needles,
+    pub needles: &'a FreeSegments,
     /// Which returns share a pulse, rows as in the cloud; without it no crown is measured.
     pub pulses: Option<&'a Pulses>,
 }
@@ -267,7 +267,7 @@ pub fn carved_balls(input: &CarvedInput<'_>, params: &CarvedParams, control: &Co
 }
 
 /// The same for a part of a survey. The balls of points that lie far enough from its edge are those of any other part that holds them
-/// so, bit by bit; how far that is follows from the rules ([`crate::model::SurveyFacts::halo`]).
+/// so, bit by bit; how far that is follows from the rules ([`crate::model::SurveyStatistics::buffer`]).
 ///
 /// # Errors
 /// Those of [`carved_balls`].

@@ -1,6 +1,6 @@
 //! Balls that hang below each other: how what has points on its top only is filled.
 
-use crate::pulses::Needles;
+use crate::pulses::FreeSegments;
 
 /// Least radius of a ball worth keeping, as a share of the most.
 pub(super) const LEAST_SHARE: f32 = 0.25;
@@ -24,7 +24,7 @@ impl Chain {
         self,
         top: [f32; 3],
         bottom: f32,
-        needles: &'a Needles,
+        needles: &'a FreeSegments,
     ) -> impl Iterator<Item = ([f32; 3], f32)> + 'a {
         let Self { radius, spacing } = self;
         let centers = (0_u8..).map(move |step| [top[0], top[1], top[2] - radius - spacing * f32::from(step)]);

@@ -4,7 +4,7 @@ use super::bounds::{Kind, RadiusBounds};
 use super::cells::{Cell, Cells, cell};
 use super::whole_survey::WholeSurvey;
 use crate::neighbors::{NeighborIndex, Tangent};
-use crate::pulses::{GAP_M, Needles, Pulses};
+use crate::pulses::{FreeSegments, GAP_M, Pulses};
 use belvedere_data::balls::{MedialBalls, NO_TOUCH, PULSE_TOUCH};
 use belvedere_data::control::{Control, Stop};
 use belvedere_data::{Attributes, Result};
@@ -210,7 +210,7 @@ impl Crowns<'_> {
         &self,
         balls: &mut MedialBalls,
         index: &NeighborIndex,
-        needles: &Needles,
+        needles: &FreeSegments,
         whole: Option<&WholeSurvey>,
         control: &Control<'_>,
     ) -> Result<(usize, Option<f32>)> {
@@ -260,7 +260,7 @@ impl Crowns<'_> {
     ///
     /// # Errors
     /// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
-    pub(super) fn fill(&self, balls: &mut MedialBalls, needles: &Needles, control: &Control<'_>) -> Result<usize> {
+    pub(super) fn fill(&self, balls: &mut MedialBalls, needles: &FreeSegments, control: &Control<'_>) -> Result<usize> {
         let stop = Stop::new(control);
         if self.params.trees == Trees::Measured && self.transmission.is_empty() {
             return Ok(0);

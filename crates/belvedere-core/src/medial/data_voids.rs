@@ -7,7 +7,7 @@ use super::cells::{Cell, Cells, cell};
 use super::roof_edges::shrink;
 use super::spacing::spacing_of;
 use crate::normals::OrientedCloud;
-use crate::pulses::Needles;
+use crate::pulses::FreeSegments;
 use belvedere_data::Result;
 use belvedere_data::balls::{MedialBalls, NO_TOUCH};
 use belvedere_data::control::{Control, Stop};
@@ -66,7 +66,7 @@ impl<'a> DataVoids<'a> {
         highest: &'a Cells<f32>,
         lowest: &'a Cells<f32>,
         counts: &'a Cells<u32>,
-        needles: &Needles,
+        needles: &FreeSegments,
     ) -> Self {
         let way = |number: usize| {
             let (start, towards, _) = needles.segment(number)?;
@@ -234,7 +234,7 @@ mod tests {
     use super::*;
     use crate::medial::cells::{highest, lowest_near};
     use crate::medial::spacing::pulse_counts;
-    use crate::pulses::NeedleParams;
+    use crate::pulses::FreeSegmentParams;
     use belvedere_data::Attributes;
     use belvedere_data::random::uniform;
 
@@ -264,7 +264,8 @@ mod tests {
         let positions = oriented.positions();
         let scanner: Vec<[f32; 3]> =
             positions.iter().map(|p| std::array::from_fn(|axis| p[axis] + 400.0 * way[axis])).collect();
-        let (needles, _) = Needles::new(positions, &scanner, &NeedleParams::default(), &Control::none()).unwrap();
+        let (needles, _) =
+            FreeSegments::new(positions, &scanner, &FreeSegmentParams::default(), &Control::none()).unwrap();
         let (highest, lowest) = (highest(positions), lowest_near(positions));
         let counts = pulse_counts(positions, &Attributes::default());
         let mut balls = MedialBalls::default();

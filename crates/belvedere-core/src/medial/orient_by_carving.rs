@@ -2,7 +2,7 @@
 
 use crate::neighbors::{NeighborIndex, Tangent};
 use crate::normals::OrientedCloud;
-use crate::pulses::Needles;
+use crate::pulses::FreeSegments;
 use belvedere_data::control::{Control, Stop};
 use belvedere_data::{Error, Parameter, Result};
 use rayon::prelude::*;
@@ -54,7 +54,7 @@ pub struct OrientByCarvingReport {
 pub fn orient_by_carving(
     oriented: &OrientedCloud,
     index: &NeighborIndex,
-    needles: &Needles,
+    needles: &FreeSegments,
     params: &OrientByCarvingParams,
     control: &Control<'_>,
 ) -> Result<(OrientedCloud, OrientByCarvingReport)> {

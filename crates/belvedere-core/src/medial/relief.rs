@@ -7,7 +7,7 @@
 use super::bounds::Kind;
 use super::chains::Chain;
 use crate::neighbors::NeighborIndex;
-use crate::pulses::Needles;
+use crate::pulses::FreeSegments;
 use belvedere_data::Result;
 use belvedere_data::balls::{MedialBalls, PULSE_TOUCH};
 use belvedere_data::control::{Control, Stop};
@@ -103,7 +103,7 @@ impl<'a> Relief<'a> {
     ///
     /// # Errors
     /// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
-    pub(super) fn fill(&self, balls: &mut MedialBalls, needles: &Needles, control: &Control<'_>) -> Result<usize> {
+    pub(super) fn fill(&self, balls: &mut MedialBalls, needles: &FreeSegments, control: &Control<'_>) -> Result<usize> {
         let stop = Stop::new(control);
         let points = self.points.par_iter().with_min_len(CHUNK);
         let below = |&(row, level): &(usize, f32)| {

@@ -7,7 +7,7 @@ use super::cells::{Cells, cell};
 use super::chains::Chain;
 use super::midway::{apart, neighbors_after, one_in_each_cell};
 use crate::neighbors::{NeighborIndex, Tangent};
-use crate::pulses::Needles;
+use crate::pulses::FreeSegments;
 use belvedere_data::balls::{MedialBalls, PULSE_TOUCH};
 use belvedere_data::control::{Control, Stop};
 use belvedere_data::{Attributes, Result};
@@ -81,7 +81,7 @@ impl<'a> Slender<'a> {
         kinds: &[Kind],
         attributes: &Attributes,
         (lowest, spacing): (&Cells<f32>, &'a [f32]),
-        needles: &Needles,
+        needles: &FreeSegments,
         params: &'a SlenderParams,
         control: &Control<'_>,
     ) -> Result<Self> {
@@ -127,7 +127,7 @@ impl<'a> Slender<'a> {
     ///
     /// # Errors
     /// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
-    pub(super) fn fill(&self, balls: &mut MedialBalls, needles: &Needles, control: &Control<'_>) -> Result<usize> {
+    pub(super) fn fill(&self, balls: &mut MedialBalls, needles: &FreeSegments, control: &Control<'_>) -> Result<usize> {
         let standing = (0..self.heights.len()).filter(|&row| self.stands(row)).collect();
         let rows = one_in_each_cell(self.positions, standing, self.params.spacing / 2.0);
         let places: Vec<[f32; 3]> = rows.iter().map(|&row| self.positions[row]).collect();
@@ -159,7 +159,7 @@ impl<'a> Slender<'a> {
     }
 
     /// The balls that fill at a place and between it and those next to it.
-    fn fills(&self, place: &Place, near: &[Place], needles: &Needles) -> Vec<([f32; 3], f32)> {
+    fn fills(&self, place: &Place, near: &[Place], needles: &FreeSegments) -> Vec<([f32; 3], f32)> {
         let p = place.position;
         let beside: Vec<_> = near.iter().map(|other| other.position).collect();
         let close_by = beside.iter().filter(|q| apart(p, **q) < TOP_REACH_M);

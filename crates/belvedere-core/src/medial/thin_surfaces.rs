@@ -6,7 +6,7 @@ use super::layers::{CELL, CellsFrom, Layers};
 use super::midway::{neighbors_after, one_in_each_cell};
 use super::whole_survey::BLOCK;
 use crate::neighbors::NeighborIndex;
-use crate::pulses::Needles;
+use crate::pulses::FreeSegments;
 use belvedere_data::Result;
 use belvedere_data::balls::{MedialBalls, PULSE_TOUCH};
 use belvedere_data::control::{Control, Stop};
@@ -93,7 +93,7 @@ pub fn on_thin_surfaces(
     positions: &[[f32; 3]],
     kinds: &[Kind],
     index: &NeighborIndex,
-    needles: &Needles,
+    needles: &FreeSegments,
     params: &ThinSurfaceParams,
     control: &Control<'_>,
 ) -> Result<Vec<bool>> {
@@ -109,7 +109,7 @@ pub(super) fn on_thin_surfaces_of_part(
     (positions, measured): (&[[f32; 3]], &[[f32; 3]]),
     kinds: &[Kind],
     index: &NeighborIndex,
-    needles: &Needles,
+    needles: &FreeSegments,
     params: &ThinSurfaceParams,
     control: &Control<'_>,
 ) -> Result<Vec<bool>> {
@@ -123,7 +123,7 @@ fn find(
     from: CellsFrom,
     kinds: &[Kind],
     index: &NeighborIndex,
-    needles: &Needles,
+    needles: &FreeSegments,
     params: &ThinSurfaceParams,
     control: &Control<'_>,
 ) -> Result<Vec<bool>> {
@@ -168,7 +168,7 @@ pub(super) fn fill(
     balls: &mut MedialBalls,
     positions: &[[f32; 3]],
     (thin, spacing): (&[bool], &[f32]),
-    needles: &Needles,
+    needles: &FreeSegments,
     params: &ThinSurfaceParams,
     control: &Control<'_>,
 ) -> Result<usize> {
@@ -208,7 +208,7 @@ pub(super) fn fill(
 fn run_below(
     layers: &Layers,
     beside: &[usize],
-    needles: &Needles,
+    needles: &FreeSegments,
     depths: [f32; 2],
     is_roof: impl Fn([f32; 3]) -> bool + Sync,
     is_open: impl Fn([f32; 3], f32) -> bool + Sync,

@@ -1,7 +1,7 @@
 //! A check of finished balls against the pulses that carved them.
 
 use super::report::BlockedPulses;
-use crate::pulses::Needles;
+use crate::pulses::FreeSegments;
 use crate::query::BallTree;
 use belvedere_data::Result;
 use belvedere_data::control::{Control, Stop};
@@ -15,7 +15,7 @@ const CHUNK: usize = 4096;
 ///
 /// # Errors
 /// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
-pub(super) fn blocked_pulses(tree: &BallTree, pulses: &Needles, control: &Control<'_>) -> Result<BlockedPulses> {
+pub(super) fn blocked_pulses(tree: &BallTree, pulses: &FreeSegments, control: &Control<'_>) -> Result<BlockedPulses> {
     let stop = Stop::new(control);
     let is_blocked = |(start, up, length): &([f64; 3], [f64; 3], f64)| {
         !stop.is_set() && tree.blocks(&tree.ray(*start, *up, *length))

@@ -21,8 +21,9 @@ impl SceneModel {
     /// The result is the same, bit by bit, for any number of threads.
     ///
     /// # Errors
-    /// [`Error::NoPoints`] where cleaning leaves none, [`Error::NoSurface`] where it leaves too few for a surface, [`Error::MissingAttribute`] where the cloud lacks what the parameters need,
-    /// [`Error::InvalidParameter`] for a parameter out of range, [`Error::Cancelled`].
+    /// [`Error::NoPoints`] where cleaning leaves none, [`Error::NoSurface`] where it leaves too few for a surface,
+    /// [`Error::MissingAttribute`] where the cloud lacks what the parameters need, [`Error::InvalidParameter`] for a
+    /// parameter out of range, [`Error::Cancelled`].
     pub fn build(cloud: &PointCloud, params: &ModelParams, control: &Control<'_>) -> Result<(Self, BuildReport)> {
         let (survey, report) = prepare(Cow::Borrowed(cloud), params, control)?;
         let normals = survey.normals_of_rows(cloud.len());
@@ -51,7 +52,7 @@ fn of_survey(
     control: &Control<'_>,
 ) -> Result<(SceneModel, BuildReport)> {
     let (mut balls, transmission);
-    let facts = params.facts.as_deref();
+    let statistics = params.statistics.as_deref();
     let settled = match params.balls {
         BallParams::CarvedIfPossible(carved, _) if survey.carving.is_some() => BallParams::Carved(carved),
         BallParams::CarvedIfPossible(_, shrunk) => BallParams::Shrunk(shrunk),
@@ -59,12 +60,18 @@ fn of_survey(
     };
     match (&settled, &survey.carving) {
         (BallParams::Carved(params), Some(input)) => {
-            let (attributes, needles, pulses) = (&input.attributes, &input.needles, input.pulses.as_ref());
-            let input = CarvedInput { oriented: &survey.oriented, index: &survey.index, attributes, needles, pulses };
-            let part = facts.map(|facts| SurveyPart {
-                whole: &facts.whole,
+            let (attributes, free_segments, pulses) = (&input.attributes, &input.free_segments, input.pulses.as_ref());
+            let input = CarvedInput {
+                oriented: &survey.oriented,
+                index: &survey.index,
+                attributes,
+                needles: free_segments,
+                pulses,
+            };
+            let part = statistics.map(|statistics| SurveyPart {
+                whole: &statistics.whole,
                 measured: &survey.measured,
-                farthest: facts.farthest(),
+                farthest: statistics.farthest(),
             });
             let found;
             CarvedBalls { balls, transmission, report: found } = match &part {
@@ -102,12 +109,13 @@ fn of_survey(
     ]);
     let mut tree = None;
     // pulses at the edge of a part lack the balls beyond
-    let checked = report.pulses.as_mut().filter(|_| facts.is_none());
+    let checked = report.pulses.as_mut().filter(|_| statistics.is_none());
     if let (BallParams::Carved(_), Some(input), Some(pulses)) = (&settled, &survey.carving, checked) {
         let own = control.stage("indexing balls", balls.len(), || BallTree::new(&balls, &BlockRule::carved()))?;
-        let needles = &input.needles;
-        pulses.blocked =
-            Some(control.stage("checking pulses", needles.len(), || blocked_pulses(&own, needles, control))?);
+        let free_segments = &input.free_segments;
+        pulses.blocked = Some(
+            control.stage("checking pulses", free_segments.len(), || blocked_pulses(&own, free_segments, control))?,
+        );
         tree = Some(own);
     }
     let parts = ModelParts { frame, bounds: survey.bounds, balls, transmission, pulses: survey.pulses(), provenance };
@@ -137,7 +145,8 @@ impl OrientedSurvey {
         Ok((balls, BallsReport::Shrunk(report)))
     }
 
-    /// Turns the points that `balls` are tangent at and touch from rows of the points kept into rows of the cloud as given.
+    /// Turns the points that `balls` are tangent at and touch from rows of the points kept into rows of the cloud as
+    /// given.
     pub fn restore_rows(&self, balls: &mut MedialBalls) {
         for row in balls.source.iter_mut().chain(&mut balls.touch) {
             // neither a pulse nor nothing has a row

@@ -16,7 +16,7 @@ use serde::{Deserialize, Serialize};
 /// ASPRS class of ground.
 const GROUND: u8 = 2;
 /// Most columns in which space is freed: their side is doubled until they are no more.
-const MOST_CELLS: f64 = 4e6;
+const MAX_CELLS: f64 = 4e6;
 
 /// What is cleared.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -42,16 +42,17 @@ pub struct ClearReport {
 }
 
 impl SceneModel {
-    /// The model and its cloud, in its frame, without what stands in `area` now: points above the ground, balls at them, and meshes that were added, of
-    /// which triangles go with their middle. Balls beside a polygon that reach into it are cut to its edge, at the point that they are
-    /// tangent at. The ground below is closed with balls at the height interpolated from the ground around. Lines of sight through the
-    /// space that was freed are proven free.
+    /// The model and its cloud, in its frame, without what stands in `area` now: points above the ground, balls at
+    /// them, and meshes that were added, of which triangles go with their middle. Balls beside a polygon that reach
+    /// into it are cut to its edge, at the point that they are tangent at. The ground below is closed with balls at the
+    /// height interpolated from the ground around. Lines of sight through the space that was freed are proven free.
     ///
     /// Where nothing stands, nothing changes, bit by bit.
     ///
     /// # Errors
-    /// [`Error::NoPoints`] for a cloud without points, [`Error::LengthMismatch`] for one that the model was not made from,
-    /// [`Error::InvalidParameter`] for an area beside the cloud and for the class of the ground, those of [`Clearing::new`].
+    /// [`Error::NoPoints`] for a cloud without points, [`Error::LengthMismatch`] for one that the model was not made
+    /// from, [`Error::InvalidParameter`] for an area beside the cloud and for the class of the ground, those of
+    /// [`Clearing::new`].
     pub fn without(
         mut self,
         area: &ClearedArea,
@@ -129,7 +130,8 @@ impl SceneModel {
         }
     }
 
-    /// Puts balls below the ground where no ground point is near. Their source is the nearest point of the ground, which stays when more is cleared.
+    /// Puts balls below the ground where no ground point is near. Their source is the nearest point of the ground,
+    /// which stays when more is cleared.
     fn close_ground(
         &mut self,
         cloud: &PointCloud,
@@ -160,11 +162,12 @@ impl SceneModel {
 }
 
 impl ClearedArea {
-    /// The rectangle around a polygon on the map, from its lowest to its highest corner, as far as it lies on `bounds`, local metres from `origin`; `None` for
-    /// a class.
+    /// The rectangle around a polygon on the map, from its lowest to its highest corner, as far as it lies on `bounds`,
+    /// local metres from `origin`; `None` for a class.
     ///
     /// # Errors
-    /// [`Error::InvalidParameter`] for a polygon beside `bounds`, for one that is none, and for the class of the ground.
+    /// [`Error::InvalidParameter`] for a polygon beside `bounds`, for one that is none, and for the class of the
+    /// ground.
     pub fn rectangle_on(&self, bounds: &Bounds, origin: [f64; 3]) -> Result<Option<([f64; 2], [f64; 2])>> {
         let invalid = |value: String, expected| {
             Err(Error::InvalidParameter { parameter: Parameter::ClearedArea, value, expected })
@@ -208,7 +211,7 @@ fn grid_over(area: &ClearedArea, cloud: &PointCloud) -> Result<Option<MapGrid>> 
     };
     let (low, high) = (low.map(|v| v - Clearing::REACH), high.map(|v| v + Clearing::REACH));
     let mut cell = Clearing::CELL;
-    while (high[0] - low[0]) * (high[1] - low[1]) > MOST_CELLS * cell * cell {
+    while (high[0] - low[0]) * (high[1] - low[1]) > MAX_CELLS * cell * cell {
         cell *= 2.0;
     }
     MapGrid::covering(low, high, cell, [cloud.frame.origin[0], cloud.frame.origin[1]]).map(Some)

@@ -10,20 +10,23 @@ use belvedere_data::{PointCloud, Result};
 
 /// ASPRS class of ground.
 const GROUND: u8 = 2;
-/// Height above the ground up to which a point or a ball belongs to it, metres: that up to which points are taken for ground where none are
-/// classed.
+/// Height above the ground up to which a point or a ball belongs to it, metres: that up to which points are taken for
+/// ground where none are classed.
 const ABOVE_GROUND: f64 = 0.3;
-/// Distance on the map from a point that is cleared up to which its column is, metres: across gaps between points on roofs and in crowns.
+/// Distance on the map from a point that is cleared up to which its column is, metres: across gaps between points on
+/// roofs and in crowns.
 const AROUND: f64 = 2.0;
 /// The same where points of a class are cleared, which may stand close to others.
 const AROUND_OF_CLASS: f64 = 1.0;
-/// Distance to the next ground point from which the ground is closed with balls, metres: beyond what ground points hold themselves.
+/// Distance to the next ground point from which the ground is closed with balls, metres: beyond what ground points hold
+/// themselves.
 const GAP: f32 = 0.7;
-/// Radius of balls that close the ground, metres, and how far they lie apart: their tops are up to 0.03 m below the ground between them.
+/// Radius of balls that close the ground, metres, and how far they lie apart: their tops are up to 0.03 m below the
+/// ground between them.
 const GROUND_RADIUS: f64 = 1.0;
 const GROUND_STEP: f64 = 0.35;
 /// Smallest radius to which a ball is cut that reaches into the area, metres; smaller ones are cleared.
-const LEAST_RADIUS: f64 = 0.05;
+const MIN_RADIUS: f64 = 0.05;
 /// Halvings that find the radius of such a ball: to a thousandth of its radius.
 const HALVINGS: usize = 10;
 
@@ -83,8 +86,8 @@ impl Clearing {
         self.ground.height_at(place)
     }
 
-    /// A ball, made smaller at the point of the surface that it is tangent at until it does not reach into what a polygon clears; `None` where it
-    /// vanishes. Beside points of a class balls stay.
+    /// A ball, made smaller at the point of the surface that it is tangent at until it does not reach into what a
+    /// polygon clears; `None` where it vanishes. Beside points of a class balls stay.
     #[must_use]
     pub fn cut(&self, center: [f32; 3], radius: f32, point: [f32; 3]) -> Option<([f32; 3], f32)> {
         let (middle, whole) = (center.map(f64::from), f64::from(radius));
@@ -100,7 +103,7 @@ impl Clearing {
             if self.reaches_in(center_of(radius), radius) { too_large = radius } else { free = radius }
         }
         #[expect(clippy::cast_possible_truncation, reason = "balls are f32")]
-        (free >= LEAST_RADIUS).then(|| (center_of(free).map(|v| v as f32), free as f32))
+        (free >= MIN_RADIUS).then(|| (center_of(free).map(|v| v as f32), free as f32))
     }
 
     /// Balls that close the ground where no ground point is near: centres and radii.

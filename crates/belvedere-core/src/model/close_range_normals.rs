@@ -10,8 +10,9 @@ use belvedere_data::vector::dot;
 use rayon::prelude::*;
 
 /// Distance between the places that normals are estimated at, metres: nearer points mostly have one surface in common.
-const LEAST_DISTANCE: f64 = 0.01;
-/// How far from a place all points count at least, in noises of ranges: a smaller part of a surface is as thick as it is wide.
+const MIN_DISTANCE: f64 = 0.01;
+/// How far from a place all points count at least, in noises of ranges: a smaller part of a surface is as thick as it
+/// is wide.
 const NOISES_WIDE: f32 = 5.0;
 /// Neighbours that tell how far others count where neighbourhoods choose their size.
 const USUAL_NEIGHBORS: usize = 16;
@@ -29,9 +30,9 @@ pub(super) struct CloseRange {
 impl CloseRange {
     /// For points at `positions`, which `index` was built from, measured from `scanner`, both (N, 3) local metres.
     ///
-    /// The plane of a point is that of the nearest of those points that lie a centimetre or more apart; it is the plane of all points as near to it as its
-    /// neighbours among these, and at least five times the noise. Above and below a tripod hundreds of points lie there, and a few of them
-    /// would scatter as much as the points themselves.
+    /// The plane of a point is that of the nearest of those points that lie a centimetre or more apart; it is the plane
+    /// of all points as near to it as its neighbours among these, and at least five times the noise. Above and below a
+    /// tripod hundreds of points lie there, and a few of them would scatter as much as the points themselves.
     ///
     /// # Errors
     /// Those of [`estimate_with_scatter`].
@@ -43,14 +44,14 @@ impl CloseRange {
         control: &Control<'_>,
     ) -> Result<Self> {
         let mut rows: Vec<u32> = (0..u32::try_from(positions.len()).unwrap_or(u32::MAX)).collect();
-        drop_near(positions, &mut rows, LEAST_DISTANCE, control)?;
+        drop_near(positions, &mut rows, MIN_DISTANCE, control)?;
         let of_rows = |column: &[[f32; 3]]| -> Vec<[f32; 3]> {
             rows.iter().filter_map(|&row| column.get(row as usize).copied()).collect()
         };
         let (places, scanner) = (of_rows(positions), of_rows(scanner));
         let apart = NeighborIndex::new(&places, control)?;
         let (normals, scatter) = estimate_with_scatter(&places, &apart, neighborhood, control)?;
-        let least = NOISES_WIDE * scatter.noise_of_ranges(&places, &normals.vectors, &scanner).unwrap_or_default();
+        let min = NOISES_WIDE * scatter.noise_of_ranges(&places, &normals.vectors, &scanner).unwrap_or_default();
         let count = match neighborhood {
             Neighborhood::Fixed { k } => k,
             Neighborhood::Adaptive { .. } => USUAL_NEIGHBORS,
@@ -60,7 +61,7 @@ impl CloseRange {
             if !stop.is_set() {
                 apart.k_nearest(place, count + 1, near);
             }
-            near.last().map_or(0.0, |farthest| farthest.distance_squared.sqrt()).max(least)
+            near.last().map_or(0.0, |farthest| farthest.distance_squared.sqrt()).max(min)
         };
         let reach: Vec<f32> = places.par_iter().map_init(Vec::new, reach).collect();
         stop.check()?;

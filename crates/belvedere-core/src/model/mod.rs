@@ -1,8 +1,8 @@
 //! The scene model: what Belvedere answers from, made from a cloud in one step.
 //!
-//! [`SceneModel::build`] decides how a cloud becomes a scene: which points are kept, where the scanner was, how normals are turned
-//! outward, whether pulses can carve, and what is vegetation. [`ModelParams`] says otherwise where that is wanted. A saved model
-//! ([`SceneModel::parts`], [`SceneModel::from_parts`]) is a ball file.
+//! [`SceneModel::build`] decides how a cloud becomes a scene: which points are kept, where the scanner was, how normals
+//! are turned outward, whether pulses can carve, and what is vegetation. [`ModelParams`] says otherwise where that is
+//! wanted. A saved model ([`SceneModel::parts`], [`SceneModel::from_parts`]) is a ball file.
 //!
 //! The stages are public functions of the modules below; [`OrientedSurvey::prepare`] stops before the balls are made.
 
@@ -11,25 +11,25 @@ mod build;
 mod clear;
 mod clearing;
 mod close_range_normals;
-mod facts;
 mod params;
 mod pictures;
 mod prepare;
 mod questions;
 mod report;
+mod statistics;
 mod terrain;
 
 pub use belvedere_data::model::ModelParts;
 pub use clear::{ClearReport, ClearedArea};
 pub use clearing::Clearing;
-pub use facts::{SurveyExtremes, SurveyFacts};
 pub use params::{BallParams, ModelParams, OrientBy};
 pub use prepare::OrientedSurvey;
 pub use report::{BallsReport, BlockedPulses, BuildReport, NormalsReport, PulsesReport};
+pub use statistics::{SurveyExtremes, SurveyStatistics};
 pub use terrain::{TerrainReport, check_terrain};
 
 use crate::medial::{MedialBalls, PULSE_TOUCH, vegetation_of_transmission};
-use crate::pulses::NeedleColumns;
+use crate::pulses::FreeSegmentColumns;
 use crate::query::{AddedMeshes, Backend, BallTree, FarTerrain, FreedSpace};
 use belvedere_data::horizon::HorizonProfile;
 use belvedere_data::{Bounds, ElevationGrid, Error, Frame, Mesh, Parameter, Result};
@@ -37,8 +37,8 @@ use std::sync::Arc;
 
 /// A scene that answers what is visible: balls that block lines of sight, and the pulses that prove others free.
 ///
-/// Rows of points ([`MedialBalls::source`], [`MedialBalls::touch`]) are those of the cloud that the model was built from, also
-/// where points were cleaned away.
+/// Rows of points ([`MedialBalls::source`], [`MedialBalls::touch`]) are those of the cloud that the model was built
+/// from, also where points were cleaned away.
 #[derive(Clone, Debug, Default)]
 pub struct SceneModel {
     parts: ModelParts,
@@ -62,8 +62,8 @@ impl SceneModel {
     /// The model of saved parts, as [`SceneModel::parts`] gave them.
     ///
     /// # Errors
-    /// Those of [`ModelParts::validate`], and [`Error::InvalidParameter`] for exterior balls, which lie in free space and block
-    /// nothing.
+    /// Those of [`ModelParts::validate`], and [`Error::InvalidParameter`] for exterior balls, which lie in free space
+    /// and block nothing.
     pub fn from_parts(parts: ModelParts) -> Result<Self> {
         parts.validate()?;
         if let Some(side) = parts.provenance.get("side").filter(|side| *side == "exterior") {
@@ -77,8 +77,9 @@ impl SceneModel {
         Ok(Self { parts, vegetation, ..Self::default() })
     }
 
-    /// The same model with the triangles of `mesh`, metres of the reference system of the model ([`Mesh::scaled_to_metres`]), which `name`
-    /// names in answers. They block as they are, beside the balls. Called again, it adds another mesh.
+    /// The same model with the triangles of `mesh`, metres of the reference system of the model
+    /// ([`Mesh::scaled_to_metres`]), which `name` names in answers. They block as they are, beside the balls. Called
+    /// again, it adds another mesh.
     ///
     /// # Errors
     /// Those of [`AddedMeshes::new`].
@@ -95,14 +96,16 @@ impl SceneModel {
         self.added.as_ref()
     }
 
-    /// The same model before far terrain: directions below `horizon`, azimuths from grid north, are blocked for all targets alike. It is not saved.
+    /// The same model before far terrain: directions below `horizon`, azimuths from grid north, are blocked for all
+    /// targets alike. It is not saved.
     #[must_use]
     pub fn with_horizon(mut self, horizon: HorizonProfile) -> Self {
         self.far_terrain = self.far_terrain.with_profile(horizon);
         self
     }
 
-    /// The same model, whose scenes have lines of sight settled in bulk by `backend`. Answers stay the same. It is not saved.
+    /// The same model, whose scenes have lines of sight settled in bulk by `backend`. Answers stay the same. It is not
+    /// saved.
     #[must_use]
     pub fn with_backend(mut self, backend: Arc<dyn Backend>) -> Self {
         self.backend = Some(backend);
@@ -115,8 +118,9 @@ impl SceneModel {
         self.backend.as_ref()
     }
 
-    /// The same model before the terrain of an elevation raster, local metres, which `name` names in errors: directions below the horizon of a target are blocked for it. Within the box of
-    /// the cloud on the map, and a cell of the raster around it, terrain blocks nothing: what stands there the cloud tells. It is not saved.
+    /// The same model before the terrain of an elevation raster, local metres, which `name` names in errors: directions
+    /// below the horizon of a target are blocked for it. Within the box of the cloud on the map, and a cell of the
+    /// raster around it, terrain blocks nothing: what stands there the cloud tells. It is not saved.
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] for terrain that does not reach the cloud, or lies far above or below it.
@@ -181,12 +185,12 @@ impl SceneModel {
 
     /// The pulses that prove lines of sight free, where they are known.
     #[must_use]
-    pub fn pulses(&self) -> Option<&NeedleColumns> {
+    pub fn pulses(&self) -> Option<&FreeSegmentColumns> {
         self.parts.pulses.as_ref()
     }
 
-    /// Share of the pulses that got through the part of a crown that a ball belongs to, (B), NaN for a ball that is no vegetation;
-    /// empty where this was not measured.
+    /// Share of the pulses that got through the part of a crown that a ball belongs to, (B), NaN for a ball that is no
+    /// vegetation; empty where this was not measured.
     #[must_use]
     pub fn transmission(&self) -> &[f32] {
         &self.parts.transmission
@@ -198,8 +202,9 @@ impl SceneModel {
         &self.vegetation
     }
 
-    /// Outward unit normals of the points that the model was built from, (N, 3); zero for points without one and for those that were
-    /// cleaned away. `None` for a model that was read from a file, or whose cloud was given away ([`SceneModel::build_owned`]).
+    /// Outward unit normals of the points that the model was built from, (N, 3); zero for points without one and for
+    /// those that were cleaned away. `None` for a model that was read from a file, or whose cloud was given away
+    /// ([`SceneModel::build_owned`]).
     #[must_use]
     pub fn normals(&self) -> Option<&[[f32; 3]]> {
         self.normals.as_deref()

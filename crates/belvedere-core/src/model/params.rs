@@ -1,10 +1,10 @@
 //! How a scene model is built.
 
-use super::facts::SurveyFacts;
+use super::statistics::SurveyStatistics;
 use crate::clean::CleanParams;
 use crate::medial::{CarvedParams, ShrinkMethod, ShrinkParams};
 use crate::normals::estimate::Neighborhood;
-use crate::pulses::{LocateParams, NeedleParams};
+use crate::pulses::{FreeSegmentParams, LocateParams};
 use belvedere_data::trajectory::Trajectory;
 use belvedere_data::{Mesh, Result};
 use std::sync::Arc;
@@ -30,11 +30,11 @@ pub struct ModelParams {
     /// How the scanner is found.
     pub locate: LocateParams,
     /// How pulses become what they prove empty.
-    pub needles: NeedleParams,
+    pub free_segments: FreeSegmentParams,
     /// How balls are made.
     pub balls: BallParams,
     /// What is known of the survey that the cloud is a part of. Default: none, and the cloud is a whole.
-    pub facts: Option<Arc<SurveyFacts>>,
+    pub statistics: Option<Arc<SurveyStatistics>>,
 }
 
 belvedere_data::setters!(ModelParams {
@@ -42,17 +42,17 @@ belvedere_data::setters!(ModelParams {
     with_neighborhood(neighborhood: Neighborhood),
     with_orient(orient: OrientBy),
     with_locate(locate: LocateParams),
-    with_needles(needles: NeedleParams),
+    with_free_segments(free_segments: FreeSegmentParams),
     with_balls(balls: BallParams),
-    with_facts(facts: Option<Arc<SurveyFacts>>),
+    with_statistics(statistics: Option<Arc<SurveyStatistics>>),
 });
 
 /// How the outward side of normals is found. Ways that know where the scanner was also say where pulses came from.
 #[derive(Clone, Debug, Default)]
 #[non_exhaustive]
 pub enum OrientBy {
-    /// By the pulses where the scanner can be found and the balls are to be carved; otherwise as the cloud gives its normals;
-    /// otherwise towards its scanner positions; otherwise up.
+    /// By the pulses where the scanner can be found and the balls are to be carved; otherwise as the cloud gives its
+    /// normals; otherwise towards its scanner positions; otherwise up.
     #[default]
     Auto,
     /// As the cloud gives its normals.
@@ -65,7 +65,8 @@ pub enum OrientBy {
     ScannerAt([f64; 3]),
     /// Towards the scanner position of each point, (N, 3), local metres, NaN where it is not known.
     ScannerOfEachPoint(Vec<[f32; 3]>),
-    /// Towards the station of each point: point source ids, and positions in the metres of the cloud's reference system.
+    /// Towards the station of each point: point source ids, and positions in the metres of the cloud's reference
+    /// system.
     Stations(Vec<(u16, [f64; 3])>),
     /// Towards the scanner's place on this trajectory.
     Trajectory(Trajectory),
@@ -82,7 +83,8 @@ pub enum BallParams {
     Shrunk(ShrinkParams),
     /// From points and pulses. Building fails where the scanner is not known.
     Carved(CarvedParams),
-    /// From points and pulses, or from the points alone where pulses cannot carve: where they are only assumed, and few.
+    /// From points and pulses, or from the points alone where pulses cannot carve: where they are only assumed, and
+    /// few.
     CarvedIfPossible(CarvedParams, ShrinkParams),
 }
 
@@ -139,9 +141,9 @@ impl BallParams {
     }
 
     /// How balls are made from the points where these facts decide whether pulses carve.
-    pub(super) fn shrinking_by(&self, facts: &SurveyFacts) -> ShrinkParams {
+    pub(super) fn shrinking_by(&self, statistics: &SurveyStatistics) -> ShrinkParams {
         match self {
-            Self::CarvedIfPossible(carved, _) if facts.carves => carved.shrinking(),
+            Self::CarvedIfPossible(carved, _) if statistics.carves => carved.shrinking(),
             other => other.shrinking(),
         }
     }

@@ -1,15 +1,15 @@
 //! From a cloud to a cleaned cloud with outward normals, and what its pulses prove empty.
 
 use super::close_range_normals::CloseRange;
-use super::facts::SurveyFacts;
 use super::params::{Carving, ModelParams, OrientBy};
 use super::report::{BuildReport, NormalsReport, PulsesReport, SmoothingReport};
+use super::statistics::SurveyStatistics;
 use crate::clean::clean;
 use crate::neighbors::NeighborIndex;
 use crate::normals::estimate::estimate_within;
 use crate::normals::{Normals, Orientation, OrientedCloud, Scatter, orient};
 use crate::pulses::{
-    FoundBy, LEAST_ASSUMED_SHARE, Means, NeedleColumns, Needles, Pulses, ScannerReport, group, locate,
+    FoundBy, FreeSegmentColumns, FreeSegments, MIN_ASSUMED_SHARE, Means, Pulses, ScannerReport, group, locate,
 };
 use belvedere_data::control::Control;
 use belvedere_data::vector::{cross, length, sub, unit};
@@ -18,13 +18,14 @@ use std::borrow::Cow;
 
 /// Points no farther from a line than this lie on it, metres: the step of coordinates in most files.
 const LINE_WIDTH: f64 = 1e-3;
-/// How far before its return a pulse proves its way at most, in noises of ranges, where nothing else is uncertain: one return in 30,000 lies so much too
-/// far away, and balls begin below the surface.
+/// How far before its return a pulse proves its way at most, in noises of ranges, where nothing else is uncertain: one
+/// return in 30,000 lies so much too far away, and balls begin below the surface.
 const NOISES_BEFORE_RETURNS: f32 = 4.0;
 
 /// A cloud that is ready for balls: cleaned, with outward normals, an index, and what its pulses prove empty.
 pub struct OrientedSurvey {
-    /// The points that were kept, with outward normals; where they are to be carved, on the surface that they scatter about.
+    /// The points that were kept, with outward normals; where they are to be carved, on the surface that they scatter
+    /// about.
     pub oriented: OrientedCloud,
     /// Index of these points.
     pub index: NeighborIndex,
@@ -42,9 +43,9 @@ pub struct OrientedSurvey {
 
 /// What carving needs beside an oriented cloud.
 pub(super) struct CarvingInput {
-    pub(super) needles: Needles,
+    pub(super) free_segments: FreeSegments,
     /// What pulses prove empty between their returns; it proves, and does not carve.
-    pub(super) between_returns: Option<Needles>,
+    pub(super) between_returns: Option<FreeSegments>,
     /// Classes, numbers and counts of returns.
     pub(super) attributes: Attributes,
     /// Whether pulses are only assumed.
@@ -55,7 +56,7 @@ pub(super) struct CarvingInput {
 
 /// Where the scanner was.
 #[derive(Default)]
-struct Scanner {
+struct ScannerPositions {
     /// For each point, local metres, NaN where unknown.
     positions: Vec<[f32; 3]>,
     /// Whether pulses are only assumed to fall straight down.
@@ -63,12 +64,12 @@ struct Scanner {
 }
 
 impl OrientedSurvey {
-    /// Cleans `cloud`, finds the scanner where [`ModelParams::balls`] or [`ModelParams::orient`] need it, estimates normals and
-    /// turns them outward.
+    /// Cleans `cloud`, finds the scanner where [`ModelParams::balls`] or [`ModelParams::orient`] need it, estimates
+    /// normals and turns them outward.
     ///
     /// # Errors
-    /// [`Error::NoPoints`] where cleaning leaves none, [`Error::NoSurface`] where it leaves fewer than four or all on one line; those of [`clean`], [`locate`], [`estimate_within`] and [`orient()`];
-    /// [`Error::Cancelled`].
+    /// [`Error::NoPoints`] where cleaning leaves none, [`Error::NoSurface`] where it leaves fewer than four or all on
+    /// one line; those of [`clean`], [`locate`], [`estimate_within`] and [`orient()`]; [`Error::Cancelled`].
     pub fn prepare(cloud: &PointCloud, params: &ModelParams, control: &Control<'_>) -> Result<(Self, BuildReport)> {
         prepare(Cow::Borrowed(cloud), params, control)
     }
@@ -87,9 +88,9 @@ impl OrientedSurvey {
 
     /// What pulses prove empty, where carving was wanted and possible and pulses are known rather than assumed.
     #[must_use]
-    pub fn pulses(&self) -> Option<NeedleColumns> {
+    pub fn pulses(&self) -> Option<FreeSegmentColumns> {
         let input = self.carving.as_ref().filter(|input| !input.is_assumed)?;
-        let mut columns = input.needles.to_columns();
+        let mut columns = input.free_segments.to_columns();
         if let Some(between) = &input.between_returns {
             columns.append(between.to_columns());
         }
@@ -105,8 +106,8 @@ pub(super) fn prepare(
 ) -> Result<(OrientedSurvey, BuildReport)> {
     let mut report = BuildReport::default();
     let read_count = cloud.len();
-    let facts = params.facts.as_deref();
-    let cleaning = facts.map(|facts| facts.cleaning(&params.clean));
+    let statistics = params.statistics.as_deref();
+    let cleaning = statistics.map(|statistics| statistics.cleaning(&params.clean));
     let cleaning = cleaning.as_ref().unwrap_or(&params.clean);
     let (kept, cleaned) = control.stage("cleaning", read_count, || clean(&cloud, cleaning, control))?;
     report.removed_by_cleaning = cleaned;
@@ -114,7 +115,7 @@ pub(super) fn prepare(
         return Err(Error::NoPoints { what: format!("{read_count} were read, and cleaning removed all of them") });
     }
     // what is no surface on its own may be the edge of one
-    if facts.is_none() {
+    if statistics.is_none() {
         check_surface(kept.iter().filter_map(|&row| cloud.positions.get(row as usize)))?;
     }
     let mut cloud = if kept.len() == read_count { cloud } else { Cow::Owned(cloud.select(&kept)) };
@@ -126,7 +127,7 @@ pub(super) fn prepare(
         report.scanner = Some(found);
         scanner
     } else {
-        Scanner::default()
+        ScannerPositions::default()
     };
     let mut carving = match carving {
         Carving::Unwanted => None,
@@ -150,8 +151,8 @@ pub(super) fn prepare(
     }
     let index = control.stage("indexing points", cloud.len(), || NeighborIndex::new(&cloud.positions, control))?;
     let by = orientation(&cloud, params, &scanner, wants_scanner, carving.is_some());
-    let is_from_the_ground = carving.as_ref().is_some_and(|input| input.needles.are_from_the_ground());
-    let mut noise = facts.and_then(|facts| facts.noise);
+    let is_from_the_ground = carving.as_ref().is_some_and(|input| input.free_segments.are_from_the_ground());
+    let mut noise = statistics.and_then(|statistics| statistics.noise);
     let (normals, scatter) = match by {
         Orientation::Given => (Normals::default(), Scatter::default()),
         _ if is_from_the_ground => control.stage("estimating normals", cloud.len(), || {
@@ -161,7 +162,7 @@ pub(super) fn prepare(
             Ok((found.normals, found.scatter))
         })?,
         _ => control.stage("estimating normals", cloud.len(), || {
-            let farthest = facts.map_or(f32::INFINITY, SurveyFacts::farthest);
+            let farthest = statistics.map_or(f32::INFINITY, SurveyStatistics::farthest);
             estimate_within(&cloud.positions, &index, params.neighborhood, farthest, control)
         })?,
     };
@@ -173,9 +174,9 @@ pub(super) fn prepare(
         input.lead_up_to(noise, &scanner, params, control)?;
     }
     let mut index = index;
-    let measured = if facts.is_some() { oriented.positions().to_vec() } else { Vec::new() };
+    let measured = if statistics.is_some() { oriented.positions().to_vec() } else { Vec::new() };
     if let Some(scatter) = scatter {
-        if facts.is_none() && !is_from_the_ground {
+        if statistics.is_none() && !is_from_the_ground {
             noise = scatter.noise();
         }
         let (positions, moved) = scatter.smoothed_within(noise, oriented.positions());
@@ -188,14 +189,21 @@ pub(super) fn prepare(
 }
 
 impl CarvingInput {
-    /// Lets pulses that all come from one place prove their way up to a few times the `noise` of their ranges, metres, before their returns.
-    /// Where they come from several, how well these places are known counts as well, which the cloud does not tell.
-    fn lead_up_to(&mut self, noise: f32, scanner: &Scanner, params: &ModelParams, control: &Control<'_>) -> Result<()> {
+    /// Lets pulses that all come from one place prove their way up to a few times the `noise` of their ranges, metres,
+    /// before their returns. Where they come from several, how well these places are known counts as well, which the
+    /// cloud does not tell.
+    fn lead_up_to(
+        &mut self,
+        noise: f32,
+        scanner: &ScannerPositions,
+        params: &ModelParams,
+        control: &Control<'_>,
+    ) -> Result<()> {
         let mut known = scanner.positions.iter().filter(|p| p.iter().all(|v| v.is_finite()));
         let first = known.next();
-        let nearer = params.needles.end_margin - NOISES_BEFORE_RETURNS * noise;
+        let nearer = params.free_segments.end_margin - NOISES_BEFORE_RETURNS * noise;
         if nearer > 0.0 && known.all(|p| Some(p) == first) {
-            self.needles = self.needles.extended(nearer, control)?;
+            self.free_segments = self.free_segments.extended(nearer, control)?;
         }
         Ok(())
     }
@@ -221,7 +229,7 @@ fn check_surface<'a>(points: impl Iterator<Item = &'a [f32; 3]> + Clone) -> Resu
 fn orientation<'a>(
     cloud: &PointCloud,
     params: &'a ModelParams,
-    scanner: &'a Scanner,
+    scanner: &'a ScannerPositions,
     wants_scanner: bool,
     is_carved: bool,
 ) -> Orientation<'a> {
@@ -253,14 +261,14 @@ fn find_scanner(
     read_count: usize,
     params: &ModelParams,
     control: &Control<'_>,
-) -> Result<(Scanner, ScannerReport)> {
-    if let Some(facts) = &params.facts {
-        let positions = facts.scanner(cloud, control)?;
+) -> Result<(ScannerPositions, ScannerReport)> {
+    if let Some(statistics) = &params.statistics {
+        let positions = statistics.scanner(cloud, control)?;
         let known_count = positions.iter().filter(|p| p.iter().all(|v| v.is_finite())).count();
         let mut report = ScannerReport { point_count: cloud.len(), ..ScannerReport::default() };
-        let found_by = if facts.are_pulses_assumed() { FoundBy::Assumed } else { FoundBy::Trajectory };
+        let found_by = if statistics.are_pulses_assumed() { FoundBy::Assumed } else { FoundBy::Trajectory };
         report.found.insert(found_by, known_count);
-        return Ok((Scanner { positions, is_assumed: facts.are_pulses_assumed() }, report));
+        return Ok((ScannerPositions { positions, is_assumed: statistics.are_pulses_assumed() }, report));
     }
     let means = match &params.orient {
         OrientBy::ScannerOfEachPoint(given) => {
@@ -272,7 +280,7 @@ fn find_scanner(
             let known_count = positions.iter().filter(|p| p.iter().all(|v| v.is_finite())).count();
             let mut report = ScannerReport { point_count: cloud.len(), ..ScannerReport::default() };
             report.found.insert(FoundBy::Position, known_count);
-            return Ok((Scanner { positions, is_assumed: false }, report));
+            return Ok((ScannerPositions { positions, is_assumed: false }, report));
         }
         OrientBy::Trajectory(trajectory) => Means::Trajectory(trajectory),
         OrientBy::ScannerAt(position) => Means::Position(cloud.frame.from_file_coordinates(*position)),
@@ -284,29 +292,30 @@ fn find_scanner(
     let (positions, report) =
         control.stage("estimating scanner positions", 0, || locate(cloud, &means, &params.locate, control))?;
     let is_assumed = report.is_assumed();
-    Ok((Scanner { positions, is_assumed }, report))
+    Ok((ScannerPositions { positions, is_assumed }, report))
 }
 
-/// What carving needs of a cloud, and how that was found; `None` where they are only assumed, too few, and need not carve.
+/// What carving needs of a cloud, and how that was found; `None` where they are only assumed, too few, and need not
+/// carve.
 fn carving_input(
     cloud: &PointCloud,
-    scanner: &Scanner,
+    scanner: &ScannerPositions,
     carving: Carving,
     params: &ModelParams,
     control: &Control<'_>,
 ) -> Result<(Option<CarvingInput>, PulsesReport)> {
-    let (needles, report) = control.stage("indexing pulses", cloud.len(), || {
-        let top = params.facts.as_ref().map(|facts| facts.top);
-        Needles::of_cloud_below(cloud, &scanner.positions, top, &params.needles, control)
+    let (free_segments, report) = control.stage("indexing pulses", cloud.len(), || {
+        let top = params.statistics.as_ref().map(|statistics| statistics.top);
+        FreeSegments::of_cloud_below(cloud, &scanner.positions, top, &params.free_segments, control)
     })?;
-    let mut report = PulsesReport { needles: report, ..PulsesReport::default() };
-    let used = report.needles.used as f64;
-    if params.facts.as_ref().is_some_and(|facts| !facts.carves) {
+    let mut report = PulsesReport { free_segments: report, ..PulsesReport::default() };
+    let used = report.free_segments.used as f64;
+    if params.statistics.as_ref().is_some_and(|statistics| !statistics.carves) {
         return Ok((None, report));
     }
     // of a part it was decided with the whole
-    let carving = if params.facts.is_some() { Carving::Wanted } else { carving };
-    if scanner.is_assumed && used < LEAST_ASSUMED_SHARE * cloud.len() as f64 && carving == Carving::IfPossible {
+    let carving = if params.statistics.is_some() { Carving::Wanted } else { carving };
+    if scanner.is_assumed && used < MIN_ASSUMED_SHARE * cloud.len() as f64 && carving == Carving::IfPossible {
         report.remark = Some(format!(
             "pulses do not carve here: they are only assumed to be vertical, and {:.0} % of the points have something above them; give \
              the positions of the scanner",
@@ -321,10 +330,10 @@ fn carving_input(
         ..Attributes::default()
     };
     let pulses = match control.stage("grouping pulses", 0, || group(cloud, control)) {
-        _ if params.facts.as_ref().is_some_and(|facts| !facts.measures_crowns) => None,
+        _ if params.statistics.as_ref().is_some_and(|statistics| !statistics.measures_crowns) => None,
         Ok((pulses, _)) => Some(pulses),
         // here and now none, which says nothing of the whole
-        Err(Error::MissingAttribute { .. }) if params.facts.is_some() => Some(Pulses::default()),
+        Err(Error::MissingAttribute { .. }) if params.statistics.is_some() => Some(Pulses::default()),
         // without pulses nothing is known of what gets through crowns, and all else is
         Err(error @ Error::MissingAttribute { .. }) => {
             report.crowns_not_measured = Some(error.to_string());
@@ -333,12 +342,12 @@ fn carving_input(
         Err(error) => return Err(error),
     };
     // scanners on the ground see stems from the side, and runs in tiles ask for no proof
-    let may_prove = !scanner.is_assumed && params.facts.is_none() && !needles.are_from_the_ground();
+    let may_prove = !scanner.is_assumed && params.statistics.is_none() && !free_segments.are_from_the_ground();
     let between_returns = match pulses.as_ref().filter(|_| may_prove) {
-        Some(pulses) => Some(needles.between_returns(cloud, pulses, &params.needles, control)?),
+        Some(pulses) => Some(free_segments.between_returns(cloud, pulses, &params.free_segments, control)?),
         None => None,
     };
-    report.between_returns = between_returns.as_ref().map_or(0, Needles::len);
+    report.between_returns = between_returns.as_ref().map_or(0, FreeSegments::len);
     let is_assumed = scanner.is_assumed;
-    Ok((Some(CarvingInput { needles, between_returns, attributes, is_assumed, pulses }), report))
+    Ok((Some(CarvingInput { free_segments, between_returns, attributes, is_assumed, pulses }), report))
 }

@@ -14,8 +14,8 @@ impl SceneModel {
         Coverage::of(self.bounds())
     }
 
-    /// How the balls of this model block lines of sight unless something else is wanted: carved balls give way to what lies at
-    /// their surface, others have a bias.
+    /// How the balls of this model block lines of sight unless something else is wanted: carved balls give way to what
+    /// lies at their surface, others have a bias.
     #[must_use]
     pub fn rule(&self) -> BlockRule {
         if self.is_carved() { BlockRule::carved() } else { BlockRule::uncarved() }
@@ -35,9 +35,9 @@ impl SceneModel {
 
     /// The scene that answers lines of sight by `rule`.
     ///
-    /// Its answers tell unproven from visible where the pulses are known. With [`UnprovenAs::Visible`] that makes no difference, and
-    /// the pulses are left out. They are indexed when a line of sight first needs them. What lies beside or below the cloud has no answer
-    /// ([`SceneModel::coverage`]).
+    /// Its answers tell unproven from visible where the pulses are known. With [`UnprovenAs::Visible`] that makes no
+    /// difference, and the pulses are left out. They are indexed when a line of sight first needs them. What lies
+    /// beside or below the cloud has no answer ([`SceneModel::coverage`]).
     ///
     /// # Errors
     /// Those of [`BallTree::new`] and [`Proof::from_columns`]; [`Error::Cancelled`](belvedere_data::Error::Cancelled).
@@ -55,8 +55,8 @@ impl SceneModel {
     /// The same without the balls that are vegetation, and without pulses: what blocks where no tree stood.
     ///
     /// # Errors
-    /// [`Error::LengthMismatch`](belvedere_data::Error::LengthMismatch) where it is not known which balls are vegetation, and those
-    /// of [`MedialScene::new`].
+    /// [`Error::LengthMismatch`](belvedere_data::Error::LengthMismatch) where it is not known which balls are
+    /// vegetation, and those of [`MedialScene::new`].
     pub fn scene_without_vegetation(&self, rule: &BlockRule, control: &Control<'_>) -> Result<MedialScene> {
         let balls = without_vegetation(self.balls(), self.vegetation())?;
         let scene = control.stage("indexing balls without trees", balls.len(), || MedialScene::new(&balls, rule))?;

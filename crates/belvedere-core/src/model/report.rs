@@ -3,7 +3,7 @@
 use crate::clean::CleanReport;
 use crate::medial::{CarvedReport, ShrinkReport};
 use crate::normals::{OrientReport, Orientation};
-use crate::pulses::{NeedleReport, ScannerReport};
+use crate::pulses::{FreeSegmentReport, ScannerReport};
 use belvedere_data::report::rounded;
 use serde::{Serialize, Serializer};
 
@@ -51,15 +51,15 @@ fn in_tenths_of_millimetres<S: Serializer>(length: &f32, serializer: S) -> Resul
 pub struct PulsesReport {
     /// How many of them prove space empty.
     #[serde(flatten)]
-    pub needles: NeedleReport,
+    pub free_segments: FreeSegmentReport,
     /// Ways between two returns of a pulse that prove space empty as well; they do not carve.
     #[serde(rename = "ways_between_returns")]
     pub between_returns: usize,
     /// Why the crowns of trees could not be measured, if they could not: what is missing to tell pulses apart.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub crowns_not_measured: Option<String>,
-    /// Pulses whose way the finished balls block, of those used: what is built against what was measured. Left out where none were
-    /// used to carve.
+    /// Pulses whose way the finished balls block, of those used: what is built against what was measured. Left out
+    /// where none were used to carve.
     #[serde(flatten, skip_serializing_if = "Option::is_none")]
     pub blocked: Option<BlockedPulses>,
     /// Why pulses do not carve, where they were to carve if possible.

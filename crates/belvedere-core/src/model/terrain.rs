@@ -4,12 +4,13 @@ use belvedere_data::report::{percent, rounded};
 use belvedere_data::{Bounds, ElevationGrid, Error, Frame, Parameter, Result};
 use serde::Serialize;
 
-/// How far heights of terrain may lie above or below all points of a cloud, metres: more than any error of a raster of 90 m cells, less than 30 m for which
-/// heights above an ellipsoid and above the sea differ in most countries, and than a height in feet taken for metres in all but the lowest.
-const MOST_OFFSET: f32 = 25.0;
+/// How far heights of terrain may lie above or below all points of a cloud, metres: more than any error of a raster of
+/// 90 m cells, less than 30 m for which heights above an ellipsoid and above the sea differ in most countries, and than
+/// a height in feet taken for metres in all but the lowest.
+const MAX_OFFSET: f32 = 25.0;
 
 /// Farthest that the sea lies from the ellipsoid, metres.
-const MOST_GEOID: f64 = 107.0;
+const MAX_GEOID: f64 = 107.0;
 const METRES_PER_FOOT: f64 = 0.3048;
 
 /// What an elevation raster holds.
@@ -50,7 +51,8 @@ impl TerrainReport {
     }
 }
 
-/// Refuses terrain, which `name` names, that does not reach the cloud between `cloud`, local metres, or whose heights are not those of the cloud.
+/// Refuses terrain, which `name` names, that does not reach the cloud between `cloud`, local metres, or whose heights
+/// are not those of the cloud.
 ///
 /// # Errors
 /// [`Error::InvalidParameter`] with what to do.
@@ -74,7 +76,7 @@ pub fn check_terrain(terrain: &ElevationGrid, name: &str, cloud: Bounds, frame: 
         return invalid(value, "in the coordinates of the cloud, with all of the cloud in it");
     }
     let Some([lowest, highest]) = terrain.height_range((low, high)) else { return Ok(()) };
-    if lowest > cloud.high[2] + MOST_OFFSET || highest < cloud.low[2] - MOST_OFFSET {
+    if lowest > cloud.high[2] + MAX_OFFSET || highest < cloud.low[2] - MAX_OFFSET {
         let z = |local: f32| frame.origin[2] + f64::from(local);
         let [terrain, cloud] = [[lowest, highest], [cloud.low[2], cloud.high[2]]].map(|heights| heights.map(z));
         let text = |[low, high]: [f64; 2]| format!("{low:.1} to {high:.1} m");
@@ -84,14 +86,15 @@ pub fn check_terrain(terrain: &ElevationGrid, name: &str, cloud: Bounds, frame: 
     Ok(())
 }
 
-/// What heights of `terrain` must be to fit those of a `cloud`, metres: what makes them differ can be seen from the numbers.
+/// What heights of `terrain` must be to fit those of a `cloud`, metres: what makes them differ can be seen from the
+/// numbers.
 fn expected_heights(terrain: [f64; 2], cloud: [f64; 2]) -> &'static str {
-    let room = f64::from(MOST_OFFSET);
+    let room = f64::from(MAX_OFFSET);
     let [low, high] = terrain.map(|height| height * METRES_PER_FOOT);
     // heights in feet are larger numbers
     let are_like_feet = terrain[0] > cloud[1] && low <= cloud[1] + room && high >= cloud[0] - room;
     let gap = (terrain[0] - cloud[1]).max(cloud[0] - terrain[1]);
-    match (are_like_feet, gap <= MOST_GEOID) {
+    match (are_like_feet, gap <= MAX_GEOID) {
         (true, true) => {
             "in metres above the same zero as those of the cloud; they look like feet (gdal_calc.py -A IN.tif --calc=A*0.3048 --outfile=OUT.tif) \
              or like heights above the ellipsoid (gdalwarp -s_srs and -t_srs)"

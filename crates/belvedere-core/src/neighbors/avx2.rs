@@ -1,4 +1,5 @@
-//! Eight lanes at once on machines with AVX2: the same arithmetic as [`super::lanes::Scalar`], in the same order.
+//! Eight lanes at once on machines with AVX2: the same arithmetic as [`super::lanes::NeighborScalar`], in the same
+//! order.
 #![expect(
     unsafe_code,
     reason = "the search for the nearest point takes most of the time of making balls; AVX2 saves 9 % of it on the surface and \
@@ -6,16 +7,17 @@
               scalar form"
 )]
 
-use super::lanes::{Block, LANES, Lanes, Node};
+use super::lanes::{LANES, LaneBlock, Lanes, WideNode};
 use super::{Neighbor, NeighborIndex, Tangent, search, tangent_ball};
 use std::arch::x86_64::*;
 
-// SAFETY of the calls below: `Instructions::Avx2` is only stored in an index after `is_x86_feature_detected!("avx2")`.
+// SAFETY of the calls below: `Instructions::NeighborAvx2` is only stored in an index after
+// `is_x86_feature_detected!("avx2")`.
 
 pub(super) fn nearest(index: &NeighborIndex, query: [f32; 3], bound_squared: f32) -> Option<Neighbor> {
     #[target_feature(enable = "avx2")]
     fn run(index: &NeighborIndex, query: [f32; 3], bound_squared: f32) -> Option<Neighbor> {
-        search::nearest::<Avx2>(index, query, bound_squared)
+        search::nearest::<NeighborAvx2>(index, query, bound_squared)
     }
     // SAFETY: see above
     unsafe { run(index, query, bound_squared) }
@@ -24,7 +26,7 @@ pub(super) fn nearest(index: &NeighborIndex, query: [f32; 3], bound_squared: f32
 pub(super) fn k_nearest(index: &NeighborIndex, query: [f32; 3], k: usize, found: &mut Vec<Neighbor>) {
     #[target_feature(enable = "avx2")]
     fn run(index: &NeighborIndex, query: [f32; 3], k: usize, found: &mut Vec<Neighbor>) {
-        search::k_nearest::<Avx2>(index, query, k, found);
+        search::k_nearest::<NeighborAvx2>(index, query, k, found);
     }
     // SAFETY: see above
     unsafe { run(index, query, k, found) }
@@ -33,7 +35,7 @@ pub(super) fn k_nearest(index: &NeighborIndex, query: [f32; 3], k: usize, found:
 pub(super) fn within_radius(index: &NeighborIndex, query: [f32; 3], radius: f32, visit: impl FnMut(Neighbor)) {
     #[target_feature(enable = "avx2")]
     fn run(index: &NeighborIndex, query: [f32; 3], radius: f32, visit: impl FnMut(Neighbor)) {
-        search::within_radius::<Avx2>(index, query, radius, visit);
+        search::within_radius::<NeighborAvx2>(index, query, radius, visit);
     }
     // SAFETY: see above
     unsafe { run(index, query, radius, visit) }
@@ -42,16 +44,16 @@ pub(super) fn within_radius(index: &NeighborIndex, query: [f32; 3], radius: f32,
 pub(super) fn smallest_tangent_ball(index: &NeighborIndex, tangent: &Tangent, max_radius: f32) -> Option<(f32, u32)> {
     #[target_feature(enable = "avx2")]
     fn run(index: &NeighborIndex, tangent: &Tangent, max_radius: f32) -> Option<(f32, u32)> {
-        tangent_ball::search::<Avx2>(index, tangent, max_radius)
+        tangent_ball::search::<NeighborAvx2>(index, tangent, max_radius)
     }
     // SAFETY: see above
     unsafe { run(index, tangent, max_radius) }
 }
 
-struct Avx2;
+struct NeighborAvx2;
 
-// SAFETY of the blocks below: the methods are only inlined into the functions above, which enable AVX2; `load` and `store`
-// touch arrays of exactly eight f32.
+// SAFETY of the blocks below: the methods are only inlined into the functions above, which enable AVX2; `load` and
+// `store` touch arrays of exactly eight f32.
 
 #[inline(always)]
 fn load(lanes: &[f32; LANES]) -> __m256 {
@@ -68,9 +70,9 @@ fn passing(values: __m256, bound: f32, out: &mut [f32; LANES]) -> u32 {
     }
 }
 
-impl Lanes for Avx2 {
+impl Lanes for NeighborAvx2 {
     #[inline(always)]
-    fn boxes(node: &Node, query: [f32; 3], bound: f32, out: &mut [f32; LANES]) -> u32 {
+    fn boxes(node: &WideNode, query: [f32; 3], bound: f32, out: &mut [f32; LANES]) -> u32 {
         // SAFETY: see above
         unsafe {
             let gap = |low: &[f32; LANES], high: &[f32; LANES], q: f32| {
@@ -87,7 +89,7 @@ impl Lanes for Avx2 {
     }
 
     #[inline(always)]
-    fn points(block: &Block, query: [f32; 3], bound: f32, out: &mut [f32; LANES]) -> u32 {
+    fn points(block: &LaneBlock, query: [f32; 3], bound: f32, out: &mut [f32; LANES]) -> u32 {
         // SAFETY: see above
         unsafe {
             let square = |lanes: &[f32; LANES], q: f32| {
@@ -100,7 +102,7 @@ impl Lanes for Avx2 {
     }
 
     #[inline(always)]
-    fn tangent_radii(block: &Block, tangent: &Tangent, bound: f32, out: &mut [f32; LANES]) -> u32 {
+    fn tangent_radii(block: &LaneBlock, tangent: &Tangent, bound: f32, out: &mut [f32; LANES]) -> u32 {
         let Tangent { point, inward, margin } = *tangent;
         // SAFETY: see above
         unsafe {

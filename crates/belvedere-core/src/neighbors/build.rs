@@ -1,6 +1,6 @@
 //! Building the tree: split at the median of the longest extent down to full leaves, then box what came out.
 
-use super::lanes::{Block, Child, LANES, Node};
+use super::lanes::{Child, LANES, LaneBlock, WideNode};
 use belvedere_data::Result;
 use belvedere_data::control::{Control, Stop};
 
@@ -15,10 +15,10 @@ struct Item {
     index: u32,
 }
 
-type Bounds = ([f32; 3], [f32; 3]);
+type BoxCorners = ([f32; 3], [f32; 3]);
 
 /// Nodes (the root first), blocks of points in tree order, and the index of the point in each slot.
-pub(super) fn build(points: &[[f32; 3]], control: &Control<'_>) -> Result<(Vec<Node>, Vec<Block>, Vec<u32>)> {
+pub(super) fn build(points: &[[f32; 3]], control: &Control<'_>) -> Result<(Vec<WideNode>, Vec<LaneBlock>, Vec<u32>)> {
     let stop = Stop::new(control);
     let mut items: Vec<Item> = points.iter().zip(0..).map(|(&point, index)| Item { point, index }).collect();
     sort_to_leaves(&mut items, &stop, control);
@@ -29,18 +29,18 @@ pub(super) fn build(points: &[[f32; 3]], control: &Control<'_>) -> Result<(Vec<N
 }
 
 /// Nodes and blocks for points that moved a little: `order` is that of the tree they were in, which stays.
-pub(super) fn refit(points: &[[f32; 3]], order: &[u32]) -> (Vec<Node>, Vec<Block>) {
+pub(super) fn refit(points: &[[f32; 3]], order: &[u32]) -> (Vec<WideNode>, Vec<LaneBlock>) {
     let items: Vec<Item> = order.iter().map(|&index| Item { point: points[index as usize], index }).collect();
     fit(&items)
 }
 
 /// Nodes and blocks of points in tree order.
-fn fit(items: &[Item]) -> (Vec<Node>, Vec<Block>) {
+fn fit(items: &[Item]) -> (Vec<WideNode>, Vec<LaneBlock>) {
     let blocks = items
         .chunks(LANES)
         .map(|chunk| {
             // lanes without a point lie infinitely far away and pass no test
-            let mut block = Block::filled(f32::INFINITY);
+            let mut block = LaneBlock::filled(f32::INFINITY);
             chunk.iter().enumerate().for_each(|(lane, item)| block.set(lane, item.point));
             block
         })
@@ -80,18 +80,18 @@ fn sort_to_leaves(items: &mut [Item], stop: &Stop<'_>, control: &Control<'_>) {
     }
 }
 
-fn bounds(items: &[Item]) -> Bounds {
+fn bounds(items: &[Item]) -> BoxCorners {
     items.iter().fold(([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]), |(low, high), item| {
         (std::array::from_fn(|i| low[i].min(item.point[i])), std::array::from_fn(|i| high[i].max(item.point[i])))
     })
 }
 
 /// Appends the node over `items`, whose first point sits in slot `first`, and everything below it; returns its box.
-fn add_node(items: &[Item], first: usize, nodes: &mut Vec<Node>) -> Bounds {
+fn add_node(items: &[Item], first: usize, nodes: &mut Vec<WideNode>) -> BoxCorners {
     let node_index = nodes.len();
-    nodes.push(Node {
-        low: Block::filled(f32::INFINITY),
-        high: Block::filled(f32::NEG_INFINITY),
+    nodes.push(WideNode {
+        low: LaneBlock::filled(f32::INFINITY),
+        high: LaneBlock::filled(f32::NEG_INFINITY),
         children: [Child::node(0); LANES],
     });
     let mut runs = vec![items];

@@ -8,13 +8,13 @@ pub(super) const LANES: usize = 8;
 /// Eight points, or one face of eight boxes.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(32))]
-pub(super) struct Block {
+pub(super) struct LaneBlock {
     pub(super) x: [f32; LANES],
     pub(super) y: [f32; LANES],
     pub(super) z: [f32; LANES],
 }
 
-impl Block {
+impl LaneBlock {
     pub(super) const fn filled(value: f32) -> Self {
         Self { x: [value; LANES], y: [value; LANES], z: [value; LANES] }
     }
@@ -29,9 +29,9 @@ impl Block {
 /// Eight children with their tight boxes; a missing child has a box turned inside out, infinitely far from everything.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(32))]
-pub(super) struct Node {
-    pub(super) low: Block,
-    pub(super) high: Block,
+pub(super) struct WideNode {
+    pub(super) low: LaneBlock,
+    pub(super) high: LaneBlock,
     pub(super) children: [Child; LANES],
 }
 
@@ -63,24 +63,24 @@ impl Child {
     }
 }
 
-/// The tests a search makes of eight boxes or points. Each returns a mask of the lanes that pass and leaves their values
-/// in `out`; implementations round alike, so that searches on either give the same answer.
+/// The tests a search makes of eight boxes or points. Each returns a mask of the lanes that pass and leaves their
+/// values in `out`; implementations round alike, so that searches on either give the same answer.
 pub(super) trait Lanes {
     /// Squared distance from `query` to each box; passes up to and including `bound`.
-    fn boxes(node: &Node, query: [f32; 3], bound: f32, out: &mut [f32; LANES]) -> u32;
+    fn boxes(node: &WideNode, query: [f32; 3], bound: f32, out: &mut [f32; LANES]) -> u32;
     /// Squared distance from `query` to each point; passes up to and including `bound`.
-    fn points(block: &Block, query: [f32; 3], bound: f32, out: &mut [f32; LANES]) -> u32;
+    fn points(block: &LaneBlock, query: [f32; 3], bound: f32, out: &mut [f32; LANES]) -> u32;
     /// Radius of the tangent ball through each point; passes up to and including `bound`.
-    fn tangent_radii(block: &Block, tangent: &Tangent, bound: f32, out: &mut [f32; LANES]) -> u32;
+    fn tangent_radii(block: &LaneBlock, tangent: &Tangent, bound: f32, out: &mut [f32; LANES]) -> u32;
 }
 
 /// One lane after the other.
-pub(super) struct Scalar;
+pub(super) struct NeighborScalar;
 
 #[expect(clippy::needless_range_loop, reason = "reads like the eight lanes of avx2.rs that it must agree with")]
-impl Lanes for Scalar {
+impl Lanes for NeighborScalar {
     #[inline(always)]
-    fn boxes(node: &Node, query: [f32; 3], bound: f32, out: &mut [f32; LANES]) -> u32 {
+    fn boxes(node: &WideNode, query: [f32; 3], bound: f32, out: &mut [f32; LANES]) -> u32 {
         let gap = |low: f32, high: f32, q: f32| (low - q).max(q - high).max(0.0);
         let mut mask = 0;
         for lane in 0..LANES {
@@ -94,7 +94,7 @@ impl Lanes for Scalar {
     }
 
     #[inline(always)]
-    fn points(block: &Block, query: [f32; 3], bound: f32, out: &mut [f32; LANES]) -> u32 {
+    fn points(block: &LaneBlock, query: [f32; 3], bound: f32, out: &mut [f32; LANES]) -> u32 {
         let mut mask = 0;
         for lane in 0..LANES {
             let dx = block.x[lane] - query[0];
@@ -107,7 +107,7 @@ impl Lanes for Scalar {
     }
 
     #[inline(always)]
-    fn tangent_radii(block: &Block, tangent: &Tangent, bound: f32, out: &mut [f32; LANES]) -> u32 {
+    fn tangent_radii(block: &LaneBlock, tangent: &Tangent, bound: f32, out: &mut [f32; LANES]) -> u32 {
         let mut mask = 0;
         let Tangent { point, inward, margin } = *tangent;
         for lane in 0..LANES {

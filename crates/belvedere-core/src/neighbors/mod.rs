@@ -1,9 +1,9 @@
 //! Neighbours of points: the one spatial index, used by every stage that asks what lies near.
 //!
-//! A tree with eight children a node and tight boxes, over leaves of 32 points kept as structure of arrays. Ball centres
-//! lie far from the surface, where thousands of points are nearly equally far; only tight boxes tell them apart. On half a
-//! million points of a simulated city a nearest point costs 0.34 µs on the surface, 0.5 µs from 5 m and 1.0 µs from 200 m
-//! below it; the kd-tree crate kiddo takes 0.24, 2.1 and 57 µs (`benches/neighbors.rs`).
+//! A tree with eight children a node and tight boxes, over leaves of 32 points kept as structure of arrays. Ball
+//! centres lie far from the surface, where thousands of points are nearly equally far; only tight boxes tell them
+//! apart. On half a million points of a simulated city a nearest point costs 0.34 µs on the surface, 0.5 µs from 5 m
+//! and 1.0 µs from 200 m below it; the kd-tree crate kiddo takes 0.24, 2.1 and 57 µs (`benches/neighbors.rs`).
 //!
 //! | question | method |
 //! |---|---|
@@ -26,7 +26,7 @@ pub use tangent_ball::Tangent;
 
 use belvedere_data::control::Control;
 use belvedere_data::{Error, Parameter, Result};
-use lanes::{Block, Node};
+use lanes::{LaneBlock, WideNode};
 
 /// A point found, by its index in the array the index was built from.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,8 +42,8 @@ pub struct Neighbor {
 /// Memory: 16 bytes a point and about 1 byte a point for the nodes.
 #[derive(Debug)]
 pub struct NeighborIndex {
-    nodes: Vec<Node>,
-    blocks: Vec<Block>,
+    nodes: Vec<WideNode>,
+    blocks: Vec<LaneBlock>,
     order: Vec<u32>,
     instructions: Instructions,
 }
@@ -58,8 +58,8 @@ impl NeighborIndex {
         Self::with_instructions(points, Instructions::detect(), control)
     }
 
-    /// As [`NeighborIndex::new`], searched with the given instructions. Asking for a set this machine lacks gives scalar
-    /// searches.
+    /// As [`NeighborIndex::new`], searched with the given instructions. Asking for a set this machine lacks gives
+    /// scalar searches.
     ///
     /// # Errors
     /// As [`NeighborIndex::new`].
@@ -80,8 +80,8 @@ impl NeighborIndex {
     /// The index of the same points after each moved a little: faster to make than a new one, as fast to search.
     ///
     /// # Errors
-    /// [`Error::LengthMismatch`] for another number of points, [`Error::InvalidParameter`] for a coordinate that is not finite or beyond
-    /// 1e18.
+    /// [`Error::LengthMismatch`] for another number of points, [`Error::InvalidParameter`] for a coordinate that is not
+    /// finite or beyond 1e18.
     pub fn moved_to(self, points: &[[f32; 3]]) -> Result<Self> {
         if points.len() != self.len() {
             return Err(Error::LengthMismatch { what: "moved points", expected: self.len(), found: points.len() });
@@ -110,12 +110,12 @@ impl NeighborIndex {
         &self.order
     }
 
-    /// The point nearest to `query` whose squared distance is strictly below `bound_squared`, or `None`. Of equally near
-    /// points the one with the lowest index.
+    /// The point nearest to `query` whose squared distance is strictly below `bound_squared`, or `None`. Of equally
+    /// near points the one with the lowest index.
     #[must_use]
     pub fn nearest_within(&self, query: [f32; 3], bound_squared: f32) -> Option<Neighbor> {
         match self.instructions {
-            Instructions::Scalar => search::nearest::<lanes::Scalar>(self, query, bound_squared),
+            Instructions::Scalar => search::nearest::<lanes::NeighborScalar>(self, query, bound_squared),
             #[cfg(target_arch = "x86_64")]
             Instructions::Avx2 => avx2::nearest(self, query, bound_squared),
         }
@@ -125,16 +125,17 @@ impl NeighborIndex {
     /// by index.
     pub fn k_nearest(&self, query: [f32; 3], k: usize, found: &mut Vec<Neighbor>) {
         match self.instructions {
-            Instructions::Scalar => search::k_nearest::<lanes::Scalar>(self, query, k, found),
+            Instructions::Scalar => search::k_nearest::<lanes::NeighborScalar>(self, query, k, found),
             #[cfg(target_arch = "x86_64")]
             Instructions::Avx2 => avx2::k_nearest(self, query, k, found),
         }
     }
 
-    /// Calls `visit` with every point at most `radius` metres from `query`, in an order that depends on the points only.
+    /// Calls `visit` with every point at most `radius` metres from `query`, in an order that depends on the points
+    /// only.
     pub fn within_radius(&self, query: [f32; 3], radius: f32, visit: impl FnMut(Neighbor)) {
         match self.instructions {
-            Instructions::Scalar => search::within_radius::<lanes::Scalar>(self, query, radius, visit),
+            Instructions::Scalar => search::within_radius::<lanes::NeighborScalar>(self, query, radius, visit),
             #[cfg(target_arch = "x86_64")]
             Instructions::Avx2 => avx2::within_radius(self, query, radius, visit),
         }
@@ -147,7 +148,7 @@ impl NeighborIndex {
     #[must_use]
     pub fn smallest_tangent_ball(&self, tangent: &Tangent, max_radius: f32) -> Option<(f32, u32)> {
         match self.instructions {
-            Instructions::Scalar => tangent_ball::search::<lanes::Scalar>(self, tangent, max_radius),
+            Instructions::Scalar => tangent_ball::search::<lanes::NeighborScalar>(self, tangent, max_radius),
             #[cfg(target_arch = "x86_64")]
             Instructions::Avx2 => avx2::smallest_tangent_ball(self, tangent, max_radius),
         }

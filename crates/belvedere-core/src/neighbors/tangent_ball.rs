@@ -27,7 +27,8 @@ impl Tangent {
 /// Squared distance from the centre up to which a box may hold a point inside the ball of `radius`.
 ///
 /// Rounding of f32 moves the centre by a few parts in ten million of its coordinates and the distance by as much of the
-/// radius. A box dropped for that could hold a point that cuts a 200 m ball to a tenth, so boxes get four times that room.
+/// radius. A box dropped for that could hold a point that cuts a 200 m ball to a tenth, so boxes get four times that
+/// room.
 #[inline(always)]
 fn box_bound(center: [f32; 3], radius: f32) -> f32 {
     let reach = radius * (1.0 + 1e-6) + 2.5e-7 * (center[0].abs() + center[1].abs() + center[2].abs());

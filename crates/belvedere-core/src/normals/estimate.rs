@@ -24,7 +24,8 @@ pub enum Neighborhood {
 }
 
 impl Default for Neighborhood {
-    /// 16 neighbours: enough to average centimetre noise out, few enough to stay on one roof at ten points a square metre.
+    /// 16 neighbours: enough to average centimetre noise out, few enough to stay on one roof at ten points a square
+    /// metre.
     fn default() -> Self {
         Self::Fixed { k: 16 }
     }
@@ -64,8 +65,8 @@ const CHUNK: usize = 1024;
 
 /// One normal per point of `positions`, (N, 3) local metres, which `index` was built from; signs are arbitrary.
 ///
-/// A point whose neighbourhood is a single spot or a line gets the normal (0, 0, 0) and quality 0. With fewer points than
-/// neighbours asked for, all points are neighbours.
+/// A point whose neighbourhood is a single spot or a line gets the normal (0, 0, 0) and quality 0. With fewer points
+/// than neighbours asked for, all points are neighbours.
 ///
 /// # Errors
 /// [`Error::InvalidParameter`] for fewer than 3 or more than 256 neighbours or a flatness that is not above zero;
@@ -142,8 +143,8 @@ pub fn estimate_within(
     Ok((normals, scatter))
 }
 
-/// The planes of all `positions`, (N, 3) local metres, within `reach`, (M), metres, of each of `places`, (M, 3); the points are moved onto planes from
-/// `places`. `index` must have been built from the positions.
+/// The planes of all `positions`, (N, 3) local metres, within `reach`, (M), metres, of each of `places`, (M, 3); the
+/// points are moved onto planes from `places`. `index` must have been built from the positions.
 ///
 /// # Errors
 /// [`Error::LengthMismatch`] where lengths differ; [`Error::Cancelled`].
@@ -167,7 +168,7 @@ pub(crate) fn estimate_within_reach(
         if !stop.is_set() {
             index.within_radius(place, reach, |found| moments.add(relative(positions, &found, place)));
         }
-        let (values, normal) = least_component(moments.covariance());
+        let (values, normal) = min_component(moments.covariance());
         Plane::new(values, normal, moments.mean())
     };
     let planes: Vec<Plane> = places.par_iter().zip(reach).map(plane_at).collect();
@@ -233,7 +234,7 @@ fn plane_of(positions: &[[f32; 3]], found: &[Neighbor]) -> Plane {
     let base = positions[first.index as usize];
     let mut moments = Moments::default();
     found.iter().for_each(|n| moments.add(relative(positions, n, base)));
-    let (values, normal) = least_component(moments.covariance());
+    let (values, normal) = min_component(moments.covariance());
     Plane::new(values, normal, moments.mean())
 }
 
@@ -249,13 +250,13 @@ fn adaptive_plane_of(positions: &[[f32; 3]], found: &[Neighbor], flatness: f32) 
         if !(ADAPTIVE_SIZES.contains(&i) || is_last) {
             continue;
         }
-        let (values, normal) = least_component(moments.covariance());
+        let (values, normal) = min_component(moments.covariance());
         let plane = Plane::new(values, normal, moments.mean());
         if values[0].max(0.0).sqrt() <= f64::from(flatness) {
             largest_flat = Some(plane);
         }
         let entropy = eigenentropy(values);
-        if most_ordered.as_ref().is_none_or(|(least, ..)| entropy < *least) {
+        if most_ordered.as_ref().is_none_or(|(min, ..)| entropy < *min) {
             most_ordered = Some((entropy, plane));
         }
     }
@@ -282,30 +283,32 @@ impl Plane {
     /// That of a spot or a line.
     const NONE: Self = Self { normal: [0.0; 3], quality: 0.0, offset: 0.0, roughness: f32::INFINITY };
 
-    /// The plane of a neighbourhood with these eigenvalues, this component of the least one and this mean, from the point.
+    /// The plane of a neighbourhood with these eigenvalues, this component of the least one and this mean, from the
+    /// point.
     #[expect(
         clippy::cast_possible_truncation,
         reason = "unit vectors, ratios below one and lengths within a neighbourhood"
     )]
     fn new(values: [f64; 3], normal: [f64; 3], mean: [f64; 3]) -> Self {
-        let [least, middle, largest] = values;
+        let [min, middle, largest] = values;
         if !(middle > LINE * largest && largest > 0.0 && normal.iter().all(|v| v.is_finite())) {
             return Self::NONE;
         }
         Self {
             normal: normal.map(|v| v as f32),
-            quality: (1.0 - least.max(0.0) / middle) as f32,
+            quality: (1.0 - min.max(0.0) / middle) as f32,
             offset: dot(mean, normal) as f32,
-            roughness: least.max(0.0).sqrt() as f32,
+            roughness: min.max(0.0).sqrt() as f32,
         }
     }
 }
 
-/// Eigenvalues in ascending order and the unit eigenvector of the least, of the symmetric matrix xx, yy, zz, xy, yz, zx.
+/// Eigenvalues in ascending order and the unit eigenvector of the least, of the symmetric matrix xx, yy, zz, xy, yz,
+/// zx.
 ///
 /// Closed form (Smith 1961) with the eigenvector from the longest cross product of two rows of A − λI; where two
 /// eigenvalues nearly coincide those rows say nothing and Jacobi rotations take over.
-fn least_component(m: [f64; 6]) -> ([f64; 3], [f64; 3]) {
+fn min_component(m: [f64; 6]) -> ([f64; 3], [f64; 3]) {
     let [xx, yy, zz, xy, yz, zx] = m;
     let mean = (xx + yy + zz) / 3.0;
     let off = xy * xy + yz * yz + zx * zx;
@@ -318,13 +321,13 @@ fn least_component(m: [f64; 6]) -> ([f64; 3], [f64; 3]) {
     let half = (determinant / (2.0 * spread * spread * spread)).clamp(-1.0, 1.0);
     let angle = half.acos() / 3.0;
     let largest = mean + 2.0 * spread * angle.cos();
-    let least = mean + 2.0 * spread * (angle + 2.0 * std::f64::consts::FRAC_PI_3).cos();
-    let middle = 3.0 * mean - largest - least;
+    let min = mean + 2.0 * spread * (angle + 2.0 * std::f64::consts::FRAC_PI_3).cos();
+    let middle = 3.0 * mean - largest - min;
     // below this gap the rows of A − λI are mostly rounding
-    if middle - least < 1e-6 * spread {
+    if middle - min < 1e-6 * spread {
         return jacobi(m);
     }
-    let rows = [[xx - least, xy, zx], [xy, yy - least, yz], [zx, yz, zz - least]];
+    let rows = [[xx - min, xy, zx], [xy, yy - min, yz], [zx, yz, zz - min]];
     let cross =
         |a: [f64; 3], b: [f64; 3]| [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
     let square = |a: [f64; 3]| a[0] * a[0] + a[1] * a[1] + a[2] * a[2];
@@ -334,11 +337,11 @@ fn least_component(m: [f64; 6]) -> ([f64; 3], [f64; 3]) {
     if !(length > 0.0) {
         return jacobi(m);
     }
-    ([least, middle, largest], longest.map(|v| v / length))
+    ([min, middle, largest], longest.map(|v| v / length))
 }
 
 #[expect(clippy::needless_range_loop, reason = "two rows change at once")]
-/// As [`least_component`], by cyclic Jacobi rotations: slower, and exact for any spectrum.
+/// As [`min_component`], by cyclic Jacobi rotations: slower, and exact for any spectrum.
 fn jacobi(m: [f64; 6]) -> ([f64; 3], [f64; 3]) {
     let [xx, yy, zz, xy, yz, zx] = m;
     let mut a = [[xx, xy, zx], [xy, yy, yz], [zx, yz, zz]];
@@ -390,7 +393,7 @@ mod tests {
             let axes = rotated_axes(t * 0.7, (t * 0.3).sin());
             let gap = 10f64.powf(-(t % 11.0));
             let m = from_eigen([1.0, 1.0 + gap, 1.0 + gap + (t % 7.0)], axes);
-            let (values, vector) = least_component(m);
+            let (values, vector) = min_component(m);
             let [xx, yy, zz, xy, yz, zx] = m;
             let other = nalgebra::Matrix3::new(xx, xy, zx, xy, yy, yz, zx, yz, zz).symmetric_eigen();
             let mut theirs: Vec<f64> = other.eigenvalues.iter().copied().collect();

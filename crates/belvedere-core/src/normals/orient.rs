@@ -6,7 +6,7 @@ use serde::{Serialize, Serializer, ser::SerializeMap};
 use super::Normals;
 use super::oriented::{OrientedCloud, unit_or_zero};
 use super::reference_mesh::{MeshVerdict, ReferenceMesh};
-use super::surroundings::Surroundings;
+use super::surroundings::HighestPointGrid;
 use belvedere_data::control::{Control, Stop};
 use belvedere_data::report::percent;
 use belvedere_data::trajectory::{ClockOffset, Trajectory};
@@ -25,12 +25,12 @@ const FALLBACK_WEIGHT: f64 = 0.25;
 /// Confidence below which a sign is as good as unknown: the line of sight runs within 3° of the surface.
 pub const LOW_CONFIDENCE: f32 = 0.05;
 
-/// Below this cosine between normal and pulse a sign by the pulse is worth less than the vote of roof and ground, or up: on sparse facades
-/// normals are tilted by ten degrees and more. On simulated towns (seeds 7 and 8) leaving such signs to the vote gains 0.9 to
-/// 1.3 points of IoU in free air.
+/// Below this cosine between normal and pulse a sign by the pulse is worth less than the vote of roof and ground, or
+/// up: on sparse facades normals are tilted by ten degrees and more. On simulated towns (seeds 7 and 8) leaving such
+/// signs to the vote gains 0.9 to 1.3 points of IoU in free air.
 const GRAZING: f32 = 0.3;
-/// Part of a pulse's way that leads up, from which on it comes from above: roofs and ground vote for such surveys. What is seen from the side, or from
-/// below as ceilings are, knows neither.
+/// Part of a pulse's way that leads up, from which on it comes from above: roofs and ground vote for such surveys. What
+/// is seen from the side, or from below as ceilings are, knows neither.
 const FROM_ABOVE: f64 = 0.3;
 
 /// How to find the outward side of each normal.
@@ -116,7 +116,7 @@ impl Serialize for OrientReport {
 
 /// What a sign was derived from.
 #[derive(Clone, Copy, PartialEq)]
-enum Way {
+enum SignSource {
     Nothing,
     File,
     Scanner,
@@ -128,36 +128,38 @@ enum Way {
 
 /// A sign: non-negative where the normal is outward already; its size is the confidence.
 #[derive(Clone, Copy)]
-struct Verdict {
-    way: Way,
+struct NormalSign {
+    way: SignSource,
     outward: f32,
 }
 
-impl Verdict {
+impl NormalSign {
     #[expect(clippy::cast_possible_truncation, reason = "a confidence with a sign: there is one for every point")]
-    fn new(way: Way, outward: f64) -> Self {
+    fn new(way: SignSource, outward: f64) -> Self {
         Self { way, outward: outward as f32 }
     }
 }
 
 /// The cloud with outward normals, and how they were found.
 ///
-/// `normals` are unit vectors with quality, (N) each; lengths are corrected where they are off, and a normal that is zero
-/// or not finite stays zero with zero confidence. The confidence is |n·v| for the unit vector v to the scanner or up,
+/// `normals` are unit vectors with quality, (N) each; lengths are corrected where they are off, and a normal that is
+/// zero or not finite stays zero with zero confidence. The confidence is |n·v| for the unit vector v to the scanner or
+/// up,
 /// |n·n_f| for the normal n_f of an aligned face (half of that where the mesh itself could not be verified), 0.5 for
 /// parity, 0.5·|n·h| for the vote (h horizontal), 0.25·|n_z| for up where another way was asked for but silent, 1 for
 /// given normals. For [`Orientation::Given`], `normals` may be empty; then the quality is 1.
 ///
-/// A mesh need not be consistently oriented or closed: each of its faces is first turned to its open side where one side
-/// is open and the other enclosed (parity of crossings straight up, which needs no orientation); faces for which that
-/// fails keep their turning sense, but are overruled by parity at the point. A face counts as the point's own surface
-/// within 2 m, if their normals are within 60° of each other and the point lies no more than 0.25 m beside it. The result
-/// is the same for any number of threads.
+/// A mesh need not be consistently oriented or closed: each of its faces is first turned to its open side where one
+/// side is open and the other enclosed (parity of crossings straight up, which needs no orientation); faces for which
+/// that fails keep their turning sense, but are overruled by parity at the point. A face counts as the point's own
+/// surface within 2 m, if their normals are within 60° of each other and the point lies no more than 0.25 m beside it.
+/// The result is the same for any number of threads.
 ///
 /// # Errors
 /// [`Error::LengthMismatch`] where lengths differ, [`Error::MissingAttribute`] where the cloud lacks scanner positions,
-/// GPS times or normals that the way needs, [`Error::InvalidParameter`] for positions or scanners that are not finite, no
-/// scanner at all, a mesh without a face, and a trajectory that knows a position at none of the cloud's times; [`Error::Cancelled`].
+/// GPS times or normals that the way needs, [`Error::InvalidParameter`] for positions or scanners that are not finite,
+/// no scanner at all, a mesh without a face, and a trajectory that knows a position at none of the cloud's times;
+/// [`Error::Cancelled`].
 ///
 /// # Source
 /// By scanner position and by city model: Peters, Ledoux & Biljecki 2015, section 4. The vote, the probing of faces and
@@ -181,7 +183,7 @@ pub fn orient(
     vectors.par_iter_mut().for_each(|normal| *normal = unit_or_zero(*normal));
     let mut clock = None;
     let verdicts = match by {
-        Orientation::Given => each(cloud, &vectors, control, |_, _, _| Some(Verdict::new(Way::File, 1.0)))?,
+        Orientation::Given => each(cloud, &vectors, control, |_, _, _| Some(NormalSign::new(SignSource::File, 1.0)))?,
         Orientation::Up => each(cloud, &vectors, control, |_, _, _| None)?,
         Orientation::Scanner => by_own_scanner(cloud, &vectors, control)?,
         Orientation::ScannerAt(scanners) => by_nearest_scanner(cloud, &vectors, scanners, control)?,
@@ -197,16 +199,16 @@ pub fn orient(
     let verdicts = fall_back(cloud, &vectors, verdicts, by, control)?;
     for ((verdict, normal), quality) in verdicts.iter().zip(&mut vectors).zip(&mut quality) {
         let count = match verdict.way {
-            Way::Nothing => &mut report.without_normal_count,
-            Way::File => &mut report.by_file_count,
-            Way::Scanner => &mut report.by_scanner_count,
-            Way::Face => &mut report.by_face_count,
-            Way::Parity => &mut report.by_parity_count,
-            Way::Vote => &mut report.by_vote_count,
-            Way::Up => &mut report.by_up_count,
+            SignSource::Nothing => &mut report.without_normal_count,
+            SignSource::File => &mut report.by_file_count,
+            SignSource::Scanner => &mut report.by_scanner_count,
+            SignSource::Face => &mut report.by_face_count,
+            SignSource::Parity => &mut report.by_parity_count,
+            SignSource::Vote => &mut report.by_vote_count,
+            SignSource::Up => &mut report.by_up_count,
         };
         *count += 1;
-        if verdict.way == Way::Nothing {
+        if verdict.way == SignSource::Nothing {
             *quality = 0.0;
         } else if verdict.outward < 0.0 {
             *normal = normal.map(|v| -v);
@@ -217,7 +219,7 @@ pub fn orient(
     report.low_confidence_count = verdicts
         .iter()
         .zip(&confidence)
-        .filter(|(verdict, confidence)| verdict.way != Way::Nothing && **confidence < LOW_CONFIDENCE)
+        .filter(|(verdict, confidence)| verdict.way != SignSource::Nothing && **confidence < LOW_CONFIDENCE)
         .count();
     let oriented = OrientedCloud::new(cloud.positions.clone(), vectors, quality, confidence)?;
     Ok((oriented.with_place(cloud.frame.origin, cloud.frame.crs.clone()), report))
@@ -228,12 +230,12 @@ fn each(
     cloud: &PointCloud,
     vectors: &[[f32; 3]],
     control: &Control<'_>,
-    decide: impl Fn(usize, [f64; 3], [f64; 3]) -> Option<Verdict> + Sync,
-) -> Result<Vec<Option<Verdict>>> {
+    decide: impl Fn(usize, [f64; 3], [f64; 3]) -> Option<NormalSign> + Sync,
+) -> Result<Vec<Option<NormalSign>>> {
     let stop = Stop::new(control);
     let decide_one = |(index, (p, n)): (usize, (&[f32; 3], &[f32; 3]))| {
         if *n == [0.0; 3] || stop.is_set() {
-            return Some(Verdict::new(Way::Nothing, 0.0));
+            return Some(NormalSign::new(SignSource::Nothing, 0.0));
         }
         decide(index, p.map(f64::from), n.map(f64::from))
     };
@@ -247,27 +249,27 @@ fn each(
 fn fall_back(
     cloud: &PointCloud,
     vectors: &[[f32; 3]],
-    verdicts: Vec<Option<Verdict>>,
+    verdicts: Vec<Option<NormalSign>>,
     by: &Orientation<'_>,
     control: &Control<'_>,
-) -> Result<Vec<Verdict>> {
+) -> Result<Vec<NormalSign>> {
     let stop = Stop::new(control);
     let weight = if matches!(by, Orientation::Up) { 1.0 } else { FALLBACK_WEIGHT };
     let is_steep = |n: &[f32; 3]| f64::from(n[2]).abs() < STEEP_NZ;
     let vote_needed = verdicts.iter().zip(vectors).any(|(verdict, n)| verdict.is_none() && is_steep(n));
-    let surroundings = vote_needed.then(|| Surroundings::new(&cloud.positions));
-    let decide = |((verdict, p), n): ((Option<Verdict>, &[f32; 3]), &[f32; 3])| {
+    let surroundings = vote_needed.then(|| HighestPointGrid::new(&cloud.positions));
+    let decide = |((verdict, p), n): ((Option<NormalSign>, &[f32; 3]), &[f32; 3])| {
         verdict.unwrap_or_else(|| {
             if stop.is_set() {
-                return Verdict::new(Way::Nothing, 0.0);
+                return NormalSign::new(SignSource::Nothing, 0.0);
             }
             let downhill = surroundings.as_ref().filter(|_| is_steep(n)).and_then(|around| around.downhill(*p));
             match downhill {
                 Some([x, y]) => {
                     let along = f64::from(n[0]) * x + f64::from(n[1]) * y;
-                    Verdict::new(Way::Vote, VOTE_WEIGHT * along * weight)
+                    NormalSign::new(SignSource::Vote, VOTE_WEIGHT * along * weight)
                 }
-                None => Verdict::new(Way::Up, f64::from(n[2]) * weight),
+                None => NormalSign::new(SignSource::Up, f64::from(n[2]) * weight),
             }
         })
     };
@@ -289,10 +291,10 @@ fn given_normals(cloud: &PointCloud, estimated: Normals) -> Result<Normals> {
 }
 
 /// Towards `scanner`, or nothing to say where the point lies on it.
-fn towards(scanner: [f64; 3], position: [f64; 3], normal: [f64; 3]) -> Option<Verdict> {
+fn towards(scanner: [f64; 3], position: [f64; 3], normal: [f64; 3]) -> Option<NormalSign> {
     let sight = sub(scanner, position);
     let length = dot(sight, sight).sqrt();
-    (length > 1e-6).then(|| Verdict::new(Way::Scanner, dot(normal, sight) / length))
+    (length > 1e-6).then(|| NormalSign::new(SignSource::Scanner, dot(normal, sight) / length))
 }
 
 fn nearest(scanners: &[[f64; 3]], position: [f64; 3]) -> Option<[f64; 3]> {
@@ -300,7 +302,7 @@ fn nearest(scanners: &[[f64; 3]], position: [f64; 3]) -> Option<[f64; 3]> {
     scanners.iter().copied().min_by(|a, b| squared(a).total_cmp(&squared(b)))
 }
 
-fn by_own_scanner(cloud: &PointCloud, vectors: &[[f32; 3]], control: &Control<'_>) -> Result<Vec<Option<Verdict>>> {
+fn by_own_scanner(cloud: &PointCloud, vectors: &[[f32; 3]], control: &Control<'_>) -> Result<Vec<Option<NormalSign>>> {
     if cloud.scanner_positions.is_empty() {
         return Err(Error::MissingAttribute {
             attribute: "scanner position",
@@ -322,7 +324,7 @@ fn by_nearest_scanner(
     vectors: &[[f32; 3]],
     scanners: &[[f64; 3]],
     control: &Control<'_>,
-) -> Result<Vec<Option<Verdict>>> {
+) -> Result<Vec<Option<NormalSign>>> {
     check_finite(scanners)?;
     let local: Vec<[f64; 3]> = scanners.iter().map(|s| std::array::from_fn(|i| s[i] - cloud.frame.origin[i])).collect();
     each(cloud, vectors, control, |_, position, normal| towards(nearest(&local, position)?, position, normal))
@@ -340,14 +342,15 @@ fn check_finite(scanners: &[[f64; 3]]) -> Result<()> {
     Ok(())
 }
 
-/// Towards `scanner` where the cosine between normal and pulse is `least` or more, and wherever the pulse does not come from above.
+/// Towards `scanner` where the cosine between normal and pulse is `min` or more, and wherever the pulse does not come
+/// from above.
 fn by_pulses(
     cloud: &PointCloud,
     vectors: &[[f32; 3]],
     scanner: &[[f32; 3]],
-    least: f32,
+    min: f32,
     control: &Control<'_>,
-) -> Result<Vec<Option<Verdict>>> {
+) -> Result<Vec<Option<NormalSign>>> {
     if scanner.len() != cloud.len() {
         return Err(Error::LengthMismatch { what: "scanner positions", expected: cloud.len(), found: scanner.len() });
     }
@@ -356,7 +359,7 @@ fn by_pulses(
         let verdict = scanner.iter().all(|v| v.is_finite()).then(|| towards(scanner, position, normal))??;
         let [x, y, up] = sub(scanner, position);
         let is_from_above = up > FROM_ABOVE * (x * x + y * y + up * up).sqrt();
-        (verdict.outward.abs() >= least || !is_from_above).then_some(verdict)
+        (verdict.outward.abs() >= min || !is_from_above).then_some(verdict)
     })
 }
 
@@ -365,15 +368,15 @@ fn by_mesh(
     vectors: &[[f32; 3]],
     mesh: &Mesh,
     control: &Control<'_>,
-) -> Result<Vec<Option<Verdict>>> {
+) -> Result<Vec<Option<NormalSign>>> {
     let reference = ReferenceMesh::new(mesh, cloud.frame.origin, control)?.ok_or_else(|| Error::InvalidParameter {
         parameter: Parameter::Mesh,
         value: format!("{} triangles without area", mesh.triangles.len()),
         expected: "at least one triangle with an area",
     })?;
     each(cloud, vectors, control, |_, position, normal| match reference.verdict(position, normal) {
-        MeshVerdict::Face(outward) => Some(Verdict::new(Way::Face, outward)),
-        MeshVerdict::Parity(outward) => Some(Verdict::new(Way::Parity, outward)),
+        MeshVerdict::Face(outward) => Some(NormalSign::new(SignSource::Face, outward)),
+        MeshVerdict::Parity(outward) => Some(NormalSign::new(SignSource::Parity, outward)),
         MeshVerdict::Silent => None,
     })
 }

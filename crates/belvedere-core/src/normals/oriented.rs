@@ -5,8 +5,8 @@ use belvedere_data::{Error, Parameter, Result};
 
 /// A cloud whose normals point out of the scene.
 ///
-/// All columns have one value per point, every position is finite, and every normal is a unit vector or zero: the fields
-/// are private so that nothing can break this.
+/// All columns have one value per point, every position is finite, and every normal is a unit vector or zero: the
+/// fields are private so that nothing can break this.
 #[derive(Clone, Debug, Default)]
 pub struct OrientedCloud {
     positions: Vec<[f32; 3]>,
@@ -18,8 +18,8 @@ pub struct OrientedCloud {
 }
 
 impl OrientedCloud {
-    /// A cloud from local positions, (N, 3), metres; outward normals, (N, 3), of any length; the quality of each normal's
-    /// line, (N), and the confidence in its sign, (N), both brought into 0 to 1.
+    /// A cloud from local positions, (N, 3), metres; outward normals, (N, 3), of any length; the quality of each
+    /// normal's line, (N), and the confidence in its sign, (N), both brought into 0 to 1.
     ///
     /// Normals are scaled to unit length; those that are not finite or vanish become zero, with zero quality and
     /// confidence.
@@ -72,7 +72,8 @@ impl OrientedCloud {
         Self { origin, crs, ..self }
     }
 
-    /// The same normals at other places, local metres; the cloud as it was where these are not one finite place for each point.
+    /// The same normals at other places, local metres; the cloud as it was where these are not one finite place for
+    /// each point.
     pub(crate) fn moved_to(mut self, positions: Vec<[f32; 3]>) -> Self {
         if positions.len() == self.len() && positions.iter().flatten().all(|v| v.is_finite()) {
             self.positions = positions;

@@ -39,14 +39,14 @@ pub(super) enum MeshVerdict {
     Silent,
 }
 
-struct Face {
+struct MeshFace {
     corners: [[f64; 3]; 3],
     normal: [f64; 3],
     /// Whether one side was found enclosed and the other open, so that `normal` is known to point out.
     verified: bool,
 }
 
-impl Face {
+impl MeshFace {
     fn distance_to(&self, point: [f64; 3]) -> f64 {
         let d = sub(nearest_on_triangle(point, self.corners), point);
         dot(d, d).sqrt()
@@ -64,7 +64,7 @@ impl Face {
 /// A mesh in the local coordinates of a cloud, ready for questions.
 pub(super) struct ReferenceMesh {
     /// In the order of the index.
-    faces: Vec<Face>,
+    faces: Vec<MeshFace>,
     index: RayIndex,
     top: f64,
 }
@@ -80,12 +80,12 @@ impl ReferenceMesh {
     /// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
     pub(super) fn new(mesh: &Mesh, origin: [f64; 3], control: &Control<'_>) -> Result<Option<Self>> {
         let stop = Stop::new(control);
-        let faces: Vec<Face> = (0..mesh.triangles.len())
+        let faces: Vec<MeshFace> = (0..mesh.triangles.len())
             .filter_map(|index| {
                 let corners = mesh.corners(index)?.map(|corner| sub(corner, origin));
                 let normal = cross(sub(corners[1], corners[0]), sub(corners[2], corners[0]));
                 let size = dot(normal, normal).sqrt();
-                (size > 0.0 && size.is_finite()).then(|| Face {
+                (size > 0.0 && size.is_finite()).then(|| MeshFace {
                     corners,
                     normal: normal.map(|v| v / size),
                     verified: false,
@@ -97,8 +97,8 @@ impl ReferenceMesh {
             return Ok(None);
         }
         control.check()?;
-        let index = RayIndex::new(&faces.iter().map(Face::bounds).collect::<Vec<_>>())?;
-        let mut unordered: Vec<Option<Face>> = faces.into_iter().map(Some).collect();
+        let index = RayIndex::new(&faces.iter().map(MeshFace::bounds).collect::<Vec<_>>())?;
+        let mut unordered: Vec<Option<MeshFace>> = faces.into_iter().map(Some).collect();
         let faces = index.order().iter().filter_map(|&row| unordered.get_mut(row as usize)?.take()).collect();
         let mut reference = Self { faces, index, top };
         let probed: Vec<Option<bool>> = reference
@@ -136,8 +136,8 @@ impl ReferenceMesh {
         }
         for offset in PROBE_OFFSETS_M {
             if let Some(along) = self.open_side(position, normal, offset) {
-                // ground under a passage or in a court that the model filled lies near the floor of a solid, and what is
-                // below a floor counts as open: parity cannot be asked about surfaces that would face down
+                // ground under a passage or in a court that the model filled lies near the floor of a solid, and what
+                // is below a floor counts as open: parity cannot be asked about surfaces that would face down
                 let outward_z = if along { normal[2] } else { -normal[2] };
                 if outward_z >= -MIN_ALIGNMENT {
                     return MeshVerdict::Parity(if along { 0.5 } else { -0.5 });
@@ -196,7 +196,7 @@ impl ReferenceMesh {
     }
 
     /// Calls `visit` for every face within `reach` of `position`, with its distance.
-    fn each_within<'a>(&'a self, position: [f64; 3], reach: f64, mut visit: impl FnMut(&'a Face, f64)) {
+    fn each_within<'a>(&'a self, position: [f64; 3], reach: f64, mut visit: impl FnMut(&'a MeshFace, f64)) {
         self.index.near(position.map(|v| v - reach), position.map(|v| v + reach), |row| {
             let Some(face) = self.faces.get(row) else { return };
             let distance = face.distance_to(position);
@@ -236,7 +236,8 @@ impl ReferenceMesh {
     }
 }
 
-/// Whether (x, y) lies in the triangle seen from above. Of triangles that share an edge exactly one covers a point on it.
+/// Whether (x, y) lies in the triangle seen from above. Of triangles that share an edge exactly one covers a point on
+/// it.
 fn covers(corners: [[f64; 3]; 3], x: f64, y: f64) -> bool {
     let mut inside = false;
     for i in 0..3 {
@@ -250,7 +251,7 @@ fn covers(corners: [[f64; 3]; 3], x: f64, y: f64) -> bool {
     inside
 }
 
-fn height_at(face: &Face, x: f64, y: f64) -> f64 {
+fn height_at(face: &MeshFace, x: f64, y: f64) -> f64 {
     let (a, n) = (face.corners[0], face.normal);
     // a vertical face is an edge from above and covers nothing but rounding
     if n[2].abs() < 1e-9 {

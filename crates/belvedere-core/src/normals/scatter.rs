@@ -1,18 +1,20 @@
 //! How points scatter about the surface that they lie on, and that surface.
 //!
-//! A union of balls is an envelope: it lies as far outside a surface as the outermost of the points about each place, and the more points
-//! there are, the farther out that is. Balls are therefore tangent to the planes that neighbourhoods lie on, where noise and not shape
-//! is what moves points away from them.
+//! A union of balls is an envelope: it lies as far outside a surface as the outermost of the points about each place,
+//! and the more points there are, the farther out that is. Balls are therefore tangent to the planes that
+//! neighbourhoods lie on, where noise and not shape is what moves points away from them.
 
 use belvedere_data::vector::{dot, sub};
 use rayon::prelude::*;
 
-/// Share of the points whose neighbourhoods are rougher by noise alone: in every cloud that this was tried on a quarter or more of the
-/// points lie on ground or roofs.
+/// Share of the points whose neighbourhoods are rougher by noise alone: in every cloud that this was tried on a quarter
+/// or more of the points lie on ground or roofs.
 const SMOOTH_SHARE: f64 = 0.25;
-/// A neighbourhood counts as flat up to this many times the noise of the cloud. Among 17 points of a plane one in a thousand is rougher.
-const MOST_NOISE: f32 = 2.0;
-/// Cosine of the angle between a pulse and the normal from which on the noise of ranges outweighs that of directions, and is not divided by nearly nothing: 60°.
+/// A neighbourhood counts as flat up to this many times the noise of the cloud. Among 17 points of a plane one in a
+/// thousand is rougher.
+const MAX_NOISE: f32 = 2.0;
+/// Cosine of the angle between a pulse and the normal from which on the noise of ranges outweighs that of directions,
+/// and is not divided by nearly nothing: 60°.
 const STEEP: f32 = 0.5;
 
 /// Where the plane through the neighbourhood of each point lies.
@@ -25,16 +27,18 @@ pub struct Scatter {
 }
 
 impl Scatter {
-    /// Noise of the cloud along its normals, metres: the lower quartile of the roughness. `None` where no point has a plane.
+    /// Noise of the cloud along its normals, metres: the lower quartile of the roughness. `None` where no point has a
+    /// plane.
     #[must_use]
     pub fn noise(&self) -> Option<f32> {
         lower_quartile(self.roughness.clone())
     }
 
-    /// Noise of ranges, metres: the lower quartile of the roughness as ranges show it, for points at `positions` with `normals`, measured from
-    /// `scanner`, all (N, 3), local metres. A range that is wrong by σ moves a point by σ cos i away from a surface that the pulse meets at the
-    /// angle i to its normal. Among scanners on the ground most pulses are slanted, so that [`Scatter::noise`] is too small for those that are not. `None` where no
-    /// point with a plane is met steeply enough.
+    /// Noise of ranges, metres: the lower quartile of the roughness as ranges show it, for points at `positions` with
+    /// `normals`, measured from `scanner`, all (N, 3), local metres. A range that is wrong by σ moves a point by σ cos
+    /// i away from a surface that the pulse meets at the angle i to its normal. Among scanners on the ground most
+    /// pulses are slanted, so that [`Scatter::noise`] is too small for those that are not. `None` where no point with a
+    /// plane is met steeply enough.
     #[must_use]
     pub fn noise_of_ranges(&self, positions: &[[f32; 3]], normals: &[[f32; 3]], scanner: &[[f32; 3]]) -> Option<f32> {
         let rows = self.roughness.par_iter().zip(positions).zip(normals).zip(scanner);
@@ -46,8 +50,8 @@ impl Scatter {
         lower_quartile(rows.filter_map(of_range).collect())
     }
 
-    /// `positions`, (N, 3) local metres, each on its plane where the neighbourhood is flat within noise, and how many were moved. Points at
-    /// edges, of twigs and of thin things stay where they are.
+    /// `positions`, (N, 3) local metres, each on its plane where the neighbourhood is flat within noise, and how many
+    /// were moved. Points at edges, of twigs and of thin things stay where they are.
     #[must_use]
     pub fn smoothed(&self, positions: &[[f32; 3]]) -> (Vec<[f32; 3]>, usize) {
         self.smoothed_within(self.noise(), positions)
@@ -56,13 +60,13 @@ impl Scatter {
     /// The same where the noise of the cloud is given: that of a larger one that it is a part of.
     #[must_use]
     pub fn smoothed_within(&self, noise: Option<f32>, positions: &[[f32; 3]]) -> (Vec<[f32; 3]>, usize) {
-        let most = noise.map_or(0.0, |noise| MOST_NOISE * noise);
+        let max = noise.map_or(0.0, |noise| MAX_NOISE * noise);
         let planes = self.roughness.par_iter().zip(&self.to_plane);
         let on_plane = |(&p, (&roughness, to_plane)): (&[f32; 3], (&f32, &[f32; 3]))| {
-            if roughness <= most { std::array::from_fn(|i| p[i] + to_plane[i]) } else { p }
+            if roughness <= max { std::array::from_fn(|i| p[i] + to_plane[i]) } else { p }
         };
         let moved = positions.par_iter().zip(planes).map(on_plane).collect();
-        (moved, self.roughness.iter().filter(|&&roughness| roughness <= most).count())
+        (moved, self.roughness.iter().filter(|&&roughness| roughness <= max).count())
     }
 }
 

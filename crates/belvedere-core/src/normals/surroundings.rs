@@ -12,11 +12,11 @@ const REACH_M: f64 = 3.0;
 const MIN_RELIEF_M: f32 = 2.0;
 
 /// Highest point of every occupied cell of a horizontal grid, sorted by cell.
-pub(super) struct Surroundings {
+pub(super) struct HighestPointGrid {
     cells: Vec<((i32, i32), f32)>,
 }
 
-impl Surroundings {
+impl HighestPointGrid {
     /// Surroundings of local positions, (N, 3), metres.
     pub(super) fn new(positions: &[[f32; 3]]) -> Self {
         let mut cells: Vec<((i32, i32), f32)> =
@@ -33,8 +33,8 @@ impl Surroundings {
     /// where they are about level.
     ///
     /// # Source
-    /// The idea that above a facade lies roof (inside) and below it ground (outside); halves of the local relief instead
-    /// of fixed offsets from the point serve points near the ground and near the eaves alike.
+    /// The idea that above a facade lies roof (inside) and below it ground (outside); halves of the local relief
+    /// instead of fixed offsets from the point serve points near the ground and near the eaves alike.
     pub(super) fn downhill(&self, position: [f32; 3]) -> Option<[f64; 2]> {
         let (x, y) = (f64::from(position[0]), f64::from(position[1]));
         let (mut low, mut high) = (f32::INFINITY, f32::NEG_INFINITY);

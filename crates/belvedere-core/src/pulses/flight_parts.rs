@@ -5,40 +5,40 @@ use belvedere_data::{Error, Parameter, Result};
 /// How [`SensorPositions::from_returns`](super::SensorPositions::from_returns) works.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SensorEstimateParams {
-    /// Longest part of a flight line that is taken for straight and evenly flown, seconds, 0.5 to 60. Default 5: gusts move
-    /// an aircraft by a metre in that time, and a tile cut from a line often holds no more.
+    /// Longest part of a flight line that is taken for straight and evenly flown, seconds, 0.5 to 60. Default 5: gusts
+    /// move an aircraft by a metre in that time, and a tile cut from a line often holds no more.
     pub part_s: f64,
-    /// Least distance between first and last return for a pulse to tell its direction, metres, 0.5 to 50. Default 3: with
-    /// 2 cm noise the direction is then good to half a degree.
-    pub least_length: f64,
+    /// Least distance between first and last return for a pulse to tell its direction, metres, 0.5 to 50. Default 3:
+    /// with 2 cm noise the direction is then good to half a degree.
+    pub min_length: f64,
     /// Fewest such pulses in a part, 6 to 100 000. Default 30.
-    pub least_pair_count: usize,
-    /// Standard deviation of the vertical speed about zero, metres per second, 0.1 to 100. Default 2: surveys fly level, and
-    /// a tile that took two seconds to pass hardly tells climb from scale.
+    pub min_pair_count: usize,
+    /// Standard deviation of the vertical speed about zero, metres per second, 0.1 to 100. Default 2: surveys fly
+    /// level, and a tile that took two seconds to pass hardly tells climb from scale.
     pub vertical_speed_sd: f64,
-    /// Standard deviation of the acceleration, white over a second, that the parts of a line are joined with, metres per
-    /// second squared, 0.01 to 100. Default 1: an autopilot in gusts.
+    /// Standard deviation of the acceleration, white over a second, that the parts of a line are joined with, metres
+    /// per second squared, 0.01 to 100. Default 1: an autopilot in gusts.
     pub acceleration_sd: f64,
-    /// Greatest standard deviation of the position that is accepted, horizontal and vertical, metres. Default 20 and 50:
-    /// seen from 450 m below, 20 m sideways tilt a pulse by 2.5°; upwards they tilt it less.
+    /// Greatest standard deviation of the position that is accepted, horizontal and vertical, metres. Default 20 and
+    /// 50: seen from 450 m below, 20 m sideways tilt a pulse by 2.5°; upwards they tilt it less.
     pub greatest_sd: [f64; 2],
     /// Speeds that are accepted, metres per second. Default 15 to 120: helicopters to jets.
     pub speeds: [f64; 2],
     /// Least height above the middle of the returns that is accepted, metres. Default 30.
-    pub least_height: f64,
+    pub min_height: f64,
 }
 
 impl Default for SensorEstimateParams {
     fn default() -> Self {
         Self {
             part_s: 5.0,
-            least_length: 3.0,
-            least_pair_count: 30,
+            min_length: 3.0,
+            min_pair_count: 30,
             vertical_speed_sd: 2.0,
             acceleration_sd: 1.0,
             greatest_sd: [20.0, 50.0],
             speeds: [15.0, 120.0],
-            least_height: 30.0,
+            min_height: 30.0,
         }
     }
 }
@@ -54,8 +54,8 @@ pub struct SensorPart {
     pub pulse_count: usize,
     /// Pulses whose first and last return lie far enough apart.
     pub pair_count: usize,
-    /// Position half-way between the two times, local metres, together with what its neighbours say; NaN where nothing could be
-    /// computed.
+    /// Position half-way between the two times, local metres, together with what its neighbours say; NaN where nothing
+    /// could be computed.
     pub position: [f64; 3],
     /// Its standard deviation by the residuals, metres.
     pub position_sd: [f64; 3],
@@ -66,12 +66,12 @@ pub struct SensorPart {
     /// Median angle between the pulses and the directions to the estimated path, radians.
     pub median_angle: f64,
     /// Whether it is used.
-    pub verdict: Verdict,
+    pub verdict: PartVerdict,
 }
 
 /// Whether the estimate for a part of a flight line is used, and why not.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Verdict {
+pub enum PartVerdict {
     /// Used.
     Accepted,
     /// Used, though its own pulses do not suffice: other parts of the line tell where it must have been.
@@ -84,7 +84,7 @@ pub enum Verdict {
     Implausible,
 }
 
-impl Verdict {
+impl PartVerdict {
     /// Whether the part has a position that is used.
     #[must_use]
     pub fn is_used(self) -> bool {
@@ -102,10 +102,10 @@ impl SensorEstimateParams {
             range.contains(&value).then_some(()).ok_or_else(wrong)
         };
         check("part of a flight line", self.part_s, 0.5..=60.0, "0.5 to 60 s")?;
-        check("minimum length of a pulse", self.least_length, 0.5..=50.0, "0.5 to 50 m")?;
+        check("minimum length of a pulse", self.min_length, 0.5..=50.0, "0.5 to 50 m")?;
         check("deviation of the vertical speed", self.vertical_speed_sd, 0.1..=100.0, "0.1 to 100 m/s")?;
         check("deviation of the acceleration", self.acceleration_sd, 0.01..=100.0, "0.01 to 100 m/s2")?;
-        check("minimum number of pulses", self.least_pair_count as f64, 6.0..=1e5, "6 to 100000")
+        check("minimum number of pulses", self.min_pair_count as f64, 6.0..=1e5, "6 to 100000")
     }
 }
 
@@ -115,34 +115,35 @@ pub struct ScanAngleParams {
     /// Longest part of a flight line that is taken for straight and evenly flown, seconds, 0.5 to 60. Default 10.
     pub part_s: f64,
     /// Least standard deviation of the angles of a part, radians. Default 1°: a tile of 30 m below a scanner 450 m up.
-    pub least_spread: f64,
-    /// Greatest median angle by which points may miss their place, across and along the flight, radians. Default 1°: half a
-    /// degree of rounding, and a pitch that angles do not tell.
+    pub min_spread: f64,
+    /// Greatest median angle by which points may miss their place, across and along the flight, radians. Default 1°:
+    /// half a degree of rounding, and a pitch that angles do not tell.
     pub greatest_miss: f64,
-    /// Greatest bend of scan lines, metres along the flight for each metre of height and square of the tangent of the angle, that
-    /// passes for straight. Default 0.35: a cone of 20° bends by 1.4, one of 45° by 0.5.
+    /// Greatest bend of scan lines, metres along the flight for each metre of height and square of the tangent of the
+    /// angle, that passes for straight. Default 0.35: a cone of 20° bends by 1.4, one of 45° by 0.5.
     pub greatest_bend: f64,
-    /// Greatest tangent of the angle between scan lines and the perpendicular of the flight. Default 0.36 (20°): crabbing.
+    /// Greatest tangent of the angle between scan lines and the perpendicular of the flight. Default 0.36 (20°):
+    /// crabbing.
     pub greatest_crab: f64,
     /// Greatest median angle to the pulses with several returns, where there are any, radians. Default 3°.
     pub greatest_contradiction: f64,
     /// Speeds that are accepted, metres per second. Default 15 to 120: helicopters to jets.
     pub speeds: [f64; 2],
     /// Least height above the middle of the points that is accepted, metres. Default 30.
-    pub least_height: f64,
+    pub min_height: f64,
 }
 
 impl Default for ScanAngleParams {
     fn default() -> Self {
         Self {
             part_s: 10.0,
-            least_spread: 1_f64.to_radians(),
+            min_spread: 1_f64.to_radians(),
             greatest_miss: 1_f64.to_radians(),
             greatest_bend: 0.35,
             greatest_crab: 0.36,
             greatest_contradiction: 3_f64.to_radians(),
             speeds: [15.0, 120.0],
-            least_height: 30.0,
+            min_height: 30.0,
         }
     }
 }
@@ -156,7 +157,8 @@ pub enum AngleVerdict {
     TooFewPoints,
     /// Angles or times that span too little to tell height and flight.
     TooNarrow,
-    /// Points do not lie where their angles, taken across the flight, put them: a cone, a tilted scanner, or rounded times.
+    /// Points do not lie where their angles, taken across the flight, put them: a cone, a tilted scanner, or rounded
+    /// times.
     NotAcross,
     /// Scan lines are bent, as those of a cone are, or cannot be told from bent ones.
     Bent,
@@ -183,7 +185,8 @@ pub struct ScanAnglePart {
     pub height: f64,
     /// Median angles by which points miss their place, across and along the flight, radians.
     pub misses: [f64; 2],
-    /// Angle by which the scanner looks ahead, radians, as far as pulses with several returns tell; 0 where these are too few.
+    /// Angle by which the scanner looks ahead, radians, as far as pulses with several returns tell; 0 where these are
+    /// too few.
     pub pitch: f64,
     /// Median angle to the pulses with several returns, radians; NaN where these are too few.
     pub contradiction: f64,
@@ -191,7 +194,8 @@ pub struct ScanAnglePart {
     pub verdict: AngleVerdict,
 }
 
-/// A constant by which the heights of a trajectory differ from those of the cloud, such as that between ellipsoid and sea.
+/// A constant by which the heights of a trajectory differ from those of the cloud, such as that between ellipsoid and
+/// sea.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HeightOffset {
     /// Metres to add to the heights of the trajectory.

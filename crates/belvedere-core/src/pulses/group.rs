@@ -7,8 +7,9 @@ use rayon::prelude::*;
 use belvedere_data::control::Control;
 use belvedere_data::{Error, PointCloud, Result};
 
-/// Most points of one time, line and channel: LAS counts returns to 15, and two full pulses in one tick of a clock do not occur.
-const MOST_PER_TIME: usize = 15;
+/// Most points of one time, line and channel: LAS counts returns to 15, and two full pulses in one tick of a clock do
+/// not occur.
+const MAX_PER_TIME: usize = 15;
 /// Times between two looks at whether to go on.
 const CHECK_EACH: usize = 4096;
 
@@ -51,14 +52,14 @@ pub struct PulseReport {
 
 /// Groups the returns of `cloud` by flight line, scanner channel and GPS time.
 ///
-/// Pulses of the same time are told apart by how many returns they had; single returns are a pulse each. Points that cannot be
-/// told to belong to one pulse are left out and counted. A cloud of ground-based scans, whose times
-/// belong to a single point each, gives a pulse for each point.
+/// Pulses of the same time are told apart by how many returns they had; single returns are a pulse each. Points that
+/// cannot be told to belong to one pulse are left out and counted. A cloud of ground-based scans, whose times belong to
+/// a single point each, gives a pulse for each point.
 ///
 /// # Errors
 /// [`Error::MissingAttribute`] without GPS times or return numbers, or where no pulse at all can be told from another
-/// because times are missing or too coarse. [`Error::LengthMismatch`] for a column of another length than the positions.
-/// [`Error::Cancelled`].
+/// because times are missing or too coarse. [`Error::LengthMismatch`] for a column of another length than the
+/// positions. [`Error::Cancelled`].
 pub fn group(cloud: &PointCloud, control: &Control<'_>) -> Result<(Pulses, PulseReport)> {
     cloud.validate()?;
     let attributes = &cloud.attributes;
@@ -78,29 +79,29 @@ pub fn group(cloud: &PointCloud, control: &Control<'_>) -> Result<(Pulses, Pulse
         (line, channel)
     };
     let mut report = PulseReport { point_count: cloud.len(), ..PulseReport::default() };
-    let mut keys: Vec<Key> = (0_u32..)
+    let mut keys: Vec<SortKey> = (0_u32..)
         .zip(times.iter().zip(numbers))
         .filter(|(_, (time, _))| time.is_finite() && **time != 0.0)
         .map(|(row, (&time, &number))| {
             let count = counts.and_then(|counts| counts.get(row as usize)).copied().unwrap_or(number);
             // a count below the number says nothing
-            Key { shot: column(row as usize), time, count: count.max(number), number, row }
+            SortKey { shot: column(row as usize), time, count: count.max(number), number, row }
         })
         .collect();
     report.without_time_count = cloud.len() - keys.len();
     control.check()?;
-    keys.par_sort_unstable_by(Key::compare);
+    keys.par_sort_unstable_by(SortKey::compare);
 
     let mut pulses = Pulses { offsets: vec![0], ..Pulses::default() };
-    for (number, mut same_time) in keys.chunk_by(Key::same_time).map(<[Key]>::to_vec).enumerate() {
+    for (number, mut same_time) in keys.chunk_by(SortKey::same_time).map(<[SortKey]>::to_vec).enumerate() {
         if number % CHECK_EACH == 0 {
             control.check()?;
         }
-        let place = |key: &Key| cloud.positions.get(key.row as usize);
+        let place = |key: &SortKey| cloud.positions.get(key.row as usize);
         let count = same_time.len();
         same_time.dedup_by(|later, earlier| later.same_return(earlier) && place(later) == place(earlier));
         report.duplicate_count += count - same_time.len();
-        if same_time.len() > MOST_PER_TIME {
+        if same_time.len() > MAX_PER_TIME {
             report.ambiguous_count += same_time.len();
             continue;
         }
@@ -121,7 +122,7 @@ pub fn group(cloud: &PointCloud, control: &Control<'_>) -> Result<(Pulses, Pulse
 
 /// What points are sorted by.
 #[derive(Clone, Copy)]
-struct Key {
+struct SortKey {
     /// Flight line and channel.
     shot: (u16, u8),
     time: f64,
@@ -131,7 +132,7 @@ struct Key {
     row: u32,
 }
 
-impl Key {
+impl SortKey {
     fn compare(&self, other: &Self) -> Ordering {
         let rest = |key: &Self| (key.count, key.number, key.row);
         self.shot.cmp(&other.shot).then(self.time.total_cmp(&other.time)).then_with(|| rest(self).cmp(&rest(other)))
@@ -148,7 +149,7 @@ impl Key {
 
 impl Pulses {
     /// Adds the pulse of `returns`, at least one, in order of their numbers.
-    fn add(&mut self, returns: &[Key], report: &mut PulseReport) {
+    fn add(&mut self, returns: &[SortKey], report: &mut PulseReport) {
         let (Some(first), Some(last)) = (returns.first(), returns.last()) else { return };
         self.returns.extend(returns.iter().map(|key| key.row));
         self.times.push(first.time);

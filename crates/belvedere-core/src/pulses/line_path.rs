@@ -28,7 +28,8 @@ pub struct Stretch {
     /// Standard deviation of the positions, metres.
     #[serde(skip)]
     pub position_sd: [f64; 3],
-    /// Median angle between the pulses and the directions to the path, radians; NaN where no pulse of this stretch tells.
+    /// Median angle between the pulses and the directions to the path, radians; NaN where no pulse of this stretch
+    /// tells.
     #[serde(skip)]
     pub median_angle: f64,
 }
@@ -55,15 +56,16 @@ impl LinePath {
     }
 }
 
-/// The path among `paths`, which are in order of their lines, that knows the scanner of `line` at `time`, the first of several,
-/// and its local position, metres.
+/// The path among `paths`, which are in order of their lines, that knows the scanner of `line` at `time`, the first of
+/// several, and its local position, metres.
 pub(super) fn position_on(paths: &[LinePath], line: u16, time: f64) -> Option<(&LinePath, [f64; 3])> {
     let start = paths.partition_point(|path| path.source_id < line);
     let of_line = paths.get(start..)?.iter().take_while(|path| path.source_id == line);
     of_line.filter_map(|path| Some((path, path.position_at(time)?))).next()
 }
 
-/// Local position of the scanner for each point of `cloud`, (N, 3) metres, by `paths`, which are in order of their lines; NaN where none knows it.
+/// Local position of the scanner for each point of `cloud`, (N, 3) metres, by `paths`, which are in order of their
+/// lines; NaN where none knows it.
 pub(crate) fn positions_on_paths(paths: &[LinePath], cloud: &PointCloud) -> Vec<[f32; 3]> {
     let unknown = [f32::NAN; 3];
     let Some(times) = &cloud.attributes.gps_time else { return vec![unknown; cloud.len()] };
@@ -89,8 +91,8 @@ pub(super) struct Knot {
     pub(super) velocity: [f64; 3],
 }
 
-/// Local position at `time` on the path through `knots`, which increase in time; `None` without any. Between knots a cubic with
-/// their velocities; beyond them, and where the next is half a minute away, straight on from the nearer.
+/// Local position at `time` on the path through `knots`, which increase in time; `None` without any. Between knots a
+/// cubic with their velocities; beyond them, and where the next is half a minute away, straight on from the nearer.
 fn position_at(knots: &[Knot], time: f64) -> Option<[f64; 3]> {
     let after = knots.partition_point(|knot| knot.time <= time);
     let before = after.checked_sub(1).and_then(|i| knots.get(i));

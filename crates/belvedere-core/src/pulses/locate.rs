@@ -5,7 +5,9 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::SensorPositions;
 use super::estimate::{self, height_offset, paths_from_angles, paths_from_returns};
-use super::flight_parts::{AngleVerdict, HeightOffset, ScanAngleParams, ScanAnglePart, SensorEstimateParams, Verdict};
+use super::flight_parts::{
+    AngleVerdict, HeightOffset, PartVerdict, ScanAngleParams, ScanAnglePart, SensorEstimateParams,
+};
 use super::group::{Pulses, group};
 use super::line_path::position_on;
 use super::scanner_report::{FoundBy, FoundStation, ScannerReport};
@@ -18,8 +20,9 @@ use belvedere_data::{Error, PointCloud, Result};
 /// What the scanner is to be found by.
 #[derive(Clone, Copy, Debug, Default)]
 pub enum Means<'a> {
-    /// Poses in the file; without them pulses with several returns, then scan angles where they can be trusted; where none of these
-    /// finds the scanner of a single point, stations of tripods that the points show; and at last the assumption that pulses fall straight down.
+    /// Poses in the file; without them pulses with several returns, then scan angles where they can be trusted; where
+    /// none of these finds the scanner of a single point, stations of tripods that the points show; and at last the
+    /// assumption that pulses fall straight down.
     #[default]
     Automatic,
     /// Pulses with several returns, then scan angles, and no assumption.
@@ -45,16 +48,19 @@ pub struct LocateParams {
     pub vertical: VerticalParams,
 }
 
-/// Local position of the scanner for each point of `cloud`, (N, 3) metres, NaN where it is not known; and how it was found.
+/// Local position of the scanner for each point of `cloud`, (N, 3) metres, NaN where it is not known; and how it was
+/// found.
 ///
-/// The scanner of every point with a time on a known path is found, whether or not it could be told to which pulse it belongs. Which points
-/// and parts of lines are left out and why is in the report. The result is the same for any number of threads and, but for
-/// points of the same pulse and number, any order of the points.
+/// The scanner of every point with a time on a known path is found, whether or not it could be told to which pulse it
+/// belongs. Which points and parts of lines are left out and why is in the report. The result is the same for any
+/// number of threads and, but for points of the same pulse and number, any order of the points.
 ///
 /// # Errors
-/// [`Error::MissingAttribute`] where the means asked for find the scanner of no point; [`Means::Automatic`] finds it for at least one of every cloud
-/// but those with poses that no point refers to: a scanner on the ground does not look straight down. [`Error::LengthMismatch`] for a column of another length than the positions, [`Error::InvalidParameter`] for
-/// parameters out of range and a trajectory that covers no time of the cloud, [`Error::Cancelled`].
+/// [`Error::MissingAttribute`] where the means asked for find the scanner of no point; [`Means::Automatic`] finds it
+/// for at least one of every cloud but those with poses that no point refers to: a scanner on the ground does not look
+/// straight down. [`Error::LengthMismatch`] for a column of another length than the positions,
+/// [`Error::InvalidParameter`] for parameters out of range and a trajectory that covers no time of the cloud,
+/// [`Error::Cancelled`].
 pub fn locate(
     cloud: &PointCloud,
     means: &Means<'_>,
@@ -275,13 +281,15 @@ fn remark_parts(report: &mut ScannerReport) {
     let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
     for part in &report.parts {
         let why = match part.verdict {
-            Verdict::Accepted => continue,
-            Verdict::Bridged => "parts of flight lines are interpolated from their neighbours",
-            Verdict::TooFewPairs => "parts of flight lines have too few pulses with several returns far enough apart",
-            Verdict::Uncertain => {
+            PartVerdict::Accepted => continue,
+            PartVerdict::Bridged => "parts of flight lines are interpolated from their neighbours",
+            PartVerdict::TooFewPairs => {
+                "parts of flight lines have too few pulses with several returns far enough apart"
+            }
+            PartVerdict::Uncertain => {
                 "parts of flight lines have pulses that do not determine the scanner position well enough"
             }
-            Verdict::Implausible => "parts of flight lines have pulses that give an impossible scanner position",
+            PartVerdict::Implausible => "parts of flight lines have pulses that give an impossible scanner position",
         };
         *counts.entry(why).or_default() += 1;
     }

@@ -1,9 +1,10 @@
 //! Laser pulses: which returns belong together, and where the scanner was.
 //!
-//! The way from the scanner to the first return of a pulse is proven to be free. Everything that uses this needs the two
-//! things found here: [`group`] puts the returns of each pulse together, [`locate`] says where they came from, by the best means
-//! that a cloud has: poses or a trajectory ([`Means`]), pulses with several returns ([`SensorPositions`]), scan angles
-//! ([`ScanAngleParams`]), the stations of tripods that the points show ([`FoundStation`]), and at last the assumption that pulses fall straight down ([`vertical_pulses`]).
+//! The way from the scanner to the first return of a pulse is proven to be free. Everything that uses this needs the
+//! two things found here: [`group`] puts the returns of each pulse together, [`locate`] says where they came from, by
+//! the best means that a cloud has: poses or a trajectory ([`Means`]), pulses with several returns
+//! ([`SensorPositions`]), scan angles ([`ScanAngleParams`]), the stations of tripods that the points show
+//! ([`FoundStation`]), and at last the assumption that pulses fall straight down ([`vertical_pulses`]).
 
 #[cfg(feature = "scanner-estimate")]
 mod estimate;
@@ -11,26 +12,26 @@ mod estimate;
 #[path = "not_estimated.rs"]
 mod estimate;
 mod flight_parts;
+mod free_segments;
 mod group;
 mod line_path;
 mod locate;
-mod needles;
 mod path_samples;
 mod scanner_report;
 mod sensor_positions;
 mod vertical;
 
 pub use flight_parts::{
-    AngleVerdict, HeightOffset, ScanAngleParams, ScanAnglePart, SensorEstimateParams, SensorPart, Verdict,
+    AngleVerdict, HeightOffset, PartVerdict, ScanAngleParams, ScanAnglePart, SensorEstimateParams, SensorPart,
 };
+pub use free_segments::{FreeSegmentColumns, FreeSegmentParams, FreeSegmentReport, FreeSegments};
+pub(crate) use free_segments::{GAP_M, come_from_the_ground, lower_ends};
 pub use group::{PulseReport, Pulses, group};
 pub(crate) use line_path::positions_on_paths;
 pub use line_path::{LinePath, Stretch};
 pub use locate::{LocateParams, Means, locate};
-pub(crate) use needles::{GAP_M, come_from_the_ground, lower_ends};
-pub use needles::{NeedleColumns, NeedleParams, NeedleReport, Needles};
 pub use path_samples::path_samples;
 pub use scanner_report::{FlightLine, FoundBy, FoundStation, ScannerReport, TypicalFlight};
 pub use sensor_positions::{SensorPositions, SensorReport};
-pub(crate) use vertical::LEAST_ASSUMED_SHARE;
+pub(crate) use vertical::MIN_ASSUMED_SHARE;
 pub use vertical::{VerticalParams, vertical_pulses};

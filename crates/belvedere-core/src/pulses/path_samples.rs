@@ -4,17 +4,17 @@ use super::line_path::{LinePath, Stretch};
 use belvedere_data::trajectory::{TrajectoryQuality, TrajectorySample};
 use belvedere_data::{Error, Parameter, Result};
 
-/// Where two lines are known at the same time, the scanner cannot have been at two places that are farther apart than this,
-/// metres: several times what a path may be off.
+/// Where two lines are known at the same time, the scanner cannot have been at two places that are farther apart than
+/// this, metres: several times what a path may be off.
 const SAME_PLACE: f64 = 100.0;
 
-/// The positions that `paths` know, of a cloud at `origin` (metres), every `step` seconds and at both ends of each stretch, in
-/// order of time. Where several lines are known at one time, such as the channels of one scanner, the one surest of its
-/// position counts.
+/// The positions that `paths` know, of a cloud at `origin` (metres), every `step` seconds and at both ends of each
+/// stretch, in order of time. Where several lines are known at one time, such as the channels of one scanner, the one
+/// surest of its position counts.
 ///
 /// # Errors
-/// [`Error::InvalidParameter`] for a step outside 0.01 to 2 s, and for lines that are at different places at one time: times
-/// of the week from different weeks.
+/// [`Error::InvalidParameter`] for a step outside 0.01 to 2 s, and for lines that are at different places at one time:
+/// times of the week from different weeks.
 pub fn path_samples(paths: &[LinePath], origin: [f64; 3], step: f64) -> Result<Vec<TrajectorySample>> {
     if !(0.01..=2.0).contains(&step) {
         return Err(Error::InvalidParameter {
@@ -55,8 +55,8 @@ fn times([from, to]: [f64; 2], step: f64) -> impl Iterator<Item = f64> {
     std::iter::once(from).chain(multiples).chain(std::iter::once(to))
 }
 
-/// Whether another path knows this `time` better than `stretch` of path number `own`, which puts the scanner at `place`. Of the
-/// paths of a line the first knows best.
+/// Whether another path knows this `time` better than `stretch` of path number `own`, which puts the scanner at
+/// `place`. Of the paths of a line the first knows best.
 fn has_better(paths: &[LinePath], own: usize, stretch: &Stretch, time: f64, place: [f64; 3]) -> Result<bool> {
     let sd = |stretch: &Stretch| stretch.position_sd.iter().sum::<f64>();
     let line = paths.get(own).map(|path| path.source_id);

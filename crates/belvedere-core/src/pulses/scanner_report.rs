@@ -63,8 +63,8 @@ impl FoundBy {
 
 /// How the scanner was found.
 ///
-/// Serialised, it gives shares and medians for a reader and leaves out the parts of flight lines; [`ScannerReport::lines`] gives each
-/// line.
+/// Serialised, it gives shares and medians for a reader and leaves out the parts of flight lines;
+/// [`ScannerReport::lines`] gives each line.
 #[derive(Clone, Debug, Default)]
 pub struct ScannerReport {
     /// Points in all.

@@ -48,18 +48,19 @@ impl SensorPositions {
     /// Positions from the directions of pulses with several returns, by flight line.
     ///
     /// A line is cut where nothing was scanned for two seconds and then into equal parts of at most
-    /// [`SensorEstimateParams::part_s`]. In each part the scanner moves evenly, S + V t, such that the last return of each
-    /// pulse lies as near as possible to the line from the scanner through the first. Misses that stand out count less, and level flight is
-    /// assumed where the pulses tell nothing. The parts of a line are then joined to one path by a smoother that knows how far an
-    /// aircraft leaves a constant velocity; it also places parts with too few pulses between or beside good ones, as long as it
-    /// is sure enough. Parts whose estimate is not fit for use are unknown; [`SensorReport::parts`] says why.
+    /// [`SensorEstimateParams::part_s`]. In each part the scanner moves evenly, S + V t, such that the last return of
+    /// each pulse lies as near as possible to the line from the scanner through the first. Misses that stand out count
+    /// less, and level flight is assumed where the pulses tell nothing. The parts of a line are then joined to one path
+    /// by a smoother that knows how far an aircraft leaves a constant velocity; it also places parts with too few
+    /// pulses between or beside good ones, as long as it is sure enough. Parts whose estimate is not fit for use are
+    /// unknown; [`SensorReport::parts`] says why.
     ///
     /// # Errors
     /// [`Error::InvalidParameter`](belvedere_data::Error::InvalidParameter) for a parameter outside its range.
     ///
     /// # Source
-    /// The idea: Gatziolis & McGaughey 2019; Roussel, Bourdon & Achim 2020. Weights: Huber 1964. One least-squares problem
-    /// with velocity for each part instead of pairs of pulses is ours.
+    /// The idea: Gatziolis & McGaughey 2019; Roussel, Bourdon & Achim 2020. Weights: Huber 1964. One least-squares
+    /// problem with velocity for each part instead of pairs of pulses is ours.
     pub fn from_returns(
         cloud: &PointCloud,
         pulses: &Pulses,
@@ -76,7 +77,8 @@ impl SensorPositions {
         Ok((Self { per_pulse }, SensorReport { pulse_count: pulses.len(), known_count, clock: None, parts }))
     }
 
-    /// Scanner position of each point of the cloud that `pulses` were grouped from, (N, 3), local metres; NaN where unknown.
+    /// Scanner position of each point of the cloud that `pulses` were grouped from, (N, 3), local metres; NaN where
+    /// unknown.
     #[must_use]
     pub fn per_point(&self, pulses: &Pulses, point_count: usize) -> Vec<[f32; 3]> {
         let mut per_point = vec![[f32::NAN; 3]; point_count];

@@ -4,22 +4,24 @@ use belvedere_data::control::{Control, Stop};
 use belvedere_data::{Error, Parameter, Result};
 use rayon::prelude::*;
 
-/// How far up the assumed scanner hangs over its point, metres: as high as surveys are flown, so that it is above everything.
+/// How far up the assumed scanner hangs over its point, metres: as high as surveys are flown, so that it is above
+/// everything.
 const HEIGHT: f32 = 1000.0;
 
-/// Share of the points with nothing above them from which on vertical pulses are a fair assumption. Clouds of aircraft have three
-/// quarters or more; where the scanner stood among walls it is a fifth, and carving by pulses that never were blocks most of what is visible.
-pub(crate) const LEAST_ASSUMED_SHARE: f64 = 0.5;
+/// Share of the points with nothing above them from which on vertical pulses are a fair assumption. Clouds of aircraft
+/// have three quarters or more; where the scanner stood among walls it is a fifth, and carving by pulses that never
+/// were blocks most of what is visible.
+pub(crate) const MIN_ASSUMED_SHARE: f64 = 0.5;
 
 /// Which points count as ends of vertical pulses.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VerticalParams {
-    /// How far beside a point another may stand above it and hide it, metres, 0.05 to 10. Default 0.2, half the spacing of usual
-    /// surveys: on simulated towns 0.5 keeps so many pulses off walls that facades lose 9 points, 0.2 loses 3, and 0.1 lets
-    /// pulses through crowns.
+    /// How far beside a point another may stand above it and hide it, metres, 0.05 to 10. Default 0.2, half the spacing
+    /// of usual surveys: on simulated towns 0.5 keeps so many pulses off walls that facades lose 9 points, 0.2 loses 3,
+    /// and 0.1 lets pulses through crowns.
     pub reach: f32,
-    /// How far above the point it must stand for that, metres, 0 to 100. Default 0.5: less, and the slope of a roof hides
-    /// itself.
+    /// How far above the point it must stand for that, metres, 0 to 100. Default 0.5: less, and the slope of a roof
+    /// hides itself.
     pub rise: f32,
 }
 
@@ -29,8 +31,8 @@ impl Default for VerticalParams {
     }
 }
 
-/// Assumed scanner of each of `positions`, (N, 3) local metres: a kilometre above the points that no other stands above, NaN for
-/// the rest.
+/// Assumed scanner of each of `positions`, (N, 3) local metres: a kilometre above the points that no other stands
+/// above, NaN for the rest.
 ///
 /// # Errors
 /// [`Error::InvalidParameter`] for parameters outside their ranges, [`Error::Cancelled`].

@@ -1,4 +1,5 @@
-//! Meshes that were added to a scene, such as planned buildings: their triangles block lines of sight exactly, beside the balls.
+//! Meshes that were added to a scene, such as planned buildings: their triangles block lines of sight exactly, beside
+//! the balls.
 
 use super::Coverage;
 use crate::ground::MapGrid;
@@ -10,22 +11,22 @@ use belvedere_data::vector::{cross, dot, sub, unit};
 use belvedere_data::{Error, Mesh, Parameter, Result};
 use std::sync::Arc;
 
-/// Distance from the plane of a triangle up to which an end of a line of sight lies on the triangle, metres: targets are f32, which is off by
-/// 0.1 mm a kilometre from the origin, and a target on a triangle must not be hidden by it.
+/// Distance from the plane of a triangle up to which an end of a line of sight lies on the triangle, metres: targets
+/// are f32, which is off by 0.1 mm a kilometre from the origin, and a target on a triangle must not be hidden by it.
 const CONTACT: f64 = 1e-3;
 /// Coordinates up to which a mesh may be in degrees rather than metres.
-const MOST_DEGREES: f64 = 360.0;
+const MAX_DEGREES: f64 = 360.0;
 
 /// Triangles of meshes that block lines of sight, from both sides, watertight or not.
 ///
-/// A triangle blocks a line of sight that passes through it, edges included, unless an end of the line lies on it: within 1 mm of its plane. So
-/// a target on a roof or a wall is not hidden by that roof or wall, and an eye inside a closed mesh sees its inside and nothing
-/// beyond it.
+/// A triangle blocks a line of sight that passes through it, edges included, unless an end of the line lies on it:
+/// within 1 mm of its plane. So a target on a roof or a wall is not hidden by that roof or wall, and an eye inside a
+/// closed mesh sees its inside and nothing beyond it.
 #[derive(Clone)]
 pub struct AddedMeshes {
     tree: Arc<TriangleTree>,
     /// For each triangle of the tree.
-    faces: Arc<[Face]>,
+    faces: Arc<[AddedFace]>,
     names: Arc<[String]>,
 }
 
@@ -37,7 +38,7 @@ impl std::fmt::Debug for AddedMeshes {
 
 /// What is known of a triangle beside its corners.
 #[derive(Clone, Copy)]
-struct Face {
+struct AddedFace {
     normal: [f64; 3],
     corner: [f64; 3],
     mesh: u32,
@@ -45,18 +46,19 @@ struct Face {
 
 /// The ends of a line of sight.
 #[derive(Clone, Copy)]
-pub(super) struct Ends {
+pub(super) struct LineEnds {
     pub(super) target: [f64; 3],
     /// `None` for a viewer infinitely far away.
     pub(super) viewer: Option<[f64; 3]>,
 }
 
 impl AddedMeshes {
-    /// The triangles of `mesh`, metres of its reference system, called `name`, beside those of `before`, for local positions relative to `origin`.
+    /// The triangles of `mesh`, metres of its reference system, called `name`, beside those of `before`, for local
+    /// positions relative to `origin`.
     ///
     /// # Errors
-    /// [`Error::InvalidParameter`] for a mesh without a triangle that has an area, with a corner that is missing or not finite, or that does
-    /// not meet the space of `coverage`.
+    /// [`Error::InvalidParameter`] for a mesh without a triangle that has an area, with a corner that is missing or not
+    /// finite, or that does not meet the space of `coverage`.
     pub fn new(
         mesh: &Mesh,
         name: &str,
@@ -92,7 +94,7 @@ impl AddedMeshes {
                 format!(" while the cloud lies between {from:?} and {to:?} m")
             });
             let value = format!("{name}, which lies between {from:?} and {to:?} m,{cloud}");
-            let in_degrees = from.iter().chain(&to).take(2).all(|v| v.abs() <= MOST_DEGREES);
+            let in_degrees = from.iter().chain(&to).take(2).all(|v| v.abs() <= MAX_DEGREES);
             return match in_degrees {
                 true => invalid(value, "in the coordinates of the cloud, on or above it; degrees must be converted"),
                 false => invalid(value, "in the coordinates of the cloud, on or above it"),
@@ -112,7 +114,7 @@ impl AddedMeshes {
         let tree = TriangleTree::new(&corners)?;
         let face = |(&row, corners): (&u32, &Corners)| {
             let mesh = triangles.get(row as usize).map_or(0, |(_, mesh)| *mesh);
-            Face { normal: normal(corners).unwrap_or_default(), corner: corners[0], mesh }
+            AddedFace { normal: normal(corners).unwrap_or_default(), corner: corners[0], mesh }
         };
         let faces = tree.order().iter().zip(tree.triangles()).map(face).collect();
         Ok(Self { tree: Arc::new(tree), faces, names: names.into() })
@@ -167,8 +169,8 @@ impl AddedMeshes {
         }
     }
 
-    /// Whether a place, local metres, lies inside a mesh, which may lack its bottom: lines up, east and north pass through an odd number of
-    /// surfaces each.
+    /// Whether a place, local metres, lies inside a mesh, which may lack its bottom: lines up, east and north pass
+    /// through an odd number of surfaces each.
     #[must_use]
     pub fn encloses(&self, place: [f64; 3]) -> bool {
         if !place.iter().all(|v| v.is_finite()) {
@@ -186,27 +188,28 @@ impl AddedMeshes {
         above.into_iter().any(is_inside)
     }
 
-    /// Whether a triangle blocks the line of sight from `target` to `range` metres (infinite for a direction) along the unit vector `towards`.
+    /// Whether a triangle blocks the line of sight from `target` to `range` metres (infinite for a direction) along the
+    /// unit vector `towards`.
     #[must_use]
     pub fn blocks(&self, target: [f64; 3], towards: [f64; 3], range: f64) -> bool {
         let ray = Ray { origin: target, direction: towards, ranges: [0.0, range] };
-        let ends = Ends { target, viewer: range.is_finite().then(|| ray.at(range)) };
+        let ends = LineEnds { target, viewer: range.is_finite().then(|| ray.at(range)) };
         self.blocks_piece(&ray, &ends)
     }
 
     /// The same for the piece `ray` of a line of sight between `ends`.
-    pub(super) fn blocks_piece(&self, ray: &Ray, ends: &Ends) -> bool {
+    pub(super) fn blocks_piece(&self, ray: &Ray, ends: &LineEnds) -> bool {
         self.tree.any(ray, |row| self.is_between(row, ends))
     }
 
     /// The mesh that the piece `ray` of a line of sight between `ends` meets first, by its number, and the range.
-    pub(super) fn nearest(&self, ray: &Ray, ends: &Ends) -> Option<(usize, f64)> {
+    pub(super) fn nearest(&self, ray: &Ray, ends: &LineEnds) -> Option<(usize, f64)> {
         let (row, range) = self.tree.nearest(ray, |row| self.is_between(row, ends))?;
         Some((self.faces.get(row)?.mesh as usize, range))
     }
 
     /// The triangles that the piece `ray` of a line of sight between `ends` passes through.
-    pub(super) fn each_blocking(&self, ray: &Ray, ends: &Ends, mut visit: impl FnMut(&Corners)) {
+    pub(super) fn each_blocking(&self, ray: &Ray, ends: &LineEnds, mut visit: impl FnMut(&Corners)) {
         self.tree.each(ray, |row, _| {
             if self.is_between(row, ends)
                 && let Some(corners) = self.tree.triangles().get(row)
@@ -216,11 +219,12 @@ impl AddedMeshes {
         });
     }
 
-    /// The triangles between `ends` whose boxes may meet one of `boxes`, given by their lowest and highest corner, local metres; each once.
+    /// The triangles between `ends` whose boxes may meet one of `boxes`, given by their lowest and highest corner,
+    /// local metres; each once.
     pub(super) fn near(
         &self,
         boxes: impl Iterator<Item = [[f64; 3]; 2]>,
-        ends: &Ends,
+        ends: &LineEnds,
     ) -> impl Iterator<Item = &Corners> {
         let mut rows = Vec::new();
         boxes.for_each(|[low, high]| self.tree.each_near(low, high, |row| rows.push(row)));
@@ -244,7 +248,7 @@ impl AddedMeshes {
 
     /// The triangles in whose planes `eye` does not lie, with the numbers of their meshes.
     pub(super) fn before(&self, eye: [f64; 3]) -> impl Iterator<Item = (Corners, usize)> + '_ {
-        let seen = move |(_, face): &(&Corners, &Face)| !face.touches(eye);
+        let seen = move |(_, face): &(&Corners, &AddedFace)| !face.touches(eye);
         let faces = self.tree.triangles().iter().zip(self.faces.iter()).filter(seen);
         faces.map(|(corners, face)| (*corners, face.mesh as usize))
     }
@@ -254,13 +258,13 @@ impl AddedMeshes {
         self.tree.bounds().unwrap_or([[f64::NAN; 3]; 2])
     }
 
-    fn is_between(&self, row: usize, ends: &Ends) -> bool {
+    fn is_between(&self, row: usize, ends: &LineEnds) -> bool {
         let touches = |end: [f64; 3]| self.faces.get(row).is_none_or(|face| face.touches(end));
         !touches(ends.target) && !ends.viewer.is_some_and(touches)
     }
 }
 
-impl Face {
+impl AddedFace {
     fn touches(&self, place: [f64; 3]) -> bool {
         dot(self.normal, sub(place, self.corner)).abs() <= CONTACT
     }

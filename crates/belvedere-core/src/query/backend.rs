@@ -1,8 +1,8 @@
 //! The seam between the scene and whatever answers lines of sight in bulk.
 //!
-//! A backend takes the balls once ([`Backend::prepare`]) and then answers batch after batch. It may be conservative: a line of sight that
-//! it cannot decide for certain it leaves *open*, and the exact lines of sight of the processor decide that one. So the
-//! answers are the same bits on any device.
+//! A backend takes the balls once ([`Backend::prepare`]) and then answers batch after batch. It may be conservative: a
+//! line of sight that it cannot decide for certain it leaves *open*, and the exact lines of sight of the processor
+//! decide that one. So the answers are the same bits on any device.
 
 use super::ball_tree::BallTree;
 use crate::depth::{DepthBounds, DepthMap, ItemBuffer};
@@ -18,9 +18,10 @@ pub trait Backend: Send + Sync + std::fmt::Debug {
     ///
     /// # Errors
     /// What the device reports.
-    fn prepare(&self, balls: &Arc<BallTree>) -> Result<Box<dyn Prepared>>;
+    fn prepare(&self, balls: &Arc<BallTree>) -> Result<Box<dyn PreparedBackend>>;
 
-    /// Takes balls to draw them in views of so many pixels; `None`, the default, where that is no faster than [`depth_map`](crate::depth::depth_map()).
+    /// Takes balls to draw them in views of so many pixels; `None`, the default, where that is no faster than
+    /// [`depth_map`](crate::depth::depth_map()).
     ///
     /// # Errors
     /// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
@@ -46,26 +47,28 @@ pub trait Backend: Send + Sync + std::fmt::Debug {
 }
 
 /// Balls made ready by a backend. What takes long to make is made on first use and kept.
-pub trait Prepared: Send + Sync {
-    /// Bounds of the depth of the first surface over each pixel of `view`, as [`crate::depth::depth_bounds`] defines them: they may be wider,
-    /// but must hold. Balls that reach before `start`, as [`crate::depth::BoundsParams::start`], block nothing.
+pub trait PreparedBackend: Send + Sync {
+    /// Bounds of the depth of the first surface over each pixel of `view`, as [`crate::depth::depth_bounds`] defines
+    /// them: they may be wider, but must hold. Balls that reach before `start`, as
+    /// [`crate::depth::BoundsParams::start`], block nothing.
     ///
     /// # Errors
     /// [`Error::Cancelled`](belvedere_data::Error::Cancelled) and what the device reports.
     fn depth(&self, view: &View, start: f64, control: &Control<'_>) -> Result<DepthBounds>;
 
-    /// What is certain of the lines of sight without end of each of `targets`, (M, 3) local metres, in each of `directions`, (D, 3)
-    /// unit vectors. Neighbours among the targets stand close together in the list.
+    /// What is certain of the lines of sight without end of each of `targets`, (M, 3) local metres, in each of
+    /// `directions`, (D, 3) unit vectors. Neighbours among the targets stand close together in the list.
     ///
     /// # Errors
-    /// As [`Prepared::depth`].
+    /// As [`PreparedBackend::depth`].
     fn settle(&self, targets: &[[f32; 3]], directions: &[[f64; 3]], control: &Control<'_>) -> Result<Settled>;
 
-    /// What is certain of the lines of sight of each of `targets` to each of a few `viewers`, which stand in the place of directions in what is
-    /// returned; `None`, the default, where this backend is no faster than what is done without it: lines of sight one by one, or a tree of targets.
+    /// What is certain of the lines of sight of each of `targets` to each of a few `viewers`, which stand in the place
+    /// of directions in what is returned; `None`, the default, where this backend is no faster than what is done
+    /// without it: lines of sight one by one, or a tree of targets.
     ///
     /// # Errors
-    /// As [`Prepared::depth`].
+    /// As [`PreparedBackend::depth`].
     fn settle_few(&self, targets: &[[f32; 3]], viewers: Viewers<'_>, control: &Control<'_>) -> Result<Option<Settled>> {
         let _ = (targets, viewers, control);
         Ok(None)
@@ -74,7 +77,8 @@ pub trait Prepared: Send + Sync {
 
 /// Balls made ready to be drawn by a backend.
 pub trait Drawable: Send + Sync {
-    /// The depth map of the balls in `view`, as [`depth_map`](crate::depth::depth_map()) makes it of spheres, bit by bit.
+    /// The depth map of the balls in `view`, as [`depth_map`](crate::depth::depth_map()) makes it of spheres, bit by
+    /// bit.
     ///
     /// # Errors
     /// Those of [`depth_map`](crate::depth::depth_map()).
@@ -117,7 +121,7 @@ impl Viewers<'_> {
 
 /// What is known of a line of sight.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Line {
+pub enum LineAnswer {
     /// No ball blocks it.
     Free,
     /// A ball blocks it.
@@ -134,15 +138,16 @@ pub(super) const WORDS: usize = 4;
 pub(super) const BLOCK: usize = WORDS * WORD;
 
 /// A bit for each target of a block.
-pub(super) type Bits = [u64; WORDS];
+pub(super) type WordBits = [u64; WORDS];
 
-/// What a backend settled: for each target and direction, or viewer, whether the line of sight is free, blocked or still open.
+/// What a backend settled: for each target and direction, or viewer, whether the line of sight is free, blocked or
+/// still open.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settled {
     direction_count: usize,
     /// Block after block, in each direction after direction.
-    pub(super) free: Vec<Bits>,
-    pub(super) blocked: Vec<Bits>,
+    pub(super) free: Vec<WordBits>,
+    pub(super) blocked: Vec<WordBits>,
     /// For each direction the range before which nothing blocks a line that is open, metres.
     pub(super) open_from: Vec<f64>,
 }
@@ -157,25 +162,25 @@ impl Settled {
     }
 
     /// Sets what is known of a line.
-    pub fn set(&mut self, target: usize, direction: usize, line: Line) {
+    pub fn set(&mut self, target: usize, direction: usize, line: LineAnswer) {
         let (at, word, bit) = self.place(target, direction);
-        for (bits, of) in [(&mut self.free, Line::Free), (&mut self.blocked, Line::Blocked)] {
+        for (bits, of) in [(&mut self.free, LineAnswer::Free), (&mut self.blocked, LineAnswer::Blocked)] {
             if let Some(bits) = bits.get_mut(at) {
                 bits[word] = bits[word] & !bit | if line == of { bit } else { 0 };
             }
         }
     }
 
-    /// Sets what is known of all lines of a direction: a bit for each target, 32 a word, of those that are free and of those that are blocked. Bits beyond the
-    /// last target must not be set.
+    /// Sets what is known of all lines of a direction: a bit for each target, 32 a word, of those that are free and of
+    /// those that are blocked. Bits beyond the last target must not be set.
     pub fn set_direction(&mut self, direction: usize, free: &[u32], blocked: &[u32]) {
         let count = self.direction_count;
         each_word(&mut self.free, [direction, count], free, |word, known| *word = known);
         each_word(&mut self.blocked, [direction, count], blocked, |word, known| *word = known);
     }
 
-    /// Joins to what is known of all lines of a direction what is known of them past other balls, given as in [`Settled::set_direction`]: free are
-    /// those that are free past both, blocked those that any blocks.
+    /// Joins to what is known of all lines of a direction what is known of them past other balls, given as in
+    /// [`Settled::set_direction`]: free are those that are free past both, blocked those that any blocks.
     pub fn join_direction(&mut self, direction: usize, free: &[u32], blocked: &[u32]) {
         let count = self.direction_count;
         each_word(&mut self.free, [direction, count], free, |word, known| *word &= known);
@@ -200,17 +205,18 @@ impl Settled {
 
     /// What is known of a line.
     #[must_use]
-    pub fn line(&self, target: usize, direction: usize) -> Line {
+    pub fn line(&self, target: usize, direction: usize) -> LineAnswer {
         let (at, word, bit) = self.place(target, direction);
-        let is_set = |bits: &[Bits]| bits.get(at).is_some_and(|bits| bits[word] & bit != 0);
+        let is_set = |bits: &[WordBits]| bits.get(at).is_some_and(|bits| bits[word] & bit != 0);
         match (is_set(&self.free), is_set(&self.blocked)) {
-            (true, _) => Line::Free,
-            (_, true) => Line::Blocked,
-            _ => Line::Open,
+            (true, _) => LineAnswer::Free,
+            (_, true) => LineAnswer::Blocked,
+            _ => LineAnswer::Open,
         }
     }
 
-    /// Says that nothing blocks the open lines of a direction nearer to their targets than `range` metres, which saves work.
+    /// Says that nothing blocks the open lines of a direction nearer to their targets than `range` metres, which saves
+    /// work.
     pub fn set_open_from(&mut self, direction: usize, range: f64) {
         if let Some(open_from) = self.open_from.get_mut(direction) {
             *open_from = range;
@@ -222,8 +228,9 @@ impl Settled {
     }
 }
 
-/// Calls `put` with each word of a direction, given by its number and how many there are, and the same 64 bits of `words`.
-fn each_word(bits: &mut [Bits], [direction, count]: [usize; 2], words: &[u32], put: impl Fn(&mut u64, u64)) {
+/// Calls `put` with each word of a direction, given by its number and how many there are, and the same 64 bits of
+/// `words`.
+fn each_word(bits: &mut [WordBits], [direction, count]: [usize; 2], words: &[u32], put: impl Fn(&mut u64, u64)) {
     let of_direction = bits.iter_mut().skip(direction).step_by(count.max(1));
     for (bits, words) in of_direction.zip(words.chunks(2 * WORDS)) {
         for (word, halves) in bits.iter_mut().zip(words.chunks(2)) {

@@ -1,11 +1,11 @@
 //! Many targets for one viewer at once: a tree of targets against the tree of balls.
 //!
-//! All lines of sight of a box of targets run within a beam: from an eye the hull of eye and box, from the sun the box drawn out
-//! along the direction. Balls that the beam of a node misses are left out for all targets below it, a ball that covers
-//! the whole beam answers them all, and where no ball is left all are visible. What remains are targets at the rim of
-//! shadows and close to surfaces, which are asked one by one of the few balls in their beam. The answers are those of the exact
-//! lines of sight, to the last bit: a beam only ever leaves out balls that no line of sight in it can meet, and a shadow being
-//! convex, a ball that hides the corners of a box hides all in it.
+//! All lines of sight of a box of targets run within a beam: from an eye the hull of eye and box, from the sun the box
+//! drawn out along the direction. Balls that the beam of a node misses are left out for all targets below it, a ball
+//! that covers the whole beam answers them all, and where no ball is left all are visible. What remains are targets at
+//! the rim of shadows and close to surfaces, which are asked one by one of the few balls in their beam. The answers are
+//! those of the exact lines of sight, to the last bit: a beam only ever leaves out balls that no line of sight in it
+//! can meet, and a shadow being convex, a ball that hides the corners of a box hides all in it.
 
 #[cfg(target_arch = "x86_64")]
 mod avx2;
@@ -14,7 +14,7 @@ mod blockers;
 mod lanes;
 mod sweep;
 
-use super::backend::{Line, Settled, Viewers};
+use super::backend::{LineAnswer, Settled, Viewers};
 use super::medial_scene::MedialScene;
 use super::target_tree::TargetTree;
 use super::{Answer, Viewer};
@@ -22,22 +22,23 @@ use belvedere_data::Result;
 use belvedere_data::control::Control;
 use belvedere_data::vector::sub;
 use rayon::prelude::*;
-use sweep::Sweep;
+use sweep::TreeSweep;
 
 /// Targets of a subtree that one thread answers.
 const SHARE: usize = 4096;
 
 impl MedialScene {
     /// The answer for each target, in the order in which they were given: the same as those of
-    /// [`super::Visibility::visible`], at a cost that grows with the rim of what is visible rather than with the number of targets.
-    /// Targets that are not finite are [`Answer::OutsideView`], those beside or below the cloud [`Answer::OutsideCloud`].
+    /// [`super::Visibility::visible`], at a cost that grows with the rim of what is visible rather than with the number
+    /// of targets. Targets that are not finite are [`Answer::OutsideView`], those beside or below the cloud
+    /// [`Answer::OutsideCloud`].
     ///
     /// # Errors
     /// [`Error::InvalidParameter`](belvedere_data::Error::InvalidParameter) for a viewer that is not finite,
     /// [`Error::UnsupportedViewer`](belvedere_data::Error::UnsupportedViewer) for [`Viewer::Each`], and
     /// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
     pub fn answer_among(&self, viewer: Viewer<'_>, targets: &TargetTree, control: &Control<'_>) -> Result<Vec<Answer>> {
-        let sweep = Sweep::new(self, viewer, targets, control)?;
+        let sweep = TreeSweep::new(self, viewer, targets, control)?;
         let settled = match viewer {
             Viewer::Eye(eye) => self.settled_few(targets, Viewers::Eyes(&[eye]), control)?,
             _ => None,
@@ -81,8 +82,9 @@ impl MedialScene {
         Ok(answers)
     }
 
-    /// Calls `visit` with the place, in the order of the tree, of every target that nothing blocks, one at the viewer itself among
-    /// them, but none outside the cloud; what pulses prove is not asked. Runs on the calling thread; the places ascend.
+    /// Calls `visit` with the place, in the order of the tree, of every target that nothing blocks, one at the viewer
+    /// itself among them, but none outside the cloud; what pulses prove is not asked. Runs on the calling thread; the
+    /// places ascend.
     ///
     /// # Errors
     /// As [`MedialScene::answer_among`].
@@ -93,7 +95,7 @@ impl MedialScene {
         control: &Control<'_>,
         mut visit: impl FnMut(usize),
     ) -> Result<()> {
-        let sweep = Sweep::new(self, viewer, targets, control)?;
+        let sweep = TreeSweep::new(self, viewer, targets, control)?;
         if !targets.nodes.is_empty() && !is_eye_outside(self, viewer) {
             sweep.run(0, &mut |place| {
                 if !self.is_hidden_otherwise(viewer, targets.positions()[place]) {
@@ -104,8 +106,8 @@ impl MedialScene {
         control.check()
     }
 
-    /// The same for each of `eyes`, local metres, one after the other: `visit` gets the number of the eye too. An eye that is not finite sees nothing.
-    /// `looked` is called with the number of each eye after it.
+    /// The same for each of `eyes`, local metres, one after the other: `visit` gets the number of the eye too. An eye
+    /// that is not finite sees nothing. `looked` is called with the number of each eye after it.
     ///
     /// # Errors
     /// As [`MedialScene::answer_among`].
@@ -152,12 +154,13 @@ impl MedialScene {
         self.prepared()?.settle_few(targets.positions(), viewers, control)
     }
 
-    /// Whether no ball blocks the line of sight of a target of which `line` is known; true for one at the viewer itself.
-    pub(super) fn sees(&self, viewer: Viewer<'_>, target: [f32; 3], line: Line) -> bool {
+    /// Whether no ball blocks the line of sight of a target of which `line` is known; true for one at the viewer
+    /// itself.
+    pub(super) fn sees(&self, viewer: Viewer<'_>, target: [f32; 3], line: LineAnswer) -> bool {
         match (line, viewer.line_of_sight(0, target)) {
-            (Line::Free, _) | (Line::Open, None) => true,
-            (Line::Blocked, _) => false,
-            (Line::Open, Some((towards, range))) => {
+            (LineAnswer::Free, _) | (LineAnswer::Open, None) => true,
+            (LineAnswer::Blocked, _) => false,
+            (LineAnswer::Open, Some((towards, range))) => {
                 !self.tree().blocks(&self.ray(target.map(f64::from), towards, range))
             }
         }
@@ -172,8 +175,8 @@ impl MedialScene {
         is_hidden || self.is_outside_cloud(target.map(f64::from))
     }
 
-    /// Whether the view from `eye` of a target that no ball blocks is proven, both local metres; [`Answer::OutsideView`] where the two
-    /// are one.
+    /// Whether the view from `eye` of a target that no ball blocks is proven, both local metres;
+    /// [`Answer::OutsideView`] where the two are one.
     #[must_use]
     pub fn answer_unblocked_from(&self, eye: [f64; 3], target: [f64; 3]) -> Answer {
         let towards = sub(eye, target);
@@ -222,7 +225,8 @@ mod tests {
         balls
     }
 
-    /// Few targets that lie as no shape of a beam is made for: in one place, in a line with the eye, in a plane with it, around it.
+    /// Few targets that lie as no shape of a beam is made for: in one place, in a line with the eye, in a plane with
+    /// it, around it.
     fn odd_targets(eye: [f32; 3], seed: u64) -> Vec<Vec<[f32; 3]>> {
         let along = |i: usize, way: [f32; 3]| std::array::from_fn(|k| eye[k] + way[k] * 0.37 * i as f32);
         let scattered =

@@ -18,18 +18,19 @@ const FARTHEST_SETTLED: f64 = 1e7;
 pub enum Scope {
     /// Those of [`MedialScene::query_view`]: the picture and its limits of depth count, and lines of sight end there.
     View,
-    /// Those of [`MedialScene::answer`] for every target, as `visible` gives them for the viewer of the view, whose picture
-    /// only saves lines of sight: an eye, or a viewer infinitely far away.
+    /// Those of [`MedialScene::answer`] for every target, as `visible` gives them for the viewer of the view, whose
+    /// picture only saves lines of sight: an eye, or a viewer infinitely far away.
     Viewer,
 }
 
-/// Bounds of depth for each pixel of one view, or of several from one eye, over the balls of a [`MedialScene`]: a target nearer
-/// than the lower bound of its pixel is visible, one farther than the upper bound is blocked, and only what lies between
-/// needs a line of sight. Answers are those of the scene, every one; the resolution decides no more than the cost.
+/// Bounds of depth for each pixel of one view, or of several from one eye, over the balls of a [`MedialScene`]: a
+/// target nearer than the lower bound of its pixel is visible, one farther than the upper bound is blocked, and only
+/// what lies between needs a line of sight. Answers are those of the scene, every one; the resolution decides no more
+/// than the cost.
 ///
 /// # Source
-/// Bounds of the depth within a pixel serve as in Williams 1978, but from both sides; the proof is on the project's page on
-/// depth maps.
+/// Bounds of the depth within a pixel serve as in Williams 1978, but from both sides; the proof is on the project's
+/// page on depth maps.
 pub struct CertifiedMap<'a> {
     scene: &'a MedialScene,
     bounds: Vec<DepthBounds>,
@@ -45,14 +46,14 @@ pub struct CertifiedReport {
     pub settled_count: usize,
 }
 
-/// Targets for each pixel from which on drawing bounds costs less than the lines of sight they save: a pixel costs 0.4 to 1.2 µs, and
-/// a target saves 0.2 to 0.6 (a town of 700 000 balls on two cores).
+/// Targets for each pixel from which on drawing bounds costs less than the lines of sight they save: a pixel costs 0.4
+/// to 1.2 µs, and a target saves 0.2 to 0.6 (a town of 700 000 balls on two cores).
 const TARGETS_PER_PIXEL: usize = 5;
 
 impl MedialScene {
-    /// The answer for each of `targets`, (M, 3) local metres, in `views` of one eye or of one parallel viewer: by a [`CertifiedMap`] where
-    /// there are more than a few targets a pixel, which then reports, by a line of sight each where not. The answers are the
-    /// same.
+    /// The answer for each of `targets`, (M, 3) local metres, in `views` of one eye or of one parallel viewer: by a
+    /// [`CertifiedMap`] where there are more than a few targets a pixel, which then reports, by a line of sight each
+    /// where not. The answers are the same.
     ///
     /// # Errors
     /// As [`CertifiedMap::new`], the paper's cone excepted, which lines of sight answer.
@@ -106,8 +107,8 @@ fn line_of_sight<'v>(
 }
 
 impl<'a> CertifiedMap<'a> {
-    /// Draws the bounds of `scene` for `views`: one, or several from the same eye of which a target is looked up in the first that
-    /// shows it, such as [`View::panorama`].
+    /// Draws the bounds of `scene` for `views`: one, or several from the same eye of which a target is looked up in the
+    /// first that shows it, such as [`View::panorama`].
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] for no view, for several that do not look from one eye, for balls with
@@ -139,7 +140,8 @@ impl<'a> CertifiedMap<'a> {
         &self.bounds
     }
 
-    /// The answer for each of `targets`, (M, 3) local metres, in their order, and how many were settled without a line of sight.
+    /// The answer for each of `targets`, (M, 3) local metres, in their order, and how many were settled without a line
+    /// of sight.
     ///
     /// # Errors
     /// [`Error::Cancelled`].
@@ -154,7 +156,7 @@ impl<'a> CertifiedMap<'a> {
                 for (answer, &target) in answers.iter_mut().zip(targets) {
                     let way;
                     (*answer, way) = self.answer(target);
-                    settled += usize::from(way == Way::Settled);
+                    settled += usize::from(way == BoundCheck::Settled);
                 }
                 Ok(settled)
             })
@@ -165,19 +167,19 @@ impl<'a> CertifiedMap<'a> {
         Ok((answers, CertifiedReport { target_count: targets.len(), settled_count }))
     }
 
-    fn answer(&self, target: [f32; 3]) -> (Answer, Way) {
+    fn answer(&self, target: [f32; 3]) -> (Answer, BoundCheck) {
         let line = line_of_sight(self.bounds.iter().map(|bounds| &bounds.view), self.scope, target);
-        let Some((towards, range)) = line else { return (Answer::OutsideView, Way::Settled) };
+        let Some((towards, range)) = line else { return (Answer::OutsideView, BoundCheck::Settled) };
         let position = target.map(f64::from);
         match self.bounds.iter().find_map(|bounds| self.bracket(bounds, target)) {
             Some((depth, [lower, _])) if depth < lower => {
-                (self.scene.answer_unblocked(position, towards, range), Way::Settled)
+                (self.scene.answer_unblocked(position, towards, range), BoundCheck::Settled)
             }
             // before its surface a target may lie in the shell of a ball that reaches past it
             Some((depth, [_, upper])) if depth > upper && self.scene.params().bias >= 0.0 => {
-                (Answer::Blocked, Way::Settled)
+                (Answer::Blocked, BoundCheck::Settled)
             }
-            _ => (self.scene.answer(position, towards, range), Way::ByLineOfSight),
+            _ => (self.scene.answer(position, towards, range), BoundCheck::ByLineOfSight),
         }
     }
 
@@ -208,7 +210,7 @@ impl<'a> CertifiedMap<'a> {
 
 /// Whether a bound was enough.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Way {
+enum BoundCheck {
     Settled,
     ByLineOfSight,
 }
@@ -218,8 +220,8 @@ pub(super) fn viewer_of(view: &View) -> Viewer<'static> {
     if view.is_central() { Viewer::Eye(view.frame.eye) } else { Viewer::Direction(view.frame.forward.map(|v| -v)) }
 }
 
-/// The line of sight of a target within the picture and limits of `view`: unit vector from the target to the viewer, and the range
-/// at which it meets the picture plane or the near limit; `None` for any other target.
+/// The line of sight of a target within the picture and limits of `view`: unit vector from the target to the viewer,
+/// and the range at which it meets the picture plane or the near limit; `None` for any other target.
 pub(super) fn line_in_view(view: &View, target: [f32; 3]) -> Option<([f64; 3], f64)> {
     let place = view.project(target)?;
     view.pixel(place)?;

@@ -7,21 +7,21 @@ use crate::triangle_tree::Corners;
 use belvedere_data::vector::{length, sub};
 
 /// Least step upward, metres: where rounding leaves a line of sight in a ball whose top it just reached.
-const LEAST_STEP: f64 = 1e-3;
+const MIN_STEP: f64 = 1e-3;
 /// To what the top of a ball that gives way to the target is known, metres.
 const TOP_TOLERANCE: f64 = 1e-3;
 
 impl MedialScene {
-    /// The least height above `foot`, local metres, at which `observer` sees a target straight above it, metres: 0 where the foot
-    /// itself is seen; `None` where nothing up to `ceiling` metres is. What is meant is the lowest such height, also where
-    /// higher ones are blocked again, as below a bridge. At most 2 mm above the true one for the balls of the scene; pulses
-    /// are not asked.
+    /// The least height above `foot`, local metres, at which `observer` sees a target straight above it, metres: 0
+    /// where the foot itself is seen; `None` where nothing up to `ceiling` metres is. What is meant is the lowest such
+    /// height, also where higher ones are blocked again, as below a bridge. At most 2 mm above the true one for the
+    /// balls of the scene; pulses are not asked.
     ///
-    /// Every ball blocks one interval of heights, so each step goes to the top of the highest of all balls that block at once, in
-    /// closed form: the upper tangent from the observer, or the ball's own top. Tops of balls near the target, which give way
-    /// to it, are bisected.
+    /// Every ball blocks one interval of heights, so each step goes to the top of the highest of all balls that block
+    /// at once, in closed form: the upper tangent from the observer, or the ball's own top. Tops of balls near the
+    /// target, which give way to it, are bisected.
     #[must_use]
-    pub fn least_visible_height(
+    pub fn min_visible_height(
         &self,
         observer: [f64; 3],
         foot: [f64; 3],
@@ -47,7 +47,7 @@ impl MedialScene {
                 clear = Some(clear.map_or(top, |clear| clear.max(top)));
             });
             let Some(clear) = clear else { return Some(height) };
-            height = clear.max(height + LEAST_STEP);
+            height = clear.max(height + MIN_STEP);
             if !(height <= ceiling) {
                 return None;
             }

@@ -4,16 +4,17 @@ use super::{Answer, Viewer};
 use belvedere_data::Bounds;
 use rayon::prelude::*;
 
-/// How far beside and below its points a cloud still counts as known, metres: points of airborne surveys lie up to a metre apart, so that
-/// the edge of a cloud is no sharper.
+/// How far beside and below its points a cloud still counts as known, metres: points of airborne surveys lie up to a
+/// metre apart, so that the edge of a cloud is no sharper.
 const MARGIN: f64 = 1.0;
-/// How far above its highest point a position may lie, metres. Nothing stands there, so that an aircraft or a drone may look from there; what
-/// lies higher is a mistake in the coordinates.
+/// How far above its highest point a position may lie, metres. Nothing stands there, so that an aircraft or a drone may
+/// look from there; what lies higher is a mistake in the coordinates.
 pub(super) const CEILING: f64 = 10_000.0;
 /// Targets handed to a thread at once.
 const CHUNK: usize = 4096;
 
-/// The space over which a cloud has points: nothing is known of what stands beside it, and nobody is below its lowest point.
+/// The space over which a cloud has points: nothing is known of what stands beside it, and nobody is below its lowest
+/// point.
 ///
 /// It is the box around the points, 1 m wider on all sides and below, and 10 km higher.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -69,8 +70,8 @@ impl Coverage {
         position.iter().all(|v| v.is_finite()) && !self.holds(position.map(f64::from))
     }
 
-    /// Makes the answers for `targets`, (M, 3) local metres, seen by `viewer`, [`Answer::OutsideCloud`] where the target or its eye does not
-    /// lie over the cloud. Answers of targets that are not finite stay.
+    /// Makes the answers for `targets`, (M, 3) local metres, seen by `viewer`, [`Answer::OutsideCloud`] where the
+    /// target or its eye does not lie over the cloud. Answers of targets that are not finite stay.
     pub fn mark_outside(&self, viewer: Viewer<'_>, targets: &[[f32; 3]], answers: &mut [Answer]) {
         let is_eye_outside = |row: usize| match viewer {
             Viewer::Direction(_) => false,

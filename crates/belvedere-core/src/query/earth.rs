@@ -14,7 +14,7 @@ pub const CURVED_FROM: f64 = 2000.0;
 /// Horizontal length of a chord, metres: with the usual refraction it lies 4 mm off the curve at most.
 const CHORD: f64 = 500.0;
 /// Most chords of one line.
-const MOST_CHORDS: f64 = 10_000.0;
+const MAX_CHORDS: f64 = 10_000.0;
 
 /// Which lines of sight follow the curvature of the earth.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -31,15 +31,16 @@ pub enum Curvature {
 
 /// How lines of sight run over the earth.
 ///
-/// In a map with heights above the sea a straight line of sight is a parabola that sags below the straight line between its
-/// ends, by (1 − k) · s · (S − s) / 2R at the horizontal distance s of S, where k is the refraction and R the radius.
+/// In a map with heights above the sea a straight line of sight is a parabola that sags below the straight line between
+/// its ends, by (1 − k) · s · (S − s) / 2R at the horizontal distance s of S, where k is the refraction and R the
+/// radius.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct EarthParams {
     /// Which lines are curved. Default: those of more than 2 km.
     pub curvature: Curvature,
-    /// Coefficient of refraction, 0 (none) to below 1: the share of the curvature that light follows. Default 1/7, as in GDAL and
-    /// GRASS.
+    /// Coefficient of refraction, 0 (none) to below 1: the share of the curvature that light follows. Default 1/7, as
+    /// in GDAL and GRASS.
     pub refraction: f64,
     /// Radius of the earth, metres, above 0. Default 6 371 008.8.
     pub radius: f64,
@@ -102,7 +103,8 @@ impl EarthParams {
         if self.curvature == Curvature::Off { 0.0 } else { self.fall(1.0) }
     }
 
-    /// The tangent of the elevation at which a place appears that lies `rise` metres higher on the map and `span` metres away: that of the line of sight where it starts.
+    /// The tangent of the elevation at which a place appears that lies `rise` metres higher on the map and `span`
+    /// metres away: that of the line of sight where it starts.
     pub(super) fn apparent_tangent(&self, rise: f64, span: f64) -> f64 {
         rise / span - self.fall_rate() * span
     }
@@ -112,21 +114,22 @@ impl EarthParams {
         (tangent + self.fall_rate() * span) * span
     }
 
-    /// How far the line lies below the straight one between its ends, metres, at the share `share` of the horizontal length
-    /// `span`, metres.
+    /// How far the line lies below the straight one between its ends, metres, at the share `share` of the horizontal
+    /// length `span`, metres.
     #[must_use]
     pub fn sag(&self, span: f64, share: f64) -> f64 {
         (1.0 - self.refraction) * span * span * share * (1.0 - share) / (2.0 * self.radius)
     }
 
-    /// The corners of the chords that stand for the line of sight between two points, both included: two where it is straight.
+    /// The corners of the chords that stand for the line of sight between two points, both included: two where it is
+    /// straight.
     #[must_use]
     pub fn corners(&self, from: [f64; 3], to: [f64; 3]) -> Vec<[f64; 3]> {
         let span = (to[0] - from[0]).hypot(to[1] - from[1]);
         if !self.bends(from, to) || !span.is_finite() {
             return vec![from, to];
         }
-        let count = (span / CHORD).ceil().clamp(1.0, MOST_CHORDS);
+        let count = (span / CHORD).ceil().clamp(1.0, MAX_CHORDS);
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a whole number up to 10 000")]
         let last = count as u32;
         let corner = |i: u32| -> [f64; 3] {

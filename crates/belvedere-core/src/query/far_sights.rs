@@ -2,11 +2,12 @@
 
 use super::far_line::FarLine;
 use super::far_terrain::piece_over;
-use super::{Answer, Block, Blocker, EarthParams, LineOfSight, MedialScene};
+use super::{Answer, Blocker, EarthParams, LineOfSight, MedialScene, Obstruction};
 use belvedere_data::vector::{length, sub};
 
 impl MedialScene {
-    /// Whether a position, local metres, lies beyond the cloud and over the raster of [`MedialScene::with_far_terrain`], so that lines of sight to it have answers. It may lie below the surface, and
+    /// Whether a position, local metres, lies beyond the cloud and over the raster of
+    /// [`MedialScene::with_far_terrain`], so that lines of sight to it have answers. It may lie below the surface, and
     /// its height may be NaN. False where it is not known over which space the cloud lies.
     #[must_use]
     pub fn is_on_far_terrain(&self, position: [f64; 3]) -> bool {
@@ -25,12 +26,15 @@ impl MedialScene {
         ends.into_iter().any(|end| self.is_on_far_terrain(end)) && !ends.into_iter().any(|end| self.is_outside(end))
     }
 
-    /// Whether `observer` sees `target`, local metres, where one of them or both lie beyond the cloud. Visible, blocked, or unproven where pulses are known;
-    /// [`Answer::OutsideView`] where a coordinate is not finite or one end is above the other.
+    /// Whether `observer` sees `target`, local metres, where one of them or both lie beyond the cloud. Visible,
+    /// blocked, or unproven where pulses are known; [`Answer::OutsideView`] where a coordinate is not finite or one end
+    /// is above the other.
     ///
-    /// Over the box of the cloud on the map, balls and added meshes block as they block any line of sight between the same ends ([`MedialScene::sight_answer`]), and pulses prove it. Beyond
-    /// this box, and a cell of the raster around it, the raster of [`MedialScene::with_far_terrain`] blocks where it rises above the line: the same surface over the same earth as for
-    /// horizons. A target on the surface does not hide itself. The profile of far terrain, which has no distances, is not asked.
+    /// Over the box of the cloud on the map, balls and added meshes block as they block any line of sight between the
+    /// same ends ([`MedialScene::sight_answer`]), and pulses prove it. Beyond this box, and a cell of the raster around
+    /// it, the raster of [`MedialScene::with_far_terrain`] blocks where it rises above the line: the same surface over
+    /// the same earth as for horizons. A target on the surface does not hide itself. The profile of far terrain, which
+    /// has no distances, is not asked.
     #[must_use]
     pub fn far_sight_answer(&self, observer: [f64; 3], target: [f64; 3], earth: &EarthParams) -> Answer {
         let Some(line) = FarLine::new(observer, target, earth) else { return Answer::OutsideView };
@@ -60,7 +64,7 @@ impl MedialScene {
         if let Some(span) = terrain
             && sight.first_block.is_none_or(|block| span < line.span_to(block.place))
         {
-            let block = Block { range: 0.0, blocker: Blocker::Terrain, place: line.at(span) };
+            let block = Obstruction { range: 0.0, blocker: Blocker::Terrain, place: line.at(span) };
             sight = LineOfSight { answer: Answer::Blocked, first_block: Some(block), ..free };
         }
         if let Some(block) = &mut sight.first_block {
@@ -69,7 +73,8 @@ impl MedialScene {
         Some(sight)
     }
 
-    /// Corners of the chords of a line over the box of the cloud, from the side of the observer on; `None` where it passes beside it.
+    /// Corners of the chords of a line over the box of the cloud, from the side of the observer on; `None` where it
+    /// passes beside it.
     fn corners_over_cloud(&self, line: &FarLine<'_>) -> Option<Vec<[f64; 3]>> {
         let over = match self.coverage().map(|coverage| coverage.bounds().on_map()) {
             Some((low, high)) => piece_over([low, high], line.observer, line.along, line.span),

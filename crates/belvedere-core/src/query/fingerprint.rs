@@ -1,11 +1,13 @@
-//! A number that tells whether two scenes are the same, so that what was found in one is not taken for what is in the other.
+//! A number that tells whether two scenes are the same, so that what was found in one is not taken for what is in the
+//! other.
 
 use crate::blocking::{BlockRule, Profile};
 use crate::medial::MedialBalls;
 use crate::query::{AddedMeshes, FarTerrain};
 use belvedere_data::horizon::HorizonProfile;
 
-/// A number that differs, but for one chance in 10¹⁹, between scenes whose balls, added triangles, far terrain or parameters differ in any bit; the same on any machine.
+/// A number that differs, but for one chance in 10¹⁹, between scenes whose balls, added triangles, far terrain or
+/// parameters differ in any bit; the same on any machine.
 ///
 /// # Source
 /// FNV-1a of 64 bits (Fowler, Noll & Vo), taken over words of 32 bits.

@@ -1,15 +1,15 @@
 //! How far one sees from an eye along a direction.
 
-use super::added::Ends;
+use super::added::LineEnds;
 use super::medial_scene::nearer;
 use super::{Blocker, MedialScene};
 use crate::ray_index::Ray;
 use belvedere_data::vector::{dot, sub};
 
 impl MedialScene {
-    /// What an eye at `eye`, local metres, sees along the unit vector `direction` within `reach` metres (may be infinite), and its range,
-    /// metres. `None` where nothing blocks. Balls that hold the eye are left out,
-    /// as for every line of sight; none gives way, since there is no target.
+    /// What an eye at `eye`, local metres, sees along the unit vector `direction` within `reach` metres (may be
+    /// infinite), and its range, metres. `None` where nothing blocks. Balls that hold the eye are left out, as for
+    /// every line of sight; none gives way, since there is no target.
     #[must_use]
     pub fn seen_along(&self, eye: [f64; 3], direction: [f64; 3], reach: f64) -> Option<(Blocker, f64)> {
         let ray = Ray { origin: eye, direction, ranges: [0.0, reach] };
@@ -17,16 +17,18 @@ impl MedialScene {
             self.tree().rule().meets_ray(*self.tree().balls().get(number)?, ray.origin, ray.direction)
         });
         let ball = ball.and_then(|(number, range)| Some((self.blocker_of_ball(number)?, range)));
-        let ends = Ends { target: eye, viewer: None };
+        let ends = LineEnds { target: eye, viewer: None };
         nearer(ball, self.added().and_then(|added| added.nearest(&ray, &ends)))
     }
 
-    /// What a place on a surface, such as a window, has before it along the unit vector `direction`, without end, and its range, metres.
-    /// `None` where nothing blocks.
+    /// What a place on a surface, such as a window, has before it along the unit vector `direction`, without end, and
+    /// its range, metres. `None` where nothing blocks.
     ///
-    /// Other than for [`MedialScene::seen_along`] the place is a target: balls near it give way by [`BlockRule::shell`](super::BlockRule::shell), so that the surface that it lies on does not
-    /// hide what is beside it. Something blocks in exactly the directions that the visibility matrix has as blocked by balls and meshes. Of all
-    /// balls that block, this is the one that the line enters first; the range is 0 in a ball that holds the place even so.
+    /// Other than for [`MedialScene::seen_along`] the place is a target: balls near it give way by
+    /// [`BlockRule::shell`](super::BlockRule::shell), so that the surface that it lies on does not hide what is beside
+    /// it. Something blocks in exactly the directions that the visibility matrix has as blocked by balls and meshes. Of
+    /// all balls that block, this is the one that the line enters first; the range is 0 in a ball that holds the place
+    /// even so.
     #[must_use]
     pub fn seen_from_surface(&self, place: [f64; 3], direction: [f64; 3]) -> Option<(Blocker, f64)> {
         // a ball may be entered before the bias, after which it must be left
@@ -39,7 +41,7 @@ impl MedialScene {
         });
         let ball = ball.and_then(|(number, range)| Some((self.blocker_of_ball(number)?, range)));
         let line = Ray { ranges: [0.0, f64::INFINITY], ..ray };
-        let ends = Ends { target: place, viewer: None };
+        let ends = LineEnds { target: place, viewer: None };
         nearer(ball, self.added().and_then(|added| added.nearest(&line, &ends)))
     }
 }

@@ -19,7 +19,7 @@ impl FreedSpace {
     #[must_use]
     pub fn new(grid: MapGrid, tops: Raster<f32>) -> Option<Self> {
         let heights = tops.values().iter().filter(|top| top.is_finite());
-        let highest = heights.fold(f64::NEG_INFINITY, |most, top| most.max(f64::from(*top)));
+        let highest = heights.fold(f64::NEG_INFINITY, |max, top| max.max(f64::from(*top)));
         highest.is_finite().then_some(Self { grid, tops, highest })
     }
 

@@ -1,6 +1,6 @@
 //! Fresnel zones of radio links: the space around a line of sight that must be free too.
 
-use super::added::Ends;
+use super::added::LineEnds;
 use super::{Answer, EarthParams, LineOfSight, MedialScene};
 use crate::blocking::Ball;
 use crate::triangle_tree::Corners;
@@ -13,10 +13,11 @@ use rayon::prelude::*;
 const LIGHT_SPEED: f64 = 299_792_458.0;
 /// Frequencies of radio links, GHz: below, the zone is wider than the links are long; above is infrared.
 const FREQUENCIES_GHZ: [f64; 2] = [0.001, 1000.0];
-/// Length of the pieces of a link whose boxes are searched for obstacles, metres: shorter ones search less air and more often.
+/// Length of the pieces of a link whose boxes are searched for obstacles, metres: shorter ones search less air and more
+/// often.
 const PIECE: f64 = 16.0;
 /// Most pieces of a link: longer ones have longer pieces.
-const MOST_PIECES: f64 = 10_000.0;
+const MAX_PIECES: f64 = 10_000.0;
 /// Steps in which the narrowest place of a zone is found: each keeps two thirds of the range.
 const STEPS: usize = 60;
 
@@ -33,8 +34,8 @@ impl RadioWave {
     /// # Errors
     /// [`Error::InvalidParameter`] for another frequency.
     pub fn of_frequency(ghz: f64) -> Result<Self> {
-        let [least, most] = FREQUENCIES_GHZ;
-        if !(least..=most).contains(&ghz) {
+        let [min, max] = FREQUENCIES_GHZ;
+        if !(min..=max).contains(&ghz) {
             return Err(Error::InvalidParameter {
                 parameter: Parameter::Frequency,
                 value: format!("{ghz} GHz"),
@@ -95,31 +96,33 @@ impl Link {
         self.wave.zone_radius([along, self.length - along])
     }
 
-    /// The part of the radius of the zone that is free if something lies `beside` metres from the line at `along`: infinite at the ends, where the zone is a point.
+    /// The part of the radius of the zone that is free if something lies `beside` metres from the line at `along`:
+    /// infinite at the ends, where the zone is a point.
     fn share(&self, along: f64, beside: f64) -> f64 {
         let radius = self.radius(along);
         if radius > 0.0 { beside.max(0.0) / radius } else { f64::INFINITY }
     }
 
-    /// The share of the zone that a ball of `radius` metres leaves free, if it is less than `most`.
-    fn share_beside(&self, center: [f64; 3], radius: f64, most: f64) -> f64 {
+    /// The share of the zone that a ball of `radius` metres leaves free, if it is less than `max`.
+    fn share_beside(&self, center: [f64; 3], radius: f64, max: f64) -> f64 {
         let [along, beside] = self.beside(center);
         let [from, to] = [(along - radius).max(0.0), (along + radius).min(self.length)];
-        if from >= to || beside - radius >= most * self.radius((self.length / 2.0).clamp(from, to)) {
+        if from >= to || beside - radius >= max * self.radius((self.length / 2.0).clamp(from, to)) {
             return f64::INFINITY;
         }
         // the gap is convex along the line and the radius of the zone concave, so that their quotient has one minimum
         let gap = |t: f64| beside - (radius * radius - (t - along) * (t - along)).max(0.0).sqrt();
-        least(from, to, |t| self.share(t, gap(t)))
+        min(from, to, |t| self.share(t, gap(t)))
     }
 
-    /// The share of the zone that a triangle leaves free, if it is less than `most`.
-    fn share_before(&self, corners: &Corners, most: f64) -> f64 {
+    /// The share of the zone that a triangle leaves free, if it is less than `max`.
+    fn share_before(&self, corners: &Corners, max: f64) -> f64 {
         let middle: [f64; 3] = std::array::from_fn(|i| corners.iter().map(|corner| corner[i]).sum::<f64>() / 3.0);
         let reach = corners.iter().map(|&corner| length(sub(corner, middle))).fold(0.0, f64::max);
-        // it leaves at least what the sphere around it leaves; the sag raises its corners by less than this beside its middle
+        // it leaves at least what the sphere around it leaves; the sag raises its corners by less than this beside its
+        // middle
         let around = reach * (1.0 + 4.0 * self.sag(self.length / 2.0) / self.length);
-        if self.beside(middle)[1] - around >= most * self.radius(self.length / 2.0) {
+        if self.beside(middle)[1] - around >= max * self.radius(self.length / 2.0) {
             return f64::INFINITY;
         }
         let beside_ends = self.between_ends(corners);
@@ -127,10 +130,11 @@ impl Link {
         let between =
             |p: [f64; 3], q: [f64; 3], t: f64| -> [f64; 3] { std::array::from_fn(|i| p[i] + t * (q[i] - p[i])) };
         let of_triangle = |pair: &[[f64; 3]]| {
-            // the distance to a line is convex over a triangle: one minimum along every line in it, and one across these
-            least(0.0, 1.0, |across| {
+            // the distance to a line is convex over a triangle: one minimum along every line in it, and one across
+            // these
+            min(0.0, 1.0, |across| {
                 let [from, to] = [pair[0], pair[1]].map(|corner| between(a, corner, across));
-                least(0.0, 1.0, |t| {
+                min(0.0, 1.0, |t| {
                     let [along, beside] = self.beside(between(from, to, t));
                     self.share(along, beside)
                 })
@@ -161,7 +165,7 @@ impl Link {
 
     /// Boxes around pieces of the zone, by `share` of its radius: lowest and highest corner.
     fn boxes(&self, share: f64) -> impl Iterator<Item = [[f64; 3]; 2]> + '_ {
-        let count = (self.length / PIECE).ceil().clamp(1.0, MOST_PIECES);
+        let count = (self.length / PIECE).ceil().clamp(1.0, MAX_PIECES);
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a whole number of pieces")]
         let pieces = 0..count as u64;
         pieces.map(move |piece| {
@@ -184,7 +188,7 @@ impl Link {
 }
 
 /// The least value of a function with one minimum between two numbers.
-fn least(mut from: f64, mut to: f64, value: impl Fn(f64) -> f64) -> f64 {
+fn min(mut from: f64, mut to: f64, value: impl Fn(f64) -> f64) -> f64 {
     for _ in 0..STEPS {
         let third = (to - from) / 3.0;
         let [a, b] = [from + third, to - third];
@@ -198,16 +202,18 @@ fn least(mut from: f64, mut to: f64, value: impl Fn(f64) -> f64) -> f64 {
 }
 
 impl MedialScene {
-    /// How much of the first Fresnel zone of a radio link between two points, local metres, is free: the share of its radius that nothing reaches into, 0 where something
-    /// touches the line itself, and at most `most`. A zone counts as free from 0.6 on (ITU-R P.530). NaN for points that are not finite, or are the same.
+    /// How much of the first Fresnel zone of a radio link between two points, local metres, is free: the share of its
+    /// radius that nothing reaches into, 0 where something touches the line itself, and at most `max`. A zone counts as
+    /// free from 0.6 on (ITU-R P.530). NaN for points that are not finite, or are the same.
     ///
-    /// Balls that hold an end are left out and balls near an end give way to it, as to a target; so do triangles in whose plane an end lies. Whether the line of sight is proven is another question, and
-    /// far terrain is not asked. On a curved line the sag is that at the middle of each ball.
+    /// Balls that hold an end are left out and balls near an end give way to it, as to a target; so do triangles in
+    /// whose plane an end lies. Whether the line of sight is proven is another question, and far terrain is not asked.
+    /// On a curved line the sag is that at the middle of each ball.
     #[must_use]
-    pub fn fresnel_clearance(&self, ends: [[f64; 3]; 2], wave: RadioWave, earth: &EarthParams, most: f64) -> f64 {
+    pub fn fresnel_clearance(&self, ends: [[f64; 3]; 2], wave: RadioWave, earth: &EarthParams, max: f64) -> f64 {
         let Some(link) = Link::new(ends, wave, earth) else { return f64::NAN };
-        let mut clearance = most;
-        for [low, high] in link.boxes(most) {
+        let mut clearance = max;
+        for [low, high] in link.boxes(max) {
             self.tree().index().near(low, high, |number| {
                 let Ball { center, radius } = self.ball(number);
                 let center = center.map(f64::from);
@@ -221,8 +227,8 @@ impl MedialScene {
             });
         }
         if let Some(added) = self.added() {
-            let ends = Ends { target: ends[0], viewer: Some(ends[1]) };
-            for corners in added.near(link.boxes(most), &ends) {
+            let ends = LineEnds { target: ends[0], viewer: Some(ends[1]) };
+            for corners in added.near(link.boxes(max), &ends) {
                 if clearance > 0.0 {
                     clearance = clearance.min(link.share_before(corners, clearance));
                 }
@@ -233,12 +239,13 @@ impl MedialScene {
 }
 
 impl MedialScene {
-    /// [`MedialScene::fresnel_clearance`] up to the whole zone of each of `pairs`, (N, two ends), local metres, whose lines of sight are `sights`, (N,), of
-    /// [`MedialScene::lines_of_sight`]. A link that is blocked has none free, and one with an end outside the cloud, or without a line, is NaN. Progress counts pairs.
+    /// [`MedialScene::fresnel_clearance`] up to the whole zone of each of `pairs`, (N, two ends), local metres, whose
+    /// lines of sight are `sights`, (N,), of [`MedialScene::lines_of_sight`]. A link that is blocked has none free, and
+    /// one with an end outside the cloud, or without a line, is NaN. Progress counts pairs.
     ///
     /// # Errors
-    /// [`Error::LengthMismatch`] for another number of lines of sight; [`Error::InvalidParameter`] for a link over far terrain, of which it is not known how far it reaches into the zone; and
-    /// [`Error::Cancelled`].
+    /// [`Error::LengthMismatch`] for another number of lines of sight; [`Error::InvalidParameter`] for a link over far
+    /// terrain, of which it is not known how far it reaches into the zone; and [`Error::Cancelled`].
     pub fn fresnel_clearances(
         &self,
         pairs: &[[[f64; 3]; 2]],
@@ -318,9 +325,10 @@ mod tests {
             #[expect(clippy::cast_possible_truncation, reason = "balls are f32")]
             let radius = (0.2 + 3.0 * random(5)) as f32;
             let found = scene(&[(center, radius)]).fresnel_clearance(ends, wave, &EarthParams::flat(), 9.0);
-            // random points of the ball: none leaves less, and the best leaves hardly more. About 100 000 lie 3 cm apart on the largest ball, a fiftieth of
-            // the zone and more near its ends; a ball that the line crosses has points as near to it
-            let mut least = 9.0_f64;
+            // random points of the ball: none leaves less, and the best leaves hardly more. About 100 000 lie 3 cm
+            // apart on the largest ball, a fiftieth of the zone and more near its ends; a ball that the line crosses
+            // has points as near to it
+            let mut min = 9.0_f64;
             for n in 0..200_000 {
                 let offset: [f64; 3] = std::array::from_fn(|k| 2.0 * uniform(3, 4 * n + k as u64) - 1.0);
                 if length(offset) > 1.0 {
@@ -331,11 +339,11 @@ mod tests {
                 let from = dot(sub(place, ends[0]), axis);
                 let beside = length(std::array::from_fn(|k| place[k] - ends[0][k] - from * axis[k]));
                 if from > 0.0 && from < whole {
-                    least = least.min(beside / wave.zone_radius([from, whole - from]));
+                    min = min.min(beside / wave.zone_radius([from, whole - from]));
                 }
             }
-            let crosses = found == 0.0 && least < 0.2;
-            assert!(crosses || found <= least + 1e-9 && least - found < 0.02 * (1.0 + least), "{found} {least}");
+            let crosses = found == 0.0 && min < 0.2;
+            assert!(crosses || found <= min + 1e-9 && min - found < 0.02 * (1.0 + min), "{found} {min}");
         }
     }
 
@@ -379,7 +387,7 @@ mod tests {
             let added = AddedMeshes::new(&mesh, "sheet", [0.0; 3], None, None).unwrap();
             let scene = scene(&[]).with_added(Some(added));
             let found = scene.fresnel_clearance(ends, wave, &EarthParams::flat(), 9.0);
-            let mut least = 9.0_f64;
+            let mut min = 9.0_f64;
             // a grid of 300 by 300: points lie 10 cm apart or less, a thirtieth of the zone and more near its ends
             for (u, v) in (0..=300_u16).flat_map(|u| (0..=300 - u).map(move |v| (u, v))) {
                 let [u, v] = [u, v].map(|share| f64::from(share) / 300.0);
@@ -389,11 +397,11 @@ mod tests {
                 let from = dot(sub(place, ends[0]), axis);
                 let beside = length(std::array::from_fn(|k| place[k] - ends[0][k] - from * axis[k]));
                 if from > 0.0 && from < whole {
-                    least = least.min(beside / wave.zone_radius([from, whole - from]));
+                    min = min.min(beside / wave.zone_radius([from, whole - from]));
                 }
             }
-            assert!(found <= least + 1e-6 && least - found < 0.05 * (1.0 + least), "{found} {least}");
-            narrowed += usize::from(least > 0.1 && least < 9.0);
+            assert!(found <= min + 1e-6 && min - found < 0.05 * (1.0 + min), "{found} {min}");
+            narrowed += usize::from(min > 0.1 && min < 9.0);
         }
         assert!(narrowed > 20, "{narrowed}");
     }

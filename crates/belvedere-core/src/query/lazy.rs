@@ -6,8 +6,8 @@ use std::sync::{Mutex, OnceLock, PoisonError};
 
 /// A value that is made on first use.
 ///
-/// Whoever asks first makes it, on threads of its own: the caller may itself be one of many threads at work, of which one that waits for
-/// shared threads could be handed work that needs this very value.
+/// Whoever asks first makes it, on threads of its own: the caller may itself be one of many threads at work, of which
+/// one that waits for shared threads could be handed work that needs this very value.
 #[derive(Default)]
 pub(super) struct Lazy<T> {
     value: OnceLock<T>,

@@ -12,20 +12,22 @@ use belvedere_data::view::View;
 
 /// Targets of an eye from which on ordering them into a tree costs less than the lines of sight that it saves.
 const TREE_FROM: usize = 10_000;
-/// Targets of a viewer infinitely far away from which on bounds of depth cost less than the lines of sight that they save: drawing those of
-/// a million balls takes as long as ten million lines of sight.
+/// Targets of a viewer infinitely far away from which on bounds of depth cost less than the lines of sight that they
+/// save: drawing those of a million balls takes as long as ten million lines of sight.
 const MAP_FROM: usize = 16_000_000;
-/// Pixel of these bounds, metres, where targets are many enough; smaller ones settle a little more but are more to draw.
+/// Pixel of these bounds, metres, where targets are many enough; smaller ones settle a little more but are more to
+/// draw.
 const PIXEL: f64 = 0.5;
 /// Targets for each pixel, at least.
 const TARGETS_PER_PIXEL: f64 = 16.0;
 
 impl MedialScene {
-    /// The answer for each of `targets`, (M, 3) local metres, seen by `viewer`, in their order; progress counts targets. What is not finite, or
-    /// is the viewer itself, is [`Answer::OutsideView`]; what lies beside or below the cloud [`Answer::OutsideCloud`].
+    /// The answer for each of `targets`, (M, 3) local metres, seen by `viewer`, in their order; progress counts
+    /// targets. What is not finite, or is the viewer itself, is [`Answer::OutsideView`]; what lies beside or below the
+    /// cloud [`Answer::OutsideCloud`].
     ///
-    /// Every answer is that of [`MedialScene::answer`]. Few targets get a line of sight each, many of one eye are ordered into
-    /// a tree of targets, and very many under one sun are looked up in bounds of depth first.
+    /// Every answer is that of [`MedialScene::answer`]. Few targets get a line of sight each, many of one eye are
+    /// ordered into a tree of targets, and very many under one sun are looked up in bounds of depth first.
     ///
     /// # Errors
     /// As [`super::Visibility::visible`], and [`Error::Cancelled`](belvedere_data::Error::Cancelled).

@@ -1,7 +1,7 @@
 //! A union of medial balls that exact lines of sight are cut with.
 
-use super::added::{AddedMeshes, Ends};
-use super::backend::{Backend, Prepared};
+use super::added::{AddedMeshes, LineEnds};
+use super::backend::{Backend, PreparedBackend};
 use super::ball_tree::BallTree;
 use super::certified::{line_in_view, viewer_of};
 use super::cpu::Cpu;
@@ -23,16 +23,16 @@ const CHUNK: usize = 1024;
 
 /// Medial balls indexed for exact lines of sight, for any number of viewers.
 ///
-/// A target is blocked if its line of sight to the viewer leaves a ball more than [`BlockRule::bias`] on: the same rule as
-/// for a depth map ([`super::query_points`]), without pixels. Balls that hold the viewer are left out for that line of
-/// sight, so that one wrong ball does not blind an observer; balls that hold the target are not, but give way by
+/// A target is blocked if its line of sight to the viewer leaves a ball more than [`BlockRule::bias`] on: the same rule
+/// as for a depth map ([`super::query_points`]), without pixels. Balls that hold the viewer are left out for that line
+/// of sight, so that one wrong ball does not blind an observer; balls that hold the target are not, but give way by
 /// [`BlockRule::shell`], which depth maps know nothing of.
 ///
-/// With pulses ([`MedialScene::with_pulses`]) a target that nothing blocks is [`Answer::Unproven`] where too much of its
-/// line of sight runs through space that no pulse came near to.
+/// With pulses ([`MedialScene::with_pulses`]) a target that nothing blocks is [`Answer::Unproven`] where too much of
+/// its line of sight runs through space that no pulse came near to.
 ///
-/// With meshes ([`MedialScene::with_added`]) their triangles block too, exactly as they are; space inside and around them stays as proven or
-/// unproven as it was.
+/// With meshes ([`MedialScene::with_added`]) their triangles block too, exactly as they are; space inside and around
+/// them stays as proven or unproven as it was.
 ///
 /// With a coverage ([`MedialScene::with_coverage`]) what lies beside or below the cloud is [`Answer::OutsideCloud`].
 pub struct MedialScene {
@@ -43,7 +43,7 @@ pub struct MedialScene {
     pub(super) freed: Vec<FreedSpace>,
     pub(super) far_terrain: FarTerrain,
     backend: Arc<dyn Backend>,
-    prepared: Lazy<Box<dyn Prepared>>,
+    prepared: Lazy<Box<dyn PreparedBackend>>,
 }
 
 impl MedialScene {
@@ -89,7 +89,7 @@ impl MedialScene {
     ///
     /// # Errors
     /// Those of [`Backend::prepare`].
-    pub fn prepared(&self) -> Result<&dyn Prepared> {
+    pub fn prepared(&self) -> Result<&dyn PreparedBackend> {
         self.prepared.get_or_make(|| self.backend.prepare(&self.tree)).map(AsRef::as_ref)
     }
 
@@ -127,8 +127,8 @@ impl MedialScene {
         self
     }
 
-    /// The same balls before far terrain: every direction below its horizon is blocked. Of lines of sight that end, its raster blocks those that leave the cloud
-    /// ([`MedialScene::line_of_sight`]).
+    /// The same balls before far terrain: every direction below its horizon is blocked. Of lines of sight that end, its
+    /// raster blocks those that leave the cloud ([`MedialScene::line_of_sight`]).
     #[must_use]
     pub fn with_far_terrain(mut self, far_terrain: FarTerrain) -> Self {
         self.far_terrain = far_terrain;
@@ -141,7 +141,8 @@ impl MedialScene {
         &self.far_terrain
     }
 
-    /// How much of a line of sight `proof` does not prove, metres: [`Proof::unproven_length`] outside the space that was freed.
+    /// How much of a line of sight `proof` does not prove, metres: [`Proof::unproven_length`] outside the space that
+    /// was freed.
     pub(super) fn unproven_length(&self, proof: &Proof, target: [f64; 3], towards: [f64; 3], range: f64) -> f64 {
         if self.freed.is_empty() {
             return proof.unproven_length(target, towards, range);
@@ -177,8 +178,8 @@ impl MedialScene {
         self.proof.as_ref()
     }
 
-    /// The answer for one line of sight from `target`, local metres, to `range` metres (infinite for a direction) along the unit
-    /// vector `towards`. All numbers but the range must be finite.
+    /// The answer for one line of sight from `target`, local metres, to `range` metres (infinite for a direction) along
+    /// the unit vector `towards`. All numbers but the range must be finite.
     #[must_use]
     pub fn answer(&self, target: [f64; 3], towards: [f64; 3], range: f64) -> Answer {
         if self.tree.blocks(&self.tree.ray(target, towards, range)) {
@@ -195,8 +196,9 @@ impl MedialScene {
         if self.is_unproven(target, towards, range) { Answer::Unproven } else { Answer::Visible }
     }
 
-    /// Whether too much of the line from `target`, local metres, to `range` metres (may be infinite) along the unit vector `towards` runs through space that no pulse came near
-    /// to; false where pulses are not known. What blocks is not asked.
+    /// Whether too much of the line from `target`, local metres, to `range` metres (may be infinite) along the unit
+    /// vector `towards` runs through space that no pulse came near to; false where pulses are not known. What blocks is
+    /// not asked.
     #[must_use]
     pub fn is_unproven(&self, target: [f64; 3], towards: [f64; 3], range: f64) -> bool {
         self.proof.as_ref().is_some_and(|proof| {
@@ -205,8 +207,8 @@ impl MedialScene {
         })
     }
 
-    /// Visible, unproven, or blocked by what was added or by far terrain, for a line of sight from `target` along the unit vector `towards` without end of which it is known that no ball
-    /// blocks it.
+    /// Visible, unproven, or blocked by what was added or by far terrain, for a line of sight from `target` along the
+    /// unit vector `towards` without end of which it is known that no ball blocks it.
     #[must_use]
     pub fn answer_unblocked_towards(&self, target: [f64; 3], towards: [f64; 3]) -> Answer {
         self.answer_unblocked(target, towards, f64::INFINITY)
@@ -224,8 +226,8 @@ impl MedialScene {
         self.tree.balls().par_iter().with_min_len(CHUNK).filter(|ball| ball.depth_of(eye) >= 0.0).count()
     }
 
-    /// The answer for each of `targets`, (M, 3) local metres, by an exact line of sight: `line` gives the unit vector to the viewer and its
-    /// range for the target of a number, `None` for one that has no line of sight.
+    /// The answer for each of `targets`, (M, 3) local metres, by an exact line of sight: `line` gives the unit vector
+    /// to the viewer and its range for the target of a number, `None` for one that has no line of sight.
     pub(super) fn answer_each(
         &self,
         targets: &[[f32; 3]],
@@ -238,7 +240,8 @@ impl MedialScene {
         })
     }
 
-    /// What `answer` gives for each of `targets`, (M, 3) local metres, and its number; outside the view where that is `None`.
+    /// What `answer` gives for each of `targets`, (M, 3) local metres, and its number; outside the view where that is
+    /// `None`.
     pub(super) fn answer_by(
         &self,
         targets: &[[f32; 3]],
@@ -258,10 +261,11 @@ impl MedialScene {
         Ok(answers)
     }
 
-    /// Answers for `targets`, (M, 3) local metres, in `view`, as [`super::query_points`] gives them from its depth map, but
-    /// by exact lines of sight: each ends at the picture plane, or at the near limit of a view from an eye. What lies beside the
-    /// picture or beyond its limits is [`Answer::OutsideView`], and balls that reach before the plane or the limit block
-    /// nothing, as those that hold a viewer. [`MedialScene::visible_in_views`] gives the same answers, faster where there are many.
+    /// Answers for `targets`, (M, 3) local metres, in `view`, as [`super::query_points`] gives them from its depth map,
+    /// but by exact lines of sight: each ends at the picture plane, or at the near limit of a view from an eye. What
+    /// lies beside the picture or beyond its limits is [`Answer::OutsideView`], and balls that reach before the plane
+    /// or the limit block nothing, as those that hold a viewer. [`MedialScene::visible_in_views`] gives the same
+    /// answers, faster where there are many.
     ///
     /// # Errors
     /// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
@@ -286,14 +290,14 @@ impl MedialScene {
         self.tree.ray(target, towards, range)
     }
 
-    /// What a line of sight from `target` meets first on its way to `range` metres along the unit vector `towards`, and where the line
-    /// leaves it, metres from the target. `None` where nothing blocks.
+    /// What a line of sight from `target` meets first on its way to `range` metres along the unit vector `towards`, and
+    /// where the line leaves it, metres from the target. `None` where nothing blocks.
     #[must_use]
     pub fn first_block(&self, target: [f64; 3], towards: [f64; 3], range: f64) -> Option<(Blocker, f64)> {
         let ray = self.ray(target, towards, range);
         let ball = self.tree.index().nearest(&ray, |number| self.front(number, &ray));
         let ball = ball.and_then(|(number, front)| Some((self.blocker_of_ball(number)?, front)));
-        let ends = Ends { target, viewer: range.is_finite().then(|| ray.at(range)) };
+        let ends = LineEnds { target, viewer: range.is_finite().then(|| ray.at(range)) };
         let line = Ray { ranges: [0.0, range], ..ray };
         nearer(ball, self.added.as_ref().and_then(|added| added.nearest(&line, &ends)))
     }

@@ -1,6 +1,6 @@
 //! Mesh targets: how much of each face and of each object a viewer sees.
 
-use super::surface::{Piece, Sides, SurfacePieces};
+use super::surface::{Sides, SurfacePiece, SurfacePieces};
 use super::{Answer, Viewer};
 use belvedere_data::vector::{dot, sub};
 use belvedere_data::{Error, Parameter, Result};
@@ -24,9 +24,10 @@ pub enum BackFaces {
 pub struct MeshTargetParams {
     /// What to make of faces turned away from the viewer. Default: not visible.
     pub back_faces: BackFaces,
-    /// How far before its face a place is asked, on the side of the viewer, metres, 0 or more. Default 0.1: balls stand out by about as
-    /// much where no pulse reached. On a simulated town this takes the false-blocked share of facades in the sun from 15.7 to 9.6 % and
-    /// the error of a building's share from 0.10 to 0.05, for a point more of false-visible on facades and three on roofs.
+    /// How far before its face a place is asked, on the side of the viewer, metres, 0 or more. Default 0.1: balls stand
+    /// out by about as much where no pulse reached. On a simulated town this takes the false-blocked share of facades
+    /// in the sun from 15.7 to 9.6 % and the error of a building's share from 0.10 to 0.05, for a point more of
+    /// false-visible on facades and three on roofs.
     pub lift: f64,
 }
 
@@ -87,7 +88,7 @@ impl SeenArea {
     }
 }
 
-impl Piece {
+impl SurfacePiece {
     /// Any vector from the plane of the piece to a common viewer.
     fn towards(&self, viewer: Viewer<'_>) -> [f64; 3] {
         match viewer {
@@ -117,14 +118,14 @@ impl Piece {
     }
 }
 
-/// Whether each piece of `surface` is turned to `viewer`. Pieces seen exactly edge-on are not; those of a surface without a known outside
-/// all are.
+/// Whether each piece of `surface` is turned to `viewer`. Pieces seen exactly edge-on are not; those of a surface
+/// without a known outside all are.
 ///
 /// # Errors
 /// [`Error::UnsupportedViewer`] for [`Viewer::Each`], and those of [`Viewer::validate`].
 pub fn facing(surface: &SurfacePieces, viewer: Viewer<'_>) -> Result<Vec<bool>> {
     viewer.validate()?;
-    let turned = |piece: &Piece| dot(piece.normal.map(f64::from), piece.towards(viewer)) > 0.0;
+    let turned = |piece: &SurfacePiece| dot(piece.normal.map(f64::from), piece.towards(viewer)) > 0.0;
     match (surface.sides, viewer) {
         (_, Viewer::Each(_)) => {
             Err(Error::UnsupportedViewer { method: "a surface", what: "from one eye or along one direction" })
@@ -135,14 +136,16 @@ pub fn facing(surface: &SurfacePieces, viewer: Viewer<'_>) -> Result<Vec<bool>> 
 }
 
 /// What `viewer` sees of each face of `surface`, (faces). `ask` answers for places, (M, 3) local metres, such as
-/// [`super::Visibility::visible`] for the same viewer; whatever is not [`Answer::Visible`] or [`Answer::Unproven`] counts as not seen.
+/// [`super::Visibility::visible`] for the same viewer; whatever is not [`Answer::Visible`] or [`Answer::Unproven`]
+/// counts as not seen.
 ///
-/// Each piece counts as its place does. The standard error of a face follows from pairs of neighbouring pieces that differ (collapsed
-/// strata), and errs to the large side; a face of one piece has the greatest there can be, half its area. Areas and
-/// squares of errors of faces add up to those of objects.
+/// Each piece counts as its place does. The standard error of a face follows from pairs of neighbouring pieces that
+/// differ (collapsed strata), and errs to the large side; a face of one piece has the greatest there can be, half its
+/// area. Areas and squares of errors of faces add up to those of objects.
 ///
 /// # Errors
-/// Those of [`facing`], of [`MeshTargetParams::validate`] and of `ask`, and [`Error::LengthMismatch`] where it answers for another number of places.
+/// Those of [`facing`], of [`MeshTargetParams::validate`] and of `ask`, and [`Error::LengthMismatch`] where it answers
+/// for another number of places.
 ///
 /// # Source
 /// Cochran 1977, Sampling Techniques, section 5A.12 (one unit per stratum).
@@ -156,14 +159,14 @@ pub fn seen_faces(
     let back_faces = params.back_faces;
     let turned = facing(surface, viewer)?;
     let facing = if back_faces == BackFaces::BothSides { vec![true; turned.len()] } else { turned };
-    let asked: Vec<usize> = (0..surface.pieces.len()).filter(|&row| facing[row]).collect();
-    let places: Vec<[f32; 3]> = asked.iter().map(|&row| surface.pieces[row].lifted(viewer, params.lift)).collect();
+    let queried: Vec<usize> = (0..surface.pieces.len()).filter(|&row| facing[row]).collect();
+    let places: Vec<[f32; 3]> = queried.iter().map(|&row| surface.pieces[row].lifted(viewer, params.lift)).collect();
     let given = ask(&places)?;
     if given.len() != places.len() {
         return Err(Error::LengthMismatch { what: "answers", expected: places.len(), found: given.len() });
     }
     let mut answers = vec![Answer::Blocked; surface.pieces.len()];
-    for (&row, answer) in asked.iter().zip(given) {
+    for (&row, answer) in queried.iter().zip(given) {
         answers[row] = answer;
     }
     let mut faces = vec![SeenArea::default(); surface.face_count];
@@ -181,7 +184,7 @@ pub fn seen_faces(
 }
 
 /// What is seen of the pieces of one face.
-fn seen_of(pieces: &[Piece], answers: &[Answer], is_asked: bool) -> SeenArea {
+fn seen_of(pieces: &[SurfacePiece], answers: &[Answer], is_queried: bool) -> SeenArea {
     let mut seen = SeenArea::default();
     for (piece, answer) in pieces.iter().zip(answers) {
         let area = f64::from(piece.area);
@@ -200,7 +203,7 @@ fn seen_of(pieces: &[Piece], answers: &[Answer], is_asked: bool) -> SeenArea {
     };
     let last = pieces.len() - 1;
     seen.variance = match last {
-        _ if !is_asked => 0.0,
+        _ if !is_queried => 0.0,
         0 => seen.area * seen.area / 4.0,
         _ => {
             let pairs: f64 = (0..pieces.len() / 2).map(|pair| differ(2 * pair, 2 * pair + 1)).sum();

@@ -3,13 +3,14 @@
 //! There are three ways of asking a [`MedialScene`]:
 //!
 //! - a pair of points: [`MedialScene::line_of_sight`] (what blocks it first, how much of it is not proven), with
-//!   [`MedialScene::crossings`], [`MedialScene::least_visible_height`], [`MedialScene::seen_along`], [`MedialScene::seen_from_surface`] and
-//!   [`MedialScene::far_sight_answer`] (one that leaves the cloud) beside it;
+//!   [`MedialScene::crossings`], [`MedialScene::min_visible_height`], [`MedialScene::seen_along`],
+//!   [`MedialScene::seen_from_surface`] and [`MedialScene::far_sight_answer`] (one that leaves the cloud) beside it;
 //! - many targets of one viewer: [`MedialScene::visible_from`], or [`MedialScene::visible_in_views`] for pictures;
 //! - many directions at many targets: [`MedialScene::visibility_matrix`].
 //!
-//! Other models of a scene answer the second and the third by the trait [`Visibility`]. [`target_tree`] and [`certified`] hold what these
-//! are made of, for those who ask about the same targets or the same view again and again. A [`Backend`] settles lines of sight in bulk.
+//! Other models of a scene answer the second and the third by the trait [`Visibility`]. [`target_tree`] and
+//! [`certified`] hold what these are made of, for those who ask about the same targets or the same view again and
+//! again. A [`Backend`] settles lines of sight in bulk.
 
 mod added;
 pub mod backend;
@@ -43,7 +44,7 @@ pub mod visibility_matrix;
 
 pub use crate::blocking::{Ball, BlockRule, Profile};
 pub use added::AddedMeshes;
-pub use backend::{Backend, Drawable, Line, Prepared, Settled, Viewers};
+pub use backend::{Backend, Drawable, LineAnswer, PreparedBackend, Settled, Viewers};
 pub use ball_tree::BallTree;
 pub use certified::{CertifiedReport, Scope};
 pub use coverage::Coverage;
@@ -56,11 +57,11 @@ pub use fresnel::RadioWave;
 pub use medial_scene::MedialScene;
 pub use mesh::{BackFaces, MeshTargetParams, SeenArea, facing, seen_faces, seen_in_all, seen_objects};
 pub use points::{
-    Answer, AnswerCounts, MOST_RANDOM_PAIRS, MOST_RANDOM_TARGETS, UnprovenAs, query_points, random_targets,
+    Answer, AnswerCounts, MAX_RANDOM_PAIRS, MAX_RANDOM_TARGETS, UnprovenAs, query_points, random_targets,
 };
 pub use proof::{Beside, Proof, ProofParams};
-pub use segments::{Block, Blocker, Crossing, Enclosure, LineOfSight, merged_crossings, random_pairs};
+pub use segments::{Blocker, Crossing, Enclosure, LineOfSight, Obstruction, merged_crossings, random_pairs};
 pub use skyline::SkylinePoint;
-pub use surface::{Piece, Sides, SurfacePieces};
+pub use surface::{Sides, SurfacePiece, SurfacePieces};
 pub use visibility::{Sight, Viewer, Visibility};
 pub use visibility_matrix::{FreeLines, VisibilityMatrix};

@@ -86,13 +86,14 @@ const CHUNK: usize = 16_384;
 /// [`DepthMap::default_depth_bias`].
 ///
 /// # Source
-/// Peters, Ledoux & Biljecki 2015, section 3.3 and Algorithm 2 (`QUERYPOINT`); Williams 1978. The bias is not in the paper.
+/// Peters, Ledoux & Biljecki 2015, section 3.3 and Algorithm 2 (`QUERYPOINT`); Williams 1978. The bias is not in the
+/// paper.
 #[must_use]
 pub fn query_points(map: &DepthMap, targets: &[[f32; 3]], depth_bias: f32) -> Vec<Answer> {
     #[expect(clippy::cast_possible_truncation, reason = "the depth map holds f32")]
     let [near, far] = map.view.limits().map(|v| v as f32);
     // the paper's picture plane has no behind
-    let least_depth = match map.profile {
+    let min_depth = match map.profile {
         Profile::Sphere => near,
         Profile::PaperCone => f32::NEG_INFINITY,
     };
@@ -104,7 +105,7 @@ pub fn query_points(map: &DepthMap, targets: &[[f32; 3]], depth_bias: f32) -> Ve
             #[expect(clippy::cast_possible_truncation, reason = "the depth map holds f32")]
             let z = z as f32;
             // beside the picture or beyond its limits, or not a number
-            if !(x >= 0.0 && y >= 0.0 && z + depth_bias >= least_depth && z <= far) {
+            if !(x >= 0.0 && y >= 0.0 && z + depth_bias >= min_depth && z <= far) {
                 return Answer::OutsideView;
             }
             #[expect(
@@ -122,9 +123,9 @@ pub fn query_points(map: &DepthMap, targets: &[[f32; 3]], depth_bias: f32) -> Ve
 }
 
 /// Most random targets of one run, which needs some 100 bytes for each. More come from runs with other seeds.
-pub const MOST_RANDOM_TARGETS: usize = 50_000_000;
+pub const MAX_RANDOM_TARGETS: usize = 50_000_000;
 /// Most random pairs of one run, which needs some 400 bytes for each.
-pub const MOST_RANDOM_PAIRS: usize = 10_000_000;
+pub const MAX_RANDOM_PAIRS: usize = 10_000_000;
 
 /// `count` positions spread evenly at random over the local box from `low` to `high`: the paper's experiment. The same
 /// seed gives the same positions for any number of threads.

@@ -2,7 +2,7 @@
 
 use super::lazy::Lazy;
 use super::seen_space::SeenSpace;
-use crate::pulses::{NeedleColumns, Needles, lower_ends};
+use crate::pulses::{FreeSegmentColumns, FreeSegments, lower_ends};
 use belvedere_data::control::Control;
 use belvedere_data::{Error, Parameter, Result};
 use rayon::prelude::*;
@@ -10,8 +10,9 @@ use std::sync::Arc;
 
 /// How far ahead the next pulse is looked for where none is near, metres: half a street.
 const LOOK_AHEAD: f64 = 4.0;
-/// Nearness where pulses are dense enough, metres: what carves balls of half a metre leaves no room for things that block.
-const LEAST_NEARNESS: f64 = 0.7;
+/// Nearness where pulses are dense enough, metres: what carves balls of half a metre leaves no room for things that
+/// block.
+const MIN_NEARNESS: f64 = 0.7;
 /// Side of the cells that pulses are counted in, metres.
 const COUNTING_CELL: f32 = 4.0;
 
@@ -21,11 +22,11 @@ pub struct ProofParams {
     /// How near a pulse must pass for a place to count as seen, metres, above 0; `None`, the default, for
     /// [`nearness`] of the pulses.
     pub nearness: Option<f64>,
-    /// How much of a line of sight, in total, may run through space not seen, metres, 0 or more. Default 0.5: less than what a
-    /// person or a trunk takes.
+    /// How much of a line of sight, in total, may run through space not seen, metres, 0 or more. Default 0.5: less than
+    /// what a person or a trunk takes.
     pub tolerance: f64,
-    /// Step where no pulse is near, metres, above 0. Default 0.1. A seen piece shorter than this between two that are not may be
-    /// counted with them; all other lengths are exact.
+    /// Step where no pulse is near, metres, above 0. Default 0.1. A seen piece shorter than this between two that are
+    /// not may be counted with them; all other lengths are exact.
     pub step: f64,
     /// What is thought of space beside the survey.
     pub beside: Beside,
@@ -35,50 +36,51 @@ pub struct ProofParams {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Beside {
     /// Nothing is asked of it: a line of sight is followed to the edge of the survey.
-    NotAsked,
+    Ignored,
     /// No pulse saw it.
     Unseen,
 }
 
 impl Default for ProofParams {
     fn default() -> Self {
-        Self { nearness: None, tolerance: 0.5, step: 0.1, beside: Beside::NotAsked }
+        Self { nearness: None, tolerance: 0.5, step: 0.1, beside: Beside::Ignored }
     }
 }
 
-/// Pulses that tell how much of a line of sight none of them came near to. Their index is made when it is first needed, once for all clones.
+/// Pulses that tell how much of a line of sight none of them came near to. Their index is made when it is first needed,
+/// once for all clones.
 #[derive(Clone)]
 pub struct Proof {
     nearness: f64,
     params: ProofParams,
-    pulses: Pulses,
+    pulses: ProofSource,
     index: Arc<Lazy<ProofIndex>>,
 }
 
 /// What a proof is made of.
 #[derive(Clone)]
-enum Pulses {
+enum ProofSource {
     /// Indexed already.
-    Indexed(Arc<Needles>),
-    Columns(Arc<NeedleColumns>),
+    Indexed(Arc<FreeSegments>),
+    Columns(Arc<FreeSegmentColumns>),
 }
 
 /// Pulses, made ready for lines of sight.
 struct ProofIndex {
-    needles: Arc<Needles>,
+    free_segments: Arc<FreeSegments>,
     seen_space: SeenSpace,
     /// West, south and east, north of the lower ends.
     extent: [[f64; 2]; 2],
 }
 
-/// How near a pulse must pass for a place to count as seen, metres: 0.7, or the usual distance between pulses, 1/√density,
-/// where that is more. The density is the median over cells of 4 m that have any.
+/// How near a pulse must pass for a place to count as seen, metres: 0.7, or the usual distance between pulses,
+/// 1/√density, where that is more. The density is the median over cells of 4 m that have any.
 ///
 /// # Source
 /// This project's own.
 #[must_use]
-pub fn nearness(needles: &Needles) -> f64 {
-    nearness_of(needles.lower_ends())
+pub fn nearness(free_segments: &FreeSegments) -> f64 {
+    nearness_of(free_segments.lower_ends())
 }
 
 fn nearness_of(lower_ends: impl Iterator<Item = [f32; 3]>) -> f64 {
@@ -90,7 +92,7 @@ fn nearness_of(lower_ends: impl Iterator<Item = [f32; 3]>) -> f64 {
     counts.sort_unstable();
     let median = counts.get(counts.len() / 2).copied().unwrap_or(1);
     let density = median as f64 / f64::from(COUNTING_CELL * COUNTING_CELL);
-    LEAST_NEARNESS.max(1.0 / density.sqrt())
+    MIN_NEARNESS.max(1.0 / density.sqrt())
 }
 
 impl Proof {
@@ -98,22 +100,22 @@ impl Proof {
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] for a parameter outside its range.
-    pub fn new(needles: Needles, params: &ProofParams) -> Result<Self> {
-        let nearness = params.nearness.unwrap_or_else(|| nearness(&needles));
-        Self::of_pulses(Pulses::Indexed(Arc::new(needles)), nearness, params)
+    pub fn new(free_segments: FreeSegments, params: &ProofParams) -> Result<Self> {
+        let nearness = params.nearness.unwrap_or_else(|| nearness(&free_segments));
+        Self::of_pulses(ProofSource::Indexed(Arc::new(free_segments)), nearness, params)
     }
 
     /// The same for pulses as ball files hold them, which are not even indexed before the first line of sight needs it.
     ///
     /// # Errors
-    /// As [`Proof::new`], and those of [`NeedleColumns::validate`].
-    pub fn from_columns(columns: NeedleColumns, params: &ProofParams) -> Result<Self> {
+    /// As [`Proof::new`], and those of [`FreeSegmentColumns::validate`].
+    pub fn from_columns(columns: FreeSegmentColumns, params: &ProofParams) -> Result<Self> {
         columns.validate()?;
         let nearness = params.nearness.unwrap_or_else(|| nearness_of(lower_ends(&columns)));
-        Self::of_pulses(Pulses::Columns(Arc::new(columns)), nearness, params)
+        Self::of_pulses(ProofSource::Columns(Arc::new(columns)), nearness, params)
     }
 
-    fn of_pulses(pulses: Pulses, nearness: f64, params: &ProofParams) -> Result<Self> {
+    fn of_pulses(pulses: ProofSource, nearness: f64, params: &ProofParams) -> Result<Self> {
         let invalid = |parameter, value: f64, expected| {
             Err(Error::InvalidParameter { parameter, value: value.to_string(), expected })
         };
@@ -129,7 +131,8 @@ impl Proof {
         Ok(Self { nearness, params: *params, pulses, index: Arc::new(Lazy::new()) })
     }
 
-    /// Indexes the pulses, if no line of sight needed that before. All else does it by itself, but cannot be cancelled meanwhile.
+    /// Indexes the pulses, if no line of sight needed that before. All else does it by itself, but cannot be cancelled
+    /// meanwhile.
     ///
     /// # Errors
     /// [`Error::Cancelled`].
@@ -142,25 +145,25 @@ impl Proof {
     /// # Errors
     /// [`Error::Cancelled`].
     pub fn prepare_all(&self, control: &Control<'_>) -> Result<()> {
-        let ProofIndex { needles, seen_space, .. } = self.index.get_or_make(|| self.make_index(control))?;
-        seen_space.make_all(needles, control)
+        let ProofIndex { free_segments, seen_space, .. } = self.index.get_or_make(|| self.make_index(control))?;
+        seen_space.make_all(free_segments, control)
     }
 
     fn make_index(&self, control: &Control<'_>) -> Result<ProofIndex> {
-        let needles = match &self.pulses {
-            Pulses::Indexed(needles) => Arc::clone(needles),
-            Pulses::Columns(columns) => Arc::new(Needles::from_columns(columns, control)?),
+        let free_segments = match &self.pulses {
+            ProofSource::Indexed(free_segments) => Arc::clone(free_segments),
+            ProofSource::Columns(columns) => Arc::new(FreeSegments::from_columns(columns, control)?),
         };
         control.check()?;
         let mut extent = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
-        for start in needles.lower_ends() {
+        for start in free_segments.lower_ends() {
             for axis in 0..2 {
                 extent[0][axis] = extent[0][axis].min(f64::from(start[axis]));
                 extent[1][axis] = extent[1][axis].max(f64::from(start[axis]));
             }
         }
-        let seen_space = SeenSpace::new(&needles, extent, self.nearness);
-        Ok(ProofIndex { needles, seen_space, extent })
+        let seen_space = SeenSpace::new(&free_segments, extent, self.nearness);
+        Ok(ProofIndex { free_segments, seen_space, extent })
     }
 
     /// How near a pulse must pass, metres.
@@ -175,8 +178,8 @@ impl Proof {
         self.params.tolerance
     }
 
-    /// How much of the way from `target`, local metres, along the unit vector `towards` to `range` metres (infinite for a
-    /// direction) runs through space that no pulse came near to, metres. Above the highest return everything is free.
+    /// How much of the way from `target`, local metres, along the unit vector `towards` to `range` metres (infinite for
+    /// a direction) runs through space that no pulse came near to, metres. Above the highest return everything is free.
     /// Without any pulse all of it is unseen; so is a line that runs down without end.
     #[must_use]
     pub fn unproven_length(&self, target: [f64; 3], towards: [f64; 3], range: f64) -> f64 {
@@ -192,10 +195,10 @@ impl Proof {
     /// The unseen length, or something above `enough` as soon as it is known to exceed that.
     fn length(&self, target: [f64; 3], towards: [f64; 3], range: f64, enough: f64) -> f64 {
         let Some(index) = self.index.get(|control| self.make_index(control)) else { return range };
-        if index.needles.is_empty() {
+        if index.free_segments.is_empty() {
             return range;
         }
-        let top = f64::from(index.needles.top());
+        let top = f64::from(index.free_segments.top());
         let mut below = [0.0, range];
         clip(&mut below, target[2], towards[2], [f64::NEG_INFINITY, top]);
         let mut inside = below;
@@ -204,7 +207,7 @@ impl Proof {
         }
         let span = |[from, to]: [f64; 2]| (to - from).max(0.0);
         let beside = match self.params.beside {
-            Beside::NotAsked => 0.0,
+            Beside::Ignored => 0.0,
             Beside::Unseen => span(below) - span(inside),
         };
         if span(inside) == f64::INFINITY {
@@ -223,21 +226,21 @@ impl Proof {
         [from, to]: [f64; 2],
         enough: f64,
     ) -> f64 {
-        let ProofIndex { needles, seen_space, .. } = index;
+        let ProofIndex { free_segments, seen_space, .. } = index;
         let point = |at: f64| -> [f64; 3] { std::array::from_fn(|i| origin[i] + at * direction[i]) };
         let backward = direction.map(|v| -v);
         let mut unseen = 0.0;
         let mut gap_from: Option<f64> = None;
         let mut at = from;
         while at < to {
-            let seen_to = seen_space
-                .near_until(needles, (origin, direction), at)
-                .or_else(|| needles.near_piece(origin, direction, at, self.nearness).map(|[_, piece_to]| piece_to));
+            let seen_to = seen_space.near_until(free_segments, (origin, direction), at).or_else(|| {
+                free_segments.near_piece(origin, direction, at, self.nearness).map(|[_, piece_to]| piece_to)
+            });
             if let Some(seen_to) = seen_to {
                 if let Some(start) = gap_from.take() {
                     // the last step may have gone past where pulses come near again
                     let mut end = at;
-                    while let Some([_, before]) = needles.near_piece(origin, backward, -end, self.nearness)
+                    while let Some([_, before]) = free_segments.near_piece(origin, backward, -end, self.nearness)
                         && end > start
                     {
                         end = -before;
@@ -249,7 +252,7 @@ impl Proof {
             }
             let start = *gap_from.get_or_insert(at);
             let reach = self.nearness + LOOK_AHEAD;
-            let clear = needles.free_distance(point(at), reach) - self.nearness;
+            let clear = free_segments.free_distance(point(at), reach) - self.nearness;
             if unseen + (at + clear.max(0.0)).min(to) - start > enough {
                 return f64::max(unseen + (at + clear.max(0.0)).min(to) - start, enough);
             }

@@ -1,30 +1,32 @@
 //! Boxes of space that are near some pulse everywhere: most of a line of sight is proven by a look at these.
 
-use crate::pulses::Needles;
+use crate::pulses::FreeSegments;
 use belvedere_data::Result;
 use belvedere_data::control::Control;
 use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::OnceLock;
 
-/// Side of a box as a share of the nearness. A needle that passes the middle of a box within nearness − side/√2 is near to all of
-/// it; the smaller the boxes, the more of them find such a needle, and the more there are.
+/// Side of a box as a share of the nearness. A needle that passes the middle of a box within nearness − side/√2 is near
+/// to all of it; the smaller the boxes, the more of them find such a needle, and the more there are.
 const SIDE_PER_NEARNESS: f64 = 0.45;
 /// Height of a box as a share of the nearness: leaning needles stay in low boxes.
 const HEIGHT_PER_NEARNESS: f64 = 1.0;
 /// The same where needles run in all directions: cubes.
 const HEIGHT_AMONG_FLAT: f64 = SIDE_PER_NEARNESS;
-/// Boxes above one another: bits of a word. Higher scenes get higher boxes, of which fewer are near one needle all the way up.
-const MOST_LAYERS: f64 = 64.0;
+/// Boxes above one another: bits of a word. Higher scenes get higher boxes, of which fewer are near one needle all the
+/// way up.
+const MAX_LAYERS: f64 = 64.0;
 /// Most columns, 160 MB; a larger survey gets larger boxes, and what these cannot prove is asked of the pulses.
-const MOST_COLUMNS: f64 = 2e7;
+const MAX_COLUMNS: f64 = 2e7;
 /// What rounding of f32 may shift a needle by, metres.
 const ROUNDING: f64 = 2e-3;
 
 /// Columns of boxes along a side of a tile: 5 m of usual pulses.
 const TILE: usize = 16;
 
-/// A grid of boxes, each known to be near pulses or not. It proves less than the pulses themselves and nothing that they do not.
+/// A grid of boxes, each known to be near pulses or not. It proves less than the pulses themselves and nothing that
+/// they do not.
 ///
 /// Tiles of it are made when a line first runs through them, so that a few lines cost little and many share the work.
 pub(super) struct SeenSpace {
@@ -44,7 +46,7 @@ pub(super) struct SeenSpace {
     size: [usize; 2],
     /// Tiles in a row.
     width: usize,
-    tiles: Vec<OnceLock<Box<Tile>>>,
+    tiles: Vec<OnceLock<Box<BoxColumns>>>,
 }
 
 /// Columns along a side of a block of a tile.
@@ -52,7 +54,7 @@ const BLOCK: usize = 4;
 const BLOCKS: usize = TILE / BLOCK;
 
 /// Columns of boxes; the lowest box of a column is the lowest bit of its word.
-struct Tile {
+struct BoxColumns {
     /// Each column, row by row.
     columns: [u64; TILE * TILE],
     /// The layers on which all columns of a block are near pulses, so that a line crosses it in one step.
@@ -78,7 +80,7 @@ fn higher(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
 }
 
-impl Tile {
+impl BoxColumns {
     fn new(columns: [u64; TILE * TILE]) -> Self {
         let mut blocks = [u64::MAX; BLOCKS * BLOCKS];
         for (index, word) in columns.iter().enumerate() {
@@ -97,20 +99,20 @@ impl Tile {
 
 impl SeenSpace {
     /// Boxes over the rectangle from `low` to `high`, for needles that count up to `nearness` metres.
-    pub(super) fn new(needles: &Needles, [low, high]: [[f64; 2]; 2], nearness: f64) -> Self {
+    pub(super) fn new(free_segments: &FreeSegments, [low, high]: [[f64; 2]; 2], nearness: f64) -> Self {
         let extent = [0, 1].map(|axis| high[axis] - low[axis]);
-        let side = (SIDE_PER_NEARNESS * nearness).max((extent[0] * extent[1] / MOST_COLUMNS).max(0.0).sqrt());
+        let side = (SIDE_PER_NEARNESS * nearness).max((extent[0] * extent[1] / MAX_COLUMNS).max(0.0).sqrt());
         let nearness = nearness - ROUNDING;
         let reach = nearness - half_diagonal(side);
-        let floor = needles.lower_ends().map(|start| f64::from(start[2])).fold(f64::INFINITY, f64::min);
-        let rise = f64::from(needles.top()) - floor;
+        let floor = free_segments.lower_ends().map(|start| f64::from(start[2])).fold(f64::INFINITY, f64::min);
+        let rise = f64::from(free_segments.top()) - floor;
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "`as` saturates; NaN becomes 0")]
         let whole = |count: f64| count as usize;
         let per_nearness =
-            if needles.upright_count() < needles.len() { HEIGHT_AMONG_FLAT } else { HEIGHT_PER_NEARNESS };
-        let layers = (rise / (per_nearness * nearness)).ceil().clamp(1.0, MOST_LAYERS);
+            if free_segments.upright_count() < free_segments.len() { HEIGHT_AMONG_FLAT } else { HEIGHT_PER_NEARNESS };
+        let layers = (rise / (per_nearness * nearness)).ceil().clamp(1.0, MAX_LAYERS);
         let counts = extent.map(|extent| (extent / side).floor() + 1.0);
-        let usable = reach > 0.0 && rise > 0.0 && rise.is_finite() && counts[0] * counts[1] < 2.0 * MOST_COLUMNS;
+        let usable = reach > 0.0 && rise > 0.0 && rise.is_finite() && counts[0] * counts[1] < 2.0 * MAX_COLUMNS;
         let size = if usable { counts.map(whole) } else { [0; 2] };
         let [width, rows] = size.map(|count| count.div_ceil(TILE));
         Self {
@@ -131,31 +133,32 @@ impl SeenSpace {
     ///
     /// # Errors
     /// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
-    pub(super) fn make_all(&self, needles: &Needles, control: &Control<'_>) -> Result<()> {
+    pub(super) fn make_all(&self, free_segments: &FreeSegments, control: &Control<'_>) -> Result<()> {
         self.tiles.par_iter().enumerate().try_for_each(|(number, tile)| {
             control.check()?;
-            tile.get_or_init(|| self.tile(needles, [number % self.width * TILE, number / self.width * TILE]));
+            tile.get_or_init(|| self.tile(free_segments, [number % self.width * TILE, number / self.width * TILE]));
             Ok(())
         })
     }
 
     /// The boxes of the tile whose lowest column and row are `first`.
-    fn tile(&self, needles: &Needles, first: [usize; 2]) -> Box<Tile> {
+    fn tile(&self, free_segments: &FreeSegments, first: [usize; 2]) -> Box<BoxColumns> {
         let mut boxes = [0; TILE * TILE];
         // a box more on all sides than any needle that counts for the tile passes
         let room = self.reach + self.side;
         let low = [0, 1].map(|axis| self.low[axis] + first[axis] as f64 * self.side - room);
         let high = low.map(|low| low + TILE as f64 * self.side + 2.0 * room);
-        needles.each_upright_over([low, high], |ends| self.mark(ends, [low, high], first, &mut boxes));
-        if needles.upright_count() < needles.len() {
-            self.mark_around_middles(needles, first, &mut boxes);
+        free_segments.each_upright_over([low, high], |ends| self.mark(ends, [low, high], first, &mut boxes));
+        if free_segments.upright_count() < free_segments.len() {
+            self.mark_around_middles(free_segments, first, &mut boxes);
         }
-        Box::new(Tile::new(boxes))
+        Box::new(BoxColumns::new(boxes))
     }
 
-    /// Marks the boxes of a tile that a needle is near to: those whose corners all are, since what is near a needle is convex. Where it
-    /// passes through a layer it must be within `reach` of the middle line of a box both where it enters and where it leaves; in the
-    /// layer that it begins in, nearer, since the lower corners lie below its end. Where it does so it lies over the rectangle `over`.
+    /// Marks the boxes of a tile that a needle is near to: those whose corners all are, since what is near a needle is
+    /// convex. Where it passes through a layer it must be within `reach` of the middle line of a box both where it
+    /// enters and where it leaves; in the layer that it begins in, nearer, since the lower corners lie below its end.
+    /// Where it does so it lies over the rectangle `over`.
     fn mark(
         &self,
         [start, end]: [[f64; 3]; 2],
@@ -167,7 +170,8 @@ impl SeenSpace {
         let [bottom, top] = [start[2], end[2]].map(|z| (z - self.low[2]) / self.height);
         let lean = [0, 1].map(|axis| (end[axis] - start[axis]) / (top - bottom));
         let place = [0, 1].map(|axis| start[axis] - self.low[axis] - (first[axis] as f64 + 0.5) * self.side);
-        // the layers that it passes through between two heights above its lower end; that it begins in is not one of them
+        // the layers that it passes through between two heights above its lower end; that it begins in is not one of
+        // them
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most 64, and `as` saturates")]
         let layers_between = |from: f64, to: f64| {
             bits(((bottom + from) as u32).saturating_add(1), ((bottom + to) as u32).min(self.layers as u32))
@@ -220,7 +224,8 @@ impl SeenSpace {
         }
     }
 
-    /// Marks boxes of the layer in which a needle begins, if it ends above that. Its ends are in layers, and its lower end is at `place`, metres from the middle of the tile's first box.
+    /// Marks boxes of the layer in which a needle begins, if it ends above that. Its ends are in layers, and its lower
+    /// end is at `place`, metres from the middle of the tile's first box.
     fn mark_lowest(&self, [bottom, top]: [f64; 2], place: [f64; 2], lean: [f64; 2], boxes: &mut [u64; TILE * TILE]) {
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "`as` saturates")]
         let layer = bottom as usize;
@@ -242,8 +247,8 @@ impl SeenSpace {
         }
     }
 
-    /// Columns or rows of a tile whose middles may be within reach of what lies between two places, metres from the middle of its first
-    /// box, and perhaps one more: rounding up would take longer than to test one in vain.
+    /// Columns or rows of a tile whose middles may be within reach of what lies between two places, metres from the
+    /// middle of its first box, and perhaps one more: rounding up would take longer than to test one in vain.
     #[inline]
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "an index into the tile")]
     fn boxes_between(&self, a: f64, b: f64, reach: f64) -> Range<usize> {
@@ -253,7 +258,7 @@ impl SeenSpace {
     }
 
     /// Marks those other boxes of a tile whose middle any needle passes so closely that all of the box is near to it.
-    fn mark_around_middles(&self, needles: &Needles, first: [usize; 2], boxes: &mut [u64; TILE * TILE]) {
+    fn mark_around_middles(&self, free_segments: &FreeSegments, first: [usize; 2], boxes: &mut [u64; TILE * TILE]) {
         let reach = self.nearness - half_diagonal(self.side).hypot(self.height / 2.0);
         for (index, word) in boxes.iter_mut().enumerate() {
             let cell = [first[0] + index % TILE, first[1] + index / TILE];
@@ -263,16 +268,16 @@ impl SeenSpace {
                     continue;
                 }
                 let z = self.low[2] + (layer as f64 + 0.5) * self.height;
-                *word |= u64::from(needles.passes_within([x, y, z], reach)) << layer;
+                *word |= u64::from(free_segments.passes_within([x, y, z], reach)) << layer;
             }
         }
     }
 
-    /// Where a line leaves the boxes around the one that it is in at `at`, if all of these are near `needles`, those that the grid was
-    /// made for.
+    /// Where a line leaves the boxes around the one that it is in at `at`, if all of these are near `free_segments`,
+    /// those that the grid was made for.
     pub(super) fn near_until(
         &self,
-        needles: &Needles,
+        free_segments: &FreeSegments,
         (origin, direction): ([f64; 3], [f64; 3]),
         at: f64,
     ) -> Option<f64> {
@@ -295,7 +300,7 @@ impl SeenSpace {
         }
         let tile = self.tiles.get(row / TILE * self.width + column / TILE)?;
         let first = [column, row].map(|index| index / TILE * TILE);
-        let tile = tile.get_or_init(|| self.tile(needles, first));
+        let tile = tile.get_or_init(|| self.tile(free_segments, first));
         let (width, word) = tile.widest([column % TILE, row % TILE], layer)?;
         // layers above and below that are near as well
         let up = (word >> layer).trailing_ones() as usize;
@@ -322,24 +327,25 @@ fn half_diagonal(side: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::pulses::NeedleParams;
+    use crate::pulses::FreeSegmentParams;
     use belvedere_data::control::Control;
     use belvedere_data::random::uniform;
     use belvedere_data::vector::{dot, length, sub};
 
     #[test]
-    fn boxes_are_marked_where_one_needle_is_near_to_all_corners() {
+    fn boxes_are_marked_where_one_segment_is_near_to_all_corners() {
         // from an aircraft, leaning to all sides, and from the ground, where fewer boxes that are near are found to be
         assert_boxes([[-130.0, -80.0, 300.0], [170.0, 120.0, 300.0]], 0.75);
         assert_boxes([[12.0, 18.0, 1.6], [12.5, 18.0, 1.6]], 0.5);
     }
 
     #[test]
-    fn a_needle_that_hardly_leans_marks_what_an_upright_one_does() {
+    fn a_segment_that_hardly_leans_marks_what_an_upright_one_does() {
         let returns = [[-3.0, -3.0, 0.0], [3.0, 3.0, 9.0]];
         let scanner = [[0.0, 0.0, 300.0]; 2];
-        let (needles, _) = Needles::new(&returns, &scanner, &NeedleParams::default(), &Control::none()).unwrap();
-        let space = SeenSpace::new(&needles, [[-3.0; 2], [3.0; 2]], 1.1);
+        let (free_segments, _) =
+            FreeSegments::new(&returns, &scanner, &FreeSegmentParams::default(), &Control::none()).unwrap();
+        let space = SeenSpace::new(&free_segments, [[-3.0; 2], [3.0; 2]], 1.1);
         let marked = |lean: f64| {
             let mut boxes = [0; TILE * TILE];
             space.mark([[0.0, 0.0, 0.5], [lean, -lean, 300.0]], [[-9.0; 2], [9.0; 2]], [0, 0], &mut boxes);
@@ -354,7 +360,7 @@ mod tests {
     }
 
     /// Asks for boxes near needles only, and for a share of all of them, under scanners between two places.
-    fn assert_boxes(scanners: [[f32; 3]; 2], least_share: f64) {
+    fn assert_boxes(scanners: [[f32; 3]; 2], min_share: f64) {
         #[expect(clippy::cast_possible_truncation, reason = "positions are f32")]
         let random = |i: u64, k: u64| uniform(6, 8 * i + k) as f32;
         let count = 3000;
@@ -365,18 +371,19 @@ mod tests {
                 std::array::from_fn(|k| scanners[0][k] + random(i, 3 + k as u64) * (scanners[1][k] - scanners[0][k]))
             })
             .collect();
-        let (needles, _) = Needles::new(&returns, &scanner, &NeedleParams::default(), &Control::none()).unwrap();
+        let (free_segments, _) =
+            FreeSegments::new(&returns, &scanner, &FreeSegmentParams::default(), &Control::none()).unwrap();
         let mut extent = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
-        for start in needles.lower_ends() {
+        for start in free_segments.lower_ends() {
             for axis in 0..2 {
                 extent[0][axis] = extent[0][axis].min(f64::from(start[axis]));
                 extent[1][axis] = extent[1][axis].max(f64::from(start[axis]));
             }
         }
-        let space = SeenSpace::new(&needles, extent, 1.1);
-        let ends: Vec<[[f64; 3]; 2]> = (0..needles.len())
+        let space = SeenSpace::new(&free_segments, extent, 1.1);
+        let ends: Vec<[[f64; 3]; 2]> = (0..free_segments.len())
             .filter_map(|number| {
-                let (start, up, length) = needles.segment(number)?;
+                let (start, up, length) = free_segments.segment(number)?;
                 let (start, up) = (start.map(f64::from), up.map(f64::from));
                 Some([start, std::array::from_fn(|i| start[i] + f64::from(length) * up[i])])
             })
@@ -393,15 +400,16 @@ mod tests {
                 let sides = [space.side, space.side, space.height];
                 std::array::from_fn(|i| space.low[i] + (cell[i] + (number >> i & 1)) as f64 * sides[i])
             };
-            let farthest = |needle| (0..8).map(|number| distance(corner(number), needle)).fold(0.0, f64::max);
+            let farthest =
+                |free_segment| (0..8).map(|number| distance(corner(number), free_segment)).fold(0.0, f64::max);
             1.1 - ends.iter().map(farthest).fold(f64::INFINITY, f64::min)
         };
         let (mut marked_count, mut near_count) = (0, 0);
-        let mut asked = 0;
+        let mut queried = 0;
         for row in (0..space.size[1]).step_by(3) {
             for column in (0..space.size[0]).step_by(3) {
                 let tile = space.tiles[row / TILE * space.width + column / TILE]
-                    .get_or_init(|| space.tile(&needles, [column, row].map(|index| index / TILE * TILE)));
+                    .get_or_init(|| space.tile(&free_segments, [column, row].map(|index| index / TILE * TILE)));
                 let word = tile.columns[row % TILE * TILE + column % TILE];
                 for layer in 0..space.layers {
                     let marked = word >> layer & 1 == 1;
@@ -410,11 +418,11 @@ mod tests {
                     marked_count += usize::from(marked);
                     // the grid asks for some more
                     near_count += usize::from(spare > 0.0);
-                    asked += 1;
+                    queried += 1;
                 }
             }
         }
-        assert!(near_count > asked / 10 && near_count < asked * 9 / 10, "{near_count} of {asked}");
-        assert!(marked_count as f64 > least_share * near_count as f64, "{marked_count} of {near_count}");
+        assert!(near_count > queried / 10 && near_count < queried * 9 / 10, "{near_count} of {queried}");
+        assert!(marked_count as f64 > min_share * near_count as f64, "{marked_count} of {near_count}");
     }
 }

@@ -1,6 +1,6 @@
 //! Lines of sight between pairs of points: what blocks them first, and all that lies on them.
 
-use super::added::Ends;
+use super::added::LineEnds;
 use super::medial_scene::nearer;
 use super::{Answer, EarthParams, MedialScene};
 use crate::blocking::Chord;
@@ -22,7 +22,7 @@ pub struct LineOfSight {
     /// Visible, blocked, unproven where pulses are known, or outside the cloud.
     pub answer: Answer,
     /// What the observer sees in place of the target, if the line is blocked.
-    pub first_block: Option<Block>,
+    pub first_block: Option<Obstruction>,
     /// How much of it no pulse came near to, metres; 0 where pulses are not known, and where it is blocked; NaN
     /// outside the cloud. Of a line that leaves the cloud, only the part over the cloud counts.
     pub unproven_length: f64,
@@ -55,8 +55,9 @@ impl Blocker {
 
 /// What stands before a target.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Block {
-    /// Where the line of sight meets it, metres from the observer along the line; on a line that leaves the cloud, straight from the observer.
+pub struct Obstruction {
+    /// Where the line of sight meets it, metres from the observer along the line; on a line that leaves the cloud,
+    /// straight from the observer.
     pub range: f64,
     /// What it is.
     pub blocker: Blocker,
@@ -83,7 +84,7 @@ pub struct Enclosure {
 }
 
 /// A piece of a line of sight between two points.
-struct Piece {
+struct LinePiece {
     /// From the end nearer to the target towards the observer.
     ray: Ray,
     /// Ends of the whole line.
@@ -91,9 +92,9 @@ struct Piece {
     observer: [f64; 3],
 }
 
-impl Piece {
-    fn ends(&self) -> Ends {
-        Ends { target: self.target, viewer: Some(self.observer) }
+impl LinePiece {
+    fn ends(&self) -> LineEnds {
+        LineEnds { target: self.target, viewer: Some(self.observer) }
     }
 
     /// All of it: a bias concerns balls only.
@@ -103,14 +104,15 @@ impl Piece {
 }
 
 impl MedialScene {
-    /// What is known of the line of sight from `observer` to `target`, local metres, over the earth of `earth`; `None` where a
-    /// coordinate is not finite or both are the same point.
+    /// What is known of the line of sight from `observer` to `target`, local metres, over the earth of `earth`; `None`
+    /// where a coordinate is not finite or both are the same point.
     ///
-    /// The answer is that of [`MedialScene::answer`] for the same pair on a plane earth. A curved line is cut into chords; the rules for
-    /// the ends (balls that hold the observer are left out, balls near the target give way) are asked of the ends of
-    /// the whole line.
+    /// The answer is that of [`MedialScene::answer`] for the same pair on a plane earth. A curved line is cut into
+    /// chords; the rules for the ends (balls that hold the observer are left out, balls near the target give way) are
+    /// asked of the ends of the whole line.
     ///
-    /// Where an end lies on far terrain ([`MedialScene::is_on_far_terrain`]) the answer is that of [`MedialScene::far_sight_answer`]: `None` also where one end is above the other.
+    /// Where an end lies on far terrain ([`MedialScene::is_on_far_terrain`]) the answer is that of
+    /// [`MedialScene::far_sight_answer`]: `None` also where one end is above the other.
     #[must_use]
     pub fn line_of_sight(&self, observer: [f64; 3], target: [f64; 3], earth: &EarthParams) -> Option<LineOfSight> {
         let straight = Ray::new(target, sub(observer, target), [0.0, length(sub(observer, target))])?;
@@ -124,7 +126,7 @@ impl MedialScene {
         let pieces = if earth.bends(target, observer) {
             self.pieces(observer, target, earth)
         } else {
-            vec![(Piece { ray: self.biased(straight), target, observer }, 0.0)]
+            vec![(LinePiece { ray: self.biased(straight), target, observer }, 0.0)]
         };
         Some(self.sight_on_pieces(&pieces, pieces.len() == 1))
     }
@@ -138,18 +140,18 @@ impl MedialScene {
         self.sight_on_pieces(&self.chords(observer, target, corners), false)
     }
 
-    fn sight_on_pieces(&self, pieces: &[(Piece, f64)], whole: bool) -> LineOfSight {
+    fn sight_on_pieces(&self, pieces: &[(LinePiece, f64)], whole: bool) -> LineOfSight {
         for (piece, passed) in pieces {
             if let Some((blocker, from_observer)) = self.first_on(piece, whole) {
                 let place = piece.ray.at(piece.ray.ranges[1] - from_observer);
-                let block = Block { range: passed + from_observer, blocker, place };
+                let block = Obstruction { range: passed + from_observer, blocker, place };
                 return LineOfSight { answer: Answer::Blocked, first_block: Some(block), unproven_length: 0.0 };
             }
         }
         let Some(proof) = &self.proof else {
             return LineOfSight { answer: Answer::Visible, first_block: None, unproven_length: 0.0 };
         };
-        let unseen = |(piece, _): &(Piece, f64)| {
+        let unseen = |(piece, _): &(LinePiece, f64)| {
             self.unproven_length(proof, piece.ray.origin, piece.ray.direction, piece.ray.ranges[1])
         };
         let unproven_length = pieces.iter().map(unseen).sum();
@@ -157,7 +159,8 @@ impl MedialScene {
         LineOfSight { answer, first_block: None, unproven_length }
     }
 
-    /// [`MedialScene::line_of_sight`] for each of `pairs`, (N, observer and target), local metres, in their order. Progress counts pairs.
+    /// [`MedialScene::line_of_sight`] for each of `pairs`, (N, observer and target), local metres, in their order.
+    /// Progress counts pairs.
     ///
     /// # Errors
     /// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
@@ -176,8 +179,8 @@ impl MedialScene {
         pairs.par_iter().with_min_len(CHUNK).map(ask).collect()
     }
 
-    /// The answer of [`MedialScene::line_of_sight`] alone, which is quicker; [`Answer::OutsideView`] for a point that is not finite
-    /// or is the observer's own.
+    /// The answer of [`MedialScene::line_of_sight`] alone, which is quicker; [`Answer::OutsideView`] for a point that
+    /// is not finite or is the observer's own.
     #[must_use]
     pub fn sight_answer(&self, observer: [f64; 3], target: [f64; 3], earth: &EarthParams) -> Answer {
         let range = length(sub(observer, target));
@@ -194,11 +197,11 @@ impl MedialScene {
         self.answer_on_chords((observer, target), &earth.corners(observer, target))
     }
 
-    /// The answer for the part of a line of sight between two ends, the observer first, that runs along chords through `corners`, from the observer's side on. The rules for the ends
-    /// are asked of the whole line.
+    /// The answer for the part of a line of sight between two ends, the observer first, that runs along chords through
+    /// `corners`, from the observer's side on. The rules for the ends are asked of the whole line.
     pub(super) fn answer_on_chords(&self, (observer, target): ([f64; 3], [f64; 3]), corners: &[[f64; 3]]) -> Answer {
         let pieces = self.chords(observer, target, corners);
-        let is_blocked = |piece: &Piece| {
+        let is_blocked = |piece: &LinePiece| {
             self.tree().index().any(&piece.ray, |number| self.front_on(number, piece).is_some())
                 || self.added().is_some_and(|added| added.blocks_piece(&piece.unbiased(), &piece.ends()))
         };
@@ -216,10 +219,11 @@ impl MedialScene {
         Answer::Visible
     }
 
-    /// Every ball and mesh on the line of sight from `observer` to `target`, local metres, by its whole radius, in the order in which the
-    /// line enters them. Balls around the ends are among them, and those that give way to the target. A mesh holds what lies between every two
-    /// of its surfaces, counted from the target, and from the last one to the observer where their number is odd. Empty for a line without
-    /// length or with coordinates that are not finite.
+    /// Every ball and mesh on the line of sight from `observer` to `target`, local metres, by its whole radius, in the
+    /// order in which the line enters them. Balls around the ends are among them, and those that give way to the
+    /// target. A mesh holds what lies between every two of its surfaces, counted from the target, and from the last one
+    /// to the observer where their number is odd. Empty for a line without length or with coordinates that are not
+    /// finite.
     #[must_use]
     pub fn crossings(&self, observer: [f64; 3], target: [f64; 3], earth: &EarthParams) -> Vec<Crossing> {
         let corners = earth.corners(observer, target);
@@ -271,7 +275,8 @@ impl MedialScene {
         enclosure
     }
 
-    /// Calls `visit` with the number in the index of every ball that blocks the line of sight from `observer` to `target`.
+    /// Calls `visit` with the number in the index of every ball that blocks the line of sight from `observer` to
+    /// `target`.
     pub(super) fn each_blocker(
         &self,
         observer: [f64; 3],
@@ -297,7 +302,8 @@ impl MedialScene {
         }
     }
 
-    /// Calls `visit` with the corners of every triangle of an added mesh that blocks the line of sight from `observer` to `target`.
+    /// Calls `visit` with the corners of every triangle of an added mesh that blocks the line of sight from `observer`
+    /// to `target`.
     pub(super) fn each_added_blocker(
         &self,
         observer: [f64; 3],
@@ -312,12 +318,12 @@ impl MedialScene {
     }
 
     /// The chords of a curved line from the observer on, each with what the line passed before it, metres.
-    fn pieces(&self, observer: [f64; 3], target: [f64; 3], earth: &EarthParams) -> Vec<(Piece, f64)> {
+    fn pieces(&self, observer: [f64; 3], target: [f64; 3], earth: &EarthParams) -> Vec<(LinePiece, f64)> {
         self.chords(observer, target, &earth.corners(observer, target))
     }
 
     /// The same through given corners.
-    fn chords(&self, observer: [f64; 3], target: [f64; 3], corners: &[[f64; 3]]) -> Vec<(Piece, f64)> {
+    fn chords(&self, observer: [f64; 3], target: [f64; 3], corners: &[[f64; 3]]) -> Vec<(LinePiece, f64)> {
         let mut passed = 0.0;
         let mut pieces = Vec::with_capacity(corners.len());
         for pair in corners.windows(2) {
@@ -325,7 +331,7 @@ impl MedialScene {
             let size = length(sub(near, far));
             let Some(ray) = Ray::new(far, sub(near, far), [0.0, size]) else { continue };
             let ray = if far == target { self.biased(ray) } else { ray };
-            pieces.push((Piece { ray, target, observer }, passed));
+            pieces.push((LinePiece { ray, target, observer }, passed));
             passed += size;
         }
         pieces
@@ -337,7 +343,7 @@ impl MedialScene {
     }
 
     /// What the observer meets first on a piece, and where, metres from the end of the piece on the observer's side.
-    fn first_on(&self, piece: &Piece, whole: bool) -> Option<(Blocker, f64)> {
+    fn first_on(&self, piece: &LinePiece, whole: bool) -> Option<(Blocker, f64)> {
         let ray = &piece.ray;
         let reach = ray.ranges[1];
         let back = Ray {
@@ -355,8 +361,8 @@ impl MedialScene {
     }
 
     /// As [`MedialScene::front`], for a chord of a longer line.
-    fn front_on(&self, number: usize, piece: &Piece) -> Option<f64> {
-        let Piece { ray, target, observer } = piece;
+    fn front_on(&self, number: usize, piece: &LinePiece) -> Option<f64> {
+        let LinePiece { ray, target, observer } = piece;
         let chord = Chord {
             start: ray.origin,
             towards: ray.direction,
@@ -368,8 +374,8 @@ impl MedialScene {
     }
 }
 
-/// `count` pairs of points spread evenly at random over the local box from `low` to `high`, observer and target. The same seed gives
-/// the same pairs for any number of threads.
+/// `count` pairs of points spread evenly at random over the local box from `low` to `high`, observer and target. The
+/// same seed gives the same pairs for any number of threads.
 #[must_use]
 pub fn random_pairs(low: [f32; 3], high: [f32; 3], count: usize, seed: u64) -> Vec<[[f64; 3]; 2]> {
     let ends = super::random_targets(low, high, 2 * count, seed);

@@ -15,8 +15,8 @@ const CHUNK: usize = 1 << 15;
 /// Where the sky begins in one direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SkylinePoint {
-    /// The least elevation above which nothing blocks up to the zenith, radians, −π/2 (nothing blocks at all) to π/2 (the zenith is
-    /// hidden).
+    /// The least elevation above which nothing blocks up to the zenith, radians, −π/2 (nothing blocks at all) to π/2
+    /// (the zenith is hidden).
     pub elevation: f64,
     /// Range of what stands there, metres; infinite where nothing does, and for far terrain.
     pub range: f64,
@@ -42,13 +42,14 @@ impl SkylinePoint {
 }
 
 impl MedialScene {
-    /// The skyline around `eye`, local metres: at `count` azimuths, the first north, clockwise in equal steps. Empty for an eye that is
-    /// not finite.
+    /// The skyline around `eye`, local metres: at `count` azimuths, the first north, clockwise in equal steps. Empty
+    /// for an eye that is not finite.
     ///
-    /// Exact for the union of balls and for meshes that were added, by the tangents of every ball in the vertical plane of each azimuth: nothing that floats above a
-    /// gap is missed, and there is no step to choose. The eye may be a place on a surface: balls give way to it by
-    /// [`crate::blocking::BlockRule::shell`] as to any target. Those that hold it even so are left out; [`MedialScene::enclosure`] tells of them.
-    /// Over the earth of `earth` far balls sink.
+    /// Exact for the union of balls and for meshes that were added, by the tangents of every ball in the vertical plane
+    /// of each azimuth: nothing that floats above a gap is missed, and there is no step to choose. The eye may be a
+    /// place on a surface: balls give way to it by [`crate::blocking::BlockRule::shell`] as to any target. Those that
+    /// hold it even so are left out; [`MedialScene::enclosure`] tells of them. Over the earth of `earth` far balls
+    /// sink.
     ///
     /// # Errors
     /// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
@@ -189,7 +190,8 @@ fn top_of_triangle(corners: &Corners, [sin, cos]: [f64; 2]) -> Option<(f64, f64)
     Some(if a.0 > b.0 || (a.0 == b.0 && a.1 < b.1) { a } else { b })
 }
 
-/// The piece of a triangle in the vertical plane along an azimuth (its sine and cosine) through the origin: ahead and up.
+/// The piece of a triangle in the vertical plane along an azimuth (its sine and cosine) through the origin: ahead and
+/// up.
 pub(super) fn cut(corners: &Corners, [sin, cos]: [f64; 2]) -> Option<[[f64; 2]; 2]> {
     let flat = corners.map(|[x, y, z]| (x * cos - y * sin, [x * sin + y * cos, z]));
     let mut ends: Option<[[f64; 2]; 2]> = None;

@@ -8,13 +8,13 @@ use belvedere_data::{Error, Mesh, Parameter, Result};
 use rayon::prelude::*;
 
 /// Most pieces of a surface: 60 bytes each still fit into the memory of a usual machine.
-const MOST_PIECES: usize = 50_000_000;
+const MAX_PIECES: usize = 50_000_000;
 /// Neighbours whose distance tells how much surface a point stands for.
 const NEIGHBORS: usize = 8;
 
 /// A small triangle of a surface and the place on it where it is asked whether it is seen.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Piece {
+pub struct SurfacePiece {
     /// Corners, local metres, counter-clockwise seen from outside where that is known.
     pub corners: [[f32; 3]; 3],
     /// A place drawn evenly on it, local metres.
@@ -40,7 +40,7 @@ pub enum Sides {
 #[derive(Clone, Debug)]
 pub struct SurfacePieces {
     /// The pieces.
-    pub pieces: Vec<Piece>,
+    pub pieces: Vec<SurfacePiece>,
     /// Number of faces, those without area among them, which have no piece.
     pub face_count: usize,
     /// Whether faces have an outside.
@@ -48,12 +48,13 @@ pub struct SurfacePieces {
 }
 
 impl SurfacePieces {
-    /// The triangles of `mesh`, metres, about the local origin `origin`, metres, each cut into slices and cells until no side is
-    /// longer than `spacing` metres; at least one piece a triangle that has an area. A place is drawn on each from `seed`.
+    /// The triangles of `mesh`, metres, about the local origin `origin`, metres, each cut into slices and cells until
+    /// no side is longer than `spacing` metres; at least one piece a triangle that has an area. A place is drawn on
+    /// each from `seed`.
     ///
     /// # Errors
-    /// [`Error::InvalidParameter`] for a spacing that is not above zero or would make more than 50 million pieces, and for
-    /// vertices that are not finite or lie 10 000 km or more from the origin.
+    /// [`Error::InvalidParameter`] for a spacing that is not above zero or would make more than 50 million pieces, and
+    /// for vertices that are not finite or lie 10 000 km or more from the origin.
     pub fn of_mesh(mesh: &Mesh, origin: [f64; 3], spacing: f64, seed: u64) -> Result<Self> {
         if !(spacing.is_finite() && spacing > 0.0) {
             return invalid(Parameter::Spacing, spacing.to_string(), "above zero metres");
@@ -71,7 +72,7 @@ impl SurfacePieces {
             // cells are half the square of the spacing, and those at the rim mostly two or three pieces
             expected += 1.0 + 8.0 * area_of(*corners) / (spacing * spacing) + 6.0 * longest / spacing;
         }
-        if !(expected <= MOST_PIECES as f64) {
+        if !(expected <= MAX_PIECES as f64) {
             let value = format!("{spacing} m, which makes about {expected:.0} samples");
             return invalid(Parameter::Spacing, value, "large enough for at most 50 million samples");
         }
@@ -85,7 +86,7 @@ impl SurfacePieces {
             let piece = move |(i, corners): (usize, [[f64; 3]; 3])| {
                 let counter = ((face as u64) << 32) | ((i as u64) << 1);
                 let place = place_on(corners, [uniform(seed, counter), uniform(seed, counter + 1)]);
-                Piece {
+                SurfacePiece {
                     corners: corners.map(to_f32),
                     place: to_f32(place),
                     normal,
@@ -95,31 +96,31 @@ impl SurfacePieces {
             };
             pieces.into_iter().enumerate().map(piece).collect::<Vec<_>>()
         };
-        let pieces: Vec<Vec<Piece>> = local.par_iter().enumerate().map(of_face).collect();
+        let pieces: Vec<Vec<SurfacePiece>> = local.par_iter().enumerate().map(of_face).collect();
         Ok(Self { pieces: pieces.concat(), face_count: mesh.triangles.len(), sides: Sides::Known })
     }
 
-    /// The surface that `points`, (N, 3) local metres, lie on: about each a triangle square to its normal (`normals`, (N, 3), of any
-    /// sign), whose area follows from how near the eighth neighbour is, π d² / 8, and is that of a disc of `most_radius`
-    /// metres at most. Points without a normal, (0, 0, 0), are turned upward.
+    /// The surface that `points`, (N, 3) local metres, lie on: about each a triangle square to its normal (`normals`,
+    /// (N, 3), of any sign), whose area follows from how near the eighth neighbour is, π d² / 8, and is that of a disc
+    /// of `max_radius` metres at most. Points without a normal, (0, 0, 0), are turned upward.
     ///
     /// # Errors
-    /// [`Error::LengthMismatch`] unless there is a normal for each point, [`Error::InvalidParameter`] for a point that is not finite and
-    /// a radius that is not above zero.
+    /// [`Error::LengthMismatch`] unless there is a normal for each point, [`Error::InvalidParameter`] for a point that
+    /// is not finite and a radius that is not above zero.
     pub fn of_points(
         points: &[[f32; 3]],
         normals: &[[f32; 3]],
-        most_radius: f64,
+        max_radius: f64,
         control: &Control<'_>,
     ) -> Result<Self> {
         if normals.len() != points.len() {
             return Err(Error::LengthMismatch { what: "normals", expected: points.len(), found: normals.len() });
         }
-        if !(most_radius.is_finite() && most_radius > 0.0) {
-            return invalid(Parameter::PointRadius, most_radius.to_string(), "above zero metres");
+        if !(max_radius.is_finite() && max_radius > 0.0) {
+            return invalid(Parameter::PointRadius, max_radius.to_string(), "above zero metres");
         }
         let index = NeighborIndex::new(points, control)?;
-        let most_area = std::f64::consts::PI * most_radius * most_radius;
+        let max_area = std::f64::consts::PI * max_radius * max_radius;
         let piece = |(face, (&point, normal)): (usize, (&[f32; 3], &[f32; 3]))| {
             let mut found = Vec::new();
             // the point itself is among them
@@ -127,8 +128,8 @@ impl SurfacePieces {
             let count = found.len().saturating_sub(1);
             let farthest = found.iter().map(|n| f64::from(n.distance_squared)).fold(0.0, f64::max);
             let area = match count {
-                0 => most_area,
-                _ => (std::f64::consts::PI * farthest / count as f64).min(most_area),
+                0 => max_area,
+                _ => (std::f64::consts::PI * farthest / count as f64).min(max_area),
             };
             let normal = unit(normal.map(f64::from)).unwrap_or([0.0, 0.0, 1.0]);
             let aside = if normal[2].abs() < 0.9 { [0.0, 0.0, 1.0] } else { [1.0, 0.0, 0.0] };
@@ -141,7 +142,7 @@ impl SurfacePieces {
                 to_f32(std::array::from_fn(|i| f64::from(point[i]) + reach * (cos * right[i] + sin * up[i])))
             };
             let corners = [corner(0.0), corner(1.0 / 3.0), corner(2.0 / 3.0)];
-            Piece { corners, place: point, normal: to_f32(normal), area: single(area), face: index_u32(face) }
+            SurfacePiece { corners, place: point, normal: to_f32(normal), area: single(area), face: index_u32(face) }
         };
         let pieces = points.par_iter().zip(normals).enumerate().map(piece).collect();
         Ok(Self { pieces, face_count: points.len(), sides: Sides::Both })
@@ -172,8 +173,8 @@ impl SurfacePieces {
         areas
     }
 
-    /// Mean of `values`, one for each piece, over the area of each face, (faces). Pieces whose value is NaN do not count; NaN for a face
-    /// without any.
+    /// Mean of `values`, one for each piece, over the area of each face, (faces). Pieces whose value is NaN do not
+    /// count; NaN for a face without any.
     #[must_use]
     pub fn face_means(&self, values: &[f32]) -> Vec<f64> {
         let mut sums = vec![[0.0, 0.0]; self.face_count];
@@ -191,8 +192,8 @@ fn invalid<T>(parameter: Parameter, value: String, expected: &'static str) -> Re
     Err(Error::InvalidParameter { parameter, value, expected })
 }
 
-/// A triangle in pieces without a side longer than `spacing`, neighbours after each other: slices across its longest side, each cut
-/// along that side too where it is wide.
+/// A triangle in pieces without a side longer than `spacing`, neighbours after each other: slices across its longest
+/// side, each cut along that side too where it is wide.
 fn cut(corners: [[f64; 3]; 3], spacing: f64, pieces: &mut Vec<[[f64; 3]; 3]>) {
     let [a, b, c] = corners;
     let sides = [sub(b, a), sub(c, b), sub(a, c)];
@@ -299,13 +300,13 @@ mod tests {
 
     #[test]
     fn pieces_are_short_cover_the_triangle_and_hold_their_places() {
-        for (corners, most) in [
+        for (corners, max) in [
             ([[0.0, 0.0, 0.0], [7.0, 0.0, 1.0], [2.0, 5.0, 0.0]], 1200),
             // a strip 100 m long and 1 cm wide costs its length: 283 slices of two pieces
             ([[0.0, 0.0, 0.0], [100.0, 0.0, 0.0], [100.0, 0.01, 0.0]], 567),
         ] {
             let pieces = SurfacePieces::of_mesh(&mesh(corners), [0.0; 3], 0.5, 3).unwrap();
-            assert!((100..most).contains(&pieces.pieces.len()), "{}", pieces.pieces.len());
+            assert!((100..max).contains(&pieces.pieces.len()), "{}", pieces.pieces.len());
             // areas are f32
             assert!((pieces.area() / area_of(corners) - 1.0).abs() < 1e-5);
             for piece in &pieces.pieces {

@@ -81,13 +81,13 @@ impl TargetTree {
         })
     }
 
-    /// Nodes of at most `most` targets, or leaves, that together hold every target, in the order of the tree.
-    pub(super) fn subtrees(&self, most: usize) -> Vec<usize> {
+    /// Nodes of at most `max` targets, or leaves, that together hold every target, in the order of the tree.
+    pub(super) fn subtrees(&self, max: usize) -> Vec<usize> {
         let mut found = Vec::new();
         let mut waiting: Vec<usize> = if self.nodes.is_empty() { Vec::new() } else { vec![0] };
         while let Some(node) = waiting.pop() {
             match self.nodes[node].halves {
-                Some([left, right]) if self.nodes[node].count > most => waiting.extend([right, left]),
+                Some([left, right]) if self.nodes[node].count > max => waiting.extend([right, left]),
                 _ => found.push(node),
             }
         }

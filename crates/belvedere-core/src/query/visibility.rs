@@ -19,12 +19,14 @@ pub type Sight<'a> = Box<dyn Fn(&[[f32; 3]]) -> Result<Vec<Answer>> + Sync + 'a>
 
 /// A model of a scene that can tell what is visible: medial balls, and every other method that is compared with them.
 pub trait Visibility: Sync {
-    /// Prepares whatever does not depend on the targets, such as a depth map or a convex hull, and returns what answers them.
+    /// Prepares whatever does not depend on the targets, such as a depth map or a convex hull, and returns what answers
+    /// them.
     ///
     /// # Errors
-    /// [`Error::UnsupportedViewer`] where the method knows no such viewer, [`Error::InvalidParameter`] for a viewer that is
-    /// not finite. The returned function fails with [`Error::UnsupportedTargets`] where the method cannot answer targets
-    /// of this kind, and with [`Error::LengthMismatch`] where [`Viewer::Each`] has another number of eyes than targets.
+    /// [`Error::UnsupportedViewer`] where the method knows no such viewer, [`Error::InvalidParameter`] for a viewer
+    /// that is not finite. The returned function fails with [`Error::UnsupportedTargets`] where the method cannot
+    /// answer targets of this kind, and with [`Error::LengthMismatch`] where [`Viewer::Each`] has another number of
+    /// eyes than targets.
     fn seen_from<'a>(&'a self, viewer: Viewer<'a>) -> Result<Sight<'a>>;
 
     /// The answer for each of `targets`, (M, 3) local metres, seen by `viewer`.
@@ -37,8 +39,8 @@ pub trait Visibility: Sync {
 }
 
 impl Viewer<'_> {
-    /// Checks that a common viewer is finite and a direction is not zero. The eyes of [`Viewer::Each`] are not looked at: a
-    /// target with an eye that is not finite gets [`Answer::OutsideView`].
+    /// Checks that a common viewer is finite and a direction is not zero. The eyes of [`Viewer::Each`] are not looked
+    /// at: a target with an eye that is not finite gets [`Answer::OutsideView`].
     ///
     /// # Errors
     /// [`Error::InvalidParameter`].
@@ -72,8 +74,8 @@ impl Viewer<'_> {
         }
     }
 
-    /// The line of sight of target number `index`: unit vector from the target to its viewer and the range of the viewer
-    /// (infinite for a direction), or `None` where a coordinate is not finite or the two points are the same.
+    /// The line of sight of target number `index`: unit vector from the target to its viewer and the range of the
+    /// viewer (infinite for a direction), or `None` where a coordinate is not finite or the two points are the same.
     #[must_use]
     pub fn line_of_sight(&self, index: usize, target: [f32; 3]) -> Option<([f64; 3], f64)> {
         let target = target.map(f64::from);

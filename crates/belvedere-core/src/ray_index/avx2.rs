@@ -1,4 +1,5 @@
-//! Eight boxes at once on machines with AVX2 and FMA: the same arithmetic as [`super::walk::Scalar`] with fused products, in the same order.
+//! Eight boxes at once on machines with AVX2 and FMA: the same arithmetic as [`super::walk::RayScalar`] with fused
+//! products, in the same order.
 #![expect(
     unsafe_code,
     reason = "walks take about two fifths of the time of sky views; AVX2 saved 9 % of the whole (`walk.rs`) before lines walked in packets, and the \
@@ -13,13 +14,13 @@ use std::arch::x86_64::*;
 pub(super) fn run(nodes: &[CwBvhNode], ray: TreeRay, visit: impl Visit) {
     #[target_feature(enable = "avx2,fma,bmi1,bmi2,popcnt,lzcnt")]
     fn run(nodes: &[CwBvhNode], ray: TreeRay, visit: impl Visit) {
-        walk::<Avx2>(nodes, ray, visit);
+        walk::<RayAvx2>(nodes, ray, visit);
     }
-    // SAFETY: `Instructions::Avx2` is only stored in an index after `Instructions::detect` found all of them
+    // SAFETY: `Instructions::RayAvx2` is only stored in an index after `Instructions::detect` found all of them
     unsafe { run(nodes, ray, visit) }
 }
 
-struct Avx2;
+struct RayAvx2;
 
 /// Eight bytes as numbers.
 #[inline(always)]
@@ -40,7 +41,7 @@ fn cut(part: [__m256; 2], low: [u8; LANES], high: [u8; LANES], scale: [f32; 3]) 
     }
 }
 
-impl Test for Avx2 {
+impl Test for RayAvx2 {
     #[inline(always)]
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "eight bits")]
     fn met(node: &CwBvhNode, ray: &TreeRay) -> u8 {

@@ -1,17 +1,17 @@
 //! Nodes whose parts are tested side by side, for searches that follow more than one ray at once.
 
-use super::{PARTS, Part, RayIndex};
+use super::{NodePart, PARTS, RayIndex};
 use obvhs::cwbvh::node::CwBvhNode;
 use std::ops::Range;
 
 /// Lowest and highest sides of eight boxes, by axis, local metres.
-pub(crate) type Sides = [[[f32; PARTS]; 2]; 3];
+pub(crate) type PartSides = [[[f32; PARTS]; 2]; 3];
 
 /// A node whose parts are looked at. Parts are given as bits, the lowest for the first.
 pub(crate) struct OpenNode<'a> {
     node: &'a CwBvhNode,
     /// Boxes of the parts; those of parts that are not taken mean nothing.
-    pub(crate) sides: Sides,
+    pub(crate) sides: PartSides,
 }
 
 impl RayIndex {
@@ -53,7 +53,8 @@ impl OpenNode<'_> {
         self.node.child_base_idx + before.count_ones()
     }
 
-    /// Rows from the first to the last, exclusive, of those of `parts` that are rows; others may lie between. Rows of later parts come later.
+    /// Rows from the first to the last, exclusive, of those of `parts` that are rows; others may lie between. Rows of
+    /// later parts come later.
     #[inline(always)]
     pub(crate) fn rows(&self, parts: u32) -> Range<u32> {
         let rows = parts & self.taken() & !u32::from(self.node.imask);
@@ -78,14 +79,14 @@ impl OpenNode<'_> {
 
 /// What a part of a node is.
 #[inline(always)]
-pub(super) fn part_of(node: &CwBvhNode, part: usize) -> Part {
+pub(super) fn part_of(node: &CwBvhNode, part: usize) -> NodePart {
     if node.is_child_empty(part) {
-        Part::Nothing
+        NodePart::Nothing
     } else if node.is_leaf(part) {
         let (first, count) = node.child_primitives(part);
-        Part::Rows { first, count }
+        NodePart::Rows { first, count }
     } else {
-        Part::Node(node.child_node_index(part))
+        NodePart::Node(node.child_node_index(part))
     }
 }
 
@@ -111,15 +112,15 @@ mod tests {
             let (node, parts) = (index.open(number).unwrap(), index.parts(number).unwrap());
             for (place, part) in parts.parts.into_iter().enumerate() {
                 let bit = 1 << place;
-                assert_eq!(node.nodes(bit) != 0, matches!(part, Part::Node(_)));
+                assert_eq!(node.nodes(bit) != 0, matches!(part, NodePart::Node(_)));
                 match part {
-                    Part::Nothing => assert!(node.rows(bit).is_empty()),
-                    Part::Node(child) => {
+                    NodePart::Nothing => assert!(node.rows(bit).is_empty()),
+                    NodePart::Node(child) => {
                         assert_eq!(node.number(place), child);
                         assert!(node.rows(bit).is_empty());
                         waiting.push(child);
                     }
-                    Part::Rows { first, count } => {
+                    NodePart::Rows { first, count } => {
                         assert_eq!(node.rows(bit), first..first + count);
                         let all = node.rows(0xff);
                         assert!(all.contains(&first) && all.end >= first + count);

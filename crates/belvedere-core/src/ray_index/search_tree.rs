@@ -1,4 +1,5 @@
-//! Trees over boxes, large ones in parts side by side: the steps that make nodes of eight parts from a binary tree run on one thread each.
+//! Trees over boxes, large ones in parts side by side: the steps that make nodes of eight parts from a binary tree run
+//! on one thread each.
 
 #![expect(
     clippy::cast_possible_truncation,
@@ -17,7 +18,7 @@ use rayon::prelude::*;
 /// Boxes from which on a tree is made of parts: fewer take some hundredths of a second.
 const LARGE: usize = 1 << 16;
 /// Most boxes of a leaf.
-const MOST_IN_LEAF: u32 = 3;
+const MAX_IN_LEAF: u32 = 3;
 /// What tells a node among the parts of a node, beside the number of its place.
 const IS_NODE: u8 = 0b0011_1000;
 
@@ -40,8 +41,8 @@ fn tree_of(boxes: &[Aabb], rows: &mut [u32]) -> CwBvh {
     joined(&trees)
 }
 
-/// The tree over the boxes of `rows`, made at once: the steps of `build_cwbvh`, but for its check of the boxes in debug builds,
-/// which allows for errors of 1e-5 and panics on sound trees wider than some hundred metres.
+/// The tree over the boxes of `rows`, made at once: the steps of `build_cwbvh`, but for its check of the boxes in debug
+/// builds, which allows for errors of 1e-5 and panics on sound trees wider than some hundred metres.
 fn one_tree(boxes: &[Aabb], rows: &[u32]) -> CwBvh {
     let params = BvhBuildParams::medium_build();
     let of_rows: Vec<Aabb> = rows.iter().map(|&row| boxes[row as usize]).collect();
@@ -53,7 +54,7 @@ fn one_tree(boxes: &[Aabb], rows: &[u32]) -> CwBvh {
         params.search_depth_threshold,
     );
     ReinsertionOptimizer::default().run(&mut binary, params.reinsertion_batch_ratio, None);
-    let mut tree = bvh2_to_cwbvh(&binary, MOST_IN_LEAF, true, false);
+    let mut tree = bvh2_to_cwbvh(&binary, MAX_IN_LEAF, true, false);
     tree.primitive_indices.iter_mut().for_each(|place| *place = rows[*place as usize]);
     tree
 }
@@ -99,7 +100,8 @@ fn joined(trees: &[CwBvh]) -> CwBvh {
     all
 }
 
-/// A node whose parts are nodes, the next ones, with boxes in steps from its lowest corner: the smallest powers of two of which 255 reach the highest one.
+/// A node whose parts are nodes, the next ones, with boxes in steps from its lowest corner: the smallest powers of two
+/// of which 255 reach the highest one.
 fn node_of(parts: &[Aabb], around: &Aabb) -> CwBvhNode {
     let size = (around.max - around.min).to_array();
     let steps = size.map(|size| (size.max(1e-20) / 255.0).log2().ceil().exp2());
@@ -130,22 +132,23 @@ fn node_of(parts: &[Aabb], around: &Aabb) -> CwBvhNode {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Part, RayIndex};
+    use super::super::{NodePart, RayIndex};
     use super::{BRANCHING, LARGE};
     use belvedere_data::random::uniform;
 
-    type Sides = [[f64; 3]; 2];
+    type BoxSides = [[f64; 3]; 2];
 
-    /// The box around all rows below a node, which must lie in the boxes of all parts above them; counts how often each row is there.
-    fn around_rows(index: &RayIndex, boxes: &[[[f32; 3]; 2]], node: u32, counts: &mut [u32]) -> Sides {
+    /// The box around all rows below a node, which must lie in the boxes of all parts above them; counts how often each
+    /// row is there.
+    fn around_rows(index: &RayIndex, boxes: &[[[f32; 3]; 2]], node: u32, counts: &mut [u32]) -> BoxSides {
         let parts = index.parts(node).unwrap();
         let mut around = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
         for (place, part) in parts.parts.into_iter().enumerate() {
             let mut own = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
             match part {
-                Part::Nothing => continue,
-                Part::Node(node) => own = around_rows(index, boxes, node, counts),
-                Part::Rows { first, count } => {
+                NodePart::Nothing => continue,
+                NodePart::Node(node) => own = around_rows(index, boxes, node, counts),
+                NodePart::Rows { first, count } => {
                     for row in first..first + count {
                         let number = index.order()[row as usize] as usize;
                         counts[number] += 1;
@@ -163,7 +166,7 @@ mod tests {
         around
     }
 
-    fn joined(a: Sides, b: Sides) -> Sides {
+    fn joined(a: BoxSides, b: BoxSides) -> BoxSides {
         [
             std::array::from_fn(|axis| f64::min(a[0][axis], b[0][axis])),
             std::array::from_fn(|axis| f64::max(a[1][axis], b[1][axis])),

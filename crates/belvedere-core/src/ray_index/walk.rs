@@ -1,15 +1,16 @@
 //! The walk of one ray through the compressed nodes of the tree, eight boxes at a time.
 //!
-//! The crate that builds the tree can walk it too. Its test of a node turns each byte into a number by itself; with AVX2 all eight sides are turned at
-//! once. The sky of the points of a town (962 147 points, 256 directions) takes 9 % less time so. Its stack also grows where a tree is deep.
+//! The crate that builds the tree can walk it too. Its test of a node turns each byte into a number by itself; with
+//! AVX2 all eight sides are turned at once. The sky of the points of a town (962 147 points, 256 directions) takes 9 %
+//! less time so. Its stack also grows where a tree is deep.
 
 use obvhs::cwbvh::node::CwBvhNode;
 use smallvec::SmallVec;
 
 /// Children of a node.
 pub(super) const LANES: usize = 8;
-/// What replaces the inverse of a component that is zero or nearly so: the ray then leaves the box between two sides at ranges beyond every
-/// scene, and products with coordinates stay finite.
+/// What replaces the inverse of a component that is zero or nearly so: the ray then leaves the box between two sides at
+/// ranges beyond every scene, and products with coordinates stay finite.
 const STEEPEST: f32 = 1e20;
 
 /// A ray as the tree takes it, counted from the middle of the scene.
@@ -22,7 +23,8 @@ pub(super) struct TreeRay {
     room: [f32; 3],
     /// How far the ray runs, metres.
     pub(super) reach: f32,
-    /// The bits of a child's number that are turned over, so that the children with the highest numbers come first along the ray.
+    /// The bits of a child's number that are turned over, so that the children with the highest numbers come first
+    /// along the ray.
     turned: usize,
 }
 
@@ -35,8 +37,8 @@ impl TreeRay {
         Self { origin, inverse, room, reach, turned }
     }
 
-    /// Ranges at which the ray meets the sides of the children of a node along an axis are multiples of the first number, counted from the second for low
-    /// sides and from the third for high ones.
+    /// Ranges at which the ray meets the sides of the children of a node along an axis are multiples of the first
+    /// number, counted from the second for low sides and from the third for high ones.
     #[inline(always)]
     pub(super) fn scale(&self, node: &CwBvhNode) -> [[f32; 3]; 3] {
         let (corner, steps) = (node.p.to_array(), node.compute_extent().to_array());
@@ -57,11 +59,11 @@ pub(super) trait Test {
     fn met(node: &CwBvhNode, ray: &TreeRay) -> Children;
 }
 
-/// One box after the other: every machine. With `FUSED`, products are added before they are rounded, which is slow on machines that have no such
-/// instruction.
-pub(super) struct Scalar<const FUSED: bool>;
+/// One box after the other: every machine. With `FUSED`, products are added before they are rounded, which is slow on
+/// machines that have no such instruction.
+pub(super) struct RayScalar<const FUSED: bool>;
 
-impl<const FUSED: bool> Test for Scalar<FUSED> {
+impl<const FUSED: bool> Test for RayScalar<FUSED> {
     #[inline(always)]
     fn met(node: &CwBvhNode, ray: &TreeRay) -> Children {
         let sides = [

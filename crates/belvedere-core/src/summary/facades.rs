@@ -16,13 +16,14 @@ const BUILDING: u8 = 6;
 const STEEPEST_NORMAL: f32 = 0.3;
 /// Neighbours that tell how much wall a point stands for.
 const NEIGHBORS: u8 = 8;
-/// How far the eighth neighbour on a wall may be for a point to represent wall, metres: at this distance a wall has a tenth of a point per square metre,
-/// fewer than any survey of buildings leaves.
-const MOST_REACH: f64 = 5.0;
+/// How far the eighth neighbour on a wall may be for a point to represent wall, metres: at this distance a wall has a
+/// tenth of a point per square metre, fewer than any survey of buildings leaves.
+const MAX_REACH: f64 = 5.0;
 /// Fewest points on walls, near each other, whose area is estimated.
-const LEAST_STEEP: usize = 50;
-/// Building points looked at; of larger clouds every so manieth square is taken, so that this stays a matter of seconds.
-const MOST_POINTS: usize = 2_000_000;
+const MIN_STEEP: usize = 50;
+/// Building points looked at; of larger clouds every so manieth square is taken, so that this stays a matter of
+/// seconds.
+const MAX_POINTS: usize = 2_000_000;
 /// Side of those squares, metres: a few houses, of which little is cut at the rim.
 const SQUARE: f32 = 64.0;
 
@@ -49,18 +50,18 @@ pub struct Walls {
 impl FacadeSummary {
     /// Facade density of `cloud`; `None` where it has no points of class 6 (building).
     ///
-    /// Points of class 6 are on a wall where the normal of their 16 neighbours of that class is within 17° of the horizon.
-    /// Each stands for an eighth of the disc that reaches to its eighth neighbour on a wall, unless that is farther than 5 m. On simulated scans a tenth of the wall
-    /// points, near eaves and corners, is taken for roof, and the density comes out within a quarter of that of the walls above
-    /// ground. Walls without any points do not count; roofs steeper than 73° do. Clouds of more than two million building
-    /// points are judged by a part of their area.
+    /// Points of class 6 are on a wall where the normal of their 16 neighbours of that class is within 17° of the
+    /// horizon. Each stands for an eighth of the disc that reaches to its eighth neighbour on a wall, unless that is
+    /// farther than 5 m. On simulated scans a tenth of the wall points, near eaves and corners, is taken for roof, and
+    /// the density comes out within a quarter of that of the walls above ground. Walls without any points do not count;
+    /// roofs steeper than 73° do. Clouds of more than two million building points are judged by a part of their area.
     ///
     /// # Errors
     /// Those of [`NeighborIndex::new`] and [`estimate`].
     pub fn of(cloud: &PointCloud, control: &Control<'_>) -> Result<Option<Self>> {
         let Some(classes) = cloud.attributes.classification.as_ref() else { return Ok(None) };
         let building_count = classes.iter().filter(|&&class| class == BUILDING).count();
-        let stride = i64::try_from(building_count.div_ceil(MOST_POINTS)).unwrap_or(i64::MAX).max(1);
+        let stride = i64::try_from(building_count.div_ceil(MAX_POINTS)).unwrap_or(i64::MAX).max(1);
         #[expect(clippy::cast_possible_truncation, reason = "saturates; clouds are not 2^63 squares wide")]
         let square = |v: f32| (v / SQUARE).floor() as i64;
         // Neighbouring squares of a row and of a column fall into different parts.
@@ -91,7 +92,7 @@ impl FacadeSummary {
 fn walls_of(points: &[[f32; 3]], control: &Control<'_>) -> Result<Option<Walls>> {
     let stop = Stop::new(control);
     let count = usize::from(NEIGHBORS);
-    if points.len() < LEAST_STEEP {
+    if points.len() < MIN_STEEP {
         return Ok(None);
     }
     let index = NeighborIndex::new(points, control)?;
@@ -108,9 +109,9 @@ fn walls_of(points: &[[f32; 3]], control: &Control<'_>) -> Result<Option<Walls>>
         .collect();
     stop.check()?;
     // in order, so that the sum is the same for any number of threads
-    let near = || discs.iter().filter(|&&disc| disc <= PI * MOST_REACH * MOST_REACH);
+    let near = || discs.iter().filter(|&&disc| disc <= PI * MAX_REACH * MAX_REACH);
     let (area, used) = (near().sum::<f64>() / f64::from(NEIGHBORS), near().count());
-    Ok((area > 0.0 && used >= LEAST_STEEP).then(|| Walls { area, density: used as f64 / area }))
+    Ok((area > 0.0 && used >= MIN_STEEP).then(|| Walls { area, density: used as f64 / area }))
 }
 
 #[cfg(test)]
@@ -119,7 +120,8 @@ mod tests {
     use belvedere_data::cloud::Attributes;
     use belvedere_data::random::uniform;
 
-    /// Walls and roof of a box of 40 x 30 x 20 m, the roof with 4 points per m² and the walls with `density`, 2 cm rough.
+    /// Walls and roof of a box of 40 x 30 x 20 m, the roof with 4 points per m² and the walls with `density`, 2 cm
+    /// rough.
     fn box_cloud(density: u32, class: u8) -> PointCloud {
         let mut positions = Vec::new();
         let mut number = 0;
@@ -153,8 +155,8 @@ mod tests {
     fn a_box_has_the_wall_area_of_a_box() {
         for density in [1, 3] {
             let facades = FacadeSummary::of(&box_cloud(density, 6), &Control::none()).unwrap().unwrap();
-            // Points near the eaves have mixed neighbours: a strip as wide as these reach, up to a fifth of a wall of 20 m at
-            // the lower density. The area loses those points, but discs at the rim reach beyond it.
+            // Points near the eaves have mixed neighbours: a strip as wide as these reach, up to a fifth of a wall of
+            // 20 m at the lower density. The area loses those points, but discs at the rim reach beyond it.
             let walls = facades.walls.unwrap();
             assert!((0.8..1.1).contains(&(walls.area / 2800.0)), "{facades:?}");
             assert!((0.8..1.2).contains(&(walls.density / f64::from(density))), "{facades:?}");

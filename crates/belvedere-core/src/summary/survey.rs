@@ -1,16 +1,16 @@
 //! What kind of survey a cloud comes from, what carves its balls, and what would make its answers better.
 
-use crate::pulses::{LEAST_ASSUMED_SHARE, ScannerReport, come_from_the_ground};
+use crate::pulses::{MIN_ASSUMED_SHARE, ScannerReport, come_from_the_ground};
 use crate::summary::CloudSummary;
 use belvedere_data::PointCloud;
 use std::fmt;
 
-/// Share of the points whose scanner must be known for nothing to be missing, percent: what lies beside the first and last pulses of a flight line
-/// stays unknown.
+/// Share of the points whose scanner must be known for nothing to be missing, percent: what lies beside the first and
+/// last pulses of a flight line stays unknown.
 const NEARLY_ALL_PERCENT: f64 = 99.0;
 
-/// Share of the points in the densest twentieth of the ground from which on the scanner stood on it. Measured: 0.10 to 0.20 from the air (Delft, Amsterdam,
-/// Bresse, simulated towns), 0.35 from a car, 0.5 from tripods.
+/// Share of the points in the densest twentieth of the ground from which on the scanner stood on it. Measured: 0.10 to
+/// 0.20 from the air (Delft, Amsterdam, Bresse, simulated towns), 0.35 from a car, 0.5 from tripods.
 const UNEVEN_SHARE: f64 = 0.28;
 
 /// A survey in one line: [`fmt::Display`] joins the three parts.
@@ -72,9 +72,9 @@ impl SurveyKind {
     /// Where the scanner could not be found.
     fn without_pulses(cloud: &PointCloud, counted: &CloudSummary, scanner: &[[f32; 3]]) -> Self {
         let open = pulses(cloud, scanner).filter(|(_, scanner)| scanner[2].is_finite()).count();
-        let is_from_above = open as f64 >= LEAST_ASSUMED_SHARE * cloud.len() as f64;
-        let has_times = counted.gps_time.is_some_and(|times| times.can_tell_pulses_apart(cloud.len()));
-        let has_angles = counted.scan_angle_deg.is_some_and(|[least, most]| least < most);
+        let is_from_above = open as f64 >= MIN_ASSUMED_SHARE * cloud.len() as f64;
+        let has_times = counted.gps_time.is_some_and(|times| times.can_separate_pulses(cloud.len()));
+        let has_angles = counted.scan_angle_deg.is_some_and(|[min, max]| min < max);
         let has_returns = counted.multi_return_share.is_some_and(|share| share > 0.0);
         // readers of LAS give the column in any case, and what was made from photographs leaves it empty
         let has_intensities = cloud.attributes.intensity.iter().flatten().any(|&intensity| intensity > 0);
@@ -116,7 +116,8 @@ impl SurveyKind {
     }
 }
 
-/// Whether the densest twentieth of the cells, seen from above, holds [`UNEVEN_SHARE`] of the points, as near a scanner on the ground.
+/// Whether the densest twentieth of the cells, seen from above, holds [`UNEVEN_SHARE`] of the points, as near a scanner
+/// on the ground.
 fn is_uneven(positions: &[[f32; 3]], side: f64) -> bool {
     #[expect(clippy::cast_possible_truncation, reason = "saturates; clouds are not 2^31 cells wide")]
     let cell = |v: f32| (f64::from(v) / side).floor() as i32;

@@ -30,9 +30,9 @@ pub(super) fn wkt(_text: &str) -> Option<String> {
 }
 
 /// A projection that cannot be made.
-pub(super) enum Projection {}
+pub(super) enum CrsProjection {}
 
-impl Projection {
+impl CrsProjection {
     pub(super) fn new(_definition: &str) -> Result<Self, String> {
         Err(REASON.to_owned())
     }

@@ -33,12 +33,12 @@ pub(super) fn wkt(text: &str) -> Option<String> {
 }
 
 /// From longitude and latitude of WGS 84 in degrees to the coordinates of a system, and back.
-pub(super) struct Projection {
+pub(super) struct CrsProjection {
     forward: proj_core::Transform,
     inverse: Option<proj_core::Transform>,
 }
 
-impl Projection {
+impl CrsProjection {
     /// The projection into the system that a code or well-known text names; on failure the reason.
     pub(super) fn new(definition: &str) -> Result<Self, String> {
         let forward =

@@ -10,10 +10,10 @@ const VERTICAL: &[&str] = &["VERT_CS", "VERTCS", "VERTCRS", "VERTICALCRS"];
 
 /// One `KEYWORD[value, value, KEYWORD[…]]`.
 #[derive(Default)]
-struct Node {
+struct WktNode {
     keyword: String,
     values: Vec<String>,
-    children: Vec<Node>,
+    children: Vec<WktNode>,
 }
 
 /// The system that well-known text describes, or `None` where it cannot be understood.
@@ -26,7 +26,7 @@ pub(super) fn read(text: &str) -> Option<Crs> {
     Some(Crs {
         wkt: Some(text.to_owned()),
         epsg: root.epsg().or_else(|| horizontal.epsg()),
-        vertical_epsg: vertical.and_then(Node::epsg),
+        vertical_epsg: vertical.and_then(WktNode::epsg),
         metres_per_unit,
         vertical_metres_per_unit: vertical.and_then(unit).unwrap_or(metres_per_unit),
         kind,
@@ -43,7 +43,7 @@ pub(super) fn horizontal_name(text: &str) -> Option<String> {
     horizontal(&parse(text)?)?.values.first().cloned()
 }
 
-fn horizontal(root: &Node) -> Option<&Node> {
+fn horizontal(root: &WktNode) -> Option<&WktNode> {
     match root.keyword.as_str() {
         "COMPD_CS" | "COMPOUNDCRS" => {
             root.children.iter().find(|child| kind(child).is_some() || child.keyword == "BOUNDCRS").and_then(horizontal)
@@ -57,7 +57,7 @@ fn horizontal(root: &Node) -> Option<&Node> {
     }
 }
 
-fn kind(node: &Node) -> Option<CrsKind> {
+fn kind(node: &WktNode) -> Option<CrsKind> {
     match node.keyword.as_str() {
         "PROJCS" | "PROJCRS" | "PROJECTEDCRS" => Some(CrsKind::Projected),
         "GEOGCS" | "GEOGCRS" | "GEOGRAPHICCRS" => Some(CrsKind::Geographic),
@@ -74,14 +74,14 @@ fn kind(node: &Node) -> Option<CrsKind> {
 }
 
 /// Metres per length unit of a system: its own unit, or that of its first axis.
-fn unit(node: &Node) -> Option<f64> {
-    let own = |node: &Node| {
+fn unit(node: &WktNode) -> Option<f64> {
+    let own = |node: &WktNode| {
         node.children.iter().find(|child| child.keyword == "UNIT" || child.keyword == "LENGTHUNIT").and_then(metres)
     };
     own(node).or_else(|| node.children.iter().filter(|child| child.keyword == "AXIS").find_map(own))
 }
 
-fn metres(unit: &Node) -> Option<f64> {
+fn metres(unit: &WktNode) -> Option<f64> {
     let name = unit.values.first()?.to_ascii_lowercase();
     let factor: f64 = unit.values.get(1)?.parse().ok()?;
     if name.contains("foot") || name.contains("feet") || name.starts_with("ft") {
@@ -96,7 +96,7 @@ fn metres(unit: &Node) -> Option<f64> {
     (1e-6..1e6).contains(&factor).then_some(factor)
 }
 
-impl Node {
+impl WktNode {
     fn epsg(&self) -> Option<u32> {
         self.children.iter().find(|child| child.keyword == "AUTHORITY" || child.keyword == "ID").and_then(|id| match id
             .values
@@ -115,13 +115,13 @@ impl Node {
     }
 }
 
-fn parse(text: &str) -> Option<Node> {
-    let mut open: Vec<Node> = Vec::new();
+fn parse(text: &str) -> Option<WktNode> {
+    let mut open: Vec<WktNode> = Vec::new();
     let mut word = String::new();
     let mut quoted = false;
     let mut characters = text.chars().peekable();
     // Values are kept when the next separator shows that they were no keyword.
-    let keep = |open: &mut Vec<Node>, word: &mut String| {
+    let keep = |open: &mut Vec<WktNode>, word: &mut String| {
         if let (Some(node), false) = (open.last_mut(), word.is_empty()) {
             node.values.push(std::mem::take(word));
         }
@@ -138,7 +138,7 @@ fn parse(text: &str) -> Option<Node> {
                 if open.len() >= MAX_DEPTH {
                     return None;
                 }
-                open.push(Node { keyword: std::mem::take(&mut word).to_ascii_uppercase(), ..Node::default() });
+                open.push(WktNode { keyword: std::mem::take(&mut word).to_ascii_uppercase(), ..WktNode::default() });
             }
             ']' | ')' => {
                 keep(&mut open, &mut word);

@@ -18,8 +18,8 @@ pub struct ViewFrame {
 }
 
 impl ViewFrame {
-    /// The frame at `eye`, local metres, that looks along the unit vector `forward`. The picture's up is the world's up, or north
-    /// when looking straight down or up.
+    /// The frame at `eye`, local metres, that looks along the unit vector `forward`. The picture's up is the world's
+    /// up, or north when looking straight down or up.
     #[must_use]
     pub(super) fn looking(eye: [f64; 3], forward: [f64; 3]) -> Self {
         // within a thousandth of straight up or down there is no usable sideways vector from the world's up

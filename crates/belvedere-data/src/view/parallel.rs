@@ -5,8 +5,8 @@ use crate::vector::{cross, dot, unit};
 use crate::{Error, Parameter, Result};
 
 impl View {
-    /// The paper's viewport: `p0` is the upper left corner, `vx` spans the rows and `vy` the columns (their lengths give
-    /// the size of the picture), `pixels_per_metre` is s. The line of sight is `vx × vy`.
+    /// The paper's viewport: `p0` is the upper left corner, `vx` spans the rows and `vy` the columns (their lengths
+    /// give the size of the picture), `pixels_per_metre` is s. The line of sight is `vx × vy`.
     ///
     /// `p0` is local; all lengths are metres.
     ///
@@ -74,23 +74,23 @@ impl View {
             });
         }
         let ViewFrame { right, down, .. } = ViewFrame::looking([0.0; 3], forward);
-        let mut least = [f64::INFINITY; 3];
-        let mut most = [f64::NEG_INFINITY; 3];
+        let mut min = [f64::INFINITY; 3];
+        let mut max = [f64::NEG_INFINITY; 3];
         for corner in 0..8 {
             let p: [f64; 3] = std::array::from_fn(|i| if corner >> i & 1 == 0 { low[i] } else { high[i] });
             for (axis, v) in [right, down, forward].into_iter().enumerate() {
-                least[axis] = least[axis].min(dot(v, p));
-                most[axis] = most[axis].max(dot(v, p));
+                min[axis] = min[axis].min(dot(v, p));
+                max[axis] = max[axis].max(dot(v, p));
             }
         }
-        let eye = std::array::from_fn(|i| least[0] * right[i] + least[1] * down[i] + least[2] * forward[i]);
+        let eye = std::array::from_fn(|i| min[0] * right[i] + min[1] * down[i] + min[2] * forward[i]);
         // half a pixel of room keeps points on the rim of the box inside the picture
-        let span = |axis: usize| (most[axis] - least[axis]).max(0.0) + 0.5 * pixel_size;
+        let span = |axis: usize| (max[axis] - min[axis]).max(0.0) + 0.5 * pixel_size;
         Self::from_viewport(eye, right.map(|v| v * span(0)), down.map(|v| v * span(1)), 1.0 / pixel_size)
     }
 
-    /// The same view with the picture plane of a parallel view moved back as far as needed for none of `positions`, local metres,
-    /// to lie before it. Pixels stay the same lines of sight. Views from an eye stay as they are.
+    /// The same view with the picture plane of a parallel view moved back as far as needed for none of `positions`,
+    /// local metres, to lie before it. Pixels stay the same lines of sight. Views from an eye stay as they are.
     #[must_use]
     pub fn moved_before(mut self, positions: &[[f32; 3]]) -> Self {
         if self.is_central() {
@@ -106,8 +106,9 @@ impl View {
         self
     }
 
-    /// Where the picture of a parallel view straight down or up lies in the plane: easting and northing of its upper left
-    /// corner, of the step to the next column and of the step to the next row, local metres; `None` for any other view.
+    /// Where the picture of a parallel view straight down or up lies in the plane: easting and northing of its upper
+    /// left corner, of the step to the next column and of the step to the next row, local metres; `None` for any other
+    /// view.
     #[must_use]
     pub fn ground_grid(&self) -> Option<[[f64; 2]; 3]> {
         let pixels_per_metre = self.pixels_per_metre()?;

@@ -12,8 +12,8 @@ pub enum Projection {
         /// The paper's s: pixels per metre, the same in both directions.
         pixels_per_metre: f64,
     },
-    /// A pinhole camera: square pixels, straight lines stay straight, the axis meets the middle of the picture. Depth is metres
-    /// along `forward` from the eye.
+    /// A pinhole camera: square pixels, straight lines stay straight, the axis meets the middle of the picture. Depth
+    /// is metres along `forward` from the eye.
     Perspective {
         /// Pixels from the middle of the picture to what is seen 45° off the axis.
         focal_px: f64,
@@ -22,9 +22,9 @@ pub enum Projection {
         /// Most depth that is seen, metres, above `near`; may be infinite.
         far: f64,
     },
-    /// A stereographic map of the directions around `forward`: a ball's outline is a disc. A direction at the angle θ off the axis
-    /// lies `radius_px` · tan(θ / 2) from the middle of the picture, so that a map may show more than a hemisphere. Depth is
-    /// range: metres straight from the eye.
+    /// A stereographic map of the directions around `forward`: a ball's outline is a disc. A direction at the angle θ
+    /// off the axis lies `radius_px` · tan(θ / 2) from the middle of the picture, so that a map may show more than a
+    /// hemisphere. Depth is range: metres straight from the eye.
     Hemispherical {
         /// Pixels from the middle of the picture to directions at right angles to the axis.
         radius_px: f64,
@@ -36,17 +36,17 @@ pub enum Projection {
 }
 
 impl View {
-    /// Where a local position lies in the picture, in pixels from its upper left corner, and its depth, metres, whether that is
-    /// within the picture and its limits or not. `None` for what a projection cannot show: at or behind the eye of a perspective
-    /// view, at the eye or exactly opposite to the axis of a hemispherical one.
+    /// Where a local position lies in the picture, in pixels from its upper left corner, and its depth, metres, whether
+    /// that is within the picture and its limits or not. `None` for what a projection cannot show: at or behind the eye
+    /// of a perspective view, at the eye or exactly opposite to the axis of a hemispherical one.
     #[must_use]
     #[inline]
     pub fn project(&self, local: [f32; 3]) -> Option<[f64; 3]> {
         self.place(self.frame.view_from_local(local))
     }
 
-    /// Where a direction from the eye (local, any length) lies in the picture of a view from an eye, pixels, whether within or beside
-    /// it; `None` where [`View::project`] gives none.
+    /// Where a direction from the eye (local, any length) lies in the picture of a view from an eye, pixels, whether
+    /// within or beside it; `None` where [`View::project`] gives none.
     #[must_use]
     pub fn place_of_direction(&self, direction: [f64; 3]) -> Option<[f64; 2]> {
         let ViewFrame { right, down, forward, .. } = self.frame;
@@ -91,7 +91,8 @@ impl View {
         (pixel[0] < self.size_px[0] && pixel[1] < self.size_px[1]).then_some(pixel)
     }
 
-    /// Unit vector of sight through a place of the picture, in pixels from its upper left corner: along right, down and forward.
+    /// Unit vector of sight through a place of the picture, in pixels from its upper left corner: along right, down and
+    /// forward.
     #[must_use]
     pub fn direction(&self, [x, y]: [f64; 2]) -> [f64; 3] {
         let middle = self.middle();
@@ -111,8 +112,8 @@ impl View {
         }
     }
 
-    /// What lies at `depth` metres behind a place of the picture, in pixels from its upper left corner: metres along right, down and
-    /// forward of the frame. The inverse of [`View::project`].
+    /// What lies at `depth` metres behind a place of the picture, in pixels from its upper left corner: metres along
+    /// right, down and forward of the frame. The inverse of [`View::project`].
     #[must_use]
     pub fn position(&self, place: [f64; 2], depth: f64) -> [f64; 3] {
         let direction = self.direction(place);
@@ -137,7 +138,8 @@ impl View {
     /// The same view with other limits of depth, metres. Parallel views have none and stay as they are.
     ///
     /// # Errors
-    /// [`Error::InvalidParameter`](crate::Error::InvalidParameter) unless `near` is finite, 0 or more, and `far` above it.
+    /// [`Error::InvalidParameter`](crate::Error::InvalidParameter) unless `near` is finite, 0 or more, and `far` above
+    /// it.
     pub fn with_limits(mut self, nearest: f64, farthest: f64) -> crate::Result<Self> {
         if !(nearest >= 0.0 && nearest.is_finite() && farthest > nearest) {
             return Err(crate::Error::InvalidParameter {
@@ -170,7 +172,8 @@ impl View {
         }
     }
 
-    /// Width of a pixel at the middle of the picture, metres, at `range` metres from the eye (of no matter in a parallel view).
+    /// Width of a pixel at the middle of the picture, metres, at `range` metres from the eye (of no matter in a
+    /// parallel view).
     #[must_use]
     pub fn pixel_width(&self, range: f64) -> f64 {
         match self.projection {

@@ -36,7 +36,8 @@ impl CalendarDay {
 /// Days from 1970-01-01 to a date, negative before.
 ///
 /// # Source
-/// The year is taken to begin in March, so that its months before the last have 153 days in five: Richards 1998, Mapping Time.
+/// The year is taken to begin in March, so that its months before the last have 153 days in five: Richards 1998,
+/// Mapping Time.
 #[must_use]
 pub fn unix_day(date: CalendarDay) -> i64 {
     let (month, day) = (i64::from(date.month), i64::from(date.day));

@@ -20,7 +20,8 @@ pub struct Irradiance {
 /// One row of a weather file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WeatherStep {
-    /// The instant whose sun goes with the row: the middle of an interval, or the instant of a value, seconds since 1970-01-01 UTC.
+    /// The instant whose sun goes with the row: the middle of an interval, or the instant of a value, seconds since
+    /// 1970-01-01 UTC.
     pub instant: f64,
     /// How long the row counts, hours.
     pub hours: f64,
@@ -90,8 +91,8 @@ impl Weather {
     /// Checks what the reader of any format must have made sure of.
     ///
     /// # Errors
-    /// [`Error::NoPoints`] without rows, [`Error::InvalidParameter`] for rows of the same time, for a place that is not on earth, and for values that are not finite
-    /// or below zero.
+    /// [`Error::NoPoints`] without rows, [`Error::InvalidParameter`] for rows of the same time, for a place that is not
+    /// on earth, and for values that are not finite or below zero.
     pub fn validate(&self) -> Result<()> {
         if self.steps.is_empty() {
             return Err(Error::NoPoints { what: "the weather has no row with radiation".to_owned() });

@@ -13,9 +13,9 @@ use belvedere::control::Control;
 use belvedere::io::{ReadOptions, read_cloud};
 use belvedere::medial::MedialBalls;
 use belvedere::model::{ModelParams, SceneModel};
-use belvedere::query::{Backend, BallTree, BlockRule, Cpu, Line, MedialScene, Settled, UnprovenAs, Viewers};
+use belvedere::query::{Backend, BallTree, BlockRule, Cpu, LineAnswer, MedialScene, Settled, UnprovenAs, Viewers};
 use belvedere::random::uniform;
-use belvedere_core::ray_index::{NODE_WORDS, Part, RayIndex};
+use belvedere_core::ray_index::{NODE_WORDS, NodePart, RayIndex};
 use belvedere_data::Result;
 use belvedere_gpu::{Choice, Gpu, devices};
 use std::io::Write;
@@ -89,8 +89,8 @@ fn steps_of(index: &RayIndex, from: [f32; 3], towards: [f64; 3]) -> [usize; 2] {
                 (enter, leave) = (enter.max(a.min(b)), leave.min(a.max(b)));
             }
             match part {
-                Part::Rows { count, .. } if enter <= leave => balls += count as usize,
-                Part::Node(node) if enter <= leave => waiting.push(node),
+                NodePart::Rows { count, .. } if enter <= leave => balls += count as usize,
+                NodePart::Node(node) if enter <= leave => waiting.push(node),
                 _ => {}
             }
         }
@@ -105,7 +105,7 @@ fn timed<T>(work: impl FnOnce() -> T) -> (T, f64) {
 }
 
 fn share_open(settled: &Settled, targets: usize, directions: usize) -> f64 {
-    let is_open = |&(target, direction): &(usize, usize)| settled.line(target, direction) == Line::Open;
+    let is_open = |&(target, direction): &(usize, usize)| settled.line(target, direction) == LineAnswer::Open;
     let lines = (0..targets).flat_map(|target| (0..directions).map(move |direction| (target, direction)));
     lines.filter(is_open).count() as f64 / (targets * directions) as f64
 }

@@ -6,7 +6,9 @@ use belvedere::io::{ReadOptions, read_cloud};
 use belvedere::medial::MedialBalls;
 use belvedere::model::{ModelParams, SceneModel};
 use belvedere::query::target_tree::TargetTree;
-use belvedere::query::{Answer, Backend, Ball, BallTree, BlockRule, Line, MedialScene, UnprovenAs, Viewer, Viewers};
+use belvedere::query::{
+    Answer, Backend, Ball, BallTree, BlockRule, LineAnswer, MedialScene, UnprovenAs, Viewer, Viewers,
+};
 use belvedere::random::uniform;
 use belvedere_gpu::{Choice, DeviceInfo, Gpu, devices};
 use belvedere_scenes::{AirborneParams, TownParams, scan_airborne, town};
@@ -65,8 +67,8 @@ fn assert_equal_on(
         let from = target.map(f64::from);
         for (direction, towards) in directions.iter().enumerate() {
             let line = settled.line(number, direction);
-            open += usize::from(line == Line::Open);
-            if line == Line::Open || !(number % BRUTE == 0 || direction % BRUTE == 0) {
+            open += usize::from(line == LineAnswer::Open);
+            if line == LineAnswer::Open || !(number % BRUTE == 0 || direction % BRUTE == 0) {
                 continue;
             }
             let is_blocked = if number % BRUTE == 0 {
@@ -75,7 +77,12 @@ fn assert_equal_on(
             } else {
                 scene.answer(from, *towards, f64::INFINITY) == Answer::Blocked
             };
-            assert_eq!(line == Line::Blocked, is_blocked, "{what} on {}: {target:?} towards {towards:?}", device.name);
+            assert_eq!(
+                line == LineAnswer::Blocked,
+                is_blocked,
+                "{what} on {}: {target:?} towards {towards:?}",
+                device.name
+            );
         }
     }
     assert_eyes_are_equal_on(device, &tree, targets, what);
@@ -101,11 +108,11 @@ fn assert_eyes_are_equal_on(device: &DeviceInfo, tree: &Arc<BallTree>, targets: 
         for (place, target) in targets.iter().enumerate() {
             let line = settled.line(place, number);
             finite += usize::from(number + 4 < eyes.len());
-            decided += usize::from(line != Line::Open);
+            decided += usize::from(line != LineAnswer::Open);
             let sight = Viewer::Eye(*eye).line_of_sight(0, *target);
-            let Some((towards, range)) = sight.filter(|_| line != Line::Open) else { continue };
+            let Some((towards, range)) = sight.filter(|_| line != LineAnswer::Open) else { continue };
             let is_blocked = scene.answer(target.map(f64::from), towards, range) == Answer::Blocked;
-            assert_eq!(line == Line::Blocked, is_blocked, "{what} on {}: {target:?} to {eye:?}", device.name);
+            assert_eq!(line == LineAnswer::Blocked, is_blocked, "{what} on {}: {target:?} to {eye:?}", device.name);
         }
     }
     // one target in 30 is very far away; eyes close to a target or to the surface of a ball leave a few more lines open
@@ -266,7 +273,7 @@ fn a_scene_larger_than_the_buffers_of_a_device_is_asked_in_parts() {
     let share_open = |gpu: &Gpu| {
         let settled = gpu.prepare(&tree).unwrap().settle(&targets, &directions, &Control::none()).unwrap();
         let lines = (0..targets.len()).flat_map(|target| (0..directions.len()).map(move |number| (target, number)));
-        lines.filter(|&(target, number)| settled.line(target, number) == Line::Open).count()
+        lines.filter(|&(target, number)| settled.line(target, number) == LineAnswer::Open).count()
     };
     for device in devices_or_skip("a_scene_larger_than_the_buffers_of_a_device_is_asked_in_parts") {
         let whole = Arc::new(Gpu::new(Choice::Number(device.number)).unwrap());

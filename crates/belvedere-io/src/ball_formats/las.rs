@@ -32,7 +32,7 @@ pub(crate) fn read_las(input: Input<'_>) -> Result<ModelParts> {
     let name = input.name.clone();
     let path = name.as_path();
     let file = LasFile::open(input)?;
-    let Some(fields) = Fields::of(&file) else {
+    let Some(fields) = BallFields::of(&file) else {
         return Err(Error::malformed(path, "holds no balls; it needs the extra bytes radius and touch"));
     };
     let text = file.header.record(RECORD_USER, RECORD_ID).unwrap_or_default();
@@ -53,11 +53,11 @@ pub(crate) fn read_las(input: Input<'_>) -> Result<ModelParts> {
 }
 
 pub(crate) fn las_has_balls(input: Input<'_>) -> bool {
-    LasFile::open(input).is_ok_and(|file| Fields::of(&file).is_some())
+    LasFile::open(input).is_ok_and(|file| BallFields::of(&file).is_some())
 }
 
 /// The extra columns of a ball file.
-struct Fields {
+struct BallFields {
     radius: ExtraField,
     touch: ExtraField,
     separation_angle: Option<ExtraField>,
@@ -65,7 +65,7 @@ struct Fields {
     transmission: Option<ExtraField>,
 }
 
-impl Fields {
+impl BallFields {
     /// `None` where radius or touch is missing.
     fn of(file: &LasFile<'_>) -> Option<Self> {
         let [radius, touch, separation_angle, source, transmission] =

@@ -61,7 +61,8 @@ pub(super) struct Metadata {
     bounds: Option<Bounds>,
 }
 
-/// What `text`, written by [`to_json`], says; the defaults where a program dropped it and it is empty. What is wrong with it otherwise.
+/// What `text`, written by [`to_json`], says; the defaults where a program dropped it and it is empty. What is wrong
+/// with it otherwise.
 pub(super) fn from_json(text: &str) -> Result<Metadata, String> {
     if text.is_empty() {
         return Ok(Metadata::default());

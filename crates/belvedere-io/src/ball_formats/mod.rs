@@ -21,7 +21,7 @@ pub(crate) use npz::{read_npz, write_npz};
 pub(crate) use ply::{ply_has_balls, read_ply};
 pub(crate) use write_ply::write_ply;
 
-use crate::columns::{Column, Values};
+use crate::columns::{Column, ColumnValues};
 use belvedere_data::PointCloud;
 use belvedere_data::model::ModelParts;
 
@@ -33,11 +33,11 @@ fn as_cloud(parts: &ModelParts) -> (PointCloud, Vec<Column<'_>>) {
     let unit = parts.frame.crs.metres_per_unit;
     #[expect(clippy::cast_possible_truncation, reason = "a radius in another unit is still an f32")]
     let radii = parts.balls.radii.iter().map(|&r| (f64::from(r) / unit) as f32).collect();
-    let signed = |indices: &[u32]| Values::I32(indices.iter().map(|&i| i.cast_signed()).collect());
+    let signed = |indices: &[u32]| ColumnValues::I32(indices.iter().map(|&i| i.cast_signed()).collect());
     let column = |name, description, values| Column { name, description, values };
     let mut columns = vec![
-        column("radius".into(), "in the unit of x and y".into(), Values::F32(radii)),
-        column("separation_angle".into(), "radians".into(), Values::F32((&parts.balls.separation_angles).into())),
+        column("radius".into(), "in the unit of x and y".into(), ColumnValues::F32(radii)),
+        column("separation_angle".into(), "radians".into(), ColumnValues::F32((&parts.balls.separation_angles).into())),
         column("source".into(), "index of the tangent point".into(), signed(&parts.balls.source)),
         column("touch".into(), "point q, -2 pulse, -3 limit".into(), signed(&parts.balls.touch)),
     ];
@@ -45,7 +45,7 @@ fn as_cloud(parts: &ModelParts) -> (PointCloud, Vec<Column<'_>>) {
         columns.push(column(
             "transmission".into(),
             "share of pulses that passed".into(),
-            Values::F32((&parts.transmission).into()),
+            ColumnValues::F32((&parts.transmission).into()),
         ));
     }
     (cloud, columns)

@@ -8,8 +8,8 @@ use super::metadata;
 use crate::npz_arrays::{array, has, invalid, open, rows, values, write_archive};
 use crate::output::Output;
 use crate::source::Input;
+use belvedere_data::free_segments::FreeSegmentColumns;
 use belvedere_data::model::ModelParts;
-use belvedere_data::needles::NeedleColumns;
 use belvedere_data::{Error, Result};
 
 const UNITS: &str = "metres relative to origin, radians; coordinates in the crs are \
@@ -48,7 +48,7 @@ fn write_arrays<W: Write + Seek>(archive: &mut NpzWriter<W>, parts: &ModelParts)
     if !parts.transmission.is_empty() {
         array(archive, "transmission", &[n], parts.transmission.iter().copied())?;
     }
-    if let Some(NeedleColumns { starts, ways, slopes, lengths, top }) = &parts.pulses {
+    if let Some(FreeSegmentColumns { starts, ways, slopes, lengths, top }) = &parts.pulses {
         let p = starts.len() as u64;
         array(archive, "pulse_starts", &[p, 3], starts.iter().flatten().copied())?;
         array(archive, "pulse_slopes", &[p, 2], slopes.iter().flatten().copied())?;
@@ -96,12 +96,12 @@ pub(crate) fn read_npz(input: Input<'_>) -> Result<ModelParts> {
     Ok(parts)
 }
 
-fn pulses<R: Read + Seek>(archive: &mut NpzArchive<R>) -> io::Result<NeedleColumns> {
+fn pulses<R: Read + Seek>(archive: &mut NpzArchive<R>) -> io::Result<FreeSegmentColumns> {
     let lengths =
         if has(archive, "pulse_lengths") { values(archive, "pulse_lengths", u64::MAX)?.0 } else { Vec::new() };
     let ways = if has(archive, "pulse_ways") { values(archive, "pulse_ways", u64::MAX)?.0 } else { Vec::new() };
     let top = values::<f32, _>(archive, "pulse_top", 1)?.0;
-    Ok(NeedleColumns {
+    Ok(FreeSegmentColumns {
         starts: rows::<f32, 3, _>(archive, "pulse_starts")?,
         ways,
         slopes: rows::<i16, 2, _>(archive, "pulse_slopes")?,

@@ -1,4 +1,5 @@
-//! Chunks of LAZ points, decompressed side by side with the fields of the laz crate, except those that it decodes by recursion.
+//! Chunks of LAZ points, decompressed side by side with the fields of the laz crate, except those that it decodes by
+//! recursion.
 
 use std::io::Cursor;
 
@@ -11,7 +12,8 @@ use ::laz::{DecompressionSelection, LazItem, LazVlr};
 use super::gps_times::GpsTimeField;
 use super::point14::Point14Field;
 
-/// Decompresses the `chunks`, which follow each other in `compressed`, to `points`, which have the sizes that the chunks claim.
+/// Decompresses the `chunks`, which follow each other in `compressed`, to `points`, which have the sizes that the
+/// chunks claim.
 ///
 /// # Errors
 ///
@@ -84,9 +86,9 @@ mod tests {
     const POINTS: usize = 20_000;
 
     /// Random numbers of one sequence.
-    struct Random(u64);
+    struct ChunkRandom(u64);
 
-    impl Random {
+    impl ChunkRandom {
         fn below(&mut self, end: u64) -> u64 {
             self.0 += 1;
             (uniform(7, self.0) * end as f64) as u64
@@ -94,7 +96,7 @@ mod tests {
     }
 
     /// Times that stay, go on evenly, by multiples up to beyond those with symbols, back, and to other sequences.
-    fn times(random: &mut Random) -> Vec<i64> {
+    fn times(random: &mut ChunkRandom) -> Vec<i64> {
         let mut sequences = [2.5e5_f64, 2.6e5, 1.0e8, -3.0, 7.0e5].map(|time| time.to_bits() as i64);
         let mut at = 0;
         (0..POINTS)
@@ -118,7 +120,7 @@ mod tests {
 
     /// Records of `length` bytes that look like points, with a time at `time_at` where a format has times.
     fn records(length: usize, time_at: Option<usize>) -> Vec<u8> {
-        let mut random = Random(0);
+        let mut random = ChunkRandom(0);
         let times = times(&mut random);
         let mut record: Vec<u8> = (0..length).map(|_| random.below(256) as u8).collect();
         let mut all = Vec::with_capacity(POINTS * length);

@@ -1,8 +1,8 @@
-//! GPS times of LAZ points, decoded by a loop: the laz crate (0.13) decodes them by recursion, which damaged files drive through the
-//! end of the stack (`docs/upstream.md`).
+//! GPS times of LAZ points, decoded by a loop: the laz crate (0.13) decodes them by recursion, which damaged files
+//! drive through the end of the stack (`docs/upstream.md`).
 //!
-//! Source: M. Isenburg, LASzip: lossless compression of LiDAR data, PE&RS 79(2), 2013, and what LASzip 3 writes: times follow up to four sequences, and each
-//! goes on by about a multiple of its last difference.
+//! Source: M. Isenburg, LASzip: lossless compression of LiDAR data, PE&RS 79(2), 2013, and what LASzip 3 writes: times
+//! follow up to four sequences, and each goes on by about a multiple of its last difference.
 
 use std::io::{self, Read};
 
@@ -11,9 +11,10 @@ use ::laz::decompressors::{IntegerDecompressor, IntegerDecompressorBuilder};
 use ::laz::models::{ArithmeticModel, ArithmeticModelBuilder};
 use ::laz::record::FieldDecompressor;
 
-/// Greatest and least multiple of the last difference that has a symbol of its own; symbols count from 0 to 500, then from −1 to −10.
+/// Greatest and least multiple of the last difference that has a symbol of its own; symbols count from 0 to 500, then
+/// from −1 to −10.
 const GREATEST_MULTIPLE: i32 = 500;
-const LEAST_MULTIPLE: i32 = -10;
+const MIN_MULTIPLE: i32 = -10;
 /// The first symbol behind those of multiples.
 const AFTER_MULTIPLES: u32 = 511;
 /// A sequence takes over a new difference after so many differences that no multiple describes well.
@@ -23,13 +24,13 @@ const MAX_EXTREMES: u32 = 3;
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum SameTime {
     HasSymbol,
-    IsToldElsewhere,
+    IsStoredElsewhere,
 }
 
 /// Decoder of the times of one stream of points.
-pub(super) struct GpsTimes {
+pub(super) struct GpsTimeDecoder {
     /// Times are the bits of a double, compared as integers.
-    sequences: [Sequence; 4],
+    sequences: [TimeSequence; 4],
     current: usize,
     newest: usize,
     first_differences: ArithmeticModel,
@@ -39,7 +40,7 @@ pub(super) struct GpsTimes {
 }
 
 #[derive(Clone, Copy, Default)]
-struct Sequence {
+struct TimeSequence {
     time: i64,
     difference: i32,
     extremes: u32,
@@ -58,10 +59,10 @@ enum Step {
     Switch(usize),
 }
 
-impl GpsTimes {
+impl GpsTimeDecoder {
     /// Times that go on from `first`.
     pub(super) fn new(first: i64, same_time: SameTime) -> Self {
-        let mut sequences = [Sequence::default(); 4];
+        let mut sequences = [TimeSequence::default(); 4];
         sequences[0].time = first;
         let more = u32::from(same_time == SameTime::HasSymbol);
         Self {
@@ -92,7 +93,7 @@ impl GpsTimes {
                     let difference = self.differences.decompress(decoder, 0, 0)?;
                     let sequence = &mut self.sequences[self.current];
                     let time = sequence.time.wrapping_add(i64::from(difference));
-                    *sequence = Sequence { time, difference, extremes: 0 };
+                    *sequence = TimeSequence { time, difference, extremes: 0 };
                 }
                 Step::Multiple(multiple) => self.add_multiple(decoder, multiple)?,
                 Step::Whole => {
@@ -101,7 +102,7 @@ impl GpsTimes {
                     let time = (i64::from(upper) << 32) | i64::from(decoder.read_int()?);
                     self.newest = (self.newest + 1) % self.sequences.len();
                     self.current = self.newest;
-                    self.sequences[self.current] = Sequence { time, ..Sequence::default() };
+                    self.sequences[self.current] = TimeSequence { time, ..TimeSequence::default() };
                 }
             }
             return Ok(self.sequences[self.current].time);
@@ -110,7 +111,7 @@ impl GpsTimes {
     }
 
     fn step<R: Read>(&mut self, decoder: &mut ArithmeticDecoder<R>) -> io::Result<Step> {
-        let more = u32::from(self.same_time == SameTime::IsToldElsewhere);
+        let more = u32::from(self.same_time == SameTime::IsStoredElsewhere);
         if self.sequences[self.current].difference == 0 {
             return Ok(match decoder.decode_symbol(&mut self.first_differences)? + more {
                 0 => Step::Same,
@@ -139,7 +140,7 @@ impl GpsTimes {
             2..10 => 2,
             10..GREATEST_MULTIPLE => 3,
             GREATEST_MULTIPLE => 4,
-            LEAST_MULTIPLE => 6,
+            MIN_MULTIPLE => 6,
             _ => 5,
         };
         let sequence = &mut self.sequences[self.current];
@@ -148,23 +149,24 @@ impl GpsTimes {
         sequence.time = sequence.time.wrapping_add(i64::from(difference));
         match multiple {
             1 => sequence.extremes = 0,
-            0 | GREATEST_MULTIPLE | LEAST_MULTIPLE if sequence.extremes == MAX_EXTREMES => {
+            0 | GREATEST_MULTIPLE | MIN_MULTIPLE if sequence.extremes == MAX_EXTREMES => {
                 sequence.difference = difference;
                 sequence.extremes = 0;
             }
-            0 | GREATEST_MULTIPLE | LEAST_MULTIPLE => sequence.extremes += 1,
+            0 | GREATEST_MULTIPLE | MIN_MULTIPLE => sequence.extremes += 1,
             _ => {}
         }
         Ok(())
     }
 }
 
-/// The field of GPS times of point formats 1 and 3 to 5, in its second version (the first one has one sequence and no recursion).
-pub(super) struct GpsTimeField(GpsTimes);
+/// The field of GPS times of point formats 1 and 3 to 5, in its second version (the first one has one sequence and no
+/// recursion).
+pub(super) struct GpsTimeField(GpsTimeDecoder);
 
 impl GpsTimeField {
     pub(super) fn new() -> Self {
-        Self(GpsTimes::new(0, SameTime::HasSymbol))
+        Self(GpsTimeDecoder::new(0, SameTime::HasSymbol))
     }
 }
 
@@ -177,7 +179,7 @@ impl<R: Read> FieldDecompressor<R> for GpsTimeField {
         let mut first = [0; 8];
         src.read_exact(&mut first)?;
         first_point.copy_from_slice(&first);
-        self.0 = GpsTimes::new(i64::from_le_bytes(first), SameTime::HasSymbol);
+        self.0 = GpsTimeDecoder::new(i64::from_le_bytes(first), SameTime::HasSymbol);
         Ok(())
     }
 

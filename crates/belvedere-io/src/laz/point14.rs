@@ -1,7 +1,7 @@
 //! The common fields of LAZ points of formats 6 to 10, which are stored in nine layers.
 //!
-//! The laz crate (0.13) has the same decoder, but decodes GPS times by recursion (`gps_times.rs`), which cannot be taken out of it: whether
-//! a point has a new time stands in the first layer, with its coordinates.
+//! The laz crate (0.13) has the same decoder, but decodes GPS times by recursion (`gps_times.rs`), which cannot be
+//! taken out of it: whether a point has a new time stands in the first layer, with its coordinates.
 //!
 //! Source: what LASzip 3 writes for the item "Point14", versions 3 and 4.
 
@@ -18,14 +18,14 @@ use ::laz::decompressors::{IntegerDecompressor, IntegerDecompressorBuilder};
 use ::laz::models::{ArithmeticModel, ArithmeticModelBuilder};
 use ::laz::record::LayeredFieldDecompressor;
 
-use super::gps_times::{GpsTimes, SameTime};
+use super::gps_times::{GpsTimeDecoder, SameTime};
 
 /// Bytes of the fields.
 const SIZE: usize = 30;
 const LAYERS: usize = 9;
 
-/// What changes from one point of a channel to the next, besides coordinates: bits of the first symbol of a point. The lowest two bits tell how the return number
-/// changes.
+/// What changes from one point of a channel to the next, besides coordinates: bits of the first symbol of a point. The
+/// lowest two bits tell how the return number changes.
 const RETURN_COUNT: u32 = 1 << 2;
 const SCAN_ANGLE: u32 = 1 << 3;
 const TIME: u32 = 1 << 4;
@@ -74,7 +74,7 @@ struct Channel {
     y_medians: [Median; 12],
     heights: [i32; 8],
     intensities: [u16; 8],
-    times: GpsTimes,
+    times: GpsTimeDecoder,
     changes: Models<8>,
     channel_steps: ArithmeticModel,
     return_counts: Models<16>,
@@ -168,7 +168,7 @@ impl Channel {
             y_medians: [Median::default(); 12],
             heights: [last.z; 8],
             intensities: [last.intensity; 8],
-            times: GpsTimes::new(last.time, SameTime::IsToldElsewhere),
+            times: GpsTimeDecoder::new(last.time, SameTime::IsStoredElsewhere),
             changes: Models::new(128),
             channel_steps: ArithmeticModelBuilder::new(3).build(),
             return_counts: Models::new(16),
@@ -380,8 +380,8 @@ impl<const N: usize> Models<N> {
     }
 }
 
-/// The running median of LASzip: of five sorted values the largest or the smallest one makes room for a new one, in turn when the new value
-/// lies on the other side of the median.
+/// The running median of LASzip: of five sorted values the largest or the smallest one makes room for a new one, in
+/// turn when the new value lies on the other side of the median.
 #[derive(Clone, Copy)]
 struct Median {
     values: [i32; 5],

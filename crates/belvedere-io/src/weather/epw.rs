@@ -1,6 +1,6 @@
 //! EnergyPlus weather.
 
-use super::lines::{Line, Lines};
+use super::lines::{WeatherLine, WeatherLines};
 use belvedere_data::Result;
 use belvedere_data::weather::{RowsHold, Weather, WeatherStep, unix_day};
 
@@ -16,7 +16,7 @@ const MISSING: f64 = 9999.0;
 /// Temperature from which on it is missing.
 const MISSING_TEMPERATURE: f64 = 99.9;
 
-pub(super) fn read(lines: &Lines<'_>) -> Result<Weather> {
+pub(super) fn read(lines: &WeatherLines<'_>) -> Result<Weather> {
     let place = lines.line(1)?;
     let cells = place.cells();
     let latitude = place.number_in(&cells, 6, "the latitude")?;
@@ -50,7 +50,7 @@ pub(super) fn read(lines: &Lines<'_>) -> Result<Weather> {
     Ok(weather)
 }
 
-fn step(line: &Line<'_>, zone: f64, per_hour: i32) -> Result<Option<WeatherStep>> {
+fn step(line: &WeatherLine<'_>, zone: f64, per_hour: i32) -> Result<Option<WeatherStep>> {
     let cells = line.cells();
     let whole = |column: usize, name: &str| line.whole_in(&cells, column, name);
     let day = line.day(whole(0, "the year")?, whole(1, "the month")?, whole(2, "the day")?)?;

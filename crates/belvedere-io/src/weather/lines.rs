@@ -5,41 +5,45 @@ use belvedere_data::{Error, Result};
 use std::path::Path;
 
 /// Most radiation that any instrument below the atmosphere shows, W/m², with room for clouds that reflect.
-const MOST_RADIATION: f64 = 3000.0;
+const MAX_RADIATION: f64 = 3000.0;
 /// Noise of sensors at night, W/m².
 const NOISE: f64 = -20.0;
 
 /// The lines of a weather file.
-pub(super) struct Lines<'a> {
+pub(super) struct WeatherLines<'a> {
     pub(super) path: &'a Path,
     text: &'a str,
 }
 
 /// One line, its number counted from 1.
 #[derive(Clone, Copy)]
-pub(super) struct Line<'a> {
+pub(super) struct WeatherLine<'a> {
     path: &'a Path,
     pub(super) number: usize,
     pub(super) text: &'a str,
 }
 
-impl<'a> Lines<'a> {
+impl<'a> WeatherLines<'a> {
     pub(super) fn new(path: &'a Path, text: &'a str) -> Self {
         Self { path, text }
     }
 
-    pub(super) fn all(&self) -> impl Iterator<Item = Line<'a>> {
+    pub(super) fn all(&self) -> impl Iterator<Item = WeatherLine<'a>> {
         let path = self.path;
-        self.text.lines().enumerate().map(move |(row, text)| Line { path, number: row + 1, text: text.trim_end() })
+        self.text.lines().enumerate().map(move |(row, text)| WeatherLine {
+            path,
+            number: row + 1,
+            text: text.trim_end(),
+        })
     }
 
     /// Line `number`, from 1.
-    pub(super) fn line(&self, number: usize) -> Result<Line<'a>> {
+    pub(super) fn line(&self, number: usize) -> Result<WeatherLine<'a>> {
         self.all().nth(number - 1).ok_or_else(|| Error::malformed(self.path, format!("ends before line {number}")))
     }
 }
 
-impl<'a> Line<'a> {
+impl<'a> WeatherLine<'a> {
     pub(super) fn wrong(&self, what: &str) -> Error {
         Error::malformed(self.path, format!("line {}: {what}", self.number))
     }
@@ -98,8 +102,8 @@ impl<'a> Line<'a> {
         if is_missing(value) {
             return Ok(None);
         }
-        if !(NOISE..=MOST_RADIATION).contains(&value) {
-            return Err(self.wrong(&format!("{name} is {value} W/m², but must be {NOISE} to {MOST_RADIATION}")));
+        if !(NOISE..=MAX_RADIATION).contains(&value) {
+            return Err(self.wrong(&format!("{name} is {value} W/m², but must be {NOISE} to {MAX_RADIATION}")));
         }
         Ok(Some(value.max(0.0)))
     }

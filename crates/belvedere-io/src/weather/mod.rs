@@ -17,28 +17,30 @@ mod tmy3;
 use crate::source::{Input, Source};
 use belvedere_data::weather::Weather;
 use belvedere_data::{Error, Result};
-use lines::Lines;
+use lines::WeatherLines;
 use std::io::Read;
 
 /// Larger files are no weather: a year in steps of a minute has 50 MB.
-const MOST_BYTES: u64 = 500_000_000;
+const MAX_BYTES: u64 = 500_000_000;
 
 /// Reads the radiation of a weather file. Its rows keep their own years, of which a typical year has several.
 ///
-/// What is missing in a row stays missing where other columns make up for it; rows without global radiation, or with a value that the format
-/// marks as missing, are left out and counted. Values below zero that are noise of sensors at night, down to −20 W/m², count as zero.
+/// What is missing in a row stays missing where other columns make up for it; rows without global radiation, or with a
+/// value that the format marks as missing, are left out and counted. Values below zero that are noise of sensors at
+/// night, down to −20 W/m², count as zero.
 ///
 /// # Errors
-/// [`Error::Io`]; [`Error::Malformed`], which names the line, for files of another kind, columns that are missing, dates that do not exist,
-/// text in place of numbers, radiation beyond 3000 W/m² or below −20, series of PVGIS on tilted planes, and files without rows.
+/// [`Error::Io`]; [`Error::Malformed`], which names the line, for files of another kind, columns that are missing,
+/// dates that do not exist, text in place of numbers, radiation beyond 3000 W/m² or below −20, series of PVGIS on
+/// tilted planes, and files without rows.
 ///
 /// # Source
-/// EnergyPlus, Auxiliary Programs, "EnergyPlus Weather File (EPW) Data Dictionary"; Wilcox & Marion 2008, User's manual for TMY3 data sets;
-/// PVGIS user manual, sections 4 and 6; NSRDB, "PSM v3 and v4 CSV".
+/// EnergyPlus, Auxiliary Programs, "EnergyPlus Weather File (EPW) Data Dictionary"; Wilcox & Marion 2008, User's manual
+/// for TMY3 data sets; PVGIS user manual, sections 4 and 6; NSRDB, "PSM v3 and v4 CSV".
 pub fn read_weather<'a>(source: impl Into<Source<'a>>) -> Result<Weather> {
     let Input { name, mut reader, size } = source.into().open()?;
     let path = name.as_path();
-    if size > MOST_BYTES {
+    if size > MAX_BYTES {
         return Err(Error::malformed(path, format!("{size} bytes are too many for a weather file")));
     }
     let mut bytes = Vec::new();
@@ -46,7 +48,7 @@ pub fn read_weather<'a>(source: impl Into<Source<'a>>) -> Result<Weather> {
     // station names are in any encoding; figures are not
     let text = String::from_utf8_lossy(&bytes);
     let text = text.trim_start_matches('\u{feff}');
-    let lines = Lines::new(path, text);
+    let lines = WeatherLines::new(path, text);
     let first = text.lines().next().unwrap_or("");
     let second = text.lines().nth(1).unwrap_or("");
     let weather = if first.starts_with("LOCATION,") {

@@ -1,13 +1,13 @@
 //! Series and typical years of the National Solar Radiation Database.
 
-use super::lines::Lines;
+use super::lines::WeatherLines;
 use belvedere_data::Result;
 use belvedere_data::weather::{RowsHold, Weather, WeatherStep, unix_day};
 
 /// Steps that the database has, hours: where a file has a single row, the usual.
 const USUAL_STEP: f64 = 1.0;
 
-pub(super) fn read(lines: &Lines<'_>) -> Result<Weather> {
+pub(super) fn read(lines: &WeatherLines<'_>) -> Result<Weather> {
     let (names, values, head) = (lines.line(1)?, lines.line(2)?, lines.line(3)?);
     let (names, cells, columns) = (names.cells(), values.cells(), head.cells());
     let of_place = |name: &str| {
@@ -33,7 +33,7 @@ pub(super) fn read(lines: &Lines<'_>) -> Result<Weather> {
         notes: Vec::new(),
     };
     // minutes of the day of all rows: their step is the least between two that follow each other
-    let mut least_step = f64::INFINITY;
+    let mut min_step = f64::INFINITY;
     let mut before: Option<f64> = None;
     for line in lines.all().skip(3).filter(|line| !line.text.trim_matches(',').is_empty()) {
         let cells = line.row_of(&columns)?;
@@ -45,7 +45,7 @@ pub(super) fn read(lines: &Lines<'_>) -> Result<Weather> {
         }
         let local = unix_day(date) as f64 * 86_400.0 + f64::from(hour * 60 + minute) * 60.0;
         if let Some(step) = before.map(|before| local - before).filter(|step| *step > 0.0) {
-            least_step = least_step.min(step / 3600.0);
+            min_step = min_step.min(step / 3600.0);
         }
         before = Some(local);
         let radiation = |column: usize, name: &str| line.radiation_in(&cells, column, name, |v| v <= -99.0);
@@ -62,8 +62,8 @@ pub(super) fn read(lines: &Lines<'_>) -> Result<Weather> {
         let instant = local - zone * 3600.0;
         weather.steps.push(WeatherStep { instant, hours: USUAL_STEP, month: date.month, ghi, dni, dhi, temperature });
     }
-    if least_step <= 24.0 {
-        weather.steps.iter_mut().for_each(|step| step.hours = least_step);
+    if min_step <= 24.0 {
+        weather.steps.iter_mut().for_each(|step| step.hours = min_step);
     }
     Ok(weather)
 }

@@ -1,11 +1,11 @@
 //! Typical years and series of the Photovoltaic Geographical Information System.
 
-use super::lines::{Line, Lines, shortened};
+use super::lines::{WeatherLine, WeatherLines, shortened};
 use belvedere_data::Result;
 use belvedere_data::weather::{RowsHold, Weather, WeatherStep, unix_day};
 
 /// Lines among which the head of the table must be.
-const MOST_HEAD_LINES: usize = 60;
+const MAX_HEAD_LINES: usize = 60;
 
 /// What stands above the table.
 #[derive(Default)]
@@ -21,7 +21,7 @@ struct Head {
 
 /// Columns of radiation.
 #[derive(Clone, Copy)]
-enum Columns {
+enum RadiationColumns {
     /// Global, direct and diffuse of a typical year.
     Typical([usize; 3]),
     /// Direct, diffuse and reflected of a series on a level plane.
@@ -30,9 +30,9 @@ enum Columns {
     Global(usize),
 }
 
-pub(super) fn read(lines: &Lines<'_>) -> Result<Weather> {
+pub(super) fn read(lines: &WeatherLines<'_>) -> Result<Weather> {
     let mut head = Head::default();
-    let Some(names) = lines.all().take(MOST_HEAD_LINES).find(|line| line.text.starts_with("time")) else {
+    let Some(names) = lines.all().take(MAX_HEAD_LINES).find(|line| line.text.starts_with("time")) else {
         return Err(lines
             .line(1)?
             .wrong("no line below begins with \"time\", as the header of the table does; use the CSV of PVGIS"));
@@ -51,7 +51,7 @@ pub(super) fn read(lines: &Lines<'_>) -> Result<Weather> {
     };
     let is_series = head.slope_deg != 0.0 || head.is_tracking;
     let found = if let Some(typical) = three(["G(h)", "Gb(n)", "Gd(h)"]) {
-        Columns::Typical(typical)
+        RadiationColumns::Typical(typical)
     } else if is_series {
         let what = format!(
             "the series is that of a plane tilted by {} degrees{}; get one of slope 0 from PVGIS; it gives the radiation of any plane",
@@ -60,16 +60,16 @@ pub(super) fn read(lines: &Lines<'_>) -> Result<Weather> {
         );
         return Err(names.wrong(&what));
     } else if let Some(parts) = three(["Gb(i)", "Gd(i)", "Gr(i)"]) {
-        Columns::Parts(parts)
+        RadiationColumns::Parts(parts)
     } else if let Some(global) = column("G(i)") {
-        Columns::Global(global)
+        RadiationColumns::Global(global)
     } else {
         let what = format!("no radiation among the columns {}", shortened(names.text));
         return Err(names.wrong(&what));
     };
     let temperature = column("T2m");
     let mut weather = Weather {
-        format: if matches!(found, Columns::Typical(_)) { "PVGIS, typical year" } else { "PVGIS, series" },
+        format: if matches!(found, RadiationColumns::Typical(_)) { "PVGIS, typical year" } else { "PVGIS, series" },
         latitude: latitude.to_radians(),
         longitude: longitude.to_radians(),
         height: head.height,
@@ -78,7 +78,7 @@ pub(super) fn read(lines: &Lines<'_>) -> Result<Weather> {
         left_out_count: 0,
         notes: Vec::new(),
     };
-    let is_row = |line: &Line<'_>| line.text.starts_with(|c: char| c.is_ascii_digit());
+    let is_row = |line: &WeatherLine<'_>| line.text.starts_with(|c: char| c.is_ascii_digit());
     for line in lines.all().skip(names.number).take_while(is_row) {
         match step(&line, &columns, found, temperature, head.offset)? {
             Some(step) => weather.steps.push(step),
@@ -88,7 +88,7 @@ pub(super) fn read(lines: &Lines<'_>) -> Result<Weather> {
     Ok(weather)
 }
 
-fn read_head(line: &Line<'_>, head: &mut Head) -> Result<()> {
+fn read_head(line: &WeatherLine<'_>, head: &mut Head) -> Result<()> {
     let Some((name, value)) = line.text.split_once(':') else { return Ok(()) };
     let (name, value) = (name.trim(), value.trim());
     let number = || line.number_in(&[value.split_whitespace().next().unwrap_or_default()], 0, name);
@@ -111,9 +111,9 @@ fn read_head(line: &Line<'_>, head: &mut Head) -> Result<()> {
 }
 
 fn step(
-    line: &Line<'_>,
+    line: &WeatherLine<'_>,
     names: &[&str],
-    columns: Columns,
+    columns: RadiationColumns,
     air: Option<usize>,
     offset: f64,
 ) -> Result<Option<WeatherStep>> {
@@ -131,17 +131,17 @@ fn step(
     }
     let radiation = |column: usize, name: &str| line.radiation_in(&cells, column, name, |_| false);
     let (ghi, dni, dhi) = match columns {
-        Columns::Typical([ghi, dni, dhi]) => {
+        RadiationColumns::Typical([ghi, dni, dhi]) => {
             (radiation(ghi, "G(h)")?, radiation(dni, "Gb(n)")?, radiation(dhi, "Gd(h)")?)
         }
-        Columns::Parts([beam, diffuse, reflected]) => {
+        RadiationColumns::Parts([beam, diffuse, reflected]) => {
             let (beam, diffuse) = (radiation(beam, "Gb(i)")?, radiation(diffuse, "Gd(i)")?);
             let reflected = radiation(reflected, "Gr(i)")?.unwrap_or(0.0);
             let ghi = beam.zip(diffuse).map(|(beam, diffuse)| beam + diffuse + reflected);
             // towards the sun it follows from the sun's height
             (ghi, None, diffuse)
         }
-        Columns::Global(global) => (radiation(global, "G(i)")?, None, None),
+        RadiationColumns::Global(global) => (radiation(global, "G(i)")?, None, None),
     };
     let Some(ghi) = ghi else { return Ok(None) };
     let temperature = air.and_then(|column| cells.get(column)?.parse().ok()).filter(|v| (-90.0..=70.0).contains(v));

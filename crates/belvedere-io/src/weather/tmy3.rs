@@ -1,13 +1,13 @@
 //! Typical years of the National Renewable Energy Laboratory, third edition.
 
-use super::lines::Lines;
+use super::lines::WeatherLines;
 use belvedere_data::Result;
 use belvedere_data::weather::{RowsHold, Weather, WeatherStep, unix_day};
 
 /// Values at and below which are missing.
 const MISSING: f64 = -99.0;
 
-pub(super) fn read(lines: &Lines<'_>) -> Result<Weather> {
+pub(super) fn read(lines: &WeatherLines<'_>) -> Result<Weather> {
     let place = lines.line(1)?;
     let cells = place.cells();
     let zone = place.number_in(&cells, 3, "the time zone")?;

@@ -5,8 +5,8 @@ use std::io::{Cursor, Write};
 
 use belvedere_data::balls::MedialBalls;
 use belvedere_data::crs::Crs;
+use belvedere_data::free_segments::FreeSegmentColumns;
 use belvedere_data::model::ModelParts;
-use belvedere_data::needles::NeedleColumns;
 use belvedere_data::{Bounds, Frame};
 use belvedere_io::{Output, Source, read_balls, read_mesh, write_balls};
 
@@ -79,7 +79,7 @@ fn full_archive() -> (ModelParts, Vec<u8>) {
             separation_angles: vec![0.5; count],
         },
         transmission: vec![0.25; count],
-        pulses: Some(NeedleColumns {
+        pulses: Some(FreeSegmentColumns {
             starts: vec![[0.5; 3]; 3],
             ways: vec![0, 4, 5],
             slopes: vec![[10, -20]; 3],

@@ -181,9 +181,9 @@ fn valid_files() -> Vec<Valid> {
 }
 
 /// Numbers that repeat from run to run (Knuth's multiplicative generator).
-struct Random(u64);
+struct RepeatableRandom(u64);
 
-impl Random {
+impl RepeatableRandom {
     fn below(&mut self, limit: usize) -> usize {
         self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         usize::try_from(self.0 >> 33).unwrap() % limit.max(1)
@@ -229,9 +229,9 @@ impl Trial {
         }
     }
 
-    fn finish(self, least: usize) {
+    fn finish(self, min: usize) {
         assert!(self.faults.is_empty(), "{} of {}:\n{}", self.faults.len(), self.inputs, self.faults.join("\n"));
-        assert!(self.inputs >= least, "only {} inputs", self.inputs);
+        assert!(self.inputs >= min, "only {} inputs", self.inputs);
     }
 }
 
@@ -269,7 +269,7 @@ fn truncated_files_are_refused_or_counted() {
 #[test]
 fn flipped_bits_are_survived() {
     let mut trial = Trial::new();
-    let mut random = Random(1);
+    let mut random = RepeatableRandom(1);
     for file in valid_files() {
         // The first half of the trials goes for the headers, where sizes and counts are.
         for i in 0..200 {
@@ -290,7 +290,7 @@ fn flipped_bits_are_survived() {
 #[test]
 fn overwritten_stretches_are_survived() {
     let mut trial = Trial::new();
-    let mut random = Random(2);
+    let mut random = RepeatableRandom(2);
     for file in valid_files() {
         for value in [0x00, 0xff, 0x7f] {
             for _ in 0..20 {
@@ -527,7 +527,7 @@ fn truncated_shared_files_are_survived() {
         };
         let bytes = std::fs::read(&path).unwrap();
         let name = PathBuf::from(file).file_name().unwrap().to_string_lossy().into_owned();
-        let mut random = Random(3);
+        let mut random = RepeatableRandom(3);
         for i in 0..12 {
             let end = bytes.len() * i / 12;
             trial.read(&name, &format!("cut at {end}"), &bytes[..end]);

@@ -13,7 +13,8 @@ const FOLDER: &str = "BELVEDERE_HOSTILE_FOLDER";
 const SECONDS: f64 = 1.0;
 const MEBIBYTES: u64 = 200;
 
-/// Largest resident memory of this process since the last call of [`forget_peak`], in MiB; `None` where the system does not tell.
+/// Largest resident memory of this process since the last call of [`forget_peak`], in MiB; `None` where the system does
+/// not tell.
 fn peak() -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
@@ -25,8 +26,8 @@ fn forget_peak() {
     let _ = std::fs::write("/proc/self/clear_refs", "5");
 }
 
-/// Reads each file of the folder that the environment names as LAS and as LAZ. A process of its own runs this, because an abort
-/// would end the test program, and because other tests would be measured too.
+/// Reads each file of the folder that the environment names as LAS and as LAZ. A process of its own runs this, because
+/// an abort would end the test program, and because other tests would be measured too.
 #[test]
 #[ignore = "run by fuzzed_files_are_refused_quickly_in_little_memory"]
 fn read_the_folder_of_fuzzed_files() {

@@ -1,4 +1,5 @@
-//! Damaged files of everything that is read beside clouds: meshes, city models, tables, shapes, trajectories, weather, matrices.
+//! Damaged files of everything that is read beside clouds: meshes, city models, tables, shapes, trajectories, weather,
+//! matrices.
 
 use std::io::Cursor;
 use std::time::Instant;
@@ -7,8 +8,9 @@ use belvedere_data::crs::Crs;
 use belvedere_data::trajectory::Trajectory;
 use belvedere_data::{GpsTimeKind, Mesh, Result};
 use belvedere_io::{
-    Heading, MatrixHead, Output, RowsAre, SavedMatrix, Source, read_geojson, read_matrix, read_mesh, read_observers,
-    read_table, read_text_rows, read_trajectory, read_weather, write_matrix, write_mesh, write_trajectory,
+    MatrixHead, Output, RowsAre, SavedMatrix, Source, VehicleHeading, read_geojson, read_matrix, read_mesh,
+    read_observers, read_table, read_text_rows, read_trajectory, read_weather, write_matrix, write_mesh,
+    write_trajectory,
 };
 
 /// How often each file is damaged.
@@ -44,7 +46,13 @@ fn trajectory(name: &str) -> Vec<u8> {
     let positions = (0..30).map(|i| [155_000.0 + 60.0 * f64::from(i), 463_000.0, 900.0]).collect();
     let crs = dutch();
     written(name, |output| {
-        write_trajectory(output, &Trajectory { times, positions }, GpsTimeKind::AdjustedStandard, &crs, Heading::Course)
+        write_trajectory(
+            output,
+            &Trajectory { times, positions },
+            GpsTimeKind::AdjustedStandard,
+            &crs,
+            VehicleHeading::Course,
+        )
     })
 }
 

@@ -7,7 +7,7 @@ use belvedere_data::crs::Crs;
 use belvedere_data::raster::Raster;
 use belvedere_data::{Error, Mesh, PointCloud};
 use belvedere_io::{
-    Cells, Georeference, MasbcppFolder, Output, atomic, write_cloud, write_masbcpp, write_mesh, write_npy_f32_2d,
+    Georeference, MasbcppFolder, Output, TableCells, atomic, write_cloud, write_masbcpp, write_mesh, write_npy_f32_2d,
     write_table, write_tif_f32,
 };
 
@@ -50,7 +50,7 @@ fn writers_get_the_bytes_of_files() {
     };
     written("a.tif", |output| write_tif_f32(output, &raster, Some(&place), Some(-9999.0), None));
     written("r.npy", |output| write_npy_f32_2d(output, &raster));
-    let table = written("t.csv", |output| write_table(output, &[("x", Cells::Real(&[1.25, f64::NAN], 2))]));
+    let table = written("t.csv", |output| write_table(output, &[("x", TableCells::Real(&[1.25, f64::NAN], 2))]));
     assert_eq!(table, b"x\n1.25\n\n");
 }
 
@@ -90,7 +90,7 @@ fn files_that_killed_runs_left_are_removed_and_those_of_others_are_not() {
     for name in kept.iter().chain([&format!(".result.csv.{dead}-0.part"), &format!(".result.csv.{dead}-12.part")]) {
         std::fs::write(folder.path().join(name), "unfinished").unwrap();
     }
-    write_table(path.as_path(), &[("x", Cells::Real(&[1.0], 1))]).unwrap();
+    write_table(path.as_path(), &[("x", TableCells::Real(&[1.0], 1))]).unwrap();
     let mut expected = kept.to_vec();
     expected.push("result.csv".to_owned());
     expected.sort();

@@ -102,11 +102,11 @@ fn servers_that_fail_or_lie_are_named_with_what_to_do() {
     // damage is told as it is of files on the disk
     for bytes in [&large[..1000], &large[..large.len() / 2]] {
         let cut = WebServer::start([("cloud.las", bytes.to_vec())], Manner::Parts);
-        let told = |source: Source<'_>| match read_cloud([source], &ReadOptions::default(), &Control::none()) {
+        let outcome = |source: Source<'_>| match read_cloud([source], &ReadOptions::default(), &Control::none()) {
             Ok((cloud, report)) => format!("{} {:?}", cloud.len(), report.files[0].notes),
             Err(error) => error.to_string().split_once("cloud.las").unwrap().1.to_owned(),
         };
-        assert_eq!(told(Source::path(cut.address("cloud.las"))), told(Source::bytes("cloud.las", bytes)));
+        assert_eq!(outcome(Source::path(cut.address("cloud.las"))), outcome(Source::bytes("cloud.las", bytes)));
     }
     // nothing listens there
     let error = read("http://127.0.0.1:9/cloud.las").unwrap_err().to_string();

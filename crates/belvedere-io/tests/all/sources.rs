@@ -61,8 +61,8 @@ struct Trickle<'a>(Cursor<&'a Vec<u8>>);
 
 impl std::io::Read for Trickle<'_> {
     fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
-        let most = buffer.len().min(100);
-        std::io::Read::read(&mut self.0, &mut buffer[..most])
+        let max = buffer.len().min(100);
+        std::io::Read::read(&mut self.0, &mut buffer[..max])
     }
 }
 
@@ -179,33 +179,33 @@ fn messages_begin_with_the_name_of_the_source() {
 }
 
 /// Cancels after so many points.
-struct Impatient {
+struct CancelAfterPoints {
     points: AtomicUsize,
-    most: usize,
+    max: usize,
 }
 
-impl Watcher for Impatient {
+impl Watcher for CancelAfterPoints {
     fn advance(&self, count: usize) {
         self.points.fetch_add(count, Ordering::Relaxed);
     }
     fn is_cancelled(&self) -> bool {
-        self.points.load(Ordering::Relaxed) >= self.most
+        self.points.load(Ordering::Relaxed) >= self.max
     }
 }
 
 #[test]
 fn reading_reports_its_points_and_stops_when_cancelled() {
     let las = file("cloud.las", &cloud(1_200_000));
-    let with_most = |most| {
-        let watcher = Impatient { points: AtomicUsize::new(0), most };
+    let with_max = |max| {
+        let watcher = CancelAfterPoints { points: AtomicUsize::new(0), max };
         let source = [Source::bytes("cloud.las", &las)];
         let result = read_cloud(source, &ReadOptions::default(), &Control::new(&watcher));
         (result.map(|(cloud, _)| cloud.len()), watcher.points.into_inner())
     };
-    assert!(matches!(with_most(usize::MAX), (Ok(1_200_000), 1_200_000)));
-    let (result, points) = with_most(1);
+    assert!(matches!(with_max(usize::MAX), (Ok(1_200_000), 1_200_000)));
+    let (result, points) = with_max(1);
     assert!(matches!(result, Err(Error::Cancelled)) && points < 1_200_000, "{points}");
-    let none = Impatient { points: AtomicUsize::new(0), most: 0 };
+    let none = CancelAfterPoints { points: AtomicUsize::new(0), max: 0 };
     let text = [Source::bytes("a.xyz", b"1 2 3\n4 5 6\n")];
     let result = read_cloud(text, &ReadOptions::default(), &Control::new(&none));
     assert!(matches!(result, Err(Error::Cancelled)));

@@ -30,11 +30,11 @@ pub(crate) enum Manner {
 /// Files by their names, as long as the process runs.
 pub(crate) struct WebServer {
     port: u16,
-    counts: Arc<Counts>,
+    counts: Arc<RequestCounts>,
 }
 
 #[derive(Default)]
-struct Counts {
+struct RequestCounts {
     requests: AtomicUsize,
     bytes: AtomicU64,
 }
@@ -43,7 +43,7 @@ impl WebServer {
     pub(crate) fn start(files: impl IntoIterator<Item = (&'static str, Vec<u8>)>, manner: Manner) -> Self {
         let files: HashMap<String, Vec<u8>> =
             files.into_iter().map(|(name, bytes)| (format!("/{name}"), bytes)).collect();
-        let (files, counts) = (Arc::new(files), Arc::new(Counts::default()));
+        let (files, counts) = (Arc::new(files), Arc::new(RequestCounts::default()));
         let listener = TcpListener::bind("127.0.0.1:0").unwrap();
         let port = listener.local_addr().unwrap().port();
         let own = Arc::clone(&counts);
@@ -68,7 +68,7 @@ impl WebServer {
 }
 
 /// Answers one connection until it ends.
-fn serve(stream: TcpStream, files: &HashMap<String, Vec<u8>>, counts: &Counts, manner: Manner) -> Result<()> {
+fn serve(stream: TcpStream, files: &HashMap<String, Vec<u8>>, counts: &RequestCounts, manner: Manner) -> Result<()> {
     let mut lines = BufReader::new(stream.try_clone()?);
     let mut stream = stream;
     loop {

@@ -20,10 +20,10 @@ const SCALE: f64 = 0.01;
 const RECORD: usize = 30;
 
 /// A chunk of the octree: level, x, y, z, and its points.
-pub(crate) type Node = ([i32; 4], Vec<[i32; 3]>);
+pub(crate) type OctreeNode = ([i32; 4], Vec<[i32; 3]>);
 
 /// Points over a kilometre, spread over the nodes of an octree: some at each level, the rest at the deepest.
-pub(crate) fn nodes(count: u32) -> Vec<Node> {
+pub(crate) fn nodes(count: u32) -> Vec<OctreeNode> {
     let mut nodes: std::collections::BTreeMap<[i32; 4], Vec<[i32; 3]>> = std::collections::BTreeMap::new();
     for i in 0..u64::from(count) {
         let [x, y] = [2 * i, 2 * i + 1].map(|number| SIDE * uniform(11, number));
@@ -51,7 +51,7 @@ fn record(point: [i32; 3], number: usize) -> [u8; RECORD] {
 }
 
 /// A COPC file of `nodes`, the hierarchy of levels from 2 on in pages of their own; `damage` may change the hierarchy.
-pub(crate) fn copc(nodes: &[Node], damage: impl Fn(&mut Vec<u8>)) -> Vec<u8> {
+pub(crate) fn copc(nodes: &[OctreeNode], damage: impl Fn(&mut Vec<u8>)) -> Vec<u8> {
     let vlr = LazVlrBuilder::default().with_point_format(6, 0).unwrap().with_variable_chunk_size().build();
     let mut laz_record = Vec::new();
     vlr.write_to(&mut laz_record).unwrap();
@@ -139,9 +139,9 @@ pub(crate) fn copc(nodes: &[Node], damage: impl Fn(&mut Vec<u8>)) -> Vec<u8> {
 }
 
 /// A reader that counts the bytes it gives.
-struct Counted<'a>(Cursor<&'a [u8]>, &'a AtomicU64);
+struct CountingReader<'a>(Cursor<&'a [u8]>, &'a AtomicU64);
 
-impl Read for Counted<'_> {
+impl Read for CountingReader<'_> {
     fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
         let count = self.0.read(buffer)?;
         self.1.fetch_add(count as u64, Ordering::Relaxed);
@@ -149,7 +149,7 @@ impl Read for Counted<'_> {
     }
 }
 
-impl Seek for Counted<'_> {
+impl Seek for CountingReader<'_> {
     fn seek(&mut self, to: SeekFrom) -> std::io::Result<u64> {
         self.0.seek(to)
     }
@@ -175,7 +175,7 @@ fn a_window_of_a_copc_kilometre_reads_at_most_three_times_its_bytes_and_has_all_
     assert_eq!(all.len(), count as usize);
     for low in [[480.0, 480.0], [0.0, 0.0], [333.0, 710.0]] {
         let read = AtomicU64::new(0);
-        let source = Source::reader("tile.copc.laz", Counted(Cursor::new(&bytes), &read));
+        let source = Source::reader("tile.copc.laz", CountingReader(Cursor::new(&bytes), &read));
         let found = places(source, &window(low, 100.0));
         let is_in = |p: &&[i64; 3]| (0..2).all(|i| (low[i]..=low[i] + 100.0).contains(&(p[i] as f64 * SCALE)));
         let expected: Vec<[i64; 3]> = all.iter().filter(is_in).copied().collect();
@@ -205,7 +205,7 @@ fn of_rows_that_hold_a_window_no_more_is_read_and_nothing_is_lost() {
         let bytes = bytes.into_inner();
         let read = |rows: Option<Vec<std::ops::Range<u64>>>| {
             let read = AtomicU64::new(0);
-            let source = Source::reader(name, Counted(Cursor::new(&bytes), &read));
+            let source = Source::reader(name, CountingReader(Cursor::new(&bytes), &read));
             let source = if let Some(rows) = rows { source.with_likely_rows(rows) } else { source };
             let (cloud, report) = read_cloud([source], &options, &Control::none()).unwrap();
             (cloud.positions, report.left_out_count(), read.load(Ordering::Relaxed))
@@ -216,8 +216,8 @@ fn of_rows_that_hold_a_window_no_more_is_read_and_nothing_is_lost() {
         assert_eq!(found, expected, "{name}");
         assert_eq!(passed_over, left_out, "{name}");
         // 57,000 of 300,000 rows; chunks of LAZ have 50,000: rows 100,000 to 200,000 and 250,000 to 300,000
-        let most = if name == "cloud.laz" { 0.55 } else { 0.2 };
-        assert!((part as f64) < most * whole as f64, "{name}: {part} of {whole} bytes");
+        let max = if name == "cloud.laz" { 0.55 } else { 0.2 };
+        assert!((part as f64) < max * whole as f64, "{name}: {part} of {whole} bytes");
     }
 }
 

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, HashSet};
 use std::fmt::Write as _;
 
-use crate::scene::{Material, Scene, index_u32};
+use crate::scene::{Material, TriangleScene, index_u32};
 use crate::vector::{cross, sub, unit};
 
 /// Size of a step of the integer coordinates, metres.
@@ -15,18 +15,19 @@ const LEVEL_SINE: f64 = 0.707;
 /// Height above the lowest corner of a part up to which an underside is its floor on the ground, metres.
 const FLOOR_REACH: f64 = 1.0;
 
-impl Scene {
+impl TriangleScene {
     /// CityJSON 2.0 text: one city object per object of the scene, named alike (blanks and other signs turned into
     /// underscores).
     ///
-    /// What has roofs or walls is a `Building` with a `BuildingPart` for each of its parts, named `building_3-1`…, whose
-    /// triangles carry `RoofSurface`, `WallSurface`, `GroundSurface`, `OuterFloorSurface` or `OuterCeilingSurface`, by
-    /// material and slope. Ground is a `TINRelief`, trees are `SolitaryVegetationObject`s, bridges `Bridge`s, fences, masts
-    /// and wires `CityFurniture`, all else `GenericCityObject`s. A closed part is a `Solid`; several closed pieces make a
-    /// `MultiSolid`, or a `MultiSurface` within a building. Coordinates have millimetres.
+    /// What has roofs or walls is a `Building` with a `BuildingPart` for each of its parts, named `building_3-1`…,
+    /// whose triangles carry `RoofSurface`, `WallSurface`, `GroundSurface`, `OuterFloorSurface` or
+    /// `OuterCeilingSurface`, by material and slope. Ground is a `TINRelief`, trees are `SolitaryVegetationObject`s,
+    /// bridges `Bridge`s, fences, masts and wires `CityFurniture`, all else `GenericCityObject`s. A closed part is a
+    /// `Solid`; several closed pieces make a `MultiSolid`, or a `MultiSurface` within a building. Coordinates have
+    /// millimetres.
     ///
-    /// `parts` (T) says to which part of its object each triangle belongs, by any number; where it is empty, triangles that
-    /// share vertices form a part. `epsg` is the code of the reference system.
+    /// `parts` (T) says to which part of its object each triangle belongs, by any number; where it is empty, triangles
+    /// that share vertices form a part. `epsg` is the code of the reference system.
     ///
     /// # Source
     /// CityJSON 2.0.1 specification, sections 2 (city objects), 3 (geometry and semantics) and 4 (transform).

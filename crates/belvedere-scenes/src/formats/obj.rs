@@ -2,11 +2,11 @@
 
 use std::fmt::Write as _;
 
-use crate::scene::Scene;
+use crate::scene::TriangleScene;
 
-impl Scene {
-    /// Wavefront OBJ text: vertices with millimetres in absolute coordinates, one `o` group per object (blanks of its name
-    /// turned into underscores), `usemtl` with [`crate::Material::name`].
+impl TriangleScene {
+    /// Wavefront OBJ text: vertices with millimetres in absolute coordinates, one `o` group per object (blanks of its
+    /// name turned into underscores), `usemtl` with [`crate::Material::name`].
     #[must_use]
     pub fn to_obj(&self) -> String {
         let mut text = String::with_capacity(self.vertices.len() * 36 + self.triangles.len() * 24);

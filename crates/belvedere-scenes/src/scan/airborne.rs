@@ -5,17 +5,17 @@ use rayon::prelude::*;
 use crate::random::Random;
 use crate::scan::Scan;
 use crate::scan::beam::BeamParams;
-use crate::scan::flight::{Strip, mean_coverage, strips, width_across};
+use crate::scan::flight::{FlightStrip, mean_coverage, strips, width_across};
 use crate::scan::recording::{Recorder, Shot};
-use crate::scan::scan_pattern::{ScanPattern, Sweep};
-use crate::scene::Scene;
+use crate::scan::scan_pattern::{PulseSweep, ScanPattern};
+use crate::scene::TriangleScene;
 use crate::truth::Truth;
 
 /// Pulses per m² where no number is wanted: what national surveys have.
 pub const DENSITY: f64 = 10.0;
 
-/// How a scene is flown. Values outside their ranges that leave nothing to fly (a height, speed, density or angle that is not
-/// positive) give a scan without points.
+/// How a scene is flown. Values outside their ranges that leave nothing to fly (a height, speed, density or angle that
+/// is not positive) give a scan without points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AirborneParams {
     /// Any number; another one gives other noise and another wander. Default 1.
@@ -26,31 +26,31 @@ pub struct AirborneParams {
     pub flying_height: f64,
     /// Speed over ground, metres per second, 10 to 150. Default 60.
     pub speed: f64,
-    /// Heading of the first strip, radians clockwise from north; every second strip is flown back. Default π/6: oblique to
-    /// the streets, so that walls of all sides get points, about one per m² with the other defaults.
+    /// Heading of the first strip, radians clockwise from north; every second strip is flown back. Default π/6: oblique
+    /// to the streets, so that walls of all sides get points, about one per m² with the other defaults.
     pub heading: f64,
     /// Strips, 1 to 1000. Default 2.
     pub strip_count: u16,
-    /// Distance between strips, metres. Default 260: with the default height and angle, strips of 420 m overlap by 38 %, and
-    /// the default town lies in the overlap, seen under 9° to 23° from either side.
+    /// Distance between strips, metres. Default 260: with the default height and angle, strips of 420 m overlap by 38
+    /// %, and the default town lies in the overlap, seen under 9° to 23° from either side.
     pub strip_spacing: f64,
     /// Further strips at right angles to the others, as far apart, 0 to 1000. Default 0.
     pub cross_strip_count: u16,
     /// Greatest angle from nadir, radians, 0 to 1.2; a conical pattern has its own. Default 25°.
     pub half_angle: f64,
-    /// Pulses per m² and strip on level ground, mean over the strip, 0.01 to 100. Default 5.5: two strips give about ten. It
-    /// sets [`AirborneParams::line_rate`] and [`AirborneParams::pulse_rate`].
+    /// Pulses per m² and strip on level ground, mean over the strip, 0.01 to 100. Default 5.5: two strips give about
+    /// ten. It sets [`AirborneParams::line_rate`] and [`AirborneParams::pulse_rate`].
     pub pulses_per_m2: f64,
     /// Shape of the pulses.
     pub beam: BeamParams,
-    /// Standard deviation of a range, metres, 0 to 0.1; at most a tenth of the range resolution keeps returns of a pulse in
-    /// order. Default 0.02, as data sheets state.
+    /// Standard deviation of a range, metres, 0 to 0.1; at most a tenth of the range resolution keeps returns of a
+    /// pulse in order. Default 0.02, as data sheets state.
     pub range_sd: f64,
-    /// Standard deviation of the direction of a pulse about each of two axes, radians, 0 to 0.001. Default 4e-5: 2 cm on the
-    /// ground.
+    /// Standard deviation of the direction of a pulse about each of two axes, radians, 0 to 0.001. Default 4e-5: 2 cm
+    /// on the ground.
     pub pointing_sd: f64,
-    /// Standard deviation of the constant error of the direction in a strip, radians, 0 to 0.001. Default 2e-5: strips fit
-    /// to 1 or 2 cm, as after a good adjustment.
+    /// Standard deviation of the constant error of the direction in a strip, radians, 0 to 0.001. Default 2e-5: strips
+    /// fit to 1 or 2 cm, as after a good adjustment.
     pub boresight_sd: f64,
     /// Share of pulses lost, 0 to 1. Default 0.01.
     pub dropout: f64,
@@ -88,10 +88,10 @@ impl Default for AirborneParams {
 }
 
 impl AirborneParams {
-    /// A survey of `scene`, whatever its size, with `pulses_per_m2` in all: strips that let every place be seen from both
-    /// sides, and crowns that pulses enter ([`BeamParams::in_leaf`]); the other parameters are the defaults.
+    /// A survey of `scene`, whatever its size, with `pulses_per_m2` in all: strips that let every place be seen from
+    /// both sides, and crowns that pulses enter ([`BeamParams::in_leaf`]); the other parameters are the defaults.
     #[must_use]
-    pub fn covering(scene: &Scene, pulses_per_m2: f64) -> Self {
+    pub fn covering(scene: &TriangleScene, pulses_per_m2: f64) -> Self {
         Self { beam: BeamParams::in_leaf(), ..Self::default() }.spread_over(scene, None, pulses_per_m2)
     }
 
@@ -101,13 +101,13 @@ impl AirborneParams {
     /// Without a count strips are at most half their width apart, so that every place lies between two that see it from
     /// either side: two for a town of 150 m with the default height and angle, three for 300 m.
     #[must_use]
-    pub fn spread_over(mut self, scene: &Scene, strip_count: Option<u16>, pulses_per_m2: f64) -> Self {
+    pub fn spread_over(mut self, scene: &TriangleScene, strip_count: Option<u16>, pulses_per_m2: f64) -> Self {
         if !self.leaves_something_to_fly() {
             return self;
         }
         let width = width_across(scene, self.heading);
         self.strip_count = strip_count.unwrap_or_else(|| {
-            let count = saturating_count(width / (self.swath() / 2.0)).saturating_add(1).clamp(2, MOST_STRIPS);
+            let count = saturating_count(width / (self.swath() / 2.0)).saturating_add(1).clamp(2, MAX_STRIPS);
             u16::try_from(count).unwrap_or(u16::MAX)
         });
         self.strip_spacing = width / f64::from(self.strip_count.max(2) - 1);
@@ -144,8 +144,8 @@ impl AirborneParams {
         if let ScanPattern::Conical { half_angle } = self.pattern { half_angle } else { self.half_angle }
     }
 
-    pub(crate) fn sweep(&self) -> Sweep {
-        Sweep { pattern: self.pattern, half_angle: self.greatest_angle(), pulses_per_line: self.pulses_per_line() }
+    pub(crate) fn sweep(&self) -> PulseSweep {
+        PulseSweep { pattern: self.pattern, half_angle: self.greatest_angle(), pulses_per_line: self.pulses_per_line() }
     }
 
     fn pulses_per_line(&self) -> u32 {
@@ -168,18 +168,18 @@ impl AirborneParams {
 }
 
 /// Most strips that [`AirborneParams::spread_over`] makes of itself.
-const MOST_STRIPS: u32 = 1000;
+const MAX_STRIPS: u32 = 1000;
 
 /// Flies over `scene` and returns what the scanner records.
 ///
-/// Each pulse draws its noise from its own stream, so the scan has the same bits for any number of threads. The cost is that
-/// of seven rays for each pulse that meets the scene. Pulses point where [`AirborneParams::pattern`] says; the aircraft
-/// neither rolls, pitches nor yaws.
+/// Each pulse draws its noise from its own stream, so the scan has the same bits for any number of threads. The cost is
+/// that of seven rays for each pulse that meets the scene. Pulses point where [`AirborneParams::pattern`] says; the
+/// aircraft neither rolls, pitches nor yaws.
 ///
-/// The scan angle is the part of the angle from nadir across the flight, as files of conical scanners carry it too: theirs
-/// runs from -20° to 20° and is 0 straight ahead and behind, although every pulse is 20° from nadir.
+/// The scan angle is the part of the angle from nadir across the flight, as files of conical scanners carry it too:
+/// theirs runs from -20° to 20° and is 0 straight ahead and behind, although every pulse is 20° from nadir.
 #[must_use]
-pub fn scan_airborne(scene: &Scene, params: &AirborneParams) -> Scan {
+pub fn scan_airborne(scene: &TriangleScene, params: &AirborneParams) -> Scan {
     let mut scan = Scan::default();
     if !params.leaves_something_to_fly() {
         return scan;
@@ -198,7 +198,7 @@ pub fn scan_airborne(scene: &Scene, params: &AirborneParams) -> Scan {
 }
 
 /// Returns of one line of a strip.
-fn scan_line(scene: &Scene, truth: &Truth, params: &AirborneParams, strip: &Strip, line: u32) -> Scan {
+fn scan_line(scene: &TriangleScene, truth: &Truth, params: &AirborneParams, strip: &FlightStrip, line: u32) -> Scan {
     let mut scan = Scan::default();
     let recorder = Recorder {
         scene,

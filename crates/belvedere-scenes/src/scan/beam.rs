@@ -1,28 +1,28 @@
 //! A laser pulse: a narrow cone that may meet several surfaces.
 
 use crate::random::Random;
-use crate::scene::{Material, Scene};
+use crate::scene::{Material, TriangleScene};
 use crate::truth::{CONTACT, Truth};
 use crate::vector::{add_scaled, cross, dot, sub, unit};
 
 /// Shape of a pulse and how its echoes are told apart.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BeamParams {
-    /// Full angle of the cone that holds all but 1/e² of the energy, radians, 0 to 0.01. Default 0.0004: usual for airborne
-    /// scanners, 18 cm on the ground from 450 m.
+    /// Full angle of the cone that holds all but 1/e² of the energy, radians, 0 to 0.01. Default 0.0004: usual for
+    /// airborne scanners, 18 cm on the ground from 450 m.
     pub divergence: f64,
     /// Echoes closer together than this merge into one, metres, 0.1 to 10. Default 0.8: a pulse of 5 ns.
     pub range_resolution: f64,
-    /// Share of the energy of the pulse below which an echo goes unnoticed, 0 to 1. Default 0.15: more than one of the six
-    /// outer rays, less than the centre ray.
+    /// Share of the energy of the pulse below which an echo goes unnoticed, 0 to 1. Default 0.15: more than one of the
+    /// six outer rays, less than the centre ray.
     pub weakest_echo: f64,
     /// Most echoes recorded per pulse, the first ones, 1 to 15. Default 5.
     pub max_returns: u8,
     /// Probability that a ray passes through the hull of a crown, at entry and (without [`BeamParams::foliage_depth`])
     /// again at exit, 0 to 1. Default 0.35: a seventh of the energy reaches the ground below, as in trees in leaf.
     pub crown_porosity: f64,
-    /// Mean free path of a ray among the leaves inside a crown, metres, 0 to 100. Default 0: rays are stopped by the hull
-    /// alone, so that every return lies on a triangle. Otherwise a ray that passed the hull is stopped after an
+    /// Mean free path of a ray among the leaves inside a crown, metres, 0 to 100. Default 0: rays are stopped by the
+    /// hull alone, so that every return lies on a triangle. Otherwise a ray that passed the hull is stopped after an
     /// exponentially distributed path, inside the crown, or leaves the crown freely.
     pub foliage_depth: f64,
 }
@@ -41,12 +41,12 @@ impl Default for BeamParams {
 }
 
 impl BeamParams {
-    /// The default pulse in crowns that it enters, before a receiver that notices weak echoes: half of the rays pass the
-    /// hull and then get 1.5 m deep on average.
+    /// The default pulse in crowns that it enters, before a receiver that notices weak echoes: half of the rays pass
+    /// the hull and then get 1.5 m deep on average.
     ///
-    /// Four fifths of the pulses that meet a crown then give several returns, a quarter reach the ground, and half of the
-    /// returns inside crowns lie within a metre of the hull. Over a town a twelfth of whose ground lies under crowns that
-    /// makes 7 % of all pulses; in AHN3 over Delft, with more trees, it is 21 %.
+    /// Four fifths of the pulses that meet a crown then give several returns, a quarter reach the ground, and half of
+    /// the returns inside crowns lie within a metre of the hull. Over a town a twelfth of whose ground lies under
+    /// crowns that makes 7 % of all pulses; in AHN3 over Delft, with more trees, it is 21 %.
     #[must_use]
     pub fn in_leaf() -> Self {
         Self { weakest_echo: 0.1, crown_porosity: 0.5, foliage_depth: 1.5, ..Self::default() }
@@ -80,8 +80,8 @@ impl Axis {
 
 /// An echo of a pulse.
 ///
-/// It is placed at the strongest of the rays that make it up, not at their mean, so that it lies exactly on a surface, or
-/// exactly where that ray met leaves inside a crown.
+/// It is placed at the strongest of the rays that make it up, not at their mean, so that it lies exactly on a surface,
+/// or exactly where that ray met leaves inside a crown.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Echo {
     pub(crate) range: f64,
@@ -106,7 +106,7 @@ pub(crate) struct PulseEchoes {
 
 /// Sends a pulse into a scene; what lies farther than `max_range` metres gives no echo.
 pub(crate) fn pulse_echoes(
-    scene: &Scene,
+    scene: &TriangleScene,
     truth: &Truth,
     axis: &Axis,
     beam: &BeamParams,
@@ -168,7 +168,7 @@ impl SubRay {
 const LEAF_COSINE: f64 = 0.5;
 
 /// Where a ray that is inside crowns will be stopped.
-struct Foliage {
+struct CrownStop {
     range: f64,
     /// Where the ray entered.
     triangle: u32,
@@ -177,9 +177,15 @@ struct Foliage {
 }
 
 /// What stops a ray, or `None` where it leaves the scene.
-fn ray_echo(scene: &Scene, truth: &Truth, ray: &SubRay, beam: &BeamParams, random: &mut Random) -> Option<Echo> {
+fn ray_echo(
+    scene: &TriangleScene,
+    truth: &Truth,
+    ray: &SubRay,
+    beam: &BeamParams,
+    random: &mut Random,
+) -> Option<Echo> {
     let mut passed = 0.0;
-    let mut foliage: Option<Foliage> = None;
+    let mut foliage: Option<CrownStop> = None;
     loop {
         let hit = truth.first_hit_between(ray.origin, ray.direction, passed + CONTACT, ray.max_range);
         if let Some(leaves) = foliage.as_ref().filter(|f| hit.is_none_or(|hit| f.range < hit.range)) {
@@ -195,7 +201,7 @@ fn ray_echo(scene: &Scene, truth: &Truth, ray: &SubRay, beam: &BeamParams, rando
             if beam.foliage_depth > 0.0 && (foliage.is_some() || !enters) {
                 foliage = foliage.and_then(|f| {
                     let crown_count = if enters { f.crown_count + 1 } else { f.crown_count - 1 };
-                    (crown_count > 0).then_some(Foliage { crown_count, ..f })
+                    (crown_count > 0).then_some(CrownStop { crown_count, ..f })
                 });
                 passed = hit.range;
                 continue;
@@ -203,7 +209,7 @@ fn ray_echo(scene: &Scene, truth: &Truth, ray: &SubRay, beam: &BeamParams, rando
             if random.chance(beam.crown_porosity) {
                 if beam.foliage_depth > 0.0 {
                     let path = -beam.foliage_depth * (1.0 - random.uniform()).ln();
-                    foliage = Some(Foliage { range: hit.range + path, triangle: hit.triangle, crown_count: 1 });
+                    foliage = Some(CrownStop { range: hit.range + path, triangle: hit.triangle, crown_count: 1 });
                 }
                 passed = hit.range;
                 continue;
@@ -216,16 +222,16 @@ fn ray_echo(scene: &Scene, truth: &Truth, ray: &SubRay, beam: &BeamParams, rando
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::solids::{Placement, extruded};
+    use crate::solids::{PlanPlacement, extruded};
 
     fn downward(x: f64) -> Axis {
         Axis { origin: [x, 0.0, 500.0], direction: [0.0, 0.0, -1.0], across: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]] }
     }
 
     /// A plate 1 m high that ends at x = 0, over a plate that reaches on to x = 20.
-    fn step(height: f64) -> Scene {
-        let mut scene = Scene::default();
-        let at = |x| Placement { origin: [x, 0.0], angle: 0.0 };
+    fn step(height: f64) -> TriangleScene {
+        let mut scene = TriangleScene::default();
+        let at = |x| PlanPlacement { origin: [x, 0.0], angle: 0.0 };
         scene.add_object("low", &[extruded(&at(0.0).rectangle(40.0, 40.0), -1.0, 0.0)]);
         scene.add_object("high", &[extruded(&at(-10.0).rectangle(20.0, 20.0), -0.5, height)]);
         scene
@@ -268,9 +274,9 @@ mod tests {
     }
 
     /// A crown of 8 m over the ground, seen from above, as a block of leaves.
-    fn crown_over_ground() -> Scene {
-        let mut scene = Scene::default();
-        let at = Placement { origin: [0.0, 0.0], angle: 0.0 };
+    fn crown_over_ground() -> TriangleScene {
+        let mut scene = TriangleScene::default();
+        let at = PlanPlacement { origin: [0.0, 0.0], angle: 0.0 };
         scene.add_object("ground", &[extruded(&at.rectangle(40.0, 40.0), -1.0, 0.0)]);
         let crown = extruded(&at.rectangle(20.0, 20.0), 4.0, 12.0).with_material(Material::TreeCrown);
         scene.add_object("crown", &[crown]);

@@ -5,8 +5,8 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 use crate::random::Random;
 use crate::scan::SensorPath;
 use crate::scan::airborne::AirborneParams;
-use crate::scan::scan_pattern::{Course, ScanPattern};
-use crate::scene::Scene;
+use crate::scan::scan_pattern::{FlightAxes, ScanPattern};
+use crate::scene::TriangleScene;
 use crate::vector::add_scaled;
 
 /// Time flown straight before the first and after the last pulse of a strip, seconds: interpolation in the path needs
@@ -22,10 +22,10 @@ const WANDER_PERIODS: [f64; 2] = [9.0, 5.5];
 
 /// One pass over a scene.
 #[derive(Clone, Debug)]
-pub(crate) struct Strip {
+pub(crate) struct FlightStrip {
     /// Counted from 0.
     pub(crate) number: u16,
-    pub(crate) course: Course,
+    pub(crate) course: FlightAxes,
     /// Direction of the flight, radians clockwise from north, 0 to 2π.
     heading: f64,
     /// GPS time of the first pulse.
@@ -41,7 +41,7 @@ pub(crate) struct Strip {
     phases: [f64; 2],
 }
 
-impl Strip {
+impl FlightStrip {
     /// Position of the scanner `seconds` after the first pulse, absolute, metres.
     pub(crate) fn position(&self, seconds: f64) -> [f64; 3] {
         let wave = |i: usize| (TAU * seconds / WANDER_PERIODS[i] + self.phases[i]).sin();
@@ -68,7 +68,7 @@ impl Strip {
 }
 
 /// Strips side by side over the middle of `scene`, flown to and fro, then those across them. None over an empty scene.
-pub(crate) fn strips(scene: &Scene, params: &AirborneParams) -> Vec<Strip> {
+pub(crate) fn strips(scene: &TriangleScene, params: &AirborneParams) -> Vec<FlightStrip> {
     let along = strips_towards(scene, params, params.heading, 0..params.strip_count, params.start_time + RUN_UP);
     let start_time = along.last().map_or(params.start_time + RUN_UP, |last| next_start(last, params));
     let last_number = params.strip_count.saturating_add(params.cross_strip_count);
@@ -79,19 +79,19 @@ pub(crate) fn strips(scene: &Scene, params: &AirborneParams) -> Vec<Strip> {
 }
 
 /// Time of the first pulse of the strip after `strip`.
-fn next_start(strip: &Strip, params: &AirborneParams) -> f64 {
+fn next_start(strip: &FlightStrip, params: &AirborneParams) -> f64 {
     // A turn lasts at least as long as the run-ups, or else times would run backwards.
     strip.start_time + (strip.duration + params.turn_time.max(4.0 * RUN_UP))
 }
 
 /// The strips `numbers`, flown to and fro along `heading`, the first from `start_time` on.
 fn strips_towards(
-    scene: &Scene,
+    scene: &TriangleScene,
     params: &AirborneParams,
     heading: f64,
     numbers: std::ops::Range<u16>,
     mut start_time: f64,
-) -> Vec<Strip> {
+) -> Vec<FlightStrip> {
     let Some((low, high)) = scene.bounds() else { return Vec::new() };
     let height = scene.mean_ground_height() + params.flying_height;
     let centre = [low[0] / 2.0 + high[0] / 2.0, low[1] / 2.0 + high[1] / 2.0, height];
@@ -114,9 +114,9 @@ fn strips_towards(
             let right = [sense * cos, -sense * sin, 0.0];
             let start = add_scaled(add_scaled(centre, right, sense * offset), forward, -half_length);
             let mut random = Random::new(params.seed, u64::MAX - u64::from(number));
-            let strip = Strip {
+            let strip = FlightStrip {
                 number,
-                course: Course { forward, right },
+                course: FlightAxes { forward, right },
                 heading: forward[0].atan2(forward[1]).rem_euclid(TAU),
                 start_time,
                 duration,
@@ -133,7 +133,7 @@ fn strips_towards(
 }
 
 /// Width of the ground of `scene` across a flight along `heading`, metres; 0 for an empty scene.
-pub(crate) fn width_across(scene: &Scene, heading: f64) -> f64 {
+pub(crate) fn width_across(scene: &TriangleScene, heading: f64) -> f64 {
     let Some((low, high)) = scene.bounds() else { return 0.0 };
     let (sin, cos) = heading.sin_cos();
     cos.abs() * (high[0] - low[0]) + sin.abs() * (high[1] - low[1])
@@ -142,9 +142,9 @@ pub(crate) fn width_across(scene: &Scene, heading: f64) -> f64 {
 /// Places along each side of a scene at which coverage is looked up.
 const COVERAGE_STEPS: u32 = 60;
 
-/// How many strips see a place of `scene`, mean over its ground, each weighted with how dense its pulses are there against
-/// the mean of the strip.
-pub(crate) fn mean_coverage(scene: &Scene, params: &AirborneParams) -> f64 {
+/// How many strips see a place of `scene`, mean over its ground, each weighted with how dense its pulses are there
+/// against the mean of the strip.
+pub(crate) fn mean_coverage(scene: &TriangleScene, params: &AirborneParams) -> f64 {
     let Some((low, high)) = scene.bounds() else { return 0.0 };
     let sweep = params.sweep();
     let place =

@@ -9,12 +9,12 @@ use crate::scan::airborne::saturating_count;
 use crate::scan::beam::{Axis, BeamParams};
 use crate::scan::recording::{Recorder, Shot};
 use crate::scan::{Scan, SensorPath};
-use crate::scene::{Material, Scene};
+use crate::scene::{Material, TriangleScene};
 use crate::truth::Truth;
 use crate::vector::cross;
 
-/// How a scene is scanned from a car. Values outside their ranges that leave nothing to scan (a range, speed or rate that is not
-/// positive) give a scan without points.
+/// How a scene is scanned from a car. Values outside their ranges that leave nothing to scan (a range, speed or rate
+/// that is not positive) give a scan without points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MobileParams {
     /// Any number; another one gives other noise. Default 1.
@@ -35,8 +35,8 @@ pub struct MobileParams {
     pub beam: BeamParams,
     /// Standard deviation of a range, metres, 0 to 0.1. Default 0.005.
     pub range_sd: f64,
-    /// Standard deviation of the direction of a pulse about each of two axes, radians, 0 to 0.001. Default 2e-4: what is left of a
-    /// trajectory's errors within one run.
+    /// Standard deviation of the direction of a pulse about each of two axes, radians, 0 to 0.001. Default 2e-4: what
+    /// is left of a trajectory's errors within one run.
     pub pointing_sd: f64,
     /// Share of pulses lost, 0 to 1. Default 0.01.
     pub dropout: f64,
@@ -74,11 +74,11 @@ const SETTLED: f64 = 0.5;
 
 /// Drives a car with two scanners along the runs and returns what they record.
 ///
-/// The mirrors turn about level axes, 45° to either side of the way ahead. Returns of a run carry its number as point source id, the
-/// scanners are channels of one instrument in the same place. Each pulse draws its noise from its own stream, so the scan has the same
-/// bits for any number of threads.
+/// The mirrors turn about level axes, 45° to either side of the way ahead. Returns of a run carry its number as point
+/// source id, the scanners are channels of one instrument in the same place. Each pulse draws its noise from its own
+/// stream, so the scan has the same bits for any number of threads.
 #[must_use]
-pub fn scan_mobile(scene: &Scene, params: &MobileParams) -> Scan {
+pub fn scan_mobile(scene: &TriangleScene, params: &MobileParams) -> Scan {
     let mut scan = Scan::default();
     let sizes = [params.speed, params.line_rate, params.max_range];
     if params.pulses_per_line == 0 || !sizes.iter().all(|v| v.is_finite() && *v > 0.0) {
@@ -87,7 +87,7 @@ pub fn scan_mobile(scene: &Scene, params: &MobileParams) -> Scan {
     let truth = Truth::new(scene);
     let mut start_time = params.start_time + SETTLED;
     for (number, &ends) in (1..=u16::MAX).zip(&params.runs) {
-        let Some(run) = Run::new(scene, &truth, params, number, ends, start_time) else { continue };
+        let Some(run) = StraightDrive::new(scene, &truth, params, number, ends, start_time) else { continue };
         let lines = saturating_count(run.duration * params.line_rate);
         let scanned: Vec<Scan> =
             (0..lines).into_par_iter().map(|line| scan_line(scene, &truth, params, &run, line)).collect();
@@ -101,26 +101,26 @@ pub fn scan_mobile(scene: &Scene, params: &MobileParams) -> Scan {
 }
 
 /// One straight drive.
-struct Run {
+struct StraightDrive {
     /// Counted from 1.
     number: u16,
     from: [f64; 2],
     /// Unit vector along the run.
     ahead: [f64; 2],
-    /// Height of the scanner every [`Run::STEP`] metres.
+    /// Height of the scanner every [`StraightDrive::STEP`] metres.
     heights: Vec<f64>,
     start_time: f64,
     duration: f64,
     speed: f64,
 }
 
-impl Run {
+impl StraightDrive {
     /// Distance between heights of the ground that are looked up, metres: a car rides over what is shorter.
     const STEP: f64 = 2.0;
 
     /// `None` for a run without length, or with an end where no ground is.
     fn new(
-        scene: &Scene,
+        scene: &TriangleScene,
         truth: &Truth,
         params: &MobileParams,
         number: u16,
@@ -165,7 +165,7 @@ impl Run {
 }
 
 /// Height of the ground or of a bridge at a place: crowns and decks above it are passed through.
-fn lowest_ground(scene: &Scene, truth: &Truth, [x, y]: [f64; 2], sky: f64) -> Option<f64> {
+fn lowest_ground(scene: &TriangleScene, truth: &Truth, [x, y]: [f64; 2], sky: f64) -> Option<f64> {
     let mut top = sky;
     while let Some(hit) = truth.first_hit([x, y, top], [0.0, 0.0, -1.0], f64::INFINITY) {
         let z = top - hit.range;
@@ -178,7 +178,7 @@ fn lowest_ground(scene: &Scene, truth: &Truth, [x, y]: [f64; 2], sky: f64) -> Op
 }
 
 /// Returns of both scanners during one turn of their mirrors.
-fn scan_line(scene: &Scene, truth: &Truth, params: &MobileParams, run: &Run, line: u32) -> Scan {
+fn scan_line(scene: &TriangleScene, truth: &Truth, params: &MobileParams, run: &StraightDrive, line: u32) -> Scan {
     let mut scan = Scan::default();
     let recorder = Recorder {
         scene,

@@ -14,7 +14,7 @@ use std::fmt::Write as _;
 
 use rayon::prelude::*;
 
-use crate::scene::Scene;
+use crate::scene::TriangleScene;
 use crate::truth::Truth;
 use crate::vector::{add_scaled, cross, sub, unit};
 
@@ -27,14 +27,16 @@ pub struct Scan {
     pub y: Vec<f64>,
     /// Height, metres, with noise.
     pub z: Vec<f64>,
-    /// Adjusted standard GPS time (GPS seconds minus 1e9), increasing from pulse to pulse; all returns of a pulse share it.
+    /// Adjusted standard GPS time (GPS seconds minus 1e9), increasing from pulse to pulse; all returns of a pulse share
+    /// it.
     pub gps_time: Vec<f64>,
     /// Which return of its pulse a point is, from 1, by increasing range.
     pub return_number: Vec<u8>,
     /// How many returns its pulse has.
     pub return_count: Vec<u8>,
-    /// Angle of the pulse from nadir in degrees (LAS 1.4): across the flight and negative to its left for an airborne scanner;
-    /// 0 to 180, where 90 is level, for one on a tripod; −180 to 180 about the axis of the mirror for one on a car.
+    /// Angle of the pulse from nadir in degrees (LAS 1.4): across the flight and negative to its left for an airborne
+    /// scanner; 0 to 180, where 90 is level, for one on a tripod; −180 to 180 about the axis of the mirror for one on a
+    /// car.
     pub scan_angle_deg: Vec<f32>,
     /// Strip, tripod position or run of a car, from 1.
     pub point_source_id: Vec<u16>,
@@ -56,8 +58,8 @@ pub struct Scan {
     pub report: ScanReport,
 }
 
-/// How far outside its surface a point is put before one asks what lights it, metres: beyond the unevenness of a mesh with
-/// millimetres, and short of everything that could matter.
+/// How far outside its surface a point is put before one asks what lights it, metres: beyond the unevenness of a mesh
+/// with millimetres, and short of everything that could matter.
 const STAND_OFF: f64 = 0.03;
 
 /// Counts of a scan.
@@ -80,7 +82,8 @@ pub struct SensorPath {
     pub times: Vec<f64>,
     /// Positions, (M, 3), metres, absolute, without noise.
     pub positions: Vec<[f64; 3]>,
-    /// Where the nose of the aircraft points at each time, radians clockwise from grid north, 0 to 2π, (M); 0 on a tripod.
+    /// Where the nose of the aircraft points at each time, radians clockwise from grid north, 0 to 2π, (M); 0 on a
+    /// tripod.
     pub headings: Vec<f64>,
 }
 
@@ -141,7 +144,7 @@ impl Scan {
     ///
     /// Crowns block as opaque solids do, so that a return from inside a crown is in shadow.
     #[must_use]
-    pub fn lit_from(&self, scene: &Scene, truth: &Truth, direction: [f64; 3]) -> Vec<bool> {
+    pub fn lit_from(&self, scene: &TriangleScene, truth: &Truth, direction: [f64; 3]) -> Vec<bool> {
         self.exact_positions
             .par_iter()
             .zip(&self.triangle)

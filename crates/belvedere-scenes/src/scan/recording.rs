@@ -3,14 +3,14 @@
 use crate::random::Random;
 use crate::scan::beam::{Axis, BeamParams, Echo, pulse_echoes};
 use crate::scan::{Return, Scan};
-use crate::scene::Scene;
+use crate::scene::TriangleScene;
 use crate::truth::Truth;
 use crate::vector::add_scaled;
 
 /// A scanner in its place.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Recorder<'a> {
-    pub(crate) scene: &'a Scene,
+    pub(crate) scene: &'a TriangleScene,
     pub(crate) truth: &'a Truth,
     pub(crate) beam: &'a BeamParams,
     /// Surfaces farther away give no echo, metres.

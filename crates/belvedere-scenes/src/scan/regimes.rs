@@ -7,8 +7,8 @@ use crate::scan::beam::BeamParams;
 use crate::scan::mobile::{MobileParams, scan_mobile};
 use crate::scan::scan_pattern::{MirrorMotion, ScanPattern};
 use crate::scan::terrestrial::{Stations, TerrestrialParams, scan_terrestrial};
-use crate::scene::Scene;
-use crate::town::trees::Crowns;
+use crate::scene::TriangleScene;
+use crate::town::trees::CrownMaterial;
 use crate::town::{TownParams, town};
 
 /// Tripods in a town: a few metres see what none of the others does.
@@ -100,21 +100,22 @@ impl Regime {
     #[must_use]
     pub fn town(self, params: TownParams) -> TownParams {
         match self {
-            Self::Leaves => TownParams { crowns: Crowns::Porous, ..params },
-            Self::Bare => TownParams { crowns: Crowns::Bare, ..params },
+            Self::Leaves => TownParams { crowns: CrownMaterial::Porous, ..params },
+            Self::Bare => TownParams { crowns: CrownMaterial::Bare, ..params },
             _ => params,
         }
     }
 
     /// What is scanned: the town of `params`, or the rooms of their seed.
     #[must_use]
-    pub fn scene(self, params: &TownParams) -> Scene {
+    pub fn scene(self, params: &TownParams) -> TriangleScene {
         if self == Self::Room { furnished_rooms(params.seed).0 } else { town(params) }
     }
 
-    /// A survey of `scene`, which [`Regime::scene`] made of `params`, with their seed, and with `pulses_per_m2` where the scanner flies.
+    /// A survey of `scene`, which [`Regime::scene`] made of `params`, with their seed, and with `pulses_per_m2` where
+    /// the scanner flies.
     #[must_use]
-    pub fn scan(self, scene: &Scene, params: &TownParams, pulses_per_m2: f64) -> Scan {
+    pub fn scan(self, scene: &TriangleScene, params: &TownParams, pulses_per_m2: f64) -> Scan {
         let seed = params.seed;
         let usual = AirborneParams { seed, beam: BeamParams::in_leaf(), ..AirborneParams::default() };
         let beam = |divergence: f64| BeamParams { divergence, ..BeamParams::in_leaf() };

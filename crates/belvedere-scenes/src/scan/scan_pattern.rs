@@ -13,8 +13,8 @@ pub enum ScanPattern {
     Rotating,
     /// An oscillating mirror: a zig-zag across the flight.
     Oscillating(MirrorMotion),
-    /// A tilted mirror that spins about the vertical: a circle that moves along, so that every place is seen from ahead and
-    /// from behind, and walls across the flight as well as those along it.
+    /// A tilted mirror that spins about the vertical: a circle that moves along, so that every place is seen from ahead
+    /// and from behind, and walls across the flight as well as those along it.
     Conical {
         /// Angle of all pulses from nadir, radians, 0 to 1.2. 20° is usual.
         half_angle: f64,
@@ -38,24 +38,24 @@ impl ScanPattern {
 
 /// Directions of the aircraft, level unit vectors.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Course {
+pub(crate) struct FlightAxes {
     pub(crate) forward: [f64; 3],
     pub(crate) right: [f64; 3],
 }
 
 /// The pulses of one line: a sweep of the mirror, or a turn of the cone.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Sweep {
+pub(crate) struct PulseSweep {
     pub(crate) pattern: ScanPattern,
     /// Greatest angle from nadir across the flight, radians.
     pub(crate) half_angle: f64,
     pub(crate) pulses_per_line: u32,
 }
 
-impl Sweep {
+impl PulseSweep {
     /// Pulse `step` of `line` sent from `origin`, and its angle from nadir across the flight, radians, positive to the
     /// right.
-    pub(crate) fn pulse(&self, origin: [f64; 3], course: &Course, line: u32, step: u32) -> (Axis, f64) {
+    pub(crate) fn pulse(&self, origin: [f64; 3], course: &FlightAxes, line: u32, step: u32) -> (Axis, f64) {
         let count = f64::from(self.pulses_per_line);
         let share = (f64::from(step) + 0.5) / count;
         let turn = if line.is_multiple_of(2) { 1.0 } else { -1.0 };
@@ -72,8 +72,8 @@ impl Sweep {
         (Axis { origin, direction, across: [course.forward, outwards] }, angle)
     }
 
-    /// Pulses per m² at `offset` metres beside the path of an aircraft `height` metres up, as a multiple of the mean over
-    /// the strip.
+    /// Pulses per m² at `offset` metres beside the path of an aircraft `height` metres up, as a multiple of the mean
+    /// over the strip.
     pub(crate) fn relative_density(&self, offset: f64, height: f64) -> f64 {
         // A mirror that turns round has no speed there; beams of finite width keep the density finite.
         let slowest = 0.05;
@@ -94,7 +94,7 @@ impl Sweep {
 }
 
 /// The pulse of a cone towards `azimuth`, radians clockwise from the flight direction.
-fn conical_pulse(origin: [f64; 3], course: &Course, half_angle: f64, azimuth: f64) -> (Axis, f64) {
+fn conical_pulse(origin: [f64; 3], course: &FlightAxes, half_angle: f64, azimuth: f64) -> (Axis, f64) {
     let (sin, cos) = half_angle.sin_cos();
     let (right, ahead) = azimuth.sin_cos();
     let up = [0.0, 0.0, 1.0];
@@ -110,7 +110,7 @@ mod tests {
     use super::*;
     use crate::vector::dot;
 
-    const COURSE: Course = Course { forward: [0.0, 1.0, 0.0], right: [1.0, 0.0, 0.0] };
+    const COURSE: FlightAxes = FlightAxes { forward: [0.0, 1.0, 0.0], right: [1.0, 0.0, 0.0] };
     const PATTERNS: [ScanPattern; 4] = [
         ScanPattern::Rotating,
         ScanPattern::Oscillating(MirrorMotion::Sinusoidal),
@@ -118,8 +118,8 @@ mod tests {
         ScanPattern::CONICAL_20,
     ];
 
-    fn sweep(pattern: ScanPattern) -> Sweep {
-        Sweep { pattern, half_angle: 20_f64.to_radians(), pulses_per_line: 20_000 }
+    fn sweep(pattern: ScanPattern) -> PulseSweep {
+        PulseSweep { pattern, half_angle: 20_f64.to_radians(), pulses_per_line: 20_000 }
     }
 
     #[test]

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use rayon::prelude::*;
 
-use crate::scene::{Material, Scene};
+use crate::scene::{Material, TriangleScene};
 use crate::truth::Truth;
 
 /// Room about a tripod, metres, tried in turn: nobody sets one up against a wall while the middle of a street is free.
@@ -15,19 +15,19 @@ const DIRECTIONS: u32 = 16;
 const STEP: f64 = 2.0;
 /// Most places tried along each side.
 const PLACES_ACROSS: f64 = 150.0;
-/// Height above the foot at which room must be free, metres, besides the height of the instrument: above kerbs and cars'
-/// wheels, below hedges.
+/// Height above the foot at which room must be free, metres, besides the height of the instrument: above kerbs and
+/// cars' wheels, below hedges.
 const KNEE: f64 = 0.6;
 
 /// Up to `count` positions of an instrument `height` metres above open ground, (S, 3), metres, absolute.
 ///
-/// Open ground has nothing above it and nothing beside it for a few metres. Each open place is as near as can be to one of
-/// the positions: they start far from each other and then move to the middle of the places that are nearest to them. Fewer
-/// where there is less room, none in a scene without ground.
+/// Open ground has nothing above it and nothing beside it for a few metres. Each open place is as near as can be to one
+/// of the positions: they start far from each other and then move to the middle of the places that are nearest to them.
+/// Fewer where there is less room, none in a scene without ground.
 ///
 /// # Source
 /// Start: farthest-point sampling, Gonzalez 1985. Moves: Lloyd 1982.
-pub(crate) fn free_stations(scene: &Scene, truth: &Truth, count: u16, height: f64) -> Vec<[f64; 3]> {
+pub(crate) fn free_stations(scene: &TriangleScene, truth: &Truth, count: u16, height: f64) -> Vec<[f64; 3]> {
     let Some((low, high)) = scene.bounds() else { return Vec::new() };
     let places = open_ground(scene, truth, (low, high));
     for clearance in CLEARANCES {
@@ -42,7 +42,7 @@ pub(crate) fn free_stations(scene: &Scene, truth: &Truth, count: u16, height: f6
 }
 
 /// Ground that one looks down on from the sky, on a grid.
-fn open_ground(scene: &Scene, truth: &Truth, (low, high): ([f64; 3], [f64; 3])) -> Vec<[f64; 3]> {
+fn open_ground(scene: &TriangleScene, truth: &Truth, (low, high): ([f64; 3], [f64; 3])) -> Vec<[f64; 3]> {
     let sides = [0, 1].map(|axis| high[axis] - low[axis]);
     let step = STEP.max(sides[0].max(sides[1]) / PLACES_ACROSS);
     let coordinates = |axis: usize| {

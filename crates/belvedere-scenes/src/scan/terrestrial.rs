@@ -10,7 +10,7 @@ use crate::scan::beam::{Axis, BeamParams};
 use crate::scan::recording::{Recorder, Shot};
 use crate::scan::stations::free_stations;
 use crate::scan::{Scan, SensorPath};
-use crate::scene::Scene;
+use crate::scene::TriangleScene;
 use crate::truth::Truth;
 
 /// Where the tripod is set up.
@@ -22,8 +22,8 @@ pub enum Stations {
     At(Vec<[f64; 3]>),
 }
 
-/// How a scene is scanned from tripods. Values outside their ranges that leave nothing to scan (a range, step or rate that is
-/// not positive) give a scan without points.
+/// How a scene is scanned from tripods. Values outside their ranges that leave nothing to scan (a range, step or rate
+/// that is not positive) give a scan without points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TerrestrialParams {
     /// Any number; another one gives other noise. Default 1.
@@ -32,8 +32,8 @@ pub struct TerrestrialParams {
     pub stations: Stations,
     /// Height of the instrument above ground at chosen places, metres, 0.5 to 10. Default 1.8.
     pub instrument_height: f64,
-    /// Angle between neighbouring pulses, around and up, radians, 1e-4 to 0.1. Default 0.25°: 4 cm at 10 m, half a million
-    /// points a station; surveys take a fifth of it and thin out afterwards.
+    /// Angle between neighbouring pulses, around and up, radians, 1e-4 to 0.1. Default 0.25°: 4 cm at 10 m, half a
+    /// million points a station; surveys take a fifth of it and thin out afterwards.
     pub angular_step: f64,
     /// Lowest pulse, radians from the horizon, -π/2 to π/2. Default -60°: the tripod hides the ground below itself.
     pub lowest_elevation: f64,
@@ -106,11 +106,11 @@ impl TerrestrialParams {
 /// Sets the tripod up in `scene` and returns what the scanner records from all places together.
 ///
 /// Each station turns once, clockwise from north, while the pulses of each column run from below upwards. Returns of a
-/// station carry its number as point source id, [`Scan::stations`] its position; the path tells the same by time. Each pulse
-/// draws its noise from its own stream, so the scan has the same bits for any number of threads. Intensities do not depend
-/// on the range, as if the scanner had evened that out.
+/// station carry its number as point source id, [`Scan::stations`] its position; the path tells the same by time. Each
+/// pulse draws its noise from its own stream, so the scan has the same bits for any number of threads. Intensities do
+/// not depend on the range, as if the scanner had evened that out.
 #[must_use]
-pub fn scan_terrestrial(scene: &Scene, params: &TerrestrialParams) -> Scan {
+pub fn scan_terrestrial(scene: &TriangleScene, params: &TerrestrialParams) -> Scan {
     let mut scan = Scan::default();
     if !params.leaves_something_to_scan() {
         return scan;
@@ -160,7 +160,7 @@ impl Station {
 
 /// Returns of one column of pulses.
 fn scan_column(
-    scene: &Scene,
+    scene: &TriangleScene,
     truth: &Truth,
     params: &TerrestrialParams,
     station: &Station,

@@ -1,13 +1,14 @@
 //! What buildings carry: arcades, dormers, chimneys, balconies; and spires.
 
-use crate::scene::{Material, Part};
-use crate::solids::{Placement, extruded, prism, ridged, swept};
+use crate::scene::{Material, ObjectPart};
+use crate::solids::{PlanPlacement, extruded, prism, ridged, swept};
 
-/// How far a joint reaches into the solid it belongs to, metres: solids that merely touch would leave a scanner a seam to
-/// look into.
+/// How far a joint reaches into the solid it belongs to, metres: solids that merely touch would leave a scanner a seam
+/// to look into.
 pub(crate) const JOINT: f64 = 0.1;
 
-/// Ridge, eaves and size of a house with its ridge along u, on which dormers and chimneys sit. Metres, absolute heights.
+/// Ridge, eaves and size of a house with its ridge along u, on which dormers and chimneys sit. Metres, absolute
+/// heights.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RoofShape {
     pub(crate) length: f64,
@@ -24,13 +25,14 @@ impl RoofShape {
 }
 
 /// Chimney that comes out of the roof near the ridge, `along` metres from the middle of the house.
-pub(crate) fn chimney(house: &Placement, roof: &RoofShape, along: f64) -> Part {
+pub(crate) fn chimney(house: &PlanPlacement, roof: &RoofShape, along: f64) -> ObjectPart {
     let footprint = house.moved(along, 0.7, 0.0).rectangle(0.75, 0.55);
     prism(&footprint, roof.eaves, roof.ridge + 0.8, Material::Facade)
 }
 
-/// Gabled dormer in the slope towards −v, `along` metres from the middle of the house; `None` where the roof is too low.
-pub(crate) fn dormer(house: &Placement, roof: &RoofShape, along: f64) -> Option<Part> {
+/// Gabled dormer in the slope towards −v, `along` metres from the middle of the house; `None` where the roof is too
+/// low.
+pub(crate) fn dormer(house: &PlanPlacement, roof: &RoofShape, along: f64) -> Option<ObjectPart> {
     let inset = 0.8;
     let eaves = roof.height(inset) + 1.1;
     let ridge = eaves + 0.5;
@@ -45,7 +47,7 @@ pub(crate) fn dormer(house: &Placement, roof: &RoofShape, along: f64) -> Option<
 
 /// Balcony in front of a wall that faces −v and runs through the origin: a slab 16 cm thick whose upper side lies at
 /// `floor`, with a parapet about it. One solid with a hollow, its back buried in the wall.
-pub(crate) fn balcony(wall: &Placement, width: f64, depth: f64, floor: f64) -> Part {
+pub(crate) fn balcony(wall: &PlanPlacement, width: f64, depth: f64, floor: f64) -> ObjectPart {
     let (thickness, parapet_height, parapet_width) = (0.16, 1.0, 0.08);
     let rectangle = |inset: f64, height: f64, back: f64| {
         let (u, v) = (width / 2.0 - inset, -depth + inset);
@@ -65,9 +67,15 @@ pub(crate) fn balcony(wall: &Placement, width: f64, depth: f64, floor: f64) -> P
     swept(&rings, &[Material::Slab], Material::Slab)
 }
 
-/// House over an arcade: its ground floor towards −v stands back by `setback` behind pillars, the floors above reach out
-/// to the full `roof` outline and rest on a ceiling at height `ceiling`. The house, then its pillars.
-pub(crate) fn arcaded(house: &Placement, roof: &RoofShape, bottom: f64, ceiling: f64, setback: f64) -> Vec<Part> {
+/// House over an arcade: its ground floor towards −v stands back by `setback` behind pillars, the floors above reach
+/// out to the full `roof` outline and rest on a ceiling at height `ceiling`. The house, then its pillars.
+pub(crate) fn arcaded(
+    house: &PlanPlacement,
+    roof: &RoofShape,
+    bottom: f64,
+    ceiling: f64,
+    setback: f64,
+) -> Vec<ObjectPart> {
     let half = roof.width / 2.0;
     // From the inner edge of the ceiling, from where every corner of the section is in sight.
     let section = [
@@ -100,7 +108,7 @@ pub(crate) fn arcaded(house: &Placement, roof: &RoofShape, bottom: f64, ceiling:
 }
 
 /// Tower of a church: a square shaft with a pyramid on it.
-pub(crate) fn steeple(placement: &Placement, side: f64, bottom: f64, eaves: f64, top: f64) -> Vec<Part> {
+pub(crate) fn steeple(placement: &PlanPlacement, side: f64, bottom: f64, eaves: f64, top: f64) -> Vec<ObjectPart> {
     let pyramid: [[f64; 3]; 4] = placement.rectangle(side + 0.6, side + 0.6).map(|[x, y]| [x, y, eaves - JOINT]);
     // The point is a square of a centimetre, which keeps the solid closed without a special case.
     let point: [[f64; 3]; 4] = placement.rectangle(0.01, 0.01).map(|[x, y]| [x, y, top]);

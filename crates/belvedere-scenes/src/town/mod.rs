@@ -15,11 +15,11 @@ pub(crate) mod trees;
 use std::f64::consts::FRAC_PI_4;
 
 use crate::random::Random;
-use crate::scene::Scene;
-use crate::town::plan::{Layout, Plan};
-use crate::town::site::{Clearance, Site};
+use crate::scene::TriangleScene;
+use crate::town::plan::{BlockRectangle, TownLayout};
+use crate::town::site::{Clearance, TownSite};
 use crate::town::terrain::Terrain;
-use crate::town::trees::Crowns;
+use crate::town::trees::CrownMaterial;
 
 /// Lanes that a street has room for.
 const LANES_ACROSS: f64 = 4.5;
@@ -35,7 +35,8 @@ pub enum BlockPlan {
     TowerAndHall,
     /// Six plain detached houses with gables and hips.
     DetachedHouses,
-    /// Two rows of houses that share party walls, with different eaves, chimneys, dormers, balconies over fenced gardens.
+    /// Two rows of houses that share party walls, with different eaves, chimneys, dormers, balconies over fenced
+    /// gardens.
     RowHouses,
     /// Houses that share party walls on all four sides of a courtyard, some over arcades.
     Perimeter,
@@ -72,34 +73,34 @@ pub struct TownParams {
     pub extent: f64,
     /// Any number; another one gives another town. Default 1.
     pub seed: u64,
-    /// Centre of the town in the projected frame, and height of the ground there before hills, metres. Default
-    /// (155 000, 463 000, 0): the middle of the Dutch grid (EPSG:28992, with heights EPSG:7415), so that code that squeezes
+    /// Centre of the town in the projected frame, and height of the ground there before hills, metres. Default (155
+    /// 000, 463 000, 0): the middle of the Dutch grid (EPSG:28992, with heights EPSG:7415), so that code that squeezes
     /// grid coordinates into f32 shows itself.
     pub origin: [f64; 3],
     /// Rise of the ground, metres per metre, 0 to 0.1. Default 0.03: 3.6 m across the town, clearly not a plane z = 0.
     pub slope: f64,
     /// Height of the hills above and below the inclined plane, metres, 0 to 5. Default 1.2.
     pub hill_height: f64,
-    /// Depth of a dry canal through the middle of the town, crossed by bridges, metres, 0 (none) to 3. It needs two rows of
-    /// blocks that stay 33 m deep beside it, or it is left out. Default 0.
+    /// Depth of a dry canal through the middle of the town, crossed by bridges, metres, 0 (none) to 3. It needs two
+    /// rows of blocks that stay 33 m deep beside it, or it is left out. Default 0.
     pub canal_depth: f64,
-    /// Direction of the streets, radians counter-clockwise from east, 0 to π/4. Default 0.14: walls that run along the rows
-    /// of a raster flatter every raster method.
+    /// Direction of the streets, radians counter-clockwise from east, 0 to π/4. Default 0.14: walls that run along the
+    /// rows of a raster flatter every raster method.
     pub street_angle: f64,
-    /// Width of the streets between the blocks, metres, 4 to 12: wider ones would push the houses of the smallest town into
-    /// each other. Default 9.
+    /// Width of the streets between the blocks, metres, 4 to 12: wider ones would push the houses of the smallest town
+    /// into each other. Default 9.
     pub street_width: f64,
     /// Least distance between the middles of blocks, metres, 44 to 80; the blocks share what is left over. Default 52.
     pub block_pitch: f64,
-    /// Kinds of blocks and how often each occurs beside the others. The first blocks are one of each, in this order. Without
-    /// any, the ground stays open. Default: terraces, L-shapes, tower and hall, detached houses, equally often.
+    /// Kinds of blocks and how often each occurs beside the others. The first blocks are one of each, in this order.
+    /// Without any, the ground stays open. Default: terraces, L-shapes, tower and hall, detached houses, equally often.
     pub blocks: Vec<(BlockPlan, u32)>,
     /// What crowns are made of. Default opaque.
-    pub crowns: Crowns,
+    pub crowns: CrownMaterial,
     /// Lowest and highest tree, metres, 3 to 22. Default 7 to 13.
     pub tree_heights: [f64; 2],
-    /// Ground per tree that is tried in gardens, courts and about the town, m², 20 or more; a half of the tries or fewer find
-    /// room. Default 130.
+    /// Ground per tree that is tried in gardens, courts and about the town, m², 20 or more; a half of the tries or
+    /// fewer find room. Default 130.
     pub area_per_garden_tree: f64,
     /// Where the trees of the streets stand. Default in the middle.
     pub street_trees: StreetTrees,
@@ -125,7 +126,7 @@ impl Default for TownParams {
                 (BlockPlan::TowerAndHall, 1),
                 (BlockPlan::DetachedHouses, 1),
             ],
-            crowns: Crowns::Opaque,
+            crowns: CrownMaterial::Opaque,
             tree_heights: [7.0, 13.0],
             area_per_garden_tree: 130.0,
             street_trees: StreetTrees::Middle,
@@ -139,15 +140,15 @@ impl TownParams {
     #[must_use]
     pub fn terrain(&self) -> Terrain {
         Terrain::new(self.origin, self.slope, self.hill_height, self.seed)
-            .with_canal(Layout::new(&self.within_limits()).trench())
+            .with_canal(TownLayout::new(&self.within_limits()).trench())
     }
 
-    /// A lane along each street between the blocks, from one end of the town to the other, (R, 2, 2), metres, absolute: beside the
-    /// trees and clear of parked cars and masts.
+    /// A lane along each street between the blocks, from one end of the town to the other, (R, 2, 2), metres, absolute:
+    /// beside the trees and clear of parked cars and masts.
     #[must_use]
     pub fn lanes(&self) -> Vec<[[f64; 2]; 2]> {
         let params = self.within_limits();
-        let layout = Layout::new(&params);
+        let layout = TownLayout::new(&params);
         let (half, beside) = (layout.side / 2.0, params.street_width / LANES_ACROSS);
         let along_u = layout.streets_along_u.iter().map(|v| [-half, half].map(|u| layout.centre.at(u, v + beside)));
         // along v a side further left is one of lower u
@@ -178,14 +179,15 @@ fn within(value: f64, [low, high]: [f64; 2]) -> f64 {
 
 /// Builds a town of the described blocks, with trees in gardens and streets, and what stands about in the streets.
 ///
-/// Object 0 is the terrain, then come `building 1`…, `tree 1`…, `deck 1`…, `canopy 1`…, `bridge 1`…, `fence 1`…, `mast 1`…,
-/// `wire 1`… and `car 1`… as they were built; coordinates are absolute. The same parameters give the same town.
+/// Object 0 is the terrain, then come `building 1`…, `tree 1`…, `deck 1`…, `canopy 1`…, `bridge 1`…, `fence 1`…,
+/// `mast 1`…, `wire 1`… and `car 1`… as they were built; coordinates are absolute. The same parameters give the same
+/// town.
 #[must_use]
-pub fn town(params: &TownParams) -> Scene {
+pub fn town(params: &TownParams) -> TriangleScene {
     let params = &params.within_limits();
-    let layout = Layout::new(params);
+    let layout = TownLayout::new(params);
     let centre = layout.centre;
-    let mut site = Site::new(params.terrain(), Random::new(params.seed, 0), centre.origin, layout.extent);
+    let mut site = TownSite::new(params.terrain(), Random::new(params.seed, 0), centre.origin, layout.extent);
     site.crowns = params.crowns;
     site.tree_heights = params.tree_heights;
 
@@ -229,8 +231,8 @@ fn choose(blocks: &[(BlockPlan, u32)], number: usize, random: &mut Random) -> Op
     None
 }
 
-impl Site {
-    fn build(&mut self, kind: BlockPlan, plan: &Plan) {
+impl TownSite {
+    fn build(&mut self, kind: BlockPlan, plan: &BlockRectangle) {
         match kind {
             BlockPlan::Terraces => self.terraces(plan),
             BlockPlan::LShapes => self.l_shapes(plan),

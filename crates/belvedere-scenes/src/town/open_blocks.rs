@@ -3,15 +3,15 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use crate::scene::Material;
-use crate::solids::{Placement, extruded, ridged};
+use crate::solids::{PlanPlacement, extruded, ridged};
 use crate::town::buildings::{JOINT, RoofShape, chimney, dormer, steeple};
-use crate::town::plan::Plan;
+use crate::town::plan::BlockRectangle;
 use crate::town::row_blocks::{BALCONY_DEPTH, RowStyle, STOREY};
-use crate::town::site::Site;
+use crate::town::site::TownSite;
 
-impl Site {
+impl TownSite {
     /// A tower and a long building with balconies, a deck between them, a car park with a shelter.
-    pub(crate) fn high_rise(&mut self, plan: &Plan) {
+    pub(crate) fn high_rise(&mut self, plan: &BlockRectangle) {
         let [half_u, half_v] = plan.half_sides();
         let (tower_side, slab_depth) = (14.0, 10.5);
         let slab_v = -half_v + slab_depth / 2.0 + BALCONY_DEPTH + 0.8;
@@ -47,9 +47,9 @@ impl Site {
         }
     }
 
-    /// Flat-roofed building with a machine room and rows of balconies, from the given storey up, on the walls that face −v
-    /// after a turn by each of `faces`.
-    fn balconied(&mut self, place: &Placement, size: [f64; 2], height: f64, faces: &[f64], first_storey: u32) {
+    /// Flat-roofed building with a machine room and rows of balconies, from the given storey up, on the walls that face
+    /// −v after a turn by each of `faces`.
+    fn balconied(&mut self, place: &PlanPlacement, size: [f64; 2], height: f64, faces: &[f64], first_storey: u32) {
         let footprint = place.rectangle(size[0], size[1]);
         let ground = self.ground(place.origin);
         let top = ground + height;
@@ -70,7 +70,7 @@ impl Site {
     }
 
     /// Church, houses over arcades, market hall and stalls.
-    pub(crate) fn square(&mut self, plan: &Plan) {
+    pub(crate) fn square(&mut self, plan: &BlockRectangle) {
         let [half_u, half_v] = plan.half_sides();
         let style = RowStyle {
             house_width: 7.0,
@@ -108,7 +108,7 @@ impl Site {
     }
 
     /// Canopy over the pumps, shop, cars and a fence at the back.
-    pub(crate) fn petrol_station(&mut self, plan: &Plan) {
+    pub(crate) fn petrol_station(&mut self, plan: &BlockRectangle) {
         let [half_u, half_v] = plan.half_sides();
         self.park(plan.centre.moved(-2.0, -0.25 * half_v - 2.0, 0.0));
         self.park(plan.centre.moved(3.5, -0.25 * half_v + 2.2, PI));
@@ -123,7 +123,7 @@ impl Site {
     }
 
     /// Four detached houses in fenced gardens.
-    pub(crate) fn gardens(&mut self, plan: &Plan) {
+    pub(crate) fn gardens(&mut self, plan: &BlockRectangle) {
         let [half_u, half_v] = plan.half_sides();
         for (side_u, side_v) in [(-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0), (1.0, 1.0)] {
             // Fronts towards −v as placed, so gardens of the upper row are turned about.
@@ -153,7 +153,7 @@ impl Site {
     }
 
     /// House with its front towards −v, a chimney, dormers or hips.
-    fn detached_house(&mut self, house: &Placement) {
+    fn detached_house(&mut self, house: &PlanPlacement) {
         let size = [self.random.between(9.5, 11.5), self.random.between(7.5, 8.8)];
         let footprint = house.rectangle(size[0], size[1]);
         let ground = self.ground(house.origin);
@@ -175,7 +175,7 @@ impl Site {
     }
 
     /// Pavilion, lookout platform and low fences.
-    pub(crate) fn lawn(&mut self, plan: &Plan) {
+    pub(crate) fn lawn(&mut self, plan: &BlockRectangle) {
         let [half_u, half_v] = plan.half_sides();
         let pavilion = plan.centre.moved(0.3 * half_u, 0.2 * half_v, self.random.between(0.0, FRAC_PI_2));
         let mut parts = self.canopy_parts(pavilion, [7.0, 5.0], 2.8, 0.2, 3.5);

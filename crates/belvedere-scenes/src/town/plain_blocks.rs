@@ -2,13 +2,13 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use crate::solids::{Placement, extruded, l_shaped_ridged};
-use crate::town::plan::Plan;
-use crate::town::site::Site;
+use crate::solids::{PlanPlacement, extruded, l_shaped_ridged};
+use crate::town::plan::BlockRectangle;
+use crate::town::site::TownSite;
 
-impl Site {
+impl TownSite {
     /// Two rows of terraced houses with sheds in the gardens between them.
-    pub(crate) fn terraces(&mut self, plan: &Plan) {
+    pub(crate) fn terraces(&mut self, plan: &BlockRectangle) {
         for (v, angle) in [(-14.5, 0.0), (14.5, 2.0 * FRAC_PI_2)] {
             for u in [-10.5, 10.5] {
                 let eaves = self.random.between(5.2, 6.4);
@@ -22,9 +22,9 @@ impl Site {
     }
 
     /// A gabled and a flat-roofed L about a courtyard.
-    pub(crate) fn l_shapes(&mut self, plan: &Plan) {
+    pub(crate) fn l_shapes(&mut self, plan: &BlockRectangle) {
         let turn = if self.random.chance(0.5) { 0.0 } else { 2.0 * FRAC_PI_2 };
-        let turned = Plan { centre: plan.centre.moved(0.0, 0.0, turn), scale: plan.scale };
+        let turned = BlockRectangle { centre: plan.centre.moved(0.0, 0.0, turn), scale: plan.scale };
 
         let (corner, lengths, width) = (turned.at(-18.0, -18.0, 0.0), [33.0, 29.0], 9.5);
         let footprint = corner.l_shape(lengths[0], lengths[1], width);
@@ -40,13 +40,13 @@ impl Site {
         self.add("building", &[extruded(&footprint, self.bottom(&footprint), top)]);
     }
 
-    fn take_l_shape(&mut self, corner: &Placement, [length_u, length_v]: [f64; 2], width: f64) {
+    fn take_l_shape(&mut self, corner: &PlanPlacement, [length_u, length_v]: [f64; 2], width: f64) {
         self.take(corner.moved(length_u / 2.0, width / 2.0, 0.0), length_u, width);
         self.take(corner.moved(width / 2.0, length_v / 2.0, 0.0), width, length_v);
     }
 
     /// A tower with a machine room on its roof, a hall with a flat roof and one with a ridge.
-    pub(crate) fn tower_and_hall(&mut self, plan: &Plan) {
+    pub(crate) fn tower_and_hall(&mut self, plan: &BlockRectangle) {
         let placement = plan.at(-9.0, 8.0, 0.0);
         let footprint = placement.rectangle(13.0, 13.0);
         let top = self.ground(placement.origin) + self.random.between(34.0, 40.0);
@@ -60,7 +60,7 @@ impl Site {
     }
 
     /// Six detached houses, each turned a little from the street, with gables or hips.
-    pub(crate) fn detached_houses(&mut self, plan: &Plan) {
+    pub(crate) fn detached_houses(&mut self, plan: &BlockRectangle) {
         for (number, (u, v)) in [-13.5, 0.0, 13.5].iter().flat_map(|&u| [(u, -12.0), (u, 12.0)]).enumerate() {
             let quarter = if self.random.chance(0.5) { 0.0 } else { FRAC_PI_2 };
             let angle = quarter + self.random.between(-0.08, 0.08);

@@ -1,13 +1,13 @@
 //! The plan of a town: rows of blocks, streets between them, a canal.
 
-use crate::solids::Placement;
+use crate::solids::PlanPlacement;
 use crate::town::TownParams;
 use crate::town::terrain::Canal;
 
 /// Half the side of the square within a block that the block plans are drawn for, metres.
 const PLAN_HALF_SIDE: f64 = 20.0;
 /// Ground kept free of buildings at the rim, metres.
-const RIM: f64 = 4.0;
+const EDGE: f64 = 4.0;
 /// Least side of the ground for two by two blocks, metres.
 const MIN_EXTENT_OF_FOUR: f64 = 100.0;
 /// Ground that a canal takes between two rows of blocks besides the street, metres, and how much of it is trench.
@@ -19,14 +19,14 @@ const MIN_BLOCK_AT_CANAL: f64 = 33.0;
 const BRIDGE_END: f64 = 1.2;
 
 /// The rectangle of a block: a square of ±[`PLAN_HALF_SIDE`] plan metres, stretched to the block.
-pub(crate) struct Plan {
-    pub(crate) centre: Placement,
+pub(crate) struct BlockRectangle {
+    pub(crate) centre: PlanPlacement,
     pub(crate) scale: [f64; 2],
 }
 
-impl Plan {
+impl BlockRectangle {
     /// Placement at plan position (u, v), turned by `angle`. Only positions stretch, buildings keep their size.
-    pub(crate) fn at(&self, u: f64, v: f64, angle: f64) -> Placement {
+    pub(crate) fn at(&self, u: f64, v: f64, angle: f64) -> PlanPlacement {
         self.centre.moved(u * self.scale[0], v * self.scale[1], angle)
     }
 
@@ -37,10 +37,10 @@ impl Plan {
 }
 
 /// Where blocks, streets and the canal of a town lie.
-pub(crate) struct Layout {
+pub(crate) struct TownLayout {
     pub(crate) extent: f64,
     /// Middle of the town, u along the streets of one direction.
-    pub(crate) centre: Placement,
+    pub(crate) centre: PlanPlacement,
     /// Side of the turned square that blocks and streets fill, metres.
     pub(crate) side: f64,
     /// Middles of the columns and rows of blocks.
@@ -55,13 +55,13 @@ pub(crate) struct Layout {
     scale: [f64; 2],
 }
 
-impl Layout {
+impl TownLayout {
     /// From parameters within their limits.
     pub(crate) fn new(params: &TownParams) -> Self {
         let extent = params.extent;
         // The turned grid of blocks has to fit into the upright square.
         let (sin, cos) = params.street_angle.sin_cos();
-        let side = (extent - 2.0 * RIM) / (sin.abs() + cos.abs());
+        let side = (extent - 2.0 * EDGE) / (sin.abs() + cos.abs());
         let street = params.street_width;
         let fewest = if extent < MIN_EXTENT_OF_FOUR { 1.0 } else { 2.0 };
         let across = ((side + street) / params.block_pitch).floor().max(fewest);
@@ -88,15 +88,15 @@ impl Layout {
         }
         let row_pitch = if with_canal { pitch_at_canal } else { pitch };
         let scale = [pitch, row_pitch].map(|pitch| (pitch - street) / 2.0 / PLAN_HALF_SIDE);
-        let centre = Placement { origin: [params.origin[0], params.origin[1]], angle: params.street_angle };
+        let centre = PlanPlacement { origin: [params.origin[0], params.origin[1]], angle: params.street_angle };
         let canal_depth = params.canal_depth;
         Self { extent, centre, side, columns, rows, streets_along_v, streets_along_u, canal, canal_depth, scale }
     }
 
     /// Blocks row by row.
-    pub(crate) fn plans(&self) -> Vec<Plan> {
+    pub(crate) fn plans(&self) -> Vec<BlockRectangle> {
         let positions = self.rows.iter().flat_map(|&v| self.columns.iter().map(move |&u| (u, v)));
-        positions.map(|(u, v)| Plan { centre: self.centre.moved(u, v, 0.0), scale: self.scale }).collect()
+        positions.map(|(u, v)| BlockRectangle { centre: self.centre.moved(u, v, 0.0), scale: self.scale }).collect()
     }
 
     /// Half the sides of a block, metres.
@@ -111,7 +111,7 @@ impl Layout {
     }
 
     /// The ground that the canal takes, and its sides along u and v in metres.
-    pub(crate) fn canal_ground(&self) -> Option<(Placement, [f64; 2])> {
+    pub(crate) fn canal_ground(&self) -> Option<(PlanPlacement, [f64; 2])> {
         // Twice the extent is past the rim in any direction.
         Some((self.centre.moved(0.0, self.canal?, 0.0), [2.0 * self.extent, CANAL_WIDTH]))
     }

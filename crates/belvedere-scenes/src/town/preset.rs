@@ -1,6 +1,6 @@
 //! Kinds of towns by name.
 
-use crate::town::trees::Crowns;
+use crate::town::trees::CrownMaterial;
 use crate::town::{BlockPlan, StreetTrees, TownParams};
 
 /// Side of a town where none is wanted, metres: a few blocks, and a scan of a few hundred thousand points.
@@ -9,9 +9,9 @@ pub const EXTENT: f64 = 150.0;
 /// A kind of town, at any size and seed.
 ///
 /// ```
-/// use belvedere_scenes::{Crowns, Preset, TownParams, blocks, town};
+/// use belvedere_scenes::{CrownMaterial, Preset, TownParams, blocks, town};
 ///
-/// let params = TownParams { crowns: Crowns::Porous, ..Preset::OldTown.params(60.0, 7) };
+/// let params = TownParams { crowns: CrownMaterial::Porous, ..Preset::OldTown.params(60.0, 7) };
 /// let scene = town(&params);
 /// assert!(scene.object_names.iter().any(|name| name.starts_with("building")));
 /// let city_model = blocks(&scene);
@@ -19,7 +19,8 @@ pub const EXTENT: f64 = 150.0;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Preset {
-    /// Detached houses with chimneys and dormers in fenced gardens, porous trees, cars, masts and wires on hilly ground.
+    /// Detached houses with chimneys and dormers in fenced gardens, porous trees, cars, masts and wires on hilly
+    /// ground.
     Village,
     /// Rows of houses with party walls, high-rise with balconies and decks, a market square with arcades, courtyards, a
     /// petrol station, a dry canal with bridges; cars, fences, masts and wires, opaque trees.
@@ -59,7 +60,7 @@ impl Preset {
                 hill_height: 3.0,
                 street_width: 7.0,
                 blocks: vec![(BlockPlan::Gardens, 4), (BlockPlan::DetachedHouses, 1)],
-                crowns: Crowns::Porous,
+                crowns: CrownMaterial::Porous,
                 tree_heights: [5.0, 12.0],
                 area_per_garden_tree: 150.0,
                 street_trees: StreetTrees::Without,
@@ -111,7 +112,7 @@ impl Preset {
                 street_width: 6.0,
                 block_pitch: 56.0,
                 blocks: vec![(BlockPlan::Lawn, 1)],
-                crowns: Crowns::Porous,
+                crowns: CrownMaterial::Porous,
                 tree_heights: [7.0, 18.0],
                 area_per_garden_tree: 80.0,
                 street_trees: StreetTrees::Without,

@@ -2,11 +2,11 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use crate::scene::Part;
-use crate::solids::{Course, Placement, ridged, winged};
+use crate::scene::ObjectPart;
+use crate::solids::{PlanPlacement, WingCourse, ridged, winged};
 use crate::town::buildings::{JOINT, RoofShape, arcaded, balcony, chimney, dormer};
-use crate::town::plan::Plan;
-use crate::town::site::{Clearance, Site};
+use crate::town::plan::BlockRectangle;
+use crate::town::site::{Clearance, TownSite};
 use crate::town::street_furniture::fence;
 
 /// Height of a storey, metres.
@@ -30,9 +30,9 @@ pub(crate) struct RowStyle {
     pub(crate) dormers: f64,
 }
 
-impl Site {
+impl TownSite {
     /// Two rows of houses with fenced gardens between them.
-    pub(crate) fn row_houses(&mut self, plan: &Plan) {
+    pub(crate) fn row_houses(&mut self, plan: &BlockRectangle) {
         let [half_u, half_v] = plan.half_sides();
         let style = RowStyle {
             house_width: 5.4,
@@ -69,7 +69,7 @@ impl Site {
     }
 
     /// Houses on four sides of a courtyard, with a canopy in it.
-    pub(crate) fn perimeter(&mut self, plan: &Plan) {
+    pub(crate) fn perimeter(&mut self, plan: &BlockRectangle) {
         let [half_u, half_v] = plan.half_sides();
         let depth = 8.0;
         let style = |arcades: f64, corner: f64| RowStyle {
@@ -83,19 +83,19 @@ impl Site {
         };
         // The other rows and their balconies, and a metre.
         let corner = BALCONY_DEPTH + 1.0;
-        let rim = 0.5;
+        let margin = 0.5;
         for (angle, arcades) in [(0.0, 0.7), (PI, 0.2)] {
             let side = plan.centre.moved(0.0, 0.0, angle);
-            let row = side.moved(0.0, -half_v + depth / 2.0 + rim, 0.0);
-            self.row(&row, 2.0 * (half_u - rim), &style(arcades, depth + corner));
+            let row = side.moved(0.0, -half_v + depth / 2.0 + margin, 0.0);
+            self.row(&row, 2.0 * (half_u - margin), &style(arcades, depth + corner));
         }
         for angle in [FRAC_PI_2, 1.5 * PI] {
             let side = plan.centre.moved(0.0, 0.0, angle);
-            let row = side.moved(0.0, -half_u + depth / 2.0 + rim, 0.0);
+            let row = side.moved(0.0, -half_u + depth / 2.0 + margin, 0.0);
             // Into the backs of the other rows, whose depth varies.
-            self.row(&row, 2.0 * (half_v - depth - rim + 0.6), &style(0.0, corner));
+            self.row(&row, 2.0 * (half_v - depth - margin + 0.6), &style(0.0, corner));
         }
-        let [court_u, court_v] = [half_u - depth - rim, half_v - depth - rim];
+        let [court_u, court_v] = [half_u - depth - margin, half_v - depth - margin];
         if court_u > 7.0 && court_v > 6.0 {
             let shed = plan.centre.moved(court_u * 0.4, court_v * 0.3, 0.2);
             self.canopy(shed, [5.0, 3.5], 2.6, 0.15, 5.0);
@@ -103,7 +103,7 @@ impl Site {
     }
 
     /// By turns a building around a courtyard and one about three sides of a court.
-    pub(crate) fn courtyard(&mut self, plan: &Plan) {
+    pub(crate) fn courtyard(&mut self, plan: &BlockRectangle) {
         let [a, b] = plan.half_sides().map(|half| half - 0.9);
         let depth = 9.5;
         let corners = |inset: f64| {
@@ -117,7 +117,7 @@ impl Site {
         let eaves = ground + self.random.between(9.5, 14.0);
         let sloped = closed || self.random.chance(0.5);
         let ridge = eaves + if sloped { self.random.between(3.6, 4.6) } else { 0.0 };
-        let course = if closed { Course::Closed } else { Course::Open };
+        let course = if closed { WingCourse::Closed } else { WingCourse::Open };
         if !closed {
             for (corner, u) in [(0, -a + depth), (3, a - depth)] {
                 inner[corner] = plan.centre.at(u, b);
@@ -142,7 +142,7 @@ impl Site {
         }
     }
 
-    fn take_wings(&mut self, plan: &Plan, [a, b]: [f64; 2], depth: f64, closed: bool) {
+    fn take_wings(&mut self, plan: &BlockRectangle, [a, b]: [f64; 2], depth: f64, closed: bool) {
         for side in [-1.0, 1.0] {
             self.take(plan.centre.moved(side * (a - depth / 2.0), 0.0, 0.0), depth, 2.0 * b);
             if side < 0.0 || closed {
@@ -154,14 +154,14 @@ impl Site {
     }
 
     /// One balcony per storey from the first floor up on a wall that faces −v and runs through the origin.
-    pub(crate) fn balconies(&self, wall: &Placement, ground: f64, top: f64) -> Vec<Part> {
+    pub(crate) fn balconies(&self, wall: &PlanPlacement, ground: f64, top: f64) -> Vec<ObjectPart> {
         let floors = std::iter::successors(Some(ground + STOREY), |floor| Some(floor + STOREY));
         let below = floors.take_while(|floor| floor + 1.6 < top);
         below.map(|floor| balcony(wall, BALCONY_WIDTH, BALCONY_DEPTH, floor)).collect()
     }
 
     /// A row of houses along u about `row`, their fronts towards −v. Returns how many.
-    pub(crate) fn row(&mut self, row: &Placement, length: f64, style: &RowStyle) -> u32 {
+    pub(crate) fn row(&mut self, row: &PlanPlacement, length: f64, style: &RowStyle) -> u32 {
         let count = crate::town::street_furniture::pieces(length, style.house_width * 1.15);
         let width = length / f64::from(count);
         for house in 0..count {
@@ -173,7 +173,7 @@ impl Site {
         count
     }
 
-    fn party_house(&mut self, place: &Placement, width: f64, style: &RowStyle) {
+    fn party_house(&mut self, place: &PlanPlacement, width: f64, style: &RowStyle) {
         // No two fronts, backs or roofs in one plane: where they overlap, it would be open which of them a ray meets.
         let depth = style.depth + self.random.between(-0.4, 0.4);
         let forward = self.random.between(0.0, 0.3);
@@ -210,7 +210,7 @@ impl Site {
         let part = fence(ends, height + self.random.between(-0.1, 0.1), &|point| self.ground(point));
         let along = [ends[1][0] - ends[0][0], ends[1][1] - ends[0][1]];
         let origin = [0, 1].map(|axis| (ends[0][axis] + ends[1][axis]) / 2.0);
-        let placement = Placement { origin, angle: along[1].atan2(along[0]) };
+        let placement = PlanPlacement { origin, angle: along[1].atan2(along[0]) };
         self.take_for(placement, [along[0].hypot(along[1]), 0.1], Clearance::Trunk);
         self.add("fence", &[part]);
     }

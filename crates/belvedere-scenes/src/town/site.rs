@@ -3,10 +3,10 @@
 use std::collections::HashMap;
 
 use crate::random::Random;
-use crate::scene::{Part, Scene};
-use crate::solids::{Placement, extruded, ridged};
+use crate::scene::{ObjectPart, TriangleScene};
+use crate::solids::{PlanPlacement, extruded, ridged};
 use crate::town::terrain::Terrain;
-use crate::town::trees::{Crowns, TreeShape, tree};
+use crate::town::trees::{CrownMaterial, TreeShape, tree};
 
 /// How far solids reach below the lowest ground they stand on, metres.
 pub(crate) const BURIED: f64 = 1.0;
@@ -32,7 +32,7 @@ pub(crate) enum Clearance {
 
 /// Ground that something stands on already: a rectangle, or a disc where its half sides are zero.
 struct Taken {
-    placement: Placement,
+    placement: PlanPlacement,
     half_sides: [f64; 2],
     margin: f64,
     clearance: Clearance,
@@ -94,24 +94,24 @@ fn cell(coordinate: f64) -> i64 {
 }
 
 /// A town under construction.
-pub(crate) struct Site {
-    pub(crate) scene: Scene,
+pub(crate) struct TownSite {
+    pub(crate) scene: TriangleScene,
     pub(crate) terrain: Terrain,
     pub(crate) random: Random,
     /// Middle and side of the upright square of ground.
     pub(crate) centre: [f64; 2],
     pub(crate) extent: f64,
-    pub(crate) crowns: Crowns,
+    pub(crate) crowns: CrownMaterial,
     pub(crate) tree_heights: [f64; 2],
     taken: TakenGround,
     counts: HashMap<&'static str, u32>,
     courtyards: u32,
 }
 
-impl Site {
+impl TownSite {
     /// The bare square of ground of side `extent` about `centre`.
     pub(crate) fn new(terrain: Terrain, random: Random, centre: [f64; 2], extent: f64) -> Self {
-        let mut scene = Scene::default();
+        let mut scene = TriangleScene::default();
         scene.add_object("terrain", &[terrain.mesh(extent)]);
         Self {
             scene,
@@ -119,7 +119,7 @@ impl Site {
             random,
             centre,
             extent,
-            crowns: Crowns::Opaque,
+            crowns: CrownMaterial::Opaque,
             tree_heights: [7.0, 13.0],
             taken: TakenGround::default(),
             counts: HashMap::new(),
@@ -137,7 +137,7 @@ impl Site {
     }
 
     /// Adds an object with a number of its own among those of its `kind`, from 1.
-    pub(crate) fn add(&mut self, kind: &'static str, parts: &[Part]) {
+    pub(crate) fn add(&mut self, kind: &'static str, parts: &[ObjectPart]) {
         let count = self.counts.entry(kind).or_default();
         *count += 1;
         self.scene.add_object(format!("{kind} {count}"), parts);
@@ -150,18 +150,18 @@ impl Site {
         count % 2
     }
 
-    pub(crate) fn take(&mut self, placement: Placement, length: f64, width: f64) {
+    pub(crate) fn take(&mut self, placement: PlanPlacement, length: f64, width: f64) {
         self.take_for(placement, [length, width], Clearance::Crown);
     }
 
-    pub(crate) fn take_for(&mut self, placement: Placement, [length, width]: [f64; 2], clearance: Clearance) {
+    pub(crate) fn take_for(&mut self, placement: PlanPlacement, [length, width]: [f64; 2], clearance: Clearance) {
         let half_sides = [length / 2.0, width / 2.0];
         self.taken.push(Taken { placement, half_sides, margin: 0.0, clearance });
     }
 
     /// Whether a rectangle lies inside the square and `gap` metres off everything that stands already, crowns excepted
     /// where only trunks count. Looked at in points a metre apart, so corners of others may reach in by half a metre.
-    pub(crate) fn is_free(&self, placement: &Placement, [length, width]: [f64; 2], gap: f64) -> bool {
+    pub(crate) fn is_free(&self, placement: &PlanPlacement, [length, width]: [f64; 2], gap: f64) -> bool {
         let steps = [length, width].map(|side| crate::town::street_furniture::pieces(side, 1.0));
         let share = |step: u32, steps: u32| f64::from(step) / f64::from(steps) - 0.5;
         (0..=steps[0]).flat_map(|i| (0..=steps[1]).map(move |j| (i, j))).all(|(i, j)| {
@@ -176,7 +176,7 @@ impl Site {
     }
 
     /// House of `length` by `width` centred on `placement`, ridge along u.
-    pub(crate) fn house(&mut self, placement: Placement, size: [f64; 2], eaves: f64, roof_height: f64, hip: f64) {
+    pub(crate) fn house(&mut self, placement: PlanPlacement, size: [f64; 2], eaves: f64, roof_height: f64, hip: f64) {
         let footprint = placement.rectangle(size[0], size[1]);
         let ground = self.ground(placement.origin);
         let part = ridged(&footprint, self.bottom(&footprint), ground + eaves, ground + eaves + roof_height, hip);
@@ -185,7 +185,7 @@ impl Site {
     }
 
     /// Box of `length` by `width` centred on `placement`.
-    pub(crate) fn flat_block(&mut self, placement: Placement, [length, width]: [f64; 2], height: f64) {
+    pub(crate) fn flat_block(&mut self, placement: PlanPlacement, [length, width]: [f64; 2], height: f64) {
         let footprint = placement.rectangle(length, width);
         let part = extruded(&footprint, self.bottom(&footprint), self.ground(placement.origin) + height);
         self.take(placement, length, width);
@@ -209,7 +209,7 @@ impl Site {
             return;
         }
         self.taken.push(Taken {
-            placement: Placement { origin: point, angle: 0.0 },
+            placement: PlanPlacement { origin: point, angle: 0.0 },
             half_sides: [0.0; 2],
             margin: reach,
             clearance: Clearance::Crown,

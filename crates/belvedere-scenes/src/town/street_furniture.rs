@@ -1,15 +1,15 @@
 //! What stands about in streets, squares and gardens: cars, fences, masts and wires, canopies, decks, bridges.
 
-use crate::scene::{Material, Part};
-use crate::solids::{Placement, prism, swept};
+use crate::scene::{Material, ObjectPart};
+use crate::solids::{PlanPlacement, prism, swept};
 use crate::town::buildings::JOINT;
 use crate::town::terrain::Terrain;
 
 /// Height of the ground as the solids that stand on it need it.
-pub(crate) type Ground<'a> = &'a dyn Fn([f64; 2]) -> f64;
+pub(crate) type GroundHeight<'a> = &'a dyn Fn([f64; 2]) -> f64;
 
 /// Car that heads along u: a body that reaches into the ground, so that it stands on slopes, and a cabin.
-pub(crate) fn car(placement: &Placement, ground: f64) -> Vec<Part> {
+pub(crate) fn car(placement: &PlanPlacement, ground: f64) -> Vec<ObjectPart> {
     let at = |height: f64| move |[x, y]: [f64; 2]| [x, y, ground + height];
     let cabin = placement.moved(-0.2, 0.0, 0.0);
     let body = [placement.rectangle(4.3, 1.78).map(at(-0.5)), placement.rectangle(4.2, 1.74).map(at(0.8))];
@@ -25,7 +25,7 @@ fn strip(
     steps: u32,
     heights: impl Fn(f64, [f64; 2]) -> [f64; 2],
     material: Material,
-) -> Part {
+) -> ObjectPart {
     let along = [to[0] - from[0], to[1] - from[1]];
     let length = along[0].hypot(along[1]);
     let left = [-along[1] / length * width / 2.0, along[0] / length * width / 2.0];
@@ -53,7 +53,7 @@ pub(crate) fn pieces(length: f64, longest: f64) -> u32 {
 }
 
 /// Fence from one point to another that follows the ground: `height` metres high, 6 cm thick.
-pub(crate) fn fence(ends: [[f64; 2]; 2], height: f64, ground: Ground<'_>) -> Part {
+pub(crate) fn fence(ends: [[f64; 2]; 2], height: f64, ground: GroundHeight<'_>) -> ObjectPart {
     let length = (ends[1][0] - ends[0][0]).hypot(ends[1][1] - ends[0][1]);
     let heights = |_: f64, point: [f64; 2]| {
         let ground = ground(point);
@@ -64,7 +64,7 @@ pub(crate) fn fence(ends: [[f64; 2]; 2], height: f64, ground: Ground<'_>) -> Par
 
 /// Bridge along a straight line between two points on the ground, with a slightly arched deck 40 cm thick and parapets;
 /// its ends run into the ground.
-pub(crate) fn bridge(ends: [[f64; 2]; 2], width: f64, ground: Ground<'_>) -> Vec<Part> {
+pub(crate) fn bridge(ends: [[f64; 2]; 2], width: f64, ground: GroundHeight<'_>) -> Vec<ObjectPart> {
     let grounds = ends.map(ground);
     let crown = 0.55;
     let deck_top = move |share: f64| {
@@ -85,8 +85,8 @@ pub(crate) fn bridge(ends: [[f64; 2]; 2], width: f64, ground: Ground<'_>) -> Vec
     std::iter::once(deck).chain(parapets).collect()
 }
 
-/// Slab of `size` about the origin with its underside at height `underside`, on square posts along its rim that stand `inset`
-/// metres inside it and at most `spacing` metres apart. Metres.
+/// Slab of `size` about the origin with its underside at height `underside`, on square posts along its rim that stand
+/// `inset` metres inside it and at most `spacing` metres apart. Metres.
 pub(crate) struct PostedSlab {
     pub(crate) size: [f64; 2],
     pub(crate) underside: f64,
@@ -97,20 +97,20 @@ pub(crate) struct PostedSlab {
 }
 
 /// Slab on posts over open ground: canopy, deck, market stall. The slab, then its posts.
-pub(crate) fn posted_slab(placement: &Placement, shape: &PostedSlab, terrain: &Terrain) -> Vec<Part> {
+pub(crate) fn posted_slab(placement: &PlanPlacement, shape: &PostedSlab, terrain: &Terrain) -> Vec<ObjectPart> {
     let [length, width] = shape.size;
     let top = shape.underside + shape.thickness;
     let mut parts = vec![prism(&placement.rectangle(length, width), shape.underside, top, Material::Slab)];
     let steps = shape.size.map(|side| pieces((side - 2.0 * shape.inset).max(0.0), shape.spacing));
     for i in 0..=steps[0] {
         for j in 0..=steps[1] {
-            let on_rim = i == 0 || j == 0 || i == steps[0] || j == steps[1];
+            let on_edge = i == 0 || j == 0 || i == steps[0] || j == steps[1];
             let position = |side: f64, step: u32, steps: u32| {
                 (side - 2.0 * shape.inset) * (f64::from(step) / f64::from(steps) - 0.5)
             };
             let post = placement.moved(position(length, i, steps[0]), position(width, j, steps[1]), 0.0);
             let footprint = post.rectangle(shape.post_side, shape.post_side);
-            if on_rim {
+            if on_edge {
                 let bottom = terrain.lowest(&footprint) - 1.0;
                 // Half-way up into the slab, so that it neither touches nor pierces.
                 parts.push(prism(&footprint, bottom, shape.underside + shape.thickness / 2.0, Material::Slab));
@@ -121,7 +121,7 @@ pub(crate) fn posted_slab(placement: &Placement, shape: &PostedSlab, terrain: &T
 }
 
 /// Six-sided lamp mast with an arm along v.
-pub(crate) fn mast(placement: &Placement, ground: f64, height: f64) -> Vec<Part> {
+pub(crate) fn mast(placement: &PlanPlacement, ground: f64, height: f64) -> Vec<ObjectPart> {
     let ring = |radius: f64, height: f64| -> [[f64; 3]; 6] {
         std::array::from_fn(|i| {
             let (sin, cos) = (std::f64::consts::TAU * i as f64 / 6.0).sin_cos();
@@ -135,7 +135,7 @@ pub(crate) fn mast(placement: &Placement, ground: f64, height: f64) -> Vec<Part>
 }
 
 /// Wire of 3 cm between two points, sagging by `sag` metres in the middle.
-pub(crate) fn wire(from: [f64; 3], to: [f64; 3], sag: f64) -> Part {
+pub(crate) fn wire(from: [f64; 3], to: [f64; 3], sag: f64) -> ObjectPart {
     let [dx, dy] = [to[0] - from[0], to[1] - from[1]];
     let length = dx.hypot(dy);
     let left = [-dy / length, dx / length];

@@ -2,11 +2,11 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use crate::scene::Part;
-use crate::solids::Placement;
+use crate::scene::ObjectPart;
+use crate::solids::PlanPlacement;
 use crate::town::buildings::JOINT;
-use crate::town::plan::Layout;
-use crate::town::site::{Clearance, Site};
+use crate::town::plan::TownLayout;
+use crate::town::site::{Clearance, TownSite};
 use crate::town::street_furniture::{PostedSlab, bridge, car, mast, posted_slab, wire};
 use crate::town::trees::TreeShape;
 use crate::town::{StreetTrees, TownParams};
@@ -20,9 +20,9 @@ const MIN_WIDTH_FOR_BUSES: f64 = 8.0;
 const PARKING_PLACE: f64 = 5.6;
 const MAST_HEIGHT: f64 = 7.0;
 
-impl Site {
+impl TownSite {
     /// A row of trees along the middle of each street between the blocks.
-    pub(crate) fn street_trees(&mut self, layout: &Layout) {
+    pub(crate) fn street_trees(&mut self, layout: &TownLayout) {
         let (centre, side) = (layout.centre, layout.side);
         for (&u, &v) in layout.streets_along_v.iter().zip(&layout.streets_along_u) {
             let mut along = -side / 2.0 + STREET_TREE_SPACING / 2.0;
@@ -55,7 +55,7 @@ impl Site {
     }
 
     /// Cars, small trees, masts, wires and bus stops along the blocks, clear of the crossings.
-    pub(crate) fn furnish_streets(&mut self, layout: &Layout, params: &TownParams) {
+    pub(crate) fn furnish_streets(&mut self, layout: &TownLayout, params: &TownParams) {
         if !(params.street_furniture > 0.0) && params.street_trees != StreetTrees::Kerb {
             return;
         }
@@ -73,7 +73,7 @@ impl Site {
     }
 
     /// One side of a block: `middle` lies in the middle of the street, which runs along u for `half_length` each way.
-    fn furnish_street(&mut self, middle: &Placement, half_length: f64, params: &TownParams) {
+    fn furnish_street(&mut self, middle: &PlanPlacement, half_length: f64, params: &TownParams) {
         let (share, half_width) = (params.street_furniture, params.street_width / 2.0);
         if share > 0.0 && self.random.chance(share) {
             let at = [-1.0, 1.0].map(|end| middle.moved(end * (half_length - 2.0), half_width - 0.6, PI));
@@ -101,7 +101,7 @@ impl Site {
     }
 
     /// Parks a car where there is room.
-    pub(crate) fn park(&mut self, placement: Placement) {
+    pub(crate) fn park(&mut self, placement: PlanPlacement) {
         let size = [4.4, 1.9];
         if self.is_free(&placement, size, 0.3) {
             let parts = car(&placement, self.ground(placement.origin));
@@ -111,7 +111,7 @@ impl Site {
     }
 
     /// Two masts with a pair of wires between them, where there is room for both masts.
-    pub(crate) fn wired_masts(&mut self, placements: [Placement; 2]) {
+    pub(crate) fn wired_masts(&mut self, placements: [PlanPlacement; 2]) {
         if !placements.iter().all(|placement| self.is_free(placement, [0.3, 0.3], 0.2)) {
             return;
         }
@@ -129,19 +129,26 @@ impl Site {
         // Crowns keep off the wires.
         let middle = [0, 1].map(|axis| (tops[0][axis] + tops[1][axis]) / 2.0);
         let angle = (tops[1][1] - tops[0][1]).atan2(tops[1][0] - tops[0][0]);
-        self.take_for(Placement { origin: middle, angle }, [span, 0.1], Clearance::Crown);
+        self.take_for(PlanPlacement { origin: middle, angle }, [span, 0.1], Clearance::Crown);
     }
 
-    fn bus_stop(&mut self, placement: Placement) {
+    fn bus_stop(&mut self, placement: PlanPlacement) {
         let size = [4.2, 1.5];
         if self.is_free(&placement, size, 0.3) {
             self.canopy(placement, size, 2.5, 0.12, 3.0);
         }
     }
 
-    /// Roof over nothing: a slab of `size` with its underside `clear` metres above the ground at its middle, on posts at most
-    /// `spacing` metres apart.
-    pub(crate) fn canopy(&mut self, placement: Placement, size: [f64; 2], clear: f64, thickness: f64, spacing: f64) {
+    /// Roof over nothing: a slab of `size` with its underside `clear` metres above the ground at its middle, on posts
+    /// at most `spacing` metres apart.
+    pub(crate) fn canopy(
+        &mut self,
+        placement: PlanPlacement,
+        size: [f64; 2],
+        clear: f64,
+        thickness: f64,
+        spacing: f64,
+    ) {
         let parts = self.canopy_parts(placement, size, clear, thickness, spacing);
         self.add("canopy", &parts);
     }
@@ -149,12 +156,12 @@ impl Site {
     /// The solids of a canopy, the slab first, for others to be put on it; takes its ground.
     pub(crate) fn canopy_parts(
         &mut self,
-        placement: Placement,
+        placement: PlanPlacement,
         size: [f64; 2],
         clear: f64,
         thickness: f64,
         spacing: f64,
-    ) -> Vec<Part> {
+    ) -> Vec<ObjectPart> {
         let inset = 0.1 * size[0].min(size[1]);
         let post_side = if clear < 3.0 { 0.1 } else { 0.3 };
         let underside = self.ground(placement.origin) + clear;
@@ -164,7 +171,7 @@ impl Site {
     }
 
     /// Deck to walk on and under, as a canopy with a thicker slab; its ends may lie inside buildings by [`JOINT`].
-    pub(crate) fn deck(&mut self, placement: Placement, size: [f64; 2], clear: f64) {
+    pub(crate) fn deck(&mut self, placement: PlanPlacement, size: [f64; 2], clear: f64) {
         let underside = self.ground(placement.origin) + clear;
         let inset = 1.0 + JOINT;
         let shape = PostedSlab { size, underside, thickness: 0.28, post_side: 0.35, inset, spacing: 6.0 };

@@ -3,8 +3,8 @@
 use std::f64::consts::{PI, TAU};
 
 use crate::random::Random;
-use crate::scene::{Material, Part};
-use crate::solids::Placement;
+use crate::scene::{Material, ObjectPart};
+use crate::solids::PlanPlacement;
 
 /// Ground: an inclined plane with gentle hills, known as a formula.
 ///
@@ -21,7 +21,7 @@ pub struct Terrain {
 #[derive(Clone, Debug)]
 pub(crate) struct Canal {
     /// On the middle line, u along it.
-    pub(crate) placement: Placement,
+    pub(crate) placement: PlanPlacement,
     /// From bank to bank, metres.
     pub(crate) width: f64,
     /// Below the ground at its middle, metres.
@@ -52,8 +52,8 @@ const WAVELENGTHS: [f64; 3] = [160.0, 110.0, 75.0];
 pub(crate) const CELL: f64 = 2.0;
 
 impl Terrain {
-    /// Ground about `centre` (absolute, metres) that rises by `slope` (metres per metre) in a random direction, with hills
-    /// of up to `hill_height` metres above and below.
+    /// Ground about `centre` (absolute, metres) that rises by `slope` (metres per metre) in a random direction, with
+    /// hills of up to `hill_height` metres above and below.
     pub(crate) fn new(centre: [f64; 3], slope: f64, hill_height: f64, seed: u64) -> Self {
         let mut random = Random::new(seed, 1);
         let (sin, cos) = random.between(0.0, TAU).sin_cos();
@@ -78,8 +78,8 @@ impl Terrain {
     /// Height of the ground at absolute (x, y), all in metres.
     ///
     /// The mesh lies on this height at its vertices and departs from it by less than 4 mm per metre of hill height
-    /// between them (half the squared circumradius of its triangles times the greatest curvature). In a canal it departs by
-    /// up to 0.4 m, since its banks are steeper than the mesh is fine.
+    /// between them (half the squared circumradius of its triangles times the greatest curvature). In a canal it
+    /// departs by up to 0.4 m, since its banks are steeper than the mesh is fine.
     #[must_use]
     pub fn height(&self, x: f64, y: f64) -> f64 {
         let (dx, dy) = (x - self.centre[0], y - self.centre[1]);
@@ -102,10 +102,10 @@ impl Terrain {
     }
 
     /// Mesh of the square of side `extent` about the centre.
-    pub(crate) fn mesh(&self, extent: f64) -> Part {
+    pub(crate) fn mesh(&self, extent: f64) -> ObjectPart {
         let cells = whole((extent / CELL).ceil()).max(1) as usize;
         let coordinate = |i: usize| extent * (i as f64 / cells as f64 - 0.5);
-        let mut part = Part::default();
+        let mut part = ObjectPart::default();
         for j in 0..=cells {
             for i in 0..=cells {
                 let (x, y) = (self.centre[0] + coordinate(i), self.centre[1] + coordinate(j));

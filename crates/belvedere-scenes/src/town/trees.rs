@@ -3,8 +3,8 @@
 use std::f64::consts::{PI, TAU};
 
 use crate::random::Random;
-use crate::scene::{Material, Part};
-use crate::solids::{Placement, extruded};
+use crate::scene::{Material, ObjectPart};
+use crate::solids::{PlanPlacement, extruded};
 use crate::vector::{add, add_scaled, cross, length, scale, sub, unit};
 
 /// Size of a tree, metres.
@@ -37,8 +37,9 @@ const COLUMNS: usize = 14;
 
 /// What the crowns of trees are made of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Crowns {
-    /// A closed hull that lets no light through ([`Material::TreeCrown`]); the scanner's beam may be told to pass it in part.
+pub enum CrownMaterial {
+    /// A closed hull that lets no light through ([`Material::TreeCrown`]); the scanner's beam may be told to pass it in
+    /// part.
     Opaque,
     /// Sprays of leaves, 0.2 to 0.4 m, in clumps with gaps between ([`Material::Leaf`]): about two in
     /// five straight lines through the crown get past them.
@@ -48,10 +49,16 @@ pub enum Crowns {
 }
 
 /// Trunk and crown of a tree that stands at `foot`, absolute, metres, its trunk reaching `buried` metres below.
-pub(crate) fn tree(foot: [f64; 3], shape: &TreeShape, crowns: Crowns, buried: f64, random: &mut Random) -> [Part; 2] {
+pub(crate) fn tree(
+    foot: [f64; 3],
+    shape: &TreeShape,
+    crowns: CrownMaterial,
+    buried: f64,
+    random: &mut Random,
+) -> [ObjectPart; 2] {
     let half_height = shape.height * (1.0 - BARE_STEM) / 2.0;
     let centre = [foot[0], foot[1], foot[2] + shape.height - half_height];
-    let around = Placement { origin: [foot[0], foot[1]], angle: random.between(0.0, TAU) };
+    let around = PlanPlacement { origin: [foot[0], foot[1]], angle: random.between(0.0, TAU) };
     let ring: Vec<[f64; 2]> = (0..8)
         .map(|i| {
             let (sin, cos) = (f64::from(i) * TAU / 8.0).sin_cos();
@@ -60,9 +67,9 @@ pub(crate) fn tree(foot: [f64; 3], shape: &TreeShape, crowns: Crowns, buried: f6
         .collect();
     let trunk = extruded(&ring, foot[2] - buried, centre[2]).with_material(Material::Trunk);
     let crown = match crowns {
-        Crowns::Opaque => crown(centre, shape.crown_radius, half_height, random),
-        Crowns::Porous => leaves(centre, shape.crown_radius, half_height, random),
-        Crowns::Bare => branches(centre, shape, half_height, random),
+        CrownMaterial::Opaque => crown(centre, shape.crown_radius, half_height, random),
+        CrownMaterial::Porous => leaves(centre, shape.crown_radius, half_height, random),
+        CrownMaterial::Bare => branches(centre, shape, half_height, random),
     };
     [trunk, crown]
 }
@@ -71,13 +78,13 @@ pub(crate) fn tree(foot: [f64; 3], shape: &TreeShape, crowns: Crowns, buried: f6
 const SPRAYS: u32 = 400;
 /// Clumps that the sprays gather in.
 const CLUMPS: usize = 24;
-/// Area of the sprays seen from one side, as a share of that of the crown: about two in five lines through the inner crown
-/// stay free.
+/// Area of the sprays seen from one side, as a share of that of the crown: about two in five lines through the inner
+/// crown stay free.
 const COVER: f64 = 0.55;
 
 /// Sprays within an ellipsoid about `centre`: each a closed flat tetrahedron, turned at random.
-fn leaves(centre: [f64; 3], radius: f64, half_height: f64, random: &mut Random) -> Part {
-    let mut part = Part::default();
+fn leaves(centre: [f64; 3], radius: f64, half_height: f64, random: &mut Random) -> ObjectPart {
+    let mut part = ObjectPart::default();
     let clumps: Vec<[f64; 3]> = (0..CLUMPS).map(|_| scale(direction(random), random.between(0.45, 0.85))).collect();
     // Seen from all sides on average, a flat spray of edge a covers a²/4.
     let edge = (COVER * PI * radius * half_height / f64::from(SPRAYS) * 4.0).sqrt();
@@ -111,10 +118,11 @@ const TWIGS: u32 = 4;
 /// Radius of the tip of a limb or a twig, metres.
 const TIP_RADIUS: f64 = 0.01;
 
-/// Branches of a tree without leaves, within an ellipsoid about `centre`: each a closed prism that tapers. The trunk goes on to the top.
-fn branches(centre: [f64; 3], shape: &TreeShape, half_height: f64, random: &mut Random) -> Part {
+/// Branches of a tree without leaves, within an ellipsoid about `centre`: each a closed prism that tapers. The trunk
+/// goes on to the top.
+fn branches(centre: [f64; 3], shape: &TreeShape, half_height: f64, random: &mut Random) -> ObjectPart {
     let TreeShape { crown_radius: radius, trunk_radius, .. } = *shape;
-    let mut part = Part::default();
+    let mut part = ObjectPart::default();
     let top = [centre[0], centre[1], centre[2] + half_height];
     add_branch(&mut part, centre, top, trunk_radius * 0.7);
     for limb in 0..LIMBS {
@@ -135,8 +143,9 @@ fn branches(centre: [f64; 3], shape: &TreeShape, half_height: f64, random: &mut 
     part
 }
 
-/// Adds a closed prism of three sides that tapers from `radius` at `from` to [`TIP_RADIUS`] at `to`; nothing where they coincide.
-fn add_branch(part: &mut Part, from: [f64; 3], to: [f64; 3], radius: f64) {
+/// Adds a closed prism of three sides that tapers from `radius` at `from` to [`TIP_RADIUS`] at `to`; nothing where they
+/// coincide.
+fn add_branch(part: &mut ObjectPart, from: [f64; 3], to: [f64; 3], radius: f64) {
     let Some(along) = unit(sub(to, from)) else { return };
     let aside = if along[2].abs() < 0.9 { [0.0, 0.0, 1.0] } else { [1.0, 0.0, 0.0] };
     let Some(across) = unit(cross(aside, along)) else { return };
@@ -168,8 +177,8 @@ fn direction(random: &mut Random) -> [f64; 3] {
 }
 
 /// Closed bumpy ellipsoid about `centre`.
-fn crown(centre: [f64; 3], radius: f64, half_height: f64, random: &mut Random) -> Part {
-    let mut part = Part::default();
+fn crown(centre: [f64; 3], radius: f64, half_height: f64, random: &mut Random) -> ObjectPart {
+    let mut part = ObjectPart::default();
     let phases: [f64; 3] = std::array::from_fn(|_| random.between(0.0, TAU));
     // A factor on the distance from the centre, so that the crown stays free of folds.
     let bulge = |latitude: f64, longitude: f64| {

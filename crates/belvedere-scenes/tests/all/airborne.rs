@@ -5,10 +5,10 @@
 use std::collections::HashMap;
 
 use belvedere_scenes::{
-    AirborneParams, BeamParams, Material, Scan, Scene, SensorPath, TownParams, scan_airborne, town,
+    AirborneParams, BeamParams, Material, Scan, SensorPath, TownParams, TriangleScene, scan_airborne, town,
 };
 
-fn default_scan() -> (Scene, Scan) {
+fn default_scan() -> (TriangleScene, Scan) {
     let scene = town(&TownParams::default());
     let scan = scan_airborne(&scene, &AirborneParams::default());
     (scene, scan)
@@ -184,7 +184,7 @@ fn columns_have_one_value_per_return_and_classes_follow_materials() {
 }
 
 /// Area above the ground and returns of the walls of `scene`.
-fn facade_density(scene: &Scene, scan: &Scan, params: &TownParams) -> f64 {
+fn facade_density(scene: &TriangleScene, scan: &Scan, params: &TownParams) -> f64 {
     let terrain = params.terrain();
     let mut area_above_ground = 0.0;
     for t in (0..scene.triangles.len()).filter(|&t| scene.materials[t] == Material::Facade) {
@@ -256,7 +256,8 @@ fn pulses_reach_the_ground_below_crowns_only_where_crowns_are_porous() {
     };
     let (open, closed) = (ground_after_crown(0.35), ground_after_crown(0.0));
     assert!((0.1..0.5).contains(&open), "{open}");
-    // Past an opaque crown only pulses on its rim get to the ground: 13 cm of a radius of about 2.5 m, twice 5 % of its area.
+    // Past an opaque crown only pulses on its rim get to the ground: 13 cm of a radius of about 2.5 m, twice 5 % of its
+    // area.
     assert!(closed < 0.1 && closed > 0.0 && open > 2.0 * closed, "{closed} {open}");
 }
 
@@ -298,7 +299,7 @@ fn nothing_to_fly_gives_an_empty_scan() {
     }
     let lost = scan_airborne(&scene, &AirborneParams { dropout: 1.0, pulses_per_m2: 0.2, ..usual.clone() });
     assert!(lost.is_empty() && lost.report.dropped_pulses > 1000);
-    assert!(scan_airborne(&Scene::default(), &usual).is_empty());
+    assert!(scan_airborne(&TriangleScene::default(), &usual).is_empty());
 }
 
 #[test]

@@ -6,7 +6,7 @@ use std::collections::HashMap;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 use belvedere_scenes::closed_forms::{basin, box_on_plane, canyon, slab_over_plane, sphere_over_plane, stairs};
-use belvedere_scenes::{Material, Scene, Truth};
+use belvedere_scenes::{Material, TriangleScene, Truth};
 
 /// Azimuth clockwise from north and elevation, degrees.
 const SUNS: [[f64; 2]; 3] = [[110.0, 25.0], [180.0, 52.0], [241.0, 35.0]];
@@ -42,7 +42,7 @@ fn shadow_end(truth: &Truth, sun: &Sun, start: [f64; 2], heading: f64, farthest:
 }
 
 /// Distance from `start` along `heading` to the rim of a convex polygon, corners counter-clockwise.
-fn rim(polygon: &[[f64; 2]], start: [f64; 2], heading: f64) -> f64 {
+fn distance_to_edge(polygon: &[[f64; 2]], start: [f64; 2], heading: f64) -> f64 {
     let direction = [heading.cos(), heading.sin()];
     (0..polygon.len())
         .map(|i| {
@@ -82,14 +82,15 @@ fn moved(rectangle: [f64; 2], sun: &Sun, height: f64) -> [[f64; 2]; 4] {
     [[-x, -y], [x, -y], [x, y], [-x, y]].map(|[x, y]| [x + shift * sun.away[0], y + shift * sun.away[1]])
 }
 
-fn check_hull(scene: &Scene, sun: &Sun, corners: &[[f64; 2]]) {
+fn check_hull(scene: &TriangleScene, sun: &Sun, corners: &[[f64; 2]]) {
     let truth = Truth::new(scene);
     let outline = hull(corners);
     let count = outline.len() as f64;
     let middle = [0, 1].map(|axis| outline.iter().map(|p| p[axis]).sum::<f64>() / count);
     for step in 0..72 {
         let heading = TAU * f64::from(step) / 72.0 + 0.01;
-        let (found, expected) = (shadow_end(&truth, sun, middle, heading, 200.0), rim(&outline, middle, heading));
+        let (found, expected) =
+            (shadow_end(&truth, sun, middle, heading, 200.0), distance_to_edge(&outline, middle, heading));
         // Flat faces: nothing but rounding stands between the two, far below the millimetre that is asked for.
         assert!((found - expected).abs() < MILLIMETRE / 100.0, "{heading}: {found} {expected}");
     }
@@ -169,8 +170,8 @@ fn treads_are_shaded_over_rise_times_cosine_over_tangent() {
     }
 }
 
-/// Share of a hemisphere about `normal`, cosine-weighted, that is free of the scene, by `rows`² stratified rays: equal areas
-/// on the unit disc lifted to the hemisphere (Malley's method).
+/// Share of a hemisphere about `normal`, cosine-weighted, that is free of the scene, by `rows`² stratified rays: equal
+/// areas on the unit disc lifted to the hemisphere (Malley's method).
 fn sky_view(truth: &Truth, point: [f64; 3], frame: [[f64; 3]; 3], rows: u32) -> f64 {
     let origins = vec![point; (rows * rows) as usize];
     let directions: Vec<[f64; 3]> = (0..rows)
@@ -188,8 +189,8 @@ fn sky_view(truth: &Truth, point: [f64; 3], frame: [[f64; 3]; 3], rows: u32) -> 
 }
 
 const UP: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-/// Rays per side, and what the count of cells that a horizon cuts can make of it: a rim of about 4 cells per row, each wrong
-/// by half at most and at random. Far above the error of the open ends of the canyon (2e-6).
+/// Rays per side, and what the count of cells that a horizon cuts can make of it: a rim of about 4 cells per row, each
+/// wrong by half at most and at random. Far above the error of the open ends of the canyon (2e-6).
 const ROWS: u32 = 600;
 const SAMPLING: f64 = 1e-3;
 

@@ -2,14 +2,16 @@
 
 use std::collections::{HashMap, HashSet};
 
-use belvedere_scenes::{Material, Part, Placement, Preset, Scene, TownParams, blocks, extruded, ridged, town};
+use belvedere_scenes::{
+    Material, ObjectPart, PlanPlacement, Preset, TownParams, TriangleScene, blocks, extruded, ridged, town,
+};
 
-const UPRIGHT: Placement = Placement { origin: [155_000.0, 463_000.0], angle: 0.3 };
+const UPRIGHT: PlanPlacement = PlanPlacement { origin: [155_000.0, 463_000.0], angle: 0.3 };
 
-fn volume(scene: &Scene, object: &str) -> f64 {
+fn volume(scene: &TriangleScene, object: &str) -> f64 {
     let wanted = |t: &usize| scene.object_names[scene.objects[*t] as usize] == object;
     let triangles = (0..scene.triangles.len()).filter(wanted).map(|t| scene.triangles[t]).collect::<Vec<_>>();
-    Part { vertices: scene.vertices.clone(), materials: Vec::new(), triangles }.volume()
+    ObjectPart { vertices: scene.vertices.clone(), materials: Vec::new(), triangles }.volume()
 }
 
 /// Volumes in the national grid are rounded at 1e-10 m times 1e2 m².
@@ -19,7 +21,7 @@ fn near(found: f64, expected: f64) {
 
 #[test]
 fn block_of_a_gable_roof_ends_at_seven_tenths_of_it() {
-    let mut scene = Scene::default();
+    let mut scene = TriangleScene::default();
     scene.add_object("house", &[ridged(&UPRIGHT.rectangle(10.0, 8.0), -1.0, 5.0, 9.0, 0.0)]);
     scene.add_object("hall", &[extruded(&UPRIGHT.moved(30.0, 0.0, 0.0).rectangle(12.0, 7.0), -1.0, 6.0)]);
     let generalised = blocks(&scene);
@@ -30,9 +32,10 @@ fn block_of_a_gable_roof_ends_at_seven_tenths_of_it() {
 
 #[test]
 fn block_of_a_pyramid_ends_where_it_has_shrunk_to_three_tenths() {
-    let mut scene = Scene::default();
+    let mut scene = TriangleScene::default();
     scene.add_object("tent", &[ridged(&UPRIGHT.rectangle(8.0, 8.0), 0.0, 4.0, 10.0, 3.999)]);
-    // The plan of a pyramid above height share s is (1 − s)² of all: 0.3 at s = 1 − √0.3. A ridge of 2 mm does not count.
+    // The plan of a pyramid above height share s is (1 − s)² of all: 0.3 at s = 1 − √0.3. A ridge of 2 mm does not
+    // count.
     let expected = 64.0 * (4.0 + 6.0 * (1.0 - 0.3_f64.sqrt()));
     let found = volume(&blocks(&scene), "tent");
     assert!((found / expected - 1.0).abs() < 1e-3, "{found} {expected}");
@@ -40,9 +43,9 @@ fn block_of_a_pyramid_ends_where_it_has_shrunk_to_three_tenths() {
 
 #[test]
 fn what_sits_on_a_roof_counts_with_the_part_below_and_is_no_block() {
-    let mut scene = Scene::default();
+    let mut scene = TriangleScene::default();
     let vertices = vec![[154_900.0, 462_900.0, 0.0], [155_100.0, 462_900.0, 0.0], [155_000.0, 463_200.0, 0.0]];
-    let ground = Part { vertices, triangles: vec![[0, 1, 2]], materials: vec![Material::Terrain] };
+    let ground = ObjectPart { vertices, triangles: vec![[0, 1, 2]], materials: vec![Material::Terrain] };
     scene.add_object("terrain", &[ground]);
     let tower = extruded(&UPRIGHT.rectangle(10.0, 10.0), -1.0, 30.0);
     let small = extruded(&UPRIGHT.rectangle(4.0, 4.0), 29.0, 33.0);
@@ -116,10 +119,10 @@ fn upward_area([a, b, c]: [[f64; 3]; 3]) -> f64 {
 #[test]
 fn terrain_stays_and_scenes_without_roofs_lose_everything_else() {
     let scene = town(&TownParams::default());
-    let terrain = |scene: &Scene| -> Vec<[[f64; 3]; 3]> {
+    let terrain = |scene: &TriangleScene| -> Vec<[[f64; 3]; 3]> {
         let own = (0..scene.triangles.len()).filter(|&t| scene.materials[t] == Material::Terrain);
         own.map(|t| scene.corners(t).unwrap()).collect()
     };
     assert_eq!(terrain(&blocks(&scene)), terrain(&scene));
-    assert!(blocks(&Scene::default()).triangles.is_empty());
+    assert!(blocks(&TriangleScene::default()).triangles.is_empty());
 }

@@ -6,7 +6,7 @@ use std::collections::{BTreeSet, HashMap};
 use std::ops::Range;
 
 use belvedere_scenes::{
-    BlockPlan, Crowns, Material, Part, Preset, Scene, StreetTrees, TownParams, Truth, blocks, town,
+    BlockPlan, CrownMaterial, Material, ObjectPart, Preset, StreetTrees, TownParams, TriangleScene, Truth, blocks, town,
 };
 
 /// Directed edges that have no opposite partner, or more than one.
@@ -21,7 +21,7 @@ fn open_edges(triangles: &[[u32; 3]]) -> usize {
 }
 
 /// Triangles of each part.
-fn parts(scene: &Scene) -> Vec<Range<usize>> {
+fn parts(scene: &TriangleScene) -> Vec<Range<usize>> {
     let mut ranges: Vec<Range<usize>> = Vec::new();
     for t in 0..scene.triangles.len() {
         match ranges.last_mut() {
@@ -32,18 +32,18 @@ fn parts(scene: &Scene) -> Vec<Range<usize>> {
     ranges
 }
 
-fn part(scene: &Scene, range: Range<usize>) -> Part {
+fn part(scene: &TriangleScene, range: Range<usize>) -> ObjectPart {
     let (triangles, materials) = (scene.triangles[range.clone()].to_vec(), scene.materials[range].to_vec());
     let (low, high) = triangles.as_flattened().iter().fold((u32::MAX, 0), |(a, b), &v| (a.min(v), b.max(v)));
     let vertices = scene.vertices[low as usize..=high as usize].to_vec();
-    Part { vertices, triangles: triangles.iter().map(|t| t.map(|v| v - low)).collect(), materials }
+    ObjectPart { vertices, triangles: triangles.iter().map(|t| t.map(|v| v - low)).collect(), materials }
 }
 
-fn kind(scene: &Scene, triangle: usize) -> &str {
+fn kind(scene: &TriangleScene, triangle: usize) -> &str {
     scene.object_names[scene.objects[triangle] as usize].split(' ').next().unwrap()
 }
 
-fn count(scene: &Scene, kind: &str) -> usize {
+fn count(scene: &TriangleScene, kind: &str) -> usize {
     scene.object_names.iter().filter(|name| name.split(' ').next() == Some(kind)).count()
 }
 
@@ -86,7 +86,7 @@ fn area(a: [f64; 3], b: [f64; 3], c: [f64; 3]) -> f64 {
 }
 
 /// What a scene contains, by the geometry rather than by what was asked for.
-fn features(scene: &Scene) -> BTreeSet<&'static str> {
+fn features(scene: &TriangleScene) -> BTreeSet<&'static str> {
     let mut found = BTreeSet::new();
     for range in parts(scene) {
         let (name, part) = (kind(scene, range.start).to_owned(), part(scene, range));
@@ -153,7 +153,7 @@ fn features(scene: &Scene) -> BTreeSet<&'static str> {
     found
 }
 
-fn bounds(part: &Part) -> ([f64; 3], [f64; 3]) {
+fn bounds(part: &ObjectPart) -> ([f64; 3], [f64; 3]) {
     part.vertices.iter().fold(([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]), |(low, high), v| {
         (std::array::from_fn(|i| low[i].min(v[i])), std::array::from_fn(|i| high[i].max(v[i])))
     })
@@ -216,7 +216,8 @@ fn presets_hold_what_they_promise() {
 fn presets_give_the_same_bits_again_and_others_for_another_seed() {
     for preset in Preset::ALL {
         let [one, same, other] = [1, 1, 2].map(|seed| town(&preset.params(125.0, seed)));
-        let bits = |scene: &Scene| scene.vertices.as_flattened().iter().map(|v| v.to_bits()).collect::<Vec<_>>();
+        let bits =
+            |scene: &TriangleScene| scene.vertices.as_flattened().iter().map(|v| v.to_bits()).collect::<Vec<_>>();
         assert_eq!(bits(&one), bits(&same));
         assert_eq!((&one.triangles, &one.materials, &one.parts), (&same.triangles, &same.materials, &same.parts));
         assert_ne!(bits(&one), bits(&other));
@@ -244,7 +245,7 @@ fn town_of_300_metres_has_hundreds_of_buildings_and_trees_and_cities_grow_with_t
 fn objects_stand_in_the_ground_and_their_parts_hang_together() {
     for (preset, params) in towns() {
         let (scene, terrain) = (town(&params), params.terrain());
-        let mut objects: HashMap<u32, Vec<Part>> = HashMap::new();
+        let mut objects: HashMap<u32, Vec<ObjectPart>> = HashMap::new();
         for range in parts(&scene) {
             objects.entry(scene.objects[range.start]).or_default().push(part(&scene, range));
         }
@@ -253,7 +254,7 @@ fn objects_stand_in_the_ground_and_their_parts_hang_together() {
             if name == "terrain" {
                 continue;
             }
-            let in_ground = |part: &Part| part.vertices.iter().any(|v| v[2] < terrain.height(v[0], v[1]) - 0.1);
+            let in_ground = |part: &ObjectPart| part.vertices.iter().any(|v| v[2] < terrain.height(v[0], v[1]) - 0.1);
             if name.starts_with("wire") {
                 assert!(!in_ground(&parts[0]), "{preset:?}: {name}");
                 continue;
@@ -271,7 +272,7 @@ fn objects_stand_in_the_ground_and_their_parts_hang_together() {
 }
 
 /// Triangles of the floors of buildings, seen from above.
-fn floors(scene: &Scene) -> Vec<(u32, [[f64; 2]; 3])> {
+fn floors(scene: &TriangleScene) -> Vec<(u32, [[f64; 2]; 3])> {
     let blocks = blocks(scene);
     (0..blocks.triangles.len())
         .filter(|&t| blocks.materials[t] == Material::Roof)
@@ -331,7 +332,7 @@ fn balconies_and_canopies_keep_out_of_other_buildings() {
 #[test]
 fn crowns_keep_clear_of_other_objects_seen_from_the_middle_of_each_crown() {
     // The trunk ends in the middle of the crown: what lies around it within the crown's reach must be its own tree.
-    let scene = town(&TownParams { crowns: Crowns::Opaque, ..Preset::Village.params(125.0, 2) });
+    let scene = town(&TownParams { crowns: CrownMaterial::Opaque, ..Preset::Village.params(125.0, 2) });
     let truth = Truth::new(&scene);
     let mut trees = 0;
     for range in parts(&scene).into_iter().filter(|r| scene.materials[r.start] == Material::TreeCrown) {
@@ -420,8 +421,11 @@ fn porous_crowns_let_two_in_five_lines_pass_bare_ones_most_and_opaque_ones_none(
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (state >> 11) as f64 / (1_u64 << 53) as f64
     };
-    let kinds =
-        [(Crowns::Porous, Material::Leaf), (Crowns::Bare, Material::Trunk), (Crowns::Opaque, Material::TreeCrown)];
+    let kinds = [
+        (CrownMaterial::Porous, Material::Leaf),
+        (CrownMaterial::Bare, Material::Trunk),
+        (CrownMaterial::Opaque, Material::TreeCrown),
+    ];
     for (crowns, material) in kinds {
         let scene = town(&TownParams { crowns, ..Preset::Park.params(125.0, 1) });
         let (mut lines, mut free) = (0, 0);
@@ -433,7 +437,7 @@ fn porous_crowns_let_two_in_five_lines_pass_bare_ones_most_and_opaque_ones_none(
                 continue;
             }
             let centre: [f64; 3] = std::array::from_fn(|i| (low[i] + high[i]) / 2.0);
-            let mut alone = Scene::default();
+            let mut alone = TriangleScene::default();
             alone.add_object("crown", &[crown]);
             let truth = Truth::new(&alone);
             for _ in 0..200 {
@@ -448,10 +452,10 @@ fn porous_crowns_let_two_in_five_lines_pass_bare_ones_most_and_opaque_ones_none(
         }
         let share = free as f64 / f64::from(lines);
         match crowns {
-            Crowns::Porous => assert!((0.33..0.47).contains(&share), "{share}"),
+            CrownMaterial::Porous => assert!((0.33..0.47).contains(&share), "{share}"),
             // branches take little more than a tenth of the inner crown
-            Crowns::Bare => assert!((0.6..0.95).contains(&share), "{share}"),
-            Crowns::Opaque => assert_eq!(free, 0),
+            CrownMaterial::Bare => assert!((0.6..0.95).contains(&share), "{share}"),
+            CrownMaterial::Opaque => assert_eq!(free, 0),
         }
     }
 }

@@ -1,8 +1,10 @@
 //! Targets lie where their kind says, by means that do not use the sampling code.
 
-use belvedere_scenes::{Material, Placement, QuerySet, QuerySite, Scene, TownParams, Truth, extruded, town};
+use belvedere_scenes::{
+    Material, PlanPlacement, QuerySet, QuerySite, TownParams, TriangleScene, Truth, extruded, town,
+};
 
-fn site<'a>(scene: &'a Scene, truth: &'a Truth) -> QuerySite<'a> {
+fn site<'a>(scene: &'a TriangleScene, truth: &'a Truth) -> QuerySite<'a> {
     let (low, high) = scene.bounds().unwrap();
     QuerySite { scene, truth, bounds: [low, high] }
 }
@@ -10,8 +12,8 @@ fn site<'a>(scene: &'a Scene, truth: &'a Truth) -> QuerySite<'a> {
 #[test]
 fn a_point_is_inside_exactly_where_the_formulas_of_the_solids_say() {
     // two boxes that overlap: the union is what counts, not the parity of its faces
-    let at = |x: f64| Placement { origin: [x, 0.0], angle: 0.3 };
-    let mut scene = Scene::default();
+    let at = |x: f64| PlanPlacement { origin: [x, 0.0], angle: 0.3 };
+    let mut scene = TriangleScene::default();
     let solids = [(at(0.0), 10.0, 6.0, 0.0, 8.0), (at(3.0), 9.0, 4.0, -2.0, 5.0)];
     for (place, length, width, bottom, top) in solids {
         scene.add_object("box", &[extruded(&place.rectangle(length, width), bottom, top)]);
@@ -41,8 +43,8 @@ fn targets_of_each_kind_lie_where_they_should() {
     for set in QuerySet::ALL {
         let targets = site.targets(set, 2000, 1);
         // pairs over 100 m apart hardly fit into a town of 120 m: some of a quarter of the pairs are not found
-        let least = if set == QuerySet::LinesOfSight { 1500 } else { 2000 };
-        assert!((least..=2000).contains(&targets.positions.len()), "{}: {}", set.name(), targets.positions.len());
+        let min = if set == QuerySet::LinesOfSight { 1500 } else { 2000 };
+        assert!((min..=2000).contains(&targets.positions.len()), "{}: {}", set.name(), targets.positions.len());
         let above = |p: &[f64; 3]| p[2] - ground.height(p[0], p[1]);
         // the mesh departs from the formula of the ground by less than 5 mm
         let at_height = |height: f64| targets.positions.iter().all(|p| (above(p) - height).abs() < 0.005);
@@ -114,7 +116,7 @@ fn observers_stand_in_the_open_and_above_the_highest_roof() {
     let roofs = scene.triangles.iter().zip(&scene.materials).filter(|(_, m)| **m == Material::Roof);
     let top = roofs.flat_map(|(t, _)| *t).map(|v| scene.vertices[v as usize][2]).fold(f64::NEG_INFINITY, f64::max);
     assert!((tower[2] - top - 6.0).abs() < 1e-9, "{tower:?} above {top}");
-    let empty = Scene::default();
+    let empty = TriangleScene::default();
     let nothing = Truth::new(&empty);
     let nowhere = QuerySite { scene: &empty, truth: &nothing, bounds: [[0.0; 3], [1.0; 3]] };
     assert_eq!(nowhere.observers(1), [None, None]);

@@ -1,8 +1,8 @@
 //! Other surveys than the default one: patterns, strips, crowns that pulses enter.
 
 use belvedere_scenes::{
-    AirborneParams, BeamParams, Material, MirrorMotion, Placement, Scan, ScanPattern, Scene, TownParams, Truth,
-    extruded, scan_airborne, town,
+    AirborneParams, BeamParams, Material, MirrorMotion, PlanPlacement, Scan, ScanPattern, TownParams, TriangleScene,
+    Truth, extruded, scan_airborne, town,
 };
 
 const PATTERNS: [ScanPattern; 4] = [
@@ -13,18 +13,18 @@ const PATTERNS: [ScanPattern; 4] = [
 ];
 
 /// Flat ground of `side` metres about the zero of the grid.
-fn plate(side: f64) -> Scene {
-    let mut scene = Scene::default();
-    let at = Placement { origin: [0.0, 0.0], angle: 0.0 };
+fn plate(side: f64) -> TriangleScene {
+    let mut scene = TriangleScene::default();
+    let at = PlanPlacement { origin: [0.0, 0.0], angle: 0.0 };
     let ground = extruded(&at.rectangle(side, side), -1.0, 0.0).with_material(Material::Terrain);
     scene.add_object("ground", &[ground]);
     scene
 }
 
 /// A house of 10 x 10 x 8 m on flat ground.
-fn house_on_a_plate() -> Scene {
+fn house_on_a_plate() -> TriangleScene {
     let mut scene = plate(60.0);
-    let at = Placement { origin: [0.0, 0.0], angle: 0.0 };
+    let at = PlanPlacement { origin: [0.0, 0.0], angle: 0.0 };
     scene.add_object("house", &[extruded(&at.rectangle(10.0, 10.0), -0.5, 8.0)]);
     scene
 }
@@ -38,7 +38,7 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
 }
 
 /// Outward unit normal of the triangle of return `i`, and how far its exact position lies outside that plane.
-fn plane_of(scene: &Scene, scan: &Scan, i: usize) -> ([f64; 3], f64) {
+fn plane_of(scene: &TriangleScene, scan: &Scan, i: usize) -> ([f64; 3], f64) {
     let [a, b, c] = scene.corners(scan.triangle[i] as usize).unwrap();
     let (u, v) = (sub(b, a), sub(c, a));
     let n = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
@@ -47,7 +47,7 @@ fn plane_of(scene: &Scene, scan: &Scan, i: usize) -> ([f64; 3], f64) {
 }
 
 #[test]
-fn asked_density_is_flown_with_every_pattern_and_any_extent() {
+fn requested_density_is_flown_with_every_pattern_and_any_extent() {
     for pattern in PATTERNS {
         for (side, cross_strip_count) in [(120.0, 0), (500.0, 0), (120.0, 2)] {
             let scene = plate(side);
@@ -79,9 +79,9 @@ fn strips_are_as_many_as_the_extent_needs() {
     let count = |side: f64| AirborneParams::covering(&plate(side), 10.0).strip_count;
     // Strips of 420 m, half of it between neighbours; the ground is 1.37 times as wide across a heading of 30 degrees.
     assert_eq!([150.0, 300.0, 1000.0].map(count), [2, 3, 8]);
-    let asked = AirborneParams::default().spread_over(&plate(300.0), Some(5), 10.0);
-    assert_eq!(asked.strip_count, 5);
-    assert!((asked.strip_spacing * 4.0 - 300.0 * (0.5 + 0.75_f64.sqrt())).abs() < 1e-9);
+    let requested = AirborneParams::default().spread_over(&plate(300.0), Some(5), 10.0);
+    assert_eq!(requested.strip_count, 5);
+    assert!((requested.strip_spacing * 4.0 - 300.0 * (0.5 + 0.75_f64.sqrt())).abs() < 1e-9);
 }
 
 #[test]
@@ -226,8 +226,8 @@ fn light_on_a_scan_is_that_of_the_shadow_of_a_box() {
         // Points are asked 3 cm above the ground, which shortens the shadow by as much.
         let in_shadow = on_ground && y.abs() < 5.0 && x > 4.999 && x < 13.0 - 0.03;
         let on_dark_wall = (x - 5.0).abs() < 1e-6 && !on_ground;
-        let near_rim = on_ground && ((x - 12.97).abs() < 1e-6 || (y.abs() - 5.0).abs() < 1e-6);
-        assert!(near_rim || *lit != (in_shadow || on_dark_wall), "{:?}", scan.exact_positions[i]);
+        let near_edge = on_ground && ((x - 12.97).abs() < 1e-6 || (y.abs() - 5.0).abs() < 1e-6);
+        assert!(near_edge || *lit != (in_shadow || on_dark_wall), "{:?}", scan.exact_positions[i]);
         shaded += usize::from(!lit);
     }
     // 10 by 8 m of ground at two strips of 4 pulses per m²

@@ -3,7 +3,7 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use belvedere_scenes::{
-    BeamParams, Material, Placement, Scan, Scene, Stations, TerrestrialParams, TownParams, Truth, extruded,
+    BeamParams, Material, PlanPlacement, Scan, Stations, TerrestrialParams, TownParams, TriangleScene, Truth, extruded,
     scan_terrestrial, town,
 };
 
@@ -20,10 +20,10 @@ fn length(a: [f64; 3]) -> f64 {
 }
 
 /// A room of 20 x 12 x 6 m: its inside is the outside of six slabs.
-fn room() -> Scene {
-    let mut scene = Scene::default();
+fn room() -> TriangleScene {
+    let mut scene = TriangleScene::default();
     let slab = |x: f64, y: f64, size: [f64; 2], bottom: f64, top: f64| {
-        extruded(&Placement { origin: [x, y], angle: 0.0 }.rectangle(size[0], size[1]), bottom, top)
+        extruded(&PlanPlacement { origin: [x, y], angle: 0.0 }.rectangle(size[0], size[1]), bottom, top)
     };
     scene.add_object(
         "room",
@@ -155,6 +155,6 @@ fn nothing_to_scan_gives_an_empty_scan() {
     ] {
         assert!(scan_terrestrial(&scene, &params).is_empty());
     }
-    assert!(scan_terrestrial(&Scene::default(), &coarse()).is_empty());
+    assert!(scan_terrestrial(&TriangleScene::default(), &coarse()).is_empty());
     assert!(scan_terrestrial(&room(), &coarse()).stations.is_empty(), "no ground, no station");
 }

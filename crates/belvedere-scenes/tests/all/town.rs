@@ -4,7 +4,9 @@
 
 use std::collections::{HashMap, HashSet};
 
-use belvedere_scenes::{Material, Part, Placement, Scene, TownParams, extruded, l_shaped_ridged, ridged, town};
+use belvedere_scenes::{
+    Material, ObjectPart, PlanPlacement, TownParams, TriangleScene, extruded, l_shaped_ridged, ridged, town,
+};
 
 /// Directed edges that have no opposite partner, or more than one.
 fn open_edges(triangles: &[[u32; 3]]) -> usize {
@@ -18,7 +20,7 @@ fn open_edges(triangles: &[[u32; 3]]) -> usize {
 }
 
 /// The connected solids of one object as parts of their own.
-fn solids(scene: &Scene, object: u32) -> Vec<Part> {
+fn solids(scene: &TriangleScene, object: u32) -> Vec<ObjectPart> {
     let own: Vec<usize> = (0..scene.triangles.len()).filter(|&t| scene.objects[t] == object).collect();
     let mut group: HashMap<u32, u32> = HashMap::new();
     for &t in &own {
@@ -46,7 +48,7 @@ fn solids(scene: &Scene, object: u32) -> Vec<Part> {
         .map(|name| {
             let triangles: Vec<usize> =
                 own.iter().copied().filter(|&t| group[&scene.triangles[t][0]] == name).collect();
-            Part {
+            ObjectPart {
                 vertices: scene.vertices.clone(),
                 materials: triangles.iter().map(|&t| scene.materials[t]).collect(),
                 triangles: triangles.iter().map(|&t| scene.triangles[t]).collect(),
@@ -79,7 +81,7 @@ fn every_solid_of_the_town_is_closed_and_outward() {
 
 #[test]
 fn removing_a_triangle_is_noticed_as_a_hole() {
-    let mut part = extruded(&Placement { origin: [0.0; 2], angle: 0.3 }.rectangle(4.0, 3.0), 0.0, 2.0);
+    let mut part = extruded(&PlanPlacement { origin: [0.0; 2], angle: 0.3 }.rectangle(4.0, 3.0), 0.0, 2.0);
     assert_eq!(open_edges(&part.triangles), 0);
     part.triangles.pop();
     assert_ne!(open_edges(&part.triangles), 0);
@@ -87,7 +89,7 @@ fn removing_a_triangle_is_noticed_as_a_hole() {
 
 #[test]
 fn volumes_of_solids_match_closed_forms() {
-    let placement = Placement { origin: [155_000.0, 463_000.0], angle: 0.4 };
+    let placement = PlanPlacement { origin: [155_000.0, 463_000.0], angle: 0.4 };
     let near = |found: f64, expected: f64| assert!((found - expected).abs() < 1e-6 * expected, "{found} {expected}");
     near(extruded(&placement.rectangle(10.0, 6.0), -1.0, 4.0).volume(), 10.0 * 6.0 * 5.0);
     near(extruded(&placement.l_shape(12.0, 9.0, 4.0), 0.0, 5.0).volume(), (12.0 * 4.0 + 5.0 * 4.0) * 5.0);
@@ -126,8 +128,8 @@ fn default_town_stays_the_one_that_numbers_were_published_for() {
         let weighted = scene.vertices.iter().enumerate().map(|(i, v)| {
             (i % 97 + 1) as f64 * ((v[0] - params.origin[0]) + 2.0 * (v[1] - params.origin[1]) + 3.0 * v[2])
         });
-        // Sums of 1e5 numbers of 1e4, and sines whose last bit is the platform's: 1e-10 each, 1e-2 is a thousandth of any
-        // change that one vertex could show.
+        // Sums of 1e5 numbers of 1e4, and sines whose last bit is the platform's: 1e-10 each, 1e-2 is a thousandth of
+        // any change that one vertex could show.
         let sum: f64 = weighted.sum();
         assert!((sum - fingerprint).abs() < 1e-2, "{sum}");
     }

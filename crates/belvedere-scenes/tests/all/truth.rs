@@ -3,8 +3,8 @@
 #![expect(clippy::unwrap_used, reason = "helpers of tests may panic like the tests themselves")]
 
 use belvedere_scenes::{
-    BlockPlan, CONTACT, Crowns, Hit, Material, Part, Placement, Preset, Scene, StreetTrees, TownParams, Truth,
-    extruded, town,
+    BlockPlan, CONTACT, CrownMaterial, Hit, Material, ObjectPart, PlanPlacement, Preset, StreetTrees, TownParams,
+    TriangleScene, Truth, extruded, town,
 };
 use rayon::prelude::*;
 
@@ -75,7 +75,7 @@ fn range_to(corners: [[f64; 3]; 3], origin: [f64; 3], direction: [f64; 3]) -> Op
 }
 
 /// First hit by brute force, and whether the ray passes within `EDGE` of the rim of any triangle it meets or misses.
-fn brute_force(scene: &Scene, origin: [f64; 3], direction: [f64; 3], max_range: f64) -> (Option<Hit>, bool) {
+fn brute_force(scene: &TriangleScene, origin: [f64; 3], direction: [f64; 3], max_range: f64) -> (Option<Hit>, bool) {
     let (mut best, mut near_edge): (Option<Hit>, bool) = (None, false);
     for (t, triangle) in (0..scene.triangles.len()).zip(0_u32..) {
         let Some((range, inside)) = moeller_trumbore(scene.corners(t).unwrap(), origin, direction) else { continue };
@@ -90,11 +90,11 @@ fn brute_force(scene: &Scene, origin: [f64; 3], direction: [f64; 3], max_range: 
     (best, near_edge)
 }
 
-/// Barycentric distance from an edge below which f64 rounding decides: coordinates of 5e5 m have 6e-11 m, triangles are a
-/// few decimetres to metres.
+/// Barycentric distance from an edge below which f64 rounding decides: coordinates of 5e5 m have 6e-11 m, triangles are
+/// a few decimetres to metres.
 const EDGE: f64 = 1e-8;
 
-fn random_rays(scene: &Scene, count: usize, seed: u64) -> Vec<([f64; 3], [f64; 3])> {
+fn random_rays(scene: &TriangleScene, count: usize, seed: u64) -> Vec<([f64; 3], [f64; 3])> {
     let (low, high) = scene.bounds().unwrap();
     let mut random = Lcg(seed);
     (0..count)
@@ -176,11 +176,11 @@ fn occlusion_equals_brute_force_between_random_points() {
 }
 
 /// A small town with everything that presets hold, courtyards and porous crowns included.
-fn rich_town() -> Scene {
+fn rich_town() -> TriangleScene {
     let blocks = [BlockPlan::RowHouses, BlockPlan::HighRise, BlockPlan::Square, BlockPlan::Courtyard];
     town(&TownParams {
         blocks: blocks.map(|plan| (plan, 1)).to_vec(),
-        crowns: Crowns::Porous,
+        crowns: CrownMaterial::Porous,
         area_per_garden_tree: 2000.0,
         street_trees: StreetTrees::Without,
         ..Preset::Town.params(120.0, 4)
@@ -197,8 +197,9 @@ fn hundred_thousand_rays_through_a_town_with_everything_agree_with_the_plain_loo
     let truth = Truth::new(&scene);
     let (low, high) = scene.bounds().unwrap();
     let centre: [f64; 3] = std::array::from_fn(|i| (low[i] + high[i]) / 2.0);
-    // About the centre, where the loop rounds a thousand times less than in the national grid. It might judge a ray that
-    // passes an edge by less than its rounding otherwise than the truth does; none of these does, so none is left out.
+    // About the centre, where the loop rounds a thousand times less than in the national grid. It might judge a ray
+    // that passes an edge by less than its rounding otherwise than the truth does; none of these does, so none is left
+    // out.
     let triangles: Vec<[[f64; 3]; 3]> =
         (0..scene.triangles.len()).map(|t| scene.corners(t).unwrap().map(|corner| sub(corner, centre))).collect();
     let rays: Vec<_> = random_rays(&scene, 100_000, 77).into_iter().enumerate().collect();
@@ -237,12 +238,12 @@ fn hundred_thousand_rays_through_a_town_with_everything_agree_with_the_plain_loo
 }
 
 /// Square of ground, 400 m wide, at height 0, with a box of height 10 over −5…5 (x) and −8…8 (y).
-fn box_on_plane() -> Scene {
-    let mut scene = Scene::default();
+fn box_on_plane() -> TriangleScene {
+    let mut scene = TriangleScene::default();
     let vertices = vec![[-200.0, -200.0, 0.0], [200.0, -200.0, 0.0], [200.0, 200.0, 0.0], [-200.0, 200.0, 0.0]];
-    let ground = Part { vertices, triangles: vec![[0, 1, 2], [0, 2, 3]], materials: vec![Material::Terrain; 2] };
+    let ground = ObjectPart { vertices, triangles: vec![[0, 1, 2], [0, 2, 3]], materials: vec![Material::Terrain; 2] };
     scene.add_object("ground", &[ground]);
-    let footprint = Placement { origin: [0.0; 2], angle: 0.0 }.rectangle(10.0, 16.0);
+    let footprint = PlanPlacement { origin: [0.0; 2], angle: 0.0 }.rectangle(10.0, 16.0);
     scene.add_object("box", &[extruded(&footprint, -1.0, 10.0)]);
     scene
 }
@@ -266,13 +267,13 @@ fn shadow_of_a_box_is_height_over_tangent_of_elevation_long() {
     for elevation_deg in [5.0_f64, 20.0, 45.0, 70.0, 89.0] {
         let elevation = elevation_deg.to_radians();
         let to_sun = [elevation.cos(), 0.0, elevation.sin()];
-        let rim = -5.0 - 10.0 / elevation.tan();
+        let edge = -5.0 - 10.0 / elevation.tan();
         // Queries lie on the ground itself, which must not shade them.
         for y in [-7.9, -3.3, 0.0, 4.1, 7.9] {
-            assert!(truth.occluded_towards([rim + 1e-4, y, 0.0], to_sun), "{elevation_deg}");
-            assert!(!truth.occluded_towards([rim - 1e-4, y, 0.0], to_sun), "{elevation_deg}");
+            assert!(truth.occluded_towards([edge + 1e-4, y, 0.0], to_sun), "{elevation_deg}");
+            assert!(!truth.occluded_towards([edge - 1e-4, y, 0.0], to_sun), "{elevation_deg}");
         }
-        assert!(!truth.occluded_towards([rim + 1.0, 8.001, 0.0], to_sun));
+        assert!(!truth.occluded_towards([edge + 1.0, 8.001, 0.0], to_sun));
         assert!(!truth.occluded_towards([5.001, 0.0, 0.0], to_sun), "the sunny side stays lit");
     }
 }
@@ -316,8 +317,8 @@ fn surfaces_are_met_from_micrometres_to_kilometres_away() {
 
 #[test]
 fn no_ray_slips_through_the_edges_of_a_closed_solid() {
-    let mut scene = Scene::default();
-    let placement = Placement { origin: [155_000.0, 463_000.0], angle: 0.37 };
+    let mut scene = TriangleScene::default();
+    let placement = PlanPlacement { origin: [155_000.0, 463_000.0], angle: 0.37 };
     scene.add_object("box", &[extruded(&placement.rectangle(10.0, 6.0), 0.0, 5.0)]);
     let truth = Truth::new(&scene);
     let centre = [155_000.0, 463_000.0, 2.5];
@@ -350,7 +351,7 @@ fn batches_equal_single_queries() {
 
 #[test]
 fn hostile_queries_and_scenes_block_nothing() {
-    let empty = Truth::new(&Scene::default());
+    let empty = Truth::new(&TriangleScene::default());
     assert_eq!(empty.first_hit([0.0; 3], [0.0, 0.0, -1.0], f64::INFINITY), None);
     assert!(!empty.occluded([0.0; 3], [1.0; 3]));
 
@@ -369,9 +370,11 @@ fn hostile_queries_and_scenes_block_nothing() {
     assert_eq!(truth.first_hit([0.0, 0.0, 50.0], down, 39.9), None);
     assert!(!truth.occluded([1.0; 3], [1.0; 3]));
 
-    let mut single = Scene::default();
+    let mut single = TriangleScene::default();
     let corners = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
-    single
-        .add_object("one", &[Part { vertices: corners, triangles: vec![[0, 1, 2]], materials: vec![Material::Roof] }]);
+    single.add_object(
+        "one",
+        &[ObjectPart { vertices: corners, triangles: vec![[0, 1, 2]], materials: vec![Material::Roof] }],
+    );
     assert!(Truth::new(&single).occluded([0.2, 0.2, 1.0], [0.2, 0.2, -1.0]));
 }

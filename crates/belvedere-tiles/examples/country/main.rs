@@ -14,7 +14,8 @@ const TILE: f64 = 0.5;
 const SQUARE: f64 = 30.0;
 /// What a plan has around its square, kilometres.
 const MARGIN: f64 = 1.0;
-/// Seconds of a processor for the balls of a point, and for the sky view of a cell of 1 m in 577 directions: docs/scale.md and docs/gpu.md.
+/// Seconds of a processor for the balls of a point, and for the sky view of a cell of 1 m in 577 directions:
+/// docs/scale.md and docs/gpu.md.
 const BALL_SECONDS: f64 = 22e-6;
 const SKY_SECONDS: f64 = 170e-6;
 /// Bytes of balls for each point.
@@ -38,8 +39,8 @@ fn main() -> std::io::Result<()> {
         for workers in [64, 1000] {
             // a processor is lost once a week
             // so that nobody waits for the last tiles of a stage
-            let most_open = if workers < 500 { 2 } else { 4 };
-            let cluster = Cluster { workers, hours_to_loss: 168.0, seconds_to_replace: 600.0, tries: 3, most_open };
+            let max_open = if workers < 500 { 2 } else { 4 };
+            let cluster = Cluster { workers, hours_to_loss: 168.0, seconds_to_replace: 600.0, tries: 3, max_open };
             let outcome = simulate(&country, &cluster);
             let busy = (outcome.recorded + outcome.wasted) / (outcome.elapsed * workers as f64);
             writeln!(
@@ -50,7 +51,7 @@ fn main() -> std::io::Result<()> {
                 outcome.elapsed / 86_400.0,
                 100.0 * busy,
                 100.0 * outcome.wasted / outcome.recorded,
-                outcome.most_ball_bytes / 1e12
+                outcome.max_ball_bytes / 1e12
             )?;
         }
     }

@@ -1,9 +1,11 @@
-//! The runs of a whole country on a cluster, in simulated time: which tile is computed when, and what is lost when computers are.
+//! The runs of a whole country on a cluster, in simulated time: which tile is computed when, and what is lost when
+//! computers are.
 //!
-//! A country is cut into plans, each of which has the tiles of a square and of a margin around it. A plan has two stages, as `belvedere city run` has
-//! with `--balls-only` and without: answers begin when all balls of the plan are made. Its balls are deleted when its answers are merged. Workers take the
-//! next tile of the first plan that has one. A worker that is lost loses the tile that it was computing, which another one computes again; what was
-//! recorded before stays. A tile that cannot be computed is tried a few times, then named and left out.
+//! A country is cut into plans, each of which has the tiles of a square and of a margin around it. A plan has two
+//! stages, as `belvedere city run` has with `--balls-only` and without: answers begin when all balls of the plan are
+//! made. Its balls are deleted when its answers are merged. Workers take the next tile of the first plan that has one.
+//! A worker that is lost loses the tile that it was computing, which another one computes again; what was recorded
+//! before stays. A tile that cannot be computed is tried a few times, then named and left out.
 
 use belvedere::random::uniform;
 use std::cmp::Reverse;
@@ -34,12 +36,12 @@ pub(crate) struct Cluster {
     /// How often a tile is tried.
     pub(crate) tries: u32,
     /// Most plans that are begun and not yet merged.
-    pub(crate) most_open: usize,
+    pub(crate) max_open: usize,
 }
 
 /// How it went.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct Outcome {
+pub(crate) struct SimulationOutcome {
     /// Seconds from the first tile to the last.
     pub(crate) elapsed: f64,
     /// Seconds of work that was recorded.
@@ -53,12 +55,12 @@ pub(crate) struct Outcome {
     /// Workers that were lost.
     pub(crate) losses: usize,
     /// Most balls on disk at a time, bytes.
-    pub(crate) most_ball_bytes: f64,
+    pub(crate) max_ball_bytes: f64,
 }
 
 /// A tile in a stage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-struct Task {
+struct SimulatedTask {
     plan: usize,
     stage: usize,
     tile: usize,
@@ -68,42 +70,42 @@ struct Task {
 /// What happens next; times are milliseconds, so that they have an order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Event {
-    Done(usize, Task),
+    Done(usize, SimulatedTask),
     /// With when it began.
-    Lost(usize, Task, u64),
+    Lost(usize, SimulatedTask, u64),
     Replaced(usize),
 }
 
 #[derive(Clone, Debug, Default)]
-struct Open {
+struct OpenPlan {
     plan: usize,
     stage: usize,
     /// First tile that nobody has taken yet.
     next: usize,
-    again: VecDeque<Task>,
+    again: VecDeque<SimulatedTask>,
     /// Tiles of the stage that are neither recorded nor named.
     left: usize,
     ball_bytes: f64,
 }
 
-struct Run<'a> {
+struct SimulatedRun<'a> {
     country: &'a Country,
     cluster: &'a Cluster,
     now: u64,
     events: BinaryHeap<Reverse<(u64, Event)>>,
-    open: VecDeque<Open>,
+    open: VecDeque<OpenPlan>,
     /// The next plan that is not yet begun.
     next_plan: usize,
     idle: Vec<usize>,
     /// When each worker will be lost.
     lost_at: Vec<u64>,
-    outcome: Outcome,
+    outcome: SimulationOutcome,
 }
 
 /// Computes a country; the same one with the same cluster always goes the same way.
 #[must_use]
-pub(crate) fn simulate(country: &Country, cluster: &Cluster) -> Outcome {
-    let mut run = Run {
+pub(crate) fn simulate(country: &Country, cluster: &Cluster) -> SimulationOutcome {
+    let mut run = SimulatedRun {
         country,
         cluster,
         now: 0,
@@ -112,7 +114,10 @@ pub(crate) fn simulate(country: &Country, cluster: &Cluster) -> Outcome {
         next_plan: 0,
         idle: (0..cluster.workers).rev().collect(),
         lost_at: Vec::new(),
-        outcome: Outcome { records: vec![[0; 2]; country.plans * country.tiles_per_plan], ..Outcome::default() },
+        outcome: SimulationOutcome {
+            records: vec![[0; 2]; country.plans * country.tiles_per_plan],
+            ..SimulationOutcome::default()
+        },
     };
     run.lost_at = (0..cluster.workers).map(|worker| run.until_loss(worker)).collect();
     run.hand_out();
@@ -124,7 +129,7 @@ pub(crate) fn simulate(country: &Country, cluster: &Cluster) -> Outcome {
     run.outcome
 }
 
-impl Run<'_> {
+impl SimulatedRun<'_> {
     /// When a worker that begins now is lost.
     fn until_loss(&self, worker: usize) -> u64 {
         if self.cluster.hours_to_loss.is_infinite() {
@@ -134,14 +139,15 @@ impl Run<'_> {
         self.now.saturating_add(milliseconds(-(1.0 - u).ln() * 3600.0 * self.cluster.hours_to_loss))
     }
 
-    /// How long a tile takes: half to one and a half times the average, and one in a hundred, a city centre, five times as long.
-    fn seconds(&self, task: Task) -> f64 {
+    /// How long a tile takes: half to one and a half times the average, and one in a hundred, a city centre, five times
+    /// as long.
+    fn seconds(&self, task: SimulatedTask) -> f64 {
         let number = (task.plan * self.country.tiles_per_plan + task.tile) as u64;
         let share = if uniform(2, number) < 0.01 { 5.0 } else { 0.5 + uniform(3, number) };
         self.country.seconds[task.stage] * share / 1.04
     }
 
-    fn is_bad(&self, task: Task) -> bool {
+    fn is_bad(&self, task: SimulatedTask) -> bool {
         let number = (task.plan * self.country.tiles_per_plan + task.tile) as u64;
         task.stage == 0 && uniform(4, number) < self.country.bad_share
     }
@@ -159,7 +165,7 @@ impl Run<'_> {
         }
     }
 
-    fn next_task(&mut self) -> Option<Task> {
+    fn next_task(&mut self) -> Option<SimulatedTask> {
         let tiles = self.country.tiles_per_plan;
         for open in &mut self.open {
             if let Some(task) = open.again.pop_front() {
@@ -167,15 +173,15 @@ impl Run<'_> {
             }
             if open.next < tiles {
                 open.next += 1;
-                return Some(Task { plan: open.plan, stage: open.stage, tile: open.next - 1, tries: 0 });
+                return Some(SimulatedTask { plan: open.plan, stage: open.stage, tile: open.next - 1, tries: 0 });
             }
         }
-        if self.next_plan == self.country.plans || self.open.len() == self.cluster.most_open {
+        if self.next_plan == self.country.plans || self.open.len() == self.cluster.max_open {
             return None;
         }
-        self.open.push_back(Open { plan: self.next_plan, left: tiles, next: 1, ..Open::default() });
+        self.open.push_back(OpenPlan { plan: self.next_plan, left: tiles, next: 1, ..OpenPlan::default() });
         self.next_plan += 1;
-        Some(Task { plan: self.next_plan - 1, stage: 0, tile: 0, tries: 0 })
+        Some(SimulatedTask { plan: self.next_plan - 1, stage: 0, tile: 0, tries: 0 })
     }
 
     fn happens(&mut self, event: Event) {
@@ -197,7 +203,7 @@ impl Run<'_> {
                 let seconds = self.seconds(task);
                 if self.is_bad(task) {
                     self.outcome.wasted += seconds;
-                    self.try_again(Task { tries: task.tries + 1, ..task });
+                    self.try_again(SimulatedTask { tries: task.tries + 1, ..task });
                 } else {
                     self.outcome.recorded += seconds;
                     self.outcome.records[task.plan * self.country.tiles_per_plan + task.tile][task.stage] += 1;
@@ -207,7 +213,7 @@ impl Run<'_> {
         }
     }
 
-    fn try_again(&mut self, task: Task) {
+    fn try_again(&mut self, task: SimulatedTask) {
         if task.tries == self.cluster.tries {
             self.outcome.named += 1;
             self.ends(task, false);
@@ -217,7 +223,7 @@ impl Run<'_> {
     }
 
     /// A tile that is recorded or named needs no more work in its stage.
-    fn ends(&mut self, task: Task, is_recorded: bool) {
+    fn ends(&mut self, task: SimulatedTask, is_recorded: bool) {
         let Some(place) = self.open.iter().position(|open| open.plan == task.plan) else { return };
         let open = &mut self.open[place];
         if is_recorded && task.stage == 0 {
@@ -225,12 +231,12 @@ impl Run<'_> {
         }
         open.left -= 1;
         if open.left == 0 && open.stage == 0 {
-            *open = Open { stage: 1, next: 0, left: self.country.tiles_per_plan, ..std::mem::take(open) };
+            *open = OpenPlan { stage: 1, next: 0, left: self.country.tiles_per_plan, ..std::mem::take(open) };
         } else if open.left == 0 {
             self.open.remove(place);
         }
         let on_disk: f64 = self.open.iter().map(|open| open.ball_bytes).sum();
-        self.outcome.most_ball_bytes = self.outcome.most_ball_bytes.max(on_disk);
+        self.outcome.max_ball_bytes = self.outcome.max_ball_bytes.max(on_disk);
     }
 }
 

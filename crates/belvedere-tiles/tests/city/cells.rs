@@ -1,16 +1,16 @@
 //! Results with cells of different sizes in one plan.
 
 use crate::common::{run_all, write_town};
-use belvedere::apps::ask::{Days, SkyParts, SunHours};
+use belvedere::apps::ask::{Days, SkyParts, SunHoursQuestion};
 use belvedere::apps::shadow::ShadowSun;
 use belvedere::apps::sun::Site;
 use belvedere::control::Control;
 use belvedere::io::read_tif;
-use belvedere_tiles::{CellSizes, Plan, PlanParams, Question, Topic, merge, status, write_catalogue};
+use belvedere_tiles::{CellSizes, Plan, PlanParams, TileQuestion, Topic, merge, status, write_catalogue};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-fn questions() -> Vec<Question> {
+fn questions() -> Vec<TileQuestion> {
     let site = Site { latitude: 0.91, longitude: 0.09, height: 10.0, convergence: 0.02 };
     let days = Days {
         dates: vec!["2026-04-10".to_owned()],
@@ -20,9 +20,9 @@ fn questions() -> Vec<Question> {
     };
     let to_sun = ShadowSun::at(2.2, 0.4).to_sun;
     vec![
-        Question::Shadow { name: "shadow".to_owned(), to_sun, season: None },
-        Question::SunHours { site, days: SunHours { days, ..SunHours::default() } },
-        Question::SkyView { sky: SkyParts::Even(25) },
+        TileQuestion::Shadow { name: "shadow".to_owned(), to_sun, season: None },
+        TileQuestion::SunHours { site, days: SunHoursQuestion { days, ..SunHoursQuestion::default() } },
+        TileQuestion::SkyView { sky: SkyParts::Even(25) },
     ]
 }
 
@@ -31,7 +31,7 @@ fn sizes() -> CellSizes {
     CellSizes::all(1.0).with(Topic::Shadow, 0.5).with(Topic::SkyView, 4.0)
 }
 
-fn done(clouds: &[PathBuf], folder: &Path, tile_size: f64, cells: CellSizes, questions: Vec<Question>) -> Plan {
+fn done(clouds: &[PathBuf], folder: &Path, tile_size: f64, cells: CellSizes, questions: Vec<TileQuestion>) -> Plan {
     let params = PlanParams { clouds: clouds.to_vec(), tile_size, cells, ..PlanParams::default() };
     let plan = Plan::make(&params, &Control::none()).unwrap();
     plan.with_questions(questions, &Control::none()).unwrap().write(folder).unwrap();
@@ -42,7 +42,7 @@ fn done(clouds: &[PathBuf], folder: &Path, tile_size: f64, cells: CellSizes, que
 }
 
 /// The merged raster of a result.
-fn raster(plan: &Plan, folder: &Path, question: &Question) -> Vec<u8> {
+fn raster(plan: &Plan, folder: &Path, question: &TileQuestion) -> Vec<u8> {
     let path = folder.join("merged.tif");
     merge(plan, folder, question, &path, &Control::none()).unwrap();
     std::fs::read(path).unwrap()
@@ -82,8 +82,8 @@ fn results_with_their_own_cells_are_those_of_plans_with_one_question_and_of_any_
             let known = raster.values().iter().enumerate().filter(|(_, value)| value.is_finite());
             known.map(|(at, value)| (place(at), value.to_bits())).collect::<BTreeMap<_, _>>()
         });
-        let least = 140.0 * 140.0 / (side * side) * 0.9;
-        assert!(values[0].len() as f64 > least && values[0] == values[1], "{name}: {}", values[0].len());
+        let min = 140.0 * 140.0 / (side * side) * 0.9;
+        assert!(values[0].len() as f64 > min && values[0] == values[1], "{name}: {}", values[0].len());
     }
 }
 

@@ -7,7 +7,7 @@ use belvedere::control::Control;
 use belvedere::io::{ReadOptions, read_balls, read_cloud, read_tif_f32, read_tif_u8};
 use belvedere::medial::{LIMIT_TOUCH, MedialBalls};
 use belvedere::model::{ClearedArea, ModelParams, SceneModel};
-use belvedere_tiles::{Plan, Question, merge, status};
+use belvedere_tiles::{Plan, TileQuestion, merge, status};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
@@ -60,10 +60,10 @@ fn closing(balls: &MedialBalls, rows: std::ops::Range<usize>) -> BTreeMap<[u32; 
     center.filter(|c| is_middle(c[0]) && is_middle(c[1])).map(|[x, y, z]| ([x.to_bits(), y.to_bits()], z)).collect()
 }
 
-fn values(plan: &Plan, folder: &Path, question: &Question) -> BTreeMap<[i64; 2], u32> {
+fn values(plan: &Plan, folder: &Path, question: &TileQuestion) -> BTreeMap<[i64; 2], u32> {
     let path = folder.join("merged.tif");
     merge(plan, folder, question, &path, &Control::none()).unwrap();
-    if let Question::Shadow { .. } = question {
+    if let TileQuestion::Shadow { .. } = question {
         let raster = read_tif_u8(&path).unwrap();
         let wide: Vec<u32> = raster.values().iter().map(|&v| v.into()).collect();
         return cells(plan, &wide, raster.width(), 255);
@@ -77,7 +77,7 @@ fn values(plan: &Plan, folder: &Path, question: &Question) -> BTreeMap<[i64; 2],
 fn cleared_areas_are_the_same_for_tiles_of_any_size_and_those_of_one_scene() {
     let place = tempfile::tempdir().unwrap();
     let clouds = write_town(place.path(), 140.0, 1.0);
-    let questions = [suns()[1].clone(), Question::SkyView { sky: SkyParts::Even(25) }];
+    let questions = [suns()[1].clone(), TileQuestion::SkyView { sky: SkyParts::Even(25) }];
     let plain_folder = place.path().join("plain");
     let plain = plan(&clouds, &plain_folder, 512.0, questions.to_vec());
     run_all(&plain, &plain_folder);

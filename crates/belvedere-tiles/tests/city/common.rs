@@ -8,7 +8,7 @@ use belvedere::crs::Crs;
 use belvedere::io::write_cloud;
 use belvedere::{Attributes, Frame, GpsTimeKind, PointCloud};
 use belvedere_scenes::{AirborneParams, TownParams, scan_airborne, town};
-use belvedere_tiles::{Plan, PlanParams, Question, RunParams, RunReport, Shard, Steps, run};
+use belvedere_tiles::{Plan, PlanParams, RunParams, RunReport, Shard, Steps, TileQuestion, run};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -47,8 +47,8 @@ pub(crate) fn write_town(folder: &Path, extent: f64, pulses_per_m2: f64) -> Vec<
 }
 
 /// Suns in the south-east at 5, 20 and 60 degrees.
-pub(crate) fn suns() -> Vec<Question> {
-    let sun = |elevation: f64| Question::Shadow {
+pub(crate) fn suns() -> Vec<TileQuestion> {
+    let sun = |elevation: f64| TileQuestion::Shadow {
         name: format!("shadow_{elevation}"),
         to_sun: ShadowSun::at(2.2, elevation.to_radians()).to_sun,
         season: None,
@@ -57,7 +57,7 @@ pub(crate) fn suns() -> Vec<Question> {
 }
 
 /// Plans a run and writes the plan into `folder`.
-pub(crate) fn plan(clouds: &[PathBuf], folder: &Path, tile_size: f64, questions: Vec<Question>) -> Plan {
+pub(crate) fn plan(clouds: &[PathBuf], folder: &Path, tile_size: f64, questions: Vec<TileQuestion>) -> Plan {
     let params = PlanParams { clouds: clouds.to_vec(), tile_size, ..PlanParams::default() };
     let plan = Plan::make(&params, &Control::none()).unwrap();
     plan.with_questions(questions, &Control::none()).unwrap().write(folder).unwrap();
@@ -69,8 +69,8 @@ pub(crate) fn run_all(plan: &Plan, folder: &Path) -> RunReport {
 }
 
 /// With at most so many balls at a time.
-pub(crate) fn run_with(plan: &Plan, folder: &Path, most_balls: Option<usize>) -> RunReport {
-    let params = RunParams { shard: Shard::default(), steps: Steps::All, most_balls, seconds: &|| 0.0 };
+pub(crate) fn run_with(plan: &Plan, folder: &Path, max_balls: Option<usize>) -> RunReport {
+    let params = RunParams { shard: Shard::default(), steps: Steps::All, max_balls, seconds: &|| 0.0 };
     run(plan, folder, &params, &Control::none()).unwrap()
 }
 

@@ -1,16 +1,16 @@
 //! Planned buildings and light through trees, tile by tile: the same as over all, and right.
 
 use crate::common::{cells, plan, run_with, suns, write_town};
-use belvedere::apps::ask::{Days, SkyParts, SunHours};
+use belvedere::apps::ask::{Days, SkyParts, SunHoursQuestion};
 use belvedere::apps::irradiance::{ClearSky, IrradianceParams};
 use belvedere::apps::shadow::ShadowSun;
 use belvedere::apps::sun::Site;
-use belvedere::apps::tree_light::{Crowns, Leaves, Transmissivity};
+use belvedere::apps::tree_light::{CrownLight, Leaves, Transmissivity};
 use belvedere::control::Control;
 use belvedere::crs::Crs;
 use belvedere::io::{Georeference, read_tif_f32, read_tif_u8, write_tif_f32};
 use belvedere::raster::Raster;
-use belvedere_tiles::{Plan, Question, Radiation, SideFile, merge};
+use belvedere_tiles::{Plan, SideFile, TileQuestion, TileRadiation, merge};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -19,9 +19,9 @@ const LOW: [f64; 3] = [155_000.0, 462_970.0, -50.0];
 const HIGH: [f64; 3] = [155_016.0, 462_984.0, 60.0];
 
 /// Balls at a time in small tiles.
-const MOST_BALLS: usize = 700;
+const MAX_BALLS: usize = 700;
 
-type Cells<T> = BTreeMap<[i64; 2], T>;
+type CellMap<T> = BTreeMap<[i64; 2], T>;
 
 /// The block as a mesh file.
 fn block(folder: &Path) -> PathBuf {
@@ -50,44 +50,45 @@ fn meets_block(place: [f64; 3], towards: [f64; 3]) -> bool {
     from <= to
 }
 
-fn codes(plan: &Plan, folder: &Path, question: &Question) -> Cells<u8> {
+fn codes(plan: &Plan, folder: &Path, question: &TileQuestion) -> CellMap<u8> {
     let path = folder.join("merged.tif");
     merge(plan, folder, question, &path, &Control::none()).unwrap();
     let raster = read_tif_u8(&path).unwrap();
     cells(plan, raster.values(), raster.width(), 255)
 }
 
-fn numbers(plan: &Plan, folder: &Path, question: &Question) -> Cells<f32> {
+fn numbers(plan: &Plan, folder: &Path, question: &TileQuestion) -> CellMap<f32> {
     let path = folder.join("merged.tif");
     merge(plan, folder, question, &path, &Control::none()).unwrap();
     let raster = read_tif_f32(&path).unwrap();
     cells(plan, raster.values(), raster.width(), -9999.0)
 }
 
-/// A plan with what is changed of it, run to its end; in small tiles with so few balls at a time that each needs many parts.
+/// A plan with what is changed of it, run to its end; in small tiles with so few balls at a time that each needs many
+/// parts.
 fn done(
     clouds: &[PathBuf],
     folder: &Path,
     size: f64,
-    questions: &[Question],
+    questions: &[TileQuestion],
     change: impl FnOnce(Plan) -> Plan,
 ) -> Plan {
     change(plan(clouds, folder, size, questions.to_vec())).write(folder).unwrap();
     let plan = Plan::read(folder).unwrap();
-    let most_balls = (size < 100.0).then_some(MOST_BALLS);
-    let report = run_with(&plan, folder, most_balls);
+    let max_balls = (size < 100.0).then_some(MAX_BALLS);
+    let report = run_with(&plan, folder, max_balls);
     assert!(report.failed.is_empty() && report.unproven_cells == 0, "{report:?}");
-    assert_eq!(report.most_balls == MOST_BALLS, most_balls.is_some(), "{report:?}");
+    assert_eq!(report.max_balls == MAX_BALLS, max_balls.is_some(), "{report:?}");
     plan
 }
 
 /// Two hours of sun on a day in spring, with few suns.
-fn rule() -> Question {
+fn rule() -> TileQuestion {
     let site = site();
     let days =
         Days { year: Some(2026), time_step_min: Some(60.0), min_sun_elevation_deg: Some(8.0), ..Days::default() };
-    let days = SunHours { days, rules: vec!["bre-equinox".to_owned()], ..SunHours::default() };
-    Question::SunRule { name: "bre_equinox".to_owned(), site, days }
+    let days = SunHoursQuestion { days, rules: vec!["bre-equinox".to_owned()], ..SunHoursQuestion::default() };
+    TileQuestion::SunRule { name: "bre_equinox".to_owned(), site, days }
 }
 
 fn site() -> Site {
@@ -99,7 +100,7 @@ fn a_planned_building_blocks_exactly_whatever_the_tiles() {
     let place = tempfile::tempdir().unwrap();
     let clouds = write_town(place.path(), 100.0, 1.0);
     let mesh = block(place.path());
-    let questions = [suns()[1].clone(), Question::SkyView { sky: SkyParts::Even(25) }, rule()];
+    let questions = [suns()[1].clone(), TileQuestion::SkyView { sky: SkyParts::Even(25) }, rule()];
     let folders = ["plain", "whole", "tiles"].map(|name| place.path().join(name));
     let add = |plan: Plan| plan.with_meshes(vec![SideFile::new(&mesh).unwrap()]).unwrap();
     let plain = done(&clouds, &folders[0], 512.0, &questions, |plan| plan);
@@ -148,7 +149,7 @@ fn a_planned_building_blocks_exactly_whatever_the_tiles() {
         &belvedere_tiles::RunParams {
             shard: Default::default(),
             steps: Default::default(),
-            most_balls: None,
+            max_balls: None,
             seconds: &|| 0.0,
         },
         &Control::none(),
@@ -161,15 +162,15 @@ fn a_planned_building_blocks_exactly_whatever_the_tiles() {
 fn light_through_trees_lies_between_opaque_trees_and_none_whatever_the_tiles() {
     let place = tempfile::tempdir().unwrap();
     let clouds = write_town(place.path(), 84.0, 1.0);
-    let radiation = Radiation::ClearSky { clear_sky: ClearSky::Haurwitz, year: 2026 };
+    let radiation = TileRadiation::ClearSky { clear_sky: ClearSky::Haurwitz, year: 2026 };
     let params = IrradianceParams::default().with_patch_division(1).with_sun_cell(0.6);
     let site = site();
-    let energy = Question::Irradiance { site, radiation, params };
-    let questions = [suns()[1].clone(), Question::SkyView { sky: SkyParts::Even(25) }, energy];
+    let energy = TileQuestion::Irradiance { site, radiation, params };
+    let questions = [suns()[1].clone(), TileQuestion::SkyView { sky: SkyParts::Even(25) }, energy];
     let through = |share: f64| {
         move |plan: Plan| {
             let transmissivity = Transmissivity::constant(share).unwrap();
-            plan.with_light_through_trees(Crowns { transmissivity, leaves: Leaves::ByDate }).unwrap()
+            plan.with_light_through_trees(CrownLight { transmissivity, leaves: Leaves::ByDate }).unwrap()
         }
     };
     let folder = |name: &str| place.path().join(name);
@@ -232,15 +233,16 @@ fn mountains_beyond_a_survey_take_the_light_of_all_tiles() {
     let terrain = ridge(place.path(), lowest, frame.crs.clone());
     let horizon = place.path().join("horizon.csv");
     std::fs::write(&horizon, "azimuth,elevation\n90,0\n180,30\n270,0\n").unwrap();
-    // the sun stands over the ridge and below its top, over it and above, and beside it; 31 degrees in the south are above the horizon that is given
-    let sun = |azimuth: f64, elevation: f64| Question::Shadow {
+    // the sun stands over the ridge and below its top, over it and above, and beside it; 31 degrees in the south are
+    // above the horizon that is given
+    let sun = |azimuth: f64, elevation: f64| TileQuestion::Shadow {
         name: format!("shadow_{azimuth}_{elevation}"),
         to_sun: ShadowSun::at(azimuth.to_radians(), elevation.to_radians()).to_sun,
         season: None,
     };
     let suns = [sun(0.0, 39.0), sun(0.0, 60.0), sun(180.0, 29.0), sun(180.0, 31.0)];
-    let questions: Vec<Question> =
-        suns.iter().cloned().chain([Question::SkyView { sky: SkyParts::Even(25) }]).collect();
+    let questions: Vec<TileQuestion> =
+        suns.iter().cloned().chain([TileQuestion::SkyView { sky: SkyParts::Even(25) }]).collect();
     let folders = ["without", "whole", "tiles"].map(|name| place.path().join(name));
     let far = |plan: Plan| {
         let [terrain, horizon] = [&terrain, &horizon].map(|path| Some(SideFile::new(path).unwrap()));
@@ -249,7 +251,8 @@ fn mountains_beyond_a_survey_take_the_light_of_all_tiles() {
     let without = done(&clouds, &folders[0], 512.0, &questions, |plan| plan);
     let whole = done(&clouds, &folders[1], 512.0, &questions, far);
     let tiles = done(&clouds, &folders[2], 64.0, &questions, far);
-    // the ridge is 950 m from the north edge of the town and 1070 m from the south edge, and 870 to 900 m higher: above 39 and below 44 degrees
+    // the ridge is 950 m from the north edge of the town and 1070 m from the south edge, and 870 to 900 m higher: above
+    // 39 and below 44 degrees
     for (number, is_hidden) in [true, false, true, false].into_iter().enumerate() {
         let [before, of_whole, of_tiles] =
             [(&without, 0), (&whole, 1), (&tiles, 2)].map(|(plan, i)| codes(plan, &folders[i], &questions[number]));

@@ -24,9 +24,9 @@ fn results(folder: &Path) -> Vec<(String, Vec<u8>)> {
 }
 
 /// Stops the work after some number of looks at whether to stop.
-struct Impatient(AtomicUsize);
+struct CancelAfterChecks(AtomicUsize);
 
-impl Watcher for Impatient {
+impl Watcher for CancelAfterChecks {
     fn is_cancelled(&self) -> bool {
         self.0.fetch_update(Ordering::Relaxed, Ordering::Relaxed, |left| left.checked_sub(1)).is_err()
     }
@@ -39,10 +39,10 @@ fn a_run_that_is_stopped_again_and_again_has_the_results_of_one_that_is_not() {
     let (straight, stopped) = (place.path().join("straight"), place.path().join("stopped"));
     run_all(&plan(&clouds, &straight, 64.0, suns()), &straight);
     let plan = plan(&clouds, &stopped, 64.0, suns());
-    let params = RunParams { shard: Shard::default(), steps: Steps::All, most_balls: None, seconds: &|| 0.0 };
+    let params = RunParams { shard: Shard::default(), steps: Steps::All, max_balls: None, seconds: &|| 0.0 };
     let (mut stops, mut patience) = (0, 500);
     loop {
-        let watcher = Impatient(AtomicUsize::new(patience));
+        let watcher = CancelAfterChecks(AtomicUsize::new(patience));
         match run(&plan, &stopped, &params, &Control::new(&watcher)) {
             Err(Error::Cancelled) => stops += 1,
             other => {
@@ -68,7 +68,7 @@ fn shares_of_the_tiles_give_the_whole_together() {
     run_all(&plan(&clouds, &straight, 64.0, suns()), &straight);
     let plan = plan(&clouds, &shared, 64.0, suns());
     let run_share = |number: usize, steps: Steps| {
-        let params = RunParams { shard: Shard { number, of: 3 }, steps, most_balls: None, seconds: &|| 0.0 };
+        let params = RunParams { shard: Shard { number, of: 3 }, steps, max_balls: None, seconds: &|| 0.0 };
         let report = run(&plan, &shared, &params, &Control::none()).unwrap();
         assert!(report.failed.is_empty());
         (report.balls_made, report.answers_made)
@@ -80,7 +80,7 @@ fn shares_of_the_tiles_give_the_whole_together() {
     let answers = [2, 1, 3].map(|number| run_share(number, Steps::All));
     assert!(answers.iter().all(|made| made.0 == 0 && made.1 > 0), "{answers:?}");
     assert!(results(&straight) == results(&shared));
-    let params = RunParams { shard: Shard { number: 4, of: 3 }, steps: Steps::All, most_balls: None, seconds: &|| 0.0 };
+    let params = RunParams { shard: Shard { number: 4, of: 3 }, steps: Steps::All, max_balls: None, seconds: &|| 0.0 };
     assert!(run(&plan, &shared, &params, &Control::none()).is_err());
 }
 

@@ -1,17 +1,17 @@
 //! Tiles of any size give the balls and the answers of one tile over all.
 
 use crate::common::{cells, plan, run_all, run_with, suns, write_town};
-use belvedere::apps::ask::{Days, SkyParts, SunHours};
+use belvedere::apps::ask::{Days, SkyParts, SunHoursQuestion};
 use belvedere::apps::irradiance::{ClearSky, IrradianceParams, clear_instants};
 use belvedere::apps::sun::{Date, DayParams, Period, Site, SunStep, Zone, sun_days};
 use belvedere::control::Control;
 use belvedere::io::{read_balls, read_tif_f32, read_tif_u8, read_tif_u16};
-use belvedere_tiles::{Plan, Question, Radiation, merge, status};
+use belvedere_tiles::{Plan, TileQuestion, TileRadiation, merge, status};
 use std::collections::BTreeMap;
 use std::path::Path;
 
 /// Most balls that tiles of two sizes ask at a time.
-const MOST_BALLS: [usize; 2] = [900, 6000];
+const MAX_BALLS: [usize; 2] = [900, 6000];
 
 /// Centres and radii of all balls of a run, as bits, sorted.
 fn balls(plan: &Plan, folder: &Path) -> Vec<[u32; 4]> {
@@ -36,7 +36,7 @@ fn site() -> Site {
 
 /// The hours of a day in spring with the sun above 8 degrees.
 fn params() -> DayParams {
-    DayParams::default().with_step(3600.0).with_least_elevation(8_f64.to_radians())
+    DayParams::default().with_step(3600.0).with_min_elevation(8_f64.to_radians())
 }
 
 fn day() -> Period {
@@ -44,45 +44,45 @@ fn day() -> Period {
 }
 
 /// Shadows, sky view, sun hours, energy, and what two observers see.
-fn all_questions(eyes: [[f64; 3]; 2]) -> Vec<Question> {
+fn all_questions(eyes: [[f64; 3]; 2]) -> Vec<TileQuestion> {
     let days = Days {
         dates: vec!["2026-04-10".to_owned()],
         time_step_min: Some(60.0),
         min_sun_elevation_deg: Some(8.0),
         ..Days::default()
     };
-    let radiation = Radiation::ClearSky { clear_sky: ClearSky::Haurwitz, year: 2026 };
+    let radiation = TileRadiation::ClearSky { clear_sky: ClearSky::Haurwitz, year: 2026 };
     let coarse = IrradianceParams::default().with_patch_division(1).with_sun_cell(0.3);
     let mut questions = suns();
     questions.extend([
-        Question::SkyView { sky: SkyParts::Even(49) },
-        Question::SunHours { site: site(), days: SunHours { days, ..SunHours::default() } },
-        Question::Irradiance { site: site(), radiation, params: coarse },
-        Question::Viewshed { eyes: eyes.to_vec(), max_distance: Some(120.0) },
+        TileQuestion::SkyView { sky: SkyParts::Even(49) },
+        TileQuestion::SunHours { site: site(), days: SunHoursQuestion { days, ..SunHoursQuestion::default() } },
+        TileQuestion::Irradiance { site: site(), radiation, params: coarse },
+        TileQuestion::Viewshed { eyes: eyes.to_vec(), max_distance: Some(120.0) },
     ]);
     questions
 }
 
 /// The shadow of each of the suns whose hours are summed.
-fn suns_of_the_day() -> Vec<(Question, f64)> {
+fn suns_of_the_day() -> Vec<(TileQuestion, f64)> {
     let days = sun_days(&site(), &Zone::mean_solar(&site()), &day(), &params()).unwrap();
     let question = |(number, step): (usize, &SunStep)| {
-        let question = Question::Shadow { name: format!("step_{number}"), to_sun: step.direction, season: None };
+        let question = TileQuestion::Shadow { name: format!("step_{number}"), to_sun: step.direction, season: None };
         (question, (step.end - step.start) / 3600.0)
     };
     days[0].steps.iter().enumerate().map(question).collect()
 }
 
-fn values(plan: &Plan, folder: &Path, question: &Question) -> BTreeMap<[i64; 2], u32> {
+fn values(plan: &Plan, folder: &Path, question: &TileQuestion) -> BTreeMap<[i64; 2], u32> {
     let path = folder.join("merged.tif");
     merge(plan, folder, question, &path, &Control::none()).unwrap();
     match question {
-        Question::Shadow { .. } => {
+        TileQuestion::Shadow { .. } => {
             let raster = read_tif_u8(&path).unwrap();
             let wide: Vec<u32> = raster.values().iter().map(|&v| v.into()).collect();
             cells(plan, &wide, raster.width(), 255)
         }
-        Question::Viewshed { .. } => {
+        TileQuestion::Viewshed { .. } => {
             let raster = read_tif_u16(&path).unwrap();
             let wide: Vec<u32> = raster.values().iter().map(|&v| v.into()).collect();
             cells(plan, &wide, raster.width(), 65_535)
@@ -115,7 +115,7 @@ fn tiles_of_any_size_give_the_balls_and_answers_of_one_tile_over_all() {
     let whole = plan(&clouds, &whole_folder, 512.0, of_whole);
     assert_eq!(whole.tiles.len(), 1);
     let at_once = run_all(&whole, &whole_folder);
-    assert!(at_once.failed.is_empty() && at_once.most_balls > 3 * MOST_BALLS[1], "{at_once:?}");
+    assert!(at_once.failed.is_empty() && at_once.max_balls > 3 * MAX_BALLS[1], "{at_once:?}");
     let expected_balls = balls(&whole, &whole_folder);
     assert!(expected_balls.len() > 10_000, "{}", expected_balls.len());
     let expected: Vec<_> = questions.iter().map(|question| values(&whole, &whole_folder, question)).collect();
@@ -129,14 +129,14 @@ fn tiles_of_any_size_give_the_balls_and_answers_of_one_tile_over_all() {
     energies_are_those_of_an_open_plane_less_what_obstacles_take(&expected[5]);
     each_observer_sees_its_share(&expected[6]);
     // so few balls at a time that a part of a tile, and that some tiles, are asked together
-    for (size, most_balls) in [64.0, 100.0].into_iter().zip(MOST_BALLS) {
+    for (size, max_balls) in [64.0, 100.0].into_iter().zip(MAX_BALLS) {
         let folder = place.path().join(format!("tiles_{size}"));
         let plan = plan(&clouds, &folder, size, questions.clone());
         // some tiles of 64 m have no point, but cells beside points
         assert!(plan.tiles.len() >= 4);
-        let report = run_with(&plan, &folder, Some(most_balls));
+        let report = run_with(&plan, &folder, Some(max_balls));
         assert!(report.failed.is_empty() && report.unproven_cells == 0, "{report:?}");
-        assert!((most_balls / 2..=most_balls).contains(&report.most_balls), "{report:?}");
+        assert!((max_balls / 2..=max_balls).contains(&report.max_balls), "{report:?}");
         assert!(status(&plan, &folder).is_complete());
         let found = balls(&plan, &folder);
         let different = expected_balls.iter().filter(|ball| found.binary_search(ball).is_err()).count();
@@ -154,7 +154,7 @@ fn sun_hours_are_the_sum_of_shadows(
     hours: &BTreeMap<[i64; 2], u32>,
     plan: &Plan,
     folder: &Path,
-    steps: &[(Question, f64)],
+    steps: &[(TileQuestion, f64)],
 ) {
     assert!(steps.len() >= 8, "{}", steps.len());
     let mut sums: BTreeMap<[i64; 2], f64> = hours.keys().map(|&cell| (cell, 0.0)).collect();
@@ -164,14 +164,14 @@ fn sun_hours_are_the_sum_of_shadows(
         }
     }
     let mut kinds = [0; 3];
-    let most: f64 = steps.iter().map(|(_, lasts)| lasts).sum();
+    let max: f64 = steps.iter().map(|(_, lasts)| lasts).sum();
     for (cell, sum) in sums {
         let found = f64::from(f32::from_bits(hours[&cell]));
         // what f32 rounds in a sum of a dozen
         assert!((found - sum).abs() < 1e-5, "{cell:?}: {found} {sum}");
         kinds[if sum == 0.0 {
             0
-        } else if sum < most - 0.01 {
+        } else if sum < max - 0.01 {
             1
         } else {
             2

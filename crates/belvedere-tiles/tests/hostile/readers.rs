@@ -1,4 +1,5 @@
-//! Every reader of the library as a function of bytes, and what it may cost. Shared with `fuzz/`, which looks for files that break it.
+//! Every reader of the library as a function of bytes, and what it may cost. Shared with `fuzz/`, which looks for files
+//! that break it.
 
 use std::hint::black_box;
 use std::path::Path;
@@ -18,14 +19,15 @@ use peak_alloc::PeakAlloc;
 #[global_allocator]
 static ALLOCATOR: PeakAlloc = PeakAlloc;
 
-/// Memory that a file may take: so many times its size, and what tables and decoders take for a file of any size, bytes.
+/// Memory that a file may take: so many times its size, and what tables and decoders take for a file of any size,
+/// bytes.
 const TIMES_FILE: usize = 20;
 const BESIDE_FILE: usize = 64 << 20;
 /// The same for rasters, which LZW packs up to 1400 times: bytes, and then as f32.
 const TIMES_RASTER: usize = 1400 * 5;
 
 /// A reader, and the name of the files that it is tried on.
-pub(crate) struct Reader {
+pub(crate) struct TriedReader {
     /// Its extension selects the format.
     pub(crate) file: &'static str,
     /// Whether the bytes were read, rather than refused.
@@ -33,60 +35,69 @@ pub(crate) struct Reader {
 }
 
 /// All readers.
-pub(crate) const READERS: &[Reader] = &[
-    Reader { file: "cloud.las", read: cloud },
-    Reader { file: "cloud.laz", read: cloud },
-    Reader { file: "window.laz", read: window },
-    Reader { file: "head.laz", read: head },
-    Reader { file: "cloud.e57", read: cloud },
-    Reader { file: "cloud.ptx", read: cloud },
-    Reader { file: "cloud.ply", read: cloud },
-    Reader { file: "cloud.pcd", read: cloud },
-    Reader { file: "cloud.npy", read: cloud },
-    Reader { file: "cloud.xyz", read: cloud },
-    Reader { file: "balls.npz", read: balls },
-    Reader { file: "balls.ply", read: balls },
-    Reader { file: "balls.laz", read: balls },
-    Reader { file: "mesh.obj", read: |file, bytes| settle(read_mesh(Source::bytes(file, bytes))) },
-    Reader { file: "mesh.ply", read: |file, bytes| settle(read_mesh(Source::bytes(file, bytes))) },
-    Reader { file: "mesh.json", read: |file, bytes| settle(read_mesh(Source::bytes(file, bytes))) },
-    Reader { file: "shapes.geojson", read: |file, bytes| settle(read_geojson(Source::bytes(file, bytes), &dutch())) },
-    Reader {
+pub(crate) const READERS: &[TriedReader] = &[
+    TriedReader { file: "cloud.las", read: cloud },
+    TriedReader { file: "cloud.laz", read: cloud },
+    TriedReader { file: "window.laz", read: window },
+    TriedReader { file: "head.laz", read: head },
+    TriedReader { file: "cloud.e57", read: cloud },
+    TriedReader { file: "cloud.ptx", read: cloud },
+    TriedReader { file: "cloud.ply", read: cloud },
+    TriedReader { file: "cloud.pcd", read: cloud },
+    TriedReader { file: "cloud.npy", read: cloud },
+    TriedReader { file: "cloud.xyz", read: cloud },
+    TriedReader { file: "balls.npz", read: balls },
+    TriedReader { file: "balls.ply", read: balls },
+    TriedReader { file: "balls.laz", read: balls },
+    TriedReader { file: "mesh.obj", read: |file, bytes| settle(read_mesh(Source::bytes(file, bytes))) },
+    TriedReader { file: "mesh.ply", read: |file, bytes| settle(read_mesh(Source::bytes(file, bytes))) },
+    TriedReader { file: "mesh.json", read: |file, bytes| settle(read_mesh(Source::bytes(file, bytes))) },
+    TriedReader {
+        file: "shapes.geojson",
+        read: |file, bytes| settle(read_geojson(Source::bytes(file, bytes), &dutch())),
+    },
+    TriedReader {
         file: "observers.csv",
         read: |file, bytes| settle(read_observers(Source::bytes(file, bytes), &dutch(), RowsAre::Places)),
     },
-    Reader {
+    TriedReader {
         file: "observers.geojson",
         read: |file, bytes| settle(read_observers(Source::bytes(file, bytes), &dutch(), RowsAre::Places)),
     },
-    Reader { file: "stations.csv", read: |file, bytes| settle(read_stations(Source::bytes(file, bytes), &dutch())) },
-    Reader { file: "table.csv", read: |file, bytes| settle(read_table(Source::bytes(file, bytes))) },
-    Reader { file: "rows.csv", read: |file, bytes| settle(read_text_rows(Source::bytes(file, bytes))) },
-    Reader { file: "path.csv", read: |file, bytes| settle(read_trajectory(Source::bytes(file, bytes), &dutch())) },
-    Reader { file: "path.sbet", read: |file, bytes| settle(read_trajectory(Source::bytes(file, bytes), &dutch())) },
-    Reader { file: "horizon.csv", read: |file, bytes| settle(read_horizon(Source::bytes(file, bytes))) },
-    Reader { file: "weather.csv", read: |file, bytes| settle(read_weather(Source::bytes(file, bytes))) },
-    Reader { file: "matrix.npz", read: |file, bytes| settle(read_matrix(Source::bytes(file, bytes))) },
-    Reader { file: "raster.tif", read: |file, bytes| settle(read_tif(Source::bytes(file, bytes))) },
-    Reader { file: "tiles.vpc", read: |file, bytes| in_folder(file, bytes, catalogue) },
-    Reader { file: "plan.json", read: |file, bytes| in_folder(file, bytes, plan) },
-    Reader { file: "record.json", read: |file, bytes| in_folder(file, bytes, record) },
-    Reader { file: "system.wkt", read: system },
+    TriedReader {
+        file: "stations.csv",
+        read: |file, bytes| settle(read_stations(Source::bytes(file, bytes), &dutch())),
+    },
+    TriedReader { file: "table.csv", read: |file, bytes| settle(read_table(Source::bytes(file, bytes))) },
+    TriedReader { file: "rows.csv", read: |file, bytes| settle(read_text_rows(Source::bytes(file, bytes))) },
+    TriedReader { file: "path.csv", read: |file, bytes| settle(read_trajectory(Source::bytes(file, bytes), &dutch())) },
+    TriedReader {
+        file: "path.sbet",
+        read: |file, bytes| settle(read_trajectory(Source::bytes(file, bytes), &dutch())),
+    },
+    TriedReader { file: "horizon.csv", read: |file, bytes| settle(read_horizon(Source::bytes(file, bytes))) },
+    TriedReader { file: "weather.csv", read: |file, bytes| settle(read_weather(Source::bytes(file, bytes))) },
+    TriedReader { file: "matrix.npz", read: |file, bytes| settle(read_matrix(Source::bytes(file, bytes))) },
+    TriedReader { file: "raster.tif", read: |file, bytes| settle(read_tif(Source::bytes(file, bytes))) },
+    TriedReader { file: "tiles.vpc", read: |file, bytes| in_folder(file, bytes, catalogue) },
+    TriedReader { file: "plan.json", read: |file, bytes| in_folder(file, bytes, plan) },
+    TriedReader { file: "record.json", read: |file, bytes| in_folder(file, bytes, record) },
+    TriedReader { file: "system.wkt", read: system },
 ];
 
 /// Reads `bytes` as the file that `reader` reads; `false` where it refuses them.
 ///
 /// # Panics
 /// Where the reader does, and where it takes more memory than a file of this size may.
-pub(crate) fn check(reader: &Reader, bytes: &[u8]) -> bool {
+pub(crate) fn check(reader: &TriedReader, bytes: &[u8]) -> bool {
     let whole = if reader.file.ends_with("e57") { with_checksums(bytes) } else { bytes.to_vec() };
     let before = ALLOCATOR.current_usage();
     ALLOCATOR.reset_peak_usage();
     let is_read = (reader.read)(reader.file, &whole);
     let taken = ALLOCATOR.peak_usage().saturating_sub(before);
     let times = if reader.file.ends_with("tif") { TIMES_RASTER } else { TIMES_FILE };
-    let most = times * bytes.len() + BESIDE_FILE;
-    assert!(taken <= most, "{} of {} bytes took {taken} bytes of memory, more than {most}", reader.file, bytes.len());
+    let max = times * bytes.len() + BESIDE_FILE;
+    assert!(taken <= max, "{} of {} bytes took {taken} bytes of memory, more than {max}", reader.file, bytes.len());
     is_read
 }
 

@@ -1,4 +1,5 @@
-// What the page shows stands in its address: a reload, and a bookmark while the program runs, keep view, question, places, date, zone and trees.
+// What the page shows stands in its address: a reload, and a bookmark while the program runs, keep view, question,
+// places, date, zone and trees.
 import { $, page, TOOLS } from "./state.js";
 import { showClock } from "./time.js";
 import { mover, toFile, toLocal } from "./view.js";

@@ -1,4 +1,5 @@
-// What the page knows: the state of the scene, its points, and answers. Everything comes from the server that the page came from.
+// What the page knows: the state of the scene, its points, and answers. Everything comes from the server that the page
+// came from.
 
 export class Refused extends Error {}
 export class Lost extends Error {}

@@ -87,7 +87,8 @@ export class Cloud {
     this.drawn = this.left = 0;
   }
 
-  // Adds points: four numbers of 16 bits each, steps along the axes from `low`, class and intensity. `first` is their place in the order of all points.
+  // Adds points: four numbers of 16 bits each, steps along the axes from `low`, class and intensity. `first` is their
+  // place in the order of all points.
   add(low, step, places, values, first = 0, shared = this.own, scene = this.scene) {
     const geometry = new BufferGeometry();
     geometry.setAttribute("place", integers(places, 4));
@@ -205,7 +206,8 @@ export class Cloud {
     this.shade.uniforms.texel.value.set(1 / width, 1 / height);
   }
 
-  // Draws the scene with as many points in view as the budget allows. A picture that is not new keeps what it holds, and the next points are added to it.
+  // Draws the scene with as many points in view as the budget allows. A picture that is not new keeps what it holds,
+  // and the next points are added to it.
   render(camera, ground, isNew) {
     const { own, shade, target, renderer } = this;
     own.far.value = shade.uniforms.far.value = camera.far;

@@ -1,4 +1,5 @@
-// What if: buildings that are drawn or loaded, areas that are cleared, and whether answers are those before, after, or the change.
+// What if: buildings that are drawn or loaded, areas that are cleared, and whether answers are those before, after, or
+// the change.
 import * as api from "./api.js";
 import { escape } from "./charts.js";
 import { report } from "./messages.js";

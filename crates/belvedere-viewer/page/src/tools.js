@@ -10,7 +10,8 @@ const count = (n) => n.toLocaleString("en");
 const percent = (part, whole) => `${((100 * part) / Math.max(whole, 1)).toFixed(1)} %`;
 const list = (rows) => `<dl>${rows.map(([name, value]) => `<dt>${escape(name)}</dt><dd>${escape(value)}</dd>`).join("")}</dl>`;
 
-// A first answer is one for a sample: its shares are about right, and its counts are those of the sample times the points it stands for.
+// A first answer is one for a sample: its shares are about right, and its counts are those of the sample times the
+// points it stands for.
 const about = (answer) => (answer.isFirst ? "About " : "");
 const FIRST = (answer) => `A first answer from a sample of ${count(answer.points)} points; the exact one follows …`;
 const estimated = (n) => { const unit = 10 ** Math.max(Math.floor(Math.log10(n)) - 1, 0); return `about ${count(Math.round(n / unit) * unit)}`; };

@@ -7,7 +7,8 @@ import { $, canvas, page, root } from "./state.js";
 
 export let renderer, cloud, mover;
 
-// Time of a frame within which moving looks smooth, and the time after the last movement when a view counts as at rest, ms.
+// Time of a frame within which moving looks smooth, and the time after the last movement when a view counts as at rest,
+// ms.
 const SMOOTH = 33;
 const REST = 350;
 let isAsked = false;

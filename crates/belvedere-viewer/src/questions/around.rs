@@ -1,30 +1,30 @@
 //! Sky view and isovist here: how open a place is.
 
-use super::Asked;
+use super::RequestContext;
 use super::places::{command_at, local, number};
 use super::sun::at;
-use crate::replies::{Answer, Refusal};
+use crate::replies::{QuestionReply, Refusal};
 use crate::scene_text::typed;
-use belvedere::apps::ask::{self, Isovists, Places, Remark, SkyView, Standing};
+use belvedere::apps::ask::{self, IsovistsQuestion, Places, Remark, SkyViewQuestion, Standing};
 use serde::Deserialize;
 use serde_json::{Map, Value, json};
 use std::sync::Arc;
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Question {
+pub(super) struct AroundRequest {
     place: [f64; 3],
 }
 
 /// Range that is shown as the farthest, metres.
 const FARTHEST: f32 = 200.0;
 
-pub(super) fn answer(question: &Question, asked: &Asked<'_>) -> Result<Answer, Refusal> {
-    let (scene, control) = (&asked.scene.asked, asked.control);
-    let place = local(asked, question.place)?;
+pub(super) fn answer(question: &AroundRequest, context: &RequestContext<'_>) -> Result<QuestionReply, Refusal> {
+    let (scene, control) = (&context.scene.inner, context.control);
+    let place = local(context, question.place)?;
     let eyes = Places::Eyes(vec![Standing { place, height: None }]);
-    let isovists = ask::ask(scene, &Isovists::default(), &eyes, control)?;
-    let sky = ask::ask(scene, &SkyView::default(), &Places::Targets(Arc::new(at(asked, place))), control)?;
+    let isovists = ask::ask(scene, &IsovistsQuestion::default(), &eyes, control)?;
+    let sky = ask::ask(scene, &SkyViewQuestion::default(), &Places::Targets(Arc::new(at(context, place))), control)?;
     let Some(isovist) = isovists.found.isovists.first().and_then(Option::as_ref) else {
         return Err(Refusal("Nobody can look from this place.".to_owned()));
     };
@@ -53,11 +53,11 @@ pub(super) fn answer(question: &Question, asked: &Asked<'_>) -> Result<Answer, R
         "remarks": remarks,
         "command": format!(
             "{}\n{}",
-            command_at(asked, question.place, "sky-view", "-o sky.csv"),
-            asked.text.command("isovist", &format!("--observer {} -o isovist.json", typed(&question.place))),
+            command_at(context, question.place, "sky-view", "-o sky.csv"),
+            context.text.command("isovist", &format!("--observer {} -o isovist.json", typed(&question.place))),
         ),
     });
-    Ok(Answer { head, body: panorama.values().iter().map(|&range| brightness(range)).collect() })
+    Ok(QuestionReply { head, body: panorama.values().iter().map(|&range| brightness(range)).collect() })
 }
 
 /// 0 for the sky, 1 for what is near, 255 for what is far.

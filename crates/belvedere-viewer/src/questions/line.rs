@@ -1,10 +1,10 @@
 //! Is B seen from A: the answer, the place that blocks, and the profile.
 
-use super::Asked;
+use super::RequestContext;
 use super::places::{local, number, rounded, shown};
-use crate::replies::{Answer, Refusal};
+use crate::replies::{QuestionReply, Refusal};
 use crate::scene_text::typed;
-use belvedere::apps::ask::{self, LinesOfSight, Places, ProfileRows, Standing};
+use belvedere::apps::ask::{self, LinesOfSightQuestion, Places, ProfileRows, Standing};
 use belvedere::apps::profile::SightProfile;
 use belvedere::query::Answer as Sight;
 use serde::Deserialize;
@@ -12,21 +12,22 @@ use serde_json::{Value, json};
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Question {
+pub(super) struct LineRequest {
     observer: [f64; 3],
     target: [f64; 3],
 }
 
-pub(super) fn answer(question: &Question, asked: &Asked<'_>) -> Result<Answer, Refusal> {
-    let ends = [local(asked, question.observer)?, local(asked, question.target)?];
+pub(super) fn answer(question: &LineRequest, context: &RequestContext<'_>) -> Result<QuestionReply, Refusal> {
+    let ends = [local(context, question.observer)?, local(context, question.target)?];
     let [observer, target] = ends;
     if observer == target {
         return Err(Refusal("A and B are the same place: click two different ones.".to_owned()));
     }
     let is_vertical = observer[..2] == target[..2];
-    let line = LinesOfSight { profile: (!is_vertical).then(ProfileRows::default), ..LinesOfSight::default() };
+    let line =
+        LinesOfSightQuestion { profile: (!is_vertical).then(ProfileRows::default), ..LinesOfSightQuestion::default() };
     let pair = ends.map(|place| Standing { place, height: None });
-    let answers = ask::ask(&asked.scene.asked, &line, &Places::Pairs(vec![pair]), asked.control)?;
+    let answers = ask::ask(&context.scene.inner, &line, &Places::Pairs(vec![pair]), context.control)?;
     let (found, remarks) = (answers.found, answers.remarks);
     let sight = found.sights.first().and_then(Option::as_ref);
     let name = match found.answers.first() {
@@ -36,7 +37,7 @@ pub(super) fn answer(question: &Question, asked: &Asked<'_>) -> Result<Answer, R
         _ => "outside the cloud",
     };
     let block = sight.and_then(|sight| sight.first_block).map(
-        |block| json!({ "range_m": rounded(block.range, 3), "place": shown(asked, block.place), "ball": block.blocker.ball() }),
+        |block| json!({ "range_m": rounded(block.range, 3), "place": shown(context, block.place), "ball": block.blocker.ball() }),
     );
     let unproven = sight.filter(|_| found.is_proof_tested).map(|sight| number(sight.unproven_length, 3));
     let typed = format!("--observer {} --target {}", typed(&question.observer), typed(&question.target));
@@ -46,16 +47,16 @@ pub(super) fn answer(question: &Question, asked: &Asked<'_>) -> Result<Answer, R
         "length_m": rounded(length, 3),
         "first_block": block,
         "unproven_m": unproven,
-        "profile": found.profile.as_ref().map(|profile| drawn(profile, asked)),
+        "profile": found.profile.as_ref().map(|profile| drawn(profile, context)),
         "remarks": remarks,
-        "command": asked.text.command_on_ground("line-of-sight", &format!("{typed} -o line.csv --profile-out profile.png")),
+        "command": context.text.command_on_ground("line-of-sight", &format!("{typed} -o line.csv --profile-out profile.png")),
     });
-    Ok(Answer::of(head))
+    Ok(QuestionReply::of(head))
 }
 
 /// Distances, the ground, the line and what is solid, in heights of the file.
-fn drawn(profile: &SightProfile, asked: &Asked<'_>) -> Value {
-    let frame = asked.scene.model().frame();
+fn drawn(profile: &SightProfile, context: &RequestContext<'_>) -> Value {
+    let frame = context.scene.model().frame();
     let height = |local: f64| (local + frame.origin[2]) / frame.crs.vertical_metres_per_unit;
     let heights = |values: &[f64]| values.iter().map(|&v| number(height(v), 2)).collect::<Vec<_>>();
     let solid: Vec<Value> = profile

@@ -12,16 +12,16 @@ mod sun_area;
 mod who;
 
 use crate::plans::Plans;
-use crate::replies::{Answer, Refusal};
-use crate::scene::Scene;
+use crate::replies::{QuestionReply, Refusal};
+use crate::scene::PageScene;
 use crate::scene_text::SceneText;
 use belvedere::control::Control;
-pub(crate) use roof::Roofs;
+pub(crate) use roof::RoofPlanes;
 use serde::de::DeserializeOwned;
 
 /// What every question knows.
-pub(crate) struct Asked<'a> {
-    pub(crate) scene: &'a Scene,
+pub(crate) struct RequestContext<'a> {
+    pub(crate) scene: &'a PageScene,
     /// The scene on command lines.
     pub(crate) text: &'a SceneText,
     /// What is planned in all tabs.
@@ -30,17 +30,17 @@ pub(crate) struct Asked<'a> {
 }
 
 /// Answers the question of that name.
-pub(crate) fn answer(name: &str, body: &[u8], asked: &Asked<'_>) -> Result<Answer, Refusal> {
+pub(crate) fn answer(name: &str, body: &[u8], context: &RequestContext<'_>) -> Result<QuestionReply, Refusal> {
     match name {
-        "seen" => seen::answer(&parsed(body)?, asked),
-        "line" => line::answer(&parsed(body)?, asked),
-        "sun" => sun::answer(&parsed(body)?, asked),
-        "shadow" => shadow::answer(&parsed(body)?, asked),
-        "around" => around::answer(&parsed(body)?, asked),
-        "who" => who::answer(&parsed(body)?, asked),
-        "roof" => roof::answer(&parsed(body)?, asked),
-        "plan" => plan::answer(parsed(body)?, asked),
-        "sun_area" => sun_area::answer(&parsed(body)?, asked),
+        "seen" => seen::answer(&parsed(body)?, context),
+        "line" => line::answer(&parsed(body)?, context),
+        "sun" => sun::answer(&parsed(body)?, context),
+        "shadow" => shadow::answer(&parsed(body)?, context),
+        "around" => around::answer(&parsed(body)?, context),
+        "who" => who::answer(&parsed(body)?, context),
+        "roof" => roof::answer(&parsed(body)?, context),
+        "plan" => plan::answer(parsed(body)?, context),
+        "sun_area" => sun_area::answer(&parsed(body)?, context),
         _ => Err(Refusal("there is no such question".to_owned())),
     }
 }
@@ -50,7 +50,7 @@ fn parsed<T: DeserializeOwned>(body: &[u8]) -> Result<T, Refusal> {
 }
 
 /// Centres and radii of the balls, local metres: four f32 each, little endian.
-pub(crate) fn balls(scene: &Scene) -> Vec<u8> {
+pub(crate) fn balls(scene: &PageScene) -> Vec<u8> {
     let balls = scene.model().balls();
     let rows = balls.centers.iter().zip(&balls.radii);
     rows.flat_map(|(&[x, y, z], &r)| [x, y, z, r]).flat_map(f32::to_le_bytes).collect()

@@ -1,21 +1,21 @@
 //! Places in questions: coordinates of the file, as the command line takes them.
 
-use super::Asked;
+use super::RequestContext;
 use crate::replies::Refusal;
 use crate::scene_text::typed;
 use serde_json::{Value, json};
 
 /// A place, local metres.
-pub(super) fn local(asked: &Asked<'_>, place: [f64; 3]) -> Result<[f64; 3], Refusal> {
+pub(super) fn local(context: &RequestContext<'_>, place: [f64; 3]) -> Result<[f64; 3], Refusal> {
     if !place.iter().all(|v| v.is_finite()) {
         return Err(Refusal("the place has a coordinate that is not a number".to_owned()));
     }
-    Ok(asked.scene.model().frame().local_from_file(place))
+    Ok(context.scene.model().frame().local_from_file(place))
 }
 
 /// A local place in the coordinates of the file, to the millimetre.
-pub(super) fn shown(asked: &Asked<'_>, local: [f64; 3]) -> [f64; 3] {
-    asked.scene.model().frame().file_from_local(local).map(|v| rounded(v, 3))
+pub(super) fn shown(context: &RequestContext<'_>, local: [f64; 3]) -> [f64; 3] {
+    context.scene.model().frame().file_from_local(local).map(|v| rounded(v, 3))
 }
 
 pub(super) fn rounded(value: f64, decimals: i32) -> f64 {
@@ -28,10 +28,10 @@ pub(super) fn number(value: f64, decimals: i32) -> Value {
 }
 
 /// The command for targets that the command line reads from a table.
-pub(super) fn command_at(asked: &Asked<'_>, place: [f64; 3], name: &str, flags: &str) -> String {
+pub(super) fn command_at(context: &RequestContext<'_>, place: [f64; 3], name: &str, flags: &str) -> String {
     format!(
         "printf 'x,y,z\\n{}\\n' > place.csv\n{}",
         typed(&place),
-        asked.text.command(name, &format!("--targets place.csv {flags}"))
+        context.text.command(name, &format!("--targets place.csv {flags}"))
     )
 }

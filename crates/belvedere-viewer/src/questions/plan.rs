@@ -1,17 +1,17 @@
 //! What if: the scene with what was drawn; other questions are then asked of it.
 
-use super::Asked;
-use crate::plans::Plan;
-use crate::replies::{Answer, Refusal};
+use super::RequestContext;
+use crate::plans::DrawnPlan;
+use crate::replies::{QuestionReply, Refusal};
 use belvedere::apps::ask::remark_on_cleared;
 use belvedere::cloud::to_local;
 use serde_json::{Value, json};
 
-pub(super) fn answer(plan: Plan, asked: &Asked<'_>) -> Result<Answer, Refusal> {
+pub(super) fn answer(plan: DrawnPlan, context: &RequestContext<'_>) -> Result<QuestionReply, Refusal> {
     let is_clearing = plan.is_clearing();
-    let planned = asked.plans.make(plan, asked.scene, asked.text, asked.control)?;
+    let planned = context.plans.make(plan, context.scene, context.text, context.control)?;
     let files: Vec<Value> = planned.files.iter().map(|(name, text)| json!({ "name": name, "content": text })).collect();
-    let origin = asked.scene.model().frame().origin;
+    let origin = context.scene.model().frame().origin;
     let corners = planned
         .added
         .iter()
@@ -26,5 +26,5 @@ pub(super) fn answer(plan: Plan, asked: &Asked<'_>) -> Result<Answer, Refusal> {
         "command": planned.text.input,
     });
     // the triangles, and for each point sent 1 if it is cleared
-    Ok(Answer { head, body: [triangles, planned.scene.cleared_in_order()].concat() })
+    Ok(QuestionReply { head, body: [triangles, planned.scene.cleared_in_order()].concat() })
 }

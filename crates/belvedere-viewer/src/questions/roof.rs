@@ -1,9 +1,9 @@
 //! Energy of the roof here: of the plane that was clicked, under a year of clear sky.
 
-use super::Asked;
+use super::RequestContext;
 use super::places::{local, number, rounded};
-use crate::replies::{Answer, Refusal};
-use crate::scene::Scene;
+use crate::replies::{QuestionReply, Refusal};
+use crate::scene::PageScene;
 use belvedere::apps::irradiance::{
     CLEAR_SKY_YEAR, ClearSky, Grouping, IrradianceParams, RadiationSource, SeasonRadiation, period_seasons,
     roof_irradiation,
@@ -18,7 +18,7 @@ use serde_json::{Value, json};
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Question {
+pub(super) struct RoofRequest {
     place: [f64; 3],
 }
 
@@ -28,15 +28,15 @@ const GROUND_CELL: f64 = 1.0;
 const REACH: f64 = 1.0;
 
 /// The planes of all roofs, and what sun and sky send in a year.
-pub(crate) struct Roofs {
+pub(crate) struct RoofPlanes {
     planes: Vec<RoofPlane>,
     /// The points that the rows of planes belong to, local metres.
     points: Vec<[f32; 3]>,
     seasons: Vec<SeasonRadiation>,
 }
 
-impl Roofs {
-    pub(crate) fn of(scene: &Scene, control: &Control<'_>) -> Result<Self> {
+impl RoofPlanes {
+    pub(crate) fn of(scene: &PageScene, control: &Control<'_>) -> Result<Self> {
         let cloud = scene.cloud()?;
         let (low, high) = scene.model().bounds().on_map();
         let grid = MapGrid::covering(low, high, GROUND_CELL, [cloud.frame.origin[0], cloud.frame.origin[1]])?;
@@ -65,9 +65,12 @@ impl Roofs {
     }
 }
 
-pub(super) fn answer(question: &Question, asked: &Asked<'_>) -> std::result::Result<Answer, Refusal> {
-    let (scene, control) = (asked.scene, asked.control);
-    let place = local(asked, question.place)?;
+pub(super) fn answer(
+    question: &RoofRequest,
+    context: &RequestContext<'_>,
+) -> std::result::Result<QuestionReply, Refusal> {
+    let (scene, control) = (context.scene, context.control);
+    let place = local(context, question.place)?;
     let site = scene.site()?;
     let roofs = scene.roofs(control)?;
     let Some((plane_index, plane)) = roofs.at(place) else {
@@ -95,8 +98,8 @@ pub(super) fn answer(question: &Question, asked: &Asked<'_>) -> std::result::Res
         "year": CLEAR_SKY_YEAR,
         "planes": roofs.planes.len(),
         "roofs_m2": rounded(roofs.planes.iter().map(|plane| plane.area).sum(), 1),
-        "command": asked.text.command_on_ground("irradiance", "--clear-sky ineichen --months --planes roofs.csv"),
+        "command": context.text.command_on_ground("irradiance", "--clear-sky ineichen --months --planes roofs.csv"),
     });
     let points = plane.points.iter().filter_map(|&row| roofs.points.get(row as usize));
-    Ok(Answer { head, body: points.flatten().flat_map(|v| v.to_le_bytes()).collect() })
+    Ok(QuestionReply { head, body: points.flatten().flat_map(|v| v.to_le_bytes()).collect() })
 }

@@ -1,9 +1,9 @@
 //! What is seen from here: an answer for each point of the cloud.
 
-use super::Asked;
+use super::RequestContext;
 use super::places::local;
-use crate::replies::{Answer, Refusal};
-use crate::scene::Points;
+use crate::replies::{QuestionReply, Refusal};
+use crate::scene::PointChoice;
 use belvedere::apps::viewshed::{Observer, SightLimits, ViewshedParams, viewshed_among};
 use belvedere::query::{AnswerCounts, UnprovenAs};
 use serde::Deserialize;
@@ -11,16 +11,16 @@ use serde_json::json;
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Question {
+pub(super) struct SeenRequest {
     /// The eye, in the coordinates of the file.
     place: [f64; 3],
     #[serde(default)]
-    points: Points,
+    points: PointChoice,
 }
 
-pub(super) fn answer(question: &Question, asked: &Asked<'_>) -> Result<Answer, Refusal> {
-    let (scene, control) = (asked.scene, asked.control);
-    let eye = local(asked, question.place)?;
+pub(super) fn answer(question: &SeenRequest, context: &RequestContext<'_>) -> Result<QuestionReply, Refusal> {
+    let (scene, control) = (context.scene, context.control);
+    let eye = local(context, question.place)?;
     let points = scene.points(question.points, control)?;
     let blockers = scene.blockers(UnprovenAs::Reported, control)?;
     let ground = scene.ground(control)?;
@@ -35,7 +35,7 @@ pub(super) fn answer(question: &Question, asked: &Asked<'_>) -> Result<Answer, R
         "blocked": counts.blocked,
         "unproven": counts.unproven,
         "tells_unproven": blockers.proof().is_some(),
-        "command": asked.text.seen(&question.place),
+        "command": context.text.seen(&question.place),
     });
-    Ok(Answer { head, body: points.in_order(|row| seen.answers[row] as u8) })
+    Ok(QuestionReply { head, body: points.in_order(|row| seen.answers[row] as u8) })
 }

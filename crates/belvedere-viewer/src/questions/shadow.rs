@@ -1,10 +1,10 @@
 //! Shadow at this time: for each point of the cloud whether the sun reaches it.
 
-use super::Asked;
+use super::RequestContext;
 use super::places::rounded;
-use crate::replies::{Answer, Refusal};
-use crate::scene::Points;
-use belvedere::apps::ask::{self, Places, SunPlace, SunPosition, Suns, ThroughTrees, UNPROVEN};
+use crate::replies::{QuestionReply, Refusal};
+use crate::scene::PointChoice;
+use belvedere::apps::ask::{self, Places, SunPlace, SunPositionQuestion, Suns, ThroughTrees, UNPROVEN};
 use belvedere::apps::shadow::Edges;
 use serde::Deserialize;
 use serde_json::json;
@@ -12,13 +12,13 @@ use std::sync::Arc;
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Question {
+pub(super) struct ShadowRequest {
     /// Date and time on the clocks of the zone, such as 2026-06-21T15:00.
     time: String,
     /// Name of a zone, or hours from UTC.
     zone: String,
     #[serde(default)]
-    points: Points,
+    points: PointChoice,
     /// What gets through trees.
     #[serde(default)]
     trees: ThroughTrees,
@@ -28,16 +28,21 @@ pub(super) struct Question {
 /// one without an answer.
 const CODES: [u8; 4] = [0, 1, 2, 255];
 
-pub(super) fn answer(question: &Question, asked: &Asked<'_>) -> Result<Answer, Refusal> {
-    let (scene, control) = (asked.scene, asked.control);
+pub(super) fn answer(question: &ShadowRequest, context: &RequestContext<'_>) -> Result<QuestionReply, Refusal> {
+    let (scene, control) = (context.scene, context.control);
     let points = scene.points(question.points, control)?;
     let place = SunPlace { zone: Some(question.zone.clone()), ..SunPlace::default() };
     let times = vec![question.time.clone()];
-    let of_sun = SunPosition { times: times.clone(), place: place.clone() };
-    let of_sun = ask::ask(&scene.asked, &of_sun, &Places::Scene, control)?.found;
-    let shadow =
-        ask::Shadow { suns: Suns::Times(times), place, edges: Edges::Hard, trees: question.trees, unproven: None };
-    let answers = ask::ask(&scene.asked, &shadow, &Places::Targets(Arc::clone(&points.targets)), control)?;
+    let of_sun = SunPositionQuestion { times: times.clone(), place: place.clone() };
+    let of_sun = ask::ask(&scene.inner, &of_sun, &Places::Scene, control)?.found;
+    let shadow = ask::ShadowQuestion {
+        suns: Suns::Times(times),
+        place,
+        edges: Edges::Hard,
+        trees: question.trees,
+        unproven: None,
+    };
+    let answers = ask::ask(&scene.inner, &shadow, &Places::Targets(Arc::clone(&points.targets)), control)?;
     let measure = |name: &str| answers.measures.iter().find(|measure| measure.name == name).map(|m| &m.values[..]);
     let (lit, unproven) = (measure("lit").unwrap_or_default(), measure(UNPROVEN));
     let lit_count = lit.iter().filter(|&&share| share > 0.0).count();
@@ -55,7 +60,7 @@ pub(super) fn answer(question: &Question, asked: &Asked<'_>) -> Result<Answer, R
         "to_sun": sun.sun.to_sun,
         "time": stands.time,
         "remarks": answers.remarks,
-        "command": asked.text.shadow(&question.time, &question.zone, question.trees),
+        "command": context.text.shadow(&question.time, &question.zone, question.trees),
     });
     let code = |row: usize| match lit.get(row) {
         Some(share) if *share > 0.0 => {
@@ -65,5 +70,5 @@ pub(super) fn answer(question: &Question, asked: &Asked<'_>) -> Result<Answer, R
         Some(0.0) => CODES[0],
         _ => CODES[3],
     };
-    Ok(Answer { head, body: points.in_order(code) })
+    Ok(QuestionReply { head, body: points.in_order(code) })
 }

@@ -1,11 +1,11 @@
 //! Sun here: the sun's path over the horizon of a place, its hours, and the first and last light.
 
-use super::Asked;
+use super::RequestContext;
 use super::places::{command_at, local, number, rounded};
-use crate::replies::{Answer, Refusal};
+use crate::replies::{QuestionReply, Refusal};
 use crate::scene_text::in_words;
 use belvedere::PointCloud;
-use belvedere::apps::ask::{self, Answers, Days, OnTargets, Places, SunHours, SunPlace, ThroughTrees};
+use belvedere::apps::ask::{self, Answers, Days, OnTargets, Places, SunHoursQuestion, SunPlace, ThroughTrees};
 use belvedere::apps::horizon::{HorizonParams, horizons};
 use belvedere::apps::sun::{Date, DayParams, Period, Refraction, Site, SunDay, Zone, sun_days, sun_position_with};
 use belvedere::apps::targets::Targets;
@@ -16,7 +16,7 @@ use std::sync::Arc;
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Question {
+pub(super) struct SunRequest {
     place: [f64; 3],
     /// Such as 2026-06-21.
     date: String,
@@ -29,9 +29,9 @@ pub(super) struct Question {
 /// Day of the months whose suns are shown: near both solstices.
 const DAY_OF_MONTH: i8 = 21;
 
-pub(super) fn answer(question: &Question, asked: &Asked<'_>) -> Result<Answer, Refusal> {
-    let (scene, control) = (asked.scene, asked.control);
-    let place = local(asked, question.place)?;
+pub(super) fn answer(question: &SunRequest, context: &RequestContext<'_>) -> Result<QuestionReply, Refusal> {
+    let (scene, control) = (context.scene, context.control);
+    let place = local(context, question.place)?;
     let site = scene.site()?;
     let zone = Zone::parse(&question.zone)?;
     let date = Date::parse(&question.date)?;
@@ -39,12 +39,12 @@ pub(super) fn answer(question: &Question, asked: &Asked<'_>) -> Result<Answer, R
     if blockers.is_outside_cloud(place) {
         return Err(Refusal("This place is outside the cloud, where nothing is known.".to_owned()));
     }
-    let targets = Arc::new(at(asked, place));
+    let targets = Arc::new(at(context, place));
     let hours_on = |date: Date| {
         let days = Days { dates: vec![date.to_string()], ..Days::default() };
         let place = SunPlace { zone: Some(question.zone.clone()), ..SunPlace::default() };
-        let question = SunHours { days, place, trees: question.trees, ..SunHours::default() };
-        ask::ask(&scene.asked, &question, &Places::Targets(Arc::clone(&targets)), control)
+        let question = SunHoursQuestion { days, place, trees: question.trees, ..SunHoursQuestion::default() };
+        ask::ask(&scene.inner, &question, &Places::Targets(Arc::clone(&targets)), control)
     };
     let of_day = hours_on(date)?;
     let first = |answers: &Answers<OnTargets>, name: &str| {
@@ -88,14 +88,14 @@ pub(super) fn answer(question: &Question, asked: &Asked<'_>) -> Result<Answer, R
         "zone": zone.name(),
         "latitude_deg": rounded(site.latitude.to_degrees(), 5),
         "longitude_deg": rounded(site.longitude.to_degrees(), 5),
-        "command": command_at(asked, question.place, "sun-hours", &flags),
+        "command": command_at(context, question.place, "sun-hours", &flags),
     });
-    Ok(Answer::of(head))
+    Ok(QuestionReply::of(head))
 }
 
 /// The place as the only target.
-pub(super) fn at(asked: &Asked<'_>, place: [f64; 3]) -> Targets {
-    let mut cloud = PointCloud::in_frame(asked.scene.model().frame().clone());
+pub(super) fn at(context: &RequestContext<'_>, place: [f64; 3]) -> Targets {
+    let mut cloud = PointCloud::in_frame(context.scene.model().frame().clone());
     cloud.positions = vec![belvedere::cloud::to_local(place, [0.0; 3])];
     Targets::of_points(&cloud, None)
 }

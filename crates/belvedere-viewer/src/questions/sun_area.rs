@@ -1,16 +1,16 @@
 //! Sun hours of an area that was drawn: of the cells on the ground whose middle lies in it.
 
-use super::Asked;
+use super::RequestContext;
 use super::places::{local, number, rounded};
-use crate::replies::{Answer, Refusal};
+use crate::replies::{QuestionReply, Refusal};
 use crate::scene_text::in_words;
-use belvedere::apps::ask::{self, Cells, Days, Places, SunHours, SunPlace, ThroughTrees};
+use belvedere::apps::ask::{self, Days, GridCells, Places, SunHoursQuestion, SunPlace, ThroughTrees};
 use serde::Deserialize;
 use serde_json::json;
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Question {
+pub(super) struct SunAreaRequest {
     /// Corners on the map, in the coordinates of the file.
     corners: Vec<[f64; 2]>,
     date: String,
@@ -20,23 +20,23 @@ pub(super) struct Question {
     trees: ThroughTrees,
 }
 
-pub(super) fn answer(question: &Question, asked: &Asked<'_>) -> Result<Answer, Refusal> {
-    let scene = asked.scene;
+pub(super) fn answer(question: &SunAreaRequest, context: &RequestContext<'_>) -> Result<QuestionReply, Refusal> {
+    let scene = context.scene;
     if question.corners.len() < 3 {
         return Err(Refusal("An area needs at least three corners.".to_owned()));
     }
     let corners = question
         .corners
         .iter()
-        .map(|&[x, y]| local(asked, [x, y, 0.0]).map(|[x, y, _]| [x, y]))
+        .map(|&[x, y]| local(context, [x, y, 0.0]).map(|[x, y, _]| [x, y]))
         .collect::<Result<Vec<[f64; 2]>, _>>()?;
-    let cells = Cells { within: vec![corners], ..Cells::default() };
+    let cells = GridCells { within: vec![corners], ..GridCells::default() };
     let days = Days { dates: vec![question.date.clone()], ..Days::default() };
     let place = SunPlace { zone: Some(question.zone.clone()), ..SunPlace::default() };
-    let hours = SunHours { days, place, trees: question.trees, ..SunHours::default() };
-    let answers = ask::ask(&scene.asked, &hours, &Places::Cells(cells), asked.control)?;
+    let hours = SunHoursQuestion { days, place, trees: question.trees, ..SunHoursQuestion::default() };
+    let answers = ask::ask(&scene.inner, &hours, &Places::Cells(cells), context.control)?;
     let targets = &answers.found.targets;
-    let known: Vec<usize> = (0..targets.len()).filter(|&row| targets.is_asked(row)).collect();
+    let known: Vec<usize> = (0..targets.len()).filter(|&row| targets.is_target(row)).collect();
     let (Some(measure), false) = (answers.measures.first(), known.is_empty()) else {
         return Err(Refusal(
             "There is no ground in this area: draw it on the ground, and larger than a cell.".to_owned(),
@@ -44,22 +44,22 @@ pub(super) fn answer(question: &Question, asked: &Asked<'_>) -> Result<Answer, R
     };
     let hours: Vec<f32> = known.iter().map(|&row| measure.values[row]).collect();
     let cell = targets.ground().map_or(0.0, |ground| ground.grid.cell);
-    let possible = measure.range.map_or(0.0, |[_, most]| most);
+    let possible = measure.range.map_or(0.0, |[_, max]| max);
     let mean = hours.iter().map(|&v| f64::from(v)).sum::<f64>() / hours.len().max(1) as f64;
-    let least = hours.iter().copied().fold(f32::INFINITY, f32::min);
-    let most = hours.iter().copied().fold(f32::NEG_INFINITY, f32::max);
+    let min = hours.iter().copied().fold(f32::INFINITY, f32::min);
+    let max = hours.iter().copied().fold(f32::NEG_INFINITY, f32::max);
     let head = json!({
         "cells": known.len(),
         "cell_m": cell,
         "area_m2": rounded(known.len() as f64 * cell * cell, 1),
         "mean_hours": rounded(mean, 3),
-        "min_hours": number(f64::from(least), 3),
-        "max_hours": number(f64::from(most), 3),
+        "min_hours": number(f64::from(min), 3),
+        "max_hours": number(f64::from(max), 3),
         "possible_hours": rounded(possible, 3),
         "remarks": answers.remarks,
-        "command": asked.text.command_on_ground("sun-hours", &format!("--date {} --zone {}{} -o sun.tif", question.date, question.zone, in_words(question.trees))),
+        "command": context.text.command_on_ground("sun-hours", &format!("--date {} --zone {}{} -o sun.tif", question.date, question.zone, in_words(question.trees))),
     });
     let places = known.iter().map(|&row| targets.positions[row]);
     let body = places.zip(&hours).flat_map(|([x, y, z], &hours)| [x, y, z, hours]).flat_map(f32::to_le_bytes);
-    Ok(Answer { head, body: body.collect() })
+    Ok(QuestionReply { head, body: body.collect() })
 }

@@ -3,14 +3,14 @@
 use belvedere::PointCloud;
 use belvedere::control::Control;
 use belvedere::model::{ModelParams, OrientBy, SceneModel};
-use belvedere_viewer::{Viewer, ViewerParams};
+use belvedere_viewer::{PageServer, ViewerParams};
 use std::io::{Read, Write};
 use std::net::TcpStream;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// A viewer of rough ground with a step, 20 m wide.
-fn viewer() -> Viewer {
+fn viewer() -> PageServer {
     let mut coordinates = Vec::new();
     for x in 0..40 {
         for y in 0..40 {
@@ -19,7 +19,7 @@ fn viewer() -> Viewer {
         }
     }
     let cloud = Arc::new(PointCloud::from_coordinates(&coordinates).0);
-    let viewer = Viewer::start(&ViewerParams::default()).unwrap();
+    let viewer = PageServer::start(&ViewerParams::default()).unwrap();
     let loading = viewer.loading();
     loading.show(&cloud);
     let params = ModelParams::default().with_orient(OrientBy::Up);
@@ -28,7 +28,7 @@ fn viewer() -> Viewer {
 }
 
 /// Host with port, and token.
-fn address(viewer: &Viewer) -> (String, String) {
+fn address(viewer: &PageServer) -> (String, String) {
     let url = viewer.url();
     let (host, token) = url.strip_prefix("http://").unwrap().split_once('/').unwrap();
     (host.to_owned(), token.trim_end_matches('/').to_owned())
@@ -52,7 +52,7 @@ fn get(host: &str, path: &str, headers: &str) -> (u16, String) {
     sent(host, format!("GET {path} HTTP/1.1\r\n{headers}Connection: close\r\n\r\n").as_bytes())
 }
 
-fn asked(host: &str, token: &str, body: &str) -> (u16, String) {
+fn response(host: &str, token: &str, body: &str) -> (u16, String) {
     let length = body.len();
     let head = format!(
         "POST /{token}/ask/seen HTTP/1.1\r\nHost: {host}\r\nContent-Type: application/json\r\nContent-Length: {length}\r\nConnection: close\r\n\r\n"
@@ -66,7 +66,7 @@ fn is_well(host: &str, token: &str) {
 }
 
 #[test]
-fn only_those_who_know_the_token_and_come_from_the_page_are_served() {
+fn only_those_who_know_the_token_and_come_from_the_page_get_answers() {
     let viewer = viewer();
     let (host, token) = address(&viewer);
     let own = format!("Host: {host}\r\n");
@@ -126,7 +126,7 @@ fn huge_false_and_slow_requests_do_no_harm() {
 
     // 5: a body of 50 MB, and one that only claims to be
     let huge = format!("{{\"place\":[{}1]}}", "1,".repeat(25_000_000));
-    let (status, _) = asked(&host, &token, &huge);
+    let (status, _) = response(&host, &token, &huge);
     assert!(status == 413 || status == 0, "{status}");
     let head = format!(
         "POST /{token}/ask/seen HTTP/1.1\r\n{own}Content-Type: application/json\r\nContent-Length: 99999999999\r\nConnection: close\r\n\r\n{{}}"
@@ -145,10 +145,10 @@ fn huge_false_and_slow_requests_do_no_harm() {
         "[",
         "\u{0}",
     ] {
-        let (status, text) = asked(&host, &token, body);
+        let (status, text) = response(&host, &token, body);
         assert!(status == 422 && text.contains("error"), "{body}: {status} {text}");
     }
-    let (status, text) = asked(&host, &token, "{\"place\":[1e300,-1e300,1e300]}");
+    let (status, text) = response(&host, &token, "{\"place\":[1e300,-1e300,1e300]}");
     assert!(status == 422 && text.contains("outside the cloud"), "{status} {text}");
     // 7: not JSON, as a form of another page would be, and other methods
     let form = format!(
@@ -157,7 +157,8 @@ fn huge_false_and_slow_requests_do_no_harm() {
     assert_eq!(sent(&host, form.as_bytes()).0, 415);
     let delete = format!("DELETE /{token}/state HTTP/1.1\r\n{own}Connection: close\r\n\r\n");
     assert_eq!(sent(&host, delete.as_bytes()).0, 405);
-    // the same for meshes and plans: a mesh that is too large, a form, a broken one, a plan with a million corners, and one that nobody made
+    // the same for meshes and plans: a mesh that is too large, a form, a broken one, a plan with a million corners, and
+    // one that nobody made
     let mesh = |kind: &str, name: &str, body: &str| {
         let length = body.len();
         let head = format!(
@@ -188,7 +189,7 @@ fn huge_false_and_slow_requests_do_no_harm() {
     assert_eq!(plan("plans/7/ask/seen", "{\"place\":[2,2,1.7]}").0, 422);
     assert_eq!(plan("plans/x/ask/seen", "{}").0, 400);
     // 8: deep nesting, and a head without end
-    assert_eq!(asked(&host, &token, &"[".repeat(60_000)).0, 422);
+    assert_eq!(response(&host, &token, &"[".repeat(60_000)).0, 422);
     let long = format!("GET /{token}/state HTTP/1.1\r\n{own}X: {}\r\n\r\n", "a".repeat(2_000_000));
     assert!([0, 400, 431].contains(&sent(&host, long.as_bytes()).0));
     // 9: a client that sends a byte a second holds up nobody
@@ -207,7 +208,7 @@ fn a_thousand_at_once_are_answered_or_refused_and_the_page_lives_on() {
     let (host, token) = address(&viewer);
     // 10: a thousand questions, from as many connections
     let statuses: Vec<u16> = std::thread::scope(|scope| {
-        let ask = |_| scope.spawn(|| asked(&host, &token, "{\"place\":[2,2,1.7]}").0);
+        let ask = |_| scope.spawn(|| response(&host, &token, "{\"place\":[2,2,1.7]}").0);
         let all: Vec<_> = (0..1000).map(ask).collect();
         all.into_iter().map(|one| one.join().unwrap()).collect()
     });

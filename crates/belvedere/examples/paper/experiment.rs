@@ -1,7 +1,7 @@
 //! The paper's experiment: a million random targets in the bounding box, one viewport, and what the profile changes.
 
 use crate::Tables;
-use crate::model::Model;
+use crate::model::PaperModel;
 use belvedere::Result;
 use belvedere::control::Control;
 use belvedere::depth::{DepthMap, ItemBuffer, Profile, depth_map};
@@ -12,8 +12,8 @@ use std::time::Instant;
 /// As many targets as in the paper.
 const TARGET_COUNT: usize = 1_000_000;
 const SEED: u64 = 1;
-/// How far the picture plane is moved back, metres: farther than the largest ball reaches in front of the scene, so that
-/// both profiles see every ball whole.
+/// How far the picture plane is moved back, metres: farther than the largest ball reaches in front of the scene, so
+/// that both profiles see every ball whole.
 const SET_BACK: f64 = 500.0;
 
 /// A view of a model with the answers to the random targets.
@@ -25,7 +25,7 @@ pub(crate) struct Look {
 }
 
 /// Along `forward`, just holding the points of `model`.
-pub(crate) fn parallel_to(model: &Model, forward: [f64; 3], pixels_per_unit: f64) -> Result<View> {
+pub(crate) fn parallel_to(model: &PaperModel, forward: [f64; 3], pixels_per_unit: f64) -> Result<View> {
     let mut view = View::parallel(forward, model.low.map(f64::from), model.high.map(f64::from), 1.0 / pixels_per_unit)?;
     for axis in 0..3 {
         view.frame.eye[axis] -= SET_BACK * view.frame.forward[axis];
@@ -34,18 +34,18 @@ pub(crate) fn parallel_to(model: &Model, forward: [f64; 3], pixels_per_unit: f64
 }
 
 /// Straight down, north up.
-pub(crate) fn top_down(model: &Model, pixels_per_unit: f64) -> Result<View> {
+pub(crate) fn top_down(model: &PaperModel, pixels_per_unit: f64) -> Result<View> {
     parallel_to(model, [0.0, 0.0, -1.0], pixels_per_unit)
 }
 
 /// From an azimuth and elevation, degrees.
-pub(crate) fn oblique(model: &Model, viewer: [f64; 2], pixels_per_unit: f64) -> Result<View> {
+pub(crate) fn oblique(model: &PaperModel, viewer: [f64; 2], pixels_per_unit: f64) -> Result<View> {
     let [azimuth, elevation] = viewer.map(f64::to_radians);
     parallel_to(model, to_sun(azimuth, elevation).map(|v| -v), pixels_per_unit)
 }
 
 /// Depth maps and answers by the cone and the sphere for each view, as a table.
-pub(crate) fn compare_profiles(model: &Model, views: &[(&str, View)], tables: &mut Tables) -> Result<Vec<Look>> {
+pub(crate) fn compare_profiles(model: &PaperModel, views: &[(&str, View)], tables: &mut Tables) -> Result<Vec<Look>> {
     let targets = random_targets(model.low, model.high, TARGET_COUNT, SEED);
     for (name, view) in views {
         let Some(s) = view.pixels_per_metre() else { continue };

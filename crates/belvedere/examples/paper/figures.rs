@@ -1,7 +1,7 @@
 //! Pictures with the content of Figures 4 to 7.
 
 use crate::experiment::Look;
-use crate::model::{Model, Way, unlimited_tau, within_window};
+use crate::model::{NormalMethod, PaperModel, unlimited_tau, within_window};
 use belvedere::Bounds;
 use belvedere::control::Control;
 use belvedere::depth::{ItemBuffer, Profile, depth_map};
@@ -27,7 +27,7 @@ fn class_color(class: u8) -> [u8; 3] {
     }
 }
 
-fn by_class(model: &Model) -> Vec<[u8; 3]> {
+fn by_class(model: &PaperModel) -> Vec<[u8; 3]> {
     (0..).take(model.cloud.len()).map(|i| class_color(model.class(i))).collect()
 }
 
@@ -36,7 +36,7 @@ fn by_height(points: &[[f32; 3]]) -> Vec<[u8; 3]> {
 }
 
 /// Colour of each ball: that of the point it was made for.
-fn of_sources(model: &Model, points: &[[u8; 3]]) -> Vec<[u8; 3]> {
+fn of_sources(model: &PaperModel, points: &[[u8; 3]]) -> Vec<[u8; 3]> {
     model.balls.source.iter().map(|&i| points[i as usize]).collect()
 }
 
@@ -76,32 +76,32 @@ fn canvas_with_balls(view: &View, balls: &MedialBalls, colors: &[[u8; 3]]) -> Re
     Ok(canvas)
 }
 
-fn balls_picture(view: &View, model: &Model, colors: &[[u8; 3]]) -> Result<Picture> {
+fn balls_picture(view: &View, model: &PaperModel, colors: &[[u8; 3]]) -> Result<Picture> {
     Ok(canvas_with_balls(view, &model.balls, &of_sources(model, colors))?.into_picture())
 }
 
-/// Targets with one answer, at most `most` of them.
-fn with_answer(look: &Look, answer: Answer, most: usize) -> Vec<[f32; 3]> {
-    look.targets.iter().zip(&look.answers).filter(|&(_, &a)| a == answer).map(|(&t, _)| t).take(most).collect()
+/// Targets with one answer, at most `max` of them.
+fn with_answer(look: &Look, answer: Answer, max: usize) -> Vec<[f32; 3]> {
+    look.targets.iter().zip(&look.answers).filter(|&(_, &a)| a == answer).map(|(&t, _)| t).take(max).collect()
 }
 
 /// Balls and blocked targets together.
-fn shadow_picture(view: &View, model: &Model, colors: &[[u8; 3]], look: &Look, most: usize) -> Result<Picture> {
+fn shadow_picture(view: &View, model: &PaperModel, colors: &[[u8; 3]], look: &Look, max: usize) -> Result<Picture> {
     let mut canvas = canvas_with_balls(view, &model.balls, &of_sources(model, colors))?;
-    canvas.draw_points(&with_answer(look, Answer::Blocked, most), Colors::One(SHADOW), 1)?;
+    canvas.draw_points(&with_answer(look, Answer::Blocked, max), Colors::One(SHADOW), 1)?;
     Ok(canvas.into_picture())
 }
 
 /// What the depth map shows, without the distance the picture plane was moved back by.
 fn depth_of(look: &Look, title: &str) -> Result<Picture> {
-    let least = look.map.depth.values().iter().copied().fold(f32::INFINITY, f32::min);
-    let values = look.map.depth.values().iter().map(|d| d - least).collect();
+    let min = look.map.depth.values().iter().copied().fold(f32::INFINITY, f32::min);
+    let values = look.map.depth.values().iter().map(|d| d - min).collect();
     let depth = Raster::from_values(look.map.depth.width(), look.map.depth.height(), values)?;
     Ok(depth_picture(&depth, title))
 }
 
 /// Figure 4.
-pub(crate) fn artificial(folder: &Path, model: &Model, look: &Look) -> Result<()> {
+pub(crate) fn artificial(folder: &Path, model: &PaperModel, look: &Look) -> Result<()> {
     let top = view_of(model.low, model.high, None, 340.0)?;
     let points = points_picture(&top, &model.cloud.positions, &by_height(&model.cloud.positions), 4)?;
     let white = vec![[225, 215, 195]; model.cloud.len()];
@@ -112,7 +112,7 @@ pub(crate) fn artificial(folder: &Path, model: &Model, look: &Look) -> Result<()
 }
 
 /// Figures 5 and 6 for a housing block.
-pub(crate) fn block(folder: &Path, model: &Model, tau: &Model, look: &Look) -> Result<()> {
+pub(crate) fn block(folder: &Path, model: &PaperModel, tau: &PaperModel, look: &Look) -> Result<()> {
     let colors = by_class(model);
     let top = view_of(model.low, model.high, None, 440.0)?;
     let a = points_picture(&top, &model.cloud.positions, &colors, 2)?;
@@ -131,7 +131,7 @@ pub(crate) fn block(folder: &Path, model: &Model, tau: &Model, look: &Look) -> R
 }
 
 /// Figure 6, from beside the viewport and coloured by height: from the viewport itself nothing blocked could be seen.
-fn figure6(folder: &Path, model: &Model, look: &Look) -> Result<()> {
+fn figure6(folder: &Path, model: &PaperModel, look: &Look) -> Result<()> {
     let side = view_of(model.low, model.high, Some([crate::VIEWER[0] - 50.0, 40.0]), 430.0)?;
     let picture = |answer| {
         let targets = with_answer(look, answer, usize::MAX);
@@ -144,7 +144,7 @@ fn figure6(folder: &Path, model: &Model, look: &Look) -> Result<()> {
 }
 
 /// Figure 5 for the whole tile.
-pub(crate) fn tile(folder: &Path, model: &Model, look: &Look) -> Result<()> {
+pub(crate) fn tile(folder: &Path, model: &PaperModel, look: &Look) -> Result<()> {
     let colors = by_class(model);
     let top = view_of(model.low, model.high, None, 480.0)?;
     let a = points_picture(&top, &model.cloud.positions, &colors, 1)?;
@@ -154,7 +154,7 @@ pub(crate) fn tile(folder: &Path, model: &Model, look: &Look) -> Result<()> {
 }
 
 /// Figure 7: a roof with few samples on one side, and trees; points above, balls below.
-pub(crate) fn close_views(folder: &Path, cloud: &PointCloud, way: &Way<'_>) -> Result<()> {
+pub(crate) fn close_views(folder: &Path, cloud: &PointCloud, way: &NormalMethod<'_>) -> Result<()> {
     for (name, window, viewer) in
         [("figure7_roof.png", crate::ROOF, [235.0, 30.0]), ("figure7_trees.png", crate::TREES, [200.0, 15.0])]
     {
@@ -166,7 +166,7 @@ pub(crate) fn close_views(folder: &Path, cloud: &PointCloud, way: &Way<'_>) -> R
         let view = view_of(low, high, Some(viewer), 440.0)?;
         let mut columns = Vec::new();
         for params in [ShrinkParams::angles(), unlimited_tau(), ShrinkParams::tau()] {
-            let model = Model::of_scan(&around, way, params)?;
+            let model = PaperModel::of_scan(&around, way, params)?;
             let inside = |p: [f32; 3]| (0..2).all(|i| p[i] >= low[i] && p[i] <= high[i]);
             let colors = by_class(&model);
             let mut balls = model.balls.clone();

@@ -2,7 +2,7 @@
 
 use crate::Tables;
 use crate::experiment::parallel_to;
-use crate::model::{Model, Way, unlimited_tau};
+use crate::model::{NormalMethod, PaperModel, unlimited_tau};
 use belvedere::cloud::to_local;
 use belvedere::control::Control;
 use belvedere::depth::{ItemBuffer, Profile, depth_map};
@@ -13,7 +13,7 @@ use belvedere::query::{Answer, query_points, random_targets};
 use belvedere::trajectory::Trajectory;
 use belvedere::view::to_sun;
 use belvedere::{Mesh, PointCloud, Result};
-use belvedere_scenes::{AirborneParams, Material, Scene, TownParams, Truth, scan_airborne, town};
+use belvedere_scenes::{AirborneParams, Material, TownParams, TriangleScene, Truth, scan_airborne, town};
 
 /// A point this deep inside a ball cannot be noise, metres.
 const SURELY_INSIDE: f32 = 0.3;
@@ -27,15 +27,15 @@ const STEEP_NZ: f32 = 0.5;
 const EYE_HEIGHT: f64 = 1.5;
 
 /// A way of working to be judged.
-struct Method {
+struct JudgedMethod {
     name: &'static str,
-    model: Model,
+    model: PaperModel,
     profile: Profile,
     /// Depth bias, or `None` for the default.
     bias: Option<f32>,
 }
 
-impl Method {
+impl JudgedMethod {
     /// Whether each target is visible from the sun; every target lies in the view.
     fn sunlit(&self, targets: &[[f32; 3]], to_sun: [f64; 3]) -> Result<Vec<bool>> {
         let view = parallel_to(&self.model, to_sun.map(|v| -v), SUN_PIXELS_PER_METRE)?;
@@ -54,33 +54,34 @@ fn percent(count: usize, of: usize) -> f64 {
     100.0 * count as f64 / of.max(1) as f64
 }
 
-/// Balls that hold points of their own cloud or air that a pulse went through, and what people on the ground would see of the sun, for the real tile.
-pub(crate) fn delft(published: Model, cloud: &PointCloud, mesh: &Mesh, tables: &mut Tables) -> Result<()> {
-    let six = Way { neighbors: 6, mesh };
-    let sixteen = Way { neighbors: 16, mesh };
-    let tau_six = Model::of_scan(cloud, &six, unlimited_tau())?;
-    let tau_sixteen = Model::of_scan(cloud, &sixteen, unlimited_tau())?;
-    let default = Model::of_scan(cloud, &sixteen, ShrinkParams::tau())?;
-    let published_again = Model::of_scan(cloud, &six, ShrinkParams::angles())?;
+/// Balls that hold points of their own cloud or air that a pulse went through, and what people on the ground would see
+/// of the sun, for the real tile.
+pub(crate) fn delft(published: PaperModel, cloud: &PointCloud, mesh: &Mesh, tables: &mut Tables) -> Result<()> {
+    let six = NormalMethod { neighbors: 6, mesh };
+    let sixteen = NormalMethod { neighbors: 16, mesh };
+    let tau_six = PaperModel::of_scan(cloud, &six, unlimited_tau())?;
+    let tau_sixteen = PaperModel::of_scan(cloud, &sixteen, unlimited_tau())?;
+    let default = PaperModel::of_scan(cloud, &sixteen, ShrinkParams::tau())?;
+    let published_again = PaperModel::of_scan(cloud, &six, ShrinkParams::angles())?;
     let methods = [
-        Method {
+        JudgedMethod {
             name: "published (k 6, angles, cone)",
             model: published,
             profile: Profile::PaperCone,
             bias: Some(0.0),
         },
-        Method { name: "angles, k 6, sphere", model: published_again, profile: Profile::Sphere, bias: None },
-        Method { name: "τ-balls, k 6, sphere", model: tau_six, profile: Profile::Sphere, bias: None },
-        Method { name: "τ-balls, k 16, sphere", model: tau_sixteen, profile: Profile::Sphere, bias: None },
-        Method { name: "default: the same, 0.5 m at most", model: default, profile: Profile::Sphere, bias: None },
+        JudgedMethod { name: "angles, k 6, sphere", model: published_again, profile: Profile::Sphere, bias: None },
+        JudgedMethod { name: "τ-balls, k 6, sphere", model: tau_six, profile: Profile::Sphere, bias: None },
+        JudgedMethod { name: "τ-balls, k 16, sphere", model: tau_sixteen, profile: Profile::Sphere, bias: None },
+        JudgedMethod { name: "default: the same, 0.5 m at most", model: default, profile: Profile::Sphere, bias: None },
     ];
-    let scene = Scene {
+    let scene = TriangleScene {
         vertices: mesh.vertices.clone(),
         triangles: mesh.triangles.clone(),
         materials: vec![Material::Roof; mesh.triangles.len()],
         objects: vec![0; mesh.triangles.len()],
         object_names: vec!["city model".to_owned()],
-        ..Scene::default()
+        ..TriangleScene::default()
     };
     let truth = Truth::new(&scene);
     let people = people(&methods[0].model.cloud, &truth);
@@ -159,7 +160,7 @@ const KINDS: [&str; 8] = [
     "other, steep",
 ];
 
-fn kind(model: &Model, point: u32) -> usize {
+fn kind(model: &PaperModel, point: u32) -> usize {
     let group = match model.class(point) {
         2 => 0,
         6 => 1,
@@ -187,7 +188,7 @@ struct Inside {
 
 impl Inside {
     /// Every ball against every point and person it may hold: exact.
-    fn of(model: &Model, people: &[[f32; 3]]) -> Result<Self> {
+    fn of(model: &PaperModel, people: &[[f32; 3]]) -> Result<Self> {
         let people_index = NeighborIndex::new(people, &Control::none())?;
         let mut inside = Self {
             bulging_count: 0,
@@ -226,7 +227,7 @@ impl Inside {
         Ok(inside)
     }
 
-    fn line(&self, method: &Method, tables: &mut Tables) {
+    fn line(&self, method: &JudgedMethod, tables: &mut Tables) {
         let count = method.model.balls.len();
         let held = |kinds: &[u8]| percent(kinds.iter().filter(|&&k| k != 0).count(), kinds.len());
         let ground: Vec<u8> =
@@ -259,9 +260,9 @@ impl Inside {
     }
 }
 
-/// Whether each ball's centre lies outside every solid and above the ground. The first surface straight above tells: it is
-/// seen from behind by what is inside.
-fn free_centers(model: &Model, scene: &Scene, truth: &Truth) -> Vec<bool> {
+/// Whether each ball's centre lies outside every solid and above the ground. The first surface straight above tells: it
+/// is seen from behind by what is inside.
+fn free_centers(model: &PaperModel, scene: &TriangleScene, truth: &Truth) -> Vec<bool> {
     let up = [0.0, 0.0, 1.0];
     let faces_up = |triangle: u32| {
         scene
@@ -273,7 +274,7 @@ fn free_centers(model: &Model, scene: &Scene, truth: &Truth) -> Vec<bool> {
 }
 
 /// The model as an oracle would have it: without balls in free air that were made for points of these classes.
-fn without_free_centers(mut model: Model, classes: &[u8], scene: &Scene, truth: &Truth) -> Model {
+fn without_free_centers(mut model: PaperModel, classes: &[u8], scene: &TriangleScene, truth: &Truth) -> PaperModel {
     let free = free_centers(&model, scene, truth);
     for (ball, free) in free.into_iter().enumerate() {
         if free && classes.contains(&model.class(model.balls.source[ball])) {
@@ -299,11 +300,11 @@ pub(crate) fn simulated_town(tables: &mut Tables) -> Result<()> {
     let (trajectory, _) =
         Trajectory::from_records(path.times.iter().copied().zip(path.positions.iter().copied()).collect());
     let by = Orientation::Trajectory(&trajectory);
-    let make = |k, params| Model::of_oriented_scan(&cloud, k, &by, params);
+    let make = |k, params| PaperModel::of_oriented_scan(&cloud, k, &by, params);
     let (angles, tau) = (ShrinkParams::angles, unlimited_tau);
-    let sphere = |name, model| Method { name, model, profile: Profile::Sphere, bias: None };
+    let sphere = |name, model| JudgedMethod { name, model, profile: Profile::Sphere, bias: None };
     let methods = [
-        Method {
+        JudgedMethod {
             name: "published (k 6, angles, cone, no bias)",
             model: make(6, angles())?,
             profile: Profile::PaperCone,

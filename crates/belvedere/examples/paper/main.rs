@@ -1,8 +1,8 @@
 //! Regenerates the experiments of the paper: Peters, Ledoux & Biljecki 2015, section 4.
 //!
-//! `cargo run --release -p belvedere --example paper -- OUTDIR` writes pictures like Figures 4 to 7 and `tables.md` with
-//! every figure that docs/paper.md quotes. Data are looked for under `BELVEDERE_TEST_DATA` (default: `shared` beside the
-//! repository); data sets that are not there are skipped, and the run says so.
+//! `cargo run --release -p belvedere --example paper -- OUTDIR` writes pictures like Figures 4 to 7 and `tables.md`
+//! with every figure that docs/paper.md quotes. Data are looked for under `BELVEDERE_TEST_DATA` (default: `shared`
+//! beside the repository); data sets that are not there are skipped, and the run says so.
 #![allow(clippy::print_stdout, reason = "an example reports on the terminal")]
 #![allow(clippy::cast_possible_truncation, reason = "sizes of pictures and local coordinates are small")]
 
@@ -16,12 +16,12 @@ use belvedere::control::Control;
 use belvedere::io::{ReadOptions, read_cloud, read_mesh};
 use belvedere::medial::ShrinkParams;
 use experiment::{Look, compare_profiles, oblique, top_down};
-use model::{Model, Way, unlimited_tau, within_window};
+use model::{NormalMethod, PaperModel, unlimited_tau, within_window};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-/// A housing block inside the area of the city model, EPSG:28992: west, south, east, north. The paper's block has 24 647
-/// points.
+/// A housing block inside the area of the city model, EPSG:28992: west, south, east, north. The paper's block has 24
+/// 647 points.
 const BLOCK: [f64; 4] = [84_905.0, 447_551.0, 84_955.0, 447_601.0];
 /// A pitched roof, and a row of trees along a canal, for close views; EPSG:28992 as above.
 pub(crate) const ROOF: [f64; 4] = [84_932.0, 447_578.0, 84_955.0, 447_601.0];
@@ -82,7 +82,7 @@ fn artificial(folder: &Path, tables: &mut Tables) -> Result<()> {
             tables.line(&format!("normals of the PLY that equal those given to masbcpp: {agree} of {}", a.len()));
         }
     }
-    let model = Model::of_given_normals(cloud, ShrinkParams::angles())?;
+    let model = PaperModel::of_given_normals(cloud, ShrinkParams::angles())?;
     model.report(tables);
     let views = [("top-down", top_down(&model, 40.0)?), ("oblique", oblique(&model, VIEWER, 40.0)?)];
     let looks = compare_profiles(&model, &views, tables)?;
@@ -94,7 +94,7 @@ fn amsterdam(tables: &mut Tables) -> Result<()> {
     let Some(path) = data("reference/amsterdam") else { return Ok(()) };
     let (cloud, _) = read_cloud(&[path], &ReadOptions::default(), &Control::none())?;
     tables.line("\n## Amsterdam\n");
-    let model = Model::of_given_normals(cloud, ShrinkParams::angles())?;
+    let model = PaperModel::of_given_normals(cloud, ShrinkParams::angles())?;
     model.report(tables);
     let views = [("top-down", top_down(&model, 10.0)?), ("oblique", oblique(&model, VIEWER, 10.0)?)];
     compare_profiles(&model, &views, tables)?;
@@ -111,19 +111,19 @@ fn delft(folder: &Path, tables: &mut Tables) -> Result<()> {
     let (cloud, _) = read_cloud(&[tile], &options, &Control::none())?;
     let (mesh, _) = read_mesh(&city)?;
     let block = within_window(&cloud, BLOCK);
-    let way = Way { neighbors: PAPER_K, mesh: &mesh };
+    let way = NormalMethod { neighbors: PAPER_K, mesh: &mesh };
 
     tables.line("\n## Delft, a housing block\n");
-    let model = Model::of_scan(&block, &way, ShrinkParams::angles())?;
+    let model = PaperModel::of_scan(&block, &way, ShrinkParams::angles())?;
     model.report(tables);
     let views = [("top-down", top_down(&model, 10.0)?), ("oblique", oblique(&model, VIEWER, 10.0)?)];
     let looks = compare_profiles(&model, &views, tables)?;
-    let tau = Model::of_scan(&block, &way, unlimited_tau())?;
+    let tau = PaperModel::of_scan(&block, &way, unlimited_tau())?;
     figures::block(folder, &model, &tau, &looks[1])?;
     figures::close_views(folder, &cloud, &way)?;
 
     tables.line("\n## Delft, the whole tile\n");
-    let model = Model::of_scan(&cloud, &way, ShrinkParams::angles())?;
+    let model = PaperModel::of_scan(&cloud, &way, ShrinkParams::angles())?;
     model.report(tables);
     let views = [("top-down", top_down(&model, 4.0)?), ("oblique", oblique(&model, VIEWER, 4.0)?)];
     let looks: Vec<Look> = compare_profiles(&model, &views, tables)?;

@@ -13,13 +13,13 @@ use std::time::Instant;
 
 /// How the normals of a scan are made: from `neighbors` nearest neighbours, signs from a city model.
 #[derive(Clone, Copy)]
-pub(crate) struct Way<'a> {
+pub(crate) struct NormalMethod<'a> {
     pub(crate) neighbors: usize,
     pub(crate) mesh: &'a Mesh,
 }
 
 /// A cloud and its interior balls.
-pub(crate) struct Model {
+pub(crate) struct PaperModel {
     /// The points that were used.
     pub(crate) cloud: PointCloud,
     pub(crate) oriented: OrientedCloud,
@@ -56,9 +56,9 @@ pub(crate) fn within_window(cloud: &PointCloud, [west, south, east, north]: [f64
     cloud.select(&inside)
 }
 
-impl Model {
-    /// Of a cloud whose normals are given and outward. Nothing is cleaned away: the points are those the published method
-    /// was run on.
+impl PaperModel {
+    /// Of a cloud whose normals are given and outward. Nothing is cleaned away: the points are those the published
+    /// method was run on.
     pub(crate) fn of_given_normals(cloud: PointCloud, params: ShrinkParams) -> Result<Self> {
         let mut times = Vec::new();
         let given_count = cloud.len();
@@ -70,7 +70,7 @@ impl Model {
     }
 
     /// Of a scan, oriented with a city model.
-    pub(crate) fn of_scan(cloud: &PointCloud, way: &Way<'_>, params: ShrinkParams) -> Result<Self> {
+    pub(crate) fn of_scan(cloud: &PointCloud, way: &NormalMethod<'_>, params: ShrinkParams) -> Result<Self> {
         Self::of_oriented_scan(cloud, way.neighbors, &Orientation::Mesh(way.mesh), params)
     }
 

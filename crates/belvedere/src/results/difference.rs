@@ -5,8 +5,8 @@ use crate::figures::{MapLegend, MapPicture, Picture, map_picture};
 use crate::io::Georeference;
 use crate::raster::Raster;
 
-/// Colours of losses and gains from small to large: blue and orange, which people with any colour vision tell apart, and which grow
-/// darker, so that they differ in print too.
+/// Colours of losses and gains from small to large: blue and orange, which people with any colour vision tell apart,
+/// and which grow darker, so that they differ in print too.
 ///
 /// # Source
 /// Brewer, ColorBrewer 2.0, PuOr with its purples turned blue.
@@ -39,10 +39,10 @@ pub fn difference_map(change: &Raster<f32>, cell: f64, place: Option<&Georeferen
     let number = |value: f64| if step >= 1.0 { format!("{value:.0}") } else { format!("{value}") };
     let [first, second] = [step, 2.0 * step].map(number);
     // such as that of lit and not lit
-    let only = sizes.first().filter(|least| sizes.last() == Some(least));
+    let only = sizes.first().filter(|min| sizes.last() == Some(min));
     let texts = |sign: &str| {
-        let most = only.map_or(format!("{sign} of {second} or more"), |only| format!("{sign} of {only}"));
-        [format!("{sign} below {first}"), format!("{sign} of {first} to {second}"), most]
+        let max = only.map_or(format!("{sign} of {second} or more"), |only| format!("{sign} of {only}"));
+        [format!("{sign} below {first}"), format!("{sign} of {first} to {second}"), max]
     };
     let (gains, losses) = (texts("gain"), texts("loss"));
     let used = |color: [u8; 3]| colors.contains(&Some(color));

@@ -1,7 +1,7 @@
 //! Measures of the faces of a mesh as files.
 
 use crate::apps::targets::{FaceMeans, Measure, object_areas};
-use crate::io::{Cells, write_mesh_values};
+use crate::io::{TableCells, write_mesh_values};
 use crate::query::{SeenArea, SurfacePieces, seen_in_all, seen_objects};
 use crate::{Frame, Mesh, Result};
 use std::path::Path;
@@ -18,7 +18,8 @@ pub(super) fn write_colored(
     write_mesh_values(path, mesh, frame.crs.metres_per_unit_xyz(), &measure.name, &values, measure.span(&values))
 }
 
-/// A table of the faces of a mesh: a row for each object (one in all where the mesh knows no objects), then one for each face.
+/// A table of the faces of a mesh: a row for each object (one in all where the mesh knows no objects), then one for
+/// each face.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FaceRows<'a> {
     /// Object of each row; empty where there is none.
@@ -73,8 +74,8 @@ impl<'a> FaceRows<'a> {
     pub fn write(&self, path: &Path) -> Result<()> {
         let faces = (0_u64..).take(self.objects.len() - self.object_count).map(Some);
         let numbers: Vec<Option<u64>> = std::iter::repeat_n(None, self.object_count).chain(faces).collect();
-        let mut cells = vec![("object", Cells::Words(&self.objects)), ("face", Cells::Whole(&numbers))];
-        cells.extend(self.columns.iter().map(|(name, values, decimals)| (*name, Cells::Real(values, *decimals))));
+        let mut cells = vec![("object", TableCells::Words(&self.objects)), ("face", TableCells::Whole(&numbers))];
+        cells.extend(self.columns.iter().map(|(name, values, decimals)| (*name, TableCells::Real(values, *decimals))));
         crate::io::write_table(path, &cells)
     }
 }

@@ -2,8 +2,8 @@
 //!
 //! | targets | `.tif` | `.laz` `.las` `.ply` `.csv` |
 //! |---|---|---|
-//! | cells of a grid | the first measure as raster, with its further bands | a point for each cell that is a target, all measures as columns |
-//! | points | | the points with their attributes, all measures as columns; `.csv` of a table: its rows as they were given |
+//! | cells of a grid | the first measure, with its further bands | a point for each target, all measures as columns |
+//! | points | | the points with their attributes, all measures as columns; `.csv` of a table: its rows |
 //! | faces of a mesh | | `.csv`: a row for each object and face; `.ply`: the mesh coloured by the first measure |
 
 #[cfg(feature = "figures")]
@@ -22,7 +22,7 @@ pub use raster::{Pixels, ResultRaster, UNPROVEN_BAND, viewshed_words};
 
 pub use crate::apps::targets::ResultKind;
 
-use crate::apps::targets::{Layout, Measure, Targets};
+use crate::apps::targets::{Measure, TargetLayout, Targets};
 use crate::ground::{Ground, MapGrid};
 use crate::io::{ExtraColumn, ExtraValues, Georeference, TextRows, WriteReport, write_cloud, write_text_rows};
 use crate::{ElevationGrid, Error, Frame, Mesh, PointCloud, Result};
@@ -64,8 +64,8 @@ pub fn terrain_georeference(terrain: &ElevationGrid, frame: &Frame) -> Georefere
 /// Writes the measures of `targets` in the format that the extension of `path` names.
 ///
 /// # Errors
-/// [`Error::UnsupportedTargets`] where such targets do not fit the format, [`Error::LengthMismatch`] where a measure has not a value for each
-/// target, [`Error::NoPoints`] without a measure, and those of the writers.
+/// [`Error::UnsupportedTargets`] where such targets do not fit the format, [`Error::LengthMismatch`] where a measure
+/// has not a value for each target, [`Error::NoPoints`] without a measure, and those of the writers.
 pub fn write_measures(
     path: &Path,
     targets: &Targets,
@@ -82,12 +82,12 @@ pub fn write_measures(
     let extension = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
     let is_tiff = matches!(extension.as_str(), "tif" | "tiff");
     match (&targets.layout, from) {
-        (Layout::Cells(_), _) if is_tiff => {
+        (TargetLayout::Cells(_), _) if is_tiff => {
             let further = measures.iter().skip(1).filter(|measure| measure.is_further_band);
             let bands: Vec<&Measure> = std::iter::once(first).chain(further).collect();
             write_raster(path, targets, &bands).map(|()| WriteReport::default())
         }
-        (Layout::Surface(surface), TakenFrom::Mesh(mesh)) => {
+        (TargetLayout::Surface(surface), TakenFrom::Mesh(mesh)) => {
             match extension.as_str() {
                 "ply" => faces::write_colored(path, mesh, surface, &targets.frame, first),
                 _ => FaceRows::of_measures(mesh, surface, measures).write(path),
@@ -98,8 +98,8 @@ pub fn write_measures(
             write_text_rows(path, rows, &columns(measures)).map(|()| WriteReport::default())
         }
         (_, TakenFrom::Cloud(cloud)) if !is_tiff => write_points(path, cloud, measures),
-        (Layout::Cells(_) | Layout::Points, TakenFrom::Nothing) if !is_tiff => {
-            let rows: Vec<usize> = (0..expected).filter(|&row| targets.is_asked(row)).collect();
+        (TargetLayout::Cells(_) | TargetLayout::Points, TakenFrom::Nothing) if !is_tiff => {
+            let rows: Vec<usize> = (0..expected).filter(|&row| targets.is_target(row)).collect();
             let positions = rows.iter().map(|&row| targets.positions[row]).collect();
             let cloud = PointCloud { frame: targets.frame.clone(), positions, ..PointCloud::default() };
             let pick = |measure: &Measure| Measure {
@@ -120,8 +120,8 @@ pub fn write_measures(
 /// are no targets have no value in any band.
 ///
 /// # Errors
-/// [`Error::UnsupportedTargets`] for targets that are no cells, [`Error::LengthMismatch`] unless there is a value for each cell, and those of
-/// [`ResultRaster::write`].
+/// [`Error::UnsupportedTargets`] for targets that are no cells, [`Error::LengthMismatch`] unless there is a value for
+/// each cell, and those of [`ResultRaster::write`].
 pub fn write_raster(path: &Path, targets: &Targets, measures: &[&Measure]) -> Result<()> {
     let grid = cells(targets)?.grid;
     let place = georeference(&grid, &targets.frame);

@@ -1,4 +1,5 @@
-//! Meshes added to a scene: against closed forms, against the exact rays of the simulated towns, and all ways of asking against each other.
+//! Meshes added to a scene: against closed forms, against the exact rays of the simulated towns, and all ways of asking
+//! against each other.
 
 use belvedere::blocking::BlockRule;
 use belvedere::control::Control;
@@ -12,7 +13,7 @@ use belvedere::random::uniform;
 use belvedere::vector::{length, sub, unit};
 use belvedere::view::{View, to_sun};
 use belvedere::{Bounds, Mesh};
-use belvedere_scenes::{Placement, Scene, Truth, extruded};
+use belvedere_scenes::{PlanPlacement, TriangleScene, Truth, extruded};
 
 fn balls(count: u64, size: f64) -> MedialBalls {
     let at = |i: u64| (size * uniform(3, i)) as f32;
@@ -26,19 +27,19 @@ fn balls(count: u64, size: f64) -> MedialBalls {
     }
 }
 
-fn mesh_of(scene: &Scene) -> Mesh {
+fn mesh_of(scene: &TriangleScene) -> Mesh {
     Mesh { vertices: scene.vertices.clone(), triangles: scene.triangles.clone(), ..Mesh::default() }
 }
 
 /// An upright box: middle of its footprint, angle, length, width, bottom and top.
-fn box_at([x, y]: [f64; 2], angle: f64, [along, across]: [f64; 2], [bottom, top]: [f64; 2]) -> Scene {
-    let mut scene = Scene::default();
-    let place = Placement { origin: [x, y], angle };
+fn box_at([x, y]: [f64; 2], angle: f64, [along, across]: [f64; 2], [bottom, top]: [f64; 2]) -> TriangleScene {
+    let mut scene = TriangleScene::default();
+    let place = PlanPlacement { origin: [x, y], angle };
     scene.add_object("box", &[extruded(&place.rectangle(along, across), bottom, top)]);
     scene
 }
 
-fn added(scene: &Scene) -> AddedMeshes {
+fn added(scene: &TriangleScene) -> AddedMeshes {
     AddedMeshes::new(&mesh_of(scene), "box", [0.0; 3], None, None).unwrap()
 }
 
@@ -157,7 +158,8 @@ fn all_ways_of_asking_agree_about_added_meshes() {
         assert_eq!(sight.answer, answer);
         assert_eq!(scene.sight_answer(eye, target, &EarthParams::flat()), answer);
         assert_eq!(scene.sight_answer(eye, target, &curved), scene.line_of_sight(eye, target, &curved).unwrap().answer);
-        // what blocks first stands where a line that ends a little before it does is free, and one a little after is not
+        // what blocks first stands where a line that ends a little before it does is free, and one a little after is
+        // not
         if let Some(block) = sight.first_block.filter(|block| block.blocker.mesh().is_some()) {
             let towards = unit(sub(target, eye)).unwrap();
             let at = |range: f64| -> [f64; 3] { std::array::from_fn(|i| eye[i] + range * towards[i]) };
@@ -218,7 +220,7 @@ fn skylines_heights_and_ranges_know_added_meshes() {
     for i in 0..300_u64 {
         let place = |k: u64| 60.0 * uniform(8, 4 * i + k);
         let (observer, foot) = ([place(0), place(1), 9.0 + 0.2 * place(2)], [place(3), place(5), 0.0]);
-        let Some(height) = scene.least_visible_height(observer, foot, 300.0, &flat) else { continue };
+        let Some(height) = scene.min_visible_height(observer, foot, 300.0, &flat) else { continue };
         let seen = |height: f64| scene.sight_answer(observer, [foot[0], foot[1], height], &flat) == Answer::Visible;
         assert!(seen(height) || seen(height + 1e-3), "{observer:?} {foot:?} {height}");
         let below: Vec<f64> = (0..200).map(|k| height * f64::from(k) / 200.0).collect();
@@ -237,7 +239,7 @@ fn a_target_on_a_face_is_not_hidden_by_it_and_inside_sees_nothing_outside() {
     let added = added(&box_at([400.3, 700.7], 0.3, [12.0, 7.0], [0.0, 9.0]));
     let scene =
         MedialScene::new(&MedialBalls::default(), &BlockRule::carved()).unwrap().with_added(Some(added.clone()));
-    let place = Placement { origin: [400.3, 700.7], angle: 0.3 };
+    let place = PlanPlacement { origin: [400.3, 700.7], angle: 0.3 };
     for i in 0..500_u64 {
         let (u, v) = (11.9 * (uniform(1, 2 * i) - 0.5), 6.9 * (uniform(1, 2 * i + 1) - 0.5));
         let [x, y] = place.at(u, v);

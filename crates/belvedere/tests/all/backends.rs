@@ -5,12 +5,12 @@ use belvedere::blocking::BlockRule;
 use belvedere::control::{Control, Watcher};
 use belvedere::depth::{DepthBounds, ItemBuffer, Profile, depth_map};
 use belvedere::medial::MedialBalls;
-use belvedere::pulses::{NeedleParams, Needles};
+use belvedere::pulses::{FreeSegmentParams, FreeSegments};
 use belvedere::query::certified::CertifiedMap;
 use belvedere::query::target_tree::TargetTree;
 use belvedere::query::{
-    Answer, Backend, BallTree, Cpu, EarthParams, Line, MedialScene, Prepared, Proof, ProofParams, Scope, Settled,
-    Viewer, Visibility, VisibilityMatrix, random_pairs, random_targets,
+    Answer, Backend, BallTree, Cpu, EarthParams, LineAnswer, MedialScene, PreparedBackend, Proof, ProofParams, Scope,
+    Settled, Viewer, Visibility, VisibilityMatrix, random_pairs, random_targets,
 };
 use belvedere::random::uniform;
 use belvedere::raster::Raster;
@@ -25,17 +25,17 @@ struct Forgetful {
 }
 
 struct ForgetfulBalls {
-    inner: Box<dyn Prepared>,
+    inner: Box<dyn PreparedBackend>,
     share_open: f64,
 }
 
 impl Backend for Forgetful {
-    fn prepare(&self, balls: &Arc<BallTree>) -> belvedere::Result<Box<dyn Prepared>> {
+    fn prepare(&self, balls: &Arc<BallTree>) -> belvedere::Result<Box<dyn PreparedBackend>> {
         Ok(Box::new(ForgetfulBalls { inner: Cpu.prepare(balls)?, share_open: self.share_open }))
     }
 }
 
-impl Prepared for ForgetfulBalls {
+impl PreparedBackend for ForgetfulBalls {
     fn depth(&self, view: &View, start: f64, control: &Control<'_>) -> belvedere::Result<DepthBounds> {
         let sure = self.inner.depth(view, start, control)?;
         let [width, height] = view.size_px;
@@ -58,7 +58,8 @@ impl Prepared for ForgetfulBalls {
         for target in 0..targets.len() {
             for direction in 0..directions.len() {
                 let number = (target * directions.len() + direction) as u64;
-                let line = if uniform(8, number) < self.share_open { Line::Open } else { sure.line(target, direction) };
+                let line =
+                    if uniform(8, number) < self.share_open { LineAnswer::Open } else { sure.line(target, direction) };
                 settled.set(target, direction, line);
             }
         }
@@ -183,10 +184,11 @@ fn pulses_that_are_indexed_when_needed_prove_the_same() {
         .filter(|p| (p[0] - 30.0).hypot(p[1] - 30.0) > 8.0)
         .collect();
     let scanner = vec![[30.0, 10.0, 500.0]; returns.len()];
-    let (needles, _) = Needles::new(&returns, &scanner, &NeedleParams::default(), &Control::none()).unwrap();
-    let columns = needles.to_columns();
+    let (free_segments, _) =
+        FreeSegments::new(&returns, &scanner, &FreeSegmentParams::default(), &Control::none()).unwrap();
+    let columns = free_segments.to_columns();
     let params = ProofParams::default();
-    let at_once = Proof::new(Needles::from_columns(&columns, &Control::none()).unwrap(), &params).unwrap();
+    let at_once = Proof::new(FreeSegments::from_columns(&columns, &Control::none()).unwrap(), &params).unwrap();
     let when_needed = Proof::from_columns(columns.clone(), &params).unwrap();
     assert_eq!(at_once.nearness().to_bits(), when_needed.nearness().to_bits());
     let targets = random_targets([0.0, 0.0, 0.1], [60.0, 60.0, 3.0], 3000, 4);
@@ -201,9 +203,9 @@ fn pulses_that_are_indexed_when_needed_prove_the_same() {
     assert!(matches!(Proof::from_columns(broken, &params), Err(Error::LengthMismatch { .. })));
 }
 
-struct Stopped;
+struct AlwaysCancelled;
 
-impl Watcher for Stopped {
+impl Watcher for AlwaysCancelled {
     fn is_cancelled(&self) -> bool {
         true
     }
@@ -211,7 +213,7 @@ impl Watcher for Stopped {
 
 #[test]
 fn what_is_cancelled_stops() {
-    let control = Control::new(&Stopped);
+    let control = Control::new(&AlwaysCancelled);
     let (targets, directions) = (targets(500), directions(20));
     let balls = town(3000);
     let scene = scene(&BlockRule::carved());

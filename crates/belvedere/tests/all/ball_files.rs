@@ -13,7 +13,7 @@ use belvedere::crs::Crs;
 use belvedere::io::{is_ball_file, read_balls, write_balls, write_cloud};
 use belvedere::medial::MedialBalls;
 use belvedere::model::ModelParts;
-use belvedere::pulses::NeedleColumns;
+use belvedere::pulses::FreeSegmentColumns;
 use belvedere::{Bounds, Error, Frame, PointCloud};
 use tempfile::TempDir;
 
@@ -34,7 +34,7 @@ fn balls(crs: Crs) -> ModelParts {
             separation_angles: (0..n).map(|i| if i % 10 == 0 { f32::NAN } else { f32::from(i) * 0.006 }).collect(),
         },
         transmission: (0..n).map(|i| f32::from(i) / 499.0).collect(),
-        pulses: Some(NeedleColumns {
+        pulses: Some(FreeSegmentColumns {
             starts: (0..700_u16).map(|i| [f32::from(i) * 0.37, f32::from(i).sqrt(), 1.0 / f32::from(i + 3)]).collect(),
             ways: (0..700_u16).map(|i| u8::try_from(i % 6).unwrap()).collect(),
             slopes: (0..700_i16).map(|i| [i * 40 - 9000, 3000 - i]).collect(),

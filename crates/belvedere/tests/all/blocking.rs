@@ -1,4 +1,5 @@
-//! When a ball blocks a line of sight, against the same said in another way: roots of quadratics and points on surfaces.
+//! When a ball blocks a line of sight, against the same said in another way: roots of quadratics and points on
+//! surfaces.
 
 use belvedere::Error;
 use belvedere::blocking::{Ball, BlockRule, Chord, Profile};
@@ -14,7 +15,7 @@ const CASES: u64 = 20_000;
 /// Cases nearer than this to where an answer changes say nothing, metres: rounding decides them.
 const UNDECIDED: f64 = 1e-5;
 
-struct Case {
+struct BlockingCase {
     ball: Ball,
     target: [f64; 3],
     towards: [f64; 3],
@@ -22,7 +23,7 @@ struct Case {
     rule: BlockRule,
 }
 
-fn case(number: u64) -> Case {
+fn case(number: u64) -> BlockingCase {
     let random = |k: u64| uniform(11, 16 * number + k);
     let coordinate = |k: u64| 8.0 * random(k) - 4.0;
     #[expect(clippy::cast_possible_truncation, reason = "balls are f32")]
@@ -35,7 +36,7 @@ fn case(number: u64) -> Case {
         shell: if random(8) < 0.3 { 0.0 } else { 0.6 * random(9) },
     };
     let direction = [10, 11, 12].map(|k| random(k) - 0.5);
-    Case { ball, target: [13, 14, 15].map(coordinate), towards: unit(direction).unwrap(), reach, rule }
+    BlockingCase { ball, target: [13, 14, 15].map(coordinate), towards: unit(direction).unwrap(), reach, rule }
 }
 
 /// Where a line meets a sphere, by the roots of |o + t d − c|² = r².
@@ -59,8 +60,8 @@ fn counted(rule: &BlockRule, radius: f64, outside: f64) -> f64 {
 }
 
 /// Where the line leaves a ball that blocks; the error says how near the case is to where that changes.
-fn expected(case: &Case) -> Result<Option<f64>, f64> {
-    let Case { ball, target, towards, reach, rule } = case;
+fn expected(case: &BlockingCase) -> Result<Option<f64>, f64> {
+    let BlockingCase { ball, target, towards, reach, rule } = case;
     let (center, radius) = (ball.center.map(f64::from), f64::from(ball.radius));
     let sure = |distance: f64| if distance.abs() < UNDECIDED { Err(distance) } else { Ok(distance > 0.0) };
     let outside = length(sub(center, *target)) - radius;
@@ -102,10 +103,10 @@ fn a_ball_blocks_where_the_roots_of_its_sphere_say() {
 fn a_straight_line_is_a_chord_of_itself() {
     let mut blocked = 0;
     for number in 0..CASES {
-        let Case { ball, target, towards, rule, .. } = case(number);
+        let BlockingCase { ball, target, towards, rule, .. } = case(number);
         let reach = 12.0 * uniform(5, number);
         let observer = std::array::from_fn(|i| target[i] + reach * towards[i]);
-        let case = Case { ball, target, towards, reach, rule };
+        let case = BlockingCase { ball, target, towards, reach, rule };
         // a ball that touches one of the ends or the line is decided by rounding
         if expected(&case).is_err() || ball.depth_of(observer).abs() < UNDECIDED {
             continue;
@@ -124,7 +125,7 @@ fn a_straight_line_is_a_chord_of_itself() {
 fn a_ray_meets_a_ball_on_its_surface_and_a_line_lies_in_it_between() {
     let mut met = 0;
     for number in 0..CASES {
-        let Case { ball, target, towards, rule, .. } = case(number);
+        let BlockingCase { ball, target, towards, rule, .. } = case(number);
         let surface = |range: f64| ball.depth_of(std::array::from_fn(|i| target[i] + range * towards[i]));
         let interval = ball.interval(target, towards);
         if let Some([enters, leaves]) = interval {
@@ -146,7 +147,7 @@ fn a_ray_meets_a_ball_on_its_surface_and_a_line_lies_in_it_between() {
 fn what_a_ball_covers_of_the_sky_is_what_it_blocks_without_bias() {
     let mut blocked = 0;
     for number in 0..CASES {
-        let Case { ball, target, towards, rule, .. } = case(number);
+        let BlockingCase { ball, target, towards, rule, .. } = case(number);
         let rule = BlockRule { bias: 0.0, ..rule };
         let cover = rule.cover(ball, target);
         let off = dot(cover.towards, towards) - cover.cosine;
@@ -165,7 +166,7 @@ fn what_a_ball_covers_of_the_sky_is_what_it_blocks_without_bias() {
 #[test]
 fn a_wider_shell_or_bias_never_blocks_more() {
     for number in 0..CASES {
-        let Case { ball, target, towards, reach, rule } = case(number);
+        let BlockingCase { ball, target, towards, reach, rule } = case(number);
         let blocks = |rule: BlockRule| rule.blocks_line(ball, target, towards, reach).is_some();
         if !blocks(BlockRule { shell: 0.0, ..rule }) {
             assert!(!blocks(rule), "case {number}");
@@ -174,8 +175,8 @@ fn a_wider_shell_or_bias_never_blocks_more() {
             assert!(!blocks(BlockRule { bias: rule.bias + 0.3, ..rule }), "case {number}");
         }
         let radius = f64::from(ball.radius);
-        let [counted, least] = [rule.radius_for(radius, ball.distance_to(target)), rule.least_radius(radius)];
-        assert!(least <= counted && counted <= radius, "case {number}");
+        let [counted, min] = [rule.radius_for(radius, ball.distance_to(target)), rule.min_radius(radius)];
+        assert!(min <= counted && counted <= radius, "case {number}");
     }
 }
 

@@ -1,4 +1,5 @@
-//! Views of a scene of balls and targets at their surfaces, and what bounds of depth and answers by them must fulfil, those of the CPU and those of a device.
+//! Views of a scene of balls and targets at their surfaces, and what bounds of depth and answers by them must fulfil,
+//! those of the CPU and those of a device.
 
 use belvedere::blocking::Ball;
 use belvedere::control::Control;
@@ -94,18 +95,19 @@ pub(crate) fn assert_bounds_hold(balls: &[Ball], bounds: &DepthBounds, start: f6
         let (x, y) = (uniform(9, 2 * i) * width, uniform(9, 2 * i + 1) * height);
         let place = if i % 3 == 0 { [x.floor() + 1e-9, y.floor() + 1.0 - 1e-9] } else { [x, y] };
         let [column, row] = place.map(|v| v as usize);
-        let [mut least, most] = bounds.bounds.get(column, row).unwrap().map(f64::from);
+        let [mut min, max] = bounds.bounds.get(column, row).unwrap().map(f64::from);
         if start == 0.0 {
-            least = least.max(0.0);
+            min = min.max(0.0);
         }
         let front = first_front(balls, view, place, start);
-        assert!(least <= front && front <= most, "{what}: {front} not in {least}..{most}");
-        within_upper += usize::from(most.is_finite());
+        assert!(min <= front && front <= max, "{what}: {front} not in {min}..{max}");
+        within_upper += usize::from(max.is_finite());
     }
     within_upper
 }
 
-/// Checks that answers by bounds are those of exact lines of sight, all that the viewer may ask and those within a picture. Says which share of the former the bounds settle.
+/// Checks that answers by bounds are those of exact lines of sight, all that the viewer may ask and those within a
+/// picture. Says which share of the former the bounds settle.
 pub(crate) fn assert_answers_are_exact(scene: &MedialScene, views: &[View], targets: &[[f32; 3]], what: &str) -> f64 {
     let viewer = match views[0].is_central() {
         true => Viewer::Eye(views[0].frame.eye),

@@ -180,7 +180,7 @@ fn in_a_scanned_town_coverage_agrees_with_the_exact_mesh() {
     let (mut right, mut missed, mut wrong) = (0, 0, 0);
     for (number, camera) in cameras.iter().enumerate() {
         let covered: std::collections::BTreeSet<usize> = table.covered_by(number).collect();
-        for target in (0..targets.len()).filter(|&target| targets.is_asked(target)) {
+        for target in (0..targets.len()).filter(|&target| targets.is_target(target)) {
             let place = targets.positions[target].map(f64::from);
             if !camera.covers(place, None, 25.0) {
                 assert!(!covered.contains(&target));

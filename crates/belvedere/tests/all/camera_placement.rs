@@ -7,9 +7,9 @@ use belvedere::random::uniform;
 use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_4};
 
 /// Random numbers one after the other.
-struct Random(u64, u64);
+struct RandomNumbers(u64, u64);
 
-impl Random {
+impl RandomNumbers {
     fn between(&mut self, from: f64, to: f64) -> f64 {
         self.1 += 1;
         from + (to - from) * uniform(self.0, self.1)
@@ -21,7 +21,7 @@ impl Random {
 }
 
 /// What each of the cameras covers, at random.
-fn lists(random: &mut Random, cameras: usize, targets: usize, share: f64) -> Vec<Vec<usize>> {
+fn lists(random: &mut RandomNumbers, cameras: usize, targets: usize, share: f64) -> Vec<Vec<usize>> {
     (0..cameras).map(|_| (0..targets).filter(|_| random.between(0.0, 1.0) < share).collect()).collect()
 }
 
@@ -66,7 +66,7 @@ fn greedy(lists: &[Vec<usize>], weights: &[f64], required: u32, existing: &[usiz
 #[test]
 fn selections_are_the_best_of_all_and_bounds_are_never_below_them() {
     for seed in 0..60 {
-        let mut random = Random(seed, 0);
+        let mut random = RandomNumbers(seed, 0);
         let (cameras, targets) = (7 + random.below(3), 12 + random.below(20));
         let lists = lists(&mut random, cameras, targets, 0.25);
         let weights: Vec<f64> = match seed % 3 {
@@ -102,9 +102,9 @@ fn selections_are_the_best_of_all_and_bounds_are_never_below_them() {
             let fewest = best.iter().position(|share| *share > wanted - 1e-12).unwrap();
             let found = place(&lists, &weights, &params);
             assert!(found.coverage() > wanted - 1e-9 && found.chosen.len() == fewest, "{seed} {wanted} {found:?}");
-            assert_eq!((found.least_count, found.is_optimal()), (Some(fewest), true), "{seed} {wanted}");
+            assert_eq!((found.min_count, found.is_optimal()), (Some(fewest), true), "{seed} {wanted}");
             let quick = place(&lists, &weights, &params.with_search_limit(Some(0)));
-            assert!(quick.least_count.unwrap() <= fewest && quick.chosen.len() >= fewest, "{seed} {wanted}");
+            assert!(quick.min_count.unwrap() <= fewest && quick.chosen.len() >= fewest, "{seed} {wanted}");
         }
     }
 }
@@ -127,9 +127,10 @@ fn problems_without_an_answer_are_refused_with_the_reason() {
     assert_eq!((all.chosen, all.counts, all.bound), (vec![0, 1], vec![1, 1, 1, 0], 0.75));
 }
 
-/// What cameras before the walls of houses see of places between these, within `reach` metres and 90 degrees, on a square of `side` metres.
+/// What cameras before the walls of houses see of places between these, within `reach` metres and 90 degrees, on a
+/// square of `side` metres.
 fn town(seed: u64, (side, houses): (f64, usize), targets: usize, cameras: usize, reach: f64) -> Vec<Vec<usize>> {
-    let mut random = Random(seed, 0);
+    let mut random = RandomNumbers(seed, 0);
     let mut house = || {
         let [x, y] = [(); 2].map(|()| random.between(0.0, side));
         let [width, depth] = [(); 2].map(|()| random.between(6.0, 18.0));

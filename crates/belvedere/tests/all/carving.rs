@@ -1,11 +1,12 @@
-//! Pulses as needles and balls cut by them, against every pulse tried in turn at dense samples, and against closed forms.
+//! Pulses as needles and balls cut by them, against every pulse tried in turn at dense samples, and against closed
+//! forms.
 #![expect(clippy::cast_possible_truncation, reason = "test places within a hundred metres in f32")]
 
 use belvedere::control::Control;
 use belvedere::medial::{KindBounds, LIMIT_TOUCH, MedialBalls, NO_TOUCH, PULSE_TOUCH, RadiusBounds, carve, kinds};
 use belvedere::neighbors::Tangent;
 use belvedere::normals::{Normals, Orientation, orient};
-use belvedere::pulses::{NeedleParams, Needles};
+use belvedere::pulses::{FreeSegmentParams, FreeSegments};
 use belvedere::random::uniform;
 use belvedere::{Attributes, PointCloud};
 
@@ -27,7 +28,8 @@ fn survey(count: u64) -> (Vec<[f32; 3]>, Vec<[f32; 3]>) {
     (returns, scanner)
 }
 
-/// First returns anywhere about three scanners in their midst and one that drives through: pulses in all directions, some of them short.
+/// First returns anywhere about three scanners in their midst and one that drives through: pulses in all directions,
+/// some of them short.
 fn survey_from_the_ground(count: u64) -> (Vec<[f32; 3]>, Vec<[f32; 3]>) {
     let stations = [[20.0, 30.0, 1.5], [70.0, 40.0, 6.0], [55.0, 90.0, -2.0]];
     let of = |i: u64| {
@@ -59,12 +61,12 @@ fn pencil(i: u64) -> Tangent {
 }
 
 /// Least radius of the balls of a pencil that touch one of many places along the needles, in f64.
-fn brute_force(tangent: &Tangent, returns: &[[f32; 3]], scanner: &[[f32; 3]], params: &NeedleParams) -> f64 {
+fn brute_force(tangent: &Tangent, returns: &[[f32; 3]], scanner: &[[f32; 3]], params: &FreeSegmentParams) -> f64 {
     let top = returns.iter().map(|p| p[2]).fold(f32::NEG_INFINITY, f32::max) + params.headroom;
     let inward = tangent.inward.map(f64::from);
     let touching: [f64; 3] =
         std::array::from_fn(|i| f64::from(tangent.point[i]) + inward[i] * f64::from(tangent.margin));
-    let mut least = f64::INFINITY;
+    let mut min = f64::INFINITY;
     for (p, s) in returns.iter().zip(scanner) {
         let sight: [f64; 3] = std::array::from_fn(|i| f64::from(s[i]) - f64::from(p[i]));
         let range = sight.iter().map(|v| v * v).sum::<f64>().sqrt();
@@ -90,25 +92,26 @@ fn brute_force(tangent: &Tangent, returns: &[[f32; 3]], scanner: &[[f32; 3]], pa
                 low += third;
             }
         }
-        least = least.min(radius(place(best))).min(radius((low + high) / 2.0));
+        min = min.min(radius(place(best))).min(radius((low + high) / 2.0));
     }
-    least
+    min
 }
 
 #[test]
 fn the_ball_that_no_pulse_enters_is_that_of_all_pulses_tried_in_turn() {
-    let params = NeedleParams::default();
+    let params = FreeSegmentParams::default();
     for (returns, scanner) in [survey(3000), survey_from_the_ground(3000)] {
-        let (needles, report) = Needles::new(&returns, &scanner, &params, &Control::none()).unwrap();
+        let (free_segments, report) = FreeSegments::new(&returns, &scanner, &params, &Control::none()).unwrap();
         assert_eq!((report.used, report.without_scanner), (3000, 0));
         let mut cut_count = 0;
         for i in 0..120 {
             let tangent = pencil(i);
             let expected = brute_force(&tangent, &returns, &scanner, &params);
-            let found = needles.smallest_tangent_ball(&tangent, 12.0);
+            let found = free_segments.smallest_tangent_ball(&tangent, 12.0);
             if let Some(radius) = found {
                 cut_count += 1;
-                // ends of needles are f32, off by 1e-5 m, which a ball of the pencil magnifies where the needle grazes its plane
+                // ends of needles are f32, off by 1e-5 m, which a ball of the pencil magnifies where the needle grazes
+                // its plane
                 let off = (f64::from(radius) - expected).abs();
                 assert!(off < 1e-3 + 1e-3 * expected, "pencil {i}: {radius} instead of {expected}");
             } else {
@@ -121,20 +124,22 @@ fn the_ball_that_no_pulse_enters_is_that_of_all_pulses_tried_in_turn() {
 
 #[test]
 fn a_ball_beside_a_curtain_of_pulses_shrinks_to_the_closed_form() {
-    // vertical pulses along the plane x = 3 cut balls at the origin that grow towards +x: the largest has its far side there
+    // vertical pulses along the plane x = 3 cut balls at the origin that grow towards +x: the largest has its far side
+    // there
     let returns: Vec<[f32; 3]> = (-200..=200).map(|i| [3.0, 0.05 * i as f32, -20.0]).collect();
     let scanner: Vec<[f32; 3]> = returns.iter().map(|p| [p[0], p[1], 500.0]).collect();
     // one return high up, so that needles reach past the balls
     let (returns, scanner) =
         ([returns, vec![[50.0, 50.0, 30.0]]].concat(), [scanner, vec![[50.0, 50.0, 500.0]]].concat());
-    let (needles, _) = Needles::new(&returns, &scanner, &NeedleParams::default(), &Control::none()).unwrap();
+    let (free_segments, _) =
+        FreeSegments::new(&returns, &scanner, &FreeSegmentParams::default(), &Control::none()).unwrap();
     let tangent = Tangent { point: [0.0; 3], inward: [1.0, 0.0, 0.0], margin: 0.0 };
-    let radius = needles.smallest_tangent_ball(&tangent, 10.0).unwrap();
+    let radius = free_segments.smallest_tangent_ball(&tangent, 10.0).unwrap();
     assert!((radius - 1.5).abs() < 1e-5, "{radius}");
     // growing away from them none is met
-    assert_eq!(needles.smallest_tangent_ball(&Tangent { inward: [-1.0, 0.0, 0.0], ..tangent }, 10.0), None);
+    assert_eq!(free_segments.smallest_tangent_ball(&Tangent { inward: [-1.0, 0.0, 0.0], ..tangent }, 10.0), None);
     // a radius below that of the cut is left alone
-    assert_eq!(needles.smallest_tangent_ball(&tangent, 1.4), None);
+    assert_eq!(free_segments.smallest_tangent_ball(&tangent, 1.4), None);
 }
 
 #[test]
@@ -142,10 +147,10 @@ fn pulses_without_scanner_are_counted_and_cut_nothing() {
     let returns = [[0.0_f32, 0.0, 0.0], [1.0, 0.0, 0.0], [2.0, 0.0, 0.0]];
     // a pulse without length proves nothing either
     let scanner = [[f32::NAN; 3], [1.0, 0.0, 0.0], [2.0, 0.0, 300.0]];
-    let (_, report) = Needles::new(&returns, &scanner, &NeedleParams::default(), &Control::none()).unwrap();
+    let (_, report) = FreeSegments::new(&returns, &scanner, &FreeSegmentParams::default(), &Control::none()).unwrap();
     assert_eq!((report.used, report.without_scanner), (1, 1));
-    assert!(Needles::new(&returns, &scanner[..2], &NeedleParams::default(), &Control::none()).is_err());
-    let (none, _) = Needles::new(&[], &[], &NeedleParams::default(), &Control::none()).unwrap();
+    assert!(FreeSegments::new(&returns, &scanner[..2], &FreeSegmentParams::default(), &Control::none()).is_err());
+    let (none, _) = FreeSegments::new(&[], &[], &FreeSegmentParams::default(), &Control::none()).unwrap();
     let tangent = Tangent { point: [0.0; 3], inward: [0.0, 0.0, 1.0], margin: 0.0 };
     assert_eq!(none.smallest_tangent_ball(&tangent, 5.0), None);
 }
@@ -174,9 +179,11 @@ fn a_deck_is_cut_to_what_slanted_pulses_leave_below_it() {
     let scanner: Vec<[f32; 3]> = returns.iter().map(|p| [p[0] + 400.0, p[1], 400.0]).collect();
     let returns = [returns, vec![[60.0, 0.0, 20.0]]].concat();
     let scanner = [scanner, vec![[60.0, 0.0, 400.0]]].concat();
-    let (needles, _) = Needles::new(&returns, &scanner, &NeedleParams::default(), &Control::none()).unwrap();
+    let (free_segments, _) =
+        FreeSegments::new(&returns, &scanner, &FreeSegmentParams::default(), &Control::none()).unwrap();
     let report =
-        carve(&mut balls, &oriented, &needles, &bounds(&cloud.attributes, cloud.len()), &Control::none()).unwrap();
+        carve(&mut balls, &oriented, &free_segments, &bounds(&cloud.attributes, cloud.len()), &Control::none())
+            .unwrap();
     // the line x − z = −2 passes the axis of the balls at z = 2: the ball below (0, 0, 6) of radius r has its
     // centre 6 − r high, (4 − r)/√2 from the line; that equals r for r = 4/(1 + √2)
     let expected = 4.0 / (1.0 + 2f32.sqrt());
@@ -190,17 +197,18 @@ fn kinds_of_points_bound_their_balls_and_carving_twice_changes_nothing() {
     let (mut cloud, oriented, mut balls) = balls_below((0..5).map(|i| [10.0 * i as f32, 0.0, 0.0]).collect());
     cloud.attributes.classification = Some(vec![6, 5, 2, 6, 6]);
     cloud.attributes.return_number = Some(vec![1, 1, 1, 2, 1]);
-    let (needles, _) = Needles::new(&[], &[], &NeedleParams::default(), &Control::none()).unwrap();
+    let (free_segments, _) = FreeSegments::new(&[], &[], &FreeSegmentParams::default(), &Control::none()).unwrap();
     let report =
-        carve(&mut balls, &oriented, &needles, &bounds(&cloud.attributes, cloud.len()), &Control::none()).unwrap();
+        carve(&mut balls, &oriented, &free_segments, &bounds(&cloud.attributes, cloud.len()), &Control::none())
+            .unwrap();
     // what nothing bounds is cut to half a metre
     assert_eq!(balls.radii, [0.5, 1.0, 2.0, 0.95 * SPACING, 0.5]);
     assert_eq!((report.carved, report.limited), (0, 5));
     assert_eq!(balls.touch, [LIMIT_TOUCH; 5]);
     let once = balls.clone();
-    carve(&mut balls, &oriented, &needles, &bounds(&cloud.attributes, cloud.len()), &Control::none()).unwrap();
+    carve(&mut balls, &oriented, &free_segments, &bounds(&cloud.attributes, cloud.len()), &Control::none()).unwrap();
     assert_eq!(balls.radii, once.radii);
-    assert!(carve(&mut balls, &oriented, &needles, &bounds(&cloud.attributes, 1), &Control::none()).is_err());
+    assert!(carve(&mut balls, &oriented, &free_segments, &bounds(&cloud.attributes, 1), &Control::none()).is_err());
 }
 
 #[test]
@@ -214,11 +222,12 @@ fn carving_gives_the_same_bits_for_any_number_of_threads_and_order_of_pulses() {
                 returns.reverse();
                 scanner.reverse();
             }
-            let (needles, _) = Needles::new(&returns, &scanner, &NeedleParams::default(), &Control::none()).unwrap();
+            let (free_segments, _) =
+                FreeSegments::new(&returns, &scanner, &FreeSegmentParams::default(), &Control::none()).unwrap();
             let points: Vec<[f32; 3]> = (0..3000).map(|i| pencil(i).point).collect();
             let (cloud, oriented, mut balls) = balls_below(points);
             let report =
-                carve(&mut balls, &oriented, &needles, &bounds(&cloud.attributes, cloud.len()), &Control::none())
+                carve(&mut balls, &oriented, &free_segments, &bounds(&cloud.attributes, cloud.len()), &Control::none())
                     .unwrap();
             (balls.radii, balls.centers, report)
         })

@@ -6,19 +6,21 @@ use belvedere::model::{ClearedArea, ModelParams, SceneModel};
 use belvedere::query::{Answer, UnprovenAs, random_targets};
 use belvedere::view::to_sun;
 use belvedere::{Mesh, PointCloud};
-use belvedere_scenes::{AirborneParams, Material, Part, Placement, Scene, Truth, extruded, scan_airborne};
+use belvedere_scenes::{
+    AirborneParams, Material, ObjectPart, PlanPlacement, TriangleScene, Truth, extruded, scan_airborne,
+};
 
 const FIRST: [f64; 2] = [24.0, 30.0];
 const SECOND: [f64; 2] = [38.0, 30.0];
 
-fn building(middle: [f64; 2], side: f64, height: f64) -> Part {
-    extruded(&Placement { origin: middle, angle: 0.0 }.rectangle(side, side), 0.0, height)
+fn building(middle: [f64; 2], side: f64, height: f64) -> ObjectPart {
+    extruded(&PlanPlacement { origin: middle, angle: 0.0 }.rectangle(side, side), 0.0, height)
 }
 
 /// Level ground with a building, and with another.
-fn scene(both: bool) -> Scene {
-    let mut scene = Scene::default();
-    let ground = Part {
+fn scene(both: bool) -> TriangleScene {
+    let mut scene = TriangleScene::default();
+    let ground = ObjectPart {
         vertices: vec![[0.0, 0.0, 0.0], [60.0, 0.0, 0.0], [60.0, 60.0, 0.0], [0.0, 60.0, 0.0]],
         triangles: vec![[0, 1, 2], [0, 2, 3]],
         materials: vec![Material::Terrain; 2],
@@ -62,20 +64,20 @@ fn a_cleared_building_is_gone_and_the_ground_below_it_closed() {
     // people in the sun, on the ground beside what is left
     for (azimuth, elevation) in [(250.0_f64, 35.0_f64), (110.0, 25.0), (180.0, 60.0)] {
         let sun = to_sun(azimuth.to_radians(), elevation.to_radians());
-        let (mut asked, mut wrong) = (0, 0);
+        let (mut queried, mut wrong) = (0, 0);
         for place in random_targets([8.0, 8.0, 1.0], [52.0, 52.0, 1.0], 4000, 3) {
             let place = place.map(f64::from);
             if (0..2).all(|axis| (place[axis] - SECOND[axis]).abs() < 5.0) {
                 continue;
             }
-            asked += 1;
+            queried += 1;
             let is_lit = !truth.occluded_towards(place, sun);
             let answer = after.answer(local(place), sun, f64::INFINITY);
             let in_area = (0..2).all(|axis| (place[axis] - FIRST[axis]).abs() < 5.0);
             assert!(!(in_area && is_lit) || answer == Answer::Visible, "{place:?} {answer:?}");
             wrong += usize::from((answer != Answer::Blocked) != is_lit);
         }
-        assert!(wrong * 100 < asked * 2, "{wrong} of {asked}");
+        assert!(wrong * 100 < queried * 2, "{wrong} of {queried}");
     }
     // straight through where it stood, which no pulse saw
     let through = [[FIRST[0], 22.0, 2.0], [FIRST[0], 38.0, 2.0]].map(local);
@@ -135,7 +137,7 @@ fn adding_a_building_and_clearing_it_restores_every_answer() {
     let (model, cloud) = surveyed();
     let control = Control::none();
     let site = [46.0, 14.0];
-    let mut planned = Scene::default();
+    let mut planned = TriangleScene::default();
     planned.add_object("planned", &[building(site, 6.0, 12.0)]);
     let mesh = Mesh { vertices: planned.vertices.clone(), triangles: planned.triangles.clone(), ..Mesh::default() };
     let added = model.clone().with_added(&mesh, "planned").unwrap();

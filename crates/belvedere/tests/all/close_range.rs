@@ -9,7 +9,7 @@ use belvedere::query::{Answer, UnprovenAs, Viewer, Visibility};
 use belvedere::trajectory::Trajectory;
 use belvedere::{Bounds, Error, PointCloud};
 use belvedere_scenes::{
-    MobileParams, Preset, QuerySet, QuerySite, Scan, Scene, Stations, TerrestrialParams, Truth, scan_mobile,
+    MobileParams, Preset, QuerySet, QuerySite, Scan, Stations, TerrestrialParams, TriangleScene, Truth, scan_mobile,
     scan_terrestrial, town,
 };
 
@@ -30,13 +30,14 @@ fn built(scan: &Scan) -> (PointCloud, SceneModel) {
     let params = ModelParams::default().with_orient(orient).with_balls(carved);
     let (model, report) = SceneModel::build(&cloud, &params, &Control::none()).unwrap();
     let pulses = report.pulses.unwrap();
-    assert!(pulses.needles.used > cloud.len() / 2, "{pulses:?}");
+    assert!(pulses.free_segments.used > cloud.len() / 2, "{pulses:?}");
     assert!(pulses.blocked.unwrap().percent < 0.1, "{pulses:?}");
     (cloud, model)
 }
 
-/// Shares of what people in streets truly see that is called blocked, and of what they truly do not see that is called visible.
-fn errors_in_streets(scene: &Scene, cloud: &PointCloud, model: &SceneModel) -> [f64; 2] {
+/// Shares of what people in streets truly see that is called blocked, and of what they truly do not see that is called
+/// visible.
+fn errors_in_streets(scene: &TriangleScene, cloud: &PointCloud, model: &SceneModel) -> [f64; 2] {
     let medial = model.scene(&model.rule(), UnprovenAs::Reported, &Control::none()).unwrap();
     let truth = Truth::new(scene);
     let origin = cloud.frame.origin;

@@ -10,7 +10,7 @@ use belvedere::query::{BlockRule, MedialScene};
 use belvedere::random::uniform;
 use belvedere::view::to_sun;
 use belvedere::{Mesh, PointCloud};
-use belvedere_scenes::{Scene, closed_forms, extruded};
+use belvedere_scenes::{TriangleScene, closed_forms, extruded};
 use std::f64::consts::TAU;
 
 /// Azimuth and elevation, degrees: morning, high, and low in the evening, none along a side of anything here.
@@ -33,7 +33,7 @@ fn sampled(corner: [f64; 3], sides: [[f64; 3]; 2], spacing: f64, seed: u64, clou
 }
 
 /// Interior balls of points as the pipeline makes them without pulses, turned outward by the exact mesh.
-fn balls_of(points: Vec<[f32; 3]>, model: &Scene, neighbors: usize) -> MedialBalls {
+fn balls_of(points: Vec<[f32; 3]>, model: &TriangleScene, neighbors: usize) -> MedialBalls {
     let cloud = PointCloud { positions: points, ..PointCloud::default() };
     let index = NeighborIndex::new(&cloud.positions, &Control::none()).unwrap();
     let normals = estimate(&cloud.positions, &index, Neighborhood::Fixed { k: neighbors }, &Control::none()).unwrap();
@@ -44,8 +44,9 @@ fn balls_of(points: Vec<[f32; 3]>, model: &Scene, neighbors: usize) -> MedialBal
     shrink(&oriented, &index, Side::Interior, &params, &Control::none()).unwrap().0.shrunk()
 }
 
-/// Whether the shade that balls cast on squares of ground of 2 · `half_side` about `middles` is that of `form`: every pixel that lies a pixel
-/// off the outline has to be. Returns how many pixels were compared, in the sun and in the shade, each sun having both.
+/// Whether the shade that balls cast on squares of ground of 2 · `half_side` about `middles` is that of `form`: every
+/// pixel that lies a pixel off the outline has to be. Returns how many pixels were compared, in the sun and in the
+/// shade, each sun having both.
 fn compare(balls: &MedialBalls, form: Form<'_>, pixel: f64, middles: &[[f64; 2]], half_side: f64) -> [usize; 2] {
     let scene = MedialScene::new(balls, &BlockRule::carved()).unwrap();
     let across = (2.0 * half_side / pixel).round() as usize;
@@ -134,7 +135,7 @@ fn the_shadow_of_a_pole_is_as_wide_as_the_pole() {
     for share in [0.25, 0.5, 0.75] {
         points.extend(ring(share * radius, height, share));
     }
-    let mut model = Scene::default();
+    let mut model = TriangleScene::default();
     let footprint: Vec<[f64; 2]> = (0..64)
         .map(|i| {
             let (sin, cos) = (TAU * f64::from(i) / 64.0).sin_cos();

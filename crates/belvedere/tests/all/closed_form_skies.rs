@@ -1,4 +1,5 @@
-//! Sky view factor and openness where they are formulas: street canyons, basins, tilted planes; and how well directions stand for the sky.
+//! Sky view factor and openness where they are formulas: street canyons, basins, tilted planes; and how well directions
+//! stand for the sky.
 #![expect(clippy::cast_possible_truncation, reason = "test places within a few hundred metres in f32")]
 
 use belvedere::apps::sky_view::{SkyDirections, SkyView, sky_view};
@@ -8,13 +9,13 @@ use belvedere::query::{BlockRule, MedialScene};
 use belvedere::random::uniform;
 use std::f64::consts::{PI, TAU};
 
-/// Least radius of the balls of a wall, metres. Seen from 2 m or more an edge made of them lies lower by 0.41 of it: 0.004 of the
-/// tangent of its elevation at most, which moves the views of the sky by less than 0.002.
+/// Least radius of the balls of a wall, metres. Seen from 2 m or more an edge made of them lies lower by 0.41 of it:
+/// 0.004 of the tangent of its elevation at most, which moves the views of the sky by less than 0.002.
 const FINEST: f64 = 0.01;
 
-/// Balls in the corner below `top` and beyond `wall` of a section that stands upright, as (beyond the wall, height, radius): each touches
-/// both, and every line of sight into the wall meets one of them, since the circles beside a corner that a line misses lie in a ratio of
-/// 5.8 and more.
+/// Balls in the corner below `top` and beyond `wall` of a section that stands upright, as (beyond the wall, height,
+/// radius): each touches both, and every line of sight into the wall meets one of them, since the circles beside a
+/// corner that a line misses lie in a ratio of 5.8 and more.
 fn corner_balls(top: f64, largest: f64) -> impl Iterator<Item = (f64, f64, f64)> {
     let count = (largest / FINEST).log2().ceil() as i32 + 1;
     (0..count).map(move |i| {
@@ -48,10 +49,10 @@ fn canyon(width: f64, heights: [f64; 2]) -> MedialScene {
     MedialScene::new(&balls, &BlockRule::default()).unwrap()
 }
 
-/// Round basin whose rim lies `radius` metres off at height `rim`.
-fn basin(radius: f64, rim: f64) -> MedialScene {
+/// Round basin whose rim lies `radius` metres off at height `edge`.
+fn basin(radius: f64, edge: f64) -> MedialScene {
     let mut balls = MedialBalls::default();
-    for (beyond, z, ball) in corner_balls(rim, 2.0 * rim) {
+    for (beyond, z, ball) in corner_balls(edge, 2.0 * edge) {
         let count = (TAU * (radius + beyond) / (STEP * ball)).ceil() as i32;
         for i in 0..count {
             let (sin, cos) = (TAU * f64::from(i) / f64::from(count)).sin_cos();
@@ -68,24 +69,26 @@ fn view(scene: &MedialScene, targets: &[[f64; 3]], normals: Option<&[[f32; 3]]>,
     sky_view(&matrix, &sky, normals).unwrap()
 }
 
-/// The two figures of the floor of an endless canyon with eaves at two elevations (Johnson & Watson 1984 for the first).
+/// The two figures of the floor of an endless canyon with eaves at two elevations (Johnson & Watson 1984 for the
+/// first).
 fn floor_of_canyon(eaves: [f64; 2]) -> [f64; 2] {
     [f64::midpoint(eaves[0].cos(), eaves[1].cos()), 1.0 - (eaves[0] + eaves[1]) / PI]
 }
 
-/// Errors of the sky view factor and of openness of a target; neither may exceed `most`.
-fn errors(found: &SkyView, target: usize, expected: [f64; 2], most: f64, what: &str) -> [f64; 2] {
+/// Errors of the sky view factor and of openness of a target; neither may exceed `max`.
+fn errors(found: &SkyView, target: usize, expected: [f64; 2], max: f64, what: &str) -> [f64; 2] {
     let errors = [found.factors[target], found.openness[target]];
     let errors = [0, 1].map(|i| f64::from(errors[i]) - expected[i]);
-    assert!(errors.iter().all(|error| error.abs() < most), "{what}: {errors:.4?} off {expected:.4?}");
+    assert!(errors.iter().all(|error| error.abs() < max), "{what}: {errors:.4?} off {expected:.4?}");
     errors
 }
 
 #[test]
 fn street_canyons_have_the_sky_of_the_formula() {
-    // an edge of a roof cuts the sky between directions: root mean square errors of 0.004 at 577 directions, thrice that at most, and a
-    // tenth of it at 20 000, where what is left is that of the balls and of the sky at the open ends
-    for (count, most, most_rms) in [(577, 0.0126, 0.005), (20_000, 0.0025, 0.001)] {
+    // an edge of a roof cuts the sky between directions: root mean square errors of 0.004 at 577 directions, thrice
+    // that at most, and a tenth of it at 20 000, where what is left is that of the balls and of the sky at the open
+    // ends
+    for (count, max, max_rms) in [(577, 0.0126, 0.005), (20_000, 0.0025, 0.001)] {
         let mut all = Vec::new();
         for (width, heights) in [(20.0, [10.0, 10.0]), (10.0, [10.0, 10.0]), (8.0, [12.0, 16.0]), (30.0, [6.0, 20.0])] {
             let scene = canyon(width, heights);
@@ -94,7 +97,7 @@ fn street_canyons_have_the_sky_of_the_formula() {
             for (target, [_, y, _]) in places.into_iter().enumerate() {
                 let eaves = [(heights[0] / y).atan(), (heights[1] / (width - y)).atan()];
                 let what = format!("canyon of {width} m by {heights:?} m at {y} m");
-                all.extend(errors(&found, target, floor_of_canyon(eaves), most, &what));
+                all.extend(errors(&found, target, floor_of_canyon(eaves), max, &what));
             }
             // upright on the wall at y = 0, at a third of its height and 0.1 m below its top
             let places = [heights[0] / 3.0, heights[0] - 0.1].map(|z| [0.0, 0.001, z]);
@@ -106,25 +109,25 @@ fn street_canyons_have_the_sky_of_the_formula() {
                     &found,
                     target,
                     expected,
-                    most,
+                    max,
                     &format!("wall of {width} m by {heights:?} m at {z} m"),
                 ));
             }
         }
         let rms = (all.iter().map(|error| error * error).sum::<f64>() / all.len() as f64).sqrt();
         println!("{count} directions: {rms:.4}");
-        assert!(rms < most_rms, "{count} directions: {rms}");
+        assert!(rms < max_rms, "{count} directions: {rms}");
     }
 }
 
 #[test]
 fn basins_have_the_sky_of_the_formula() {
-    for rim_deg in [10.0, 30.0, 50.0, 70.0] {
-        let elevation = f64::to_radians(rim_deg);
+    for edge_deg in [10.0, 30.0, 50.0, 70.0] {
+        let elevation = f64::to_radians(edge_deg);
         let scene = basin(10.0, 10.0 * elevation.tan());
         let found = view(&scene, &[[0.0; 3]], None, 577);
         let expected = [elevation.cos().powi(2), 1.0 - elevation.sin()];
-        errors(&found, 0, expected, 0.005, &format!("basin up to {rim_deg} degrees"));
+        errors(&found, 0, expected, 0.005, &format!("basin up to {edge_deg} degrees"));
     }
 }
 
@@ -148,8 +151,8 @@ fn tilted_free_planes_see_what_their_tilt_leaves() {
     }
 }
 
-/// Root mean square errors over 400 canyons of sky view factor and openness on the floor and of the sky view factor of walls, from
-/// directions asked of the exact horizon.
+/// Root mean square errors over 400 canyons of sky view factor and openness on the floor and of the sky view factor of
+/// walls, from directions asked of the exact horizon.
 fn errors_of_directions(count: usize) -> [f64; 3] {
     let sky = SkyDirections::even(count).unwrap();
     let mut squares = [0.0; 3];

@@ -6,12 +6,13 @@ use belvedere::medial::{CarvedBalls, CarvedInput, CarvedParams, CrownParams, Tre
 use belvedere::neighbors::NeighborIndex;
 use belvedere::normals::estimate::{Neighborhood, estimate};
 use belvedere::normals::{Orientation, orient};
-use belvedere::pulses::{NeedleParams, Needles, group};
+use belvedere::pulses::{FreeSegmentParams, FreeSegments, group};
 use belvedere::random::uniform;
 use belvedere::{Attributes, PointCloud};
 
-/// Returns of vertical pulses 0.25 m apart over 12 m × 12 m of ground, with a crown from 3 m up to 8 m on 8 m × 8 m of it.
-/// The first return is at 8 m; every `nth` pulse goes on to the ground, the others have their last return at `base`.
+/// Returns of vertical pulses 0.25 m apart over 12 m × 12 m of ground, with a crown from 3 m up to 8 m on 8 m × 8 m of
+/// it. The first return is at 8 m; every `nth` pulse goes on to the ground, the others have their last return at
+/// `base`.
 fn tree(nth: usize, base: f32) -> PointCloud {
     let mut cloud = PointCloud::default();
     let (mut classes, mut numbers, mut counts, mut times) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
@@ -50,13 +51,14 @@ fn carved(cloud: &PointCloud, params: &CarvedParams) -> CarvedBalls {
     let index = NeighborIndex::new(&cloud.positions, &Control::none()).unwrap();
     let normals = estimate(&cloud.positions, &index, Neighborhood::default(), &Control::none()).unwrap();
     let (oriented, _) = orient(cloud, normals, &Orientation::Pulses(&scanner), &Control::none()).unwrap();
-    let (needles, _) = Needles::of_cloud(cloud, &scanner, &NeedleParams::default(), &Control::none()).unwrap();
+    let (free_segments, _) =
+        FreeSegments::of_cloud(cloud, &scanner, &FreeSegmentParams::default(), &Control::none()).unwrap();
     let (pulses, _) = group(cloud, &Control::none()).unwrap();
     let input = CarvedInput {
         oriented: &oriented,
         index: &index,
         attributes: &cloud.attributes,
-        needles: &needles,
+        needles: &free_segments,
         pulses: Some(&pulses),
     };
     carved_balls(&input, params, &Control::none()).unwrap()
@@ -177,7 +179,7 @@ fn roof_and_bush() -> PointCloud {
 }
 
 #[test]
-fn without_classes_a_bush_is_told_from_a_roof() {
+fn without_classes_a_bush_is_separated_from_a_roof() {
     let mut cloud = roof_and_bush();
     let bush = cloud.len() - 1600;
     let found = carved(&cloud, &trees(Trees::Porous));

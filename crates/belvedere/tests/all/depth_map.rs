@@ -64,8 +64,8 @@ fn exact_depth(balls: &MedialBalls, view: &View, pixel: [usize; 2], grown: f64) 
 #[test]
 fn sphere_depths_equal_the_formula_at_every_pixel() {
     let balls = mixed(900, 3);
-    // offsets and depths of up to 100 m are f32, good to 1e-5 m: at a rim that turns into any depth, but never into more
-    // than balls larger or smaller by that much would show
+    // offsets and depths of up to 100 m are f32, good to 1e-5 m: at a rim that turns into any depth, but never into
+    // more than balls larger or smaller by that much would show
     let room = 2e-5;
     for view in views() {
         let map = depth_map(&balls, &view, Profile::Sphere, ItemBuffer::With, &Control::none()).unwrap();
@@ -73,9 +73,9 @@ fn sphere_depths_equal_the_formula_at_every_pixel() {
         for row in 0..map.depth.height() {
             for column in 0..map.depth.width() {
                 let mine = f64::from(map.depth.get(column, row).unwrap());
-                let least = exact_depth(&balls, &view, [column, row], room) - room;
-                let most = exact_depth(&balls, &view, [column, row], -room) + room;
-                assert!((least..=most).contains(&mine), "pixel {column} {row}: {mine} not in {least}..{most}");
+                let min = exact_depth(&balls, &view, [column, row], room) - room;
+                let max = exact_depth(&balls, &view, [column, row], -room) + room;
+                assert!((min..=max).contains(&mine), "pixel {column} {row}: {mine} not in {min}..{max}");
                 let item = items.get(column, row).unwrap();
                 assert_eq!(item == NO_BALL, mine == f64::INFINITY);
                 if item != NO_BALL {

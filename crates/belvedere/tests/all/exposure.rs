@@ -37,7 +37,8 @@ fn free_planes_have_the_sky_components_of_the_overcast_sky() {
     let normals = [normal(0.0, 0.0), normal(90.0, 90.0), normal(217.0, 90.0), normal(40.0, 180.0)];
     let seen = matrix(&nothing(), &[[0.0; 3]; 4], &sky.directions);
     let found = sky_component(&seen, &sky, &normals).unwrap();
-    // a wall: (1/3)(π/2 + 4/3) of the zenith's luminance, a level plane 7π/9 (integrals in closed form): 39.6 %, as BRE 209 has it
+    // a wall: (1/3)(π/2 + 4/3) of the zenith's luminance, a level plane 7π/9 (integrals in closed form): 39.6 %, as BRE
+    // 209 has it
     let wall = (PI / 2.0 + 4.0 / 3.0) / 3.0 / (7.0 * PI / 9.0);
     assert!((wall - 0.396).abs() < 5e-4);
     // 2305 patches, each taken at its middle
@@ -48,8 +49,9 @@ fn free_planes_have_the_sky_components_of_the_overcast_sky() {
 
 #[test]
 fn a_wall_that_faces_a_long_obstruction_keeps_what_the_formula_leaves() {
-    // an endless building parallel to the wall, 25° high straight ahead and lower to the sides: at the azimuth φ from straight ahead the sky
-    // begins at θ = atan(tan 25° cos φ), and what is above gives (1/3)(½(π/2 − θ − sin θ cos θ) + ⅔ cos³ θ) cos φ dφ
+    // an endless building parallel to the wall, 25° high straight ahead and lower to the sides: at the azimuth φ from
+    // straight ahead the sky begins at θ = atan(tan 25° cos φ), and what is above gives (1/3)(½(π/2 − θ − sin θ cos
+    // θ) + ⅔ cos³ θ) cos φ dφ
     let sky = SkyDirections::patches(6).unwrap();
     let slope = 25f64.to_radians().tan();
     let open: Vec<usize> =
@@ -84,7 +86,8 @@ fn a_wall_before_a_ball_loses_the_component_behind_it() {
     let free =
         sky_component(&matrix(&nothing(), &[[0.0; 3]], &sky.directions), &sky, &[normal(90.0, 90.0)]).unwrap()[0];
     let less = sky_component(&matrix(&ball, &[[0.0; 3]], &sky.directions), &sky, &[normal(90.0, 90.0)]).unwrap()[0];
-    // the cosine over a disc averages to that of its middle times (1 + cos r)/2 per solid angle, the luminance likewise to second order
+    // the cosine over a disc averages to that of its middle times (1 + cos r)/2 per solid angle, the luminance likewise
+    // to second order
     let solid_angle = 2.0 * PI * (1.0 - 5f64.to_radians().cos());
     let expected = solid_angle * up.cos() * (1.0 + 2.0 * up.sin()) / 3.0 / (7.0 * PI / 9.0);
     // some 76 of 20 000 directions: one more or less is 1.3 %, and the average is good to 1 %
@@ -92,7 +95,7 @@ fn a_wall_before_a_ball_loses_the_component_behind_it() {
 }
 
 #[test]
-fn windows_are_asked_before_their_parts() {
+fn targets_of_windows_lie_before_their_panes() {
     let [east] = &window_places([1.0, 2.0, 3.0], [1.0, 0.0, 0.0], None).unwrap()[..] else { panic!("one place") };
     assert_eq!(*east, [1.1, 2.0, 3.0]);
     let nine = window_places([0.0; 3], plane_normal(PI, FRAC_PI_2), Some([3.0, 1.5])).unwrap();

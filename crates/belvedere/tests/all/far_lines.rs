@@ -1,4 +1,5 @@
-//! Lines of sight and viewsheds with ends on the terrain beyond a cloud, against closed forms and lines followed step by step.
+//! Lines of sight and viewsheds with ends on the terrain beyond a cloud, against closed forms and lines followed step
+//! by step.
 
 use crate::far_viewsheds::{MapBox, around, heights_above, observer, open_scene, sag, scene};
 use crate::mountains::{grid, mountains};
@@ -6,7 +7,7 @@ use belvedere::PointCloud;
 use belvedere::apps::eyes::{EyeFault, fault_of_target, skip_unfit_eyes, skip_unfit_far_eyes};
 use belvedere::apps::profile::sight_profile;
 use belvedere::apps::targets::{CellParams, Targets};
-use belvedere::apps::viewshed::{Observer, ViewshedParams, far_viewshed, least_visible_heights, viewshed};
+use belvedere::apps::viewshed::{Observer, ViewshedParams, far_viewshed, min_visible_heights, viewshed};
 use belvedere::control::Control;
 use belvedere::ground::{Ground, MapGrid};
 use belvedere::query::{Answer, Blocker, EarthParams, LineOfSight, MedialScene, RadioWave};
@@ -42,7 +43,8 @@ fn two_masts_by_the_sea_see_each_other_up_to_the_sum_of_their_horizons() {
                 let at = (-b - (b * b - 4.0 * a * low).sqrt()) / (2.0 * a);
                 let block = found.first_block.unwrap();
                 assert_eq!(block.blocker, Blocker::Terrain);
-                // rounding is allowed a billionth of the distance in height; that is metres along a line that grazes the sea
+                // rounding is allowed a billionth of the distance in height; that is metres along a line that grazes
+                // the sea
                 let room = if span < reach + 2.0 { 30.0 } else { 0.1 };
                 assert!((block.place[0] - ends[0][0] - at).abs() < room, "{block:?} {at}");
                 assert!(block.place[2].abs() < 1e-4 && (block.range - at.hypot(low)).abs() < room, "{block:?}");
@@ -91,7 +93,8 @@ fn lines_over_mountains_are_blocked_where_lines_followed_step_by_step_come_below
                 let above = block.place[2] - ground;
                 assert!(above.abs() < 1e-3 || is_at_box && above < 0.0, "{} {ground}", block.place[2]);
                 match below {
-                    // steps are at most 60 m / 32 times the root of 2 apart; terrain may also rise above the line between two steps only
+                    // steps are at most 60 m / 32 times the root of 2 apart; terrain may also rise above the line
+                    // between two steps only
                     Some(below) if at <= below + 1e-6 => grazing += usize::from(below - at > 2.7),
                     Some(below) => panic!("{from:?} {to:?}: {at} after {below}"),
                     None => grazing += 1,
@@ -254,8 +257,7 @@ fn an_observer_behind_a_ridge_sees_of_the_cloud_what_lies_above_the_line_over_it
     let cells = MapGrid { corner: [6000.0, -3700.0], cell: 100.0, width: 6, height: 6 };
     let heights = Raster::filled(6, 6, 0.0);
     let ground = Ground { grid: cells, gaps: heights.clone(), heights };
-    let of =
-        |eye| least_visible_heights(&scene, &[observer(eye)], &ground, 50.0, &EarthParams::flat(), &Control::none());
+    let of = |eye| min_visible_heights(&scene, &[observer(eye)], &ground, 50.0, &EarthParams::flat(), &Control::none());
     assert!(of([6100.0, -4200.0, 60.0]).is_ok());
     assert!(of(eye).unwrap_err().to_string().contains("in the cloud"));
 }

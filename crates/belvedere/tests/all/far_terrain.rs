@@ -58,7 +58,8 @@ fn cast(grid: &ElevationGrid, place: [f64; 3], azimuth: f64, from: f64, earth: &
     if highest == f64::NEG_INFINITY { -FRAC_PI_2 } else { highest.atan() }
 }
 
-/// The largest difference, degrees, between horizons and casts over every cell, for places at a height above the terrain.
+/// The largest difference, degrees, between horizons and casts over every cell, for places at a height above the
+/// terrain.
 fn worst(far: &FarTerrain, places: &[[f64; 3]], azimuths: usize, from: f64) -> f64 {
     let (grid, earth) = (far.grid().unwrap(), EarthParams::default());
     let mut worst = 0.0_f64;

@@ -1,4 +1,5 @@
-//! Viewsheds of terrain beyond a cloud, against closed forms and against lines of sight that are followed step by step over the same surface.
+//! Viewsheds of terrain beyond a cloud, against closed forms and against lines of sight that are followed step by step
+//! over the same surface.
 
 use crate::common::data;
 use crate::mountains::{grid, mountains};
@@ -108,13 +109,15 @@ fn a_ridge_hides_what_lies_below_the_line_over_its_crest() {
     }
 }
 
-/// The least height of a line of sight above the terrain beyond `cloud` and a cell around it, by steps of a 32nd of each patch: no maxima, no closed form.
+/// The least height of a line of sight above the terrain beyond `cloud` and a cell around it, by steps of a 32nd of
+/// each patch: no maxima, no closed form.
 fn clearance(grid: &ElevationGrid, cloud: MapBox, eye: [f64; 3], target: [f64; 3], earth: &EarthParams) -> f64 {
     // NaN is never the smaller one
     heights_above(grid, cloud, eye, target, earth).into_iter().map(|[_, above]| above).fold(f64::INFINITY, f64::min)
 }
 
-/// The heights of a line of sight above the terrain in these steps, with the distance of each from the eye on the map; NaN where the terrain is not known.
+/// The heights of a line of sight above the terrain in these steps, with the distance of each from the eye on the map;
+/// NaN where the terrain is not known.
 pub(crate) fn heights_above(
     grid: &ElevationGrid,
     cloud: MapBox,
@@ -156,22 +159,23 @@ pub(crate) fn heights_above(
     found
 }
 
-/// Compares a viewshed with lines followed step by step for each `step`th node. Gives the numbers of blocked and visible nodes, and of those that differ because terrain rises above the
-/// line between two steps only; there it comes as near as `margin` to the line.
+/// Compares a viewshed with lines followed step by step for each `step`th node. Gives the numbers of blocked and
+/// visible nodes, and of those that differ because terrain rises above the line between two steps only; there it comes
+/// as near as `margin` to the line.
 fn compared(scene: &MedialScene, cloud: MapBox, eye: [f64; 3], height: f64, step: usize, margin: f64) -> [usize; 3] {
     let (earth, terrain) = (EarthParams::default(), scene.far_terrain().grid().unwrap());
     let found = seen(scene, &[observer(eye)], height, earth);
     let mut counts = [0; 3];
     for (node, answer) in nodes(scene, &found).step_by(step) {
         let target = [node[0], node[1], node[2] + height];
-        let least = clearance(terrain, cloud, eye, target, &earth);
+        let min = clearance(terrain, cloud, eye, target, &earth);
         match answer {
             // steps find nothing that is not there, but for what is rounded over kilometres
-            Answer::Visible => assert!(least > -1e-4, "{node:?}: {least}"),
-            _ => assert!(least < margin, "{node:?}: {least}"),
+            Answer::Visible => assert!(min > -1e-4, "{node:?}: {min}"),
+            _ => assert!(min < margin, "{node:?}: {min}"),
         }
         counts[usize::from(answer == Answer::Visible)] += 1;
-        counts[2] += usize::from(answer != Answer::Visible && least > 0.0);
+        counts[2] += usize::from(answer != Answer::Visible && min > 0.0);
     }
     counts
 }

@@ -26,7 +26,7 @@ fn recall_and_precision(found: &[u32], truth: &[u32]) -> [f64; 2] {
 #[test]
 fn ground_found_without_classes_lies_on_the_exact_ground() {
     // shares of cells within 0.2 m of the exact ground: (classed, found)
-    for (preset, least) in
+    for (preset, min) in
         [(Preset::Village, [0.99, 0.98]), (Preset::Town, [0.99, 0.95]), (Preset::OldTown, [0.99, 0.97])]
     {
         let scene = town(&preset.params(150.0, 5));
@@ -37,9 +37,7 @@ fn ground_found_without_classes_lies_on_the_exact_ground() {
         let Bounds { low, high } = cloud.bounds().unwrap();
         let absolute = |p: [f32; 3]| -> [f64; 3] { std::array::from_fn(|i| f64::from(p[i]) + cloud.frame.origin[i]) };
         let site = QuerySite { scene: &scene, truth: &truth, bounds: [absolute(low), absolute(high)] };
-        for (cloud, from, least) in
-            [(&cloud, GroundPoints::Classed, least[0]), (&unclassed, GroundPoints::Found, least[1])]
-        {
+        for (cloud, from, min) in [(&cloud, GroundPoints::Classed, min[0]), (&unclassed, GroundPoints::Found, min[1])] {
             let (ground, report) =
                 Ground::of_cloud(cloud, grid_of(cloud, 1.0), &GroundParams::default(), &Control::none()).unwrap();
             assert_eq!(report.from, from);
@@ -58,7 +56,7 @@ fn ground_found_without_classes_lies_on_the_exact_ground() {
             errors.sort_by(f64::total_cmp);
             let [median, p95] = [2, 20].map(|part| errors[errors.len() - errors.len() / part]);
             println!("{} {from:?}: {good:.3} within 0.2 m, median {median:.3}, 95 % {p95:.3}", preset.name());
-            assert!(good > least, "{} {from:?}: {good}", preset.name());
+            assert!(good > min, "{} {from:?}: {good}", preset.name());
         }
     }
 }

@@ -1,4 +1,5 @@
-//! Radiation models against pvlib 0.16.1: the same inputs, unshaded, over a year at three sites (`data/pvlib_reference.py`).
+//! Radiation models against pvlib 0.16.1: the same inputs, unshaded, over a year at three sites
+//! (`data/pvlib_reference.py`).
 
 use belvedere::apps::irradiance::{
     BirdParams, ClearSky, SkyModel, air_mass, complete, diffuse_parts, extraterrestrial, patch_radiation, split_global,
@@ -118,8 +119,8 @@ fn patches_are_brightest_around_the_sun_of_a_clear_sky_and_above_under_clouds() 
     // across from the sun a clear sky is several times darker than beside it
     let across = nearest([-sun[0], -sun[1], sun[2]]);
     assert!(radiance(&patches, brightest) > 5.0 * radiance(&patches, across));
-    // overcast: at this brightness, 0.17, the table has a = 0.87 and b = -0.57, so that the gradation is 1 + a exp b = 1.49 at the zenith
-    // and 1 at the horizon; what is added around the sun weighs little
+    // overcast: at this brightness, 0.17, the table has a = 0.87 and b = -0.57, so that the gradation is 1 + a exp b =
+    // 1.49 at the zenith and 1 at the horizon; what is added around the sun weighs little
     let overcast = Irradiance { ghi: 150.0, dni: 0.0, dhi: 150.0 };
     patch_radiation(&sky, &overcast, sun, zenith, 1366.0, &mut patches);
     let up = radiance(&patches, nearest([0.0, 0.0, 1.0]));

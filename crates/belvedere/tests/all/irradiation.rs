@@ -47,8 +47,9 @@ fn facing(tilt_deg: f64, azimuth_deg: f64) -> [f32; 3] {
     [tilt.sin() * azimuth.sin(), tilt.sin() * azimuth.cos(), tilt.cos()].map(|v| v as f32)
 }
 
-/// kWh/m² of the same year from pvlib 0.16.1: `clearsky.ineichen` at the middles of the same steps, its own solar positions, and
-/// `irradiance.get_total_irradiance`, albedo 0.2. Tilt, azimuth, beam, diffuse by three models, reflected.
+/// kWh/m² of the same year from pvlib 0.16.1: `clearsky.ineichen` at the middles of the same steps, its own solar
+/// positions, and `irradiance.get_total_irradiance`, albedo 0.2. Tilt, azimuth, beam, diffuse by three models,
+/// reflected.
 const PVLIB: [(f64, f64, f64, [f64; 3], f64); 6] = [
     (0.0, 0.0, 1365.528, [265.509, 265.509, 265.198], 0.0),
     (20.0, 180.0, 1706.158, [257.503, 301.090, 318.226], 9.836),
@@ -263,7 +264,7 @@ fn parts_of_a_row_keep_its_energy_and_follow_the_sun() {
 }
 
 #[test]
-fn direct_radiation_without_a_sun_is_told() {
+fn direct_radiation_without_a_sun_is_reported() {
     // a file whose clock is wrong by twelve hours
     let night = weather(vec![step(171.0 * 24.0 + 0.5, 400.0)]);
     let instants = weather_instants(&night, &site(), 1).unwrap();

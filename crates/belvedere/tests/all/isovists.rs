@@ -63,7 +63,7 @@ fn in_a_box_room_volume_area_perimeter_and_drift_are_those_of_the_room() {
     assert!((found.plan.drift[0] + 1.0).abs() < 2e-3 && (found.plan.drift[1] + 0.5).abs() < 2e-3);
     assert_eq!((found.plan.occlusivity, found.openness), (0.0, 0.0));
     near(found.ranges.greatest, (25.0f64 + 12.25 + 2.56).sqrt(), 0.01);
-    near(found.ranges.least, 1.4, 1e-3);
+    near(found.ranges.min, 1.4, 1e-3);
 }
 
 #[test]
@@ -120,7 +120,7 @@ fn a_ball_takes_its_cap_from_the_openness_and_its_cone_from_the_volume() {
         })
         .sum();
     near(found.volume, (1.0 - cap) * 4.0 * PI / 3.0 * reach.powi(3) + in_cone, 1e-3);
-    near(found.ranges.least, 6.0, 1e-4);
+    near(found.ranges.min, 6.0, 1e-4);
     // the tangent is 9.165 m long: two edges hide what lies behind, up to the greatest range
     near(found.plan.occlusivity, 2.0 * (reach - (distance * distance - radius * radius).sqrt()), 0.01);
     assert!(found.plan.drift[1] < -0.1 && found.plan.drift[0].abs() < 1e-6);

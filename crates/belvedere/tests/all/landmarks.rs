@@ -83,7 +83,7 @@ fn a_post_splits_the_wall_whose_extent_stays_while_its_azimuths_shrink() {
 }
 
 #[test]
-fn backs_count_as_told_and_nothing_seen_is_all_zero() {
+fn backs_count_as_requested_and_nothing_seen_is_all_zero() {
     let open = scene(&[]);
     let behind = [0.0, 30.0, 0.0];
     let with = |back_faces| {

@@ -123,8 +123,8 @@ fn the_horizon_of_a_sphere_of_water_hides_a_hull_but_not_a_mast() {
     let hull = scene.line_of_sight(from(5.0), to(5.0), &curved).unwrap();
     assert_eq!(hull.answer, Answer::Blocked);
     assert_eq!(scene.sight_answer(from(5.0), to(5.0), &EarthParams::flat()), Answer::Visible);
-    // the eye at 5 m meets the water where z(s) = 5 − (1−k)·s·(S−s)/2R falls to the crests of the balls: within 60 m, which is more than
-    // the distance between balls
+    // the eye at 5 m meets the water where z(s) = 5 − (1−k)·s·(S−s)/2R falls to the crests of the balls: within 60 m,
+    // which is more than the distance between balls
     let (k, radius, span) = (1.0 / 7.0, 6_371_008.8, 19_950.0_f64);
     let q = (1.0 - k) / (2.0 * radius);
     let meets = (span - (span * span - 4.0 * 5.0 / q).sqrt()) / 2.0;
@@ -155,7 +155,7 @@ fn crossings_cover_what_dense_samples_find_inside() {
 }
 
 #[test]
-fn an_observer_in_a_ball_is_told_how_deep() {
+fn an_observer_in_a_ball_is_reported_with_its_depth() {
     let list = [([0.0, 0.0, 0.0], 2.0), ([1.0, 0.0, 0.0], 1.5), ([9.0, 0.0, 0.0], 1.0)];
     let scene = MedialScene::new(&balls(&list), &BlockRule::default()).unwrap();
     let inside = scene.enclosure([0.5, 0.0, 0.0]);

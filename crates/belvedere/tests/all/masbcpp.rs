@@ -95,8 +95,8 @@ fn angles_give_the_balls_of_masbcpp_on_every_stored_cloud_and_setting() {
                 let [centers, touch] = agreement(balls, &case.join(setting), side);
                 println!("{name} {setting} {side}: centres {:.3} %, touch {:.3} %", 100.0 * centers, 100.0 * touch);
                 // house_dyke_tree has points with equal coordinates, of which masbcpp names either
-                let least_touch = if name == "house_dyke_tree" { 0.99 } else { 0.999 };
-                assert!(centers >= 0.999 && touch >= least_touch, "{name} {setting} {side}: {centers} {touch}");
+                let min_touch = if name == "house_dyke_tree" { 0.99 } else { 0.999 };
+                assert!(centers >= 0.999 && touch >= min_touch, "{name} {setting} {side}: {centers} {touch}");
             }
         }
     }
@@ -118,7 +118,7 @@ fn balls_of_sphere_torus_plates_and_box_match_the_closed_forms() {
     // between samples (plates: 0.35 m spacing against r = 2 gives h²/8r = 8 mm; the box, where balls end at edges, is
     // where masbcpp itself is off by 0.043 and 0.264)
     let bounds = [("sphere", 1e-5, 1e-4), ("torus", 3e-5, 1e-3), ("plates", 5e-3, 0.01), ("box", 0.045, 0.27)];
-    for (name, p95, most) in bounds {
+    for (name, p95, max) in bounds {
         let Some(case) = crate::common::data("closed forms", &format!("reference/{name}")) else { continue };
         let (coords, normals) = (read_triples(&case.join("coords.npy")), read_triples(&case.join("normals.npy")));
         let r_in: Vec<f64> = match truth(&case, "r_in") {
@@ -129,7 +129,7 @@ fn balls_of_sphere_torus_plates_and_box_match_the_closed_forms() {
         let errors = radius_errors(&interior, &r_in);
         assert!(errors.len() * 100 >= coords.len() * 99, "{name}: {} of {} balls shrank", errors.len(), coords.len());
         assert!(errors[errors.len() * 95 / 100] < p95, "{name}: p95 {}", errors[errors.len() * 95 / 100]);
-        assert!(errors[errors.len() - 1] < most, "{name}: max {}", errors[errors.len() - 1]);
+        assert!(errors[errors.len() - 1] < max, "{name}: max {}", errors[errors.len() - 1]);
         if name == "sphere" {
             assert!(exterior.touch.iter().all(|&t| t == NO_TOUCH), "nothing lies outside a sphere");
         }
@@ -180,7 +180,7 @@ fn a_local_origin_beats_masbcpp_on_projected_coordinates() {
 
 #[test]
 fn local_feature_sizes_agree_with_masbcpp() {
-    for (name, least) in [("houseL", 0.99), ("box_noise", 0.98)] {
+    for (name, min) in [("houseL", 0.99), ("box_noise", 0.98)] {
         let Some(case) = crate::common::data("local feature size", &format!("reference/{name}")) else { continue };
         let (coords, normals) = (read_triples(&case.join("coords.npy")), read_triples(&case.join("normals.npy")));
         let [interior, exterior] = both_sides(coords.clone(), normals, &params("default"));
@@ -192,6 +192,6 @@ fn local_feature_sizes_agree_with_masbcpp() {
         let share = near / theirs.len() as f64;
         println!("{name}: {:.2} % of local feature sizes within 1 cm", 100.0 * share);
         // the rest: masbcpp also compares with balls that never shrank, whose bisectors it never wrote
-        assert!(share >= least, "{name}: {share}");
+        assert!(share >= min, "{name}: {share}");
     }
 }

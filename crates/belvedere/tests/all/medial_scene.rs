@@ -67,9 +67,9 @@ fn answers_equal_those_of_every_ball_tried_in_turn() {
     }
 }
 
-/// The rule of the documentation for [`BlockRule::shell`], ball after ball: a ball whose whole extent the line leaves before
-/// the viewer counts with radius r − (shell − max(d − r, 0)) where the target at distance d from its centre lies less
-/// than the shell from its surface.
+/// The rule of the documentation for [`BlockRule::shell`], ball after ball: a ball whose whole extent the line leaves
+/// before the viewer counts with radius r − (shell − max(d − r, 0)) where the target at distance d from its centre lies
+/// less than the shell from its surface.
 fn brute_force_with_shell(balls: &MedialBalls, target: [f32; 3], eye: [f64; 3], bias: f64, shell: f64) -> bool {
     (0..balls.len()).any(|i| {
         let one = |radius: f64| {
@@ -133,8 +133,8 @@ fn a_shell_in_numbers() {
         scene.answer(target, d.map(|v| v / length), f64::INFINITY)
     };
     let (blocked, visible) = (Answer::Blocked, Answer::Visible);
-    // 0.1 outside: radius 0.9, so that a line that passes the centre at 0.95 is free and one at 0.85 is not. A line from
-    // (1.1, 0, 0) at angle a passes at 1.1 sin a
+    // 0.1 outside: radius 0.9, so that a line that passes the centre at 0.95 is free and one at 0.85 is not. A line
+    // from (1.1, 0, 0) at angle a passes at 1.1 sin a
     let at_angle = |x: f64, passes: f64| towards([x, 0.0, 0.0], x * (passes / x).asin().tan());
     assert_eq!([at_angle(1.1, 0.95), at_angle(1.1, 0.85)], [visible, blocked]);
     // 0.3 outside: the whole ball
@@ -163,7 +163,8 @@ fn a_direction_is_an_eye_very_far_away() {
 
 #[test]
 fn the_cone_hides_less_than_the_sphere_by_the_depth_between_them() {
-    // ball of radius 2 at the origin, seen from above; at 1 m beside the axis the sphere's top is at √3, the cone's at 1
+    // ball of radius 2 at the origin, seen from above; at 1 m beside the axis the sphere's top is at √3, the cone's at
+    // 1
     let one = balls(vec![[0.0; 3]], vec![2.0]);
     let sphere = MedialScene::new(&one, &params(Profile::Sphere, 0.0)).unwrap();
     let cone = MedialScene::new(&one, &params(Profile::PaperCone, 0.0)).unwrap();
@@ -258,7 +259,7 @@ fn the_index_proposes_every_box_that_a_ray_meets() {
         assert!(expected.iter().all(|b| proposed.contains(b)), "ray {i}");
         assert_eq!(index.any(&ray, |row| range(&boxes[index.order()[row] as usize]).is_some()), !expected.is_empty());
         let nearest = index.nearest(&ray, |row| range(&boxes[index.order()[row] as usize])).map(|(_, r)| r);
-        let least = expected.iter().filter_map(|&b| range(&boxes[b])).reduce(f64::min);
-        assert_eq!(nearest, least, "ray {i}");
+        let min = expected.iter().filter_map(|&b| range(&boxes[b])).reduce(f64::min);
+        assert_eq!(nearest, min, "ray {i}");
     }
 }

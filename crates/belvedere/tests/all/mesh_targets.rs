@@ -80,7 +80,7 @@ fn a_cube_in_the_open_shows_the_sides_that_face_the_viewer() {
 fn the_shadow_of_a_ball_on_a_wall_is_its_disc_within_the_error_stated() {
     let ball = scene(&[([5.0, -20.0, 5.0], 2.0)]);
     let (mut outside, mut last) = (0, f64::INFINITY);
-    for (spacing, most) in [(2.0, 3.0), (1.0, 1.2), (0.5, 0.4), (0.25, 0.15)] {
+    for (spacing, max) in [(2.0, 3.0), (1.0, 1.2), (0.5, 0.4), (0.25, 0.15)] {
         let (mut sum, mut error) = (0.0, 0.0_f64);
         for seed in 0..10 {
             let surface = SurfacePieces::of_mesh(&wall(), [0.0; 3], spacing, seed).unwrap();
@@ -95,7 +95,7 @@ fn the_shadow_of_a_ball_on_a_wall_is_its_disc_within_the_error_stated() {
         }
         let found = (sum / 10.0).sqrt();
         // the stated error shrinks faster than the spacing and is not overstated tenfold
-        assert!(error < most && error > found / 3.0 && error < 10.0 * found, "{spacing}: {found} {error}");
+        assert!(error < max && error > found / 3.0 && error < 10.0 * found, "{spacing}: {found} {error}");
         assert!(error < last);
         last = error;
     }
@@ -105,7 +105,8 @@ fn the_shadow_of_a_ball_on_a_wall_is_its_disc_within_the_error_stated() {
 
 #[test]
 fn a_near_ball_hides_its_central_projection_from_an_eye() {
-    // the eye 20 m before the wall, a ball of 0.5 m half way: its cone cuts a disc of 20 · tan(asin(0.05)) m from the wall
+    // the eye 20 m before the wall, a ball of 0.5 m half way: its cone cuts a disc of 20 · tan(asin(0.05)) m from the
+    // wall
     let ball = scene(&[([5.0, -10.0, 5.0], 0.5)]);
     let faces = seen(&ball, &wall(), Viewer::Eye([5.0, -20.0, 5.0]), 0.1, BackFaces::NotVisible);
     let all = seen_in_all(&faces);
@@ -116,7 +117,7 @@ fn a_near_ball_hides_its_central_projection_from_an_eye() {
 }
 
 #[test]
-fn places_are_asked_before_their_faces_on_the_side_of_the_viewer() {
+fn targets_lie_before_their_faces_on_the_side_of_the_viewer() {
     let surface = SurfacePieces::of_mesh(&wall(), [0.0; 3], 1.0, 1).unwrap();
     for (south, expected) in [(-1.0, -0.25), (1.0, 0.25)] {
         let params = MeshTargetParams { back_faces: BackFaces::BothSides, lift: 0.25 };

@@ -140,7 +140,7 @@ fn cityjson_rings_with_holes_keep_their_volume() {
 }
 
 #[test]
-fn one_level_of_detail_can_be_asked_for() {
+fn one_level_of_detail_can_be_requested() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("block.json");
     std::fs::write(&path, block_with_shaft("2.0", "\"2.2\"")).unwrap();

@@ -1,14 +1,14 @@
-//! Every kind of search against brute force and against another kd-tree, query by query, on kind and unkind clouds, with
-//! and without AVX2.
+//! Every kind of search against brute force and against another kd-tree, query by query, on kind and unkind clouds,
+//! with and without AVX2.
 
 use belvedere::control::Control;
 use belvedere::neighbors::{Instructions, Neighbor, NeighborIndex, Tangent};
 use proptest::prelude::*;
 
 /// A small generator with a fixed sequence, so that a failure can be repeated.
-struct Sequence(u64);
+struct SequenceRandom(u64);
 
-impl Sequence {
+impl SequenceRandom {
     fn next(&mut self) -> f32 {
         self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 40) as f32 / (1u64 << 24) as f32
@@ -20,7 +20,7 @@ impl Sequence {
 }
 
 fn clouds() -> Vec<(&'static str, Vec<[f32; 3]>)> {
-    let mut s = Sequence(7);
+    let mut s = SequenceRandom(7);
     let mut aerial: Vec<[f32; 3]> = (0..5000)
         .map(|_| {
             let [x, y, _] = s.point([100.0, 80.0, 0.0]);
@@ -46,7 +46,7 @@ fn clouds() -> Vec<(&'static str, Vec<[f32; 3]>)> {
 }
 
 fn queries(points: &[[f32; 3]]) -> Vec<[f32; 3]> {
-    let mut s = Sequence(11);
+    let mut s = SequenceRandom(11);
     let mut queries: Vec<[f32; 3]> = points.iter().step_by(points.len() / 60 + 1).copied().collect();
     for i in 0..120 {
         let p = points[i * 7919 % points.len()];
@@ -126,7 +126,8 @@ fn distances_agree_with_another_kd_tree() {
     }
 }
 
-/// The same radius in f64 straight from the formula, over all points, and the squared chord to the point that decides it.
+/// The same radius in f64 straight from the formula, over all points, and the squared chord to the point that decides
+/// it.
 fn tangent_ball_by_brute_force(points: &[[f32; 3]], t: &Tangent, max_radius: f32) -> (f64, f64) {
     points
         .iter()
@@ -143,7 +144,7 @@ fn tangent_ball_by_brute_force(points: &[[f32; 3]], t: &Tangent, max_radius: f32
 
 #[test]
 fn tangent_balls_equal_brute_force_on_every_cloud() {
-    let mut s = Sequence(23);
+    let mut s = SequenceRandom(23);
     for (name, points) in clouds() {
         for index in both(&points) {
             for (i, &point) in points.iter().step_by(points.len() / 150 + 1).enumerate() {

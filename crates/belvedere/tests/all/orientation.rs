@@ -58,8 +58,8 @@ fn sphere(radius: f64, count: u32) -> (PointCloud, Vec<[f32; 3]>) {
         .map(|i| {
             let z = 1.0 - (2.0 * f64::from(i) + 1.0) / f64::from(count);
             let turn = f64::from(i) * 2.399_963_229_728_653;
-            let rim = (1.0 - z * z).sqrt();
-            [(rim * turn.cos()) as f32, (rim * turn.sin()) as f32, z as f32]
+            let ring_radius = (1.0 - z * z).sqrt();
+            [(ring_radius * turn.cos()) as f32, (ring_radius * turn.sin()) as f32, z as f32]
         })
         .collect();
     (cloud_of(normals.iter().map(|n| n.map(|v| v * radius as f32)).collect()), normals)
@@ -355,8 +355,8 @@ fn delft_by_its_city_model_agrees_with_a_scanner_above() {
         let all = agreement(result.normals(), &by_scanner, |i| dot(by_scanner[i], by_scanner[i]) > 0.0);
         let flat = agreement(result.normals(), &by_scanner, horizontal);
         println!("{}: all {all:.4}, horizontal {flat:.4}, {mesh_report:?}, {report:?}", path.display());
-        // the model covers a quarter of the tile; steep points are a guess for a scanner straight above; ground that lies
-        // within a decimetre of the floor of a solid takes the floor's sign
+        // the model covers a quarter of the tile; steep points are a guess for a scanner straight above; ground that
+        // lies within a decimetre of the floor of a solid takes the floor's sign
         assert!(all > 0.93 && flat > 0.998, "{all} {flat}");
         assert!(report.share(report.by_face_count) > 0.2, "{report:?}");
         results.push(result);
@@ -425,7 +425,8 @@ fn random3dcity_normals_come_back_from_their_mesh() {
     assert!(share > 0.995, "{share}");
 }
 
-/// Whether the projection of `p` lies in the triangle with unit normal `n`, with a tolerance of a tenth of a millimetre.
+/// Whether the projection of `p` lies in the triangle with unit normal `n`, with a tolerance of a tenth of a
+/// millimetre.
 fn within(corners: &[[f64; 3]; 3], n: &[f64; 3], p: [f64; 3]) -> bool {
     (0..3).all(|i| {
         let (a, b) = (corners[i], corners[(i + 1) % 3]);

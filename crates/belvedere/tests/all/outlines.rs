@@ -47,7 +47,8 @@ fn views() -> Vec<(&'static str, View)> {
     ]
 }
 
-/// Depth of the nearest ball at a place of the picture by the definition, in f64, for radii larger by `grown` times the distance.
+/// Depth of the nearest ball at a place of the picture by the definition, in f64, for radii larger by `grown` times the
+/// distance.
 fn exact_depth(list: &[([f32; 3], f32)], view: &View, place: [f64; 2], grown: f64) -> f64 {
     let direction = view.direction(place);
     let [near, far] = view.limits();
@@ -70,7 +71,8 @@ fn exact_depth(list: &[([f32; 3], f32)], view: &View, place: [f64; 2], grown: f6
 
 #[test]
 fn outlines_hold_exactly_the_pixels_that_rays_hit() {
-    // f32 takes directions and centres for right to a few units of 6e-8: a ball is as large as it is to a millionth of its distance
+    // f32 takes directions and centres for right to a few units of 6e-8: a ball is as large as it is to a millionth of
+    // its distance
     let room = 1e-6;
     for (name, view) in views() {
         let mut hits = 0;
@@ -82,12 +84,12 @@ fn outlines_hold_exactly_the_pixels_that_rays_hit() {
                 for column in 0..map.depth.width() {
                     let place = [column as f64 + 0.5, row as f64 + 0.5];
                     let mine = f64::from(map.depth.get(column, row).unwrap());
-                    let least = exact_depth(group, &view, place, room);
-                    let most = exact_depth(group, &view, place, -room);
+                    let min = exact_depth(group, &view, place, room);
+                    let max = exact_depth(group, &view, place, -room);
                     let slack = room * 100.0;
                     assert!(
-                        least - slack <= mine && mine <= most + slack,
-                        "{name}, {column} {row}: {mine} not in {least}..{most}"
+                        min - slack <= mine && mine <= max + slack,
+                        "{name}, {column} {row}: {mine} not in {min}..{max}"
                     );
                     let item = map.balls.as_ref().unwrap().get(column, row).unwrap();
                     assert_eq!(item == NO_BALL, mine == f64::INFINITY);

@@ -1,5 +1,5 @@
-//! From a LAZ file to answers on a simulated town: the same bits for any number of threads, and how often the answers are
-//! wrong against the exact mesh.
+//! From a LAZ file to answers on a simulated town: the same bits for any number of threads, and how often the answers
+//! are wrong against the exact mesh.
 
 use crate::common::simulated::cloud_of;
 use belvedere::Bounds;
@@ -16,10 +16,10 @@ use belvedere::query::{Answer, query_points, random_targets};
 use belvedere::trajectory::Trajectory;
 use belvedere::view::{View, to_sun};
 use belvedere::{PointCloud, Result};
-use belvedere_scenes::{AirborneParams, Scan, Scene, TownParams, Truth, scan_airborne, town};
+use belvedere_scenes::{AirborneParams, Scan, TownParams, TriangleScene, Truth, scan_airborne, town};
 use std::path::Path;
 
-fn simulated(pulses_per_m2: f64) -> (Scene, Scan) {
+fn simulated(pulses_per_m2: f64) -> (TriangleScene, Scan) {
     let scene = town(&TownParams::default());
     let scan = scan_airborne(&scene, &AirborneParams { pulses_per_m2, ..AirborneParams::default() });
     (scene, scan)
@@ -33,20 +33,20 @@ fn trajectory(scan: &Scan) -> Trajectory {
     Trajectory { times: scan.sensor_path.times.clone(), positions: scan.sensor_path.positions.clone() }
 }
 
-struct Prepared {
+struct PreparedCloud {
     cloud: PointCloud,
     index: NeighborIndex,
     oriented: OrientedCloud,
 }
 
-fn prepare(path: &Path, by: &Orientation<'_>) -> Result<Prepared> {
+fn prepare(path: &Path, by: &Orientation<'_>) -> Result<PreparedCloud> {
     let (cloud, _) = read_cloud(&[path.to_owned()], &ReadOptions::default(), &Control::none())?;
     let (kept, _) = clean(&cloud, &CleanParams::default(), &Control::none())?;
     let cloud = cloud.select(&kept);
     let index = NeighborIndex::new(&cloud.positions, &Control::none())?;
     let normals = estimate(&cloud.positions, &index, Neighborhood::default(), &Control::none())?;
     let (oriented, _) = orient(&cloud, normals, by, &Control::none())?;
-    Ok(Prepared { cloud, index, oriented })
+    Ok(PreparedCloud { cloud, index, oriented })
 }
 
 fn sun_view(cloud: &PointCloud) -> View {
@@ -55,7 +55,7 @@ fn sun_view(cloud: &PointCloud) -> View {
     View::parallel(sun.map(|v| -v), low.map(f64::from), high.map(f64::from), 0.25).unwrap()
 }
 
-fn interior(prepared: &Prepared, params: &ShrinkParams) -> MedialBalls {
+fn interior(prepared: &PreparedCloud, params: &ShrinkParams) -> MedialBalls {
     shrink(&prepared.oriented, &prepared.index, Side::Interior, params, &Control::none()).unwrap().0
 }
 

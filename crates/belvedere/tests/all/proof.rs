@@ -4,14 +4,14 @@
 use belvedere::Error;
 use belvedere::control::Control;
 use belvedere::medial::MedialBalls;
-use belvedere::pulses::{NeedleColumns, NeedleParams, Needles};
+use belvedere::pulses::{FreeSegmentColumns, FreeSegmentParams, FreeSegments};
 use belvedere::query::{
     Answer, AnswerCounts, Beside, BlockRule, MedialScene, Proof, ProofParams, UnprovenAs, Viewer, Visibility,
 };
 use belvedere::random::uniform;
 use belvedere::view::View;
 
-const NEEDLES: NeedleParams = NeedleParams { end_margin: 0.05, headroom: 2.0 };
+const FREE_SEGMENTS: FreeSegmentParams = FreeSegmentParams { end_margin: 0.05, headroom: 2.0 };
 
 /// First returns at heights of 0 to 12 m on 60 m by 60 m, seen from two strips 400 m up, and where the scanner was.
 fn survey(count: u64) -> (Vec<[f32; 3]>, Vec<[f32; 3]>) {
@@ -32,20 +32,20 @@ fn survey_from_the_ground(count: u64) -> (Vec<[f32; 3]>, Vec<[f32; 3]>) {
     (returns, scanner)
 }
 
-fn needles(returns: &[[f32; 3]], scanner: &[[f32; 3]]) -> Needles {
-    Needles::new(returns, scanner, &NEEDLES, &Control::none()).unwrap().0
+fn free_segments(returns: &[[f32; 3]], scanner: &[[f32; 3]]) -> FreeSegments {
+    FreeSegments::new(returns, scanner, &FREE_SEGMENTS, &Control::none()).unwrap().0
 }
 
 /// Ends of the pieces of lines that count as empty, in f64.
 fn segments(returns: &[[f32; 3]], scanner: &[[f32; 3]]) -> Vec<[[f64; 3]; 2]> {
-    let top = returns.iter().map(|p| p[2]).fold(f32::NEG_INFINITY, f32::max) + NEEDLES.headroom;
+    let top = returns.iter().map(|p| p[2]).fold(f32::NEG_INFINITY, f32::max) + FREE_SEGMENTS.headroom;
     let piece = |(p, s): (&[f32; 3], &[f32; 3])| {
         let (p, s) = (p.map(f64::from), s.map(f64::from));
         let sight: [f64; 3] = std::array::from_fn(|i| s[i] - p[i]);
         let range = sight.iter().map(|v| v * v).sum::<f64>().sqrt();
         let on = |t: f64| std::array::from_fn(|i| p[i] + t * sight[i] / range);
         let to_top = if sight[2] > 0.0 { (f64::from(top) - p[2]) / sight[2] * range } else { range };
-        [on(f64::from(NEEDLES.end_margin)), on(to_top.min(range))]
+        [on(f64::from(FREE_SEGMENTS.end_margin)), on(to_top.min(range))]
     };
     returns.iter().zip(scanner).map(piece).collect()
 }
@@ -75,15 +75,15 @@ fn unit(v: [f64; 3]) -> [f64; 3] {
     v.map(|v| v / length)
 }
 
-fn proof(needles: Needles, nearness: f64, beside: Beside) -> Proof {
+fn proof(free_segments: FreeSegments, nearness: f64, beside: Beside) -> Proof {
     let params = ProofParams { nearness: Some(nearness), beside, ..ProofParams::default() };
-    Proof::new(needles, &params).unwrap()
+    Proof::new(free_segments, &params).unwrap()
 }
 
 #[test]
 fn nearness_of_pulses_equals_that_of_every_pulse_tried_in_turn() {
     for (returns, scanner) in [survey(700), survey_from_the_ground(900)] {
-        let (index, segments) = (needles(&returns, &scanner), segments(&returns, &scanner));
+        let (index, segments) = (free_segments(&returns, &scanner), segments(&returns, &scanner));
         let mut near = 0;
         for i in 0..1500 {
             let point = random_point(8, i);
@@ -99,17 +99,17 @@ fn nearness_of_pulses_equals_that_of_every_pulse_tried_in_turn() {
         assert!((300..1200).contains(&near), "both must occur: {near}");
     }
     let (returns, scanner) = survey(700);
-    let index = needles(&returns, &scanner);
+    let index = free_segments(&returns, &scanner);
     assert!(!index.passes_within([f64::NAN, 0.0, 0.0], 1.0) && !index.passes_within([30.0; 3], f64::NAN));
-    assert!(!needles(&[], &[]).passes_within([0.0; 3], 1e9));
+    assert!(!free_segments(&[], &[]).passes_within([0.0; 3], 1e9));
 }
 
 #[test]
 fn unproven_lengths_are_those_of_dense_samples() {
     const SPACING: f64 = 0.02;
     // pulses so sparse that lines have many gaps, and so dense that few are left and most boxes of space are near some
-    type Survey = fn(u64) -> (Vec<[f32; 3]>, Vec<[f32; 3]>);
-    let (above, ground): (Survey, Survey) = (survey, survey_from_the_ground);
+    type SurveyMaker = fn(u64) -> (Vec<[f32; 3]>, Vec<[f32; 3]>);
+    let (above, ground): (SurveyMaker, SurveyMaker) = (survey, survey_from_the_ground);
     for (survey, count, nearness, lines) in [
         (above, 500, 1.2, 12),
         (above, 2500, 0.7, 12),
@@ -120,11 +120,11 @@ fn unproven_lengths_are_those_of_dense_samples() {
         let (returns, scanner) = survey(count);
         let segments = segments(&returns, &scanner);
         let top = returns.iter().map(|p| f64::from(p[2])).fold(0.0, f64::max) + 2.0;
-        let rim = [0, 1].map(|axis| {
+        let border = [0, 1].map(|axis| {
             let ends = || segments.iter().map(|[start, _]| start[axis]);
             ends().fold(f64::INFINITY, f64::min)..=ends().fold(f64::NEG_INFINITY, f64::max)
         });
-        let proof = proof(needles(&returns, &scanner), nearness, Beside::Unseen);
+        let proof = proof(free_segments(&returns, &scanner), nearness, Beside::Unseen);
         let (mut sum, mut worst): (f64, f64) = (0.0, 0.0);
         for i in 0..lines {
             let (from, to) = (random_point(12, i), random_point(13, i));
@@ -135,7 +135,7 @@ fn unproven_lengths_are_those_of_dense_samples() {
             for k in 0..samples {
                 let at = (k as f64 + 0.5) * SPACING;
                 let p: [f64; 3] = std::array::from_fn(|axis| from[axis] + at * direction[axis]);
-                let beside = !(0..2).all(|axis| rim[axis].contains(&p[axis]));
+                let beside = !(0..2).all(|axis| border[axis].contains(&p[axis]));
                 let is_near = || segments.iter().any(|segment| square(p, segment) < nearness * nearness);
                 let is_unseen = p[2] <= top && (beside || !is_near());
                 unseen += usize::from(is_unseen);
@@ -164,12 +164,19 @@ fn a_line_beside_one_pulse_is_seen_along_a_chord_of_its_cylinder() {
     let scanner = returns.map(|p: [f32; 3]| [p[0], p[1], 500.0]);
     let single = |beside| {
         proof(
-            Needles::new(&returns, &scanner, &NeedleParams { headroom: 20.0, ..NEEDLES }, &Control::none()).unwrap().0,
+            FreeSegments::new(
+                &returns,
+                &scanner,
+                &FreeSegmentParams { headroom: 20.0, ..FREE_SEGMENTS },
+                &Control::none(),
+            )
+            .unwrap()
+            .0,
             0.7,
             beside,
         )
     };
-    let proof = single(Beside::NotAsked);
+    let proof = single(Beside::Ignored);
     for beside in [0.0, 0.3, 0.69, 0.71] {
         let found = proof.unproven_length([-10.0, beside, 5.0], [1.0, 0.0, 0.0], 20.0);
         let chord = 2.0 * (0.49 - beside * beside).max(0.0).sqrt();
@@ -189,7 +196,7 @@ fn a_line_beside_one_pulse_is_seen_along_a_chord_of_its_cylinder() {
     assert_eq!(all.unproven_length([30.0, 10.0, 5.0], east, f64::INFINITY), f64::INFINITY);
     assert_eq!(all.unproven_length([30.0, 10.0, 5.0], [0.0, 0.0, -1.0], f64::INFINITY), f64::INFINITY);
     // nothing was seen where no pulse flew
-    let none = Proof::new(needles(&[], &[]), &ProofParams::default()).unwrap();
+    let none = Proof::new(free_segments(&[], &[]), &ProofParams::default()).unwrap();
     assert_eq!(none.unproven_length([0.0; 3], east, 7.0), 7.0);
 }
 
@@ -201,7 +208,7 @@ fn nearness_follows_the_density_of_pulses_where_they_are_sparse() {
             .map(|i| [f32::from(i % side) * spacing + 0.1, f32::from(i / side) * spacing + 0.1, 0.0])
             .collect();
         let scanner: Vec<[f32; 3]> = returns.iter().map(|p| [p[0], p[1], 500.0]).collect();
-        Proof::new(needles(&returns, &scanner), &ProofParams::default()).unwrap().nearness()
+        Proof::new(free_segments(&returns, &scanner), &ProofParams::default()).unwrap().nearness()
     };
     assert_eq!([of(0.5), of(1.0), of(2.0)], [0.7, 1.0, 2.0]);
 }
@@ -224,7 +231,7 @@ fn what_nothing_blocks_is_visible_where_pulses_passed_and_unproven_where_none_di
     let scene = |tolerance: f64| {
         let params = ProofParams { tolerance, ..ProofParams::default() };
         let balls = MedialScene::new(&ball, &BlockRule::default()).unwrap();
-        balls.with_pulses(Proof::new(needles(&returns, &scanner), &params).unwrap())
+        balls.with_pulses(Proof::new(free_segments(&returns, &scanner), &params).unwrap())
     };
     let targets = [[10.0, 10.0, 1.0], [24.0, 10.0, 1.0], [10.0, 20.0, 0.5], [10.0, 10.0, 30.0], [10.0, 10.0, f32::NAN]];
     let east = Viewer::Eye([35.0, 10.0, 1.0]);
@@ -259,7 +266,7 @@ fn answers_depend_on_neither_threads_nor_the_order_of_pulses() {
         }
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
-            let proof = Proof::new(needles(&returns, &scanner), &ProofParams::default()).unwrap();
+            let proof = Proof::new(free_segments(&returns, &scanner), &ProofParams::default()).unwrap();
             let empty = MedialScene::new(&MedialBalls::default(), &BlockRule::default()).unwrap();
             empty.with_pulses(proof).visible(Viewer::Direction([0.5, 0.3, 0.4]), &targets).unwrap()
         })
@@ -279,10 +286,10 @@ fn pulses_as_columns_come_back_within_millimetres_and_then_the_same() {
     for (returns, scanner, all_reach_the_top, all_go_up) in
         [(&returns, &scanner, true, true), (&returns, &low, false, true), (&ground.0, &ground.1, false, false)]
     {
-        let first = needles(returns, scanner);
+        let first = free_segments(returns, scanner);
         let columns = first.to_columns();
         assert_eq!((columns.lengths.is_empty(), columns.ways.is_empty()), (all_reach_the_top, all_go_up));
-        let again = Needles::from_columns(&columns, &Control::none()).unwrap();
+        let again = FreeSegments::from_columns(&columns, &Control::none()).unwrap();
         assert_eq!((again.len(), again.top()), (first.len(), first.top()));
         for i in 0..500 {
             let point = random_point(30, i);
@@ -291,7 +298,7 @@ fn pulses_as_columns_come_back_within_millimetres_and_then_the_same() {
             let along = if all_go_up { 14.0 } else { 60.0 };
             assert!((a - b).abs() < along * 0.5e-4 * 1.5, "{a} {b}");
         }
-        let sorted = |columns: NeedleColumns| {
+        let sorted = |columns: FreeSegmentColumns| {
             let length = |i: usize| columns.lengths.get(i).map_or(0, |v| v.to_bits());
             let way = |i: usize| columns.ways.get(i).copied();
             let mut rows: Vec<_> = (0..columns.starts.len())
@@ -302,10 +309,10 @@ fn pulses_as_columns_come_back_within_millimetres_and_then_the_same() {
         };
         assert!(sorted(columns) == sorted(again.to_columns()));
     }
-    let broken = |change: fn(&mut NeedleColumns)| {
-        let mut columns = needles(&returns, &low).to_columns();
+    let broken = |change: fn(&mut FreeSegmentColumns)| {
+        let mut columns = free_segments(&returns, &low).to_columns();
         change(&mut columns);
-        Needles::from_columns(&columns, &Control::none()).map(|_| ())
+        FreeSegments::from_columns(&columns, &Control::none()).map(|_| ())
     };
     assert!(matches!(
         broken(|c| {
@@ -318,12 +325,12 @@ fn pulses_as_columns_come_back_within_millimetres_and_then_the_same() {
     assert!(matches!(broken(|c| c.ways = vec![0; 2]), Err(Error::LengthMismatch { .. })));
     assert!(matches!(broken(|c| c.ways = vec![6; 900]), Err(Error::InvalidParameter { .. })));
     assert!(matches!(broken(|c| c.top = f32::INFINITY), Err(Error::InvalidParameter { .. })));
-    assert!(needles(&[], &[]).to_columns().starts.is_empty());
+    assert!(free_segments(&[], &[]).to_columns().starts.is_empty());
 }
 
 #[test]
 fn parameters_out_of_range_are_errors() {
-    let with = |params: ProofParams| Proof::new(needles(&[], &[]), &params).map(|_| ());
+    let with = |params: ProofParams| Proof::new(free_segments(&[], &[]), &params).map(|_| ());
     let usual = ProofParams::default();
     assert!(with(usual).is_ok());
     for params in [

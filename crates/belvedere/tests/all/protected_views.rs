@@ -10,7 +10,7 @@ use belvedere::query::{AddedMeshes, Answer, EarthParams, MedialScene, SurfacePie
 use belvedere::random::uniform;
 use belvedere::raster::Raster;
 use belvedere::{Error, Mesh};
-use belvedere_scenes::{Placement, Scene, extruded};
+use belvedere_scenes::{PlanPlacement, TriangleScene, extruded};
 
 fn nothing() -> MedialScene {
     MedialScene::new(&MedialBalls::default(), &BlockRule::carved()).unwrap()
@@ -83,8 +83,8 @@ fn several_viewpoints_have_the_lowest_of_their_limits_in_any_order_and_on_any_th
     let all = run(&nothing(), &object, &eyes, &grid);
     let single: Vec<ProtectedView> = eyes.iter().map(|&eye| run(&nothing(), &object, &[eye], &grid)).collect();
     for (row, &limit) in all.limits.values().iter().enumerate() {
-        let least = single.iter().map(|one| one.limits.values()[row]).fold(f32::NAN, f32::min);
-        assert!(limit == least || limit.is_nan() && least.is_nan());
+        let min = single.iter().map(|one| one.limits.values()[row]).fold(f32::NAN, f32::min);
+        assert!(limit == min || limit.is_nan() && min.is_nan());
     }
     assert_eq!(all.viewpoints[3].lines_not_tested, object.pieces.len());
     let mut turned = eyes;
@@ -99,9 +99,9 @@ fn several_viewpoints_have_the_lowest_of_their_limits_in_any_order_and_on_any_th
 
 /// Upright boxes with middle, size and top, from far below the ground up.
 fn boxes(list: &[([f64; 2], f64, f64)]) -> AddedMeshes {
-    let mut scene = Scene::default();
+    let mut scene = TriangleScene::default();
     for &(origin, size, top) in list {
-        let place = Placement { origin, angle: 0.0 };
+        let place = PlanPlacement { origin, angle: 0.0 };
         scene.add_object("box", &[extruded(&place.rectangle(size, size), -50.0, top)]);
     }
     let mesh = Mesh { vertices: scene.vertices, triangles: scene.triangles, ..Mesh::default() };

@@ -2,7 +2,7 @@
 
 use belvedere::control::Control;
 use belvedere::io::{ReadOptions, read_cloud};
-use belvedere::pulses::{Pulses, SensorEstimateParams, SensorPositions, SensorReport, Verdict, group};
+use belvedere::pulses::{PartVerdict, Pulses, SensorEstimateParams, SensorPositions, SensorReport, group};
 use belvedere::random::uniform;
 use belvedere::trajectory::Trajectory;
 use belvedere::vector::{length, sub};
@@ -117,7 +117,7 @@ fn what_is_no_pulse_is_counted_and_left_out() {
 }
 
 #[test]
-fn times_that_tell_nothing_are_an_error() {
+fn times_of_no_use_are_an_error() {
     let mut cloud = cloud_of_rows(&[(1, 5.0, 1, 2, 0.0), (1, 5.0, 1, 2, 1.0), (1, 0.0, 1, 1, 2.0)]);
     assert!(matches!(group(&cloud, &Control::none()), Err(Error::MissingAttribute { .. })));
     cloud.attributes.gps_time = None;
@@ -201,7 +201,7 @@ fn lines_without_multiple_returns_are_refused_and_said_so() {
     let (sensor, report) =
         SensorPositions::from_returns(&cloud, &pulses, &SensorEstimateParams::default(), &Control::none()).unwrap();
     assert_eq!(report.known_count, 0);
-    assert!(!report.parts.is_empty() && report.parts.iter().all(|part| part.verdict == Verdict::TooFewPairs));
+    assert!(!report.parts.is_empty() && report.parts.iter().all(|part| part.verdict == PartVerdict::TooFewPairs));
     assert!(sensor.per_point(&pulses, cloud.len()).iter().flatten().all(|v| v.is_nan()));
     let wrong = SensorEstimateParams { part_s: f64::NAN, ..SensorEstimateParams::default() };
     assert!(matches!(
@@ -234,7 +234,7 @@ fn real_flights_are_found() {
         let Some((cloud, pulses, sensor, report)) = estimated("real_flights_are_found", file) else { return };
         // all but lines that touch a corner of the tile
         assert!(report.known_count as f64 > 0.95 * pulses.len() as f64, "{file}: {:#?}", report.parts);
-        for part in report.parts.iter().filter(|part| part.verdict == Verdict::Accepted) {
+        for part in report.parts.iter().filter(|part| part.verdict == PartVerdict::Accepted) {
             // centimetres over several metres; in Bresse, from three times as high, the beam is three times as wide
             assert!(part.median_angle < 0.5_f64.to_radians(), "{part:?}");
         }
@@ -245,9 +245,9 @@ fn real_flights_are_found() {
             let from_nadir = (sight[2] / length(sight)).acos().to_degrees();
             (from_nadir - tilt.unwrap_or(f64::from(angles[row].abs()).to_degrees())).abs()
         });
-        let [typical, most] = spread(off.collect());
+        let [typical, max] = spread(off.collect());
         // half a degree of rounding, and a roll, pitch or heading that not every supplier puts into the angle
-        assert!(typical < 1.5 && most < 4.0, "{file}: {typical} {most}");
+        assert!(typical < 1.5 && max < 4.0, "{file}: {typical} {max}");
     }
 }
 
@@ -259,8 +259,8 @@ fn a_cloud_with_rounded_times_has_no_pulses() {
     assert!(matches!(group(&cloud, &Control::none()), Err(Error::MissingAttribute { .. })));
 }
 
-/// A line flown 1 km up at 60 m/s with a swing of a metre to the side and half a metre up and down, whose pulses of two returns
-/// each, 100 a second, reach 25° to either side; every return is off by 5 mm in each coordinate.
+/// A line flown 1 km up at 60 m/s with a swing of a metre to the side and half a metre up and down, whose pulses of two
+/// returns each, 100 a second, reach 25° to either side; every return is off by 5 mm in each coordinate.
 #[expect(clippy::cast_possible_truncation, reason = "coordinates of a few hundred metres")]
 fn sparse_line() -> (PointCloud, Vec<[f64; 3]>) {
     let mut count = 0;
@@ -302,8 +302,8 @@ fn fifty_pulses_half_a_second_give_the_path_to_a_metre() {
         assert_eq!((report.known_count, report.parts.len()), (1000, 20));
         assert!(report.parts.iter().all(|part| part.pair_count.abs_diff(50) <= 1));
         let errors = (0..1000).map(|i| length(sub(sensor.per_pulse[i].map(f64::from), truth[i]))).collect();
-        let [typical, most] = spread(errors);
+        let [typical, max] = spread(errors);
         // the bar of the project; the sum of the covariances of 50 such pulses is half of it
-        assert!(typical <= bar, "{acceleration_sd}: {typical} {most}");
+        assert!(typical <= bar, "{acceleration_sd}: {typical} {max}");
     }
 }

@@ -20,7 +20,7 @@ fn read_as(path: &Path, crs: &str) -> belvedere::Result<(PointCloud, ReadReport)
 }
 
 /// What an outside reader says about a LAS file.
-struct Truth {
+struct ReaderTruth {
     file: &'static str,
     points: usize,
     low: [f64; 3],
@@ -38,27 +38,27 @@ struct Truth {
 const METRES: [f64; 2] = [1.0, 1.0];
 
 #[rustfmt::skip]
-const LAS_TRUTH: &[Truth] = &[
-    Truth { file: "amsterdam_ahn3/ahn_2386_9702.laz", points: 43536, low: [119_299.0, 485_099.002, -0.773], high: [119_350.999, 485_151.0, 21.067], intensity: 1_948_597, ground: 26668, max_return: 5, format: "LAS 1.2, point format 1, LAZ", epsg: None, units: METRES },
-    Truth { file: "autzen/autzen_north_offices_520x240m.laz", points: 1_105_675, low: [635_840.29, 852_491.08, 408.07], high: [637_546.29, 853_278.47, 540.85], intensity: 84_918_635, ground: 0, max_return: 1, format: "LAS 1.2, point format 2, LAZ", epsg: None, units: METRES },
-    Truth { file: "autzen/autzen_stadium_340x320m.laz", points: 762_536, low: [636_824.54, 851_441.23, 415.49], high: [637_939.98, 852_491.04, 598.15], intensity: 64_777_739, ground: 0, max_return: 1, format: "LAS 1.2, point format 2, LAZ", epsg: None, units: METRES },
-    Truth { file: "bresse_lidarhd/870000_6618000.subset.50mx100m.las", points: 70840, low: [870_200.01, 6_617_083.28, 179.13], high: [870_299.99, 6_617_145.15, 194.36], intensity: 146_895_891, ground: 34316, max_return: 6, format: "LAS 1.4, point format 8", epsg: None, units: METRES },
-    Truth { file: "delft_ahn3/ahn3_cropped_1.laz", points: 640_510, low: [84_808.3, 447_412.8, -0.568], high: [84_999.999, 447_641.299, 19.398], intensity: 96_620_494, ground: 195_988, max_return: 5, format: "LAS 1.2, point format 1, LAZ", epsg: None, units: METRES },
-    Truth { file: "delft_ahn3/ahn3_cropped_2.laz", points: 208_432, low: [85_000.001, 447_412.8, -0.606], high: [85_072.299, 447_641.299, 26.329], intensity: 26_504_917, ground: 87130, max_return: 5, format: "LAS 1.2, point format 1, LAZ", epsg: None, units: METRES },
-    Truth { file: "ign_decimated_towns/test_semis_2023_0292_6833_LA93_IGN69.laz", points: 289_055, low: [292_000.0, 6_832_000.0, 43.3], high: [292_999.98, 6_832_999.99, 107.61], intensity: 446_543_615, ground: 152_678, max_return: 9, format: "LAS 1.4, point format 6, LAZ", epsg: Some(2154), units: METRES },
-    Truth { file: "io_cases/1.2-with-color.copc.laz", points: 1065, low: [635_619.85, 848_899.70, 406.59], high: [638_982.55, 853_535.43, 586.38], intensity: 81361, ground: 276, max_return: 4, format: "LAS 1.4, point format 7, LAZ (COPC)", epsg: Some(2991), units: [1.0, US_SURVEY_FOOT] },
-    Truth { file: "io_cases/4_6_crop.las", points: 23875, low: [1_639_600.0, 1_454_500.02, 7077.92], high: [1_639_799.98, 1_454_700.0, 7139.7], intensity: 439_166, ground: 9003, max_return: 4, format: "LAS 1.2, point format 3", epsg: Some(2903), units: [US_SURVEY_FOOT, US_SURVEY_FOOT] },
-    Truth { file: "io_cases/autzen-thin.las", points: 10653, low: [635_589.01, 848_886.45, 406.59], high: [638_994.75, 853_535.43, 593.73], intensity: 819_976, ground: 2719, max_return: 4, format: "LAS 1.2, point format 3", epsg: None, units: METRES },
-    Truth { file: "io_cases/autzen_trim.laz", points: 110_000, low: [636_001.76, 848_935.20, 406.26], high: [637_179.22, 849_497.9, 520.51], intensity: 11_220_547, ground: 26107, max_return: 4, format: "LAS 1.2, point format 3, LAZ", epsg: None, units: [0.3048, 0.3048] },
-    Truth { file: "io_cases/extrabytes.las", points: 1065, low: [635_619.85, 848_899.70, 406.59], high: [638_982.55, 853_535.43, 586.38], intensity: 81361, ground: 276, max_return: 4, format: "LAS 1.4, point format 3", epsg: None, units: METRES },
-    Truth { file: "io_cases/las_with_several_extra_byte_bloc.laz", points: 697_721, low: [484_649.36, 6_632_629.73, 99.65], high: [484_999.99, 6_632_999.99, 120.42], intensity: 1_108_349_761, ground: 683_023, max_return: 6, format: "LAS 1.4, point format 8, LAZ", epsg: Some(2154), units: METRES },
-    Truth { file: "io_cases/noise-dirty.las", points: 1065, low: [635_619.85, 848_899.70, 406.59], high: [638_982.55, 853_535.43, 586.38], intensity: 81361, ground: 276, max_return: 4, format: "LAS 1.2, point format 3", epsg: None, units: METRES },
-    Truth { file: "io_cases/sample_c.las", points: 14408, low: [674_521.92, 1_206_740.08, 627.53], high: [674_605.32, 1_206_814.96, 656.23], intensity: 29_823_038, ground: 1368, max_return: 4, format: "LAS 1.2, point format 3", epsg: None, units: METRES },
-    Truth { file: "io_cases/sample_nc.las", points: 14408, low: [674_521.92, 1_206_740.08, 627.53], high: [674_605.32, 1_206_814.96, 656.23], intensity: 29_823_038, ground: 0, max_return: 4, format: "LAS 1.2, point format 3", epsg: None, units: METRES },
-    Truth { file: "io_cases/test1_4.las", points: 1000, low: [1_694_038.446, 1_816_492.706, 5592.750], high: [1_694_539.677, 1_816_497.976, 5599.070], intensity: 38007, ground: 1000, max_return: 4, format: "LAS 1.4, point format 6", epsg: Some(2903), units: [US_SURVEY_FOOT, US_SURVEY_FOOT] },
-    Truth { file: "io_cases/warsaw_small.las", points: 3000, low: [639_913.26, 485_143.14, 84.7], high: [639_946.75, 485_175.91, 104.55], intensity: 7_534_588, ground: 1381, max_return: 4, format: "LAS 1.2, point format 3", epsg: None, units: METRES },
-    Truth { file: "terrain/Topography.laz", points: 73403, low: [273_357.145, 5_274_357.144, 788.993], high: [273_642.857, 5_274_642.848, 829.758], intensity: 63_213_441, ground: 8159, max_return: 6, format: "LAS 1.2, point format 1, LAZ", epsg: Some(2949), units: METRES },
-    Truth { file: "tudelft_ahn4_small/small.laz", points: 39233, low: [85_699.665, 447_195.328, -0.574], high: [85_740.506, 447_243.504, 15.966], intensity: 36_965_847, ground: 18392, max_return: 5, format: "LAS 1.4, point format 8, LAZ", epsg: Some(7415), units: METRES },
+const LAS_TRUTH: &[ReaderTruth] = &[
+    ReaderTruth { file: "amsterdam_ahn3/ahn_2386_9702.laz", points: 43536, low: [119_299.0, 485_099.002, -0.773], high: [119_350.999, 485_151.0, 21.067], intensity: 1_948_597, ground: 26668, max_return: 5, format: "LAS 1.2, point format 1, LAZ", epsg: None, units: METRES },
+    ReaderTruth { file: "autzen/autzen_north_offices_520x240m.laz", points: 1_105_675, low: [635_840.29, 852_491.08, 408.07], high: [637_546.29, 853_278.47, 540.85], intensity: 84_918_635, ground: 0, max_return: 1, format: "LAS 1.2, point format 2, LAZ", epsg: None, units: METRES },
+    ReaderTruth { file: "autzen/autzen_stadium_340x320m.laz", points: 762_536, low: [636_824.54, 851_441.23, 415.49], high: [637_939.98, 852_491.04, 598.15], intensity: 64_777_739, ground: 0, max_return: 1, format: "LAS 1.2, point format 2, LAZ", epsg: None, units: METRES },
+    ReaderTruth { file: "bresse_lidarhd/870000_6618000.subset.50mx100m.las", points: 70840, low: [870_200.01, 6_617_083.28, 179.13], high: [870_299.99, 6_617_145.15, 194.36], intensity: 146_895_891, ground: 34316, max_return: 6, format: "LAS 1.4, point format 8", epsg: None, units: METRES },
+    ReaderTruth { file: "delft_ahn3/ahn3_cropped_1.laz", points: 640_510, low: [84_808.3, 447_412.8, -0.568], high: [84_999.999, 447_641.299, 19.398], intensity: 96_620_494, ground: 195_988, max_return: 5, format: "LAS 1.2, point format 1, LAZ", epsg: None, units: METRES },
+    ReaderTruth { file: "delft_ahn3/ahn3_cropped_2.laz", points: 208_432, low: [85_000.001, 447_412.8, -0.606], high: [85_072.299, 447_641.299, 26.329], intensity: 26_504_917, ground: 87130, max_return: 5, format: "LAS 1.2, point format 1, LAZ", epsg: None, units: METRES },
+    ReaderTruth { file: "ign_decimated_towns/test_semis_2023_0292_6833_LA93_IGN69.laz", points: 289_055, low: [292_000.0, 6_832_000.0, 43.3], high: [292_999.98, 6_832_999.99, 107.61], intensity: 446_543_615, ground: 152_678, max_return: 9, format: "LAS 1.4, point format 6, LAZ", epsg: Some(2154), units: METRES },
+    ReaderTruth { file: "io_cases/1.2-with-color.copc.laz", points: 1065, low: [635_619.85, 848_899.70, 406.59], high: [638_982.55, 853_535.43, 586.38], intensity: 81361, ground: 276, max_return: 4, format: "LAS 1.4, point format 7, LAZ (COPC)", epsg: Some(2991), units: [1.0, US_SURVEY_FOOT] },
+    ReaderTruth { file: "io_cases/4_6_crop.las", points: 23875, low: [1_639_600.0, 1_454_500.02, 7077.92], high: [1_639_799.98, 1_454_700.0, 7139.7], intensity: 439_166, ground: 9003, max_return: 4, format: "LAS 1.2, point format 3", epsg: Some(2903), units: [US_SURVEY_FOOT, US_SURVEY_FOOT] },
+    ReaderTruth { file: "io_cases/autzen-thin.las", points: 10653, low: [635_589.01, 848_886.45, 406.59], high: [638_994.75, 853_535.43, 593.73], intensity: 819_976, ground: 2719, max_return: 4, format: "LAS 1.2, point format 3", epsg: None, units: METRES },
+    ReaderTruth { file: "io_cases/autzen_trim.laz", points: 110_000, low: [636_001.76, 848_935.20, 406.26], high: [637_179.22, 849_497.9, 520.51], intensity: 11_220_547, ground: 26107, max_return: 4, format: "LAS 1.2, point format 3, LAZ", epsg: None, units: [0.3048, 0.3048] },
+    ReaderTruth { file: "io_cases/extrabytes.las", points: 1065, low: [635_619.85, 848_899.70, 406.59], high: [638_982.55, 853_535.43, 586.38], intensity: 81361, ground: 276, max_return: 4, format: "LAS 1.4, point format 3", epsg: None, units: METRES },
+    ReaderTruth { file: "io_cases/las_with_several_extra_byte_bloc.laz", points: 697_721, low: [484_649.36, 6_632_629.73, 99.65], high: [484_999.99, 6_632_999.99, 120.42], intensity: 1_108_349_761, ground: 683_023, max_return: 6, format: "LAS 1.4, point format 8, LAZ", epsg: Some(2154), units: METRES },
+    ReaderTruth { file: "io_cases/noise-dirty.las", points: 1065, low: [635_619.85, 848_899.70, 406.59], high: [638_982.55, 853_535.43, 586.38], intensity: 81361, ground: 276, max_return: 4, format: "LAS 1.2, point format 3", epsg: None, units: METRES },
+    ReaderTruth { file: "io_cases/sample_c.las", points: 14408, low: [674_521.92, 1_206_740.08, 627.53], high: [674_605.32, 1_206_814.96, 656.23], intensity: 29_823_038, ground: 1368, max_return: 4, format: "LAS 1.2, point format 3", epsg: None, units: METRES },
+    ReaderTruth { file: "io_cases/sample_nc.las", points: 14408, low: [674_521.92, 1_206_740.08, 627.53], high: [674_605.32, 1_206_814.96, 656.23], intensity: 29_823_038, ground: 0, max_return: 4, format: "LAS 1.2, point format 3", epsg: None, units: METRES },
+    ReaderTruth { file: "io_cases/test1_4.las", points: 1000, low: [1_694_038.446, 1_816_492.706, 5592.750], high: [1_694_539.677, 1_816_497.976, 5599.070], intensity: 38007, ground: 1000, max_return: 4, format: "LAS 1.4, point format 6", epsg: Some(2903), units: [US_SURVEY_FOOT, US_SURVEY_FOOT] },
+    ReaderTruth { file: "io_cases/warsaw_small.las", points: 3000, low: [639_913.26, 485_143.14, 84.7], high: [639_946.75, 485_175.91, 104.55], intensity: 7_534_588, ground: 1381, max_return: 4, format: "LAS 1.2, point format 3", epsg: None, units: METRES },
+    ReaderTruth { file: "terrain/Topography.laz", points: 73403, low: [273_357.145, 5_274_357.144, 788.993], high: [273_642.857, 5_274_642.848, 829.758], intensity: 63_213_441, ground: 8159, max_return: 6, format: "LAS 1.2, point format 1, LAZ", epsg: Some(2949), units: METRES },
+    ReaderTruth { file: "tudelft_ahn4_small/small.laz", points: 39233, low: [85_699.665, 447_195.328, -0.574], high: [85_740.506, 447_243.504, 15.966], intensity: 36_965_847, ground: 18392, max_return: 5, format: "LAS 1.4, point format 8, LAZ", epsg: Some(7415), units: METRES },
 ];
 
 #[test]
@@ -391,7 +391,7 @@ fn text_variants_give_the_same_points() {
 }
 
 #[test]
-fn text_columns_are_told_by_name_or_value() {
+fn text_columns_are_recognised_by_name_or_value() {
     let folder = tempfile::tempdir().unwrap();
     let named = text_file(&folder, "a.txt", "x y z nx ny nz r g b intensity class\n1 2 3 0 0 2 255 0 128 77 6\n");
     let (cloud, _) = read(&[named]).unwrap();
@@ -451,7 +451,7 @@ fn folder_joins_its_files_by_name_and_drops_what_only_some_have() {
 }
 
 #[test]
-fn systems_are_told_by_code_and_text() {
+fn systems_are_given_by_code_and_text() {
     for (text, kind, horizontal, vertical) in [
         ("EPSG:28992", CrsKind::Projected, 1.0, 1.0),
         ("7415", CrsKind::Projected, 1.0, 1.0),

@@ -6,7 +6,7 @@ use belvedere::control::Control;
 use belvedere::medial::{CarvedBalls, CarvedInput, CarvedParams, ReliefParams, carved_balls};
 use belvedere::neighbors::NeighborIndex;
 use belvedere::normals::OrientedCloud;
-use belvedere::pulses::{NeedleParams, Needles};
+use belvedere::pulses::{FreeSegmentParams, FreeSegments};
 use belvedere::query::{Answer, BlockRule, MedialScene};
 use belvedere::random::uniform;
 
@@ -14,15 +14,15 @@ use belvedere::random::uniform;
 const HALF: f64 = 0.125;
 const HEIGHT: f64 = 0.8;
 
-struct Survey {
+struct ReliefSurvey {
     points: Vec<[f32; 3]>,
     scanner: Vec<[f32; 3]>,
 }
 
-/// 12 pulses per m² from two lines 60 m to either side, 450 m up. Exact first hits, by hand: the top of the wall, its sides, the
-/// roof at height 0.
-fn survey(wall_height: f64) -> Survey {
-    let mut survey = Survey { points: Vec::new(), scanner: Vec::new() };
+/// 12 pulses per m² from two lines 60 m to either side, 450 m up. Exact first hits, by hand: the top of the wall, its
+/// sides, the roof at height 0.
+fn survey(wall_height: f64) -> ReliefSurvey {
+    let mut survey = ReliefSurvey { points: Vec::new(), scanner: Vec::new() };
     for i in 0..12 * 8 * 24 {
         let side = if i % 2 == 0 { -1.0 } else { 1.0 };
         let scanner = [60.0 * side, 10.0 * (uniform(3, i) - 0.5), 450.0];
@@ -44,25 +44,30 @@ fn survey(wall_height: f64) -> Survey {
     survey
 }
 
-fn needles(survey: &Survey) -> Needles {
-    Needles::new(&survey.points, &survey.scanner, &NeedleParams::default(), &Control::none()).unwrap().0
+fn free_segments(survey: &ReliefSurvey) -> FreeSegments {
+    FreeSegments::new(&survey.points, &survey.scanner, &FreeSegmentParams::default(), &Control::none()).unwrap().0
 }
 
-fn balls(survey: &Survey, relief: Option<ReliefParams>) -> CarvedBalls {
+fn balls(survey: &ReliefSurvey, relief: Option<ReliefParams>) -> CarvedBalls {
     // upward everywhere, as neighbours on the roof make them
     let normals = vec![[0.0, 0.0, 1.0]; survey.points.len()];
     let oriented = OrientedCloud::with_known_normals(survey.points.clone(), normals).unwrap();
     let index = NeighborIndex::new(&survey.points, &Control::none()).unwrap();
     let attributes = Attributes { classification: Some(vec![6; survey.points.len()]), ..Attributes::default() };
-    let needles = needles(survey);
-    let input =
-        CarvedInput { oriented: &oriented, index: &index, attributes: &attributes, needles: &needles, pulses: None };
+    let free_segments = free_segments(survey);
+    let input = CarvedInput {
+        oriented: &oriented,
+        index: &index,
+        attributes: &attributes,
+        needles: &free_segments,
+        pulses: None,
+    };
     carved_balls(&input, &CarvedParams { relief, ..CarvedParams::default() }, &Control::none()).unwrap()
 }
 
-/// Share of level lines of sight across the wall straight below points on its top, all of them blocked in truth, that the
-/// balls block. They run between 0.2 m above the roof and 0.2 m below the top.
-fn blocked_share(survey: &Survey, balls: &CarvedBalls) -> f64 {
+/// Share of level lines of sight across the wall straight below points on its top, all of them blocked in truth, that
+/// the balls block. They run between 0.2 m above the roof and 0.2 m below the top.
+fn blocked_share(survey: &ReliefSurvey, balls: &CarvedBalls) -> f64 {
     let scene = MedialScene::new(&balls.balls, &BlockRule::default()).unwrap();
     let top: Vec<f64> = survey.points.iter().filter(|p| f64::from(p[2]) > HEIGHT - 0.01).map(|p| p[1].into()).collect();
     let is_blocked = |&(i, &north): &(u64, &f64)| {
@@ -118,7 +123,7 @@ fn neither_order_of_points_nor_number_of_threads_matters() {
     let mut backward = survey(HEIGHT);
     backward.points.reverse();
     backward.scanner.reverse();
-    let on = |threads: usize, survey: &Survey| {
+    let on = |threads: usize, survey: &ReliefSurvey| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         let found = pool.install(|| balls(survey, Some(ReliefParams::default())));
         let bits = |ball: usize| (found.balls.centers[ball].map(f32::to_bits), found.balls.radii[ball].to_bits());

@@ -124,7 +124,8 @@ fn no_panel_lies_on_chimneys_parapets_or_beyond_an_edge() {
             assert!((x - cx).abs() > 0.31 || (y - cy).abs() > 0.31, "on a chimney: {middle:?}");
         }
     }
-    // of 11.2 m x 8.2 m less two chimneys; cells of half a metre beside something that stands are lost, a third of a metre on the mean
+    // of 11.2 m x 8.2 m less two chimneys; cells of half a metre beside something that stands are lost, a third of a
+    // metre on the mean
     let free = 11.2 * 8.2 - 2.0 * 1.44;
     let lost = 0.35 * (2.0 * (11.2 + 8.2) + 2.0 * 4.8);
     assert!(flat.panel_area() < free && flat.panel_area() > free - 1.5 * lost, "{} of {free}", flat.panel_area());
@@ -134,7 +135,8 @@ fn no_panel_lies_on_chimneys_parapets_or_beyond_an_edge() {
 fn cells_cover_the_area_of_a_plain_roof() {
     for density in [4.0, 12.0, 40.0] {
         for plane in roof_planes(&house(density), &RoofPlaneParams::default(), &Control::none()).unwrap() {
-            // middles of cells of a metre in and out of planes 5 m wide, whose points end half their distance before the edge
+            // middles of cells of a metre in and out of planes 5 m wide, whose points end half their distance before
+            // the edge
             let ratio = plane.panel_area() / plane.area;
             assert!((0.75..1.15).contains(&ratio), "{density}: {} {}", plane.panel_area(), plane.area);
         }
@@ -158,7 +160,7 @@ fn crowns_and_walls_are_no_roofs() {
 }
 
 #[test]
-fn roofs_are_told_by_class_or_by_height() {
+fn roofs_are_found_by_class_or_by_height() {
     let mut positions = sheet(5, 4.0, [-10.0, 40.0], [-10.0, 20.0], |_, _| 0.0);
     let ground_count = positions.len();
     positions.extend(house(4.0));
@@ -187,7 +189,7 @@ fn parameters_out_of_range_are_refused() {
         // would be 10^18 cells a square metre
         usual.with_cell(1e-9),
         usual.with_angle(2.0),
-        usual.with_least_area(f64::NAN),
+        usual.with_min_area(f64::NAN),
     ] {
         assert!(roof_planes(&house(4.0), &params, &Control::none()).is_err(), "{params:?}");
     }

@@ -40,7 +40,8 @@ fn scanned(spacing: f64) -> PointCloud {
     PointCloud { positions, attributes, scanner_positions: STATIONS.to_vec(), ..PointCloud::default() }
 }
 
-/// The same room as two tripods with steps of half a degree and ranges up to `noise` metres wrong see it. Neither looks lower than 20° from straight down.
+/// The same room as two tripods with steps of half a degree and ranges up to `noise` metres wrong see it. Neither looks
+/// lower than 20° from straight down.
 fn scanned_by_tripods(noise: f64) -> PointCloud {
     let (mut positions, mut scanner_index) = (Vec::new(), Vec::new());
     for (number, station) in (0_u16..).zip(STATIONS) {

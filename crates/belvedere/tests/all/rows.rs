@@ -7,7 +7,7 @@ use belvedere::apps::sky_view::{SkyDirections, scene_sky_view, sky_view};
 use belvedere::apps::sun::{Binning, Date, DayParams, Period, Site, SunSchedule, Zone, sun_days};
 use belvedere::apps::sun_hours::{SunHoursParams, SunPlan, SunRule, SunSums, scene_sun_hours, sun_hours};
 use belvedere::apps::targets::Targets;
-use belvedere::apps::tree_light::{Crowns, Leaves, Transmissivity, TreeLight};
+use belvedere::apps::tree_light::{CrownLight, Leaves, Transmissivity, TreeLight};
 use belvedere::control::{Control, Watcher};
 use belvedere::medial::{MedialBalls, without_vegetation};
 use belvedere::query::{BlockRule, MedialScene};
@@ -54,7 +54,7 @@ fn blocks_of_any_size_give_the_rows_of_the_whole_matrix() {
     let opaque = MedialScene::new(&without_vegetation(&balls, &vegetation).unwrap(), &params()).unwrap();
     let trees = TreeLight {
         opaque: opaque.into(),
-        crowns: Crowns { transmissivity: Transmissivity::default(), leaves: Leaves::ByDate },
+        crowns: CrownLight { transmissivity: Transmissivity::default(), leaves: Leaves::ByDate },
     };
     let targets = targets(300);
     let sky = SkyDirections::even(150).unwrap();
@@ -145,9 +145,9 @@ fn a_sun_without_obstacles_lights_all_and_one_below_the_horizon_nothing() {
 }
 
 /// Cancels once it was asked so many times.
-struct Impatient(AtomicUsize);
+struct CancelDuringRows(AtomicUsize);
 
-impl Watcher for Impatient {
+impl Watcher for CancelDuringRows {
     fn is_cancelled(&self) -> bool {
         self.0.fetch_update(Ordering::Relaxed, Ordering::Relaxed, |left| left.checked_sub(1)).is_err()
     }
@@ -159,7 +159,7 @@ fn a_cancelled_stream_ends_between_blocks() {
     let scene = MedialScene::new(&balls, &params()).unwrap();
     let targets = targets(200);
     let sky = SkyDirections::even(64).unwrap();
-    let watcher = Impatient(AtomicUsize::new(0));
+    let watcher = CancelDuringRows(AtomicUsize::new(0));
     let mut blocks = 0;
     let found = fold_rows((&scene).into(), &targets.positions, &sky.directions, &Control::new(&watcher), |_| {
         blocks += 1;
@@ -187,5 +187,5 @@ fn targets_inside_a_ball_are_left_out() {
     let mut targets = targets(20);
     targets.positions = vec![[0.0, 0.5, 5.0], [0.0, 0.0, 9.0], [f32::NAN; 3]];
     assert_eq!(targets.leave_out_enclosed(&scene, &Control::none()).unwrap(), 1);
-    assert_eq!((0..3).map(|row| targets.is_asked(row)).collect::<Vec<_>>(), [false, true, false]);
+    assert_eq!((0..3).map(|row| targets.is_target(row)).collect::<Vec<_>>(), [false, true, false]);
 }

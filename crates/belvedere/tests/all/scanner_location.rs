@@ -1,5 +1,5 @@
-//! Where the scanner was, by whatever a cloud has: simulated flights whose path is known, with one means after the other taken
-//! away, and real clouds.
+//! Where the scanner was, by whatever a cloud has: simulated flights whose path is known, with one means after the
+//! other taken away, and real clouds.
 #![allow(
     clippy::unwrap_used,
     clippy::cast_possible_truncation,
@@ -10,7 +10,7 @@ use crate::common::simulated::cloud_of;
 use belvedere::control::Control;
 use belvedere::io::{ReadOptions, read_cloud, read_trajectory, write_found_trajectory};
 use belvedere::pulses::{
-    AngleVerdict, FoundBy, LocateParams, Means, ScannerReport, SensorEstimateParams, Verdict, locate, path_samples,
+    AngleVerdict, FoundBy, LocateParams, Means, PartVerdict, ScannerReport, SensorEstimateParams, locate, path_samples,
 };
 use belvedere::trajectory::Trajectory;
 use belvedere::vector::{cross, length, sub};
@@ -41,8 +41,8 @@ fn found(cloud: &PointCloud) -> (Vec<[f32; 3]>, ScannerReport) {
     locate(cloud, &Means::Automatic, &LocateParams::default(), &Control::none()).unwrap()
 }
 
-/// Median distance between two sets of positions in metres, and median angle between the directions to them in degrees, where
-/// both are known.
+/// Median distance between two sets of positions in metres, and median angle between the directions to them in degrees,
+/// where both are known.
 fn apart(cloud: &PointCloud, found: &[[f32; 3]], truth: &[[f32; 3]]) -> [f64; 2] {
     let (mut distances, mut angles) = (Vec::new(), Vec::new());
     for ((place, found), truth) in cloud.positions.iter().zip(found).zip(truth) {
@@ -79,8 +79,8 @@ fn scan_angles_give_the_path_of_scanners_that_look_across_the_flight() {
             let (positions, report) = found(&cloud);
             assert_eq!(report.found.get(&FoundBy::ScanAngle), Some(&cloud.len()), "{pattern:?}: {report:?}");
             let [metres, degrees] = apart(&cloud, &positions, &truth);
-            // the path wanders by a metre about the straight line that is fitted; half a degree of rounding averages out over
-            // thousands of points
+            // the path wanders by a metre about the straight line that is fitted; half a degree of rounding averages
+            // out over thousands of points
             assert!(metres < 3.0 && degrees < 0.3, "{pattern:?} {rounded}: {metres} m, {degrees} deg");
         }
     }
@@ -108,13 +108,13 @@ fn scan_angles_of_a_cone_are_refused() {
 }
 
 #[test]
-fn what_angles_do_not_tell_is_told_by_pulses_with_several_returns() {
+fn where_angles_say_nothing_pulses_with_several_returns_locate_the_scanner() {
     let scan = flown(&AirborneParams { pulses_per_m2: 4.0, ..AirborneParams::default() });
     let mut cloud = cloud_of(&scan);
     let (truth, _) = trajectory(&scan, 0.0).scanner_positions(&cloud).unwrap();
     let params = LocateParams {
         // they fix no position here, but they are there
-        returns: SensorEstimateParams { least_pair_count: 100_000, ..SensorEstimateParams::default() },
+        returns: SensorEstimateParams { min_pair_count: 100_000, ..SensorEstimateParams::default() },
         ..LocateParams::default()
     };
     let locate = |cloud: &PointCloud| locate(cloud, &Means::Automatic, &params, &Control::none()).unwrap();
@@ -178,7 +178,7 @@ fn the_height_of_a_trajectory_is_checked_by_pulses() {
 }
 
 #[test]
-fn times_that_tell_little_are_counted_and_lead_to_a_stated_assumption() {
+fn times_of_little_use_are_counted_and_lead_to_a_stated_assumption() {
     let scan = flown(&AirborneParams { pulses_per_m2: 2.0, ..AirborneParams::default() });
     let mut cloud = cloud_of(&scan);
     cloud.attributes.scan_angle = None;
@@ -204,10 +204,10 @@ fn times_that_tell_little_are_counted_and_lead_to_a_stated_assumption() {
     let (positions, report) = found(&cloud);
     assert!(report.is_assumed());
     assert!(report.remarks.iter().any(|remark| remark.contains("separate pulses")), "{:?}", report.remarks);
-    let served = positions.iter().filter(|p| p[0].is_finite()).count();
-    assert_eq!(report.found.get(&FoundBy::Assumed), Some(&served));
+    let located = positions.iter().filter(|p| p[0].is_finite()).count();
+    assert_eq!(report.found.get(&FoundBy::Assumed), Some(&located));
     // walls and what lies under crowns are left out
-    assert!(served > cloud.len() / 2 && served < cloud.len(), "{served} of {}", cloud.len());
+    assert!(located > cloud.len() / 2 && located < cloud.len(), "{located} of {}", cloud.len());
 }
 
 #[test]
@@ -228,7 +228,7 @@ fn parts_without_pulses_of_several_returns_follow_from_their_neighbours() {
         ..LocateParams::default()
     };
     let (positions, report) = locate(&cloud, &Means::Automatic, &params, &Control::none()).unwrap();
-    assert!(report.parts.iter().any(|part| part.verdict == Verdict::Bridged), "{:?}", report.parts);
+    assert!(report.parts.iter().any(|part| part.verdict == PartVerdict::Bridged), "{:?}", report.parts);
     assert_eq!(report.found.get(&FoundBy::Returns), Some(&cloud.len()));
     let [_, degrees] = apart(&cloud, &positions, &truth);
     // as for the pulses themselves; see the simulator's echoes in `pulses.rs`
@@ -283,22 +283,22 @@ fn means_that_are_not_there_are_refused_with_advice() {
 }
 
 #[test]
-fn real_clouds_are_served_by_what_they_have() {
+fn real_clouds_are_located_by_what_they_have() {
     let read = |file: &str| {
-        let path = crate::common::data("real_clouds_are_served_by_what_they_have", file)?;
+        let path = crate::common::data("real_clouds_are_located_by_what_they_have", file)?;
         Some(read_cloud(&[path], &ReadOptions::default(), &Control::none()).unwrap().0)
     };
     // scanners that look across the flight: angles alone put them where pulses with several returns do
     // (one block in Amsterdam is too narrow for two of its three lines)
-    for (file, least_share) in
+    for (file, min_share) in
         [("data/delft_ahn3/ahn3_cropped_1.laz", 0.9), ("data/amsterdam_ahn3/ahn_2386_9702.laz", 0.2)]
     {
         let Some(cloud) = read(file) else { return };
         let (_, by_returns) = found(&cloud);
         let singles = singles(&cloud);
         let (by_angle, report) = found(&singles);
-        let served = report.found.get(&FoundBy::ScanAngle).copied().unwrap_or(0);
-        assert!(served as f64 > least_share * singles.len() as f64, "{file}: {report:?}");
+        let located = report.found.get(&FoundBy::ScanAngle).copied().unwrap_or(0);
+        assert!(located as f64 > min_share * singles.len() as f64, "{file}: {report:?}");
         let line = |row: usize| singles.attributes.point_source_id.as_ref().unwrap()[row];
         let times = singles.attributes.gps_time.as_ref().unwrap();
         let truth: Vec<[f32; 3]> = (0..singles.len())
@@ -319,7 +319,7 @@ fn real_clouds_are_served_by_what_they_have() {
     assert_eq!(report.found.get(&FoundBy::Returns), Some(&cloud.len()));
     let (_, report) = found(&singles(&cloud));
     assert!(report.is_assumed(), "{report:?}");
-    let Some(towns) = crate::common::data("real_clouds_are_served_by_what_they_have", "data/ign_decimated_towns")
+    let Some(towns) = crate::common::data("real_clouds_are_located_by_what_they_have", "data/ign_decimated_towns")
     else {
         return;
     };

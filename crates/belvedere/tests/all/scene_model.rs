@@ -8,16 +8,16 @@ use belvedere::model::{BallParams, BallsReport, BuildReport, ModelParams, Orient
 use belvedere::neighbors::NeighborIndex;
 use belvedere::normals::estimate::{Neighborhood, estimate, estimate_with_scatter};
 use belvedere::normals::{Orientation, OrientedCloud, orient};
-use belvedere::pulses::{LocateParams, Means, NeedleParams, Needles, group, locate};
+use belvedere::pulses::{FreeSegmentParams, FreeSegments, LocateParams, Means, group, locate};
 use belvedere::query::UnprovenAs;
 use belvedere::trajectory::Trajectory;
 use belvedere::{Error, Mesh, PointCloud};
-use belvedere_scenes::{AirborneParams, Scan, Scene, TownParams, scan_airborne, town};
+use belvedere_scenes::{AirborneParams, Scan, TownParams, TriangleScene, scan_airborne, town};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// A small town, flown with few pulses.
-fn simulated() -> (Scene, Scan, PointCloud) {
+fn simulated() -> (TriangleScene, Scan, PointCloud) {
     let scene = town(&TownParams { extent: 60.0, ..TownParams::default() });
     let scan = scan_airborne(&scene, &AirborneParams { pulses_per_m2: 3.0, ..AirborneParams::default() });
     let cloud = cloud_of(&scan);
@@ -40,7 +40,7 @@ fn a_model_is_what_the_stages_make_one_after_the_other() {
     let (kept, _) = belvedere::clean::clean(&cloud, &belvedere::clean::CleanParams::default(), &none).unwrap();
     let clean = cloud.select(&kept);
     let (scanner, _) = locate(&clean, &Means::Automatic, &LocateParams::default(), &none).unwrap();
-    let (needles, _) = Needles::of_cloud(&clean, &scanner, &NeedleParams::default(), &none).unwrap();
+    let (free_segments, _) = FreeSegments::of_cloud(&clean, &scanner, &FreeSegmentParams::default(), &none).unwrap();
     let index = NeighborIndex::new(&clean.positions, &none).unwrap();
     let (normals, scatter) = estimate_with_scatter(&clean.positions, &index, Neighborhood::default(), &none).unwrap();
     let (oriented, _) = orient(&clean, normals, &Orientation::Pulses(&scanner), &none).unwrap();
@@ -54,12 +54,14 @@ fn a_model_is_what_the_stages_make_one_after_the_other() {
     let (pulses, _) = group(&clean, &none).unwrap();
     let attributes = &clean.attributes;
     let input =
-        CarvedInput { oriented: &oriented, index: &index, attributes, needles: &needles, pulses: Some(&pulses) };
+        CarvedInput { oriented: &oriented, index: &index, attributes, needles: &free_segments, pulses: Some(&pulses) };
     let made = carved_balls(&input, &CarvedParams::default(), &none).unwrap();
     assert_eq!(model.balls().centers, made.balls.centers);
     assert_eq!(model.balls().radii, made.balls.radii);
-    let mut columns = needles.to_columns();
-    columns.append(needles.between_returns(&clean, &pulses, &NeedleParams::default(), &none).unwrap().to_columns());
+    let mut columns = free_segments.to_columns();
+    columns.append(
+        free_segments.between_returns(&clean, &pulses, &FreeSegmentParams::default(), &none).unwrap().to_columns(),
+    );
     assert_eq!(model.pulses(), Some(&columns));
     let sources: Vec<u32> = made.balls.source.iter().map(|&row| kept[row as usize]).collect();
     assert_eq!(model.balls().source, sources, "rows of the cloud as given");
@@ -85,7 +87,7 @@ fn has_nan_only_differences(a: &SceneModel, b: &SceneModel) -> bool {
 }
 
 #[test]
-fn each_way_of_orienting_decides_what_it_is_asked_to() {
+fn each_way_of_orienting_decides_what_it_is_meant_to() {
     let (scene, scan, cloud) = simulated();
     let flight = trajectory(&scan);
     let (positions, _) = flight.scanner_positions(&cloud).unwrap();
@@ -214,8 +216,8 @@ fn reports_use_keys_with_units_and_rounded_numbers() {
 }
 
 /// Stops the work when it has asked so many times whether to go on.
-struct Impatient {
-    asked: AtomicUsize,
+struct StopAfterChecks {
+    checks: AtomicUsize,
     patience: usize,
     begun: Mutex<Vec<&'static str>>,
     ended: Mutex<Vec<(&'static str, usize)>>,
@@ -223,10 +225,10 @@ struct Impatient {
     done: AtomicUsize,
 }
 
-impl Impatient {
+impl StopAfterChecks {
     fn new(patience: usize) -> Self {
         Self {
-            asked: AtomicUsize::new(0),
+            checks: AtomicUsize::new(0),
             patience,
             begun: Mutex::default(),
             ended: Mutex::default(),
@@ -236,7 +238,7 @@ impl Impatient {
     }
 }
 
-impl Watcher for Impatient {
+impl Watcher for StopAfterChecks {
     fn begin(&self, stage: &'static str, total: usize) {
         self.total.store(total, Ordering::Relaxed);
         self.done.store(0, Ordering::Relaxed);
@@ -249,33 +251,33 @@ impl Watcher for Impatient {
         let (total, done) = (self.total.load(Ordering::Relaxed), self.done.load(Ordering::Relaxed));
         assert!(total == 0 || done <= total, "{stage}: {done} of {total}");
         assert!(
-            end == StageEnd::Finished || self.asked.load(Ordering::Relaxed) >= self.patience,
+            end == StageEnd::Finished || self.checks.load(Ordering::Relaxed) >= self.patience,
             "{stage} was stopped by nobody"
         );
         self.ended.lock().unwrap().push((stage, done));
     }
     fn is_cancelled(&self) -> bool {
-        self.asked.fetch_add(1, Ordering::Relaxed) >= self.patience
+        self.checks.fetch_add(1, Ordering::Relaxed) >= self.patience
     }
 }
 
 #[test]
 fn building_can_be_stopped_at_every_stage_and_asks_often() {
     let (_, _, cloud) = simulated();
-    let patient = Impatient::new(usize::MAX);
+    let patient = StopAfterChecks::new(usize::MAX);
     SceneModel::build(&cloud, &ModelParams::default(), &Control::new(&patient)).unwrap();
     let stages = patient.begun.lock().unwrap().clone();
-    let asked = patient.asked.load(Ordering::Relaxed);
+    let checks = patient.checks.load(Ordering::Relaxed);
     assert!(stages.len() >= 15, "{stages:?}");
     // 1 look for every 10 points at least, all stages together
-    assert!(asked > cloud.len() / 10, "{asked} looks for {} points", cloud.len());
+    assert!(checks > cloud.len() / 10, "{checks} looks for {} points", cloud.len());
     let counted = ["estimating normals", "shrinking balls", "carving balls"];
     for (stage, done) in patient.ended.lock().unwrap().iter().filter(|(stage, _)| counted.contains(stage)) {
         assert!(*done > cloud.len() * 9 / 10, "{stage} counted {done} of {}", cloud.len());
     }
     let mut last = 0;
     for share in 0..20 {
-        let impatient = Impatient::new(asked * share / 20);
+        let impatient = StopAfterChecks::new(checks * share / 20);
         let stopped = SceneModel::build(&cloud, &ModelParams::default(), &Control::new(&impatient));
         assert!(matches!(stopped, Err(Error::Cancelled)), "after {share} of 20 looks");
         let begun = impatient.begun.lock().unwrap().len();
@@ -283,7 +285,7 @@ fn building_can_be_stopped_at_every_stage_and_asks_often() {
         assert_eq!(begun, impatient.ended.lock().unwrap().len(), "stages that begin also end");
         last = begun;
         // once it is known that the work is to stop, no piece is begun: only those under way look again
-        let after = impatient.asked.load(Ordering::Relaxed) - impatient.patience;
+        let after = impatient.checks.load(Ordering::Relaxed) - impatient.patience;
         assert!(after < 1000, "{after} more looks after the one that said stop, {share} of 20");
     }
 }

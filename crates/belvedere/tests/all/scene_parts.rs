@@ -3,7 +3,7 @@
 use crate::common::simulated::cloud_of;
 use belvedere::cloud::to_local;
 use belvedere::control::Control;
-use belvedere::model::{ModelParams, SceneModel, SurveyExtremes, SurveyFacts};
+use belvedere::model::{ModelParams, SceneModel, SurveyExtremes, SurveyStatistics};
 use belvedere::{Frame, PointCloud};
 use belvedere_scenes::{AirborneParams, TownParams, scan_airborne, town};
 use std::path::Path;
@@ -22,7 +22,7 @@ fn survey() -> PointCloud {
     PointCloud { frame: Frame { origin, ..cloud.frame.clone() }, positions, ..cloud }
 }
 
-fn facts(cloud: &PointCloud) -> SurveyFacts {
+fn statistics(cloud: &PointCloud) -> SurveyStatistics {
     let bounds = cloud.bounds().unwrap();
     let has = |classes: std::ops::RangeInclusive<u8>| {
         cloud.attributes.classification.iter().flatten().any(|class| classes.contains(class))
@@ -33,7 +33,7 @@ fn facts(cloud: &PointCloud) -> SurveyFacts {
         has_ground: has(2..=2),
         has_vegetation: has(3..=5),
     };
-    SurveyFacts::estimate(Path::new("scene"), cloud, cloud, &extremes, &ModelParams::default(), &Control::none())
+    SurveyStatistics::estimate(Path::new("scene"), cloud, cloud, &extremes, &ModelParams::default(), &Control::none())
         .unwrap()
 }
 
@@ -58,22 +58,22 @@ fn balls_in(model: &SceneModel, cloud: &PointCloud, low: [f32; 2], high: [f32; 2
 }
 
 fn check(cloud: &PointCloud) {
-    let facts = facts(cloud);
+    let statistics = statistics(cloud);
     // through text and back, as parts elsewhere get them
-    let text = serde_json::to_string(&facts).unwrap();
-    let facts: SurveyFacts = serde_json::from_str(&text).unwrap();
+    let text = serde_json::to_string(&statistics).unwrap();
+    let statistics: SurveyStatistics = serde_json::from_str(&text).unwrap();
     let params = ModelParams::default();
     #[expect(clippy::cast_possible_truncation, reason = "tens of metres")]
-    let halo = facts.halo(&params) as f32;
-    assert!((40.0..120.0).contains(&halo), "{halo}");
-    let params = params.with_facts(Some(Arc::new(facts)));
+    let buffer = statistics.buffer(&params) as f32;
+    assert!((40.0..120.0).contains(&buffer), "{buffer}");
+    let params = params.with_statistics(Some(Arc::new(statistics)));
     let whole = model_of(cloud, &params);
     let bounds = cloud.bounds().unwrap();
     let corner = |share: f32| [0, 1].map(|axis| bounds.low[axis] + share * (bounds.high[axis] - bounds.low[axis]));
     for (low, size) in [(corner(0.0), 50.0), (corner(0.37), 64.0), (corner(0.55), 33.0)] {
         let high = low.map(|v| v + size);
-        let from = low.map(|v| (v / BLOCK).floor() * BLOCK - halo);
-        let to = high.map(|v| (v / BLOCK).ceil() * BLOCK + halo);
+        let from = low.map(|v| (v / BLOCK).floor() * BLOCK - buffer);
+        let to = high.map(|v| (v / BLOCK).ceil() * BLOCK + buffer);
         let is_near = |p: &[f32; 3]| (0..2).all(|axis| from[axis] <= p[axis] && p[axis] <= to[axis]);
         let rows: Vec<u32> = (0..).zip(&cloud.positions).filter(|(_, p)| is_near(p)).map(|(row, _)| row).collect();
         assert!(rows.len() < cloud.len());
@@ -101,9 +101,9 @@ fn a_part_of_a_survey_without_classes_and_pulses_has_the_balls_of_the_whole() {
 
 #[test]
 #[expect(clippy::cast_possible_truncation, reason = "hundreds of metres in millimetres")]
-fn a_whole_that_is_built_as_its_own_part_is_nearly_what_it_is_without_facts() {
+fn a_whole_that_is_built_as_its_own_part_is_nearly_what_it_is_without_statistics() {
     let cloud = survey();
-    let with = ModelParams::default().with_facts(Some(Arc::new(facts(&cloud))));
+    let with = ModelParams::default().with_statistics(Some(Arc::new(statistics(&cloud))));
     let far = [[-1e6; 2], [1e6; 2]];
     // positions on a path of the facts are rounded in another way than those that are estimated with it
     let in_millimetres = |params: &ModelParams| {

@@ -1,5 +1,5 @@
-//! What a simulated survey delivers agrees with itself: returns with the exact mesh along their rays, angles and times with
-//! the written trajectory, written meshes with the scene.
+//! What a simulated survey delivers agrees with itself: returns with the exact mesh along their rays, angles and times
+//! with the written trajectory, written meshes with the scene.
 #![allow(
     clippy::unwrap_used,
     clippy::cast_possible_truncation,
@@ -11,19 +11,19 @@ use belvedere::control::Control;
 use std::path::Path;
 
 use belvedere::io::{
-    Heading, LevelOfDetail, ReadOptions, read_cityjson, read_cloud, read_mesh, read_trajectory, write_cloud,
+    LevelOfDetail, ReadOptions, VehicleHeading, read_cityjson, read_cloud, read_mesh, read_trajectory, write_cloud,
     write_trajectory,
 };
 use belvedere::summary::{CloudSummary, FacadeSummary};
 use belvedere::trajectory::Trajectory;
 use belvedere::{GpsTimeKind, PointCloud};
 use belvedere_scenes::{
-    AirborneParams, Material, MirrorMotion, Preset, Regime, Scan, ScanPattern, Scene, TerrestrialParams, TownParams,
-    Truth, scan_airborne, scan_terrestrial, town,
+    AirborneParams, Material, MirrorMotion, Preset, Regime, Scan, ScanPattern, TerrestrialParams, TownParams,
+    TriangleScene, Truth, scan_airborne, scan_terrestrial, town,
 };
 
-/// Cloud and trajectory as they come back from files: positions of the cloud in file coordinates, and of the scanner at the
-/// time of each point.
+/// Cloud and trajectory as they come back from files: positions of the cloud in file coordinates, and of the scanner at
+/// the time of each point.
 struct Delivered {
     cloud: PointCloud,
     positions: Vec<[f64; 3]>,
@@ -36,7 +36,7 @@ fn delivered(scan: &Scan, folder: &Path, trajectory_name: &str) -> Delivered {
     write_cloud(&cloud_file, &cloud, &[]).unwrap();
     let path = &scan.sensor_path;
     let trajectory = Trajectory { times: path.times.clone(), positions: path.positions.clone() };
-    let heading = Heading::Given(&path.headings);
+    let heading = VehicleHeading::Given(&path.headings);
     write_trajectory(&path_file, &trajectory, GpsTimeKind::AdjustedStandard, &cloud.frame.crs, heading).unwrap();
 
     let (cloud, _) = read_cloud(&[cloud_file], &ReadOptions::default(), &Control::none()).unwrap();
@@ -61,18 +61,18 @@ fn unit(a: [f64; 3]) -> [f64; 3] {
     a.map(|v| v / dot(a, a).sqrt())
 }
 
-fn normal(scene: &Scene, triangle: usize) -> [f64; 3] {
+fn normal(scene: &TriangleScene, triangle: usize) -> [f64; 3] {
     let [a, b, c] = scene.corners(triangle).unwrap();
     let (u, v) = (sub(b, a), sub(c, a));
     unit([u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]])
 }
 
-/// How far a return may be moved by the millimetres of the files, metres: half a step along each axis, and a tenth of it in the
-/// trajectory.
+/// How far a return may be moved by the millimetres of the files, metres: half a step along each axis, and a tenth of
+/// it in the trajectory.
 const FILE_STEP: f64 = 0.000_87 + 0.000_1;
 
 /// Checks that returns lie within four deviations of the mesh along their rays, all but the share that noise explains.
-fn check_ranges(scene: &Scene, scan: &Scan, files: &Delivered, range_sd: f64, what: &str) {
+fn check_ranges(scene: &TriangleScene, scan: &Scan, files: &Delivered, range_sd: f64, what: &str) {
     let truth = Truth::new(scene);
     let (mut beyond, mut without_surface, mut squares) = (0, 0, 0.0);
     for i in 0..scan.len() {
@@ -187,7 +187,7 @@ fn returns_from_inside_crowns_lie_within_noise_of_their_exact_range() {
 }
 
 /// Area of the walls of `scene` above the ground, m²: by rows of samples that lie above `terrain`.
-fn wall_area(scene: &Scene, terrain: &belvedere_scenes::Terrain) -> f64 {
+fn wall_area(scene: &TriangleScene, terrain: &belvedere_scenes::Terrain) -> f64 {
     let steps = 20_u32;
     let walls = (0..scene.triangles.len())
         .filter(|&t| scene.materials[t] == Material::Facade && normal(scene, t)[2].abs() < 0.3);
@@ -211,18 +211,18 @@ fn wall_area(scene: &Scene, terrain: &belvedere_scenes::Terrain) -> f64 {
 }
 
 #[test]
-fn info_tells_density_multi_returns_and_facade_density_as_the_simulation_knows_them() {
+fn info_reports_density_multi_returns_and_facade_density_as_the_simulation_knows_them() {
     let town_params = TownParams { extent: 200.0, ..TownParams::default() };
     let scene = town(&town_params);
     for (pattern, density) in [(ScanPattern::Rotating, 10.0), (ScanPattern::CONICAL_20, 20.0)] {
         let params = AirborneParams { pattern, ..AirborneParams::covering(&scene, 10.0) };
         let scan = scan_airborne(&scene, &params.spread_over(&scene, None, density));
         let cloud = cloud_of(&scan);
-        let facts = CloudSummary::of(&cloud, &Control::none()).unwrap();
+        let statistics = CloudSummary::of(&cloud, &Control::none()).unwrap();
         // Cells on the rim count as a whole; they are a metre wide.
-        assert!((facts.occupied_area / 4e4 - 1.0).abs() < 0.03, "{}", facts.occupied_area);
-        assert!((facts.density * facts.occupied_area / scan.len() as f64 - 1.0).abs() < 1e-9);
-        let pulses = facts.pulses.unwrap();
+        assert!((statistics.occupied_area / 4e4 - 1.0).abs() < 0.03, "{}", statistics.occupied_area);
+        assert!((statistics.density * statistics.occupied_area / scan.len() as f64 - 1.0).abs() < 1e-9);
+        let pulses = statistics.pulses.unwrap();
         let firsts = || (0..scan.len()).filter(|&i| scan.return_number[i] == 1);
         let several = firsts().filter(|&i| scan.return_count[i] > 1).count() as f64;
         assert!((pulses.count - firsts().count() as f64).abs() < 1e-6);
@@ -311,13 +311,13 @@ fn cityjson_parts_are_those_given_and_surfaces_say_what_they_are() {
     assert_eq!(of_type("TINRelief"), 1);
     // without parts, each solid is one: the tower has its machine room
     let by_solid: serde_json::Value = serde_json::from_str(&scene.to_cityjson(&[], 28_992)).unwrap();
-    let most = by_solid["CityObjects"]
+    let max = by_solid["CityObjects"]
         .as_object()
         .unwrap()
         .values()
         .filter_map(|object| Some(object["children"].as_array()?.len()))
         .max();
-    assert_eq!(most, Some(2));
+    assert_eq!(max, Some(2));
 
     let mut kinds = std::collections::BTreeMap::<String, f64>::new();
     for (name, object) in objects.iter().filter(|(_, object)| object["type"] == "BuildingPart") {

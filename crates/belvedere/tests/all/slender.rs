@@ -6,13 +6,13 @@ use belvedere::medial::{CarvedBalls, CarvedInput, CarvedParams, SlenderParams, c
 use belvedere::neighbors::NeighborIndex;
 use belvedere::normals::estimate::{Neighborhood, estimate};
 use belvedere::normals::{Orientation, orient};
-use belvedere::pulses::{NeedleParams, Needles};
+use belvedere::pulses::{FreeSegmentParams, FreeSegments};
 use belvedere::query::{BlockRule, MedialScene};
 use belvedere::random::uniform;
 use belvedere::{Attributes, PointCloud};
 
-/// Pulses 0.25 m apart over 20 m × 10 m of ground, tilted by 20° to either side in turn, and what they meet first: a box along
-/// x from `bottom` to `top`, `width` across, in the middle; class 1, the ground class 2.
+/// Pulses 0.25 m apart over 20 m × 10 m of ground, tilted by 20° to either side in turn, and what they meet first: a
+/// box along x from `bottom` to `top`, `width` across, in the middle; class 1, the ground class 2.
 fn survey(bottom: f64, top: f64, width: f64) -> (PointCloud, Vec<[f32; 3]>) {
     let (mut cloud, mut scanner) = (PointCloud::default(), Vec::new());
     let mut classes = Vec::new();
@@ -41,15 +41,16 @@ fn survey(bottom: f64, top: f64, width: f64) -> (PointCloud, Vec<[f32; 3]>) {
     (cloud, scanner)
 }
 
-fn carved(cloud: &PointCloud, scanner: &[[f32; 3]], slender: Option<SlenderParams>) -> (CarvedBalls, Needles) {
+fn carved(cloud: &PointCloud, scanner: &[[f32; 3]], slender: Option<SlenderParams>) -> (CarvedBalls, FreeSegments) {
     let index = NeighborIndex::new(&cloud.positions, &Control::none()).unwrap();
     let normals = estimate(&cloud.positions, &index, Neighborhood::default(), &Control::none()).unwrap();
     let (oriented, _) = orient(cloud, normals, &Orientation::Pulses(scanner), &Control::none()).unwrap();
-    let (needles, _) = Needles::of_cloud(cloud, scanner, &NeedleParams::default(), &Control::none()).unwrap();
+    let (free_segments, _) =
+        FreeSegments::of_cloud(cloud, scanner, &FreeSegmentParams::default(), &Control::none()).unwrap();
     let attributes = &cloud.attributes;
-    let input = CarvedInput { oriented: &oriented, index: &index, attributes, needles: &needles, pulses: None };
+    let input = CarvedInput { oriented: &oriented, index: &index, attributes, needles: &free_segments, pulses: None };
     let params = CarvedParams { slender, ..CarvedParams::default() };
-    (carved_balls(&input, &params, &Control::none()).unwrap(), needles)
+    (carved_balls(&input, &params, &Control::none()).unwrap(), free_segments)
 }
 
 /// Share of level lines of sight across the middle, at a height, that are blocked.
@@ -67,13 +68,14 @@ fn blocked(found: &CarvedBalls, height: f64) -> f64 {
 fn a_fence_blocks_to_the_ground_and_stays_thin() {
     let (cloud, scanner) = survey(0.0, 1.5, 0.06);
     let (without, _) = carved(&cloud, &scanner, None);
-    let (with, needles) = carved(&cloud, &scanner, Some(SlenderParams::default()));
+    let (with, free_segments) = carved(&cloud, &scanner, Some(SlenderParams::default()));
     let hits = cloud.attributes.classification.as_ref().unwrap().iter().filter(|class| **class == 1).count();
     // the lowest 0.3 m of the fence, a fifth of its hits, are too low to tell; half of them at the least must be found
     assert!(with.report.slender * 2 > hits, "{} of {hits}", with.report.slender);
     assert!(blocked(&with, 0.7) > 0.9 && blocked(&with, 0.7) > blocked(&without, 0.7), "{}", blocked(&with, 0.7));
     assert_eq!(blocked(&with, 2.0), 0.0);
-    // no ball of the fence reaches farther than its radius to either side and half the fence; beyond its ends no pulse passes
+    // no ball of the fence reaches farther than its radius to either side and half the fence; beyond its ends no pulse
+    // passes
     let away_from_ends = |c: &[f32; 3]| (1.0..19.0).contains(&c[0]);
     for (center, radius) in with.balls.centers.iter().zip(&with.balls.radii).filter(|(c, _)| away_from_ends(c)) {
         assert!(center[2] - radius < 0.35 || center[1].abs() + radius < 0.03 + 2.0 * 0.15, "{center:?} {radius}");
@@ -82,7 +84,7 @@ fn a_fence_blocks_to_the_ground_and_stays_thin() {
     let first = with.balls.len() - with.report.slender_fills;
     for row in first..with.balls.len() {
         let (center, radius) = (with.balls.centers[row], with.balls.radii[row]);
-        assert!(needles.clearance(center, 1.0) >= radius);
+        assert!(free_segments.clearance(center, 1.0) >= radius);
     }
 }
 
@@ -124,16 +126,16 @@ fn the_order_of_points_does_not_matter() {
 }
 
 #[test]
-fn the_clearance_is_a_millimetre_less_than_the_distance_to_the_nearest_of_all_needles() {
+fn the_clearance_is_a_millimetre_less_than_the_distance_to_the_nearest_of_all_free_segments() {
     let (cloud, scanner) = survey(0.0, 1.5, 0.06);
-    let params = NeedleParams::default();
-    let (needles, _) = Needles::of_cloud(&cloud, &scanner, &params, &Control::none()).unwrap();
+    let params = FreeSegmentParams::default();
+    let (free_segments, _) = FreeSegments::of_cloud(&cloud, &scanner, &params, &Control::none()).unwrap();
     let top = cloud.positions.iter().map(|p| p[2]).fold(f32::NEG_INFINITY, f32::max) + params.headroom;
     for i in 0..300 {
         let at = |k: u64, low: f64, high: f64| low + (high - low) * uniform(7, 3 * i + k);
         let center = [at(0, -1.0, 21.0), at(1, -6.0, 6.0), at(2, -0.5, 5.0)];
         // distance to each needle in f64, its ends included
-        let mut least = 0.501_f64;
+        let mut min = 0.501_f64;
         for (p, s) in cloud.positions.iter().zip(&scanner) {
             let (p, s) = (p.map(f64::from), s.map(f64::from));
             let sight: [f64; 3] = std::array::from_fn(|k| s[k] - p[k]);
@@ -143,11 +145,11 @@ fn the_clearance_is_a_millimetre_less_than_the_distance_to_the_nearest_of_all_ne
             let along: f64 = (0..3).map(|k| from[k] * up[k]).sum();
             let along = along.clamp(f64::from(params.end_margin), (f64::from(top) - p[2]) / up[2]);
             let square: f64 = (0..3).map(|k| (from[k] - along * up[k]).powi(2)).sum();
-            least = least.min(square.sqrt());
+            min = min.min(square.sqrt());
         }
         // balls stay a millimetre clear of pulses
-        let expected = least - 0.001;
-        let found = needles.clearance(center.map(|v| v as f32), 0.5);
+        let expected = min - 0.001;
+        let found = free_segments.clearance(center.map(|v| v as f32), 0.5);
         // ends and directions of needles are f32: a hundredth of a millimetre at these distances
         assert!((f64::from(found) - expected.max(0.0)).abs() < 1e-4, "{center:?}: {found} instead of {expected}");
     }

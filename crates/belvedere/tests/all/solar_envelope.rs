@@ -70,9 +70,9 @@ fn several_suns_bound_by_the_least_and_the_binding_says_which() {
     let all = envelope(&parcel, &fence, &suns);
     let single: Vec<SolarEnvelope> = suns.iter().map(|&sun| envelope(&parcel, &fence, &[sun])).collect();
     for (i, column) in all.columns.iter().enumerate() {
-        let least = single.iter().map(|one| one.columns[i].top).fold(f64::INFINITY, f64::min);
-        assert_eq!(column.top, least);
-        assert_eq!(single[column.binding.unwrap().sun].columns[i].top, least);
+        let min = single.iter().map(|one| one.columns[i].top).fold(f64::INFINITY, f64::min);
+        assert_eq!(column.top, min);
+        assert_eq!(single[column.binding.unwrap().sun].columns[i].top, min);
     }
     // the flattest sun bounds but for the row at the fence, which all bound to nothing, and the first is named
     let areas = all.bound_areas(3, |binding| binding.sun);
@@ -171,7 +171,8 @@ fn traced_box_by_box_the_columns_shade_nothing_and_none_can_grow_by_five_centime
         if column.top.is_finite() {
             bounded += 1;
             assert!(!shades(column.top - 1e-6, 2000), "column at {x} {y} shades a fence");
-            // 17 m of fence in 4000 steps of 4 mm, under suns of 33 degrees at most: the bound moves by a few mm between them
+            // 17 m of fence in 4000 steps of 4 mm, under suns of 33 degrees at most: the bound moves by a few mm
+            // between them
             assert!(shades(column.top + 0.05, 4000), "column at {x} {y} could grow: {}", column.top);
         } else {
             assert!(!shades(1e6, 500));
@@ -181,10 +182,10 @@ fn traced_box_by_box_the_columns_shade_nothing_and_none_can_grow_by_five_centime
 }
 
 #[test]
-fn cells_that_the_rim_cuts_are_bounded_over_their_part_alone() {
-    let rim = vec![[-6.2, -9.1], [5.3, -11.7], [8.4, -1.2], [0.4, -3.0], [-7.5, 0.6]];
+fn cells_that_the_outline_cuts_are_bounded_over_their_part_alone() {
+    let outline = vec![[-6.2, -9.1], [5.3, -11.7], [8.4, -1.2], [0.4, -3.0], [-7.5, 0.6]];
     let hole = vec![[-2.0, -7.3], [1.1, -7.7], [0.2, -5.1]];
-    let parcel = Parcel::new(&[rim.clone(), hole.clone()]).unwrap();
+    let parcel = Parcel::new(&[outline.clone(), hole.clone()]).unwrap();
     let fence = ([-12.0, 4.0, 0.7], [11.0, 2.0, 0.2]);
     let suns = [sun(150.0, 25.0), sun(215.0, 18.0)];
     let found = envelope(&parcel, &line(&[fence.0, fence.1], 0.0), &suns);
@@ -201,10 +202,10 @@ fn cells_that_the_rim_cuts_are_bounded_over_their_part_alone() {
     for column in &found.columns {
         let cell = column.footprint.cell;
         let [x, y] = found.grid.center(cell % 40, cell / 40);
-        let mut least = f64::INFINITY;
+        let mut min = f64::INFINITY;
         for i in 0..4000_u64 {
             let p = [x - 0.5 + uniform(cell as u64, 2 * i), y - 0.5 + uniform(cell as u64, 2 * i + 1)];
-            if !inside(&rim, p) || inside(&hole, p) {
+            if !inside(&outline, p) || inside(&hole, p) {
                 continue;
             }
             for sun in suns {
@@ -216,15 +217,15 @@ fn cells_that_the_rim_cuts_are_bounded_over_their_part_alone() {
                 let at = [p[0] - t * sun[0], p[1] - t * sun[1]];
                 let u = (at[0] - a[0]) / dx;
                 if t > 0.0 && (0.0..=1.0).contains(&u) {
-                    least = least.min(a[2] + u * (b[2] - a[2]) + t * sun[2]);
+                    min = min.min(a[2] + u * (b[2] - a[2]) + t * sun[2]);
                 }
             }
         }
-        if least.is_finite() {
-            assert!(column.top <= least + 1e-9, "{} {least}", column.top);
+        if min.is_finite() {
+            assert!(column.top <= min + 1e-9, "{} {min}", column.top);
             // 4000 places leave corners of some 0.05 m empty, of thin parts more; slopes are 0.47 at most
             let tolerance = if column.footprint.area > 0.1 { 0.06 } else { 0.3 };
-            assert!(column.top >= least - tolerance, "{} {least} {:?}", column.top, column.footprint);
+            assert!(column.top >= min - tolerance, "{} {min} {:?}", column.top, column.footprint);
         }
         partial += usize::from(!column.footprint.is_whole);
     }
@@ -252,9 +253,9 @@ fn volume(mesh: &Mesh) -> f64 {
 
 #[test]
 fn the_mesh_is_closed_and_holds_the_volume_also_over_sloping_ground_and_around_holes() {
-    let rim = vec![[-6.2, -9.1], [5.3, -11.7], [8.4, -1.2], [0.4, -3.0], [-7.5, 0.6]];
+    let outline = vec![[-6.2, -9.1], [5.3, -11.7], [8.4, -1.2], [0.4, -3.0], [-7.5, 0.6]];
     let hole = vec![[-2.0, -7.3], [1.1, -7.7], [0.2, -5.1]];
-    let parcel = Parcel::new(&[rim, hole]).unwrap();
+    let parcel = Parcel::new(&[outline, hole]).unwrap();
     let fence = line(&[[-12.0, 4.0, 0.0], [11.0, 2.0, 0.0]], 0.5);
     let params = EnvelopeParams::default().with_ceiling(Some(4.0));
     for (slope, suns) in [(0.0, vec![sun(180.0, 20.0)]), (0.9, vec![sun(150.0, 25.0), sun(215.0, 18.0)])] {

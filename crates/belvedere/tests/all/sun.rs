@@ -58,8 +58,8 @@ fn positions_are_those_of_pvlib() {
         let [latitude, longitude, height, azimuth, apparent, geometric] = numbers[..] else { panic!("{line}") };
         let site = Site { height, ..site(latitude, longitude) };
         let sun = sun_position(&site, instant).unwrap();
-        // the same algorithm, whose own uncertainty is 0.0003°; how the earth will slow down is a forecast, which programs put up to two
-        // minutes apart in 2099, in which the sun moves 0.0014° among the stars
+        // the same algorithm, whose own uncertainty is 0.0003°; how the earth will slow down is a forecast, which
+        // programs put up to two minutes apart in 2099, in which the sun moves 0.0014° among the stars
         let tolerance = if instant < at("2027-01-01T00:00Z") { 3e-4 } else { 2e-3 };
         assert!((sun.elevation.to_degrees() - apparent).abs() < tolerance, "{line}: {}", sun.elevation.to_degrees());
         assert!((sun.geometric_elevation.to_degrees() - geometric).abs() < tolerance, "{line}");
@@ -89,7 +89,8 @@ fn the_grid_turns_with_the_meridians() {
         );
         for hour in [8, 12, 16] {
             let sun = sun_position(&found, at(&format!("2026-05-04T{hour:02}:00Z"))).unwrap();
-            // a place a little way along the true azimuth of the sun, on a sphere as wide as the ellipsoid at this latitude each way
+            // a place a little way along the true azimuth of the sun, on a sphere as wide as the ellipsoid at this
+            // latitude each way
             let (sine, squared) = (found.latitude.sin(), 0.006_694_38);
             let prime = 6_378_137.0 / (1.0 - squared * sine * sine).sqrt();
             let meridian = prime * (1.0 - squared) / (1.0 - squared * sine * sine);
@@ -138,8 +139,8 @@ fn odd_places_and_instants_have_an_answer_or_an_error() {
         assert!(sun_position(&Site { height: bad * 1000.0, ..site(0.0, 0.0) }, 0.0).is_err());
     }
     for bad in [f64::NAN, f64::NEG_INFINITY, 1e12, -1e12, 1e300] {
-        let told = sun_position(&site(0.0, 0.0), bad).unwrap_err().to_string();
-        assert!(told.contains("1000 to 3000"), "{told}");
+        let message = sun_position(&site(0.0, 0.0), bad).unwrap_err().to_string();
+        assert!(message.contains("1000 to 3000"), "{message}");
     }
     for year in [1001, 1582, 1899, 2999] {
         assert!(sun_position(&site(0.0, 0.0), at(&format!("{year}-06-01T12:00Z"))).unwrap().elevation > 1.0, "{year}");
@@ -189,7 +190,8 @@ fn light_of_a_day_is_that_of_the_closed_form() {
             let day = sun_day(&site, &Zone::utc(), date(text), None, &plain).unwrap();
             let cosine = -f64::to_radians(latitude).tan() * declination.to_radians().tan();
             let expected = 2.0 * cosine.acos().to_degrees() / 15.0;
-            // declination moves by up to 0.4° in the day of the equinox, which shifts both ends alike; at 64° a hundredth of a degree is a minute
+            // declination moves by up to 0.4° in the day of the equinox, which shifts both ends alike; at 64° a
+            // hundredth of a degree is a minute
             assert!(
                 (day.possible_hours() - expected).abs() < 0.08,
                 "{latitude} {text}: {} {expected}",
@@ -211,7 +213,7 @@ fn light_of_a_day_is_that_of_the_closed_form() {
         assert!(sun_day(&site, &Zone::utc(), date("2026-02-19"), None, &params).is_err(), "{step}");
     }
     // above 10° there is less, and only between two instants less still
-    let params = DayParams::default().with_least_elevation(10f64.to_radians());
+    let params = DayParams::default().with_min_elevation(10f64.to_radians());
     let high = sun_day(&site, &Zone::utc(), date("2026-02-19"), None, &params).unwrap();
     assert!(high.possible_hours() < hours(600.0) - 1.5);
     assert!(high.steps.iter().all(|step| step.direction[2] > 10f64.to_radians().sin()));
@@ -275,8 +277,8 @@ fn zones_name_instants_and_summer_time_leaves_none_in_doubt() {
         ("", "written as"),
         ("2026-06-21T12:00:00\u{2212}02:00", "written as"),
     ] {
-        let told = parse_instant(text, None).unwrap_err().to_string();
-        assert!(told.contains(why), "{text}: {told}");
+        let message = parse_instant(text, None).unwrap_err().to_string();
+        assert!(message.contains(why), "{text}: {message}");
     }
     // an offset says which of the two half past twos is meant
     assert_eq!(at("2026-10-25T02:30+01:00[Europe/Amsterdam]") - at("2026-10-25T02:30+02:00[Europe/Amsterdam]"), 3600.0);
@@ -314,7 +316,7 @@ fn year(latitude: f64, step: f64) -> Vec<SunDay> {
 }
 
 #[test]
-fn a_year_has_few_directions_and_none_is_farther_than_told() {
+fn a_year_has_few_directions_and_none_is_farther_than_stated() {
     for latitude in [52.2, 0.0, -70.0] {
         let days = year(latitude, 600.0);
         let steps: usize = days.iter().map(|day| day.steps.len()).sum();

@@ -50,7 +50,8 @@ fn hours_at(
     sun_hours(&matrix, schedule, normals, &SunHoursParams::default().with_sufficient_hours(2.0)).unwrap()
 }
 
-/// A ball so far off that it seems 15° wide in each direction, where the sun stands at its noon on the day of the equinox.
+/// A ball so far off that it seems 15° wide in each direction, where the sun stands at its noon on the day of the
+/// equinox.
 fn ball_before_the_noon_sun(site: &Site, days: &[belvedere::apps::sun::SunDay]) -> MedialScene {
     let sun = sun_position_with(site, days[0].noon, Refraction::Without).unwrap().to_sun(site);
     #[expect(clippy::cast_possible_truncation, reason = "a place of a test")]
@@ -62,7 +63,8 @@ fn ball_before_the_noon_sun(site: &Site, days: &[belvedere::apps::sun::SunDay]) 
 
 #[test]
 fn a_ball_before_the_sun_takes_its_width_in_hours() {
-    // on the equinox the sun moves along a great circle, 15° an hour: a ball of 15° each way hides it for two hours around noon
+    // on the equinox the sun moves along a great circle, 15° an hour: a ball of 15° each way hides it for two hours
+    // around noon
     let site = site(40.0);
     let dates = vec![date("2026-03-20")];
     for step in [60.0, 300.0, 600.0] {
@@ -71,25 +73,27 @@ fn a_ball_before_the_sun_takes_its_width_in_hours() {
         let schedule = SunSchedule::new(&days, Binning::Auto).unwrap();
         let found = hours_at(&blockers, &schedule, &[[0.0; 3]], None);
         let possible = days[0].possible_hours();
-        // the sun of a step stands for it: each edge of the shadow errs by half a step at most; the declination moves 0.1° within the 2 hours
+        // the sun of a step stands for it: each edge of the shadow errs by half a step at most; the declination moves
+        // 0.1° within the 2 hours
         let tolerance = step / 3600.0 + 0.01;
         let [hours, longest, share] = [found.hours[0], found.longest[0], found.share[0]].map(f64::from);
         assert!((hours - (possible - 2.0)).abs() <= tolerance, "{step}: {hours} of {possible}");
         assert!((longest - (possible / 2.0 - 1.0)).abs() <= tolerance, "{longest}");
         assert!((share - hours / possible).abs() < 1e-5);
-        // it comes and goes with the sun; half a day before and after noon, which is 12 but for the equation of time, −7.5 minutes
+        // it comes and goes with the sun; half a day before and after noon, which is 12 but for the equation of time,
+        // −7.5 minutes
         let noon = days[0].clock_hours(days[0].noon);
         assert!((noon - 12.125).abs() < 0.02, "{noon}");
         assert!((f64::from(found.first[0]) - (noon - possible / 2.0)).abs() < 0.02, "{}", found.first[0]);
         assert!((f64::from(found.last[0]) - (noon + possible / 2.0)).abs() < 0.02, "{}", found.last[0]);
-        assert_eq!((found.days[0], found.least[0]), (1, found.hours[0]));
+        assert_eq!((found.days[0], found.min[0]), (1, found.hours[0]));
     }
 }
 
 #[test]
 fn walls_see_half_of_the_equinox_and_nothing_from_behind() {
-    // at an equinox the sun stands south of the east-west line all day (north of the tropics): a south wall has it all, a north wall none,
-    // east and west walls half each; a place without normal has it all
+    // at an equinox the sun stands south of the east-west line all day (north of the tropics): a south wall has it all,
+    // a north wall none, east and west walls half each; a place without normal has it all
     let site = site(40.0);
     let schedule_of = |site: &Site, day| schedule(site, vec![date(day)], &plain(120.0), Binning::Exact);
     let schedule = schedule_of(&site, "2026-03-20");
@@ -152,14 +156,15 @@ fn a_year_of_shared_suns_is_a_year_of_suns() {
         assert!((f64::from(*a) - brute).abs() < 1e-4, "{a} {brute}");
         worst = worst.max((f64::from(*a) - f64::from(*b)).abs());
     }
-    // a sun 1° off comes 4 minutes early or late at each edge of a shadow, early and late in turn; among balls a day has half a dozen edges, and
-    // a year evens out most of their 24 minutes
+    // a sun 1° off comes 4 minutes early or late at each edge of a shadow, early and late in turn; among balls a day
+    // has half a dozen edges, and a year evens out most of their 24 minutes
     assert!(worst < 0.1, "{worst}");
-    // in spring and autumn the hours of a place change by minutes a day, so that a limit of two hours is passed weeks early or late
+    // in spring and autumn the hours of a place change by minutes a day, so that a limit of two hours is passed weeks
+    // early or late
     let differ = a.days.iter().zip(&b.days).map(|(&a, &b)| a.abs_diff(b)).max().unwrap();
     assert!(differ <= 40, "days with two hours differ by {differ}");
-    let least: f32 = a.least.iter().zip(&b.least).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
-    assert!(least <= 1.01, "{least}");
+    let min: f32 = a.min.iter().zip(&b.min).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+    assert!(min <= 1.01, "{min}");
 }
 
 #[test]
@@ -189,7 +194,7 @@ fn light_through_crowns_counts_by_the_share_of_its_day() {
         let near =
             |found: f32, expected: f64| assert!((f64::from(found) - expected).abs() < 1e-4, "{found} {expected}");
         near(found.hours[target], days.iter().sum::<f64>() / 4.0);
-        near(found.least[target], days.iter().copied().fold(f64::INFINITY, f64::min));
+        near(found.min[target], days.iter().copied().fold(f64::INFINITY, f64::min));
         near(found.share[target], days.iter().sum::<f64>() / schedule.possible_hours());
         assert_eq!(found.days[target] as usize, days.iter().filter(|&&hours| hours >= 8.0 - 1e-4).count());
         took += 12.0 - days[0];
@@ -225,10 +230,10 @@ fn rules_know_their_days() {
     assert_eq!(days("3@12-30..01-02", &site_north), ["2026-01-01", "2026-01-02", "2026-12-30", "2026-12-31"]);
     assert_eq!(days("3@02-29", &site_north), ["2026-02-28"]);
     let hague = SunRule::parse("the-hague").unwrap();
-    assert!((hague.least_elevation.to_degrees() - 10.0).abs() < 1e-9 && hague.hours == 2.0);
+    assert!((hague.min_elevation.to_degrees() - 10.0).abs() < 1e-9 && hague.hours == 2.0);
     let own = SunRule::parse("1.5@03-21>11").unwrap();
     assert_eq!((own.hours, own.days), (1.5, RuleDays::On([3, 21])));
-    assert!((own.least_elevation.to_degrees() - 11.0).abs() < 1e-9);
+    assert!((own.min_elevation.to_degrees() - 11.0).abs() < 1e-9);
     for bad in [
         "",
         "bre",
@@ -247,8 +252,8 @@ fn rules_know_their_days() {
         "2@..",
         "2@03-é",
     ] {
-        let told = SunRule::parse(bad).unwrap_err().to_string();
-        assert!(told.contains("nl-light"), "{bad}: {told}");
+        let message = SunRule::parse(bad).unwrap_err().to_string();
+        assert!(message.contains("nl-light"), "{bad}: {message}");
     }
 }
 
@@ -374,8 +379,8 @@ fn kept_matrices_come_back_whole_or_not_at_all() {
     let damaged = folder.path().join("damaged.npz");
     for end in (0..bytes.len()).step_by(97) {
         std::fs::write(&damaged, &bytes[..end]).unwrap();
-        let told = read_matrix(&damaged).unwrap_err().to_string();
-        assert!(told.contains("damaged.npz"), "{told}");
+        let message = read_matrix(&damaged).unwrap_err().to_string();
+        assert!(message.contains("damaged.npz"), "{message}");
     }
     for at in (0..bytes.len()).step_by(11) {
         let mut bytes = bytes.clone();

@@ -36,7 +36,7 @@ fn assert_kind(cloud: &PointCloud, [kind, carved_by, advice]: [&str; 3]) {
 }
 
 #[test]
-fn airborne_surveys_are_named_with_and_without_what_tells_pulses_apart() {
+fn airborne_surveys_are_named_with_and_without_separable_pulses() {
     let params = Preset::Town.params(60.0, 4);
     let scene = town(&params);
     let flown = cloud_of(&scan_airborne(&scene, &AirborneParams::covering(&scene, 8.0)));

@@ -6,7 +6,7 @@ use belvedere::control::Control;
 use belvedere::medial::{Kind, ThinSurfaceParams, on_thin_surfaces};
 use belvedere::model::{ModelParams, OrientBy, SceneModel};
 use belvedere::neighbors::NeighborIndex;
-use belvedere::pulses::{NeedleParams, Needles};
+use belvedere::pulses::{FreeSegmentParams, FreeSegments};
 use belvedere::query::{Answer, BlockRule, UnprovenAs};
 use belvedere::random::uniform;
 
@@ -21,17 +21,17 @@ enum Built {
     Block,
 }
 
-struct Survey {
+struct ThinSurvey {
     points: Vec<[f32; 3]>,
     scanner: Vec<[f32; 3]>,
     kinds: Vec<Kind>,
     on_top: Vec<bool>,
 }
 
-/// `count` pulses from two lines 120 m to either side, 450 m up: 15 degrees. Exact first hits, by hand: the top, the walls of
-/// the block, the ground.
-fn survey(built: Built, count: u64) -> Survey {
-    let mut survey = Survey { points: Vec::new(), scanner: Vec::new(), kinds: Vec::new(), on_top: Vec::new() };
+/// `count` pulses from two lines 120 m to either side, 450 m up: 15 degrees. Exact first hits, by hand: the top, the
+/// walls of the block, the ground.
+fn survey(built: Built, count: u64) -> ThinSurvey {
+    let mut survey = ThinSurvey { points: Vec::new(), scanner: Vec::new(), kinds: Vec::new(), on_top: Vec::new() };
     for i in 0..count {
         let scanner = [if i % 2 == 0 { -120.0 } else { 120.0 }, 10.0 * (uniform(3, i) - 0.5), 450.0];
         let aim = [24.0 * (uniform(1, i) - 0.5), 16.0 * (uniform(2, i) - 0.5), 0.0];
@@ -57,7 +57,7 @@ fn survey(built: Built, count: u64) -> Survey {
 }
 
 /// Shares of the points on top and of all others that are found thin.
-fn found(survey: &Survey) -> [f64; 2] {
+fn found(survey: &ThinSurvey) -> [f64; 2] {
     let thin = thin(survey);
     [true, false].map(|top| {
         let rows: Vec<usize> = (0..thin.len()).filter(|&row| survey.on_top[row] == top).collect();
@@ -65,12 +65,19 @@ fn found(survey: &Survey) -> [f64; 2] {
     })
 }
 
-fn thin(survey: &Survey) -> Vec<bool> {
+fn thin(survey: &ThinSurvey) -> Vec<bool> {
     let index = NeighborIndex::new(&survey.points, &Control::none()).unwrap();
-    let (needles, _) =
-        Needles::new(&survey.points, &survey.scanner, &NeedleParams::default(), &Control::none()).unwrap();
-    on_thin_surfaces(&survey.points, &survey.kinds, &index, &needles, &ThinSurfaceParams::default(), &Control::none())
-        .unwrap()
+    let (free_segments, _) =
+        FreeSegments::new(&survey.points, &survey.scanner, &FreeSegmentParams::default(), &Control::none()).unwrap();
+    on_thin_surfaces(
+        &survey.points,
+        &survey.kinds,
+        &index,
+        &free_segments,
+        &ThinSurfaceParams::default(),
+        &Control::none(),
+    )
+    .unwrap()
 }
 
 /// Ten pulses a square metre.
@@ -99,7 +106,7 @@ fn a_canopy_is_thin_to_its_middle_and_a_block_is_not() {
 
 #[test]
 fn a_canopy_hides_the_sky_and_leaves_room_below_it() {
-    let Survey { points, scanner, kinds, .. } = survey(Built::Canopy, PULSES);
+    let ThinSurvey { points, scanner, kinds, .. } = survey(Built::Canopy, PULSES);
     let mut cloud = PointCloud { positions: points, ..PointCloud::default() };
     let class = |kind: &Kind| if *kind == Kind::Ground { 2 } else { 1 };
     cloud.attributes.classification = Some(kinds.iter().map(class).collect());
@@ -111,7 +118,8 @@ fn a_canopy_hides_the_sky_and_leaves_room_below_it() {
         let visible = places.filter(|&place| scene.answer(place, towards, f64::INFINITY) == Answer::Visible);
         visible.count() as f64 / 4000.0
     };
-    // 0.32 m between pulses, at random; 0.027 measured; circles of 0.95 of that at points only leave a twentieth of a plane open
+    // 0.32 m between pulses, at random; 0.027 measured; circles of 0.95 of that at points only leave a twentieth of a
+    // plane open
     let through = share(1.5, [0.0, 0.0, 1.0]);
     assert!(through < 0.04, "{through} of lines see through the canopy");
     // balls of 0.95 spacings reach 0.6 m down
@@ -135,7 +143,7 @@ fn neither_order_of_points_nor_number_of_threads_matters() {
     backward.points.reverse();
     backward.scanner.reverse();
     backward.kinds.reverse();
-    let on = |threads: usize, survey: &Survey| {
+    let on = |threads: usize, survey: &ThinSurvey| {
         rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap().install(|| thin(survey))
     };
     let expected = on(1, &forward);
@@ -145,13 +153,14 @@ fn neither_order_of_points_nor_number_of_threads_matters() {
 }
 
 #[test]
-fn no_points_and_no_needles_are_no_thin_surfaces() {
+fn no_points_and_no_pulses_are_no_thin_surfaces() {
     let nothing = NeighborIndex::new(&[], &Control::none()).unwrap();
-    let (needles, _) = Needles::new(&[], &[], &NeedleParams::default(), &Control::none()).unwrap();
+    let (free_segments, _) = FreeSegments::new(&[], &[], &FreeSegmentParams::default(), &Control::none()).unwrap();
     let params = ThinSurfaceParams::default();
-    assert!(on_thin_surfaces(&[], &[], &nothing, &needles, &params, &Control::none()).unwrap().is_empty());
+    assert!(on_thin_surfaces(&[], &[], &nothing, &free_segments, &params, &Control::none()).unwrap().is_empty());
     let survey = survey(Built::Canopy, PULSES);
     let index = NeighborIndex::new(&survey.points, &Control::none()).unwrap();
-    let thin = on_thin_surfaces(&survey.points, &survey.kinds, &index, &needles, &params, &Control::none()).unwrap();
+    let thin =
+        on_thin_surfaces(&survey.points, &survey.kinds, &index, &free_segments, &params, &Control::none()).unwrap();
     assert!(thin.len() == survey.points.len() && !thin.contains(&true));
 }

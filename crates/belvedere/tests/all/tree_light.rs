@@ -13,12 +13,12 @@ const LEAF: u8 = 5;
 const WALL: u8 = 6;
 
 /// Balls given with the class of the point each is tangent at.
-struct Balls {
+struct ClassifiedBalls {
     balls: MedialBalls,
     classes: Vec<u8>,
 }
 
-impl Balls {
+impl ClassifiedBalls {
     fn new(list: &[([f64; 3], f64, u8)]) -> Self {
         let balls = MedialBalls {
             centers: list.iter().map(|(center, ..)| center.map(|v| v as f32)).collect(),
@@ -47,10 +47,11 @@ fn top(away: f64, up: f64, radius: f64) -> f64 {
 
 #[test]
 fn a_hedge_before_a_low_wall_lets_its_share_of_the_sun_through() {
-    // to the north: a hedge of 2 m at 3 m, stacked so that it leaves nothing, and at 12 m the rounded top of a wall of 3 m
+    // to the north: a hedge of 2 m at 3 m, stacked so that it leaves nothing, and at 12 m the rounded top of a wall of
+    // 3 m
     let hedge = [0.0, 0.5, 1.0, 1.5].map(|up| ([0.0, 3.0, up], 0.5, LEAF));
     let wall = [0.0, 0.5, 1.0, 1.5, 2.0, 2.5].map(|up| ([0.0, 12.0, up], 0.5, WALL));
-    let balls = Balls::new(&[&hedge[..], &wall[..]].concat());
+    let balls = ClassifiedBalls::new(&[&hedge[..], &wall[..]].concat());
     let elevations: Vec<f64> = (0..90).map(|degree| (f64::from(degree) + 0.5).to_radians()).collect();
     let directions: Vec<[f64; 3]> = elevations.iter().map(|&elevation| to_sun(0.0, elevation)).collect();
     let [all, opaque] = balls.matrices(&directions);
@@ -76,7 +77,7 @@ fn a_hedge_before_a_low_wall_lets_its_share_of_the_sun_through() {
 #[test]
 fn a_crown_takes_of_the_sky_what_it_covers_but_its_share() {
     // a crown of 2 m of radius, 5 m above
-    let balls = Balls::new(&[([0.0, 0.0, 5.0], 2.0, LEAF)]);
+    let balls = ClassifiedBalls::new(&[([0.0, 0.0, 5.0], 2.0, LEAF)]);
     let sky = SkyDirections::even(2305).unwrap();
     let [all, opaque] = balls.matrices(&sky.directions).map(|matrix| sky_view(&matrix, &sky, None).unwrap());
     let sin: f64 = 2.0 / 5.0;
@@ -118,7 +119,8 @@ fn trees_are_in_leaf_from_april_to_october_and_half_a_year_later_in_the_south() 
 
 #[test]
 fn what_pulses_measured_is_the_mean_over_the_area_of_crowns() {
-    let balls = Balls::new(&[([0.0; 3], 1.0, LEAF), ([5.0, 0.0, 0.0], 2.0, LEAF), ([9.0, 0.0, 0.0], 9.0, WALL)]);
+    let balls =
+        ClassifiedBalls::new(&[([0.0; 3], 1.0, LEAF), ([5.0, 0.0, 0.0], 2.0, LEAF), ([9.0, 0.0, 0.0], 9.0, WALL)]);
     let transmission = [0.5, 0.25, f32::NAN];
     let found = Transmissivity::measured(&balls.balls, &transmission).unwrap();
     // areas as 1 to 4: (0.5 + 4 · 0.25) / 5

@@ -2,7 +2,7 @@
 #![expect(clippy::cast_possible_truncation, reason = "test places in f32")]
 
 use belvedere::apps::viewshed::{
-    GROUND_TOLERANCE, Masks, Observer, SightLimits, ViewshedParams, cell_targets, least_visible_heights, viewshed,
+    GROUND_TOLERANCE, Masks, Observer, SightLimits, ViewshedParams, cell_targets, min_visible_heights, viewshed,
 };
 use belvedere::control::Control;
 use belvedere::ground::{Ground, MapGrid};
@@ -40,7 +40,8 @@ fn looking(eye: [f64; 3]) -> Observer {
 
 #[test]
 fn the_shadow_of_a_ball_on_a_plain_is_its_conic() {
-    // a ball of 2 m at 5 m height, 10 m before an eye at 8 m: a cell is hidden where its line of sight comes within 2 m of the middle
+    // a ball of 2 m at 5 m height, 10 m before an eye at 8 m: a cell is hidden where its line of sight comes within 2 m
+    // of the middle
     let (eye, center, radius) = ([5.0, 20.0, 8.0], [15.0, 20.0, 5.0], 2.0);
     let scene = scene(&[(center.map(|v: f64| v as f32), radius as f32)], &BlockRule::default());
     let ground = plain(40.0, 0.25);
@@ -70,7 +71,7 @@ fn least_heights_are_where_answers_change() {
     for params in [BlockRule::default(), BlockRule::carved(), BlockRule::uncarved()] {
         let scene = scene(&list, &params);
         let observer = looking([31.0, 29.0, 1.7]);
-        let heights = least_visible_heights(&scene, &[observer], &ground, ceiling, &flat, &Control::none()).unwrap();
+        let heights = min_visible_heights(&scene, &[observer], &ground, ceiling, &flat, &Control::none()).unwrap();
         let mut raised = 0;
         for (foot, &height) in cell_targets(&ground, 0.0).iter().zip(heights.values()) {
             let seen = |h: f64| {
@@ -99,16 +100,17 @@ fn least_heights_are_where_answers_change() {
 
 #[test]
 fn beyond_the_horizon_a_thing_must_reach_the_closed_form() {
-    // water as a row of large balls whose crests lie at height 0, an eye 10 m above it: a mast at S metres is seen from (S − d)²·q on,
-    // where d = √(10/q) is the way to the horizon and q = (1 − k)/2R
+    // water as a row of large balls whose crests lie at height 0, an eye 10 m above it: a mast at S metres is seen from
+    // (S − d)²·q on, where d = √(10/q) is the way to the horizon and q = (1 − k)/2R
     let list: Vec<([f32; 3], f32)> = (0..1500).map(|i| ([20.0 * i as f32, 0.0, -5000.0], 5000.0)).collect();
     let scene = scene(&list, &BlockRule::default());
     let earth = EarthParams { curvature: Curvature::On, ..EarthParams::default() };
     let q = (1.0 - 1.0 / 7.0) / (2.0 * 6_371_008.8);
     for span in [20_000.0, 25_000.0] {
         let expected = q * (span - (10.0_f64 / q).sqrt()).powi(2);
-        let found = scene.least_visible_height([0.0, 0.0, 10.0], [span, 0.0, 0.0], 500.0, &earth).unwrap();
-        // crests 20 m apart sag by 1 cm between them, chords by 4 mm, and both are magnified by the ratio of the ways, below 2
+        let found = scene.min_visible_height([0.0, 0.0, 10.0], [span, 0.0, 0.0], 500.0, &earth).unwrap();
+        // crests 20 m apart sag by 1 cm between them, chords by 4 mm, and both are magnified by the ratio of the ways,
+        // below 2
         assert!((found - expected).abs() < 0.05, "{found} {expected}");
         assert!(expected > 3.0);
     }
@@ -140,7 +142,7 @@ fn counts_and_masks_are_those_of_each_observer_alone() {
 }
 
 #[test]
-fn what_lies_outside_the_limits_is_not_asked() {
+fn cells_outside_the_limits_are_not_queried() {
     let scene = scene(&random_balls(50, 40.0), &BlockRule::carved());
     let targets = cell_targets(&plain(40.0, 1.0), 0.0);
     let all = looking([20.0, 20.0, 1.7]);

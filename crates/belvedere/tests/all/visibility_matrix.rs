@@ -88,7 +88,7 @@ fn nothing_blocks_without_balls_and_bad_directions_are_refused() {
 }
 
 #[test]
-fn balls_asked_part_by_part_give_the_bits_of_all_at_once() {
+fn balls_queried_part_by_part_give_the_bits_of_all_at_once() {
     let balls = place(1500, 3);
     let directions = SkyDirections::even(150).unwrap().directions;
     let target = |i: u64| -> [f32; 3] {
@@ -119,8 +119,8 @@ fn balls_asked_part_by_part_give_the_bits_of_all_at_once() {
     free.hide_behind_balls(&scene(&balls), &[70, 3], &none).unwrap();
     let matrix = free.clone().into_matrix();
     for (row, column) in (0..1201).flat_map(|row| (0..150).map(move |column| (row, column))) {
-        let is_asked = [70, 3].contains(&column);
-        let is_free = row != 600 && (!is_asked || expected.is_free(row, column));
+        let is_queried = [70, 3].contains(&column);
+        let is_free = row != 600 && (!is_queried || expected.is_free(row, column));
         assert_eq!(matrix.is_free(row, column), is_free, "{row} {column}");
     }
     assert!(free.hide_behind_balls(&scene(&balls), &[150], &none).is_err());

@@ -5,7 +5,7 @@ use crate::mountains::grid;
 use belvedere::apps::exposure::WINDOW_LIFT;
 use belvedere::apps::targets::{Targets, Window};
 use belvedere::apps::window_views::{
-    ClassMeanings, Kinds, Proving, Seen, VIEW_DIRECTIONS, WindowView, balls_seen, leave_out_level, view_directions,
+    ClassMeanings, Kinds, Proving, SeenKind, VIEW_DIRECTIONS, WindowView, balls_seen, leave_out_level, view_directions,
     view_measures, window_views,
 };
 use belvedere::blocking::BlockRule;
@@ -17,7 +17,7 @@ use belvedere::query::{AddedMeshes, Ball, Blocker, FarTerrain, MedialScene, Unpr
 use belvedere::random::uniform;
 use belvedere::vector::{cross, dot, unit};
 use belvedere::{Error, Frame, Mesh};
-use belvedere_scenes::{AirborneParams, Material, Scene, TownParams, Truth, scan_airborne, town};
+use belvedere_scenes::{AirborneParams, Material, TownParams, TriangleScene, Truth, scan_airborne, town};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// A ball so large that the ground that it is for windows at a few metres' height is level.
@@ -42,14 +42,15 @@ fn views(scene: &MedialScene, windows: &[Window], kinds: Kinds<'_>, count: usize
     window_views(scene, &targets, kinds, &view_directions(count).unwrap(), &Control::none()).unwrap()
 }
 
-/// By how much a share may err that is counted on `count` directions: two deviations of as many independent ones, of which even ones err less.
+/// By how much a share may err that is counted on `count` directions: two deviations of as many independent ones, of
+/// which even ones err less.
 fn sampling(share: f64, count: usize) -> f64 {
     2.0 * (share * (1.0 - share) / count as f64).sqrt()
 }
 
 #[test]
 fn over_flat_ground_half_of_the_view_is_sky_and_half_ground() {
-    let kinds = Kinds { balls: &[Seen::Ground], meshes: &[] };
+    let kinds = Kinds { balls: &[SeenKind::Ground], meshes: &[] };
     let height = 3.0;
     for azimuth in [0.0, 1.0, 2.5, PI] {
         let [view] = views(&level_ground(), &[window([0.0, 0.0, height], azimuth)], kinds, 10_000)[..] else {
@@ -57,9 +58,9 @@ fn over_flat_ground_half_of_the_view_is_sky_and_half_ground() {
         };
         // the half space holds half of the cap that the ball covers, whose edge lies √(2h/R) below level
         let missing = (2.0 * height / RADIUS).sqrt() / 2.0;
-        assert!((view.shares[Seen::Sky as usize] - 0.5).abs() < sampling(0.5, 10_000), "{view:?}");
-        assert!((view.cosine_shares[Seen::Sky as usize] - 0.5).abs() < sampling(0.5, 10_000), "{view:?}");
-        let ground = view.shares[Seen::Ground as usize];
+        assert!((view.shares[SeenKind::Sky as usize] - 0.5).abs() < sampling(0.5, 10_000), "{view:?}");
+        assert!((view.cosine_shares[SeenKind::Sky as usize] - 0.5).abs() < sampling(0.5, 10_000), "{view:?}");
+        let ground = view.shares[SeenKind::Ground as usize];
         assert!((view.shares.iter().sum::<f64>() - 1.0).abs() < 1e-12 && ground < 0.5, "{view:?}");
         assert!((0.5 - ground - missing).abs() < sampling(missing, 10_000), "{ground} {missing}");
         // the sine of the depression is even over solid angles, so that half of the ground is nearer than 2 h
@@ -84,24 +85,25 @@ fn a_window_before_an_endless_wall_sees_what_the_closed_form_leaves() {
     let count = 20_000;
     for (distance, height, top) in [(10.0, 4.0, 15.0), (30.0, 2.0, 12.0), (5.0, 8.0, 9.0), (12.0, 9.0, 6.0)] {
         let scene = level_ground().with_added(Some(endless_wall(distance + WINDOW_LIFT, top)));
-        let kinds = Kinds { balls: &[Seen::Ground], meshes: &[Seen::Building] };
+        let kinds = Kinds { balls: &[SeenKind::Ground], meshes: &[SeenKind::Building] };
         let [view] = views(&scene, &[window([0.0, 0.0, height], 0.0)], kinds, count)[..] else { panic!() };
-        // planes through the window that are level along the wall cut the half space in wedges, each with the share of its angle in half a turn
+        // planes through the window that are level along the wall cut the half space in wedges, each with the share of
+        // its angle in half a turn
         let up = ((top - height) / distance).atan();
         let down = (height / distance).atan();
         let cut = up.min(0.0);
         let expected = [
-            (Seen::Sky, 0.5 - up.max(0.0) / PI, (1.0 - up.max(0.0).sin()) / 2.0),
-            (Seen::Building, (up + down) / PI, (up.sin() + down.sin()) / 2.0),
+            (SeenKind::Sky, 0.5 - up.max(0.0) / PI, (1.0 - up.max(0.0).sin()) / 2.0),
+            (SeenKind::Building, (up + down) / PI, (up.sin() + down.sin()) / 2.0),
             // over a wall that is lower than the window the ground behind it is seen
-            (Seen::Ground, 0.5 - down / PI - cut / PI, (1.0 - down.sin() - cut.sin()) / 2.0),
+            (SeenKind::Ground, 0.5 - down / PI - cut / PI, (1.0 - down.sin() - cut.sin()) / 2.0),
         ];
         for (seen, share, cosine_share) in expected {
             let found = view.shares[seen as usize]
-                + if seen == Seen::Ground { view.shares[Seen::Beyond as usize] } else { 0.0 };
+                + if seen == SeenKind::Ground { view.shares[SeenKind::Beyond as usize] } else { 0.0 };
             assert!((found - share).abs() < sampling(share, count), "{seen:?} {found} {share} of {view:?}");
             let found = view.cosine_shares[seen as usize]
-                + if seen == Seen::Ground { view.cosine_shares[Seen::Beyond as usize] } else { 0.0 };
+                + if seen == SeenKind::Ground { view.cosine_shares[SeenKind::Beyond as usize] } else { 0.0 };
             // a direction counts by its cosine, twice the mean of it at most
             assert!(
                 (found - cosine_share).abs() < 2.0 * sampling(cosine_share, count),
@@ -150,9 +152,9 @@ fn what_is_seen_from_a_surface_is_what_the_matrix_has_as_blocked_and_what_is_ent
                     let half = (radius * radius - (dot(to_center, to_center) - along * along)).max(0.0).sqrt();
                     Some((along - half).max(0.0))
                 };
-                let least = (0..list.len()).filter_map(entered).fold(f64::INFINITY, f64::min);
+                let min = (0..list.len()).filter_map(entered).fold(f64::INFINITY, f64::min);
                 // the entry is found as a difference of numbers of a few tens of metres
-                assert!((range - least).abs() < 1e-6, "{range} {least}");
+                assert!((range - min).abs() < 1e-6, "{range} {min}");
                 assert!((entered(first).unwrap() - range).abs() < 1e-6);
             }
         }
@@ -161,17 +163,18 @@ fn what_is_seen_from_a_surface_is_what_the_matrix_has_as_blocked_and_what_is_ent
 }
 
 /// What a material is to people at a window.
-fn kind(material: Material) -> Seen {
+fn kind(material: Material) -> SeenKind {
     match material {
-        Material::Terrain => Seen::Ground,
-        Material::Roof | Material::Facade | Material::Slab => Seen::Building,
-        Material::TreeCrown | Material::Trunk | Material::Leaf => Seen::Vegetation,
-        _ => Seen::Other,
+        Material::Terrain => SeenKind::Ground,
+        Material::Roof | Material::Facade | Material::Slab => SeenKind::Building,
+        Material::TreeCrown | Material::Trunk | Material::Leaf => SeenKind::Vegetation,
+        _ => SeenKind::Other,
     }
 }
 
-/// Windows on facades of a town, none of them inside anything or so near to it that it is covered, with their centres in the file.
-fn facade_windows(exact: &Scene, truth: &Truth, origin: [f64; 3], count: usize) -> Vec<Window> {
+/// Windows on facades of a town, none of them inside anything or so near to it that it is covered, with their centres
+/// in the file.
+fn facade_windows(exact: &TriangleScene, truth: &Truth, origin: [f64; 3], count: usize) -> Vec<Window> {
     let facades: Vec<usize> =
         (0..exact.triangles.len()).filter(|&row| exact.materials[row] == Material::Facade).collect();
     let mut windows = Vec::new();
@@ -200,7 +203,7 @@ fn facade_windows(exact: &Scene, truth: &Truth, origin: [f64; 3], count: usize) 
 
 /// The view of exact rays in `directions` from the place that a window is asked at, with the mean range of things.
 fn exact_view(
-    exact: &Scene,
+    exact: &TriangleScene,
     truth: &Truth,
     window: &Window,
     origin: [f64; 3],
@@ -217,8 +220,8 @@ fn exact_view(
                 things += 1.0;
                 kind(exact.materials[hit.triangle as usize])
             }
-            None if direction[2] >= 0.0 => Seen::Sky,
-            None => Seen::Beyond,
+            None if direction[2] >= 0.0 => SeenKind::Sky,
+            None => SeenKind::Beyond,
         };
         counts[seen as usize] += 1.0;
     }
@@ -232,7 +235,7 @@ fn in_an_exact_town_shares_are_those_of_exact_rays_and_of_any_number_of_threads(
     let truth = Truth::new(&exact);
     let origin = [154_990.0, 463_010.0, 2.0];
     let mut added: Option<AddedMeshes> = None;
-    let kinds = [Seen::Ground, Seen::Building, Seen::Vegetation, Seen::Other];
+    let kinds = [SeenKind::Ground, SeenKind::Building, SeenKind::Vegetation, SeenKind::Other];
     for seen in kinds {
         let rows = (0..exact.triangles.len()).filter(|&row| kind(exact.materials[row]) == seen);
         let triangles = rows.map(|row| exact.triangles[row]).collect();
@@ -273,9 +276,10 @@ fn in_an_exact_town_shares_are_those_of_exact_rays_and_of_any_number_of_threads(
         assert!(differing * VIEW_DIRECTIONS as f64 <= 1.5, "{expected:?} {view:?}");
         assert!((mean - view.mean_range).abs() < 0.2, "{mean} {view:?}");
         let (expected, _) = exact_view(&exact, &truth, window, origin, &other);
-        for seen in Seen::ALL {
+        for seen in SeenKind::ALL {
             let (a, b) = (expected[seen as usize], view.shares[seen as usize]);
-            // two samples of the same share, about 4000 and 1000 directions: four deviations of their difference, and one direction
+            // two samples of the same share, about 4000 and 1000 directions: four deviations of their difference, and
+            // one direction
             let share = f64::midpoint(a, b);
             let deviation = (share * (1.0 - share) * (1.0 / 4000.0 + 1.0 / VIEW_DIRECTIONS as f64)).sqrt();
             assert!((a - b).abs() < 4.0 * deviation + 1.0 / VIEW_DIRECTIONS as f64, "{seen:?} {a} {b}");
@@ -283,7 +287,9 @@ fn in_an_exact_town_shares_are_those_of_exact_rays_and_of_any_number_of_threads(
         }
     }
     assert!(
-        [Seen::Sky, Seen::Vegetation, Seen::Building, Seen::Ground].iter().all(|&s| kinds_met[s as usize] > 5),
+        [SeenKind::Sky, SeenKind::Vegetation, SeenKind::Building, SeenKind::Ground]
+            .iter()
+            .all(|&s| kinds_met[s as usize] > 5),
         "{kinds_met:?}"
     );
 }
@@ -312,7 +318,8 @@ fn in_a_scanned_town_views_are_near_those_of_exact_rays() {
     }
     let errors = errors.map(|sum| 100.0 * sum / windows.len() as f64);
     assert!(found.iter().any(|view| view.unproven > 0.01) && windows.len() >= 40);
-    // measured: 1.0 for sky, 0.8 for vegetation, 1.7 for buildings, 1.2 for ground, 0.4 for what is beyond; a half more is a change for the worse
+    // measured: 1.0 for sky, 0.8 for vegetation, 1.7 for buildings, 1.2 for ground, 0.4 for what is beyond; a half more
+    // is a change for the worse
     assert!(errors.iter().all(|error| *error < 2.5), "{errors:?}");
     // the same without pulses has the same view, of which nothing is unproven
     let unasked = model.scene(&model.rule(), UnprovenAs::Visible, &none).unwrap();
@@ -329,7 +336,7 @@ fn far_terrain_is_ground_and_no_sky() {
         let [view] = views(&scene, &[window(place, 1.0)], kinds, count)[..] else { panic!() };
         assert!(view.mean_range.is_nan() && view.median_range.is_nan());
         assert!((view.shares.iter().sum::<f64>() - 1.0).abs() < 1e-12);
-        [Seen::Sky, Seen::Ground, Seen::Beyond].map(|kind| view.shares[kind as usize])
+        [SeenKind::Sky, SeenKind::Ground, SeenKind::Beyond].map(|kind| view.shares[kind as usize])
     };
     let close = |shares: [f64; 3], expected: [f64; 3]| {
         let errors =
@@ -340,7 +347,8 @@ fn far_terrain_is_ground_and_no_sky() {
     let horizon = HorizonProfile::new([[0.0, 10f64.to_radians()]]).unwrap();
     let sky = (1.0 - 10f64.to_radians().sin()) / 2.0;
     close(seen(FarTerrain::default().with_profile(horizon), [0.0; 3]), [sky, 1.0 - sky, 0.0]);
-    // a wall 1 km away all around a plain, which all lines that fall meet: the half space is as even in the sine of the elevation as the sphere
+    // a wall 1 km away all around a plain, which all lines that fall meet: the half space is as even in the sine of the
+    // elevation as the sphere
     let plain = |x: f64, y: f64| if (x - 2000.0).hypot(y + 2000.0) < 1000.0 { 0.0 } else { 120.0 };
     let wall = FarTerrain::default().with_grid(grid(401, 10.0, plain), None);
     let sky = (1.0 - (118.3f64 / 1000.0).atan().sin()) / 2.0;
@@ -350,19 +358,19 @@ fn far_terrain_is_ground_and_no_sky() {
 }
 
 #[test]
-fn windows_that_are_not_asked_have_no_view_and_wrong_input_is_refused() {
+fn windows_that_are_no_targets_have_no_view_and_wrong_input_is_refused() {
     let scene = level_ground();
-    let kinds = Kinds { balls: &[Seen::Ground], meshes: &[] };
+    let kinds = Kinds { balls: &[SeenKind::Ground], meshes: &[] };
     let mut targets =
         Targets::of_windows(&[window([0.0, 0.0, 3.0], 0.0), window([5.0, 0.0, 3.0], 1.0)], Frame::default()).unwrap();
     targets.positions[0] = [f32::NAN; 3];
     let directions = view_directions(100).unwrap();
     let found = window_views(&scene, &targets, kinds, &directions, &Control::none()).unwrap();
     assert!(found[0].shares.iter().all(|share| share.is_nan()) && found[0].unproven.is_nan());
-    let measures = view_measures(&found, Proving::NotAsked);
+    let measures = view_measures(&found, Proving::NotTested);
     assert!(measures.iter().all(|m| m.values[0].is_nan() && m.name.len() <= 15 && m.description.len() <= 31));
     assert!((measures[..7].iter().map(|m| m.values[1]).sum::<f32>() - 100.0).abs() < 1e-4);
-    assert_eq!(view_measures(&found, Proving::Asked).len(), measures.len() + 1);
+    assert_eq!(view_measures(&found, Proving::Tested).len(), measures.len() + 1);
     let run = |targets: &Targets, kinds| window_views(&scene, targets, kinds, &directions, &Control::none());
     let few = run(&targets, Kinds { balls: &[], meshes: &[] });
     assert!(matches!(few, Err(Error::LengthMismatch { expected: 1, found: 0, .. })), "{few:?}");
@@ -373,5 +381,5 @@ fn windows_that_are_not_asked_have_no_view_and_wrong_input_is_refused() {
     assert!(view_directions(0).is_err());
     // a roof is left out, the window that is left out already is not counted among walls
     targets.normals.as_mut().unwrap()[1] = [0.0, 0.6, 0.8];
-    assert_eq!((leave_out_level(&mut targets), targets.asked_count()), (1, 0));
+    assert_eq!((leave_out_level(&mut targets), targets.target_count()), (1, 0));
 }

@@ -302,7 +302,7 @@ fn alike<T: Copy + Into<f64>>(found: Option<&Vec<T>>, expected: Option<&Vec<T>>,
 
 #[test]
 fn written_clouds_read_back_the_same() {
-    struct Case {
+    struct WritingCase {
         name: &'static str,
         /// Metres.
         position: f64,
@@ -311,7 +311,7 @@ fn written_clouds_read_back_the_same() {
         color: u16,
         has_crs: bool,
     }
-    let case = |name, position, scan_angle, color, has_crs| Case { name, position, scan_angle, color, has_crs };
+    let case = |name, position, scan_angle, color, has_crs| WritingCase { name, position, scan_angle, color, has_crs };
     // LAS keeps scan angles in steps of 0.006°, PLY and tables colours in 8 bits, tables a tenth of a millimetre
     let step = 0.003_01_f64.to_radians();
     let cases = [

@@ -1,7 +1,7 @@
 //! Trajectories come back as they were written, and move and point as they say.
 
 use belvedere::crs::Crs;
-use belvedere::io::{Heading, read_trajectory, write_trajectory};
+use belvedere::io::{VehicleHeading, read_trajectory, write_trajectory};
 use belvedere::trajectory::{Trajectory, WEEK_S};
 use belvedere::{Error, GpsTimeKind};
 use belvedere_scenes::{AirborneParams, TownParams, scan_airborne, town};
@@ -49,7 +49,7 @@ fn the_path_of_a_simulated_survey_comes_back_from_both_formats() {
     // Half of the last digit of the table; a micrometre and the rounding of radians in the SBET.
     for (name, tolerance) in [("t.csv", 0.000_051), ("t.txt", 0.000_051), ("t.sbet", 1e-5), ("t.out", 1e-5)] {
         let file = folder.path().join(name);
-        let headings = Heading::Given(&path.headings);
+        let headings = VehicleHeading::Given(&path.headings);
         write_trajectory(&file, &trajectory, GpsTimeKind::AdjustedStandard, &crs, headings).unwrap();
         let (read, report) = read_trajectory(&file, &crs).unwrap();
         assert_eq!(report.duplicate_count, 0);
@@ -72,9 +72,9 @@ fn sbet_velocities_and_headings_are_those_flown() {
     let flight = climb([250_000.0, 590_000.0, 300.0], 1000.0);
     let crs = Crs::from_epsg(28_992).unwrap();
     let headings = vec![HEADING + 0.1; flight.times.len()];
-    write_trajectory(&file, &flight, GpsTimeKind::SecondsOfWeek, &crs, Heading::Given(&headings)).unwrap();
+    write_trajectory(&file, &flight, GpsTimeKind::SecondsOfWeek, &crs, VehicleHeading::Given(&headings)).unwrap();
     let drifting = sbet_records(&file);
-    write_trajectory(&file, &flight, GpsTimeKind::SecondsOfWeek, &crs, Heading::Course).unwrap();
+    write_trajectory(&file, &flight, GpsTimeKind::SecondsOfWeek, &crs, VehicleHeading::Course).unwrap();
     // Grid north against true north, 95 km or 1.43 degrees of longitude east of the central meridian of the Dutch grid:
     // times the sine of the latitude, 53.3 degrees.
     let convergence = (1.43_f64).to_radians() * 53.3_f64.to_radians().sin();
@@ -101,7 +101,7 @@ fn adjusted_times_become_seconds_of_the_week_and_run_on_beyond_its_end() {
     let crs = Crs::from_epsg(28_992).unwrap();
     // week 2200 ends during the flight
     let flight = climb([155_000.0, 463_000.0, 300.0], 2201.0 * WEEK_S - 1e9 - 5.0);
-    write_trajectory(&file, &flight, GpsTimeKind::AdjustedStandard, &crs, Heading::Course).unwrap();
+    write_trajectory(&file, &flight, GpsTimeKind::AdjustedStandard, &crs, VehicleHeading::Course).unwrap();
     let records = sbet_records(&file);
     assert!((records[0][0] - (WEEK_S - 5.0)).abs() < 1e-6);
     assert!((records[199][0] - (WEEK_S + 4.95)).abs() < 1e-6);
@@ -113,7 +113,7 @@ fn tables_of_systems_in_feet_are_in_feet() {
     let file = folder.path().join("t.csv");
     let feet = Crs { metres_per_unit: 0.3048, vertical_metres_per_unit: 0.3048, ..Crs::default() };
     let flight = climb([304.8, 609.6, 30.48], 0.0);
-    write_trajectory(&file, &flight, GpsTimeKind::SecondsOfWeek, &feet, Heading::Course).unwrap();
+    write_trajectory(&file, &flight, GpsTimeKind::SecondsOfWeek, &feet, VehicleHeading::Course).unwrap();
     let text = std::fs::read_to_string(&file).unwrap();
     assert!(text.starts_with("time,x,y,z\n0.000000,1000.0000,2000.0000,100.0000\n"), "{text}");
     assert!(greatest_difference(&flight, &read_trajectory(&file, &feet).unwrap().0) < 2e-5);
@@ -123,12 +123,12 @@ fn tables_of_systems_in_feet_are_in_feet() {
 fn what_cannot_be_written_is_refused_and_leaves_nothing() {
     let folder = tempfile::tempdir().unwrap();
     let flight = climb([155_000.0, 463_000.0, 300.0], 0.0);
-    let write = |name: &str, crs: &Crs, heading: Heading<'_>| {
+    let write = |name: &str, crs: &Crs, heading: VehicleHeading<'_>| {
         write_trajectory(&folder.path().join(name), &flight, GpsTimeKind::SecondsOfWeek, crs, heading)
     };
     let dutch = Crs::from_epsg(28_992).unwrap();
-    assert!(matches!(write("t.las", &dutch, Heading::Course), Err(Error::UnknownFormat { .. })));
-    assert!(matches!(write("t.sbet", &Crs::default(), Heading::Course), Err(Error::UnusableCrs { .. })));
-    assert!(matches!(write("t.sbet", &dutch, Heading::Given(&[0.0])), Err(Error::LengthMismatch { .. })));
+    assert!(matches!(write("t.las", &dutch, VehicleHeading::Course), Err(Error::UnknownFormat { .. })));
+    assert!(matches!(write("t.sbet", &Crs::default(), VehicleHeading::Course), Err(Error::UnusableCrs { .. })));
+    assert!(matches!(write("t.sbet", &dutch, VehicleHeading::Given(&[0.0])), Err(Error::LengthMismatch { .. })));
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
 }

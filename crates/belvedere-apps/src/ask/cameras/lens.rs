@@ -52,8 +52,8 @@ impl CameraLens {
     /// Those of [`CameraLens::lens`].
     pub(super) fn mounting(&self) -> Result<MountingParams> {
         let mut params = MountingParams::default().with_lens(self.lens()?);
-        let [least, most] = params.distance;
-        params.distance = [self.min_distance.unwrap_or(least), self.max_distance.unwrap_or(most)];
+        let [min, max] = params.distance;
+        params.distance = [self.min_distance.unwrap_or(min), self.max_distance.unwrap_or(max)];
         params.headings = self.headings.unwrap_or(params.headings);
         if !self.tilts_deg.is_empty() {
             params.tilts = self.tilts_deg.iter().map(|tilt| tilt.to_radians()).collect();

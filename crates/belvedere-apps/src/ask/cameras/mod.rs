@@ -11,10 +11,10 @@ pub use standing::{Candidates, GivenCamera};
 pub use targets::{CameraTargets, PrivatePlaces};
 
 use super::report::{GroundSection, LinesSection};
-use super::{Answers, Ask, Cells, Context, North, Places, Scene};
+use super::{Answers, Ask, Context, GridCells, North, Places, Scene};
 use crate::cameras::{
-    CoverageParams, CoverageReport, CoverageTable, FREE_FRESNEL_SHARE, FresnelZone, Goal, Mount, Placement,
-    PlacementParams, Pose, counted_weights, coverage, leave_out_private, place_cameras,
+    CameraPose, CoverageParams, CoverageReport, CoverageTable, FREE_FRESNEL_SHARE, FresnelZone, Goal, Mount, Placement,
+    PlacementParams, counted_weights, coverage, leave_out_private, place_cameras,
 };
 use crate::landmark::observer_cell_for;
 use crate::targets::Targets;
@@ -29,7 +29,7 @@ use std::sync::Arc;
 /// Which of many possible cameras to put up so that they cover much of some places.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
-pub struct Cameras {
+pub struct CamerasQuestion {
     /// What they are chosen for.
     pub goal: CameraGoal,
     /// Cameras that each target needs, 1 or more; one with fewer counts in proportion. Default 1.
@@ -72,7 +72,7 @@ pub enum CameraGoal {
     CoveragePercent(f64),
 }
 
-impl Default for Cameras {
+impl Default for CamerasQuestion {
     fn default() -> Self {
         Self {
             goal: CameraGoal::Count(1),
@@ -96,7 +96,7 @@ impl Default for Cameras {
 #[derive(Clone, Debug, PartialEq)]
 pub struct ChosenCamera {
     /// Where it stands and how it looks.
-    pub pose: Pose,
+    pub pose: CameraPose,
     /// Whether it is to be put up.
     pub is_new: bool,
     /// What it adds to the coverage, percent; NaN for one that stays.
@@ -106,7 +106,7 @@ pub struct ChosenCamera {
 }
 
 /// The cameras that were chosen.
-pub struct CamerasFound {
+pub struct CamerasResults {
     /// Those that stay, then the new ones, those that add most first.
     pub cameras: Vec<ChosenCamera>,
     /// What is proven of the choice.
@@ -120,23 +120,23 @@ pub struct CamerasFound {
 }
 
 /// What cameras stand on and look through.
-struct Site<'a> {
+struct CameraSite<'a> {
     scene: &'a Scene,
     blockers: &'a Arc<MedialScene>,
     ground: &'a Ground,
     grid_north: f64,
 }
 
-impl CamerasFound {
+impl CamerasResults {
     /// How many cameras cover a target; `None` for one that does not count.
     #[must_use]
     pub fn count(&self, row: usize) -> Option<u32> {
-        let counts = self.targets.is_asked(row) && self.targets.weight(row) > 0.0;
+        let counts = self.targets.is_target(row) && self.targets.weight(row) > 0.0;
         self.placed.counts.get(row).copied().filter(|_| counts)
     }
 
     fn new(
-        poses: &[Pose],
+        poses: &[CameraPose],
         existing: usize,
         table: &CoverageTable,
         placed: Placement,
@@ -156,7 +156,7 @@ impl CamerasFound {
     }
 }
 
-impl Cameras {
+impl CamerasQuestion {
     fn coverage_params(&self) -> Result<CoverageParams> {
         let share = self.fresnel_percent.map_or(FREE_FRESNEL_SHARE, |percent| percent / 100.0);
         let zone =
@@ -180,25 +180,25 @@ impl Cameras {
     }
 
     /// The cells that are targets, or on which the ground below others is known.
-    fn cells(&self, scene: &Scene, places: &Places) -> Cells {
+    fn cells(&self, scene: &Scene, places: &Places) -> GridCells {
         let (low, high) = scene.model().bounds().on_map();
         let given = match places {
             Places::Cells(cells) => cells.clone(),
-            _ => Cells::default(),
+            _ => GridCells::default(),
         };
         let cell = given.cell.unwrap_or_else(|| observer_cell_for(low, high));
-        Cells { cell: Some(cell), height: Some(self.targets.height), ground: self.targets.ground, ..given }
+        GridCells { cell: Some(cell), height: Some(self.targets.height), ground: self.targets.ground, ..given }
     }
 
     /// The cameras that stay, then those to choose from, which must not see private places.
     fn poses(
         &self,
         private: Option<&Targets>,
-        site: &Site<'_>,
+        site: &CameraSite<'_>,
         report: &mut CamerasReport,
         context: &mut Context,
         control: &Control<'_>,
-    ) -> Result<(Vec<Pose>, Vec<Pose>)> {
+    ) -> Result<(Vec<CameraPose>, Vec<CameraPose>)> {
         let existing = self.existing_poses(site, report, context, control)?;
         let mut candidates = self.candidate_poses(site, report, context, control)?;
         let count = candidates.len();
@@ -222,8 +222,8 @@ impl Cameras {
     }
 }
 
-impl Ask for Cameras {
-    type Found = CamerasFound;
+impl Ask for CamerasQuestion {
+    type Found = CamerasResults;
 
     fn check(&self) -> Result<()> {
         self.earth.validate()?;
@@ -254,7 +254,7 @@ impl Ask for Cameras {
         places: &Places,
         context: &mut Context,
         control: &Control<'_>,
-    ) -> Result<Answers<CamerasFound>> {
+    ) -> Result<Answers<CamerasResults>> {
         if self.unproven.is_some() {
             scene.check_proof()?;
         }
@@ -264,18 +264,18 @@ impl Ask for Cameras {
         let cells = self.cells(scene, places);
         let known = scene.ground(cells.grid(scene)?, cells.ground, control)?;
         let blockers = scene.blockers(params.unproven, control)?;
-        let site = Site { scene, blockers: &blockers, ground: &known.ground, grid_north: north.of_grid };
+        let site = CameraSite { scene, blockers: &blockers, ground: &known.ground, grid_north: north.of_grid };
         let targets = self.targets.of((places, &cells), &site, context, control)?;
         let private = self.targets.private_of(&cells, &site, control)?;
         let mut report = CamerasReport {
-            targets: targets.asked_count(),
-            private_places: private.as_ref().map(Targets::asked_count),
+            targets: targets.target_count(),
+            private_places: private.as_ref().map(Targets::target_count),
             ..CamerasReport::default()
         };
         context.report.ground = Some(GroundSection::of(&known));
         context.report.lines_of_sight = Some(LinesSection::of(&blockers, None));
         let (existing, candidates) = self.poses(private.as_ref(), &site, &mut report, context, control)?;
-        let poses: Vec<Pose> = existing.iter().chain(&candidates).copied().collect();
+        let poses: Vec<CameraPose> = existing.iter().chain(&candidates).copied().collect();
         let cameras: Vec<_> = poses.iter().map(|pose| pose.camera).collect();
         let (table, lines): (CoverageTable, CoverageReport) =
             control.stage("testing lines of sight", cameras.len(), || {
@@ -289,7 +289,7 @@ impl Ask for Cameras {
         report.coverage.fill(&placed, &weights, self.per_target);
         report.coverage.headlines(existing.len(), &weights).into_iter().for_each(|line| context.headline(line));
         context.report.cameras = Some(report);
-        let found = CamerasFound::new(&poses, existing.len(), &table, placed, targets, north.of_grid);
+        let found = CamerasResults::new(&poses, existing.len(), &table, placed, targets, north.of_grid);
         Ok(Answers::new(found, Vec::new()))
     }
 }
@@ -300,21 +300,24 @@ mod tests {
 
     #[test]
     fn choices_that_cannot_be_are_refused_before_a_scene_is_needed() {
-        let usual = Cameras::default;
-        let lens = |lens: CameraLens| Cameras { lens, ..usual() };
+        let usual = CamerasQuestion::default;
+        let lens = |lens: CameraLens| CamerasQuestion { lens, ..usual() };
         assert!(usual().check().is_ok());
         for wrong in [
-            Cameras { goal: CameraGoal::CoveragePercent(0.0), ..usual() },
-            Cameras { goal: CameraGoal::CoveragePercent(120.0), ..usual() },
-            Cameras { per_target: 0, ..usual() },
-            Cameras { frequency_ghz: Some(2400.0), ..usual() },
-            Cameras { frequency_ghz: Some(2.4), fresnel_percent: Some(101.0), ..usual() },
+            CamerasQuestion { goal: CameraGoal::CoveragePercent(0.0), ..usual() },
+            CamerasQuestion { goal: CameraGoal::CoveragePercent(120.0), ..usual() },
+            CamerasQuestion { per_target: 0, ..usual() },
+            CamerasQuestion { frequency_ghz: Some(2400.0), ..usual() },
+            CamerasQuestion { frequency_ghz: Some(2.4), fresnel_percent: Some(101.0), ..usual() },
             lens(CameraLens { fov_deg: Some(400.0), ..CameraLens::default() }),
             lens(CameraLens { fov_deg: Some(360.0), density: Some(25.0), ..CameraLens::default() }),
             lens(CameraLens { headings: Some(0), ..CameraLens::default() }),
             lens(CameraLens { tilts_deg: vec![15.0, 95.0], ..CameraLens::default() }),
             lens(CameraLens { min_distance: Some(9.0), max_distance: Some(3.0), ..CameraLens::default() }),
-            Cameras { targets: CameraTargets { weights: vec![1.0, -1.0], ..CameraTargets::default() }, ..usual() },
+            CamerasQuestion {
+                targets: CameraTargets { weights: vec![1.0, -1.0], ..CameraTargets::default() },
+                ..usual()
+            },
         ] {
             assert!(matches!(wrong.check(), Err(Error::InvalidParameter { .. })), "{wrong:?}");
         }

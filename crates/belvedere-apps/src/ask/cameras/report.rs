@@ -49,8 +49,8 @@ pub(super) struct CoverageSection {
     targets_covered_percent: f64,
     targets_never_covered: usize,
     branches_searched: usize,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    least_possible_cameras: Option<usize>,
+    #[serde(rename = "least_possible_cameras", skip_serializing_if = "Option::is_none")]
+    min_possible_cameras: Option<usize>,
 }
 
 impl PicturesSection {
@@ -64,7 +64,7 @@ impl CoverageSection {
         let in_percent = |share: f64| rounded(100.0 * share, 3);
         let counting: Vec<u32> =
             weights.iter().zip(&placed.counts).filter(|(weight, _)| **weight > 0.0).map(|(_, count)| *count).collect();
-        let with = |least: u32| counting.iter().filter(|count| **count >= least).count();
+        let with = |min: u32| counting.iter().filter(|count| **count >= min).count();
         *self = Self {
             new_cameras: placed.chosen.len(),
             coverage_percent: in_percent(placed.coverage()),
@@ -76,7 +76,7 @@ impl CoverageSection {
             targets_covered_percent: percent(with(per_target), counting.len()),
             targets_never_covered: counting.len() - with(1),
             branches_searched: placed.branches,
-            least_possible_cameras: placed.least_count,
+            min_possible_cameras: placed.min_count,
         };
     }
 
@@ -85,9 +85,9 @@ impl CoverageSection {
         let counting = weights.iter().filter(|weight| **weight > 0.0).count();
         let and_existing = if existing > 0 { format!(" and {existing} existing ones") } else { String::new() };
         let (new, covered, best) = (self.new_cameras, self.coverage_percent, self.best_possible_percent);
-        let proof = match (self.is_proven_optimum, self.least_possible_cameras) {
+        let proof = match (self.is_proven_optimum, self.min_possible_cameras) {
             (true, _) => "no other choice is better".to_owned(),
-            (false, Some(least)) => format!("no choice needs fewer than {least} new cameras"),
+            (false, Some(min)) => format!("no choice needs fewer than {min} new cameras"),
             (false, None) => format!("no choice of as many covers more than {best} %"),
         };
         vec![

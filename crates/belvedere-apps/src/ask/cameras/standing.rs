@@ -1,9 +1,9 @@
 //! Where cameras stand.
 
-use super::{Cameras, CamerasReport, Site};
+use super::{CameraSite, CamerasQuestion, CamerasReport};
 use crate::ask::observers::{Reach, skip_unfit};
-use crate::ask::{Cells, Context};
-use crate::cameras::{CAMERA_HEIGHT, Mount, Pose, ROOF_CAMERA_HEIGHT, ground_places, roof_places};
+use crate::ask::{Context, GridCells};
+use crate::cameras::{CAMERA_HEIGHT, CameraPose, Mount, ROOF_CAMERA_HEIGHT, ground_places, roof_places};
 use crate::eyes::skip_unfit_eyes;
 use crate::targets::set_on_ground;
 use belvedere_data::Result;
@@ -68,15 +68,15 @@ impl GivenCamera {
     }
 }
 
-impl Cameras {
+impl CamerasQuestion {
     /// The cameras that stay; one that cannot look is NaN, so that others keep their numbers.
     pub(super) fn existing_poses(
         &self,
-        site: &Site<'_>,
+        site: &CameraSite<'_>,
         report: &mut CamerasReport,
         context: &mut Context,
         control: &Control<'_>,
-    ) -> Result<Vec<Pose>> {
+    ) -> Result<Vec<CameraPose>> {
         if self.existing.is_empty() {
             return Ok(Vec::new());
         }
@@ -92,11 +92,11 @@ impl Cameras {
     /// The cameras to choose from.
     pub(super) fn candidate_poses(
         &self,
-        site: &Site<'_>,
+        site: &CameraSite<'_>,
         report: &mut CamerasReport,
         context: &mut Context,
         control: &Control<'_>,
-    ) -> Result<Vec<Pose>> {
+    ) -> Result<Vec<CameraPose>> {
         let mounts: Vec<Mount> = match &self.candidates {
             Candidates::Given(given) => {
                 let eyes = self.eyes(given, site);
@@ -122,9 +122,9 @@ impl Cameras {
         Ok(poses)
     }
 
-    fn places_in_cells(&self, cell: f64, site: &Site<'_>, control: &Control<'_>) -> Result<Vec<[f64; 3]>> {
+    fn places_in_cells(&self, cell: f64, site: &CameraSite<'_>, control: &Control<'_>) -> Result<Vec<[f64; 3]>> {
         let scene = site.scene;
-        let cells = Cells { cell: Some(cell), ..Cells::default() };
+        let cells = GridCells { cell: Some(cell), ..GridCells::default() };
         let known = scene.ground(cells.grid(scene)?, self.targets.ground, control)?;
         let (cloud, ground) = (scene.ground_cloud()?, known.ground.clone());
         control.stage("finding places for cameras", 0, || match self.candidates {
@@ -136,7 +136,7 @@ impl Cameras {
     }
 
     /// Places as they are given, those without a height on the ground.
-    fn eyes(&self, given: &[GivenCamera], site: &Site<'_>) -> Vec<[f64; 3]> {
+    fn eyes(&self, given: &[GivenCamera], site: &CameraSite<'_>) -> Vec<[f64; 3]> {
         let usual = self.camera_height.unwrap_or(CAMERA_HEIGHT);
         let mut eyes: Vec<[f64; 3]> = given.iter().map(|one| one.place).collect();
         let heights = given.iter().map(|one| one.height.unwrap_or(usual));

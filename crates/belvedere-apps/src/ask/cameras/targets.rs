@@ -1,9 +1,9 @@
 //! What cameras are to cover, and what they must not see.
 
-use super::Site;
+use super::CameraSite;
 use crate::ask::observers::Standing;
 use crate::ask::places::leave_out_outside;
-use crate::ask::{Cells, Context, Places};
+use crate::ask::{Context, GridCells, Places};
 use crate::cameras::{CAMERA_TARGET_HEIGHT, WeightedArea, keep_within};
 use crate::targets::{Targets, set_on_ground};
 use belvedere_core::ground::GroundPoints;
@@ -75,8 +75,8 @@ impl CameraTargets {
     /// The targets of a scene, `cells` where they are that.
     pub(super) fn of(
         &self,
-        (places, cells): (&Places, &Cells),
-        site: &Site<'_>,
+        (places, cells): (&Places, &GridCells),
+        site: &CameraSite<'_>,
         context: &mut Context,
         control: &Control<'_>,
     ) -> Result<Targets> {
@@ -100,7 +100,7 @@ impl CameraTargets {
             }
             targets.weights.clone_from(&self.weights);
         }
-        if targets.asked_count() == 0 {
+        if targets.target_count() == 0 {
             let what = "are they in the coordinates of the cloud, on known ground?".to_owned();
             return Err(Error::NoObserver { who: "target", what });
         }
@@ -108,20 +108,25 @@ impl CameraTargets {
     }
 
     /// The places that no camera may see; `None` where there are none.
-    pub(super) fn private_of(&self, cells: &Cells, site: &Site<'_>, control: &Control<'_>) -> Result<Option<Targets>> {
+    pub(super) fn private_of(
+        &self,
+        cells: &GridCells,
+        site: &CameraSite<'_>,
+        control: &Control<'_>,
+    ) -> Result<Option<Targets>> {
         let targets = match &self.private {
             PrivatePlaces::Nowhere => return Ok(None),
             PrivatePlaces::Points(points) => self.on_ground(points, site),
             PrivatePlaces::Areas(areas) => of_cells(cells, areas, site, &mut Context::default(), control)?,
         };
-        if targets.asked_count() == 0 {
+        if targets.target_count() == 0 {
             let what = "are they in the coordinates of the cloud, and larger than a cell?".to_owned();
             return Err(Error::NoObserver { who: "private place", what });
         }
         Ok(Some(targets))
     }
 
-    fn on_ground(&self, points: &[Standing], site: &Site<'_>) -> Targets {
+    fn on_ground(&self, points: &[Standing], site: &CameraSite<'_>) -> Targets {
         let mut places: Vec<[f64; 3]> = points.iter().map(|point| point.place).collect();
         let heights = points.iter().map(|point| point.height.unwrap_or(self.height));
         set_on_ground(places.iter_mut().zip(heights), site.ground);
@@ -131,9 +136,9 @@ impl CameraTargets {
 
 /// The cells of the ground that are not under a roof; in areas where there are any.
 fn of_cells(
-    cells: &Cells,
+    cells: &GridCells,
     areas: &[WeightedArea],
-    site: &Site<'_>,
+    site: &CameraSite<'_>,
     context: &mut Context,
     control: &Control<'_>,
 ) -> Result<Targets> {

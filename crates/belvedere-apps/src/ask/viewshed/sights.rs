@@ -1,11 +1,11 @@
 //! What observers see of each kind of targets, in numbers and words.
 
-use super::Viewshed;
+use super::ViewshedQuestion;
 use crate::ask::places::cells_of;
 use crate::ask::{Context, Remark, Scene, remark_on_outside};
 use crate::targets::{CellParams, Targets};
 use crate::viewshed::{
-    Masks, Observer, Viewshed as Seen, ViewshedParams, far_viewshed, least_visible_heights, tested_height, viewshed,
+    Masks, Observer, Viewshed as Seen, ViewshedParams, far_viewshed, min_visible_heights, tested_height, viewshed,
 };
 use belvedere_core::ground::Ground;
 use belvedere_core::query::{Answer, AnswerCounts, MedialScene, UnprovenAs};
@@ -50,7 +50,7 @@ struct Things {
 
 /// Observers before what blocks.
 pub(super) struct Sights<'a> {
-    pub(super) question: &'a Viewshed,
+    pub(super) question: &'a ViewshedQuestion,
     pub(super) scene: &'a Scene,
     pub(super) blockers: &'a MedialScene,
     pub(super) observers: &'a [Observer],
@@ -116,7 +116,7 @@ impl Sights<'_> {
     pub(super) fn heights(&self, max_height: f64, ground: &Ground, control: &Control<'_>) -> Result<Raster<f32>> {
         let Self { blockers, observers, params, .. } = *self;
         control.stage("computing visible heights", observers.len(), || {
-            least_visible_heights(blockers, observers, ground, max_height, &params.earth, control)
+            min_visible_heights(blockers, observers, ground, max_height, &params.earth, control)
         })
     }
 

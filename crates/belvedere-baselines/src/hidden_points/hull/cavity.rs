@@ -11,7 +11,7 @@ pub(super) struct Cavity {
     seen_by: Vec<u32>,
     insertion: u32,
     /// Edges around the seen facets, from and to, and the facet beyond.
-    pub(super) rim: Vec<[u32; 3]>,
+    pub(super) border: Vec<[u32; 3]>,
     /// For each point, the new facet whose rim edge starts there.
     pub(super) fan_from: Vec<u32>,
     /// Numbers of facets that are no longer in use.
@@ -25,7 +25,7 @@ impl Cavity {
             expanded: 0,
             seen_by: vec![0; 2 * point_count + 8],
             insertion: 0,
-            rim: Vec::new(),
+            border: Vec::new(),
             fan_from: vec![NONE; point_count],
             free: Vec::new(),
         }

@@ -1,8 +1,9 @@
 //! Convex hull of a point set and the eye, with exact arithmetic.
 //!
-//! General hull programs spend their time far from what is needed here: flipped points lie close to a sphere about the eye,
-//! so that most are on the hull, and neighbours in the picture are neighbours on the hull. Points are therefore inserted
-//! along a space-filling curve, in rounds that double, and each is found by a walk of a few facets from the last one.
+//! General hull programs spend their time far from what is needed here: flipped points lie close to a sphere about the
+//! eye, so that most are on the hull, and neighbours in the picture are neighbours on the hull. Points are therefore
+//! inserted along a space-filling curve, in rounds that double, and each is found by a walk of a few facets from the
+//! last one.
 
 mod cavity;
 mod start;
@@ -16,11 +17,11 @@ use robust::{Coord3D, orient3d};
 use cavity::Cavity;
 use start::{first_tetrahedron, middle, tetrahedron};
 
-/// How near to the eye walks aim from, as a share of the way from the eye to the middle of the first tetrahedron: a power of
-/// two, so that the centre stays on that way exactly, and small enough to count as the eye itself.
+/// How near to the eye walks aim from, as a share of the way from the eye to the middle of the first tetrahedron: a
+/// power of two, so that the centre stays on that way exactly, and small enough to count as the eye itself.
 const CENTRE_SHARE: f64 = 1.0 / 1_048_576.0;
 /// A hull of so many points has twice as many facets, whose numbers fit 32 bits.
-pub(crate) const MOST_POINTS: usize = 1 << 30;
+pub(crate) const MAX_POINTS: usize = 1 << 30;
 /// No facet.
 const NONE: u32 = u32::MAX;
 
@@ -47,12 +48,12 @@ pub(crate) struct Hull {
 
 /// Where the last walk ended, and the numbers that choose the order of its tests.
 #[derive(Clone, Copy, Default)]
-pub(crate) struct Walk {
+pub(crate) struct HullWalk {
     facet: u32,
     turns: u64,
 }
 
-impl Walk {
+impl HullWalk {
     /// A number from 0 to 2 that follows no pattern: walks through facets that lie in one plane could go round for ever
     /// with a fixed order of tests (Devillers, Pion & Teillaud 2002).
     fn turn(&mut self) -> usize {
@@ -64,13 +65,13 @@ impl Walk {
 impl Hull {
     /// The hull of `points`, (N, 3), and the eye at the origin. Coordinates are finite and below 1e50.
     ///
-    /// A set that fills no volume with the eye (all in a plane through it, up to rounding, or fewer than three points) is
-    /// completed by pairs of points opposite each other about the eye. The eye lies between the two, so they change
+    /// A set that fills no volume with the eye (all in a plane through it, up to rounding, or fewer than three points)
+    /// is completed by pairs of points opposite each other about the eye. The eye lies between the two, so they change
     /// nothing about which points of the set are extreme.
     ///
     /// # Source
-    /// Insertion in rounds: Amenta, Choi & Rote 2003. Exact signs: Shewchuk 1997. The hull is unique, so neither order nor
-    /// method shows in [`Hull::is_extreme`].
+    /// Insertion in rounds: Amenta, Choi & Rote 2003. Exact signs: Shewchuk 1997. The hull is unique, so neither order
+    /// nor method shows in [`Hull::is_extreme`].
     pub(crate) fn new(mut points: Vec<[f64; 3]>) -> Self {
         let given_count = points.len();
         let eye = number(given_count);
@@ -86,7 +87,7 @@ impl Hull {
         };
         let order = insertion_order(&hull.points, &first, &hull.curve);
         let mut cavity = Cavity::new(hull.points.len());
-        let mut walk = Walk::default();
+        let mut walk = HullWalk::default();
         for point in order {
             hull.insert(point, &mut walk, &mut cavity);
         }
@@ -96,7 +97,8 @@ impl Hull {
         hull
     }
 
-    /// Whether point number `index` of those given is a corner of the hull; points at the same place all are or none is.
+    /// Whether point number `index` of those given is a corner of the hull; points at the same place all are or none
+    /// is.
     pub(crate) fn is_extreme(&self, index: usize) -> bool {
         self.representative
             .get(index)
@@ -105,7 +107,7 @@ impl Hull {
     }
 
     /// Whether `point` lies strictly outside, and if not, how far inside along the ray from the eye: 0 on the hull.
-    pub(crate) fn depth_below(&self, point: [f64; 3], walk: &mut Walk) -> Option<f64> {
+    pub(crate) fn depth_below(&self, point: [f64; 3], walk: &mut HullWalk) -> Option<f64> {
         let facet = self.locate(point, walk);
         let [a, b, c] = self.corners(facet);
         if orient(a, b, c, point) < 0.0 {
@@ -132,9 +134,9 @@ impl Hull {
 
     /// The facet that the ray from the centre through `point` meets.
     ///
-    /// Each step crosses an edge that has `point` on its other side. Seen from inside, the facets of a convex hull are in
-    /// front of each other in no circle, so the walk ends.
-    fn locate(&self, point: [f64; 3], walk: &mut Walk) -> u32 {
+    /// Each step crosses an edge that has `point` on its other side. Seen from inside, the facets of a convex hull are
+    /// in front of each other in no circle, so the walk ends.
+    fn locate(&self, point: [f64; 3], walk: &mut HullWalk) -> u32 {
         let mut came_from = NONE;
         'walk: loop {
             let facet = &self.facets[walk.facet as usize];
@@ -155,7 +157,7 @@ impl Hull {
     }
 
     /// Adds a point: the facets that it sees give way to a fan from their rim.
-    fn insert(&mut self, index: u32, walk: &mut Walk, cavity: &mut Cavity) {
+    fn insert(&mut self, index: u32, walk: &mut HullWalk, cavity: &mut Cavity) {
         let point = self.points[index as usize];
         let seen = self.locate(point, walk);
         if !self.sees(point, seen) {
@@ -176,13 +178,13 @@ impl Hull {
                 if self.sees(point, neighbor) {
                     cavity.add(neighbor);
                 } else {
-                    cavity.rim.push([corners[i], corners[(i + 1) % 3], neighbor]);
+                    cavity.border.push([corners[i], corners[(i + 1) % 3], neighbor]);
                 }
             }
         }
         cavity.release();
-        let rim = std::mem::take(&mut cavity.rim);
-        for &[from, to, outer] in &rim {
+        let border = std::mem::take(&mut cavity.border);
+        for &[from, to, outer] in &border {
             let facet = Facet { corners: [from, to, index], neighbors: [outer, NONE, NONE] };
             let number = self.place(facet, cavity);
             cavity.fan_from[from as usize] = number;
@@ -192,13 +194,13 @@ impl Hull {
             }
             walk.facet = number;
         }
-        for &[from, to, _] in &rim {
+        for &[from, to, _] in &border {
             let (this, next) = (cavity.fan_from[from as usize], cavity.fan_from[to as usize]);
             self.facets[this as usize].neighbors[1] = next;
             self.facets[next as usize].neighbors[2] = this;
         }
-        cavity.rim = rim;
-        cavity.rim.clear();
+        cavity.border = border;
+        cavity.border.clear();
     }
 
     fn sees(&self, point: [f64; 3], facet: u32) -> bool {
@@ -259,7 +261,8 @@ impl Hull {
     }
 }
 
-/// Positive where `d` lies below the plane of `a`, `b` and `c`, which turn counter-clockwise as seen from above; exact sign.
+/// Positive where `d` lies below the plane of `a`, `b` and `c`, which turn counter-clockwise as seen from above; exact
+/// sign.
 fn orient(a: [f64; 3], b: [f64; 3], c: [f64; 3], d: [f64; 3]) -> f64 {
     let coordinates = |[x, y, z]: [f64; 3]| Coord3D { x, y, z };
     orient3d(coordinates(a), coordinates(b), coordinates(c), coordinates(d))

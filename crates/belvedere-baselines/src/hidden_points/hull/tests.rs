@@ -1,4 +1,4 @@
-use super::{Hull, Walk};
+use super::{Hull, HullWalk};
 
 /// Positions without pattern in the box from -1 to 1, times `size`.
 fn scattered(count: u64, size: [f64; 3]) -> Vec<[f64; 3]> {
@@ -89,14 +89,14 @@ fn all_of_a_sphere_is_extreme_and_its_depths_are_those_of_the_closed_form() {
         .map(|i| {
             let z = 1.0 - (2.0 * f64::from(i) + 1.0) / f64::from(count);
             let turn = f64::from(i) * 2.399_963_229_728_653;
-            let rim = (1.0 - z * z).sqrt();
-            [rim * turn.cos(), rim * turn.sin(), z].map(|v| 1e6 * v)
+            let ring_radius = (1.0 - z * z).sqrt();
+            [ring_radius * turn.cos(), ring_radius * turn.sin(), z].map(|v| 1e6 * v)
         })
         .collect();
     let hull = Hull::new(sphere.clone());
     // neighbours stand out by 1e-4 of the radius, rounding moves points by 1e-16
     assert!((0..sphere.len()).all(|i| hull.is_extreme(i)));
-    let mut walk = Walk::default();
+    let mut walk = HullWalk::default();
     for p in scattered(500, [1e6; 3]) {
         let range = belvedere::vector::length(p);
         match hull.depth_below(p, &mut walk) {

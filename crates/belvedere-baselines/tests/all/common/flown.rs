@@ -3,10 +3,10 @@
 use belvedere::cloud::{centre_rounded, to_local};
 use belvedere::trajectory::Trajectory;
 use belvedere::{Attributes, Frame, GpsTimeKind, PointCloud, Result};
-use belvedere_scenes::{AirborneParams, Scan, Scene, scan_airborne};
+use belvedere_scenes::{AirborneParams, Scan, TriangleScene, scan_airborne};
 
 /// The cloud of a survey, and where the scanner was at each of its points, (N, 3) local metres.
-pub(crate) fn flown(scene: &Scene, params: &AirborneParams) -> Result<(PointCloud, Vec<[f32; 3]>)> {
+pub(crate) fn flown(scene: &TriangleScene, params: &AirborneParams) -> Result<(PointCloud, Vec<[f32; 3]>)> {
     surveyed(&scan_airborne(scene, params))
 }
 

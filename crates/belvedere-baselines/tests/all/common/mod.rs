@@ -7,12 +7,12 @@ pub(crate) mod place;
 use belvedere::Bounds;
 use belvedere::query::{Answer, Viewer, Visibility};
 use belvedere::{Mesh, PointCloud};
-use belvedere_scenes::{AirborneParams, Scene, TownParams, scan_airborne, town};
+use belvedere_scenes::{AirborneParams, TownParams, TriangleScene, scan_airborne, town};
 
 /// Small generator of the tests' own.
-pub(crate) struct Lcg(pub(crate) u64);
+pub(crate) struct TestRandom(pub(crate) u64);
 
-impl Lcg {
+impl TestRandom {
     pub(crate) fn between(&mut self, low: f64, high: f64) -> f64 {
         self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         low + (high - low) * ((self.0 >> 11) as f64 / (1_u64 << 53) as f64)
@@ -57,14 +57,14 @@ pub(crate) fn moeller_trumbore(corners: [[f64; 3]; 3], origin: [f64; 3], directi
 }
 
 /// A town of 100 m with its mesh.
-pub(crate) fn small_town() -> (Scene, Mesh) {
+pub(crate) fn small_town() -> (TriangleScene, Mesh) {
     let scene = town(&TownParams { extent: 100.0, seed: 3, ..TownParams::default() });
     let mesh = Mesh { vertices: scene.vertices.clone(), triangles: scene.triangles.clone(), ..Mesh::default() };
     (scene, mesh)
 }
 
 /// A thin scan of a scene.
-pub(crate) fn scan(scene: &Scene) -> PointCloud {
+pub(crate) fn scan(scene: &TriangleScene) -> PointCloud {
     let scan = scan_airborne(scene, &AirborneParams { pulses_per_m2: 1.0, ..AirborneParams::default() });
     let coordinates: Vec<[f64; 3]> = (0..scan.len()).map(|i| [scan.x[i], scan.y[i], scan.z[i]]).collect();
     let (mut cloud, left_out) = PointCloud::from_coordinates(&coordinates);
@@ -76,7 +76,7 @@ pub(crate) fn scan(scene: &Scene) -> PointCloud {
 /// Random positions in the box of a cloud and somewhat beyond.
 pub(crate) fn targets(cloud: &PointCloud, count: usize, seed: u64) -> Vec<[f32; 3]> {
     let Bounds { low, high } = cloud.bounds().unwrap();
-    let mut random = Lcg(seed);
+    let mut random = TestRandom(seed);
     (0..count).map(|_| random.point(low.map(|v| f64::from(v) - 3.0), high.map(|v| f64::from(v) + 3.0))).collect()
 }
 

@@ -7,7 +7,7 @@ use belvedere::{Bounds, PointCloud};
 use belvedere_scenes::{AirborneParams, Preset, QuerySet, QuerySite, Truth, town};
 
 /// A town, its scan, where the scanner was, and places in its streets with what is known of their light.
-pub(crate) struct Place {
+pub(crate) struct TownWithLight {
     pub(crate) cloud: PointCloud,
     pub(crate) scanner: Vec<[f32; 3]>,
     pub(crate) targets: Vec<[f32; 3]>,
@@ -15,7 +15,7 @@ pub(crate) struct Place {
     pub(crate) suns: Vec<([f64; 3], Vec<bool>)>,
 }
 
-impl Place {
+impl TownWithLight {
     /// 80 m of a town of this kind, 8 pulses per m².
     pub(crate) fn new(preset: Preset) -> Self {
         let scene = town(&preset.params(80.0, 5));

@@ -1,6 +1,6 @@
 //! Where cameras stand and how they look: from flags and files to a question.
 
-use crate::arguments::CameraLens;
+use crate::arguments::CameraLensArguments;
 use anyhow::Result;
 use belvedere::Frame;
 use belvedere::apps::ask::{self, GivenCamera};
@@ -12,7 +12,7 @@ use std::path::Path;
 pub(super) const STEP: f64 = 5.0;
 
 /// How cameras look, as the flags say.
-pub(super) fn lens(flags: &CameraLens) -> ask::CameraLens {
+pub(super) fn lens(flags: &CameraLensArguments) -> ask::CameraLens {
     ask::CameraLens {
         fov_deg: flags.fov,
         vertical_fov_deg: flags.vertical_fov,

@@ -2,10 +2,12 @@
 
 use crate::commands::extension;
 use anyhow::Result;
-use belvedere::apps::ask::{CamerasFound, ChosenCamera, Scene};
+use belvedere::apps::ask::{CamerasResults, ChosenCamera, Scene};
 use belvedere::figures::{MapLegend, MapMark, MapPicture, map_picture, write_png};
 use belvedere::ground::{Ground, highest_points};
-use belvedere::io::{Area, Cells, Spot, outlines, write_geojson, write_geojson_areas, write_table, write_tif_u16};
+use belvedere::io::{
+    PolygonArea, Spot, TableCells, outlines, write_geojson, write_geojson_areas, write_table, write_tif_u16,
+};
 use belvedere::raster::Raster;
 use belvedere::report::rounded;
 use belvedere::results::{ResultKind, georeference};
@@ -16,12 +18,12 @@ use std::path::Path;
 const COLORS: [[u8; 3]; 5] = [[120, 40, 50], [253, 225, 60], [110, 200, 95], [35, 145, 140], [60, 80, 165]];
 
 /// What is written.
-pub(super) struct Shown<'a> {
-    pub(super) found: &'a CamerasFound,
+pub(super) struct CameraOutput<'a> {
+    pub(super) found: &'a CamerasResults,
     pub(super) scene: &'a Scene,
 }
 
-impl Shown<'_> {
+impl CameraOutput<'_> {
     pub(super) fn write(&self, output: &Path) -> Result<()> {
         match (extension(output).as_str(), self.found.targets.ground()) {
             ("csv", _) => self.write_targets(output),
@@ -38,9 +40,9 @@ impl Shown<'_> {
         let added: Vec<f64> = std::iter::once(f64::NAN).chain(new.iter().map(|camera| camera.added_percent)).collect();
         let coverage: Vec<f64> = self.found.placed.curve.iter().map(|share| 100.0 * share).collect();
         let cells = [
-            ("new_cameras", Cells::Whole(&numbers)),
-            ("added_percent", Cells::Real(&added, 4)),
-            ("coverage_percent", Cells::Real(&coverage, 4)),
+            ("new_cameras", TableCells::Whole(&numbers)),
+            ("added_percent", TableCells::Real(&added, 4)),
+            ("coverage_percent", TableCells::Real(&coverage, 4)),
         ];
         Ok(write_table(output, &cells)?)
     }
@@ -92,7 +94,7 @@ impl Shown<'_> {
     }
 
     /// The cells that a camera covers, as an area.
-    fn footprint(&self, camera: &ChosenCamera, number: u64) -> Result<Option<Area>> {
+    fn footprint(&self, camera: &ChosenCamera, number: u64) -> Result<Option<PolygonArea>> {
         let Some(ground) = self.found.targets.ground() else { return Ok(None) };
         let grid = ground.grid;
         let mut cells = vec![false; self.found.targets.len()];
@@ -106,7 +108,7 @@ impl Shown<'_> {
             let [x, y] = grid.corner_at(corner);
             [x + origin[0], y + origin[1]]
         };
-        let mut area = Area::default();
+        let mut area = PolygonArea::default();
         area.properties.insert("camera".to_owned(), number.into());
         area.properties.insert("covered_m2".to_owned(), (camera.covered.len() as f64 * grid.cell * grid.cell).into());
         area.polygons = polygons.iter().map(|polygon| polygon.rings(place)).collect();
@@ -134,11 +136,11 @@ impl Shown<'_> {
             Some(MapMark { place, view: Some([pose.heading, pose.width]), label: number.to_string() })
         };
         let marks: Vec<MapMark> = (1..).zip(&self.found.cameras).filter_map(mark).collect();
-        let most = self.counts().flatten().max().map_or(1, |most| (most as usize).clamp(1, COLORS.len() - 1));
-        let color = |count: u32| COLORS.get((count as usize).min(most)).copied();
+        let max = self.counts().flatten().max().map_or(1, |max| (max as usize).clamp(1, COLORS.len() - 1));
+        let color = |count: u32| COLORS.get((count as usize).min(max)).copied();
         let colors: Vec<Option<[u8; 3]>> = self.counts().map(|count| count.and_then(color)).collect();
         let names = ["no camera", "1 camera", "2 cameras", "3 cameras", "4 cameras or more"];
-        let meanings: Vec<([u8; 3], &str)> = COLORS.into_iter().zip(names).take(most + 1).collect();
+        let meanings: Vec<([u8; 3], &str)> = COLORS.into_iter().zip(names).take(max + 1).collect();
         let map = MapPicture {
             relief: &relief,
             cell: ground.grid.cell,
@@ -153,8 +155,8 @@ impl Shown<'_> {
     }
 
     fn write_targets(&self, output: &Path) -> Result<()> {
-        let CamerasFound { targets, placed, .. } = self.found;
-        let rows: Vec<usize> = (0..targets.len()).filter(|&row| targets.is_asked(row)).collect();
+        let CamerasResults { targets, placed, .. } = self.found;
+        let rows: Vec<usize> = (0..targets.len()).filter(|&row| targets.is_target(row)).collect();
         let mut cameras: Vec<Vec<String>> = vec![Vec::new(); targets.len()];
         for (number, camera) in (1..).zip(&self.found.cameras) {
             camera.covered.iter().for_each(|&target| cameras[target].push(i32::to_string(&number)));
@@ -169,13 +171,13 @@ impl Shown<'_> {
         let lists: Vec<String> = rows.iter().map(|&row| cameras[row].join(" ")).collect();
         let lists: Vec<&str> = lists.iter().map(String::as_str).collect();
         let cells = [
-            ("target", Cells::Whole(&numbers)),
-            ("x", Cells::Real(&x, 3)),
-            ("y", Cells::Real(&y, 3)),
-            ("z", Cells::Real(&z, 3)),
-            ("weight", Cells::Real(&weights, 4)),
-            ("cameras", Cells::Whole(&counts)),
-            ("covered_by", Cells::Words(&lists)),
+            ("target", TableCells::Whole(&numbers)),
+            ("x", TableCells::Real(&x, 3)),
+            ("y", TableCells::Real(&y, 3)),
+            ("z", TableCells::Real(&z, 3)),
+            ("weight", TableCells::Real(&weights, 4)),
+            ("cameras", TableCells::Whole(&counts)),
+            ("covered_by", TableCells::Words(&lists)),
         ];
         Ok(write_table(output, &cells)?)
     }

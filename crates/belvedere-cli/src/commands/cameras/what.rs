@@ -1,22 +1,22 @@
 //! What cameras are to cover, and what they must not see: from flags and files to a question.
 
-use crate::arguments::{CameraTargets, Usage};
+use crate::arguments::{CameraTargetsArguments, Usage};
 use crate::commands::extension;
 use crate::commands::mesh_targets::is_mesh;
 use crate::commands::query::points_of_file;
 use crate::pipeline::mesh_in;
-use crate::run::Run;
+use crate::run::CommandContext;
 use anyhow::{Result, bail};
 use belvedere::Frame;
-use belvedere::apps::ask::{self, Cells, Places, PrivatePlaces, Standing};
+use belvedere::apps::ask::{self, GridCells, Places, PrivatePlaces, Standing};
 use belvedere::apps::cameras::WeightedArea;
 use belvedere::apps::targets::MeshParams;
-use belvedere::io::{RowsAre, Shape, read_geojson, read_observers};
+use belvedere::io::{FeatureShape, RowsAre, read_geojson, read_observers};
 use std::path::Path;
 use std::sync::Arc;
 
 /// What a file of targets holds.
-enum Kind {
+enum TargetFileKind {
     Areas,
     Places,
     Mesh,
@@ -24,25 +24,25 @@ enum Kind {
 }
 
 /// The type of a file. GeoJSON with polygons holds areas.
-fn kind(path: &Path) -> Kind {
+fn kind(path: &Path) -> TargetFileKind {
     match extension(path).as_str() {
         "geojson" => {
             let text = std::fs::read_to_string(path).unwrap_or_default();
-            if text.contains("Polygon\"") { Kind::Areas } else { Kind::Places }
+            if text.contains("Polygon\"") { TargetFileKind::Areas } else { TargetFileKind::Places }
         }
-        "csv" | "txt" => Kind::Places,
-        _ if is_mesh(path) => Kind::Mesh,
-        _ => Kind::Cloud,
+        "csv" | "txt" => TargetFileKind::Places,
+        _ if is_mesh(path) => TargetFileKind::Mesh,
+        _ => TargetFileKind::Cloud,
     }
 }
 
 /// Whether targets are cells.
-pub(super) fn are_cells(flags: &CameraTargets) -> bool {
-    flags.targets.as_deref().is_none_or(|path| matches!(kind(path), Kind::Areas))
+pub(super) fn are_cells(flags: &CameraTargetsArguments) -> bool {
+    flags.targets.as_deref().is_none_or(|path| matches!(kind(path), TargetFileKind::Areas))
 }
 
 /// Refuses flags of other targets.
-pub(super) fn check(flags: &CameraTargets, are_cells: bool) -> Result<()> {
+pub(super) fn check(flags: &CameraTargetsArguments, are_cells: bool) -> Result<()> {
     if flags.cell.is_some() && !are_cells {
         return Err(Usage("--cell applies only to targets that are cells: polygons, or no --targets".to_owned()).into());
     }
@@ -54,29 +54,29 @@ pub(super) fn check(flags: &CameraTargets, are_cells: bool) -> Result<()> {
 
 /// What is to be covered: places, or what is added to `targets`.
 pub(super) fn places(
-    flags: &CameraTargets,
+    flags: &CameraTargetsArguments,
     frame: &Frame,
     targets: &mut ask::CameraTargets,
-    run: &mut Run,
+    run: &mut CommandContext,
 ) -> Result<Places> {
-    let cells = || Places::Cells(Cells { cell: flags.cell, ..Cells::default() });
+    let cells = || Places::Cells(GridCells { cell: flags.cell, ..GridCells::default() });
     match flags.targets.as_deref().map(|path| (path, kind(path))) {
         None => Ok(cells()),
-        Some((path, Kind::Areas)) => {
+        Some((path, TargetFileKind::Areas)) => {
             targets.areas = areas(path, frame)?;
             Ok(cells())
         }
-        Some((path, Kind::Places)) => {
+        Some((path, TargetFileKind::Places)) => {
             (targets.points, targets.weights) = points(path, frame)?;
             Ok(Places::Scene)
         }
-        Some((path, Kind::Mesh)) => {
+        Some((path, TargetFileKind::Mesh)) => {
             let mesh = mesh_in(path, &frame.crs, run)?;
             let usual = MeshParams::default().with_seed(run.seed);
             let params = flags.spacing.map_or(usual, |spacing| usual.with_spacing(spacing));
             Ok(Places::Mesh(Arc::new(mesh), params))
         }
-        Some((path, Kind::Cloud)) => {
+        Some((path, TargetFileKind::Cloud)) => {
             let cloud = points_of_file(path, None, frame, run)?;
             let normals = cloud.attributes.normals.clone();
             Ok(Places::Cloud(Arc::new(cloud), normals))
@@ -87,8 +87,8 @@ pub(super) fn places(
 /// The places that no camera may see.
 pub(super) fn private(path: &Path, frame: &Frame) -> Result<PrivatePlaces> {
     match kind(path) {
-        Kind::Areas => Ok(PrivatePlaces::Areas(areas(path, frame)?)),
-        Kind::Places => Ok(PrivatePlaces::Points(points(path, frame)?.0)),
+        TargetFileKind::Areas => Ok(PrivatePlaces::Areas(areas(path, frame)?)),
+        TargetFileKind::Places => Ok(PrivatePlaces::Points(points(path, frame)?.0)),
         _ => {
             let path = path.display();
             Err(Usage(format!("--private {path}: use points (.csv .geojson) or polygons (.geojson)")).into())
@@ -101,7 +101,7 @@ fn areas(path: &Path, frame: &Frame) -> Result<Vec<WeightedArea>> {
     let on_map = |corner: &[f64; 3]| [corner[0] - frame.origin[0], corner[1] - frame.origin[1]];
     let mut found = Vec::new();
     for feature in read_geojson(path, &frame.crs)? {
-        let Shape::Polygon(rings) = feature.shape else {
+        let FeatureShape::Polygon(rings) = feature.shape else {
             bail!("{}: use polygons, or points, but not both in one file", path.display());
         };
         let weight = match feature.properties.get("weight") {

@@ -1,8 +1,8 @@
 //! From flags to the questions of a plan.
 
-use crate::arguments::{AreaChoice, CellFor, CityPlan, Place, Usage};
+use crate::arguments::{AreaChoice, CellFor, CityPlan, MapPosition, Usage};
 use crate::commands::irradiance::radiation;
-use crate::run::Run;
+use crate::run::CommandContext;
 use anyhow::Result;
 use belvedere::Error;
 use belvedere::apps::ask::scene::Whereabouts;
@@ -13,7 +13,7 @@ use belvedere::apps::sun::zone_of_instant;
 use belvedere::apps::viewshed::OBSERVER_HEIGHT;
 use belvedere::crs::Crs;
 use belvedere::io::{read_geojson, read_horizon, read_mesh, read_tif, read_weather};
-use belvedere_tiles::{CellSizes, Plan, Question, Radiation, SideFile, Topic};
+use belvedere_tiles::{CellSizes, Plan, SideFile, TileQuestion, TileRadiation, Topic};
 
 /// Refuses what cannot be asked, before the survey is read.
 pub(super) fn check(arguments: &CityPlan) -> Result<()> {
@@ -35,7 +35,7 @@ pub(super) fn check(arguments: &CityPlan) -> Result<()> {
     if arguments.irradiance && !has_radiation {
         return usage("--irradiance needs --weather FILE or --clear-sky MODEL");
     }
-    Place::refuse_twice("--observer", &arguments.observers)?;
+    MapPosition::refuse_twice("--observer", &arguments.observers)?;
     for mesh in &arguments.add {
         read_mesh(mesh)?;
     }
@@ -70,7 +70,7 @@ pub(super) fn cells(arguments: &CityPlan) -> Result<CellSizes> {
         if given.contains(&topic) {
             return Err(Usage(format!("--cell-for: {name} is given twice")).into());
         }
-        let (is_asked, flag) = match topic {
+        let (is_requested, flag) = match topic {
             Topic::Shadow => (!arguments.suns.is_empty() || !arguments.times.is_empty(), "--sun or --time"),
             Topic::SunHours => (arguments.sun_hours, "--sun-hours"),
             Topic::Rule => (!arguments.rule.is_empty(), "--rule"),
@@ -78,7 +78,7 @@ pub(super) fn cells(arguments: &CityPlan) -> Result<CellSizes> {
             Topic::SkyView => (arguments.sky_view, "--sky-view"),
             Topic::Viewshed => (!arguments.observers.is_empty(), "--observer"),
         };
-        if !is_asked {
+        if !is_requested {
             return Err(Usage(format!("--cell-for {name} needs {flag}")).into());
         }
         given.push(topic);
@@ -100,7 +100,7 @@ fn of_sun_and_sky(arguments: &CityPlan) -> Result<Vec<ask::Question>> {
     let place = sun_place(arguments)?;
     let shadow = |suns| {
         let (place, edges, trees) = (place.clone(), Edges::Hard, ThroughTrees::Opaque);
-        ask::Question::Shadow(ask::Shadow { suns, place, edges, trees, unproven: None })
+        ask::Question::Shadow(ask::ShadowQuestion { suns, place, edges, trees, unproven: None })
     };
     let mut questions = Vec::new();
     if !arguments.suns.is_empty() {
@@ -111,45 +111,50 @@ fn of_sun_and_sky(arguments: &CityPlan) -> Result<Vec<ask::Question>> {
     }
     if arguments.sun_hours || !arguments.rule.is_empty() {
         let (days, rules) = (arguments.when.days(), arguments.rule.clone());
-        questions.push(ask::Question::SunHours(ask::SunHours { days, rules, place, ..ask::SunHours::default() }));
+        questions.push(ask::Question::SunHours(ask::SunHoursQuestion {
+            days,
+            rules,
+            place,
+            ..ask::SunHoursQuestion::default()
+        }));
     }
     Ok(questions)
 }
 
 /// What was typed as questions. Azimuths count from the north, and the sun is that, at the middle of the survey.
-pub(super) fn questions(arguments: &CityPlan, plan: &Plan, run: &mut Run) -> Result<Vec<Question>> {
+pub(super) fn questions(arguments: &CityPlan, plan: &Plan, run: &mut CommandContext) -> Result<Vec<TileQuestion>> {
     let frame = plan.frame()?;
     let whereabouts = Whereabouts { frame: &frame, bounds: plan.bounds(), has_far_terrain: false };
     let mut context = Context::default();
     let mut questions = Vec::new();
     for question in of_sun_and_sky(arguments)? {
-        questions.extend(Question::of(&question, &whereabouts, &mut context)?);
+        questions.extend(TileQuestion::of(&question, &whereabouts, &mut context)?);
     }
     if arguments.irradiance {
         let site = sun_place(arguments)?.site_at(&whereabouts, &mut context, None)?;
         let params = radiation::params(&arguments.model);
         let radiation = match &arguments.weather {
             Some(file) => {
-                Radiation::Weather { file: SideFile::new(file)?, parts: arguments.model.parts.unwrap_or(PARTS) }
+                TileRadiation::Weather { file: SideFile::new(file)?, parts: arguments.model.parts.unwrap_or(PARTS) }
             }
-            None => Radiation::ClearSky {
+            None => TileRadiation::ClearSky {
                 clear_sky: radiation::clear_sky(arguments.clear_sky, &arguments.model, &params),
                 year: arguments.when.year,
             },
         };
-        questions.push(Question::Irradiance { site, radiation, params });
+        questions.push(TileQuestion::Irradiance { site, radiation, params });
     }
     if arguments.sky_view {
         let sky = SkyParts::Even(arguments.direction_count);
-        let question = ask::Question::SkyView(ask::SkyView { sky, ..ask::SkyView::default() });
-        questions.extend(Question::of(&question, &whereabouts, &mut context)?);
+        let question = ask::Question::SkyView(ask::SkyViewQuestion { sky, ..ask::SkyViewQuestion::default() });
+        questions.extend(TileQuestion::of(&question, &whereabouts, &mut context)?);
     }
     if !arguments.observers.is_empty() {
-        let place = |&Place([x, y], z): &Place| frame.local_from_file([x, y, z.unwrap_or(f64::NAN)]);
+        let place = |&MapPosition([x, y], z): &MapPosition| frame.local_from_file([x, y, z.unwrap_or(f64::NAN)]);
         let mut eyes: Vec<[f64; 3]> = arguments.observers.iter().map(place).collect();
         let height = arguments.observer_height.unwrap_or(OBSERVER_HEIGHT);
         plan.set_on_ground(&mut eyes, height, &run.control())?;
-        questions.push(Question::Viewshed { eyes, max_distance: arguments.max_distance });
+        questions.push(TileQuestion::Viewshed { eyes, max_distance: arguments.max_distance });
     }
     run.answered(&context.into_answers());
     Ok(questions)

@@ -7,17 +7,17 @@ use belvedere::cloud::to_local;
 use belvedere::query::Viewer;
 use belvedere::view::to_sun;
 use belvedere_baselines::agreement::Tiles;
-use belvedere_baselines::audit::Source;
-use belvedere_baselines::{Model, Survey};
-use belvedere_scenes::{Material, QuerySet, QuerySite, Scene, Truth};
+use belvedere_baselines::audit::TruePoint;
+use belvedere_baselines::{MethodInput, PlaceModel};
+use belvedere_scenes::{Material, QuerySet, QuerySite, TriangleScene, Truth};
 use rayon::prelude::*;
 
 /// Side of the tiles that are resampled for intervals, metres: half a block of houses.
 const TILE_SIDE: f32 = 25.0;
 /// The cloud's own points, as a kind of target.
 pub(super) const OWN: &str = "OWN";
-/// Pedestrians as people in streets see them, and those people: one observer says little, since an error near it spoils a
-/// whole sector of its view.
+/// Pedestrians as people in streets see them, and those people: one observer says little, since an error near it spoils
+/// a whole sector of its view.
 pub(super) const STREET: &str = "STREET";
 pub(super) const STREET_GROUP: &str = "street";
 /// People that look.
@@ -30,18 +30,18 @@ pub(super) struct Ingredients {
     pub(super) cloud: PointCloud,
     /// Local position of the scanner for each point; empty where unknown.
     pub(super) scanner: Vec<[f32; 3]>,
-    pub(super) models: Vec<Model>,
-    pub(super) scene: Scene,
+    pub(super) models: Vec<PlaceModel>,
+    pub(super) scene: TriangleScene,
 }
 
 /// Who looks, and what the truth says to each set.
-pub(super) struct View {
+pub(super) struct CaseView {
     pub(super) group: &'static str,
     /// `None` for pairs.
     pub(super) from: Option<From>,
 }
 
-impl View {
+impl CaseView {
     /// Its group, or the elevation of its sun.
     pub(super) fn title(&self) -> String {
         match self.from {
@@ -71,20 +71,20 @@ pub(super) struct Set {
 }
 
 /// A place with questions and answers.
-pub(super) struct Case {
+pub(super) struct ComparisonCase {
     pub(super) cloud: PointCloud,
     pub(super) scanner: Vec<[f32; 3]>,
-    pub(super) models: Vec<Model>,
+    pub(super) models: Vec<PlaceModel>,
     pub(super) triangles: usize,
-    pub(super) views: Vec<View>,
+    pub(super) views: Vec<CaseView>,
     pub(super) sets: Vec<Set>,
     /// What is known of the surface each point lies on.
-    pub(super) sources: Vec<Option<Source<Material>>>,
-    scene: Scene,
+    pub(super) sources: Vec<Option<TruePoint<Material>>>,
+    scene: TriangleScene,
     truth: Truth,
 }
 
-impl Case {
+impl ComparisonCase {
     /// Draws `count` targets of each kind and answers them exactly.
     pub(super) fn new(ingredients: Ingredients, count: usize, seed: u64) -> Result<Self> {
         let Ingredients { cloud, scanner, models, scene } = ingredients;
@@ -94,19 +94,19 @@ impl Case {
         let belvedere::Bounds { low, high } = crate::pipeline::bounds_of(&cloud)?;
         let site = QuerySite { scene: &scene, truth: &truth, bounds: [absolute(low), absolute(high)] };
 
-        let mut views: Vec<View> = SUNS_DEG
+        let mut views: Vec<CaseView> = SUNS_DEG
             .iter()
-            .map(|&[azimuth, elevation]| View {
+            .map(|&[azimuth, elevation]| CaseView {
                 group: "suns",
                 from: Some(From::Direction(to_sun(azimuth.to_radians(), elevation.to_radians()))),
             })
             .collect();
         let local = |eye: [f64; 3]| std::array::from_fn(|i| eye[i] - origin[i]);
         let observers = site.observers(seed).into_iter().flatten();
-        views.extend(observers.map(|eye| View { group: "observers", from: Some(From::Eye(local(eye))) }));
+        views.extend(observers.map(|eye| CaseView { group: "observers", from: Some(From::Eye(local(eye))) }));
         let street = site.street_observers(STREET_OBSERVERS, seed);
-        views.extend(street.into_iter().map(|eye| View { group: STREET_GROUP, from: Some(From::Eye(local(eye))) }));
-        views.push(View { group: "pairs", from: None });
+        views.extend(street.into_iter().map(|eye| CaseView { group: STREET_GROUP, from: Some(From::Eye(local(eye))) }));
+        views.push(CaseView { group: "pairs", from: None });
 
         let sources = sources(&site, &cloud, &scanner);
         let mut sets = Vec::new();
@@ -134,8 +134,8 @@ impl Case {
         Ok(Self { cloud, scanner, models, triangles: scene.triangles.len(), views, sets, sources, scene, truth })
     }
 
-    pub(super) fn survey(&self) -> Survey<'_> {
-        Survey { cloud: &self.cloud, scanner: &self.scanner, models: &self.models }
+    pub(super) fn survey(&self) -> MethodInput<'_> {
+        MethodInput { cloud: &self.cloud, scanner: &self.scanner, models: &self.models }
     }
 
     /// Whether a local position lies in a solid or in the ground.
@@ -160,7 +160,7 @@ fn answered(
     eyes: Vec<[f32; 3]>,
     exact: &[Option<[f64; 3]>],
     ends: &[[f64; 3]],
-    views: &[View],
+    views: &[CaseView],
     (truth, origin): (&Truth, [f64; 3]),
 ) -> Set {
     let truth = views
@@ -188,14 +188,14 @@ fn sources(
     site: &QuerySite<'_>,
     cloud: &PointCloud,
     scanner: &[[f32; 3]],
-) -> Vec<Option<(Source<Material>, [f64; 3])>> {
+) -> Vec<Option<(TruePoint<Material>, [f64; 3])>> {
     let absolute = |p: [f32; 3]| -> [f64; 3] { std::array::from_fn(|i| f64::from(p[i]) + cloud.frame.origin[i]) };
     let source = |(i, &position): (usize, &[f32; 3])| {
         let from = scanner.get(i).copied().filter(|s| s.iter().all(|v| v.is_finite()))?;
         let (hit, outside) = site.surface_of_return(absolute(from), absolute(position))?;
         let normal = site.scene.normal(hit.triangle as usize)?;
         let kind = *site.scene.materials.get(hit.triangle as usize)?;
-        Some((Source { kind, normal }, outside))
+        Some((TruePoint { kind, normal }, outside))
     };
     cloud.positions.par_iter().enumerate().map(source).collect()
 }

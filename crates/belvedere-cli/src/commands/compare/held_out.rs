@@ -1,15 +1,15 @@
 //! The held-out pulse test on clouds of which nothing else is known.
 
-use super::place::{Place, file_name, state_of};
+use super::place::{ComparisonPlace, file_name, state_of};
 use super::results::{HeldOutResult, keep, kept};
 use crate::arguments::{Compare, Global};
 use crate::pipeline::warn_of_missing;
-use crate::run::Run;
+use crate::run::CommandContext;
 use anyhow::{Context, Result};
 use belvedere::io::{ReadOptions, read_cloud, read_trajectory};
 use belvedere::pulses::{SensorEstimateParams, SensorPositions, group};
-use belvedere_baselines::Survey;
-use belvedere_baselines::held_out::{HeldOut, HeldOutParams, HeldOutScore, Tally, score, split};
+use belvedere_baselines::MethodInput;
+use belvedere_baselines::held_out::{ErrorTally, HeldOut, HeldOutParams, HeldOutScore, score, split};
 use belvedere_baselines::methods::{Listing, methods};
 use std::path::Path;
 
@@ -18,7 +18,7 @@ pub(super) fn judge_all(
     path: &Path,
     arguments: &Compare,
     global: &Global,
-    run: &mut Run,
+    run: &mut CommandContext,
 ) -> Result<Vec<HeldOutResult>> {
     let (cloud, report) =
         run.stage("reading", 0, |control| read_cloud(&[path.to_owned()], &ReadOptions::default(), control))?;
@@ -37,7 +37,7 @@ pub(super) fn judge_all(
     let kept_cloud = cloud.select(&held_out.kept);
     let of_all = scanner.per_point(&pulses, cloud.len());
     let of_kept: Vec<[f32; 3]> = held_out.kept.iter().map(|&row| of_all[row as usize]).collect();
-    let survey = Survey { cloud: &kept_cloud, scanner: &of_kept, models: &[] };
+    let survey = MethodInput { cloud: &kept_cloud, scanner: &of_kept, models: &[] };
 
     let name = file_name(path);
     let known_percent = 100.0 * report.known_count as f64 / report.pulse_count.max(1) as f64;
@@ -52,7 +52,7 @@ pub(super) fn judge_all(
     );
     let methods = methods(&survey);
     // places know methods of models, which a cloud alone does not have
-    if Place::all(arguments).is_empty() {
+    if ComparisonPlace::all(arguments).is_empty() {
         arguments.check_methods(&methods.iter().map(|method| method.key.clone()).collect::<Vec<_>>())?;
     }
     let mut results = Vec::new();
@@ -87,7 +87,7 @@ pub(super) fn judge_all(
 
 /// Rates by name, in the order of the table.
 fn shares(score: &HeldOutScore, held_out: &HeldOut) -> Vec<(String, Option<f64>)> {
-    let share = |tally: &Tally| (tally.answered_count > 0).then(|| tally.share());
+    let share = |tally: &ErrorTally| (tally.answered_count > 0).then(|| tally.share());
     let mut shares = vec![
         ("false-blocked".to_owned(), share(&score.false_blocked)),
         ("ground".to_owned(), share(&score.false_blocked_ground)),

@@ -1,14 +1,14 @@
 //! One method on one place: built, asked, scored, timed.
 
-use super::case::{Case, STREET, STREET_GROUP, Set};
-use super::results::{AblationRow, AnswerRow, AuditRow, Cost, MethodResult, Rated, Score};
-use super::scanners::Scanner;
+use super::case::{ComparisonCase, STREET, STREET_GROUP, Set};
+use super::results::{AblationRow, AnswerRow, AuditRow, Cost, MethodResult, MethodScore, Rated};
+use super::scanners::ComparisonScanner;
 use crate::memory::{reset_peak, resident_and_peak_mib};
 use belvedere::control::Control;
 use belvedere::medial::{MedialBalls, NO_TOUCH};
 use belvedere::query::{Answer, UnprovenAs, Visibility};
-use belvedere_baselines::agreement::{Counts, Interval, Rate, count_by_tile, interval, quantile};
-use belvedere_baselines::audit::{Verdict, audit};
+use belvedere_baselines::agreement::{Interval, Rate, TruthCounts, count_by_tile, interval, quantile};
+use belvedere_baselines::audit::{BallVerdict, audit};
 use belvedere_baselines::medial::{MedialBaseline, MedialParams, Outward, scene_model};
 use belvedere_baselines::methods::{Method, PerEye};
 use belvedere_scenes::Material;
@@ -25,17 +25,17 @@ pub(super) const SHOWN_SET: &str = "PED";
 pub(super) const SHOWN_VIEW: usize = 2;
 
 /// What a method answered, for the picture.
-pub(super) struct Shown {
+pub(super) struct PictureAnswers {
     pub(super) answers: Vec<Answer>,
 }
 
 /// Builds `method` on `case` and asks it everything.
 pub(super) fn judge(
-    case: &Case,
+    case: &ComparisonCase,
     method: &Method<'_>,
-    (place, made_from, scanner): (&str, String, Option<Scanner>),
+    (place, made_from, scanner): (&str, String, Option<ComparisonScanner>),
     seed: u64,
-) -> (MethodResult, Option<Shown>) {
+) -> (MethodResult, Option<PictureAnswers>) {
     let mut result = MethodResult {
         made_from,
         place: place.to_owned(),
@@ -59,16 +59,16 @@ pub(super) fn judge(
     };
     result.cost.build_seconds = start.elapsed().as_secs_f64();
 
-    let asked = ask(case, built.as_ref(), method.per_eye);
-    let views = asked.view_seconds.len().max(1);
-    result.cost.seconds_per_view = asked.view_seconds.iter().sum::<f64>() / views as f64;
+    let replies = ask(case, built.as_ref(), method.per_eye);
+    let views = replies.view_seconds.len().max(1);
+    result.cost.seconds_per_view = replies.view_seconds.iter().sum::<f64>() / views as f64;
     result.cost.queries_per_second =
-        (asked.query_count > 0).then(|| asked.query_count as f64 / asked.query_seconds.max(1e-9));
+        (replies.query_count > 0).then(|| replies.query_count as f64 / replies.query_seconds.max(1e-9));
     result.cost.peak_mib = before.zip(resident_and_peak_mib()).map(|([now, _], [_, peak])| (peak - now).max(0.0));
     drop(built);
     for set in &case.sets {
         for group in GROUPS {
-            let answered = asked.answers.iter().filter(|a| a.set == set.name && case.views[a.view].group == group);
+            let answered = replies.answers.iter().filter(|a| a.set == set.name && case.views[a.view].group == group);
             let (mut views, mut refused) = (Vec::new(), None);
             for one in answered {
                 match &one.answers {
@@ -80,7 +80,7 @@ pub(super) fn judge(
                 continue;
             }
             let rate = |rate| rated(interval(&views, rate, seed));
-            result.scores.push(Score {
+            result.scores.push(MethodScore {
                 set: set.name.to_owned(),
                 views: group.to_owned(),
                 targets: set.targets.len(),
@@ -95,28 +95,29 @@ pub(super) fn judge(
             });
         }
     }
-    let shown = asked.answers.into_iter().find(|a| a.set == SHOWN_SET && a.view == SHOWN_VIEW);
-    let shown = shown.and_then(|one| one.answers.ok()).map(|answers| Shown { answers });
+    let shown = replies.answers.into_iter().find(|a| a.set == SHOWN_SET && a.view == SHOWN_VIEW);
+    let shown = shown.and_then(|one| one.answers.ok()).map(|answers| PictureAnswers { answers });
     (result, shown)
 }
 
 /// The answers to one set in one view.
-struct Answered {
+struct AnswerSet {
     set: &'static str,
     view: usize,
     answers: Result<Vec<Answer>, String>,
 }
 
-struct Asked {
-    answers: Vec<Answered>,
+struct MethodAnswers {
+    answers: Vec<AnswerSet>,
     view_seconds: Vec<f64>,
     query_count: usize,
     query_seconds: f64,
 }
 
-fn ask(case: &Case, method: &dyn Visibility, per_eye: PerEye) -> Asked {
+fn ask(case: &ComparisonCase, method: &dyn Visibility, per_eye: PerEye) -> MethodAnswers {
     let mut street_eyes = 0;
-    let mut asked = Asked { answers: Vec::new(), view_seconds: Vec::new(), query_count: 0, query_seconds: 0.0 };
+    let mut replies =
+        MethodAnswers { answers: Vec::new(), view_seconds: Vec::new(), query_count: 0, query_seconds: 0.0 };
     for view in 0..case.views.len() {
         let sets = || case.sets.iter().filter(|set| set.truth.iter().any(|(number, _)| *number == view));
         let Some(first) = sets().next() else { continue };
@@ -131,12 +132,12 @@ fn ask(case: &Case, method: &dyn Visibility, per_eye: PerEye) -> Asked {
         let seconds = start.elapsed().as_secs_f64();
         let sight = match sight {
             Ok(sight) => {
-                asked.view_seconds.push(seconds);
+                replies.view_seconds.push(seconds);
                 sight
             }
             Err(error) => {
-                let refused = |set: &Set| Answered { set: set.name, view, answers: Err(error.to_string()) };
-                asked.answers.extend(sets().map(refused));
+                let refused = |set: &Set| AnswerSet { set: set.name, view, answers: Err(error.to_string()) };
+                replies.answers.extend(sets().map(refused));
                 continue;
             }
         };
@@ -144,17 +145,17 @@ fn ask(case: &Case, method: &dyn Visibility, per_eye: PerEye) -> Asked {
             let start = Instant::now();
             let answers = sight(&set.targets);
             if answers.is_ok() {
-                asked.query_seconds += start.elapsed().as_secs_f64();
-                asked.query_count += set.targets.len();
+                replies.query_seconds += start.elapsed().as_secs_f64();
+                replies.query_count += set.targets.len();
             }
             let answers = answers.map_err(|error| error.to_string());
-            asked.answers.push(Answered { set: set.name, view, answers });
+            replies.answers.push(AnswerSet { set: set.name, view, answers });
         }
     }
-    asked
+    replies
 }
 
-fn counts(set: &Set, view: usize, answers: &[Answer]) -> Vec<Counts> {
+fn counts(set: &Set, view: usize, answers: &[Answer]) -> Vec<TruthCounts> {
     let truth = set.truth.iter().find(|(number, _)| *number == view);
     truth.map(|(_, truth)| count_by_tile(&set.tiles, truth, answers)).unwrap_or_default()
 }
@@ -164,7 +165,7 @@ fn rated(interval: Option<Interval>) -> Option<Rated> {
 }
 
 /// Share of the targets that are blocked in truth, for each set and group of views.
-pub(super) fn blocked_in_truth(case: &Case) -> Vec<(String, String, f64)> {
+pub(super) fn blocked_in_truth(case: &ComparisonCase) -> Vec<(String, String, f64)> {
     let mut shares = Vec::new();
     for set in &case.sets {
         for group in GROUPS {
@@ -180,7 +181,7 @@ pub(super) fn blocked_in_truth(case: &Case) -> Vec<(String, String, f64)> {
 }
 
 /// What each of the three answers of carved balls is worth, by set and view; empty where the scanner is not known.
-pub(super) fn worth_of_answers(case: &Case) -> belvedere::Result<Vec<AnswerRow>> {
+pub(super) fn worth_of_answers(case: &ComparisonCase) -> belvedere::Result<Vec<AnswerRow>> {
     let survey = case.survey();
     if survey.scanner.is_empty() {
         return Ok(Vec::new());
@@ -192,7 +193,8 @@ pub(super) fn worth_of_answers(case: &Case) -> belvedere::Result<Vec<AnswerRow>>
     for set in case.sets.iter().filter(|set| ["PED", "AIR", STREET].contains(&set.name)) {
         for (view, _) in &set.truth {
             let answers = scene.visible(case.viewer(*view, set), &set.targets)?;
-            let counts = counts(set, *view, &answers).iter().fold(Counts::default(), |sum, tile| sum.plus(tile, 1));
+            let counts =
+                counts(set, *view, &answers).iter().fold(TruthCounts::default(), |sum, tile| sum.plus(tile, 1));
             let views = case.views[*view].title();
             let at = rows.iter().position(|row| row.set == set.name && row.views == views).unwrap_or_else(|| {
                 rows.push(AnswerRow { set: set.name.to_owned(), views, ..AnswerRow::default() });
@@ -204,9 +206,12 @@ pub(super) fn worth_of_answers(case: &Case) -> belvedere::Result<Vec<AnswerRow>>
     Ok(rows)
 }
 
-/// Which of the published balls are wrong, by the surface they are tangent at, and what people under the suns would be told
-/// if some of them were left out.
-pub(super) fn audit_published(case: &Case, seed: u64) -> belvedere::Result<(Vec<AuditRow>, Vec<AblationRow>)> {
+/// Which of the published balls are wrong, by the surface they are tangent at, and what people under the suns would be
+/// told if some of them were left out.
+pub(super) fn audit_published(
+    case: &ComparisonCase,
+    seed: u64,
+) -> belvedere::Result<(Vec<AuditRow>, Vec<AblationRow>)> {
     let survey = case.survey();
     let params = MedialParams::published_with_spheres();
     let balls = scene_model(&survey, Outward::Survey, &params)?.into_parts().balls;
@@ -235,7 +240,7 @@ pub(super) fn audit_published(case: &Case, seed: u64) -> belvedere::Result<(Vec<
         let kept = (0..balls.len()).map(|row| of(row).is_none_or(|kind| !materials.contains(&kind))).collect();
         unions.push((name.to_owned(), kept));
     }
-    let right = verdicts.iter().map(|v| *v == Verdict::Right).collect();
+    let right = verdicts.iter().map(|v| *v == BallVerdict::Right).collect();
     unions.push(("only balls whose centre lies in a solid (ground truth)".to_owned(), right));
 
     let mut ablation = Vec::new();

@@ -11,13 +11,13 @@ mod scanners;
 mod table;
 
 use crate::arguments::{Compare, Global, Usage};
-use crate::run::Run;
+use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::Result;
 use belvedere::io::atomic;
 use belvedere_baselines::methods::{Listing, method_keys, methods};
-use case::{Case, STREET_OBSERVERS};
-use place::Place;
+use case::{ComparisonCase, STREET_OBSERVERS};
+use place::ComparisonPlace;
 use results::{MethodResult, PlaceResult, keep, kept};
 use std::path::Path;
 
@@ -49,10 +49,10 @@ pub(crate) fn run(arguments: &Compare, global: &Global) -> Result<Summary> {
 
 fn compare_all(arguments: &Compare, global: &Global, summary: Summary) -> Result<Summary> {
     let folder = &arguments.output;
-    let mut run = Run::new(global);
+    let mut run = CommandContext::new(global);
     run.summary = summary;
-    let mut found = report::Found::default();
-    for place in Place::all(arguments) {
+    let mut found = report::ComparisonResults::default();
+    for place in ComparisonPlace::all(arguments) {
         compare_on(&place, arguments, global, &mut run, &mut found)?;
     }
     for cloud in &arguments.held_out {
@@ -71,11 +71,11 @@ fn compare_all(arguments: &Compare, global: &Global, summary: Summary) -> Result
 
 /// Judges every method on a place, taking over what an earlier run has found.
 fn compare_on(
-    place: &Place,
+    place: &ComparisonPlace,
     arguments: &Compare,
     global: &Global,
-    run: &mut Run,
-    found: &mut report::Found,
+    run: &mut CommandContext,
+    found: &mut report::ComparisonResults,
 ) -> Result<()> {
     let name = place.name();
     let results = arguments.output.join("results");
@@ -107,7 +107,8 @@ fn compare_on(
     let mut made = Summary::default();
     let ingredients = run.stage("building place", 0, |_| place.make(&mut made))?;
     run.summary.add_all(made);
-    let case = run.stage("testing lines of sight", 0, |_| Case::new(ingredients, arguments.targets, global.seed))?;
+    let case =
+        run.stage("testing lines of sight", 0, |_| ComparisonCase::new(ingredients, arguments.targets, global.seed))?;
     let survey = case.survey();
     let methods = methods(&survey);
     arguments.check_methods(&methods.iter().map(|method| method.key.clone()).collect::<Vec<_>>())?;
@@ -144,7 +145,7 @@ fn compare_on(
 }
 
 fn describe(
-    case: &Case,
+    case: &ComparisonCase,
     name: &str,
     made_from: &str,
     methods: &[belvedere_baselines::methods::Method<'_>],

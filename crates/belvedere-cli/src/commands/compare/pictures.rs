@@ -1,6 +1,6 @@
 //! Where a method errs, seen from above.
 
-use super::case::Case;
+use super::case::ComparisonCase;
 use super::judge::{SHOWN_SET, SHOWN_VIEW};
 use anyhow::Result;
 use belvedere::figures::{Canvas, Colors, side_by_side, write_png};
@@ -21,7 +21,7 @@ const BACKDROP: [u8; 3] = [222, 222, 218];
 pub(super) const LEGEND: &str = "yellow: correctly lit; grey-blue: correctly in shadow; red: lit, but called blocked; blue: in shadow, but called visible; purple: no answer";
 
 /// Draws the pedestrians of a place under one sun as a method answers them.
-pub(super) fn write_errors(path: &Path, case: &Case, title: &str, answers: &[Answer]) -> Result<()> {
+pub(super) fn write_errors(path: &Path, case: &ComparisonCase, title: &str, answers: &[Answer]) -> Result<()> {
     let Some(set) = case.sets.iter().find(|set| set.name == SHOWN_SET) else { return Ok(()) };
     let Some((_, truth)) = set.truth.iter().find(|(view, _)| *view == SHOWN_VIEW) else { return Ok(()) };
     let belvedere::Bounds { low, high } = crate::pipeline::bounds_of(&case.cloud)?;

@@ -1,7 +1,7 @@
 //! Places to compare on: simulated towns, or a cloud with its exact mesh.
 
 use super::case::Ingredients;
-use super::scanners::Scanner;
+use super::scanners::ComparisonScanner;
 use crate::arguments::Compare;
 use crate::pipeline::warn_of_missing;
 use crate::simulated::cloud_of;
@@ -11,20 +11,20 @@ use belvedere::Mesh;
 use belvedere::control::Control;
 use belvedere::io::{ReadOptions, read_cloud, read_mesh, read_trajectory};
 use belvedere::trajectory::Trajectory;
-use belvedere_baselines::Model;
-use belvedere_scenes::{Material, Preset, Regime, Scene, blocks};
+use belvedere_baselines::PlaceModel;
+use belvedere_scenes::{Material, Preset, Regime, TriangleScene, blocks};
 use std::path::{Path, PathBuf};
 
 /// Names of the models of simulated towns.
 pub(super) const MODELS: [&str; 3] = ["blocks", "no-trees", "exact"];
 
 /// A place by its description.
-pub(super) enum Place {
+pub(super) enum ComparisonPlace {
     Simulated { preset: Preset, extent: f64, seed: u64, regime: Regime, pulses_per_m2: f64, is_only_scanner: bool },
     Given { clouds: Vec<PathBuf>, mesh: PathBuf, trajectory: Option<PathBuf>, models: Vec<(String, PathBuf)> },
 }
 
-impl Place {
+impl ComparisonPlace {
     /// The places asked for.
     pub(super) fn all(arguments: &Compare) -> Vec<Self> {
         if let Some(mesh) = &arguments.mesh {
@@ -76,11 +76,11 @@ impl Place {
     }
 
     /// What scans it, where that is simulated.
-    pub(super) fn scanner(&self) -> Option<Scanner> {
+    pub(super) fn scanner(&self) -> Option<ComparisonScanner> {
         match self {
             Self::Simulated { regime, pulses_per_m2, .. } => {
                 let pulses_per_m2 = regime.flies().then_some(*pulses_per_m2);
-                Some(Scanner { name: regime.name().to_owned(), pulses_per_m2 })
+                Some(ComparisonScanner { name: regime.name().to_owned(), pulses_per_m2 })
             }
             Self::Given { .. } => None,
         }
@@ -119,9 +119,9 @@ impl Place {
                 let (trajectory, _) = Trajectory::from_records(path.collect());
                 let (scanner, _) = trajectory.scanner_positions(&cloud)?;
                 let models = vec![
-                    Model { name: MODELS[0].to_owned(), mesh: mesh_of(&blocks(&scene), |_| true) },
-                    Model { name: MODELS[1].to_owned(), mesh: mesh_of(&scene, |material| !is_loose(material)) },
-                    Model { name: MODELS[2].to_owned(), mesh: mesh_of(&scene, |_| true) },
+                    PlaceModel { name: MODELS[0].to_owned(), mesh: mesh_of(&blocks(&scene), |_| true) },
+                    PlaceModel { name: MODELS[1].to_owned(), mesh: mesh_of(&scene, |material| !is_loose(material)) },
+                    PlaceModel { name: MODELS[2].to_owned(), mesh: mesh_of(&scene, |_| true) },
                 ];
                 Ok(Ingredients { cloud, scanner, models, scene })
             }
@@ -131,14 +131,14 @@ impl Place {
                 let in_metres =
                     |path: &Path| -> Result<Mesh> { Ok(read_mesh(path)?.0.scaled_to_metres(&cloud.frame.crs)) };
                 let mesh = in_metres(mesh)?;
-                let scene = Scene::from_model(mesh.vertices, mesh.triangles, mesh.objects, mesh.object_names);
+                let scene = TriangleScene::from_model(mesh.vertices, mesh.triangles, mesh.objects, mesh.object_names);
                 let scanner = match trajectory {
                     Some(path) => read_trajectory(path, &cloud.frame.crs)?.0.scanner_positions(&cloud)?.0,
                     None => Vec::new(),
                 };
                 let models = models
                     .iter()
-                    .map(|(name, path)| Ok(Model { name: name.clone(), mesh: in_metres(path)? }))
+                    .map(|(name, path)| Ok(PlaceModel { name: name.clone(), mesh: in_metres(path)? }))
                     .collect::<Result<_>>()?;
                 Ok(Ingredients { cloud, scanner, models, scene })
             }
@@ -153,7 +153,7 @@ fn is_loose(material: Material) -> bool {
 }
 
 /// The triangles of a scene whose material is wanted.
-fn mesh_of(scene: &Scene, wanted: impl Fn(Material) -> bool) -> Mesh {
+fn mesh_of(scene: &TriangleScene, wanted: impl Fn(Material) -> bool) -> Mesh {
     let triangles = scene.triangles.iter().zip(&scene.materials).filter(|(_, material)| wanted(**material));
     let triangles = triangles.map(|(corners, _)| *corners).collect();
     Mesh { vertices: scene.vertices.clone(), triangles, ..Mesh::default() }

@@ -2,9 +2,9 @@
 
 use super::case::{STREET, STREET_GROUP};
 use super::pictures::LEGEND;
-use super::results::{AnswerRow, HeldOutResult, MethodResult, PlaceResult, Rated, Score, keep};
+use super::results::{AnswerRow, HeldOutResult, MethodResult, MethodScore, PlaceResult, Rated, keep};
 use super::scanners::PICTURE as CURVES;
-use super::table::Table;
+use super::table::TextTable;
 use anyhow::{Context, Result, bail};
 use belvedere::io::atomic;
 use belvedere_baselines::agreement::{Interval, over_places};
@@ -28,8 +28,8 @@ const COLUMNS: [(&str, &str, &str); 13] = [
     (STREET, STREET_GROUP, "street"),
     ("LOS", "pairs", "LOS"),
 ];
-/// What a terminal shows of them: balanced accuracy, that of the worst tenth of the observers where the heading says `p10`, or
-/// both kinds of error where it says `err`.
+/// What a terminal shows of them: balanced accuracy, that of the worst tenth of the observers where the heading says
+/// `p10`, or both kinds of error where it says `err`.
 const ESSENCE: [(&str, &str, &str); 13] = [
     ("AIR", "suns", "AIR sun"),
     ("PED", "suns", "PED sun"),
@@ -54,19 +54,19 @@ const SEED: u64 = 1;
 
 /// Everything that a comparison found.
 #[derive(Default)]
-pub(super) struct Found {
+pub(super) struct ComparisonResults {
     pub(super) places: Vec<PlaceResult>,
     pub(super) methods: Vec<MethodResult>,
     pub(super) held_out: Vec<HeldOutResult>,
 }
 
-impl Found {
+impl ComparisonResults {
     /// Writes report.json, report.md and report.html into `folder`, and the tables into `page`.
     pub(super) fn write(&self, folder: &Path, page: Option<&Path>) -> Result<()> {
         keep(&folder.join("report.json"), &self.to_json()?)?;
         let has_curves = self.write_curves(&folder.join("pictures"))?;
         let tables = self.tables();
-        let markdown: String = tables.iter().map(Table::to_markdown).collect();
+        let markdown: String = tables.iter().map(TextTable::to_markdown).collect();
         write_text(&folder.join("report.md"), &markdown)?;
         write_text(&folder.join("report.html"), &self.to_html(&tables, has_curves))?;
         if let Some(page) = page {
@@ -99,14 +99,14 @@ impl Found {
 
     /// The essence as text for a terminal; the whole is in the reports.
     pub(super) fn essence(&self) -> String {
-        let mut table = Table::new(
+        let mut table = TextTable::new(
             "Balanced accuracy, %; where two numbers: false-blocked / false-visible, %",
             "",
             [vec!["method"], ESSENCE.map(|(_, _, heading)| heading).to_vec(), vec!["build s", "view s", "Mq/s", "MiB"]]
                 .concat(),
         );
         for (key, title) in self.method_names() {
-            let mean = |pick: &dyn Fn(&Score) -> Option<Rated>, set: &str, views: &str| {
+            let mean = |pick: &dyn Fn(&MethodScore) -> Option<Rated>, set: &str, views: &str| {
                 self.rate(key, (set, views), pick).map(|i| i.value)
             };
             let rates = ESSENCE.iter().map(|(set, views, heading)| {
@@ -123,10 +123,10 @@ impl Found {
         }
         let by_scanner = self.by_scanner().map(|table| table.to_text()).unwrap_or_default();
         let essence = if self.methods.is_empty() { String::new() } else { by_scanner + &table.to_text() };
-        essence + &self.held_out_tables().iter().map(Table::to_text).collect::<String>()
+        essence + &self.held_out_tables().iter().map(TextTable::to_text).collect::<String>()
     }
 
-    fn tables(&self) -> Vec<Table> {
+    fn tables(&self) -> Vec<TextTable> {
         let mut tables = Vec::new();
         if !self.methods.is_empty() {
             tables.extend(self.by_scanner());
@@ -164,7 +164,7 @@ impl Found {
         &self,
         method: &str,
         (set, views): (&str, &str),
-        pick: &dyn Fn(&Score) -> Option<Rated>,
+        pick: &dyn Fn(&MethodScore) -> Option<Rated>,
     ) -> Option<Interval> {
         let scores = self.of(method).flat_map(|r| &r.scores).filter(|s| s.set == set && s.views == views);
         let rated: Vec<Interval> =
@@ -173,14 +173,14 @@ impl Found {
     }
 
     /// False-blocked and false-visible of a method on one set and group of views, averaged over places.
-    pub(super) fn error_shares(&self, method: &str, asked: (&str, &str)) -> [Option<f64>; 2] {
-        let rate = |pick: &dyn Fn(&Score) -> Option<Rated>| self.rate(method, asked, pick).map(|i| i.value);
+    pub(super) fn error_shares(&self, method: &str, group: (&str, &str)) -> [Option<f64>; 2] {
+        let rate = |pick: &dyn Fn(&MethodScore) -> Option<Rated>| self.rate(method, group, pick).map(|i| i.value);
         [rate(&|score| score.false_blocked), rate(&|score| score.false_visible)]
     }
 
-    fn balanced(&self) -> Table {
+    fn balanced(&self) -> TextTable {
         let headings = COLUMNS.map(|(_, _, heading)| heading);
-        let mut table = Table::new(
+        let mut table = TextTable::new(
             "Balanced accuracy and IoU of blocked targets, %",
             "Mean over suns (sun), over two observers (eye) or over people in streets (street), then over places. The second number is the IoU.",
             [&["method"], headings.as_slice()].concat(),
@@ -196,9 +196,9 @@ impl Found {
         table
     }
 
-    fn errors(&self) -> Table {
+    fn errors(&self) -> TextTable {
         let shown: Vec<_> = COLUMNS.iter().filter(|(set, ..)| !matches!(*set, "VOL" | "GRD")).collect();
-        let mut table = Table::new(
+        let mut table = TextTable::new(
             "False-blocked / false-visible, %",
             "False-blocked: the share of visible targets that a method calls blocked. False-visible: the share of blocked targets that it calls visible. In brackets the 95 % interval: from resampled tiles for one place, from resampled places for several.",
             [vec!["method"], shown.iter().map(|(_, _, heading)| *heading).collect()].concat(),
@@ -218,19 +218,19 @@ impl Found {
     }
 
     /// How much better or worse the others are than carved balls at the same places; `None` for a single place.
-    fn differences(&self) -> Option<Table> {
+    fn differences(&self) -> Option<TextTable> {
         let names = self.method_names();
         if self.places.len() < 2 || !names.iter().any(|(key, _)| *key == CARVED) {
             return None;
         }
         let headings = COLUMNS.map(|(_, _, heading)| heading);
-        let mut table = Table::new(
+        let mut table = TextTable::new(
             "Balanced accuracy, difference from carved balls, percentage points",
             "Positive: better than carved balls. Means over the places at which both were measured, with the 95 % interval from resampled places: a difference whose interval holds 0 may be chance.",
             [&["method"], headings.as_slice()].concat(),
         );
-        let balanced = |result: &MethodResult, asked: (&str, &str)| {
-            let score = result.scores.iter().find(|s| (s.set.as_str(), s.views.as_str()) == asked)?;
+        let balanced = |result: &MethodResult, group: (&str, &str)| {
+            let score = result.scores.iter().find(|s| (s.set.as_str(), s.views.as_str()) == group)?;
             score.balanced.map(|[value, ..]| value)
         };
         for (key, title) in names.into_iter().filter(|(key, _)| *key != CARVED) {
@@ -255,18 +255,19 @@ impl Found {
         (!tenths.is_empty()).then(|| tenths.iter().sum::<f64>() / tenths.len() as f64)
     }
 
-    fn street(&self) -> Table {
-        let mut table = Table::new(
+    fn street(&self) -> TextTable {
+        let mut table = TextTable::new(
             "People in streets, %",
             "Pedestrians seen by people who stand anywhere outdoors, 1.6 m above ground. Mean: balanced accuracy. 10th percentile: a tenth of the people have a lower balanced accuracy (mean over places). Methods that start again for each observer answer for the first few people only.",
             vec!["method", "people a place", "mean", "10th percentile", "false-blocked", "false-visible"],
         );
         for (key, title) in self.method_names() {
-            let rate =
-                |pick: &dyn Fn(&Score) -> Option<Rated>| with_interval(self.rate(key, (STREET, STREET_GROUP), pick));
-            let asked = self.of(key).flat_map(|r| &r.scores).filter(|s| s.views == STREET_GROUP).map(|s| s.observers);
+            let rate = |pick: &dyn Fn(&MethodScore) -> Option<Rated>| {
+                with_interval(self.rate(key, (STREET, STREET_GROUP), pick))
+            };
+            let group = self.of(key).flat_map(|r| &r.scores).filter(|s| s.views == STREET_GROUP).map(|s| s.observers);
             let cells = [
-                asked.max().unwrap_or(0).to_string(),
+                group.max().unwrap_or(0).to_string(),
                 rate(&|s| s.balanced),
                 self.tenth(key).map_or("–".to_owned(), percent),
                 rate(&|s| s.false_blocked),
@@ -278,8 +279,8 @@ impl Found {
     }
 
     /// What each answer of carved balls is worth.
-    fn worth_of_answers(&self) -> Table {
-        let mut table = Table::new(
+    fn worth_of_answers(&self) -> TextTable {
+        let mut table = TextTable::new(
             "Reliability of each answer of carved balls, %",
             "Visible: nothing blocks the line of sight, and pulses came near all of it except at most half a metre. Unproven: nothing blocks it, but pulses came near less of it. Each pair has the share of the targets with this answer, and the share of these that are correct (for unproven: visible by ground truth). All places together. Passing pulses are evidence, not proof: they enter crowns that are opaque in the ground truth, and half a metre may hide a trunk.",
             vec!["targets, view", "visible", "correct", "unproven", "correct", "blocked", "correct"],
@@ -312,8 +313,8 @@ impl Found {
         table
     }
 
-    fn costs(&self) -> Table {
-        let mut table = Table::new(
+    fn costs(&self) -> TextTable {
+        let mut table = TextTable::new(
             "Cost",
             "Building once, preparing a view (mean), answering (all threads), and the peak growth of the resident memory; means over places. Memory that the process still held from the previous method is not counted again, so small numbers are lower bounds. No answer: share of AIR targets under the suns.",
             vec!["method", "build s", "view s", "million queries/s", "peak MiB", "no answer %"],
@@ -341,9 +342,9 @@ impl Found {
         ]
     }
 
-    fn place_table(&self) -> Table {
+    fn place_table(&self) -> TextTable {
         let headings = vec!["place", "points", "points/m²", "triangles of the ground truth"];
-        let mut table = Table::new("Places", "", headings);
+        let mut table = TextTable::new("Places", "", headings);
         for place in &self.places {
             let density = place.points as f64 / place.area_m2.max(1e-9);
             table.add(&place.place, [place.points.to_string(), format!("{density:.1}"), place.triangles.to_string()]);
@@ -351,8 +352,8 @@ impl Found {
         table
     }
 
-    fn base_rates(&self) -> Table {
-        let mut table = Table::new(
+    fn base_rates(&self) -> TextTable {
+        let mut table = TextTable::new(
             "Targets that are blocked by ground truth, %",
             "The share of correct answers of a method that calls everything blocked.",
             [vec!["place"], COLUMNS.map(|(_, _, heading)| heading).to_vec()].concat(),
@@ -367,8 +368,8 @@ impl Found {
         table
     }
 
-    fn audit(&self) -> Table {
-        let mut table = Table::new(
+    fn audit(&self) -> TextTable {
+        let mut table = TextTable::new(
             "Wrong balls of the published method, and causes",
             "A ball is wrong if its centre lies in free air. Flipped: its normal points into the solid. Tilted: the error of the normal is 30° to 90°. Bulging: the normal is correct, but the ball grew through a surface without points. Shares of the balls of that surface; all places together.",
             vec!["tangent at", "balls", "wrong %", "flipped %", "tilted %", "bulging %"],
@@ -397,8 +398,8 @@ impl Found {
         table
     }
 
-    fn ablation(&self) -> Table {
-        let mut table = Table::new(
+    fn ablation(&self) -> TextTable {
+        let mut table = TextTable::new(
             "The published balls with some of them removed: pedestrians under the suns, %",
             "As spheres, with exact lines of sight; means over places.",
             vec!["balls", "number", "false-blocked", "false-visible"],
@@ -418,7 +419,7 @@ impl Found {
         table
     }
 
-    fn held_out_tables(&self) -> Vec<Table> {
+    fn held_out_tables(&self) -> Vec<TextTable> {
         let mut clouds: Vec<&str> = Vec::new();
         for result in &self.held_out {
             if !clouds.contains(&result.cloud.as_str()) {
@@ -431,7 +432,7 @@ impl Found {
             let names = longest.map(|row| row.shares.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>());
             let names = names.unwrap_or_default();
             let (pulses, known) = rows.first().map_or((0, String::new()), |r| (r.pulses, percent(r.scanner_known)));
-            let mut table = Table::new(
+            let mut table = TextTable::new(
                 &format!("Held-out pulses of {cloud}, %"),
                 &format!(
                     "Built from nine tenths of the pulses, tested with the others ({pulses}; the scanner is known for {known} % of \
@@ -452,10 +453,10 @@ impl Found {
     }
 
     /// What methods could not do, once each.
-    fn refusals(&self) -> Table {
-        let mut table = Table::new("Combinations without an answer", "", vec!["method", "query", "reason"]);
-        let mut add = |title: &str, asked: String, reason: &str| {
-            let row = vec![title.to_owned(), asked, reason.to_owned()];
+    fn refusals(&self) -> TextTable {
+        let mut table = TextTable::new("Combinations without an answer", "", vec!["method", "query", "reason"]);
+        let mut add = |title: &str, group: String, reason: &str| {
+            let row = vec![title.to_owned(), group, reason.to_owned()];
             if !table.rows.contains(&row) {
                 table.rows.push(row);
             }
@@ -478,14 +479,14 @@ impl Found {
         table
     }
 
-    fn to_html(&self, tables: &[Table], has_curves: bool) -> String {
+    fn to_html(&self, tables: &[TextTable], has_curves: bool) -> String {
         let mut body = String::new();
         if has_curves {
             body.push_str(&format!(
                 "<img src=\"pictures/{CURVES}\" alt=\"Errors by density\" style=\"max-width:100%\">\n"
             ));
         }
-        body.extend(tables.iter().map(Table::to_html));
+        body.extend(tables.iter().map(TextTable::to_html));
         for place in &self.places {
             body.push_str(&format!(
                 "<h2>Pedestrians of {}, sun in the south-west</h2><p>{LEGEND}</p>\n<div>",

@@ -1,9 +1,9 @@
 //! What was found, as kept in JSON files so that an interrupted comparison goes on where it stopped.
 
-use super::scanners::Scanner;
+use super::scanners::ComparisonScanner;
 use anyhow::{Context, Result};
 use belvedere::io::atomic;
-use belvedere_baselines::agreement::Counts;
+use belvedere_baselines::agreement::TruthCounts;
 use belvedere_baselines::methods::Listing;
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use std::io::Write;
@@ -14,7 +14,7 @@ pub(super) type Rated = [f64; 3];
 
 /// How right a method was on one kind of target, averaged over a group of views.
 #[derive(Clone, Debug, Serialize, Deserialize, PartialEq)]
-pub(super) struct Score {
+pub(super) struct MethodScore {
     /// Kind of target.
     pub(super) set: String,
     /// Group of views: `suns`, `observers`, `street` or `pairs`.
@@ -54,14 +54,14 @@ pub(super) struct MethodResult {
     pub(super) made_from: String,
     pub(super) place: String,
     /// What scanned it, where that was simulated.
-    pub(super) scanner: Option<Scanner>,
+    pub(super) scanner: Option<ComparisonScanner>,
     pub(super) method: String,
     pub(super) title: String,
     pub(super) page: String,
     /// Why the method could not be built.
     pub(super) failed: Option<String>,
     pub(super) cost: Cost,
-    pub(super) scores: Vec<Score>,
+    pub(super) scores: Vec<MethodScore>,
 }
 
 /// What a place is like.
@@ -105,7 +105,7 @@ pub(super) struct AnswerRow {
 
 impl AnswerRow {
     /// Counts more answers.
-    pub(super) fn add(&mut self, counts: &Counts) {
+    pub(super) fn add(&mut self, counts: &TruthCounts) {
         let proven = counts.visible - counts.unproven_visible;
         let wrongly_proven = counts.false_visible - counts.unproven_blocked;
         let pairs = [
@@ -158,13 +158,13 @@ pub(super) struct HeldOutResult {
 }
 
 /// A result that knows what it was made from.
-pub(super) trait Kept: Serialize + DeserializeOwned {
+pub(super) trait StoredResult: Serialize + DeserializeOwned {
     fn made_from(&self) -> &str;
 }
 
 macro_rules! kept {
     ($($kind:ty),*) => {$(
-        impl Kept for $kind {
+        impl StoredResult for $kind {
             fn made_from(&self) -> &str {
                 &self.made_from
             }
@@ -173,9 +173,9 @@ macro_rules! kept {
 }
 kept!(MethodResult, PlaceResult, HeldOutResult);
 
-/// The result at `path` if it was made from the same, or `None`: a file that is missing, unreadable or of another making is
-/// made anew.
-pub(super) fn kept<T: Kept>(path: &Path, made_from: &str) -> Option<T> {
+/// The result at `path` if it was made from the same, or `None`: a file that is missing, unreadable or of another
+/// making is made anew.
+pub(super) fn kept<T: StoredResult>(path: &Path, made_from: &str) -> Option<T> {
     let result: T = serde_json::from_slice(&std::fs::read(path).ok()?).ok()?;
     (result.made_from() == made_from).then_some(result)
 }

@@ -1,7 +1,7 @@
 //! Errors by scanner and by density: a table, and curves where there are several densities.
 
-use super::report::{Found, pair};
-use super::table::Table;
+use super::report::{ComparisonResults, pair};
+use super::table::TextTable;
 use anyhow::Result;
 use belvedere::figures::{Curves, Picture, curves_picture, side_by_side, write_png};
 use std::path::Path;
@@ -23,12 +23,12 @@ pub(super) const PICTURE: &str = "errors_by_density.png";
 
 /// A scanner and its density, in pulses per square metre, where that was chosen.
 #[derive(Clone, PartialEq, serde::Serialize, serde::Deserialize, Debug)]
-pub(super) struct Scanner {
+pub(super) struct ComparisonScanner {
     pub(super) name: String,
     pub(super) pulses_per_m2: Option<f64>,
 }
 
-impl Scanner {
+impl ComparisonScanner {
     fn title(&self) -> String {
         match self.pulses_per_m2 {
             Some(density) => format!("{}, {density} pulses/m²", self.name),
@@ -37,10 +37,10 @@ impl Scanner {
     }
 }
 
-impl Found {
+impl ComparisonResults {
     /// Scanners in the order in which they occur first.
-    fn scanners(&self) -> Vec<&Scanner> {
-        let mut scanners: Vec<&Scanner> = Vec::new();
+    fn scanners(&self) -> Vec<&ComparisonScanner> {
+        let mut scanners: Vec<&ComparisonScanner> = Vec::new();
         for scanner in self.methods.iter().filter_map(|result| result.scanner.as_ref()) {
             if !scanners.contains(&scanner) {
                 scanners.push(scanner);
@@ -50,10 +50,10 @@ impl Found {
     }
 
     /// Errors of each method with each scanner; `None` where there is only one.
-    pub(super) fn by_scanner(&self) -> Option<Table> {
+    pub(super) fn by_scanner(&self) -> Option<TextTable> {
         let scanners = self.scanners();
         let headings = COLUMNS.map(|(_, _, heading)| heading);
-        let mut table = Table::new(
+        let mut table = TextTable::new(
             "False-blocked / false-visible by scanner, %",
             "Means over the places with this scanner.",
             [&["scanner", "method"], headings.as_slice()].concat(),
@@ -71,11 +71,13 @@ impl Found {
         (scanners.len() > 1).then_some(table)
     }
 
-    /// Writes the curves of errors over the densities of the first scanner that has several, and says whether there is one.
+    /// Writes the curves of errors over the densities of the first scanner that has several, and says whether there is
+    /// one.
     pub(super) fn write_curves(&self, folder: &Path) -> Result<bool> {
         let scanners = self.scanners();
-        let of_name = |name: &str| -> Vec<&Scanner> {
-            let mut own: Vec<&Scanner> = scanners.iter().copied().filter(|scanner| scanner.name == name).collect();
+        let of_name = |name: &str| -> Vec<&ComparisonScanner> {
+            let mut own: Vec<&ComparisonScanner> =
+                scanners.iter().copied().filter(|scanner| scanner.name == name).collect();
             own.sort_by(|a, b| a.pulses_per_m2.partial_cmp(&b.pulses_per_m2).unwrap_or(std::cmp::Ordering::Equal));
             own
         };
@@ -110,7 +112,7 @@ impl Found {
     }
 
     /// What was found with one scanner.
-    fn with(&self, scanner: &Scanner) -> Self {
+    fn with(&self, scanner: &ComparisonScanner) -> Self {
         let own = self.methods.iter().filter(|result| result.scanner.as_ref() == Some(scanner));
         Self { methods: own.cloned().collect(), ..Self::default() }
     }

@@ -1,14 +1,14 @@
 //! A table that can be printed, put into a Markdown page or into HTML.
 
 /// Rows under headings, the first column being names.
-pub(super) struct Table {
+pub(super) struct TextTable {
     title: String,
     note: String,
     header: Vec<String>,
     pub(super) rows: Vec<Vec<String>>,
 }
 
-impl Table {
+impl TextTable {
     pub(super) fn new(title: &str, note: &str, header: Vec<&str>) -> Self {
         let header = header.into_iter().map(str::to_owned).collect();
         Self { title: title.to_owned(), note: note.to_owned(), header, rows: Vec::new() }

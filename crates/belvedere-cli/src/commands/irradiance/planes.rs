@@ -1,22 +1,22 @@
 //! Planes of roofs as files.
 
 use super::super::{check_output, check_parent, extension};
-use crate::arguments::Irradiance;
+use crate::arguments::IrradianceArguments;
 use crate::commands::horizon::write_lines;
-use crate::run::Run;
+use crate::run::CommandContext;
 use crate::summary::{Summary, rounded};
 use anyhow::Result;
 use belvedere::Frame;
-use belvedere::apps::ask::{IrradianceFound, RoofsFound, Scene};
+use belvedere::apps::ask::{IrradianceResults, RoofsResults, Scene};
 use belvedere::apps::horizon::{HorizonParams, horizons};
 use belvedere::apps::irradiance::{RoofColumn, horizon_places, roof_columns};
 use belvedere::apps::sun::Site;
-use belvedere::io::{Area, Cells, atomic, outlines, write_geojson_areas, write_table};
+use belvedere::io::{PolygonArea, TableCells, atomic, outlines, write_geojson_areas, write_table};
 
 /// Azimuths of a horizon: steps of 7.5 degrees, as PVGIS has them.
 const AZIMUTHS: usize = 48;
 
-pub(super) fn check(arguments: &Irradiance) -> Result<()> {
+pub(super) fn check(arguments: &IrradianceArguments) -> Result<()> {
     for output in &arguments.planes {
         check_output("--planes", output, &["csv", "geojson"])?;
     }
@@ -28,11 +28,11 @@ pub(super) fn check(arguments: &Irradiance) -> Result<()> {
 
 /// Writes the energy of all planes.
 pub(super) fn write(
-    arguments: &Irradiance,
-    roofs: &RoofsFound,
-    found: &IrradianceFound,
+    arguments: &IrradianceArguments,
+    roofs: &RoofsResults,
+    found: &IrradianceResults,
     scene: &Scene,
-    run: &mut Run,
+    run: &mut CommandContext,
 ) -> Result<()> {
     run.summary.add("planes", Summary::of(&roofs.report));
     let (frame, site) = (scene.frame(), &found.site);
@@ -52,26 +52,26 @@ pub(super) fn write(
     Ok(())
 }
 
-fn columns(roofs: &RoofsFound, frame: &Frame, site: &Site) -> Vec<RoofColumn> {
+fn columns(roofs: &RoofsResults, frame: &Frame, site: &Site) -> Vec<RoofColumn> {
     roof_columns(&roofs.planes, &roofs.energies, frame, site)
 }
 
-fn write_rows(output: &std::path::Path, roofs: &RoofsFound, frame: &Frame, site: &Site) -> Result<()> {
+fn write_rows(output: &std::path::Path, roofs: &RoofsResults, frame: &Frame, site: &Site) -> Result<()> {
     let rows = &roofs.energies;
     let numbers: Vec<Option<u64>> = (1..).take(rows.len()).map(Some).collect();
     let cells: Vec<Option<u64>> = rows.iter().map(|row| Some(row.cell_count as u64)).collect();
     let columns = columns(roofs, frame, site);
-    let mut table = vec![("plane", Cells::Whole(&numbers)), ("cells", Cells::Whole(&cells))];
-    table.extend(columns.iter().map(|column| (column.name, Cells::Real(&column.values, column.decimals))));
+    let mut table = vec![("plane", TableCells::Whole(&numbers)), ("cells", TableCells::Whole(&cells))];
+    table.extend(columns.iter().map(|column| (column.name, TableCells::Real(&column.values, column.decimals))));
     Ok(write_table(output, &table)?)
 }
 
-fn write_outlines(output: &std::path::Path, roofs: &RoofsFound, frame: &Frame, site: &Site) -> Result<()> {
+fn write_outlines(output: &std::path::Path, roofs: &RoofsResults, frame: &Frame, site: &Site) -> Result<()> {
     let rows = &roofs.energies;
     let columns = columns(roofs, frame, site);
     let mut areas = Vec::with_capacity(rows.len());
     for (number, plane) in roofs.planes.iter().enumerate() {
-        let mut area = Area::default();
+        let mut area = PolygonArea::default();
         area.properties.insert("plane".to_owned(), (number + 1).into());
         for column in columns.iter().skip(3) {
             let digits = i32::try_from(column.decimals).unwrap_or(2);
@@ -83,7 +83,7 @@ fn write_outlines(output: &std::path::Path, roofs: &RoofsFound, frame: &Frame, s
             [place[0] + frame.origin[0], place[1] + frame.origin[1]]
         };
         for polygon in outlines(&plane.cells.filled) {
-            let rings = std::iter::once(&polygon.rim).chain(&polygon.holes);
+            let rings = std::iter::once(&polygon.exterior).chain(&polygon.holes);
             // rows run up the slope here, not down a picture, so that rings come out the other way round
             area.polygons.push(rings.map(|ring| ring.iter().rev().map(corner).collect()).collect());
         }
@@ -94,7 +94,12 @@ fn write_outlines(output: &std::path::Path, roofs: &RoofsFound, frame: &Frame, s
 }
 
 /// Writes the horizon of each plane, and gives how many are measured inside an obstacle, for want of a better place.
-fn write_horizons(folder: &std::path::Path, roofs: &RoofsFound, found: &IrradianceFound, run: &Run) -> Result<usize> {
+fn write_horizons(
+    folder: &std::path::Path,
+    roofs: &RoofsResults,
+    found: &IrradianceResults,
+    run: &CommandContext,
+) -> Result<usize> {
     atomic::make_folder(folder)?;
     let places = horizon_places(&roofs.planes, &found.blockers);
     let eyes: Vec<[f64; 3]> = places.iter().map(|(place, _)| place.map(f64::from)).collect();

@@ -1,7 +1,7 @@
 //! From flags and weather files to where radiation comes from.
 
-use crate::arguments::{ClearSkyChoice, Irradiance, RadiationModel, Usage};
-use crate::run::Run;
+use crate::arguments::{ClearSkyChoice, IrradianceArguments, RadiationModel, Usage};
+use crate::run::CommandContext;
 use anyhow::Result;
 use belvedere::apps::ask::Radiation;
 use belvedere::apps::irradiance::{BirdParams, CLEAR_SKY_YEAR, ClearSky, IrradianceParams, PARTS};
@@ -40,7 +40,11 @@ pub(in crate::commands) fn check_linke(choice: Option<ClearSkyChoice>, model: &R
 }
 
 /// Where radiation comes from; weather is read.
-pub(super) fn of(arguments: &Irradiance, params: &IrradianceParams, run: &Run) -> Result<Radiation> {
+pub(super) fn of(
+    arguments: &IrradianceArguments,
+    params: &IrradianceParams,
+    run: &CommandContext,
+) -> Result<Radiation> {
     let (choice, model) = (arguments.radiation.clear_sky, &arguments.model);
     check_linke(choice, model)?;
     let Some(path) = &arguments.radiation.weather else {

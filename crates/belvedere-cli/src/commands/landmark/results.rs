@@ -5,7 +5,7 @@ use belvedere::PointCloud;
 use belvedere::apps::landmark::{LandmarkMeasure, LandmarkView, MEASURES};
 use belvedere::figures::{MapLegend, MapMark, MapPicture, map_picture, ramp, write_png};
 use belvedere::ground::{Ground, highest_points};
-use belvedere::io::{Cells, TextRows, atomic, with_columns_read, write_table, write_tif_f32};
+use belvedere::io::{TableCells, TextRows, atomic, with_columns_read, write_table, write_tif_f32};
 use belvedere::raster::Raster;
 use belvedere::results::{ResultKind, georeference};
 use std::path::Path;
@@ -13,7 +13,8 @@ use std::path::Path;
 /// Cells from which nothing of the landmark is seen: apart from the dark violet of a little.
 const UNSEEN_COLOR: [u8; 3] = [176, 120, 120];
 
-/// A row for each observer that stands somewhere, with what a table said of it; one that was skipped has its coordinates alone.
+/// A row for each observer that stands somewhere, with what a table said of it; one that was skipped has its
+/// coordinates alone.
 pub(super) fn write_rows(
     output: &Path,
     views: &[LandmarkView],
@@ -29,8 +30,8 @@ pub(super) fn write_rows(
     for measure in &MEASURES {
         columns.push((measure.name, rows.iter().map(|&row| measure.of(&views[row])).collect(), measure.decimals));
     }
-    let named: Vec<(&'static str, Cells<'_>)> =
-        columns.iter().map(|(name, values, decimals)| (*name, Cells::Real(values, *decimals))).collect();
+    let named: Vec<(&'static str, TableCells<'_>)> =
+        columns.iter().map(|(name, values, decimals)| (*name, TableCells::Real(values, *decimals))).collect();
     let read = given.columns(rows.iter().copied());
     Ok(write_table(output, &with_columns_read(&read, &["x", "y", "z"], &named))?)
 }
@@ -82,10 +83,10 @@ pub(super) fn write_map(
 ) -> Result<()> {
     let relief = highest_points(&cloud.positions, ground);
     let shares: Vec<f64> = views.iter().map(LandmarkView::visible_share).collect();
-    let most = shares.iter().copied().filter(|share| share.is_finite()).fold(0.0, f64::max).max(0.01);
+    let max = shares.iter().copied().filter(|share| share.is_finite()).fold(0.0, f64::max).max(0.01);
     let color = |&share: &f64| match share {
         0.0 => Some(UNSEEN_COLOR),
-        share => share.is_finite().then(|| ramp(share / most)),
+        share => share.is_finite().then(|| ramp(share / max)),
     };
     let unseen = shares.contains(&0.0).then_some((UNSEEN_COLOR, "not visible"));
     let colors: Vec<Option<[u8; 3]>> = shares.iter().map(color).collect();
@@ -99,7 +100,7 @@ pub(super) fn write_map(
         marks: mark.as_slice(),
         mark_name: "landmark",
         title: "Visible share of the landmark",
-        legend: MapLegend::Ramp("percent", [0.0, 100.0 * most], unseen.as_slice()),
+        legend: MapLegend::Ramp("percent", [0.0, 100.0 * max], unseen.as_slice()),
     };
     Ok(write_png(output, &map_picture(&map)?)?)
 }

@@ -1,13 +1,13 @@
 //! The landmark: a mesh, or points of the cloud.
 
-use crate::arguments::{LandmarkShape, Usage};
+use crate::arguments::{LandmarkShapeArguments, Usage};
 use crate::commands::extension;
-use crate::pipeline::{Scene, mesh_in};
-use crate::run::Run;
+use crate::pipeline::{LoadedScene, mesh_in};
+use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::{Result, bail};
 use belvedere::apps::ask;
-use belvedere::io::{Shape, read_geojson, read_table};
+use belvedere::io::{FeatureShape, read_geojson, read_table};
 use belvedere::query::SurfacePieces;
 use belvedere::{Frame, Mesh};
 use std::path::Path;
@@ -15,9 +15,9 @@ use std::sync::Arc;
 
 /// The landmark of the flags, in the frame of a scene.
 pub(in crate::commands) fn shape(
-    arguments: &LandmarkShape,
+    arguments: &LandmarkShapeArguments,
     frame: &Frame,
-    run: &mut Run,
+    run: &mut CommandContext,
 ) -> Result<ask::LandmarkShape> {
     let what = &arguments.what;
     match (&what.target, what.target_class, &what.target_polygon) {
@@ -37,9 +37,9 @@ pub(in crate::commands) fn shape(
 
 /// The surface of the landmark, and its middle on the map, local metres.
 pub(in crate::commands) fn surface(
-    arguments: &LandmarkShape,
-    scene: &Scene,
-    run: &mut Run,
+    arguments: &LandmarkShapeArguments,
+    scene: &LoadedScene,
+    run: &mut CommandContext,
 ) -> Result<(SurfacePieces, [f64; 2])> {
     let frame = &scene.cloud.frame;
     let shape = shape(arguments, frame, run)?;
@@ -74,7 +74,9 @@ fn polygons_of(path: &Path, frame: &Frame) -> Result<Vec<Vec<Vec<[f64; 2]>>>> {
             read_geojson(path, &frame.crs)?
                 .into_iter()
                 .filter_map(|feature| match feature.shape {
-                    Shape::Polygon(rings) => Some(rings.iter().map(|ring| ring.iter().map(place).collect()).collect()),
+                    FeatureShape::Polygon(rings) => {
+                        Some(rings.iter().map(|ring| ring.iter().map(place).collect()).collect())
+                    }
                     _ => None,
                 })
                 .collect()

@@ -7,7 +7,7 @@ use belvedere::apps::viewshed::Viewshed;
 use belvedere::figures::{MapLegend, MapMark, MapPicture, map_picture, ramp, write_png};
 use belvedere::ground::{Ground, highest_points};
 use belvedere::io::{
-    Area, ExtraColumn, ExtraValues, Georeference, WriteReport, outlines, write_cloud, write_geojson_areas,
+    ExtraColumn, ExtraValues, Georeference, PolygonArea, WriteReport, outlines, write_cloud, write_geojson_areas,
     write_npy_u32_bands, write_tif_u32,
 };
 use belvedere::query::Answer;
@@ -22,28 +22,28 @@ const HIDDEN_COLOR: [u8; 3] = [38, 52, 96];
 /// Terrain over which the cloud lies, which has cells of its own.
 const CLOUD_COLOR: [u8; 3] = [120, 120, 120];
 /// Most pixels of a map of terrain.
-const MOST_PIXELS: f64 = 4e6;
+const MAX_PIXELS: f64 = 4e6;
 
 /// What is seen of cells, and where they lie.
 pub(super) struct SeenCells<'a> {
     pub(super) seen: &'a Viewshed,
     pub(super) eyes: &'a [[f64; 3]],
     pub(super) frame: &'a Frame,
-    pub(super) on: Field<'a>,
+    pub(super) on: CellSurface<'a>,
     /// Whether it is the eye that is seen from the cells.
     pub(super) is_reverse: bool,
 }
 
 /// What the cells lie on.
 #[derive(Clone, Copy)]
-pub(super) enum Field<'a> {
+pub(super) enum CellSurface<'a> {
     /// The ground below a cloud.
     Ground(&'a Ground, &'a PointCloud),
     /// Terrain beyond the cloud.
     Terrain(&'a ElevationGrid),
 }
 
-impl Field<'_> {
+impl CellSurface<'_> {
     fn size(self) -> [usize; 2] {
         match self {
             Self::Ground(ground, _) => [ground.grid.width, ground.grid.height],
@@ -86,7 +86,7 @@ impl SeenCells<'_> {
                 continue;
             }
             let cell_count: usize = polygons.iter().map(|polygon| polygon.cell_count).sum();
-            let mut area = Area::default();
+            let mut area = PolygonArea::default();
             area.properties.insert("answer".to_owned(), name.into());
             area.properties.insert("area_m2".to_owned(), (cell_count as f64 * steps[0] * -steps[1]).into());
             let corner = |corner: [usize; 2]| [0, 1].map(|i| place.upper_left[i] * unit + corner[i] as f64 * steps[i]);
@@ -100,14 +100,14 @@ impl SeenCells<'_> {
     fn write_map(&self, output: &Path) -> Result<()> {
         let Self { seen, is_reverse, .. } = *self;
         // two at least: the legend of a range of two or more has whole numbers
-        let most = f64::from(seen.counts.iter().copied().max().unwrap_or(0).max(2));
+        let max = f64::from(seen.counts.iter().copied().max().unwrap_or(0).max(2));
         let one = self.is_of_one();
         let color = |(answer, &count): (&Answer, &u32)| match answer {
             Answer::Visible if one => Some(SEEN_COLOR),
             Answer::Blocked if one => Some(HIDDEN_COLOR),
-            Answer::Visible | Answer::Blocked => Some(ramp(f64::from(count) / most)),
+            Answer::Visible | Answer::Blocked => Some(ramp(f64::from(count) / max)),
             Answer::Unproven => Some(UNPROVEN_COLOR),
-            Answer::OutsideCloud if matches!(self.on, Field::Terrain(_)) => Some(CLOUD_COLOR),
+            Answer::OutsideCloud if matches!(self.on, CellSurface::Terrain(_)) => Some(CLOUD_COLOR),
             _ => None,
         };
         let colors: Vec<Option<[u8; 3]>> = seen.answers.iter().zip(&seen.counts).map(color).collect();
@@ -115,7 +115,7 @@ impl SeenCells<'_> {
         let mut others = unproven.as_slice().to_vec();
         let mut classes = [&[(SEEN_COLOR, "visible")], &others[..], &[(HIDDEN_COLOR, "blocked")]].concat();
         let (title, sheet) = match self.on {
-            Field::Ground(ground, cloud) => {
+            CellSurface::Ground(ground, cloud) => {
                 let title = match (is_reverse, one) {
                     (true, _) => "Cells from which the target is visible",
                     (false, true) => "Visible from the observer",
@@ -125,7 +125,7 @@ impl SeenCells<'_> {
                 let relief = highest_points(&cloud.positions, ground);
                 (title, Sheet { relief, colors, cell: ground.grid.cell, corner: ground.grid.corner, place })
             }
-            Field::Terrain(terrain) => {
+            CellSurface::Terrain(terrain) => {
                 let title = match (is_reverse, one) {
                     (true, _) => "Terrain from which the target is visible",
                     (false, true) => "Terrain visible from the observer",
@@ -143,7 +143,7 @@ impl SeenCells<'_> {
             is_inside.then(|| MapMark { place, ..MapMark::default() })
         };
         let marks: Vec<MapMark> = self.eyes.iter().filter_map(mark).collect();
-        let legend = if one { MapLegend::Colors(&classes) } else { MapLegend::Ramp("observers", [0.0, most], &others) };
+        let legend = if one { MapLegend::Colors(&classes) } else { MapLegend::Ramp("observers", [0.0, max], &others) };
         let mark_name = if is_reverse { "target" } else { "observer" };
         let (relief, place, colors, marks) = (&sheet.relief, Some(&sheet.place), &sheet.colors[..], &marks[..]);
         let map = MapPicture { relief, cell: sheet.cell, place, colors, marks, mark_name, title, legend };
@@ -168,7 +168,7 @@ impl Sheet {
         let size = [terrain.heights().width(), terrain.heights().height()];
         let extent = [0, 1].map(|i| size[i] as f64 * sides[i]);
         let usual = sides[0].max(sides[1]);
-        let cell = usual.max((extent[0] * extent[1] / MOST_PIXELS).sqrt());
+        let cell = usual.max((extent[0] * extent[1] / MAX_PIXELS).sqrt());
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most as many as nodes")]
         let [width, height] = extent.map(|extent| (extent / cell).round().max(1.0) as usize);
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to the nodes")]

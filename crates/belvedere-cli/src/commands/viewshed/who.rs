@@ -1,8 +1,8 @@
 //! Who looks: from flags and files to places.
 
-use crate::arguments::{Place, Usage, Viewshed};
+use crate::arguments::{MapPosition, Usage, ViewshedArguments};
 use crate::commands::extension;
-use crate::commands::surroundings::least_count;
+use crate::commands::surroundings::min_count;
 use anyhow::Result;
 use belvedere::Frame;
 use belvedere::apps::ask::{Standing, StandingObserver, ViewLimits};
@@ -18,15 +18,15 @@ const MAX_IN_MASK: usize = 32;
 const MAX_COUNTED: usize = 65_534;
 
 /// Refuses outputs that cannot hold the observers that are known of, before a scene is read.
-pub(super) fn check(arguments: &Viewshed) -> Result<()> {
-    Place::refuse_twice("--observer", &arguments.who.observer)?;
+pub(super) fn check(arguments: &ViewshedArguments) -> Result<()> {
+    MapPosition::refuse_twice("--observer", &arguments.who.observer)?;
     let (who, looking) = (&arguments.who, &arguments.looking);
-    let count = if looking.step.is_some() { 1 } else { least_count(who.observer.len(), who.observers.as_deref())? };
+    let count = if looking.step.is_some() { 1 } else { min_count(who.observer.len(), who.observers.as_deref())? };
     check_count(arguments, count)
 }
 
 /// Refuses outputs that cannot hold so many observers.
-fn check_count(arguments: &Viewshed, count: usize) -> Result<()> {
+fn check_count(arguments: &ViewshedArguments, count: usize) -> Result<()> {
     let is_tif = |path: &PathBuf| matches!(extension(path).as_str(), "tif" | "tiff");
     if count > MAX_IN_MASK && arguments.masks.as_ref().is_some_and(is_tif) {
         return Err(
@@ -43,7 +43,7 @@ fn check_count(arguments: &Viewshed, count: usize) -> Result<()> {
 }
 
 /// The limits of the flags.
-pub(super) fn limits(arguments: &Viewshed) -> ViewLimits {
+pub(super) fn limits(arguments: &ViewshedArguments) -> ViewLimits {
     let looking = &arguments.looking;
     ViewLimits {
         azimuth_range_deg: looking.azimuth.map(|range| range.0),
@@ -54,13 +54,13 @@ pub(super) fn limits(arguments: &Viewshed) -> ViewLimits {
 }
 
 /// The observers of the flags or of the file, or the target.
-pub(super) fn observers(arguments: &Viewshed, frame: &Frame) -> Result<Vec<StandingObserver>> {
+pub(super) fn observers(arguments: &ViewshedArguments, frame: &Frame) -> Result<Vec<StandingObserver>> {
     let (who, looking) = (&arguments.who, &arguments.looking);
     let at = |place: [f64; 3], height: Option<f64>, limits: ViewLimits| StandingObserver {
         standing: Standing { place, height },
         limits,
     };
-    let typed = |&Place([x, y], z): &Place| {
+    let typed = |&MapPosition([x, y], z): &MapPosition| {
         at(frame.local_from_file([x, y, z.unwrap_or(f64::NAN)]), None, ViewLimits::default())
     };
     if let Some(target) = &who.target {

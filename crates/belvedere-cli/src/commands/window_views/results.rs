@@ -1,17 +1,17 @@
 //! Views from windows as files.
 
 use crate::commands::extension;
-use crate::commands::windows::Column;
-use crate::run::Run;
+use crate::commands::windows::WindowColumn;
+use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::Result;
 use belvedere::apps::ask::report::GroundSection;
-use belvedere::apps::ask::{self, Scene, WindowViewsFound};
+use belvedere::apps::ask::{self, Scene, WindowViewsResults};
 use belvedere::apps::targets::{Measure, Targets};
-use belvedere::apps::window_views::{Seen, named_columns};
+use belvedere::apps::window_views::{SeenKind, named_columns};
 use belvedere::figures::{MapLegend, MapPicture, map_picture, ramp, write_png};
 use belvedere::ground::{GroundPoints, highest_points};
-use belvedere::io::{Cells, Spot, TextRows, WriteReport, with_columns_read, write_geojson, write_table};
+use belvedere::io::{Spot, TableCells, TextRows, WriteReport, with_columns_read, write_geojson, write_table};
 use belvedere::report::rounded;
 use belvedere::results::{TakenFrom, georeference, write_measures};
 use serde_json::{Map, Value};
@@ -24,19 +24,19 @@ const DOT: f64 = 1.0 / 100.0;
 const NO_WINDOW_COLOR: [u8; 3] = [226; 3];
 
 /// What is written.
-pub(super) struct Shown<'a> {
+pub(super) struct WindowOutput<'a> {
     pub(super) scene: &'a Scene,
-    pub(super) found: &'a WindowViewsFound,
+    pub(super) found: &'a WindowViewsResults,
     pub(super) measures: &'a [Measure],
     /// Where and what each window is.
-    pub(super) columns: Vec<Column>,
+    pub(super) columns: Vec<WindowColumn>,
     /// Building of each window; empty where that is not known.
     pub(super) names: Vec<String>,
     /// The rows of a table of windows.
     pub(super) rows: &'a TextRows,
 }
 
-impl Shown<'_> {
+impl WindowOutput<'_> {
     /// A row or a point for each window.
     pub(super) fn write(&self, output: &Path) -> belvedere::Result<WriteReport> {
         match extension(output).as_str() {
@@ -55,13 +55,13 @@ impl Shown<'_> {
         let values: Vec<Vec<f64>> = self.measures.iter().map(of_measure).collect();
         let numbers: Vec<Option<u64>> = (1..).take(self.found.views.len()).map(Some).collect();
         let names: Vec<&str> = self.found.names.iter().map(String::as_str).collect();
-        let mut cells = vec![("window", Cells::Whole(&numbers))];
+        let mut cells = vec![("window", TableCells::Whole(&numbers))];
         if !names.is_empty() {
-            cells.push(("name", Cells::Words(&names)));
+            cells.push(("name", TableCells::Words(&names)));
         }
-        cells.extend(self.columns.iter().map(|(name, values, d)| (*name, Cells::Real(values, *d))));
+        cells.extend(self.columns.iter().map(|(name, values, d)| (*name, TableCells::Real(values, *d))));
         let measured = self.measures.iter().zip(&values);
-        cells.extend(measured.map(|(m, values)| (m.name.as_str(), Cells::Real(values, m.decimals))));
+        cells.extend(measured.map(|(m, values)| (m.name.as_str(), TableCells::Real(values, m.decimals))));
         let read = self.rows.columns(0..self.rows.row_count());
         write_table(output, &with_columns_read(&read, &["x", "y", "z", "azimuth", "tilt"], &cells))
     }
@@ -99,14 +99,20 @@ impl Shown<'_> {
         let names: Vec<&str> = found.iter().map(|named| named.name.as_str()).collect();
         let counts: Vec<Option<u64>> = found.iter().map(|named| Some(named.windows as u64)).collect();
         let columns = named_columns(&found);
-        let mut cells = vec![("name", Cells::Words(&names)), ("windows", Cells::Whole(&counts))];
-        cells.extend(columns.iter().map(|(name, values)| (*name, Cells::Real(values, 3))));
+        let mut cells = vec![("name", TableCells::Words(&names)), ("windows", TableCells::Whole(&counts))];
+        cells.extend(columns.iter().map(|(name, values)| (*name, TableCells::Real(values, 3))));
         Ok(write_table(output, &cells)?)
     }
 
     /// The share of one kind as dots on a map.
-    pub(super) fn write_map(&self, output: &Path, title: &str, shown: Seen, run: &mut Run) -> Result<()> {
-        let grid = ask::Cells::default().grid(self.scene)?;
+    pub(super) fn write_map(
+        &self,
+        output: &Path,
+        title: &str,
+        shown: SeenKind,
+        run: &mut CommandContext,
+    ) -> Result<()> {
+        let grid = ask::GridCells::default().grid(self.scene)?;
         let known = self.scene.ground(grid, GroundPoints::Auto, &run.control())?;
         run.summary.add("ground", Summary::of(&GroundSection::of(&known)));
         let relief = highest_points(&self.scene.cloud().positions, &known.ground);
@@ -122,14 +128,14 @@ impl Shown<'_> {
             }
         }
         let shares: Vec<f64> = sums.into_iter().map(|(sum, count)| sum / count).collect();
-        let most = shares.iter().copied().filter(|share| share.is_finite()).fold(0.0, f64::max).max(0.01);
+        let max = shares.iter().copied().filter(|share| share.is_finite()).fold(0.0, f64::max).max(0.01);
         let colors: Vec<Option<[u8; 3]>> = shares
             .iter()
-            .map(|share| Some(if share.is_finite() { ramp(share / most) } else { NO_WINDOW_COLOR }))
+            .map(|share| Some(if share.is_finite() { ramp(share / max) } else { NO_WINDOW_COLOR }))
             .collect();
         let place = georeference(&grid, self.scene.frame());
         let legend =
-            MapLegend::Ramp("percent of the view", [0.0, 100.0 * most], &[(NO_WINDOW_COLOR, "no window with a view")]);
+            MapLegend::Ramp("percent of the view", [0.0, 100.0 * max], &[(NO_WINDOW_COLOR, "no window with a view")]);
         let map = MapPicture::of_colors(&relief, grid.cell, Some(&place), &colors, title, legend);
         Ok(run.stage("writing", 0, |_| write_png(output, &map_picture(&map)?))?)
     }

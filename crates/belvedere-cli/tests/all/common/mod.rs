@@ -27,7 +27,7 @@ const SCENE_CONFIGS: [(&str, &str); 4] = [
 
 /// What a run left behind.
 #[derive(Debug)]
-pub(crate) struct Run {
+pub(crate) struct FinishedRun {
     pub(crate) status: i32,
     pub(crate) stdout: String,
     pub(crate) stderr: String,
@@ -59,15 +59,15 @@ impl Workplace {
     }
 
     /// Runs with arguments parted by blanks.
-    pub(crate) fn run(&self, arguments: &str) -> Run {
+    pub(crate) fn run(&self, arguments: &str) -> FinishedRun {
         self.run_with(arguments, &[])
     }
 
     /// Runs with more arguments, which may hold blanks.
-    pub(crate) fn run_with(&self, arguments: &str, more: &[&str]) -> Run {
+    pub(crate) fn run_with(&self, arguments: &str, more: &[&str]) -> FinishedRun {
         let output = self.command(arguments).args(more).output().unwrap();
         let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
-        let run = Run {
+        let run = FinishedRun {
             status: output.status.code().unwrap_or_else(|| panic!("{arguments}: killed by a signal")),
             stdout: text(output.stdout),
             stderr: text(output.stderr),
@@ -88,11 +88,11 @@ impl Workplace {
     }
 
     /// Runs what must fail with `status`; its message must hold each of `words`.
-    pub(crate) fn refusal(&self, status: i32, arguments: &str, words: &[&str]) -> Run {
+    pub(crate) fn refusal(&self, status: i32, arguments: &str, words: &[&str]) -> FinishedRun {
         self.refusal_with(status, arguments, &[], words)
     }
 
-    pub(crate) fn refusal_with(&self, status: i32, arguments: &str, more: &[&str], words: &[&str]) -> Run {
+    pub(crate) fn refusal_with(&self, status: i32, arguments: &str, more: &[&str], words: &[&str]) -> FinishedRun {
         let run = self.run_with(arguments, more);
         assert_eq!(run.status, status, "{arguments}: {run:?}");
         assert_eq!(run.stdout, "", "{arguments}");
@@ -189,7 +189,8 @@ pub(crate) const ROUGHNESS: f32 = 0.08;
 /// A gabled house on level ground at height 0, in the Dutch grid, with its outward normals, points half a metre apart.
 ///
 /// The house spans 10 m from west to east and 8 m from south to north around (EAST, NORTH). Its eaves are 6 m high and
-/// run along the south and north sides, its ridge is 9 m high. There is ground 15 m around its middle, and none below it.
+/// run along the south and north sides, its ridge is 9 m high. There is ground 15 m around its middle, and none below
+/// it.
 pub(crate) fn house() -> PointCloud {
     let mut points: Vec<([f32; 3], [f32; 3])> = Vec::new();
     let steps = |from: f32, to: f32| (0..).map(move |i| from + 0.5 * i as f32).take_while(move |v| *v <= to);

@@ -14,32 +14,33 @@ use belvedere_data::vector::length;
 use belvedere_data::{Error, Parameter, PointCloud, Result};
 
 /// Points of a part that are used at most, evenly over its time: more only cost time.
-const MOST_POINTS: usize = 20_000;
+const MAX_POINTS: usize = 20_000;
 /// Fewest points of a part.
-const LEAST_POINTS: usize = 200;
+const MIN_POINTS: usize = 200;
 /// Rounds in which height and lateral offsets are made to agree; relief of a tenth of the height settles in four.
 const ROUNDS: usize = 6;
 /// Pulses with several returns in a part from which they are asked whether they agree.
-const LEAST_PAIRS: usize = 20;
+const MIN_PAIRS: usize = 20;
 /// Least distance between first and last return for a pulse to tell its direction, metres.
-const LEAST_LENGTH: f64 = 3.0;
+const MIN_LENGTH: f64 = 3.0;
 
 /// A point with what is needed of it.
 #[derive(Clone, Copy)]
-struct Sample {
+struct AngleSample {
     line: u16,
     time: f64,
     place: [f64; 3],
     tangent: f64,
 }
 
-/// The paths of flight lines that scan angles tell, by line, and the parts of lines that were looked at. None for a cloud without
-/// angles (or whose angles are all 0) or times.
+/// The paths of flight lines that scan angles tell, by line, and the parts of lines that were looked at. None for a
+/// cloud without angles (or whose angles are all 0) or times.
 ///
-/// Taken across the flight, an angle a puts a point beside the scanner's path by (height) tan a. Position, velocity, height and
-/// direction of the scan lines that fit this best follow from linear least squares. How far the scanner looks ahead, the angles do
-/// not tell; the pulses with several returns among `pulses` do, where there are some. A line is not trusted where points miss
-/// their place, where scan lines are bent, or where those pulses point elsewhere: all that cones and tilted scanners give away.
+/// Taken across the flight, an angle a puts a point beside the scanner's path by (height) tan a. Position, velocity,
+/// height and direction of the scan lines that fit this best follow from linear least squares. How far the scanner
+/// looks ahead, the angles do not tell; the pulses with several returns among `pulses` do, where there are some. A line
+/// is not trusted where points miss their place, where scan lines are bent, or where those pulses point elsewhere: all
+/// that cones and tilted scanners give away.
 ///
 /// # Errors
 /// [`Error::InvalidParameter`] for a length of parts outside 0.5 to 60 s.
@@ -67,12 +68,12 @@ pub(in crate::pulses) fn paths_from_angles(
     let sample = |(row, ((place, &time), &angle)): (usize, ((&[f32; 3], &f64), &f32))| {
         let is_usable = time.is_finite() && time != 0.0 && angle.is_finite();
         let tangent = f64::from(angle).tan();
-        is_usable.then(|| Sample { line: line(row), time, place: place.map(f64::from), tangent })
+        is_usable.then(|| AngleSample { line: line(row), time, place: place.map(f64::from), tangent })
     };
-    let mut samples: Vec<Sample> =
+    let mut samples: Vec<AngleSample> =
         cloud.positions.iter().zip(times).zip(angles).enumerate().filter_map(sample).collect();
     // in an order that does not depend on that of the points, and with it neither do the sums
-    let key = |s: &Sample| (s.line, s.time, s.place);
+    let key = |s: &AngleSample| (s.line, s.time, s.place);
     samples.par_sort_unstable_by(|a, b| {
         let (a, b) = (key(a), key(b));
         let places = (0..3).fold(std::cmp::Ordering::Equal, |order, i| order.then(a.2[i].total_cmp(&b.2[i])));
@@ -80,7 +81,7 @@ pub(in crate::pulses) fn paths_from_angles(
     });
     let pairs = pulses.map(|pulses| pairs(cloud, pulses)).unwrap_or_default();
     let passes = samples.chunk_by(|a, b| a.line == b.line && b.time - a.time <= MAX_GAP_S);
-    let parts: Vec<&[Sample]> = passes.flat_map(|pass| cut(pass, params.part_s)).collect();
+    let parts: Vec<&[AngleSample]> = passes.flat_map(|pass| cut(pass, params.part_s)).collect();
     let found: Vec<(ScanAnglePart, Option<LinePath>)> = parts
         .into_par_iter()
         .map(|part| control.check().map(|()| estimate(part, &pairs, params)))
@@ -90,11 +91,12 @@ pub(in crate::pulses) fn paths_from_angles(
 }
 
 /// Equal parts of `pass` of at most `longest` seconds.
-fn cut(pass: &[Sample], longest: f64) -> impl Iterator<Item = &[Sample]> {
+fn cut(pass: &[AngleSample], longest: f64) -> impl Iterator<Item = &[AngleSample]> {
     let start = pass.first().map_or(0.0, |s| s.time);
     let span = pass.last().map_or(0.0, |s| s.time) - start;
     let count = (span / longest).ceil().max(1.0);
-    let part_of = move |s: &Sample| ((s.time - start) / span.max(f64::MIN_POSITIVE) * count).floor().min(count - 1.0);
+    let part_of =
+        move |s: &AngleSample| ((s.time - start) / span.max(f64::MIN_POSITIVE) * count).floor().min(count - 1.0);
     pass.chunk_by(move |a, b| part_of(a).total_cmp(&part_of(b)).is_eq())
 }
 
@@ -109,14 +111,14 @@ fn pairs(cloud: &PointCloud, pulses: &Pulses) -> Vec<Direction> {
         let (first, last) = (place(returns.first()?)?, place(returns.last()?)?);
         let length = (first - last).norm();
         let line = *pulses.source_ids.get(pulse)?;
-        (length >= LEAST_LENGTH).then(|| (line, pulses.times[pulse], first, (first - last) / length))
+        (length >= MIN_LENGTH).then(|| (line, pulses.times[pulse], first, (first - last) / length))
     };
     let mut pairs: Vec<Direction> = (0..pulses.len()).filter_map(pair).collect();
     pairs.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
     pairs
 }
 
-fn estimate(part: &[Sample], pairs: &[Direction], params: &ScanAngleParams) -> (ScanAnglePart, Option<LinePath>) {
+fn estimate(part: &[AngleSample], pairs: &[Direction], params: &ScanAngleParams) -> (ScanAnglePart, Option<LinePath>) {
     let [first, last] = [part.first(), part.last()].map(|s| s.map_or(f64::NAN, |s| s.time));
     let middle = f64::midpoint(first, last);
     let mut result = ScanAnglePart {
@@ -131,13 +133,13 @@ fn estimate(part: &[Sample], pairs: &[Direction], params: &ScanAngleParams) -> (
         contradiction: f64::NAN,
         verdict: AngleVerdict::TooFewPoints,
     };
-    if part.len() < LEAST_POINTS {
+    if part.len() < MIN_POINTS {
         return (result, None);
     }
-    let samples: Vec<Sample> = part.iter().step_by(part.len().div_ceil(MOST_POINTS)).copied().collect();
+    let samples: Vec<AngleSample> = part.iter().step_by(part.len().div_ceil(MAX_POINTS)).copied().collect();
     result.verdict = AngleVerdict::TooNarrow;
-    let Some(fit) = Fit::of(&samples, middle) else { return (result, None) };
-    if fit.angle_spread < params.least_spread || !fit.is_finite() {
+    let Some(fit) = ScanLineFit::of(&samples, middle) else { return (result, None) };
+    if fit.angle_spread < params.min_spread || !fit.is_finite() {
         return (result, None);
     }
     result.position = fit.position;
@@ -148,7 +150,7 @@ fn estimate(part: &[Sample], pairs: &[Direction], params: &ScanAngleParams) -> (
         pairs.partition_point(|pair| pair.0 < result.source_id || (pair.0 == result.source_id && pair.1 < first));
     let within = pairs.iter().skip(of_line).take_while(|pair| pair.0 == result.source_id && pair.1 <= last);
     let within: Vec<&Direction> = within.collect();
-    if within.len() >= LEAST_PAIRS {
+    if within.len() >= MIN_PAIRS {
         result.pitch = fit.pitch(&within, middle);
         let ahead = fit.height * result.pitch.tan();
         result.position = std::array::from_fn(|i| fit.position[i] - ahead * fit.forward.get(i).copied().unwrap_or(0.0));
@@ -159,7 +161,7 @@ fn estimate(part: &[Sample], pairs: &[Direction], params: &ScanAngleParams) -> (
         result.contradiction = median(apart.collect());
     }
     let [slowest, fastest] = params.speeds;
-    let is_plausible = (slowest..=fastest).contains(&length(fit.velocity)) && fit.height >= params.least_height;
+    let is_plausible = (slowest..=fastest).contains(&length(fit.velocity)) && fit.height >= params.min_height;
     result.verdict = if fit.misses.iter().any(|miss| *miss > params.greatest_miss) || fit.crab > params.greatest_crab {
         AngleVerdict::NotAcross
     } else if fit.bend.abs() > params.greatest_bend || !(fit.bend_sd < params.greatest_bend) {
@@ -183,7 +185,7 @@ fn estimate(part: &[Sample], pairs: &[Direction], params: &ScanAngleParams) -> (
 }
 
 /// Straight flight and straight scan lines that fit the points of a part best.
-struct Fit {
+struct ScanLineFit {
     position: [f64; 3],
     velocity: [f64; 3],
     /// Level unit vector of the flight.
@@ -201,10 +203,10 @@ struct Fit {
     bend_sd: f64,
 }
 
-impl Fit {
-    fn of(samples: &[Sample], middle: f64) -> Option<Self> {
+impl ScanLineFit {
+    fn of(samples: &[AngleSample], middle: f64) -> Option<Self> {
         let count = samples.len() as f64;
-        let mean = |value: &dyn Fn(&Sample) -> f64| samples.iter().map(value).sum::<f64>() / count;
+        let mean = |value: &dyn Fn(&AngleSample) -> f64| samples.iter().map(value).sum::<f64>() / count;
         let ground = mean(&|s| s.place[2]);
         let mean_tangent = mean(&|s| s.tangent);
         let angle_spread = mean(&|s| (s.tangent - mean_tangent).powi(2)).sqrt().atan();
@@ -212,7 +214,7 @@ impl Fit {
         let mut columns = [Vector3::zeros(); 2];
         for _ in 0..ROUNDS {
             // the tangent counts for more where the ground is lower
-            let row = |s: &Sample| {
+            let row = |s: &AngleSample| {
                 let lower = 1.0 - (s.place[2] - ground) / height;
                 Vector3::new(1.0, s.time - middle, s.tangent * lower)
             };
@@ -238,7 +240,7 @@ impl Fit {
         let (mut across, mut along) = (Vec::new(), Vec::new());
         // along the flight, with a bend
         let (mut normal, mut sums) = (Matrix4::zeros(), Vector4::zeros());
-        let bent_row = |s: &Sample| Vector4::new(1.0, s.time - middle, s.tangent, s.tangent * s.tangent);
+        let bent_row = |s: &AngleSample| Vector4::new(1.0, s.time - middle, s.tangent, s.tangent * s.tangent);
         for sample in samples {
             let lower = 1.0 - (sample.place[2] - ground) / height;
             let row = Vector3::new(1.0, sample.time - middle, sample.tangent * lower);

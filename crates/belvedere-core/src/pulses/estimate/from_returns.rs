@@ -3,10 +3,10 @@
 use nalgebra::Vector3;
 use rayon::prelude::*;
 
-use super::sensor_fit::{Fit, Pair, fit, median};
-use super::smoother::{State, smoothed};
+use super::sensor_fit::{ReturnPair, SensorFit, fit, median};
+use super::smoother::{ScannerState, smoothed};
 use crate::pulses::Pulses;
-use crate::pulses::flight_parts::{SensorEstimateParams, SensorPart, Verdict};
+use crate::pulses::flight_parts::{PartVerdict, SensorEstimateParams, SensorPart};
 use crate::pulses::line_path::{LinePath, Stretch};
 use crate::pulses::scanner_report::FoundBy;
 use belvedere_data::control::Control;
@@ -36,15 +36,15 @@ fn parts(pulses: &Pulses, longest: f64) -> Vec<Vec<usize>> {
 }
 
 /// A part of a flight line on its way to a path.
-struct Estimate {
+struct PartEstimate {
     part: SensorPart,
     /// What its own pulses say, where that is to be used.
-    knot: Option<State>,
+    knot: Option<ScannerState>,
     /// Middle height of its first returns, metres.
     ground: f64,
 }
 
-fn estimate(cloud: &PointCloud, pulses: &Pulses, members: &[usize], params: &SensorEstimateParams) -> Estimate {
+fn estimate(cloud: &PointCloud, pulses: &Pulses, members: &[usize], params: &SensorEstimateParams) -> PartEstimate {
     let time = |at: Option<&usize>| at.and_then(|&pulse| pulses.times.get(pulse)).copied().unwrap_or(f64::NAN);
     let times = [time(members.first()), time(members.last())];
     let middle = f64::midpoint(times[0], times[1]);
@@ -55,9 +55,9 @@ fn estimate(cloud: &PointCloud, pulses: &Pulses, members: &[usize], params: &Sen
     let pair = |&pulse: &usize| {
         let returns = pulses.returns_of(pulse);
         let (first, last) = (place(returns.first()?), place(returns.last()?));
-        ((last - first).norm() >= params.least_length).then(|| Pair::new(first, last, pulses.times[pulse] - middle))
+        ((last - first).norm() >= params.min_length).then(|| ReturnPair::new(first, last, pulses.times[pulse] - middle))
     };
-    let pairs: Vec<Pair> = members.iter().filter_map(pair).collect();
+    let pairs: Vec<ReturnPair> = members.iter().filter_map(pair).collect();
     let firsts = members.iter().filter_map(|&pulse| Some(place(pulses.returns_of(pulse).first()?).z));
     let ground = median(firsts.collect());
     let mut part = SensorPart {
@@ -70,40 +70,40 @@ fn estimate(cloud: &PointCloud, pulses: &Pulses, members: &[usize], params: &Sen
         velocity: [f64::NAN; 3],
         height: f64::NAN,
         median_angle: f64::NAN,
-        verdict: Verdict::TooFewPairs,
+        verdict: PartVerdict::TooFewPairs,
     };
     let mut knot = None;
-    if pairs.len() >= params.least_pair_count {
-        part.verdict = Verdict::Uncertain;
-        if let Some(Fit { state, covariance, median_angle }) = fit(&pairs, params.vertical_speed_sd) {
-            let found = State { time: middle, state, covariance };
+    if pairs.len() >= params.min_pair_count {
+        part.verdict = PartVerdict::Uncertain;
+        if let Some(SensorFit { state, covariance, median_angle }) = fit(&pairs, params.vertical_speed_sd) {
+            let found = ScannerState { time: middle, state, covariance };
             part.median_angle = median_angle;
             part.put(&found, ground);
             if part.is_sure(params) {
-                part.verdict = if part.is_plausible(params) { Verdict::Accepted } else { Verdict::Implausible };
+                part.verdict = if part.is_plausible(params) { PartVerdict::Accepted } else { PartVerdict::Implausible };
             }
-            knot = Some(found).filter(|_| part.verdict == Verdict::Accepted);
+            knot = Some(found).filter(|_| part.verdict == PartVerdict::Accepted);
         }
     }
-    Estimate { part, knot, ground }
+    PartEstimate { part, knot, ground }
 }
 
 /// Joins the parts of a line, and gives its path over those that are used.
-fn join(line: &mut [Estimate], params: &SensorEstimateParams) -> Option<LinePath> {
+fn join(line: &mut [PartEstimate], params: &SensorEstimateParams) -> Option<LinePath> {
     let times: Vec<f64> = line.iter().map(|e| f64::midpoint(e.part.times[0], e.part.times[1])).collect();
-    let own: Vec<Option<State>> = line.iter().map(|estimate| estimate.knot.clone()).collect();
+    let own: Vec<Option<ScannerState>> = line.iter().map(|estimate| estimate.knot.clone()).collect();
     let (mut stretches, mut path) = (Vec::new(), Vec::new());
     for (estimate, knot) in line.iter_mut().zip(smoothed(&times, &own, params.acceleration_sd)) {
         let Some(knot) = knot else { continue };
         let part = &mut estimate.part;
         let before = part.clone();
         part.put(&knot, estimate.ground);
-        if part.verdict != Verdict::Accepted {
+        if part.verdict != PartVerdict::Accepted {
             if !(part.is_sure(params) && part.is_plausible(params)) {
                 *part = before;
                 continue;
             }
-            part.verdict = Verdict::Bridged;
+            part.verdict = PartVerdict::Bridged;
         }
         // no pulse between two parts of a pass, yet perhaps points that belong to none
         let before: Option<&mut Stretch> = stretches.last_mut();
@@ -128,7 +128,7 @@ pub(in crate::pulses) fn paths_from_returns(
     control: &Control<'_>,
 ) -> Result<(Vec<LinePath>, Vec<SensorPart>)> {
     params.validate()?;
-    let mut estimates: Vec<Estimate> = parts(pulses, params.part_s)
+    let mut estimates: Vec<PartEstimate> = parts(pulses, params.part_s)
         .into_par_iter()
         .map(|members| control.check().map(|()| estimate(cloud, pulses, &members, params)))
         .collect::<Result<_>>()?;
@@ -138,7 +138,7 @@ pub(in crate::pulses) fn paths_from_returns(
 }
 
 impl SensorPart {
-    fn put(&mut self, state: &State, ground: f64) {
+    fn put(&mut self, state: &ScannerState, ground: f64) {
         self.position = state.position();
         self.velocity = state.velocity();
         self.position_sd = state.position_sd();
@@ -152,6 +152,6 @@ impl SensorPart {
 
     fn is_plausible(&self, params: &SensorEstimateParams) -> bool {
         let [slowest, fastest] = params.speeds;
-        (slowest..=fastest).contains(&length(self.velocity)) && self.height >= params.least_height
+        (slowest..=fastest).contains(&length(self.velocity)) && self.height >= params.min_height
     }
 }

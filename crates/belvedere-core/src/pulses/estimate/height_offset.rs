@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::sensor_fit::{Pair, median, trust};
+use super::sensor_fit::{ReturnPair, median, trust};
 use crate::pulses::Pulses;
 use crate::pulses::flight_parts::HeightOffset;
 use belvedere_data::PointCloud;
@@ -10,22 +10,23 @@ use belvedere_data::PointCloud;
 /// Rounds of improvement and reweighting; offsets of a tenth of the height settle in four.
 const ROUNDS: usize = 8;
 /// Least distance between first and last return for a pulse to tell its direction, metres.
-const LEAST_LENGTH: f64 = 3.0;
+const MIN_LENGTH: f64 = 3.0;
 /// Fewest such pulses.
-const LEAST_PAIRS: usize = 100;
+const MIN_PAIRS: usize = 100;
 /// Offsets up to this are left alone, metres.
-const LEAST_OFFSET: f64 = 1.0;
+const MIN_OFFSET: f64 = 1.0;
 /// Offsets below so many deviations may be chance.
-const LEAST_DEVIATIONS: f64 = 4.0;
-/// Share of the misses of single pulses that may be systematic: beams that graze edges miss to one side more than to the other.
+const MIN_DEVIATIONS: f64 = 4.0;
+/// Share of the misses of single pulses that may be systematic: beams that graze edges miss to one side more than to
+/// the other.
 const SYSTEMATIC_SHARE: f64 = 0.5;
 
-/// The offset that brings `positions`, (P, 3) local metres for each of `pulses`, NaN where unknown, nearest to the lines of the
-/// pulses with several returns; `None` where too few have returns far enough apart.
+/// The offset that brings `positions`, (P, 3) local metres for each of `pulses`, NaN where unknown, nearest to the
+/// lines of the pulses with several returns; `None` where too few have returns far enough apart.
 ///
 /// # Source
-/// The miss at the last return as in [`crate::pulses::SensorPositions::from_returns`], with Huber's weights and one unknown for all
-/// lines; ours.
+/// The miss at the last return as in [`crate::pulses::SensorPositions::from_returns`], with Huber's weights and one
+/// unknown for all lines; ours.
 pub(in crate::pulses) fn height_offset(
     cloud: &PointCloud,
     pulses: &Pulses,
@@ -35,11 +36,11 @@ pub(in crate::pulses) fn height_offset(
     let pair = |(pulse, scanner): (usize, &[f32; 3])| {
         let returns = pulses.returns_of(pulse);
         let (first, last) = (place(returns.first()?)?, place(returns.last()?)?);
-        let is_known = scanner.iter().all(|v| v.is_finite()) && (last - first).norm() >= LEAST_LENGTH;
-        is_known.then(|| (Pair::new(first, last, 0.0), Vector3::from(scanner.map(f64::from))))
+        let is_known = scanner.iter().all(|v| v.is_finite()) && (last - first).norm() >= MIN_LENGTH;
+        is_known.then(|| (ReturnPair::new(first, last, 0.0), Vector3::from(scanner.map(f64::from))))
     };
-    let pairs: Vec<(Pair, Vector3<f64>)> = positions.iter().enumerate().filter_map(pair).collect();
-    if pairs.len() < LEAST_PAIRS {
+    let pairs: Vec<(ReturnPair, Vector3<f64>)> = positions.iter().enumerate().filter_map(pair).collect();
+    if pairs.len() < MIN_PAIRS {
         return None;
     }
     let misses = |offset: f64| -> Vec<_> {
@@ -63,12 +64,13 @@ pub(in crate::pulses) fn height_offset(
         sd = (squares / (2.0 * pairs.len() as f64) / normal).sqrt();
     }
     let found = misses(offset);
-    let angle = |(miss, (pair, _)): (&super::sensor_fit::Miss, &(Pair, _))| miss.offset.norm() / pair.along.norm();
+    let angle =
+        |(miss, (pair, _)): (&super::sensor_fit::Miss, &(ReturnPair, _))| miss.offset.norm() / pair.along.norm();
     let angle = median(found.iter().zip(&pairs).map(angle).collect());
     let height = median(pairs.iter().map(|(pair, scanner)| scanner.z + offset - pair.first.z).collect());
     // sine of the angle from the vertical, which is what a change of height shows in
     let tilt = median(found.iter().map(|miss| miss.across.column(2).norm()).collect());
     let feigned = SYSTEMATIC_SHARE * height.abs() * angle / tilt;
-    let is_applied = offset.is_finite() && offset.abs() > LEAST_OFFSET.max(LEAST_DEVIATIONS * sd).max(feigned);
+    let is_applied = offset.is_finite() && offset.abs() > MIN_OFFSET.max(MIN_DEVIATIONS * sd).max(feigned);
     offset.is_finite().then_some(HeightOffset { offset, sd, pair_count: pairs.len(), is_applied })
 }

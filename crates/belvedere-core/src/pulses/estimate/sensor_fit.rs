@@ -10,7 +10,7 @@ const HUBER_DEVIATIONS: f64 = 2.0;
 const RAYLEIGH_MEDIAN: f64 = 1.177_41;
 
 /// First and last return of a pulse.
-pub(super) struct Pair {
+pub(super) struct ReturnPair {
     pub(super) first: Vector3<f64>,
     /// From the first to the last.
     pub(super) along: Vector3<f64>,
@@ -19,7 +19,7 @@ pub(super) struct Pair {
 }
 
 /// What the pulses of a part of a flight line say of the scanner.
-pub(super) struct Fit {
+pub(super) struct SensorFit {
     /// Position half-way in time, local metres, then velocity, metres per second.
     pub(super) state: Vector6<f64>,
     /// Of the state, by the residuals.
@@ -28,15 +28,15 @@ pub(super) struct Fit {
     pub(super) median_angle: f64,
 }
 
-/// Position and velocity for which the last returns of `pairs` lie nearest to the lines from the scanner through the first
-/// ones, or `None` where they fix none.
+/// Position and velocity for which the last returns of `pairs` lie nearest to the lines from the scanner through the
+/// first ones, or `None` where they fix none.
 ///
-/// The first guess minimises how far the lines miss the scanner, which is linear. It lies too near, because a line with a
-/// wrong direction misses a far scanner by more, so the rounds that follow (Gauss and Newton) minimise the distance at the
-/// last return, where the error is. That distance is measured across the way from the scanner, not across the measured
-/// pulse, whose own error would pull the scanner towards the ground.
-pub(super) fn fit(pairs: &[Pair], vertical_speed_sd: f64) -> Option<Fit> {
-    let mut start = Equations::default();
+/// The first guess minimises how far the lines miss the scanner, which is linear. It lies too near, because a line with
+/// a wrong direction misses a far scanner by more, so the rounds that follow (Gauss and Newton) minimise the distance
+/// at the last return, where the error is. That distance is measured across the way from the scanner, not across the
+/// measured pulse, whose own error would pull the scanner towards the ground.
+pub(super) fn fit(pairs: &[ReturnPair], vertical_speed_sd: f64) -> Option<SensorFit> {
+    let mut start = PathEquations::default();
     for pair in pairs {
         // across the measured pulse, weighted with the square of its length
         let weighted = Matrix3::identity() * pair.along.norm_squared() - pair.along * pair.along.transpose();
@@ -47,7 +47,7 @@ pub(super) fn fit(pairs: &[Pair], vertical_speed_sd: f64) -> Option<Fit> {
     for _ in 0..ROUNDS {
         let misses: Vec<Miss> = pairs.iter().map(|pair| pair.miss(&state)).collect();
         let trust = trust(&misses);
-        let mut step = Equations::default();
+        let mut step = PathEquations::default();
         let level = (scale_of(&misses) / vertical_speed_sd).powi(2);
         step.normal[(5, 5)] = level;
         step.right[5] = -level * state[5];
@@ -60,10 +60,10 @@ pub(super) fn fit(pairs: &[Pair], vertical_speed_sd: f64) -> Option<Fit> {
             pairs.iter().zip(&trust).map(|(pair, trust)| trust * pair.miss(&state).offset.norm_squared()).sum();
         covariance = factors.inverse() * (squares / (2.0 * pairs.len() as f64 - 6.0).max(1.0));
     }
-    let angle = |pair: &Pair| (pair.miss(&state).offset.norm() / pair.along.norm()).min(1.0).asin();
+    let angle = |pair: &ReturnPair| (pair.miss(&state).offset.norm() / pair.along.norm()).min(1.0).asin();
     let median_angle = median(pairs.iter().map(angle).collect());
     let is_finite = state.iter().chain(covariance.iter()).all(|v| v.is_finite());
-    is_finite.then_some(Fit { state, covariance, median_angle })
+    is_finite.then_some(SensorFit { state, covariance, median_angle })
 }
 
 /// How much each of `misses` counts: those that stand out less.
@@ -91,7 +91,7 @@ pub(super) struct Miss {
     pub(super) across: Matrix3<f64>,
 }
 
-impl Pair {
+impl ReturnPair {
     /// The pulse with these returns, which are apart, sent `since` seconds after the middle of the part.
     pub(super) fn new(first: Vector3<f64>, last: Vector3<f64>, since: f64) -> Self {
         Self { first, along: last - first, since }
@@ -114,12 +114,12 @@ impl Pair {
 
 /// Normal equations for position and velocity.
 #[derive(Default)]
-struct Equations {
+struct PathEquations {
     normal: Matrix6<f64>,
     right: Vector6<f64>,
 }
 
-impl Equations {
+impl PathEquations {
     /// Adds what says that `matrix` times the position at `since` is `right`.
     fn add(&mut self, matrix: &Matrix3<f64>, right: &Vector3<f64>, since: f64) {
         for (row, row_factor) in [(0, 1.0), (3, since)] {

@@ -6,7 +6,7 @@ use crate::pulses::line_path::{Knot, LONGEST_BRIDGE_S};
 
 /// What is known of the scanner at a time: position then velocity, and their covariance.
 #[derive(Clone, Debug)]
-pub(super) struct State {
+pub(super) struct ScannerState {
     /// Seconds.
     pub(super) time: f64,
     /// Local metres, metres per second.
@@ -14,13 +14,18 @@ pub(super) struct State {
     pub(super) covariance: Matrix6<f64>,
 }
 
-/// The estimates for the parts of a line at increasing `times`, made to agree: each with what the others say of it, as far as
-/// accelerations of the deviation `acceleration_sd` (metres per second squared, white over a second) leave it. `None` where
-/// no estimate is near in time.
+/// The estimates for the parts of a line at increasing `times`, made to agree: each with what the others say of it, as
+/// far as accelerations of the deviation `acceleration_sd` (metres per second squared, white over a second) leave it.
+/// `None` where no estimate is near in time.
 ///
 /// # Source
-/// Rauch, Tung & Striebel 1965: the smoother of fixed interval, for a constant velocity disturbed by white acceleration.
-pub(super) fn smoothed(times: &[f64], estimates: &[Option<State>], acceleration_sd: f64) -> Vec<Option<State>> {
+/// Rauch, Tung & Striebel 1965: the smoother of fixed interval, for a constant velocity disturbed by white
+/// acceleration.
+pub(super) fn smoothed(
+    times: &[f64],
+    estimates: &[Option<ScannerState>],
+    acceleration_sd: f64,
+) -> Vec<Option<ScannerState>> {
     let mut result = vec![None; times.len()];
     let known: Vec<usize> = (0..estimates.len().min(times.len())).filter(|&i| estimates[i].is_some()).collect();
     for chain in known.chunk_by(|&a, &b| times[b] - times[a] <= LONGEST_BRIDGE_S) {
@@ -42,9 +47,15 @@ pub(super) fn smoothed(times: &[f64], estimates: &[Option<State>], acceleration_
 }
 
 /// What `from` says of `time`, unless something surer is there.
-fn nearer(there: Option<State>, from: Option<&State>, time: f64, acceleration_sd: f64) -> Option<State> {
+fn nearer(
+    there: Option<ScannerState>,
+    from: Option<&ScannerState>,
+    time: f64,
+    acceleration_sd: f64,
+) -> Option<ScannerState> {
     let predicted = from.map(|known| known.predicted(time, acceleration_sd));
-    let is_surer = |a: &State, b: &State| a.position_sd().iter().sum::<f64>() <= b.position_sd().iter().sum::<f64>();
+    let is_surer =
+        |a: &ScannerState, b: &ScannerState| a.position_sd().iter().sum::<f64>() <= b.position_sd().iter().sum::<f64>();
     match (there, predicted) {
         (Some(a), Some(b)) => Some(if is_surer(&a, &b) { a } else { b }),
         (a, b) => a.or(b),
@@ -54,11 +65,11 @@ fn nearer(there: Option<State>, from: Option<&State>, time: f64, acceleration_sd
 /// The states of the parts `range`, of which the first and the last have an estimate.
 fn smooth_chain(
     times: &[f64],
-    estimates: &[Option<State>],
+    estimates: &[Option<ScannerState>],
     range: std::ops::RangeInclusive<usize>,
     acceleration_sd: f64,
-) -> Vec<(usize, State)> {
-    let mut filtered: Vec<(usize, State)> = Vec::new();
+) -> Vec<(usize, ScannerState)> {
+    let mut filtered: Vec<(usize, ScannerState)> = Vec::new();
     for i in range {
         let predicted = filtered.last().map(|(_, known)| known.predicted(times[i], acceleration_sd));
         let known = match (predicted, &estimates[i]) {
@@ -77,7 +88,7 @@ fn smooth_chain(
         let gain = known.covariance * step.transpose() * inverse;
         let covariance = known.covariance + gain * (later.covariance - predicted.covariance) * gain.transpose();
         let state = known.state + gain * (later.state - predicted.state);
-        filtered[i - 1].1 = State { time: known.time, state, covariance: symmetric(&covariance) };
+        filtered[i - 1].1 = ScannerState { time: known.time, state, covariance: symmetric(&covariance) };
     }
     filtered
 }
@@ -93,7 +104,7 @@ fn transition(seconds: f64) -> Matrix6<f64> {
     matrix
 }
 
-impl State {
+impl ScannerState {
     pub(super) fn to_knot(&self) -> Knot {
         Knot { time: self.time, position: self.position(), velocity: self.velocity() }
     }
@@ -143,9 +154,9 @@ impl State {
 mod tests {
     use super::*;
 
-    fn state_at(time: f64, x: f64, sd: f64) -> State {
+    fn state_at(time: f64, x: f64, sd: f64) -> ScannerState {
         let state = Vector6::new(x, 0.0, 500.0, 60.0, 0.0, 0.0);
-        State { time, state, covariance: Matrix6::identity() * sd * sd }
+        ScannerState { time, state, covariance: Matrix6::identity() * sd * sd }
     }
 
     #[test]

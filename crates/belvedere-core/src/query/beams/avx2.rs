@@ -1,4 +1,5 @@
-//! Eight lanes at once on machines with AVX2 and FMA: the same arithmetic as [`super::lanes::Scalar`] with fused products, in the same order.
+//! Eight lanes at once on machines with AVX2 and FMA: the same arithmetic as [`super::lanes::BeamScalar`] with fused
+//! products, in the same order.
 #![expect(
     unsafe_code,
     reason = "nearly all of the time of viewsheds of many observers goes into these tests (docs/methods/viewshed.md); tests compare them with \
@@ -6,18 +7,19 @@
 )]
 
 use super::blockers::LANES;
-use super::lanes::{Bits, Columns, ConvexSpace, HalfLine, Kernels, PLANES};
-use super::sweep::Sweep;
+use super::lanes::{ConvexSpace, HalfLine, Kernels, LaneBits, LaneColumns, PLANES};
+use super::sweep::TreeSweep;
 use crate::blocking::Ball;
 use crate::instructions::Instructions;
-use crate::ray_index::Sides;
+use crate::ray_index::PartSides;
 use std::arch::x86_64::*;
 
-/// Visits the places of the targets below `node` that no ball blocks; false on a machine without these instructions, where nothing is done.
-pub(super) fn search(sweep: &Sweep<'_>, node: usize, visit: &mut impl FnMut(usize)) -> bool {
+/// Visits the places of the targets below `node` that no ball blocks; false on a machine without these instructions,
+/// where nothing is done.
+pub(super) fn search(sweep: &TreeSweep<'_>, node: usize, visit: &mut impl FnMut(usize)) -> bool {
     #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
-    fn run(sweep: &Sweep<'_>, node: usize, visit: &mut impl FnMut(usize)) {
-        sweep.search::<Avx2>(node, visit);
+    fn run(sweep: &TreeSweep<'_>, node: usize, visit: &mut impl FnMut(usize)) {
+        sweep.search::<BeamAvx2>(node, visit);
     }
     let is_able = Instructions::detect() == Instructions::Avx2;
     if is_able {
@@ -28,10 +30,10 @@ pub(super) fn search(sweep: &Sweep<'_>, node: usize, visit: &mut impl FnMut(usiz
 }
 
 /// AVX2 and FMA.
-pub(super) struct Avx2;
+pub(super) struct BeamAvx2;
 
-// SAFETY of the blocks below: the methods are only used where AVX2 and FMA were found, and inlined into functions that enable them; `load` and `store` touch
-// arrays of exactly eight f32.
+// SAFETY of the blocks below: the methods are only used where AVX2 and FMA were found, and inlined into functions that
+// enable them; `load` and `store` touch arrays of exactly eight f32.
 
 #[inline(always)]
 fn load(lanes: &[f32; LANES]) -> __m256 {
@@ -52,9 +54,9 @@ fn all(value: f32) -> __m256 {
 }
 
 #[inline(always)]
-fn bits(mask: __m256) -> Bits {
+fn bits(mask: __m256) -> LaneBits {
     // SAFETY: see above
-    Bits(unsafe { _mm256_movemask_ps(mask) }.cast_unsigned())
+    LaneBits(unsafe { _mm256_movemask_ps(mask) }.cast_unsigned())
 }
 
 #[inline(always)]
@@ -72,12 +74,12 @@ fn depth(space: &ConvexSpace, plane: usize, [x, y, z]: [__m256; 3]) -> __m256 {
     unsafe { _mm256_fnmadd_ps(normal[2], z, _mm256_fnmadd_ps(normal[1], y, _mm256_fnmadd_ps(normal[0], x, offset))) }
 }
 
-impl Kernels for Avx2 {
+impl Kernels for BeamAvx2 {
     #[inline(always)]
-    fn meet_boxes(space: &ConvexSpace, sides: &Sides) -> Bits {
+    fn meet_boxes(space: &ConvexSpace, sides: &PartSides) -> LaneBits {
         // SAFETY: see above
         unsafe {
-            let mut least = all(f32::INFINITY);
+            let mut min = all(f32::INFINITY);
             for plane in 0..PLANES {
                 let [x, y, z] = space.inward[plane];
                 let corner = [
@@ -85,27 +87,27 @@ impl Kernels for Avx2 {
                     load(&sides[1][usize::from(y & 1)]),
                     load(&sides[2][usize::from(z & 1)]),
                 ];
-                least = _mm256_min_ps(least, depth(space, plane, corner));
+                min = _mm256_min_ps(min, depth(space, plane, corner));
             }
-            bits(_mm256_cmp_ps::<_CMP_GE_OQ>(least, _mm256_setzero_ps()))
+            bits(_mm256_cmp_ps::<_CMP_GE_OQ>(min, _mm256_setzero_ps()))
         }
     }
 
     #[inline(always)]
-    fn meet_balls(space: &ConvexSpace, [x, y, z, radius]: &Columns) -> Bits {
+    fn meet_balls(space: &ConvexSpace, [x, y, z, radius]: &LaneColumns) -> LaneBits {
         // SAFETY: see above
         unsafe {
             let (center, radius) = ([load(x), load(y), load(z)], load(radius));
-            let mut least = radius;
+            let mut min = radius;
             for plane in 0..PLANES {
-                least = _mm256_min_ps(least, depth(space, plane, center));
+                min = _mm256_min_ps(min, depth(space, plane, center));
             }
-            bits(_mm256_cmp_ps::<_CMP_GE_OQ>(least, _mm256_sub_ps(_mm256_setzero_ps(), radius)))
+            bits(_mm256_cmp_ps::<_CMP_GE_OQ>(min, _mm256_sub_ps(_mm256_setzero_ps(), radius)))
         }
     }
 
     #[inline(always)]
-    fn may_cover(space: &ConvexSpace, [x, y, z, radius]: &Columns) -> Bits {
+    fn may_cover(space: &ConvexSpace, [x, y, z, radius]: &LaneColumns) -> LaneBits {
         // SAFETY: see above
         unsafe {
             let (center, radius) = ([load(x), load(y), load(z)], load(radius));
@@ -117,7 +119,7 @@ impl Kernels for Avx2 {
     }
 
     #[inline(always)]
-    fn near_line([x, y, z, radius]: &Columns, line: &HalfLine) -> Bits {
+    fn near_line([x, y, z, radius]: &LaneColumns, line: &HalfLine) -> LaneBits {
         // SAFETY: see above
         unsafe {
             let [ox, oy, oz] = line.origin.map(all);
@@ -136,7 +138,7 @@ impl Kernels for Avx2 {
     }
 
     #[inline(always)]
-    fn columns(balls: &[Ball; LANES]) -> Columns {
+    fn columns(balls: &[Ball; LANES]) -> LaneColumns {
         // SAFETY: see above
         unsafe {
             let row = |ball: &Ball| _mm_set_ps(ball.radius, ball.center[2], ball.center[1], ball.center[0]);
@@ -157,13 +159,14 @@ impl Kernels for Avx2 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::query::beams::lanes::Scalar;
+    use crate::query::beams::lanes::BeamScalar;
     use belvedere_data::random::uniform;
 
     /// The scalar form with fused products.
-    type Fused = Scalar<true>;
+    type Fused = BeamScalar<true>;
 
-    /// Balls, boxes, spaces and lines of all sizes; every fourth number is a round one, so that equal values and zeros occur.
+    /// Balls, boxes, spaces and lines of all sizes; every fourth number is a round one, so that equal values and zeros
+    /// occur.
     fn random(seed: u64, index: u64) -> f32 {
         let value = uniform(seed, index);
         #[expect(clippy::cast_possible_truncation, reason = "a test of f32")]
@@ -194,7 +197,7 @@ mod tests {
             }
             let balls: [Ball; LANES] =
                 std::array::from_fn(|_| Ball { center: [next(), next(), next()], radius: 2.0 * next() });
-            let mut sides: Sides = [[[0.0; LANES]; 2]; 3];
+            let mut sides: PartSides = [[[0.0; LANES]; 2]; 3];
             for [low, high] in &mut sides {
                 for (low, high) in low.iter_mut().zip(high) {
                     *low = next();
@@ -207,13 +210,13 @@ mod tests {
                 room: 0.01,
             };
             // SAFETY of the calls: this machine has AVX2 and FMA, as asked above
-            let columns = Avx2::columns(&balls);
+            let columns = BeamAvx2::columns(&balls);
             assert_eq!(columns, Fused::columns(&balls));
             let pairs = [
-                [Avx2::meet_boxes(&space, &sides), Fused::meet_boxes(&space, &sides)],
-                [Avx2::meet_balls(&space, &columns), Fused::meet_balls(&space, &columns)],
-                [Avx2::may_cover(&space, &columns), Fused::may_cover(&space, &columns)],
-                [Avx2::near_line(&columns, &line), Fused::near_line(&columns, &line)],
+                [BeamAvx2::meet_boxes(&space, &sides), Fused::meet_boxes(&space, &sides)],
+                [BeamAvx2::meet_balls(&space, &columns), Fused::meet_balls(&space, &columns)],
+                [BeamAvx2::may_cover(&space, &columns), Fused::may_cover(&space, &columns)],
+                [BeamAvx2::near_line(&columns, &line), Fused::near_line(&columns, &line)],
             ];
             for (passed, [avx2, scalar]) in passed.iter_mut().zip(pairs) {
                 assert_eq!(avx2, scalar, "seed {seed}");

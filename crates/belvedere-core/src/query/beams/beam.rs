@@ -1,13 +1,14 @@
 //! The space that all lines of sight of a box of targets run through.
 
-use super::blockers::Node;
+use super::blockers::IndexNode;
 use super::lanes::ConvexSpace;
-use super::sweep::{Apex, Sweep};
+use super::sweep::{Apex, TreeSweep};
 use crate::query::target_tree::TargetNode;
 use belvedere_data::vector::{cross, dot, sub};
 
-/// A node of balls is opened where it is larger than so many widths of the beam: with less, balls that only a part of the beam meets
-/// are looked at by all of it, with more, parts of the beam open the same nodes again. For targets on the ground of a town 2 and 3.2 take 5 % longer.
+/// A node of balls is opened where it is larger than so many widths of the beam: with less, balls that only a part of
+/// the beam meets are looked at by all of it, with more, parts of the beam open the same nodes again. For targets on
+/// the ground of a town 2 and 3.2 take 5 % longer.
 const OPENED_SHARE: f32 = 2.5;
 
 /// All lines of sight of a box of targets lie between these planes.
@@ -20,7 +21,7 @@ pub(super) struct Beam {
 }
 
 impl Beam {
-    pub(super) fn new(sweep: &Sweep<'_>, target: &TargetNode) -> Self {
+    pub(super) fn new(sweep: &TreeSweep<'_>, target: &TargetNode) -> Self {
         let outline = sweep.outline(target, 0.0);
         let corners = outline.points();
         let width = (0..3).map(|i| f64::from(target.high[i]) - f64::from(target.low[i])).fold(0.0, f64::max);
@@ -93,7 +94,7 @@ impl Beam {
 
     /// Whether a node is large against the beam there.
     #[inline(always)]
-    pub(super) fn is_narrower_than(&self, Node { sides: [x, y, z], .. }: &Node) -> bool {
+    pub(super) fn is_narrower_than(&self, IndexNode { sides: [x, y, z], .. }: &IndexNode) -> bool {
         let size = (x[1] - x[0]).max(y[1] - y[0]).max(z[1] - z[0]);
         let center = [0.5 * (x[0] + x[1]), 0.5 * (y[0] + y[1]), 0.5 * (z[0] + z[1])];
         size > OPENED_SHARE * (self.width + dot(self.growth, center))

@@ -1,14 +1,14 @@
 //! Balls and boxes of the index as beams take them: eight side by side, so that they are tested at once.
 
 use crate::blocking::Ball;
-use crate::ray_index::{OpenNode, PARTS, Sides};
+use crate::ray_index::{OpenNode, PARTS, PartSides};
 
 /// Balls, or nodes, that are tested side by side.
 pub(super) const LANES: usize = PARTS;
 
 /// A node of the index and its box.
 #[derive(Clone, Copy)]
-pub(super) struct Node {
+pub(super) struct IndexNode {
     /// Lowest and highest side by axis, local metres.
     pub(super) sides: [[f32; 2]; 3],
     pub(super) number: u32,
@@ -17,7 +17,7 @@ pub(super) struct Node {
 /// Up to eight nodes.
 #[derive(Clone, Copy)]
 pub(super) struct NodeBlock {
-    pub(super) sides: Sides,
+    pub(super) sides: PartSides,
     pub(super) number: [u32; LANES],
     /// Those that are taken.
     pub(super) count: usize,
@@ -40,18 +40,18 @@ pub(super) struct Blocks<B> {
 }
 
 /// A block of eight things.
-pub(super) trait Block: Copy {
+pub(super) trait BeamBlock: Copy {
     type Item;
     const EMPTY: Self;
     fn set(&mut self, lane: usize, item: Self::Item);
 }
 
-impl Block for NodeBlock {
-    type Item = Node;
+impl BeamBlock for NodeBlock {
+    type Item = IndexNode;
     const EMPTY: Self = Self { sides: [[[0.0; LANES]; 2]; 3], number: [0; LANES], count: 0 };
 
     #[inline(always)]
-    fn set(&mut self, lane: usize, node: Node) {
+    fn set(&mut self, lane: usize, node: IndexNode) {
         for axis in 0..3 {
             for side in 0..2 {
                 self.sides[axis][side][lane] = node.sides[axis][side];
@@ -64,12 +64,12 @@ impl Block for NodeBlock {
 
 impl NodeBlock {
     #[inline(always)]
-    pub(super) fn get(&self, lane: usize) -> Node {
-        Node { sides: sides_of(&self.sides, lane), number: self.number[lane] }
+    pub(super) fn get(&self, lane: usize) -> IndexNode {
+        IndexNode { sides: sides_of(&self.sides, lane), number: self.number[lane] }
     }
 }
 
-impl Node {
+impl IndexNode {
     /// The part of an opened node, which is a node.
     #[inline(always)]
     pub(super) fn of(opened: &OpenNode<'_>, part: usize) -> Self {
@@ -78,11 +78,11 @@ impl Node {
 }
 
 #[inline(always)]
-fn sides_of([x, y, z]: &Sides, lane: usize) -> [[f32; 2]; 3] {
+fn sides_of([x, y, z]: &PartSides, lane: usize) -> [[f32; 2]; 3] {
     [[x[0][lane], x[1][lane]], [y[0][lane], y[1][lane]], [z[0][lane], z[1][lane]]]
 }
 
-impl Block for BallBlock {
+impl BeamBlock for BallBlock {
     type Item = (Ball, u32);
     const EMPTY: Self =
         Self { columns: [[0.0; LANES], [0.0; LANES], [0.0; LANES], [f32::NEG_INFINITY; LANES]], row: [0; LANES] };
@@ -111,7 +111,7 @@ impl<B> Default for Blocks<B> {
     }
 }
 
-impl<B: Block> Blocks<B> {
+impl<B: BeamBlock> Blocks<B> {
     /// Number of blocks; what is pushed next gets a block of its own.
     pub(super) fn end(&mut self) -> usize {
         self.last = LANES;

@@ -2,14 +2,14 @@
 
 use super::blockers::LANES;
 use crate::blocking::Ball;
-use crate::ray_index::Sides;
+use crate::ray_index::PartSides;
 use belvedere_data::vector::{cross, dot};
 
 /// Planes around a beam.
 pub(super) const PLANES: usize = 6;
 
 /// Centres by axis, and radii, of eight balls.
-pub(super) type Columns = [[f32; LANES]; 4];
+pub(super) type LaneColumns = [[f32; LANES]; 4];
 
 /// A convex space between planes.
 pub(super) struct ConvexSpace {
@@ -25,8 +25,8 @@ impl ConvexSpace {
         Self { normals: [[0.0; 3]; PLANES], offsets: [f32::MAX; PLANES], inward: [[0; 3]; PLANES] }
     }
 
-    /// Limits the space by a plane with an outward unit normal, so far out along it, local metres. What f32 rounds must be added to the offset; boxes
-    /// of nodes are padded by as much again.
+    /// Limits the space by a plane with an outward unit normal, so far out along it, local metres. What f32 rounds must
+    /// be added to the offset; boxes of nodes are padded by as much again.
     pub(super) fn set(&mut self, plane: usize, normal: [f32; 3], offset: f32) {
         self.normals[plane] = normal;
         self.offsets[plane] = offset;
@@ -44,9 +44,9 @@ pub(super) struct HalfLine {
 
 /// Which of eight things fulfil a condition: one bit each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Bits(pub(super) u32);
+pub(super) struct LaneBits(pub(super) u32);
 
-impl Bits {
+impl LaneBits {
     /// Those of the first `count` things.
     #[inline(always)]
     pub(super) fn first(self, count: usize) -> Self {
@@ -59,7 +59,7 @@ impl Bits {
     }
 }
 
-impl Iterator for Bits {
+impl Iterator for LaneBits {
     type Item = usize;
 
     #[inline(always)]
@@ -76,33 +76,33 @@ impl Iterator for Bits {
 /// The tests, for one set of instructions.
 pub(super) trait Kernels {
     /// Which boxes may reach into the space.
-    fn meet_boxes(space: &ConvexSpace, sides: &Sides) -> Bits;
+    fn meet_boxes(space: &ConvexSpace, sides: &PartSides) -> LaneBits;
     /// Which balls may reach into the space.
-    fn meet_balls(space: &ConvexSpace, balls: &Columns) -> Bits;
-    /// Which balls reach about as far on all sides as the space, of which the first four planes lie around: worth the exact question whether
-    /// they hide all of it.
-    fn may_cover(space: &ConvexSpace, balls: &Columns) -> Bits;
+    fn meet_balls(space: &ConvexSpace, balls: &LaneColumns) -> LaneBits;
+    /// Which balls reach about as far on all sides as the space, of which the first four planes lie around: worth the
+    /// exact question whether they hide all of it.
+    fn may_cover(space: &ConvexSpace, balls: &LaneColumns) -> LaneBits;
     /// Which balls may touch a half line.
-    fn near_line(balls: &Columns, line: &HalfLine) -> Bits;
+    fn near_line(balls: &LaneColumns, line: &HalfLine) -> LaneBits;
     /// Balls by column.
-    fn columns(balls: &[Ball; LANES]) -> Columns;
+    fn columns(balls: &[Ball; LANES]) -> LaneColumns;
 }
 
-/// Plain loops over eight lanes without branches, which compilers turn into what instructions they may use. With `FUSED`, products are added before
-/// they are rounded, which is slow on machines that have no such instruction.
-pub(super) struct Scalar<const FUSED: bool>;
+/// Plain loops over eight lanes without branches, which compilers turn into what instructions they may use. With
+/// `FUSED`, products are added before they are rounded, which is slow on machines that have no such instruction.
+pub(super) struct BeamScalar<const FUSED: bool>;
 
 /// The bits of lanes that are true.
 #[inline(always)]
-fn bits(lanes: [bool; LANES]) -> Bits {
+fn bits(lanes: [bool; LANES]) -> LaneBits {
     let mut bits = 0;
     for (lane, holds) in lanes.into_iter().enumerate() {
         bits |= u32::from(holds) << lane;
     }
-    Bits(bits)
+    LaneBits(bits)
 }
 
-impl<const FUSED: bool> Scalar<FUSED> {
+impl<const FUSED: bool> BeamScalar<FUSED> {
     /// How far inside a plane places lie, metres.
     #[inline(always)]
     fn depths(space: &ConvexSpace, plane: usize, [x, y, z]: [&[f32; LANES]; 3]) -> [f32; LANES] {
@@ -118,38 +118,38 @@ impl<const FUSED: bool> Scalar<FUSED> {
     }
 }
 
-impl<const FUSED: bool> Kernels for Scalar<FUSED> {
+impl<const FUSED: bool> Kernels for BeamScalar<FUSED> {
     #[inline(always)]
-    fn meet_boxes(space: &ConvexSpace, sides: &Sides) -> Bits {
-        let mut least = [f32::INFINITY; LANES];
+    fn meet_boxes(space: &ConvexSpace, sides: &PartSides) -> LaneBits {
+        let mut min = [f32::INFINITY; LANES];
         for plane in 0..PLANES {
             let [x, y, z] = space.inward[plane].map(|side| usize::from(side & 1));
             let depths = Self::depths(space, plane, [&sides[0][x], &sides[1][y], &sides[2][z]]);
             for lane in 0..LANES {
-                least[lane] = if depths[lane] < least[lane] { depths[lane] } else { least[lane] };
+                min[lane] = if depths[lane] < min[lane] { depths[lane] } else { min[lane] };
             }
         }
-        bits(least.map(|least| least >= 0.0))
+        bits(min.map(|min| min >= 0.0))
     }
 
     #[inline(always)]
-    fn meet_balls(space: &ConvexSpace, [x, y, z, radius]: &Columns) -> Bits {
-        let mut least = *radius;
+    fn meet_balls(space: &ConvexSpace, [x, y, z, radius]: &LaneColumns) -> LaneBits {
+        let mut min = *radius;
         for plane in 0..PLANES {
             let depths = Self::depths(space, plane, [x, y, z]);
             for lane in 0..LANES {
-                least[lane] = if depths[lane] < least[lane] { depths[lane] } else { least[lane] };
+                min[lane] = if depths[lane] < min[lane] { depths[lane] } else { min[lane] };
             }
         }
         let mut meets = [false; LANES];
         for lane in 0..LANES {
-            meets[lane] = least[lane] >= -radius[lane];
+            meets[lane] = min[lane] >= -radius[lane];
         }
         bits(meets)
     }
 
     #[inline(always)]
-    fn may_cover(space: &ConvexSpace, [x, y, z, radius]: &Columns) -> Bits {
+    fn may_cover(space: &ConvexSpace, [x, y, z, radius]: &LaneColumns) -> LaneBits {
         let planes: [[f32; LANES]; 4] = std::array::from_fn(|plane| Self::depths(space, plane, [x, y, z]));
         let larger = |a: f32, b: f32| if a > b { a } else { b };
         let mut covers = [false; LANES];
@@ -162,7 +162,7 @@ impl<const FUSED: bool> Kernels for Scalar<FUSED> {
     }
 
     #[inline(always)]
-    fn near_line([x, y, z, radius]: &Columns, line: &HalfLine) -> Bits {
+    fn near_line([x, y, z, radius]: &LaneColumns, line: &HalfLine) -> LaneBits {
         let mut near = [false; LANES];
         for lane in 0..LANES {
             let m = [x[lane] - line.origin[0], y[lane] - line.origin[1], z[lane] - line.origin[2]];
@@ -174,7 +174,7 @@ impl<const FUSED: bool> Kernels for Scalar<FUSED> {
     }
 
     #[inline(always)]
-    fn columns(balls: &[Ball; LANES]) -> Columns {
+    fn columns(balls: &[Ball; LANES]) -> LaneColumns {
         let axis = |axis: usize| balls.map(|ball| ball.center[axis]);
         [axis(0), axis(1), axis(2), balls.map(|ball| ball.radius)]
     }
@@ -185,7 +185,7 @@ mod tests {
     use super::*;
 
     /// The form for machines without fused products.
-    type Plain = Scalar<false>;
+    type Plain = BeamScalar<false>;
 
     /// The wedge of points with x from −1 to 1 and y at most 2.
     fn wedge() -> ConvexSpace {
@@ -201,12 +201,12 @@ mod tests {
         let x = [0.0, 3.0, 2.0, -2.0, 0.0, 0.0, 1.5, -9.0];
         let y = [0.0, 0.0, 0.0, 0.0, 3.0, 4.0, 2.5, 0.0];
         // each with a half size, or a radius, of 1: it touches in the third, fourth and fifth case
-        let met = Bits(0b0101_1101);
+        let met = LaneBits(0b0101_1101);
         let around = |centers: [f32; LANES]| [centers.map(|v| v - 1.0), centers.map(|v| v + 1.0)];
         assert_eq!(Plain::meet_boxes(&wedge(), &[around(x), around(y), around([7.0; LANES])]), met);
-        let balls: Columns = [x, y, [7.0; LANES], [1.0; LANES]];
+        let balls: LaneColumns = [x, y, [7.0; LANES], [1.0; LANES]];
         assert_eq!(Plain::meet_balls(&wedge(), &balls), met);
-        assert_eq!(Plain::meet_balls(&wedge(), &[x, y, x, [f32::NEG_INFINITY; LANES]]), Bits(0));
+        assert_eq!(Plain::meet_balls(&wedge(), &[x, y, x, [f32::NEG_INFINITY; LANES]]), LaneBits(0));
     }
 
     #[test]
@@ -215,12 +215,12 @@ mod tests {
         let x = [5.0, -0.5, -2.0, 5.0, 5.0, 0.0, 100.0, 1.0];
         let y = [0.5, 0.0, 0.0, 1.5, -1.0, 0.0, 0.0, 0.0];
         let radius = [1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, f32::NEG_INFINITY];
-        assert_eq!(Plain::near_line(&[x, y, [0.0; LANES], radius], &line), Bits(0b0111_0011));
+        assert_eq!(Plain::near_line(&[x, y, [0.0; LANES], radius], &line), LaneBits(0b0111_0011));
     }
 
     #[test]
     fn bits_are_gone_through_from_the_lowest() {
-        let bits = Bits(0b1010_0110);
+        let bits = LaneBits(0b1010_0110);
         assert_eq!(bits.collect::<Vec<_>>(), [1, 2, 5, 7]);
         assert_eq!(bits.first(5).collect::<Vec<_>>(), [1, 2]);
         assert_eq!(bits.first(8), bits);

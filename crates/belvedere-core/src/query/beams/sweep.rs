@@ -1,8 +1,8 @@
 //! One viewer's look at a tree of targets: the search itself.
 
 use super::beam::Beam;
-use super::blockers::{BallBlock, Block, Blocks, LANES, Node, NodeBlock};
-use super::lanes::{Bits, Columns, HalfLine, Kernels, Scalar};
+use super::blockers::{BallBlock, BeamBlock, Blocks, IndexNode, LANES, NodeBlock};
+use super::lanes::{BeamScalar, HalfLine, Kernels, LaneBits, LaneColumns};
 use crate::blocking::{Ball, Profile};
 use crate::query::target_tree::{LEAF, TargetNode, TargetTree};
 use crate::query::{MedialScene, Viewer};
@@ -12,19 +12,20 @@ use belvedere_data::vector::{dot, sub};
 use belvedere_data::{Error, Result};
 use std::ops::Range;
 
-/// What f32 may err by in the test of a beam, as a share of the largest coordinate: a dozen roundings of 6e-8, fewer where products are fused. Sides of
-/// boxes are rounded twice more; boxes are padded by at least as much ([`RayIndex`]).
+/// What f32 may err by in the test of a beam, as a share of the largest coordinate: a dozen roundings of 6e-8, fewer
+/// where products are fused. Sides of boxes are rounded twice more; boxes are padded by at least as much
+/// ([`RayIndex`]).
 const ROUNDING: f64 = 1e-6;
-/// How much smaller a ball counts where it is to hide a box, as a share of its squared radius and of squared distances: whatever f64
-/// rounds in the exact test, and then some.
+/// How much smaller a ball counts where it is to hide a box, as a share of its squared radius and of squared distances:
+/// whatever f64 rounds in the exact test, and then some.
 const COVER_MARGINS: [f64; 2] = [1e-9, 1e-14];
 /// Targets of a node that stand for their shape; of more, their box does. At least the corners of a box.
-const MOST_OUTLINED: usize = 24;
+const MAX_OUTLINED: usize = 24;
 /// Balls that blocked the last targets and are asked first for the next; more find little more.
 const RECENT: usize = 4;
 
 /// One viewer's look at a tree of targets.
-pub(super) struct Sweep<'a> {
+pub(super) struct TreeSweep<'a> {
     scene: &'a MedialScene,
     index: &'a RayIndex,
     balls: &'a [Ball],
@@ -45,7 +46,7 @@ pub(super) enum Apex {
     Direction([f64; 3]),
 }
 
-impl<'a> Sweep<'a> {
+impl<'a> TreeSweep<'a> {
     pub(super) fn new(
         scene: &'a MedialScene,
         viewer: Viewer<'a>,
@@ -66,7 +67,7 @@ impl<'a> Sweep<'a> {
             }
         };
         let index = scene.tree().index();
-        let farthest = |v: [f64; 3]| v.into_iter().fold(0.0, |most: f64, v| most.max(v.abs()));
+        let farthest = |v: [f64; 3]| v.into_iter().fold(0.0, |max: f64, v| max.max(v.abs()));
         let mut scale = (0..3).map(|i| index.half_size()[i] + index.center()[i].abs()).fold(0.0, f64::max);
         if let Apex::Eye(eye) = apex {
             scale = scale.max(farthest(eye));
@@ -94,7 +95,7 @@ impl<'a> Sweep<'a> {
         if super::avx2::search(self, node, visit) {
             return;
         }
-        self.search::<Scalar<false>>(node, visit);
+        self.search::<BeamScalar<false>>(node, visit);
     }
 
     /// The same. All that it calls is inlined, so that it can be compiled for other instructions.
@@ -106,10 +107,10 @@ impl<'a> Sweep<'a> {
             #[expect(clippy::cast_possible_truncation, reason = "beams are widened by more than what is rounded")]
             let side = |axis: usize, sign: f64| (index.center()[axis] + sign * index.half_size()[axis]) as f32;
             let sides = std::array::from_fn(|axis| [side(axis, -1.0), side(axis, 1.0)]);
-            lists.nodes.push(Node { sides, number: root });
+            lists.nodes.push(IndexNode { sides, number: root });
         }
-        let mut waiting = vec![Task { node, given: [[0; 2], lists.end()] }];
-        while let Some(Task { node, given }) = waiting.pop() {
+        let mut waiting = vec![BeamTask { node, given: [[0; 2], lists.end()] }];
+        while let Some(BeamTask { node, given }) = waiting.pop() {
             if self.control.is_cancelled() {
                 return;
             }
@@ -139,17 +140,17 @@ impl<'a> Sweep<'a> {
             for half in halves.into_iter().rev() {
                 match self.targets.nodes[half].halves {
                     Some([lower, upper]) => {
-                        waiting.push(Task { node: upper, given: left });
-                        waiting.push(Task { node: lower, given: left });
+                        waiting.push(BeamTask { node: upper, given: left });
+                        waiting.push(BeamTask { node: lower, given: left });
                     }
-                    None => waiting.push(Task { node: half, given: left }),
+                    None => waiting.push(BeamTask { node: half, given: left }),
                 }
             }
         }
     }
 
-    /// Answers the targets of a leaf one by one: by what blocked the last ones, then by the balls at hand, and only where these leave
-    /// them visible by those of the nodes too.
+    /// Answers the targets of a leaf one by one: by what blocked the last ones, then by the balls at hand, and only
+    /// where these leave them visible by those of the nodes too.
     #[inline(always)]
     fn finish<K: Kernels>(
         &self,
@@ -182,7 +183,8 @@ impl<'a> Sweep<'a> {
         }
     }
 
-    /// Asks for those targets of a leaf that are visible so far whether one of some balls blocks them; false when none is left.
+    /// Asks for those targets of a leaf that are visible so far whether one of some balls blocks them; false when none
+    /// is left.
     #[inline(always)]
     fn sift<K: Kernels>(&self, rays: &[Option<Ray>], visible: &mut [bool; LEAF], lists: &mut Lists, by: By) -> bool {
         let mut is_any_visible = false;
@@ -208,12 +210,12 @@ impl<'a> Sweep<'a> {
         is_any_visible
     }
 
-    /// Points around the targets of a node, moved outward by `room` metres: the targets themselves where they are few, whose hull is tighter than their
-    /// box, otherwise the corners of the box.
+    /// Points around the targets of a node, moved outward by `room` metres: the targets themselves where they are few,
+    /// whose hull is tighter than their box, otherwise the corners of the box.
     #[inline(always)]
     pub(super) fn outline(&self, target: &TargetNode, room: f64) -> Outline {
-        let mut outline = Outline { points: [[0.0; 3]; MOST_OUTLINED], count: 8 };
-        if target.count <= MOST_OUTLINED && room == 0.0 {
+        let mut outline = Outline { points: [[0.0; 3]; MAX_OUTLINED], count: 8 };
+        if target.count <= MAX_OUTLINED && room == 0.0 {
             outline.count = target.count;
             let targets = &self.targets.positions()[target.first..target.first + target.count];
             for (point, target) in outline.points.iter_mut().zip(targets) {
@@ -230,7 +232,8 @@ impl<'a> Sweep<'a> {
         outline
     }
 
-    /// Appends those of the `given` blocks of balls that the beam may meet; true as soon as one hides all of the targets.
+    /// Appends those of the `given` blocks of balls that the beam may meet; true as soon as one hides all of the
+    /// targets.
     #[inline(always)]
     fn narrow_balls<K: Kernels>(
         &self,
@@ -257,8 +260,8 @@ impl<'a> Sweep<'a> {
         false
     }
 
-    /// Opens those of the `given` nodes that the beam may meet: appends the balls that it may meet, and nodes that need no opening; true as soon as
-    /// a ball hides all of the targets.
+    /// Opens those of the `given` nodes that the beam may meet: appends the balls that it may meet, and nodes that need
+    /// no opening; true as soon as a ball hides all of the targets.
     #[inline(always)]
     fn open_large_nodes<K: Kernels>(
         &self,
@@ -281,8 +284,8 @@ impl<'a> Sweep<'a> {
             while let Some(number) = unopened.pop() {
                 let Some(node) = self.index.open(number) else { continue };
                 let parts = K::meet_boxes(&beam.space, &node.sides);
-                for part in Bits(node.nodes(parts.0)) {
-                    let part = Node::of(&node, part);
+                for part in LaneBits(node.nodes(parts.0)) {
+                    let part = IndexNode::of(&node, part);
                     if beam.is_narrower_than(&part) {
                         unopened.push(part.number);
                     } else {
@@ -324,7 +327,7 @@ impl<'a> Sweep<'a> {
             while let Some(number) = unopened.pop() {
                 let Some(node) = self.index.open(number) else { continue };
                 let parts = K::meet_boxes(&beam.space, &node.sides);
-                for part in Bits(node.nodes(parts.0)) {
+                for part in LaneBits(node.nodes(parts.0)) {
                     unopened.push(node.number(part));
                 }
                 let rows = node.rows(parts.0);
@@ -341,7 +344,7 @@ impl<'a> Sweep<'a> {
 
     /// Centres and radii of eight balls from a row on.
     #[inline(always)]
-    fn columns<K: Kernels>(&self, first: u32) -> Columns {
+    fn columns<K: Kernels>(&self, first: u32) -> LaneColumns {
         let balls = self.balls.get(first as usize..).unwrap_or_default();
         if let Some(balls) = balls.first_chunk() {
             return K::columns(balls);
@@ -353,8 +356,8 @@ impl<'a> Sweep<'a> {
 
     /// Whether a ball blocks every line of sight of the targets, wherever in their box they lie.
     ///
-    /// The shadow of a ball is convex: a box lies in it if its corners do. Targets near its surface meet a ball smaller by up
-    /// to the shell, so the shadow of that one is asked; a target counts as `bias` nearer to the viewer.
+    /// The shadow of a ball is convex: a box lies in it if its corners do. Targets near its surface meet a ball smaller
+    /// by up to the shell, so the shadow of that one is asked; a target counts as `bias` nearer to the viewer.
     #[inline(always)]
     fn hides(&self, ball: u32, target: &TargetNode) -> bool {
         let params = self.scene.params();
@@ -363,7 +366,7 @@ impl<'a> Sweep<'a> {
         }
         let Ball { center, radius } = self.balls[ball as usize];
         let (center, whole) = (center.map(f64::from), f64::from(radius));
-        let radius = params.least_radius(whole);
+        let radius = params.min_radius(whole);
         let outline = self.outline(target, params.bias.max(0.0));
         let corners = outline.points();
         let squared = |v: [f64; 3]| dot(v, v);
@@ -447,7 +450,7 @@ enum By {
 }
 
 /// A node of targets, and from where to where the blocks of nodes and of balls lie that its beam may meet.
-struct Task {
+struct BeamTask {
     node: usize,
     given: [[usize; 2]; 2],
 }
@@ -479,7 +482,7 @@ impl Lists {
 
 /// Points in whose convex hull all targets of a node lie.
 pub(super) struct Outline {
-    points: [[f64; 3]; MOST_OUTLINED],
+    points: [[f64; 3]; MAX_OUTLINED],
     count: usize,
 }
 

@@ -1,15 +1,15 @@
 //! The first backend: the processor itself.
 //!
-//! Each direction is swept through cells of space, 64 lines of sight at a time, which tells of most whether they meet cells that no ball
-//! reaches only, or one that a ball fills. Balls near a target, where cells cannot tell, are gathered once for all directions. What is
-//! left is open.
+//! Each direction is swept through cells of space, 64 lines of sight at a time, which tells of most whether they meet
+//! cells that no ball reaches only, or one that a ball fills. Balls near a target, where cells cannot tell, are
+//! gathered once for all directions. What is left is open.
 
 mod nearby;
 mod space_layers;
 mod sweep;
 mod whole_cells;
 
-use super::backend::{BLOCK, Backend, Bits, Prepared, Settled, WORD, WORDS};
+use super::backend::{BLOCK, Backend, PreparedBackend, Settled, WORD, WORDS, WordBits};
 use super::ball_tree::BallTree;
 use super::lazy::Lazy;
 use crate::blocking::Profile;
@@ -22,7 +22,7 @@ use rayon::prelude::*;
 use space_layers::SpaceLayers;
 use std::sync::Arc;
 use sweep::{Swept, sweep_all};
-use whole_cells::{Heading, Place};
+use whole_cells::{SweptDirection, TargetCell};
 
 /// Directions from which on it pays to gather what is near a target, and to sweep them.
 const WORTH_GATHERING: usize = 16;
@@ -38,7 +38,7 @@ const TOGETHER: usize = 8;
 pub struct Cpu;
 
 impl Backend for Cpu {
-    fn prepare(&self, balls: &Arc<BallTree>) -> Result<Box<dyn Prepared>> {
+    fn prepare(&self, balls: &Arc<BallTree>) -> Result<Box<dyn PreparedBackend>> {
         Ok(Box::new(PreparedBalls::new(balls)))
     }
 }
@@ -49,7 +49,7 @@ pub struct PreparedBalls {
     layers: Lazy<SpaceLayers>,
 }
 
-impl Prepared for PreparedBalls {
+impl PreparedBackend for PreparedBalls {
     fn depth(&self, view: &View, start: f64, control: &Control<'_>) -> Result<DepthBounds> {
         let params = BoundsParams { shell: self.tree.rule().shell, start };
         depth_bounds(self.tree.balls(), view, &params, control)
@@ -66,14 +66,15 @@ impl Prepared for PreparedBalls {
         if targets.len() * WORDS_PER_LINE < layers.word_count() {
             return Ok(settled);
         }
-        let places: Vec<Option<Place>> = targets.par_iter().map(|target| Place::new(layers, *target)).collect();
+        let places: Vec<Option<TargetCell>> =
+            targets.par_iter().map(|target| TargetCell::new(layers, *target)).collect();
         let near: Vec<f64> = directions.iter().map(|direction| near_range(*direction)).collect();
-        let headings: Vec<Option<Heading>> = directions
+        let headings: Vec<Option<SweptDirection>> = directions
             .iter()
             .zip(&near)
-            .map(|(direction, near)| Heading::new(layers, *direction, near.max(self.tree.rule().bias)))
+            .map(|(direction, near)| SweptDirection::new(layers, *direction, near.max(self.tree.rule().bias)))
             .collect();
-        let steep: Vec<Heading> = headings.iter().flatten().cloned().collect();
+        let steep: Vec<SweptDirection> = headings.iter().flatten().cloned().collect();
         let mut of_steep = sweep_all(layers, &places, &steep, control)?.into_iter();
         let swept: Vec<Option<Swept>> =
             headings.iter().map(|heading| heading.as_ref().and_then(|_| of_steep.next())).collect();
@@ -83,7 +84,7 @@ impl Prepared for PreparedBalls {
             control.check()?;
             for ((swept, free), blocked) in swept.iter().zip(&mut *free).zip(&mut *blocked) {
                 let Some(swept) = swept else { continue };
-                let of_block = |bits: &[u64]| -> Bits {
+                let of_block = |bits: &[u64]| -> WordBits {
                     std::array::from_fn(|word| bits.get(block * WORDS + word).copied().unwrap_or(0))
                 };
                 (*free, *blocked) = (of_block(&swept.free), of_block(&swept.blocked));
@@ -108,7 +109,13 @@ impl PreparedBalls {
     }
 
     /// Blocks those lines of a block of targets that a ball near the target blocks.
-    fn leave_near(&self, targets: &[[f32; 3]], directions: &[[f64; 3]], free: &mut [Bits], blocked: &mut [Bits]) {
+    fn leave_near(
+        &self,
+        targets: &[[f32; 3]],
+        directions: &[[f64; 3]],
+        free: &mut [WordBits],
+        blocked: &mut [WordBits],
+    ) {
         let mut nearby = Nearby::default();
         for (i, target) in targets.iter().enumerate() {
             if i % TOGETHER == 0 {
@@ -143,7 +150,7 @@ fn near_range(direction: [f64; 3]) -> f64 {
 mod tests {
     use super::*;
     use crate::blocking::BlockRule;
-    use crate::query::backend::Line;
+    use crate::query::backend::LineAnswer;
     use belvedere_data::balls::{LIMIT_TOUCH, MedialBalls};
     use belvedere_data::random::uniform;
 
@@ -172,7 +179,8 @@ mod tests {
         let prepared = Cpu.prepare(&tree).unwrap();
         let share_settled = |targets: &[[f32; 3]]| {
             let settled = prepared.settle(targets, &directions, &Control::none()).unwrap();
-            let of_target = |target| (0..directions.len()).filter(|&d| settled.line(target, d) != Line::Open).count();
+            let of_target =
+                |target| (0..directions.len()).filter(|&d| settled.line(target, d) != LineAnswer::Open).count();
             let lines: usize = (0..targets.len()).map(of_target).sum();
             lines as f64 / (targets.len() * directions.len()) as f64
         };

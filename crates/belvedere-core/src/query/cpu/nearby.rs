@@ -2,10 +2,10 @@
 
 use crate::blocking::{Ball, Cover};
 use crate::query::ball_tree::BallTree;
-use crate::ray_index::{PARTS, Part, Ray};
+use crate::ray_index::{NodePart, PARTS, Ray};
 
-/// How far to the sides of a target, and how far above it, balls are taken as near, metres: beyond, rays that rise have left the
-/// surface that the target lies on.
+/// How far to the sides of a target, and how far above it, balls are taken as near, metres: beyond, rays that rise have
+/// left the surface that the target lies on.
 pub(super) const NEAR: [f64; 2] = [2.0, 0.6];
 /// By how much the cosine to the rim of a ball is taken too small: more than f32 errs.
 const ROUNDING: f32 = 1e-5;
@@ -15,8 +15,8 @@ const LANES: usize = 8;
 /// Balls that may block a ray on its way out of the near space of a target.
 #[derive(Default)]
 pub(super) struct Nearby {
-    /// Unit vectors to their centres and the least cosine to those of rays that may meet them, 8 side by side, and the greatest rise (sine of
-    /// elevation) that any of these reaches, in falling order.
+    /// Unit vectors to their centres and the least cosine to those of rays that may meet them, 8 side by side, and the
+    /// greatest rise (sine of elevation) that any of these reaches, in falling order.
     covers: Vec<([[f32; LANES]; 4], f32)>,
     rows: Vec<u32>,
     /// Balls that may block, not yet in order: as in covers, their greatest rise, and their row.
@@ -52,9 +52,9 @@ impl Nearby {
                     continue;
                 }
                 match parts.parts[child] {
-                    Part::Nothing => {}
-                    Part::Node(node) => self.nodes.push(node),
-                    Part::Rows { first, count } => {
+                    NodePart::Nothing => {}
+                    NodePart::Node(node) => self.nodes.push(node),
+                    NodePart::Rows { first, count } => {
                         let meets = |row: &u32| reaches(tree.ball(*row as usize), [low, high]);
                         self.around.extend((first..first + count).filter(meets));
                     }
@@ -63,8 +63,8 @@ impl Nearby {
         }
     }
 
-    /// Of the balls looked up, takes those that may block a ray from `target` which does not sink below the horizon before it leaves
-    /// the near space.
+    /// Of the balls looked up, takes those that may block a ray from `target` which does not sink below the horizon
+    /// before it leaves the near space.
     pub(super) fn select(&mut self, tree: &BallTree, target: [f64; 3]) {
         self.rows.clear();
         self.covers.clear();

@@ -10,8 +10,9 @@ use std::sync::atomic::{AtomicU64, Ordering};
 /// Side of a cell, metres: finer ones leave less open but take longer to sweep.
 const CELL: f64 = 0.5;
 /// Most cells: four bits each while they are made.
-const MOST_CELLS: f64 = (1_u64 << 30) as f64;
-/// By how much balls are taken too large where they reach cells and too small where they fill them, metres: far more than f64 errs.
+const MAX_CELLS: f64 = (1_u64 << 30) as f64;
+/// By how much balls are taken too large where they reach cells and too small where they fill them, metres: far more
+/// than f64 errs.
 const MARGIN: f64 = 1e-3;
 /// Balls handed to a thread at once.
 const CHUNK: usize = 4096;
@@ -27,14 +28,14 @@ pub(super) struct SpaceLayers {
     /// Words of a row.
     pub(super) width: usize,
     /// Bit i, j: whether any ball reaches one of the cells i, i + 1, j, j + 1.
-    pub(super) reached: Cells,
+    pub(super) reached: CellBits,
     /// Bit i, j: whether each of the cells i, i + 1, j, j + 1 is filled by one ball, however it gives way.
-    pub(super) filled: Cells,
+    pub(super) filled: CellBits,
 }
 
 /// Bits of cells, row after row of all layers. Most rows above the ground are empty but for a few buildings.
 #[derive(Default)]
-pub(super) struct Cells {
+pub(super) struct CellBits {
     bits: Vec<u64>,
     /// Words of a row.
     width: usize,
@@ -42,7 +43,7 @@ pub(super) struct Cells {
     taken: Vec<[u32; 2]>,
 }
 
-impl Cells {
+impl CellBits {
     fn new(bits: Vec<u64>, width: usize) -> Self {
         #[expect(clippy::cast_possible_truncation, reason = "there are at most 2^30 cells")]
         let of_row = |row: &[u64]| {
@@ -81,7 +82,7 @@ impl SpaceLayers {
             );
         let count = |cell: f64, axis: usize| ((high[axis] - low[axis]).max(0.0) / cell).floor() + 1.0;
         let mut cell = CELL;
-        while (count(cell, 0) + 64.0) * (count(cell, 1) + 1.0) * count(cell, 2) > MOST_CELLS {
+        while (count(cell, 0) + 64.0) * (count(cell, 1) + 1.0) * count(cell, 2) > MAX_CELLS {
             cell *= 1.25;
         }
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "bounded by the number of cells")]
@@ -92,17 +93,17 @@ impl SpaceLayers {
         let bits = || -> Vec<AtomicU64> { (0..width * size[1] * size[2]).map(|_| AtomicU64::new(0)).collect() };
         let (reached, filled) = (bits(), bits());
         let low = [low[0] - cell, low[1] - cell, low[2]];
-        let mut layers = Self { low, cell, size, width, reached: Cells::default(), filled: Cells::default() };
+        let mut layers = Self { low, cell, size, width, reached: CellBits::default(), filled: CellBits::default() };
         // bits are only ever set, so that their order does not matter
         balls.par_iter().with_min_len(CHUNK).try_for_each(|&Ball { center, radius }| {
             let radius = f64::from(radius);
-            let radii = [radius + MARGIN, rule.least_radius(radius) - MARGIN];
+            let radii = [radius + MARGIN, rule.min_radius(radius) - MARGIN];
             layers.mark([&reached, &filled], center.map(f64::from), radii);
             control.check()
         })?;
         let plain = |bits: Vec<AtomicU64>| -> Vec<u64> { bits.into_iter().map(AtomicU64::into_inner).collect() };
-        layers.reached = Cells::new(layers.joined(&plain(reached), |a, b| a | b), width);
-        layers.filled = Cells::new(layers.joined(&plain(filled), |a, b| a & b), width);
+        layers.reached = CellBits::new(layers.joined(&plain(reached), |a, b| a | b), width);
+        layers.filled = CellBits::new(layers.joined(&plain(filled), |a, b| a & b), width);
         Ok(layers)
     }
 

@@ -1,7 +1,7 @@
 //! One direction swept through the layers of space from the top down: 64 lines of sight at a time.
 
-use super::space_layers::{Cells, SpaceLayers};
-use super::whole_cells::{Heading, Place};
+use super::space_layers::{CellBits, SpaceLayers};
+use super::whole_cells::{SweptDirection, TargetCell};
 use crate::query::backend::WORD;
 use belvedere_data::Result;
 use belvedere_data::control::Control;
@@ -10,12 +10,12 @@ use rayon::prelude::*;
 /// Targets from the highest down.
 struct Descending {
     /// With their places in the order of the tree.
-    targets: Vec<(Place, u32)>,
+    targets: Vec<(TargetCell, u32)>,
 }
 
 impl Descending {
-    fn new(places: &[Option<Place>]) -> Self {
-        let mut targets: Vec<(Place, u32)> =
+    fn new(places: &[Option<TargetCell>]) -> Self {
+        let mut targets: Vec<(TargetCell, u32)> =
             places.iter().zip(0..).filter_map(|(place, number)| Some(((*place)?, number))).collect();
         // stable: equal heights stay in the order of the tree
         targets.sort_by_key(|(place, _)| std::cmp::Reverse(place.height));
@@ -33,7 +33,7 @@ pub(super) struct Swept {
 }
 
 /// A square of the lines of sight, as they meet the lowest level, a bit for each cell.
-struct Lines {
+struct LineSquare {
     /// Cell of the first bit.
     first: [i64; 2],
     size: [usize; 2],
@@ -41,7 +41,7 @@ struct Lines {
     bits: Vec<u64>,
 }
 
-impl Lines {
+impl LineSquare {
     fn new(first: [i64; 2], size: [usize; 2]) -> Self {
         // a word more, so that moved rows fit
         let width = size[0].div_ceil(WORD) + 1;
@@ -49,7 +49,7 @@ impl Lines {
     }
 
     /// Adds the cells of a layer that lies `by` cells to the east and north of the lines.
-    fn add(&mut self, space: &SpaceLayers, cells: &Cells, layer: usize, by: [i64; 2]) {
+    fn add(&mut self, space: &SpaceLayers, cells: &CellBits, layer: usize, by: [i64; 2]) {
         // cell i of the layer belongs to the lines i − by
         let [Ok(x), Ok(y)] = [0, 1].map(|axis| usize::try_from(-by[axis] - self.first[axis])) else { return };
         let (word, shift) = (x / WORD, x % WORD);
@@ -90,8 +90,8 @@ impl Lines {
 /// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
 pub(super) fn sweep_all(
     space: &SpaceLayers,
-    places: &[Option<Place>],
-    headings: &[Heading],
+    places: &[Option<TargetCell>],
+    headings: &[SweptDirection],
     control: &Control<'_>,
 ) -> Result<Vec<Swept>> {
     let descending = Descending::new(places);
@@ -105,19 +105,19 @@ pub(super) fn sweep_all(
 
 /// Sweeps a direction.
 ///
-/// Lines of sight are sorted by the cell in which they meet the lowest level. Each layer is added once for each stretch between two passages of
-/// sides of cells, moved by whole cells.
-fn sweep(space: &SpaceLayers, targets: &Descending, word_count: usize, heading: &Heading) -> Swept {
+/// Lines of sight are sorted by the cell in which they meet the lowest level. Each layer is added once for each stretch
+/// between two passages of sides of cells, moved by whole cells.
+fn sweep(space: &SpaceLayers, targets: &Descending, word_count: usize, heading: &SweptDirection) -> Swept {
     let depth = space.size[2];
     let ranges = [0, 1].map(|axis| heading.range(axis, depth));
     let first = [-ranges[0][1], -ranges[1][1]];
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a range runs upward")]
     let size = std::array::from_fn(|axis| space.size[axis] + (ranges[axis][1] - ranges[axis][0]) as usize + 1);
-    let mut reached = Lines::new(first, size);
-    let mut filled = Lines::new(first, size);
+    let mut reached = LineSquare::new(first, size);
+    let mut filled = LineSquare::new(first, size);
     let mut swept = Swept { free: vec![0; word_count], blocked: vec![0; word_count] };
     let mut left = targets.targets.iter().peekable();
-    let mut answer = |(place, number): &(Place, u32), reached: &Lines, filled: &Lines| {
+    let mut answer = |(place, number): &(TargetCell, u32), reached: &LineSquare, filled: &LineSquare| {
         let Some(cell) = place.cell(heading) else { return };
         let (word, bit) = (*number as usize / WORD, *number as usize % WORD);
         swept.blocked[word] |= u64::from(filled.get(cell)) << bit;
@@ -133,7 +133,7 @@ fn sweep(space: &SpaceLayers, targets: &Descending, word_count: usize, heading: 
             reached.add(space, &space.reached, layer, by);
         }
         // of those that start in this layer it is not known which of its cells they meet
-        let is_in = |place: &Place| i64::from(place.layer(heading)) >= layer as i64;
+        let is_in = |place: &TargetCell| i64::from(place.layer(heading)) >= layer as i64;
         while let Some(target) = left.next_if(|(place, _)| is_in(place)) {
             answer(target, &reached, &filled);
         }

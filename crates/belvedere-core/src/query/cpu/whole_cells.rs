@@ -1,9 +1,11 @@
-//! Targets and directions in whole numbers: the same line of sight has the same cell wherever it is asked for, because no step rounds.
+//! Targets and directions in whole numbers: the same line of sight has the same cell wherever it is asked for, because
+//! no step rounds.
 //!
-//! A line of sight belongs to the cell in which it meets the lowest level of the layers. With the place (x, y, z) of its target in cells and the
-//! slope s of its direction this is x − z·s. Heights have 18 bits of fraction and slopes 26, so that their product has 44, as x and y have: the
-//! difference is exact. What was rounded before, heights and slopes, moves the line by less than 24 · 2⁻¹⁸ + 4096 · 2⁻²⁷ < 2⁻¹² cells. A line
-//! closer than that to the border of its cell has none ([`Place::cell`]) and stays open.
+//! A line of sight belongs to the cell in which it meets the lowest level of the layers. With the place (x, y, z) of
+//! its target in cells and the slope s of its direction this is x − z·s. Heights have 18 bits of fraction and slopes
+//! 26, so that their product has 44, as x and y have: the difference is exact. What was rounded before, heights and
+//! slopes, moves the line by less than 24 · 2⁻¹⁸ + 4096 · 2⁻²⁷ < 2⁻¹² cells. A line closer than that to the border of
+//! its cell has none ([`TargetCell::cell`]) and stays open.
 
 use super::space_layers::SpaceLayers;
 
@@ -15,28 +17,29 @@ const SLOPE_BITS: u32 = 26;
 const ACROSS_BITS: u32 = HEIGHT_BITS + SLOPE_BITS;
 /// A line closer than this part of a cell (2 to the power of minus this) to a border may belong to the next cell.
 const BORDER_BITS: u32 = 12;
-/// Most cells that a target lies above or below the lowest layer: 2 km where cells are 0.5 m. Lines of others stay open.
-const MOST_HEIGHT: f64 = 4096.0;
+/// Most cells that a target lies above or below the lowest layer: 2 km where cells are 0.5 m. Lines of others stay
+/// open.
+const MAX_HEIGHT: f64 = 4096.0;
 /// Most cells that a target lies from the corner along x or y: 131 km where cells are 0.5 m.
-const MOST_ACROSS: f64 = 262_144.0;
+const MAX_ACROSS: f64 = 262_144.0;
 /// Most cells that a line of sight moves on in a layer; flatter directions are not swept.
-const MOST_SLOPE: f64 = 24.0;
+const MAX_SLOPE: f64 = 24.0;
 
 /// A target, in cells from the corner of the layers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Place {
+pub(super) struct TargetCell {
     /// Along x and y, with 44 bits of fraction.
     pub(super) across: [i64; 2],
     /// Above the lowest layer, with 18 bits of fraction.
     pub(super) height: i32,
 }
 
-impl Place {
+impl TargetCell {
     /// Where a target, local metres, lies; `None` for one too far from the layers.
     #[must_use]
     pub(super) fn new(space: &SpaceLayers, position: [f32; 3]) -> Option<Self> {
         let at: [f64; 3] = std::array::from_fn(|i| (f64::from(position[i]) - space.low[i]) / space.cell);
-        let is_near = at[0].abs() < MOST_ACROSS && at[1].abs() < MOST_ACROSS && at[2].abs() < MOST_HEIGHT;
+        let is_near = at[0].abs() < MAX_ACROSS && at[1].abs() < MAX_ACROSS && at[2].abs() < MAX_HEIGHT;
         #[expect(clippy::cast_possible_truncation, reason = "the limits above fit")]
         is_near.then(|| Self {
             across: [at[0], at[1]].map(|v| (v * (1_i64 << ACROSS_BITS) as f64).floor() as i64),
@@ -44,10 +47,11 @@ impl Place {
         })
     }
 
-    /// The cell in which the line of sight of this target meets the lowest level, along x and y; `None` where it may be the next one.
+    /// The cell in which the line of sight of this target meets the lowest level, along x and y; `None` where it may be
+    /// the next one.
     #[must_use]
     #[inline]
-    pub(super) fn cell(&self, heading: &Heading) -> Option<[i32; 2]> {
+    pub(super) fn cell(&self, heading: &SweptDirection) -> Option<[i32; 2]> {
         let line: [i32; 2] = std::array::from_fn(|i| {
             let line = self.across[i] - i64::from(self.height) * i64::from(heading.slope[i]);
             // 2¹⁹ cells and 12 bits of fraction are 31 bits
@@ -60,14 +64,14 @@ impl Place {
     /// The layer in which the line of sight leaves the near space of this target; below zero for one below all layers.
     #[must_use]
     #[inline]
-    pub(super) fn layer(&self, heading: &Heading) -> i32 {
+    pub(super) fn layer(&self, heading: &SweptDirection) -> i32 {
         (self.height + heading.rise) >> HEIGHT_BITS
     }
 }
 
 /// A direction that is swept.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Heading {
+pub(super) struct SweptDirection {
     /// Cells that a line moves on in a layer along x and y, with 26 bits of fraction.
     pub(super) slope: [i32; 2],
     /// How many layers above its target a line leaves the near space of the target, with 18 bits of fraction.
@@ -76,13 +80,14 @@ pub(super) struct Heading {
     slope_exact: [f64; 2],
 }
 
-impl Heading {
-    /// The unit vector `direction` for targets whose lines of sight are known up to `near` metres from them; `None` for one that is too flat.
+impl SweptDirection {
+    /// The unit vector `direction` for targets whose lines of sight are known up to `near` metres from them; `None` for
+    /// one that is too flat.
     #[must_use]
     pub(super) fn new(space: &SpaceLayers, direction: [f64; 3], near: f64) -> Option<Self> {
         let slope = [direction[0] / direction[2], direction[1] / direction[2]];
         let rise = near * direction[2] / space.cell;
-        let is_swept = direction[2] > 0.0 && slope[0].abs().max(slope[1].abs()) <= MOST_SLOPE && rise < MOST_HEIGHT;
+        let is_swept = direction[2] > 0.0 && slope[0].abs().max(slope[1].abs()) <= MAX_SLOPE && rise < MAX_HEIGHT;
         #[expect(clippy::cast_possible_truncation, reason = "the limits above fit")]
         is_swept.then(|| Self {
             slope: slope.map(|v| (v * f64::from(1 << SLOPE_BITS)).round() as i32),
@@ -99,8 +104,8 @@ impl Heading {
 
     /// By how many whole cells along x and y lines of sight have moved in each stretch of a layer, into `moves`.
     ///
-    /// Those of a cell lie over two by two cells of the layer, the same ones until they pass a side of a cell to the east or north: a stretch
-    /// runs from one such passage to the next.
+    /// Those of a cell lie over two by two cells of the layer, the same ones until they pass a side of a cell to the
+    /// east or north: a stretch runs from one such passage to the next.
     pub(super) fn moves_in(&self, layer: usize, moves: &mut Vec<[i64; 2]>) {
         let slope = self.slope_exact;
         let layer = layer as f64;

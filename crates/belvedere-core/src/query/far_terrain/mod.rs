@@ -1,4 +1,5 @@
-//! What stands beyond the cloud and hides the sky above the horizon: a profile for all places, an elevation raster, or both.
+//! What stands beyond the cloud and hides the sky above the horizon: a profile for all places, an elevation raster, or
+//! both.
 
 mod relief;
 mod rows;
@@ -10,7 +11,7 @@ use belvedere_data::ElevationGrid;
 use belvedere_data::horizon::HorizonProfile;
 use belvedere_data::vector::piece_in_box;
 use rayon::prelude::*;
-use relief::{Places, Relief};
+use relief::{LineStarts, TerrainHeights};
 pub(super) use rows::hide_behind_terrain;
 use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
@@ -20,14 +21,14 @@ const CHUNK: usize = 90;
 
 /// Far terrain: a direction is blocked for a place if it is below the horizon there.
 ///
-/// A profile is the same for all places. A raster gives each place its own horizon, exact for heights that are bilinear between the middles of its cells,
-/// over the curved earth. What lies within the box of the cloud on the map, or within a cell of the raster around it, is left to the cloud. Cells without
-/// a height block nothing.
+/// A profile is the same for all places. A raster gives each place its own horizon, exact for heights that are bilinear
+/// between the middles of its cells, over the curved earth. What lies within the box of the cloud on the map, or within
+/// a cell of the raster around it, is left to the cloud. Cells without a height block nothing.
 #[derive(Clone, Debug, Default)]
 pub struct FarTerrain {
     /// Azimuths from grid north.
     profile: Option<Arc<HorizonProfile>>,
-    relief: Option<Arc<Relief>>,
+    relief: Option<Arc<TerrainHeights>>,
     earth: EarthParams,
 }
 
@@ -39,10 +40,11 @@ impl FarTerrain {
         self
     }
 
-    /// The same with a raster, in place of one that it has; within the box `cloud` on the map, local metres, it blocks nothing.
+    /// The same with a raster, in place of one that it has; within the box `cloud` on the map, local metres, it blocks
+    /// nothing.
     #[must_use]
     pub fn with_grid(mut self, grid: ElevationGrid, cloud: Option<([f64; 2], [f64; 2])>) -> Self {
-        self.relief = Some(Arc::new(Relief::new(grid, cloud)));
+        self.relief = Some(Arc::new(TerrainHeights::new(grid, cloud)));
         self
     }
 
@@ -74,7 +76,8 @@ impl FarTerrain {
             })
     }
 
-    /// Whether the raster says something about `position`, local metres: it lies over it on the map, and no more than 10 km above its highest height. The height may be NaN.
+    /// Whether the raster says something about `position`, local metres: it lies over it on the map, and no more than
+    /// 10 km above its highest height. The height may be NaN.
     pub(super) fn holds(&self, position: [f64; 3]) -> bool {
         self.relief.as_ref().is_some_and(|relief| {
             let (low, high) = relief.grid().on_map();
@@ -93,8 +96,8 @@ impl FarTerrain {
         self.relief.as_ref().is_some_and(|relief| relief.blocks_sight(line))
     }
 
-    /// Elevations of the horizon of `place`, local metres, over the earth of `earth`: at `count` azimuths from grid north, the first `first` and `step`
-    /// apart, radians; −π/2 where there is no terrain.
+    /// Elevations of the horizon of `place`, local metres, over the earth of `earth`: at `count` azimuths from grid
+    /// north, the first `first` and `step` apart, radians; −π/2 where there is no terrain.
     #[must_use]
     pub fn elevations(&self, place: [f64; 3], [first, step]: [f64; 2], count: usize, earth: &EarthParams) -> Vec<f64> {
         let mut elevations = vec![-FRAC_PI_2; count];
@@ -123,8 +126,8 @@ fn on_map([x, y, z]: [f64; 3]) -> ([f64; 2], f64) {
     if across > 0.0 { ([x / across, y / across], z / across) } else { ([0.0, 1.0], z * f64::INFINITY) }
 }
 
-/// The piece of a line over a box on the map, its low and high corner: from and to, metres from where the line starts, which is `span` metres long and runs along the unit vector `along`.
-/// `None` where the line passes beside it.
+/// The piece of a line over a box on the map, its low and high corner: from and to, metres from where the line starts,
+/// which is `span` metres long and runs along the unit vector `along`. `None` where the line passes beside it.
 pub(super) fn piece_over([low, high]: [[f64; 2]; 2], start: [f64; 3], along: [f64; 2], span: f64) -> Option<[f64; 2]> {
     let sides = std::array::from_fn(|axis| [low[axis] - start[axis], high[axis] - start[axis]]);
     piece_in_box(sides, along, [0.0, span]).filter(|[from, to]| from < to)

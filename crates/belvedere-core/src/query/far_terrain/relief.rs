@@ -6,27 +6,31 @@ use super::piece_over;
 use belvedere_data::ElevationGrid;
 use std::ops::ControlFlow;
 
-/// Smallest step of a line in cells for each metre: a line along an axis is turned by less than its rounding, so that no quotient is 0 / 0.
-const LEAST_SLOPE: f64 = 1e-14;
+/// Smallest step of a line in cells for each metre: a line along an axis is turned by less than its rounding, so that
+/// no quotient is 0 / 0.
+const MIN_SLOPE: f64 = 1e-14;
 
-/// Terrain nearer to the first end of a line of sight than this does not block it, metres: the ground at the feet of an eye that lies on it.
+/// Terrain nearer to the first end of a line of sight than this does not block it, metres: the ground at the feet of an
+/// eye that lies on it.
 const FOOT: f64 = 0.1;
 
-/// Halvings in which the place is found where terrain rises above a line: a patch of a kilometre becomes less than a nanometre.
+/// Halvings in which the place is found where terrain rises above a line: a patch of a kilometre becomes less than a
+/// nanometre.
 const HALVINGS: usize = 50;
 
-/// Heights between the nodes of a raster, bilinear in each patch of four nodes, with the highest node of all blocks of patches of 2, 4, 8, … a side.
+/// Heights between the nodes of a raster, bilinear in each patch of four nodes, with the highest node of all blocks of
+/// patches of 2, 4, 8, … a side.
 #[derive(Debug)]
-pub(super) struct Relief {
+pub(super) struct TerrainHeights {
     grid: ElevationGrid,
     /// For blocks of 2, 4, 8, … patches a side; the last is one block.
-    levels: Vec<Level>,
+    levels: Vec<HeightLevel>,
     /// The box on the map, local metres, within which terrain blocks nothing: that of the cloud, and a cell around it.
     within: [[f64; 2]; 2],
 }
 
 #[derive(Debug)]
-struct Level {
+struct HeightLevel {
     width: usize,
     /// The highest node of each block, −∞ where no patch of it is known.
     highest: Vec<f32>,
@@ -34,7 +38,7 @@ struct Level {
 
 /// Places on the map with heights, from which lines leave alike: a box, or one place.
 #[derive(Clone, Copy)]
-pub(super) struct Places {
+pub(super) struct LineStarts {
     pub(super) low: [f64; 3],
     pub(super) high: [f64; 3],
 }
@@ -48,16 +52,17 @@ pub(super) struct Top {
     pub(super) span: f64,
 }
 
-/// Lines from places in one direction on the map. Distances along them count from each place: there a line lies as far from that of the middle as its place
-/// from the middle.
-struct Lines {
+/// Lines from places in one direction on the map. Distances along them count from each place: there a line lies as far
+/// from that of the middle as its place from the middle.
+struct MapLines {
     /// The middle of the places in columns and rows of nodes, and their half size in both.
     start: [f64; 2],
     half: [f64; 2],
     /// Columns and rows for each metre, and the inverse.
     step: [f64; 2],
     inverse: [f64; 2],
-    /// Distance that a line of another place than the middle needs more or less to the same column and row, metres at most.
+    /// Distance that a line of another place than the middle needs more or less to the same column and row, metres at
+    /// most.
     room: [f64; 2],
     /// The lowest height, metres.
     low: f64,
@@ -67,7 +72,7 @@ struct Lines {
     fall: f64,
 }
 
-impl Relief {
+impl TerrainHeights {
     /// The terrain of `grid` beyond the box `cloud` on the map, local metres.
     pub(super) fn new(grid: ElevationGrid, cloud: Option<([f64; 2], [f64; 2])>) -> Self {
         let (width, height) = (grid.heights().width(), grid.heights().height());
@@ -79,10 +84,10 @@ impl Relief {
                 corners.into_iter().fold(f32::NEG_INFINITY, f32::max)
             }
         };
-        let mut levels = vec![Level::halved([width - 1, height - 1], patch)];
+        let mut levels = vec![HeightLevel::halved([width - 1, height - 1], patch)];
         while let Some(last) = levels.last().filter(|level| level.highest.len() > 1) {
             let size = [last.width, last.highest.len() / last.width];
-            let next = Level::halved(size, |column, row| last.highest[row * last.width + column]);
+            let next = HeightLevel::halved(size, |column, row| last.highest[row * last.width + column]);
             levels.push(next);
         }
         // between the last points of the cloud and the first whole patch beyond them neither says what stands there
@@ -100,13 +105,14 @@ impl Relief {
         self.levels.last().and_then(|level| level.highest.first()).copied().unwrap_or(f32::NEG_INFINITY)
     }
 
-    /// The highest terrain from a place in a direction on the map, a unit vector. Exact for the bilinear surface over the curved earth, whatever
-    /// `guess` is: a distance where terrain may be high, which saves time if it is.
+    /// The highest terrain from a place in a direction on the map, a unit vector. Exact for the bilinear surface over
+    /// the curved earth, whatever `guess` is: a distance where terrain may be high, which saves time if it is.
     pub(super) fn top(&self, place: [f64; 3], along: [f64; 2], earth: &EarthParams, guess: Option<f64>) -> Option<Top> {
-        let lines = self.lines(&Places { low: place, high: place }, along, earth);
+        let lines = self.lines(&LineStarts { low: place, high: place }, along, earth);
         let mut top = Top { tangent: f64::NEG_INFINITY, span: f64::NAN };
         if let Some(span) = guess {
-            /// Part of the distance on both sides that is looked through first: a cell or two of usual rasters where mountains are.
+            /// Part of the distance on both sides that is looked through first: a cell or two of usual rasters where
+            /// mountains are.
             const NEAR: f64 = 0.003;
             self.raise(&lines, [span * (1.0 - NEAR), span * (1.0 + NEAR)], &mut top);
         }
@@ -115,7 +121,7 @@ impl Relief {
     }
 
     /// Raises `top` to the highest terrain on a line between two distances.
-    fn raise(&self, lines: &Lines, spans: [f64; 2], top: &mut Top) {
+    fn raise(&self, lines: &MapLines, spans: [f64; 2], top: &mut Top) {
         let spans = [spans[0].max(lines.from[0]), spans[1]];
         let _ = self.descend(lines, spans, top, &mut |corners, place, spans, top| {
             if let Some(found) = lines.top_of_patch(corners, place, spans)
@@ -129,7 +135,7 @@ impl Relief {
 
     /// Whether terrain rises above the line from a place in a direction on the map with the tangent of its elevation.
     pub(super) fn hides(&self, place: [f64; 3], along: [f64; 2], tangent: f64, earth: &EarthParams) -> bool {
-        let lines = self.lines(&Places { low: place, high: place }, along, earth);
+        let lines = self.lines(&LineStarts { low: place, high: place }, along, earth);
         let mut limit = Top { tangent, span: 0.0 };
         let hit =
             self.descend(&lines, [lines.from[0], f64::INFINITY], &mut limit, &mut |corners, place, spans, limit| {
@@ -149,7 +155,7 @@ impl Relief {
     /// Where terrain first rises above a line of sight, metres from the observer on the map; `None` where it does not.
     pub(super) fn meets_sight(&self, line: &FarLine<'_>) -> Option<f64> {
         let (patch, [from, _], top) = self.first_patch(line)?;
-        let lines = self.lines(&Places { low: line.observer, high: line.observer }, line.along, line.earth);
+        let lines = self.lines(&LineStarts { low: line.observer, high: line.observer }, line.along, line.earth);
         let limit = line.tangent + rounding(line.tangent);
         let corners = corners(&self.grid, patch[0], patch[1]);
         // between the near side of the patch and its highest place the terrain comes through the line once
@@ -162,10 +168,11 @@ impl Relief {
         Some(above)
     }
 
-    /// The first patch in which terrain rises above a line of sight: its column and row, between which distances the line is over it, and the distance of its highest place.
+    /// The first patch in which terrain rises above a line of sight: its column and row, between which distances the
+    /// line is over it, and the distance of its highest place.
     fn first_patch(&self, line: &FarLine<'_>) -> Option<([usize; 2], [f64; 2], f64)> {
         let FarLine { observer: from, along, span, tangent, earth, .. } = *line;
-        let lines = self.lines(&Places { low: from, high: from }, along, earth);
+        let lines = self.lines(&LineStarts { low: from, high: from }, along, earth);
         // a target on the surface is not hidden by what is rounded
         let mut limit = Top { tangent: tangent + rounding(tangent), span: 0.0 };
         let [enter, leave] = piece_over(self.within, from, along, span).unwrap_or([span; 2]);
@@ -186,8 +193,9 @@ impl Relief {
         first
     }
 
-    /// Whether terrain may rise above a line from any of these places. Never false where [`Relief::hides`] is true for one of them.
-    pub(super) fn may_hide(&self, places: &Places, along: [f64; 2], tangent: f64, earth: &EarthParams) -> bool {
+    /// Whether terrain may rise above a line from any of these places. Never false where [`TerrainHeights::hides`] is
+    /// true for one of them.
+    pub(super) fn may_hide(&self, places: &LineStarts, along: [f64; 2], tangent: f64, earth: &EarthParams) -> bool {
         let lines = self.lines(places, along, earth);
         let mut limit = Top { tangent: tangent - rounding(tangent), span: 0.0 };
         // a patch is only reached if its highest corner, as near as it may be, rises above the lines
@@ -199,11 +207,11 @@ impl Relief {
         hit.is_break()
     }
 
-    /// Whether terrain is known to rise above the lines from all of these places `span` metres away. Never true where [`Relief::hides`] is false for one
-    /// of them.
+    /// Whether terrain is known to rise above the lines from all of these places `span` metres away. Never true where
+    /// [`TerrainHeights::hides`] is false for one of them.
     pub(super) fn hides_all(
         &self,
-        places: &Places,
+        places: &LineStarts,
         along: [f64; 2],
         tangent: f64,
         span: f64,
@@ -231,11 +239,11 @@ impl Relief {
     }
 
     /// How lines leave `places`.
-    fn lines(&self, places: &Places, along: [f64; 2], earth: &EarthParams) -> Lines {
+    fn lines(&self, places: &LineStarts, along: [f64; 2], earth: &EarthParams) -> MapLines {
         let ([west, north], cell) = (self.grid.north_west(), self.grid.cell());
         let middle = [0, 1].map(|i| f64::midpoint(places.low[i], places.high[i]));
         let half = [0, 1].map(|i| (places.high[i] - places.low[i]) / 2.0);
-        let away = |slope: f64| if slope.abs() < LEAST_SLOPE { LEAST_SLOPE } else { slope };
+        let away = |slope: f64| if slope.abs() < MIN_SLOPE { MIN_SLOPE } else { slope };
         let step = [away(along[0] / cell[0]), away(-along[1] / cell[1])];
         let corner = |is_forward: bool| {
             [0, 1].map(|i| if (along[i] > 0.0) == is_forward { places.high[i] } else { places.low[i] })
@@ -246,7 +254,7 @@ impl Relief {
             [None, None] => [self.nearest(); 2],
             _ => [self.nearest(), f64::INFINITY],
         };
-        Lines {
+        MapLines {
             start: [(middle[0] - west) / cell[0], (north - middle[1]) / cell[1]],
             half: [half[0] / cell[0], half[1] / cell[1]],
             step,
@@ -263,7 +271,8 @@ impl Relief {
         self.grid.cell()[0].max(self.grid.cell()[1])
     }
 
-    /// Where the line from a place leaves the box of the cloud, metres, and [`Relief::nearest`] at least; `None` for a place outside.
+    /// Where the line from a place leaves the box of the cloud, metres, and [`TerrainHeights::nearest`] at least;
+    /// `None` for a place outside.
     fn exit(&self, place: [f64; 2], along: [f64; 2]) -> Option<f64> {
         let [low, high] = self.within;
         let to_side = |axis: usize| match along[axis] {
@@ -280,10 +289,11 @@ impl Relief {
         [self.grid.heights().width() - 1, self.grid.heights().height() - 1]
     }
 
-    /// Calls `visit` for every patch within `spans` of the lines that may rise above `top`, nearest blocks first, until it breaks off.
+    /// Calls `visit` for every patch within `spans` of the lines that may rise above `top`, nearest blocks first, until
+    /// it breaks off.
     fn descend(
         &self,
-        lines: &Lines,
+        lines: &MapLines,
         spans: [f64; 2],
         top: &mut Top,
         visit: &mut impl FnMut([f32; 4], [usize; 2], [f64; 2], &mut Top) -> ControlFlow<()>,
@@ -300,7 +310,7 @@ impl Relief {
         &self,
         level: usize,
         block: [usize; 2],
-        lines: &Lines,
+        lines: &MapLines,
         spans: [f64; 2],
         top: &mut Top,
         visit: &mut impl FnMut([f32; 4], [usize; 2], [f64; 2], &mut Top) -> ControlFlow<()>,
@@ -314,7 +324,8 @@ impl Relief {
         if !lines.may_rise(highest, spans, top.tangent) {
             return ControlFlow::Continue(());
         }
-        // where the lines pass the middle of the block: the nearer half of each axis ends there, and the farther one begins
+        // where the lines pass the middle of the block: the nearer half of each axis ends there, and the farther one
+        // begins
         let middle = [0, 1].map(|axis| {
             let line = ((2 * block[axis] + 1) << below) as f64;
             (line - lines.start[axis]) * lines.inverse[axis]
@@ -338,7 +349,7 @@ impl Relief {
     }
 }
 
-impl Level {
+impl HeightLevel {
     /// The level above one of `size` blocks with these maxima.
     fn halved(size: [usize; 2], highest: impl Fn(usize, usize) -> f32) -> Self {
         let [width, height] = size.map(|count| count.div_ceil(2));
@@ -352,8 +363,9 @@ impl Level {
     }
 }
 
-impl Lines {
-    /// The part of `spans` in which any of the lines is over the first `size` patches; empty where the first is above the second.
+impl MapLines {
+    /// The part of `spans` in which any of the lines is over the first `size` patches; empty where the first is above
+    /// the second.
     fn over(&self, size: [usize; 2], mut spans: [f64; 2]) -> [f64; 2] {
         for (axis, count) in size.into_iter().enumerate() {
             let one = -self.start[axis] * self.inverse[axis];
@@ -363,7 +375,8 @@ impl Lines {
         spans
     }
 
-    /// Whether terrain as high as `highest` somewhere within `spans` may rise above the lines with the tangent `tangent`.
+    /// Whether terrain as high as `highest` somewhere within `spans` may rise above the lines with the tangent
+    /// `tangent`.
     #[inline]
     fn may_rise(&self, highest: f32, [from, to]: [f64; 2], tangent: f64) -> bool {
         let rise = f64::from(highest) - self.low;
@@ -371,7 +384,8 @@ impl Lines {
         rise > slope * if slope > 0.0 { from } else { to }
     }
 
-    /// The highest place of a patch on the line between two distances, the tangent of its elevation and its distance; `None` where it is not known.
+    /// The highest place of a patch on the line between two distances, the tangent of its elevation and its distance;
+    /// `None` where it is not known.
     fn top_of_patch(&self, corners: [f32; 4], patch: [usize; 2], [from, to]: [f64; 2]) -> Option<Top> {
         let [a, b, c, d] = corners.map(f64::from);
         if !(a + b + c + d).is_finite() {

@@ -1,6 +1,6 @@
 //! Lines of sight of the matrix that far terrain blocks.
 
-use super::{FarTerrain, Places, on_map};
+use super::{FarTerrain, LineStarts, on_map};
 use crate::query::backend::{BLOCK, WORD};
 use belvedere_data::Result;
 use belvedere_data::control::Control;
@@ -10,8 +10,8 @@ use std::f64::consts::TAU;
 /// Sectors of azimuth for each of which the distance of the last horizon is kept.
 const SECTORS: usize = 64;
 
-/// Unsets the bits of lines of sight that far terrain blocks, in rows of `words` for `targets`, (M, 3), neighbours together, and `directions`,
-/// (D, 3). For every pair the same as [`FarTerrain::hides`].
+/// Unsets the bits of lines of sight that far terrain blocks, in rows of `words` for `targets`, (M, 3), neighbours
+/// together, and `directions`, (D, 3). For every pair the same as [`FarTerrain::hides`].
 pub(in crate::query) fn hide_behind_terrain(
     far: &FarTerrain,
     targets: &[[f32; 3]],
@@ -42,7 +42,7 @@ fn hide_block(far: &FarTerrain, targets: &[[f32; 3]], directions: &[[f64; 3]], r
     let bound = |pick: fn(f64, f64) -> f64, start: f64| -> [f64; 3] {
         std::array::from_fn(|axis| targets.iter().map(|target| f64::from(target[axis])).fold(start, pick))
     };
-    let places = Places { low: bound(f64::min, f64::INFINITY), high: bound(f64::max, f64::NEG_INFINITY) };
+    let places = LineStarts { low: bound(f64::min, f64::INFINITY), high: bound(f64::max, f64::NEG_INFINITY) };
     let middle = std::array::from_fn(|axis| f64::midpoint(places.low[axis], places.high[axis]));
     let mut guesses = [None; SECTORS];
     for (column, direction) in directions.iter().enumerate() {

@@ -9,8 +9,8 @@ use rayon::prelude::*;
 /// By how much boxes are widened, metres: more than f32 and f64 err.
 const ROOM: f64 = 0.01;
 
-/// Unsets the bits of lines of sight that meshes block, in rows of `words` for `targets`, (M, 3), neighbours together, and `directions`,
-/// (D, 3).
+/// Unsets the bits of lines of sight that meshes block, in rows of `words` for `targets`, (M, 3), neighbours together,
+/// and `directions`, (D, 3).
 pub(super) fn hide_behind_added(
     added: &AddedMeshes,
     targets: &[[f32; 3]],

@@ -17,10 +17,11 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 /// Directions that are settled before targets are looked at: two bits of each are kept for every target meanwhile.
 const BATCH: usize = 512;
 /// Targets that are looked at before the next: as many as keep what is settled of them below 100 MB.
-const MOST_TARGETS: usize = BLOCK << 10;
+const MAX_TARGETS: usize = BLOCK << 10;
 
-/// Share of the lines of sight of targets that run near balls below which each is asked by itself: settling a line takes about a tenth of
-/// the time of asking one (6 and 53 ns on two cores before lines walked in packets, a strip of balls beside a tile of a village).
+/// Share of the lines of sight of targets that run near balls below which each is asked by itself: settling a line
+/// takes about a tenth of the time of asking one (6 and 53 ns on two cores before lines walked in packets, a strip of
+/// balls beside a tile of a village).
 const WORTH_SETTLING: f64 = 0.1;
 
 /// By how much the box around balls is taken for larger, metres: far more than is rounded.
@@ -44,9 +45,9 @@ struct OpenBlock {
 
 /// Which of many directions each of many targets sees, as far as obstacles were asked.
 ///
-/// A line of sight is free where no obstacle blocks it, so that neither their order nor how they are cut into parts matters: with the balls of a
-/// scene one part after the other, the bits at the end are those of [`MedialScene::visibility_matrix`]. A part is asked only about lines that
-/// are still free.
+/// A line of sight is free where no obstacle blocks it, so that neither their order nor how they are cut into parts
+/// matters: with the balls of a scene one part after the other, the bits at the end are those of
+/// [`MedialScene::visibility_matrix`]. A part is asked only about lines that are still free.
 #[derive(Clone)]
 pub struct FreeLines<'a> {
     tree: Arc<TargetTree>,
@@ -58,8 +59,8 @@ pub struct FreeLines<'a> {
 }
 
 impl<'a> FreeLines<'a> {
-    /// All lines of sight of `targets`, (M, 3) local metres, in `directions`, (D, 3) unit vectors, as if nothing stood anywhere. A target that is
-    /// not finite sees nothing.
+    /// All lines of sight of `targets`, (M, 3) local metres, in `directions`, (D, 3) unit vectors, as if nothing stood
+    /// anywhere. A target that is not finite sees nothing.
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] for a direction that is not of unit length (to a millionth).
@@ -95,24 +96,25 @@ impl<'a> FreeLines<'a> {
         self.tree.positions().len()
     }
 
-    /// Calls `visit` with the places on the map where lines of sight that are still free start: the number of their column among `columns`, which ascend, the lowest and
-    /// the highest corner of a rectangle, and the height that no target there is below, local metres. So many neighbours as `together` says, at least one, share a place.
+    /// Calls `visit` with the places on the map where lines of sight that are still free start: the number of their
+    /// column among `columns`, which ascend, the lowest and the highest corner of a rectangle, and the height that no
+    /// target there is below, local metres. So many neighbours as `together` says, at least one, share a place.
     pub fn each_start(&self, columns: &[usize], together: usize, mut visit: impl FnMut(usize, [[f32; 2]; 2], f32)) {
         // the words with any of the columns, these, and how many come before
-        let mut asked: Vec<(usize, u64, usize)> = Vec::new();
+        let mut queried: Vec<(usize, u64, usize)> = Vec::new();
         let mut before = 0;
         for (word, bits) in self.words_of(columns).into_iter().enumerate().filter(|(_, bits)| *bits != 0) {
-            asked.push((word, bits, before));
+            queried.push((word, bits, before));
             before += bits.count_ones() as usize;
         }
-        if asked.is_empty() {
+        if queried.is_empty() {
             return;
         }
         let together = together.max(1);
         let rows = self.words.chunks(self.width * together);
         for (rows, targets) in rows.zip(self.tree.positions().chunks(together)) {
             let mut place = None;
-            for &(word, columns, before) in &asked {
+            for &(word, columns, before) in &queried {
                 let of_rows = rows.chunks(self.width).fold(0, |bits, row| bits | row[word]);
                 let mut free = of_rows & columns;
                 while free != 0 {
@@ -126,10 +128,12 @@ impl<'a> FreeLines<'a> {
         }
     }
 
-    /// Takes away what the balls of `scene` block of the directions in `columns`, each given once. Progress counts targets.
+    /// Takes away what the balls of `scene` block of the directions in `columns`, each given once. Progress counts
+    /// targets.
     ///
     /// # Errors
-    /// [`Error::InvalidParameter`] for a column beyond the last, what the backend of the scene reports, and [`Error::Cancelled`].
+    /// [`Error::InvalidParameter`] for a column beyond the last, what the backend of the scene reports, and
+    /// [`Error::Cancelled`].
     pub fn hide_behind_balls(&mut self, scene: &MedialScene, columns: &[usize], control: &Control<'_>) -> Result<()> {
         if let Some(bad) = columns.iter().find(|&&column| column >= self.directions.len()) {
             let value = format!("of column {bad}");
@@ -143,9 +147,9 @@ impl<'a> FreeLines<'a> {
             return Ok(());
         }
         // a target counts as done when as many lines of sight are
-        let asked = AtomicUsize::new(0);
+        let queried = AtomicUsize::new(0);
         let advance = |lines: usize| {
-            let before = asked.fetch_add(lines, Ordering::Relaxed);
+            let before = queried.fetch_add(lines, Ordering::Relaxed);
             control.advance((before + lines) / columns.len() - before / columns.len());
         };
         let meeting = self.meeting(scene, columns);
@@ -157,7 +161,7 @@ impl<'a> FreeLines<'a> {
         let open_count: usize = meeting.blocks.iter().map(|open| of_block(open.block).len()).sum();
         let is_worth_settling = meeting.line_count as f64 > WORTH_SETTLING * open_count as f64 * headings.len() as f64;
         advance(positions.len() * columns.len() - open_count * headings.len());
-        for open in meeting.blocks.chunks(MOST_TARGETS / BLOCK) {
+        for open in meeting.blocks.chunks(MAX_TARGETS / BLOCK) {
             let targets = open.iter().map(|open| of_block(open.block)).collect::<Vec<_>>().concat();
             let mut numbers = vec![None; positions.len().div_ceil(BLOCK)];
             open.iter().enumerate().for_each(|(number, open)| numbers[open.block] = Some((number, &open.met)));
@@ -185,7 +189,7 @@ impl<'a> FreeLines<'a> {
     /// Which lines in the directions of `columns` are still free and run through the box around the balls of `scene`.
     fn meeting(&self, scene: &MedialScene, columns: &[usize]) -> Meeting {
         let index = scene.tree().index();
-        let asked = self.words_of(columns);
+        let queried = self.words_of(columns);
         let of_block = |(block, (rows, targets)): (usize, (&[u64], &[[f32; 3]]))| {
             let bound = |axis: usize, pick: fn(f64, f64) -> f64, start: f64| {
                 targets.iter().map(|target| f64::from(target[axis])).fold(start, pick)
@@ -198,7 +202,7 @@ impl<'a> FreeLines<'a> {
                     middle + half - bound(axis, f64::min, f64::INFINITY),
                 ]
             });
-            let mut met = asked.clone();
+            let mut met = queried.clone();
             for (word, met) in met.iter_mut().enumerate() {
                 *met &= rows.chunks(self.width).fold(0, |bits, row| bits | row[word]);
             }

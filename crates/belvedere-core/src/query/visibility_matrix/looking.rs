@@ -1,17 +1,17 @@
 //! Neighbouring targets looked at together: what the backend left open is asked of balls.
 
-use super::super::backend::{BLOCK, Bits, Settled, WORD, WORDS};
+use super::super::backend::{BLOCK, Settled, WORD, WORDS, WordBits};
 use super::super::ball_tree::BallTree;
 use super::packet::{Blockers, LANES, Packet};
 
 /// A direction and its column in the matrix.
-pub(super) struct Heading {
+pub(super) struct MatrixDirection {
     pub(super) direction: [f64; 3],
     column: usize,
 }
 
 /// The directions of some columns in bands of elevation, to and fro, so that each is close to the one before.
-pub(super) fn headings(directions: &[[f64; 3]], columns: &[usize]) -> Vec<Heading> {
+pub(super) fn headings(directions: &[[f64; 3]], columns: &[usize]) -> Vec<MatrixDirection> {
     /// Bands from the horizon to the zenith: about as high as 600 directions are apart.
     const BANDS: f64 = 16.0;
     let key = |direction: [f64; 3]| {
@@ -24,7 +24,7 @@ pub(super) fn headings(directions: &[[f64; 3]], columns: &[usize]) -> Vec<Headin
         let (a, b) = (key(directions[a]), key(directions[b]));
         a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1))
     });
-    order.into_iter().map(|column| Heading { direction: directions[column], column }).collect()
+    order.into_iter().map(|column| MatrixDirection { direction: directions[column], column }).collect()
 }
 
 /// Headings whose columns share a word of the rows.
@@ -47,7 +47,7 @@ impl Group {
 /// What all targets look at.
 pub(super) struct Sky<'a> {
     tree: &'a BallTree,
-    headings: &'a [Heading],
+    headings: &'a [MatrixDirection],
     /// What the backend knows of them.
     settled: &'a Settled,
     /// Which of the headings belongs to each column of the matrix.
@@ -56,7 +56,12 @@ pub(super) struct Sky<'a> {
 
 impl<'a> Sky<'a> {
     /// Looks at `headings`, which are some of `column_count` directions.
-    pub(super) fn new(tree: &'a BallTree, headings: &'a [Heading], settled: &'a Settled, column_count: usize) -> Self {
+    pub(super) fn new(
+        tree: &'a BallTree,
+        headings: &'a [MatrixDirection],
+        settled: &'a Settled,
+        column_count: usize,
+    ) -> Self {
         let mut numbers = vec![None; column_count];
         for (number, heading) in headings.iter().enumerate() {
             numbers[heading.column] = Some(number);
@@ -64,8 +69,9 @@ impl<'a> Sky<'a> {
         Self { tree, headings, settled, numbers }
     }
 
-    /// Unsets the bits of directions that are blocked in the rows of the targets of a block, which is the `block`-th of those that the backend was given. Only
-    /// those that are set are asked about, in columns that are set in `met`, the words of a row.
+    /// Unsets the bits of directions that are blocked in the rows of the targets of a block, which is the `block`-th of
+    /// those that the backend was given. Only those that are set are asked about, in columns that are set in `met`, the
+    /// words of a row.
     pub(super) fn look(&self, targets: &[[f32; 3]], block: usize, met: &[u64], rows: &mut [u64]) {
         let width = met.len();
         let groups: Vec<Group> = self.numbers.chunks(WORD).zip(met).enumerate().filter_map(Group::new).collect();
@@ -81,7 +87,7 @@ impl<'a> Sky<'a> {
         }
         let range = block * self.headings.len()..(block + 1) * self.headings.len();
         let [free, blocked] = [&self.settled.free, &self.settled.blocked].map(|bits| &bits[range.clone()]);
-        let mut open: Vec<Bits> = (known.iter().zip(free).zip(blocked))
+        let mut open: Vec<WordBits> = (known.iter().zip(free).zip(blocked))
             .map(|((known, free), blocked)| std::array::from_fn(|word| known[word] & !free[word] & !blocked[word]))
             .collect();
         self.ask(targets, &mut open);
@@ -89,30 +95,31 @@ impl<'a> Sky<'a> {
             *known = std::array::from_fn(|word| known[word] & free[word] | open[word]);
         }
         for group in &groups {
-            let asked = group.headings.iter().fold(0_u64, |bits, (column, _)| bits | 1 << column);
+            let queried = group.headings.iter().fold(0_u64, |bits, (column, _)| bits | 1 << column);
             for (word, rows) in rows.chunks_mut(width * WORD).enumerate() {
                 let mut of_columns = [0; WORD];
                 group.headings.iter().for_each(|&(column, number)| of_columns[column] = known[number][word]);
                 for (row, seen) in rows.chunks_mut(width).zip(transposed(of_columns)) {
-                    row[group.word] &= seen | !asked;
+                    row[group.word] &= seen | !queried;
                 }
             }
         }
     }
 
-    /// Takes out those that any ball blocks. One direction after the other, so that lines of sight side by side meet the same balls.
-    fn ask(&self, targets: &[[f32; 3]], open: &mut [Bits]) {
+    /// Takes out those that any ball blocks. One direction after the other, so that lines of sight side by side meet
+    /// the same balls.
+    fn ask(&self, targets: &[[f32; 3]], open: &mut [WordBits]) {
         debug_assert!(targets.len() <= BLOCK);
         // what blocked each target last
         let mut before: Vec<Option<u32>> = vec![None; targets.len()];
         for ((heading, open), &open_from) in self.headings.iter().zip(open).zip(&self.settled.open_from) {
-            let asked = *open;
+            let queried = *open;
             let mut of_direction = OfDirection { open, before: &mut before, last: [None; 2] };
             let mut packet = Packet::new(self.tree, heading.direction, open_from);
             let mut taken = Vec::with_capacity(LANES);
-            let targets_asked =
-                (0..).zip(asked).flat_map(|(word, asked)| bits(asked).map(move |bit| word * WORD + bit));
-            for target in targets_asked {
+            let targets_queried =
+                (0..).zip(queried).flat_map(|(word, queried)| bits(queried).map(move |bit| word * WORD + bit));
+            for target in targets_queried {
                 let ray = self.tree.ray(targets[target].map(f64::from), heading.direction, f64::INFINITY);
                 let blocks = |&ball: &u32| self.tree.front(ball as usize, &ray).is_some();
                 if let Some(ball) = of_direction.likely(target).into_iter().flatten().find(blocks) {
@@ -133,7 +140,7 @@ impl<'a> Sky<'a> {
 /// What is found in a direction.
 struct OfDirection<'a> {
     /// A bit for each target that nothing blocks yet.
-    open: &'a mut Bits,
+    open: &'a mut WordBits,
     /// What blocked each target last.
     before: &'a mut [Option<u32>],
     /// What blocked the targets before.

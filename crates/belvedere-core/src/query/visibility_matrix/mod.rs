@@ -12,7 +12,8 @@ use super::backend::WORD;
 use belvedere_data::control::Control;
 use belvedere_data::{Error, Result};
 
-/// One bit for each target and direction: set where no ball blocks the line of sight that leaves the target in the direction.
+/// One bit for each target and direction: set where no ball blocks the line of sight that leaves the target in the
+/// direction.
 #[derive(Clone, Debug)]
 pub struct VisibilityMatrix {
     /// Where the row of each target lies: neighbours together, and one empty row for all that are not finite.
@@ -63,7 +64,8 @@ impl VisibilityMatrix {
         direction < self.direction_count && word >> (direction % WORD) & 1 == 1
     }
 
-    /// The bits of a target, 64 directions a word from the lowest bit on, those beyond the last unset; empty beyond the last target.
+    /// The bits of a target, 64 directions a word from the lowest bit on, those beyond the last unset; empty beyond the
+    /// last target.
     #[must_use]
     pub fn row(&self, target: usize) -> &[u64] {
         let place = self.places.get(target).copied().unwrap_or(u32::MAX) as usize;
@@ -86,16 +88,17 @@ impl VisibilityMatrix {
 }
 
 impl MedialScene {
-    /// Which of `directions`, (D, 3) unit vectors, each of `targets`, (M, 3) local metres, sees free of balls and of what was added: for every pair the same as
-    /// [`MedialScene::answer`] at infinite range, pulses not being asked. A target that is not finite sees nothing. Progress counts
-    /// targets.
+    /// Which of `directions`, (D, 3) unit vectors, each of `targets`, (M, 3) local metres, sees free of balls and of
+    /// what was added: for every pair the same as [`MedialScene::answer`] at infinite range, pulses not being asked. A
+    /// target that is not finite sees nothing. Progress counts targets.
     ///
-    /// The backend settles most lines of sight ([`super::backend::Prepared::settle`]). What it leaves open is asked of the ball that
-    /// blocked its neighbours, and last of all balls. What the backend makes ready stays with the scene, so that targets may be
-    /// asked in blocks.
+    /// The backend settles most lines of sight ([`super::backend::PreparedBackend::settle`]). What it leaves open is
+    /// asked of the ball that blocked its neighbours, and last of all balls. What the backend makes ready stays with
+    /// the scene, so that targets may be asked in blocks.
     ///
     /// # Errors
-    /// [`Error::InvalidParameter`] for a direction that is not of unit length (to a millionth), and [`Error::Cancelled`].
+    /// [`Error::InvalidParameter`] for a direction that is not of unit length (to a millionth), and
+    /// [`Error::Cancelled`].
     pub fn visibility_matrix(
         &self,
         targets: &[[f32; 3]],

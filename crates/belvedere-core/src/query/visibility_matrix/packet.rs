@@ -9,10 +9,11 @@ use belvedere_data::vector::{cross, dot, length, sub, unit};
 
 /// Most lines of a packet.
 pub(super) const LANES: usize = 8;
-/// Farthest that the targets of a packet lie apart along an axis, metres. The sky of the points of a town (10 per m², 256 directions) took 20.3 s with 0.5, 16.1 with 1, 15.4
-/// with 2 and 16.3 with 4, in one session.
+/// Farthest that the targets of a packet lie apart along an axis, metres. The sky of the points of a town (10 per m²,
+/// 256 directions) took 20.3 s with 0.5, 16.1 with 1, 15.4 with 2 and 16.3 with 4, in one session.
 const SPREAD: f32 = 2.0;
-/// By how much radii are taken for larger until lines are tested exactly: far more than f32 errs. Metres, a share of the size of the scene, a share of the radius.
+/// By how much radii are taken for larger until lines are tested exactly: far more than f32 errs. Metres, a share of
+/// the size of the scene, a share of the radius.
 const MARGIN: f64 = 1e-3;
 const MARGIN_OF_SCENE: f64 = 1e-6;
 const MARGIN_OF_RADIUS: f32 = 1e-5;
@@ -110,8 +111,8 @@ impl<'p, 'a> Search<'p, 'a> {
         Self { packet, middle, starts, left: u32::MAX >> (u32::BITS as usize - packet.count), blockers }
     }
 
-    /// Tests exactly which lines a ball blocks, of those that come near to it. Few balls get so far: apart from [`Visit::visit`], which stays short enough to
-    /// become part of the walk.
+    /// Tests exactly which lines a ball blocks, of those that come near to it. Few balls get so far: apart from
+    /// [`Visit::visit`], which stays short enough to become part of the walk.
     #[inline(never)]
     fn test(&mut self, row: usize, is_near: [u32; LANES]) {
         let packet = self.packet;
@@ -132,7 +133,8 @@ impl<'p, 'a> Search<'p, 'a> {
 }
 
 impl Visit for Search<'_, '_> {
-    /// A ball that blocks a line reaches it where it has started: it lies no farther than its radius from there or from a later place of the line.
+    /// A ball that blocks a line reaches it where it has started: it lies no farther than its radius from there or from
+    /// a later place of the line.
     #[inline(always)]
     fn visit(&mut self, row: usize) -> f32 {
         let ball = self.packet.tree.ball(row);

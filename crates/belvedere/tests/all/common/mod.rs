@@ -19,14 +19,14 @@ pub(crate) fn data(test: &str, relative: &str) -> Option<PathBuf> {
     None
 }
 
-/// Says that a test, or a part of one, did not run. The test runner captures what `eprintln!` prints and shows it for failed tests only,
-/// so this writes to standard error itself.
+/// Says that a test, or a part of one, did not run. The test runner captures what `eprintln!` prints and shows it for
+/// failed tests only, so this writes to standard error itself.
 pub(crate) fn skipped(what: &str) {
     let _ = writeln!(std::io::stderr().lock(), "SKIPPED {what}");
 }
 
-/// Share of the light that reaches a target from a direction: 1 where nothing blocks, 0 where anything but vegetation does, and
-/// `share` where only vegetation does. `opaque` is the matrix of the balls that are not vegetation.
+/// Share of the light that reaches a target from a direction: 1 where nothing blocks, 0 where anything but vegetation
+/// does, and `share` where only vegetation does. `opaque` is the matrix of the balls that are not vegetation.
 pub(crate) fn light_share(
     all: &VisibilityMatrix,
     opaque: &VisibilityMatrix,

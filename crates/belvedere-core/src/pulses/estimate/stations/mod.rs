@@ -8,62 +8,67 @@ use belvedere_data::cloud::to_local;
 use belvedere_data::control::Control;
 use belvedere_data::{PointCloud, Result};
 use floor_holes::floor_holes;
-use pulse_grid::{Fit, crowding, filled_share, fit};
+use pulse_grid::{StationFit, crowding, filled_share, fit};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::f64::consts::{FRAC_PI_2, TAU};
 use std::sync::atomic::{AtomicU32, Ordering};
 
 /// Points of a source id from which on a tripod is looked for.
-const LEAST_POINTS: usize = 3000;
-/// Distances from the foot of a tripod up to which its grid is looked for, metres, tried in turn: the more the better, as long as few points are of
-/// another tripod.
+const MIN_POINTS: usize = 3000;
+/// Distances from the foot of a tripod up to which its grid is looked for, metres, tried in turn: the more the better,
+/// as long as few points are of another tripod.
 const NEAR: [f64; 3] = [6.0, 3.5, 2.2];
 /// Distance below which the scanner's own parts and rounded coordinates disturb the grid, metres.
 const TOO_NEAR: f64 = 0.4;
-/// Points by which heights are tried, and those that a station is fitted to, about; and the wedges that are left out where there are more. A few wedges on all
-/// sides are kept of however many points: one side alone does not tell where the station is.
+/// Points by which heights are tried, and those that a station is fitted to, about; and the wedges that are left out
+/// where there are more. A few wedges on all sides are kept of however many points: one side alone does not tell where
+/// the station is.
 const TRIED: f64 = 10_000.0;
 const FITTED: f64 = 50_000.0;
 const WEDGES: f64 = 36.0;
-const LEAST_WEDGES: f64 = 6.0;
+const MIN_WEDGES: f64 = 6.0;
 /// Heights above the floor from which the search starts, metres.
 const HEIGHTS: [f64; 5] = [0.5, 0.9, 1.3, 1.7, 2.3];
 /// Pairs of directions that a station is fitted to, from each height and at last.
 const FEW_PAIRS: usize = 2_500;
-const MOST_PAIRS: usize = 12_000;
+const MAX_PAIRS: usize = 12_000;
 /// Heights above the floor that stations are found at, metres.
 const ALLOWED_HEIGHTS: std::ops::RangeInclusive<f64> = 0.2..=4.0;
 /// Holes that are no station's, after which the search ends; the roundest come first.
-const MOST_FAILURES: usize = 12;
-/// Stations on one floor are farther apart than that, metres: the floor about a tripod has other holes, but no other tripod.
+const MAX_FAILURES: usize = 12;
+/// Stations on one floor are farther apart than that, metres: the floor about a tripod has other holes, but no other
+/// tripod.
 const APART: f64 = 2.0;
 /// How far the station may be from above the middle of its hole, metres.
-const MOST_BESIDE: f64 = 0.6;
-/// Numbers of directions in a cell at which they must not be crowded, and how much they may be. Measured: stations of simulated tripods have less than 0.05 and 0.5,
-/// other places of their clouds and of clouds from the air 0.5 to 50 and 1 to 50.
+const MAX_BESIDE: f64 = 0.6;
+/// Numbers of directions in a cell at which they must not be crowded, and how much they may be. Measured: stations of
+/// simulated tripods have less than 0.05 and 0.5, other places of their clouds and of clouds from the air 0.5 to 50 and
+/// 1 to 50.
 const CROWDING: [(f64, f64); 2] = [(0.3, 0.25), (1.0, 0.7)];
 /// The same in the larger cells from the height that is tried first, some decimetres beside the station.
 const START_CROWDING: f64 = 1.8;
 /// Share of all directions that points near a station fill at least.
-const LEAST_FILLED: f64 = 0.15;
+const MIN_FILLED: f64 = 0.15;
 /// Largest standard deviation of a position, metres.
-const MOST_SD: f64 = 0.03;
+const MAX_SD: f64 = 0.03;
 /// Side of the cells of an image of ranges, in steps of the grid, and most columns of it.
 const IMAGE_STEPS: f64 = 1.5;
-const MOST_COLUMNS: f64 = 4096.0;
-/// How much farther than the nearest point in its cell a point may lie and be seen, metres, and in sides of the cell at its range: walls are seen at up to
-/// 80° from their normal.
+const MAX_COLUMNS: f64 = 4096.0;
+/// How much farther than the nearest point in its cell a point may lie and be seen, metres, and in sides of the cell at
+/// its range: walls are seen at up to 80° from their normal.
 const DEPTH: f64 = 0.05;
 const DEPTH_IN_SIDES: f64 = 6.0;
 /// Share of a group's points that may lie behind others seen from its only station: edges of things.
-const MOST_HIDDEN: f64 = 0.05;
+const MAX_HIDDEN: f64 = 0.05;
 
-/// The stations of tripods in `cloud` and the one that each point was measured from, (N, 3) local metres, NaN where it is unknown.
+/// The stations of tripods in `cloud` and the one that each point was measured from, (N, 3) local metres, NaN where it
+/// is unknown.
 ///
-/// Points of different point source ids are looked at apart. A tripod leaves a round hole in the floor; seen from the true place above it, the pulses near by form a
-/// grid, each direction one step from the next. A place is a station only if that is so: seen from any other place some directions are crowded. Points belong to the
-/// nearest station of their group from which no other point lies before them.
+/// Points of different point source ids are looked at apart. A tripod leaves a round hole in the floor; seen from the
+/// true place above it, the pulses near by form a grid, each direction one step from the next. A place is a station
+/// only if that is so: seen from any other place some directions are crowded. Points belong to the nearest station of
+/// their group from which no other point lies before them.
 ///
 /// # Errors
 /// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
@@ -119,18 +124,18 @@ fn groups(cloud: &PointCloud) -> Vec<(Option<u16>, Vec<usize>)> {
     } else {
         vec![(None, (0..cloud.len()).collect())]
     };
-    groups.retain(|(_, rows)| rows.len() >= LEAST_POINTS);
+    groups.retain(|(_, rows)| rows.len() >= MIN_POINTS);
     groups
 }
 
 /// The stations among these points, and the nearest one from which each point is seen.
-fn tripods(points: &[[f32; 3]], control: &Control<'_>) -> Result<(Vec<Fit>, Vec<Option<usize>>)> {
-    let mut found: Vec<Fit> = Vec::new();
+fn tripods(points: &[[f32; 3]], control: &Control<'_>) -> Result<(Vec<StationFit>, Vec<Option<usize>>)> {
+    let mut found: Vec<StationFit> = Vec::new();
     let mut failures = 0;
     for hole in floor_holes(points) {
         control.check()?;
-        let is_known = |fit: &Fit| (fit.position[0] - hole[0]).hypot(fit.position[1] - hole[1]) < APART;
-        if failures == MOST_FAILURES {
+        let is_known = |fit: &StationFit| (fit.position[0] - hole[0]).hypot(fit.position[1] - hole[1]) < APART;
+        if failures == MAX_FAILURES {
             break;
         }
         if found.iter().any(is_known) {
@@ -156,58 +161,59 @@ fn tripods(points: &[[f32; 3]], control: &Control<'_>) -> Result<(Vec<Fit>, Vec<
 /// Whether one station has seen a group of points, but for some behind the edges of others.
 fn is_whole(seen: &[Option<usize>]) -> bool {
     let hidden_count = seen.iter().filter(|number| number.is_none()).count();
-    hidden_count as f64 <= MOST_HIDDEN * seen.len() as f64
+    hidden_count as f64 <= MAX_HIDDEN * seen.len() as f64
 }
 
 /// Whether the directions of all these points form the grid of this station.
-fn is_only(points: &[[f32; 3]], station: &Fit) -> bool {
+fn is_only(points: &[[f32; 3]], station: &StationFit) -> bool {
     let places: Vec<[f64; 3]> = points.par_iter().map(|p| p.map(f64::from)).collect();
-    let [(fine, most_fine), _] = CROWDING;
+    let [(fine, max_fine), _] = CROWDING;
     // enough wedges that other stations are in some of them
-    let most = FITTED.max(places.len() as f64 / 4.0);
-    crowding(&in_wedges(&places, station.position, most), station.position, fine) <= most_fine
+    let max = FITTED.max(places.len() as f64 / 4.0);
+    crowding(&in_wedges(&places, station.position, max), station.position, fine) <= max_fine
 }
 
 /// The station above a hole in the floor, if pulses near by prove that there is one.
-fn station_above(points: &[[f32; 3]], hole: [f64; 3]) -> Option<Fit> {
-    let is_near = |p: &[f64; 3], most: f64| {
+fn station_above(points: &[[f32; 3]], hole: [f64; 3]) -> Option<StationFit> {
+    let is_near = |p: &[f64; 3], max: f64| {
         let [x, y, z] = [0, 1, 2].map(|i| p[i] - hole[i]);
         let level = x.hypot(y);
-        level > TOO_NEAR && level.hypot(z) < most
+        level > TOO_NEAR && level.hypot(z) < max
     };
     let places = points.par_iter().map(|p| p.map(f64::from));
     let around: Vec<[f64; 3]> = places.filter(|p| is_near(p, NEAR[0])).collect();
-    NEAR.iter().find_map(|&most| {
-        let near: Vec<[f64; 3]> = around.iter().copied().filter(|p| is_near(p, most)).collect();
-        if near.len() < LEAST_POINTS { None } else { station_by_grid(&near, hole) }
+    NEAR.iter().find_map(|&max| {
+        let near: Vec<[f64; 3]> = around.iter().copied().filter(|p| is_near(p, max)).collect();
+        if near.len() < MIN_POINTS { None } else { station_by_grid(&near, hole) }
     })
 }
 
 /// The station above a hole in the floor by points near by, if they prove that there is one.
-fn station_by_grid(near: &[[f64; 3]], hole: [f64; 3]) -> Option<Fit> {
-    let [(fine, most_fine), (coarse, most_coarse)] = CROWDING;
+fn station_by_grid(near: &[[f64; 3]], hole: [f64; 3]) -> Option<StationFit> {
+    let [(fine, max_fine), (coarse, max_coarse)] = CROWDING;
     let few = in_wedges(near, hole, TRIED);
     let at = |height: f64| [hole[0], hole[1], hole[2] + height];
     let is_open = |height: &&f64| crowding(&few, at(**height), coarse) <= START_CROWDING;
     // from a wrong height, the floor alone looks as regular as from the right one, and walls do not
-    let fits: Vec<Fit> =
+    let fits: Vec<StationFit> =
         HEIGHTS.par_iter().filter(is_open).filter_map(|&height| fit(&few, at(height), FEW_PAIRS)).collect();
     let start = fits.into_iter().min_by(|a, b| a.sd.total_cmp(&b.sd))?;
     let kept = in_wedges(near, hole, FITTED);
-    let fit = fit(&kept, start.position, MOST_PAIRS)?;
+    let fit = fit(&kept, start.position, MAX_PAIRS)?;
     let off = [0, 1, 2].map(|i| fit.position[i] - hole[i]);
-    let is_above_hole = off[0].hypot(off[1]) <= MOST_BESIDE && ALLOWED_HEIGHTS.contains(&off[2]);
+    let is_above_hole = off[0].hypot(off[1]) <= MAX_BESIDE && ALLOWED_HEIGHTS.contains(&off[2]);
     let is_proven = is_above_hole
-        && fit.sd <= MOST_SD
-        && crowding(&kept, fit.position, fine) <= most_fine
-        && crowding(&kept, fit.position, coarse) <= most_coarse
-        && filled_share(&kept, fit.position) * near.len() as f64 >= LEAST_FILLED * kept.len() as f64;
+        && fit.sd <= MAX_SD
+        && crowding(&kept, fit.position, fine) <= max_fine
+        && crowding(&kept, fit.position, coarse) <= max_coarse
+        && filled_share(&kept, fit.position) * near.len() as f64 >= MIN_FILLED * kept.len() as f64;
     is_proven.then_some(fit)
 }
 
-/// About `most` of these points, or a sixth of all where that is more: those in some wedges about the middle of the hole: within a wedge the grid is whole.
-fn in_wedges(near: &[[f64; 3]], hole: [f64; 3], most: f64) -> Vec<[f64; 3]> {
-    let share = (most / near.len() as f64).clamp(LEAST_WEDGES / WEDGES, 1.0);
+/// About `max` of these points, or a sixth of all where that is more: those in some wedges about the middle of the
+/// hole: within a wedge the grid is whole.
+fn in_wedges(near: &[[f64; 3]], hole: [f64; 3], max: f64) -> Vec<[f64; 3]> {
+    let share = (max / near.len() as f64).clamp(MIN_WEDGES / WEDGES, 1.0);
     let is_kept = |p: &&[f64; 3]| {
         let wedge = ((p[1] - hole[1]).atan2(p[0] - hole[0]).rem_euclid(TAU) / TAU * WEDGES).floor();
         ((wedge + 1.0) * share).floor() > (wedge * share).floor()
@@ -216,11 +222,11 @@ fn in_wedges(near: &[[f64; 3]], hole: [f64; 3], most: f64) -> Vec<[f64; 3]> {
 }
 
 /// The nearest station from which each point is seen.
-fn seen_from(points: &[[f32; 3]], stations: &[Fit], control: &Control<'_>) -> Result<Vec<Option<usize>>> {
+fn seen_from(points: &[[f32; 3]], stations: &[StationFit], control: &Control<'_>) -> Result<Vec<Option<usize>>> {
     let mut nearest: Vec<Option<(f32, usize)>> = vec![None; points.len()];
     for (number, station) in stations.iter().enumerate() {
         control.check()?;
-        let side = (IMAGE_STEPS * station.steps[0].max(station.steps[1])).max(TAU / MOST_COLUMNS);
+        let side = (IMAGE_STEPS * station.steps[0].max(station.steps[1])).max(TAU / MAX_COLUMNS);
         let size = [TAU / side, 2.0 * FRAC_PI_2 / side].map(count_of);
         let image: Vec<AtomicU32> = (0..size[0] * size[1]).map(|_| AtomicU32::new(u32::MAX)).collect();
         let seen = |p: &[f32; 3]| {
@@ -241,7 +247,7 @@ fn seen_from(points: &[[f32; 3]], stations: &[Fit], control: &Control<'_>) -> Re
             let (cell, range) = seen(p);
             let first = f64::from(f32::from_bits(image[cell].load(Ordering::Relaxed)));
             let is_seen = f64::from(range) <= first * (1.0 + DEPTH_IN_SIDES * side) + DEPTH;
-            if is_seen && nearest.is_none_or(|(least, _)| range < least) {
+            if is_seen && nearest.is_none_or(|(min, _)| range < min) {
                 *nearest = Some((range, number));
             }
         });
@@ -265,8 +271,8 @@ mod tests {
     const ROOM: [f64; 3] = [10.0, 6.0, 3.0];
     const STATIONS: [[f64; 3]; 2] = [[2.5, 3.2, 1.5], [7.4, 2.1, 1.7]];
 
-    /// The room as a scanner sees it in steps of `step` degrees down to 65° below the horizon, levelled to a thousandth and turned by `turn` radians; ranges have 3 mm of
-    /// noise, and coordinates are rounded to a millimetre.
+    /// The room as a scanner sees it in steps of `step` degrees down to 65° below the horizon, levelled to a thousandth
+    /// and turned by `turn` radians; ranges have 3 mm of noise, and coordinates are rounded to a millimetre.
     fn scanned(eye: [f64; 3], step: f64, turn: f64) -> Vec<[f32; 3]> {
         let steps = |degrees: f64| (0..).map(move |i| f64::from(i) * step).take_while(move |v| *v < degrees);
         let mut points = Vec::new();

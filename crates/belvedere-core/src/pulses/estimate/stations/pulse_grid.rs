@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Directions nearer to the zenith or nadir are left out, radians from the horizon: columns meet there.
-const MOST_ELEVATION: f64 = 1.22;
+const MAX_ELEVATION: f64 = 1.22;
 /// How far the way from a direction to the next may differ from a step of the grid, in steps.
 const TOLERANCE: f64 = 0.3;
 /// The same near the end.
@@ -19,7 +19,7 @@ const UNKNOWNS: usize = 7;
 
 /// A station, as a grid of pulses shows it.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Fit {
+pub(super) struct StationFit {
     /// Local metres.
     pub(super) position: [f64; 3],
     /// Steps around and up, radians.
@@ -38,7 +38,7 @@ fn direction(point: [f64; 3], place: [f64; 3], tilt: [f64; 2]) -> [f64; 2] {
 /// Directions of `points` from `place`, without those near the poles.
 fn directions(points: &[[f64; 3]], place: [f64; 3], tilt: [f64; 2]) -> Vec<([f64; 2], usize)> {
     let seen = |(row, point): (usize, &[f64; 3])| (direction(*point, place, tilt), row);
-    let is_kept = |(d, _): &([f64; 2], usize)| d[1].abs() < MOST_ELEVATION;
+    let is_kept = |(d, _): &([f64; 2], usize)| d[1].abs() < MAX_ELEVATION;
     points.iter().enumerate().map(seen).filter(is_kept).collect()
 }
 
@@ -57,13 +57,14 @@ fn sorted_cells(directions: &[([f64; 2], usize)], side: f64) -> Vec<[i32; 2]> {
 /// Side of cells that hold `each` of these directions on average where they hold any, radians.
 fn cell_side(directions: &[([f64; 2], usize)], each: f64) -> f64 {
     let count = directions.len().max(1) as f64;
-    let coarse = (TAU * 2.0 * MOST_ELEVATION * 8.0 / count).sqrt();
+    let coarse = (TAU * 2.0 * MAX_ELEVATION * 8.0 / count).sqrt();
     let taken = sorted_cells(directions, coarse).chunk_by(|a, b| a == b).count();
     (each * taken as f64 * coarse * coarse / count).sqrt()
 }
 
-/// How crowded the directions of `points` from `place` are, in cells that hold `each` of them on average: the mean number of others in the cell of one, by
-/// what chance would give. It is 1 where directions fall anywhere, more where some are preferred, and almost 0 on a grid of pulses that has one in each cell.
+/// How crowded the directions of `points` from `place` are, in cells that hold `each` of them on average: the mean
+/// number of others in the cell of one, by what chance would give. It is 1 where directions fall anywhere, more where
+/// some are preferred, and almost 0 on a grid of pulses that has one in each cell.
 pub(super) fn crowding(points: &[[f64; 3]], place: [f64; 3], each: f64) -> f64 {
     let directions = directions(points, place, [0.0; 2]);
     if directions.is_empty() {
@@ -78,11 +79,11 @@ pub(super) fn crowding(points: &[[f64; 3]], place: [f64; 3], each: f64) -> f64 {
 pub(super) fn filled_share(points: &[[f64; 3]], place: [f64; 3]) -> f64 {
     let directions = directions(points, place, [0.0; 2]);
     let side = cell_side(&directions, 1.0);
-    side * side * directions.len() as f64 / (TAU * 2.0 * MOST_ELEVATION)
+    side * side * directions.len() as f64 / (TAU * 2.0 * MAX_ELEVATION)
 }
 
 /// A point and its neighbour in the grid, one step on around or up.
-struct Pair {
+struct GridPair {
     rows: [usize; 2],
     is_around: bool,
 }
@@ -96,14 +97,14 @@ fn pairs(
     place: [f64; 3],
     tilt: [f64; 2],
     tolerance: f64,
-    most: usize,
-) -> Option<(Vec<Pair>, [f64; 2])> {
+    max: usize,
+) -> Option<(Vec<GridPair>, [f64; 2])> {
     let directions = directions(points, place, tilt);
     let side = cell_side(&directions, 1.0);
     let mut cells: Vec<([i32; 2], [f64; 2], usize)> =
         directions.par_iter().map(|&(d, row)| (cell(d, side), d, row)).collect();
     cells.par_sort_unstable_by(|a, b| a.0.cmp(&b.0).then(a.1[0].total_cmp(&b.1[0])).then(a.1[1].total_cmp(&b.1[1])));
-    let stride = cells.len().div_ceil(most / 2).max(1);
+    let stride = cells.len().div_ceil(max / 2).max(1);
     let next = |&(at, d, row): &([i32; 2], [f64; 2], usize)| {
         let mut nearest = [Next::None; 2];
         for column in at[0] - 1..=at[0] + 2 {
@@ -136,7 +137,7 @@ fn pairs(
             let Some((on, beside, to)) = next else { continue };
             let is_step = (on / steps[axis] - 1.0).abs() < tolerance && beside.abs() < tolerance * steps[1 - axis];
             if is_step {
-                pairs.push(Pair { rows: [row, to], is_around: axis == 0 });
+                pairs.push(GridPair { rows: [row, to], is_around: axis == 0 });
             }
         }
     }
@@ -144,7 +145,7 @@ fn pairs(
 }
 
 /// How far a pair is from one step, around and up, in steps.
-fn misfit(points: &[[f64; 3]], pair: &Pair, unknowns: &SVector<f64, UNKNOWNS>) -> [f64; 2] {
+fn misfit(points: &[[f64; 3]], pair: &GridPair, unknowns: &SVector<f64, UNKNOWNS>) -> [f64; 2] {
     let place = [unknowns[0], unknowns[1], unknowns[2]];
     let [from, to] = pair.rows.map(|row| direction(points[row], place, [unknowns[3], unknowns[4]]));
     let steps = [unknowns[5], unknowns[6]];
@@ -154,22 +155,22 @@ fn misfit(points: &[[f64; 3]], pair: &Pair, unknowns: &SVector<f64, UNKNOWNS>) -
     [way[0] / steps[0] * from[1].cos(), way[1] / steps[1]]
 }
 
-/// The station from which neighbouring directions of `points` are one step of a grid apart, from a `start` a few decimetres away; `None` where none is
-/// found.
+/// The station from which neighbouring directions of `points` are one step of a grid apart, from a `start` a few
+/// decimetres away; `None` where none is found.
 ///
-/// Points of one row have the same elevation, those of one column the same azimuth, and steps are everywhere the same. Errors of ranges do not matter: they lie along the
-/// pulses.
+/// Points of one row have the same elevation, those of one column the same azimuth, and steps are everywhere the same.
+/// Errors of ranges do not matter: they lie along the pulses.
 ///
 /// # Source
 /// This project's own. Gauss–Newton with the weights of Huber 1964.
-pub(super) fn fit(points: &[[f64; 3]], start: [f64; 3], most_pairs: usize) -> Option<Fit> {
+pub(super) fn fit(points: &[[f64; 3]], start: [f64; 3], max_pairs: usize) -> Option<StationFit> {
     let mut unknowns = SVector::<f64, UNKNOWNS>::from_row_slice(&[start[0], start[1], start[2], 0.0, 0.0, 1.0, 1.0]);
     let mut sd = f64::INFINITY;
     let mut moved = f64::INFINITY;
     let mut tolerance = TOLERANCE;
     for _ in 0..ROUNDS {
         let (pairs, steps) =
-            pairs(points, [unknowns[0], unknowns[1], unknowns[2]], [unknowns[3], unknowns[4]], tolerance, most_pairs)?;
+            pairs(points, [unknowns[0], unknowns[1], unknowns[2]], [unknowns[3], unknowns[4]], tolerance, max_pairs)?;
         if pairs.len() < 10 * UNKNOWNS {
             return None;
         }
@@ -194,20 +195,20 @@ pub(super) fn fit(points: &[[f64; 3]], start: [f64; 3], most_pairs: usize) -> Op
             tolerance = LAST_TOLERANCE;
         }
     }
-    (moved < 5e-3).then_some(Fit {
+    (moved < 5e-3).then_some(StationFit {
         position: [unknowns[0], unknowns[1], unknowns[2]],
         steps: [unknowns[5], unknowns[6]],
         sd,
     })
 }
 
-type Equations = (SMatrix<f64, UNKNOWNS, UNKNOWNS>, SVector<f64, UNKNOWNS>, f64);
+type GridEquations = (SMatrix<f64, UNKNOWNS, UNKNOWNS>, SVector<f64, UNKNOWNS>, f64);
 
-fn normal_equations(points: &[[f64; 3]], pairs: &[Pair], unknowns: &SVector<f64, UNKNOWNS>) -> Equations {
+fn normal_equations(points: &[[f64; 3]], pairs: &[GridPair], unknowns: &SVector<f64, UNKNOWNS>) -> GridEquations {
     const SHARE: usize = 1024;
     let nudges = [1e-5, 1e-5, 1e-5, 1e-6, 1e-6, 1e-8, 1e-8];
-    let of_share = |share: &[Pair]| {
-        let mut sums: Equations = (SMatrix::zeros(), SVector::zeros(), 0.0);
+    let of_share = |share: &[GridPair]| {
+        let mut sums: GridEquations = (SMatrix::zeros(), SVector::zeros(), 0.0);
         for pair in share {
             let now = misfit(points, pair, unknowns);
             let mut slopes = [SVector::<f64, UNKNOWNS>::zeros(); 2];
@@ -227,6 +228,6 @@ fn normal_equations(points: &[[f64; 3]], pairs: &[Pair], unknowns: &SVector<f64,
         sums
     };
     // shares are added in order, so that the sum does not depend on the number of threads
-    let sums: Vec<Equations> = pairs.par_chunks(SHARE).map(of_share).collect();
+    let sums: Vec<GridEquations> = pairs.par_chunks(SHARE).map(of_share).collect();
     sums.into_iter().fold((SMatrix::zeros(), SVector::zeros(), 0.0), |a, b| (a.0 + b.0, a.1 + b.1, a.2 + b.2))
 }

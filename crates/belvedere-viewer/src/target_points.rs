@@ -1,4 +1,5 @@
-//! The points that questions about the whole cloud ask about: all of them, or a fair sample that is answered within a tenth of a second.
+//! The points that questions about the whole cloud ask about: all of them, or a fair sample that is answered within a
+//! tenth of a second.
 
 use crate::chunks::Chunks;
 use belvedere::apps::targets::Targets;
@@ -9,11 +10,12 @@ use belvedere::{PointCloud, Result};
 use rayon::prelude::*;
 use std::sync::Arc;
 
-/// Most points of a sample: their lines of sight take two threads 20 to 70 ms. The standard error of a share of all points is at most 0.3 %.
+/// Most points of a sample: their lines of sight take two threads 20 to 70 ms. The standard error of a share of all
+/// points is at most 0.3 %.
 pub(crate) const SAMPLE: usize = 30_000;
 
 /// Points that are asked about, and which of them answers for each point that is shown.
-pub(crate) struct AskedPoints {
+pub(crate) struct TargetPoints {
     /// As targets of the sun, local metres.
     pub(crate) targets: Arc<Targets>,
     /// Ordered for viewers.
@@ -27,7 +29,7 @@ const NOBODY: u32 = u32::MAX;
 /// Answer of such a point.
 const CLEARED: u8 = 254;
 
-impl AskedPoints {
+impl TargetPoints {
     /// All points of a cloud. `place` gives the row in it of a point that is shown, if it is there.
     pub(crate) fn all(cloud: &PointCloud, chunks: &Chunks, place: impl Fn(u32) -> Option<u32> + Sync) -> Self {
         let answerers = chunks.rows().par_iter().map(|&row| place(row).unwrap_or(NOBODY)).collect();
@@ -58,9 +60,10 @@ impl AskedPoints {
         })
     }
 
-    /// A byte for each point shown, in the order in which points are sent, from those of the points that were asked about.
-    pub(crate) fn in_order(&self, of_asked: impl Fn(usize) -> u8 + Sync) -> Vec<u8> {
-        let answer = |&asked: &u32| if asked == NOBODY { CLEARED } else { of_asked(asked as usize) };
+    /// A byte for each point shown, in the order in which points are sent, from those of the points that were asked
+    /// about.
+    pub(crate) fn in_order(&self, of_target: impl Fn(usize) -> u8 + Sync) -> Vec<u8> {
+        let answer = |&target: &u32| if target == NOBODY { CLEARED } else { of_target(target as usize) };
         self.answerers.par_iter().with_min_len(4096).map(answer).collect()
     }
 }

@@ -1,6 +1,6 @@
 //! A tree over needles that run one way: its nodes keep where their needles pass two planes.
 
-use super::Needle;
+use super::FreeSegment;
 use belvedere_data::control::{Control, Stop};
 use std::ops::{ControlFlow, Range};
 
@@ -9,7 +9,7 @@ const LEAF: usize = 8;
 /// Below this many needles a thread goes on alone.
 const PARALLEL: usize = 8192;
 /// Least distance of the two planes of a node, metres: rounding must not tilt what lies between them.
-const LEAST_SPAN: f32 = 0.01;
+const MIN_SPAN: f32 = 0.01;
 /// Needles that a way of parting a node is judged by.
 const SAMPLE: usize = 32;
 /// Radius of the balls that the boxes of a tree are made for, metres.
@@ -17,17 +17,17 @@ const TYPICAL_RADIUS: f32 = 0.1;
 /// An upright needle rises at least so much per metre of its length. Those of aircraft do, and make one tree.
 const UPRIGHT_RISE: f64 = 0.3;
 
-/// The way along which a needle gets on most, an axis and a side of it. Across it a needle shifts by 3.2 m per metre at most where it
-/// is upright, otherwise by 1 m.
+/// The way along which a needle gets on most, an axis and a side of it. Across it a needle shifts by 3.2 m per metre at
+/// most where it is upright, otherwise by 1 m.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Way {
+pub(super) struct SegmentAxis {
     /// 0 east, 1 north, 2 up.
     pub(super) axis: usize,
     /// Whether against the axis.
     pub(super) is_backward: bool,
 }
 
-impl Way {
+impl SegmentAxis {
     pub(super) const UP: Self = Self { axis: 2, is_backward: false };
     /// Every way; its place here is the number it is saved by.
     pub(super) const ALL: [Self; 6] = [
@@ -49,7 +49,7 @@ impl Way {
         (along.abs() > 0.0).then_some(Self { axis, is_backward: along < 0.0 })
     }
 
-    /// Place in [`Way::ALL`].
+    /// Place in [`SegmentAxis::ALL`].
     pub(super) fn number(self) -> usize {
         (self.axis + 1) % 3 + if self.is_backward { 3 } else { 0 }
     }
@@ -60,10 +60,10 @@ impl Way {
     }
 }
 
-/// Where the needles of a node lie: what they span along their way, and their box at both ends of that. Between the two planes lines
-/// are straight, so that anywhere they lie within the box interpolated between the two.
+/// Where the needles of a node lie: what they span along their way, and their box at both ends of that. Between the two
+/// planes lines are straight, so that anywhere they lie within the box interpolated between the two.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Node {
+pub(super) struct SegmentNode {
     /// Least of both axes across, then most, at the lower plane.
     pub(super) below: [f32; 4],
     pub(super) above: [f32; 4],
@@ -76,29 +76,35 @@ pub(super) struct Node {
 }
 
 /// Needles that run one way.
-pub(super) struct Tree {
-    pub(super) way: Way,
+pub(super) struct SegmentTree {
+    pub(super) way: SegmentAxis,
     /// Number of its first needle.
     pub(super) first: usize,
-    nodes: Vec<Node>,
+    nodes: Vec<SegmentNode>,
 }
 
-impl Tree {
-    /// The tree over `needles`, which it puts in order; their first will be needle number `first`. What is left when the work is
-    /// cancelled is no tree.
-    pub(super) fn new(way: Way, needles: &mut [Needle], first: usize, stop: &Stop<'_>, control: &Control<'_>) -> Self {
-        let mut nodes = vec![Node::EMPTY; node_count(needles.len())];
-        Build { way, stop, control }.node(needles, first, &mut nodes, 0);
+impl SegmentTree {
+    /// The tree over `free_segments`, which it puts in order; their first will be needle number `first`. What is left
+    /// when the work is cancelled is no tree.
+    pub(super) fn new(
+        way: SegmentAxis,
+        free_segments: &mut [FreeSegment],
+        first: usize,
+        stop: &Stop<'_>,
+        control: &Control<'_>,
+    ) -> Self {
+        let mut nodes = vec![SegmentNode::EMPTY; node_count(free_segments.len())];
+        TreeBuild { way, stop, control }.node(free_segments, first, &mut nodes, 0);
         Self { way, first, nodes }
     }
 
-    /// Shows `visit` the numbers of the needles of every leaf that `may_hold` does not rule out, nor a node above it, until it breaks
-    /// off. Both share `state`.
+    /// Shows `visit` the numbers of the needles of every leaf that `may_hold` does not rule out, nor a node above it,
+    /// until it breaks off. Both share `state`.
     #[inline]
     pub(super) fn walk<S>(
         &self,
         state: &mut S,
-        may_hold: impl Fn(&Node, &S) -> bool,
+        may_hold: impl Fn(&SegmentNode, &S) -> bool,
         mut visit: impl FnMut(Range<usize>, &mut S) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
         let mut stack = [0_u32; 64];
@@ -125,7 +131,7 @@ impl Tree {
 
     /// Whether a needle below `node` may enter the ball.
     #[inline]
-    pub(super) fn may_enter(&self, node: &Node, center: [f32; 3], radius: f32) -> bool {
+    pub(super) fn may_enter(&self, node: &SegmentNode, center: [f32; 3], radius: f32) -> bool {
         // rounding of f32 at coordinates of kilometres is a tenth of a millimetre
         let reach = radius * (1.0 + 1e-5) + 1e-3;
         let along = center[self.way.axis];
@@ -140,9 +146,9 @@ impl Tree {
         let mut square = 0.0;
         for (side, axis) in self.way.across().into_iter().enumerate() {
             let at = |share: f32, side: usize| node.below[side] + share * (node.above[side] - node.below[side]);
-            let least = at(s, side).min(at(t, side));
-            let most = at(s, side + 2).max(at(t, side + 2));
-            let off = (least - center[axis]).max(center[axis] - most).max(0.0);
+            let min = at(s, side).min(at(t, side));
+            let max = at(s, side + 2).max(at(t, side + 2));
+            let off = (min - center[axis]).max(center[axis] - max).max(0.0);
             square += off * off;
         }
         let off = (low - along).max(along - high).max(0.0);
@@ -150,7 +156,7 @@ impl Tree {
     }
 }
 
-impl Node {
+impl SegmentNode {
     const EMPTY: Self = Self {
         below: [f32::INFINITY, f32::INFINITY, f32::NEG_INFINITY, f32::NEG_INFINITY],
         above: [f32::INFINITY, f32::INFINITY, f32::NEG_INFINITY, f32::NEG_INFINITY],
@@ -159,20 +165,20 @@ impl Node {
         count: 0,
     };
 
-    /// The box around `needles`.
-    fn around(needles: &[Needle], way: Way) -> Self {
+    /// The box around `free_segments`.
+    fn around(free_segments: &[FreeSegment], way: SegmentAxis) -> Self {
         let mut node = Self::EMPTY;
-        for needle in needles {
-            let start = needle.start[way.axis];
-            let end = start + needle.direction[way.axis] * needle.length;
+        for free_segment in free_segments {
+            let start = free_segment.start[way.axis];
+            let end = start + free_segment.direction[way.axis] * free_segment.length;
             node.planes = [node.planes[0].min(start.min(end)), node.planes[1].max(start.max(end))];
         }
-        node.planes[1] = node.planes[1].max(node.planes[0] + LEAST_SPAN);
-        for needle in needles {
-            let per_metre = 1.0 / needle.direction[way.axis];
+        node.planes[1] = node.planes[1].max(node.planes[0] + MIN_SPAN);
+        for free_segment in free_segments {
+            let per_metre = 1.0 / free_segment.direction[way.axis];
             for (side, axis) in way.across().into_iter().enumerate() {
-                let slope = needle.direction[axis] * per_metre;
-                let at = |plane: f32| needle.start[axis] + (plane - needle.start[way.axis]) * slope;
+                let slope = free_segment.direction[axis] * per_metre;
+                let at = |plane: f32| free_segment.start[axis] + (plane - free_segment.start[way.axis]) * slope;
                 for (plane, found) in node.planes.into_iter().zip([&mut node.below, &mut node.above]) {
                     let at = at(plane);
                     found[side] = found[side].min(at);
@@ -193,12 +199,12 @@ impl Node {
 
 /// What needles are put in order by: a coordinate of one of their ends.
 #[derive(Clone, Copy)]
-struct Key {
+struct SegmentKey {
     axis: usize,
     is_far_end: bool,
 }
 
-impl Key {
+impl SegmentKey {
     const ALL: [Self; 6] = [
         Self { axis: 0, is_far_end: false },
         Self { axis: 1, is_far_end: false },
@@ -208,9 +214,9 @@ impl Key {
         Self { axis: 2, is_far_end: true },
     ];
 
-    fn of(self, needle: &Needle) -> f32 {
-        let start = needle.start[self.axis];
-        if self.is_far_end { start + needle.direction[self.axis] * needle.length } else { start }
+    fn of(self, free_segment: &FreeSegment) -> f32 {
+        let start = free_segment.start[self.axis];
+        if self.is_far_end { start + free_segment.direction[self.axis] * free_segment.length } else { start }
     }
 }
 
@@ -225,23 +231,24 @@ fn cut(count: usize) -> usize {
 }
 
 #[derive(Clone, Copy)]
-struct Build<'a> {
-    way: Way,
+struct TreeBuild<'a> {
+    way: SegmentAxis,
     stop: &'a Stop<'a>,
     control: &'a Control<'a>,
 }
 
-impl Build<'_> {
-    /// What `needles` are parted by, so that the boxes around both parts are least. Judged by a sample, in their order.
-    fn best_key(self, needles: &[Needle]) -> Key {
-        let step = needles.len().div_ceil(SAMPLE);
-        let mut sample: Vec<Needle> = needles.iter().step_by(step).copied().collect();
+impl TreeBuild<'_> {
+    /// What `free_segments` are parted by, so that the boxes around both parts are least. Judged by a sample, in their
+    /// order.
+    fn best_key(self, free_segments: &[FreeSegment]) -> SegmentKey {
+        let step = free_segments.len().div_ceil(SAMPLE);
+        let mut sample: Vec<FreeSegment> = free_segments.iter().step_by(step).copied().collect();
         let middle = sample.len() / 2;
-        let mut best = (f32::INFINITY, Key::ALL[0]);
-        for key in Key::ALL {
+        let mut best = (f32::INFINITY, SegmentKey::ALL[0]);
+        for key in SegmentKey::ALL {
             sample.select_nth_unstable_by(middle, |a, b| key.of(a).total_cmp(&key.of(b)));
             let (near, far) = sample.split_at(middle);
-            let cost = Node::around(near, self.way).volume() + Node::around(far, self.way).volume();
+            let cost = SegmentNode::around(near, self.way).volume() + SegmentNode::around(far, self.way).volume();
             if cost < best.0 {
                 best = (cost, key);
             }
@@ -249,12 +256,13 @@ impl Build<'_> {
         best.1
     }
 
-    /// Builds the node over `items`, whose first needle is number `first`, into `nodes[0]`, and what is below it behind.
-    fn node(self, items: &mut [Needle], first: usize, nodes: &mut [Node], index: usize) {
+    /// Builds the node over `items`, whose first needle is number `first`, into `nodes[0]`, and what is below it
+    /// behind.
+    fn node(self, items: &mut [FreeSegment], first: usize, nodes: &mut [SegmentNode], index: usize) {
         if items.len() > PARALLEL && self.stop.is_set() {
             return;
         }
-        let mut node = Node::around(items, self.way);
+        let mut node = SegmentNode::around(items, self.way);
         let Some((own, below)) = nodes.split_first_mut() else { return };
         #[expect(clippy::cast_possible_truncation, reason = "needles and nodes are numbered with 32 bits")]
         let number = |value: usize| value as u32;

@@ -1,39 +1,41 @@
 //! The ways of pulses between their returns: what they prove below crowns and beside edges.
 
-use super::{NeedleParams, Needles};
+use super::{FreeSegmentParams, FreeSegments};
 use crate::neighbors::NeighborIndex;
 use crate::pulses::Pulses;
 use belvedere_data::control::{Control, Stop};
 use belvedere_data::{PointCloud, Result};
 use rayon::prelude::*;
 
-/// How much lower the last return of a pulse lies than the first where it went through a crown rather than past a car or a fence, metres.
+/// How much lower the last return of a pulse lies than the first where it went through a crown rather than past a car
+/// or a fence, metres.
 const CROWN_DEPTH: f32 = 2.0;
 /// A first return over a crown is a top where none within this lies higher, metres: half the width of small crowns.
 const TOP_REACH: f32 = 2.0;
-/// How far from the tops of crowns ways must stay, level metres: 0.7, which a pulse proves about itself, and half a metre for the stem. A
-/// line of sight through the stem then has a metre unproven, twice what is tolerated.
+/// How far from the tops of crowns ways must stay, level metres: 0.7, which a pulse proves about itself, and half a
+/// metre for the stem. A line of sight through the stem then has a metre unproven, twice what is tolerated.
 const STEM_REACH: f32 = 1.2;
 
-impl Needles {
-    /// The ways of `pulses` from each of their returns to the one before, as needles that reach as high as these may. Rows of `pulses` are those
-    /// of `cloud`.
+impl FreeSegments {
+    /// The ways of `pulses` from each of their returns to the one before, as needles that reach as high as these may.
+    /// Rows of `pulses` are those of `cloud`.
     ///
-    /// The rest of a beam went that way, so that nothing as large as the gaps between such pulses stands there. Stems of trees are
-    /// smaller, and crowns keep pulses off them: ways near the top of a crown, below which its stem stands, prove nothing and are left
-    /// out. They must not carve, because leaves that let a part of a beam through are there.
+    /// The rest of a beam went that way, so that nothing as large as the gaps between such pulses stands there. Stems
+    /// of trees are smaller, and crowns keep pulses off them: ways near the top of a crown, below which its stem
+    /// stands, prove nothing and are left out. They must not carve, because leaves that let a part of a beam through
+    /// are there.
     ///
     /// # Errors
     /// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
     ///
     /// # Source
-    /// This project's own. Tops of trees as local maxima of the canopy: Popescu & Wynne 2004, Photogrammetric Engineering & Remote
-    /// Sensing 70.
+    /// This project's own. Tops of trees as local maxima of the canopy: Popescu & Wynne 2004, Photogrammetric
+    /// Engineering & Remote Sensing 70.
     pub fn between_returns(
         &self,
         cloud: &PointCloud,
         pulses: &Pulses,
-        params: &NeedleParams,
+        params: &FreeSegmentParams,
         control: &Control<'_>,
     ) -> Result<Self> {
         let place = |row: u32| cloud.positions.get(row as usize).copied();
@@ -47,7 +49,7 @@ impl Needles {
             (first[2] - last[2] > CROWN_DEPTH).then_some(first)
         };
         let entries: Vec<[f32; 3]> = (0..pulses.len()).into_par_iter().filter_map(entry).collect();
-        let tops = Tops::of(&entries, control)?;
+        let tops = CrownTops::of(&entries, control)?;
         let stop = Stop::new(control);
         let of_pulse = |pulse: usize| {
             let pairs = pulses.returns_of(pulse).windows(2).filter(|_| !stop.is_set());
@@ -64,12 +66,12 @@ impl Needles {
 }
 
 /// The tops of crowns, seen from above.
-struct Tops {
+struct CrownTops {
     places: Vec<[f32; 3]>,
     index: NeighborIndex,
 }
 
-impl Tops {
+impl CrownTops {
     /// Those of `entries`, where pulses entered crowns, local metres.
     fn of(entries: &[[f32; 3]], control: &Control<'_>) -> Result<Self> {
         let flat: Vec<[f32; 3]> = entries.iter().copied().map(level).collect();

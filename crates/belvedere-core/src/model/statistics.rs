@@ -11,27 +11,30 @@ use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 use std::path::Path;
 
-/// How far away a point may lie and still be a neighbour, metres: more than the usual 16 neighbours take wherever there is a surface.
+/// How far away a point may lie and still be a neighbour, metres: more than the usual 16 neighbours take wherever there
+/// is a surface.
 const FARTHEST_NEIGHBOR: f32 = 16.0;
-/// How far the rules for balls look beyond a point, metres: edges of roofs within three spacings of pulses, of which the widest is 3 m; cells of a
-/// metre with those about them, crowns and relief less.
+/// How far the rules for balls look beyond a point, metres: edges of roofs within three spacings of pulses, of which
+/// the widest is 3 m; cells of a metre with those about them, crowns and relief less.
 const RULES_REACH: f64 = 12.0;
 /// By how much pulses may lean more than the most of a sample, as a share of that.
 const LEAN_ROOM: f64 = 1.1;
 
-/// What is estimated once from a whole survey. Parts of the survey that are built with these facts ([`ModelParams::facts`]) and lie in one frame, whose
-/// origin is a corner of blocks of 64 m, have the same balls, bit by bit, wherever they overlap by [`SurveyFacts::halo`].
+/// What is estimated once from a whole survey. Parts of the survey that are built with these facts
+/// ([`ModelParams::statistics`]) and lie in one frame, whose origin is a corner of blocks of 64 m, have the same balls,
+/// bit by bit, wherever they overlap by [`SurveyStatistics::buffer`].
 ///
 /// A model of a whole cloud estimates these facts by itself, from all of its points.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
-pub struct SurveyFacts {
+pub struct SurveyStatistics {
     /// Radius in which an isolated point has no neighbours, metres; `None` keeps isolated points.
     pub isolation_radius: Option<f64>,
     /// Where the scanner was along flight lines, local metres; without any, pulses are assumed to fall straight down.
     pub paths: Vec<LinePath>,
     /// Horizontal metres for each metre of height up to which pulses are used; those that lean more are left out.
-    pub most_lean: f64,
+    #[serde(rename = "most_lean")]
+    pub max_lean: f64,
     /// Whether pulses carve.
     pub carves: bool,
     /// Highest point of the survey, local metres: pulses prove nothing far above it.
@@ -51,7 +54,7 @@ pub struct SurveyFacts {
 pub struct SurveyExtremes {
     /// Highest point, local metres.
     pub top: f32,
-    /// As [`SurveyFacts::relief`].
+    /// As [`SurveyStatistics::relief`].
     pub relief: f64,
     /// Whether any point has class 2, ground.
     pub has_ground: bool,
@@ -59,13 +62,13 @@ pub struct SurveyExtremes {
     pub has_vegetation: bool,
 }
 
-impl SurveyFacts {
-    /// The facts of a survey of which `along_lines` is a sample that is spread over all of it, whole pulses at random, and `places` are all points of
-    /// some places, both in the frame that its parts will have. Errors call it `name`.
+impl SurveyStatistics {
+    /// The facts of a survey of which `along_lines` is a sample that is spread over all of it, whole pulses at random,
+    /// and `places` are all points of some places, both in the frame that its parts will have. Errors call it `name`.
     ///
     /// # Errors
-    /// [`Error::InvalidParameter`] for ways of orienting that need more than the points, [`Error::Malformed`] for scanners on the ground; those of
-    /// [`super::SceneModel::build`].
+    /// [`Error::InvalidParameter`] for ways of orienting that need more than the points, [`Error::Malformed`] for
+    /// scanners on the ground; those of [`super::SceneModel::build`].
     pub fn estimate(
         name: &Path,
         along_lines: &PointCloud,
@@ -84,10 +87,10 @@ impl SurveyFacts {
             locate(along_lines, &means, &params.locate, control)
         })?;
         let pairs = along_lines.positions.iter().zip(&positions);
-        let most_lean = if report.paths.is_empty() { 0.0 } else { pairs.filter_map(lean).fold(0.0, f64::max) };
-        let mut facts = Self {
+        let max_lean = if report.paths.is_empty() { 0.0 } else { pairs.filter_map(lean).fold(0.0, f64::max) };
+        let mut statistics = Self {
             paths: report.paths,
-            most_lean: LEAN_ROOM * most_lean,
+            max_lean: LEAN_ROOM * max_lean,
             carves: true,
             top: extremes.top,
             relief: extremes.relief,
@@ -101,29 +104,32 @@ impl SurveyFacts {
         };
         // what the model of these places estimates for itself
         let cloud = places.clone();
-        let free = params.clone().with_orient(OrientBy::ScannerOfEachPoint(facts.scanner(&cloud, control)?));
-        let free = if facts.paths.is_empty() { params.clone() } else { free };
+        let free = params.clone().with_orient(OrientBy::ScannerOfEachPoint(statistics.scanner(&cloud, control)?));
+        let free = if statistics.paths.is_empty() { params.clone() } else { free };
         let (survey, report) = prepare(Cow::Owned(cloud), &free, control)?;
-        facts.isolation_radius = report.removed_by_cleaning.isolation_radius;
-        facts.noise = report.smoothing.map(|smoothing| smoothing.noise);
+        statistics.isolation_radius = report.removed_by_cleaning.isolation_radius;
+        statistics.noise = report.smoothing.map(|smoothing| smoothing.noise);
         let Some(input) = &survey.carving else {
-            facts.carves = false;
-            return Ok(facts);
+            statistics.carves = false;
+            return Ok(statistics);
         };
-        if input.needles.are_from_the_ground() {
+        if input.free_segments.are_from_the_ground() {
             return Err(Error::malformed(
                 name,
                 "this survey was measured from the ground, and only surveys from the air can be worked on in tiles; \
                  ask about one cloud at a time, with `balls`, `shadow` or `viewshed`",
             ));
         }
-        facts.measures_crowns = input.pulses.is_some();
+        statistics.measures_crowns = input.pulses.is_some();
         if let BallParams::Carved(carved) | BallParams::CarvedIfPossible(carved, _) = &params.balls {
-            let whole = facts.crowns(&survey, carved, control)?;
-            facts.whole =
-                WholeSurvey { transmission: whole.transmission, crown_spacing: whole.crown_spacing, ..facts.whole };
+            let whole = statistics.crowns(&survey, carved, control)?;
+            statistics.whole = WholeSurvey {
+                transmission: whole.transmission,
+                crown_spacing: whole.crown_spacing,
+                ..statistics.whole
+            };
         }
-        Ok(facts)
+        Ok(statistics)
     }
 
     fn crowns(&self, survey: &OrientedSurvey, params: &CarvedParams, control: &Control<'_>) -> Result<WholeSurvey> {
@@ -132,7 +138,7 @@ impl SurveyFacts {
             oriented: &survey.oriented,
             index: &survey.index,
             attributes: &input.attributes,
-            needles: &input.needles,
+            needles: &input.free_segments,
             pulses: input.pulses.as_ref(),
         };
         Ok(carve_survey(&input, None, params, control)?.1)
@@ -140,14 +146,14 @@ impl SurveyFacts {
 
     /// How far around a place points must be known for its balls to be those of the whole survey, metres.
     #[must_use]
-    pub fn halo(&self, params: &ModelParams) -> f64 {
+    pub fn buffer(&self, params: &ModelParams) -> f64 {
         let isolation = self.isolation_radius.unwrap_or(0.0);
         let (ball, noise) =
             (2.0 * f64::from(params.balls.shrinking_by(self).initial_radius), self.noise.unwrap_or(0.0));
         // a ball ends at points, whose planes and kinds follow from neighbours, and these from theirs
         let points = ball + 2.0 * f64::from(noise) + 2.0 * f64::from(FARTHEST_NEIGHBOR);
         // or at pulses that end lower, and these hold other returns
-        let pulses = ball + (self.relief + ball) * self.most_lean;
+        let pulses = ball + (self.relief + ball) * self.max_lean;
         points.max(pulses) + isolation + RULES_REACH
     }
 
@@ -183,7 +189,7 @@ impl SurveyFacts {
         }
         let mut positions = positions_on_paths(&self.paths, cloud);
         for (scanner, point) in positions.iter_mut().zip(&cloud.positions) {
-            if lean((point, scanner)).is_none_or(|lean| lean > self.most_lean) {
+            if lean((point, scanner)).is_none_or(|lean| lean > self.max_lean) {
                 *scanner = [f32::NAN; 3];
             }
         }
@@ -192,8 +198,8 @@ impl SurveyFacts {
     }
 }
 
-/// How far the pulse from a scanner to a point leans: horizontal metres for each metre of height; `None` where it is not known or does not come
-/// from above.
+/// How far the pulse from a scanner to a point leans: horizontal metres for each metre of height; `None` where it is
+/// not known or does not come from above.
 fn lean((point, scanner): (&[f32; 3], &[f32; 3])) -> Option<f64> {
     let [x, y, z] = std::array::from_fn(|i| f64::from(scanner[i]) - f64::from(point[i]));
     (z > 0.0).then(|| x.hypot(y) / z).filter(|lean| lean.is_finite())

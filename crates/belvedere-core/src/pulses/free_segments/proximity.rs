@@ -1,39 +1,41 @@
 //! How near pulses come to places and to lines.
 
-use super::tree::{Node, Way};
-use super::{GAP_M, Needle, Needles};
+use super::tree::{SegmentAxis, SegmentNode};
+use super::{FreeSegment, FreeSegments, GAP_M};
 use belvedere_data::vector::{dot, sub, unit};
 use std::ops::ControlFlow;
 
-/// Pieces of a line shorter than this are not worth a step, metres: more than boxes of the tree are padded by, so that the needles of a
-/// tripod, which all end at one place, need not all be asked where a line leaves what is near to that.
-const LEAST_PIECE: f64 = 4e-3;
-/// How much nearer than the nearest one known a needle must be to be looked for, metres: where needles end at one place all are equally
-/// near.
+/// Pieces of a line shorter than this are not worth a step, metres: more than boxes of the tree are padded by, so that
+/// the needles of a tripod, which all end at one place, need not all be asked where a line leaves what is near to that.
+const MIN_PIECE: f64 = 4e-3;
+/// How much nearer than the nearest one known a needle must be to be looked for, metres: where needles end at one place
+/// all are equally near.
 const WORTH_LOOKING: f64 = 5e-3;
 
-/// Share of pulses that are not upright from which on a scanner is taken to stand on the ground: those of aircraft are steeper than
-/// 40°.
-const LEAST_FLAT_SHARE: f64 = 0.05;
+/// Share of pulses that are not upright from which on a scanner is taken to stand on the ground: those of aircraft are
+/// steeper than 40°.
+const MIN_FLAT_SHARE: f64 = 0.05;
 
-impl Needles {
+impl FreeSegments {
     /// Number of needles.
     #[must_use]
     pub fn len(&self) -> usize {
-        self.needles.len()
+        self.free_segments.len()
     }
 
     /// Whether there is no needle.
     #[must_use]
     pub fn is_empty(&self) -> bool {
-        self.needles.is_empty()
+        self.free_segments.is_empty()
     }
 
     /// How many of them rise by 0.3 m or more for each metre of their length, as all pulses of aircraft do.
     #[must_use]
     pub fn upright_count(&self) -> usize {
         match &self.trees[..] {
-            [first, rest @ ..] if first.way == Way::UP => rest.first().map_or(self.needles.len(), |next| next.first),
+            [first, rest @ ..] if first.way == SegmentAxis::UP => {
+                rest.first().map_or(self.free_segments.len(), |next| next.first)
+            }
             _ => 0,
         }
     }
@@ -50,23 +52,23 @@ impl Needles {
         self.top
     }
 
-    /// Where needles begin, local metres, in no particular order: just before the first returns. For pulses from above these are the
-    /// lower ends.
+    /// Where needles begin, local metres, in no particular order: just before the first returns. For pulses from above
+    /// these are the lower ends.
     pub fn lower_ends(&self) -> impl ExactSizeIterator<Item = [f32; 3]> + '_ {
-        self.needles.iter().map(|needle| needle.start)
+        self.free_segments.iter().map(|free_segment| free_segment.start)
     }
 
-    /// Calls `visit` with the lower and upper end, local metres, of every upright needle that may pass over the level rectangle
-    /// between the corners `low` and `high`, in no particular order.
+    /// Calls `visit` with the lower and upper end, local metres, of every upright needle that may pass over the level
+    /// rectangle between the corners `low` and `high`, in no particular order.
     pub(crate) fn each_upright_over(&self, over: [[f64; 2]; 2], mut visit: impl FnMut([[f64; 3]; 2])) {
-        for tree in self.trees.iter().filter(|tree| tree.way == Way::UP) {
+        for tree in self.trees.iter().filter(|tree| tree.way == SegmentAxis::UP) {
             let _ = tree.walk(
                 &mut (),
                 |node, ()| may_pass_over(node, over),
                 |numbers, ()| {
-                    for needle in &self.needles[numbers] {
-                        let (start, up) = (needle.start.map(f64::from), needle.direction.map(f64::from));
-                        visit([start, std::array::from_fn(|i| start[i] + f64::from(needle.length) * up[i])]);
+                    for free_segment in &self.free_segments[numbers] {
+                        let (start, up) = (free_segment.start.map(f64::from), free_segment.direction.map(f64::from));
+                        visit([start, std::array::from_fn(|i| start[i] + f64::from(free_segment.length) * up[i])]);
                     }
                     ControlFlow::Continue(())
                 },
@@ -74,13 +76,13 @@ impl Needles {
         }
     }
 
-    /// Whether a needle passes nearer than `distance` metres to `point`, local metres. The distance to the piece of a line is
-    /// taken in f64; a point or distance that is not a number is near nothing.
+    /// Whether a needle passes nearer than `distance` metres to `point`, local metres. The distance to the piece of a
+    /// line is taken in f64; a point or distance that is not a number is near nothing.
     #[must_use]
     pub fn passes_within(&self, point: [f64; 3], distance: f64) -> bool {
-        let found = self.visit_near(point, distance, |needles| {
-            let near = |needle: &Needle| needle.square_distance(point) < distance * distance;
-            if needles.iter().any(near) { ControlFlow::Break(()) } else { ControlFlow::Continue(distance) }
+        let found = self.visit_near(point, distance, |free_segments| {
+            let near = |free_segment: &FreeSegment| free_segment.square_distance(point) < distance * distance;
+            if free_segments.iter().any(near) { ControlFlow::Break(()) } else { ControlFlow::Continue(distance) }
         });
         found.is_some()
     }
@@ -91,8 +93,8 @@ impl Needles {
         self.nearest_but(point, within, 0.0)
     }
 
-    /// A distance from `point`, local metres, within which there is no needle: that of the nearest one, or a few millimetres less, at most
-    /// `within` metres.
+    /// A distance from `point`, local metres, within which there is no needle: that of the nearest one, or a few
+    /// millimetres less, at most `within` metres.
     #[must_use]
     pub fn free_distance(&self, point: [f64; 3], within: f64) -> f64 {
         // near by first: where pulses are dense, many thousands pass within some metres
@@ -101,45 +103,48 @@ impl Needles {
         nearest.map_or(within, |distance| (distance - WORTH_LOOKING).max(0.0))
     }
 
-    /// The distance of a needle that no other is nearer than by more than `slack` metres, if any is nearer than `within` metres.
+    /// The distance of a needle that no other is nearer than by more than `slack` metres, if any is nearer than
+    /// `within` metres.
     fn nearest_but(&self, point: [f64; 3], within: f64, slack: f64) -> Option<f64> {
-        let mut least = within * within;
+        let mut min = within * within;
         let mut found = false;
-        let _: Option<()> = self.visit_near(point, within, |needles| {
-            for needle in needles {
-                let square = needle.square_distance(point);
-                if square < least {
-                    (least, found) = (square, true);
+        let _: Option<()> = self.visit_near(point, within, |free_segments| {
+            for free_segment in free_segments {
+                let square = free_segment.square_distance(point);
+                if square < min {
+                    (min, found) = (square, true);
                 }
             }
-            ControlFlow::Continue((least.sqrt() - slack).max(0.0))
+            ControlFlow::Continue((min.sqrt() - slack).max(0.0))
         });
-        found.then(|| least.sqrt())
+        found.then(|| min.sqrt())
     }
 
-    /// Largest radius of a ball about `center`, local metres, that no needle comes nearer to than a millimetre, at most `most` metres; 0 where
-    /// there is none.
+    /// Largest radius of a ball about `center`, local metres, that no needle comes nearer to than a millimetre, at most
+    /// `max` metres; 0 where there is none.
     #[must_use]
-    pub fn clearance(&self, center: [f32; 3], most: f32) -> f32 {
+    pub fn clearance(&self, center: [f32; 3], max: f32) -> f32 {
         #[expect(clippy::cast_possible_truncation, reason = "below `most`")]
-        self.nearest_distance(center.map(f64::from), (most + GAP_M).into())
-            .map_or(most, |distance| (distance as f32 - GAP_M).max(0.0))
+        self.nearest_distance(center.map(f64::from), (max + GAP_M).into())
+            .map_or(max, |distance| (distance as f32 - GAP_M).max(0.0))
     }
 
-    /// A piece of the line through `origin` along the unit vector `direction` on which one needle is nearer than `distance`
-    /// metres everywhere: where it begins and ends, metres from the origin, `at` being well within. `None` where no needle is
-    /// that near at `at`, or stays so for less than 4 mm.
+    /// A piece of the line through `origin` along the unit vector `direction` on which one needle is nearer than
+    /// `distance` metres everywhere: where it begins and ends, metres from the origin, `at` being well within. `None`
+    /// where no needle is that near at `at`, or stays so for less than 4 mm.
     ///
     /// Of several needles it takes one that stays near for long, not always the one that does so longest.
     #[must_use]
     pub fn near_piece(&self, origin: [f64; 3], direction: [f64; 3], at: f64, distance: f64) -> Option<[f64; 2]> {
         // a piece that is long enough is near there as well
-        let further = std::array::from_fn(|i| origin[i] + (at + LEAST_PIECE) * direction[i]);
-        self.visit_near(further, distance, |needles| {
-            let near = |needle: &&Needle| needle.square_distance(further) < distance * distance;
-            let pieces =
-                needles.iter().filter(near).filter_map(|needle| needle.near_piece(origin, direction, distance));
-            let holding = pieces.filter(|[from, to]| *from <= at && *to > at + LEAST_PIECE);
+        let further = std::array::from_fn(|i| origin[i] + (at + MIN_PIECE) * direction[i]);
+        self.visit_near(further, distance, |free_segments| {
+            let near = |free_segment: &&FreeSegment| free_segment.square_distance(further) < distance * distance;
+            let pieces = free_segments
+                .iter()
+                .filter(near)
+                .filter_map(|free_segment| free_segment.near_piece(origin, direction, distance));
+            let holding = pieces.filter(|[from, to]| *from <= at && *to > at + MIN_PIECE);
             match holding.max_by(|a, b| a[1].total_cmp(&b[1])) {
                 Some(piece) => ControlFlow::Break(piece),
                 None => ControlFlow::Continue(distance),
@@ -147,13 +152,13 @@ impl Needles {
         })
     }
 
-    /// Shows `visit` the needles of every leaf that may come nearer than `reach` metres to `point`, until it breaks off; what it
-    /// continues with is the reach from there on.
+    /// Shows `visit` the needles of every leaf that may come nearer than `reach` metres to `point`, until it breaks
+    /// off; what it continues with is the reach from there on.
     fn visit_near<T>(
         &self,
         point: [f64; 3],
         reach: f64,
-        mut visit: impl FnMut(&[Needle]) -> ControlFlow<T, f64>,
+        mut visit: impl FnMut(&[FreeSegment]) -> ControlFlow<T, f64>,
     ) -> Option<T> {
         // rounded up, and `may_enter` adds the rounding of coordinates
         #[expect(clippy::cast_possible_truncation, reason = "a length in metres")]
@@ -165,9 +170,9 @@ impl Needles {
         }
         let mut state = (up(reach), None);
         for tree in &self.trees {
-            let may_enter = |node: &Node, (reach, _): &(f32, Option<T>)| tree.may_enter(node, center, *reach);
+            let may_enter = |node: &SegmentNode, (reach, _): &(f32, Option<T>)| tree.may_enter(node, center, *reach);
             let flow =
-                tree.walk(&mut state, may_enter, |numbers, (reach, found)| match visit(&self.needles[numbers]) {
+                tree.walk(&mut state, may_enter, |numbers, (reach, found)| match visit(&self.free_segments[numbers]) {
                     ControlFlow::Break(value) => {
                         *found = Some(value);
                         ControlFlow::Break(())
@@ -185,33 +190,34 @@ impl Needles {
     }
 }
 
-/// The same of pulses that are no needles yet: first returns, and where the scanner was, local metres. Those with an unknown scanner do not
-/// count.
+/// The same of pulses that are no needles yet: first returns, and where the scanner was, local metres. Those with an
+/// unknown scanner do not count.
 pub(crate) fn come_from_the_ground(pulses: impl Iterator<Item = ([f32; 3], [f32; 3])>) -> bool {
-    let way = |(end, scanner): ([f32; 3], [f32; 3])| Way::of(unit(sub(scanner.map(f64::from), end.map(f64::from)))?);
+    let way =
+        |(end, scanner): ([f32; 3], [f32; 3])| SegmentAxis::of(unit(sub(scanner.map(f64::from), end.map(f64::from)))?);
     let (mut flat_count, mut count) = (0, 0);
     for way in pulses.filter_map(way) {
         count += 1;
-        flat_count += usize::from(way != Way::UP);
+        flat_count += usize::from(way != SegmentAxis::UP);
     }
     are_flat(flat_count, count)
 }
 
 /// Whether so many of all pulses are flat that no aircraft sent them.
 fn are_flat(flat_count: usize, count: usize) -> bool {
-    count > 0 && flat_count as f64 >= LEAST_FLAT_SHARE * count as f64
+    count > 0 && flat_count as f64 >= MIN_FLAT_SHARE * count as f64
 }
 
 /// Whether the box of a node of upright needles lies over a rectangle at some height.
-fn may_pass_over(node: &Node, [low, high]: [[f64; 2]; 2]) -> bool {
+fn may_pass_over(node: &SegmentNode, [low, high]: [[f64; 2]; 2]) -> bool {
     // shares of the way between the planes, with room for what f32 rounds
     let mut shares: [f64; 2] = [-1e-4, 1.0 + 1e-4];
     for axis in 0..2 {
         let ends = |side: usize| [f64::from(node.below[side]), f64::from(node.above[side])];
         let ([west, to_west], [east, to_east]) = (ends(axis), ends(axis + 2));
         // west ≤ high and −east ≤ −low, both linear in the share
-        for [at, slope, most] in [[west, to_west - west, high[axis]], [-east, east - to_east, -low[axis]]] {
-            let left = most + 1e-2 - at;
+        for [at, slope, max] in [[west, to_west - west, high[axis]], [-east, east - to_east, -low[axis]]] {
+            let left = max + 1e-2 - at;
             if slope > 0.0 {
                 shares[1] = shares[1].min(left / slope);
             } else if slope < 0.0 {
@@ -224,7 +230,7 @@ fn may_pass_over(node: &Node, [low, high]: [[f64; 2]; 2]) -> bool {
     shares[0] <= shares[1]
 }
 
-impl Needle {
+impl FreeSegment {
     /// Squared distance of a point to the needle, m².
     fn square_distance(&self, point: [f64; 3]) -> f64 {
         let (from, up) = (sub(point, self.start.map(f64::from)), self.direction.map(f64::from));
@@ -233,8 +239,8 @@ impl Needle {
         dot(off, off)
     }
 
-    /// The piece of a line nearer than `distance` to the needle: what it cuts from the union of a cylinder and two spheres, which
-    /// is convex.
+    /// The piece of a line nearer than `distance` to the needle: what it cuts from the union of a cylinder and two
+    /// spheres, which is convex.
     fn near_piece(&self, origin: [f64; 3], direction: [f64; 3], distance: f64) -> Option<[f64; 2]> {
         let up = self.direction.map(f64::from);
         let length = f64::from(self.length);

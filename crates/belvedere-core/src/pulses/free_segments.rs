@@ -5,7 +5,7 @@ mod columns;
 mod proximity;
 mod tree;
 
-pub use belvedere_data::needles::NeedleColumns;
+pub use belvedere_data::free_segments::FreeSegmentColumns;
 pub(crate) use columns::lower_ends;
 pub(crate) use proximity::come_from_the_ground;
 
@@ -15,7 +15,7 @@ use belvedere_data::vector::{dot, sub};
 use belvedere_data::{Error, PointCloud, Result};
 use serde::Serialize;
 use std::ops::ControlFlow;
-use tree::{Tree, Way};
+use tree::{SegmentAxis, SegmentTree};
 
 /// How far balls stay clear of pulses, metres: the step of coordinates in most files, and more than f32 rounds.
 pub(crate) const GAP_M: f32 = 1e-3;
@@ -24,15 +24,15 @@ const CHECK_EACH: usize = 4096;
 
 /// How pulses become needles.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct NeedleParams {
-    /// Length before the first return that is not counted as empty, metres, 0 to 1. Default 0.05: the noise of a range. A model of a
-    /// scan from one place on the ground takes less where it finds less noise.
+pub struct FreeSegmentParams {
+    /// Length before the first return that is not counted as empty, metres, 0 to 1. Default 0.05: the noise of a range.
+    /// A model of a scan from one place on the ground takes less where it finds less noise.
     pub end_margin: f32,
     /// Height above the highest return up to which needles reach, metres, above 0. Default 2; nothing stands higher.
     pub headroom: f32,
 }
 
-impl Default for NeedleParams {
+impl Default for FreeSegmentParams {
     fn default() -> Self {
         Self { end_margin: 0.05, headroom: 2.0 }
     }
@@ -40,7 +40,7 @@ impl Default for NeedleParams {
 
 /// A proven-empty piece of a line, from just before a first return towards the scanner.
 #[derive(Clone, Copy, Debug)]
-struct Needle {
+struct FreeSegment {
     start: [f32; 3],
     /// Unit vector towards the scanner.
     direction: [f32; 3],
@@ -48,18 +48,18 @@ struct Needle {
 }
 
 /// The needles of a survey, whatever way they run.
-pub struct Needles {
+pub struct FreeSegments {
     /// Those of a tree follow each other.
-    needles: Vec<Needle>,
+    free_segments: Vec<FreeSegment>,
     /// At most one for each way; none is empty.
-    trees: Vec<Tree>,
+    trees: Vec<SegmentTree>,
     /// Height that none rises above.
     top: f32,
 }
 
 /// How many pulses became needles.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-pub struct NeedleReport {
+pub struct FreeSegmentReport {
     /// Needles.
     #[serde(rename = "pulses_used")]
     pub used: usize,
@@ -68,32 +68,32 @@ pub struct NeedleReport {
     pub without_scanner: usize,
 }
 
-impl Needles {
-    /// Needles of the first returns of `cloud`, all its points where it has no return numbers, for scanners at `scanner`, (N, 3)
-    /// local metres, NaN where unknown.
+impl FreeSegments {
+    /// Needles of the first returns of `cloud`, all its points where it has no return numbers, for scanners at
+    /// `scanner`, (N, 3) local metres, NaN where unknown.
     ///
     /// # Errors
     /// [`Error::LengthMismatch`] unless there is a scanner position for each point; [`Error::Cancelled`].
     pub fn of_cloud(
         cloud: &PointCloud,
         scanner: &[[f32; 3]],
-        params: &NeedleParams,
+        params: &FreeSegmentParams,
         control: &Control<'_>,
-    ) -> Result<(Self, NeedleReport)> {
+    ) -> Result<(Self, FreeSegmentReport)> {
         Self::of_cloud_below(cloud, scanner, None, params, control)
     }
 
     /// The same below the highest return of the survey that `cloud` is a part of, local metres, where that is given.
     ///
     /// # Errors
-    /// Those of [`Needles::of_cloud`].
+    /// Those of [`FreeSegments::of_cloud`].
     pub(crate) fn of_cloud_below(
         cloud: &PointCloud,
         scanner: &[[f32; 3]],
         highest: Option<f32>,
-        params: &NeedleParams,
+        params: &FreeSegmentParams,
         control: &Control<'_>,
-    ) -> Result<(Self, NeedleReport)> {
+    ) -> Result<(Self, FreeSegmentReport)> {
         cloud.validate()?;
         if scanner.len() != cloud.len() {
             return Err(Error::LengthMismatch {
@@ -117,9 +117,9 @@ impl Needles {
     pub fn new(
         first_returns: &[[f32; 3]],
         scanner: &[[f32; 3]],
-        params: &NeedleParams,
+        params: &FreeSegmentParams,
         control: &Control<'_>,
-    ) -> Result<(Self, NeedleReport)> {
+    ) -> Result<(Self, FreeSegmentReport)> {
         Self::below(first_returns, scanner, None, params, control)
     }
 
@@ -127,9 +127,9 @@ impl Needles {
         first_returns: &[[f32; 3]],
         scanner: &[[f32; 3]],
         highest: Option<f32>,
-        params: &NeedleParams,
+        params: &FreeSegmentParams,
         control: &Control<'_>,
-    ) -> Result<(Self, NeedleReport)> {
+    ) -> Result<(Self, FreeSegmentReport)> {
         if scanner.len() != first_returns.len() {
             return Err(Error::LengthMismatch {
                 what: "scanner positions",
@@ -140,8 +140,8 @@ impl Needles {
         let finite = first_returns.iter().filter(|p| p.iter().all(|v| v.is_finite()));
         let own = || finite.map(|p| p[2]).fold(f32::NEG_INFINITY, f32::max);
         let top = highest.unwrap_or_else(own) + params.headroom;
-        let mut report = NeedleReport::default();
-        let mut by_way = NeedlesByWay::default();
+        let mut report = FreeSegmentReport::default();
+        let mut by_way = SegmentsByAxis::default();
         for (number, (p, s)) in first_returns.iter().zip(scanner).enumerate() {
             if number % CHECK_EACH == 0 {
                 control.check()?;
@@ -153,13 +153,13 @@ impl Needles {
             let sight: [f64; 3] = std::array::from_fn(|i| f64::from(s[i]) - f64::from(p[i]));
             let range = dot(sight, sight).sqrt();
             let towards = sight.map(|v| v / range);
-            let Some(way) = Way::of(towards) else { continue };
+            let Some(way) = SegmentAxis::of(towards) else { continue };
             let margin = f64::from(params.end_margin);
             let start: [f64; 3] = std::array::from_fn(|i| f64::from(p[i]) + margin * towards[i]);
             let to_top = if towards[2] > 0.0 { (f64::from(top) - start[2]) / towards[2] } else { f64::INFINITY };
             let length = to_top.min(range - margin);
             if length > 0.0 {
-                by_way[way.number()].push(Needle::new(start, towards, length));
+                by_way[way.number()].push(FreeSegment::new(start, towards, length));
             }
         }
         report.used = by_way.iter().map(Vec::len).sum();
@@ -171,37 +171,39 @@ impl Needles {
     /// # Errors
     /// [`Error::Cancelled`].
     pub(crate) fn extended(&self, by: f32, control: &Control<'_>) -> Result<Self> {
-        let mut by_way = NeedlesByWay::default();
-        for needle in &self.needles {
-            let start = std::array::from_fn(|i| needle.start[i] - by * needle.direction[i]);
-            if let Some(way) = Way::of(needle.direction.map(f64::from)) {
-                by_way[way.number()].push(Needle { start, length: needle.length + by, ..*needle });
+        let mut by_way = SegmentsByAxis::default();
+        for free_segment in &self.free_segments {
+            let start = std::array::from_fn(|i| free_segment.start[i] - by * free_segment.direction[i]);
+            if let Some(way) = SegmentAxis::of(free_segment.direction.map(f64::from)) {
+                by_way[way.number()].push(FreeSegment { start, length: free_segment.length + by, ..*free_segment });
             }
         }
         Self::index(by_way, self.top, control)
     }
 
     /// The needles of each way, none of which rises above `top`.
-    fn index(by_way: NeedlesByWay, top: f32, control: &Control<'_>) -> Result<Self> {
+    fn index(by_way: SegmentsByAxis, top: f32, control: &Control<'_>) -> Result<Self> {
         let stop = Stop::new(control);
-        let (mut needles, mut trees) = (Vec::with_capacity(by_way.iter().map(Vec::len).sum()), Vec::new());
-        for (way, mut own) in Way::ALL.into_iter().zip(by_way).filter(|(_, own)| !own.is_empty()) {
-            trees.push(Tree::new(way, &mut own, needles.len(), &stop, control));
-            needles.append(&mut own);
+        let (mut free_segments, mut trees) = (Vec::with_capacity(by_way.iter().map(Vec::len).sum()), Vec::new());
+        for (way, mut own) in SegmentAxis::ALL.into_iter().zip(by_way).filter(|(_, own)| !own.is_empty()) {
+            trees.push(SegmentTree::new(way, &mut own, free_segments.len(), &stop, control));
+            free_segments.append(&mut own);
             stop.check()?;
         }
-        Ok(Self { needles, trees, top })
+        Ok(Self { free_segments, trees, top })
     }
 
-    /// Where needle `number` begins, local metres; the unit vector along it, towards the scanner; and its length, metres. `None` from
-    /// [`Needles::len`] on. Their order is that of the index.
+    /// Where needle `number` begins, local metres; the unit vector along it, towards the scanner; and its length,
+    /// metres. `None` from [`FreeSegments::len`] on. Their order is that of the index.
     #[must_use]
     pub fn segment(&self, number: usize) -> Option<([f32; 3], [f32; 3], f32)> {
-        self.needles.get(number).map(|needle| (needle.start, needle.direction, needle.length))
+        self.free_segments
+            .get(number)
+            .map(|free_segment| (free_segment.start, free_segment.direction, free_segment.length))
     }
 
-    /// The greatest radius, below `max_radius`, of the balls of a pencil that no needle enters, or `None` where no needle
-    /// enters the ball of `max_radius`. Metres.
+    /// The greatest radius, below `max_radius`, of the balls of a pencil that no needle enters, or `None` where no
+    /// needle enters the ball of `max_radius`. Metres.
     ///
     /// # Source
     /// The closed form for a line is this project's: the ball of the pencil through a point at t metres along a needle
@@ -217,8 +219,8 @@ impl Needles {
             let may_enter =
                 |node: &_, (radius, _): &(f32, bool)| tree.may_enter(node, tangent.center(*radius), *radius);
             let _ = tree.walk(&mut found, may_enter, |numbers, (radius, is_cut)| {
-                for needle in &self.needles[numbers] {
-                    if let Some(found) = needle.tangent_radius(touching, tangent.inward)
+                for free_segment in &self.free_segments[numbers] {
+                    if let Some(found) = free_segment.tangent_radius(touching, tangent.inward)
                         && found < f64::from(*radius)
                     {
                         #[expect(clippy::cast_possible_truncation, reason = "a radius in metres")]
@@ -234,16 +236,16 @@ impl Needles {
 }
 
 /// Needles to be, by the number of their way.
-type NeedlesByWay = [Vec<Needle>; 6];
+type SegmentsByAxis = [Vec<FreeSegment>; 6];
 
-impl Needle {
+impl FreeSegment {
     #[expect(clippy::cast_possible_truncation, reason = "local coordinates")]
     fn new(start: [f64; 3], direction: [f64; 3], length: f64) -> Self {
         Self { start: start.map(|v| v as f32), direction: direction.map(|v| v as f32), length: length as f32 }
     }
 
-    /// Radius of the ball of the pencil through `touching` along `inward` that this needle touches, or `None` where it touches
-    /// none.
+    /// Radius of the ball of the pencil through `touching` along `inward` that this needle touches, or `None` where it
+    /// touches none.
     fn tangent_radius(&self, touching: [f32; 3], inward: [f32; 3]) -> Option<f64> {
         let (start, along) = (self.start.map(f64::from), self.direction.map(f64::from));
         let inward = inward.map(f64::from);

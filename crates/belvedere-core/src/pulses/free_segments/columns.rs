@@ -1,0 +1,110 @@
+//! Needles as columns of numbers, as short as what is asked of them allows.
+
+use super::tree::SegmentAxis;
+use super::{FreeSegment, FreeSegments, SegmentsByAxis};
+use belvedere_data::Result;
+use belvedere_data::control::Control;
+use belvedere_data::free_segments::FreeSegmentColumns;
+use rayon::prelude::*;
+
+/// Steps of a slope, metres of shift across a needle's way for each metre along it: a needle 60 m long is off by 3 mm
+/// at its far end.
+const SLOPE_STEP: f64 = 1e-4;
+/// A needle that ends within this of the top of all, metres, reaches it.
+const REACHES_TOP: f64 = 1e-3;
+/// Pulses handed to a thread at once.
+const CHUNK: usize = 1 << 14;
+
+/// First ends of those pulses that [`FreeSegments::from_columns`] makes needles of, local metres.
+pub(crate) fn lower_ends(columns: &FreeSegmentColumns) -> impl Iterator<Item = [f32; 3]> + '_ {
+    let rows = (0..columns.starts.len()).filter(|&row| piece(columns, row).is_some());
+    rows.filter_map(|row| columns.starts.get(row).copied())
+}
+
+/// Way, start, unit vector and length of a pulse; `None` without length.
+fn piece(columns: &FreeSegmentColumns, row: usize) -> Option<(SegmentAxis, [f64; 3], [f64; 3], f64)> {
+    let way = match columns.ways.get(row) {
+        Some(&number) => *SegmentAxis::ALL.get(usize::from(number))?,
+        None => SegmentAxis::UP,
+    };
+    let slopes = columns.slopes.get(row)?.map(|steps| f64::from(steps) * SLOPE_STEP);
+    let stretch = (slopes[0] * slopes[0] + slopes[1] * slopes[1] + 1.0).sqrt();
+    let mut direction = [0.0; 3];
+    direction[way.axis] = if way.is_backward { -1.0 } else { 1.0 } / stretch;
+    for (axis, slope) in way.across().into_iter().zip(slopes) {
+        direction[axis] = slope / stretch;
+    }
+    let start = columns.starts.get(row)?.map(f64::from);
+    let to_top = if direction[2] > 0.0 { (f64::from(columns.top) - start[2]) / direction[2] } else { f64::INFINITY };
+    let length = columns.lengths.get(row).map_or(to_top, |&length| f64::from(length).min(to_top));
+    (length > 0.0 && length.is_finite()).then_some((way, start, direction, length))
+}
+
+impl FreeSegments {
+    /// First end, unit vector towards the scanner and length of each, local metres, in the order of the index.
+    pub(crate) fn lines(&self) -> impl IndexedParallelIterator<Item = ([f64; 3], [f64; 3], f64)> + '_ {
+        let line = |free_segment: &FreeSegment| {
+            (free_segment.start.map(f64::from), free_segment.direction.map(f64::from), f64::from(free_segment.length))
+        };
+        self.free_segments.par_iter().map(line)
+    }
+
+    /// The needles as columns, in the order of the index. Directions are rounded, so that what
+    /// [`FreeSegments::from_columns`] makes of them lies up to 5 mm in 100 m off these; it gives the same columns
+    /// again, in another order.
+    #[must_use]
+    pub fn to_columns(&self) -> FreeSegmentColumns {
+        let top = self.top;
+        #[expect(clippy::cast_possible_truncation, reason = "`as` saturates; the flattest needle has a slope of 3.2")]
+        let slope = |way: SegmentAxis, free_segment: &FreeSegment| {
+            let along = f64::from(free_segment.direction[way.axis]).abs();
+            way.across().map(|axis| (f64::from(free_segment.direction[axis]) / along / SLOPE_STEP).round() as i16)
+        };
+        #[expect(clippy::cast_possible_truncation, reason = "one of six")]
+        let number = |way: SegmentAxis| way.number() as u8;
+        let reaches_top = |free_segment: &FreeSegment| {
+            let end = f64::from(free_segment.start[2])
+                + f64::from(free_segment.length) * f64::from(free_segment.direction[2]);
+            (f64::from(top) - end).abs() < REACHES_TOP
+        };
+        let length =
+            |free_segment: &FreeSegment| if reaches_top(free_segment) { f32::INFINITY } else { free_segment.length };
+        let all_reach = self.free_segments.iter().all(reaches_top);
+        let all_upright = self.trees.iter().all(|tree| tree.way == SegmentAxis::UP);
+        FreeSegmentColumns {
+            starts: self.lower_ends().collect(),
+            slopes: self.ways().zip(&self.free_segments).map(|(way, free_segment)| slope(way, free_segment)).collect(),
+            lengths: if all_reach { Vec::new() } else { self.free_segments.iter().map(length).collect() },
+            ways: if all_upright { Vec::new() } else { self.ways().map(number).collect() },
+            top: if top.is_finite() { top } else { 0.0 },
+        }
+    }
+
+    /// The way of each needle.
+    fn ways(&self) -> impl Iterator<Item = SegmentAxis> + '_ {
+        let ends = self.trees.iter().skip(1).map(|tree| tree.first).chain([self.free_segments.len()]);
+        self.trees.iter().zip(ends).flat_map(|(tree, end)| std::iter::repeat_n(tree.way, end - tree.first))
+    }
+
+    /// The needles of `columns`, indexed. What begins above the top, or has no length, is left out.
+    ///
+    /// # Errors
+    /// Those of [`FreeSegmentColumns::validate`], and [`Error::Cancelled`](belvedere_data::Error::Cancelled).
+    pub fn from_columns(columns: &FreeSegmentColumns, control: &Control<'_>) -> Result<Self> {
+        columns.validate()?;
+        let mut by_way = SegmentsByAxis::default();
+        for (way, free_segments) in SegmentAxis::ALL.into_iter().zip(&mut by_way) {
+            if columns.ways.is_empty() && way != SegmentAxis::UP {
+                continue;
+            }
+            let free_segment = |row| {
+                let (own, start, direction, length) = piece(columns, row)?;
+                (own == way).then(|| FreeSegment::new(start, direction, length))
+            };
+            *free_segments =
+                (0..columns.starts.len()).into_par_iter().with_min_len(CHUNK).filter_map(free_segment).collect();
+            control.check()?;
+        }
+        Self::index(by_way, columns.top, control)
+    }
+}
