@@ -3,8 +3,6 @@
 mod balls;
 mod cameras;
 mod city;
-#[cfg(feature = "compare")]
-mod compare;
 mod difference;
 mod envelope;
 mod irradiance;
@@ -28,8 +26,6 @@ pub(crate) use balls::{
 };
 pub(crate) use cameras::{CameraLens, CameraTargets, Cameras};
 pub(crate) use city::{CellFor, City, CityMerge, CityPlan, CityRun, CityStatus, CityStep};
-#[cfg(feature = "compare")]
-pub(crate) use compare::Compare;
 pub(crate) use difference::Difference;
 pub(crate) use envelope::{Comfort, Corners, Envelope};
 pub(crate) use irradiance::{ClearSkyChoice, Irradiance, RadiationModel};
@@ -217,9 +213,6 @@ pub(crate) enum Command {
     View(ViewPage),
     /// Map shadow and sky view of a whole city, tile by tile
     City(City),
-    /// Compare the accuracy and cost of visibility methods against ground truth
-    #[cfg(feature = "compare")]
-    Compare(Compare),
     /// List all commands with their parameters, types, defaults and texts
     Describe,
     /// Print a completion script for a shell
