@@ -46,12 +46,13 @@ const LEVELS: [(&str, u8); 14] = [
 ];
 
 /// Crates of others that only one file or folder may name.
-const ONE_HOME: [(&str, &str); 33] = [
+const ONE_HOME: [(&str, &str); 34] = [
     ("ab_glyph::", "figures/src/font.rs"),
     ("colorous::", "io/src/colors.rs"),
     ("las::", "io/src/"),
     ("laz::", "io/src/laz"),
     ("npyz::", "io/src/"),
+    ("zip::", "io/src/"),
     ("csv::", "io/src/table.rs"),
     ("e57::", "io/src/e57.rs"),
     ("tiff::", "io/src/geotiff"),
