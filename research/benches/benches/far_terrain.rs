@@ -2,7 +2,6 @@
 //! mountains at 10 m?
 //!
 //! Run with `RAYON_NUM_THREADS=1`: only one of the two uses threads.
-#![allow(missing_docs, reason = "the macros of criterion write functions without")]
 #![allow(clippy::unwrap_used, reason = "a bench that cannot go on fails")]
 #![allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "indices of cells")]
 
@@ -12,7 +11,7 @@ use belvedere::control::Control;
 use belvedere::medial::MedialBalls;
 use belvedere::query::{BlockRule, EarthParams, FarTerrain, MedialScene};
 use belvedere::random::uniform;
-use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use belvedere_benches::Group;
 use mountains::mountains;
 use std::f64::consts::TAU;
 
@@ -56,7 +55,7 @@ fn cast(grid: &ElevationGrid, place: [f64; 3], azimuth: f64, limit: f64, earth: 
     }
 }
 
-fn horizons(c: &mut Criterion) {
+fn horizons() {
     let far = FarTerrain::default().with_grid(mountains(COUNT, CELL, 2000.0), None);
     let (grid, earth) = (far.grid().unwrap(), EarthParams::default());
     let places: Vec<[f64; 3]> = (0..20)
@@ -66,9 +65,9 @@ fn horizons(c: &mut Criterion) {
             [node[0] as f64 * CELL, node[1] as f64 * -CELL, height]
         })
         .collect();
-    let mut group = c.benchmark_group("horizons of 20 places in 41 km of mountains at 10 m");
+    let mut group = Group::new("horizons of 20 places in 41 km of mountains at 10 m");
     group.sample_size(10);
-    group.throughput(Throughput::Elements((places.len() * AZIMUTHS) as u64));
+    group.throughput(places.len() * AZIMUTHS);
     group.bench_function("maxima of blocks", |b| {
         // away from the axes, so that every line crosses both kinds of grid lines
         let step = [0.5, TAU / AZIMUTHS as f64];
@@ -81,12 +80,11 @@ fn horizons(c: &mut Criterion) {
         };
         b.iter(|| places.iter().map(all).sum::<f64>());
     });
-    group.finish();
 
     let directions = SkyDirections::even(600).unwrap().directions;
-    let mut group = c.benchmark_group("is a direction blocked, of 600 over the sky and 20 places there");
+    let mut group = Group::new("is a direction blocked, of 600 over the sky and 20 places there");
     group.sample_size(10);
-    group.throughput(Throughput::Elements((places.len() * directions.len()) as u64));
+    group.throughput(places.len() * directions.len());
     group.bench_function("maxima of blocks", |b| {
         let blocked = |&place: &[f64; 3]| directions.iter().filter(|&&d| far.hides(place, d)).count();
         b.iter(|| places.iter().map(blocked).sum::<usize>());
@@ -104,12 +102,12 @@ fn horizons(c: &mut Criterion) {
     let scene = scene.with_far_terrain(far.clone());
     let [x, y, z] = places[0].map(|v| v as f32);
     let cells: Vec<[f32; 3]> = (0..512_u16).map(|i| [x + f32::from(i % 32), y + f32::from(i / 32), z]).collect();
-    group.throughput(Throughput::Elements((cells.len() * directions.len()) as u64));
+    group.throughput(cells.len() * directions.len());
     group.bench_function("maxima of blocks, 512 cells of 1 m", |b| {
         b.iter(|| scene.visibility_matrix(&cells, &directions, &Control::none()).unwrap());
     });
-    group.finish();
 }
 
-criterion_group!(benches, horizons);
-criterion_main!(benches);
+fn main() {
+    horizons();
+}

@@ -1,6 +1,5 @@
 //! How long do a million lines of sight between pairs, what an observer in a street sees of 360 000 cells, and what these see of the sky, take
 //! in a town of a million points?
-#![allow(missing_docs, reason = "the macros of criterion write functions without")]
 #![allow(clippy::unwrap_used, reason = "a bench that cannot go on fails")]
 
 mod common;
@@ -10,11 +9,11 @@ use belvedere::control::Control;
 use belvedere::medial::{ShrinkParams, Side, shrink};
 use belvedere::query::target_tree::TargetTree;
 use belvedere::query::{BlockRule, EarthParams, MedialScene, Viewer, Visibility, random_pairs};
-use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use belvedere_benches::Group;
 
 const CELLS: usize = 600;
 
-fn sights(c: &mut Criterion) {
+fn sights() {
     let (cloud, index) = common::indexed(common::aerial_city(1_000_000));
     let (low, high) = cloud.positions().iter().fold(([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]), |(low, high), p| {
         (std::array::from_fn(|i| f32::min(low[i], p[i])), std::array::from_fn(|i| f32::max(high[i], p[i])))
@@ -37,14 +36,14 @@ fn sights(c: &mut Criterion) {
             [x, y, ground(x, y) + 1.7].map(f64::from)
         })
         .collect();
-    let mut group = c.benchmark_group("a town of a million points");
+    let mut group = Group::new("a town of a million points");
     group.sample_size(10);
     let pairs = random_pairs(low, high, 1_000_000, 1);
-    group.throughput(Throughput::Elements(pairs.len() as u64));
+    group.throughput(pairs.len());
     group.bench_function("a million pairs", |b| {
         b.iter(|| scene.lines_of_sight(&pairs, &EarthParams::default(), &Control::none()).unwrap().len());
     });
-    group.throughput(Throughput::Elements((eyes.len() * cells.len()) as u64));
+    group.throughput(eyes.len() * cells.len());
     group.bench_function("20 observers, cell by cell", |b| {
         b.iter(|| eyes.iter().map(|&eye| scene.visible(Viewer::Eye(eye), &cells).unwrap().len()).sum::<usize>());
     });
@@ -58,11 +57,12 @@ fn sights(c: &mut Criterion) {
     });
     let sky = SkyDirections::patches(1).unwrap();
     let lifted: Vec<[f32; 3]> = cells.iter().map(|&[x, y, z]| [x, y, z + 0.1]).collect();
-    group.throughput(Throughput::Elements((sky.directions.len() * lifted.len()) as u64));
+    group.throughput(sky.directions.len() * lifted.len());
     group.bench_function("145 directions of the sky, all cells", |b| {
         b.iter(|| scene.visibility_matrix(&lifted, &sky.directions, &Control::none()).unwrap().row(0).len());
     });
 }
 
-criterion_group!(benches, sights);
-criterion_main!(benches);
+fn main() {
+    sights();
+}

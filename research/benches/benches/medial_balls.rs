@@ -1,7 +1,6 @@
 //! How many points a second become balls on both sides, and does the cost of a point stay the same as clouds grow?
 //!
 //! Set `BELVEDERE_BENCH_LARGE` to also measure 5 million points (a minute or two).
-#![allow(missing_docs, reason = "the macros of criterion write functions without")]
 #![allow(clippy::unwrap_used, reason = "a bench that cannot go on fails")]
 
 mod common;
@@ -11,7 +10,7 @@ use belvedere::medial::{ShrinkParams, Side, shrink};
 use belvedere::neighbors::NeighborIndex;
 use belvedere::normals::OrientedCloud;
 use belvedere::normals::estimate::{Neighborhood, estimate};
-use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use belvedere_benches::Group;
 
 fn both_sides(cloud: &OrientedCloud, index: &NeighborIndex, params: &ShrinkParams) -> usize {
     [Side::Interior, Side::Exterior]
@@ -20,8 +19,8 @@ fn both_sides(cloud: &OrientedCloud, index: &NeighborIndex, params: &ShrinkParam
         .sum()
 }
 
-fn growth(c: &mut Criterion) {
-    let mut group = c.benchmark_group("both sides, simulated city");
+fn growth() {
+    let mut group = Group::new("both sides, simulated city");
     group.sample_size(10);
     let mut counts = vec![100_000, 1_000_000];
     if std::env::var_os("BELVEDERE_BENCH_LARGE").is_some() {
@@ -29,17 +28,17 @@ fn growth(c: &mut Criterion) {
     }
     for count in counts {
         let (cloud, index) = common::indexed(common::aerial_city(count));
-        group.throughput(Throughput::Elements(count as u64));
+        group.throughput(count);
         for (name, params) in [("angles", ShrinkParams::angles()), ("tau", ShrinkParams::tau())] {
-            group.bench_function(BenchmarkId::new(name, count), |b| b.iter(|| both_sides(&cloud, &index, &params)));
+            group.bench_function(format!("{name}, {count} points"), |b| b.iter(|| both_sides(&cloud, &index, &params)));
         }
     }
 }
 
-fn real_tile(c: &mut Criterion) {
+fn real_tile() {
     let Some(delft) = common::delft() else { return };
-    let mut group = c.benchmark_group("Delft");
-    group.sample_size(10).throughput(Throughput::Elements(delft.0.len() as u64));
+    let mut group = Group::new("Delft");
+    group.sample_size(10).throughput(delft.0.len());
     group.bench_function("index", |b| b.iter(|| NeighborIndex::new(&delft.0, &Control::none()).unwrap().len()));
     let (cloud, index) = common::indexed(delft);
     group.bench_function("normals of 16 neighbours", |b| {
@@ -53,5 +52,7 @@ fn real_tile(c: &mut Criterion) {
     group.bench_function("both sides, tau", |b| b.iter(|| both_sides(&cloud, &index, &ShrinkParams::tau())));
 }
 
-criterion_group!(benches, growth, real_tile);
-criterion_main!(benches);
+fn main() {
+    growth();
+    real_tile();
+}
