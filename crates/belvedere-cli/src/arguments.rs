@@ -4,8 +4,6 @@
 mod balls;
 mod cameras;
 mod city;
-#[cfg(feature = "compare")]
-mod compare;
 mod difference;
 mod envelope;
 mod irradiance;
@@ -30,8 +28,6 @@ pub(crate) use balls::{
 };
 pub(crate) use cameras::{CameraLensArguments, CameraTargetsArguments, CamerasArguments};
 pub(crate) use city::{CellFor, City, CityMerge, CityPlan, CityRun, CityStatus, CityStep};
-#[cfg(feature = "compare")]
-pub(crate) use compare::Compare;
 pub(crate) use difference::DifferenceArguments;
 pub(crate) use envelope::{ComfortArguments, CornersArgument, EnvelopeArguments};
 pub(crate) use irradiance::{ClearSkyChoice, IrradianceArguments, RadiationModel};
@@ -223,9 +219,6 @@ pub(crate) enum Command {
     View(ViewPage),
     /// Map shadow and sky view of a whole city, tile by tile
     City(City),
-    /// Compare the accuracy and cost of visibility methods against ground truth
-    #[cfg(feature = "compare")]
-    Compare(Compare),
     /// List all commands with their parameters, types, defaults and texts
     Describe,
     /// Print a completion script for a shell

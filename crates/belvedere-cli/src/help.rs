@@ -31,7 +31,7 @@ const GROUPS: [(&str, &[&str]); 8] = [
     ),
     ("plan", &["difference"]),
     ("scene", &["balls", "normals", "trajectory"]),
-    ("research", &["depth-map", "query", "compare"]),
+    ("research", &["depth-map", "query"]),
     ("scale", &["city"]),
     ("other", &["describe", "completions", "man"]),
 ];
@@ -147,8 +147,6 @@ const TEXTS: &[(&str, &str)] = &[
     #[cfg(feature = "view")]
     ("view", include_str!("help/view.txt")),
     ("city", include_str!("help/city.txt")),
-    #[cfg(feature = "compare")]
-    ("compare", include_str!("help/compare.txt")),
     ("difference", include_str!("help/difference.txt")),
     ("describe", include_str!("help/describe.txt")),
     ("completions", include_str!("help/completions.txt")),

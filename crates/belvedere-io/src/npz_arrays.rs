@@ -2,22 +2,20 @@
 
 use std::io::{self, BufReader, Read, Seek, SeekFrom, Take, Write};
 
-use npyz::npz::{NpzArchive, NpzWriter};
-use npyz::zip::ZipWriter;
-use npyz::zip::read::ZipFile;
-use npyz::zip::write::FileOptions;
-use npyz::{AutoSerialize, Deserialize, NpyReader, NpyWriter, Order, WriterBuilder};
+use npyz::{AutoSerialize, Deserialize, NpyReader, NpyWriter, Order, WriteOptions, WriterBuilder};
+use zip::read::ZipFile;
+use zip::write::FileOptions;
+use zip::{ZipArchive, ZipWriter};
 
 use crate::npy_header::read_header;
 
 /// Writes an archive, whose arrays `body` appends.
 pub(crate) fn write_archive<W: Write + Seek, E: From<io::Error>>(
     output: W,
-    body: impl FnOnce(&mut NpzWriter<W>) -> Result<(), E>,
+    body: impl FnOnce(&mut ZipWriter<W>) -> Result<(), E>,
 ) -> Result<(), E> {
-    let mut archive = NpzWriter::new(output);
-    let written =
-        body(&mut archive).and_then(|()| Ok(archive.zip_writer().finish().map_err(io::Error::from)?.flush()?));
+    let mut archive = ZipWriter::new(output);
+    let written = body(&mut archive).and_then(|()| Ok(archive.finish().map_err(io::Error::from)?.flush()?));
     if written.is_err() {
         // dropped without its end, the writer of the crate tries again to write it, and prints its own error
         std::mem::forget(archive);
@@ -27,7 +25,7 @@ pub(crate) fn write_archive<W: Write + Seek, E: From<io::Error>>(
 
 /// Appends an array to an archive.
 pub(crate) fn array<T: AutoSerialize, W: Write + Seek>(
-    archive: &mut NpzWriter<W>,
+    archive: &mut ZipWriter<W>,
     name: &str,
     shape: &[u64],
     values: impl Iterator<Item = T>,
@@ -39,17 +37,18 @@ pub(crate) fn array<T: AutoSerialize, W: Write + Seek>(
 
 /// Begins an array of an archive, whose values follow.
 pub(crate) fn begin_array<'a, T: AutoSerialize, W: Write + Seek>(
-    archive: &'a mut NpzWriter<W>,
+    archive: &'a mut ZipWriter<W>,
     name: &str,
     shape: &[u64],
 ) -> io::Result<NpyWriter<T, &'a mut ZipWriter<W>>> {
     // stored, as NumPy does: floats hardly shrink, and loading stays a copy; without the time of day, so that the same
     // balls give the same bytes
     let options = FileOptions::default()
-        .compression_method(npyz::zip::CompressionMethod::Stored)
-        .last_modified_time(npyz::zip::DateTime::default())
+        .compression_method(zip::CompressionMethod::Stored)
+        .last_modified_time(zip::DateTime::default())
         .large_file(true);
-    archive.array(name, options)?.default_dtype().shape(shape).begin_nd()
+    archive.start_file(npyz::npz::file_name_from_array_name(name), options)?;
+    WriteOptions::new().writer(archive).default_dtype().shape(shape).begin_nd()
 }
 
 /// Bytes that all arrays of an archive may hold together, whatever its size.
@@ -67,7 +66,7 @@ const END_BYTES: usize = 22;
 ///
 /// # Errors
 /// [`io::ErrorKind::InvalidData`] where it is damaged or would expand beyond reason.
-pub(crate) fn open<R: Read + Seek>(mut reader: R, size: u64) -> io::Result<NpzArchive<R>> {
+pub(crate) fn open<R: Read + Seek>(mut reader: R, size: u64) -> io::Result<ZipArchive<R>> {
     let mut end = [0; END_BYTES];
     if size >= END_BYTES as u64 {
         reader.seek(SeekFrom::Start(size - END_BYTES as u64))?;
@@ -78,8 +77,7 @@ pub(crate) fn open<R: Read + Seek>(mut reader: R, size: u64) -> io::Result<NpzAr
     if end.starts_with(b"PK\x05\x06") && end[8..10] != end[10..12] {
         return Err(invalid("its directory is damaged: two counts of its entries differ".to_owned()));
     }
-    let mut archive = NpzArchive::new(reader)?;
-    let entries = archive.zip_archive();
+    let mut entries = ZipArchive::new(reader).map_err(|error| invalid(error.to_string()))?;
     if let Some(name) = entries.file_names().find(|name| !name.ends_with(".npy")) {
         return Err(invalid(format!("its entry {name:?} is not an array")));
     }
@@ -93,12 +91,12 @@ pub(crate) fn open<R: Read + Seek>(mut reader: R, size: u64) -> io::Result<NpzAr
             "its {size} bytes would expand to {bytes}, more than {MAX_BYTES_FOR_EACH} times as many"
         )));
     }
-    Ok(archive)
+    Ok(entries)
 }
 
 /// The rows of an array of shape (M, N).
 pub(crate) fn rows<T: Deserialize + Clone, const N: usize, R: Read + Seek>(
-    archive: &mut NpzArchive<R>,
+    archive: &mut ZipArchive<R>,
     name: &str,
 ) -> io::Result<Vec<[T; N]>> {
     let (values, shape) = values(archive, name, u64::MAX)?;
@@ -108,8 +106,13 @@ pub(crate) fn rows<T: Deserialize + Clone, const N: usize, R: Read + Seek>(
     Ok(values.as_chunks::<N>().0.to_vec())
 }
 
-pub(crate) fn has<R: Read + Seek>(archive: &NpzArchive<R>, name: &str) -> bool {
-    archive.array_names().any(|found| found == name)
+/// Names of the arrays of an archive.
+pub(crate) fn array_names<R: Read + Seek>(archive: &ZipArchive<R>) -> impl Iterator<Item = &str> {
+    archive.file_names().filter_map(npyz::npz::array_name_from_file_name)
+}
+
+pub(crate) fn has<R: Read + Seek>(archive: &ZipArchive<R>, name: &str) -> bool {
+    array_names(archive).any(|found| found == name)
 }
 
 pub(crate) fn invalid(what: String) -> io::Error {
@@ -118,7 +121,7 @@ pub(crate) fn invalid(what: String) -> io::Error {
 
 /// Values and shape of an array of at most `max` values.
 pub(crate) fn values<T: Deserialize, R: Read + Seek>(
-    archive: &mut NpzArchive<R>,
+    archive: &mut ZipArchive<R>,
     name: &str,
     max: u64,
 ) -> io::Result<(Vec<T>, Vec<u64>)> {
@@ -138,7 +141,7 @@ pub(crate) fn values<T: Deserialize, R: Read + Seek>(
 
 /// Hands the values of an array to `take`, `max` at a time.
 pub(crate) fn in_blocks<T: Deserialize, R: Read + Seek, E: From<io::Error>>(
-    archive: &mut NpzArchive<R>,
+    archive: &mut ZipArchive<R>,
     name: &str,
     max: usize,
     mut take: impl FnMut(&[T]) -> Result<(), E>,
@@ -161,14 +164,14 @@ type NpzValues<'a, 'z, T> = NpyReader<T, &'a mut BufReader<Take<ZipFile<'z>>>>;
 
 /// Lets `read` read an array, of which it is given the shape and the values, and checks the sum of the whole.
 fn read_array<T: Deserialize, R: Read + Seek, O, E: From<io::Error>>(
-    archive: &mut NpzArchive<R>,
+    archive: &mut ZipArchive<R>,
     name: &str,
     read: impl FnOnce(&[u64], &mut NpzValues<'_, '_, T>) -> Result<O, E>,
 ) -> Result<O, E> {
     if !has(archive, name) {
         return Err(invalid(format!("there is no array {name}")).into());
     }
-    let file = archive.zip_archive().by_name(&npyz::npz::file_name_from_array_name(name)).map_err(io::Error::from);
+    let file = archive.by_name(&npyz::npz::file_name_from_array_name(name)).map_err(io::Error::from);
     let file = file?;
     let size = file.size();
     // what is compressed may go on beyond the size that its entry states

@@ -2,8 +2,7 @@
 
 use std::io::{self, Seek, Write};
 use std::path::Path;
-
-use npyz::npz::{NpzArchive, NpzWriter};
+use zip::{ZipArchive, ZipWriter};
 
 use crate::npz_arrays::{array, begin_array, in_blocks, open, rows, values, write_archive};
 use crate::output::Output;
@@ -143,7 +142,7 @@ pub fn write_matrix_rows<'a>(
     })
 }
 
-fn write_head<W: Write + Seek>(archive: &mut NpzWriter<W>, head: &MatrixHead) -> io::Result<()> {
+fn write_head<W: Write + Seek>(archive: &mut ZipWriter<W>, head: &MatrixHead) -> io::Result<()> {
     let [m, d] = [head.targets.len(), head.directions.len()].map(|n| n as u64);
     array(archive, "directions", &[d, 3], head.directions.iter().flatten().copied())?;
     array(archive, "targets", &[m, 3], head.targets.iter().flatten().copied())?;
@@ -169,7 +168,7 @@ pub fn read_matrix_head<'a>(source: impl Into<Source<'a>>) -> Result<MatrixHead>
     head_of(&name, &mut archive)
 }
 
-fn head_of(path: &Path, archive: &mut NpzArchive<SourceReader<'_>>) -> Result<MatrixHead> {
+fn head_of(path: &Path, archive: &mut ZipArchive<SourceReader<'_>>) -> Result<MatrixHead> {
     let mut read = || -> io::Result<MatrixHead> {
         let one = |values: Vec<u64>| values.first().copied().unwrap_or(0);
         let origin = values::<f64, _>(archive, "origin", 3)?.0;
@@ -221,7 +220,7 @@ pub fn read_matrix_rows<'a>(
 
 fn rows_of(
     path: &Path,
-    archive: &mut NpzArchive<SourceReader<'_>>,
+    archive: &mut ZipArchive<SourceReader<'_>>,
     head: &MatrixHead,
     mut sink: impl FnMut(&[u64]) -> Result<()>,
 ) -> Result<()> {

@@ -1,6 +1,6 @@
 //! Flags of `simulate`, and what towns are given by.
 
-use belvedere_scenes::{EXTENT, Preset, Regime};
+use belvedere_scenes::{EXTENT, Preset};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
@@ -105,27 +105,19 @@ pub(crate) enum PatternChoice {
 }
 
 /// Presets by their names.
-pub(super) fn presets() -> impl TypedValueParser<Value = Preset> {
+fn presets() -> impl TypedValueParser<Value = Preset> {
     PossibleValuesParser::new(Preset::ALL.map(Preset::name)).map(|name| {
         // the parser lets no other name through
         Preset::ALL.into_iter().find(|preset| preset.name() == name).unwrap_or(Preset::Town)
     })
 }
 
-/// Scanners by their names.
-pub(super) fn regimes() -> impl TypedValueParser<Value = Regime> {
-    PossibleValuesParser::new(Regime::ALL.map(Regime::name)).map(|name| {
-        // the parser lets no other name through
-        Regime::ALL.into_iter().find(|regime| regime.name() == name).unwrap_or(Regime::Air)
-    })
-}
-
 /// A number from `LOW` to `HIGH`, both included.
-pub(super) fn within<const LOW: u16, const HIGH: u16>(text: &str) -> Result<f64, String> {
+fn within<const LOW: u16, const HIGH: u16>(text: &str) -> Result<f64, String> {
     between(text, f64::from(LOW), f64::from(HIGH))
 }
 
-pub(super) fn density(text: &str) -> Result<f64, String> {
+fn density(text: &str) -> Result<f64, String> {
     between(text, 0.1, 200.0)
 }
 

@@ -4,8 +4,6 @@ mod balls;
 mod cameras;
 mod city;
 mod comfort;
-#[cfg(feature = "compare")]
-mod compare;
 mod demo;
 mod depth_map;
 mod describe;
@@ -94,8 +92,6 @@ fn run_command(cli: &Cli) -> Result<Summary> {
         #[cfg(feature = "view")]
         Command::View(arguments) => view::run(arguments, global),
         Command::City(arguments) => city::run(arguments, global),
-        #[cfg(feature = "compare")]
-        Command::Compare(arguments) => compare::run(arguments, global),
         Command::Difference(arguments) => difference::run(arguments, global),
         Command::Describe => Ok(describe::run()),
         Command::Completions { shell } => {

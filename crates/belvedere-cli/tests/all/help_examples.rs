@@ -4,7 +4,7 @@ use crate::common::{Workplace, house};
 use std::collections::BTreeSet;
 use std::path::Path;
 
-const COMMANDS: [&str; 30] = [
+const COMMANDS: [&str; 29] = [
     "demo",
     "simulate",
     "info",
@@ -29,7 +29,6 @@ const COMMANDS: [&str; 30] = [
     "sun-hours",
     "sun-position",
     "city",
-    "compare",
     "view",
     "difference",
     "describe",

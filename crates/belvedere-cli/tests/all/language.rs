@@ -183,8 +183,12 @@ fn help_pages_and_messages_use_plain_words() {
         found.extend(refused(&page.display().to_string(), &fs::read_to_string(&page).unwrap()));
     }
     let mut sources = Vec::new();
-    for folder in fs::read_dir(root().join("crates")).unwrap() {
-        files(&folder.unwrap().path().join("src"), "rs", &mut sources);
+    for folder in ["crates", "research"].map(|folder| fs::read_dir(root().join(folder)).unwrap()).into_iter().flatten()
+    {
+        let sources_of = folder.unwrap().path().join("src");
+        if sources_of.exists() {
+            files(&sources_of, "rs", &mut sources);
+        }
     }
     assert!(sources.len() > 100, "{}", sources.len());
     for source in sources {
@@ -249,6 +253,7 @@ fn every_flag_and_file_that_a_page_names_exists() {
     for parameter in all.chain(program["global_parameters"].as_array().unwrap()) {
         flags.insert(parameter["name"].as_str().unwrap().to_owned());
     }
+    flags.extend(flags_of_compare());
     let mut missing = Vec::new();
     for page in pages() {
         let text = fs::read_to_string(&page).unwrap();
@@ -267,9 +272,22 @@ fn every_flag_and_file_that_a_page_names_exists() {
     assert!(missing.is_empty(), "{missing:#?}");
 }
 
+/// Flags of the program `compare` in `research`, from its source.
+fn flags_of_compare() -> Vec<String> {
+    let source = fs::read_to_string(root().join("research/compare/src/arguments.rs")).unwrap();
+    let fields = source.split("pub(crate) struct Compare {").nth(1).unwrap().split("\n}").next().unwrap();
+    let names = fields.lines().filter_map(|line| line.trim().strip_prefix("pub(crate) ")?.split(':').next());
+    let mut flags: Vec<String> = names.map(|name| format!("--{}", name.replace('_', "-"))).collect();
+    let given = fields.split("long = \"").skip(1).filter_map(|rest| rest.split('"').next());
+    flags.extend(given.map(|name| format!("--{name}")));
+    assert!(flags.contains(&"--target-count".to_owned()) && flags.contains(&"--held-out".to_owned()), "{flags:?}");
+    flags
+}
+
 /// Flags of cargo and of this project's examples that pages name.
-const FLAGS_OF_OTHERS: [&str; 12] = [
+const FLAGS_OF_OTHERS: [&str; 13] = [
     "--release",
+    "--manifest-path",
     "--path",
     "--example",
     "--bench",

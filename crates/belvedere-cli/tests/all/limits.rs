@@ -62,12 +62,6 @@ fn options_are_refused_before_a_cloud_is_read() {
         ("isovist junk.laz --observers some.csv -o o.png", ["o.png", "single observer"]),
         ("horizon junk.laz --observer 1,1 --observer 2,2 -o o.txt", ["o.txt", "single observer"]),
         ("irradiance junk.laz --clear-sky bird --location 200,10 -o o.tif", ["--location", "latitude"]),
-        #[cfg(feature = "compare")]
-        ("compare -o o --methods nonsense", ["--methods", "nonsense"]),
-        #[cfg(feature = "compare")]
-        ("compare -o o --clouds junk.laz --mesh mesh.obj --methods voxels,nonsense", ["--methods", "nonsense"]),
-        #[cfg(feature = "compare")]
-        ("compare -o o --target-count 1000000000", ["--target-count", "1 to 10000000"]),
     ] {
         let run = place.refusal(2, arguments, &words);
         assert!(!run.stderr.contains("junk.laz:"), "{arguments}: {}", run.stderr);

@@ -7,8 +7,6 @@ mod cameras;
 mod carved;
 mod city;
 mod common;
-#[cfg(feature = "compare")]
-mod compare;
 mod conventions;
 mod depth_maps;
 mod determinism;

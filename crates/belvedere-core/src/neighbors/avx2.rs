@@ -3,7 +3,7 @@
 #![expect(
     unsafe_code,
     reason = "the search for the nearest point takes most of the time of making balls; AVX2 saves 9 % of it on the surface and \
-              22 % from the centres of 200 m balls (benches/neighbors.rs), and the tests compare every answer with the \
+              22 % from the centres of 200 m balls (research/benches), and the tests compare every answer with the \
               scalar form"
 )]
 

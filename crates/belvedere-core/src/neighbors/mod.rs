@@ -3,7 +3,7 @@
 //! A tree with eight children a node and tight boxes, over leaves of 32 points kept as structure of arrays. Ball
 //! centres lie far from the surface, where thousands of points are nearly equally far; only tight boxes tell them
 //! apart. On half a million points of a simulated city a nearest point costs 0.34 µs on the surface, 0.5 µs from 5 m
-//! and 1.0 µs from 200 m below it; the kd-tree crate kiddo takes 0.24, 2.1 and 57 µs (`benches/neighbors.rs`).
+//! and 1.0 µs from 200 m below it; the kd-tree crate kiddo takes 0.24, 2.1 and 57 µs (`research/benches`).
 //!
 //! | question | method |
 //! |---|---|

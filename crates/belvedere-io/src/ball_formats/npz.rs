@@ -1,11 +1,10 @@
 //! Balls in NumPy's archive format, without loss.
 
 use std::io::{self, Read, Seek, Write};
-
-use npyz::npz::{NpzArchive, NpzWriter};
+use zip::{ZipArchive, ZipWriter};
 
 use super::metadata;
-use crate::npz_arrays::{array, has, invalid, open, rows, values, write_archive};
+use crate::npz_arrays::{array, array_names, has, invalid, open, rows, values, write_archive};
 use crate::output::Output;
 use crate::source::Input;
 use belvedere_data::free_segments::FreeSegmentColumns;
@@ -36,7 +35,7 @@ pub(crate) fn write_npz(output: Output<'_>, parts: &ModelParts) -> Result<()> {
     output.write(|path, output| write_archive(output, |archive| write_arrays(archive, parts)).map_err(Error::io(path)))
 }
 
-fn write_arrays<W: Write + Seek>(archive: &mut NpzWriter<W>, parts: &ModelParts) -> io::Result<()> {
+fn write_arrays<W: Write + Seek>(archive: &mut ZipWriter<W>, parts: &ModelParts) -> io::Result<()> {
     let metadata = metadata::to_json(parts, UNITS);
     let n = parts.balls.centers.len() as u64;
     array(archive, "centers", &[n, 3], parts.balls.centers.iter().flatten().copied())?;
@@ -96,7 +95,7 @@ pub(crate) fn read_npz(input: Input<'_>) -> Result<ModelParts> {
     Ok(parts)
 }
 
-fn pulses<R: Read + Seek>(archive: &mut NpzArchive<R>) -> io::Result<FreeSegmentColumns> {
+fn pulses<R: Read + Seek>(archive: &mut ZipArchive<R>) -> io::Result<FreeSegmentColumns> {
     let lengths =
         if has(archive, "pulse_lengths") { values(archive, "pulse_lengths", u64::MAX)?.0 } else { Vec::new() };
     let ways = if has(archive, "pulse_ways") { values(archive, "pulse_ways", u64::MAX)?.0 } else { Vec::new() };
@@ -111,7 +110,7 @@ fn pulses<R: Read + Seek>(archive: &mut NpzArchive<R>) -> io::Result<FreeSegment
 }
 
 /// An array of another name: a damaged name of one that is not in every file would not be missed.
-fn unknown<R: Read + Seek>(archive: &NpzArchive<R>) -> Option<String> {
+fn unknown<R: Read + Seek>(archive: &ZipArchive<R>) -> Option<String> {
     let is_known = |name: &&str| PULSE_ARRAYS.contains(name) || OTHER_ARRAYS.contains(name);
-    archive.array_names().find(|name| !is_known(name)).map(str::to_owned)
+    array_names(archive).find(|name| !is_known(name)).map(str::to_owned)
 }

@@ -4,7 +4,6 @@
 mod cells;
 mod cleared;
 mod common;
-mod country;
 mod hostile;
 mod planned;
 mod robust;

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 /// The crates of the library, and the crates of ours that each may import.
-const CRATES: [(&str, &[&str]); 13] = [
+const CRATES: [(&str, &[&str]); 12] = [
     ("data", &[]),
     ("io", &["data"]),
     ("figures", &["data", "io"]),
@@ -13,10 +13,18 @@ const CRATES: [(&str, &[&str]); 13] = [
     ("", &["data", "io", "figures", "core", "apps", "gpu"]),
     ("tiles", &[""]),
     ("scenes", &[]),
-    ("baselines", &[""]),
     ("viewer", &[""]),
-    ("cli", &["", "tiles", "scenes", "baselines", "viewer"]),
+    ("cli", &["", "tiles", "scenes", "viewer"]),
     ("python", &["", "scenes"]),
+];
+
+/// The crates of the workspace `research`, and the crates of ours that each may import.
+const RESEARCH: [(&str, &[&str]); 5] = [
+    ("baselines", &["", "scenes"]),
+    ("benches", &["", "scenes"]),
+    ("compare", &["", "scenes", "baselines"]),
+    ("device-rates", &["", "core", "data", "gpu"]),
+    ("tables", &["", "scenes", "baselines"]),
 ];
 
 /// Level of each module of `belvedere-core`: a module imports from lower levels, or from its own folder.
@@ -38,12 +46,13 @@ const LEVELS: [(&str, u8); 14] = [
 ];
 
 /// Crates of others that only one file or folder may name.
-const ONE_HOME: [(&str, &str); 33] = [
+const ONE_HOME: [(&str, &str); 34] = [
     ("ab_glyph::", "figures/src/font.rs"),
     ("colorous::", "io/src/colors.rs"),
     ("las::", "io/src/"),
     ("laz::", "io/src/laz"),
     ("npyz::", "io/src/"),
+    ("zip::", "io/src/"),
     ("csv::", "io/src/table.rs"),
     ("e57::", "io/src/e57.rs"),
     ("tiff::", "io/src/geotiff"),
@@ -151,7 +160,7 @@ fn crates_and_modules_import_downward_only_and_name_each_crate_in_one_place() {
         let mut files = Vec::new();
         sources(&root, &mut files);
         assert!(!files.is_empty(), "no sources of {name}");
-        let is_library = !["scenes", "baselines", "cli", "python"].contains(&name);
+        let is_library = !["scenes", "cli", "python"].contains(&name);
         for file in files {
             let within = file.strip_prefix(&root).unwrap().to_string_lossy().replace('\\', "/");
             let place = format!("{name}/src/{within}");
@@ -195,4 +204,68 @@ fn crates_and_modules_import_downward_only_and_name_each_crate_in_one_place() {
     }
     assert!(imports > 100, "the test sees only {imports} imports");
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+fn repository() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+#[test]
+fn research_imports_what_is_below_it() {
+    let mut wrong = Vec::new();
+    for (name, allowed) in RESEARCH {
+        let mut files = Vec::new();
+        sources(&repository().join("research").join(name), &mut files);
+        assert!(!files.is_empty(), "no sources of {name}");
+        for file in files {
+            let code = code(&file);
+            let is_wrong = |import: &String| *import != name && !allowed.contains(&import.as_str());
+            wrong.extend(imported_crates(&code).into_iter().filter(is_wrong).map(|import| (file.clone(), import)));
+        }
+    }
+    assert!(wrong.is_empty(), "{wrong:?}");
+}
+
+/// The lines of a manifest from `[start` to the next section that is not `[start`.
+fn section(manifest: &str, start: &str) -> Vec<String> {
+    let mut is_within = false;
+    let mut lines = Vec::new();
+    for line in manifest.lines().filter(|line| !line.is_empty() && !line.starts_with('#')) {
+        if line.starts_with('[') {
+            is_within = line.starts_with(start);
+        }
+        if is_within {
+            lines.push(line.to_owned());
+        }
+    }
+    lines
+}
+
+/// Names and versions of the crates in a `Cargo.lock`.
+fn locked(lock: &str) -> Vec<(String, String)> {
+    let value = |line: &str, key: &str| line.strip_prefix(key).map(|rest| rest.trim_matches('"').to_owned());
+    let lines: Vec<&str> = lock.lines().collect();
+    lines.windows(2).filter_map(|pair| Some((value(pair[0], "name = ")?, value(pair[1], "version = ")?))).collect()
+}
+
+#[test]
+fn research_has_the_lints_profiles_and_versions_of_the_root() {
+    let read = |name: &str| std::fs::read_to_string(repository().join(name)).unwrap();
+    let manifests = ["Cargo.toml", "research/Cargo.toml"].map(read);
+    for start in ["[workspace.lints", "[profile.release]", "[profile.dev"] {
+        let [of_root, of_research] = [0, 1].map(|i| section(&manifests[i], start));
+        assert!(of_root.len() > 2, "{start}");
+        assert_eq!(of_root, of_research, "{start}");
+    }
+    let [versions, of_research] = [0, 1].map(|i| section(&manifests[i], "[workspace.dependencies]"));
+    let name = |line: &str| line.split(" = ").next().unwrap_or_default().to_owned();
+    for line in of_research.iter().filter(|line| line.contains(" = ") && !line.contains("path = ")) {
+        let of_root = versions.iter().find(|other| name(other) == name(line));
+        assert!(of_root.is_none_or(|other| other == line), "{line} and {of_root:?}");
+    }
+    let [of_root, of_research] = ["Cargo.lock", "research/Cargo.lock"].map(|name| locked(&read(name)));
+    let is_known =
+        |krate: &(String, String)| of_root.contains(krate) || of_root.iter().all(|(name, _)| *name != krate.0);
+    let other: Vec<_> = of_research.iter().filter(|krate| !is_known(krate)).collect();
+    assert!(of_research.len() > 100 && other.is_empty(), "in other versions than in Cargo.lock: {other:?}");
 }

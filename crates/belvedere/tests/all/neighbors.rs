@@ -112,22 +112,7 @@ fn every_search_equals_brute_force_on_every_cloud() {
     }
 }
 
-#[test]
-fn distances_agree_with_another_kd_tree() {
-    for (name, points) in clouds() {
-        let other = kiddo::ImmutableKdTree::<f32, 3>::new_from_slice(&points).unwrap();
-        for index in both(&points) {
-            for query in queries(&points) {
-                let mine = index.nearest_within(query, f32::INFINITY).unwrap();
-                let theirs = other.query(&query).nearest_one::<kiddo::SquaredEuclidean<f32>>().execute();
-                assert_eq!(mine.distance_squared, theirs.distance, "{name} {query:?}");
-            }
-        }
-    }
-}
-
-/// The same radius in f64 straight from the formula, over all points, and the squared chord to the point that decides
-/// it.
+/// The same radius in f64 straight from the formula, over all points, and the squared chord to the point that decides it.
 fn tangent_ball_by_brute_force(points: &[[f32; 3]], t: &Tangent, max_radius: f32) -> (f64, f64) {
     points
         .iter()

@@ -128,8 +128,9 @@ impl Workplace {
 
     /// Values of an array of a ball file.
     pub(crate) fn npz<T: npyz::Deserialize>(&self, name: &str, array: &str) -> Vec<T> {
-        let mut archive = npyz::npz::NpzArchive::open(self.path(name)).unwrap();
-        archive.by_name(array).unwrap().unwrap_or_else(|| panic!("{name} has no {array}")).into_vec().unwrap()
+        let mut archive = zip::ZipArchive::new(fs::File::open(self.path(name)).unwrap()).unwrap();
+        let entry = archive.by_name(&format!("{array}.npy")).unwrap_or_else(|_| panic!("{name} has no {array}"));
+        npyz::NpyFile::new(entry).unwrap().into_vec().unwrap()
     }
 
     /// Writes (N, 3) f64.

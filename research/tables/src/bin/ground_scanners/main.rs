@@ -1,0 +1,70 @@
+//! How right the default model is on scans from tripods and from a car, in streets of simulated towns.
+//!
+//! ```sh
+//! cargo research ground_scanners -- tripods,car town 110 77
+//! ```
+//!
+//! prints the table of docs/methods/scanners.md: scanners, kinds of towns, their extent in metres, seeds. A last number
+//! makes the angles between pulses so many times as large, for a quick look.
+#![allow(clippy::print_stdout, reason = "an example talks")]
+
+mod judge;
+
+use belvedere::PointCloud;
+use belvedere_baselines::simulated::{flown, surveyed};
+use belvedere_scenes::{
+    AirborneParams, MobileParams, Preset, Stations, TerrestrialParams, TownParams, TriangleScene, scan_mobile,
+    scan_terrestrial, town,
+};
+
+/// Places of a tripod in a town.
+const STATIONS: u16 = 12;
+
+type AnyResult<T> = Result<T, Box<dyn std::error::Error>>;
+
+fn main() -> AnyResult<()> {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let word = |i: usize, usual: &'static str| arguments.get(i).map_or(usual, String::as_str);
+    let extent: f64 = word(2, "110").parse()?;
+    for name in word(1, "town").split(',') {
+        let preset = Preset::ALL.into_iter().find(|preset| preset.name() == name).ok_or("no such town")?;
+        for seed in word(3, "77").split(',') {
+            let params = preset.params(extent, seed.parse()?);
+            let scene = town(&params);
+            for scanner in word(0, "tripods,car").split(',') {
+                let (cloud, positions) = scanned(scanner, &scene, &params, word(4, "1").parse()?)?;
+                let found = judge::judge(&scene, &cloud, &positions, params.seed)?;
+                println!("{name} {extent} m, seed {seed}, {scanner}: {} points\n{found}", cloud.len());
+            }
+        }
+    }
+    Ok(())
+}
+
+/// The cloud that a scanner makes of a town, and where it was at each point.
+fn scanned(
+    scanner: &str,
+    scene: &TriangleScene,
+    params: &TownParams,
+    coarser: f64,
+) -> AnyResult<(PointCloud, Vec<[f32; 3]>)> {
+    let seed = params.seed;
+    Ok(match scanner {
+        "air" => flown(scene, &AirborneParams { seed, ..AirborneParams::covering(scene, 10.0) })?,
+        "tripods" => {
+            let stations = Stations::Chosen(STATIONS);
+            let usual = TerrestrialParams::default();
+            let angular_step = coarser * usual.angular_step;
+            surveyed(&scan_terrestrial(scene, &TerrestrialParams { seed, stations, angular_step, ..usual }))?
+        }
+        "car" => {
+            let runs = params.lanes();
+            let usual = MobileParams::default();
+            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a thousand at most")]
+            let pulses_per_line = (f64::from(usual.pulses_per_line) / coarser) as u32;
+            let line_rate = usual.line_rate / coarser;
+            surveyed(&scan_mobile(scene, &MobileParams { seed, runs, pulses_per_line, line_rate, ..usual }))?
+        }
+        other => return Err(format!("no scanner {other:?}; there are air, tripods and car").into()),
+    })
+}

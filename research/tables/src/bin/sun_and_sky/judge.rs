@@ -1,0 +1,289 @@
+//! Sun hours and sky views of carved balls on a simulated town, against the rays of its exact mesh.
+
+#[path = "score.rs"]
+pub(crate) mod score;
+
+use belvedere::Bounds;
+use belvedere::control::Control;
+use belvedere::ground::{Ground, GroundParams, MapGrid, SurfaceParams, highest_points, top_surface};
+use belvedere::medial::MedialBalls;
+use belvedere::query::{Answer, BlockRule, MedialScene, Viewer, Visibility};
+use belvedere::{PointCloud, Result};
+use belvedere_baselines::MethodInput;
+use belvedere_baselines::medial::{MedialParams, Outward, scene_model};
+use belvedere_baselines::simulated::flown;
+use belvedere_scenes::{AirborneParams, Material, Preset, QuerySet, QuerySite, Scene, Truth, town};
+use score::{Light, Score, Setting};
+use std::f64::consts::TAU;
+
+/// How near a wall or a fence stands that a cell is said to lie at, metres.
+const AT_WALL: f64 = 2.0;
+
+/// What a question above a cell of a surface grid stands on.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum CellTops {
+    /// The highest point in the cell.
+    Highest,
+    /// The surface at its middle.
+    Surface,
+}
+
+/// Targets, and what the mesh lets them see.
+pub(crate) struct JudgedTargets {
+    /// Where they truly are, absolute.
+    exact: Vec<[f64; 3]>,
+    /// Where a user would ask for them, local metres.
+    queried: Vec<[f32; 3]>,
+    settings: Vec<Setting>,
+    /// Whether each sees each direction, (M x D).
+    free: Vec<bool>,
+}
+
+impl JudgedTargets {
+    pub(crate) fn len(&self) -> usize {
+        self.queried.len()
+    }
+}
+
+/// A town, its survey and the balls made of it.
+pub(crate) struct LightTown {
+    pub(crate) scene: TriangleScene,
+    pub(crate) truth: Truth,
+    pub(crate) cloud: PointCloud,
+    pub(crate) scanner: Vec<[f32; 3]>,
+    pub(crate) balls: MedialBalls,
+    ground: Ground,
+    /// Cells free of buildings, and the exact height of the ground there.
+    bare: Vec<([f64; 2], f64)>,
+}
+
+impl LightTown {
+    /// A town of `extent` metres flown over at eight pulses a square metre, and its ground in cells of `cell` metres.
+    pub(crate) fn new(preset: Preset, extent: f64, cell: f64, seed: u64) -> Result<Self> {
+        let scene = town(&preset.params(extent, seed));
+        let (cloud, scanner) = flown(&scene, &AirborneParams { seed, ..AirborneParams::covering(&scene, 8.0) })?;
+        let survey = MethodInput { cloud: &cloud, scanner: &scanner, models: &[] };
+        let balls = scene_model(&survey, Outward::Survey, &MedialParams::carved())?.into_parts().balls;
+        let truth = Truth::new(&scene);
+        let Bounds { low, high } = cloud.bounds().unwrap_or_default();
+        let on_map = |p: [f32; 3]| [f64::from(p[0]), f64::from(p[1])];
+        let grid = MapGrid::covering(on_map(low), on_map(high), cell, [cloud.frame.origin[0], cloud.frame.origin[1]])?;
+        let (ground, _) = Ground::of_cloud(&cloud, grid, &GroundParams::default(), &Control::none())?;
+        let mut town = Self { scene, truth, cloud, scanner, balls, ground, bare: Vec::new() };
+        let site = town.site();
+        let bare = (0..grid.len()).filter_map(|i| {
+            let [x, y] = grid.center(i % grid.width, i / grid.width);
+            let at = [x + town.cloud.frame.origin[0], y + town.cloud.frame.origin[1]];
+            let height = site.ground_height(at)?;
+            (!site.is_inside([at[0], at[1], height + 0.05])).then_some(([x, y], height))
+        });
+        town.bare = bare.collect();
+        Ok(town)
+    }
+
+    pub(crate) fn site(&self) -> QuerySite<'_> {
+        let Bounds { low, high } = self.cloud.bounds().unwrap_or_default();
+        let bounds = [low, high].map(|corner| self.absolute(corner));
+        QuerySite { scene: &self.scene, truth: &self.truth, bounds }
+    }
+
+    pub(crate) fn absolute(&self, p: [f32; 3]) -> [f64; 3] {
+        std::array::from_fn(|i| f64::from(p[i]) + self.cloud.frame.origin[i])
+    }
+
+    #[expect(clippy::cast_possible_truncation, reason = "local positions are f32")]
+    fn local(&self, p: [f64; 3]) -> [f32; 3] {
+        std::array::from_fn(|i| (p[i] - self.cloud.frame.origin[i]) as f32)
+    }
+
+    /// About `count` cells of the ground, `height` metres above it: the truth above the exact ground, the question
+    /// above the ground found in the cloud.
+    pub(crate) fn ground_cells(&self, height: f64, count: usize, light: &LightDirections) -> JudgedTargets {
+        let step = (self.bare.len() / count.max(1)).max(1);
+        let (mut exact, mut queried) = (Vec::new(), Vec::new());
+        for &([x, y], z) in self.bare.iter().step_by(step) {
+            let Some(found) = self.ground.height_at([x, y]) else { continue };
+            let [x, y] = [x + self.cloud.frame.origin[0], y + self.cloud.frame.origin[1]];
+            exact.push([x, y, z + height]);
+            queried.push(self.local([x, y, found + self.cloud.frame.origin[2] + height]));
+        }
+        self.places(exact, queried, light)
+    }
+
+    /// About `count` cells whose top is a roof, `height` metres above it: the truth above the exact roof at the middle
+    /// of the cell, the question above what the points tell of it.
+    pub(crate) fn roof_cells(
+        &self,
+        tops: CellTops,
+        height: f64,
+        count: usize,
+        light: &LightDirections,
+    ) -> Result<JudgedTargets> {
+        let grid = self.ground.grid;
+        let tops = match tops {
+            CellTops::Highest => highest_points(&self.cloud.positions, &self.ground),
+            CellTops::Surface => {
+                top_surface(&self.cloud.positions, &self.ground, &SurfaceParams::default(), &Control::none())?
+            }
+        };
+        let above = self.site().bounds[1][2] + 100.0;
+        let (mut exact, mut queried) = (Vec::new(), Vec::new());
+        for (cell, &top) in tops.values().iter().enumerate() {
+            let [x, y] = grid.center(cell % grid.width, cell / grid.width);
+            let at = [x + self.cloud.frame.origin[0], y + self.cloud.frame.origin[1]];
+            let Some(hit) = self.truth.first_hit([at[0], at[1], above], [0.0, 0.0, -1.0], f64::INFINITY) else {
+                continue;
+            };
+            if self.scene.materials.get(hit.triangle as usize) == Some(&Material::Roof) && top.is_finite() {
+                exact.push([at[0], at[1], above - hit.range + height]);
+                queried.push(self.local([at[0], at[1], f64::from(top) + self.cloud.frame.origin[2] + height]));
+            }
+        }
+        let step = (queried.len() / count.max(1)).max(1);
+        Ok(self.places(exact.into_iter().step_by(step).collect(), queried.into_iter().step_by(step).collect(), light))
+    }
+
+    /// How high the questions of places stand above where these truly are, metres: mean, and mean of the absolute
+    /// values.
+    pub(crate) fn heights_off(places: &JudgedTargets, origin: f64) -> [f64; 2] {
+        let off = |(exact, queried): (&[f64; 3], &[f32; 3])| f64::from(queried[2]) + origin - exact[2];
+        let off: Vec<f64> = places.exact.iter().zip(&places.queried).map(off).collect();
+        let mean = |value: fn(f64) -> f64| off.iter().map(|&v| value(v)).sum::<f64>() / off.len().max(1) as f64;
+        [mean(|v| v), mean(f64::abs)]
+    }
+
+    /// About `count` places 0.1 m outside roofs, whose position is known.
+    pub(crate) fn roofs(&self, count: usize, light: &LightDirections) -> JudgedTargets {
+        let exact = self.site().targets(QuerySet::Roofs, count, 1).positions;
+        let queried = exact.iter().map(|&p| self.local(p)).collect();
+        self.places(exact, queried, light)
+    }
+
+    /// About `count` returns from roofs: the truth on their surface, the question at the return.
+    pub(crate) fn roof_returns(&self, count: usize, light: &LightDirections) -> JudgedTargets {
+        let site = self.site();
+        let (mut exact, mut queried) = (Vec::new(), Vec::new());
+        for (&p, &scanner) in self.cloud.positions.iter().zip(&self.scanner).step_by(7) {
+            let Some((hit, outside)) = site.surface_of_return(self.absolute(scanner), self.absolute(p)) else {
+                continue;
+            };
+            if self.scene.materials.get(hit.triangle as usize) == Some(&Material::Roof) && queried.len() < 4 * count {
+                exact.push(outside);
+                queried.push(p);
+            }
+        }
+        let step = (queried.len() / count.max(1)).max(1);
+        self.places(exact.into_iter().step_by(step).collect(), queried.into_iter().step_by(step).collect(), light)
+    }
+
+    fn places(&self, exact: Vec<[f64; 3]>, queried: Vec<[f32; 3]>, light: &LightDirections) -> JudgedTargets {
+        let (mut from, mut towards) = (Vec::new(), Vec::new());
+        for &p in &exact {
+            for &direction in &light.directions {
+                from.push(p);
+                towards.push(direction);
+            }
+        }
+        let free = self.truth.first_hits(&from, &towards, f64::INFINITY).iter().map(Option::is_none).collect();
+        let settings = exact.iter().map(|&p| self.setting(p)).collect();
+        JudgedTargets { exact, queried, settings, free }
+    }
+
+    fn material(&self, from: [f64; 3], towards: [f64; 3], range: f64) -> Option<Material> {
+        let hit = self.truth.first_hit(from, towards, range)?;
+        self.scene.materials.get(hit.triangle as usize).copied()
+    }
+
+    fn setting(&self, p: [f64; 3]) -> Setting {
+        match self.material(p, [0.0, 0.0, 1.0], f64::INFINITY) {
+            Some(Material::TreeCrown | Material::Leaf | Material::Trunk) => return Setting::BelowCrown,
+            Some(_) => return Setting::BelowDeck,
+            None => {}
+        }
+        let knee = [p[0], p[1], p[2] + 0.5];
+        let at_wall = (0..16).any(|i| {
+            let (sin, cos) = (TAU * f64::from(i) / 16.0).sin_cos();
+            matches!(
+                self.material(knee, [cos, sin, 0.0], AT_WALL),
+                Some(Material::Facade | Material::Fence | Material::Slab | Material::Roof)
+            )
+        });
+        if at_wall { Setting::AtWall } else { Setting::Open }
+    }
+
+    /// What balls that block as `params` say answer for places, asked `lift` metres higher.
+    pub(crate) fn judge(
+        &self,
+        places: &JudgedTargets,
+        light: &LightDirections,
+        lift: f32,
+        params: &BlockRule,
+    ) -> Result<LightScore> {
+        let scene = MedialScene::new(&self.balls, params)?;
+        let queried: Vec<[f32; 3]> = places.queried.iter().map(|p| [p[0], p[1], p[2] + lift]).collect();
+        let found = scene.visibility_matrix(&queried, &light.directions, &Control::none())?;
+        Ok(LightScore::new(places, light, &|target, column| found.is_free(target, column)))
+    }
+
+    /// What any other method answers for places.
+    pub(crate) fn judge_other(
+        &self,
+        method: &dyn Visibility,
+        places: &JudgedTargets,
+        light: &LightDirections,
+    ) -> Result<LightScore> {
+        let mut columns = Vec::new();
+        for &direction in &light.directions {
+            columns.push(method.visible(Viewer::Direction(direction), &places.queried)?);
+        }
+        Ok(LightScore::new(places, light, &|target, column| columns[column][target] == Answer::Visible))
+    }
+
+    /// What blocks wrongly: the class of the point that the ball met first belongs to and how far off it is met; and
+    /// what the balls miss: the material met first. Hours a target, the largest first.
+    pub(crate) fn blame(
+        &self,
+        places: &JudgedTargets,
+        light: &LightDirections,
+        lift: f32,
+        params: &BlockRule,
+    ) -> Result<Vec<(String, f64)>> {
+        let scene = MedialScene::new(&self.balls, params)?;
+        let mut sums = std::collections::BTreeMap::<String, f64>::new();
+        let width = light.directions.len();
+        let classes = self.cloud.attributes.classification.as_deref().unwrap_or_default();
+        let near = |range: f64| match range {
+            r if r < 1.0 => "< 1 m",
+            r if r < 5.0 => "1 to 5 m",
+            _ => "> 5 m",
+        };
+        for (target, free) in places.free.chunks(width).enumerate() {
+            let at = places.queried[target].map(f64::from);
+            let at = [at[0], at[1], at[2] + f64::from(lift)];
+            for (&truly, &direction) in free.iter().zip(&light.directions).take(light.sun_count) {
+                let block = scene.first_block(at, direction, f64::INFINITY);
+                let what = match block {
+                    Some((blocker, range)) if truly => {
+                        let class = blocker
+                            .ball()
+                            .and_then(|row| self.balls.source.get(row))
+                            .and_then(|&i| classes.get(i as usize));
+                        format!("false shade: ball of class {} {} off", class.copied().unwrap_or(0), near(range))
+                    }
+                    None if !truly => {
+                        let Some(hit) = self.truth.first_hit(places.exact[target], direction, f64::INFINITY) else {
+                            continue;
+                        };
+                        let material = self.scene.materials.get(hit.triangle as usize).map_or("", |m| m.name());
+                        format!("false light: {material} {} off", near(hit.range))
+                    }
+                    _ => continue,
+                };
+                *sums.entry(what).or_default() += light.hours / places.len().max(1) as f64;
+            }
+        }
+        let mut sums: Vec<_> = sums.into_iter().collect();
+        sums.sort_by(|a, b| b.1.total_cmp(&a.1));
+        Ok(sums)
+    }
+}
