@@ -42,7 +42,7 @@
 //! | `apps` | the applications | yes |
 //! | `io` | file formats | yes |
 //! | `figures` | pictures; needs `io` | yes |
-//! | `gpu` | sky views, sun hours, irradiance and depth maps on a graphics processor, with the same bits | no |
+//! | `gpu` | sky views, sun hours, irradiance and depth maps on a graphics processor, with the same answers | no |
 //! | `las` `e57` `ply` `npy` `tiff` `obj` | single file formats; need `io` | yes |
 //! | `scanner-estimate` | finding the scanner from pulses with several returns and from scan angles; without it, clouds without scanner positions count as scanned from straight above | yes |
 //! | `crs` | the database of reference systems; without it a system can be carried, but not looked up by its code | yes |
