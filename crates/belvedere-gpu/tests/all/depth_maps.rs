@@ -173,6 +173,9 @@ fn depth_maps_of_hostile_balls_are_within_the_tolerance() {
             }
         }
         assert!(gpu.notes().is_empty(), "{:?}", gpu.notes());
+        // both ways were taken
+        let share = gpu.redone_share();
+        assert!(share > 0.001 && share < 0.5, "{share} of the pixels are drawn again");
     }
 }
 
