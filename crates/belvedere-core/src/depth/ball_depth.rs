@@ -6,8 +6,8 @@ use super::tiles::Shape;
 use crate::blocking::Ball;
 use belvedere_data::view::{Projection, View};
 
-/// The depth of one ball at the centre of one pixel, with the bits that [`depth_map`](super::depth_map()) has of spheres. A device that
-/// draws with less precision leaves single pixels to this.
+/// The depth of one ball at the centre of one pixel, with the bits that [`depth_map`](super::depth_map()) has of
+/// spheres. A device that draws with less precision leaves single pixels to this.
 pub struct BallDepth {
     view_shape: ViewShape,
 }
@@ -30,8 +30,8 @@ impl BallDepth {
         Self { view_shape }
     }
 
-    /// Depth of `ball` (centre local, metres) at the centre of the pixel at a column and a row, metres; +∞ where it is not hit. A ball that holds
-    /// the eye, or is not finite, is never hit.
+    /// Depth of `ball` (centre local, metres) at the centre of the pixel at a column and a row, metres; +∞ where it is
+    /// not hit. A ball that holds the eye, or is not finite, is never hit.
     #[must_use]
     pub fn at(&self, ball: Ball, pixel: [usize; 2]) -> f32 {
         let Ball { center, radius } = ball;
