@@ -84,7 +84,7 @@ pub(crate) fn list(summary: &mut Summary) {
                 .add("kind", info.kind.to_string())
                 .add("driver", info.driver)
                 .add("interface", info.interface)
-                .add("largest_buffer_mib", info.most_bytes >> 20);
+                .add("largest_buffer_mib", info.max_bytes >> 20);
             serde_json::Value::from(section)
         };
         summary.add("devices", devices().into_iter().map(section).collect::<Vec<_>>());

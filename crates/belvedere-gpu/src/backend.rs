@@ -1,6 +1,6 @@
 //! The device as a backend: what it decides, and what happens when it cannot.
 
-use crate::depth::{Painter, Work};
+use crate::depth::Painter;
 use crate::device::{Device, DeviceInfo, DeviceKind, devices};
 use crate::drawing::{self, Drawing};
 use crate::lines::{Liner, Loaded, Words};
@@ -13,11 +13,14 @@ use belvedere_data::view::View;
 use belvedere_data::{Error, Result};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
-/// Lines of sight from which on [`Choice::Automatic`] looks for a device: to find one and to make it ready takes the time of some millions on the CPU.
+/// Lines of sight from which on [`Choice::Automatic`] looks for a device: to find one and to make it ready takes the
+/// time of some millions on the CPU.
 const WORTH_A_DEVICE: usize = 1 << 24;
-/// Lines of sight from which on a device that is ready is asked: a question to it takes the time of some thousands on the CPU.
-const WORTH_ASKING: usize = 1 << 14;
-/// Balls and pixels from which on a device is asked for a picture.
+/// Lines of sight from which on a device that is ready is used: a question to it takes the time of some thousands on
+/// the CPU.
+const WORTH_USING: usize = 1 << 14;
+/// Balls and pixels of a picture from which on a device that was chosen draws it. [`Choice::Automatic`] takes each of
+/// them for a line of sight.
 const WORTH_DRAWING: usize = 1 << 12;
 
 /// Which device is used.
@@ -34,20 +37,20 @@ pub enum Choice {
 /// A graphics processor as a backend. What it cannot do the CPU does.
 #[derive(Clone, Debug)]
 pub struct Gpu {
-    shared: Arc<Shared>,
+    shared: Arc<GpuState>,
 }
 
 #[derive(Debug)]
-pub(crate) struct Shared {
+pub(crate) struct GpuState {
     choice: Choice,
-    state: Mutex<State>,
+    state: Mutex<Readiness>,
     notes: Mutex<Vec<String>>,
     /// The device that decided anything.
     used: OnceLock<DeviceInfo>,
     /// For tests: after so many directions, or parts of a picture, the device fails.
     pub(crate) fails_after: Option<usize>,
-    /// For benches: how much work the depth maps were.
-    counted: Option<Mutex<Work>>,
+    /// Pixels of depth maps, and those of them that the CPU drew again.
+    pixel_counts: Mutex<[usize; 2]>,
 }
 
 /// A device that is ready, with what it can do.
@@ -59,7 +62,7 @@ pub(crate) struct Ready {
 }
 
 #[derive(Debug)]
-enum State {
+enum Readiness {
     /// Not yet needed.
     Unopened,
     Ready(Arc<Ready>),
@@ -71,14 +74,14 @@ impl Gpu {
     /// The device that `choice` says. One that is chosen by its number or as [`Choice::Gpu`] is made ready at once.
     ///
     /// # Errors
-    /// [`Error::Device`] where no device has that number, or it cannot be made ready. That there is no graphics processor for [`Choice::Gpu`] is no
-    /// error: the CPU gives the same results, and [`Gpu::notes`] says so.
+    /// [`Error::Device`] where no device has that number, or it cannot be made ready. That there is no graphics
+    /// processor for [`Choice::Gpu`] is no error: the CPU gives the same results, and [`Gpu::notes`] says so.
     pub fn new(choice: Choice) -> Result<Self> {
-        let gpu = Self::unopened(choice, None, None);
+        let gpu = Self::unopened(choice, None);
         match choice {
             Choice::Automatic => {}
             Choice::Number(number) => {
-                *gpu.shared.lock() = State::Ready(Arc::new(gpu.shared.make_ready(Device::open(number)?)?));
+                *gpu.shared.lock() = Readiness::Ready(Arc::new(gpu.shared.make_ready(Device::open(number)?)?));
             }
             Choice::Gpu => {
                 gpu.shared.ready(usize::MAX);
@@ -87,42 +90,31 @@ impl Gpu {
         Ok(gpu)
     }
 
-    /// As [`Gpu::new`] with a device whose buffers have at most `most_bytes`, and that fails after so many directions of a part of a scene: what tests of
-    /// scenes in parts, and of the way back to the CPU, need.
+    /// As [`Gpu::new`] with a device whose buffers have at most `max_bytes`, and that fails after so many directions
+    /// of a part of a scene: what tests of scenes in parts, and of the way back to the CPU, need.
     ///
     /// # Errors
     /// Those of [`Gpu::new`].
     #[doc(hidden)]
-    pub fn limited(number: usize, most_bytes: u64, fails_after: Option<usize>) -> Result<Self> {
-        let gpu = Self::unopened(Choice::Number(number), fails_after, None);
+    pub fn limited(number: usize, max_bytes: u64, fails_after: Option<usize>) -> Result<Self> {
+        let gpu = Self::unopened(Choice::Number(number), fails_after);
         let mut device = Device::open(number)?;
-        device.info.most_bytes = device.info.most_bytes.min(most_bytes);
-        *gpu.shared.lock() = State::Ready(Arc::new(gpu.shared.make_ready(device)?));
+        device.info.max_bytes = device.info.max_bytes.min(max_bytes);
+        *gpu.shared.lock() = Readiness::Ready(Arc::new(gpu.shared.make_ready(device)?));
         Ok(gpu)
     }
 
-    /// As [`Gpu::new`] with a device that counts how much work depth maps are, which takes time: what benches need.
-    ///
-    /// # Errors
-    /// Those of [`Gpu::new`].
-    #[doc(hidden)]
-    pub fn counting(number: usize) -> Result<Self> {
-        let gpu = Self::unopened(Choice::Number(number), None, Some(Mutex::default()));
-        *gpu.shared.lock() = State::Ready(Arc::new(gpu.shared.make_ready(Device::open(number)?)?));
-        Ok(gpu)
+    fn unopened(choice: Choice, fails_after: Option<usize>) -> Self {
+        let (state, notes) = (Mutex::new(Readiness::Unopened), Mutex::default());
+        let (used, pixel_counts) = (OnceLock::new(), Mutex::default());
+        Self { shared: Arc::new(GpuState { choice, state, notes, used, fails_after, pixel_counts }) }
     }
 
-    fn unopened(choice: Choice, fails_after: Option<usize>, counted: Option<Mutex<Work>>) -> Self {
-        let (state, notes) = (Mutex::new(State::Unopened), Mutex::default());
-        Self { shared: Arc::new(Shared { choice, state, notes, used: OnceLock::new(), fails_after, counted }) }
-    }
-
-    /// How much work depth maps were so far, of a device that counts ([`Gpu::counting`]).
-    #[doc(hidden)]
+    /// Which share of the pixels of all depth maps so far the CPU drew again, because single precision did not suffice.
     #[must_use]
-    pub fn work(&self) -> Work {
-        let counted = self.shared.counted.as_ref();
-        counted.map_or_else(Work::default, |work| *work.lock().unwrap_or_else(PoisonError::into_inner))
+    pub fn redone_share(&self) -> f64 {
+        let [drawn, redone] = *self.shared.pixel_counts.lock().unwrap_or_else(PoisonError::into_inner);
+        redone as f64 / drawn.max(1) as f64
     }
 
     /// The device that some question was answered with. Small questions are the CPU's.
@@ -131,12 +123,13 @@ impl Gpu {
         self.shared.used.get()
     }
 
-    /// The device that is ready; `None` where the CPU does all, also as long as [`Choice::Automatic`] has not needed one.
+    /// The device that is ready; `None` where the CPU does all, also as long as [`Choice::Automatic`] has not needed
+    /// one.
     #[must_use]
     pub fn device(&self) -> Option<DeviceInfo> {
         match &*self.shared.lock() {
-            State::Ready(ready) => Some(ready.device.info.clone()),
-            State::Unopened | State::Gone => None,
+            Readiness::Ready(ready) => Some(ready.device.info.clone()),
+            Readiness::Unopened | Readiness::Gone => None,
         }
     }
 
@@ -147,8 +140,8 @@ impl Gpu {
     }
 }
 
-impl Shared {
-    fn lock(&self) -> std::sync::MutexGuard<'_, State> {
+impl GpuState {
+    fn lock(&self) -> std::sync::MutexGuard<'_, Readiness> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
@@ -161,7 +154,7 @@ impl Shared {
 
     fn make_ready(&self, device: Device) -> Result<Ready> {
         let device = Arc::new(device);
-        let painter = Painter::new(Arc::clone(&device), self.counted.is_some());
+        let painter = Painter::new(Arc::clone(&device));
         Ok(Ready { liner: Liner::new(Arc::clone(&device))?, painter, device })
     }
 
@@ -170,42 +163,40 @@ impl Shared {
         self.used.get_or_init(|| device.info.clone());
     }
 
-    pub(crate) fn count(&self, work: Work) {
-        if let Some(counted) = &self.counted {
-            *counted.lock().unwrap_or_else(PoisonError::into_inner) += work;
-        }
+    pub(crate) fn count_pixels(&self, drawn: usize, redone: usize) {
+        let mut counts = self.pixel_counts.lock().unwrap_or_else(PoisonError::into_inner);
+        *counts = [counts[0] + drawn, counts[1] + redone];
     }
 
     /// The device failed: from now on the CPU does all.
     pub(crate) fn give_up(&self, device: &Device, what: &str) {
         self.note(format!("{}: {what}; the CPU does the rest, with the same results", device.info.name));
-        *self.lock() = State::Gone;
+        *self.lock() = Readiness::Gone;
     }
 
     /// The device for a question that takes the CPU as long as so many lines of sight, made ready if it is not yet.
     pub(crate) fn ready(&self, lines: usize) -> Option<Arc<Ready>> {
         let mut state = self.lock();
-        if matches!(*state, State::Unopened) && (self.choice != Choice::Automatic || lines >= WORTH_A_DEVICE) {
+        if matches!(*state, Readiness::Unopened) && (self.choice != Choice::Automatic || lines >= WORTH_A_DEVICE) {
             *state = match self.open() {
-                Ok(Some(ready)) => State::Ready(Arc::new(ready)),
-                Ok(None) => State::Gone,
+                Ok(Some(ready)) => Readiness::Ready(Arc::new(ready)),
+                Ok(None) => Readiness::Gone,
                 Err(error) => {
                     self.note(format!("{error}; the CPU does all instead, with the same results"));
-                    State::Gone
+                    Readiness::Gone
                 }
             };
         }
         match &*state {
-            State::Ready(ready) => Some(Arc::clone(ready)),
-            State::Unopened | State::Gone => None,
+            Readiness::Ready(ready) => Some(Arc::clone(ready)),
+            Readiness::Unopened | Readiness::Gone => None,
         }
     }
 
     /// The device for a picture of so many balls and pixels.
     pub(crate) fn ready_to_draw(&self, ball_count: usize, pixel_count: usize) -> Option<Arc<Ready>> {
-        // from which size on a picture pays to make a device ready for was not measured: it has to be asked for
-        let is_worth_it = self.choice != Choice::Automatic && ball_count.saturating_add(pixel_count) >= WORTH_DRAWING;
-        is_worth_it.then(|| self.ready(0)).flatten()
+        let lines = ball_count.saturating_add(pixel_count);
+        is_worth_drawing(self.choice, lines).then(|| self.ready(lines)).flatten()
     }
 
     fn open(&self) -> Result<Option<Ready>> {
@@ -224,6 +215,12 @@ impl Shared {
     }
 }
 
+/// Whether a picture that takes the CPU as long as so many lines of sight is drawn on a device. By itself only a large
+/// one is, also where a device is ready: so a picture does not depend on the questions before it.
+fn is_worth_drawing(choice: Choice, lines: usize) -> bool {
+    lines >= if choice == Choice::Automatic { WORTH_A_DEVICE } else { WORTH_DRAWING }
+}
+
 impl Backend for Gpu {
     fn prepare(&self, balls: &Arc<BallTree>) -> Result<Box<dyn PreparedBackend>> {
         let (tree, cpu) = (Arc::clone(balls), PreparedBalls::new(balls));
@@ -234,10 +231,10 @@ impl Backend for Gpu {
         &self,
         balls: &'b MedialBalls,
         pixel_count: usize,
-        control: &Control<'_>,
+        _: &Control<'_>,
     ) -> Result<Option<Box<dyn Drawable + 'b>>> {
         let Some(ready) = self.shared.ready_to_draw(balls.len(), pixel_count) else { return Ok(None) };
-        let drawing = Drawing::new(Arc::clone(&self.shared), ready, balls, control)?;
+        let drawing = Drawing::new(Arc::clone(&self.shared), ready, balls);
         Ok(drawing.map(|drawing| Box::new(drawing) as Box<dyn Drawable + 'b>))
     }
 
@@ -254,14 +251,14 @@ impl Backend for Gpu {
 struct OnDevice {
     tree: Arc<BallTree>,
     cpu: PreparedBalls,
-    shared: Arc<Shared>,
+    shared: Arc<GpuState>,
     /// One question at a time: together they could need more memory than there is.
-    memory: Mutex<Memory>,
+    memory: Mutex<DeviceMemory>,
 }
 
 /// What is in the memory of the device: one part of the scene at a time.
 #[derive(Default)]
-struct Memory {
+struct DeviceMemory {
     /// The scene in parts, none before it is needed.
     parts: Vec<Words>,
     /// The number of a part, and that part.
@@ -296,7 +293,8 @@ impl PreparedBackend for OnDevice {
 }
 
 impl OnDevice {
-    /// What the device decides, and for how many of the viewers it did before it failed, if it did; `None` where it is not asked.
+    /// What the device decides, and for how many of the viewers it did before it failed, if it did; `None` where it is
+    /// not used.
     fn decide(
         &self,
         targets: &[[f32; 3]],
@@ -304,7 +302,7 @@ impl OnDevice {
         control: &Control<'_>,
     ) -> Result<Option<(Settled, usize)>> {
         let lines = targets.len().saturating_mul(viewers.len());
-        let is_worth_it = lines >= WORTH_ASKING && self.tree.rule().profile == Profile::Sphere;
+        let is_worth_it = lines >= WORTH_USING && self.tree.rule().profile == Profile::Sphere;
         let Some(ready) = is_worth_it.then(|| self.shared.ready(lines)).flatten() else { return Ok(None) };
         let mut settled = Settled::new(targets.len(), viewers.len());
         let mut finished = 0;
@@ -316,7 +314,8 @@ impl OnDevice {
         Ok(Some((settled, finished)))
     }
 
-    /// Settles lines past one part of the scene after the other; `finished` is the number of viewers that are settled past all of them.
+    /// Settles lines past one part of the scene after the other; `finished` is the number of viewers that are settled
+    /// past all of them.
     fn decide_on(
         &self,
         liner: &Liner,
@@ -327,14 +326,14 @@ impl OnDevice {
         finished: &mut usize,
     ) -> Result<()> {
         let mut memory = self.memory.lock().unwrap_or_else(PoisonError::into_inner);
-        let Memory { parts, loaded } = &mut *memory;
+        let DeviceMemory { parts, loaded } = &mut *memory;
         if parts.is_empty() {
             *parts = liner.words(&self.tree, control)?;
         }
         // the one that is there already is the first
         let start = loaded.as_ref().map_or(0, |(number, _)| *number);
         let fails_after = self.shared.fails_after.filter(|most| *most < viewers.len());
-        let asked = fails_after.map_or(viewers, |most| viewers.first(most));
+        let first = fails_after.map_or(viewers, |most| viewers.first(most));
         for turn in 0..parts.len() {
             let number = (start + turn) % parts.len();
             // the memory of the part before is free then
@@ -349,7 +348,7 @@ impl OnDevice {
                 *only = Words::default();
             }
             let (mut viewer, is_last) = (0, turn + 1 == parts.len());
-            liner.decide(part, targets, asked, control, &mut |free, blocked| {
+            liner.decide(part, targets, first, control, &mut |free, blocked| {
                 if turn == 0 {
                     settled.set_direction(viewer, free, blocked);
                 } else {
@@ -365,5 +364,24 @@ impl OnDevice {
             }
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn large_pictures_alone_are_drawn_on_a_device_that_nobody_chose() {
+        let large = 1 << 24;
+        for choice in [Choice::Gpu, Choice::Number(0)] {
+            assert!(is_worth_drawing(choice, 5000) && !is_worth_drawing(choice, 4000));
+        }
+        assert!(is_worth_drawing(Choice::Automatic, large) && !is_worth_drawing(Choice::Automatic, large - 1));
+        // and only on a graphics card
+        let gpu = Gpu::unopened(Choice::Automatic, None);
+        let has_card = devices().iter().any(|info| info.kind == DeviceKind::Separate);
+        assert!(gpu.shared.ready_to_draw(1000, 1 << 20).is_none());
+        assert_eq!(gpu.shared.ready_to_draw(1000, large).is_some(), has_card);
     }
 }

@@ -1,25 +1,25 @@
-//! Depth maps of balls, and bounds of depth, drawn on a device: balls and views as words, the stages, and the words that come back. The arithmetic is in the shaders below `depth`.
+//! Depth maps of balls, and bounds of depth, drawn on a device: balls and views as words, the stages, and the words
+//! that come back. The arithmetic is in the shaders below `depth`.
 
-#[cfg(test)]
-mod floats;
+mod place;
 mod stages;
 
 use crate::device::{Device, DeviceKind};
 use belvedere_core::blocking::SHELL_SHARE;
 use belvedere_core::depth::{BoundsParams, ItemBuffer};
 use belvedere_data::control::Control;
-use belvedere_data::vector::{cross, length};
 use belvedere_data::view::{Projection, View};
 use belvedere_data::{Error, Result};
 use bytemuck::cast_slice;
-use stages::{Buffers, Kind, Stages};
+pub(crate) use place::{PlacedBalls, place};
+use stages::{BoundStages, DepthBuffers, DepthStages, ShaderView, Sizes};
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// Threads of a group, and pixels of a tile.
 const GROUP: usize = 256;
 /// Groups along an axis that every device allows.
-const MOST_GROUPS: usize = 65_535;
+const MAX_GROUPS: usize = 65_535;
 /// Side of the smallest tiles, pixels.
 const TILE: usize = 16;
 /// Sizes of tiles, each four times as long as the one before.
@@ -28,20 +28,23 @@ const LEVELS: u32 = 7;
 const STEPS: usize = 32;
 /// Lists that are summed up together, and how many of such blocks there can be.
 const BLOCK: usize = 2048;
-/// Most tiles of a ball.
-const MOST_TILES: usize = 9;
+/// Tiles of a ball, at most.
+const MAX_TILES: usize = 9;
 /// Words of the ranges of depth in which balls are counted.
 const RANGES: usize = 4096;
-/// Words before the list of balls for the CPU, and balls in that list.
-const HEAD: usize = 8;
-const MOST_LEFT: usize = 65_536;
-/// Most balls at a time on a device in software: Mesa's ends the loops of a thread after 65 535 turns in all, and each pixel may turn twice for each ball.
-const SOFTWARE_BALLS: usize = 1 << 14;
-/// Views farther away, or with a nearest depth beyond it, are the CPU's, metres.
-const FARTHEST: f64 = 1e9;
+/// Balls at a time on a device in software, at most: Mesa's ends a loop of a thread after 65 535 turns, and a pixel may
+/// turn once for each ball.
+const MAX_SOFTWARE_BALLS: usize = 1 << 15;
+/// Bytes of a pixel in the largest buffer.
+const PIXEL_BYTES: usize = 16;
+/// Pixels that the shaders widen outlines by.
+const BEYOND: f64 = 2.0;
+/// Views with a nearest depth beyond this are the CPU's, metres.
+const MAX_NEAR: f64 = 1e9;
 /// What a limit of depth without end is on a device, metres: beyond all that it draws.
 const ENDLESS: f64 = 1e30;
-/// Tiles that are drawn at a time on a graphics card, and on any other device: as for lines of sight, so that no picture freezes.
+/// Tiles that are drawn at a time on a graphics card, and on any other device: as for lines of sight, so that no
+/// picture freezes.
 const CARD_TILES: usize = 1 << 16;
 const OTHER_TILES: usize = 1 << 12;
 
@@ -49,18 +52,9 @@ const OTHER_TILES: usize = 1 << 12;
 #[derive(Debug)]
 pub(crate) struct Painter {
     device: Arc<Device>,
-    stages: Mutex<HashMap<(Kind, Shows), Arc<Stages>>>,
+    stages: Mutex<HashMap<(ShaderView, Shows), Arc<DepthStages>>>,
     /// One picture at a time: together they could need more memory than there is.
     turn: Mutex<()>,
-    is_counted: bool,
-}
-
-/// Balls for the device, in as many parts as its buffers need. A single part stays in its memory.
-#[derive(Debug)]
-pub(crate) struct Canvas {
-    parts: Vec<Vec<[f32; 4]>>,
-    only: Option<wgpu::Buffer>,
-    ball_count: usize,
 }
 
 /// What pixels show, as the shaders number it.
@@ -76,7 +70,7 @@ pub(crate) enum Shows {
 
 /// A picture to draw.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Picture<'v> {
+pub(crate) struct DevicePicture<'v> {
     view: &'v View,
     shows: Shows,
     /// Of depth.
@@ -86,7 +80,7 @@ pub(crate) struct Picture<'v> {
     shell: f64,
 }
 
-impl<'v> Picture<'v> {
+impl<'v> DevicePicture<'v> {
     /// A depth map.
     pub(crate) fn depths(view: &'v View, items: ItemBuffer) -> Self {
         let shows = if items == ItemBuffer::With { Shows::Balls } else { Shows::Depths };
@@ -100,97 +94,57 @@ impl<'v> Picture<'v> {
         Self { view, shows: Shows::Bounds, limits: [near, ENDLESS], starts, shell: params.shell }
     }
 
-    /// Whether a device may be asked for it: places near enough for single precision.
+    /// Whether single precision can say what it needs.
     pub(crate) fn can_be_drawn(&self) -> bool {
-        let scale = scale_of(self.view);
-        let is_near = self.view.frame.eye.iter().all(|v| v.abs() <= FARTHEST);
-        is_near && self.limits[0] <= FARTHEST && (1e-6..=1e9).contains(&scale)
+        self.limits[0] <= MAX_NEAR && (1e-6..=1e9).contains(&scale_of(self.view))
     }
 }
 
 /// What a device has drawn.
 #[derive(Debug)]
 pub(crate) struct Drawn {
-    /// Depths, or upper bounds.
+    /// Depths, or upper bounds. The sign of a pixel that the CPU has to draw again is set.
     pub(crate) depth: Vec<f32>,
     /// Rows of balls, or bits of lower bounds.
     pub(crate) rows: Option<Vec<u32>>,
-    pub(crate) around_eye_count: usize,
-    /// Rows of the balls that it left to the CPU, ascending; `None` if there are too many to list.
-    pub(crate) left: Option<Vec<u32>>,
-    pub(crate) work: Work,
+    /// For pixels with the sign: which balls may be the nearest. `None` if there are too many.
+    pub(crate) candidates: Option<Vec<Candidate>>,
 }
 
-/// How much work a picture was, counted if that is asked for.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Work {
-    /// Entries of all lists.
-    pub listed: u64,
-    /// Entries of lists that tiles looked at.
-    pub looked_at: u64,
-    /// Balls that each pixel of a block of 8 x 8 was tested with.
-    pub tested: u64,
-    /// Depths that were computed exactly.
-    pub exact: u64,
-}
-
-impl std::ops::AddAssign for Work {
-    fn add_assign(&mut self, other: Self) {
-        self.listed += other.listed;
-        self.looked_at += other.looked_at;
-        self.tested += other.tested;
-        self.exact += other.exact;
-    }
+/// A ball that may be the nearest at a pixel.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Candidate {
+    /// Number of the pixel in the picture.
+    pub(crate) pixel: usize,
+    /// Row of the ball.
+    pub(crate) row: u32,
 }
 
 /// A part of a picture that is drawn at a time: first row and number of rows.
-type Band = [usize; 2];
+type PixelRows = [usize; 2];
 
 impl Painter {
-    pub(crate) fn new(device: Arc<Device>, is_counted: bool) -> Self {
-        Self { device, stages: Mutex::default(), turn: Mutex::default(), is_counted }
+    pub(crate) fn new(device: Arc<Device>) -> Self {
+        Self { device, stages: Mutex::default(), turn: Mutex::default() }
     }
 
-    /// Makes balls ready, and brings them to the device if they fit as a whole. `ball` gives the centre and radius of each row; the radius is 0 if it is left out.
-    ///
-    /// # Errors
-    /// [`Error::Device`] where they do not fit, [`Error::Cancelled`].
-    pub(crate) fn canvas(
-        &self,
-        count: usize,
-        ball: impl Fn(usize) -> [f32; 4],
-        control: &Control<'_>,
-    ) -> Result<Canvas> {
+    /// Balls that are drawn at a time.
+    fn max_balls(&self) -> usize {
         let most = match self.device.info.kind {
-            // what a bench counts is the work of a graphics card
-            DeviceKind::Software if !self.is_counted => SOFTWARE_BALLS,
-            _ => MOST_GROUPS * GROUP,
+            DeviceKind::Software => MAX_SOFTWARE_BALLS,
+            _ => MAX_GROUPS * GROUP,
         };
-        let most = (self.device.limit() / (4 * MOST_TILES)).clamp(1, most);
-        let of_part = count.div_ceil(count.div_ceil(most).max(1)).max(1);
-        let mut parts = Vec::new();
-        for first in (0..count).step_by(of_part) {
-            control.check()?;
-            parts.push((first..count.min(first + of_part)).map(&ball).collect());
-        }
-        let mut canvas = Canvas { parts, only: None, ball_count: count };
-        if let [part] = &mut canvas.parts[..] {
-            canvas.only = Some(self.device.filled_buffer(cast_slice(part)));
-            // it stays on the device
-            *part = Vec::new();
-        }
-        self.device.trouble.check()?;
-        Ok(canvas)
+        (self.device.limit() / (4 * MAX_TILES)).clamp(1, most)
     }
 
     /// # Errors
     /// [`Error::Device`] where the device cannot run the shaders.
-    fn stages(&self, kind: Kind, shows: Shows) -> Result<Arc<Stages>> {
+    fn stages(&self, kind: ShaderView, shows: Shows) -> Result<Arc<DepthStages>> {
         let mut made = self.stages.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(stages) = made.get(&(kind, shows)) {
             return Ok(Arc::clone(stages));
         }
-        let stages = Arc::new(Stages::new(&self.device.device, kind, shows, self.is_counted));
+        let stages = Arc::new(DepthStages::new(&self.device.device, kind, shows));
         self.device.trouble.check()?;
         made.insert((kind, shows), Arc::clone(&stages));
         Ok(stages)
@@ -202,36 +156,40 @@ impl Painter {
     /// [`Error::Cancelled`], and [`Error::Device`] where the device fails.
     pub(crate) fn draw(
         &self,
-        canvas: &Canvas,
-        picture: &Picture<'_>,
+        placed: &PlacedBalls,
+        picture: &DevicePicture<'_>,
         fails_after: Option<usize>,
         control: &Control<'_>,
     ) -> Result<Drawn> {
         let [width, height] = picture.view.size_px;
         let _turn = self.turn.lock().unwrap_or_else(PoisonError::into_inner);
-        let stages = self.stages(Kind::of(picture.view), picture.shows)?;
-        let of_band = self.rows_of_band(width, height)?;
-        let most_balls = canvas.ball_count.div_ceil(canvas.parts.len().max(1));
-        let buffers = Buffers::new(&self.device.device, most_balls, [width, of_band], picture.shows);
+        let stages = self.stages(ShaderView::of(picture.view), picture.shows)?;
+        let row_count = self.rows_of_band(width, height)?;
+        let part_count = placed.splats.len().div_ceil(self.max_balls());
+        let parts: Vec<&[[f32; 4]]> =
+            placed.splats.chunks(placed.splats.len().div_ceil(part_count.max(1)).max(1)).collect();
+        let buffers = DepthBuffers::new(
+            &self.device.device,
+            &Sizes {
+                ball_count: parts.first().map_or(0, |part| part.len()),
+                is_whole: parts.len() <= 1,
+                size_px: [width, row_count],
+                shows: picture.shows,
+            },
+        );
         self.device.trouble.check()?;
         let mut drawn = Drawn {
             depth: Vec::with_capacity(width * height),
             rows: (picture.shows != Shows::Depths).then(|| Vec::with_capacity(width * height)),
-            around_eye_count: 0,
-            left: Some(Vec::new()),
-            work: Work::default(),
+            candidates: Some(Vec::new()),
         };
-        for (number, top) in (0..height).step_by(of_band).enumerate() {
+        for (number, top) in (0..height).step_by(row_count).enumerate() {
             if fails_after == Some(number) {
                 return Err(Error::Device { what: "the device was lost: a test".to_owned() });
             }
-            let band = [top, of_band.min(height - top)];
-            self.draw_band(&stages, &buffers, canvas, picture, band, control)?;
-            self.read_back(&buffers, width * band[1], top == 0, &mut drawn)?;
-        }
-        if let Some(left) = &mut drawn.left {
-            left.sort_unstable();
-            left.dedup();
+            let band = [top, row_count.min(height - top)];
+            self.draw_band(&stages, &buffers, &parts, picture, band, control)?;
+            self.read_back(&buffers, picture, band, &mut drawn)?;
         }
         Ok(drawn)
     }
@@ -240,7 +198,7 @@ impl Painter {
     fn rows_of_band(&self, width: usize, height: usize) -> Result<usize> {
         let fits = |rows: usize| {
             let lists = tiles_before([width, rows])[LEVELS as usize] * STEPS;
-            lists <= BLOCK * BLOCK && lists.max(width * rows) <= self.device.limit() / 4
+            lists <= BLOCK * BLOCK && (4 * lists).max(PIXEL_BYTES * width * rows) <= self.device.limit()
         };
         let mut rows = height.next_multiple_of(TILE);
         while !fits(rows) && rows > TILE {
@@ -255,102 +213,120 @@ impl Painter {
 
     fn draw_band(
         &self,
-        stages: &Stages,
-        buffers: &Buffers,
-        canvas: &Canvas,
-        picture: &Picture<'_>,
-        band: Band,
+        stages: &DepthStages,
+        buffers: &DepthBuffers,
+        parts: &[&[[f32; 4]]],
+        picture: &DevicePicture<'_>,
+        band: PixelRows,
         control: &Control<'_>,
     ) -> Result<()> {
-        let (device, view) = (&self.device.device, picture.view);
-        let [columns, rows] = [view.size_px[0].div_ceil(TILE), band[1].div_ceil(TILE)];
-        let offsets = self.device.filled_buffer(&offset_bytes(view, band));
-        let list_count = tiles_before([view.size_px[0], band[1]])[LEVELS as usize] * STEPS;
-        let piece = if self.device.info.kind == DeviceKind::Separate { CARD_TILES } else { OTHER_TILES };
-        let mut first_ball = 0;
+        let device = &self.device.device;
+        let list_count = tiles_before([picture.view.size_px[0], band[1]])[LEVELS as usize] * STEPS;
+        let turns: &[bool] = if picture.shows == Shows::Bounds { &[false] } else { &[false, true] };
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        encoder.clear_buffer(&buffers.left_out, 0, None);
-        for part in &canvas.parts {
-            let brought;
-            let (balls, count) = match &canvas.only {
-                Some(balls) => (balls, canvas.ball_count),
-                None => {
-                    brought = self.device.filled_buffer(cast_slice(part));
-                    (&brought, part.len())
-                }
-            };
-            let words = self.device.filled_buffer(&view_bytes(picture, band, [first_ball, count]));
-            let bound = stages.bind(device, buffers, [&words, balls, &offsets]);
-            self.device.trouble.check()?;
-            for buffer in [&buffers.counters, &buffers.before, &buffers.depths] {
-                encoder.clear_buffer(buffer, 0, None);
-            }
-            bound.sort(&mut encoder, count.div_ceil(GROUP), list_count.div_ceil(BLOCK));
-            self.device.queue.submit([encoder.finish()]);
-            let of_piece = (piece / columns).max(1);
-            let mut before = None;
-            for first_row in (0..rows).step_by(of_piece) {
-                control.check()?;
-                self.device.queue.write_buffer(&buffers.piece, 0, &whole(first_row).to_le_bytes());
-                let mut of_rows = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-                bound.draw(&mut of_rows, [columns, of_piece.min(rows - first_row)]);
-                let this = self.device.queue.submit([of_rows.finish()]);
-                // two pieces are under way at a time, so that the device does not wait
-                if let Some(before) = before.replace(this) {
-                    self.device.wait_for(Some(before))?;
-                }
+        encoder.clear_buffer(&buffers.candidates, 0, Some(4));
+        let only = if let [part] = parts { Some(self.device.filled_buffer(cast_slice(part))) } else { None };
+        for &is_listing in turns {
+            let mut first_ball = 0;
+            for (number, part) in parts.iter().enumerate() {
+                let is_last = number + 1 == parts.len();
+                let splats = only.clone().unwrap_or_else(|| self.device.filled_buffer(cast_slice(part)));
+                let words = view_bytes(picture, band, &BallRows { first: first_ball, count: part.len(), is_last });
+                let bound = stages.bind(device, buffers, &self.device.filled_buffer(&words), &splats);
                 self.device.trouble.check()?;
+                // the lists of a single part are there already
+                if !is_listing || parts.len() > 1 {
+                    for buffer in [&buffers.counters, &buffers.before, &buffers.depths] {
+                        encoder.clear_buffer(buffer, 0, None);
+                    }
+                    bound.sort(&mut encoder, part.len().div_ceil(GROUP), list_count.div_ceil(BLOCK));
+                }
+                self.device.queue.submit([encoder.finish()]);
+                self.draw_pieces(&bound, buffers, picture.view, band, is_listing, control)?;
+                first_ball += part.len();
+                encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
             }
-            first_ball += count;
-            encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         }
         Ok(())
     }
 
-    /// Appends a band of so many pixels to the picture, and what was left out to its lists.
-    fn read_back(&self, buffers: &Buffers, pixel_count: usize, is_first: bool, drawn: &mut Drawn) -> Result<()> {
-        let of_pixels = 4 * pixel_count as u64;
-        let of_rows = if drawn.rows.is_some() { of_pixels } else { 0 };
-        let of_left = buffers.left_out.size();
-        let staging = self.device.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("picture on its way back"),
-            size: of_pixels + of_rows + of_left,
+    /// Draws the pixels of a band, or lists candidates of its marked pixels, in pieces.
+    fn draw_pieces(
+        &self,
+        bound: &BoundStages<'_>,
+        buffers: &DepthBuffers,
+        view: &View,
+        band: PixelRows,
+        is_listing: bool,
+        control: &Control<'_>,
+    ) -> Result<()> {
+        let [columns, rows] = [view.size_px[0].div_ceil(TILE), band[1].div_ceil(TILE)];
+        let tiles = if self.device.info.kind == DeviceKind::Separate { CARD_TILES } else { OTHER_TILES };
+        let row_count = (tiles / columns).max(1);
+        let mut before = None;
+        for first_row in (0..rows).step_by(row_count) {
+            control.check()?;
+            let piece = [whole(first_row), u32::from(is_listing)];
+            self.device.queue.write_buffer(&buffers.piece, 0, cast_slice(&piece));
+            let mut encoder = self.device.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+            bound.draw(&mut encoder, [columns, row_count.min(rows - first_row)]);
+            let this = self.device.queue.submit([encoder.finish()]);
+            // two pieces are under way at a time, so that the device does not wait
+            if let Some(before) = before.replace(this) {
+                self.device.wait_for(Some(before))?;
+            }
+            self.device.trouble.check()?;
+        }
+        Ok(())
+    }
+
+    /// Appends a band to the picture.
+    fn read_back(
+        &self,
+        buffers: &DepthBuffers,
+        picture: &DevicePicture<'_>,
+        [top, rows]: PixelRows,
+        drawn: &mut Drawn,
+    ) -> Result<()> {
+        let width = picture.view.size_px[0];
+        let pixel_bytes = 4 * (width * rows) as u64;
+        drawn.depth.extend(self.words(&buffers.pixels, pixel_bytes)?.into_iter().map(f32::from_bits));
+        if let Some(all) = &mut drawn.rows {
+            all.extend(self.words(&buffers.rows, pixel_bytes)?);
+        }
+        if picture.shows == Shows::Bounds {
+            return Ok(());
+        }
+        let count = u64::from(self.words(&buffers.candidates, 4)?.first().copied().unwrap_or_default());
+        let bytes = 4 + 8 * count;
+        if bytes > buffers.candidates.size() {
+            drawn.candidates = None;
+        }
+        let Some(all) = drawn.candidates.as_mut().filter(|_| count > 0) else { return Ok(()) };
+        let words = self.words(&buffers.candidates, bytes)?;
+        let pairs = words.get(1..).unwrap_or_default().as_chunks::<2>().0;
+        all.extend(pairs.iter().map(|&[pixel, row]| Candidate { pixel: top * width + pixel as usize, row }));
+        Ok(())
+    }
+
+    /// The first words of a buffer.
+    fn words(&self, buffer: &wgpu::Buffer, bytes: u64) -> Result<Vec<u32>> {
+        let device = &self.device.device;
+        let staging = device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("on its way back"),
+            size: bytes,
             usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
         self.device.trouble.check()?;
-        let mut encoder = self.device.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        encoder.copy_buffer_to_buffer(&buffers.pixels, 0, &staging, 0, of_pixels);
-        if of_rows > 0 {
-            encoder.copy_buffer_to_buffer(&buffers.rows, 0, &staging, of_pixels, of_rows);
-        }
-        encoder.copy_buffer_to_buffer(&buffers.left_out, 0, &staging, of_pixels + of_rows, of_left);
+        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        encoder.copy_buffer_to_buffer(buffer, 0, &staging, 0, bytes);
         self.device.queue.submit([encoder.finish()]);
         staging.slice(..).map_async(wgpu::MapMode::Read, |_| ());
         self.device.wait_for(None)?;
         let range = staging.slice(..).get_mapped_range();
         let bytes = range.map_err(|error| Error::Device { what: format!("no picture comes back: {error}") })?;
-        let words = bytes.as_chunks::<4>().0;
-        let word = |word: &[u8; 4]| u32::from_le_bytes(*word);
-        let (pixels, words) = words.split_at(pixel_count);
-        let (rows, left) = words.split_at(if of_rows > 0 { pixel_count } else { 0 });
-        drawn.depth.extend(pixels.iter().map(|bytes| f32::from_le_bytes(*bytes)));
-        if let Some(all) = &mut drawn.rows {
-            all.extend(rows.iter().map(word));
-        }
-        let head: Vec<u32> = left.iter().take(HEAD).map(word).collect();
-        if is_first {
-            // each part of the picture finds the same
-            drawn.around_eye_count = head[0] as usize;
-        }
-        let [looked_at, tested, exact, listed] = [head[2], head[3], head[4], head[5]].map(u64::from);
-        drawn.work += Work { listed, looked_at, tested, exact };
-        let count = head[1] as usize;
-        match &mut drawn.left {
-            Some(all) if count <= MOST_LEFT => all.extend(left[HEAD..][..count].iter().map(word)),
-            _ => drawn.left = None,
-        }
-        Ok(())
+        Ok(bytes.as_chunks::<4>().0.iter().map(|word| u32::from_le_bytes(*word)).collect())
     }
 }
 
@@ -373,8 +349,16 @@ fn scale_of(view: &View) -> f64 {
     }
 }
 
-/// `View` of the shaders, for a band of a picture and some balls: the first, and how many.
-fn view_bytes(picture: &Picture<'_>, [top, rows]: Band, [first_ball, ball_count]: [usize; 2]) -> Vec<u8> {
+/// Some balls of a scene.
+struct BallRows {
+    first: usize,
+    count: usize,
+    /// Whether no others come after them.
+    is_last: bool,
+}
+
+/// `View` of the shaders, for a band of a picture and some balls.
+fn view_bytes(picture: &DevicePicture<'_>, [top, rows]: PixelRows, balls: &BallRows) -> Vec<u8> {
     let view = picture.view;
     let scale = scale_of(view);
     let [near, far] = picture.limits;
@@ -383,30 +367,18 @@ fn view_bytes(picture: &Picture<'_>, [top, rows]: Band, [first_ball, ball_count]
         [start[0].next_down(), start[1].next_up(), single(picture.shell.min(ENDLESS)).next_up(), single(SHELL_SHARE)];
     let middle = view.middle();
     let [width, _] = view.size_px;
-    let before = tiles_before([width, rows]);
-    let least_pixel = 0.25 * length(cross(view.direction([0.0; 2]), view.direction([1.0; 2])));
-    let frame = &view.frame;
-    let doubles = [frame.right, frame.down, frame.forward, frame.eye].into_iter().flatten().chain([scale]);
-    let singles = [scale, 1.0 / scale, near, far.min(ENDLESS), least_pixel].map(single);
-    let words = [ball_count, width, rows, top].map(whole);
-    let middle = [middle[0], middle[1] - top as f64].map(single);
-    let tiles = before[..LEVELS as usize].iter().copied();
-    (doubles.flat_map(f64::to_le_bytes))
-        .chain(singles.into_iter().flat_map(f32::to_le_bytes))
-        .chain(words.into_iter().flat_map(u32::to_le_bytes))
-        .chain([0; 4])
-        .chain(middle.into_iter().flat_map(f32::to_le_bytes))
-        .chain(tiles.chain([first_ball]).map(whole).flat_map(u32::to_le_bytes))
-        .chain(of_bounds.into_iter().flat_map(f32::to_le_bytes))
-        .collect()
-}
-
-/// What the directions of pixels are made of, as `View::direction` has it: for each column, then for each row of a band.
-fn offset_bytes(view: &View, [top, rows]: Band) -> Vec<u8> {
-    let (middle, scale) = (view.middle(), scale_of(view));
-    let offset = |axis: usize, pixel: usize| (pixel as f64 + 0.5 - middle[axis]) / scale;
-    let across = (0..view.size_px[0]).map(|column| offset(0, column));
-    across.chain((top..top + rows).map(|row| offset(1, row))).flat_map(f64::to_le_bytes).collect()
+    let tiles = tiles_before([width, rows]);
+    let of_view = [scale, 1.0 / scale, near, far.min(ENDLESS)].map(single);
+    let of_band = [balls.count, width, rows, top].map(whole);
+    let of_middle = [middle[0], middle[1] - top as f64].map(single);
+    let of_balls = [whole(balls.first), u32::from(balls.is_last)];
+    let words = (of_view.map(f32::to_bits).into_iter())
+        .chain(of_band)
+        .chain(of_middle.map(f32::to_bits))
+        .chain(of_balls)
+        .chain(of_bounds.map(f32::to_bits))
+        .chain(tiles.into_iter().take(LEVELS as usize).map(whole));
+    words.flat_map(u32::to_le_bytes).collect()
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "as the CPU does it, or with room")]

@@ -43,10 +43,11 @@ pub struct DeviceInfo {
     /// What it is.
     pub kind: DeviceKind,
     /// The largest buffer that a shader can use, bytes.
-    pub most_bytes: u64,
+    pub max_bytes: u64,
 }
 
-/// The interfaces to devices, found once. Drivers were seen to crash where several threads look for devices at the same time: whoever does holds this.
+/// The interfaces to devices, found once. Drivers were seen to crash where several threads look for devices at the same
+/// time: whoever does holds this.
 fn instance() -> MutexGuard<'static, wgpu::Instance> {
     static INSTANCE: LazyLock<Mutex<wgpu::Instance>> = LazyLock::new(|| Mutex::new(new_instance()));
     INSTANCE.lock().unwrap_or_else(PoisonError::into_inner)
@@ -86,7 +87,7 @@ fn info_of(number: usize, adapter: &wgpu::Adapter) -> DeviceInfo {
             wgpu::DeviceType::IntegratedGpu => DeviceKind::Integrated,
             wgpu::DeviceType::Cpu | wgpu::DeviceType::Other => DeviceKind::Software,
         },
-        most_bytes: limits.max_storage_buffer_binding_size.min(limits.max_buffer_size),
+        max_bytes: limits.max_storage_buffer_binding_size.min(limits.max_buffer_size),
     }
 }
 
@@ -151,7 +152,7 @@ impl Device {
 impl Device {
     /// The largest buffer, bytes.
     pub(crate) fn limit(&self) -> usize {
-        usize::try_from(self.info.most_bytes).unwrap_or(usize::MAX)
+        usize::try_from(self.info.max_bytes).unwrap_or(usize::MAX)
     }
 
     /// Waits for a piece of work, or for all.
@@ -166,7 +167,8 @@ impl Device {
         }
     }
 
-    /// A buffer of these bytes that shaders read. On a device without memory left it holds nothing, and the trouble is noted.
+    /// A buffer of these bytes that shaders read. On a device without memory left it holds nothing, and the trouble is
+    /// noted.
     pub(crate) fn filled_buffer(&self, bytes: &[u8]) -> wgpu::Buffer {
         let buffer = self.device.create_buffer(&wgpu::BufferDescriptor {
             label: None,

@@ -1,8 +1,12 @@
-//! Lines of sight and depth maps on a graphics processor, with the same bits as on the CPU.
+//! Lines of sight and depth maps on a graphics processor.
 //!
-//! [`Gpu`] is a [`Backend`](belvedere_core::query::Backend): it follows lines of sight through the tree of balls in single precision, decides those that rounding cannot change, and leaves
-//! the others to the CPU, which decides exactly. Depth maps it draws with an arithmetic of whole numbers that repeats the CPU's. When there is no device, too little memory, or the device is lost in the middle of the work, the CPU does what
-//! is left, and [`Gpu::notes`] says so in a line.
+//! [`Gpu`] is a [`Backend`](belvedere_core::query::Backend): it follows lines of sight through the tree of balls in
+//! single precision, decides those that rounding cannot change, and leaves the others to the CPU, which decides
+//! exactly. So answers have the same bits as on the CPU. Of depth maps, too, it leaves the pixels to the CPU whose
+//! depth single precision does not know well enough: depths differ by
+//! [`DEPTH_MAP_TOLERANCE`](belvedere_core::query::DEPTH_MAP_TOLERANCE) of themselves at most. When there is no device,
+//! too little memory, or the device is lost in the middle of the work, the CPU does what is left, and [`Gpu::notes`]
+//! says so in a line.
 //!
 //! ```no_run
 //! use belvedere_core::query::MedialScene;
@@ -29,5 +33,4 @@ mod drawing;
 mod lines;
 
 pub use backend::{Choice, Gpu};
-pub use depth::Work;
 pub use device::{DeviceInfo, DeviceKind, devices};

@@ -1,4 +1,5 @@
-//! Lines of sight decided on a device: balls and their tree as words, and the words that come back. The arithmetic is in `lines.wgsl`.
+//! Lines of sight decided on a device: balls and their tree as words, and the words that come back. The arithmetic is
+//! in `lines.wgsl`.
 
 use crate::device::{Device, DeviceKind};
 use belvedere_core::query::{Ball, BallTree, Viewers};
@@ -13,20 +14,21 @@ use std::sync::Arc;
 
 /// Targets of a group of threads.
 const GROUP: usize = 64;
-/// Lines of sight in a piece of work of a graphics card: a tenth of a second on a slow one, so that its picture does not freeze and no driver gives
-/// it up; a fast one does as many in twenty milliseconds.
+/// Lines of sight in a piece of work of a graphics card: a tenth of a second on a slow one, so that its picture does
+/// not freeze and no driver gives it up; a fast one does as many in twenty milliseconds.
 const CARD_LINES: usize = 1 << 23;
 /// The same of any other device.
 const OTHER_LINES: usize = 1 << 20;
 /// Groups along an axis that every device allows.
-const MOST_GROUPS: usize = 65_535;
+const MAX_GROUPS: usize = 65_535;
 /// Bytes of results that are made at a time, free and blocked lines each.
-const MOST_BYTES: usize = 1 << 25;
+const MAX_BYTES: usize = 1 << 25;
 /// Bytes of `Scene` in the shader.
 const SCENE_BYTES: usize = 64;
 /// Bytes of `Viewer` in the shader.
 const VIEWER_BYTES: usize = 32;
-/// How much farther than their sides boxes reach, as a share of how far from the middle of the tree lines start: the room that f32 needs, twice.
+/// How much farther than their sides boxes reach, as a share of how far from the middle of the tree lines start: the
+/// room that f32 needs, twice.
 const WIDENING: f64 = 2e-6;
 /// Kinds of viewers in the shader.
 const NOBODY: u32 = 0;
@@ -78,7 +80,7 @@ impl Words {
     }
 
     /// Bytes of the larger one of two buffers.
-    fn most_bytes(&self) -> usize {
+    fn max_bytes(&self) -> usize {
         size_of_val(self.nodes.as_slice()).max(size_of_val(self.balls.as_slice()))
     }
 }
@@ -106,7 +108,7 @@ impl Liner {
     /// [`Error::Cancelled`], and [`Error::Device`] where a part does not fit.
     pub(crate) fn words(&self, tree: &BallTree, control: &Control<'_>) -> Result<Vec<Words>> {
         let whole = Words::new(tree, tree.index());
-        let (bytes, most) = (whole.most_bytes(), self.device.limit());
+        let (bytes, most) = (whole.max_bytes(), self.device.limit());
         if bytes <= most {
             return Ok(vec![whole]);
         }
@@ -120,7 +122,7 @@ impl Liner {
             let part = tree.part(first..tree.balls().len().min(first + of_part))?;
             parts.push(Words::new(&part, tree.index()));
         }
-        match parts.iter().map(Words::most_bytes).max() {
+        match parts.iter().map(Words::max_bytes).max() {
             Some(bytes) if bytes > most => {
                 let what = format!("a part of the scene takes {bytes} bytes of a device that allows {most}");
                 Err(Error::Device { what })
@@ -144,8 +146,9 @@ impl Liner {
         Ok(loaded)
     }
 
-    /// What is certain of the lines of sight of `targets`, (M, 3) local metres, to each of `viewers`. What is finished goes to `done` viewer by viewer: a
-    /// bit for each target, 32 a word, of the lines that are free and of those that are blocked.
+    /// What is certain of the lines of sight of `targets`, (M, 3) local metres, to each of `viewers`. What is finished
+    /// goes to `done` viewer by viewer: a bit for each target, 32 a word, of the lines that are free and of those that
+    /// are blocked.
     ///
     /// # Errors
     /// [`Error::Cancelled`], and [`Error::Device`] where the device fails: what was handed to `done` before is right.
@@ -169,7 +172,7 @@ impl Liner {
         let finite = finite_targets(targets);
         let on_device = self.device.filled_buffer(cast_slice(&finite));
         let word_count = 2 * targets.len().div_ceil(GROUP);
-        let most = (MOST_BYTES.min(self.device.limit()) / (4 * word_count)).clamp(1, MOST_GROUPS);
+        let most = (MAX_BYTES.min(self.device.limit()) / (4 * word_count)).clamp(1, MAX_GROUPS);
         let viewers: Vec<[u8; VIEWER_BYTES]> = match viewers {
             Viewers::Directions(directions) => directions.iter().map(|direction| direction_bytes(*direction)).collect(),
             Viewers::Eyes(eyes) => eyes.iter().map(|eye| eye_bytes(*eye)).collect(),
@@ -230,7 +233,7 @@ impl Liner {
             entries: &entries,
         });
         let piece = if self.device.info.kind == DeviceKind::Separate { CARD_LINES } else { OTHER_LINES };
-        let groups = group_count.min(MOST_GROUPS).min(piece / GROUP);
+        let groups = group_count.min(MAX_GROUPS).min(piece / GROUP);
         let mut before = None;
         for first_group in (0..group_count).step_by(groups) {
             let groups = groups.min(group_count - first_group);

@@ -1,7 +1,9 @@
-// Lines of sight asked of balls in a tree of boxes: the twin of `BlockRule::blocks_line` in belvedere-core/src/blocking.rs.
+// Lines of sight past balls in a tree of boxes: the twin of `BlockRule::blocks_line` in
+// belvedere-core/src/blocking.rs.
 //
-// The CPU decides in f64. Here numbers are f32, and each comparison leaves room for what f32 rounds: a ball that blocks or does not block only
-// within that room leaves the line open, and the CPU decides it. The proof of the room is on the project's page on graphics processors.
+// The CPU decides in f64. Here numbers are f32, and each comparison leaves room for what f32 rounds: a ball that blocks
+// or does not block only within that room leaves the line open, and the CPU decides it. The proof of the room is on the
+// project's page on graphics processors.
 
 struct Scene {
     // middle of the tree, local metres, as the sum of two
@@ -60,16 +62,16 @@ const OPEN: u32 = 2u;
 const NOBODY: u32 = 0u;
 const DIRECTION: u32 = 1u;
 
-// What f32 may misplace a line beside a ball by, as a share of the distance of the centre plus the radius: 2^-19, and thrice that for a line to an eye,
-// whose direction is computed in f32.
+// What f32 may misplace a line beside a ball by, as a share of the distance of the centre plus the radius: 2^-19, and
+// thrice that for a line to an eye, whose direction is computed in f32.
 const ROOM: f32 = 1.9073487e-6;
 const EYE_ROOM: f32 = 5.7220459e-6;
 // Range of a viewer infinitely far away.
 const ENDLESS: f32 = 3e38;
 // Room for numbers that are too small for f32, metres.
-const LEAST_ROOM: f32 = 1e-9;
+const MIN_ROOM: f32 = 1e-9;
 // Targets nearer to an eye are left to the CPU, metres.
-const LEAST_RANGE: f32 = 1e-3;
+const MIN_RANGE: f32 = 1e-3;
 const NO_SIGHT: f32 = 1.0;
 // More than a square root may err by, as a share.
 const ROOT_ROOM: f32 = 1e-5;
@@ -85,7 +87,7 @@ fn block(ball: vec4<f32>, place: vec3<f32>, sight: Sight) -> u32 {
     let distance = length(offset);
     let along = dot(offset, sight.towards);
     let beside = length(offset - along * sight.towards);
-    let room = sight.room * (distance + radius) + LEAST_ROOM;
+    let room = sight.room * (distance + radius) + MIN_ROOM;
     if beside >= radius + room {
         return FREE;
     }
@@ -141,7 +143,7 @@ fn sight_of(place: vec3<f32>, viewer: Viewer) -> Sight {
     }
     let offset = (viewer.at - place) + viewer.rest;
     let range = length(offset);
-    if range < LEAST_RANGE {
+    if range < MIN_RANGE {
         return Sight(vec3<f32>(0.0), NO_SIGHT, vec2<f32>(0.0));
     }
     let room = EYE_ROOM * (1.0 + length(viewer.rest) / range);

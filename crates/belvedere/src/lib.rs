@@ -43,7 +43,7 @@
 //! | `apps` | the applications | yes |
 //! | `io` | file formats | yes |
 //! | `figures` | pictures; needs `io` | yes |
-//! | `gpu` | sky views, sun hours, irradiance and depth maps on a graphics processor, with the same bits | no |
+//! | `gpu` | sky views, sun hours, irradiance and depth maps on a graphics processor, with the same answers | no |
 //! | `las` `e57` `ply` `npy` `tiff` `obj` | single file formats; need `io` | yes |
 //! | `scanner-estimate` | finding scanner positions; without it, clouds without count as scanned from above | yes |
 //! | `crs` | the database of reference systems; without it, a system is carried, but not found by its code | yes |

@@ -1,9 +1,11 @@
-//! How fast does a device decide lines of sight in many directions and draw depth maps, and how far is that from the limit of its memory?
+//! How fast does a device decide lines of sight in many directions and draw depth maps, and how far is that from the
+//! limit of its memory?
 //!
 //!     cargo research device_rates -- [DEVICE] [CLOUD or BALLS] [TARGETS] [SHARE]
 //!
-//! With a cloud, the targets are its points; else the scene is a simulated place of 400 m with ground, blocks and crowns, and a grid of targets. Of every SHAREth
-//! target bits are compared with those of the CPU. Without a device it lists what there is. Depth maps of the simulated place:
+//! With a cloud, the targets are its points; else the scene is a simulated place of 400 m with ground, blocks and
+//! crowns, and a grid of targets. Of every SHAREth target bits are compared with those of the CPU. Without a device it
+//! lists what there is. Depth maps of the simulated place:
 //!
 //!     cargo research device_rates -- DEVICE BALLS 0 [METRES] [PIXELS]
 
@@ -169,11 +171,11 @@ fn main() -> Result<()> {
         sum[2] / sum[0]
     ));
     let scene_bytes = (4 * NODE_WORDS * tree.index().node_words().len() + 16 * ball_count) as f64;
-    let least_bytes = scene_bytes + 12.0 * targets.len() as f64 + lines / 4.0;
+    let min_bytes = scene_bytes + 12.0 * targets.len() as f64 + lines / 4.0;
     say(format!(
         "the scene takes {:.1} MB of the device; memory moves {:.1} MB at least",
         scene_bytes / 1e6,
-        least_bytes / 1e6
+        min_bytes / 1e6
     ));
 
     if let Some(info) = found.get(number(1).unwrap_or(0)) {
@@ -187,21 +189,21 @@ fn main() -> Result<()> {
             best = best.min(timed(settle).1);
         }
         say(format!(
-            "{}: {best:.3} s with transfers, {:.1} million lines/s, {:.0} GB/s asked of caches at most, {:.1} GB/s of memory at least; {:.1e} of lines open",
+            "{}: {best:.3} s with transfers, {:.1} million lines/s, {:.0} GB/s from caches at most, {:.1} GB/s of memory at least; {:.1e} of lines open",
             info.name,
             lines / best / 1e6,
             per_line * lines / best / 1e9,
-            least_bytes / best / 1e9,
+            min_bytes / best / 1e9,
             share_open(&settle()?, targets.len(), directions.len()),
         ));
         let eyes: Vec<[f64; 3]> = (targets.iter().step_by(targets.len().div_ceil(EYES)))
             .map(|target| [target[0], target[1], target[2] + 1.6].map(f64::from))
             .collect();
         for eyes in [&eyes[..1], &eyes[..]] {
-            let ask = || prepared.settle_few(&targets, Viewers::Eyes(eyes), &control);
+            let settle = || prepared.settle_few(&targets, Viewers::Eyes(eyes), &control);
             let mut best = f64::INFINITY;
             for _ in 0..5 {
-                best = best.min(timed(ask).1);
+                best = best.min(timed(settle).1);
             }
             let (count, lines) = (eyes.len(), (eyes.len() * targets.len()) as f64);
             say(format!(

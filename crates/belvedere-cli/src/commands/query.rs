@@ -7,7 +7,7 @@ use crate::run::CommandContext;
 use crate::summary::{Summary, percent, rounded};
 use anyhow::{Result, bail};
 use belvedere::apps::ask;
-use belvedere::depth::{ItemBuffer, Profile};
+use belvedere::depth::{ItemBuffer, Profile, depth_map};
 use belvedere::io::{
     ExtraColumn, ExtraValues, ReadOptions, TextRows, WriteReport, read_cloud, read_text_rows, write_cloud,
     write_npy_u8, write_text_rows,
@@ -59,8 +59,10 @@ pub(crate) fn run(arguments: &Query, global: &Global) -> Result<Summary> {
         by_lines_of_sight(arguments, &model, &views, &targets.positions, &mut run, &mut section)?
     } else {
         let Some(view) = views.first() else { bail!("there is no view") };
-        let map =
-            run.stage("drawing depth map", 0, |control| model.depth_map(view, profile, ItemBuffer::Without, control))?;
+        // by the CPU: pictures of other devices have a tolerance, answers have none
+        let map = run.stage("drawing depth map", 0, |control| {
+            depth_map(model.balls(), view, profile, ItemBuffer::Without, control)
+        })?;
         let bias = arguments.bias.unwrap_or_else(|| map.default_depth_bias());
         section.add("method", "depth map").add("depth_bias_m", rounded(f64::from(bias), 4));
         let mut answers = run.compute("querying", || query_points(&map, &targets.positions, bias));

@@ -278,8 +278,23 @@ impl<S: CentralSurface> SplatSurface for Central<S> {
     }
 }
 
-/// How a unit vector of sight passes a centre. The distance beside it is that of a vector product, which does not
-/// cancel.
+impl<S: CentralSurface> Central<S> {
+    /// Depth of one ball in the middle of one pixel: what [`Shape::depths`] says of it.
+    #[expect(clippy::cast_possible_truncation, reason = "components of a unit vector")]
+    pub(super) fn depth_at(&self, splat: &Splat, pixel: [usize; 2]) -> f32 {
+        let direction = self.view.direction(pixel.map(|at| at as f64 + 0.5)).map(|component| component as f32);
+        let pixel = Pixel {
+            passing: passing(splat.center, direction),
+            distance: splat.center.map(|v| v * v).iter().sum::<f32>().sqrt(),
+            depth_per_range: if self.is_in_range() { 1.0 } else { direction[2] },
+            limits: self.limits,
+            turns: &[Turn { cos: 1.0, sin: 0.0 }; 2],
+        };
+        self.surface.depth(&pixel, splat)
+    }
+}
+
+/// How a unit vector of sight passes a centre. The distance beside it is that of a vector product, which does not cancel.
 #[inline(always)]
 fn passing([cx, cy, cz]: [f32; 3], [x, y, z]: [f32; 3]) -> DirectionPassing {
     let (across, down, forward) = (cy * z - cz * y, cz * x - cx * z, cx * y - cy * x);

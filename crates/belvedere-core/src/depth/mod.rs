@@ -1,5 +1,6 @@
 //! Depth maps: how far one can see along each pixel of a view before a medial ball blocks the line of sight.
 
+pub mod ball_depth;
 pub mod bounds;
 mod central;
 pub mod depth_map;
@@ -9,6 +10,7 @@ mod parallel;
 mod tiles;
 
 pub use crate::blocking::{Profile, surface_bias};
+pub use ball_depth::BallDepth;
 pub use bounds::{BoundsParams, DepthBounds, depth_bounds};
 pub use depth_map::{DepthMap, ItemBuffer, NO_BALL, depth_map};
 pub(crate) use panorama::panorama_of_maps;

@@ -8,8 +8,9 @@ use belvedere_data::control::Control;
 use belvedere_data::view::View;
 
 impl SceneModel {
-    /// The depth map of its balls in `view`: [`depth_map()`], which the backend of the model may draw, with the same
-    /// bits.
+    /// The depth map of its balls in `view`: [`depth_map()`]. Where the backend of the model draws it, each depth may
+    /// differ by [`DEPTH_MAP_TOLERANCE`](crate::query::DEPTH_MAP_TOLERANCE) of itself; without a backend and with that
+    /// of the CPU none does.
     ///
     /// # Errors
     /// Those of [`depth_map()`].
@@ -30,7 +31,7 @@ impl SceneModel {
     }
 
     /// The panorama of its balls around `eye`: [`panorama()`], whose depth maps the backend of the model may draw, with
-    /// the same bits.
+    /// the tolerance of [`SceneModel::depth_map`].
     ///
     /// # Errors
     /// Those of [`panorama()`].

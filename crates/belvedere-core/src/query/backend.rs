@@ -75,10 +75,15 @@ pub trait PreparedBackend: Send + Sync {
     }
 }
 
+/// By how much the depth of a pixel that a backend draws may differ from that of
+/// [`depth_map`](crate::depth::depth_map()), as a share of it: 1 mm at 100 m.
+pub const DEPTH_MAP_TOLERANCE: f32 = 1e-5;
+
 /// Balls made ready to be drawn by a backend.
 pub trait Drawable: Send + Sync {
-    /// The depth map of the balls in `view`, as [`depth_map`](crate::depth::depth_map()) makes it of spheres, bit by
-    /// bit.
+    /// The depth map of the balls in `view`, as [`depth_map`](crate::depth::depth_map()) makes it of spheres, but for
+    /// depths: each may differ by [`DEPTH_MAP_TOLERANCE`] of itself. Pixels without a ball and the balls of pixels are
+    /// the same.
     ///
     /// # Errors
     /// Those of [`depth_map`](crate::depth::depth_map()).

@@ -44,7 +44,7 @@ pub mod visibility_matrix;
 
 pub use crate::blocking::{Ball, BlockRule, Profile};
 pub use added::AddedMeshes;
-pub use backend::{Backend, Drawable, LineAnswer, PreparedBackend, Settled, Viewers};
+pub use backend::{Backend, DEPTH_MAP_TOLERANCE, Drawable, LineAnswer, PreparedBackend, Settled, Viewers};
 pub use ball_tree::BallTree;
 pub use certified::{CertifiedReport, Scope};
 pub use coverage::Coverage;

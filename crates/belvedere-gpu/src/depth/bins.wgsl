@@ -1,7 +1,7 @@
 // Which tiles have to look at which balls, nearest balls first, as far as steps of depth tell.
 //
-// A list of balls for each step of depth of each tile of each level: counted, summed up and filled. The order within a list is left to chance; pixels do not
-// depend on it.
+// A list of balls for each step of depth of each tile of each level: counted, summed up and filled. The order within a
+// list is left to chance; pixels do not depend on it.
 
 // entries of each list, then where it begins, then where it ends, within a block
 @group(0) @binding(5) var<storage, read_write> counters: array<atomic<u32>>;
@@ -19,7 +19,7 @@ const RANGES: u32 = 4096u;
 const BLOCK: u32 = 2048u;
 
 var<workgroup> sums: array<u32, 256>;
-var<workgroup> least: array<atomic<u32>, 32>;
+var<workgroup> nearest_of_steps: array<atomic<u32>, 32>;
 
 // What the threads before this one have together. The last of the sums is that of all threads.
 fn sum_before(lane: u32, own: u32) -> u32 {
@@ -41,7 +41,7 @@ fn sum_before(lane: u32, own: u32) -> u32 {
 @compute @workgroup_size(256)
 fn share_depths(@builtin(local_invocation_index) lane: u32) {
     if lane < STEPS {
-        atomicStore(&least[lane], INFINITE_SINGLE);
+        atomicStore(&nearest_of_steps[lane], INFINITE);
     }
     let of_thread = RANGES / 256u;
     var own = 0u;
@@ -54,14 +54,14 @@ fn share_depths(@builtin(local_invocation_index) lane: u32) {
         let range = lane * of_thread + i;
         let step = min(sum / of_step, STEPS - 1u);
         steps[range] = step;
-        atomicMin(&least[step], range << DEPTH_SHIFT);
+        atomicMin(&nearest_of_steps[step], range << DEPTH_SHIFT);
         sum += atomicLoad(&depths[range]);
     }
     workgroupBarrier();
     if lane < STEPS {
-        var nearest = INFINITE_SINGLE;
+        var nearest = INFINITE;
         for (var step = lane; step < STEPS; step++) {
-            nearest = min(nearest, atomicLoad(&least[step]));
+            nearest = min(nearest, atomicLoad(&nearest_of_steps[step]));
         }
         steps[RANGES + lane] = nearest;
     }
@@ -89,9 +89,6 @@ fn count(@builtin(global_invocation_id) thread: vec3<u32>) {
     for (var row = 0u; row <= ((touch.x >> 26u) & 3u); row++) {
         for (var column = 0u; column <= ((touch.x >> 24u) & 3u); column++) {
             atomicAdd(&counters[list_of(touch, column, row)], 1u);
-            if IS_COUNTED {
-                atomicAdd(&left_out[5], 1u);
-            }
         }
     }
 }

@@ -1,69 +1,85 @@
-// The nearest ball at each pixel: the twin of `depths` and `least_depth` in belvedere-core/src/depth/parallel.rs and central.rs, and of the tiles in tiles.rs. Or bounds of
-// the depth over each pixel: the twin of both `Bound` there, and of bounds.rs. They need not have the same bits, so that they are computed with room only.
+// What each pixel shows: the twin of `depths` and `least_depth` in belvedere-core/src/depth/parallel.rs and central.rs,
+// and of the tiles in tiles.rs. Or bounds of the depth over each pixel: the twin of both `Bound` there, and of
+// bounds.rs.
 //
-// A group of threads draws a tile of four blocks of 8 x 8 pixels, a thread for each pixel. Each pixel finds, with room for what f32 rounds, a depth that the nearest ball
-// does not exceed, and keeps the balls that may come as near. Then these are computed exactly, in whole numbers. A second turn finds those of pixels that could not keep
-// all. The proof of the room is on the project's page on graphics processors.
+// A group of threads draws a tile of four blocks of 8 x 8 pixels, a thread for each pixel. In f32 a depth is known
+// between two bounds. Each pixel finds between which depths the nearest ball lies that the CPU would show. Where these
+// are close together their middle is the depth. Else the pixel is marked, and a second turn lists the balls that may be
+// its nearest: the CPU decides among them. The proof of the bounds is on the project's page on graphics processors.
 
 struct Piece {
     // of this dispatch
     first_row: u32,
+    // whether candidates of marked pixels are listed; else pixels are drawn
+    is_listing: u32,
+}
+
+// What is known of a pixel.
+struct KnownDepth {
+    // the nearest depth is at most this
+    upper: f32,
+    // and at least this, which is that of a ball
+    lower: f32,
+    row: u32,
+    // the least lower bound of all other balls
+    second: f32,
 }
 
 @group(0) @binding(1) var<uniform> piece: Piece;
-// bits of depths, or of upper bounds
+// Bits of depths, or of upper bounds; of marked pixels, with the sign set, those of the upper bound. The last part of a
+// scene writes them.
 @group(0) @binding(8) var<storage, read_write> pixels: array<u32>;
 // which ball each pixel shows, or bits of lower bounds
 @group(0) @binding(9) var<storage, read_write> rows: array<u32>;
-// what a pixel's direction is made of: doubles for each column, then for each row
-@group(0) @binding(13) var<storage, read> offsets: array<vec2<u32>>;
+// what is known of pixels between two parts of a scene
+@group(0) @binding(10) var<storage, read_write> between: array<KnownDepth>;
+// how many candidates there are; then a pixel and a ball for each
+@group(0) @binding(11) var<storage, read_write> candidates: array<atomic<u32>>;
 
 const NO_BALL: u32 = 0xffffffffu;
 // Instead of infinity, which devices need not know.
 const ENDLESS_DEPTH: f32 = 3e38;
-// What f32 errs by, the CPU and a device together: squares in a parallel view as a share of the radius's, the distance beside a centre as a share of distance and
-// radius in a view from an eye, and depths as a share of both.
+// A lower bound of the depth of no ball: it is above every upper bound.
+const NONE: f32 = 3.2e38;
+// Two bounds may differ by this share of themselves, so that their middle errs by at most 10^-5.
+const TOLERANCE: f32 = 1.96e-5;
+// What f32 errs by, the CPU and a device together, with u = 2^-23. In a parallel view: 16 u of the square of the radius,
+// 8 u of depth and radius.
 const SQUARE_ROOM: f32 = 1.9073487e-6;
-const LEAST_SQUARE: f32 = 1e-30;
-const BESIDE_ROOM: f32 = 9.5367432e-7;
+const MIN_SQUARE: f32 = 1e-30;
+const PARALLEL_DEPTH_ROOM: f32 = 9.5367432e-7;
+// In a view from an eye: the distance beside a centre by 5 u of its distance in a perspective view, 8 u in others, and
+// 10 u of the radius; the square of the radius by 4 u; ranges by 13.4 u of distance and radius; the ratio of depth and
+// range by 8 u.
+const PERSPECTIVE_BESIDE_ROOM: f32 = 5.9604645e-7;
+const HEMISPHERE_BESIDE_ROOM: f32 = 9.5367432e-7;
+const RADIUS_BESIDE_ROOM: f32 = 1.1920929e-6;
+const RADIUS_SQUARE_ROOM: f32 = 4.7683716e-7;
+const RANGE_ROOM: f32 = 1.6e-6;
+const RATIO_ROOM: f32 = 9.5367432e-7;
+// The same of bounds over pixels.
 const DEPTH_ROOM: f32 = 1.9073487e-6;
-const ONE: vec2<u32> = vec2<u32>(0u, 0x3ff00000u);
 // Side of a block, pixels, and blocks of a tile.
 const SIDE: u32 = 8u;
 const BLOCKS: u32 = 4u;
-// A lower bound of the depth of no ball: it is above every upper bound.
-const NONE: f32 = 3.2e38;
 // A cone around a block beyond this cosine is as good as everything.
-const WIDEST: f32 = 0.75;
+const MIN_CONE_COSINE: f32 = 0.75;
 // A cone around a pixel beyond this sine, too.
-const WIDEST_SINE: f32 = 0.999;
+const MAX_SINE: f32 = 0.999;
 // Of a pixel, in pixels, and a little more.
 const HALF_DIAGONAL: f32 = 0.7072;
 const HALF_SIDE: f32 = 0.50001;
-
-// What a pixel shows.
-struct Shown {
-    // bits; for bounds those of the upper and of the lower one
-    depth: u32,
-    row: u32,
-}
-
-// A direction of sight in a view from an eye.
-struct Sight {
-    direction: vec3<f32>,
-    depth_per_range: f32,
-}
 
 // The directions of a block lie in this cone.
 struct Cone {
     middle: vec3<f32>,
     cosine: f32,
     sine: f32,
-    least_depth_per_range: f32,
+    min_depth_per_range: f32,
 }
 
 // balls that some block has to look at, and which of them each block has to
-var<workgroup> chunk: array<vec4<u32>, 256>;
+var<workgroup> chunk: array<vec4<f32>, 256>;
 var<workgroup> chunk_balls: array<u32, 256>;
 var<workgroup> chosen: array<u32, 1024>;
 var<workgroup> chosen_count: array<atomic<u32>, 4>;
@@ -74,48 +90,25 @@ var<workgroup> step_begins: array<u32, 33>;
 // the rank of the depth that no pixel of a block exceeds, and of the tile
 var<workgroup> farthest_ranks: array<atomic<u32>, 4>;
 var<workgroup> farthest_of_all: u32;
-var<workgroup> is_again: atomic<u32>;
-var<workgroup> is_again_shared: u32;
 var<workgroup> cones: array<Cone, 4>;
 
-// As `View::direction`, in f64.
-fn exact_sight(column: u32, row: u32) -> Sight {
-    let x = offsets[column];
-    let y = offsets[view.width + row];
-    let square = add_double(multiply_double(x, x), multiply_double(y, y));
-    var sight: Sight;
-    if KIND == PERSPECTIVE {
-        let length = root_double(add_double(square, ONE));
-        let forward = single_of(divide_double(ONE, length));
-        let across = vec2<u32>(single_of(divide_double(x, length)), single_of(divide_double(y, length)));
-        sight.direction = bitcast<vec3<f32>>(vec3<u32>(across, forward));
-        sight.depth_per_range = bitcast<f32>(forward);
-    } else {
-        let divisor = add_double(ONE, square);
-        let forward = single_of(divide_double(subtract_double(ONE, square), divisor));
-        let across = single_of(divide_double(add_double(x, x), divisor));
-        let down = single_of(divide_double(add_double(y, y), divisor));
-        sight.direction = bitcast<vec3<f32>>(vec3<u32>(across, down, forward));
-        sight.depth_per_range = 1.0;
-    }
-    return sight;
-}
-
-// The same in f32, for what has room.
+// As `View::direction`. Offsets from the middle are exact; the common factor is rounded once for all components.
 fn direction(place: vec2<f32>) -> vec3<f32> {
-    let offset = (place - view.middle) / view.pixels;
+    let offset = place - view.middle;
     let square = dot(offset, offset);
+    let pixels = view.pixels;
     if KIND == PERSPECTIVE {
-        return vec3<f32>(offset, 1.0) / sqrt(square + 1.0);
+        return vec3<f32>(offset, pixels) * inverseSqrt(square + pixels * pixels);
     }
-    return vec3<f32>(2.0 * offset, 1.0 - square) / (1.0 + square);
+    let of_pixels = pixels * pixels;
+    return vec3<f32>(2.0 * pixels * offset, of_pixels - square) * (1.0 / (of_pixels + square));
 }
 
 fn cone_of(corner: vec2<f32>) -> Cone {
     let side = f32(SIDE);
     var found: Cone;
     found.middle = direction(corner + 0.5 * side);
-    found.least_depth_per_range = 1.0;
+    found.min_depth_per_range = 1.0;
     var cosine = 1.0;
     var sine = 0.0;
     for (var i = 0u; i < 4u; i++) {
@@ -124,25 +117,27 @@ fn cone_of(corner: vec2<f32>) -> Cone {
         sine = max(sine, length(cross(found.middle, at)));
         // bounds are ranges
         if KIND == PERSPECTIVE && SHOWS != BOUNDS {
-            found.least_depth_per_range = min(found.least_depth_per_range, 0.999 * at.z);
+            found.min_depth_per_range = min(found.min_depth_per_range, 0.999 * at.z);
         }
     }
     found.sine = 1.01 * sine + 1e-5;
-    found.cosine = select(sqrt(max(1.0 - found.sine * found.sine, 0.0)), 0.0, cosine < WIDEST);
+    found.cosine = select(sqrt(max(1.0 - found.sine * found.sine, 0.0)), 0.0, cosine < MIN_CONE_COSINE);
     return found;
 }
 
-// At most the depth of a ball at any place of a rectangle in a parallel view, above all limits where it is beside the rectangle.
+// At most the depth of a ball at any place of a rectangle in a parallel view, above all limits where it is beside the
+// rectangle.
 fn nearest_parallel(splat: vec4<f32>, low: vec2<f32>, high: vec2<f32>) -> f32 {
     let radius = abs(splat.w);
     let beside = max(max(low - splat.xy, splat.xy - high) - misplaced(splat.xy), vec2<f32>(0.0));
     let offset = beside * view.metres_per_pixel;
-    let square = radius * radius * (1.0 + SQUARE_ROOM) - dot(offset, offset) + LEAST_SQUARE;
-    let room = DEPTH_ROOM * (abs(splat.z) + radius) + LEAST_ROOM;
+    let square = radius * radius * (1.0 + SQUARE_ROOM) - dot(offset, offset) + MIN_SQUARE;
+    let room = DEPTH_ROOM * (abs(splat.z) + radius) + MIN_ROOM;
     return select(NONE, max(splat.z - sqrt(max(square, 0.0)) - room, view.near), square > 0.0);
 }
 
-// Pixels by which f32 may misplace a ball of a parallel view. Depths are computed where the CPU places it; bounds hold for its true place.
+// Pixels by which f32 may misplace a ball of a parallel view. Depths are computed where the CPU places it; bounds hold
+// for its true place.
 fn misplaced(at: vec2<f32>) -> f32 {
     return select(0.0, PARALLEL_ROOM * (abs(at.x) + abs(at.y)), SHOWS == BOUNDS);
 }
@@ -151,23 +146,23 @@ fn misplaced(at: vec2<f32>) -> f32 {
 fn nearest_central(splat: vec4<f32>, cone: Cone) -> f32 {
     let radius = abs(splat.w);
     let distance = length(splat.xyz);
-    let room = CENTRAL_ROOM * (distance + radius) + LEAST_ROOM;
+    let room = CENTRAL_ROOM * (distance + radius) + MIN_ROOM;
     let middle_along = dot(splat.xyz, cone.middle);
     let middle_beside = length(cross(splat.xyz, cone.middle));
     let beside = middle_beside * cone.cosine - middle_along * cone.sine - room;
     if cone.cosine == 0.0 || beside <= 0.0 {
-        return max((distance - radius - room) * cone.least_depth_per_range, view.near);
+        return max((distance - radius - room) * cone.min_depth_per_range, view.near);
     }
     let along = middle_along * cone.cosine + middle_beside * cone.sine + room;
     let half_chord = sqrt(max((radius - beside) * (radius + beside), 0.0));
     if beside >= radius || along + half_chord < 0.0 {
         return NONE;
     }
-    return max((along - half_chord - 2.0 * room) * cone.least_depth_per_range, view.near);
+    return max((along - half_chord - 2.0 * room) * cone.min_depth_per_range, view.near);
 }
 
 // At most the depth of a ball anywhere in a block.
-fn least_depth(splat: vec4<f32>, corner: vec2<f32>, block: u32) -> f32 {
+fn min_depth(splat: vec4<f32>, corner: vec2<f32>, block: u32) -> f32 {
     if KIND == PARALLEL {
         // bounds are those of whole pixels, depths those of their centres
         let inward = select(0.5, 0.0, SHOWS == BOUNDS);
@@ -185,21 +180,22 @@ fn cone_of_pixel(place: vec2<f32>) -> Cone {
     found.middle = direction(place);
     // the angle itself: more than its sine, so that the cone is wider than the pixel
     found.sine = 1.001 * HALF_DIAGONAL * steepness / view.pixels;
-    found.cosine = select(sqrt(max(1.0 - found.sine * found.sine, 0.0)), 0.0, found.sine > WIDEST_SINE);
-    found.least_depth_per_range = 1.0;
+    found.cosine = select(sqrt(max(1.0 - found.sine * found.sine, 0.0)), 0.0, found.sine > MAX_SINE);
+    found.min_depth_per_range = 1.0;
     return found;
 }
 
-// At least the depth of a ball of a parallel view at every place of a pixel, however far it gives way; without end where it does not cover the pixel.
+// At least the depth of a ball of a parallel view at every place of a pixel, however far it gives way; without end
+// where it does not cover the pixel.
 fn farthest_parallel(splat: vec4<f32>, low: vec2<f32>, high: vec2<f32>) -> f32 {
     let offset = (max(abs(low - splat.xy), abs(high - splat.xy)) + misplaced(splat.xy)) * view.metres_per_pixel;
-    let beside = dot(offset, offset) + LEAST_SQUARE;
+    let beside = dot(offset, offset) + MIN_SQUARE;
     let radius = splat.w;
     if radius <= 0.0 || beside >= radius * radius * (1.0 - SQUARE_ROOM) {
         return ENDLESS_DEPTH;
     }
-    let room = DEPTH_ROOM * (abs(splat.z) + radius) + LEAST_ROOM;
-    let left = least_radius(radius);
+    let room = DEPTH_ROOM * (abs(splat.z) + radius) + MIN_ROOM;
+    let left = min_radius(radius);
     let square = left * left * (1.0 - SQUARE_ROOM) - beside;
     let whole = splat.z + radius + view.shell + 2.0 * room;
     return select(whole, min(whole, splat.z - sqrt(max(square, 0.0)) + room), square > 0.0);
@@ -209,7 +205,7 @@ fn farthest_parallel(splat: vec4<f32>, low: vec2<f32>, high: vec2<f32>) -> f32 {
 fn farthest_central(splat: vec4<f32>, cone: Cone) -> f32 {
     let radius = splat.w;
     let distance = length(splat.xyz);
-    let room = CENTRAL_ROOM * (distance + radius) + LEAST_ROOM;
+    let room = CENTRAL_ROOM * (distance + radius) + MIN_ROOM;
     let middle_along = dot(splat.xyz, cone.middle);
     let middle_beside = length(cross(splat.xyz, cone.middle));
     let beside = middle_beside * cone.cosine + middle_along * cone.sine + room;
@@ -217,52 +213,59 @@ fn farthest_central(splat: vec4<f32>, cone: Cone) -> f32 {
     if radius <= 0.0 || cone.cosine == 0.0 || along <= room || beside >= radius - room {
         return ENDLESS_DEPTH;
     }
-    let left = least_radius(radius) - room;
+    let left = min_radius(radius) - room;
     let whole = distance + radius + view.shell + room;
     let half_chord = sqrt(max((left - beside) * (left + beside), 0.0));
     return select(whole, min(whole, along - half_chord + 2.0 * room), beside < left);
 }
 
 // The radius that is left of a ball for any target, however near to its surface: the twin of `BlockRule::least_radius`.
-fn least_radius(radius: f32) -> f32 {
+fn min_radius(radius: f32) -> f32 {
     return radius - min(view.shell, view.shell_share * radius);
 }
 
-// A depth that a ball at a pixel exceeds, if it is there, and one that it does not exceed, if it certainly is; both without end else.
-fn bounds(splat: vec4<f32>, place: vec2<f32>, sight: Sight) -> vec2<f32> {
+// A depth that a ball at a pixel exceeds, if it is there, and one that it does not exceed, if it certainly is; else
+// above all limits.
+fn depth_bounds(splat: vec4<f32>, place: vec2<f32>, sight: vec3<f32>) -> vec2<f32> {
+    let nowhere = vec2<f32>(NONE, ENDLESS_DEPTH);
     let radius = splat.w;
     var along = splat.z;
     var square: f32;
     var square_room: f32;
     var room: f32;
+    // in a perspective view depths are a share of ranges
+    var ratio = vec2<f32>(1.0);
     if KIND == PARALLEL {
         let offset = (place - splat.xy) * view.metres_per_pixel;
         square = radius * radius - dot(offset, offset);
-        square_room = radius * radius * SQUARE_ROOM + LEAST_SQUARE;
-        if square + square_room <= 0.0 {
-            return vec2<f32>(ENDLESS_DEPTH);
-        }
-        room = DEPTH_ROOM * (abs(along) + radius) + LEAST_ROOM;
+        square_room = radius * radius * SQUARE_ROOM + MIN_SQUARE;
+        room = PARALLEL_DEPTH_ROOM * (abs(along) + radius) + MIN_ROOM;
     } else {
-        let size = length(splat.xyz) + radius;
-        let beside = cross(splat.xyz, sight.direction);
-        let beside_room = BESIDE_ROOM * size + LEAST_ROOM;
+        // the distance beside the centre by the vector product, which does not cancel
+        let distance = length(splat.xyz);
+        let beside = cross(splat.xyz, sight);
+        let far_room = select(HEMISPHERE_BESIDE_ROOM, PERSPECTIVE_BESIDE_ROOM, KIND == PERSPECTIVE);
+        let beside_room = far_room * distance + RADIUS_BESIDE_ROOM * radius + MIN_ROOM;
         square = radius * radius - dot(beside, beside);
-        square_room = 4.0 * beside_room * (radius + beside_room);
-        if square + square_room <= 0.0 {
-            return vec2<f32>(ENDLESS_DEPTH);
+        square_room = 2.0 * beside_room * (radius + beside_room) + RADIUS_SQUARE_ROOM * radius * radius;
+        along = dot(splat.xyz, sight);
+        room = RANGE_ROOM * (distance + radius) + MIN_ROOM;
+        if KIND == PERSPECTIVE {
+            ratio = sight.z * vec2<f32>(1.0 - RATIO_ROOM, 1.0 + RATIO_ROOM);
         }
-        along = dot(splat.xyz, sight.direction);
-        room = DEPTH_ROOM * size + LEAST_ROOM;
     }
-    let most = sqrt(square + square_room);
-    if along + most + room < 0.0 {
-        return vec2<f32>(ENDLESS_DEPTH);
+    if square + square_room <= 0.0 {
+        return nowhere;
     }
-    let lower = max((along - most - room) * sight.depth_per_range, view.near);
-    let least = sqrt(max(square - square_room, 0.0));
-    let back = (along + least - room) * sight.depth_per_range;
-    let upper = max((along - least + room) * sight.depth_per_range, view.near);
+    // half the chord
+    let longest = sqrt(square + square_room);
+    let shortest = sqrt(max(square - square_room, 0.0));
+    let lower = max((along - longest - room) * ratio.x, view.near);
+    if (along + longest + room) * ratio.y < view.near || lower > view.far {
+        return nowhere;
+    }
+    let upper = max((along - shortest + room) * ratio.y, view.near);
+    let back = (along + shortest - room) * ratio.x;
     let is_hit = square > square_room && back > view.near && upper <= view.far;
     return vec2<f32>(lower, select(ENDLESS_DEPTH, upper, is_hit));
 }
@@ -279,59 +282,7 @@ fn bounds_over_pixel(splat: vec4<f32>, place: vec2<f32>, cone: Cone) -> vec2<f32
 
 // The bits of a depth, those of infinity where it is without end.
 fn bits_of(depth: f32) -> u32 {
-    return select(bitcast<u32>(depth), INFINITE_SINGLE, depth >= ENDLESS_DEPTH);
-}
-
-// The bits of the depth of a ball at a pixel, as the CPU computes it.
-fn exact_parallel(splat: vec4<u32>, place: vec2<f32>) -> u32 {
-    let to_metres = bitcast<u32>(view.metres_per_pixel);
-    let across = multiply_single(subtract_single(bitcast<u32>(place.x), splat.x), to_metres);
-    let down = multiply_single(subtract_single(bitcast<u32>(place.y), splat.y), to_metres);
-    let rest = subtract_single(multiply_single(splat.w, splat.w), multiply_single(down, down));
-    let square = subtract_single(rest, multiply_single(across, across));
-    if order_single(square) <= 0 {
-        return INFINITE_SINGLE;
-    }
-    let half_chord = root_single(square);
-    if order_single(add_single(splat.z, half_chord)) < 0 {
-        return INFINITE_SINGLE;
-    }
-    let front = subtract_single(splat.z, half_chord);
-    return select(front, 0u, order_single(front) <= 0);
-}
-
-// a b - c d
-fn cross_single(a: u32, b: u32, c: u32, d: u32) -> u32 {
-    return subtract_single(multiply_single(a, b), multiply_single(c, d));
-}
-
-// The scalar product.
-fn dot_single(a: vec3<u32>, b: vec3<u32>) -> u32 {
-    let first = add_single(multiply_single(a.x, b.x), multiply_single(a.y, b.y));
-    return add_single(first, multiply_single(a.z, b.z));
-}
-
-fn exact_central(splat: vec4<u32>, sight: Sight) -> u32 {
-    let towards = bitcast<vec3<u32>>(sight.direction);
-    let beside = vec3<u32>(
-        cross_single(splat.y, towards.z, splat.z, towards.y),
-        cross_single(splat.z, towards.x, splat.x, towards.z),
-        cross_single(splat.x, towards.y, splat.y, towards.x),
-    );
-    let square = subtract_single(multiply_single(splat.w, splat.w), dot_single(beside, beside));
-    if order_single(square) <= 0 {
-        return INFINITE_SINGLE;
-    }
-    let half_chord = root_single(square);
-    let along = dot_single(splat.xyz, towards);
-    let scale = bitcast<u32>(sight.depth_per_range);
-    let near = bitcast<u32>(view.near);
-    let back = multiply_single(add_single(along, half_chord), scale);
-    let begin = multiply_single(subtract_single(along, half_chord), scale);
-    let front = select(near, begin, order_single(begin) > order_single(near));
-    let is_hit = order_single(back) >= order_single(near) && order_single(back) > 0
-        && order_single(front) <= order_single(bitcast<u32>(view.far));
-    return select(INFINITE_SINGLE, front, is_hit);
+    return select(bitcast<u32>(depth), INFINITE, depth >= ENDLESS_DEPTH);
 }
 
 // Where the list of a step and level of the tile begins and ends.
@@ -357,7 +308,7 @@ fn step_of(entry: u32) -> u32 {
     return step;
 }
 
-// A whole number that ascends as f32 does, and the number that it stands for.
+// A whole number that ascends as f32 does, and the number of a rank.
 fn rank(v: f32) -> u32 {
     let bits = bitcast<u32>(v);
     return select(bits | SIGN, ~bits, (bits & SIGN) != 0u);
@@ -385,26 +336,45 @@ fn farthest(lane: u32, upper: f32) -> f32 {
     return of_rank(workgroupUniformLoad(&farthest_of_all));
 }
 
-// What a pixel shows, a ball more considered; of equally near ones the ball with the lowest row.
-fn nearer(shown: Shown, splat: vec4<u32>, ball: u32, place: vec2<f32>, sight: Sight) -> Shown {
-    var depth: u32;
-    if KIND == PARALLEL {
-        depth = exact_parallel(splat, place);
-    } else {
-        depth = exact_central(splat, sight);
-    }
-    let row = view.first_ball + ball;
-    let is_nearer = depth < shown.depth || (depth == shown.depth && depth != INFINITE_SINGLE && row < shown.row);
-    if is_nearer {
-        return Shown(depth, row);
-    }
-    return shown;
+// What is known of a pixel after another ball.
+fn nearer(known: KnownDepth, of_ball: vec2<f32>, row: u32) -> KnownDepth {
+    var found = known;
+    found.upper = min(known.upper, of_ball.y);
+    found.second = min(known.second, max(known.lower, of_ball.x));
+    found.lower = min(known.lower, of_ball.x);
+    found.row = select(known.row, row, of_ball.x < known.lower);
+    return found;
 }
 
-fn store(pixel: u32, shown: Shown) {
-    pixels[pixel] = shown.depth;
-    if SHOWS == BALLS || SHOWS == BOUNDS {
-        rows[pixel] = shown.row;
+fn store(pixel: u32, known: KnownDepth) {
+    if view.is_last == 0u {
+        between[pixel] = known;
+        return;
+    }
+    if SHOWS == BOUNDS {
+        pixels[pixel] = bits_of(known.upper);
+        rows[pixel] = bits_of(known.lower);
+        return;
+    }
+    let width = known.upper - known.lower;
+    var bits = bitcast<u32>(known.lower + 0.5 * width);
+    if known.lower >= ENDLESS_DEPTH {
+        bits = INFINITE;
+    } else if width > TOLERANCE * known.lower || (SHOWS == BALLS && known.second <= known.upper) {
+        bits = SIGN | bits_of(known.upper);
+    }
+    pixels[pixel] = bits;
+    if SHOWS == BALLS {
+        rows[pixel] = known.row;
+    }
+}
+
+// Lists a ball that may be the nearest at a marked pixel. There may be more of them than room; their number counts on.
+fn list_candidate(pixel: u32, row: u32) {
+    let at = 2u * atomicAdd(&candidates[0], 1u) + 1u;
+    if at + 1u < arrayLength(&candidates) {
+        atomicStore(&candidates[at], pixel);
+        atomicStore(&candidates[at + 1u], row);
     }
 }
 
@@ -426,8 +396,8 @@ fn choose(lane: u32, entry_of_tile: u32, corner: vec2<f32>) {
     for (var block = 0u; block < BLOCKS; block++) {
         let of_block = corner + vec2<f32>(f32((block & 1u) * SIDE), f32((block >> 1u) * SIDE));
         let limit = of_rank(atomicLoad(&farthest_ranks[block]));
-        // a depth equal to the limit may be that of a lower row
-        if least_depth(bitcast<vec4<f32>>(splat), of_block, block) <= limit {
+        // of equal depths the lowest row is shown
+        if min_depth(splat, of_block, block) <= limit {
             chosen[block * 256u + atomicAdd(&chosen_count[block], 1u)] = lane;
         }
     }
@@ -438,9 +408,6 @@ fn draw(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
     let tile = vec2<u32>(group.x, group.y + piece.first_row);
     for (var at = lane; at < STEPS * LEVELS; at += 256u) {
         spans[at] = span(at, tile);
-    }
-    if lane == 0u {
-        atomicStore(&is_again, 0u);
     }
     workgroupBarrier();
     if lane <= STEPS {
@@ -458,133 +425,69 @@ fn draw(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
     let row = tile.y * TILE + (block >> 1u) * SIDE + ((lane >> 3u) & 7u);
     let is_inside = column < view.width && row < view.height;
     let pixel = row * view.width + column;
-    let place = vec2<f32>(f32(column) + 0.5, f32(row + view.top) + 0.5);
-    // pixels beside the picture are full
-    var shown = Shown(select(0u, INFINITE_SINGLE, is_inside), select(NO_BALL, INFINITE_SINGLE, SHOWS == BOUNDS));
-    if is_inside && view.first_ball > 0u {
-        shown.depth = pixels[pixel];
-        if SHOWS == BALLS || SHOWS == BOUNDS {
-            shown.row = rows[pixel];
-        }
+    let is_listing = piece.is_listing != 0u;
+    // pixels beside the picture are full, and so are those without a mark
+    var known = KnownDepth(select(-ENDLESS_DEPTH, ENDLESS_DEPTH, is_inside), NONE, NO_BALL, NONE);
+    if is_inside && is_listing {
+        let bits = pixels[pixel];
+        let of_mark = bitcast<f32>(select(bits & ~SIGN, bitcast<u32>(ENDLESS_DEPTH), bits == (SIGN | INFINITE)));
+        known.upper = select(-ENDLESS_DEPTH, of_mark, (bits & SIGN) != 0u);
+    } else if is_inside && view.first_ball > 0u {
+        known = between[pixel];
     }
     let total = workgroupUniformLoad(&step_begins[STEPS]);
-    if total == 0u {
-        if is_inside {
-            store(pixel, shown);
-        }
-        return;
-    }
-    var sight = Sight(vec3<f32>(0.0), 1.0);
     let corner = vec2<f32>(f32(tile.x * TILE), f32(tile.y * TILE + view.top));
-    var of_pixel: Cone;
     let of_part = vec2<f32>(0.0, f32(view.top));
+    let place = vec2<f32>(f32(column) + 0.5, f32(row + view.top) + 0.5);
+    var sight = vec3<f32>(0.0);
+    var of_pixel: Cone;
     if KIND != PARALLEL {
         if SHOWS == BOUNDS {
             of_pixel = cone_of_pixel(place - of_part);
-        } else if is_inside {
-            sight = exact_sight(column, row);
+        } else {
+            sight = direction(place - of_part);
         }
         if lane < BLOCKS {
             let of_block = vec2<f32>(f32((lane & 1u) * SIDE), f32((lane >> 1u) * SIDE));
             cones[lane] = cone_of(corner + of_block - of_part);
         }
     }
-    var upper = select(bitcast<f32>(shown.depth), ENDLESS_DEPTH, shown.depth == INFINITE_SINGLE);
-    var lower = select(bitcast<f32>(shown.row), ENDLESS_DEPTH, shown.row == INFINITE_SINGLE);
-    var limit = farthest(lane, upper);
-    var computed = 0u;
-    // up to three balls, and bounds of their depths; the least of those that found no room
-    var kept = vec3<u32>(0u);
-    var kept_lower = vec3<f32>(NONE);
-    var missed = NONE;
-    for (var turn = 0u; turn < 2u; turn++) {
-        if turn == 1u {
-            if missed <= upper {
-                atomicStore(&is_again, 1u);
+    var limit = farthest(lane, known.upper);
+    for (var first = 0u; first < total; first += 256u) {
+        // steps begin at 0, but parallel views have bounds before that
+        if limit == -ENDLESS_DEPTH || bitcast<f32>(steps[RANGES + step_of(first)]) > max(limit, 0.0) {
+            break;
+        }
+        if lane < BLOCKS {
+            atomicStore(&chosen_count[lane], 0u);
+        }
+        workgroupBarrier();
+        if first + lane < total {
+            choose(lane, first + lane, corner);
+        }
+        workgroupBarrier();
+        let count = atomicLoad(&chosen_count[block]);
+        for (var i = 0u; i < count; i++) {
+            let at = chosen[block * 256u + i];
+            let splat = chunk[at];
+            let row_of_ball = view.first_ball + chunk_balls[at];
+            if SHOWS == BOUNDS {
+                known = nearer(known, bounds_over_pixel(splat, place, of_pixel), row_of_ball);
+                continue;
             }
-            workgroupBarrier();
-            if lane == 0u {
-                is_again_shared = atomicLoad(&is_again);
-            }
-            if workgroupUniformLoad(&is_again_shared) == 0u {
-                break;
+            let of_ball = depth_bounds(splat, place, sight);
+            if !is_listing {
+                known = nearer(known, of_ball, row_of_ball);
+            } else if of_ball.x <= known.upper {
+                list_candidate(pixel, row_of_ball);
             }
         }
-        for (var first = 0u; first < total; first += 256u) {
-            // steps begin at 0, but parallel views have bounds before that
-            if bitcast<f32>(steps[RANGES + step_of(first)]) > max(limit, 0.0) {
-                break;
-            }
-            if lane < BLOCKS {
-                atomicStore(&chosen_count[lane], 0u);
-            }
-            workgroupBarrier();
-            if first + lane < total {
-                choose(lane, first + lane, corner);
-            }
-            workgroupBarrier();
-            let count = atomicLoad(&chosen_count[block]);
-            if IS_COUNTED && lane % 64u == 0u {
-                atomicAdd(&left_out[2], min(total - first, 256u) / BLOCKS);
-                atomicAdd(&left_out[3], count);
-            }
-            for (var i = 0u; i < count; i++) {
-                let at = chosen[block * 256u + i];
-                let splat = chunk[at];
-                if SHOWS == BOUNDS {
-                    let found = bounds_over_pixel(bitcast<vec4<f32>>(splat), place, of_pixel);
-                    lower = min(lower, found.x);
-                    upper = min(upper, found.y);
-                    continue;
-                }
-                let depths = bounds(bitcast<vec4<f32>>(splat), place, sight);
-                if !is_inside || depths.x > upper || depths.x >= ENDLESS_DEPTH {
-                    continue;
-                }
-                if turn == 1u {
-                    if missed <= upper {
-                        computed += 1u;
-                        shown = nearer(shown, splat, chunk_balls[at], place, sight);
-                    }
-                    continue;
-                }
-                upper = min(upper, depths.y);
-                // in the place of one that is certainly behind
-                if kept_lower.x > upper {
-                    kept.x = chunk_balls[at];
-                    kept_lower.x = depths.x;
-                } else if kept_lower.y > upper {
-                    kept.y = chunk_balls[at];
-                    kept_lower.y = depths.x;
-                } else if kept_lower.z > upper {
-                    kept.z = chunk_balls[at];
-                    kept_lower.z = depths.x;
-                } else {
-                    missed = min(missed, depths.x);
-                }
-            }
-            workgroupBarrier();
-            if turn == 0u {
-                limit = farthest(lane, upper);
-            }
+        workgroupBarrier();
+        if !is_listing {
+            limit = farthest(lane, known.upper);
         }
     }
-    if missed > upper {
-        // all pixels together, so that they do not wait for each other
-        for (var i = 0u; i < 3u; i++) {
-            if kept_lower[i] <= upper {
-                computed += 1u;
-                shown = nearer(shown, splats[kept[i]], kept[i], place, sight);
-            }
-        }
-    }
-    if IS_COUNTED {
-        atomicAdd(&left_out[4], computed);
-    }
-    if SHOWS == BOUNDS {
-        shown = Shown(bits_of(upper), bits_of(lower));
-    }
-    if is_inside {
-        store(pixel, shown);
+    if is_inside && !is_listing {
+        store(pixel, known);
     }
 }

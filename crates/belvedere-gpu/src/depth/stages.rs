@@ -1,25 +1,20 @@
 //! The stages of a depth map as pipelines, the buffers between them, and which stage uses which buffer.
 
-use super::{BLOCK, HEAD, LEVELS, MOST_LEFT, MOST_TILES, RANGES, STEPS, Shows, tiles_before, whole};
+use super::{BLOCK, LEVELS, MAX_TILES, RANGES, STEPS, Shows, tiles_before, whole};
 use belvedere_data::view::{Projection, View};
 
-/// All shaders together: each uses what stands before it.
-const SHADERS: &str = concat!(
-    include_str!("floats.wgsl"),
-    include_str!("place.wgsl"),
-    include_str!("bins.wgsl"),
-    include_str!("draw.wgsl")
-);
+/// All shaders together: each uses those before it.
+const SHADERS: &str = concat!(include_str!("touch.wgsl"), include_str!("bins.wgsl"), include_str!("draw.wgsl"));
 
 /// Kinds of views, as the shaders number them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(super) enum Kind {
+pub(super) enum ShaderView {
     Parallel,
     Perspective,
     Hemispherical,
 }
 
-impl Kind {
+impl ShaderView {
     pub(super) fn of(view: &View) -> Self {
         match view.projection {
             Projection::Orthographic { .. } => Self::Parallel,
@@ -31,76 +26,80 @@ impl Kind {
 
 /// A stage with the numbers of the buffers that it uses.
 #[derive(Debug)]
-struct Stage {
+struct DepthStage {
     pipeline: wgpu::ComputePipeline,
     bindings: &'static [u32],
 }
 
 /// The stages in their order.
 #[derive(Debug)]
-pub(super) struct Stages {
-    place: Stage,
-    share_depths: Stage,
-    count: Stage,
-    sum_lists: Stage,
-    sum_blocks: Stage,
-    fill: Stage,
-    draw: Stage,
+pub(super) struct DepthStages {
+    sorting: [DepthStage; 6],
+    draw: DepthStage,
 }
 
 /// What stages hand to each other, and what they draw.
 #[derive(Debug)]
-pub(super) struct Buffers {
+pub(super) struct DepthBuffers {
     pub(super) piece: wgpu::Buffer,
-    splats: wgpu::Buffer,
     touched: wgpu::Buffer,
+    pub(super) depths: wgpu::Buffer,
     pub(super) counters: wgpu::Buffer,
     pub(super) before: wgpu::Buffer,
     listed: wgpu::Buffer,
     pub(super) pixels: wgpu::Buffer,
     pub(super) rows: wgpu::Buffer,
-    pub(super) left_out: wgpu::Buffer,
-    pub(super) depths: wgpu::Buffer,
+    between: wgpu::Buffer,
+    pub(super) candidates: wgpu::Buffer,
     steps: wgpu::Buffer,
 }
 
-impl Buffers {
-    /// Those for so many balls, and for pictures of a width and height.
-    pub(super) fn new(device: &wgpu::Device, ball_count: usize, [width, height]: [usize; 2], shows: Shows) -> Self {
+/// How large buffers have to be.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Sizes {
+    pub(super) ball_count: usize,
+    /// Whether no other balls come after these.
+    pub(super) is_whole: bool,
+    /// Columns and rows of a part of a picture.
+    pub(super) size_px: [usize; 2],
+    pub(super) shows: Shows,
+}
+
+impl DepthBuffers {
+    pub(super) fn new(device: &wgpu::Device, sizes: &Sizes) -> Self {
         let with_usage = |bytes: usize, usage| {
             let size = bytes.max(16) as u64;
             device.create_buffer(&wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation: false })
         };
         let copied = wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC;
         let of = |bytes: usize| with_usage(bytes, wgpu::BufferUsages::STORAGE | copied);
-        let lists = (tiles_before([width, height])[LEVELS as usize] * STEPS).next_multiple_of(BLOCK);
-        let row_count = if shows == Shows::Depths { 0 } else { width * height };
+        let lists = (tiles_before(sizes.size_px)[LEVELS as usize] * STEPS).next_multiple_of(BLOCK);
+        let (ball_count, pixel_count) = (sizes.ball_count, sizes.size_px[0] * sizes.size_px[1]);
+        let only_if = |is_used: bool, bytes: usize| of(if is_used { bytes } else { 0 });
         Self {
             piece: with_usage(16, wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST),
-            splats: of(16 * ball_count),
             touched: of(8 * ball_count),
+            depths: of(4 * RANGES),
             counters: of(4 * lists),
             before: of(4 * BLOCK),
-            listed: of(4 * MOST_TILES * ball_count),
-            pixels: of(4 * width * height),
-            rows: of(4 * row_count),
-            left_out: of(4 * (HEAD + MOST_LEFT)),
-            depths: of(4 * RANGES),
+            listed: of(4 * MAX_TILES * ball_count),
+            pixels: of(4 * pixel_count),
+            rows: only_if(sizes.shows != Shows::Depths, 4 * pixel_count),
+            between: only_if(!sizes.is_whole, 16 * pixel_count),
+            candidates: only_if(sizes.shows != Shows::Bounds, 4 + 8 * pixel_count),
             steps: of(4 * (RANGES + STEPS)),
         }
     }
 }
 
-impl Stages {
-    pub(super) fn new(device: &wgpu::Device, kind: Kind, shows: Shows, is_counted: bool) -> Self {
+impl DepthStages {
+    pub(super) fn new(device: &wgpu::Device, kind: ShaderView, shows: Shows) -> Self {
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some("depth maps"),
             source: wgpu::ShaderSource::Wgsl(SHADERS.into()),
         });
-        let (kind, shows) = (f64::from(kind as u8), f64::from(shows as u8));
-        let counted = f64::from(u8::from(is_counted));
-        let constants = [("KIND", kind), ("SHOWS", shows), ("IS_COUNTED", counted)];
-        let stage = |name: &str, bindings| Stage {
+        let constants = [("KIND", f64::from(kind as u8)), ("SHOWS", f64::from(shows as u8))];
+        let stage = |name: &str, bindings| DepthStage {
             pipeline: device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
                 label: Some(name),
                 layout: None,
@@ -115,40 +114,42 @@ impl Stages {
             bindings,
         };
         Self {
-            place: stage("place", &[0, 2, 3, 4, 10, 11]),
-            share_depths: stage("share_depths", &[11, 12]),
-            count: stage("count", &[0, 4, 5, 10, 12]),
-            sum_lists: stage("sum_lists", &[5, 6]),
-            sum_blocks: stage("sum_blocks", &[6]),
-            fill: stage("fill", &[0, 4, 5, 6, 7, 12]),
-            draw: stage("draw", &[0, 1, 3, 5, 6, 7, 8, 9, 10, 12, 13]),
+            sorting: [
+                stage("touch", &[0, 2, 3, 4]),
+                stage("share_depths", &[4, 12]),
+                stage("count", &[0, 3, 5, 12]),
+                stage("sum_lists", &[5, 6]),
+                stage("sum_blocks", &[6]),
+                stage("fill", &[0, 3, 5, 6, 7, 12]),
+            ],
+            draw: stage("draw", &[0, 1, 2, 5, 6, 7, 8, 9, 10, 11, 12]),
         }
     }
 
-    /// The stages with their buffers, and those of a view, its balls and the offsets of its pixels.
+    /// The stages with their buffers, and those of a view and its balls.
     pub(super) fn bind(
         &self,
         device: &wgpu::Device,
-        buffers: &Buffers,
-        [view, balls, offsets]: [&wgpu::Buffer; 3],
-    ) -> Bound<'_> {
+        buffers: &DepthBuffers,
+        view: &wgpu::Buffer,
+        splats: &wgpu::Buffer,
+    ) -> BoundStages<'_> {
         let all = [
             view,
             &buffers.piece,
-            balls,
-            &buffers.splats,
+            splats,
             &buffers.touched,
+            &buffers.depths,
             &buffers.counters,
             &buffers.before,
             &buffers.listed,
             &buffers.pixels,
             &buffers.rows,
-            &buffers.left_out,
-            &buffers.depths,
+            &buffers.between,
+            &buffers.candidates,
             &buffers.steps,
-            offsets,
         ];
-        let group = |stage: &Stage| {
+        let group = |stage: &DepthStage| {
             let used = (0_u32..).zip(all).filter(|(binding, _)| stage.bindings.contains(binding));
             let entries: Vec<wgpu::BindGroupEntry<'_>> = used
                 .map(|(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() })
@@ -159,21 +160,20 @@ impl Stages {
                 entries: &entries,
             })
         };
-        let of_sorting = [&self.place, &self.share_depths, &self.count, &self.sum_lists, &self.sum_blocks, &self.fill];
-        Bound {
-            sorting: of_sorting.map(|stage| (&stage.pipeline, group(stage))),
+        BoundStages {
+            sorting: self.sorting.each_ref().map(|stage| (&stage.pipeline, group(stage))),
             draw: (&self.draw.pipeline, group(&self.draw)),
         }
     }
 }
 
 /// Stages that are ready to run.
-pub(super) struct Bound<'s> {
+pub(super) struct BoundStages<'s> {
     sorting: [(&'s wgpu::ComputePipeline, wgpu::BindGroup); 6],
     draw: (&'s wgpu::ComputePipeline, wgpu::BindGroup),
 }
 
-impl Bound<'_> {
+impl BoundStages<'_> {
     /// Places balls and sorts them into lists: so many groups of balls, so many blocks of lists.
     pub(super) fn sort(&self, encoder: &mut wgpu::CommandEncoder, ball_groups: usize, blocks: usize) {
         let groups = [ball_groups, 1, ball_groups, blocks, 1, ball_groups];

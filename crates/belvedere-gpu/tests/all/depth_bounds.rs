@@ -1,5 +1,5 @@
-//! Bounds of depth that a device draws hold, and answers by them are those of exact lines of sight: in all projections, of random and hostile balls, in parts, and when the
-//! device is lost in the middle.
+//! Bounds of depth that a device draws hold, and answers by them are those of exact lines of sight: in all projections,
+//! of random and hostile balls, in parts, and when the device is lost in the middle.
 
 use belvedere::control::Control;
 use belvedere::depth::{BoundsParams, DepthBounds, Profile, depth_bounds};
@@ -16,7 +16,7 @@ use crate::bounded_views::{
 use crate::depth_maps::{hostile, on, views as depth_map_views};
 use crate::devices_or_skip;
 
-/// Bounds that a device is asked for.
+/// Bounds of a device.
 fn drawn(gpu: &Gpu, balls: &MedialBalls, rule: &BlockRule, view: &View, start: f64) -> DepthBounds {
     let tree = Arc::new(BallTree::new(balls, rule).unwrap());
     gpu.prepare(&tree).unwrap().depth(view, start, &Control::none()).unwrap()

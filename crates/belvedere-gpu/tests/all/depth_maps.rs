@@ -1,11 +1,12 @@
-//! What a device draws is what the CPU draws, bit by bit: in all projections, of random and hostile balls, in parts, and when the device is lost in the middle.
+//! What a device draws is what the CPU draws, within the tolerance of depths: in all projections, of random and hostile
+//! balls, in parts, and when the device is lost in the middle.
 
 use crate::{balls_of, devices_or_skip, random_balls};
 use belvedere::control::Control;
 use belvedere::depth::{DepthMap, ItemBuffer, Profile, depth_map};
 use belvedere::medial::{MedialBalls, NO_TOUCH};
 use belvedere::model::SceneModel;
-use belvedere::query::Backend;
+use belvedere::query::{Backend, DEPTH_MAP_TOLERANCE};
 use belvedere::view::View;
 use belvedere_gpu::{Choice, DeviceInfo, Gpu};
 use std::sync::Arc;
@@ -44,28 +45,34 @@ pub(crate) fn views() -> Vec<(&'static str, View)> {
 /// Views of a hundred thousand balls, one of each kind: software takes seconds for each.
 const WITH_MANY_BALLS: [&str; 3] = ["from the side, slanting", "limits of depth", "a hemisphere far below"];
 
-fn assert_same(drawn: &DepthMap, expected: &DepthMap, what: &str) {
+/// Depths differ by the tolerance at most, empty pixels and the balls of pixels not at all.
+fn assert_within(drawn: &DepthMap, expected: &DepthMap, what: &str) {
     let [width, _] = expected.view.size_px;
-    for (at, (drawn, expected)) in drawn.depth.values().iter().zip(expected.depth.values()).enumerate() {
+    for (at, (&drawn, &expected)) in drawn.depth.values().iter().zip(expected.depth.values()).enumerate() {
         let place = [at % width, at / width];
-        assert!(drawn.to_bits() == expected.to_bits(), "{what}: {drawn} m for {expected} m at {place:?}");
+        assert!(is_within(drawn, expected), "{what}: {drawn} m for {expected} m at {place:?}");
     }
     assert!(drawn.balls == expected.balls, "{what}: other balls");
     assert_eq!(drawn.around_eye_count, expected.around_eye_count, "{what}: balls around the eye");
-    assert!(drawn == expected, "{what}");
+    assert!(drawn.view == expected.view && drawn.profile == expected.profile, "{what}");
+}
+
+fn is_within(drawn: f32, expected: f32) -> bool {
+    let [drawn, expected] = [drawn, expected].map(f64::from);
+    drawn == expected || (drawn - expected).abs() <= f64::from(DEPTH_MAP_TOLERANCE) * expected
 }
 
 /// Draws on a device and on the CPU. Says how many pixels show something.
-fn assert_equal_on(gpu: &Gpu, balls: &MedialBalls, view: &View, all_items: &[ItemBuffer], what: &str) -> usize {
+fn assert_within_on(gpu: &Gpu, balls: &MedialBalls, view: &View, all_items: &[ItemBuffer], what: &str) -> usize {
     let pixels = view.size_px[0] * view.size_px[1];
-    // a small picture is asked of the device too
+    // the device draws a small picture too
     let drawable = gpu.drawable(balls, pixels.max(10_000), &Control::none()).unwrap();
-    let drawable = drawable.unwrap_or_else(|| panic!("{what}: the device is not asked"));
+    let drawable = drawable.unwrap_or_else(|| panic!("{what}: the device draws nothing"));
     let mut shown = 0;
     for &items in all_items {
         let expected = depth_map(balls, view, Profile::Sphere, items, &Control::none()).unwrap();
         let drawn = drawable.depth_map(view, items, &Control::none()).unwrap();
-        assert_same(&drawn, &expected, what);
+        assert_within(&drawn, &expected, what);
         shown = expected.depth.values().iter().filter(|depth| depth.is_finite()).count();
     }
     shown
@@ -76,16 +83,16 @@ pub(crate) fn on(device: &DeviceInfo) -> Gpu {
 }
 
 #[test]
-fn depth_maps_of_random_balls_are_those_of_the_cpu() {
+fn depth_maps_of_random_balls_are_within_the_tolerance() {
     let few = balls_of(random_balls(2500, SIZE, 2.0));
     let many = balls_of(random_balls(100_000, SIZE, 0.4));
-    for device in devices_or_skip("depth_maps_of_random_balls_are_those_of_the_cpu") {
+    for device in devices_or_skip("depth_maps_of_random_balls_are_within_the_tolerance") {
         let gpu = on(&device);
         for (name, view) in views() {
             let what = format!("{name} on {}", device.name);
-            assert!(assert_equal_on(&gpu, &few, &view, &[ItemBuffer::Without], &what) > 0, "{what}: nothing is seen");
+            assert!(assert_within_on(&gpu, &few, &view, &[ItemBuffer::Without], &what) > 0, "{what}: nothing is seen");
             if WITH_MANY_BALLS.contains(&name) {
-                assert_equal_on(&gpu, &many, &view, &[ItemBuffer::With], &what);
+                assert_within_on(&gpu, &many, &view, &[ItemBuffer::With], &what);
             }
         }
         assert!(gpu.notes().is_empty() && gpu.used().is_some(), "{:?}", gpu.notes());
@@ -126,7 +133,17 @@ pub(crate) fn hostile() -> Vec<(&'static str, MedialBalls)> {
             with(&[([0.0, 0.0, -9e6], 9e6), ([3e5, 0.0, 0.0], 3e5 - 40.0), ([0.0, -1e12, 0.0], 1e12 - 60.0)]),
         ),
         ("the largest numbers", with(&[([3e38, 0.0, 0.0], 3e38), ([0.0, -3e38, 1.0], 1.0), ([1e20; 3], 1e19)])),
-        ("balls far away", with(&[([8e6, -8e6, 5e6], 1.0), ([0.0, 0.0, -4000.0], 900.0), ([1e5, 1e5, 0.0], 3e4)])),
+        (
+            "balls far away",
+            with(&[
+                ([8e6, -8e6, 5e6], 1.0),
+                ([0.0, 0.0, -4000.0], 900.0),
+                ([1e5, 1e5, 0.0], 3e4),
+                ([7e3, 7e3, 60.0], 40.0),
+                ([9e3, -3e3, 300.0], 500.0),
+                ([30.0, 20.0, -1e4], 200.0),
+            ]),
+        ),
         ("balls around eyes", with(&around_eyes)),
         ("balls at planes", with(&at_planes)),
         ("all balls thrice", balls_of(twice.into_iter())),
@@ -146,16 +163,19 @@ pub(crate) fn hostile() -> Vec<(&'static str, MedialBalls)> {
 }
 
 #[test]
-fn depth_maps_of_hostile_balls_are_those_of_the_cpu() {
-    for device in devices_or_skip("depth_maps_of_hostile_balls_are_those_of_the_cpu") {
+fn depth_maps_of_hostile_balls_are_within_the_tolerance() {
+    for device in devices_or_skip("depth_maps_of_hostile_balls_are_within_the_tolerance") {
         let gpu = on(&device);
         for (of, balls) in hostile() {
             for (name, view) in views() {
                 let what = format!("{of}, {name} on {}", device.name);
-                assert_equal_on(&gpu, &balls, &view, &[ItemBuffer::With], &what);
+                assert_within_on(&gpu, &balls, &view, &[ItemBuffer::With], &what);
             }
         }
         assert!(gpu.notes().is_empty(), "{:?}", gpu.notes());
+        // both ways were taken
+        let share = gpu.redone_share();
+        assert!(share > 0.001 && share < 0.5, "{share} of the pixels are drawn again");
     }
 }
 
@@ -167,7 +187,7 @@ fn balls_and_pictures_larger_than_the_buffers_are_drawn_in_parts() {
         let gpu = Gpu::limited(device.number, 150_000, None).unwrap();
         for (name, view) in views().into_iter().step_by(2) {
             let what = format!("{name}, in parts on {}", device.name);
-            assert_equal_on(&gpu, &balls, &view, &[ItemBuffer::With], &what);
+            assert_within_on(&gpu, &balls, &view, &[ItemBuffer::With], &what);
         }
         assert!(gpu.notes().is_empty() && gpu.used().is_some(), "{:?}", gpu.notes());
     }
@@ -179,21 +199,22 @@ fn a_device_lost_in_the_middle_of_a_picture_loses_nothing() {
     let view = views()[0].1;
     for device in devices_or_skip("a_device_lost_in_the_middle_of_a_picture_loses_nothing") {
         let gpu = Gpu::limited(device.number, 150_000, Some(1)).unwrap();
-        assert_equal_on(&gpu, &balls, &view, &[ItemBuffer::Without, ItemBuffer::With], "lost");
+        assert_within_on(&gpu, &balls, &view, &[ItemBuffer::Without, ItemBuffer::With], "lost");
         assert!(gpu.notes().len() == 1 && gpu.notes()[0].contains("the CPU does the rest"), "{:?}", gpu.notes());
         assert!(gpu.device().is_none() && gpu.used().is_none());
-        // and it is not asked again
+        // and it is not used again
         assert!(gpu.drawable(&balls, 1 << 20, &Control::none()).unwrap().is_none());
         // a device whose buffers hold next to nothing
         let tiny = Gpu::limited(device.number, 64, None).unwrap();
-        assert_equal_on(&tiny, &balls, &view, &[ItemBuffer::Without], "tiny");
+        assert_within_on(&tiny, &balls, &view, &[ItemBuffer::Without], "tiny");
         assert_eq!(tiny.notes().len(), 1, "{:?}", tiny.notes());
     }
 }
 
-/// The pictures of a model are the same with a device, panoramas too.
-pub(crate) fn assert_pictures_are_equal(name: &str, on_cpu: &SceneModel, on_device: &SceneModel) {
-    let (low, high) = on_cpu.bounds().corners();
+/// The pictures of a model are those of the CPU within the tolerance, panoramas too, and few pixels are drawn twice.
+pub(crate) fn assert_pictures_are_within(name: &str, model: &SceneModel, gpu: &Arc<Gpu>) {
+    let on_device = model.clone().with_backend(gpu.clone());
+    let (low, high) = model.bounds().corners();
     let middle: [f64; 3] = std::array::from_fn(|axis| 0.5 * (low[axis] + high[axis]));
     let size = (high[0] - low[0]).max(high[1] - low[1]);
     let beside = [middle[0] - 0.3 * size, middle[1] + 0.1 * size, high[2] + 0.1 * size];
@@ -203,15 +224,20 @@ pub(crate) fn assert_pictures_are_equal(name: &str, on_cpu: &SceneModel, on_devi
         View::perspective(beside, middle, 1.2, [320, 200], 0.0, f64::INFINITY).unwrap(),
     ];
     for view in &views {
-        let draw =
-            |model: &SceneModel| model.depth_map(view, Profile::Sphere, ItemBuffer::With, &Control::none()).unwrap();
-        let expected = draw(on_cpu);
-        assert!(expected.depth.values().iter().filter(|depth| depth.is_finite()).count() > 10_000, "{name}");
-        assert_same(&draw(on_device), &expected, name);
+        for items in [ItemBuffer::With, ItemBuffer::Without] {
+            let draw = |model: &SceneModel| model.depth_map(view, Profile::Sphere, items, &Control::none()).unwrap();
+            let expected = draw(model);
+            assert!(expected.depth.values().iter().filter(|depth| depth.is_finite()).count() > 10_000, "{name}");
+            assert_within(&draw(&on_device), &expected, name);
+        }
     }
     let eye = [middle[0], middle[1], high[2]];
     let around = |model: &SceneModel| model.panorama(eye, 400, ItemBuffer::With, &Control::none()).unwrap();
-    assert!(around(on_device) == around(on_cpu), "{name}: other panoramas");
+    let (drawn, expected) = (around(&on_device), around(model));
+    assert!(drawn.balls == expected.balls && drawn.around_eye_count == expected.around_eye_count, "{name}: panoramas");
+    let mut ranges = drawn.range.values().iter().zip(expected.range.values());
+    assert!(ranges.all(|(&drawn, &expected)| is_within(drawn, expected)), "{name}: panoramas");
+    assert!(gpu.redone_share() < 0.02, "{name}: {} of the pixels are drawn again", gpu.redone_share());
 }
 
 #[test]
@@ -228,7 +254,7 @@ fn the_papers_cone_stays_on_the_cpu() {
         };
         assert!(draw(&with_gpu, Profile::PaperCone) == draw(&model, Profile::PaperCone));
         assert!(gpu.used().is_none());
-        assert!(draw(&with_gpu, Profile::Sphere) == draw(&model, Profile::Sphere));
+        assert_within(&draw(&with_gpu, Profile::Sphere), &draw(&model, Profile::Sphere), "spheres");
         assert!(gpu.used().is_some());
     }
 }

@@ -1,4 +1,5 @@
-//! What a device decides of lines of sight is what the CPU decides: on random and hostile balls, on whole scenes, and when the device is lost in the middle.
+//! What a device decides of lines of sight is what the CPU decides: on random and hostile balls, on whole scenes, and
+//! when the device is lost in the middle.
 
 use belvedere::apps::sky_view::SkyDirections;
 use belvedere::control::Control;
@@ -14,7 +15,7 @@ use belvedere_gpu::{Choice, DeviceInfo, Gpu, devices};
 use belvedere_scenes::{AirborneParams, TownParams, scan_airborne, town};
 use std::sync::Arc;
 
-use crate::depth_maps::assert_pictures_are_equal;
+use crate::depth_maps::assert_pictures_are_within;
 use crate::{balls_of, data, devices_or_skip, random_balls};
 
 /// The directions of a sky view, and some along axes, flat and downward.
@@ -45,10 +46,11 @@ fn targets(count: u64, size: [f64; 3]) -> Vec<[f32; 3]> {
 
 /// Scenes of which a device decides nearly all lines.
 const PLAIN: [&str; 3] = ["random balls", "a bias", "a single ball"];
-/// Targets that are asked of every ball one by one.
+/// Targets that are tested with every ball one by one.
 const BRUTE: usize = 97;
 
-/// Compares what a device decides with exact lines of sight, and the bits of the matrix with those of the CPU. Says which share of the lines the device left open.
+/// Compares what a device decides with exact lines of sight, and the bits of the matrix with those of the CPU. Says
+/// which share of the lines the device left open.
 fn assert_equal_on(
     device: &DeviceInfo,
     balls: &MedialBalls,
@@ -117,7 +119,8 @@ fn assert_eyes_are_equal_on(device: &DeviceInfo, tree: &Arc<BallTree>, targets: 
     }
     // one target in 30 is very far away; eyes close to a target or to the surface of a ball leave a few more lines open
     assert!(!PLAIN.contains(&what) || decided > finite * 9 / 10, "{what}: {decided} of {finite} are decided");
-    // and the ways of asking that use them; thousands of kilometres away f64 itself errs by metres, so that these differ among each other
+    // and the questions that use them; thousands of kilometres away f64 itself errs by metres, so that these
+    // differ among each other
     let near: Vec<[f32; 3]> = targets.iter().copied().filter(|target| target.iter().all(|v| v.abs() < 1e6)).collect();
     let targets = &near[..];
     let targets_in_tree = TargetTree::new(targets);
@@ -203,7 +206,7 @@ fn assert_scene_is_equal(name: &str, model: &SceneModel) {
         let tree = model.scene(&model.rule(), UnprovenAs::Visible, &Control::none()).unwrap();
         let open = assert_equal_on(&device, model.balls(), tree.params(), &targets, name);
         assert!(open < 0.001, "{name}: {open} of the lines stay open");
-        assert_pictures_are_equal(name, model, &with_gpu);
+        assert_pictures_are_within(name, model, &gpu);
     }
 }
 
@@ -254,7 +257,7 @@ fn a_device_lost_in_the_middle_loses_nothing() {
             let notes = gpu.notes();
             assert!(notes.len() == 1 && notes[0].contains("the CPU does the rest"), "{notes:?}");
             assert!(gpu.device().is_none());
-            // and asked again it does not try again
+            // and a second question does not try again
             assert!(backed.visibility_matrix(&targets, &directions, &Control::none()).unwrap() == whole);
             assert_eq!(gpu.notes().len(), 1);
         }
@@ -262,7 +265,7 @@ fn a_device_lost_in_the_middle_loses_nothing() {
 }
 
 #[test]
-fn a_scene_larger_than_the_buffers_of_a_device_is_asked_in_parts() {
+fn a_scene_larger_than_the_buffers_of_a_device_is_tested_in_parts() {
     let size = [60.0, 60.0, 15.0];
     let balls = balls_of(random_balls(20_000, size, 1.0));
     // beside the scene, too: a part of it must not leave open what all of it would decide
@@ -275,7 +278,7 @@ fn a_scene_larger_than_the_buffers_of_a_device_is_asked_in_parts() {
         let lines = (0..targets.len()).flat_map(|target| (0..directions.len()).map(move |number| (target, number)));
         lines.filter(|&(target, number)| settled.line(target, number) == LineAnswer::Open).count()
     };
-    for device in devices_or_skip("a_scene_larger_than_the_buffers_of_a_device_is_asked_in_parts") {
+    for device in devices_or_skip("a_scene_larger_than_the_buffers_of_a_device_is_tested_in_parts") {
         let whole = Arc::new(Gpu::new(Choice::Number(device.number)).unwrap());
         // 20 000 balls take 320 kB; 20 kB are enough for the targets
         let in_parts = Arc::new(Gpu::limited(device.number, 60_000, None).unwrap());

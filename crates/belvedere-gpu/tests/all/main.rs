@@ -49,7 +49,8 @@ fn random_balls(count: u64, size: [f64; 3], largest: f64) -> impl Iterator<Item 
     })
 }
 
-/// The file at `relative` under `BELVEDERE_TEST_DATA` (default: `shared` beside the repository), or `None` after saying that the test is skipped.
+/// The file at `relative` under `BELVEDERE_TEST_DATA` (default: `shared` beside the repository), or `None` after saying
+/// that the test is skipped.
 fn data(test: &str, relative: &str) -> Option<PathBuf> {
     let root = std::env::var_os("BELVEDERE_TEST_DATA")
         .map_or_else(|| PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared")), PathBuf::from);
