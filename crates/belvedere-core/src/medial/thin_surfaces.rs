@@ -1,14 +1,16 @@
 //! Surfaces with open space close below them, told by the pulses that run there: decks, canopies, balconies, bridges.
 
-use super::bounds::Kind;
-use super::chains::LEAST_SHARE;
+use super::carved::CarvedInput;
+use super::chains::MIN_SHARE;
 use super::layers::{CELL, CellsFrom, Layers};
+use super::marks::{Cap, Fill, FillPlace, Marks};
 use super::midway::{neighbors_after, one_in_each_cell};
-use super::whole_survey::BLOCK;
+use super::rules::{CarvedParams, MarkingRule, Phase, Rule};
+use super::survey::{BLOCK, Survey};
 use crate::neighbors::NeighborIndex;
 use crate::pulses::Needles;
 use belvedere_data::Result;
-use belvedere_data::balls::{MedialBalls, PULSE_TOUCH};
+use belvedere_data::balls::MedialBalls;
 use belvedere_data::control::{Control, Stop};
 use rayon::prelude::*;
 use std::f32::consts::TAU;
@@ -83,124 +85,109 @@ impl Default for ThinSurfaceParams {
     }
 }
 
-/// Whether each of `positions`, (N, 3) local metres, lies on a thin surface. `kinds`, (N), leave out ground and vegetation:
-/// crowns would read as decks. `index` must have been built from the positions. The result depends on neither the order of
-/// points and needles nor the number of threads.
+/// Whether each point of `input` lies on a thin surface. The result depends on neither the order of points and pulses nor the number of
+/// threads.
 ///
 /// # Errors
 /// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
 pub fn on_thin_surfaces(
-    positions: &[[f32; 3]],
-    kinds: &[Kind],
-    index: &NeighborIndex,
-    needles: &Needles,
+    input: &CarvedInput<'_>,
     params: &ThinSurfaceParams,
     control: &Control<'_>,
 ) -> Result<Vec<bool>> {
-    find(positions, positions, CellsFrom::Cloud, kinds, index, needles, params, control)
+    let only_this = CarvedParams::default().without(Rule::Vegetation).without(Rule::Crowns);
+    params.thin_points(&Survey::new(input, &only_this, control)?, control)
 }
 
-/// The same for a part of a survey. `measured` are the points before they were moved onto their surface. Surfaces end at blocks of 64 m counted
-/// from the origin, so that those of a block are the same in every part that holds all of it and what lies about it.
-///
-/// # Errors
-/// Those of [`on_thin_surfaces`].
-pub(super) fn on_thin_surfaces_of_part(
-    (positions, measured): (&[[f32; 3]], &[[f32; 3]]),
-    kinds: &[Kind],
-    index: &NeighborIndex,
-    needles: &Needles,
-    params: &ThinSurfaceParams,
-    control: &Control<'_>,
-) -> Result<Vec<bool>> {
-    find(positions, measured, CellsFrom::Origin, kinds, index, needles, params, control)
-}
-
-#[expect(clippy::too_many_arguments, reason = "what the two above have in common")]
-fn find(
-    positions: &[[f32; 3]],
-    in_layers: &[[f32; 3]],
-    from: CellsFrom,
-    kinds: &[Kind],
-    index: &NeighborIndex,
-    needles: &Needles,
-    params: &ThinSurfaceParams,
-    control: &Control<'_>,
-) -> Result<Vec<bool>> {
-    let stop = Stop::new(control);
-    let solid = |row: usize| matches!(kinds.get(row), Some(Kind::Other | Kind::Later));
-    let Some(layers) = Layers::new(in_layers, from, solid) else { return Ok(vec![false; positions.len()]) };
-    control.check()?;
-    let beside: Vec<usize> = (0..layers.len())
-        .into_par_iter()
-        .map(|voxel| if stop.is_set() { 0 } else { layers.count_beside(voxel) })
-        .collect();
-    stop.check()?;
-    let is_roof = |at: [f32; 3]| {
-        let near = |row: usize| solid(row) && (positions[row][2] - at[2]).abs() < SAME_SURFACE;
-        let Gap { width, count, .. } = widest_gap(positions, index, at, params.around, near);
-        let between_points = (TAU - width) / f32::from(count.max(1));
-        width < WIDEST_OF_ALL && width - 2.0 * between_points < params.widest_gap
-    };
-    let is_open = |needle: [f32; 3], bottom: f32| {
-        let mut walls = 0;
-        index.within_radius(needle, params.open_radius, |found| {
-            let row = found.index as usize;
-            walls += usize::from(solid(row) && positions[row][2] < bottom - OF_THE_SURFACE);
-        });
-        walls <= params.most_below
-    };
-    let proven = run_below(&layers, &beside, needles, params.depths, is_roof, is_open, control)?;
-    let thin = surfaces(&layers, &beside, &proven, params.least_proof);
-    control.check()?;
-    Ok((0..positions.len())
-        .into_par_iter()
-        .map(|row| solid(row) && layers.voxel_of(in_layers[row]).is_some_and(|voxel| thin[voxel]))
-        .collect())
-}
-
-/// Adds balls midway between neighbouring points of thin surfaces, where no other comes close to the middle, as large as the pulses leave them, and says how many. `thin` tells
-/// the points, as [`on_thin_surfaces`] does, about which pulses are `spacing` apart, metres.
-///
-/// # Errors
-/// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
-pub(super) fn fill(
-    balls: &mut MedialBalls,
-    positions: &[[f32; 3]],
-    (thin, spacing): (&[bool], &[f32]),
-    needles: &Needles,
-    params: &ThinSurfaceParams,
-    control: &Control<'_>,
-) -> Result<usize> {
-    let stop = Stop::new(control);
-    let rows = one_in_each_cell(positions, (0..thin.len()).filter(|&row| thin[row]).collect(), LEAST_APART);
-    let places: Vec<[f32; 3]> = rows.iter().map(|&row| positions[row]).collect();
-    let index = NeighborIndex::new(&places, control)?;
-    let fills = |number: usize| {
-        let (p, row) = (places[number], rows[number]);
-        let radius = params.radius_spacings * spacing[row];
-        let mut near = Vec::new();
-        index.within_radius(p, FARTHEST_APART_SPACINGS * spacing[row], |found| {
-            let q = places[found.index as usize];
-            if q != p && (q[2] - p[2]).abs() < SAME_LEVEL {
-                near.push(q);
-            }
-        });
-        let of_neighbor = |other: usize| {
-            let q: [f32; 3] = near[other];
-            let center = [(p[0] + q[0]) / 2.0, (p[1] + q[1]) / 2.0, (p[2] + q[2]) / 2.0 - radius];
-            (row, center, needles.clearance(center, radius))
-        };
-        let found = neighbors_after(p, &near, LEAST_APART, CLEAR_SHARE).map(of_neighbor);
-        found.filter(|&(.., left)| left >= LEAST_SHARE * radius).collect::<Vec<_>>()
-    };
-    let numbers = (0..rows.len()).into_par_iter().with_min_len(CHUNK);
-    let found: Vec<_> = numbers.filter(|_| !stop.is_set()).flat_map_iter(fills).collect();
-    stop.check()?;
-    for &(row, center, radius) in &found {
-        balls.push(row, center, radius, PULSE_TOUCH);
+impl MarkingRule for ThinSurfaceParams {
+    fn stage(&self) -> Option<(Phase, &'static str)> {
+        Some((Phase::Points, "finding thin surfaces"))
     }
-    Ok(found.len())
+
+    /// Caps at the points of thin surfaces, and fills midway between neighbours among them.
+    fn marks(&self, survey: &Survey<'_>, _: &MedialBalls, control: &Control<'_>) -> Result<Marks> {
+        let thin = self.thin_points(survey, control)?;
+        let rows: Vec<usize> = (0..thin.len()).filter(|&row| thin[row]).collect();
+        let cap =
+            |&row: &usize| Cap { is_claimed: true, ..Cap::tangent(row, self.radius_spacings * survey.spacing[row]) };
+        let caps = rows.iter().map(cap).collect();
+        let counts = vec![("points_on_thin_surfaces", rows.len())];
+        Ok(Marks { caps, fills: self.fills(survey, rows, control)?, counts, ..Marks::default() })
+    }
+
+    fn fills_name(&self) -> &'static str {
+        "balls_in_thin_surfaces"
+    }
+}
+
+impl ThinSurfaceParams {
+    /// Whether each point lies on a thin surface. Surfaces end at blocks of 64 m, so that those of a block are the same in every part of a
+    /// survey that holds all of it and what lies about it. The result depends on neither the order of points and pulses nor the number
+    /// of threads.
+    fn thin_points(&self, survey: &Survey<'_>, control: &Control<'_>) -> Result<Vec<bool>> {
+        let stop = Stop::new(control);
+        let (positions, index) = (survey.positions(), survey.index);
+        let solid = |row: usize| survey.is_solid(row);
+        let from = if survey.is_part { CellsFrom::Origin } else { CellsFrom::Cloud };
+        let Some(layers) = Layers::new(survey.measured, from, solid) else {
+            return Ok(vec![false; positions.len()]);
+        };
+        control.check()?;
+        let beside: Vec<usize> = (0..layers.len())
+            .into_par_iter()
+            .map(|voxel| if stop.is_set() { 0 } else { layers.count_beside(voxel) })
+            .collect();
+        stop.check()?;
+        let is_roof = |at: [f32; 3]| {
+            let near = |row: usize| solid(row) && (positions[row][2] - at[2]).abs() < SAME_SURFACE;
+            let Gap { width, count, .. } = widest_gap(positions, index, at, self.around, near);
+            let between_points = (TAU - width) / f32::from(count.max(1));
+            width < WIDEST_OF_ALL && width - 2.0 * between_points < self.widest_gap
+        };
+        let is_open = |pulse: [f32; 3], bottom: f32| {
+            let mut walls = 0;
+            index.within_radius(pulse, self.open_radius, |found| {
+                let row = found.index as usize;
+                walls += usize::from(solid(row) && positions[row][2] < bottom - OF_THE_SURFACE);
+            });
+            walls <= self.most_below
+        };
+        let proven = run_below(&layers, &beside, survey.free_segments, self.depths, is_roof, is_open, control)?;
+        let thin = surfaces(&layers, &beside, &proven, self.least_proof);
+        control.check()?;
+        let is_thin = |row| solid(row) && layers.voxel_of(survey.measured[row]).is_some_and(|voxel| thin[voxel]);
+        Ok((0..positions.len()).into_par_iter().map(is_thin).collect())
+    }
+
+    /// Fills midway between neighbours among the points `rows` of thin surfaces, where no other comes close to the middle.
+    fn fills(&self, survey: &Survey<'_>, rows: Vec<usize>, control: &Control<'_>) -> Result<Vec<Fill>> {
+        let stop = Stop::new(control);
+        let rows = one_in_each_cell(survey.positions(), rows, LEAST_APART);
+        let places: Vec<[f32; 3]> = rows.iter().map(|&row| survey.positions()[row]).collect();
+        let index = NeighborIndex::new(&places, control)?;
+        let fills = |number: usize| {
+            let (p, row) = (places[number], rows[number]);
+            let radius = self.radius_spacings * survey.spacing[row];
+            let mut near = Vec::new();
+            index.within_radius(p, FARTHEST_APART_SPACINGS * survey.spacing[row], |found| {
+                let q = places[found.index as usize];
+                if q != p && (q[2] - p[2]).abs() < SAME_LEVEL {
+                    near.push(q);
+                }
+            });
+            let between = |other: usize| {
+                let q: [f32; 3] = near[other];
+                let center = [(p[0] + q[0]) / 2.0, (p[1] + q[1]) / 2.0, (p[2] + q[2]) / 2.0 - radius];
+                let place = FillPlace::Center(center);
+                Fill { row, place, max_radius: radius, min_radius: MIN_SHARE * radius }
+            };
+            neighbors_after(p, &near, LEAST_APART, CLEAR_SHARE).map(between).collect::<Vec<_>>()
+        };
+        let numbers = (0..rows.len()).into_par_iter().with_min_len(CHUNK);
+        let found = numbers.filter(|_| !stop.is_set()).flat_map_iter(fills).collect();
+        stop.check()?;
+        Ok(found)
+    }
 }
 
 /// Which voxels a needle runs below at these `depths`, where `is_roof` says that points lie around the place straight

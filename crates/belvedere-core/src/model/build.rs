@@ -6,8 +6,8 @@ use super::prepare::{OrientedSurvey, prepare};
 use super::report::{BallsReport, BuildReport};
 use super::{ModelParts, SceneModel};
 use crate::medial::{
-    CarvedBalls, CarvedInput, MedialBalls, ShrinkParams, Side, SurveyPart, carved_balls, carved_balls_of_part, shrink,
-    vegetation_of_classes, vegetation_of_transmission,
+    CarvedBalls, CarvedInput, MedialBalls, ShrinkParams, Side, SurveyPart, carved_balls, shrink, vegetation_of_classes,
+    vegetation_of_transmission,
 };
 use crate::query::{BallTree, BlockRule};
 use belvedere_data::control::Control;
@@ -60,17 +60,15 @@ fn of_survey(
     match (&settled, &survey.carving) {
         (BallParams::Carved(params), Some(input)) => {
             let (attributes, needles, pulses) = (&input.attributes, &input.needles, input.pulses.as_ref());
-            let input = CarvedInput { oriented: &survey.oriented, index: &survey.index, attributes, needles, pulses };
             let part = facts.map(|facts| SurveyPart {
-                whole: &facts.whole,
+                statistics: &facts.whole,
                 measured: &survey.measured,
                 farthest: facts.farthest(),
             });
+            let (oriented, index) = (&survey.oriented, &survey.index);
+            let input = CarvedInput { oriented, index, attributes, needles, pulses, part };
             let found;
-            CarvedBalls { balls, transmission, report: found } = match &part {
-                Some(part) => carved_balls_of_part(&input, part, params, control)?,
-                None => carved_balls(&input, params, control)?,
-            };
+            CarvedBalls { balls, transmission, report: found } = carved_balls(&input, params, control)?;
             report.interior_balls = Some(BallsReport::Carved(found));
         }
         (BallParams::Shrunk(params), _) => {

@@ -3,7 +3,7 @@
 use super::params::{BallParams, ModelParams, OrientBy};
 use super::prepare::{OrientedSurvey, prepare};
 use crate::clean::{CleanParams, IsolatedPoints, IsolationRadius};
-use crate::medial::{CarvedInput, CarvedParams, WholeSurvey, carve_survey};
+use crate::medial::{CarvedInput, CarvedParams, RuleStatistics, rule_statistics};
 use crate::pulses::{LinePath, Means, VerticalParams, locate, positions_on_paths, vertical_pulses};
 use belvedere_data::control::Control;
 use belvedere_data::{Error, Parameter, PointCloud, Result};
@@ -43,7 +43,7 @@ pub struct SurveyFacts {
     /// Whether crowns of trees are measured: whether returns can be grouped into pulses.
     pub measures_crowns: bool,
     /// What rules take from the whole.
-    pub whole: WholeSurvey,
+    pub whole: RuleStatistics,
 }
 
 /// What a pass over all points of a survey found.
@@ -92,10 +92,10 @@ impl SurveyFacts {
             top: extremes.top,
             relief: extremes.relief,
             measures_crowns: true,
-            whole: WholeSurvey {
+            whole: RuleStatistics {
                 has_ground: extremes.has_ground,
                 has_vegetation: extremes.has_vegetation,
-                ..WholeSurvey::default()
+                ..RuleStatistics::default()
             },
             ..Self::default()
         };
@@ -121,21 +121,22 @@ impl SurveyFacts {
         if let BallParams::Carved(carved) | BallParams::CarvedIfPossible(carved, _) = &params.balls {
             let whole = facts.crowns(&survey, carved, control)?;
             facts.whole =
-                WholeSurvey { transmission: whole.transmission, crown_spacing: whole.crown_spacing, ..facts.whole };
+                RuleStatistics { transmission: whole.transmission, crown_spacing: whole.crown_spacing, ..facts.whole };
         }
         Ok(facts)
     }
 
-    fn crowns(&self, survey: &OrientedSurvey, params: &CarvedParams, control: &Control<'_>) -> Result<WholeSurvey> {
-        let Some(input) = &survey.carving else { return Ok(WholeSurvey::default()) };
+    fn crowns(&self, survey: &OrientedSurvey, params: &CarvedParams, control: &Control<'_>) -> Result<RuleStatistics> {
+        let Some(input) = &survey.carving else { return Ok(RuleStatistics::default()) };
         let input = CarvedInput {
             oriented: &survey.oriented,
             index: &survey.index,
             attributes: &input.attributes,
             needles: &input.needles,
             pulses: input.pulses.as_ref(),
+            part: None,
         };
-        Ok(carve_survey(&input, None, params, control)?.1)
+        rule_statistics(&input, params, control)
     }
 
     /// How far around a place points must be known for its balls to be those of the whole survey, metres.

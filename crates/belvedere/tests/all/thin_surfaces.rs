@@ -1,14 +1,15 @@
-//! Thin surfaces told from solid ones by pulses below them, on a canopy on posts and a block of the same size.
+//! Thin surfaces, distinguished from solid ones by pulses below them, on a canopy on posts and a block of the same size.
 #![expect(clippy::cast_possible_truncation, reason = "test places within a hundred metres in f32")]
 
-use belvedere::PointCloud;
 use belvedere::control::Control;
-use belvedere::medial::{Kind, ThinSurfaceParams, on_thin_surfaces};
+use belvedere::medial::{CarvedInput, ThinSurfaceParams, on_thin_surfaces};
 use belvedere::model::{ModelParams, OrientBy, SceneModel};
 use belvedere::neighbors::NeighborIndex;
+use belvedere::normals::OrientedCloud;
 use belvedere::pulses::{NeedleParams, Needles};
 use belvedere::query::{Answer, BlockRule, UnprovenAs};
 use belvedere::random::uniform;
+use belvedere::{Attributes, PointCloud};
 
 const HEIGHT: f64 = 3.0;
 /// West, south, east, north of the slab.
@@ -24,14 +25,15 @@ enum Built {
 struct Survey {
     points: Vec<[f32; 3]>,
     scanner: Vec<[f32; 3]>,
-    kinds: Vec<Kind>,
+    /// Classes: 2 for the ground, 1 for anything else.
+    classes: Vec<u8>,
     on_top: Vec<bool>,
 }
 
 /// `count` pulses from two lines 120 m to either side, 450 m up: 15 degrees. Exact first hits, by hand: the top, the walls of
 /// the block, the ground.
 fn survey(built: Built, count: u64) -> Survey {
-    let mut survey = Survey { points: Vec::new(), scanner: Vec::new(), kinds: Vec::new(), on_top: Vec::new() };
+    let mut survey = Survey { points: Vec::new(), scanner: Vec::new(), classes: Vec::new(), on_top: Vec::new() };
     for i in 0..count {
         let scanner = [if i % 2 == 0 { -120.0 } else { 120.0 }, 10.0 * (uniform(3, i) - 0.5), 450.0];
         let aim = [24.0 * (uniform(1, i) - 0.5), 16.0 * (uniform(2, i) - 0.5), 0.0];
@@ -50,7 +52,7 @@ fn survey(built: Built, count: u64) -> Survey {
         };
         survey.points.push(p.map(|v| v as f32));
         survey.scanner.push(scanner.map(|v| v as f32));
-        survey.kinds.push(if p[2] < 0.01 { Kind::Ground } else { Kind::Other });
+        survey.classes.push(if p[2] < 0.01 { 2 } else { 1 });
         survey.on_top.push(on_top);
     }
     survey
@@ -66,11 +68,18 @@ fn found(survey: &Survey) -> [f64; 2] {
 }
 
 fn thin(survey: &Survey) -> Vec<bool> {
-    let index = NeighborIndex::new(&survey.points, &Control::none()).unwrap();
     let (needles, _) =
         Needles::new(&survey.points, &survey.scanner, &NeedleParams::default(), &Control::none()).unwrap();
-    on_thin_surfaces(&survey.points, &survey.kinds, &index, &needles, &ThinSurfaceParams::default(), &Control::none())
-        .unwrap()
+    thin_below(survey, &needles)
+}
+
+fn thin_below(survey: &Survey, needles: &Needles) -> Vec<bool> {
+    let index = NeighborIndex::new(&survey.points, &Control::none()).unwrap();
+    let up = vec![[0.0, 0.0, 1.0]; survey.points.len()];
+    let oriented = OrientedCloud::with_known_normals(survey.points.clone(), up).unwrap();
+    let attributes = &Attributes { classification: Some(survey.classes.clone()), ..Attributes::default() };
+    let input = CarvedInput { oriented: &oriented, index: &index, attributes, needles, pulses: None, part: None };
+    on_thin_surfaces(&input, &ThinSurfaceParams::default(), &Control::none()).unwrap()
 }
 
 /// Ten pulses a square metre.
@@ -99,10 +108,9 @@ fn a_canopy_is_thin_to_its_middle_and_a_block_is_not() {
 
 #[test]
 fn a_canopy_hides_the_sky_and_leaves_room_below_it() {
-    let Survey { points, scanner, kinds, .. } = survey(Built::Canopy, PULSES);
+    let Survey { points, scanner, classes, .. } = survey(Built::Canopy, PULSES);
     let mut cloud = PointCloud { positions: points, ..PointCloud::default() };
-    let class = |kind: &Kind| if *kind == Kind::Ground { 2 } else { 1 };
-    cloud.attributes.classification = Some(kinds.iter().map(class).collect());
+    cloud.attributes.classification = Some(classes);
     let params = ModelParams::default().with_orient(OrientBy::ScannerOfEachPoint(scanner));
     let (model, _) = SceneModel::build(&cloud, &params, &Control::none()).unwrap();
     let scene = model.scene(&BlockRule::carved(), UnprovenAs::Visible, &Control::none()).unwrap();
@@ -121,9 +129,9 @@ fn a_canopy_hides_the_sky_and_leaves_room_below_it() {
 
 #[test]
 fn vegetation_and_ground_are_never_thin() {
-    for kind in [Kind::Ground, Kind::Vegetation] {
+    for class in [2, 5] {
         let mut survey = survey(Built::Canopy, PULSES);
-        survey.kinds.fill(kind);
+        survey.classes.fill(class);
         assert!(!thin(&survey).contains(&true));
     }
 }
@@ -134,7 +142,7 @@ fn neither_order_of_points_nor_number_of_threads_matters() {
     let mut backward = survey(Built::Canopy, PULSES);
     backward.points.reverse();
     backward.scanner.reverse();
-    backward.kinds.reverse();
+    backward.classes.reverse();
     let on = |threads: usize, survey: &Survey| {
         rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap().install(|| thin(survey))
     };
@@ -146,12 +154,10 @@ fn neither_order_of_points_nor_number_of_threads_matters() {
 
 #[test]
 fn no_points_and_no_needles_are_no_thin_surfaces() {
-    let nothing = NeighborIndex::new(&[], &Control::none()).unwrap();
+    let nothing = Survey { points: Vec::new(), scanner: Vec::new(), classes: Vec::new(), on_top: Vec::new() };
+    assert!(thin(&nothing).is_empty());
     let (needles, _) = Needles::new(&[], &[], &NeedleParams::default(), &Control::none()).unwrap();
-    let params = ThinSurfaceParams::default();
-    assert!(on_thin_surfaces(&[], &[], &nothing, &needles, &params, &Control::none()).unwrap().is_empty());
     let survey = survey(Built::Canopy, PULSES);
-    let index = NeighborIndex::new(&survey.points, &Control::none()).unwrap();
-    let thin = on_thin_surfaces(&survey.points, &survey.kinds, &index, &needles, &params, &Control::none()).unwrap();
+    let thin = thin_below(&survey, &needles);
     assert!(thin.len() == survey.points.len() && !thin.contains(&true));
 }
