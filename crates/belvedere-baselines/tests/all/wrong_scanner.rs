@@ -30,8 +30,15 @@ impl Place {
         let (needles, _) = Needles::of_cloud(&self.cloud, scanner, &NeedleParams::default(), &Control::none()).unwrap();
         let oriented = turn(oriented, &index, &needles);
         let attributes = &self.cloud.attributes;
-        let input =
-            CarvedInput { oriented: &oriented, index: &index, attributes, needles: &needles, pulses: None, part: None };
+        let input = CarvedInput {
+            oriented: &oriented,
+            measured: oriented.positions(),
+            index: &index,
+            attributes,
+            needles: &needles,
+            pulses: None,
+            statistics: None,
+        };
         let balls = carved_balls(&input, &CarvedParams::default(), &Control::none()).unwrap().balls;
         let blocking = BlockRule { bias: DEPTH_BIAS, ..BlockRule::default() };
         let scene = MedialScene::new(&balls, &blocking).unwrap();

@@ -5,7 +5,7 @@ use super::close_range::CloseRangeBalls;
 use super::marks::{self, RadiusCaps};
 use super::rules::{CarvedParams, MarkingRule, Phase};
 use super::shrinking_ball::{ShrinkReport, shrink};
-use super::survey::{RuleStatistics, Survey, SurveyPart};
+use super::survey::{RuleStatistics, Survey};
 use crate::neighbors::NeighborIndex;
 use crate::normals::OrientedCloud;
 use crate::pulses::{Needles, Pulses};
@@ -20,6 +20,8 @@ use std::collections::BTreeMap;
 pub struct CarvedInput<'a> {
     /// Points and outward normals.
     pub oriented: &'a OrientedCloud,
+    /// The points before they were moved onto their surface, (N, 3) local metres: they decide which block of 64 m a point belongs to.
+    pub measured: &'a [[f32; 3]],
     /// Index of the same points.
     pub index: &'a NeighborIndex,
     /// Class, return number and return count are used where present.
@@ -28,8 +30,8 @@ pub struct CarvedInput<'a> {
     pub needles: &'a Needles,
     /// Which returns share a pulse, rows as in the cloud; without it no crown is measured.
     pub pulses: Option<&'a Pulses>,
-    /// What is known of the survey that the points are a part of; `None` where they are the whole.
-    pub part: Option<SurveyPart<'a>>,
+    /// Statistics of the survey that the points are a part of; `None` where they are the whole.
+    pub statistics: Option<&'a RuleStatistics>,
 }
 
 /// What became of the balls in [`carved_balls`].
@@ -69,7 +71,7 @@ pub struct CarvedBalls {
 
 /// The interior balls of a survey as far as its pulses leave them, and those that rules add.
 ///
-/// The balls of a part of a survey ([`CarvedInput::part`]) whose points lie far enough from its edge are those of any other part that holds
+/// The balls of a part of a survey ([`CarvedInput::statistics`]) whose points lie far enough from its edge are those of any other part that holds
 /// them so, bit by bit; how far that is follows from the rules ([`crate::model::SurveyFacts::halo`]).
 ///
 /// # Errors

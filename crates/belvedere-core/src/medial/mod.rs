@@ -43,7 +43,7 @@ pub use roof_edges::RoofEdgeParams;
 pub use rules::{CarvedParams, Rule, SmoothingParams};
 pub use shrinking_ball::{ShrinkMethod, ShrinkParams, ShrinkReport, shrink};
 pub use slender::SlenderParams;
-pub use survey::{RuleStatistics, SurveyPart};
+pub use survey::RuleStatistics;
 pub use thin_surfaces::{ThinSurfaceParams, on_thin_surfaces};
 pub use vegetation::VegetationParams;
 pub use vegetation_balls::{vegetation_of_classes, vegetation_of_transmission, without_vegetation};

@@ -31,26 +31,12 @@ pub struct RuleStatistics {
     pub crown_spacing: Option<f32>,
 }
 
-/// A part of a survey that is built on its own.
-#[derive(Clone, Copy)]
-pub struct SurveyPart<'a> {
-    /// Statistics of the whole.
-    pub statistics: &'a RuleStatistics,
-    /// Points before they were moved onto their surface, (N, 3) local metres: they decide which block a point belongs to. The origin
-    /// of local metres must lie at a corner of blocks of 64 m.
-    pub measured: &'a [[f32; 3]],
-    /// How far away a point may lie and still be a neighbour, metres.
-    pub farthest: f32,
-}
-
 /// The points of a survey, or of a part of one, as rules read them. Columns have a row for each point.
 pub(super) struct Survey<'a> {
     /// Points and outward normals.
     pub(super) oriented: &'a OrientedCloud,
     /// The points before they were moved onto their surface: they decide which block a point belongs to.
     pub(super) measured: &'a [[f32; 3]],
-    /// Whether this is a part of a larger survey.
-    pub(super) is_part: bool,
     /// Index of the points.
     pub(super) index: &'a NeighborIndex,
     /// Class, return number and return count, where present.
@@ -86,21 +72,19 @@ impl<'a> Survey<'a> {
     /// [`Error::InvalidParameter`](belvedere_data::Error::InvalidParameter) for parameters of vegetation out of range,
     /// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
     pub(super) fn new(input: &CarvedInput<'a>, params: &CarvedParams, control: &Control<'_>) -> Result<Self> {
-        let CarvedInput { oriented, index, attributes, needles, pulses, part } = *input;
+        let CarvedInput { oriented, measured, index, attributes, needles, pulses, statistics: given } = *input;
         let positions = oriented.positions();
         let kinds = kinds(attributes, oriented.len());
         let counts = pulse_counts(positions, attributes);
-        let given = part.map(|part| part.statistics);
-        let measured = || RuleStatistics {
+        let own = || RuleStatistics {
             has_ground: kinds.contains(&Kind::Ground),
             has_vegetation: kinds.contains(&Kind::Vegetation),
             ..RuleStatistics::default()
         };
         let mut survey = Survey {
-            statistics: given.copied().unwrap_or_else(measured),
+            statistics: given.copied().unwrap_or_else(own),
             oriented,
-            measured: part.map_or(positions, |part| part.measured),
-            is_part: part.is_some(),
+            measured,
             index,
             attributes,
             free_segments: needles,
@@ -116,9 +100,8 @@ impl<'a> Survey<'a> {
         };
         // where classes tell vegetation, its shape need not
         if let Some(vegetation) = params.vegetation.as_ref().filter(|_| !survey.statistics.has_vegetation) {
-            let farthest = part.map_or(f32::INFINITY, |part| part.farthest);
             survey.found_vegetation = control.stage("finding vegetation", oriented.len(), || {
-                find_vegetation(&mut survey.kinds, oriented, index, attributes, vegetation, farthest, control)
+                find_vegetation(&mut survey.kinds, oriented, index, attributes, vegetation, control)
             })?;
         }
         if let Some(params) = &params.crowns {
@@ -185,7 +168,16 @@ pub(super) mod tests {
         let index = NeighborIndex::new(oriented.positions(), &none).unwrap();
         let returns = if scanner.is_empty() { &[] } else { oriented.positions() };
         let (needles, _) = Needles::new(returns, scanner, &NeedleParams::default(), &none).unwrap();
-        let input = CarvedInput { oriented, index: &index, attributes, needles: &needles, pulses: None, part: None };
+        let measured = oriented.positions();
+        let input = CarvedInput {
+            oriented,
+            measured,
+            index: &index,
+            attributes,
+            needles: &needles,
+            pulses: None,
+            statistics: None,
+        };
         let params = CarvedParams::default().without(Rule::Vegetation).without(Rule::Crowns);
         read(Survey::new(&input, &params, &none).unwrap())
     }

@@ -2,7 +2,7 @@
 
 use super::carved::CarvedInput;
 use super::chains::MIN_SHARE;
-use super::layers::{CELL, CellsFrom, Layers};
+use super::layers::{CELL, Layers};
 use super::marks::{Cap, Fill, FillPlace, Marks};
 use super::midway::{neighbors_after, one_in_each_cell};
 use super::rules::{CarvedParams, MarkingRule, Phase, Rule};
@@ -128,8 +128,7 @@ impl ThinSurfaceParams {
         let stop = Stop::new(control);
         let (positions, index) = (survey.positions(), survey.index);
         let solid = |row: usize| survey.is_solid(row);
-        let from = if survey.is_part { CellsFrom::Origin } else { CellsFrom::Cloud };
-        let Some(layers) = Layers::new(survey.measured, from, solid) else {
+        let Some(layers) = Layers::new(survey.measured, survey.oriented.origin(), solid) else {
             return Ok(vec![false; positions.len()]);
         };
         control.check()?;
@@ -274,7 +273,7 @@ fn surfaces(layers: &Layers, beside: &[usize], proven: &[bool], least_proof: f32
     let mut thin = vec![false; layers.len()];
     let mut surface = Vec::new();
     #[expect(clippy::cast_possible_truncation, reason = "128")]
-    let block = |voxel: usize| layers.block(voxel, (BLOCK / CELL) as i32);
+    let block = |voxel: usize| layers.block(voxel, (BLOCK / CELL) as i64);
     for first in (0..layers.len()).filter(|&voxel| proven[voxel]) {
         if seen[first] {
             continue;

@@ -1,7 +1,7 @@
 //! Vegetation in clouds where no class says what is vegetation.
 
 use super::kinds::Kind;
-use crate::neighbors::NeighborIndex;
+use crate::neighbors::{FARTHEST_NEIGHBOR, NeighborIndex};
 use crate::normals::OrientedCloud;
 use belvedere_data::control::{Control, Stop};
 use belvedere_data::{Attributes, Error, Parameter, Result};
@@ -30,7 +30,7 @@ const CHUNK: usize = 512;
 
 /// Turns points of no particular class (0, 1 or none) whose neighbourhood is not flat or lets pulses through into
 /// [`Kind::Vegetation`], and says how many: trees, hedges, and with them cars and other small things. For clouds without the classes of
-/// vegetation. `index` holds the points of `cloud`; those beyond `farthest` metres are no neighbours.
+/// vegetation. `index` holds the points of `cloud`; those beyond [`FARTHEST_NEIGHBOR`] are no neighbours.
 ///
 /// # Errors
 /// [`Error::InvalidParameter`] for a number of neighbours out of range.
@@ -40,7 +40,6 @@ pub(super) fn find_vegetation(
     index: &NeighborIndex,
     attributes: &Attributes,
     params: &VegetationParams,
-    farthest: f32,
     control: &Control<'_>,
 ) -> Result<usize> {
     let stop = Stop::new(control);
@@ -65,7 +64,7 @@ pub(super) fn find_vegetation(
             }
             for &row in rows.iter().filter(|row| open(**row as usize)) {
                 index.k_nearest(positions[row as usize], params.neighbors, &mut found);
-                found.retain(|neighbor| neighbor.distance_squared <= farthest * farthest);
+                found.retain(|neighbor| neighbor.distance_squared <= FARTHEST_NEIGHBOR * FARTHEST_NEIGHBOR);
                 let (mut split, mut flat) = (0.0, 0.0);
                 for neighbor in &found {
                     split += f32::from(u8::from(several(neighbor.index as usize)));

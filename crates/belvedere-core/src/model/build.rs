@@ -6,7 +6,7 @@ use super::prepare::{OrientedSurvey, prepare};
 use super::report::{BallsReport, BuildReport};
 use super::{ModelParts, SceneModel};
 use crate::medial::{
-    CarvedBalls, CarvedInput, MedialBalls, ShrinkParams, Side, SurveyPart, carved_balls, shrink, vegetation_of_classes,
+    CarvedBalls, CarvedInput, MedialBalls, ShrinkParams, Side, carved_balls, shrink, vegetation_of_classes,
     vegetation_of_transmission,
 };
 use crate::query::{BallTree, BlockRule};
@@ -60,13 +60,9 @@ fn of_survey(
     match (&settled, &survey.carving) {
         (BallParams::Carved(params), Some(input)) => {
             let (attributes, needles, pulses) = (&input.attributes, &input.needles, input.pulses.as_ref());
-            let part = facts.map(|facts| SurveyPart {
-                statistics: &facts.whole,
-                measured: &survey.measured,
-                farthest: facts.farthest(),
-            });
-            let (oriented, index) = (&survey.oriented, &survey.index);
-            let input = CarvedInput { oriented, index, attributes, needles, pulses, part };
+            let (oriented, measured, index) = (&survey.oriented, &survey.measured[..], &survey.index);
+            let statistics = facts.map(|facts| &facts.whole);
+            let input = CarvedInput { oriented, measured, index, attributes, needles, pulses, statistics };
             let found;
             CarvedBalls { balls, transmission, report: found } = carved_balls(&input, params, control)?;
             report.interior_balls = Some(BallsReport::Carved(found));

@@ -4,6 +4,7 @@ use super::params::{BallParams, ModelParams, OrientBy};
 use super::prepare::{OrientedSurvey, prepare};
 use crate::clean::{CleanParams, IsolatedPoints, IsolationRadius};
 use crate::medial::{CarvedInput, CarvedParams, RuleStatistics, rule_statistics};
+use crate::neighbors::FARTHEST_NEIGHBOR;
 use crate::pulses::{LinePath, Means, VerticalParams, locate, positions_on_paths, vertical_pulses};
 use belvedere_data::control::Control;
 use belvedere_data::{Error, Parameter, PointCloud, Result};
@@ -11,8 +12,6 @@ use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 use std::path::Path;
 
-/// How far away a point may lie and still be a neighbour, metres: more than the usual 16 neighbours take wherever there is a surface.
-const FARTHEST_NEIGHBOR: f32 = 16.0;
 /// How far the rules for balls look beyond a point, metres: edges of roofs within three spacings of pulses, of which the widest is 3 m; cells of a
 /// metre with those about them, crowns and relief less.
 const RULES_REACH: f64 = 12.0;
@@ -130,11 +129,12 @@ impl SurveyFacts {
         let Some(input) = &survey.carving else { return Ok(RuleStatistics::default()) };
         let input = CarvedInput {
             oriented: &survey.oriented,
+            measured: &survey.measured,
             index: &survey.index,
             attributes: &input.attributes,
             needles: &input.needles,
             pulses: input.pulses.as_ref(),
-            part: None,
+            statistics: None,
         };
         rule_statistics(&input, params, control)
     }

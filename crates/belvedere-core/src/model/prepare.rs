@@ -1,11 +1,10 @@
 //! From a cloud to a cleaned cloud with outward normals, and what its pulses prove empty.
 
 use super::close_range_normals::CloseRange;
-use super::facts::SurveyFacts;
 use super::params::{Carving, ModelParams, OrientBy};
 use super::report::{BuildReport, NormalsReport, PulsesReport, SmoothingReport};
 use crate::clean::clean;
-use crate::neighbors::NeighborIndex;
+use crate::neighbors::{FARTHEST_NEIGHBOR, NeighborIndex};
 use crate::normals::estimate::estimate_within;
 use crate::normals::{Normals, Orientation, OrientedCloud, Scatter, orient};
 use crate::pulses::{
@@ -32,7 +31,7 @@ pub struct OrientedSurvey {
     pub kept: Vec<u32>,
     /// The smallest box around them: a stray point that was cleaned away does not widen a view.
     pub bounds: Bounds,
-    /// The points before they were moved onto their surface, where the cloud is a part of a survey; otherwise empty.
+    /// The points before they were moved onto their surface, where they are to be carved; otherwise empty.
     pub(super) measured: Vec<[f32; 3]>,
     /// Classes of these points, where they have any.
     pub(super) classification: Option<Vec<u8>>,
@@ -161,7 +160,9 @@ pub(super) fn prepare(
             Ok((found.normals, found.scatter))
         })?,
         _ => control.stage("estimating normals", cloud.len(), || {
-            let farthest = facts.map_or(f32::INFINITY, SurveyFacts::farthest);
+            // points that nothing carves may be in any unit
+            let is_flown = facts.is_some() || carving.is_some();
+            let farthest = if is_flown { FARTHEST_NEIGHBOR } else { f32::INFINITY };
             estimate_within(&cloud.positions, &index, params.neighborhood, farthest, control)
         })?,
     };
@@ -173,7 +174,7 @@ pub(super) fn prepare(
         input.lead_up_to(noise, &scanner, params, control)?;
     }
     let mut index = index;
-    let measured = if facts.is_some() { oriented.positions().to_vec() } else { Vec::new() };
+    let measured = if carving.is_some() { oriented.positions().to_vec() } else { Vec::new() };
     if let Some(scatter) = scatter {
         if facts.is_none() && !is_from_the_ground {
             noise = scatter.noise();

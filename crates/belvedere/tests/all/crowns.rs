@@ -54,11 +54,12 @@ fn carved(cloud: &PointCloud, params: &CarvedParams) -> CarvedBalls {
     let (pulses, _) = group(cloud, &Control::none()).unwrap();
     let input = CarvedInput {
         oriented: &oriented,
+        measured: oriented.positions(),
         index: &index,
         attributes: &cloud.attributes,
         needles: &needles,
         pulses: Some(&pulses),
-        part: None,
+        statistics: None,
     };
     carved_balls(&input, params, &Control::none()).unwrap()
 }

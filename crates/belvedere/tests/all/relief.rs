@@ -57,11 +57,12 @@ fn balls(survey: &Survey, relief: Option<ReliefParams>) -> CarvedBalls {
     let needles = needles(survey);
     let input = CarvedInput {
         oriented: &oriented,
+        measured: oriented.positions(),
         index: &index,
         attributes: &attributes,
         needles: &needles,
         pulses: None,
-        part: None,
+        statistics: None,
     };
     carved_balls(&input, &CarvedParams { relief, ..CarvedParams::default() }, &Control::none()).unwrap()
 }

@@ -55,11 +55,12 @@ fn a_model_is_what_the_stages_make_one_after_the_other() {
     let attributes = &clean.attributes;
     let input = CarvedInput {
         oriented: &oriented,
+        measured: oriented.positions(),
         index: &index,
         attributes,
         needles: &needles,
         pulses: Some(&pulses),
-        part: None,
+        statistics: None,
     };
     let made = carved_balls(&input, &CarvedParams::default(), &none).unwrap();
     assert_eq!(model.balls().centers, made.balls.centers);

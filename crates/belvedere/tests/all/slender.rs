@@ -47,8 +47,15 @@ fn carved(cloud: &PointCloud, scanner: &[[f32; 3]], slender: Option<SlenderParam
     let (oriented, _) = orient(cloud, normals, &Orientation::Pulses(scanner), &Control::none()).unwrap();
     let (needles, _) = Needles::of_cloud(cloud, scanner, &NeedleParams::default(), &Control::none()).unwrap();
     let attributes = &cloud.attributes;
-    let input =
-        CarvedInput { oriented: &oriented, index: &index, attributes, needles: &needles, pulses: None, part: None };
+    let input = CarvedInput {
+        oriented: &oriented,
+        measured: oriented.positions(),
+        index: &index,
+        attributes,
+        needles: &needles,
+        pulses: None,
+        statistics: None,
+    };
     let params = CarvedParams { slender, ..CarvedParams::default() };
     (carved_balls(&input, &params, &Control::none()).unwrap(), needles)
 }

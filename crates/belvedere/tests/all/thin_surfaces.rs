@@ -78,7 +78,15 @@ fn thin_below(survey: &Survey, needles: &Needles) -> Vec<bool> {
     let up = vec![[0.0, 0.0, 1.0]; survey.points.len()];
     let oriented = OrientedCloud::with_known_normals(survey.points.clone(), up).unwrap();
     let attributes = &Attributes { classification: Some(survey.classes.clone()), ..Attributes::default() };
-    let input = CarvedInput { oriented: &oriented, index: &index, attributes, needles, pulses: None, part: None };
+    let input = CarvedInput {
+        oriented: &oriented,
+        measured: oriented.positions(),
+        index: &index,
+        attributes,
+        needles,
+        pulses: None,
+        statistics: None,
+    };
     on_thin_surfaces(&input, &ThinSurfaceParams::default(), &Control::none()).unwrap()
 }
 
