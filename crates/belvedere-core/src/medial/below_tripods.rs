@@ -6,25 +6,25 @@ use belvedere_data::vector::sub;
 use std::collections::BTreeMap;
 use std::f32::consts::TAU;
 
-/// Of so many needles one is asked where its scanner was.
+/// Of so many free segments one is asked where its scanner was.
 const SAMPLE: usize = 64;
-/// Sampled needles that a tripod has at least.
-const LEAST_SAMPLED: usize = 32;
+/// Sampled free segments that a tripod has at least.
+const MIN_SAMPLED: usize = 32;
 /// Steps of scanner positions, metres: a car leaves each before it has sent 2000 pulses, and f32 rounds to less.
 const STEP_M: f32 = 0.002;
 /// Tripods stand farther apart than that, metres; what is nearer is one of them on both sides of a step.
-const LEAST_APART: f32 = 0.1;
+const MIN_APART: f32 = 0.1;
 /// Sectors about a tripod that the nearest points on the floor are looked for in, and how many must have one: its legs may hide
 /// the others.
 const SECTORS: usize = 36;
-const LEAST_SECTORS: usize = 24;
+const MIN_SECTORS: usize = 24;
 /// Greatest distance of the floor's nearest points from the foot of a tripod, in heights of the scanner above them: scanners look down to 30° from
 /// straight down or more.
-const MOST_HEIGHTS: f32 = 1.2;
+const MAX_HEIGHTS: f32 = 1.2;
 /// A scanner is higher above the floor than that, metres; what is nearer is the tripod itself.
-const LEAST_HEIGHT: f32 = 0.5;
+const MIN_HEIGHT: f32 = 0.5;
 /// Greatest slope of a floor; what lies farther above or below the others is no part of it.
-const MOST_SLOPE: f32 = 0.5;
+const MAX_SLOPE: f32 = 0.5;
 
 /// A place on the floor below a tripod.
 #[derive(Clone, Copy)]
@@ -34,23 +34,23 @@ pub(super) struct FloorPlace {
     pub(super) row: usize,
 }
 
-/// Places on the floor, at most `spacing` metres apart, that tripods among the scanners of `needles` stand on. They go from the foot of
+/// Places on the floor, at most `spacing` metres apart, that tripods among the scanners of `free_segments` stand on. They go from the foot of
 /// each to where its own pulses reached the floor. `index` must have been built from the `positions`. The result does not depend on the number of threads.
 pub(super) fn floors_below(
     positions: &[[f32; 3]],
     index: &NeighborIndex,
-    needles: &FreeSegments,
+    free_segments: &FreeSegments,
     spacing: f32,
 ) -> Vec<FloorPlace> {
     let floor_below =
-        |tripod| floor_below(positions, &nearest_around(index, positions, needles, tripod), tripod, spacing);
-    tripods(needles).into_iter().flat_map(floor_below).collect()
+        |tripod| floor_below(positions, &nearest_around(index, positions, free_segments, tripod), tripod, spacing);
+    tripods(free_segments).into_iter().flat_map(floor_below).collect()
 }
 
-/// Where many needles end in one place.
-fn tripods(needles: &FreeSegments) -> Vec<[f32; 3]> {
+/// Where many free segments end in one place.
+fn tripods(free_segments: &FreeSegments) -> Vec<[f32; 3]> {
     let mut found: BTreeMap<[i64; 3], (usize, [f32; 3])> = BTreeMap::new();
-    for (start, direction, length) in (0..needles.len()).step_by(SAMPLE).filter_map(|number| needles.segment(number)) {
+    for (start, direction, length) in (0..free_segments.len()).step_by(SAMPLE).filter_map(|number| free_segments.segment(number)) {
         let end: [f32; 3] = std::array::from_fn(|axis| start[axis] + direction[axis] * length);
         #[expect(clippy::cast_possible_truncation, reason = "`as` saturates")]
         let step = end.map(|v| (v / STEP_M).round() as i64);
@@ -59,8 +59,8 @@ fn tripods(needles: &FreeSegments) -> Vec<[f32; 3]> {
         *least = if end < *least { end } else { *least };
     }
     let mut tripods: Vec<[f32; 3]> = Vec::new();
-    for (_, end) in found.into_values().filter(|(count, _)| *count >= LEAST_SAMPLED) {
-        let is_known = |other: &[f32; 3]| sub(end, *other).iter().all(|off| off.abs() < LEAST_APART);
+    for (_, end) in found.into_values().filter(|(count, _)| *count >= MIN_SAMPLED) {
+        let is_known = |other: &[f32; 3]| sub(end, *other).iter().all(|off| off.abs() < MIN_APART);
         if !tripods.iter().any(is_known) {
             tripods.push(end);
         }
@@ -104,15 +104,15 @@ struct Edge {
 fn nearest_around(
     index: &NeighborIndex,
     positions: &[[f32; 3]],
-    needles: &FreeSegments,
+    free_segments: &FreeSegments,
     tripod: [f32; 3],
 ) -> Vec<Edge> {
     let mut lowest = [None::<(f32, [f32; 3])>; SECTORS];
-    for (start, direction, length) in (0..needles.len()).filter_map(|number| needles.segment(number)) {
+    for (start, direction, length) in (0..free_segments.len()).filter_map(|number| free_segments.segment(number)) {
         let [x, y, height] = sub(start, tripod);
         let range = x.hypot(y);
-        let is_below = height < -LEAST_HEIGHT && range < -height * MOST_HEIGHTS;
-        let is_own = || (0..3).all(|axis| (start[axis] + direction[axis] * length - tripod[axis]).abs() < LEAST_APART);
+        let is_below = height < -MIN_HEIGHT && range < -height * MAX_HEIGHTS;
+        let is_own = || (0..3).all(|axis| (start[axis] + direction[axis] * length - tripod[axis]).abs() < MIN_APART);
         if is_below && is_own() {
             #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "one of few sectors")]
             let sector = (y.atan2(x).rem_euclid(TAU) / TAU * SECTORS as f32) as usize;
@@ -125,7 +125,7 @@ fn nearest_around(
     let mut near = Vec::new();
     let mut found = Vec::new();
     for (_, start) in lowest.into_iter().flatten() {
-        // the needle begins just before its return
+        // the pulse begins just before its return
         index.k_nearest(start, 1, &mut near);
         if let Some(row) = near.first().map(|found| found.index as usize) {
             let [x, y, height] = sub(positions[row], tripod);
@@ -136,8 +136,8 @@ fn nearest_around(
     heights.sort_unstable_by(f32::total_cmp);
     let middle = heights.get(heights.len() / 2).copied().unwrap_or_default();
     let widest = found.iter().map(|point| point.range).fold(0.0, f32::max);
-    found.retain(|point| (point.height - middle).abs() <= MOST_SLOPE * widest);
-    if found.len() < LEAST_SECTORS {
+    found.retain(|point| (point.height - middle).abs() <= MAX_SLOPE * widest);
+    if found.len() < MIN_SECTORS {
         found.clear();
     }
     found
@@ -168,15 +168,15 @@ mod tests {
         }
         let scanner = vec![TRIPOD; positions.len()];
         let params = FreeSegmentParams::default();
-        let (needles, _) = FreeSegments::new(&positions, &scanner, &params, &Control::none()).unwrap();
+        let (free_segments, _) = FreeSegments::new(&positions, &scanner, &params, &Control::none()).unwrap();
         let index = NeighborIndex::new(&positions, &Control::none()).unwrap();
-        (positions, index, needles)
+        (positions, index, free_segments)
     }
 
     #[test]
     fn the_floor_below_a_tripod_goes_on_as_it_is_around() {
-        let (positions, index, needles) = floor(|_| true);
-        let places = floors_below(&positions, &index, &needles, 0.05);
+        let (positions, index, free_segments) = floor(|_| true);
+        let places = floors_below(&positions, &index, &free_segments, 0.05);
         let area = places.len() as f32 * 0.05 * 0.05;
         let whole = std::f32::consts::PI * (BLIND + 0.05) * (BLIND + 0.05);
         // the edge of the places is ragged by half a step
@@ -193,10 +193,10 @@ mod tests {
     #[test]
     fn legs_of_the_tripod_do_not_matter_but_half_a_floor_is_none() {
         let is_leg = |angle: f32| (angle % (TAU / 3.0)) < 0.2;
-        let (positions, index, needles) = floor(|angle| !is_leg(angle));
-        assert!(floors_below(&positions, &index, &needles, 0.05).len() > 600);
-        let (positions, index, needles) = floor(|angle| angle < 3.5);
-        assert!(floors_below(&positions, &index, &needles, 0.05).is_empty());
+        let (positions, index, free_segments) = floor(|angle| !is_leg(angle));
+        assert!(floors_below(&positions, &index, &free_segments, 0.05).len() > 600);
+        let (positions, index, free_segments) = floor(|angle| angle < 3.5);
+        assert!(floors_below(&positions, &index, &free_segments, 0.05).is_empty());
     }
 
     #[test]
@@ -205,7 +205,7 @@ mod tests {
         let scanner: Vec<[f32; 3]> =
             (0..positions.len()).map(|i| [TRIPOD[0] + 0.001 * i as f32, TRIPOD[1], TRIPOD[2]]).collect();
         let params = FreeSegmentParams::default();
-        let (needles, _) = FreeSegments::new(&positions, &scanner, &params, &Control::none()).unwrap();
-        assert!(floors_below(&positions, &index, &needles, 0.05).is_empty());
+        let (free_segments, _) = FreeSegments::new(&positions, &scanner, &params, &Control::none()).unwrap();
+        assert!(floors_below(&positions, &index, &free_segments, 0.05).is_empty());
     }
 }

@@ -1,9 +1,9 @@
 //! Cutting balls down to what the pulses leave of them.
 
-use super::bounds::RadiusBounds;
+use super::marks::RadiusCaps;
 use crate::neighbors::Tangent;
 use crate::normals::OrientedCloud;
-use crate::pulses::{FreeSegments, GAP_M};
+use crate::pulses::{GAP_M, FreeSegments};
 use belvedere_data::balls::{LIMIT_TOUCH, MedialBalls, NO_TOUCH, PULSE_TOUCH};
 use belvedere_data::control::Control;
 use belvedere_data::{Error, Result};
@@ -19,16 +19,16 @@ pub struct CarveReport {
     /// Balls that a pulse made smaller.
     #[serde(rename = "balls_cut_by_pulses")]
     pub carved: usize,
-    /// Balls that were cut to the most radius for their kind of point.
+    /// Balls that were cut to the largest radius for their point.
     #[serde(rename = "balls_limited")]
     pub limited: usize,
 }
 
-/// Cuts each of `balls` until no needle comes nearer than a millimetre, then brings its radius within `bounds`. Row i of `balls` must be the interior ball of point i of `oriented`, as [`super::shrink`] makes it; so must
-/// row i of the bounds.
+/// Cuts each of `balls` until no free segment of a pulse comes nearer than a millimetre, then brings its radius within `caps`. Row i of
+/// `balls` must be the interior ball of point i of `oriented`, as [`super::shrink`] makes it; so must row i of the caps.
 ///
 /// A ball that had met no point but meets a pulse gets [`PULSE_TOUCH`]. One that meets neither gets [`LIMIT_TOUCH`] and at most
-/// [`RadiusBounds::unbounded`]: its surface blocks all the same. The result depends on neither order nor number of threads.
+/// [`RadiusCaps::unbounded`]: its surface blocks all the same. The result depends on neither order nor number of threads.
 ///
 /// # Errors
 /// [`Error::LengthMismatch`] where they differ in length, [`Error::Cancelled`].
@@ -39,12 +39,12 @@ pub struct CarveReport {
 pub fn carve(
     balls: &mut MedialBalls,
     oriented: &OrientedCloud,
-    needles: &FreeSegments,
-    bounds: &RadiusBounds,
+    free_segments: &FreeSegments,
+    caps: &RadiusCaps,
     control: &Control<'_>,
 ) -> Result<CarveReport> {
     let expected = oriented.positions().len();
-    for (what, found) in [("balls", balls.len()), ("most radii", bounds.most.len())] {
+    for (what, found) in [("balls", balls.len()), ("largest radii", caps.radii.len())] {
         if found != expected {
             return Err(Error::LengthMismatch { what, expected, found });
         }
@@ -52,20 +52,32 @@ pub fn carve(
     let (positions, normals) = (oriented.positions(), oriented.normals());
     let ball = |row: usize, radius: f32| {
         let tangent = Tangent { point: positions[row], inward: normals[row].map(|v| -v), margin: 0.0 };
-        needles.smallest_tangent_ball(&tangent, radius)
+        free_segments.smallest_tangent_ball(&tangent, radius)
     };
+    let is_centred = |row: usize| caps.is_centred.get(row) == Some(&true);
     // what is larger than its limit is cut to that first: the search is shorter
     let mut carved: Vec<Option<f32>> = vec![None; expected];
     carved.par_chunks_mut(CHUNK).enumerate().try_for_each(|(chunk, carved)| {
         control.check()?;
         for (row, carved) in (chunk * CHUNK..).zip(carved.iter_mut()) {
-            *carved = ball(row, balls.radii[row].min(bounds.most[row]));
+            *carved = if is_centred(row) {
+                Some(free_segments.clearance(positions[row], caps.radii[row]))
+            } else {
+                ball(row, balls.radii[row].min(caps.radii[row]))
+            };
         }
         control.advance(carved.len());
         Ok(())
     })?;
     let mut report = CarveReport::default();
     for (row, carved) in carved.into_iter().enumerate() {
+        if let Some(radius) = carved.filter(|_| is_centred(row)) {
+            (balls.centers[row], balls.radii[row]) = (positions[row], radius);
+            balls.separation_angles[row] = f32::NAN;
+            // what the pulses leave nothing of blocks nothing
+            balls.touch[row] = if radius > 0.0 { PULSE_TOUCH } else { NO_TOUCH };
+            continue;
+        }
         if !(balls.radii[row] > 0.0) {
             continue;
         }
@@ -74,10 +86,10 @@ pub fn carve(
             report.carved += 1;
             radius = carved;
         }
-        let mut most = bounds.most[row];
+        let mut most = caps.radii[row];
         let is_unbounded = carved.is_none() && balls.touch[row] == NO_TOUCH;
         if is_unbounded && most.is_infinite() {
-            most = bounds.unbounded;
+            most = caps.unbounded;
         }
         report.limited += usize::from(radius > most);
         radius = radius.min(most);

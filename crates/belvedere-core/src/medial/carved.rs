@@ -1,21 +1,11 @@
 //! The model that Belvedere answers from: balls cut by pulses, and the rules for what balls alone represent badly.
 
-use super::bounds::{Kind, KindBounds, RadiusBounds, kinds};
 use super::carve::{CarveReport, carve};
-use super::cells::{highest, lowest_near};
-use super::close_range::{CloseRangeBalls, CloseRangeParams};
-use super::crowns::{self, CrownParams, Crowns, Trees};
-use super::data_voids::{DataVoidParams, DataVoids};
-use super::prune::{PruneParams, prune_in_blocks_of};
-use super::relief::{Relief, ReliefParams};
-use super::roof_edges::{RoofEdgeParams, RoofEdges};
-use super::roof_tops::RoofTops;
-use super::shrinking_ball::{ShrinkMethod, ShrinkParams, ShrinkReport, shrink};
-use super::slender::{Slender, SlenderParams};
-use super::spacing::{pulse_counts, pulse_spacing};
-use super::thin_surfaces::{self, ThinSurfaceParams, on_thin_surfaces, on_thin_surfaces_of_part};
-use super::vegetation::{VegetationParams, tell_vegetation};
-use super::whole_survey::{SurveyPart, WholeSurvey};
+use super::close_range::CloseRangeBalls;
+use super::marks::{self, RadiusCaps};
+use super::rules::{CarvedParams, MarkingRule, Phase};
+use super::shrinking_ball::{ShrinkReport, shrink};
+use super::survey::{RuleStatistics, Survey};
 use crate::neighbors::NeighborIndex;
 use crate::normals::OrientedCloud;
 use crate::pulses::{FreeSegments, Pulses};
@@ -23,177 +13,29 @@ use belvedere_data::balls::{MedialBalls, Side};
 use belvedere_data::control::Control;
 use belvedere_data::{Attributes, Result};
 use serde::Serialize;
-
-/// Upward part of a normal below which a point lies on the face of a wall rather than on its edge: within 17° of upright.
-const FACE_NORMAL_Z: f32 = 0.3;
-
-/// How carved balls are made. Every rule that is `Some` is applied; [`CarvedParams::default`] applies those that the comparison
-/// of docs/methods/carving.md shows to earn their place.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CarvedParams {
-    /// Depth to which a point may enter a ball, metres, above 0. Default 0.02: a penetration of 0.05 m costs 1.3 points on facades. Pulses
-    /// enter none.
-    pub penetration: f32,
-    /// Radius every ball starts with, metres. Default 5: 15 m answer the same, cost 40 % more a query and bulge farther where
-    /// no pulse passes; 3 m let 1.2 points more of the shade of streets through.
-    pub initial_radius: f32,
-    /// Most radius of any ball, metres, above 0; +∞, the default, for no limit but those that pulses and rules set.
-    pub max_radius: f32,
-    /// Whether points are moved onto the surface that they scatter about before balls are made ([`crate::normals::Scatter`]). The model does
-    /// that, with the normals; [`carved_balls`] takes points as they are.
-    pub smoothing: bool,
-    /// Bounds by kind of point.
-    pub kind_bounds: KindBounds,
-    /// How vegetation is told in clouds without its classes.
-    pub vegetation: Option<VegetationParams>,
-    /// How crowns of trees are measured, limited and filled.
-    pub crowns: Option<CrownParams>,
-    /// How fences, wires and the like are limited and filled.
-    pub slender: Option<SlenderParams>,
-    /// Leaves out balls that others make superfluous.
-    pub pruning: Option<PruneParams>,
-    /// Small balls at surfaces that pulses run below.
-    pub thin_surfaces: Option<ThinSurfaceParams>,
-    /// Fills edges, ridges, chimneys and low walls down to the next lower level.
-    pub relief: Option<ReliefParams>,
-    /// Cuts balls below the edges of roofs, where walls stand that no pulse reached, and where they reach above the roof.
-    pub roof_edges: Option<RoofEdgeParams>,
-    /// Cuts balls where they reach over places without returns.
-    pub data_voids: Option<DataVoidParams>,
-    /// Sizes for scanners on the ground, which replace those above and leave none of these rules. `None` treats all scanners as
-    /// if they flew.
-    pub close_range: Option<CloseRangeParams>,
-}
-
-impl Default for CarvedParams {
-    fn default() -> Self {
-        Self {
-            penetration: 0.02,
-            initial_radius: 5.0,
-            max_radius: f32::INFINITY,
-            smoothing: true,
-            kind_bounds: KindBounds::default(),
-            vegetation: Some(VegetationParams::default()),
-            crowns: Some(CrownParams::default()),
-            slender: Some(SlenderParams::default()),
-            pruning: Some(PruneParams::default()),
-            thin_surfaces: Some(ThinSurfaceParams::default()),
-            relief: Some(ReliefParams::default()),
-            roof_edges: Some(RoofEdgeParams::default()),
-            data_voids: Some(DataVoidParams::default()),
-            close_range: Some(CloseRangeParams::default()),
-        }
-    }
-}
-
-/// A rule that can be left out.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Rule {
-    /// [`CarvedParams::smoothing`].
-    Smoothing,
-    /// [`CarvedParams::vegetation`].
-    Vegetation,
-    /// [`CarvedParams::crowns`].
-    Crowns,
-    /// [`CarvedParams::slender`].
-    Slender,
-    /// [`CarvedParams::thin_surfaces`].
-    ThinSurfaces,
-    /// [`CarvedParams::relief`].
-    Relief,
-    /// [`CarvedParams::roof_edges`].
-    RoofEdges,
-    /// [`CarvedParams::data_voids`].
-    DataVoids,
-    /// [`CarvedParams::pruning`].
-    Pruning,
-}
-
-impl Rule {
-    /// Every rule.
-    pub const ALL: [Self; 9] = [
-        Self::Smoothing,
-        Self::Vegetation,
-        Self::Crowns,
-        Self::Slender,
-        Self::ThinSurfaces,
-        Self::Relief,
-        Self::RoofEdges,
-        Self::DataVoids,
-        Self::Pruning,
-    ];
-
-    /// Name on the command line and in tables: lower case and hyphens.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Smoothing => "smoothing",
-            Self::Vegetation => "vegetation",
-            Self::Crowns => "crowns",
-            Self::Slender => "slender",
-            Self::ThinSurfaces => "thin-surfaces",
-            Self::Relief => "relief",
-            Self::RoofEdges => "roof-edges",
-            Self::DataVoids => "data-voids",
-            Self::Pruning => "pruning",
-        }
-    }
-}
-
-impl CarvedParams {
-    /// The same with crowns taken for `trees`, unless their rule is left out.
-    #[must_use]
-    pub fn with_trees(mut self, trees: Trees) -> Self {
-        self.crowns = self.crowns.map(|crowns| CrownParams { trees, ..crowns });
-        self
-    }
-
-    /// The same without one rule.
-    #[must_use]
-    pub fn without(mut self, rule: Rule) -> Self {
-        match rule {
-            Rule::Smoothing => self.smoothing = false,
-            Rule::Vegetation => self.vegetation = None,
-            Rule::Crowns => self.crowns = None,
-            Rule::Slender => self.slender = None,
-            Rule::ThinSurfaces => self.thin_surfaces = None,
-            Rule::Relief => self.relief = None,
-            Rule::RoofEdges => self.roof_edges = None,
-            Rule::DataVoids => self.data_voids = None,
-            Rule::Pruning => self.pruning = None,
-        }
-        self
-    }
-
-    /// How balls shrink before they are carved.
-    #[must_use]
-    pub fn shrinking(&self) -> ShrinkParams {
-        ShrinkParams {
-            method: ShrinkMethod::Tau { penetration: self.penetration },
-            initial_radius: self.initial_radius,
-            max_radius: self.max_radius,
-            max_spacings: f32::INFINITY,
-        }
-    }
-}
+use std::collections::BTreeMap;
 
 /// What carved balls are made from. All columns have a row for each point.
 #[derive(Clone, Copy)]
 pub struct CarvedInput<'a> {
     /// Points and outward normals.
     pub oriented: &'a OrientedCloud,
+    /// The points before they were moved onto their surface, (N, 3) local metres: they decide which block of 64 m a point belongs to.
+    pub measured: &'a [[f32; 3]],
     /// Index of the same points.
     pub index: &'a NeighborIndex,
     /// Class, return number and return count are used where present.
     pub attributes: &'a Attributes,
     /// What the pulses prove empty.
-    pub needles: &'a FreeSegments,
+    pub free_segments: &'a FreeSegments,
     /// Which returns share a pulse, rows as in the cloud; without it no crown is measured.
     pub pulses: Option<&'a Pulses>,
+    /// Statistics of the survey that the points are a part of; `None` where they are the whole.
+    pub statistics: Option<&'a RuleStatistics>,
 }
 
 /// What became of the balls in [`carved_balls`].
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct CarvedReport {
     /// By the points.
     #[serde(flatten)]
@@ -201,48 +43,17 @@ pub struct CarvedReport {
     /// By the pulses.
     #[serde(flatten)]
     pub carving: CarveReport,
-    /// Points told to be vegetation in a cloud without its classes.
-    #[serde(rename = "points_found_to_be_vegetation")]
-    pub told_vegetation: usize,
-    /// Points in crowns with gaps.
-    #[serde(rename = "points_in_crowns_with_gaps")]
-    pub in_crowns_with_gaps: usize,
-    /// Balls about returns within crowns.
-    #[serde(rename = "balls_centred_in_crowns")]
-    pub centred: usize,
-    /// Balls that fill solid crowns.
-    #[serde(rename = "balls_in_crowns")]
-    pub crown_fills: usize,
-    /// Points of fences, wires and the like.
-    #[serde(rename = "points_on_thin_objects")]
-    pub slender: usize,
-    /// Balls that fill fences and the like.
-    #[serde(rename = "balls_in_thin_objects")]
-    pub slender_fills: usize,
-    /// Balls left out because others make them superfluous.
-    #[serde(rename = "balls_superfluous")]
-    pub pruned: usize,
-    /// Points found on thin surfaces.
-    #[serde(rename = "points_on_thin_surfaces")]
-    pub thin: usize,
-    /// Balls midway between them.
-    #[serde(rename = "balls_in_thin_surfaces")]
-    pub thin_fills: usize,
-    /// Points of thin relief.
-    #[serde(rename = "points_on_thin_relief")]
-    pub relief: usize,
-    /// Balls that fill it.
-    #[serde(rename = "balls_in_thin_relief")]
-    pub relief_fills: usize,
-    /// Balls cut below the edges of roofs, and where they reached above a roof.
-    #[serde(rename = "balls_cut_at_roof_edges")]
-    pub cut_at_edges: usize,
-    /// Balls cut where they reached over places without returns.
-    #[serde(rename = "balls_cut_at_data_voids")]
-    pub cut_at_voids: usize,
-    /// Balls that close floors below tripods.
-    #[serde(rename = "balls_below_tripods")]
-    pub below_tripods: usize,
+    /// By the rules: names of the report and how many points or balls.
+    #[serde(flatten)]
+    pub rules: BTreeMap<&'static str, usize>,
+}
+
+impl CarvedReport {
+    /// A number of [`CarvedReport::rules`], 0 where its rule was not applied.
+    #[must_use]
+    pub fn count(&self, name: &str) -> usize {
+        self.rules.get(name).copied().unwrap_or(0)
+    }
 }
 
 /// Balls of a survey.
@@ -260,166 +71,129 @@ pub struct CarvedBalls {
 
 /// The interior balls of a survey as far as its pulses leave them, and those that rules add.
 ///
+/// The balls of a part of a survey ([`CarvedInput::statistics`]) whose points lie far enough from its edge are those of any other part that holds
+/// them so, bit by bit; how far that is follows from the rules ([`crate::model::SurveyStatistics::buffer`]).
+///
 /// # Errors
 /// Those of [`shrink`] and [`carve`]. Each rule is a stage of `control`.
 pub fn carved_balls(input: &CarvedInput<'_>, params: &CarvedParams, control: &Control<'_>) -> Result<CarvedBalls> {
-    Ok(carve_survey(input, None, params, control)?.0)
+    match params.close_range.filter(|_| input.free_segments.are_from_the_ground()) {
+        Some(sizes) => {
+            let CloseRangeBalls { balls, shrinking, carving, below_tripods } = sizes.balls(input, control)?;
+            let rules = BTreeMap::from([("balls_below_tripods", below_tripods)]);
+            let report = CarvedReport { shrinking, carving, rules };
+            Ok(CarvedBalls { balls: balls.shrunk(), transmission: Vec::new(), report })
+        }
+        None => carve_survey(Survey::new(input, params, control)?, &params.rules(), params, control),
+    }
 }
 
-/// The same for a part of a survey. The balls of points that lie far enough from its edge are those of any other part that holds them
-/// so, bit by bit; how far that is follows from the rules ([`crate::model::SurveyStatistics::buffer`]).
+/// Statistics of a whole survey that rules need.
 ///
 /// # Errors
 /// Those of [`carved_balls`].
-pub fn carved_balls_of_part(
+pub(crate) fn rule_statistics(
     input: &CarvedInput<'_>,
-    part: &SurveyPart<'_>,
+    params: &CarvedParams,
+    control: &Control<'_>,
+) -> Result<RuleStatistics> {
+    Ok(Survey::new(input, params, control)?.statistics)
+}
+
+/// Applies `rules` to a survey: caps before the pulses carve, cuts after, fills at the end.
+fn carve_survey(
+    mut survey: Survey<'_>,
+    rules: &[&dyn MarkingRule],
     params: &CarvedParams,
     control: &Control<'_>,
 ) -> Result<CarvedBalls> {
-    Ok(carve_survey(input, Some(part), params, control)?.0)
-}
-
-/// The balls of a survey or of a part of one, and what rules took from the whole of it.
-pub(crate) fn carve_survey(
-    input: &CarvedInput<'_>,
-    part: Option<&SurveyPart<'_>>,
-    params: &CarvedParams,
-    control: &Control<'_>,
-) -> Result<(CarvedBalls, WholeSurvey)> {
-    let CarvedInput { oriented, index, attributes, needles, pulses } = *input;
-    let positions = oriented.positions();
+    let (oriented, index) = (survey.oriented, survey.index);
     let mut report = CarvedReport::default();
-    if let Some(sizes) = params.close_range.filter(|_| needles.are_from_the_ground()) {
-        let CloseRangeBalls { balls, shrinking, carving, below_tripods } = sizes.balls(input, control)?;
-        let carved = CarvedBalls {
-            balls: balls.shrunk(),
-            transmission: Vec::new(),
-            report: CarvedReport { shrinking, carving, below_tripods, ..report },
-        };
-        return Ok((carved, WholeSurvey::default()));
-    }
-    let mut kinds = kinds(attributes, oriented.len());
-    let given = part.map(|part| part.whole);
-    let mut whole = given.copied().unwrap_or_else(|| WholeSurvey {
-        has_ground: kinds.contains(&Kind::Ground),
-        has_vegetation: kinds.contains(&Kind::Vegetation),
-        ..WholeSurvey::default()
-    });
-    let measured = part.map_or(positions, |part| part.measured);
-    let farthest = part.map_or(f32::INFINITY, |part| part.farthest);
-    // with its classes, vegetation need not be told
-    if let Some(vegetation) = params.vegetation.as_ref().filter(|_| !whole.has_vegetation) {
-        report.told_vegetation = control.stage("finding vegetation", oriented.len(), || {
-            tell_vegetation(&mut kinds, oriented, index, attributes, vegetation, farthest, control)
-        })?;
-    }
-    let counts = pulse_counts(positions, attributes);
-    let spacing = pulse_spacing(positions, &counts);
-    let mut bounds = RadiusBounds::by_kind(&kinds, attributes, &spacing, &params.kind_bounds);
-    let lowest = lowest_near(positions);
-    let through = match (&params.crowns, pulses) {
-        (Some(crowns), Some(pulses)) => control.stage("measuring crowns", 0, || {
-            let (through, share) = crowns::transmission(positions, &kinds, &lowest, pulses, crowns, given, control)?;
-            whole.transmission = share;
-            Ok(through)
-        })?,
-        _ => Vec::new(),
+    report.rules.insert("points_found_to_be_vegetation", survey.found_vegetation);
+    let mut caps = RadiusCaps::by_kind(&survey.kinds, survey.attributes, &survey.spacing, &params.kind_caps);
+    let mut fills = Vec::new();
+    let in_phase = |phase: Phase| {
+        let stage = move |rule: &&dyn MarkingRule| rule.stage().filter(|stage| stage.0 == phase).map(|stage| stage.1);
+        rules.iter().filter_map(move |rule| Some((rule, stage(rule)?)))
     };
-    let crowns = params.crowns.as_ref().map(|params| Crowns {
-        positions,
-        kinds: &kinds,
-        attributes,
-        transmission: &through,
-        params,
-    });
-    let find_slender = |params| {
-        control.stage("finding thin objects", oriented.len(), || {
-            Slender::find(positions, &kinds, attributes, (&lowest, &spacing), needles, params, control)
-        })
-    };
-    let slender = params.slender.as_ref().map(find_slender).transpose()?;
-    report.in_crowns_with_gaps = crowns.as_ref().map_or(0, |crowns| crowns.limit(&mut bounds));
-    report.slender = slender.as_ref().map_or(0, |slender| slender.limit(&mut bounds));
-    let mut thin = Vec::new();
-    if let Some(params) = &params.thin_surfaces {
-        thin = control.stage("finding thin surfaces", 0, || {
-            if part.is_some() {
-                on_thin_surfaces_of_part((positions, measured), &kinds, index, needles, params, control)
-            } else {
-                on_thin_surfaces(positions, &kinds, index, needles, params, control)
-            }
-        })?;
-        for row in (0..thin.len()).filter(|&row| thin[row]) {
-            bounds.limit(row, params.radius_spacings * spacing[row]);
-            report.thin += 1;
-        }
+    for (rule, stage) in in_phase(Phase::Points) {
+        let none = MedialBalls::default();
+        let marks = control.stage(stage, oriented.len(), || rule.marks(&survey, &none, control))?;
+        survey.claim(&marks.caps);
+        caps.tighten(&marks.caps);
+        report.rules.extend(marks.counts);
+        fills.push((rule.fills_name(), marks.fills));
     }
-
+    let shrinking = params.shrinking();
     let mut balls;
-    (balls, report.shrinking) = control.stage("shrinking balls", oriented.len(), || {
-        shrink(oriented, index, Side::Interior, &params.shrinking(), control)
-    })?;
-    report.carving =
-        control.stage("carving balls", oriented.len(), || carve(&mut balls, oriented, needles, &bounds, control))?;
-    // what is only found to be vegetation may be anything that is not flat: better neither centred nor filled
-    let known_crowns = crowns.as_ref().filter(|_| report.told_vegetation == 0);
-    if let Some(crowns) = known_crowns {
-        (report.centred, whole.crown_spacing) = control
-            .stage("centring balls in crowns", 0, || crowns.centre(&mut balls, index, needles, given, control))?;
+    (balls, report.shrinking) = control
+        .stage("shrinking balls", oriented.len(), || shrink(oriented, index, Side::Interior, &shrinking, control))?;
+    report.carving = control
+        .stage("carving balls", oriented.len(), || carve(&mut balls, oriented, survey.free_segments, &caps, control))?;
+    for (rule, stage) in in_phase(Phase::Balls) {
+        let marks = control.stage(stage, oriented.len(), || rule.marks(&survey, &balls, control))?;
+        marks::cut(&mut balls, oriented, &marks.cuts);
+        report.rules.extend(marks.counts);
+        fills.push((rule.fills_name(), marks.fills));
     }
-    let highest = highest(positions);
-    if let Some(params) = &params.roof_edges {
-        report.cut_at_edges = control.stage("cutting at roof edges", 0, || {
-            let edges = RoofEdges::find(oriented, &kinds, index, (&lowest, &spacing), params, control)?;
-            let at_edges = edges.cut(&mut balls, oriented, params, control)?;
-            Ok(at_edges + RoofTops::find(oriented, &highest).cut(&mut balls, oriented, params, control)?)
-        })?;
-    }
-    if let Some(params) = &params.data_voids {
-        report.cut_at_voids = control.stage("cutting at data voids", 0, || {
-            DataVoids::find(&highest, &lowest, &counts, needles).cut(&mut balls, oriented, params, control)
-        })?;
-    }
-    if let Some(pruning) = &params.pruning {
-        report.pruned = control.stage("pruning balls", oriented.len(), || {
-            prune_in_blocks_of(measured, &mut balls, oriented, index, pruning, control)
-        })?;
-    }
-    // before anything is added: the ball of a point is still in its row
-    let find_relief = |params| {
-        // below thin surfaces is air, what is slender is filled by its own rule, and balls hung on the face of a wall would stand
-        // out of it where no pulse says how far
-        let is_left_out = |row: usize| {
-            thin.get(row) == Some(&true)
-                || slender.as_ref().is_some_and(|slender| slender.stands(row))
-                || oriented.normals()[row][2].abs() < FACE_NORMAL_Z
-        };
-        control.stage("finding thin relief", oriented.len(), || {
-            Relief::find(positions, &kinds, is_left_out, (&balls, &spacing), index, params, control)
-        })
-    };
-    let relief = params.relief.as_ref().map(find_relief).transpose()?;
-    report.relief = relief.as_ref().map_or(0, Relief::len);
     control.stage("filling", 0, || {
-        if let Some(crowns) = known_crowns {
-            report.crown_fills = crowns.fill(&mut balls, needles, control)?;
-        }
-        if let Some(relief) = &relief {
-            report.relief_fills = relief.fill(&mut balls, needles, control)?;
-        }
-        if let Some(params) = &params.thin_surfaces {
-            let at = (&thin[..], &spacing[..]);
-            report.thin_fills = thin_surfaces::fill(&mut balls, positions, at, needles, params, control)?;
-        }
-        if let Some(slender) = &slender {
-            report.slender_fills = slender.fill(&mut balls, needles, control)?;
+        for (name, fills) in fills.iter().filter(|(name, _)| !name.is_empty()) {
+            report.rules.insert(name, marks::fill(&mut balls, &survey, fills, control)?);
         }
         Ok(())
     })?;
-
     let balls = balls.shrunk();
-    let of = |&source: &u32| through.get(source as usize).copied();
+    let of = |&source: &u32| survey.transmission.get(source as usize).copied();
     let transmission = balls.source.iter().filter_map(of).collect();
-    Ok((CarvedBalls { balls, transmission, report }, whole))
+    Ok(CarvedBalls { balls, transmission, report })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::medial::marks::{Cap, Cut, Fill, FillPlace, Marks};
+    use crate::medial::survey::tests::with_survey;
+    use belvedere_data::balls::PULSE_TOUCH;
+
+    /// A tenth rule: its file, whose line in `rules.rs` would add it to all others. It caps the first ball, cuts the second, fills below
+    /// the third.
+    struct Tenth(Phase);
+
+    impl MarkingRule for Tenth {
+        fn stage(&self) -> Option<(Phase, &'static str)> {
+            Some((self.0, "marking three points"))
+        }
+
+        fn marks(&self, survey: &Survey<'_>, _: &MedialBalls, _: &Control<'_>) -> Result<Marks> {
+            let place = FillPlace::Below(survey.positions()[2]);
+            let fills = vec![Fill { row: 2, place, max_radius: 4.0, min_radius: 0.0 }];
+            Ok(match self.0 {
+                Phase::Points => Marks { caps: vec![Cap::tangent(0, 0.25)], fills, ..Marks::default() },
+                Phase::Balls => Marks { cuts: vec![Cut { row: 1, radius: Some(0.125) }], ..Marks::default() },
+            })
+        }
+
+        fn fills_name(&self) -> &'static str {
+            if self.0 == Phase::Points { "balls_of_the_tenth_rule" } else { "" }
+        }
+    }
+
+    #[test]
+    fn a_tenth_rule_is_a_type_and_caps_cuts_and_fills() {
+        let grid = (0_u8..100).map(|i| [f32::from(i % 10), f32::from(i / 10), 0.0]).collect::<Vec<_>>();
+        let oriented = OrientedCloud::with_known_normals(grid, vec![[0.0, 0.0, 1.0]; 100]).unwrap();
+        let scanner = vec![[0.0, 0.0, 500.0]; 100];
+        let carve = |rules: &[&dyn MarkingRule]| {
+            with_survey(&oriented, Some(vec![1; 100]), &scanner, |survey| {
+                carve_survey(survey, rules, &CarvedParams::default(), &Control::none()).unwrap()
+            })
+        };
+        let (without, with) = (carve(&[]), carve(&[&Tenth(Phase::Points), &Tenth(Phase::Balls)]));
+        // nothing bounds the balls of a plane: half a metre
+        assert!(without.balls.len() == 100 && without.balls.radii.iter().all(|&radius| radius == 0.5));
+        assert_eq!(with.balls.radii[..4], [0.25, 0.125, 0.5, 0.5]);
+        assert_eq!((with.balls.touch[1], with.balls.centers[1]), (PULSE_TOUCH, [1.0, 0.0, -0.125]));
+        assert_eq!((with.balls.len(), with.balls.radii[100], with.balls.source[100]), (101, 4.0, 2));
+        assert_eq!(with.report.count("balls_of_the_tenth_rule"), 1);
+    }
 }

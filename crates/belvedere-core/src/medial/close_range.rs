@@ -18,27 +18,27 @@ use rayon::prelude::*;
 /// Balls handed to a thread at once; their searches share the cache.
 const CHUNK: usize = 512;
 /// Balls of less than this are left out, metres: pulses passed on all sides, and what is left is noise.
-const LEAST_RADIUS: f32 = 1e-3;
+const MIN_RADIUS: f32 = 1e-3;
 
 /// Sizes of balls for scanners that stand among the things they measure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CloseRangeParams {
     /// Most radius in spacings of the points around, above 0.5: below that there are gaps between points in squares. Default 2, since
     /// scan lines are often twice as far apart as the points on them. 1.5 leaves gaps at the edges of rooms.
-    pub most_spacings: f32,
+    pub max_spacings: f32,
     /// Most radius, metres, above 0. Default 0.15: 0.25 blocks twice as much of what is visible behind cars and fences.
-    pub most_radius: f32,
+    pub max_radius: f32,
     /// Depth to which points and pulses may enter a ball before it gives way to them, as a share of the most radius, 0 to 0.5. Default
     /// 0.25. The balls that are left end as deep below the surface, so that no pulse enters them at all, and points that noise moved
     /// inward remain visible.
     pub penetration_share: f32,
     /// The same in metres, at most. Default 0.0075: the noise of such scanners; 0.02 makes a room of 10 × 6 × 3 m 3.5 % too large.
-    pub most_penetration: f32,
+    pub max_penetration: f32,
 }
 
 impl Default for CloseRangeParams {
     fn default() -> Self {
-        Self { most_spacings: 2.0, most_radius: 0.15, penetration_share: 0.25, most_penetration: 0.0075 }
+        Self { max_spacings: 2.0, max_radius: 0.15, penetration_share: 0.25, max_penetration: 0.0075 }
     }
 }
 
@@ -59,10 +59,10 @@ impl CloseRangeParams {
     pub(super) fn balls(&self, input: &CarvedInput<'_>, control: &Control<'_>) -> Result<CloseRangeBalls> {
         let CarvedInput { oriented, index, .. } = *input;
         let shrinking = ShrinkParams {
-            method: ShrinkMethod::Tau { penetration: self.most_penetration.min(0.5 * self.most_radius) },
-            initial_radius: self.most_radius,
+            method: ShrinkMethod::Tau { penetration: self.max_penetration.min(0.5 * self.max_radius) },
+            initial_radius: self.max_radius,
             max_radius: f32::INFINITY,
-            max_spacings: self.most_spacings,
+            max_spacings: self.max_spacings,
         };
         let (mut balls, mut shrinking) = control.stage("shrinking balls", oriented.len(), || {
             shrink(oriented, index, Side::Interior, &shrinking, control)
@@ -77,17 +77,17 @@ impl CloseRangeParams {
 
     /// Adds balls to the floors that tripods stand on; returns how many.
     fn close_floors(&self, balls: &mut MedialBalls, input: &CarvedInput<'_>) -> usize {
-        let spacing = 0.5 * self.most_radius;
+        let spacing = 0.5 * self.max_radius;
         let before = balls.len();
         for FloorPlace { position, row } in
-            floors_below(input.oriented.positions(), input.index, input.needles, spacing)
+            floors_below(input.oriented.positions(), input.index, input.free_segments, spacing)
         {
-            let tangent = Tangent { point: position, inward: [0.0, 0.0, -1.0], margin: self.most_penetration };
-            let most = self.most_radius - self.most_penetration;
-            let radius = input.needles.smallest_tangent_ball(&tangent, most).map_or(most, |empty| empty - GAP_M);
-            if radius >= LEAST_RADIUS {
+            let tangent = Tangent { point: position, inward: [0.0, 0.0, -1.0], margin: self.max_penetration };
+            let most = self.max_radius - self.max_penetration;
+            let radius = input.free_segments.smallest_tangent_ball(&tangent, most).map_or(most, |empty| empty - GAP_M);
+            if radius >= MIN_RADIUS {
                 let [x, y, z] = position;
-                balls.push(row, [x, y, z - self.most_penetration - GAP_M - radius], radius, LIMIT_TOUCH);
+                balls.push(row, [x, y, z - self.max_penetration - GAP_M - radius], radius, LIMIT_TOUCH);
             }
         }
         balls.len() - before
@@ -95,7 +95,7 @@ impl CloseRangeParams {
 
     /// Cuts balls down to where no pulse enters them.
     fn carve(&self, balls: &mut MedialBalls, input: &CarvedInput<'_>, control: &Control<'_>) -> Result<CarveReport> {
-        let CarvedInput { oriented, index, needles, .. } = *input;
+        let CarvedInput { oriented, index, free_segments, .. } = *input;
         let (positions, normals) = (oriented.positions(), oriented.normals());
         let order = index.tree_order();
         let mut cut: Vec<(f32, f32, bool)> = vec![(0.0, 0.0, false); order.len()];
@@ -104,14 +104,14 @@ impl CloseRangeParams {
             let mut near = Vec::new();
             for (cut, &row) in cut.iter_mut().zip(rows) {
                 let row = row as usize;
-                let most = self.most_radius.min(self.most_spacings * spacing_at(index, positions[row], &mut near));
+                let most = self.max_radius.min(self.max_spacings * spacing_at(index, positions[row], &mut near));
                 let radius = balls.radii[row].min(most);
-                let margin = self.most_penetration.min(self.penetration_share * most);
+                let margin = self.max_penetration.min(self.penetration_share * most);
                 if !(radius > margin) {
                     continue;
                 }
                 let tangent = Tangent { point: positions[row], inward: normals[row].map(|v| -v), margin };
-                *cut = match needles.smallest_tangent_ball(&tangent, radius - margin) {
+                *cut = match free_segments.smallest_tangent_ball(&tangent, radius - margin) {
                     Some(empty) => (empty - GAP_M, margin + GAP_M, true),
                     None => (radius - margin, margin, false),
                 };
@@ -122,7 +122,7 @@ impl CloseRangeParams {
         let mut report = CarveReport::default();
         for (&row, (radius, margin, is_cut)) in order.iter().zip(cut) {
             let row = row as usize;
-            if !(radius >= LEAST_RADIUS) {
+            if !(radius >= MIN_RADIUS) {
                 (balls.radii[row], balls.touch[row]) = (0.0, NO_TOUCH);
                 continue;
             }

@@ -4,10 +4,11 @@
 //! water as the first pulse that passes. Nothing stands there: the pulses that were sent there met neither a crown nor a roof.
 
 use super::cells::{Cell, Cells, cell};
-use super::roof_edges::shrink;
+use super::marks::{Cut, Marks, cuts_of};
+use super::rules::{MarkingRule, Phase};
 use super::spacing::spacing_of;
+use super::survey::Survey;
 use crate::normals::OrientedCloud;
-use crate::pulses::FreeSegments;
 use belvedere_data::Result;
 use belvedere_data::balls::{MedialBalls, NO_TOUCH};
 use belvedere_data::control::{Control, Stop};
@@ -15,38 +16,50 @@ use rayon::prelude::*;
 use std::collections::HashMap;
 
 /// Smaller balls reach no middle of an empty cell, which lies half a metre or more from every point.
-const LEAST_RADIUS: f32 = 0.25;
+const MIN_RADIUS: f32 = 0.25;
 /// How far around a void its lowest point is looked for, and around a point its voids, in cells: as far as a ball of 5 m reaches.
 const FARTHEST: i32 = 10;
-/// Rings of cells about a void, from the nearest one with a pulse on, whose pulses tell where the scanner was.
-const RIM_WIDTH: i32 = 3;
+/// Rings of cells about a void, from the nearest one with a pulse on, whose pulses show where the scanner was.
+const BORDER_WIDTH: i32 = 3;
 /// Balls that are looked at together: their empty cells take up to a few hundred megabytes where points are sparse.
-const BLOCK: usize = 1 << 16;
+const BALLS_AT_ONCE: usize = 1 << 16;
 /// Steps towards a scanner, metres on the map: half a cell; and how many are made at most.
 const STEP_M: f32 = 0.5;
-const MOST_STEPS: u16 = 4096;
+const MAX_STEPS: u16 = 4096;
 /// Least sine of the angle between a pulse and the vertical. Pulses that are assumed to fall straight down do not tell what lies in the shadow
 /// of something.
-const LEAST_LEAN: f32 = 1e-4;
+const MIN_LEAN: f32 = 1e-4;
 
 /// How balls are cut at data voids.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DataVoidParams {
     /// Greatest spacing of pulses around a void, metres, above 0. Default 0.75, a quarter of the side of the smallest void, 3 m: the lidar base
     /// specification of the US Geological Survey calls an area without first returns a void from four spacings squared on.
-    pub most_spacing: f32,
+    pub max_spacing: f32,
     /// Height above the lowest point around a void from which on balls do not reach into it, metres, 0 or more. Default 0.5.
-    pub least_height: f32,
+    pub min_height: f32,
 }
 
 impl Default for DataVoidParams {
     fn default() -> Self {
-        Self { most_spacing: 0.75, least_height: 0.5 }
+        Self { max_spacing: 0.75, min_height: 0.5 }
     }
 }
 
-/// What tells voids from places in the shadow of something.
-pub(super) struct DataVoids<'a> {
+impl MarkingRule for DataVoidParams {
+    fn stage(&self) -> Option<(Phase, &'static str)> {
+        Some((Phase::Balls, "cutting at data voids"))
+    }
+
+    fn marks(&self, survey: &Survey<'_>, balls: &MedialBalls, control: &Control<'_>) -> Result<Marks> {
+        let cuts = DataVoids::new(survey, self).cuts(survey.oriented, balls, control)?;
+        Ok(Marks { counts: vec![("balls_cut_at_data_voids", cuts.len())], cuts, ..Marks::default() })
+    }
+}
+
+/// What distinguishes voids from places in the shadow of something.
+struct DataVoids<'a> {
+    params: &'a DataVoidParams,
     /// Heights of the highest points in cells.
     highest: &'a Cells<f32>,
     /// Heights of the lowest points in cells and those about them.
@@ -60,46 +73,27 @@ pub(super) struct DataVoids<'a> {
 }
 
 impl<'a> DataVoids<'a> {
-    /// Those between points whose heights are those of [`super::cells::highest`] and [`super::cells::lowest_near`], and whose pulses have the counts
-    /// of [`super::spacing::pulse_counts`].
-    pub(super) fn find(
-        highest: &'a Cells<f32>,
-        lowest: &'a Cells<f32>,
-        counts: &'a Cells<u32>,
-        needles: &FreeSegments,
-    ) -> Self {
+    /// Those of a survey.
+    fn new(survey: &'a Survey<'_>, params: &'a DataVoidParams) -> Self {
+        let Survey { highest, lowest, counts, free_segments, .. } = survey;
         let way = |number: usize| {
-            let (start, towards, _) = needles.segment(number)?;
-            (towards[2] > 0.0 && towards[0].hypot(towards[1]) > LEAST_LEAN).then(|| (cell(start), towards))
+            let (start, towards, _) = free_segments.segment(number)?;
+            (towards[2] > 0.0 && towards[0].hypot(towards[1]) > MIN_LEAN).then(|| (cell(start), towards))
         };
         let steeper = |a: [f32; 3], b: [f32; 3]| if (a[2], a[0], a[1]) > (b[2], b[0], b[1]) { a } else { b };
-        Self {
-            lowest,
-            counts,
-            ways: Cells::new((0..needles.len()).into_par_iter().filter_map(way).collect(), steeper),
-            top: highest.all(f32::max).unwrap_or(f32::NEG_INFINITY),
-            highest,
-        }
+        let ways = Cells::new((0..free_segments.len()).into_par_iter().filter_map(way).collect(), steeper);
+        Self { params, lowest, counts, ways, top: highest.all(f32::max).unwrap_or(f32::NEG_INFINITY), highest }
     }
 
-    /// Cuts `balls`, row i of which is the interior ball of point i of `oriented`, where they reach over the middle of a cell in a void;
-    /// returns how many. The result depends on neither the order of points nor the number of threads.
-    ///
-    /// # Errors
-    /// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
-    pub(super) fn cut(
-        &self,
-        balls: &mut MedialBalls,
-        oriented: &OrientedCloud,
-        params: &DataVoidParams,
-        control: &Control<'_>,
-    ) -> Result<usize> {
+    /// Cuts of `balls`, row i of which is the interior ball of point i of `oriented`, where they reach over the middle of a cell in a
+    /// void. The result depends on neither the order of points nor the number of threads.
+    fn cuts(&self, oriented: &OrientedCloud, balls: &MedialBalls, control: &Control<'_>) -> Result<Vec<Cut>> {
         let stop = Stop::new(control);
         let (positions, normals) = (oriented.positions(), oriented.normals());
-        let dense = self.dense_areas(params);
+        let dense = self.dense_areas();
         let empty_cells = |row: usize| {
             let mut cells = Vec::new();
-            let may_reach = balls.touch[row] != NO_TOUCH && balls.radii[row] > LEAST_RADIUS;
+            let may_reach = balls.touch[row] != NO_TOUCH && balls.radii[row] > MIN_RADIUS;
             if may_reach && dense.get(area(cell(positions[row]))).is_some() && !stop.is_set() {
                 self.empty_cells(positions[row], normals[row], balls.radii[row], &mut cells);
             }
@@ -107,27 +101,27 @@ impl<'a> DataVoids<'a> {
         };
         let mut floors: HashMap<Cell, Option<f32>> = HashMap::new();
         let mut radii = balls.radii.clone();
-        for start in (0..balls.len()).step_by(BLOCK) {
-            let rows = start..balls.len().min(start + BLOCK);
+        for start in (0..balls.len()).step_by(BALLS_AT_ONCE) {
+            let rows = start..balls.len().min(start + BALLS_AT_ONCE);
             let empty: Vec<(usize, Cell)> = rows.into_par_iter().flat_map_iter(empty_cells).collect();
             // a void is made of squares of 3 × 3 empty cells
             let middles =
                 unique(empty.par_iter().map(|&(_, cell)| cell).collect()).into_par_iter().flat_map_iter(about);
             let is_new = |middle: &Cell| !floors.contains_key(middle) && self.is_empty_around(*middle);
             let middles = unique(middles.filter(is_new).collect());
-            let floor = |middle| (middle, self.floor(middle, params).filter(|_| !stop.is_set()));
+            let floor = |middle| (middle, self.floor(middle).filter(|_| !stop.is_set()));
             floors.par_extend(middles.into_par_iter().map(floor));
             for (row, cell) in empty {
                 let top = balls.centers[row][2] + balls.radii[row];
                 let is_below =
-                    |middle| matches!(floors.get(&middle), Some(Some(floor)) if floor + params.least_height < top);
+                    |middle| matches!(floors.get(&middle), Some(Some(floor)) if floor + self.params.min_height < top);
                 if about(cell).any(is_below) {
                     radii[row] = radii[row].min(touching(positions[row], normals[row], cell));
                 }
             }
             stop.check()?;
         }
-        Ok(shrink(balls, oriented, &radii))
+        cuts_of(balls, MIN_RADIUS, control, |row| radii[row])
     }
 
     /// Whether neither a cell nor one beside it holds a point.
@@ -137,8 +131,8 @@ impl<'a> DataVoids<'a> {
     }
 
     /// The areas from which a void between dense pulses may be reached.
-    fn dense_areas(&self, params: &DataVoidParams) -> Cells<()> {
-        let is_dense = |&(_, count): &(Cell, u32)| spacing_of(count) <= params.most_spacing;
+    fn dense_areas(&self) -> Cells<()> {
+        let is_dense = |&(_, count): &(Cell, u32)| spacing_of(count) <= self.params.max_spacing;
         let mut dense: Vec<Cell> = self.counts.iter().filter(is_dense).map(|(cell, _)| area(cell)).collect();
         dense.dedup();
         Cells::new(dense.into_iter().flat_map(about).map(|area| (area, ())).collect(), |(), ()| ())
@@ -159,19 +153,19 @@ impl<'a> DataVoids<'a> {
 
     /// Height down to which pulses passed through a cell without points: that of the lowest point around it, if nothing stands
     /// between there and the scanner of any pulse that ended beside the void.
-    fn floor(&self, cell: Cell, params: &DataVoidParams) -> Option<f32> {
+    fn floor(&self, cell: Cell) -> Option<f32> {
         let (low, high) = square(cell, FARTHEST);
         let count = self.counts.in_rectangle(low, high, u32::max)?;
-        if spacing_of(count) > params.most_spacing {
+        if spacing_of(count) > self.params.max_spacing {
             return None;
         }
-        let (mut ways, mut rim) = (Vec::new(), FARTHEST);
+        let (mut ways, mut nearest) = (Vec::new(), FARTHEST);
         for distance in 1..=FARTHEST {
-            if distance >= rim + RIM_WIDTH {
+            if distance >= nearest + BORDER_WIDTH {
                 break;
             }
             for way in ring(cell, distance).filter_map(|beside| self.ways.get(beside)) {
-                rim = rim.min(distance);
+                nearest = nearest.min(distance);
                 ways.push(way);
             }
         }
@@ -183,7 +177,7 @@ impl<'a> DataVoids<'a> {
     fn is_shaded(&self, (row, column): Cell, height: f32, way: [f32; 3]) -> bool {
         let lean = way[0].hypot(way[1]);
         let from = [column as f32 + 0.5, row as f32 + 0.5, height];
-        let along = (0..MOST_STEPS).map(|step| f32::from(step) * STEP_M / lean);
+        let along = (0..MAX_STEPS).map(|step| f32::from(step) * STEP_M / lean);
         let places = along.map(|t| -> [f32; 3] { std::array::from_fn(|axis| from[axis] + t * way[axis]) });
         let is_below = |place: [f32; 3]| self.highest.get(cell(place)).is_some_and(|highest| highest > place[2]);
         places.take_while(|place| place[2] < self.top).any(is_below)
@@ -232,10 +226,7 @@ fn ring((row, column): Cell, distance: i32) -> impl Iterator<Item = Cell> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::medial::cells::{highest, lowest_near};
-    use crate::medial::spacing::pulse_counts;
-    use crate::pulses::FreeSegmentParams;
-    use belvedere_data::Attributes;
+    use crate::medial::survey::tests::with_survey;
     use belvedere_data::random::uniform;
 
     const RADIUS: f32 = 4.0;
@@ -264,17 +255,15 @@ mod tests {
         let positions = oriented.positions();
         let scanner: Vec<[f32; 3]> =
             positions.iter().map(|p| std::array::from_fn(|axis| p[axis] + 400.0 * way[axis])).collect();
-        let (needles, _) =
-            FreeSegments::new(positions, &scanner, &FreeSegmentParams::default(), &Control::none()).unwrap();
-        let (highest, lowest) = (highest(positions), lowest_near(positions));
-        let counts = pulse_counts(positions, &Attributes::default());
         let mut balls = MedialBalls::default();
         for (row, (p, n)) in positions.iter().zip(oriented.normals()).enumerate() {
             balls.push(row, std::array::from_fn(|axis| p[axis] - RADIUS * n[axis]), RADIUS, 7);
         }
-        let voids = DataVoids::find(&highest, &lowest, &counts, &needles);
-        voids.cut(&mut balls, oriented, &DataVoidParams::default(), &Control::none()).unwrap();
-        balls.radii[row]
+        let marks = with_survey(oriented, None, &scanner, |survey| {
+            DataVoidParams::default().marks(&survey, &balls, &Control::none()).unwrap()
+        });
+        let own = marks.cuts.iter().find(|cut| cut.row == row);
+        own.and_then(|cut| cut.radius).unwrap_or(RADIUS)
     }
 
     /// A canal from the origin to 8 m east of it.

@@ -11,14 +11,14 @@ use rayon::prelude::*;
 pub struct FeatureSizeParams {
     /// A medial point counts if its bisector differs from those of its neighbours by less than this, radians, above 0;
     /// masbcpp: 2°.
-    pub most_bisector_angle: f32,
+    pub max_bisector_angle: f32,
     /// How many neighbouring medial points it is compared with, 1 to 64; masbcpp: 3.
     pub neighbor_count: usize,
 }
 
 impl Default for FeatureSizeParams {
     fn default() -> Self {
-        Self { most_bisector_angle: 2f32.to_radians(), neighbor_count: 3 }
+        Self { max_bisector_angle: 2f32.to_radians(), neighbor_count: 3 }
     }
 }
 
@@ -40,10 +40,10 @@ pub fn local_feature_size(
     control: &Control<'_>,
 ) -> Result<Vec<f32>> {
     let stop = Stop::new(control);
-    if !(params.most_bisector_angle > 0.0) {
+    if !(params.max_bisector_angle > 0.0) {
         return Err(Error::InvalidParameter {
             parameter: Parameter::BisectorAngle,
-            value: params.most_bisector_angle.to_degrees().to_string(),
+            value: params.max_bisector_angle.to_degrees().to_string(),
             expected: "above 0 degrees",
         });
     }
@@ -95,7 +95,7 @@ fn reliable_centers(
         bisectors.push(sum.map(|v| v / length));
     }
     let index = NeighborIndex::new(&centers, control)?;
-    let least_cosine = params.most_bisector_angle.cos();
+    let min_cosine = params.max_bisector_angle.cos();
     let agrees: Vec<bool> = (0..centers.len())
         .into_par_iter()
         .map_init(Vec::new, |found, i| {
@@ -106,7 +106,7 @@ fn reliable_centers(
             let others = found.iter().filter(|n| n.index as usize != i).take(params.neighbor_count);
             others.into_iter().all(|n| {
                 let (a, b) = (bisectors[i], bisectors[n.index as usize]);
-                a[0] * b[0] + a[1] * b[1] + a[2] * b[2] > least_cosine
+                a[0] * b[0] + a[1] * b[1] + a[2] * b[2] > min_cosine
             })
         })
         .collect();

@@ -9,25 +9,18 @@ const STEP: f32 = 0.4;
 /// Voxels up and down that count as of the same height, which allows for slopes up to 45° and for the parapet of a balcony.
 const SAME_HEIGHT: i32 = 2;
 /// Most cells: beyond this the columns would take gigabytes.
-const MOST_CELLS: f32 = 5e8;
+const MAX_CELLS: f32 = 5e8;
 
 /// East and north number of a cell.
 type Cell = [i32; 2];
 
-/// Where cells begin.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum CellsFrom {
-    /// At the outermost points.
-    Cloud,
-    /// At the origin of local coordinates: clouds that share it have the same cells.
-    Origin,
-}
-
 /// The voxels that hold points, column by column.
 pub(super) struct Layers {
     low: [f32; 2],
-    /// Number of the first cell east and north of the origin, where cells are those of the origin and not of the cloud.
-    first_cell: Option<Cell>,
+    /// Number of the first cell east and north of the local origin.
+    first_cell: Cell,
+    /// Number of the cell of the local origin, east and north, in the reference system.
+    origin: [i64; 2],
     size: [i32; 2],
     /// Where the voxels of each cell begin, and one more.
     first: Vec<u32>,
@@ -40,9 +33,9 @@ pub(super) struct Layers {
 }
 
 impl Layers {
-    /// Voxels of `positions`, local metres, and which of them hold a point whose row is `solid`; `None` for no points, or for a
-    /// place too wide.
-    pub(super) fn new(positions: &[[f32; 3]], from: CellsFrom, solid: impl Fn(usize) -> bool) -> Option<Self> {
+    /// Voxels of `positions`, metres from `origin`, and which of them hold a point whose row is `solid`; `None` for no points, or for a
+    /// place too wide. Cells begin at the origin.
+    pub(super) fn new(positions: &[[f32; 3]], origin: [f64; 3], solid: impl Fn(usize) -> bool) -> Option<Self> {
         let (mut low, mut high) = ([f32::INFINITY; 2], [f32::NEG_INFINITY; 2]);
         for p in positions {
             for axis in 0..2 {
@@ -50,20 +43,20 @@ impl Layers {
                 high[axis] = high[axis].max(p[axis]);
             }
         }
-        let first_cell = (from == CellsFrom::Origin).then(|| low.map(cell_from_origin));
-        if let Some(first) = first_cell {
-            low = first.map(|number| number as f32 * CELL);
-        }
+        let first_cell = low.map(cell_from_origin);
+        low = first_cell.map(|number| number as f32 * CELL);
+        #[expect(clippy::cast_possible_truncation, reason = "casts of floats saturate")]
+        let origin = [0, 1].map(|axis| (origin[axis] / f64::from(CELL)).floor() as i64);
         let [width, height] = [0, 1].map(|axis| ((high[axis] - low[axis]) / CELL).floor() + 1.0);
-        if !(width > 0.0 && height > 0.0 && width * height < MOST_CELLS) {
+        if !(width > 0.0 && height > 0.0 && width * height < MAX_CELLS) {
             return None;
         }
         #[expect(clippy::cast_possible_truncation, reason = "checked to be small")]
         let size = [width as i32, height as i32];
-        let mut layers =
-            Self { low, first_cell, size, first: Vec::new(), level: Vec::new(), cell: Vec::new(), solid: Vec::new() };
+        let (first, level, cell, solid_voxels) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        let mut layers = Self { low, first_cell, origin, size, first, level, cell, solid: solid_voxels };
         let voxel = |(row, &p): (usize, &[f32; 3])| {
-            Some((u32::try_from(layers.number(layers.cell(p))?).ok()?, level(p[2]), !solid(row)))
+            Some((u32::try_from(layers.number(layers.cell(p))?).ok()?, level_of(p[2]), !solid(row)))
         };
         let mut voxels: Vec<(u32, i32, bool)> = positions.iter().enumerate().filter_map(voxel).collect();
         voxels.sort_unstable();
@@ -106,7 +99,7 @@ impl Layers {
     /// The voxel that holds a point, if one does.
     pub(super) fn voxel_of(&self, point: [f32; 3]) -> Option<usize> {
         let column = self.column(self.cell(point));
-        let found = self.level[column.clone()].binary_search(&level(point[2])).ok()?;
+        let found = self.level[column.clone()].binary_search(&level_of(point[2])).ok()?;
         Some(column.start + found)
     }
 
@@ -181,19 +174,17 @@ impl Layers {
     }
 
     /// Cell of a point, which may lie beyond the raster.
-    #[expect(clippy::cast_possible_truncation, reason = "casts of floats saturate")]
     fn cell(&self, point: [f32; 3]) -> Cell {
-        if let Some(first) = self.first_cell {
-            return [0, 1].map(|axis| cell_from_origin(point[axis]).saturating_sub(first[axis]));
-        }
-        [0, 1].map(|axis| ((point[axis] - self.low[axis]) / CELL).floor() as i32)
+        [0, 1].map(|axis| cell_from_origin(point[axis]).saturating_sub(self.first_cell[axis]))
     }
 
-    /// Number east and north of the block of `cells` by `cells` cells that a voxel lies in; the same for all where cells are those of the
-    /// cloud.
-    pub(super) fn block(&self, voxel: usize, cells: i32) -> Cell {
+    /// Number east and north, in the reference system, of the block of `cells` by `cells` cells that a voxel lies in.
+    pub(super) fn block(&self, voxel: usize, cells: i64) -> [i64; 2] {
         let own = self.cell_of(voxel);
-        self.first_cell.map_or([0; 2], |first| [0, 1].map(|axis| (first[axis] + own[axis]).div_euclid(cells)))
+        [0, 1].map(|axis| {
+            let local = i64::from(self.first_cell[axis]) + i64::from(own[axis]);
+            self.origin[axis].saturating_add(local).div_euclid(cells)
+        })
     }
 
     fn number(&self, cell: Cell) -> Option<usize> {
@@ -211,7 +202,7 @@ fn cell_from_origin(coordinate: f32) -> i32 {
 
 /// Number upward of the voxel of height `z`.
 #[expect(clippy::cast_possible_truncation, reason = "casts of floats saturate")]
-fn level(z: f32) -> i32 {
+fn level_of(z: f32) -> i32 {
     (z / STEP).floor() as i32
 }
 

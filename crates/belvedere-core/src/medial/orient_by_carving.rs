@@ -12,18 +12,18 @@ use rayon::prelude::*;
 pub struct OrientByCarvingParams {
     /// Normals whose sign is less sure than this are asked about, 0 to 1 (1 for all). Default 0.05: below that the way to the
     /// scanner runs within 3° of the surface.
-    pub least_confidence: f32,
+    pub min_confidence: f32,
     /// Depth to which a point or a pulse may enter a ball, metres, above 0. Default 0.02, that of carved balls.
     pub penetration: f32,
     /// Radius every ball starts with, metres. Default 5, that of carved balls.
     pub initial_radius: f32,
     /// How many times larger the ball on the other side must be for the sign to change, at least 1. Default 1.
-    pub least_ratio: f32,
+    pub min_ratio: f32,
 }
 
 impl Default for OrientByCarvingParams {
     fn default() -> Self {
-        Self { least_confidence: 0.05, penetration: 0.02, initial_radius: 5.0, least_ratio: 1.0 }
+        Self { min_confidence: 0.05, penetration: 0.02, initial_radius: 5.0, min_ratio: 1.0 }
     }
 }
 
@@ -54,7 +54,7 @@ pub struct OrientByCarvingReport {
 pub fn orient_by_carving(
     oriented: &OrientedCloud,
     index: &NeighborIndex,
-    needles: &FreeSegments,
+    free_segments: &FreeSegments,
     params: &OrientByCarvingParams,
     control: &Control<'_>,
 ) -> Result<(OrientedCloud, OrientByCarvingReport)> {
@@ -66,8 +66,8 @@ pub fn orient_by_carving(
             expected: "above 0 and below the initial radius",
         });
     }
-    if !(params.least_ratio >= 1.0) {
-        let value = params.least_ratio.to_string();
+    if !(params.min_ratio >= 1.0) {
+        let value = params.min_ratio.to_string();
         return Err(Error::InvalidParameter { parameter: Parameter::RadiusRatio, value, expected: "at least 1" });
     }
     let (positions, count) = (oriented.positions(), oriented.len());
@@ -75,7 +75,7 @@ pub fn orient_by_carving(
         return Err(Error::LengthMismatch { what: "neighbour index", expected: count, found: index.len() });
     }
     let is_asked = |row: usize| {
-        let is_unsure = params.least_confidence >= 1.0 || oriented.confidence()[row] < params.least_confidence;
+        let is_unsure = params.min_confidence >= 1.0 || oriented.confidence()[row] < params.min_confidence;
         is_unsure && oriented.normals()[row] != [0.0; 3]
     };
     // neighbours one after the other: their searches share the cache
@@ -84,7 +84,7 @@ pub fn orient_by_carving(
         let tangent = Tangent { point, inward, margin: params.penetration };
         let most = params.initial_radius - params.penetration;
         let by_points = index.smallest_tangent_ball(&tangent, most).map_or(most, |(radius, _)| radius);
-        needles.smallest_tangent_ball(&tangent, by_points).unwrap_or(by_points)
+        free_segments.smallest_tangent_ball(&tangent, by_points).unwrap_or(by_points)
     };
     let stop = Stop::new(control);
     let flipped: Vec<u32> = asked
@@ -96,7 +96,7 @@ pub fn orient_by_carving(
             }
             let (point, normal) = (positions[row as usize], oriented.normals()[row as usize]);
             let [inside, outside] = [normal.map(|v| -v), normal].map(|inward| radius(point, inward));
-            outside > inside * params.least_ratio
+            outside > inside * params.min_ratio
         })
         .collect();
     stop.check()?;

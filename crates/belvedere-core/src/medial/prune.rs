@@ -1,5 +1,8 @@
 //! Fewer balls for the same surface.
 
+use super::marks::{Cut, Marks, cut};
+use super::rules::{MarkingRule, Phase};
+use super::survey::{BLOCK, Survey};
 use crate::neighbors::NeighborIndex;
 use crate::normals::OrientedCloud;
 use belvedere_data::balls::{MedialBalls, NO_TOUCH};
@@ -10,8 +13,6 @@ use rayon::prelude::*;
 use std::cmp::Ordering;
 use std::sync::atomic::{AtomicBool, Ordering as Memory};
 
-/// Side of the blocks that are pruned independently, metres: many times the largest ball, so that little is kept twice.
-const BLOCK: f64 = 64.0;
 /// Least cosine between the direction to a ball's centre and the inward normal for it to lie on the inner side.
 const SAME_SIDE: f32 = 0.5;
 
@@ -36,7 +37,7 @@ impl Default for PruneParams {
 /// within [`PruneParams::deviation`] of the surface of a ball kept before, on its inner side. What is left therefore reaches every
 /// point that had a ball up to the deviation; between points spaced by h, balls of radius r fall short of
 /// their common tangent plane by h²/8r more. Blocks of 64 m, counted from the origin of the reference system, are pruned
-/// on their own: the result depends on neither order nor number of threads, and not on the tile but for its rim.
+/// on their own: the result depends on neither order nor number of threads, and not on the tile but for its margin.
 ///
 /// # Errors
 /// [`Error::LengthMismatch`] where they differ in length, [`Error::Cancelled`].
@@ -50,21 +51,31 @@ pub fn prune(
     params: &PruneParams,
     control: &Control<'_>,
 ) -> Result<usize> {
-    prune_in_blocks_of(oriented.positions(), balls, oriented, index, params, control)
+    let cuts = superfluous(oriented.positions(), balls, oriented, index, params, control)?;
+    cut(balls, oriented, &cuts);
+    Ok(cuts.len())
 }
 
-/// The same with points in the blocks of other places, `placed`, such as those before they were moved.
-///
-/// # Errors
-/// Those of [`prune`].
-pub(super) fn prune_in_blocks_of(
+impl MarkingRule for PruneParams {
+    fn stage(&self) -> Option<(Phase, &'static str)> {
+        Some((Phase::Balls, "pruning balls"))
+    }
+
+    fn marks(&self, survey: &Survey<'_>, balls: &MedialBalls, control: &Control<'_>) -> Result<Marks> {
+        let cuts = superfluous(survey.measured, balls, survey.oriented, survey.index, self, control)?;
+        Ok(Marks { counts: vec![("balls_superfluous", cuts.len())], cuts, ..Marks::default() })
+    }
+}
+
+/// The balls that [`prune`] leaves out, by row. Blocks are those of `placed`, the points before they were moved.
+fn superfluous(
     placed: &[[f32; 3]],
-    balls: &mut MedialBalls,
+    balls: &MedialBalls,
     oriented: &OrientedCloud,
     index: &NeighborIndex,
     params: &PruneParams,
     control: &Control<'_>,
-) -> Result<usize> {
+) -> Result<Vec<Cut>> {
     let stop = Stop::new(control);
     let expected = oriented.len();
     for (what, found) in [("balls", balls.len()), ("neighbour index", index.len()), ("places", placed.len())] {
@@ -77,7 +88,7 @@ pub(super) fn prune_in_blocks_of(
     let block = |row: u32| -> [i64; 2] {
         let p = placed[row as usize];
         #[expect(clippy::cast_possible_truncation, reason = "positions of a cloud are far below 2^63 blocks")]
-        [0, 1].map(|axis| ((f64::from(p[axis]) + origin[axis]) / BLOCK).floor() as i64)
+        [0, 1].map(|axis| ((f64::from(p[axis]) + origin[axis]) / f64::from(BLOCK)).floor() as i64)
     };
     let is_usable = |row: &u32| balls.touch[*row as usize] != NO_TOUCH && balls.radii[*row as usize] > 0.0;
     let mut rows: Vec<([i64; 2], u32)> =
@@ -128,10 +139,6 @@ pub(super) fn prune_in_blocks_of(
     for &row in &kept {
         is_kept[row as usize] = true;
     }
-    for (touch, is_kept) in balls.touch.iter_mut().zip(&is_kept) {
-        if !is_kept {
-            *touch = NO_TOUCH;
-        }
-    }
-    Ok(rows.len() - kept.len())
+    let left_out = rows.iter().filter(|(_, row)| !is_kept[*row as usize]);
+    Ok(left_out.map(|&(_, row)| Cut { row: row as usize, radius: None }).collect())
 }

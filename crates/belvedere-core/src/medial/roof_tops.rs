@@ -4,11 +4,8 @@
 //! bulge out of it, as far as the next pulse.
 
 use super::cells::{Cells, cell};
-use super::roof_edges::{LEAST_UP, RoofEdgeParams, shrink};
+use super::roof_edges::{MIN_UP, RoofEdgeParams};
 use crate::normals::OrientedCloud;
-use belvedere_data::Result;
-use belvedere_data::balls::{MedialBalls, NO_TOUCH};
-use belvedere_data::control::{Control, Stop};
 use rayon::prelude::*;
 
 /// Heights of the highest points in cells of the map.
@@ -23,41 +20,21 @@ pub(super) struct RoofTops<'a> {
 
 impl<'a> RoofTops<'a> {
     /// Those of `oriented`, of which `all` are the heights that [`super::cells::highest`] gives.
-    pub(super) fn find(oriented: &OrientedCloud, all: &'a Cells<f32>) -> Self {
+    pub(super) fn new(oriented: &OrientedCloud, all: &'a Cells<f32>) -> Self {
         let points = oriented.positions().par_iter().zip(oriented.normals());
-        let level = points.filter(|(_, normal)| normal[2] >= LEAST_UP).map(|(&p, _)| (cell(p), p[2]));
+        let level = points.filter(|(_, normal)| normal[2] >= MIN_UP).map(|(&p, _)| (cell(p), p[2]));
         Self { all, near: all.with_neighbors(f32::max), level: Cells::new(level.collect(), f32::max) }
     }
 
-    /// Cuts `balls`, row i of which is the interior ball of point i of `oriented`, where they reach above every point over their whole
-    /// width; returns how many. Only where the highest of these points lies on a roof is the top of the building known; other balls
-    /// stay. The result depends on neither the order of points nor the number of threads.
-    ///
-    /// # Errors
-    /// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
-    pub(super) fn cut(
-        &self,
-        balls: &mut MedialBalls,
-        oriented: &OrientedCloud,
-        params: &RoofEdgeParams,
-        control: &Control<'_>,
-    ) -> Result<usize> {
-        let stop = Stop::new(control);
-        let (positions, normals) = (oriented.positions(), oriented.normals());
-        let radius = |row: usize| {
-            let (center, radius, up) = (balls.centers[row], balls.radii[row], normals[row][2]);
-            let is_usable = balls.touch[row] != NO_TOUCH && radius > params.least_radius && up < 1.0;
-            if !is_usable || stop.is_set() {
-                return radius;
-            }
-            let Some(top) = self.over(center, radius, params.penetration) else { return radius };
-            // the ball of radius r at this point ends r (1 - up) above it
-            let left = (top + params.penetration - positions[row][2]) / (1.0 - up);
-            radius.min(left.max(params.least_radius))
-        };
-        let radii: Vec<f32> = (0..balls.len()).into_par_iter().map(radius).collect();
-        stop.check()?;
-        Ok(shrink(balls, oriented, &radii))
+    /// What is left of the radius of a ball at a point of height `z`, whose outward normal has the upward part `up`: a ball is cut
+    /// where it reaches above every point over its whole width. Only where the highest of these points lies on a roof is the top of the
+    /// building known; other balls stay.
+    pub(super) fn radius(&self, (center, radius): ([f32; 3], f32), z: f32, up: f32, params: &RoofEdgeParams) -> f32 {
+        let top = if up < 1.0 { self.over(center, radius, params.penetration) } else { None };
+        let Some(top) = top else { return radius };
+        // the ball of radius r at this point ends r (1 - up) above it
+        let left = (top + params.penetration - z) / (1.0 - up);
+        radius.min(left.max(params.min_radius))
     }
 
     /// Height of the roof over a ball: of the highest point over its whole width; `None` where the ball does not reach above that, or where
@@ -79,6 +56,9 @@ impl<'a> RoofTops<'a> {
 mod tests {
     use super::*;
     use crate::medial::cells::highest;
+    use crate::medial::marks::{self, cuts_of};
+    use belvedere_data::balls::MedialBalls;
+    use belvedere_data::control::Control;
 
     /// A wall from the ground to a height of 9 m, and points 0.25 m apart on the roof behind it from `from` metres behind it on.
     fn building(from: f32) -> OrientedCloud {
@@ -108,8 +88,15 @@ mod tests {
     }
 
     fn cut(oriented: &OrientedCloud, balls: &mut MedialBalls) -> usize {
-        let all = highest(oriented.positions());
-        RoofTops::find(oriented, &all).cut(balls, oriented, &RoofEdgeParams::default(), &Control::none()).unwrap()
+        let (all, params) = (highest(oriented.positions()), RoofEdgeParams::default());
+        let tops = RoofTops::new(oriented, &all);
+        let (positions, normals) = (oriented.positions(), oriented.normals());
+        let cuts = cuts_of(balls, params.min_radius, &Control::none(), |row| {
+            tops.radius((balls.centers[row], balls.radii[row]), positions[row][2], normals[row][2], &params)
+        })
+        .unwrap();
+        marks::cut(balls, oriented, &cuts);
+        cuts.len()
     }
 
     #[test]
@@ -120,7 +107,7 @@ mod tests {
         let params = RoofEdgeParams::default();
         for (center, radius) in found.centers.iter().zip(&found.radii) {
             // what is no larger than the least radius is not cut
-            let most = if *radius > params.least_radius { 9.0 + params.penetration } else { 9.0 + 2.0 * radius };
+            let most = if *radius > params.min_radius { 9.0 + params.penetration } else { 9.0 + 2.0 * radius };
             assert!(center[2] + radius < most + 1e-4, "{center:?} {radius}");
         }
     }

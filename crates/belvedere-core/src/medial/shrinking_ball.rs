@@ -185,7 +185,7 @@ pub fn shrink(
             *ball = match params.method {
                 _ if n == [0.0; 3] => Ball { center: p, ..Ball::NONE },
                 ShrinkMethod::Angles { first_separation_angle, next_separation_angle } => {
-                    let cosines = [first_separation_angle, next_separation_angle].map(least_cosine);
+                    let cosines = [first_separation_angle, next_separation_angle].map(min_cosine);
                     shrink_by_angles(positions, index, p, inward, params.initial_radius, cosines)
                 }
                 ShrinkMethod::Tau { penetration } if limit < params.max_radius => {
@@ -260,13 +260,13 @@ const SPACING_NEIGHBORS: usize = 12;
 
 /// Least distance between points that counts, metres: above and below a tripod scan lines lie up to 0.03 m apart, while the points on
 /// them touch, and balls must close the gaps between the lines.
-const LEAST_SPACING: f32 = 0.0135;
+const MIN_SPACING: f32 = 0.0135;
 
-/// Distance between points at `p`, metres, if those around it lay in squares; [`LEAST_SPACING`] or more.
+/// Distance between points at `p`, metres, if those around it lay in squares; [`MIN_SPACING`] or more.
 pub(super) fn spacing_at(index: &NeighborIndex, p: [f32; 3], near: &mut Vec<Neighbor>) -> f32 {
     index.k_nearest(p, SPACING_NEIGHBORS + 1, near);
     let farthest = near.last().map_or(f32::INFINITY, |found| found.distance_squared.sqrt());
-    (farthest / (SPACING_NEIGHBORS as f32 / std::f32::consts::PI).sqrt()).max(LEAST_SPACING)
+    (farthest / (SPACING_NEIGHBORS as f32 / std::f32::consts::PI).sqrt()).max(MIN_SPACING)
 }
 
 /// Cosine of ∠pcq, within −1 to 1.
@@ -276,14 +276,14 @@ fn separation_cosine(p: [f32; 3], q: [f32; 3], center: [f32; 3]) -> f32 {
 }
 
 /// Cosine above which a separation angle is too small; none is where the threshold is 0.
-fn least_cosine(threshold: f64) -> f64 {
+fn min_cosine(threshold: f64) -> f64 {
     if threshold > 0.0 { threshold.cos() } else { f64::INFINITY }
 }
 
 /// masbcpp's distance, metres, by which a point must lie inside a ball to count.
 const CONVERGED: f32 = 1e-5;
 /// masbcpp's limit of accepted balls; noise-free input needs three to ten.
-const MOST_SHRINKS: usize = 31;
+const MAX_SHRINKS: usize = 31;
 
 fn shrink_by_angles(
     positions: &[[f32; 3]],
@@ -295,7 +295,7 @@ fn shrink_by_angles(
 ) -> Ball {
     let center_of = |radius: f32| std::array::from_fn(|i| p[i] + inward[i] * radius);
     let mut ball = Ball { center: center_of(initial_radius), radius: initial_radius, ..Ball::NONE };
-    for shrinks in 0..MOST_SHRINKS {
+    for shrinks in 0..MAX_SHRINKS {
         let inside = ball.radius - CONVERGED;
         let Some(nearest) = index.nearest_within(ball.center, inside * inside) else { break };
         let q = positions[nearest.index as usize];

@@ -2,19 +2,20 @@
 //!
 //! Their points have no surface about them that a normal could be taken from, and the balls there fill the air beside them.
 
-use super::bounds::{Kind, RadiusBounds};
-use super::cells::{Cells, cell};
+use super::cells::cell;
 use super::chains::Chain;
+use super::marks::{Cap, Fill, Marks};
 use super::midway::{apart, neighbors_after, one_in_each_cell};
+use super::rules::{MarkingRule, Phase};
+use super::survey::Survey;
 use crate::neighbors::{NeighborIndex, Tangent};
-use crate::pulses::FreeSegments;
-use belvedere_data::balls::{MedialBalls, PULSE_TOUCH};
+use belvedere_data::Result;
+use belvedere_data::balls::MedialBalls;
 use belvedere_data::control::{Control, Stop};
-use belvedere_data::{Attributes, Result};
 use rayon::prelude::*;
 use std::f32::consts::FRAC_1_SQRT_2;
 
-/// How slender things are told and represented.
+/// How slender things are found and represented.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SlenderParams {
     /// A thing is slender where pulses enter the balls that touch its point from eight sides before any has this radius,
@@ -27,7 +28,7 @@ pub struct SlenderParams {
     /// Most radius of the balls at its points, in spacings of pulses, above 0. Default 0.32: pulses pass closer on both sides.
     pub radius_spacings: f32,
     /// Least height above the lowest point near by, metres, 0 or more. Default 0.3: kerbs and noise are lower.
-    pub least_height: f32,
+    pub min_height: f32,
     /// Height up to which it stands on the ground, rather than hang in the air, metres. Default 2.5: higher fences are rare, lower
     /// wires too.
     pub standing_height: f32,
@@ -47,7 +48,7 @@ impl Default for SlenderParams {
             gap: 0.5,
             lowering: 0.7,
             radius_spacings: 0.32,
-            least_height: 0.3,
+            min_height: 0.3,
             standing_height: 2.5,
             standing_spacings: 0.47,
             spacing: 0.2,
@@ -63,121 +64,113 @@ const TOP_REACH_M: f32 = 0.4;
 /// Points handed to a thread at once.
 const CHUNK: usize = 512;
 
-/// The slender things of a cloud.
-pub(super) struct Slender<'a> {
-    positions: &'a [[f32; 3]],
-    params: &'a SlenderParams,
-    /// Height above the lowest point near by, NaN for points of anything else.
-    heights: Vec<f32>,
-    /// As [`super::spacing::pulse_spacing`] gives it.
-    spacing: &'a [f32],
+impl MarkingRule for SlenderParams {
+    fn stage(&self) -> Option<(Phase, &'static str)> {
+        Some((Phase::Points, "finding thin objects"))
+    }
+
+    /// Caps at all slender things, and fills of those that stand on the ground: balls below each other, at each point from the
+    /// highest point of the thing close by down to the ground, and midway between points that have no other between them.
+    fn marks(&self, survey: &Survey<'_>, _: &MedialBalls, control: &Control<'_>) -> Result<Marks> {
+        let heights = self.heights(survey, control)?;
+        let rows = (0..heights.len()).filter(|&row| !heights[row].is_nan());
+        let caps: Vec<Cap> = rows
+            .map(|row| Cap {
+                is_claimed: heights[row] <= self.standing_height,
+                ..Cap::tangent(row, self.radius_spacings * survey.spacing[row])
+            })
+            .collect();
+        let standing = caps.iter().filter(|cap| cap.is_claimed).map(|cap| cap.row).collect();
+        let fills = self.fills(survey, &heights, standing, control)?;
+        Ok(Marks { counts: vec![("points_on_thin_objects", caps.len())], caps, fills, ..Marks::default() })
+    }
+
+    fn fills_name(&self) -> &'static str {
+        "balls_in_thin_objects"
+    }
 }
 
-impl<'a> Slender<'a> {
-    /// Tells the points of slender things: neither ground, vegetation nor building (class 6; what has no class and is
-    /// higher than what stands), high enough above the lowest point near by, and passed by pulses on all sides. `lowest` is [`super::cells::lowest_near`].
-    pub(super) fn find(
-        positions: &'a [[f32; 3]],
-        kinds: &[Kind],
-        attributes: &Attributes,
-        (lowest, spacing): (&Cells<f32>, &'a [f32]),
-        needles: &FreeSegments,
-        params: &'a SlenderParams,
-        control: &Control<'_>,
-    ) -> Result<Self> {
+impl SlenderParams {
+    /// Height of each point of a slender thing above the lowest point near by, NaN for all others: those of ground, vegetation and
+    /// buildings (class 6; what has no class and is higher than what stands), those too low, and those not passed by pulses on all sides.
+    fn heights(&self, survey: &Survey<'_>, control: &Control<'_>) -> Result<Vec<f32>> {
         let stop = Stop::new(control);
-        let classes = attributes.classification.as_deref();
-        let class = |row: usize| classes.and_then(|classes| classes.get(row)).copied();
+        let positions = survey.positions();
         let passed = |p: [f32; 3], [x, y]: [f32; 2]| {
             let tangent = Tangent { point: p, inward: [x, y, 0.0], margin: 0.0 };
-            needles.smallest_tangent_ball(&tangent, params.gap).is_some()
+            survey.free_segments.smallest_tangent_ball(&tangent, self.gap).is_some()
         };
-        let height = |(row, (&p, kind)): (usize, (&[f32; 3], &Kind))| {
-            let height = lowest.get(cell(p)).map_or(0.0, |lowest| p[2] - lowest);
+        let height = |(row, &p): (usize, &[f32; 3])| {
+            let height = survey.lowest.get(cell(p)).map_or(0.0, |lowest| p[2] - lowest);
             // without a class what is high up may be the parapet of a roof
-            let may_be_building = match class(row) {
+            let may_be_building = match survey.class(row) {
                 Some(6) => true,
-                None | Some(0) => height > params.standing_height,
+                None | Some(0) => height > self.standing_height,
                 Some(_) => false,
             };
-            if !matches!(kind, Kind::Other | Kind::Later) || may_be_building || stop.is_set() {
+            if !survey.is_solid(row) || may_be_building || stop.is_set() {
                 return f32::NAN;
             }
-            let below = [p[0], p[1], p[2] - params.lowering.min(height / 2.0)];
-            let is_slender = height >= params.least_height
+            let below = [p[0], p[1], p[2] - self.lowering.min(height / 2.0)];
+            let is_slender = height >= self.min_height
                 && SIDES.iter().all(|&side| passed(below, side) && passed(below, side.map(|v| -v)));
             if is_slender { height } else { f32::NAN }
         };
-        let heights = positions.par_iter().zip(kinds).enumerate().with_min_len(CHUNK).map(height).collect();
+        let heights = positions.par_iter().enumerate().with_min_len(CHUNK).map(height).collect();
         stop.check()?;
         control.advance(positions.len());
-        Ok(Self { positions, params, heights, spacing })
+        Ok(heights)
     }
 
-    /// Cuts the radii at slender things, and says of how many balls.
-    pub(super) fn limit(&self, bounds: &mut RadiusBounds) -> usize {
-        let rows = (0..self.heights.len()).filter(|&row| !self.heights[row].is_nan());
-        rows.map(|row| bounds.limit(row, self.params.radius_spacings * self.spacing[row])).count()
-    }
-
-    /// Adds balls that fill what stands on the ground, and says how many.
-    ///
-    /// Balls hang below each other, at each point from the highest point of the thing close by down to the ground, and midway
-    /// between points that have no other between them; each as large as the pulses leave it.
-    ///
-    /// # Errors
-    /// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
-    pub(super) fn fill(&self, balls: &mut MedialBalls, needles: &FreeSegments, control: &Control<'_>) -> Result<usize> {
-        let standing = (0..self.heights.len()).filter(|&row| self.stands(row)).collect();
-        let rows = one_in_each_cell(self.positions, standing, self.params.spacing / 2.0);
-        let places: Vec<[f32; 3]> = rows.iter().map(|&row| self.positions[row]).collect();
+    /// The fills of what stands on the ground, whose points are the rows `standing`.
+    fn fills(
+        &self,
+        survey: &Survey<'_>,
+        heights: &[f32],
+        standing: Vec<usize>,
+        control: &Control<'_>,
+    ) -> Result<Vec<Fill>> {
+        let rows = one_in_each_cell(survey.positions(), standing, self.spacing / 2.0);
+        let places: Vec<[f32; 3]> = rows.iter().map(|&row| survey.positions()[row]).collect();
         let index = NeighborIndex::new(&places, control)?;
         let stop = Stop::new(control);
-        let place = |number: usize| Place {
-            position: places[number],
-            height: self.heights[rows[number]],
-            spacing: self.spacing[rows[number]],
+        let place = |number: usize| {
+            let row = rows[number];
+            Place { row, position: places[number], height: heights[row], spacing: survey.spacing[row] }
         };
         let fills = |number: usize| {
             let mut near = Vec::new();
-            index.within_radius(places[number], self.params.reach, |found| near.push(place(found.index as usize)));
+            index.within_radius(places[number], self.reach, |found| near.push(place(found.index as usize)));
             near.retain(|other| other.position != places[number]);
-            self.fills(&place(number), &near, needles).into_iter().map(move |ball| (number, ball))
+            self.fills_at(&place(number), &near)
         };
         let numbers = (0..rows.len()).into_par_iter().with_min_len(CHUNK);
-        let found: Vec<_> = numbers.filter(|_| !stop.is_set()).flat_map_iter(fills).collect();
+        let found = numbers.filter(|_| !stop.is_set()).flat_map_iter(fills).collect();
         stop.check()?;
-        for &(number, (center, radius)) in &found {
-            balls.push(rows[number], center, radius, PULSE_TOUCH);
-        }
-        Ok(found.len())
+        Ok(found)
     }
 
-    /// Whether point `row` is part of what [`Slender::fill`] fills.
-    pub(super) fn stands(&self, row: usize) -> bool {
-        self.heights[row] <= self.params.standing_height
-    }
-
-    /// The balls that fill at a place and between it and those next to it.
-    fn fills(&self, place: &Place, near: &[Place], needles: &FreeSegments) -> Vec<([f32; 3], f32)> {
+    /// The fills at a place and between it and those next to it.
+    fn fills_at(&self, place: &Place, near: &[Place]) -> Vec<Fill> {
         let p = place.position;
         let beside: Vec<_> = near.iter().map(|other| other.position).collect();
         let close_by = beside.iter().filter(|q| apart(p, **q) < TOP_REACH_M);
         let top = close_by.fold(p[2], |top, q| top.max(q[2]));
         let ground = p[2] - place.height;
-        let chain = Chain { radius: self.params.standing_spacings * place.spacing, spacing: self.params.spacing };
-        let mut balls: Vec<_> = chain.below([p[0], p[1], top], ground, needles).collect();
-        for number in neighbors_after(p, &beside, self.params.spacing, 1.0) {
+        let chain = Chain { row: place.row, radius: self.standing_spacings * place.spacing, spacing: self.spacing };
+        let mut fills: Vec<_> = chain.below([p[0], p[1], top], ground).collect();
+        for number in neighbors_after(p, &beside, self.spacing, 1.0) {
             let q = beside[number];
             let middle = [(p[0] + q[0]) / 2.0, (p[1] + q[1]) / 2.0, p[2].max(q[2])];
-            balls.extend(chain.below(middle, ground.min(q[2] - near[number].height), needles));
+            fills.extend(chain.below(middle, ground.min(q[2] - near[number].height)));
         }
-        balls
+        fills
     }
 }
 
 /// A point of something that stands.
 struct Place {
+    row: usize,
     position: [f32; 3],
     height: f32,
     /// Between pulses about it, metres.

@@ -1,14 +1,16 @@
 //! Surfaces with open space close below them, told by the pulses that run there: decks, canopies, balconies, bridges.
 
-use super::bounds::Kind;
-use super::chains::LEAST_SHARE;
-use super::layers::{CELL, CellsFrom, Layers};
+use super::carved::CarvedInput;
+use super::chains::MIN_SHARE;
+use super::layers::{CELL, Layers};
+use super::marks::{Cap, Fill, FillPlace, Marks};
 use super::midway::{neighbors_after, one_in_each_cell};
-use super::whole_survey::BLOCK;
+use super::rules::{CarvedParams, MarkingRule, Phase, Rule};
+use super::survey::{BLOCK, Survey};
 use crate::neighbors::NeighborIndex;
 use crate::pulses::FreeSegments;
 use belvedere_data::Result;
-use belvedere_data::balls::{MedialBalls, PULSE_TOUCH};
+use belvedere_data::balls::MedialBalls;
 use belvedere_data::control::{Control, Stop};
 use rayon::prelude::*;
 use std::f32::consts::TAU;
@@ -16,7 +18,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Cells beside a voxel, of eight, that must hold points of its height for pulses below it to be looked at. On a straight rim
 /// five do; one of these may be empty where points are sparse.
-const LEAST_BESIDE: usize = 4;
+const MIN_BESIDE: usize = 4;
 /// How far points may lie above or below a surface and still be part of it where a pulse runs below, metres: a voxel and half
 /// of another, so that slopes up to 40° count.
 const SAME_SURFACE: f32 = 0.6;
@@ -31,12 +33,12 @@ const FARTHEST_APART_SPACINGS: f32 = 3.0;
 /// and 7.7 % at 1, with 1.9; 5 % did with balls at points only, half as large again.
 const CLEAR_SHARE: f32 = 0.75;
 /// Nearest neighbours that anything is filled between, metres: above noise.
-const LEAST_APART: f32 = 0.05;
+const MIN_APART: f32 = 0.05;
 /// Most difference in height of neighbours on a surface, metres.
 const SAME_LEVEL: f32 = 0.3;
-/// Needles, or points, handed to a thread at once.
+/// FreeSegments, or points, handed to a thread at once.
 const CHUNK: usize = 1024;
-/// Needles between two looks at whether to go on.
+/// FreeSegments between two looks at whether to go on.
 const CHECK_EACH: usize = 64;
 
 /// How thin surfaces are found, and how large balls may be at them.
@@ -60,13 +62,13 @@ pub struct ThinSurfaceParams {
     pub widest_gap: f32,
     /// Proven cells a surface must have, in square roots of its number of cells, above 0: pulses look below a rim, and the rim
     /// grows with that root. Default 0.5: at 0.3 more of the roofs of a real tile (Delft) are taken for thin.
-    pub least_proof: f32,
+    pub min_proof: f32,
     /// Distance about a pulse below a surface within which hardly a solid point may lie below that surface, metres. Default 1.5.
     /// Eaves stand out over walls, whose points betray them; without this rule two thirds of the roofs of real tiles (Delft,
     /// Bresse) were taken for thin, with it 13 % and next to none.
     pub open_radius: f32,
     /// Points that may lie there all the same: posts, goods, the foot of the pulse itself. Default 1.
-    pub most_below: usize,
+    pub max_below: usize,
 }
 
 impl Default for ThinSurfaceParams {
@@ -76,139 +78,123 @@ impl Default for ThinSurfaceParams {
             depths: [1.0, 5.0],
             around: 0.75,
             widest_gap: 2.7,
-            least_proof: 0.5,
+            min_proof: 0.5,
             open_radius: 1.5,
-            most_below: 1,
+            max_below: 1,
         }
     }
 }
 
-/// Whether each of `positions`, (N, 3) local metres, lies on a thin surface. `kinds`, (N), leave out ground and vegetation:
-/// crowns would read as decks. `index` must have been built from the positions. The result depends on neither the order of
-/// points and needles nor the number of threads.
+/// Whether each point of `input` lies on a thin surface. The result depends on neither the order of points and pulses nor the number of
+/// threads.
 ///
 /// # Errors
 /// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
 pub fn on_thin_surfaces(
-    positions: &[[f32; 3]],
-    kinds: &[Kind],
-    index: &NeighborIndex,
-    needles: &FreeSegments,
+    input: &CarvedInput<'_>,
     params: &ThinSurfaceParams,
     control: &Control<'_>,
 ) -> Result<Vec<bool>> {
-    find(positions, positions, CellsFrom::Cloud, kinds, index, needles, params, control)
+    let only_this = CarvedParams::default().without(Rule::Vegetation).without(Rule::Crowns);
+    params.thin_points(&Survey::new(input, &only_this, control)?, control)
 }
 
-/// The same for a part of a survey. `measured` are the points before they were moved onto their surface. Surfaces end at blocks of 64 m counted
-/// from the origin, so that those of a block are the same in every part that holds all of it and what lies about it.
-///
-/// # Errors
-/// Those of [`on_thin_surfaces`].
-pub(super) fn on_thin_surfaces_of_part(
-    (positions, measured): (&[[f32; 3]], &[[f32; 3]]),
-    kinds: &[Kind],
-    index: &NeighborIndex,
-    needles: &FreeSegments,
-    params: &ThinSurfaceParams,
-    control: &Control<'_>,
-) -> Result<Vec<bool>> {
-    find(positions, measured, CellsFrom::Origin, kinds, index, needles, params, control)
-}
-
-#[expect(clippy::too_many_arguments, reason = "what the two above have in common")]
-fn find(
-    positions: &[[f32; 3]],
-    in_layers: &[[f32; 3]],
-    from: CellsFrom,
-    kinds: &[Kind],
-    index: &NeighborIndex,
-    needles: &FreeSegments,
-    params: &ThinSurfaceParams,
-    control: &Control<'_>,
-) -> Result<Vec<bool>> {
-    let stop = Stop::new(control);
-    let solid = |row: usize| matches!(kinds.get(row), Some(Kind::Other | Kind::Later));
-    let Some(layers) = Layers::new(in_layers, from, solid) else { return Ok(vec![false; positions.len()]) };
-    control.check()?;
-    let beside: Vec<usize> = (0..layers.len())
-        .into_par_iter()
-        .map(|voxel| if stop.is_set() { 0 } else { layers.count_beside(voxel) })
-        .collect();
-    stop.check()?;
-    let is_roof = |at: [f32; 3]| {
-        let near = |row: usize| solid(row) && (positions[row][2] - at[2]).abs() < SAME_SURFACE;
-        let Gap { width, count, .. } = widest_gap(positions, index, at, params.around, near);
-        let between_points = (TAU - width) / f32::from(count.max(1));
-        width < WIDEST_OF_ALL && width - 2.0 * between_points < params.widest_gap
-    };
-    let is_open = |needle: [f32; 3], bottom: f32| {
-        let mut walls = 0;
-        index.within_radius(needle, params.open_radius, |found| {
-            let row = found.index as usize;
-            walls += usize::from(solid(row) && positions[row][2] < bottom - OF_THE_SURFACE);
-        });
-        walls <= params.most_below
-    };
-    let proven = run_below(&layers, &beside, needles, params.depths, is_roof, is_open, control)?;
-    let thin = surfaces(&layers, &beside, &proven, params.least_proof);
-    control.check()?;
-    Ok((0..positions.len())
-        .into_par_iter()
-        .map(|row| solid(row) && layers.voxel_of(in_layers[row]).is_some_and(|voxel| thin[voxel]))
-        .collect())
-}
-
-/// Adds balls midway between neighbouring points of thin surfaces, where no other comes close to the middle, as large as the pulses leave them, and says how many. `thin` tells
-/// the points, as [`on_thin_surfaces`] does, about which pulses are `spacing` apart, metres.
-///
-/// # Errors
-/// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
-pub(super) fn fill(
-    balls: &mut MedialBalls,
-    positions: &[[f32; 3]],
-    (thin, spacing): (&[bool], &[f32]),
-    needles: &FreeSegments,
-    params: &ThinSurfaceParams,
-    control: &Control<'_>,
-) -> Result<usize> {
-    let stop = Stop::new(control);
-    let rows = one_in_each_cell(positions, (0..thin.len()).filter(|&row| thin[row]).collect(), LEAST_APART);
-    let places: Vec<[f32; 3]> = rows.iter().map(|&row| positions[row]).collect();
-    let index = NeighborIndex::new(&places, control)?;
-    let fills = |number: usize| {
-        let (p, row) = (places[number], rows[number]);
-        let radius = params.radius_spacings * spacing[row];
-        let mut near = Vec::new();
-        index.within_radius(p, FARTHEST_APART_SPACINGS * spacing[row], |found| {
-            let q = places[found.index as usize];
-            if q != p && (q[2] - p[2]).abs() < SAME_LEVEL {
-                near.push(q);
-            }
-        });
-        let of_neighbor = |other: usize| {
-            let q: [f32; 3] = near[other];
-            let center = [(p[0] + q[0]) / 2.0, (p[1] + q[1]) / 2.0, (p[2] + q[2]) / 2.0 - radius];
-            (row, center, needles.clearance(center, radius))
-        };
-        let found = neighbors_after(p, &near, LEAST_APART, CLEAR_SHARE).map(of_neighbor);
-        found.filter(|&(.., left)| left >= LEAST_SHARE * radius).collect::<Vec<_>>()
-    };
-    let numbers = (0..rows.len()).into_par_iter().with_min_len(CHUNK);
-    let found: Vec<_> = numbers.filter(|_| !stop.is_set()).flat_map_iter(fills).collect();
-    stop.check()?;
-    for &(row, center, radius) in &found {
-        balls.push(row, center, radius, PULSE_TOUCH);
+impl MarkingRule for ThinSurfaceParams {
+    fn stage(&self) -> Option<(Phase, &'static str)> {
+        Some((Phase::Points, "finding thin surfaces"))
     }
-    Ok(found.len())
+
+    /// Caps at the points of thin surfaces, and fills midway between neighbours among them.
+    fn marks(&self, survey: &Survey<'_>, _: &MedialBalls, control: &Control<'_>) -> Result<Marks> {
+        let thin = self.thin_points(survey, control)?;
+        let rows: Vec<usize> = (0..thin.len()).filter(|&row| thin[row]).collect();
+        let cap =
+            |&row: &usize| Cap { is_claimed: true, ..Cap::tangent(row, self.radius_spacings * survey.spacing[row]) };
+        let caps = rows.iter().map(cap).collect();
+        let counts = vec![("points_on_thin_surfaces", rows.len())];
+        Ok(Marks { caps, fills: self.fills(survey, rows, control)?, counts, ..Marks::default() })
+    }
+
+    fn fills_name(&self) -> &'static str {
+        "balls_in_thin_surfaces"
+    }
 }
 
-/// Which voxels a needle runs below at these `depths`, where `is_roof` says that points lie around the place straight
+impl ThinSurfaceParams {
+    /// Whether each point lies on a thin surface. Surfaces end at blocks of 64 m, so that those of a block are the same in every part of a
+    /// survey that holds all of it and what lies about it. The result depends on neither the order of points and pulses nor the number
+    /// of threads.
+    fn thin_points(&self, survey: &Survey<'_>, control: &Control<'_>) -> Result<Vec<bool>> {
+        let stop = Stop::new(control);
+        let (positions, index) = (survey.positions(), survey.index);
+        let solid = |row: usize| survey.is_solid(row);
+        let Some(layers) = Layers::new(survey.measured, survey.oriented.origin(), solid) else {
+            return Ok(vec![false; positions.len()]);
+        };
+        control.check()?;
+        let beside: Vec<usize> = (0..layers.len())
+            .into_par_iter()
+            .map(|voxel| if stop.is_set() { 0 } else { layers.count_beside(voxel) })
+            .collect();
+        stop.check()?;
+        let is_roof = |at: [f32; 3]| {
+            let near = |row: usize| solid(row) && (positions[row][2] - at[2]).abs() < SAME_SURFACE;
+            let Gap { width, count, .. } = widest_gap(positions, index, at, self.around, near);
+            let between_points = (TAU - width) / f32::from(count.max(1));
+            width < WIDEST_OF_ALL && width - 2.0 * between_points < self.widest_gap
+        };
+        let is_open = |pulse: [f32; 3], bottom: f32| {
+            let mut walls = 0;
+            index.within_radius(pulse, self.open_radius, |found| {
+                let row = found.index as usize;
+                walls += usize::from(solid(row) && positions[row][2] < bottom - OF_THE_SURFACE);
+            });
+            walls <= self.max_below
+        };
+        let proven = run_below(&layers, &beside, survey.free_segments, self.depths, is_roof, is_open, control)?;
+        let thin = surfaces(&layers, &beside, &proven, self.min_proof);
+        control.check()?;
+        let is_thin = |row| solid(row) && layers.voxel_of(survey.measured[row]).is_some_and(|voxel| thin[voxel]);
+        Ok((0..positions.len()).into_par_iter().map(is_thin).collect())
+    }
+
+    /// Fills midway between neighbours among the points `rows` of thin surfaces, where no other comes close to the middle.
+    fn fills(&self, survey: &Survey<'_>, rows: Vec<usize>, control: &Control<'_>) -> Result<Vec<Fill>> {
+        let stop = Stop::new(control);
+        let rows = one_in_each_cell(survey.positions(), rows, MIN_APART);
+        let places: Vec<[f32; 3]> = rows.iter().map(|&row| survey.positions()[row]).collect();
+        let index = NeighborIndex::new(&places, control)?;
+        let fills = |number: usize| {
+            let (p, row) = (places[number], rows[number]);
+            let radius = self.radius_spacings * survey.spacing[row];
+            let mut near = Vec::new();
+            index.within_radius(p, FARTHEST_APART_SPACINGS * survey.spacing[row], |found| {
+                let q = places[found.index as usize];
+                if q != p && (q[2] - p[2]).abs() < SAME_LEVEL {
+                    near.push(q);
+                }
+            });
+            let between = |other: usize| {
+                let q: [f32; 3] = near[other];
+                let center = [(p[0] + q[0]) / 2.0, (p[1] + q[1]) / 2.0, (p[2] + q[2]) / 2.0 - radius];
+                let place = FillPlace::Center(center);
+                Fill { row, place, max_radius: radius, min_radius: MIN_SHARE * radius }
+            };
+            neighbors_after(p, &near, MIN_APART, CLEAR_SHARE).map(between).collect::<Vec<_>>()
+        };
+        let numbers = (0..rows.len()).into_par_iter().with_min_len(CHUNK);
+        let found = numbers.filter(|_| !stop.is_set()).flat_map_iter(fills).collect();
+        stop.check()?;
+        Ok(found)
+    }
+}
+
+/// Which voxels a pulse runs below at these `depths`, where `is_roof` says that points lie around the place straight
 /// above it, and `is_open` that none stand beside it below the height given.
 fn run_below(
     layers: &Layers,
     beside: &[usize],
-    needles: &FreeSegments,
+    free_segments: &FreeSegments,
     depths: [f32; 2],
     is_roof: impl Fn([f32; 3]) -> bool + Sync,
     is_open: impl Fn([f32; 3], f32) -> bool + Sync,
@@ -216,18 +202,18 @@ fn run_below(
 ) -> Result<Vec<bool>> {
     let proven: Vec<AtomicBool> = beside.iter().map(|_| AtomicBool::new(false)).collect();
     let top = layers.top();
-    (0..needles.len()).into_par_iter().with_min_len(CHUNK).try_for_each(|number| {
+    (0..free_segments.len()).into_par_iter().with_min_len(CHUNK).try_for_each(|number| {
         if number % CHECK_EACH == 0 {
             control.check()?;
         }
-        let Some((start, up, length)) = needles.segment(number) else { return Ok(()) };
+        let Some((start, up, length)) = free_segments.segment(number) else { return Ok(()) };
         layers.walk(start, up, length, |column, [from, to]| {
             let low: [f32; 3] = std::array::from_fn(|axis| start[axis] + from * up[axis]);
             let high = start[2] + to * up[2];
             for voxel in column {
                 let bottom = layers.bottom(voxel);
                 // that a voxel is proven already only saves time: the outcome is the same
-                if beside[voxel] >= LEAST_BESIDE
+                if beside[voxel] >= MIN_BESIDE
                     && bottom - low[2] >= depths[0]
                     && bottom - high <= depths[1]
                     && !proven[voxel].load(Ordering::Relaxed)
@@ -282,12 +268,12 @@ pub(super) fn widest_gap(
 
 /// Which voxels belong to a surface of which enough is proven. A surface is what hangs together of voxels that go on to all
 /// sides or are proven, with what lies beside them.
-fn surfaces(layers: &Layers, beside: &[usize], proven: &[bool], least_proof: f32) -> Vec<bool> {
+fn surfaces(layers: &Layers, beside: &[usize], proven: &[bool], min_proof: f32) -> Vec<bool> {
     let mut seen = vec![false; layers.len()];
     let mut thin = vec![false; layers.len()];
     let mut surface = Vec::new();
     #[expect(clippy::cast_possible_truncation, reason = "128")]
-    let block = |voxel: usize| layers.block(voxel, (BLOCK / CELL) as i32);
+    let block = |voxel: usize| layers.block(voxel, (BLOCK / CELL) as i64);
     for first in (0..layers.len()).filter(|&voxel| proven[voxel]) {
         if seen[first] {
             continue;
@@ -306,7 +292,7 @@ fn surfaces(layers: &Layers, beside: &[usize], proven: &[bool], least_proof: f32
             });
         }
         let count = surface.iter().filter(|&&voxel| proven[voxel]).count();
-        if count as f64 >= f64::from(least_proof) * (surface.len() as f64).sqrt() {
+        if count as f64 >= f64::from(min_proof) * (surface.len() as f64).sqrt() {
             for &voxel in &surface {
                 layers.around(voxel, |other| thin[other] |= block(other) == block(first));
             }

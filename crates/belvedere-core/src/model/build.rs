@@ -6,8 +6,8 @@ use super::prepare::{OrientedSurvey, prepare};
 use super::report::{BallsReport, BuildReport};
 use super::{ModelParts, SceneModel};
 use crate::medial::{
-    CarvedBalls, CarvedInput, MedialBalls, ShrinkParams, Side, SurveyPart, carved_balls, carved_balls_of_part, shrink,
-    vegetation_of_classes, vegetation_of_transmission,
+    CarvedBalls, CarvedInput, MedialBalls, ShrinkParams, Side, carved_balls, shrink, vegetation_of_classes,
+    vegetation_of_transmission,
 };
 use crate::query::{BallTree, BlockRule};
 use belvedere_data::control::Control;
@@ -61,23 +61,11 @@ fn of_survey(
     match (&settled, &survey.carving) {
         (BallParams::Carved(params), Some(input)) => {
             let (attributes, free_segments, pulses) = (&input.attributes, &input.free_segments, input.pulses.as_ref());
-            let input = CarvedInput {
-                oriented: &survey.oriented,
-                index: &survey.index,
-                attributes,
-                needles: free_segments,
-                pulses,
-            };
-            let part = statistics.map(|statistics| SurveyPart {
-                whole: &statistics.whole,
-                measured: &survey.measured,
-                farthest: statistics.farthest(),
-            });
+            let (oriented, measured, index) = (&survey.oriented, &survey.measured[..], &survey.index);
+            let statistics = statistics.map(|statistics| &statistics.whole);
+            let input = CarvedInput { oriented, measured, index, attributes, free_segments, pulses, statistics };
             let found;
-            CarvedBalls { balls, transmission, report: found } = match &part {
-                Some(part) => carved_balls_of_part(&input, part, params, control)?,
-                None => carved_balls(&input, params, control)?,
-            };
+            CarvedBalls { balls, transmission, report: found } = carved_balls(&input, params, control)?;
             report.interior_balls = Some(BallsReport::Carved(found));
         }
         (BallParams::Shrunk(params), _) => {

@@ -116,7 +116,7 @@ impl BallParams {
 
     /// Whether points that are carved are moved onto their surface first.
     pub(super) fn smooths(&self) -> bool {
-        matches!(self, Self::Carved(carved) | Self::CarvedIfPossible(carved, _) if carved.smoothing)
+        matches!(self, Self::Carved(carved) | Self::CarvedIfPossible(carved, _) if carved.smoothing.is_some())
     }
 
     /// Checks the parameters of shrinking, before a cloud is there.

@@ -3,9 +3,8 @@
 use super::close_range_normals::CloseRange;
 use super::params::{Carving, ModelParams, OrientBy};
 use super::report::{BuildReport, NormalsReport, PulsesReport, SmoothingReport};
-use super::statistics::SurveyStatistics;
 use crate::clean::clean;
-use crate::neighbors::NeighborIndex;
+use crate::neighbors::{FARTHEST_NEIGHBOR, NeighborIndex};
 use crate::normals::estimate::estimate_within;
 use crate::normals::{Normals, Orientation, OrientedCloud, Scatter, orient};
 use crate::pulses::{
@@ -33,7 +32,7 @@ pub struct OrientedSurvey {
     pub kept: Vec<u32>,
     /// The smallest box around them: a stray point that was cleaned away does not widen a view.
     pub bounds: Bounds,
-    /// The points before they were moved onto their surface, where the cloud is a part of a survey; otherwise empty.
+    /// The points before they were moved onto their surface, where they are to be carved; otherwise empty.
     pub(super) measured: Vec<[f32; 3]>,
     /// Classes of these points, where they have any.
     pub(super) classification: Option<Vec<u8>>,
@@ -162,7 +161,9 @@ pub(super) fn prepare(
             Ok((found.normals, found.scatter))
         })?,
         _ => control.stage("estimating normals", cloud.len(), || {
-            let farthest = statistics.map_or(f32::INFINITY, SurveyStatistics::farthest);
+            // points that nothing carves may be in any unit
+            let is_flown = statistics.is_some() || carving.is_some();
+            let farthest = if is_flown { FARTHEST_NEIGHBOR } else { f32::INFINITY };
             estimate_within(&cloud.positions, &index, params.neighborhood, farthest, control)
         })?,
     };
@@ -174,7 +175,7 @@ pub(super) fn prepare(
         input.lead_up_to(noise, &scanner, params, control)?;
     }
     let mut index = index;
-    let measured = if statistics.is_some() { oriented.positions().to_vec() } else { Vec::new() };
+    let measured = if carving.is_some() { oriented.positions().to_vec() } else { Vec::new() };
     if let Some(scatter) = scatter {
         if statistics.is_none() && !is_from_the_ground {
             noise = scatter.noise();

@@ -104,7 +104,7 @@ impl NormalsReport {
 }
 
 /// What became of the balls.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize)]
 #[serde(untagged)]
 pub enum BallsReport {
     /// Made from the points alone.

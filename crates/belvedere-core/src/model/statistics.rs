@@ -3,7 +3,8 @@
 use super::params::{BallParams, ModelParams, OrientBy};
 use super::prepare::{OrientedSurvey, prepare};
 use crate::clean::{CleanParams, IsolatedPoints, IsolationRadius};
-use crate::medial::{CarvedInput, CarvedParams, WholeSurvey, carve_survey};
+use crate::medial::{CarvedInput, CarvedParams, RuleStatistics, rule_statistics};
+use crate::neighbors::FARTHEST_NEIGHBOR;
 use crate::pulses::{LinePath, Means, VerticalParams, locate, positions_on_paths, vertical_pulses};
 use belvedere_data::control::Control;
 use belvedere_data::{Error, Parameter, PointCloud, Result};
@@ -11,9 +12,6 @@ use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 use std::path::Path;
 
-/// How far away a point may lie and still be a neighbour, metres: more than the usual 16 neighbours take wherever there
-/// is a surface.
-const FARTHEST_NEIGHBOR: f32 = 16.0;
 /// How far the rules for balls look beyond a point, metres: edges of roofs within three spacings of pulses, of which
 /// the widest is 3 m; cells of a metre with those about them, crowns and relief less.
 const RULES_REACH: f64 = 12.0;
@@ -46,7 +44,7 @@ pub struct SurveyStatistics {
     /// Whether crowns of trees are measured: whether returns can be grouped into pulses.
     pub measures_crowns: bool,
     /// What rules take from the whole.
-    pub whole: WholeSurvey,
+    pub whole: RuleStatistics,
 }
 
 /// What a pass over all points of a survey found.
@@ -95,10 +93,10 @@ impl SurveyStatistics {
             top: extremes.top,
             relief: extremes.relief,
             measures_crowns: true,
-            whole: WholeSurvey {
+            whole: RuleStatistics {
                 has_ground: extremes.has_ground,
                 has_vegetation: extremes.has_vegetation,
-                ..WholeSurvey::default()
+                ..RuleStatistics::default()
             },
             ..Self::default()
         };
@@ -123,7 +121,7 @@ impl SurveyStatistics {
         statistics.measures_crowns = input.pulses.is_some();
         if let BallParams::Carved(carved) | BallParams::CarvedIfPossible(carved, _) = &params.balls {
             let whole = statistics.crowns(&survey, carved, control)?;
-            statistics.whole = WholeSurvey {
+            statistics.whole = RuleStatistics {
                 transmission: whole.transmission,
                 crown_spacing: whole.crown_spacing,
                 ..statistics.whole
@@ -132,16 +130,18 @@ impl SurveyStatistics {
         Ok(statistics)
     }
 
-    fn crowns(&self, survey: &OrientedSurvey, params: &CarvedParams, control: &Control<'_>) -> Result<WholeSurvey> {
-        let Some(input) = &survey.carving else { return Ok(WholeSurvey::default()) };
+    fn crowns(&self, survey: &OrientedSurvey, params: &CarvedParams, control: &Control<'_>) -> Result<RuleStatistics> {
+        let Some(input) = &survey.carving else { return Ok(RuleStatistics::default()) };
         let input = CarvedInput {
             oriented: &survey.oriented,
+            measured: &survey.measured,
             index: &survey.index,
             attributes: &input.attributes,
-            needles: &input.free_segments,
+            free_segments: &input.free_segments,
             pulses: input.pulses.as_ref(),
+            statistics: None,
         };
-        Ok(carve_survey(&input, None, params, control)?.1)
+        rule_statistics(&input, params, control)
     }
 
     /// How far around a place points must be known for its balls to be those of the whole survey, metres.

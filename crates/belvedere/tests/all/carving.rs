@@ -3,7 +3,7 @@
 #![expect(clippy::cast_possible_truncation, reason = "test places within a hundred metres in f32")]
 
 use belvedere::control::Control;
-use belvedere::medial::{KindBounds, LIMIT_TOUCH, MedialBalls, NO_TOUCH, PULSE_TOUCH, RadiusBounds, carve, kinds};
+use belvedere::medial::{KindCaps, LIMIT_TOUCH, MedialBalls, NO_TOUCH, PULSE_TOUCH, RadiusCaps, carve, kinds};
 use belvedere::neighbors::Tangent;
 use belvedere::normals::{Normals, Orientation, orient};
 use belvedere::pulses::{FreeSegmentParams, FreeSegments};
@@ -47,9 +47,9 @@ fn survey_from_the_ground(count: u64) -> (Vec<[f32; 3]>, Vec<[f32; 3]>) {
 /// Distance between pulses, metres: ten a square metre.
 const SPACING: f32 = 0.316;
 
-/// Bounds by kind of point.
-fn bounds(attributes: &Attributes, count: usize) -> RadiusBounds {
-    RadiusBounds::by_kind(&kinds(attributes, count), attributes, &vec![SPACING; count], &KindBounds::default())
+/// Caps by kind of point.
+fn caps(attributes: &Attributes, count: usize) -> RadiusCaps {
+    RadiusCaps::by_kind(&kinds(attributes, count), attributes, &vec![SPACING; count], &KindCaps::default())
 }
 
 /// A pencil of balls at a random place, pointing anywhere.
@@ -182,7 +182,7 @@ fn a_deck_is_cut_to_what_slanted_pulses_leave_below_it() {
     let (free_segments, _) =
         FreeSegments::new(&returns, &scanner, &FreeSegmentParams::default(), &Control::none()).unwrap();
     let report =
-        carve(&mut balls, &oriented, &free_segments, &bounds(&cloud.attributes, cloud.len()), &Control::none())
+        carve(&mut balls, &oriented, &free_segments, &caps(&cloud.attributes, cloud.len()), &Control::none())
             .unwrap();
     // the line x − z = −2 passes the axis of the balls at z = 2: the ball below (0, 0, 6) of radius r has its
     // centre 6 − r high, (4 − r)/√2 from the line; that equals r for r = 4/(1 + √2)
@@ -199,16 +199,16 @@ fn kinds_of_points_bound_their_balls_and_carving_twice_changes_nothing() {
     cloud.attributes.return_number = Some(vec![1, 1, 1, 2, 1]);
     let (free_segments, _) = FreeSegments::new(&[], &[], &FreeSegmentParams::default(), &Control::none()).unwrap();
     let report =
-        carve(&mut balls, &oriented, &free_segments, &bounds(&cloud.attributes, cloud.len()), &Control::none())
+        carve(&mut balls, &oriented, &free_segments, &caps(&cloud.attributes, cloud.len()), &Control::none())
             .unwrap();
     // what nothing bounds is cut to half a metre
     assert_eq!(balls.radii, [0.5, 1.0, 2.0, 0.95 * SPACING, 0.5]);
     assert_eq!((report.carved, report.limited), (0, 5));
     assert_eq!(balls.touch, [LIMIT_TOUCH; 5]);
     let once = balls.clone();
-    carve(&mut balls, &oriented, &free_segments, &bounds(&cloud.attributes, cloud.len()), &Control::none()).unwrap();
+    carve(&mut balls, &oriented, &free_segments, &caps(&cloud.attributes, cloud.len()), &Control::none()).unwrap();
     assert_eq!(balls.radii, once.radii);
-    assert!(carve(&mut balls, &oriented, &free_segments, &bounds(&cloud.attributes, 1), &Control::none()).is_err());
+    assert!(carve(&mut balls, &oriented, &free_segments, &caps(&cloud.attributes, 1), &Control::none()).is_err());
 }
 
 #[test]
@@ -227,7 +227,7 @@ fn carving_gives_the_same_bits_for_any_number_of_threads_and_order_of_pulses() {
             let points: Vec<[f32; 3]> = (0..3000).map(|i| pencil(i).point).collect();
             let (cloud, oriented, mut balls) = balls_below(points);
             let report =
-                carve(&mut balls, &oriented, &free_segments, &bounds(&cloud.attributes, cloud.len()), &Control::none())
+                carve(&mut balls, &oriented, &free_segments, &caps(&cloud.attributes, cloud.len()), &Control::none())
                     .unwrap();
             (balls.radii, balls.centers, report)
         })

@@ -56,10 +56,11 @@ fn carved(cloud: &PointCloud, params: &CarvedParams) -> CarvedBalls {
     let (pulses, _) = group(cloud, &Control::none()).unwrap();
     let input = CarvedInput {
         oriented: &oriented,
+        measured: oriented.positions(),
         index: &index,
         attributes: &cloud.attributes,
-        needles: &free_segments,
-        pulses: Some(&pulses),
+        free_segments: &free_segments,
+        pulses: Some(&pulses), statistics: None,
     };
     carved_balls(&input, params, &Control::none()).unwrap()
 }
@@ -118,8 +119,8 @@ fn a_solid_crown_is_filled_down_to_its_lowest_returns_and_no_farther() {
     let cloud = tree(100_000, 3.0);
     let without = carved(&cloud, &CarvedParams { crowns: None, ..CarvedParams::default() });
     let filled = carved(&cloud, &trees(Trees::Measured));
-    assert!(filled.report.crown_fills > 100, "{:?}", filled.report);
-    assert_eq!(filled.balls.len() - without.balls.len(), filled.report.crown_fills);
+    assert!(filled.report.count("balls_in_crowns") > 100, "{:?}", filled.report);
+    assert_eq!(filled.balls.len() - without.balls.len(), filled.report.count("balls_in_crowns"));
     let inside = |found: &CarvedBalls, p: [f32; 3]| {
         found.balls.centers.iter().zip(&found.balls.radii).any(|(c, r)| {
             let square: f32 = (0..3).map(|i| (c[i] - p[i]) * (c[i] - p[i])).sum();
@@ -137,7 +138,7 @@ fn a_solid_crown_is_filled_down_to_its_lowest_returns_and_no_farther() {
     }
     // with returns at 6 m as the lowest there is room for a metre
     let shallow = carved(&tree(100_000, 6.0), &trees(Trees::Opaque));
-    let fills = shallow.balls.len() - shallow.report.crown_fills;
+    let fills = shallow.balls.len() - shallow.report.count("balls_in_crowns");
     let lowest = (fills..shallow.balls.len()).map(|i| shallow.balls.centers[i][2] - shallow.balls.radii[i]);
     assert!(lowest.fold(f32::INFINITY, f32::min) > 6.0 - 2e-3);
 }
@@ -146,8 +147,8 @@ fn a_solid_crown_is_filled_down_to_its_lowest_returns_and_no_farther() {
 fn crowns_that_pulses_get_through_are_not_filled_and_keep_small_balls() {
     let cloud = tree(1, 3.0);
     let found = carved(&cloud, &trees(Trees::Measured));
-    assert_eq!(found.report.crown_fills, 0);
-    assert_eq!(found.report.in_crowns_with_gaps, 1024);
+    assert_eq!(found.report.count("balls_in_crowns"), 0);
+    assert_eq!(found.report.count("points_in_crowns_with_gaps"), 1024);
     let params = CrownParams::default();
     let largest = |found: &CarvedBalls| {
         let radii = found.balls.source.iter().zip(&found.balls.radii);
@@ -184,7 +185,7 @@ fn without_classes_a_bush_is_separated_from_a_roof() {
     let bush = cloud.len() - 1600;
     let found = carved(&cloud, &trees(Trees::Porous));
     // points of a ball have no plane about them: most of it is told, nothing of the roof
-    assert!(found.report.told_vegetation > bush * 6 / 10, "{} of {bush}", found.report.told_vegetation);
+    assert!(found.report.count("points_found_to_be_vegetation") > bush * 6 / 10, "{} of {bush}", found.report.count("points_found_to_be_vegetation"));
     for (&source, &radius) in found.balls.source.iter().zip(&found.balls.radii) {
         assert!(source >= 1600 || radius > CrownParams::default().porous_radius, "row {source}: {radius}");
     }
@@ -192,9 +193,9 @@ fn without_classes_a_bush_is_separated_from_a_roof() {
     let mut classes = vec![1; cloud.len()];
     classes[1600] = 5;
     cloud.attributes.classification = Some(classes);
-    assert_eq!(carved(&cloud, &CarvedParams::default()).report.told_vegetation, 0);
+    assert_eq!(carved(&cloud, &CarvedParams::default()).report.count("points_found_to_be_vegetation"), 0);
     cloud.attributes.classification = Some(vec![6; cloud.len()]);
-    assert_eq!(carved(&cloud, &CarvedParams::default()).report.told_vegetation, 0);
+    assert_eq!(carved(&cloud, &CarvedParams::default()).report.count("points_found_to_be_vegetation"), 0);
 }
 
 #[test]

@@ -57,10 +57,11 @@ fn balls(survey: &ReliefSurvey, relief: Option<ReliefParams>) -> CarvedBalls {
     let free_segments = free_segments(survey);
     let input = CarvedInput {
         oriented: &oriented,
+        measured: oriented.positions(),
         index: &index,
         attributes: &attributes,
-        needles: &free_segments,
-        pulses: None,
+        free_segments: &free_segments,
+        pulses: None, statistics: None,
     };
     carved_balls(&input, &CarvedParams { relief, ..CarvedParams::default() }, &Control::none()).unwrap()
 }
@@ -91,7 +92,7 @@ fn a_low_wall_hides_what_is_behind_it_below_its_points() {
 fn what_fills_lies_in_the_wall_and_no_pulse_enters_it() {
     let survey = survey(HEIGHT);
     let found = balls(&survey, Some(ReliefParams::default()));
-    let fills = found.balls.len() - found.report.relief_fills..found.balls.len();
+    let fills = found.balls.len() - found.report.count("balls_in_thin_relief")..found.balls.len();
     assert!(fills.len() > 300, "{}", fills.len());
     for ball in fills {
         let (center, radius) = (found.balls.centers[ball].map(f64::from), f64::from(found.balls.radii[ball]));
@@ -114,7 +115,7 @@ fn what_fills_lies_in_the_wall_and_no_pulse_enters_it() {
 #[test]
 fn a_flat_roof_has_no_relief() {
     let found = balls(&survey(0.0), Some(ReliefParams::default()));
-    assert_eq!((found.report.relief, found.report.relief_fills), (0, 0));
+    assert_eq!((found.report.count("points_on_thin_relief"), found.report.count("balls_in_thin_relief")), (0, 0));
 }
 
 #[test]
@@ -127,7 +128,7 @@ fn neither_order_of_points_nor_number_of_threads_matters() {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         let found = pool.install(|| balls(survey, Some(ReliefParams::default())));
         let bits = |ball: usize| (found.balls.centers[ball].map(f32::to_bits), found.balls.radii[ball].to_bits());
-        let fills = found.balls.len() - found.report.relief_fills..found.balls.len();
+        let fills = found.balls.len() - found.report.count("balls_in_thin_relief")..found.balls.len();
         let mut all: Vec<_> = fills.map(bits).collect();
         all.sort_unstable();
         all

@@ -70,7 +70,7 @@ fn floors_below_tripods_and_ceilings_above_them_are_closed() {
     let (model, report) = SceneModel::build(&cloud, &ModelParams::default(), &Control::none()).unwrap();
     let Some(BallsReport::Carved(balls)) = report.interior_balls else { panic!("{report:?}") };
     // two discs of 0.62 and 0.66 m, a place every 0.075 m
-    assert!((400..500).contains(&balls.below_tripods), "{balls:?}");
+    assert!((400..500).contains(&balls.count("balls_below_tripods")), "{balls:?}");
     let scene = model.scene(&model.rule(), UnprovenAs::Reported, &Control::none()).unwrap();
     let expected = ROOM[0] * ROOM[1] * ROOM[2];
     for eye in [[2.5, 3.0, 1.5], [7.5, 2.0, 1.0], [5.0, 3.0, 2.0]] {

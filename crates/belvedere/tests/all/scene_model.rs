@@ -54,7 +54,7 @@ fn a_model_is_what_the_stages_make_one_after_the_other() {
     let (pulses, _) = group(&clean, &none).unwrap();
     let attributes = &clean.attributes;
     let input =
-        CarvedInput { oriented: &oriented, index: &index, attributes, needles: &free_segments, pulses: Some(&pulses) };
+        CarvedInput { oriented: &oriented, measured: oriented.positions(), index: &index, attributes, free_segments: &free_segments, pulses: Some(&pulses) , statistics: None};
     let made = carved_balls(&input, &CarvedParams::default(), &none).unwrap();
     assert_eq!(model.balls().centers, made.balls.centers);
     assert_eq!(model.balls().radii, made.balls.radii);

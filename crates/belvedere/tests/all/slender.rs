@@ -48,7 +48,7 @@ fn carved(cloud: &PointCloud, scanner: &[[f32; 3]], slender: Option<SlenderParam
     let (free_segments, _) =
         FreeSegments::of_cloud(cloud, scanner, &FreeSegmentParams::default(), &Control::none()).unwrap();
     let attributes = &cloud.attributes;
-    let input = CarvedInput { oriented: &oriented, index: &index, attributes, needles: &free_segments, pulses: None };
+    let input = CarvedInput { oriented: &oriented, measured: oriented.positions(), index: &index, attributes, free_segments: &free_segments, pulses: None , statistics: None};
     let params = CarvedParams { slender, ..CarvedParams::default() };
     (carved_balls(&input, &params, &Control::none()).unwrap(), free_segments)
 }
@@ -71,7 +71,7 @@ fn a_fence_blocks_to_the_ground_and_stays_thin() {
     let (with, free_segments) = carved(&cloud, &scanner, Some(SlenderParams::default()));
     let hits = cloud.attributes.classification.as_ref().unwrap().iter().filter(|class| **class == 1).count();
     // the lowest 0.3 m of the fence, a fifth of its hits, are too low to tell; half of them at the least must be found
-    assert!(with.report.slender * 2 > hits, "{} of {hits}", with.report.slender);
+    assert!(with.report.count("points_on_thin_objects") * 2 > hits, "{} of {hits}", with.report.count("points_on_thin_objects"));
     assert!(blocked(&with, 0.7) > 0.9 && blocked(&with, 0.7) > blocked(&without, 0.7), "{}", blocked(&with, 0.7));
     assert_eq!(blocked(&with, 2.0), 0.0);
     // no ball of the fence reaches farther than its radius to either side and half the fence; beyond its ends no pulse
@@ -81,7 +81,7 @@ fn a_fence_blocks_to_the_ground_and_stays_thin() {
         assert!(center[2] - radius < 0.35 || center[1].abs() + radius < 0.03 + 2.0 * 0.15, "{center:?} {radius}");
     }
     // what fills it is entered by no pulse
-    let first = with.balls.len() - with.report.slender_fills;
+    let first = with.balls.len() - with.report.count("balls_in_thin_objects");
     for row in first..with.balls.len() {
         let (center, radius) = (with.balls.centers[row], with.balls.radii[row]);
         assert!(free_segments.clearance(center, 1.0) >= radius);
@@ -92,8 +92,8 @@ fn a_fence_blocks_to_the_ground_and_stays_thin() {
 fn a_wire_gets_small_balls_and_nothing_below() {
     let (cloud, scanner) = survey(5.9, 6.0, 0.15);
     let (with, _) = carved(&cloud, &scanner, Some(SlenderParams::default()));
-    assert!(with.report.slender > 10, "{:?}", with.report);
-    assert_eq!(with.report.slender_fills, 0);
+    assert!(with.report.count("points_on_thin_objects") > 10, "{:?}", with.report);
+    assert_eq!(with.report.count("balls_in_thin_objects"), 0);
     assert_eq!(blocked(&with, 1.0), 0.0);
     let on_wire = |row: &usize| cloud.positions[with.balls.source[*row] as usize][2] > 5.0;
     let small = (0..with.balls.len()).filter(on_wire).filter(|&row| with.balls.radii[row] <= 0.1).count();
@@ -106,7 +106,7 @@ fn a_wire_gets_small_balls_and_nothing_below() {
 fn a_block_two_metres_wide_is_not_slender() {
     let (cloud, scanner) = survey(0.0, 1.5, 2.0);
     let (with, _) = carved(&cloud, &scanner, Some(SlenderParams::default()));
-    assert_eq!((with.report.slender, with.report.slender_fills), (0, 0));
+    assert_eq!((with.report.count("points_on_thin_objects"), with.report.count("balls_in_thin_objects")), (0, 0));
 }
 
 #[test]

@@ -1,14 +1,15 @@
-//! Thin surfaces told from solid ones by pulses below them, on a canopy on posts and a block of the same size.
+//! Thin surfaces, distinguished from solid ones by pulses below them, on a canopy on posts and a block of the same size.
 #![expect(clippy::cast_possible_truncation, reason = "test places within a hundred metres in f32")]
 
-use belvedere::PointCloud;
 use belvedere::control::Control;
-use belvedere::medial::{Kind, ThinSurfaceParams, on_thin_surfaces};
+use belvedere::medial::{CarvedInput, ThinSurfaceParams, on_thin_surfaces};
 use belvedere::model::{ModelParams, OrientBy, SceneModel};
 use belvedere::neighbors::NeighborIndex;
+use belvedere::normals::OrientedCloud;
 use belvedere::pulses::{FreeSegmentParams, FreeSegments};
 use belvedere::query::{Answer, BlockRule, UnprovenAs};
 use belvedere::random::uniform;
+use belvedere::{Attributes, PointCloud};
 
 const HEIGHT: f64 = 3.0;
 /// West, south, east, north of the slab.
@@ -24,14 +25,15 @@ enum Built {
 struct ThinSurvey {
     points: Vec<[f32; 3]>,
     scanner: Vec<[f32; 3]>,
-    kinds: Vec<Kind>,
+    /// Classes: 2 for the ground, 1 for anything else.
+    classes: Vec<u8>,
     on_top: Vec<bool>,
 }
 
 /// `count` pulses from two lines 120 m to either side, 450 m up: 15 degrees. Exact first hits, by hand: the top, the
 /// walls of the block, the ground.
 fn survey(built: Built, count: u64) -> ThinSurvey {
-    let mut survey = ThinSurvey { points: Vec::new(), scanner: Vec::new(), kinds: Vec::new(), on_top: Vec::new() };
+    let mut survey = ThinSurvey { points: Vec::new(), scanner: Vec::new(), classes: Vec::new(), on_top: Vec::new() };
     for i in 0..count {
         let scanner = [if i % 2 == 0 { -120.0 } else { 120.0 }, 10.0 * (uniform(3, i) - 0.5), 450.0];
         let aim = [24.0 * (uniform(1, i) - 0.5), 16.0 * (uniform(2, i) - 0.5), 0.0];
@@ -50,7 +52,7 @@ fn survey(built: Built, count: u64) -> ThinSurvey {
         };
         survey.points.push(p.map(|v| v as f32));
         survey.scanner.push(scanner.map(|v| v as f32));
-        survey.kinds.push(if p[2] < 0.01 { Kind::Ground } else { Kind::Other });
+        survey.classes.push(if p[2] < 0.01 { 2 } else { 1 });
         survey.on_top.push(on_top);
     }
     survey
@@ -66,18 +68,26 @@ fn found(survey: &ThinSurvey) -> [f64; 2] {
 }
 
 fn thin(survey: &ThinSurvey) -> Vec<bool> {
-    let index = NeighborIndex::new(&survey.points, &Control::none()).unwrap();
     let (free_segments, _) =
         FreeSegments::new(&survey.points, &survey.scanner, &FreeSegmentParams::default(), &Control::none()).unwrap();
-    on_thin_surfaces(
-        &survey.points,
-        &survey.kinds,
-        &index,
-        &free_segments,
-        &ThinSurfaceParams::default(),
-        &Control::none(),
-    )
-    .unwrap()
+    thin_below(survey, &free_segments)
+}
+
+fn thin_below(survey: &ThinSurvey, free_segments: &FreeSegments) -> Vec<bool> {
+    let index = NeighborIndex::new(&survey.points, &Control::none()).unwrap();
+    let up = vec![[0.0, 0.0, 1.0]; survey.points.len()];
+    let oriented = OrientedCloud::with_known_normals(survey.points.clone(), up).unwrap();
+    let attributes = &Attributes { classification: Some(survey.classes.clone()), ..Attributes::default() };
+    let input = CarvedInput {
+        oriented: &oriented,
+        measured: &survey.points,
+        index: &index,
+        attributes,
+        free_segments,
+        pulses: None,
+        statistics: None,
+    };
+    on_thin_surfaces(&input, &ThinSurfaceParams::default(), &Control::none()).unwrap()
 }
 
 /// Ten pulses a square metre.
@@ -87,18 +97,18 @@ const PULSES: u64 = 3840;
 fn a_canopy_is_thin_to_its_middle_and_a_block_is_not() {
     let canopy = survey(Built::Canopy, PULSES);
     let thin = thin(&canopy);
-    // pulses reach 0.8 m below the rim at most, and the middle is 3 m from the nearest
+    // pulses reach 0.8 m below the edge at most, and the middle is 3 m from the nearest
     let mut inner_count = 0;
     for (row, p) in canopy.points.iter().enumerate().filter(|&(row, _)| canopy.on_top[row]) {
         let p = p.map(f64::from);
-        // two cells from the rim: nearer, a cell that happens to hold ground alone hides the one behind it
+        // two cells from the edge: nearer, a cell that happens to hold ground alone hides the one behind it
         let is_inner = p[0] > SLAB[0] + 1.0 && p[0] < SLAB[2] - 1.0 && p[1] > SLAB[1] + 1.0 && p[1] < SLAB[3] - 1.0;
         inner_count += usize::from(is_inner);
         assert!(thin[row] || !is_inner, "{p:?}");
     }
     assert!(inner_count > 250, "{inner_count}");
     let [top, beside] = found(&canopy);
-    // of the points within a cell of the rim, a third of all, a tenth may be hidden so
+    // of the points within a cell of the edge, a third of all, a tenth may be hidden so
     assert!(top > 0.96, "{top}");
     assert!(beside == 0.0, "ground was found thin: {beside}");
     assert_eq!(found(&survey(Built::Block, PULSES)), [0.0, 0.0]);
@@ -106,10 +116,9 @@ fn a_canopy_is_thin_to_its_middle_and_a_block_is_not() {
 
 #[test]
 fn a_canopy_hides_the_sky_and_leaves_room_below_it() {
-    let ThinSurvey { points, scanner, kinds, .. } = survey(Built::Canopy, PULSES);
+    let ThinSurvey { points, scanner, classes, .. } = survey(Built::Canopy, PULSES);
     let mut cloud = PointCloud { positions: points, ..PointCloud::default() };
-    let class = |kind: &Kind| if *kind == Kind::Ground { 2 } else { 1 };
-    cloud.attributes.classification = Some(kinds.iter().map(class).collect());
+    cloud.attributes.classification = Some(classes);
     let params = ModelParams::default().with_orient(OrientBy::ScannerOfEachPoint(scanner));
     let (model, _) = SceneModel::build(&cloud, &params, &Control::none()).unwrap();
     let scene = model.scene(&BlockRule::carved(), UnprovenAs::Visible, &Control::none()).unwrap();
@@ -129,9 +138,9 @@ fn a_canopy_hides_the_sky_and_leaves_room_below_it() {
 
 #[test]
 fn vegetation_and_ground_are_never_thin() {
-    for kind in [Kind::Ground, Kind::Vegetation] {
+    for class in [2, 5] {
         let mut survey = survey(Built::Canopy, PULSES);
-        survey.kinds.fill(kind);
+        survey.classes.fill(class);
         assert!(!thin(&survey).contains(&true));
     }
 }
@@ -142,7 +151,7 @@ fn neither_order_of_points_nor_number_of_threads_matters() {
     let mut backward = survey(Built::Canopy, PULSES);
     backward.points.reverse();
     backward.scanner.reverse();
-    backward.kinds.reverse();
+    backward.classes.reverse();
     let on = |threads: usize, survey: &ThinSurvey| {
         rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap().install(|| thin(survey))
     };
@@ -154,13 +163,10 @@ fn neither_order_of_points_nor_number_of_threads_matters() {
 
 #[test]
 fn no_points_and_no_pulses_are_no_thin_surfaces() {
-    let nothing = NeighborIndex::new(&[], &Control::none()).unwrap();
-    let (free_segments, _) = FreeSegments::new(&[], &[], &FreeSegmentParams::default(), &Control::none()).unwrap();
-    let params = ThinSurfaceParams::default();
-    assert!(on_thin_surfaces(&[], &[], &nothing, &free_segments, &params, &Control::none()).unwrap().is_empty());
+    let nothing = ThinSurvey { points: Vec::new(), scanner: Vec::new(), classes: Vec::new(), on_top: Vec::new() };
+    assert!(thin(&nothing).is_empty());
+    let (none, _) = FreeSegments::new(&[], &[], &FreeSegmentParams::default(), &Control::none()).unwrap();
     let survey = survey(Built::Canopy, PULSES);
-    let index = NeighborIndex::new(&survey.points, &Control::none()).unwrap();
-    let thin =
-        on_thin_surfaces(&survey.points, &survey.kinds, &index, &free_segments, &params, &Control::none()).unwrap();
+    let thin = thin_below(&survey, &none);
     assert!(thin.len() == survey.points.len() && !thin.contains(&true));
 }

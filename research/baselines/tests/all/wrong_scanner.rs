@@ -32,7 +32,7 @@ impl TownWithLight {
         let oriented = turn(oriented, &index, &free_segments);
         let attributes = &self.cloud.attributes;
         let input =
-            CarvedInput { oriented: &oriented, index: &index, attributes, needles: &free_segments, pulses: None };
+            CarvedInput { oriented: &oriented, measured: oriented.positions(), index: &index, attributes, free_segments: &free_segments, pulses: None , statistics: None};
         let balls = carved_balls(&input, &CarvedParams::default(), &Control::none()).unwrap().balls;
         let blocking = BlockRule { bias: DEPTH_BIAS, ..BlockRule::default() };
         let scene = MedialScene::new(&balls, &blocking).unwrap();

@@ -1,0 +1,184 @@
+//! What rules read: the points of a survey, what each of them is, and the statistics of the whole.
+
+use super::carved::CarvedInput;
+use super::cells::{Cells, highest, lowest_near};
+use super::crowns;
+use super::kinds::{Kind, kinds};
+use super::marks::Cap;
+use super::rules::CarvedParams;
+use super::spacing::{pulse_counts, pulse_spacing};
+use super::vegetation::find_vegetation;
+use crate::neighbors::NeighborIndex;
+use crate::normals::OrientedCloud;
+use crate::pulses::FreeSegments;
+use belvedere_data::control::Control;
+use belvedere_data::{Attributes, Result};
+use serde::{Deserialize, Serialize};
+
+/// Side of the blocks in which balls are pruned and thin surfaces end, metres: many times the largest ball, so that little is kept twice.
+pub(super) const BLOCK: f32 = 64.0;
+
+/// Statistics of a whole survey that rules need, so that a part of it has the balls of the whole.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct RuleStatistics {
+    /// Whether any point has class 2, ground.
+    pub has_ground: bool,
+    /// Whether any point has a class of vegetation, 3 to 5.
+    pub has_vegetation: bool,
+    /// Share of all pulses that met a crown which got through it, 0 to 1.
+    pub transmission: f64,
+    /// Median spacing of later returns within crowns, metres; `None` where there are none.
+    pub crown_spacing: Option<f32>,
+}
+
+/// The points of a survey, or of a part of one, as rules read them. Columns have a row for each point.
+pub(super) struct Survey<'a> {
+    /// Points and outward normals.
+    pub(super) oriented: &'a OrientedCloud,
+    /// The points before they were moved onto their surface: they decide which block a point belongs to.
+    pub(super) measured: &'a [[f32; 3]],
+    /// Index of the points.
+    pub(super) index: &'a NeighborIndex,
+    /// Class, return number and return count, where present.
+    pub(super) attributes: &'a Attributes,
+    /// What the pulses prove empty.
+    pub(super) free_segments: &'a FreeSegments,
+    /// What each point lies on.
+    pub(super) kinds: Vec<Kind>,
+    /// How many of the kinds were found by shape and not given by a class.
+    pub(super) found_vegetation: usize,
+    /// How many pulses end in each cell and those about it.
+    pub(super) counts: Cells<u32>,
+    /// Mean distance of the pulses about each point, metres.
+    pub(super) spacing: Vec<f32>,
+    /// Height of the lowest point in each cell and those about it.
+    pub(super) lowest: Cells<f32>,
+    /// Height of the highest point in each cell.
+    pub(super) highest: Cells<f32>,
+    /// Share of the pulses that got through the crown about each point; NaN where there is none, empty where it was not measured.
+    pub(super) transmission: Vec<f32>,
+    /// Rows of later returns within crowns, and their spacing, metres.
+    pub(super) later_in_crowns: Vec<(usize, f32)>,
+    /// Statistics of the whole survey.
+    pub(super) statistics: RuleStatistics,
+    /// Points that a rule represents by fills of its own: rules after it leave them alone.
+    claimed: Vec<bool>,
+}
+
+impl<'a> Survey<'a> {
+    /// The survey of `input`. Without statistics of a whole it is the whole, and they are measured from its own points.
+    ///
+    /// # Errors
+    /// [`Error::InvalidParameter`](belvedere_data::Error::InvalidParameter) for parameters of vegetation out of range,
+    /// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
+    pub(super) fn new(input: &CarvedInput<'a>, params: &CarvedParams, control: &Control<'_>) -> Result<Self> {
+        let CarvedInput { oriented, measured, index, attributes, free_segments, pulses, statistics: given } = *input;
+        let positions = oriented.positions();
+        let kinds = kinds(attributes, oriented.len());
+        let counts = pulse_counts(positions, attributes);
+        let own = || RuleStatistics {
+            has_ground: kinds.contains(&Kind::Ground),
+            has_vegetation: kinds.contains(&Kind::Vegetation),
+            ..RuleStatistics::default()
+        };
+        let mut survey = Survey {
+            statistics: given.copied().unwrap_or_else(own),
+            oriented,
+            measured,
+            index,
+            attributes,
+            free_segments: free_segments,
+            found_vegetation: 0,
+            spacing: pulse_spacing(positions, &counts),
+            counts,
+            lowest: lowest_near(positions),
+            highest: highest(positions),
+            transmission: Vec::new(),
+            later_in_crowns: Vec::new(),
+            claimed: vec![false; oriented.len()],
+            kinds,
+        };
+        // where classes tell vegetation, its shape need not
+        if let Some(vegetation) = params.vegetation.as_ref().filter(|_| !survey.statistics.has_vegetation) {
+            survey.found_vegetation = control.stage("finding vegetation", oriented.len(), || {
+                find_vegetation(&mut survey.kinds, oriented, index, attributes, vegetation, control)
+            })?;
+        }
+        if let Some(params) = &params.crowns {
+            control.stage("measuring crowns", 0, || {
+                if let Some(pulses) = pulses {
+                    crowns::measure_transmission(&mut survey, pulses, params, given, control)?;
+                }
+                crowns::measure_spacing(&mut survey, params, given, control)
+            })?;
+        }
+        Ok(survey)
+    }
+
+    /// The points, (N, 3) local metres.
+    pub(super) fn positions(&self) -> &'a [[f32; 3]] {
+        self.oriented.positions()
+    }
+
+    /// Class of a point.
+    pub(super) fn class(&self, row: usize) -> Option<u8> {
+        self.attributes.classification.as_ref().and_then(|classes| classes.get(row)).copied()
+    }
+
+    /// Whether a point is a return after the first of its pulse.
+    pub(super) fn is_later(&self, row: usize) -> bool {
+        self.attributes.return_number.as_ref().and_then(|numbers| numbers.get(row)).is_some_and(|&number| number > 1)
+    }
+
+    /// Whether a point is neither ground nor vegetation.
+    pub(super) fn is_solid(&self, row: usize) -> bool {
+        matches!(self.kinds.get(row), Some(Kind::Other | Kind::Later))
+    }
+
+    /// Takes note of the points that a rule claims.
+    pub(super) fn claim(&mut self, caps: &[Cap]) {
+        for cap in caps.iter().filter(|cap| cap.is_claimed) {
+            if let Some(claimed) = self.claimed.get_mut(cap.row) {
+                *claimed = true;
+            }
+        }
+    }
+
+    /// Whether a rule represents a point by fills of its own.
+    pub(super) fn is_claimed(&self, row: usize) -> bool {
+        self.claimed.get(row).copied().unwrap_or(false)
+    }
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::*;
+    use crate::medial::Rule;
+    use crate::pulses::FreeSegmentParams;
+
+    /// A survey made of its own points and classes, whose pulses came from `scanner`, (N, 3) or empty for none.
+    pub(in super::super) fn with_survey<T>(
+        oriented: &OrientedCloud,
+        classes: Option<Vec<u8>>,
+        scanner: &[[f32; 3]],
+        read: impl FnOnce(Survey<'_>) -> T,
+    ) -> T {
+        let none = Control::none();
+        let attributes = &Attributes { classification: classes, ..Attributes::default() };
+        let index = NeighborIndex::new(oriented.positions(), &none).unwrap();
+        let returns = if scanner.is_empty() { &[] } else { oriented.positions() };
+        let (free_segments, _) = FreeSegments::new(returns, scanner, &FreeSegmentParams::default(), &none).unwrap();
+        let measured = oriented.positions();
+        let input = CarvedInput {
+            oriented,
+            measured,
+            index: &index,
+            attributes,
+            free_segments: &free_segments,
+            pulses: None,
+            statistics: None,
+        };
+        let params = CarvedParams::default().without(Rule::Vegetation).without(Rule::Crowns);
+        read(Survey::new(&input, &params, &none).unwrap())
+    }
+}
