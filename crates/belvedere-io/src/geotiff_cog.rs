@@ -36,8 +36,8 @@ pub fn write_cog<'a>(output: impl Into<Output<'a>>, bands: &Bands<'_>, place: &G
         });
     }
     let (levels, nodata) = match bands.values {
-        BandValues::U8(rasters, nodata) => (levels(rasters, nodata, most_frequent), nodata.to_string()),
-        BandValues::U16(rasters, nodata) => (levels(rasters, nodata, most_frequent), nodata.to_string()),
+        BandValues::U8(rasters, nodata) => (levels(rasters, nodata, majority), nodata.to_string()),
+        BandValues::U16(rasters, nodata) => (levels(rasters, nodata, majority), nodata.to_string()),
         BandValues::F32(rasters, nodata) => (levels(rasters, nodata, mean), nodata.to_string()),
     };
     let levels = levels?;
@@ -111,7 +111,7 @@ fn halved<T: PixelType>(raster: &Raster<T>, nodata: T, pick: &(impl Fn([T; 4], T
 }
 
 /// The value that most of four pixels with a value have, the first of them where several are as frequent.
-fn most_frequent<T: PixelType>(four: [T; 4], nodata: T) -> T {
+fn majority<T: PixelType>(four: [T; 4], nodata: T) -> T {
     let count = |value: T| four.iter().filter(|&&other| other == value).count();
     let known = four.into_iter().filter(|&value| value != nodata);
     known.fold(nodata, |best, value| if best == nodata || count(value) > count(best) { value } else { best })
@@ -357,10 +357,10 @@ mod tests {
 
     #[test]
     fn codes_keep_their_meaning_on_coarser_levels() {
-        assert_eq!(most_frequent([1_u8, 0, 0, 255], 255), 0);
-        assert_eq!(most_frequent([255_u8, 255, 255, 2], 255), 2);
-        assert_eq!(most_frequent([255_u8; 4], 255), 255);
-        assert_eq!(most_frequent([1_u8, 0, 1, 0], 255), 1);
+        assert_eq!(majority([1_u8, 0, 0, 255], 255), 0);
+        assert_eq!(majority([255_u8, 255, 255, 2], 255), 2);
+        assert_eq!(majority([255_u8; 4], 255), 255);
+        assert_eq!(majority([1_u8, 0, 1, 0], 255), 1);
         let codes = Raster::from_values(3, 1, vec![0_u8, 1, 255]).unwrap();
         let file = written(BandValues::U8(from_ref(&codes), 255), &[]);
         assert_eq!(read_tif_u8(Source::bytes("cog.tif", &file)).unwrap(), codes);

@@ -154,14 +154,14 @@ fn planes_of_roofs_get_light_through_crowns() {
         ));
         ["kwh_m2", "free_kwh_m2", "min_loss", "max_loss"].map(|name| column(&place, "roofs.csv", name))
     };
-    let [opaque, .., opaque_loss, opaque_most] = energy("");
+    let [opaque, .., opaque_loss, opaque_max] = energy("");
     let [quarter, ..] = energy("--through-trees 0.25");
     let [free, unshaded, loss, max] = energy("--through-trees 1");
     assert_eq!(opaque.len(), 2);
     for i in 0..2 {
         assert!(opaque[i] < free[i] && free[i] <= unshaded[i] + 0.1, "{opaque:?} {free:?}");
         assert!((quarter[i] - opaque[i] - 0.25 * (free[i] - opaque[i])).abs() < 0.15, "{quarter:?}");
-        assert!(loss[i] < opaque_loss[i] && max[i] < opaque_most[i] && loss[i] <= max[i] + 1e-4);
+        assert!(loss[i] < opaque_loss[i] && max[i] < opaque_max[i] && loss[i] <= max[i] + 1e-4);
     }
 }
 

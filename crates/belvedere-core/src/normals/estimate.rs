@@ -243,7 +243,7 @@ fn adaptive_plane_of(positions: &[[f32; 3]], found: &[Neighbor], flatness: f32) 
     let base = positions[first.index as usize];
     let mut moments = Moments::default();
     let mut largest_flat = None;
-    let mut most_ordered: Option<(f64, Plane)> = None;
+    let mut max_ordered: Option<(f64, Plane)> = None;
     for (i, neighbor) in found.iter().enumerate() {
         moments.add(relative(positions, neighbor, base));
         let is_last = i + 1 == found.len();
@@ -256,11 +256,11 @@ fn adaptive_plane_of(positions: &[[f32; 3]], found: &[Neighbor], flatness: f32) 
             largest_flat = Some(plane);
         }
         let entropy = eigenentropy(values);
-        if most_ordered.as_ref().is_none_or(|(min, ..)| entropy < *min) {
-            most_ordered = Some((entropy, plane));
+        if max_ordered.as_ref().is_none_or(|(min, ..)| entropy < *min) {
+            max_ordered = Some((entropy, plane));
         }
     }
-    largest_flat.or(most_ordered.map(|(_, plane)| plane)).unwrap_or(Plane::NONE)
+    largest_flat.or(max_ordered.map(|(_, plane)| plane)).unwrap_or(Plane::NONE)
 }
 
 /// −Σ e ln e over the eigenvalues as shares of their sum.
