@@ -50,7 +50,9 @@ pub(super) fn floors_below(
 /// Where many free segments end in one place.
 fn tripods(free_segments: &FreeSegments) -> Vec<[f32; 3]> {
     let mut found: BTreeMap<[i64; 3], (usize, [f32; 3])> = BTreeMap::new();
-    for (start, direction, length) in (0..free_segments.len()).step_by(SAMPLE).filter_map(|number| free_segments.segment(number)) {
+    for (start, direction, length) in
+        (0..free_segments.len()).step_by(SAMPLE).filter_map(|number| free_segments.segment(number))
+    {
         let end: [f32; 3] = std::array::from_fn(|axis| start[axis] + direction[axis] * length);
         #[expect(clippy::cast_possible_truncation, reason = "`as` saturates")]
         let step = end.map(|v| (v / STEP_M).round() as i64);

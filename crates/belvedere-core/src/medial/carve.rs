@@ -3,7 +3,7 @@
 use super::marks::RadiusCaps;
 use crate::neighbors::Tangent;
 use crate::normals::OrientedCloud;
-use crate::pulses::{GAP_M, FreeSegments};
+use crate::pulses::{FreeSegments, GAP_M};
 use belvedere_data::balls::{LIMIT_TOUCH, MedialBalls, NO_TOUCH, PULSE_TOUCH};
 use belvedere_data::control::Control;
 use belvedere_data::{Error, Result};

@@ -4,7 +4,7 @@ use super::kinds::{Kind, KindCaps};
 use super::survey::Survey;
 use crate::neighbors::Tangent;
 use crate::normals::OrientedCloud;
-use crate::pulses::{GAP_M, FreeSegments};
+use crate::pulses::{FreeSegments, GAP_M};
 use belvedere_data::balls::{MedialBalls, NO_TOUCH, PULSE_TOUCH};
 use belvedere_data::control::{Control, Stop};
 use belvedere_data::{Attributes, Result};

@@ -182,8 +182,7 @@ fn a_deck_is_cut_to_what_slanted_pulses_leave_below_it() {
     let (free_segments, _) =
         FreeSegments::new(&returns, &scanner, &FreeSegmentParams::default(), &Control::none()).unwrap();
     let report =
-        carve(&mut balls, &oriented, &free_segments, &caps(&cloud.attributes, cloud.len()), &Control::none())
-            .unwrap();
+        carve(&mut balls, &oriented, &free_segments, &caps(&cloud.attributes, cloud.len()), &Control::none()).unwrap();
     // the line x − z = −2 passes the axis of the balls at z = 2: the ball below (0, 0, 6) of radius r has its
     // centre 6 − r high, (4 − r)/√2 from the line; that equals r for r = 4/(1 + √2)
     let expected = 4.0 / (1.0 + 2f32.sqrt());
@@ -199,8 +198,7 @@ fn kinds_of_points_bound_their_balls_and_carving_twice_changes_nothing() {
     cloud.attributes.return_number = Some(vec![1, 1, 1, 2, 1]);
     let (free_segments, _) = FreeSegments::new(&[], &[], &FreeSegmentParams::default(), &Control::none()).unwrap();
     let report =
-        carve(&mut balls, &oriented, &free_segments, &caps(&cloud.attributes, cloud.len()), &Control::none())
-            .unwrap();
+        carve(&mut balls, &oriented, &free_segments, &caps(&cloud.attributes, cloud.len()), &Control::none()).unwrap();
     // what nothing bounds is cut to half a metre
     assert_eq!(balls.radii, [0.5, 1.0, 2.0, 0.95 * SPACING, 0.5]);
     assert_eq!((report.carved, report.limited), (0, 5));

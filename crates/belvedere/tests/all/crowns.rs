@@ -60,7 +60,8 @@ fn carved(cloud: &PointCloud, params: &CarvedParams) -> CarvedBalls {
         index: &index,
         attributes: &cloud.attributes,
         free_segments: &free_segments,
-        pulses: Some(&pulses), statistics: None,
+        pulses: Some(&pulses),
+        statistics: None,
     };
     carved_balls(&input, params, &Control::none()).unwrap()
 }
@@ -185,7 +186,11 @@ fn without_classes_a_bush_is_separated_from_a_roof() {
     let bush = cloud.len() - 1600;
     let found = carved(&cloud, &trees(Trees::Porous));
     // points of a ball have no plane about them: most of it is told, nothing of the roof
-    assert!(found.report.count("points_found_to_be_vegetation") > bush * 6 / 10, "{} of {bush}", found.report.count("points_found_to_be_vegetation"));
+    assert!(
+        found.report.count("points_found_to_be_vegetation") > bush * 6 / 10,
+        "{} of {bush}",
+        found.report.count("points_found_to_be_vegetation")
+    );
     for (&source, &radius) in found.balls.source.iter().zip(&found.balls.radii) {
         assert!(source >= 1600 || radius > CrownParams::default().porous_radius, "row {source}: {radius}");
     }

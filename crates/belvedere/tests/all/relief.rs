@@ -61,7 +61,8 @@ fn balls(survey: &ReliefSurvey, relief: Option<ReliefParams>) -> CarvedBalls {
         index: &index,
         attributes: &attributes,
         free_segments: &free_segments,
-        pulses: None, statistics: None,
+        pulses: None,
+        statistics: None,
     };
     carved_balls(&input, &CarvedParams { relief, ..CarvedParams::default() }, &Control::none()).unwrap()
 }

@@ -53,8 +53,15 @@ fn a_model_is_what_the_stages_make_one_after_the_other() {
         .with_place(oriented.origin(), oriented.crs().clone());
     let (pulses, _) = group(&clean, &none).unwrap();
     let attributes = &clean.attributes;
-    let input =
-        CarvedInput { oriented: &oriented, measured: oriented.positions(), index: &index, attributes, free_segments: &free_segments, pulses: Some(&pulses) , statistics: None};
+    let input = CarvedInput {
+        oriented: &oriented,
+        measured: oriented.positions(),
+        index: &index,
+        attributes,
+        free_segments: &free_segments,
+        pulses: Some(&pulses),
+        statistics: None,
+    };
     let made = carved_balls(&input, &CarvedParams::default(), &none).unwrap();
     assert_eq!(model.balls().centers, made.balls.centers);
     assert_eq!(model.balls().radii, made.balls.radii);

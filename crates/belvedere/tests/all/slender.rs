@@ -48,7 +48,15 @@ fn carved(cloud: &PointCloud, scanner: &[[f32; 3]], slender: Option<SlenderParam
     let (free_segments, _) =
         FreeSegments::of_cloud(cloud, scanner, &FreeSegmentParams::default(), &Control::none()).unwrap();
     let attributes = &cloud.attributes;
-    let input = CarvedInput { oriented: &oriented, measured: oriented.positions(), index: &index, attributes, free_segments: &free_segments, pulses: None , statistics: None};
+    let input = CarvedInput {
+        oriented: &oriented,
+        measured: oriented.positions(),
+        index: &index,
+        attributes,
+        free_segments: &free_segments,
+        pulses: None,
+        statistics: None,
+    };
     let params = CarvedParams { slender, ..CarvedParams::default() };
     (carved_balls(&input, &params, &Control::none()).unwrap(), free_segments)
 }
@@ -71,7 +79,11 @@ fn a_fence_blocks_to_the_ground_and_stays_thin() {
     let (with, free_segments) = carved(&cloud, &scanner, Some(SlenderParams::default()));
     let hits = cloud.attributes.classification.as_ref().unwrap().iter().filter(|class| **class == 1).count();
     // the lowest 0.3 m of the fence, a fifth of its hits, are too low to tell; half of them at the least must be found
-    assert!(with.report.count("points_on_thin_objects") * 2 > hits, "{} of {hits}", with.report.count("points_on_thin_objects"));
+    assert!(
+        with.report.count("points_on_thin_objects") * 2 > hits,
+        "{} of {hits}",
+        with.report.count("points_on_thin_objects")
+    );
     assert!(blocked(&with, 0.7) > 0.9 && blocked(&with, 0.7) > blocked(&without, 0.7), "{}", blocked(&with, 0.7));
     assert_eq!(blocked(&with, 2.0), 0.0);
     // no ball of the fence reaches farther than its radius to either side and half the fence; beyond its ends no pulse
