@@ -2,7 +2,7 @@
 
 use super::central::{self, Central};
 use super::parallel::{self, Parallel};
-use super::tiles::Shape;
+use super::tiles::SplatSurface;
 use crate::blocking::Ball;
 use belvedere_data::view::{Projection, View};
 
@@ -13,8 +13,8 @@ pub struct BallDepth {
 }
 
 enum ViewShape {
-    Parallel(Parallel<parallel::Sphere>),
-    Central(Box<Central<central::Sphere>>),
+    Parallel(Parallel<parallel::ParallelSphere>),
+    Central(Box<Central<central::CentralSphere>>),
 }
 
 impl BallDepth {
@@ -23,9 +23,9 @@ impl BallDepth {
     pub fn new(view: &View) -> Self {
         let view_shape = match view.projection {
             Projection::Orthographic { pixels_per_metre } => {
-                ViewShape::Parallel(Parallel::new(view, pixels_per_metre, parallel::Sphere))
+                ViewShape::Parallel(Parallel::new(view, pixels_per_metre, parallel::ParallelSphere))
             }
-            _ => ViewShape::Central(Box::new(Central::new(view, central::Sphere))),
+            _ => ViewShape::Central(Box::new(Central::new(view, central::CentralSphere))),
         };
         Self { view_shape }
     }

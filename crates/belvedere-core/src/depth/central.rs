@@ -279,11 +279,11 @@ impl<S: CentralSurface> SplatSurface for Central<S> {
 }
 
 impl<S: CentralSurface> Central<S> {
-    /// Depth of one ball in the middle of one pixel: what [`Shape::depths`] says of it.
+    /// Depth of one ball in the middle of one pixel: what [`SplatSurface::depths`] says of it.
     #[expect(clippy::cast_possible_truncation, reason = "components of a unit vector")]
-    pub(super) fn depth_at(&self, splat: &Splat, pixel: [usize; 2]) -> f32 {
+    pub(super) fn depth_at(&self, splat: &CentralSplat, pixel: [usize; 2]) -> f32 {
         let direction = self.view.direction(pixel.map(|at| at as f64 + 0.5)).map(|component| component as f32);
-        let pixel = Pixel {
+        let pixel = PixelRay {
             passing: passing(splat.center, direction),
             distance: splat.center.map(|v| v * v).iter().sum::<f32>().sqrt(),
             depth_per_range: if self.is_in_range() { 1.0 } else { direction[2] },
