@@ -3,14 +3,14 @@
 use belvedere::cloud::{centre_rounded, to_local};
 use belvedere::trajectory::Trajectory;
 use belvedere::{Attributes, Frame, GpsTimeKind, PointCloud, Result};
-use belvedere_scenes::{AirborneParams, Scan, Scene, scan_airborne};
+use belvedere_scenes::{AirborneParams, Scan, TriangleScene, scan_airborne};
 
 /// The cloud of a survey from the air, and the position of the scanner at each of its points, (N, 3) local metres.
 ///
 /// # Errors
 ///
 /// See [`surveyed`].
-pub fn flown(scene: &Scene, params: &AirborneParams) -> Result<(PointCloud, Vec<[f32; 3]>)> {
+pub fn flown(scene: &TriangleScene, params: &AirborneParams) -> Result<(PointCloud, Vec<[f32; 3]>)> {
     surveyed(&scan_airborne(scene, params))
 }
 

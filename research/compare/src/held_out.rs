@@ -1,6 +1,6 @@
 //! The held-out pulse test on clouds of which nothing else is known.
 
-use super::place::{Place, file_name, missing_points, state_of};
+use super::place::{ComparisonPlace, file_name, missing_points, state_of};
 use super::results::{HeldOutResult, keep, kept};
 use crate::arguments::Compare;
 use crate::run::Run;

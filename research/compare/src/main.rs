@@ -17,9 +17,9 @@ use anyhow::{Context, Result};
 use arguments::{Compare, Usage};
 use belvedere::io::atomic;
 use belvedere_baselines::methods::{Listing, method_keys, methods};
-use case::{Case, STREET_OBSERVERS, bounds_of};
+use case::{ComparisonCase, STREET_OBSERVERS, bounds_of};
 use clap::Parser;
-use place::Place;
+use place::ComparisonPlace;
 use results::{MethodResult, PlaceResult, keep, kept};
 use run::Run;
 use std::path::Path;
@@ -65,8 +65,8 @@ fn run(arguments: &Compare) -> Result<()> {
 
 fn compare_all(arguments: &Compare, run: &mut Run) -> Result<()> {
     let folder = &arguments.output;
-    let mut found = report::Found::default();
-    for place in Place::all(arguments) {
+    let mut found = report::ComparisonResults::default();
+    for place in ComparisonPlace::all(arguments) {
         compare_on(&place, arguments, run, &mut found)?;
     }
     for cloud in &arguments.held_out {
@@ -85,7 +85,7 @@ fn compare_all(arguments: &Compare, run: &mut Run) -> Result<()> {
 }
 
 /// Judges every method on a place, taking over what an earlier run has found.
-fn compare_on(place: &Place, arguments: &Compare, run: &mut Run, found: &mut report::Found) -> Result<()> {
+fn compare_on(place: &ComparisonPlace, arguments: &Compare, run: &mut Run, found: &mut report::ComparisonResults) -> Result<()> {
     let name = place.name();
     let results = arguments.output.join("results");
     let version = env!("CARGO_PKG_VERSION");
@@ -115,7 +115,7 @@ fn compare_on(place: &Place, arguments: &Compare, run: &mut Run, found: &mut rep
 
     let (ingredients, warnings) = run.stage("building place", || place.make())?;
     run.warnings.extend(warnings);
-    let case = run.stage("testing lines of sight", || Case::new(ingredients, arguments.targets, arguments.seed))?;
+    let case = run.stage("testing lines of sight", || ComparisonCase::new(ingredients, arguments.targets, arguments.seed))?;
     let survey = case.survey();
     let methods = methods(&survey);
     arguments.check_methods(&methods.iter().map(|method| method.key.clone()).collect::<Vec<_>>())?;

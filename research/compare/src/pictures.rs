@@ -1,6 +1,6 @@
 //! Where a method errs, seen from above.
 
-use super::case::{Case, bounds_of};
+use super::case::{ComparisonCase, bounds_of};
 use super::judge::{SHOWN_SET, SHOWN_VIEW};
 use anyhow::Result;
 use belvedere::figures::{Canvas, Colors, side_by_side, write_png};

@@ -8,9 +8,9 @@ use belvedere::Mesh;
 use belvedere::control::Control;
 use belvedere::crs::Crs;
 use belvedere::io::{ReadOptions, ReadReport, read_cloud, read_mesh, read_trajectory};
-use belvedere_baselines::Model;
+use belvedere_baselines::PlaceModel;
 use belvedere_baselines::simulated::surveyed;
-use belvedere_scenes::{Material, Preset, Regime, Scene, blocks};
+use belvedere_scenes::{Material, Preset, Regime, TriangleScene, blocks};
 use std::path::{Path, PathBuf};
 
 /// Names of the models of simulated towns.

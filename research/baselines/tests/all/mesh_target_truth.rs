@@ -10,7 +10,7 @@ use belvedere::view::to_sun;
 use belvedere_baselines::MethodInput;
 use belvedere_baselines::medial::{MedialBaseline, MedialParams, Outward};
 use belvedere_baselines::simulated::flown;
-use belvedere_scenes::{AirborneParams, Material, Preset, QuerySite, Scene, Truth, town};
+use belvedere_scenes::{AirborneParams, Material, Preset, QuerySite, TriangleScene, Truth, town};
 
 /// How far outside its face a place is asked in truth, metres: places are f32, to hundredths of a millimetre here.
 const OUTSIDE: f64 = 0.01;

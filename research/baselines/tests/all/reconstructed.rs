@@ -1,6 +1,6 @@
 //! Reconstructed surfaces against a sphere and the exact mesh of a town.
 
-use crate::common::{Lcg, blocked, cloud_of, count_true, dot, targets};
+use crate::common::{TestRandom, blocked, cloud_of, count_true, dot, targets};
 use belvedere::query::{Viewer, Visibility};
 use belvedere::ray_index::Ray;
 use belvedere::{Error, PointCloud};

@@ -1,6 +1,6 @@
 //! Water returns no pulses, and balls do not reach over it: on a simulated town with canals, against its exact mesh.
 
-use crate::common::place::Place;
+use crate::common::place::TownWithLight;
 use belvedere::medial::{CarvedParams, Rule};
 use belvedere::model::BallParams;
 use belvedere::query::{Viewer, Visibility};

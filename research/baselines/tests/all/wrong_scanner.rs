@@ -31,8 +31,15 @@ impl TownWithLight {
             FreeSegments::of_cloud(&self.cloud, scanner, &FreeSegmentParams::default(), &Control::none()).unwrap();
         let oriented = turn(oriented, &index, &free_segments);
         let attributes = &self.cloud.attributes;
-        let input =
-            CarvedInput { oriented: &oriented, measured: oriented.positions(), index: &index, attributes, free_segments: &free_segments, pulses: None , statistics: None};
+        let input = CarvedInput {
+            oriented: &oriented,
+            measured: oriented.positions(),
+            index: &index,
+            attributes,
+            free_segments: &free_segments,
+            pulses: None,
+            statistics: None,
+        };
         let balls = carved_balls(&input, &CarvedParams::default(), &Control::none()).unwrap().balls;
         let blocking = BlockRule { bias: DEPTH_BIAS, ..BlockRule::default() };
         let scene = MedialScene::new(&balls, &blocking).unwrap();
@@ -72,7 +79,7 @@ fn a_scanner_known_badly_and_normals_turned_wrongly_cost_less_than_a_point() {
     let flipped = place.score(&place.scanner, |normal| normal.map(|v| -v), as_it_is);
     assert!((flipped - exact).abs() < 1.0, "{flipped} of {exact}");
     // and what pulses leave of balls on either side turns them without that
-    let params = OrientByCarvingParams { least_confidence: 1.0, ..OrientByCarvingParams::default() };
+    let params = OrientByCarvingParams { min_confidence: 1.0, ..OrientByCarvingParams::default() };
     let turn = |oriented: OrientedCloud, index: &NeighborIndex, free_segments: &FreeSegments| {
         orient_by_carving(&all_flipped(&oriented), index, free_segments, &params, &Control::none()).unwrap().0
     };

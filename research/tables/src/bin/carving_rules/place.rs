@@ -9,7 +9,7 @@ use belvedere::{PointCloud, Result};
 use belvedere_baselines::MethodInput;
 use belvedere_baselines::medial::MedialBaseline;
 use belvedere_baselines::simulated::{flown, surveyed, without_returns_from_water};
-use belvedere_scenes::{AirborneParams, Preset, QuerySet, QuerySite, Regime, Scene, Truth};
+use belvedere_scenes::{AirborneParams, Preset, QuerySet, QuerySite, Regime, TriangleScene, Truth};
 use std::collections::BTreeMap;
 
 const EXTENT: f64 = 150.0;

@@ -12,8 +12,8 @@ use belvedere::{PointCloud, Result};
 use belvedere_baselines::MethodInput;
 use belvedere_baselines::medial::{MedialParams, Outward, scene_model};
 use belvedere_baselines::simulated::flown;
-use belvedere_scenes::{AirborneParams, Material, Preset, QuerySet, QuerySite, Scene, Truth, town};
-use score::{Light, Score, Setting};
+use belvedere_scenes::{AirborneParams, Material, Preset, QuerySet, QuerySite, TriangleScene, Truth, town};
+use score::{LightDirections, LightScore, Setting};
 use std::f64::consts::TAU;
 
 /// How near a wall or a fence stands that a cell is said to lie at, metres.
