@@ -44,9 +44,11 @@ pub(crate) fn note(text: &str) {
 /// Prints an error with its causes.
 pub(crate) fn print_error(error: &anyhow::Error) {
     let mut text = error.to_string();
-    for cause in error.chain().skip(1).map(ToString::to_string) {
-        // some errors print their cause themselves
-        if !text.contains(&cause) {
+    for (cause, of) in error.chain().skip(1).zip(error.chain()) {
+        // some errors print their cause themselves, in their own words or in those of the cause
+        let is_printed = matches!(of.downcast_ref(), Some(belvedere::Error::Io { .. }));
+        let cause = cause.to_string();
+        if !is_printed && !text.contains(&cause) {
             text.push_str(": ");
             text.push_str(&cause);
         }
