@@ -213,7 +213,7 @@ impl RayIndex {
                 });
                 match part {
                     NodePart::Rows { first, count } if meets => {
-                        (first..first + count).for_each(|row| visit(row as usize))
+                        (first..first + count).for_each(|row| visit(row as usize));
                     }
                     NodePart::Node(node) if meets => nodes.push(node),
                     _ => {}

@@ -87,7 +87,7 @@ impl<'a> Survey<'a> {
             measured,
             index,
             attributes,
-            free_segments: free_segments,
+            free_segments,
             found_vegetation: 0,
             spacing: pulse_spacing(positions, &counts),
             counts,
