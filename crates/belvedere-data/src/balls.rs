@@ -71,7 +71,7 @@ impl MedialBalls {
         }
     }
 
-    /// The balls of these rows, in this order. Columns shorter than a row asks for lack it.
+    /// The balls of these rows, in this order. A column without a value for a row skips that row.
     #[must_use]
     pub fn select(&self, rows: &[usize]) -> Self {
         fn of<T: Copy>(column: &[T], rows: &[usize]) -> Vec<T> {

@@ -86,7 +86,7 @@ macro_rules! for_each_column {
 }
 
 impl Attributes {
-    /// The attributes of the points at `indices`, in that order. Columns shorter than an index asks for are dropped.
+    /// The attributes of the points at `indices`, in that order. Columns that are too short for an index are dropped.
     #[must_use]
     pub fn select(&self, indices: &[u32]) -> Self {
         let mut selected = Self { gps_time_kind: self.gps_time_kind, ..Self::default() };

@@ -24,7 +24,7 @@ pub trait Watcher: Sync {
     fn advance(&self, _count: usize) {}
     /// The stage is over.
     fn end(&self, _stage: &'static str, _end: StageEnd) {}
-    /// Whether the work should stop. It is asked often, and should return at once.
+    /// Whether the work should stop. It is called often, and should return at once.
     fn is_cancelled(&self) -> bool {
         false
     }

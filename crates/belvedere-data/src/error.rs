@@ -59,7 +59,7 @@ pub enum Error {
         /// What is wrong, and what to do.
         what: String,
     },
-    /// The caller asked the work to stop ([`crate::control::Control`]). Nothing was written.
+    /// The caller stopped the work ([`crate::control::Control`]). Nothing was written.
     #[error("cancelled; nothing was written")]
     Cancelled,
     /// There is no point to work on.

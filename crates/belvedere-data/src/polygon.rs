@@ -1,6 +1,6 @@
 //! Polygons on the map.
 
-/// Whether a place lies within a rim and outside its holes: the rule of odd crossings over all rings, which may be
+/// Whether a place lies within an outline and outside its holes: the rule of odd crossings over all rings, which may be
 /// closed or not.
 #[must_use]
 pub fn is_inside(rings: &[Vec<[f64; 2]>], [x, y]: [f64; 2]) -> bool {

@@ -144,8 +144,8 @@ impl Trajectory {
     /// seconds that let it know a position at the most of them, and how many that is.
     ///
     /// Where several know equally many the plainest wins, without leap seconds if possible: a difference of 18 s can
-    /// only be told where the trajectory begins or ends within 18 s of the cloud. A header may lie about its kind of
-    /// time, hence all changes of clock are tried whatever `kind` says; `kind` only breaks ties.
+    /// only be detected where the trajectory begins or ends within 18 s of the cloud. A header may lie about its kind
+    /// of time, hence all changes of clock are tried whatever `kind` says; `kind` only breaks ties.
     #[must_use]
     pub fn clock_offset_for(&self, times: &[f64], kind: GpsTimeKind) -> ClockOffset {
         use TrajectoryClock::{GpsFromAdjusted, Same, WeekFromAdjusted};

@@ -309,7 +309,7 @@ impl PyScene {
         Ok(Self(Arc::new(ask::Scene::new(model, Arc::clone(self.0.cloud())))))
     }
 
-    /// The name of the device that is ready to be asked, if any is.
+    /// The name of the device that is ready for use, if any is.
     #[getter]
     fn device(&self) -> Option<String> {
         self.0.model().backend().and_then(|backend| backend.device())

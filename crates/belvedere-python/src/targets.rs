@@ -1,4 +1,4 @@
-//! What is asked about: cells of a grid, points, a cloud, or the faces of a mesh.
+//! Targets of questions: cells of a grid, points, a cloud, or the faces of a mesh.
 
 use crate::arrays::{PositionArray, fixed_rows, to_1d};
 use crate::cloud::Cloud;

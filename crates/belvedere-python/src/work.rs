@@ -11,7 +11,7 @@ use std::time::Duration;
 
 /// How often signals are looked for and progress is reported.
 const POLL: Duration = Duration::from_millis(50);
-/// How long work that was cancelled may take to notice. Decoders of other libraries cannot be asked to stop: they are
+/// How long work that was cancelled may take to notice. Decoders of other libraries cannot be interrupted: they are
 /// left behind, and what they return is thrown away.
 const PATIENCE: Duration = Duration::from_millis(100);
 

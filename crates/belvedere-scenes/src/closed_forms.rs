@@ -115,11 +115,11 @@ pub fn canyon(width: f64, height: f64, length: f64) -> TriangleScene {
     on_plane("building 1", &walls)
 }
 
-/// Round basin of `radius` metres, its rim at `horizon_elevation` (radians) seen from its middle on the ground.
+/// Round basin of `radius` metres, its edge at `horizon_elevation` (radians) seen from its middle on the ground.
 ///
 /// From there the cosine-weighted view of the sky is cos² of that elevation, and the share of the sky's solid angle 1 −
-/// sin of it. The rim is a polygon of 720 sides with its corners on the circle; midway between corners its elevation is
-/// greater by less than 5e-6.
+/// sin of it. The edge is a polygon of 720 sides with its corners on the circle; midway between corners its elevation
+/// is greater by less than 5e-6.
 #[must_use]
 pub fn basin(radius: f64, horizon_elevation: f64) -> TriangleScene {
     let sides = 720;

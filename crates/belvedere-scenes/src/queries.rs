@@ -53,7 +53,7 @@ const ABOVE_ROOF: f64 = 6.0;
 const OFF_SURFACE: f64 = 0.1;
 /// How far a return may lie from the surface it came from, along its line, metres: ten times the usual noise.
 const RETURN_DEVIATION: f64 = 0.3;
-/// How far outside a surface its own visibility is asked, metres.
+/// Distance outside a surface of the point for which its visibility is computed, metres.
 const OUTSIDE: f64 = 0.03;
 /// Bounds of the classes of length that lines of sight are drawn in, metres.
 const SIGHT_LENGTHS: [f64; 5] = [5.0, 25.0, 50.0, 100.0, 200.0];
@@ -132,7 +132,7 @@ impl QuerySite<'_> {
         self.crossings(point, up).map(|(_, facing)| if facing > 0.0 { 1 } else { -1 }).sum::<i32>() > 0
     }
 
-    /// Height of the terrain at absolute (x, y), metres, or `None` beyond its rim. The highest, where there are
+    /// Height of the terrain at absolute (x, y), metres, or `None` beyond its edge. The highest, where there are
     /// several.
     #[must_use]
     pub fn ground_height(&self, [x, y]: [f64; 2]) -> Option<f64> {
@@ -146,7 +146,7 @@ impl QuerySite<'_> {
     /// that lies nearest to the return, its triangle, and a point 3 cm outside it; `None` where no surface lies within
     /// 0.3 m of the return along the line. All absolute, metres.
     ///
-    /// What is visible of a cloud's own points is asked of the point outside: the return itself lies behind or before
+    /// Visibility of a cloud's own points is computed for the point outside: the return itself lies behind or before
     /// the surface by chance.
     #[must_use]
     pub fn surface_of_return(&self, scanner: [f64; 3], point: [f64; 3]) -> Option<(crate::Hit, [f64; 3])> {

@@ -140,7 +140,7 @@ impl ObjectPart {
 ///
 /// Everything but the terrain consists of closed solids, a part each (all leaves of a crown are one part); solids may
 /// overlap, as a trunk reaches into its crown and neighbouring houses into each other. The terrain is a sheet that ends
-/// at the rim of the scene.
+/// at the edge of the scene.
 #[derive(Clone, Debug, Default)]
 pub struct TriangleScene {
     /// Vertices, (V, 3), metres, absolute (the projected frame, not local).

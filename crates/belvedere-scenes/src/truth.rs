@@ -23,8 +23,8 @@ pub const CONTACT: f64 = 1e-6;
 /// The tree works in f32. A ray enters it at the box of the scene, so no number exceeds the size of the scene, and the
 /// slab test errs by a few units of 6e-8 of that. A hundred times more costs nothing and loses no triangle.
 const BOX_PADDING: f64 = 1e-5;
-/// Least padding, and how much farther than asked the tree looks, metres: it passes over boxes that a ray leaves, or
-/// stops before, within its first 0.1 mm.
+/// Minimum padding, and how much farther than the given range the tree looks, metres: it passes over boxes that a ray
+/// leaves, or stops before, within its first 0.1 mm.
 const TREE_SLACK: f64 = 1e-3;
 
 /// Where a ray meets a scene first.

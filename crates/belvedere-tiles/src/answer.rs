@@ -37,14 +37,14 @@ const EDGE_CELLS: usize = 2;
 /// Targets handed to a thread at once.
 const CHUNK: usize = 1024;
 
-/// What is asked of tiles.
+/// A question about tiles, with what its answer needs.
 #[derive(Clone, Copy)]
 pub(crate) struct TileTask<'a> {
     pub(crate) question: &'a TileQuestion,
     pub(crate) prepared: &'a PreparedQuestion,
     /// What blocks beside balls.
     pub(crate) others: &'a Others,
-    /// Most balls that are asked together.
+    /// Most balls that are tested together.
     pub(crate) max_balls: usize,
 }
 

@@ -8,9 +8,9 @@ use serde::Serialize;
 /// Memory for each point of a window while balls are made, and without any, bytes. As measured in docs/scale.md.
 const BYTES_PER_POINT: f64 = 450.0;
 const MIN_BYTES: f64 = 100e6;
-/// Memory for each ball of those that are asked together, bytes: measured 290, and room for cells and their points.
+/// Memory for each ball of those that are tested together, bytes: measured 290, and room for cells and their points.
 const BYTES_PER_BALL: f64 = 450.0;
-/// Balls that are always asked together: fewer would save no memory that counts.
+/// Balls that are always tested together: fewer would save no memory that counts.
 const MIN_BALLS: usize = 100_000;
 /// Bytes of a ball file for each point of a tile.
 const DISK_PER_POINT: f64 = 30.0;
@@ -59,7 +59,7 @@ impl Plan {
         }
     }
 
-    /// Most balls that are asked together: as many as take no more memory than making those of the largest tile.
+    /// Most balls that are tested together: as many as take no more memory than making those of the largest tile.
     pub(crate) fn balls_at_a_time(&self) -> usize {
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "an estimate; `as` saturates")]
         let balls = ((self.estimate().memory_bytes as f64 - MIN_BYTES) / BYTES_PER_BALL) as usize;

@@ -24,9 +24,9 @@ pub(crate) struct BallTile {
 /// What became of the balls that may matter for an answer.
 #[derive(Debug, Default)]
 pub(crate) struct ObstacleSearch {
-    /// Balls that were asked.
+    /// Number of balls that were tested.
     pub(crate) ball_count: usize,
-    /// Most of them that were held at a time, where they were asked in parts.
+    /// Most of them that were in memory at a time, where they were tested in parts.
     pub(crate) max_held: usize,
     /// Where balls are missing: what may stand there, and how high.
     pub(crate) missing: Vec<(MapArea, f64)>,

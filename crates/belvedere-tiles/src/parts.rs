@@ -1,9 +1,9 @@
 //! Obstacles of a tile part by part: memory does not grow with the area that its lines of sight cross.
 //!
 //! The lowest of many directions of the sky meets balls all over a city. But a line of sight is free where no ball
-//! blocks it, so that balls may be asked one part after the other, and the answer does not depend on how they are cut
-//! into parts. Parts are squares of tiles, nearest first: most lines end at the nearest, and of a distant part only
-//! balls are asked that are high enough to block a line that is still free. Lines of sight to observers are asked in
+//! blocks it, so that balls may be tested one part after the other, and the answer does not depend on how they are cut
+//! into parts. Parts are squares of tiles, nearest first: most lines end at the nearest. Of a distant part only those
+//! balls are tested that are high enough to block a line that is still free. Lines of sight to observers are tested in
 //! parts as well.
 
 use crate::grid::{MapArea, TOP_SIDE, TileId, square_area};
@@ -24,11 +24,11 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 
-/// Distances from the cells up to which the balls of a tile are asked before the others, metres: after the first, few
+/// Distances from the cells up to which the balls of a tile are tested before the others, metres: after the first, few
 /// lines of sight are left.
 const BANDS: [f64; 4] = [64.0, 192.0, 448.0, f64::INFINITY];
-/// Balls that are asked before more are looked up, if there are as many.
-const WORTH_ASKING: usize = 100_000;
+/// Number of balls from which those found so far are tested before more are looked up.
+const MIN_TEST_BATCH: usize = 100_000;
 
 /// The balls that may matter for the cells of a tile, of which a part is in memory at a time.
 pub(crate) struct TileObstacles<'a> {
@@ -90,7 +90,7 @@ impl<'a> TileObstacles<'a> {
         look(&self.scene(part, &mut found, control)?)
     }
 
-    /// The scene of balls that are asked together.
+    /// The scene of balls that are tested together.
     fn scene(&self, balls: MedialBalls, found: &mut ObstacleSearch, control: &Control<'_>) -> Result<MedialScene> {
         found.ball_count += balls.len();
         found.max_held = found.max_held.max(balls.len());
@@ -145,7 +145,7 @@ impl<'a> TileObstacles<'a> {
                     push(if is_vegetation { &mut part.vegetation } else { &mut part.opaque }, &balls, row);
                 }
                 from = to;
-                if part.ball_count() >= WORTH_ASKING {
+                if part.ball_count() >= MIN_TEST_BATCH {
                     part.hide(free, self.plan, found, control)?;
                     part.columns.clear();
                 }
@@ -203,7 +203,7 @@ struct Free<'a> {
     strips: Strips,
 }
 
-/// Balls that are asked together.
+/// Balls that are tested together.
 #[derive(Default)]
 struct BallBatch {
     opaque: MedialBalls,

@@ -90,7 +90,7 @@ pub struct Plan {
     /// How far around a tile points are read, metres.
     #[serde(rename = "halo")]
     pub buffer: f64,
-    /// What is asked.
+    /// The questions that are answered.
     pub questions: Vec<TileQuestion>,
     /// Meshes of what is planned, which block beside what was surveyed.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -391,7 +391,7 @@ impl Plan {
     }
 
     /// This with meshes of what is planned, such as buildings: their triangles block exactly, beside what was surveyed,
-    /// and cells below them are asked about on top of them.
+    /// and targets of cells below them lie on top of them.
     ///
     /// # Errors
     /// Those of reading meshes, and [`Error::InvalidParameter`] for one that does not lie on the survey.

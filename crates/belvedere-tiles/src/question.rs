@@ -1,4 +1,4 @@
-//! What is asked of a city.
+//! Questions about a city.
 
 use crate::cell_sizes::Topic;
 use crate::planned::SideFile;
@@ -98,7 +98,7 @@ pub(crate) enum PreparedQuestion {
     Viewshed(Vec<Observer>),
 }
 
-/// What of the light of some directions is asked for.
+/// A question about light from given directions.
 pub(crate) enum LightQuestion {
     Shadow(ShadowSun),
     Sky(SkyDirections),

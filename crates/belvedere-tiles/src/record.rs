@@ -92,7 +92,7 @@ pub struct TileRecord {
     /// Most balls that were held at a time for an answer.
     #[serde(rename = "most_balls", default, skip_serializing_if = "is_zero")]
     pub max_balls: usize,
-    /// Cells that are asked about.
+    /// Cells that are targets.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub cells: usize,
     /// Cells whose answer is unproven because balls are missing.
@@ -115,7 +115,7 @@ pub struct TileRecord {
     pub(crate) damaged: Vec<String>,
 }
 
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks for a reference")]
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde requires a reference")]
 fn is_zero(count: &usize) -> bool {
     *count == 0
 }

@@ -33,7 +33,7 @@ impl Default for Shard {
 /// Which steps of a run are done.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Steps {
-    /// Balls, and what is asked.
+    /// Balls, and the answers to the questions.
     #[default]
     All,
     /// Balls only, so that jobs that answer later find those of all tiles.

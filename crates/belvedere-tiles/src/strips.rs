@@ -23,7 +23,7 @@ const MAX_STARTS: usize = 1 << 24;
 const NEIGHBOURS: usize = 256;
 /// Directions handed to a thread at once.
 const TOGETHER: usize = 64;
-/// Cells of a square along a side, and their side, metres: balls are told apart by them.
+/// Cells of a square along a side, and their side, metres: balls are grouped by them.
 const PARTS: i32 = 2;
 const CELL: f64 = TOP_SIDE / PARTS as f64;
 /// Radii up to which balls are looked up together, metres.

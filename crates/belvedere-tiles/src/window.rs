@@ -7,7 +7,7 @@ use belvedere::control::Control;
 use belvedere::io::{ReadOptions, Within, read_batches};
 use belvedere::{Attributes, Error, Frame, PointCloud, Result};
 
-/// The points of `area` that are asked for, in the order of the files and of their points.
+/// The points of the plan's files within `area`, in the order of the files and of their points.
 ///
 /// # Errors
 /// Those of [`read_batches`], and [`Error::Malformed`] for a file that is no longer what it was.

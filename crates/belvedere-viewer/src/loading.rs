@@ -1,4 +1,4 @@
-//! What happens to the files while the page is open already: reading, building, and what the page is told of it.
+//! What happens to the files while the page is open already: reading, building, and what the page shows of it.
 
 use crate::results::{PointsOf, ResultFile};
 use crate::scene::{PageScene, ShownCloud};
@@ -98,7 +98,7 @@ impl Loading {
         std::thread::spawn(move || scene.prepare());
     }
 
-    /// Says why nothing can be shown or asked.
+    /// Reports why nothing can be shown and no question can be answered.
     pub fn fail(&self, message: String) {
         self.state().failure = Some(message);
     }

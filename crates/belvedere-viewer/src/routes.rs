@@ -1,4 +1,4 @@
-//! What can be asked for below the token: the page, its points, and questions.
+//! What can be requested below the token: the page, its points, and questions.
 
 use crate::guard::Guard;
 use crate::loading::Loading;

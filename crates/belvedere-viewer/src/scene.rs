@@ -1,4 +1,4 @@
-//! What is shown and asked about, with what takes long to make made once.
+//! What is shown, and what questions are about. What takes long to make is made once.
 
 use crate::chunks::Chunks;
 use crate::questions::RoofPlanes;
@@ -259,7 +259,7 @@ fn rows_there(cloud: &PointCloud, kept: &PointCloud) -> Vec<u32> {
     cloud.positions.iter().map(row).collect()
 }
 
-/// Which points of the cloud are asked about.
+/// Which points of the cloud are targets.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub(crate) enum PointChoice {

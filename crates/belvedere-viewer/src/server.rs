@@ -21,7 +21,7 @@ const PATIENCE: Duration = Duration::from_secs(15);
 /// Threads that serve; questions have their own.
 const THREADS: usize = 2;
 
-/// How a page is served.
+/// Parameters of the server of a page.
 #[derive(Clone, Debug, Default)]
 pub struct ViewerParams {
     /// Port to listen on. Default 0: any that is free.
@@ -106,7 +106,7 @@ async fn accept(listener: TcpListener, app: axum::Router) {
         tokio::spawn(async move {
             let mut server = hyper::server::conn::http1::Builder::new();
             server.timer(TokioTimer::new()).header_read_timeout(PATIENCE);
-            // a client that breaks off has no answer to be told
+            // an error means that the client broke off: nobody is left to answer
             let _ = server.serve_connection(TokioIo::new(stream), service).await;
             drop(place);
         });

@@ -14,13 +14,13 @@ use std::sync::Arc;
 /// points is at most 0.3 %.
 pub(crate) const SAMPLE: usize = 30_000;
 
-/// Points that are asked about, and which of them answers for each point that is shown.
+/// Targets of questions, and which of them answers for each point that is shown.
 pub(crate) struct TargetPoints {
     /// As targets of the sun, local metres.
     pub(crate) targets: Arc<Targets>,
     /// Ordered for viewers.
     pub(crate) tree: TargetTree,
-    /// For each point in the order in which points are sent the asked one that answers for it.
+    /// For each point, in the order in which points are sent, the target that answers for it.
     answerers: Vec<u32>,
 }
 
@@ -60,8 +60,7 @@ impl TargetPoints {
         })
     }
 
-    /// A byte for each point shown, in the order in which points are sent, from those of the points that were asked
-    /// about.
+    /// A byte for each point shown, in the order in which points are sent, from those of the targets.
     pub(crate) fn in_order(&self, of_target: impl Fn(usize) -> u8 + Sync) -> Vec<u8> {
         let answer = |&target: &u32| if target == NOBODY { CLEARED } else { of_target(target as usize) };
         self.answerers.par_iter().with_min_len(4096).map(answer).collect()

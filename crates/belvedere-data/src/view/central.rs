@@ -5,7 +5,8 @@ use crate::vector::{sub, unit};
 use crate::{Error, Parameter, Result};
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// Widest angle of a perspective view, radians: beyond, its rim is stretched past all use, and its pixels past f32.
+/// Widest angle of a perspective view, radians: beyond, its border is stretched too far to be useful, and its pixels
+/// exceed f32.
 const WIDEST: f64 = 175.0 * PI / 180.0;
 /// Widest half-angle of a stereographic view, radians, for the same reason.
 const WIDEST_HALF: f64 = 170.0 * PI / 180.0;

@@ -84,7 +84,7 @@ impl View {
             }
         }
         let eye = std::array::from_fn(|i| min[0] * right[i] + min[1] * down[i] + min[2] * forward[i]);
-        // half a pixel of room keeps points on the rim of the box inside the picture
+        // half a pixel of room keeps points on the edge of the box inside the picture
         let span = |axis: usize| (max[axis] - min[axis]).max(0.0) + 0.5 * pixel_size;
         Self::from_viewport(eye, right.map(|v| v * span(0)), down.map(|v| v * span(1)), 1.0 / pixel_size)
     }

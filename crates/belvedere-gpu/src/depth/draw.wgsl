@@ -1,4 +1,4 @@
-// What each pixel shows: the twin of `depths` and `least_depth` in belvedere-core/src/depth/parallel.rs and central.rs,
+// What each pixel shows: the twin of `depths` and `min_depth` in belvedere-core/src/depth/parallel.rs and central.rs,
 // and of the tiles in tiles.rs. Or bounds of the depth over each pixel: the twin of both `Bound` there, and of
 // bounds.rs.
 //
@@ -43,8 +43,8 @@ const ENDLESS_DEPTH: f32 = 3e38;
 const NONE: f32 = 3.2e38;
 // Two bounds may differ by this share of themselves, so that their middle errs by at most 10^-5.
 const TOLERANCE: f32 = 1.96e-5;
-// What f32 errs by, the CPU and a device together, with u = 2^-23. In a parallel view: 16 u of the square of the radius,
-// 8 u of depth and radius.
+// What f32 errs by, the CPU and a device together, with u = 2^-23. In a parallel view: 16 u of the square of the
+// radius, 8 u of depth and radius.
 const SQUARE_ROOM: f32 = 1.9073487e-6;
 const MIN_SQUARE: f32 = 1e-30;
 const PARALLEL_DEPTH_ROOM: f32 = 9.5367432e-7;
@@ -219,7 +219,7 @@ fn farthest_central(splat: vec4<f32>, cone: Cone) -> f32 {
     return select(whole, min(whole, along - half_chord + 2.0 * room), beside < left);
 }
 
-// The radius that is left of a ball for any target, however near to its surface: the twin of `BlockRule::least_radius`.
+// The radius that is left of a ball for any target, however near to its surface: the twin of `BlockRule::min_radius`.
 fn min_radius(radius: f32) -> f32 {
     return radius - min(view.shell, view.shell_share * radius);
 }

@@ -95,7 +95,7 @@ impl AirborneParams {
         Self { beam: BeamParams::in_leaf(), ..Self::default() }.spread_over(scene, None, pulses_per_m2)
     }
 
-    /// The same scanner with strips and pulses for `scene`: the outer strips over its rims, as many between them as
+    /// The same scanner with strips and pulses for `scene`: the outer strips over its edges, as many between them as
     /// `strip_count` says, and `pulses_per_m2` on the mean over its ground, all strips together.
     ///
     /// Without a count strips are at most half their width apart, so that every place lies between two that see it from

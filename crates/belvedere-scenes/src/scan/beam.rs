@@ -5,7 +5,7 @@ use crate::scene::{Material, TriangleScene};
 use crate::truth::{CONTACT, Truth};
 use crate::vector::{add_scaled, cross, dot, sub, unit};
 
-/// Shape of a pulse and how its echoes are told apart.
+/// Shape of a pulse and how its echoes are separated.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BeamParams {
     /// Full angle of the cone that holds all but 1/e² of the energy, radians, 0 to 0.01. Default 0.0004: usual for
@@ -53,7 +53,7 @@ impl BeamParams {
     }
 }
 
-/// Rays that stand for a pulse: one in the centre, six on a ring.
+/// Rays that represent a pulse: one in the centre, six on a ring.
 const RING: u8 = 6;
 /// Energy of the centre ray: what a Gaussian beam holds within 0.4 of its 1/e² radius, 1 − exp(−2 · 0.4²).
 const CENTRE_ENERGY: f64 = 0.274;
@@ -85,7 +85,7 @@ impl Axis {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Echo {
     pub(crate) range: f64,
-    /// Unit vector of the ray that stands for the echo.
+    /// Unit vector of the ray that represents the echo.
     pub(crate) direction: [f64; 3],
     /// Triangle met; within a crown, where the ray entered it.
     pub(crate) triangle: u32,
@@ -147,7 +147,7 @@ fn sub_rays(divergence: f64) -> impl Iterator<Item = ([f64; 2], f64)> {
     std::iter::once(([0.0; 2], CENTRE_ENERGY)).chain(ring)
 }
 
-/// One of the rays that stand for a pulse.
+/// One of the rays that represent a pulse.
 struct SubRay {
     origin: [f64; 3],
     /// Unit vector.

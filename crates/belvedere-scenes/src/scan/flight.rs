@@ -96,7 +96,7 @@ fn strips_towards(
     let height = scene.mean_ground_height() + params.flying_height;
     let centre = [low[0] / 2.0 + high[0] / 2.0, low[1] / 2.0 + high[1] / 2.0, height];
     let (sin, cos) = heading.sin_cos();
-    // A cone looks ahead: the part of the circle behind the aircraft has to pass the far rim, too.
+    // A cone looks ahead: the part of the circle behind the aircraft has to pass the far edge, too.
     let look_ahead = match params.pattern {
         ScanPattern::Rotating | ScanPattern::Oscillating(_) => 0.0,
         ScanPattern::Conical { .. } => params.swath() / 2.0,

@@ -69,7 +69,7 @@ pub struct ScanReport {
     pub pulses: u64,
     /// Pulses that met the scene but were lost as drop-outs.
     pub dropped_pulses: u64,
-    /// Pulses that passed the rim of the scene.
+    /// Pulses that met nothing because they passed beyond the edge of the scene.
     pub missed_pulses: u64,
     /// Echoes left out because they were too weak or came after the last one the scanner records.
     pub dropped_echoes: u64,

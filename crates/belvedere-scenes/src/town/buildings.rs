@@ -57,7 +57,7 @@ pub(crate) fn balcony(wall: &PlanPlacement, width: f64, depth: f64, floor: f64) 
         })
     };
     let back = 2.5 * JOINT;
-    // From the underside up the outside, over the rim and down to the floor.
+    // From the underside up the outside, over the top edge and down to the floor.
     let rings = [
         rectangle(0.0, floor - thickness, back),
         rectangle(0.0, floor + parapet_height, back),

@@ -6,7 +6,7 @@ use crate::town::terrain::Canal;
 
 /// Half the side of the square within a block that the block plans are drawn for, metres.
 const PLAN_HALF_SIDE: f64 = 20.0;
-/// Ground kept free of buildings at the rim, metres.
+/// Ground kept free of buildings at the edge of the scene, metres.
 const EDGE: f64 = 4.0;
 /// Least side of the ground for two by two blocks, metres.
 const MIN_EXTENT_OF_FOUR: f64 = 100.0;
@@ -112,7 +112,7 @@ impl TownLayout {
 
     /// The ground that the canal takes, and its sides along u and v in metres.
     pub(crate) fn canal_ground(&self) -> Option<(PlanPlacement, [f64; 2])> {
-        // Twice the extent is past the rim in any direction.
+        // Twice the extent is past the edge in any direction.
         Some((self.centre.moved(0.0, self.canal?, 0.0), [2.0 * self.extent, CANAL_WIDTH]))
     }
 

@@ -39,7 +39,7 @@ struct Taken {
 }
 
 impl Taken {
-    /// Distance from `point` to the rim, metres, negative inside.
+    /// Distance from `point` to the outline, metres, negative inside.
     fn distance(&self, point: [f64; 2]) -> f64 {
         let (sin, cos) = self.placement.angle.sin_cos();
         let (dx, dy) = (point[0] - self.placement.origin[0], point[1] - self.placement.origin[1]);

@@ -76,7 +76,7 @@ pub(crate) fn bridge(ends: [[f64; 2]; 2], width: f64, ground: GroundHeight<'_>) 
     let along = [ends[1][0] - ends[0][0], ends[1][1] - ends[0][1]];
     let length = along[0].hypot(along[1]);
     let parapets = [-1.0, 1.0].map(|side| {
-        // Just inside the rim of the deck, and sunk into it.
+        // Just inside the edge of the deck, and sunk into it.
         let offset = side * (width / 2.0 - 0.15);
         let shifted = ends.map(|[x, y]| [x - along[1] / length * offset, y + along[0] / length * offset]);
         let heights = |share: f64, _: [f64; 2]| [deck_top(share) - JOINT, deck_top(share) + 0.95];
@@ -85,7 +85,7 @@ pub(crate) fn bridge(ends: [[f64; 2]; 2], width: f64, ground: GroundHeight<'_>) 
     std::iter::once(deck).chain(parapets).collect()
 }
 
-/// Slab of `size` about the origin with its underside at height `underside`, on square posts along its rim that stand
+/// Slab of `size` about the origin with its underside at height `underside`, on square posts along its edge that stand
 /// `inset` metres inside it and at most `spacing` metres apart. Metres.
 pub(crate) struct PostedSlab {
     pub(crate) size: [f64; 2],

@@ -38,8 +38,8 @@ const COLUMNS: usize = 14;
 /// What the crowns of trees are made of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CrownMaterial {
-    /// A closed hull that lets no light through ([`Material::TreeCrown`]); the scanner's beam may be told to pass it in
-    /// part.
+    /// A closed hull that lets no light through ([`Material::TreeCrown`]); the scanner's beam passes through it in
+    /// part, if its parameters allow that.
     Opaque,
     /// Sprays of leaves, 0.2 to 0.4 m, in clumps with gaps between ([`Material::Leaf`]): about two in
     /// five straight lines through the crown get past them.

@@ -256,8 +256,8 @@ fn pulses_reach_the_ground_below_crowns_only_where_crowns_are_porous() {
     };
     let (open, closed) = (ground_after_crown(0.35), ground_after_crown(0.0));
     assert!((0.1..0.5).contains(&open), "{open}");
-    // Past an opaque crown only pulses on its rim get to the ground: 13 cm of a radius of about 2.5 m, twice 5 % of its
-    // area.
+    // Past an opaque crown only pulses at its outline reach the ground: 13 cm of a radius of about 2.5 m, twice 5 % of
+    // its area.
     assert!(closed < 0.1 && closed > 0.0 && open > 2.0 * closed, "{closed} {open}");
 }
 

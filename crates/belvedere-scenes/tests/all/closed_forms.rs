@@ -41,7 +41,7 @@ fn shadow_end(truth: &Truth, sun: &Sun, start: [f64; 2], heading: f64, farthest:
     outside
 }
 
-/// Distance from `start` along `heading` to the rim of a convex polygon, corners counter-clockwise.
+/// Distance from `start` along `heading` to the edge of a convex polygon, corners counter-clockwise.
 fn distance_to_edge(polygon: &[[f64; 2]], start: [f64; 2], heading: f64) -> f64 {
     let direction = [heading.cos(), heading.sin()];
     (0..polygon.len())
@@ -91,7 +91,7 @@ fn check_hull(scene: &TriangleScene, sun: &Sun, corners: &[[f64; 2]]) {
         let heading = TAU * f64::from(step) / 72.0 + 0.01;
         let (found, expected) =
             (shadow_end(&truth, sun, middle, heading, 200.0), distance_to_edge(&outline, middle, heading));
-        // Flat faces: nothing but rounding stands between the two, far below the millimetre that is asked for.
+        // Flat faces: the two differ by rounding only, far below the required millimetre.
         assert!((found - expected).abs() < MILLIMETRE / 100.0, "{heading}: {found} {expected}");
     }
 }
@@ -189,7 +189,7 @@ fn sky_view(truth: &Truth, point: [f64; 3], frame: [[f64; 3]; 3], rows: u32) -> 
 }
 
 const UP: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-/// Rays per side, and what the count of cells that a horizon cuts can make of it: a rim of about 4 cells per row, each
+/// Rays per side, and the largest error from cells that a horizon cuts: about 4 cells per row lie on the horizon, each
 /// wrong by half at most and at random. Far above the error of the open ends of the canyon (2e-6).
 const ROWS: u32 = 600;
 const SAMPLING: f64 = 1e-3;

@@ -85,7 +85,7 @@ fn area(a: [f64; 3], b: [f64; 3], c: [f64; 3]) -> f64 {
     n.iter().map(|v| v * v).sum::<f64>().sqrt() / 2.0
 }
 
-/// What a scene contains, by the geometry rather than by what was asked for.
+/// What a scene contains, by its geometry, not by its parameters.
 fn features(scene: &TriangleScene) -> BTreeSet<&'static str> {
     let mut found = BTreeSet::new();
     for range in parts(scene) {
@@ -236,7 +236,7 @@ fn town_of_300_metres_has_hundreds_of_buildings_and_trees_and_cities_grow_with_t
         let triangles = [300.0, 600.0].map(|extent| town(&preset.params(extent, 1)).triangles.len());
         assert!(triangles[0] < 1_000_000, "{preset:?}: {}", triangles[0]);
         let growth = triangles[1] as f64 / triangles[0] as f64;
-        // Four times the area; rims have trees only.
+        // Four times the area, but the ground along the edges has trees only.
         assert!((3.0..5.5).contains(&growth), "{preset:?}: {growth}");
     }
 }

@@ -223,7 +223,7 @@ fn light_on_a_scan_is_that_of_the_shadow_of_a_box() {
             continue;
         }
         let on_ground = z.abs() < 1e-6;
-        // Points are asked 3 cm above the ground, which shortens the shadow by as much.
+        // Light is tested 3 cm above the ground, which shortens the shadow by as much.
         let in_shadow = on_ground && y.abs() < 5.0 && x > 4.999 && x < 13.0 - 0.03;
         let on_dark_wall = (x - 5.0).abs() < 1e-6 && !on_ground;
         let near_edge = on_ground && ((x - 12.97).abs() < 1e-6 || (y.abs() - 5.0).abs() < 1e-6);

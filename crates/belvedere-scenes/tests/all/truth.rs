@@ -74,7 +74,7 @@ fn range_to(corners: [[f64; 3]; 3], origin: [f64; 3], direction: [f64; 3]) -> Op
     (v >= 0.0 && u + v <= 1.0).then(|| dot(e2, q) / determinant)
 }
 
-/// First hit by brute force, and whether the ray passes within `EDGE` of the rim of any triangle it meets or misses.
+/// First hit by brute force, and whether the ray passes within `EDGE` of the edge of any triangle it meets or misses.
 fn brute_force(scene: &TriangleScene, origin: [f64; 3], direction: [f64; 3], max_range: f64) -> (Option<Hit>, bool) {
     let (mut best, mut near_edge): (Option<Hit>, bool) = (None, false);
     for (t, triangle) in (0..scene.triangles.len()).zip(0_u32..) {

@@ -128,7 +128,7 @@ fn tiles_of_any_size_give_the_balls_and_answers_of_one_tile_over_all() {
     sun_hours_are_the_sum_of_shadows(&expected[4], &whole, &whole_folder, &steps);
     energies_are_those_of_an_open_plane_less_what_obstacles_take(&expected[5]);
     each_observer_sees_its_share(&expected[6]);
-    // so few balls at a time that a part of a tile, and that some tiles, are asked together
+    // so few balls at a time that a part of a tile, and that some tiles, are tested together
     for (size, max_balls) in [64.0, 100.0].into_iter().zip(MAX_BALLS) {
         let folder = place.path().join(format!("tiles_{size}"));
         let plan = plan(&clouds, &folder, size, questions.clone());
@@ -190,7 +190,7 @@ fn energies_are_those_of_an_open_plane_less_what_obstacles_take(energies: &BTree
     let global: f64 = instants.iter().map(|instant| instant.irradiance.ghi * instant.hours / 1000.0).sum();
     let found: Vec<f64> = energies.values().map(|&bits| f64::from(f32::from_bits(bits))).collect();
     let [low, high] = [f64::min, f64::max].map(|pick| found.iter().copied().reduce(pick).unwrap());
-    // suns gathered in cells of 17 degrees: each stands for its cell
+    // suns gathered in cells of 17 degrees: each represents its cell
     assert!(high <= global * 1.01 && high > global * 0.97, "{high} of {global}");
     assert!(low >= 0.0 && low < global * 0.4, "{low} of {global}");
 }

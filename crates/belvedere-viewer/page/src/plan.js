@@ -24,7 +24,7 @@ page.planned = null;
 page.when = "after";
 
 const isEmpty = ({ clear, buildings, meshes }) => !clear.length && !buildings.length && !meshes.length;
-// Number of the plan that questions are asked of, and whether they are asked of the scene before it too.
+// Number of the plan that questions are about, and whether they are also about the scene before it.
 export const planAsked = () => (page.planned && page.when !== "before" ? page.planned.plan : null);
 export const isChange = () => page.planned !== null && page.when === "change";
 

@@ -1,4 +1,4 @@
-// The questions: what is clicked, what is asked, and how the answer is shown.
+// The questions: what is clicked, what is sent to the server, and how the answer is shown.
 import * as charts from "./charts.js";
 import { escape, hours } from "./charts.js";
 import * as colors from "./colors.js";
@@ -11,7 +11,7 @@ const percent = (part, whole) => `${((100 * part) / Math.max(whole, 1)).toFixed(
 const list = (rows) => `<dl>${rows.map(([name, value]) => `<dt>${escape(name)}</dt><dd>${escape(value)}</dd>`).join("")}</dl>`;
 
 // A first answer is one for a sample: its shares are about right, and its counts are those of the sample times the
-// points it stands for.
+// points it represents.
 const about = (answer) => (answer.isFirst ? "About " : "");
 const FIRST = (answer) => `A first answer from a sample of ${count(answer.points)} points; the exact one follows …`;
 const estimated = (n) => { const unit = 10 ** Math.max(Math.floor(Math.log10(n)) - 1, 0); return `about ${count(Math.round(n / unit) * unit)}`; };

@@ -21,7 +21,7 @@ export function draw() {
   isAsked = true;
   drawNext();
 }
-// A new picture if one is asked for; else, at rest, more points for the one that is there.
+// A new picture if one is due; else, at rest, more points for the one that is there.
 export function drawNext() {
   if (isDrawing || !cloud || !(isAsked || (cloud.left && performance.now() - moved >= REST))) return;
   isDrawing = true;

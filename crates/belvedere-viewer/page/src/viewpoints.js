@@ -1,4 +1,4 @@
-// What is seen from the viewpoints of a page without a server, where nothing else can be asked.
+// What is seen from the viewpoints of a page without a server, where no other question can be answered.
 import * as api from "./api.js";
 import { escape } from "./charts.js";
 import { $ } from "./state.js";
@@ -7,7 +7,7 @@ import { shownPlace, toLocal } from "./view.js";
 let chosen = 0;
 const name = (number) => `Viewpoint ${number + 1}`;
 
-// The question about a clicked place, asked of a viewpoint of the file.
+// The question about a clicked place, for a viewpoint of the file.
 export function ofViewpoints(tool) {
   return {
     ...tool, height: null, places: 0, samples: false, hint: "Choose a viewpoint: its view is in this file.",

@@ -1,4 +1,4 @@
-//! What if: the scene with what was drawn; other questions are then asked of it.
+//! What if: the scene with what was drawn; other questions are then about it.
 
 use super::RequestContext;
 use crate::plans::DrawnPlan;

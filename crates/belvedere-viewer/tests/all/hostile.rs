@@ -1,4 +1,4 @@
-//! Hostile requests: each is refused or served without harm, and the page is served afterwards as before.
+//! Hostile requests: each is refused or answered without harm, and the page is available afterwards as before.
 
 use belvedere::PointCloud;
 use belvedere::control::Control;
@@ -106,7 +106,7 @@ fn only_those_who_know_the_token_and_come_from_the_page_get_answers() {
         let (status, text) = get(&host, &format!("/{token}/{path}"), &own);
         assert!((400..500).contains(&status) && !text.contains("root:"), "{path}: {status} {text}");
     }
-    // what is ours is served, with a policy that keeps others out
+    // what is ours is delivered, with a policy that keeps others out
     let (status, text) = get(&host, &format!("/{token}/"), &format!("{own}Origin: http://localhost:{port}\r\n"));
     assert_eq!(status, 200);
     let head = text.to_lowercase();
