@@ -14,9 +14,9 @@ use rayon::prelude::*;
 use serde::Serialize;
 use std::f64::consts::TAU;
 
-/// Share of the directions asked, weighted by the sines of their elevations, that may leave the cloud below its highest
-/// point before a target counts as near the edge. Under the whole sky this is a distance of 4.4 times the relief in all
-/// azimuths.
+/// Share of the tested directions, weighted by the sines of their elevations, that may leave the cloud below its
+/// highest point before a target counts as near the edge. Under the whole sky this is a distance of 4.4 times the
+/// relief in all azimuths.
 pub const EDGE_SHARE: f64 = 0.05;
 /// Targets handed to a thread at once.
 const CHUNK: usize = 1024;
@@ -26,7 +26,7 @@ const CHUNK: usize = 1024;
 pub struct EdgeReport {
     /// Targets that are near the edge.
     pub targets_near_edge: usize,
-    /// The same as a share of all that are asked about.
+    /// Their share of all targets that have a position, percent.
     pub targets_near_edge_percent: f64,
 }
 
@@ -183,7 +183,7 @@ mod tests {
         let suns = [to_sun(PI, 45f64.to_radians()), to_sun(PI, 0.5f64.atan()), to_sun(PI, -0.1)];
         assert_eq!(share(&suns), 40.0);
         assert_eq!(share(&[]), 0.0);
-        // as high as all else, or not asked about
+        // a target as high as all else, and one without a position
         let flags = near_edge(&coverage(), &[[1.0, 1.0, 20.0], [f32::NAN; 3]], &suns, &Control::none()).unwrap();
         assert_eq!(flags, [Some(false), None]);
     }

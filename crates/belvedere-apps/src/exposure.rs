@@ -14,14 +14,14 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
-/// Height above the ground at which walkers are asked, metres: the middle of a standing body, for which PET and UTCI
+/// Height above the ground of the targets of walkers, metres: the middle of a standing body, for which PET and UTCI
 /// are defined (VDI 3787 part 2, 1.1 m).
 pub const WALKER_HEIGHT: f64 = 1.1;
 /// Metres between places along a route: a few steps.
 pub const ROUTE_STEP: f64 = 2.0;
-/// By how much windows are asked in front of themselves, metres: twice the noise of usual airborne surveys.
+/// Distance of the targets of a window in front of it, metres: twice the noise of usual airborne surveys.
 pub const WINDOW_LIFT: f64 = 0.1;
-/// Places asked along each side of a window that has a size.
+/// Number of targets along each side of a window that has a size.
 const WINDOW_SIDE: u32 = 3;
 /// Targets handed to a thread at once.
 const CHUNK: usize = 256;
@@ -33,7 +33,7 @@ pub fn plane_normal(azimuth: f64, tilt: f64) -> [f64; 3] {
     [tilt.sin() * azimuth.sin(), tilt.sin() * azimuth.cos(), tilt.cos()]
 }
 
-/// Places that stand for a window around `center`, local metres, with the unit normal `normal`, a little in front of
+/// Places that represent a window around `center`, local metres, with the unit normal `normal`, a little in front of
 /// it: nine, in the middles of even parts of its width and height (`size`, metres), or its middle alone where it has
 /// none. Width runs level.
 ///
@@ -251,8 +251,8 @@ pub fn sky_component(matrix: &VisibilityMatrix, sky: &SkyDirections, normals: &[
     Ok(normals.par_iter().enumerate().with_min_len(CHUNK).map(component).collect())
 }
 
-/// The length of route that each of `places`, (N, 3) along it, stands for, metres on the map: half the way to the place
-/// before and half to the next, (N). A route of a single place has no length: it stands for 1.
+/// The length of route that each of `places`, (N, 3) along it, represents, metres on the map: half the way to the place
+/// before and half to the next, (N). A route of a single place has no length: its value is 1.
 #[must_use]
 pub fn route_lengths(places: &[[f64; 3]]) -> Vec<f64> {
     if places.len() == 1 {

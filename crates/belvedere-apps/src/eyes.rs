@@ -82,7 +82,7 @@ impl EyesReport {
 }
 
 /// Finds the `eyes`, (N) local metres, that cannot look in `scene`, and makes them NaN, so that others keep their rows.
-/// `ground` is asked where it is given.
+/// `ground` is tested where it is given.
 ///
 /// # Errors
 /// [`Error::Cancelled`](belvedere_data::Error::Cancelled).

@@ -30,7 +30,7 @@ impl<'a> From<&'a MedialScene> for Obstacles<'a> {
 }
 
 impl Obstacles<'_> {
-    /// How many matrices are asked for: one, or two where trees let light through.
+    /// Number of matrices to compute: one, or two where trees let light through.
     #[must_use]
     pub fn matrix_count(&self) -> usize {
         SkyObstacles::from(*self).matrix_count()
@@ -87,7 +87,7 @@ impl SkyObstacles<'_> {
         }
     }
 
-    /// How many matrices are asked for: one, or two where trees let light through.
+    /// Number of matrices to compute: one, or two where trees let light through.
     #[must_use]
     pub fn matrix_count(&self) -> usize {
         1 + usize::from(self.crowns().is_some())

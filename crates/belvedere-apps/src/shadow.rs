@@ -18,7 +18,7 @@ use std::f64::consts::TAU;
 pub const SUN_RADIUS: f64 = 959.63 / 3600.0 * std::f64::consts::PI / 180.0;
 /// What a raster of light says of itself.
 pub const LIT: &str = "share of the sun, 0 in shadow";
-/// Points that stand for the disc: shares of light to 1/64.
+/// Number of points that represent the disc of the sun: shares of light are multiples of 1/64.
 const DISC_POINTS: usize = 64;
 /// Targets handed to a thread at once.
 const CHUNK: usize = 1024;
@@ -37,7 +37,7 @@ pub enum Edges {
     Soft,
 }
 
-/// A sun that is asked about.
+/// A sun whose light is computed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShadowSun {
     /// Unit vector from the scene to the sun: x east, y (grid) north, z up.
@@ -65,7 +65,7 @@ impl ShadowSun {
 }
 
 /// The share of each of `suns` that reaches each of `targets` among `obstacles`, 0 to 1, (suns) rows of (M); NaN for a
-/// target that is not asked about. Progress counts targets, once or twice each.
+/// target without a position. Progress counts targets, once or twice each.
 ///
 /// # Errors
 /// Those of [`fold_rows`] and [`lit_shares`].
@@ -99,8 +99,8 @@ pub fn scene_shadow<'a>(
     Ok(lit)
 }
 
-/// The same for one sun with hard edges: 1 for a target that is lit, 0 for one in shadow, NaN for one that is not asked
-/// about.
+/// The light of one sun with hard edges at each target: 1 for a target that is lit, 0 for one in shadow, NaN for one
+/// without a position.
 ///
 /// # Errors
 /// Those of [`scene_shadow`].
@@ -140,7 +140,7 @@ pub fn unproven_light(
     Ok(Some(chunks.map(chunk).collect::<Result<Vec<_>>>()?.concat()))
 }
 
-/// Directions that stand for a sun in the direction of the unit vector `to_sun`: itself, or 64 points of equal shares
+/// Directions that represent a sun in the direction of the unit vector `to_sun`: itself, or 64 points of equal shares
 /// of its disc.
 #[must_use]
 pub fn sun_directions(to_sun: [f64; 3], edges: Edges) -> Vec<[f64; 3]> {
@@ -160,9 +160,9 @@ pub fn sun_directions(to_sun: [f64; 3], edges: Edges) -> Vec<[f64; 3]> {
         .collect()
 }
 
-/// The share of a sun that each target of `matrix` sees, 0 to 1, (M), where `directions` stand for it, the first of
-/// them being column `first` of the matrix. What is below the horizon is not seen, nor is what stands behind a target
-/// that is turned away by its outward normal, (M, 3); `None` where targets have none.
+/// The share of a sun that each target of `matrix` sees, 0 to 1, (M), where `directions` represent the sun, the first
+/// of them being column `first` of the matrix. What is below the horizon is not seen, nor is what stands behind a
+/// target that is turned away by its outward normal, (M, 3); `None` where targets have none.
 ///
 /// # Errors
 /// [`Error::LengthMismatch`] where the matrix has fewer columns, or normals are not as many as targets.

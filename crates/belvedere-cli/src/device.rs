@@ -13,7 +13,7 @@ use std::sync::{Arc, OnceLock};
 #[cfg(feature = "gpu")]
 static CHOSEN: OnceLock<Arc<Gpu>> = OnceLock::new();
 
-/// Makes the device ready that was asked for.
+/// Prepares the requested device.
 #[cfg(feature = "gpu")]
 pub(crate) fn choose(global: &Global) -> Result<()> {
     let choice = match global.device {

@@ -24,7 +24,7 @@ pub(crate) fn listen() {
     let listening = ctrlc::set_handler(|| {
         IS_REQUESTED.store(true, Ordering::Relaxed);
         std::thread::sleep(PATIENCE);
-        // decoders of other libraries and sorting cannot be asked to stop
+        // decoders of other libraries and sorting cannot be cancelled
         atomic::abandon_unfinished();
         report();
         std::process::exit(i32::from(STATUS));
@@ -41,7 +41,7 @@ fn report() {
     }
 }
 
-/// The end of a run that stopped because it was asked to.
+/// The end of a run that was interrupted.
 pub(crate) fn exit() -> ExitCode {
     report();
     ExitCode::from(STATUS)

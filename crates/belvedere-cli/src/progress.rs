@@ -1,4 +1,5 @@
-//! The stages of a run: a progress bar on a terminal, lines of JSON where these are asked for, and how long each took.
+//! The stages of a run: a progress bar on a terminal, lines of JSON where these are requested, and the duration of
+//! each.
 
 use crate::arguments::{Global, ProgressChoice};
 use crate::interrupt;

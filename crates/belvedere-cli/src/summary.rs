@@ -130,7 +130,7 @@ impl Summary {
         }
     }
 
-    /// Prints the summary, as JSON where asked for.
+    /// Prints the summary, as JSON where requested.
     pub(crate) fn print(&self, global: &Global) -> ExitCode {
         // a command without a summary, such as one that prints a script
         if self.entries.is_empty() {

@@ -51,7 +51,7 @@ impl Picture {
         }
     }
 
-    /// Copies `other` into this picture with its upper left corner at `corner` (column, row), cut at the rim.
+    /// Copies `other` into this picture with its upper left corner at `corner` (column, row), cut at the border.
     pub fn paste(&mut self, other: &Self, corner: [usize; 2]) {
         let columns = other.width.min(self.width.saturating_sub(corner[0]));
         for row in 0..other.height.min(self.height.saturating_sub(corner[1])) {

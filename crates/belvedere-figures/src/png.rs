@@ -55,7 +55,7 @@ pub(super) fn write_frames(path: &Path, frames: &[Picture], milliseconds: u16) -
                 part.rgb[row * width * 3..][..width * 3].copy_from_slice(&frame.rgb[from..from + width * 3]);
             }
             let (x, y) = (pixels(left), pixels(top));
-            // the place is set back first: a size is held against the place it would have
+            // the position is set back first, since a size is checked against the current position
             writer.set_frame_position(0, 0).map_err(failed(path))?;
             writer.set_frame_dimension(pixels(width), pixels(height)).map_err(failed(path))?;
             writer.set_frame_position(x, y).map_err(failed(path))?;

@@ -22,7 +22,7 @@ pub struct CloudBatch {
     pub cloud: PointCloud,
     /// Path or name of the source that they come from.
     pub source: PathBuf,
-    /// Row of each point among the points of its source, from 0, where [`ReadOptions::row_numbers`] asks for it; empty
+    /// Row of each point among the points of its source, from 0, where [`ReadOptions::row_numbers`] requests it; empty
     /// otherwise.
     pub rows: Vec<u64>,
 }

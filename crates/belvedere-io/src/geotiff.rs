@@ -81,8 +81,8 @@ pub fn write_f32<'a>(
     }
 }
 
-/// Writes `raster` as unsigned 32-bit integers, compressed without loss; `nodata` marks the value that stands for
-/// nothing, such as `u32::MAX` in an item buffer.
+/// Writes `raster` as unsigned 32-bit integers, compressed without loss; `nodata` marks the value that means "no data",
+/// such as `u32::MAX` in an item buffer.
 ///
 /// # Errors
 /// As [`write_f32`].
@@ -97,7 +97,7 @@ pub fn write_u32<'a>(
     write::<Gray32>(output.into(), from_ref(raster), &marks)
 }
 
-/// Writes `raster` as bytes, compressed without loss; `nodata` marks the value that stands for nothing.
+/// Writes `raster` as bytes, compressed without loss; `nodata` marks the value that means "no data".
 ///
 /// # Errors
 /// As [`write_f32`].
@@ -112,8 +112,7 @@ pub fn write_u8<'a>(
     write::<Gray8>(output.into(), from_ref(raster), &marks)
 }
 
-/// Writes `raster` as unsigned 16-bit integers, compressed without loss; `nodata` marks the value that stands for
-/// nothing.
+/// Writes `raster` as unsigned 16-bit integers, compressed without loss; `nodata` marks the value that means "no data".
 ///
 /// # Errors
 /// As [`write_f32`].

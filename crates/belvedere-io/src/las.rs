@@ -194,7 +194,7 @@ impl Batches<'_> {
     }
 }
 
-/// The points of the source that `reading` asks for.
+/// The points of the source that `reading` requests.
 pub(super) fn read(source: Source<'_>, reading: &Reading<'_>) -> Result<FilePart> {
     let (mut part, mut points) = open(source, reading)?;
     // No more is reserved than the size of the file makes likely; columns grow where that is too little.
@@ -355,7 +355,7 @@ impl LasPoints<'_> {
         LasColumns::new(&self.format, self.scale, self.offset, self.adjusted_gps_time, self.normals, capacity)
     }
 
-    /// The next points that `reading` asks for, possibly none of a batch, or `None` at the end.
+    /// The next points that `reading` requests, possibly none of a batch, or `None` at the end.
     pub(super) fn next(&mut self, reading: &Reading<'_>) -> Result<Option<SomePoints>> {
         reading.control.check()?;
         let mut columns = self.columns(0);

@@ -1,4 +1,4 @@
-//! Extra bytes of LAS records: columns asked for by name, normals among them; the rest is named in the report.
+//! Extra bytes of LAS records: columns requested by name, normals among them; the report lists the names of the others.
 
 use ::las::point::Format;
 

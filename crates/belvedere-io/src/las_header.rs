@@ -1,6 +1,6 @@
 //! The header of a LAS or LAZ file and its variable-length records, checked against the size of the file.
 //!
-//! The las crate allocates what the header promises; here every length is held against the file first.
+//! The las crate allocates what the header promises; here every length is compared with the size of the file first.
 
 use std::io::{Read, Seek, SeekFrom};
 use std::path::Path;

@@ -245,7 +245,7 @@ fn check_chunk_count(path: &Path, file: &mut SourceReader<'_>, header: &LasHeade
     Ok(())
 }
 
-/// The chunks that hold the points `header` announces, each held against the size of the file.
+/// The chunks that hold the points `header` announces, each checked against the size of the file.
 fn checked_chunks(
     path: &Path,
     table: &ChunkTable,

@@ -1,4 +1,4 @@
-//! Meshes of any format, told apart by their extension.
+//! Meshes of any format, which the extension of the file gives.
 
 use super::cityjson::{LevelOfDetail, read_cityjson};
 #[cfg(feature = "ply")]

@@ -1,4 +1,4 @@
-//! Arrays of NumPy's archive format, written and read with every promise of a header held against what is really there.
+//! Arrays of NumPy's archive format, written and read. Every size in a header is checked against the size of the data.
 
 use std::io::{self, BufReader, Read, Seek, SeekFrom, Take, Write};
 
@@ -130,7 +130,7 @@ pub(crate) fn values<T: Deserialize, R: Read + Seek>(
         if count > max {
             return Err(invalid(format!("the array {name} is too large")));
         }
-        // the shape was held against the size of the entry, but not yet the size against what is really there
+        // the shape was checked against the size of the entry, but that size not yet against the data
         let mut values = Vec::new();
         for value in reader {
             values.push(value?);

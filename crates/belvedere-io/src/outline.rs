@@ -3,20 +3,20 @@
 use belvedere_data::raster::Raster;
 
 /// An area of cells that touch along sides: corners in columns from the west and rows from the north, first corner
-/// repeated at the end. Seen on a map with north up, the outer rim runs counter-clockwise and holes clockwise, as RFC
-/// 7946 wants.
+/// repeated at the end. Seen on a map with north up, the exterior runs counter-clockwise and holes clockwise, as RFC
+/// 7946 requires.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct GridPolygon {
-    /// Rim of the area.
+    /// Outer outline of the area.
     pub exterior: Vec<[usize; 2]>,
-    /// Rims of its holes.
+    /// Outlines of its holes.
     pub holes: Vec<Vec<[usize; 2]>>,
     /// Number of cells.
     pub cell_count: usize,
 }
 
 impl GridPolygon {
-    /// Its rim and holes with the corners at their `place`.
+    /// Its outer outline and those of its holes with the corners at their `place`.
     pub fn rings(&self, place: impl Fn([usize; 2]) -> [f64; 2]) -> Vec<Vec<[f64; 2]>> {
         std::iter::once(&self.exterior)
             .chain(&self.holes)
@@ -28,7 +28,7 @@ impl GridPolygon {
 const NONE: u32 = u32::MAX;
 
 /// The outlines of the cells that are `true`, in the order of their first cells. Cells that touch at a corner only are
-/// different areas; no rim touches itself.
+/// different areas; no outline touches itself.
 #[must_use]
 pub fn outlines(cells: &Raster<bool>) -> Vec<GridPolygon> {
     let (width, height) = (cells.width(), cells.height());
@@ -40,7 +40,7 @@ pub fn outlines(cells: &Raster<bool>) -> Vec<GridPolygon> {
     };
     let mut polygons: Vec<GridPolygon> =
         counts.iter().map(|&cell_count| GridPolygon { exterior: Vec::new(), holes: Vec::new(), cell_count }).collect();
-    // every rim, outer or inner, has a side that runs west along the north of a cell
+    // every outline, outer or inner, has a side that runs west along the north of a cell
     let mut walked = vec![false; width * height];
     for row in 0..height {
         for column in 0..width {
@@ -204,7 +204,7 @@ mod tests {
         assert_eq!(outlines(&raster(&["#.", ".#"])).len(), 2);
         let holes = outlines(&raster(&["####", "#.##", "##.#", "####"]));
         assert_eq!((holes.len(), holes[0].holes.len()), (1, 2));
-        // a hole that touches the rim at a corner is a hole all the same
+        // a hole that touches the outer outline at a corner is still a hole
         let touching = outlines(&raster(&[".##", "#.#", "###"]));
         assert_eq!((touching.len(), touching[0].holes.len()), (1, 1));
     }

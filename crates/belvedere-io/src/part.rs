@@ -135,7 +135,7 @@ impl FilePart {
     /// Drops the points that `reading` does not ask for.
     ///
     /// # Errors
-    /// [`belvedere_data::Error::MissingAttribute`] where classes are asked for but the file has none.
+    /// [`belvedere_data::Error::MissingAttribute`] where classes are requested but the file has none.
     pub(super) fn keep_selected(&mut self, reading: &Reading<'_>) -> Result<()> {
         let Some(selection) = reading.selection(&self.crs) else { return Ok(()) };
         let mut passed_over = PassedOver::default();

@@ -40,7 +40,7 @@ pub struct ReadReport {
     pub skipped_files: Vec<PathBuf>,
     /// What should be known before the cloud is used.
     pub notes: Vec<String>,
-    /// Row of each point among the points of its file, from 0, where [`ReadOptions::row_numbers`] asks for it; empty
+    /// Row of each point among the points of its file, from 0, where [`ReadOptions::row_numbers`] requests it; empty
     /// otherwise. The points of the files follow each other as in `files`.
     pub rows: Vec<u64>,
 }
@@ -104,7 +104,7 @@ impl ReadReport {
 /// [`Error::Io`], [`Error::UnknownFormat`], [`Error::MissingFeature`] and [`Error::Malformed`] about the source at
 /// fault; [`Error::UnusableCrs`] for degrees, earth-centred coordinates and files whose systems differ from each other
 /// or from that of the frame; [`Error::NoPoints`] where no file has a point; [`Error::InvalidParameter`] for options
-/// that cannot be followed; [`Error::MissingAttribute`] where classes are asked for but a file has none;
+/// that cannot be followed; [`Error::MissingAttribute`] where classes are requested but a file has none;
 /// [`Error::Cancelled`].
 pub fn read_cloud<'a, S: Into<Source<'a>>>(
     sources: impl IntoIterator<Item = S>,
@@ -185,7 +185,7 @@ pub fn cloud_files(paths: &[PathBuf]) -> Result<Vec<PathBuf>> {
 }
 
 /// The sources with folders and catalogues replaced by their files, and the files of folders that are tables of
-/// something else. Tiles of catalogues that cannot have a point that `reading` asks for are left out.
+/// something else. Tiles of catalogues that cannot have a point that `reading` requests are left out.
 pub(super) fn files_of<'a>(
     sources: impl Iterator<Item = Source<'a>>,
     reading: &Reading<'_>,
@@ -247,7 +247,7 @@ fn is_masbcpp(folder: &Path) -> bool {
     folder.join("coords.npy").is_file()
 }
 
-/// The points of one source, of which those that are not asked for are dropped.
+/// The points of one source, without those that are not requested.
 pub(super) fn read_one(source: Source<'_>, reading: &Reading<'_>) -> Result<FilePart> {
     if let Some(folder) = source.folder() {
         #[cfg(feature = "npy")]

@@ -166,7 +166,7 @@ impl Reading<'_> {
         if done.is_multiple_of(POINTS_PER_CHECK) { self.control.check() } else { Ok(()) }
     }
 
-    /// A box that holds every point asked for, in the coordinates of files that were not opened yet; `None` without a
+    /// A box that holds every requested point, in the coordinates of files that were not opened yet; `None` without a
     /// box, and where the unit of the files is not known.
     pub(super) fn box_of_unopened(&self) -> Option<FileBox> {
         let of_frame = self.options.frame.as_ref().map(|frame| &frame.crs).filter(|crs| crs.kind != CrsKind::Unknown);
@@ -277,7 +277,7 @@ impl Selection {
     /// Indices of the points that are read; the others are counted in `passed_over`.
     ///
     /// # Errors
-    /// [`Error::MissingAttribute`] where classes are asked for but the points have none.
+    /// [`Error::MissingAttribute`] where classes are requested but the points have none.
     pub(super) fn kept(
         &self,
         coordinates: &Coordinates,

@@ -1,4 +1,4 @@
-//! What a reader of reports is told of reading a cloud.
+//! The report of reading a cloud.
 
 use super::read_cloud::ReadReport;
 use serde::{Serialize, Serializer, ser::SerializeMap};

@@ -12,11 +12,11 @@ use ureq::http::{HeaderMap, header};
 use ureq::tls::{Certificate, RootCerts, TlsConfig};
 use ureq::{Agent, Body};
 
-/// Bytes asked for at first: mostly a whole header. And those asked for behind a gap, where the reader wants no more:
+/// Bytes requested at first: mostly a whole header. And those requested behind a gap, where the reader needs no more:
 /// chunks and pages of COPC files may be small.
 const FIRST_BYTES: u64 = 1 << 14;
 const MIN_BYTES: u64 = 1 << 12;
-/// Most bytes asked for ahead of the reader: half of those that it read since the last gap, up to this.
+/// Most bytes requested ahead of the reader: half of those that it read since the last gap, up to this.
 const MAX_AHEAD: u64 = 1 << 20;
 /// Most bytes of one request, however many the reader wants at once.
 const MAX_BYTES: u64 = 1 << 24;
@@ -78,7 +78,7 @@ struct Reply {
 /// Why there is no reply.
 struct Failure {
     error: Error,
-    /// Whether it may work when asked again.
+    /// Whether a second request may succeed.
     may_pass: bool,
 }
 

@@ -32,7 +32,7 @@ pub enum VehicleHeading<'a> {
 ///
 /// # Errors
 /// [`Error::UnknownFormat`] for other extensions, [`Error::LengthMismatch`] where positions or headings are not as many
-/// as times, [`Error::UnusableCrs`] where SBET is asked for in a system that gives no latitude and longitude, and
+/// as times, [`Error::UnusableCrs`] where SBET is requested in a system that gives no latitude and longitude, and
 /// [`Error::Io`]. An existing file is replaced only by a complete one.
 ///
 /// # Source

@@ -62,7 +62,7 @@ impl<'a> Iterator for Parted<'a> {
     }
 }
 
-/// Where the quotation mark is that ends what is `inside` two; a doubled one stands for itself.
+/// Index of the quotation mark that ends the text `inside`; a doubled mark is part of the text.
 fn closing(inside: &str) -> Option<usize> {
     let mut marks = inside.match_indices('"').map(|(at, _)| at);
     while let Some(at) = marks.next() {

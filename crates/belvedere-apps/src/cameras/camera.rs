@@ -200,7 +200,7 @@ impl Camera {
     }
 
     /// Whether a target that nothing hides, local metres, is in the picture with at least so many pixels per metre; 0
-    /// asks for none. Pixels per metre are those at the range of the target, times the cosine of the angle at which its
+    /// requires none. Pixels per metre are those at the range of the target, times the cosine of the angle at which its
     /// unit `normal` is seen, where it has one. A target whose back is seen is not covered.
     #[must_use]
     pub fn covers(&self, target: [f64; 3], normal: Option<[f64; 3]>, density: f64) -> bool {

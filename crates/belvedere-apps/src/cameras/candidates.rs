@@ -195,7 +195,7 @@ pub fn roof_places(cloud: &PointCloud, ground: Ground, height: f64, control: &Co
 /// A polygon on the map, and how much targets in it count.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WeightedArea {
-    /// Its rim and holes, local metres.
+    /// Its outline and holes, local metres.
     pub rings: Vec<Vec<[f64; 2]>>,
     /// Weight of each target in it, 0 or more.
     pub weight: f64,
@@ -214,7 +214,7 @@ pub fn keep_within(targets: &mut Targets, areas: &[WeightedArea]) {
     }
 }
 
-/// How much each target counts for [`super::place_cameras`]: its weight, and 0 for one that is not asked about.
+/// How much each target counts for [`super::place_cameras`]: its weight, and 0 for one without a position.
 #[must_use]
 pub fn counted_weights(targets: &Targets) -> Vec<f64> {
     (0..targets.len()).map(|row| if targets.is_target(row) { targets.weight(row) } else { 0.0 }).collect()

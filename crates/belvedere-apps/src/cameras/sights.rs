@@ -81,13 +81,13 @@ pub struct CoverageReport {
     pub visible: usize,
     /// Those that nothing blocks, but that are not proven.
     pub unproven: usize,
-    /// Of the visible, those whose Fresnel zone is not free; `None` where none is asked about.
+    /// Of the visible, those whose Fresnel zone is not free; `None` where no Fresnel zone is tested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub fresnel_zone_blocked: Option<usize>,
 }
 
 /// Which of `cameras` cover which of `targets`; control counts cameras. Cameras at one place should follow each other:
-/// their lines of sight are asked once.
+/// their lines of sight are tested once.
 ///
 /// # Errors
 /// Those of [`viewshed`], and [`belvedere_data::Error::InvalidParameter`] for a table of more than 8 GiB.
@@ -157,7 +157,7 @@ pub fn leave_out_private(
     Ok(())
 }
 
-/// Targets, and how they are asked about.
+/// Targets, and the parameters of their queries.
 struct TargetQuery<'a> {
     scene: &'a MedialScene,
     targets: &'a Targets,
@@ -165,7 +165,7 @@ struct TargetQuery<'a> {
     params: &'a CoverageParams,
 }
 
-/// The targets that are asked about, from west to east.
+/// The targets that have a position, from west to east.
 fn eastward(targets: &Targets) -> Vec<(f32, u32)> {
     let mut order: Vec<(f32, u32)> = (0..)
         .zip(&targets.positions)

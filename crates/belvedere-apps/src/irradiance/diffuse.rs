@@ -15,8 +15,8 @@ pub enum SkyModel {
     HayDavies,
     /// Perez et al. 1990: a part from the sun, a part from the horizon, the rest evenly.
     Perez,
-    /// Perez et al. 1993: a radiance for each patch of the sky, each asked whether it is seen. Default: of the four the
-    /// one that knows which part of an uneven sky an obstacle takes away.
+    /// Perez et al. 1993: a radiance for each patch of the sky; whether a patch is seen is tested for each. Default: of
+    /// the four the one that knows which part of an uneven sky an obstacle takes away.
     #[default]
     Patches,
 }

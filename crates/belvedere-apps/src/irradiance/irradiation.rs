@@ -10,7 +10,7 @@ use rayon::prelude::*;
 
 /// Targets handed to a thread at once.
 const CHUNK: usize = 64;
-/// Height, as a sine, below which patches of the sky stand for its horizon: Perez et al. 1990 take a band of 6.5
+/// Height, as a sine, below which patches of the sky represent its horizon: Perez et al. 1990 take a band of 6.5
 /// degrees.
 const HORIZON_BAND: f64 = 0.1132;
 
@@ -185,7 +185,7 @@ pub(super) fn on_plane(
             }
         }
     }
-    // patches stand for the share that is seen; what a free plane sees is known exactly
+    // patches represent the share that is seen; what a free plane sees is known exactly
     let whole = f64::midpoint(1.0, normal[2]);
     let seen = whole * sky.share();
     let tilt_sine = (1.0 - normal[2] * normal[2]).max(0.0).sqrt();

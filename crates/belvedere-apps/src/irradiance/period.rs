@@ -205,7 +205,7 @@ impl PeriodReport {
 impl PeriodRadiation {
     /// Gathers `instants`.
     ///
-    /// Directions of the sun are gathered in cells of equal width and height; each is asked once, along its mean
+    /// Directions of the sun are gathered in cells of equal width and height; each is tested once, along its mean
     /// weighted by radiation, and keeps the sum of radiation times direction, so that planes of any tilt get what
     /// single instants would give unless the sun crosses their plane within the cell.
     ///
@@ -275,7 +275,7 @@ impl PeriodRadiation {
         Ok(Self { params: *params, sky, sun_directions, sun, evenly, patches, report })
     }
 
-    /// Directions that targets must be asked about, unit vectors, (D, 3): those of the sun, then the middles of the
+    /// Directions for which targets are tested, unit vectors, (D, 3): those of the sun, then the middles of the
     /// patches of the sky.
     #[must_use]
     pub fn directions(&self) -> Vec<[f64; 3]> {

@@ -125,7 +125,7 @@ fn split_year(year: i16, zone: &Zone, share: impl Fn(Date) -> f64) -> Result<Vec
 }
 
 /// The energy of `targets` over all of `seasons` among `obstacles`: (M) rows of as many sums as the seasons have
-/// groups, NaN for a target that is not asked about. Progress counts targets, [`look_count`] times each.
+/// groups, NaN for a target without a position. Progress counts targets, [`look_count`] times each.
 ///
 /// # Errors
 /// Those of [`fold_rows`] and [`irradiation`]; [`Error::NoPoints`] without any season.
@@ -158,7 +158,7 @@ pub fn season_irradiation<'a>(
     Ok(sums)
 }
 
-/// How often each target is asked about: once for each of `seasons`, or twice where trees let light through.
+/// How often each target is tested: once for each of `seasons`, or twice where trees let light through.
 #[must_use]
 pub fn look_count(obstacles: &Obstacles<'_>, seasons: &[SeasonRadiation]) -> usize {
     seasons.len() * obstacles.matrix_count()

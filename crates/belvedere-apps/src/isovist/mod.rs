@@ -140,9 +140,9 @@ pub fn isovist(scene: &MedialScene, eye: [f64; 3], params: &IsovistParams, contr
     isovist_of(&range, params, control)
 }
 
-/// The isovist of whatever `range` tells: the range of what blocks along a unit vector, metres, `None` where nothing
-/// does. It is asked of a regular grid of azimuths and elevations, each ray standing for its cell, and along the
-/// horizon.
+/// The isovist by the function `range`, which returns the distance to what blocks along a unit vector, metres, and
+/// `None` where nothing does. It is evaluated on a regular grid of azimuths and elevations, where each ray represents
+/// its cell, and along the horizon.
 ///
 /// The volume is the sum of r³ / 3 over solid angles: exact where ranges are equal, otherwise right to the order of the
 /// square of the step.

@@ -18,7 +18,7 @@ pub struct PlanIsovist {
     pub corners: Vec<[f64; 2]>,
     /// Area, m².
     pub area: f64,
-    /// Perimeter, metres, jumps and the rim at the greatest range included.
+    /// Perimeter, metres, including jumps and the border at the greatest range.
     pub perimeter: f64,
     /// Length of the jumps in range, metres: edges behind which something hides (occlusivity).
     pub occlusivity: f64,

@@ -31,7 +31,7 @@ const NEAREST: f64 = 1e-3;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct LandmarkParams {
-    /// How its faces are asked. Default: those turned away are not visible, so that shares are those of the whole
+    /// How its faces are tested. Default: those turned away are not visible, so that shares are those of the whole
     /// landmark.
     pub faces: MeshTargetParams,
     /// What to make of pieces that nothing blocks but whose view is not proven. Default: reported apart from the
@@ -240,7 +240,7 @@ pub fn landmark_views(
     eyes.par_iter().map(look).collect()
 }
 
-/// Where the pieces of a landmark are asked about, in trees that serve all eyes.
+/// Target places of the pieces of a landmark, in trees that are used for all eyes.
 struct LandmarkPieces {
     /// For eyes before the face of a piece.
     fronts: TargetTree,

@@ -8,7 +8,7 @@ use belvedere_data::control::Control;
 use belvedere_data::polygon::is_inside;
 use belvedere_data::{Error, PointCloud, Result};
 
-/// Greatest radius of the surface that a point stands for, metres: walls that few pulses reach have points a metre
+/// Greatest radius of the surface that a point represents, metres: walls that few pulses reach have points a metre
 /// apart.
 const MAX_RADIUS: f64 = 1.0;
 
@@ -17,8 +17,8 @@ const MAX_RADIUS: f64 = 1.0;
 pub enum LandmarkPoints<'a> {
     /// Those of an ASPRS class.
     Class(u8),
-    /// Those above one of several polygons that are not ground: each a rim and holes of (x, y), local metres, closed or
-    /// not.
+    /// Those above one of several polygons that are not ground: each an outline and holes of (x, y), local metres,
+    /// closed or not.
     Inside(&'a [Vec<Vec<[f64; 2]>>]),
 }
 

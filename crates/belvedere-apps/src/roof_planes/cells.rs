@@ -9,7 +9,7 @@ const MAX_CELLS: f64 = 20_000.0;
 /// Shares of a side by which cells are shifted to measure an area.
 const SHIFTS: [f64; 4] = [0.125, 0.375, 0.625, 0.875];
 
-/// Square cells in a plane, rows along its contour lines from its lower rim up.
+/// Square cells in a plane, rows along its contour lines from its lower edge up.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlaneCells {
     /// Side of a cell, metres.
@@ -75,10 +75,10 @@ impl PlaneCells {
 
 /// Area of the plane that `rows` among `points` were drawn from, m², by cells of about the given side.
 ///
-/// Of a cell that a rim crosses, a share f lies within, which is anything from 0 to 1 whichever way the rim runs; it
-/// holds a point with a chance of 1 - exp(-n f), n being the points of a whole cell. On average such cells reach k =
-/// 1/2 - (1 - exp(-n))/n of their side over the rim, which Steiner's formula takes off again. Cells are laid several
-/// times, since rims may run along them.
+/// Of a cell that the outline crosses, a share f lies within; f is uniform between 0 and 1 for any direction of the
+/// outline. The cell holds a point with a chance of 1 - exp(-n f), n being the points of a whole cell. On average
+/// such cells reach k = 1/2 - (1 - exp(-n))/n of their side over the outline, which Steiner's formula subtracts. Cells
+/// are laid several times, since outlines may run along them.
 pub(super) fn area(points: &[[f32; 3]], rows: &[u32], plane: &PlaneFit, cell: f64) -> f64 {
     let flat = in_plane(points, rows, plane);
     let of_shift = |shift: &f64| {
@@ -131,7 +131,7 @@ fn cells_covered(cells: &Raster<bool>, point_count: usize) -> f64 {
             let across = column > 0 && row > 0 && is_filled(column - 1, row - 1);
             count += f64::from(u8::from(here));
             sides += f64::from(u8::from(here != left)) + f64::from(u8::from(here != below));
-            // turns of the outline: four make a rim, and four the other way a hole
+            // turns of the outline: four make an outer outline, and four the other way a hole
             corners += match u8::from(here) + u8::from(left) + u8::from(below) + u8::from(across) {
                 1 => 0.25,
                 3 => -0.25,

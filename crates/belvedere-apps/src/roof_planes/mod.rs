@@ -138,7 +138,7 @@ impl RoofPlane {
 /// left out, and so are planes without room for a panel.
 ///
 /// From points whose surroundings are flattest on, a plane takes in neighbours that lie near it and look the same way,
-/// and is fitted anew as it grows. Its area is that of the cells that hold points, less what cells at its rim reach
+/// and is fitted anew as it grows. Its area is that of the cells that hold points, less what cells at its outline reach
 /// over it.
 ///
 /// # Errors

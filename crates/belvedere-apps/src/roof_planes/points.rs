@@ -15,7 +15,7 @@ const FEW: usize = 1000;
 /// Side of the cells of the ground that roofs are separated from, metres.
 pub const GROUND_CELL: f64 = 1.0;
 
-/// How roofs were told from other things.
+/// How roofs were separated from other objects.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RoofsFrom {
     /// By the class of buildings.

@@ -1,4 +1,4 @@
-//! Directions that stand for the sky: spread evenly, or the middles of the patches of a sky model.
+//! Directions that represent the sky: spread evenly, or the middles of the patches of a sky model.
 
 use belvedere_data::{Error, Parameter, Result};
 use std::f64::consts::{PI, TAU};

@@ -14,7 +14,7 @@ use belvedere_data::{Error, Result};
 use rayon::prelude::*;
 use std::f64::consts::{PI, TAU};
 
-/// Height above the ground of places asked about the sun and the sky unless said otherwise, metres.
+/// Default height of targets above the ground for results about the sun and the sky, metres.
 pub const SKY_TARGET_HEIGHT: f64 = 0.1;
 /// Number of directions of [`SkyDirections::even`] unless said otherwise: errors of half a percent at most streets.
 pub const SKY_DIRECTIONS: usize = 577;
@@ -50,7 +50,7 @@ impl SkyView {
     }
 }
 
-/// How much of `sky` each of `targets` sees among `obstacles`; NaN for a target that is not asked about. Where trees
+/// How much of `sky` each of `targets` sees among `obstacles`; NaN for a target without a position. Where trees
 /// let light through they are in leaf, unless they are said to be bare. Progress counts targets, once or twice each.
 ///
 /// # Errors

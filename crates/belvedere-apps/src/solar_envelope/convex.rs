@@ -1,6 +1,6 @@
 //! Convex pieces of the map, small enough to live on the stack.
 
-/// Most corners: a piece between two edges of a parcel and the rims of a cell has six, three cuts add one each; the
+/// Most corners: a piece between two edges of a parcel and the sides of a cell has six, three cuts add one each; the
 /// rest is spare.
 const MAX_CORNERS: usize = 12;
 

@@ -240,7 +240,7 @@ fn strips(
             continue;
         }
         let mut add = |a, b| strips.push((ShadingStrip::new(a, b, to_sun, slope), number));
-        // over a face the bound is linear too, hence least at its rim
+        // over a face the bound is linear too, hence least on its border
         match piece.corners[..] {
             [a] => add(a, a),
             [a, b] => add(a, b),

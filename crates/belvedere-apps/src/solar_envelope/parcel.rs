@@ -31,8 +31,8 @@ pub struct ParcelCell {
 }
 
 impl Parcel {
-    /// The parcel within `rings`, local metres on the map, each a rim or a hole, of any sense, the first corner
-    /// repeated at the end or not: what lies within an odd number of rings belongs to it.
+    /// The parcel within `rings`, local metres on the map, each an outline or a hole, of any orientation, the first
+    /// corner repeated at the end or not: what lies within an odd number of rings belongs to it.
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] for a corner that is not finite, a ring with less than three corners, sides that
@@ -238,7 +238,7 @@ mod tests {
         assert!(refused(&[ring(&[[0.0, 0.0], [4.0, 4.0], [4.0, 0.0], [0.0, 4.0]])]).contains("crossing itself"));
         assert!(refused(&[ring(&[[0.0, 0.0], [4.0, f64::NAN], [4.0, 0.0]])]).contains("finite"));
         assert!(refused(&[ring(&[[0.0, 0.0], [f64::INFINITY, 1.0], [4.0, 0.0]])]).contains("finite"));
-        // a hole that crosses the rim
+        // a hole that crosses the outline
         let outline = ring(&[[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]]);
         let hole = ring(&[[3.0, 1.0], [5.0, 1.0], [5.0, 2.0], [3.0, 2.0]]);
         assert!(refused(&[outline, hole]).contains("crossing itself"));

@@ -16,7 +16,7 @@ pub struct ProtectedPiece {
     /// Outward unit normal of a face: suns behind it do not light it anyway. `None` for lines and points, which every
     /// sun lights.
     pub normal: Option<[f64; 3]>,
-    /// Place that is asked whether something else shades the piece already, local metres.
+    /// Place at which it is tested whether something else shades the piece already, local metres.
     pub sample: [f32; 3],
     /// Number of the line, face or point that it belongs to, as the caller counts them.
     pub source: u32,
@@ -74,7 +74,7 @@ pub fn protected_line(
             match (top(from), top(to)) {
                 (Some(from), Some(to)) => {
                     let mut middle = [0, 1, 2].map(|i| f64::midpoint(from[i], to[i]));
-                    // off the ground, as other places that the sun is asked about
+                    // off the ground, as other targets of the sun
                     middle[2] += SKY_TARGET_HEIGHT;
                     let corners = vec![from, to];
                     pieces.push(ProtectedPiece { corners, normal: None, sample: single(middle), source });
@@ -100,7 +100,7 @@ pub(crate) fn check_fence(fence: f64, spacing: f64) -> Result<()> {
     Ok(())
 }
 
-/// The pieces of a surface, such as facades, each asked a little outside of itself (`lift`, metres); the source is the
+/// The pieces of a surface, such as facades, each tested a little outside of itself (`lift`, metres); the source is the
 /// number of the face.
 #[must_use]
 pub fn protected_faces(surface: &SurfacePieces, lift: f64) -> Vec<ProtectedPiece> {

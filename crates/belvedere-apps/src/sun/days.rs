@@ -120,7 +120,7 @@ pub fn sun_day(site: &Site, zone: &Zone, date: Date, within: Option<[f64; 2]>, p
     Ok(SunDay { date, clock_start, start, end, noon, steps })
 }
 
-/// What days are asked about.
+/// The requested days.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Period {
     /// Whole days.

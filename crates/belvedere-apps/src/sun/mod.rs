@@ -1,4 +1,4 @@
-//! The sun: where it stands, when a day has its light, and which directions stand for many days.
+//! The sun: its position, the hours of light of a day, and the directions that represent the suns of many days.
 //!
 //! Instants are seconds of UTC since 1970-01-01T00:00:00Z, without leap seconds, and UTC is taken for UT1 (they differ
 //! by less than a second, in which the sky turns by 0.004°). Azimuths count clockwise from true north; unit vectors are

@@ -68,7 +68,7 @@ pub fn sun_position(site: &Site, unix_s: f64) -> Result<SunPosition> {
     sun_position_with(site, unix_s, Refraction::Standard)
 }
 
-/// Where the sun stands at an instant, refracted as told.
+/// Position of the sun at an instant, with the given refraction.
 ///
 /// # Errors
 /// As [`sun_position`], and for air that is not of this earth.

@@ -1,4 +1,4 @@
-//! Which directions stand for the suns of many days: cost follows directions, not instants.
+//! Directions that represent the suns of many days: the cost grows with the directions, not with the instants.
 
 use super::{Date, SunDay, declination};
 use belvedere_data::vector::{dot, unit};
@@ -8,7 +8,7 @@ use std::f64::consts::TAU;
 
 /// Most steps for which each has its own direction where that is left to [`SunSchedule::new`].
 const MAX_EXACT: usize = 2000;
-/// Angle within which a direction stands for others where it is left to [`SunSchedule::new`]: 1°, two diameters of the
+/// Angle within which a direction represents others where it is left to [`SunSchedule::new`]: 1°, two diameters of the
 /// sun.
 const USUAL_ANGLE: f64 = 0.017_453_292_519_943_295;
 
@@ -26,7 +26,7 @@ pub enum Binning {
     Within(f64),
 }
 
-/// A step of a day, and the direction that stands for its sun.
+/// A step of a day, and the direction that represents its sun.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LightStep {
     /// Hours on the clocks of the zone at its beginning, from the beginning of the date.
@@ -58,14 +58,14 @@ pub struct DayOfLight {
     pub possible_hours: f64,
 }
 
-/// Days of light, and the directions that stand for their suns.
+/// Days of light, and the directions that represent their suns.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SunSchedule {
     /// The days, in the order given.
     pub days: Vec<DayOfLight>,
     /// Unit vectors to the sun in the axes of the grid, (D, 3).
     pub directions: Vec<[f64; 3]>,
-    /// Greatest angle between a sun and the direction that stands for it, radians; 0 where each has its own.
+    /// Greatest angle between a sun and the direction that represents it, radians; 0 where each has its own.
     pub greatest_error: f64,
     /// Root of the mean squared angle, each step counting by its length, radians.
     pub rms_error: f64,
@@ -168,7 +168,7 @@ impl SunSchedule {
         self.days.iter().map(|day| day.possible_hours).sum()
     }
 
-    /// For each direction the hours that it stands for.
+    /// For each direction the hours that it represents.
     #[must_use]
     pub fn hours(&self) -> Vec<f64> {
         let mut hours = vec![0.0; self.directions.len()];

@@ -1,5 +1,5 @@
 //! Instants, dates and zones as people write them, by the crate `jiff` and the zones it holds: no file of the system is
-//! asked.
+//! read.
 
 use super::Site;
 use belvedere_data::{Error, Parameter, Result};
@@ -201,7 +201,7 @@ impl fmt::Display for Date {
 }
 
 /// An instant written by ISO 8601, as seconds of UTC since 1970: "2026-06-21T12:00+02:00", "2026-06-21T10:00Z",
-/// "2026-06-21T12:00[Europe/Amsterdam]", or with neither where a `zone` is given. A blank may stand for the T, seconds
+/// "2026-06-21T12:00[Europe/Amsterdam]", or with neither where a `zone` is given. A blank may replace the T, seconds
 /// may have a fraction, and a leap second 23:59:60 counts as the second before it, as UTC since 1970 has none.
 ///
 /// # Errors

@@ -24,8 +24,7 @@ pub const RULE_IS_MET: &str = "rule is met";
 
 /// Targets handed to a thread at once.
 const CHUNK: usize = 64;
-/// By how much the hours of a day may stay below what is asked and yet suffice, hours: what f32 rounds in a sum of
-/// steps.
+/// Tolerance of the required hours of a day, hours: the rounding of f32 in a sum of steps.
 const ROUNDING: f64 = 1e-4;
 
 /// The sun at each of many targets over the days of a [`SunSchedule`]; each array has a value for each target, (M).

@@ -1,4 +1,4 @@
-//! Suns of a period and of rules, asked about together, and the measures that follow.
+//! Suns of a period and of rules, computed together, and the measures that follow.
 
 use super::{RULE_IS_MET, SUN_HOURS, SunHours, SunHoursParams, SunRule, sun_hours, sun_hours_through_crowns};
 use crate::rows::{RowBlock, SkyObstacles, check_normals, fold_rows, normals_of};
@@ -20,7 +20,7 @@ pub struct PlannedRule {
     first_direction: usize,
 }
 
-/// What is asked about the sun: hours over a period, and rules.
+/// The requested results about the sun: hours over a period, and rules.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SunPlan {
     period: SunSchedule,
@@ -60,7 +60,7 @@ impl SunPlan {
         &self.rules
     }
 
-    /// Directions that targets must be asked about, unit vectors, (D, 3): those of the period first.
+    /// Directions for which targets are tested, unit vectors, (D, 3): those of the period first.
     #[must_use]
     pub fn directions(&self) -> &[[f64; 3]] {
         &self.directions

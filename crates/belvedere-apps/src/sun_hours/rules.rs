@@ -21,7 +21,7 @@ pub enum RuleDays {
 pub struct SunRule {
     /// Its name; as typed for rules of one's own.
     pub name: String,
-    /// What it asks for, and who says so.
+    /// What it requires, and its source.
     pub description: String,
     /// Days on which it must be met.
     pub days: RuleDays,
@@ -31,7 +31,7 @@ pub struct SunRule {
     pub min_elevation: f64,
 }
 
-/// A rule with a name: name, name of its column, days, hours, least elevation in degrees, what it asks for.
+/// A rule with a name: name, name of its column, days, hours, least elevation in degrees, what it requires.
 struct NamedRule(&'static str, &'static str, RuleDays, f64, f64, &'static str);
 
 const EIGHT_MONTHS: RuleDays = RuleDays::Each([[2, 19], [10, 21]]);

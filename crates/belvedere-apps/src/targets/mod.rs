@@ -1,5 +1,5 @@
-//! What is asked about: cells of a grid, points, pieces of a surface, places along routes and on windows, all as one
-//! type.
+//! Targets, for which results are computed: cells of a grid, points, pieces of a surface, places along routes and on
+//! windows, all as one type.
 //!
 //! | targets | made by |
 //! |---|---|
@@ -39,12 +39,12 @@ use std::ops::Range;
 /// Targets handed to a thread at once.
 const CHUNK: usize = 1024;
 
-/// Places that are asked about, and how they belong together.
+/// Places for which results are computed, and their groups.
 #[derive(Clone, Debug)]
 pub struct Targets {
     /// Where local coordinates lie.
     pub frame: Frame,
-    /// Local metres, (M, 3); NaN for a target that is not asked about.
+    /// Local metres, (M, 3); NaN for a target that is left out.
     pub positions: Vec<[f32; 3]>,
     /// Outward unit normals, (M, 3); `None` where targets are level.
     pub normals: Option<Vec<[f32; 3]>>,
@@ -74,7 +74,7 @@ impl Targets {
         Self::at(cloud.frame.clone(), cloud.positions.clone(), normals, TargetLayout::Points)
     }
 
-    /// Places in local metres, level; one that is not finite is not asked about.
+    /// Places in local metres, level; one that is not finite is left out.
     #[must_use]
     pub fn of_places(places: &[[f64; 3]], frame: Frame) -> Self {
         Self::at(frame, places.iter().map(|&place| to_f32(place)).collect(), None, TargetLayout::Points)
@@ -84,7 +84,7 @@ impl Targets {
         Self { frame, positions, normals, weights: Vec::new(), groups: Vec::new(), layout }
     }
 
-    /// Number of targets, those that are not asked about among them.
+    /// Number of targets, including those that are left out.
     #[must_use]
     pub fn len(&self) -> usize {
         self.positions.len()
@@ -96,13 +96,13 @@ impl Targets {
         self.positions.is_empty()
     }
 
-    /// Whether a target is asked about: it has a position.
+    /// Whether results are computed for a target: it has a position.
     #[must_use]
     pub fn is_target(&self, row: usize) -> bool {
         self.positions.get(row).is_some_and(|position| position.iter().all(|v| v.is_finite()))
     }
 
-    /// Number of targets that are asked about.
+    /// Number of targets that have a position.
     #[must_use]
     pub fn target_count(&self) -> usize {
         (0..self.len()).filter(|&row| self.is_target(row)).count()
@@ -125,7 +125,7 @@ impl Targets {
         Some(ground)
     }
 
-    /// Makes the values of targets that are not asked about NaN.
+    /// Makes the values of targets without a position NaN.
     pub fn clear_unasked(&self, values: &mut [f32]) {
         values.par_iter_mut().zip(&self.positions).with_min_len(CHUNK).for_each(|(value, position)| {
             if !position.iter().all(|v| v.is_finite()) {

@@ -34,7 +34,7 @@ impl Route {
 }
 
 impl Targets {
-    /// The places of `routes`, one group each, weighted by the length of route that they stand for; a place without a
+    /// The places of `routes`, one group each, weighted by the length of route that they represent; a place without a
     /// height has no weight.
     #[must_use]
     pub fn along_routes(routes: &[Route], frame: Frame) -> Self {
@@ -55,7 +55,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn places_of_a_route_weigh_the_length_they_stand_for() {
+    fn weights_of_places_of_a_route_are_the_lengths_they_represent() {
         let route = Route { places: vec![[0.0, 0.0, 1.0], [3.0, 4.0, 1.0], [3.0, 14.0, f64::NAN]] };
         assert_eq!((route.distances(), route.length()), (vec![0.0, 5.0, 15.0], 15.0));
         let single = Route { places: vec![[5.0, 5.0, 0.0]] };

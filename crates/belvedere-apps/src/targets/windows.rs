@@ -15,7 +15,7 @@ pub struct Window {
     pub azimuth: f64,
     /// Angle between the direction that it looks to and the zenith, radians: 0 looks up, π/2 is upright.
     pub tilt: f64,
-    /// Width and height, metres; `None` for one that is asked at its middle alone.
+    /// Width and height, metres; `None` for one whose only target is its middle.
     pub size: Option<[f64; 2]>,
     /// Its area, m², where it is a face.
     pub area: Option<f64>,
@@ -30,7 +30,7 @@ impl Window {
         Self { center, azimuth, tilt, size, area: None, face: None }
     }
 
-    /// The places at which it is asked, and its unit normal.
+    /// Its targets, and its unit normal.
     ///
     /// # Errors
     /// Those of [`window_places`].

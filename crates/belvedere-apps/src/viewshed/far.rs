@@ -33,7 +33,7 @@ fn is_beyond(scene: &MedialScene, node: [f64; 3]) -> bool {
 
 /// What `observers` see of the nodes of `terrain` that lie beyond the cloud of `scene`, at `height` metres above them,
 /// in the order of the nodes; control counts rows. The answers are those of [`MedialScene::far_sight_answer`];
-/// [`Answer::OutsideCloud`] for nodes over the cloud or without a height, which are not asked about, and
+/// [`Answer::OutsideCloud`] for nodes over the cloud or without a height, which are not tested, and
 /// [`Answer::OutsideView`] for what no observer is turned to. Masks are not kept.
 ///
 /// As for [`viewshed`](super::viewshed), an observer whose eye is not finite sees nothing, and from where a target is

@@ -162,8 +162,8 @@ pub fn viewshed(
     viewshed_among(scene, observers, targets, &TargetTree::new(targets), params, control)
 }
 
-/// The same for targets that are ordered in a tree already, which saves most of the time where the same ones are asked
-/// about again and again.
+/// The viewshed of targets that are ordered in a tree already, which saves most of the time where the same targets are
+/// queried again and again.
 ///
 /// # Errors
 /// Those of [`viewshed`], and [`Error::LengthMismatch`] for a tree of other targets.
@@ -215,7 +215,7 @@ const SMALL: usize = 1_000_000;
 /// Observers of a band of masks.
 const BAND: usize = 32;
 
-/// Targets in a tree, and how they are asked about.
+/// Targets in a tree, and the parameters of their queries.
 struct ViewshedTree<'a> {
     scene: &'a MedialScene,
     tree: &'a TargetTree,
@@ -362,7 +362,7 @@ fn add(result: &mut Viewshed, band: ObserverBand, masks: Masks) {
 ///
 /// # Errors
 /// As [`viewshed`], and for a ceiling below zero, and for an observer on far terrain: the terrain before it is not
-/// asked here.
+/// tested here.
 pub fn min_visible_heights(
     scene: &MedialScene,
     observers: &[Observer],
@@ -433,7 +433,7 @@ mod tests {
         let whole = ([0.0, 0.0], [100.0, 50.0]);
         assert_eq!(box_within_reach(whole, [([20.0, 20.0], 10.0), ([40.0, 30.0], 5.0)]), ([10.0, 10.0], [45.0, 35.0]));
         assert_eq!(box_within_reach(whole, [([20.0, 20.0], f64::INFINITY)]), whole);
-        // nobody is near: all of it is asked about
+        // no observer is near: the whole box remains
         assert_eq!(box_within_reach(whole, [([500.0, 20.0], 10.0)]), whole);
         assert_eq!(box_within_reach(whole, []), whole);
     }

@@ -12,7 +12,7 @@ pub struct Observer {
     pub limits: SightLimits,
 }
 
-/// Directions and distances that an observer looks at; what lies outside is not asked.
+/// Directions and distances that an observer looks at; targets outside are not tested.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SightLimits {
     /// From and to, radians clockwise from grid north: from 5.2 to 1 runs through north. `None`, the default: all

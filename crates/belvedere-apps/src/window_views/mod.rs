@@ -25,7 +25,7 @@ const STEEPEST_NORMAL: f32 = std::f32::consts::FRAC_1_SQRT_2;
 /// Kinds of what is seen.
 const KINDS: usize = SeenKind::ALL.len();
 
-/// What one window has before it. All is NaN for a window that is not asked about.
+/// What one window has before it. All is NaN for a window without a position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WindowView {
     /// Share of the half space before the window that is each of [`SeenKind::ALL`], by solid angle, 0 to 1; 1 together.
@@ -131,7 +131,7 @@ pub fn leave_out_walled_up(targets: &mut Targets, scene: &MedialScene, control: 
 }
 
 /// The figures of windows as measures: shares in percent, ranges in metres. Cosine-weighted shares have names that end
-/// in `_cos`; what is unproven is left out where `proof` says that pulses are not asked.
+/// in `_cos`; unproven shares are left out where `proof` says that lines of sight were not tested with pulses.
 #[must_use]
 pub fn view_measures(views: &[WindowView], proof: Proving) -> Vec<Measure> {
     let mut measures = Vec::new();
@@ -157,7 +157,7 @@ pub fn view_measures(views: &[WindowView], proof: Proving) -> Vec<Measure> {
     measures
 }
 
-/// Whether pulses were asked about lines of sight.
+/// Whether lines of sight were tested with pulses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Proving {
     /// They were.

@@ -1,4 +1,4 @@
-//! `belvedere demo`: a simulated town, everything done on it, and how right the answers are.
+//! `belvedere demo`: a simulated town, all computations on it, and the accuracy of the answers.
 
 use crate::arguments::{CloudInput, Demo, Global, UpChoice};
 use crate::pipeline;

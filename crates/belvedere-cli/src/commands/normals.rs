@@ -26,7 +26,7 @@ pub(crate) fn run(arguments: &NormalsArguments, global: &Global) -> Result<Summa
         pipeline::read(&arguments.input, &mut run)?
     };
     if matches!(parameters.orienting.orient, None | Some(OrientChoice::Auto)) {
-        // normals are asked for, so those of an earlier run do not stand in the way
+        // new normals are requested, so those of an earlier run are dropped
         cloud.attributes.normals = None;
     }
     if is_folder {

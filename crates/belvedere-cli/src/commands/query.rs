@@ -137,7 +137,7 @@ pub(super) fn text_rows_for(path: &Path, output: &Path, summary: &mut Summary) -
     Ok(None)
 }
 
-/// Answers by exact lines of sight, told apart by pulses where these are known.
+/// Answers by exact lines of sight, separated into proven and unproven by pulses where these are known.
 fn by_lines_of_sight(
     arguments: &Query,
     model: &SceneModel,

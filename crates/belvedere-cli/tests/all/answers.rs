@@ -123,7 +123,7 @@ fn a_run_fails_only_when_no_observer_is_left() {
     place.write("inside.csv", format!("x,y,z\n{0},{1},2.25\n{0},{1},3.25\n", EAST - 4.6, NORTH + 0.25));
     let all = ["observer 1 at", "observer 2 at", "inside an obstacle", "heights above them"];
     place.refusal(1, &format!("viewshed {HOUSE} --observers inside.csv --cell 2 -o a.tif"), &all);
-    // a target often is inside: what is asked is from where its place is seen
+    // a target is often inside an obstacle: the answer is from where its place is seen
     place.summary(&format!("viewshed {HOUSE} --target {},{},2.25 --cell 2 -o a.tif", EAST - 4.6, NORTH + 0.25));
 }
 

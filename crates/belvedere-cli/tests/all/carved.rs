@@ -43,7 +43,7 @@ fn carved_balls_know_light_from_shade_better_than_balls_cut_to_a_fixed_radius() 
     let mean = |errors: [f64; 2]| (errors[0] + errors[1]) / 2.0;
     assert!(mean(carved) < mean(fixed), "carved {carved:?}, cut to half a metre {fixed:?}");
     assert!(mean(carved) < 0.08, "{carved:?}");
-    // the scanner found from the pulses themselves serves as well as its trajectory, within half a percent
+    // the position of the scanner from the pulses is as accurate as its trajectory, within half a percent
     assert!((mean(found) - mean(carved)).abs() < 0.005, "{found:?} {carved:?}");
 }
 

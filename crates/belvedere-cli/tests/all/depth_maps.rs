@@ -115,7 +115,7 @@ fn the_item_buffer_names_rows_of_the_ball_file() {
         let (dx, dy) = (pixel[0] - center[0], pixel[1] - center[1]);
         let half_chord = (f64::from(radii[i]).powi(2) - dx * dx - dy * dy).max(0.0).sqrt();
         let expected = 20.0 - (center[2] + half_chord);
-        // the root near the rim of a ball magnifies the rounding of f32
+        // the root near the outline of a ball magnifies the rounding of f32
         assert!((expected - f64::from(depth)).abs() < 0.01, "ball {id}: {depth} for {expected}");
     }
     // a cloud names the rows of the ball file it would give
@@ -194,7 +194,7 @@ fn the_cone_of_the_paper_lies_behind_the_sphere() {
     let [sphere, cone] = depths;
     assert_ne!(sphere, cone);
     let nearer = sphere.iter().zip(&cone).filter(|(s, c)| **c < **s - 0.2).count();
-    // moved to the middle of a pixel, a cone may stand out at the rim of what is seen
+    // moved to the middle of a pixel, a cone may stand out at the border of what is seen
     assert!(nearer * 50 < sphere.len(), "{nearer} of {}", sphere.len());
     let farther = sphere.iter().zip(&cone).filter(|(s, c)| c > s).count();
     assert!(farther * 2 > sphere.len(), "{farther} of {}", sphere.len());

@@ -146,7 +146,7 @@ fn every_example_works_as_printed() {
         // what follows > is for the shell
         let line = example.split(" > ").next().unwrap();
         let words = words(line);
-        // a page is served until Ctrl-C: see the tests of `view`
+        // the server of a page runs until Ctrl-C: see the tests of `view`
         if !done.insert(words.clone()) || line.starts_with("view ") && !line.contains("--export") {
             continue;
         }

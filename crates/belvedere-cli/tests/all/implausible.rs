@@ -23,7 +23,7 @@ fn too_few_points_for_a_surface_are_refused_by_every_command() {
             place.refusal(1, &format!("{flags} line.xyz"), &["line.xyz: 50 points", "on one line"]);
         }
     }
-    // what is in the file is still told
+    // the content of the file is still reported
     assert_eq!(place.summary("info three.xyz")["points"], 3);
 }
 

@@ -36,7 +36,7 @@ fn info_reports_counts_bounds_density_and_unit() {
     assert_eq!(info["metres_per_unit"], 1.0);
     assert_eq!(numbers(&info["min_corner"]), [84_985.0, 445_985.0, -0.08]);
     assert_eq!(numbers(&info["max_corner"]), [85_015.0, 446_015.0, 8.813]);
-    // 30 m by 30 m; cells of a metre or two on the rim count as a whole
+    // 30 m by 30 m; cells of a metre or two on the border count as a whole
     let area = info["covered_ground_m2"].as_f64().unwrap();
     assert!((900.0..1100.0).contains(&area), "{area}");
     let density = info["points_per_m2_of_covered_ground"].as_f64().unwrap();

@@ -96,7 +96,7 @@ fn a_cleared_house_casts_no_shadow_and_another_can_replace_it() {
     let unlit: Vec<[f64; 3]> =
         (0..lit.len()).filter(|&i| lit[i] != 1.0).map(|i| [x[i] - EAST, y[i] - NORTH, lit[i]]).collect();
     assert!(unlit.is_empty() && lit.len() > 3500, "{unlit:?}");
-    // cells where it stood are asked about too
+    // cells where it stood are targets too
     let inside = x.iter().zip(&y).filter(|(x, y)| (**x - EAST).abs() < 4.0 && (**y - NORTH).abs() < 3.0).count();
     assert!(inside > 100, "{inside}");
     place.summary(&shadow.replace(&area, "class:6"));

@@ -255,7 +255,8 @@ fn the_points_of_the_cloud_keep_number_order_and_attributes_beside_their_answer(
         let columns: Vec<u8> = normal.iter().flat_map(|v| v.to_le_bytes()).chain([answers[i]]).collect();
         assert_eq!(point.extra_bytes, columns);
     }
-    // the north wall lies in the shadow of the house, the south wall in the sun; the rim of a wall may go either way
+    // the north wall lies in the shadow of the house, the south wall in the sun; at the border of a wall either answer
+    // is right
     let share = |north: f32| {
         let wall = (0..n).filter(|&i| cloud.positions[i][1] == north && cloud.positions[i][0].abs() < 4.0);
         let wall: Vec<u8> = wall.filter(|&i| (1.0..5.0).contains(&cloud.positions[i][2])).map(|i| answers[i]).collect();
@@ -295,7 +296,8 @@ fn the_cone_of_the_paper_blocks_less_than_the_sphere() {
     let [sphere, cone] = ["sphere", "paper-cone"].map(&mut answers);
     let blocked = |answers: &[u8]| answers.iter().filter(|&&a| a == BLOCKED).count();
     assert!(blocked(&cone) < blocked(&sphere), "{} and {}", blocked(&cone), blocked(&sphere));
-    // the cone lies inside its ball but is moved to the middle of a pixel: a rim of half a pixel may be blocked anew
+    // the cone lies inside its ball but is moved to the middle of a pixel: a border of half a pixel may be newly
+    // blocked
     let anew = sphere.iter().zip(&cone).filter(|&(&s, &c)| s == VISIBLE && c == BLOCKED).count();
     assert!(anew < sphere.len() / 200, "{anew} of {}", sphere.len());
 }

@@ -37,7 +37,7 @@ fn the_shadow_of_a_house_is_the_exact_one() {
                 continue;
             }
             // balls end up to half a metre beside edges where points stand half a metre apart: the outline itself is
-            // not asked
+            // not tested
             let hidden = |east: f64, north: f64| is_hidden([spot[0] + east, spot[1] + north, spot[2]], sun);
             let expected = hidden(0.0, 0.0);
             if [(-0.7, 0.0), (0.7, 0.0), (0.0, -0.7), (0.0, 0.7)].iter().any(|&(e, n)| hidden(e, n) != expected) {

@@ -43,7 +43,7 @@ fn an_airborne_survey_comes_with_all_that_one_delivers() {
     assert!(a.classification.as_ref().unwrap().iter().all(|class| [1, 2, 5, 6, 14, 17].contains(class)));
     assert_eq!(a.point_source_id.as_ref().unwrap().iter().max(), Some(&2));
     let pulses: f64 = a.return_count.as_ref().unwrap().iter().map(|&count| 1.0 / f64::from(count)).sum();
-    // 3 a square metre asked for; some 1 % are lost
+    // 3 per square metre are requested; some 1 % are lost
     assert!((pulses / 120.0 / 120.0 - 2.97).abs() < 0.15, "{pulses}");
     assert_eq!(pulses.round(), summary["pulses"]["pulses_recorded"].as_f64().unwrap());
 

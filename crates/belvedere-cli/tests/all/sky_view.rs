@@ -51,7 +51,7 @@ fn cells_and_points_see_as_much_sky_as_beside_the_exact_house() {
         for (found, expected) in [factor[i], openness[i]].into_iter().zip(exact(spot)) {
             assert!((found - expected).abs() < 0.03, "{spot:?}: {found} instead of {expected}");
         }
-        assert!((z[i] - 0.5).abs() < 0.2, "cells are asked above the ground: {}", z[i]);
+        assert!((z[i] - 0.5).abs() < 0.2, "targets of cells lie above the ground: {}", z[i]);
         queried += 1;
         min = min.min(openness[i]);
     }

@@ -193,7 +193,7 @@ fn what_cannot_be_answered_is_refused_in_words() {
 
     place.refusal(1, "view missing.laz --no-browser", &["missing.laz"]);
     place.refusal(2, "view town/cloud.laz --port 99999 --no-browser", &["--port"]);
-    // two tabs are served alike
+    // two tabs get the same page
     assert_eq!(page.request("GET", "", "").0, 200);
     assert_eq!(page.request("GET", "page.js", "").0, 200);
 }

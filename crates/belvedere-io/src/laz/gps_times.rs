@@ -20,7 +20,7 @@ const AFTER_MULTIPLES: u32 = 511;
 /// A sequence takes over a new difference after so many differences that no multiple describes well.
 const MAX_EXTREMES: u32 = 3;
 
-/// Whether a symbol stands for "the same time as before": formats 6 to 10 tell this elsewhere.
+/// Whether a symbol means "the same time as before": formats 6 to 10 store this elsewhere.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum SameTime {
     HasSymbol,

@@ -1,4 +1,4 @@
-//! Weather files: EPW, PVGIS, TMY3 and NSRDB, told apart by what stands in them.
+//! Weather files: EPW, PVGIS, TMY3 and NSRDB. The format is found from the content.
 //!
 //! | format | time of a row | the sun that goes with it |
 //! |---|---|---|

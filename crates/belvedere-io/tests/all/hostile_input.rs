@@ -340,7 +340,7 @@ fn absurd_las_headers_are_survived() {
 }
 
 #[test]
-fn laz_chunk_sizes_are_held_against_the_file() {
+fn laz_chunk_sizes_are_checked_against_the_file() {
     let mut trial = Trial::new();
     for file in valid_files().into_iter().filter(|file| Path::new(file.name).extension().is_some_and(|e| e == "laz")) {
         let start = usize::try_from(u32::from_le_bytes(file.bytes[96..100].try_into().unwrap())).unwrap();

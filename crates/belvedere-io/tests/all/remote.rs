@@ -99,7 +99,7 @@ fn servers_that_fail_or_lie_are_named_with_what_to_do() {
     let empty = WebServer::start([("cloud.las", Vec::new())], Manner::Parts);
     let error = read(&empty.address("cloud.las")).unwrap_err().to_string();
     assert!(error.contains("cloud.las"), "{error}");
-    // damage is told as it is of files on the disk
+    // damage is reported as for files on the disk
     for bytes in [&large[..1000], &large[..large.len() / 2]] {
         let cut = WebServer::start([("cloud.las", bytes.to_vec())], Manner::Parts);
         let outcome = |source: Source<'_>| match read_cloud([source], &ReadOptions::default(), &Control::none()) {

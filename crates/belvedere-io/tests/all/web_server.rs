@@ -9,15 +9,15 @@ use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 /// How a server answers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Manner {
-    /// The part that is asked for.
+    /// The requested part.
     Parts,
-    /// The whole file, whatever is asked for, as Python's `http.server` does.
+    /// The whole file for any request, as Python's `http.server` does.
     Whole,
-    /// A part that was not asked for.
+    /// A part that was not requested.
     AnotherPart,
     /// Every part of another version of the file.
     Changing,
-    /// In compressed form, although nobody asked for that.
+    /// In compressed form, although this was not requested.
     Compressed,
     /// The first answer to each part is this status.
     FirstStatus(u16),

@@ -5,8 +5,8 @@ use crate::figures::{MapLegend, MapPicture, Picture, map_picture};
 use crate::io::Georeference;
 use crate::raster::Raster;
 
-/// Colours of losses and gains from small to large: blue and orange, which people with any colour vision tell apart,
-/// and which grow darker, so that they differ in print too.
+/// Colours of losses and gains from small to large: blue and orange, which people with any colour vision can
+/// distinguish, and which grow darker, so that they differ in print too.
 ///
 /// # Source
 /// Brewer, ColorBrewer 2.0, PuOr with its purples turned blue.

@@ -153,7 +153,7 @@ fn balls_made_ready_once_give_the_bits_of_balls_made_ready_anew() {
         scene(&rule).visibility_matrix(targets, directions, &Control::none()).unwrap()
     };
     assert!(whole == anew(&targets, &directions));
-    // blocks of targets and fewer directions, asked of what is there
+    // blocks of targets and fewer directions, tested with the prepared scene
     for (number, block) in targets.chunks(400).enumerate() {
         let rows = kept.visibility_matrix(block, &directions, &Control::none()).unwrap();
         assert!((0..block.len()).all(|row| rows.row(row) == whole.row(400 * number + row)), "block {number}");
@@ -234,6 +234,6 @@ fn what_is_cancelled_stops() {
         scene.query_view(&view, &targets, &control).err(),
     ];
     assert!(errors.iter().all(|error| matches!(error, Some(Error::Cancelled))), "{errors:?}");
-    // and what was stopped can be asked again
+    // and a query that was stopped can be repeated
     assert!(scene.visibility_matrix(&targets, &directions, &Control::none()).is_ok());
 }

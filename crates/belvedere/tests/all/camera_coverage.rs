@@ -55,7 +55,7 @@ fn on_an_open_plain_a_camera_covers_a_sector_between_two_radii() {
         let camera = Camera::fixed([0.0, 0.0, height], heading, 0.0, &lens, [5.0, f64::INFINITY]);
         let found = area(camera, Level::Detect.pixels_per_metre());
         let expected = FRAC_PI_4 * (far - 25.0);
-        // a rim of 150 m cuts 0.2 m cells at random: some 4 m² at four deviations
+        // an outline of 150 m cuts 0.2 m cells at random: some 4 m² at four deviations
         assert!((found - expected).abs() < 4.0, "{heading}: {found} {expected}");
     }
     let turning = Camera::turning([0.0, 0.0, height], &lens, SightLimits::default());

@@ -1,5 +1,5 @@
-//! Pulses as needles and balls cut by them, against every pulse tried in turn at dense samples, and against closed
-//! forms.
+//! Free segments of pulses and balls cut by them, compared with every pulse tried in turn at dense samples, and with
+//! closed forms.
 #![expect(clippy::cast_possible_truncation, reason = "test places within a hundred metres in f32")]
 
 use belvedere::control::Control;
@@ -60,7 +60,7 @@ fn pencil(i: u64) -> Tangent {
     Tangent { point: point.map(|v| v as f32), inward: direction.map(|v| (v / length) as f32), margin: 0.02 }
 }
 
-/// Least radius of the balls of a pencil that touch one of many places along the needles, in f64.
+/// Least radius of the balls of a pencil that touch one of many places along the free segments, in f64.
 fn brute_force(tangent: &Tangent, returns: &[[f32; 3]], scanner: &[[f32; 3]], params: &FreeSegmentParams) -> f64 {
     let top = returns.iter().map(|p| p[2]).fold(f32::NEG_INFINITY, f32::max) + params.headroom;
     let inward = tangent.inward.map(f64::from);
@@ -110,8 +110,8 @@ fn the_ball_that_no_pulse_enters_is_that_of_all_pulses_tried_in_turn() {
             let found = free_segments.smallest_tangent_ball(&tangent, 12.0);
             if let Some(radius) = found {
                 cut_count += 1;
-                // ends of needles are f32, off by 1e-5 m, which a ball of the pencil magnifies where the needle grazes
-                // its plane
+                // ends of free segments are f32, off by 1e-5 m, which a ball of the pencil magnifies where the segment
+                // grazes its plane
                 let off = (f64::from(radius) - expected).abs();
                 assert!(off < 1e-3 + 1e-3 * expected, "pencil {i}: {radius} instead of {expected}");
             } else {
@@ -128,7 +128,7 @@ fn a_ball_beside_a_curtain_of_pulses_shrinks_to_the_closed_form() {
     // there
     let returns: Vec<[f32; 3]> = (-200..=200).map(|i| [3.0, 0.05 * i as f32, -20.0]).collect();
     let scanner: Vec<[f32; 3]> = returns.iter().map(|p| [p[0], p[1], 500.0]).collect();
-    // one return high up, so that needles reach past the balls
+    // one return high up, so that free segments reach past the balls
     let (returns, scanner) =
         ([returns, vec![[50.0, 50.0, 30.0]]].concat(), [scanner, vec![[50.0, 50.0, 500.0]]].concat());
     let (free_segments, _) =

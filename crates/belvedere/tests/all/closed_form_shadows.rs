@@ -15,7 +15,7 @@ use std::f64::consts::TAU;
 
 /// Azimuth and elevation, degrees: morning, high, and low in the evening, none along a side of anything here.
 const SUNS_DEG: [[f64; 2]; 3] = [[110.0, 20.0], [170.0, 62.0], [245.0, 35.0]];
-/// How far above the ground shade is asked for, metres: what lies on a surface is asked from just outside of it.
+/// Height of targets above the ground, metres: a target on a surface is tested from just outside of it.
 const LIFT: f64 = 0.02;
 
 /// Whether the sun is hidden from a place, by a formula.

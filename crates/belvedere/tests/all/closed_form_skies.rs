@@ -1,5 +1,5 @@
 //! Sky view factor and openness where they are formulas: street canyons, basins, tilted planes; and how well directions
-//! stand for the sky.
+//! represent the sky.
 #![expect(clippy::cast_possible_truncation, reason = "test places within a few hundred metres in f32")]
 
 use belvedere::apps::sky_view::{SkyDirections, SkyView, sky_view};
@@ -49,7 +49,7 @@ fn canyon(width: f64, heights: [f64; 2]) -> MedialScene {
     MedialScene::new(&balls, &BlockRule::default()).unwrap()
 }
 
-/// Round basin whose rim lies `radius` metres off at height `edge`.
+/// Round basin whose edge lies `radius` metres off at height `edge`.
 fn basin(radius: f64, edge: f64) -> MedialScene {
     let mut balls = MedialBalls::default();
     for (beyond, z, ball) in corner_balls(edge, 2.0 * edge) {
@@ -152,7 +152,7 @@ fn tilted_free_planes_see_what_their_tilt_leaves() {
 }
 
 /// Root mean square errors over 400 canyons of sky view factor and openness on the floor and of the sky view factor of
-/// walls, from directions asked of the exact horizon.
+/// walls, from directions tested with the exact horizon.
 fn errors_of_directions(count: usize) -> [f64; 3] {
     let sky = SkyDirections::even(count).unwrap();
     let mut squares = [0.0; 3];

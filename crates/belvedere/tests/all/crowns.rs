@@ -185,7 +185,7 @@ fn without_classes_a_bush_is_separated_from_a_roof() {
     let mut cloud = roof_and_bush();
     let bush = cloud.len() - 1600;
     let found = carved(&cloud, &trees(Trees::Porous));
-    // points of a ball have no plane about them: most of it is told, nothing of the roof
+    // points of a ball have no plane about them: most of the bush is found, nothing of the roof
     assert!(
         found.report.count("points_found_to_be_vegetation") > bush * 6 / 10,
         "{} of {bush}",

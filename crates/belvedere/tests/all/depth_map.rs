@@ -64,8 +64,8 @@ fn exact_depth(balls: &MedialBalls, view: &View, pixel: [usize; 2], grown: f64) 
 #[test]
 fn sphere_depths_equal_the_formula_at_every_pixel() {
     let balls = mixed(900, 3);
-    // offsets and depths of up to 100 m are f32, good to 1e-5 m: at a rim that turns into any depth, but never into
-    // more than balls larger or smaller by that much would show
+    // offsets and depths of up to 100 m are f32, good to 1e-5 m: at the edge of a ball this changes the depth by any
+    // amount, but never into more than balls larger or smaller by that much would show
     let room = 2e-5;
     for view in views() {
         let map = depth_map(&balls, &view, Profile::Sphere, ItemBuffer::With, &Control::none()).unwrap();
@@ -151,7 +151,7 @@ fn one_sphere_seen_from_above_has_the_depth_of_a_sphere() {
             area += if depth.is_finite() { 0.01 } else { 0.0 };
         }
     }
-    // pixel counting of a disc of 40 pixels radius is good to about its rim times a tenth of a pixel
+    // pixel counting of a disc of 40 pixels radius is good to about its circumference times a tenth of a pixel
     assert!((area - std::f64::consts::PI * 16.0).abs() < 0.25, "{area}");
 }
 

@@ -92,7 +92,7 @@ fn heights_say_how_far_the_next_ground_point_is() {
     let (height, gap) = at([25.0, 30.0]).unwrap();
     // linear across the hole; the middle of the cell is at 25.5
     assert!((height - 2.55).abs() < 1e-4 && (gap - 6.5).abs() < 0.6, "{height} {gap}");
-    // beyond the reach, and beyond the rim of the survey
+    // beyond the reach, and beyond the border of the survey
     assert!(at([30.0, 30.0]).unwrap().0.is_nan() && at([70.0, 30.0]).unwrap().0.is_nan());
     assert!(at([63.0, 30.0]).unwrap().0.is_finite());
     assert!((ground.height_at([10.25, 5.25]).unwrap() - 1.025).abs() < 1e-4);

@@ -91,7 +91,7 @@ fn what_floats_above_a_gap_is_the_horizon_and_a_roof_overhead_hides_the_zenith()
         scene_of(&[north, floating]).skyline([0.0; 3], 4, &EarthParams::flat(), &Control::none()).unwrap()[0].elevation;
     assert!((low - 0.05f64.asin()).abs() < 1e-7);
     assert!((high - (0.75f64.atan() + (0.2f64 / 25.0).asin())).abs() < 1e-7);
-    // above the eye, a little to the north: its rim reaches over the zenith into the south
+    // above the eye, a little to the north: its edge reaches over the zenith into the south
     let roof =
         scene_of(&[([0.0, 1.0, 5.0], 3.0)]).skyline([0.0; 3], 4, &EarthParams::flat(), &Control::none()).unwrap();
     assert_eq!(roof.iter().map(|p| p.elevation == FRAC_PI_2).collect::<Vec<_>>(), [true; 4]);

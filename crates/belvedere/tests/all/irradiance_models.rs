@@ -10,7 +10,7 @@ use belvedere::weather::Irradiance;
 use std::collections::HashMap;
 use std::f64::consts::PI;
 
-/// What the issue asks for: a thousandth.
+/// Accepted relative error: a thousandth.
 const SHARE: f64 = 1e-3;
 /// Radiation that nobody measures, W/m²: below it a share says nothing.
 const FLOOR: f64 = 0.01;

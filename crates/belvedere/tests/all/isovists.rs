@@ -107,7 +107,7 @@ fn a_ball_takes_its_cap_from_the_openness_and_its_cone_from_the_volume() {
     let found = isovist(&scene, [0.0; 3], &params, &Control::none()).unwrap();
     let half = (radius / distance).asin();
     let cap = (1.0 - half.cos()) / 2.0;
-    // cells of a quarter degree along a rim of 24°: a few thousandths
+    // cells of a quarter degree along an outline of 24°: a few thousandths
     near(1.0 - found.openness, cap, 5e-3);
     near(1.0 - found.sky_openness, cap, 5e-3);
     // range to the ball at an angle a: d cos a − √(r² − d² sin² a); volume by the midpoint rule over 20 000 rings

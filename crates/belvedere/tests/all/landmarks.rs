@@ -62,8 +62,8 @@ fn a_screen_that_hides_the_west_half_leaves_half_of_everything() {
     let screen = scene(&[([-20.0, -70.0, 0.0], 20.0)]);
     let eye = [0.0, -distance, 0.0];
     let view = landmark_view(&screen, &wall(0.25), eye, &LandmarkParams::default());
-    // at the height h of the wall a line of sight passes 0.3 h above the ball's middle, where its rim has drawn back by
-    // (0.3 h)² / 40 m; thrown on the wall that is (h / 3.65)² / 10 m, 0.06 m on average
+    // at the height h of the wall a line of sight passes 0.3 h above the ball's middle, where its outline has moved
+    // back by (0.3 h)² / 40 m; thrown on the wall that is (h / 3.65)² / 10 m, 0.06 m on average
     assert!(view.visible_share() > 0.49 && view.visible_share() < 0.53, "{}", view.visible_share());
     near(view.solid_angle / view.visible_area, 1.0 / (distance * distance), 5e-3);
     near(view.horizontal_extent, (5.0 / distance).atan(), 0.12);

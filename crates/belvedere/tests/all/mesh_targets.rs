@@ -165,7 +165,7 @@ fn unproven_and_outside_are_not_visible_and_wrong_viewers_are_refused() {
 }
 
 #[test]
-fn points_stand_for_the_surface_between_them() {
+fn points_represent_the_surface_between_them() {
     // a wall of 8 m by 8 m with a point every 0.25 m, off the grid by up to a third of that
     let shift = |seed, i| 0.16 * (belvedere::random::uniform(seed, i) - 0.5);
     #[expect(clippy::cast_possible_truncation, reason = "test places in f32")]
@@ -174,7 +174,7 @@ fn points_stand_for_the_surface_between_them() {
         .collect();
     let surface = SurfacePieces::of_points(&points, &vec![[0.0, 1.0, 0.0]; 1024], 1.0, &Control::none()).unwrap();
     assert_eq!((surface.sides, surface.pieces.len()), (Sides::Both, 1024));
-    // 1024 cells of 0.0625 m²; at the rim neighbours lie farther, and those of a grid nearer than by chance
+    // 1024 cells of 0.0625 m²; at the border neighbours lie farther, and those of a grid nearer than by chance
     assert!((surface.area() / 64.0 - 1.0).abs() < 0.2, "{}", surface.area());
     for piece in &surface.pieces {
         let [a, b, c] = piece.corners.map(|corner| corner.map(f64::from));

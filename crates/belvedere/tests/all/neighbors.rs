@@ -112,7 +112,8 @@ fn every_search_equals_brute_force_on_every_cloud() {
     }
 }
 
-/// The same radius in f64 straight from the formula, over all points, and the squared chord to the point that decides it.
+/// The same radius in f64 straight from the formula, over all points, and the squared chord to the point that decides
+/// it.
 fn tangent_ball_by_brute_force(points: &[[f32; 3]], t: &Tangent, max_radius: f32) -> (f64, f64) {
     points
         .iter()

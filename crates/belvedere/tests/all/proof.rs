@@ -88,7 +88,7 @@ fn nearness_of_pulses_equals_that_of_every_pulse_tried_in_turn() {
         for i in 0..1500 {
             let point = random_point(8, i);
             let expected = distance(point, &segments);
-            // needles are kept as f32, which moves their ends by micrometres
+            // free segments are kept as f32, which moves their ends by micrometres
             for (reach, is_near) in [(expected + 1e-4, true), (expected - 1e-4, false), (1.2, expected < 1.2)] {
                 assert_eq!(index.passes_within(point, reach), is_near, "{point:?} at {reach}, distance {expected}");
             }
@@ -159,7 +159,7 @@ fn unproven_lengths_are_those_of_dense_samples() {
 
 #[test]
 fn a_line_beside_one_pulse_is_seen_along_a_chord_of_its_cylinder() {
-    // a vertical needle over the origin, and two returns so low and far that they only make the survey larger
+    // a vertical free segment over the origin, and two returns so low and far that they only make the survey larger
     let returns = [[0.0, 0.0, 0.0], [-40.0, -40.0, 0.0], [40.0, 40.0, 0.0]];
     let scanner = returns.map(|p: [f32; 3]| [p[0], p[1], 500.0]);
     let single = |beside| {
@@ -180,7 +180,7 @@ fn a_line_beside_one_pulse_is_seen_along_a_chord_of_its_cylinder() {
     for beside in [0.0, 0.3, 0.69, 0.71] {
         let found = proof.unproven_length([-10.0, beside, 5.0], [1.0, 0.0, 0.0], 20.0);
         let chord = 2.0 * (0.49 - beside * beside).max(0.0).sqrt();
-        // rounding of f32 at the rim of the cylinder
+        // rounding of f32 at the surface of the cylinder
         assert!((found - (20.0 - chord)).abs() < 1e-5, "{beside}: {found}");
     }
     // a slope of one in one below the top at 20 m, of which the last 10 m lie above it
@@ -188,7 +188,7 @@ fn a_line_beside_one_pulse_is_seen_along_a_chord_of_its_cylinder() {
     let free = proof.unproven_length([5.0, 0.0, 10.0], up, 20.0 * 2f64.sqrt());
     assert!((free - 10.0 * 2f64.sqrt()).abs() < 1e-5, "{free}");
     assert_eq!(proof.unproven_length([5.0, 0.0, 10.0], up, f64::INFINITY), free);
-    // 10 m to the rim at 40 m, 20 m beyond
+    // 10 m to the border at 40 m, 20 m beyond
     let east = [1.0, 0.0, 0.0];
     assert!((proof.unproven_length([30.0, 10.0, 5.0], east, 30.0) - 10.0).abs() < 1e-5);
     let all = single(Beside::Unseen);
@@ -279,7 +279,7 @@ fn answers_depend_on_neither_threads_nor_the_order_of_pulses() {
 #[test]
 fn pulses_as_columns_come_back_within_millimetres_and_then_the_same() {
     let (returns, scanner) = survey(900);
-    // some scanners lower than the highest return: their needles end early
+    // some scanners lower than the highest return: their free segments end early
     let mut low = scanner.clone();
     low.iter_mut().step_by(7).zip(returns.iter().step_by(7)).for_each(|(s, p)| *s = [p[0], p[1] + 1.0, p[2] + 3.0]);
     let ground = survey_from_the_ground(900);

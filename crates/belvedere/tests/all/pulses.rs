@@ -94,7 +94,7 @@ fn what_is_no_pulse_is_counted_and_left_out() {
         // two pulses at one time
         (1, 7.0, 1, 2, 4.0),
         (1, 7.0, 1, 2, 5.0),
-        // two that their numbers of returns tell apart
+        // two that differ in their numbers of returns
         (1, 8.0, 1, 2, 4.0),
         (1, 8.0, 1, 1, 5.0),
         (1, 8.0, 2, 2, 4.5),

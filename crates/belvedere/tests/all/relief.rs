@@ -85,7 +85,7 @@ fn a_low_wall_hides_what_is_behind_it_below_its_points() {
     let survey = survey(HEIGHT);
     let share = |relief| blocked_share(&survey, &balls(&survey, relief));
     let [without, with] = [share(None), share(Some(ReliefParams::default()))];
-    // pulses pass some points at the rims so closely that nothing fits below them
+    // pulses pass some points at the edges so closely that nothing fits below them
     assert!(with > 0.95 && with > without + 0.1, "{without} {with}");
 }
 
@@ -104,7 +104,7 @@ fn what_fills_lies_in_the_wall_and_no_pulse_enters_it() {
             let length = sight.iter().map(|v| v * v).sum::<f64>().sqrt();
             let up = sight.map(|v| v / length);
             let along: f64 = (0..3).map(|k| (center[k] - p[k]) * up[k]).sum();
-            // needles begin 0.05 m above their returns
+            // free segments begin 0.05 m above their returns
             let nearest: [f64; 3] = std::array::from_fn(|k| p[k] + up[k] * along.max(0.05));
             let distance = (0..3).map(|k| (center[k] - nearest[k]).powi(2)).sum::<f64>().sqrt();
             // positions are rounded to micrometres, and directions turn by 1e-7 over metres

@@ -45,7 +45,7 @@ fn tilt_azimuth_and_area_of_a_house_are_found() {
         let planes = roof_planes(&house(density), &RoofPlaneParams::default(), &Control::none()).unwrap();
         assert_eq!(planes.len(), 3, "{density}: {planes:?}");
         let side = 12.0 * 4.0 / 40f64.to_radians().cos();
-        // points end half their distance before the rim, which takes a share off; cells of a metre round the rest
+        // points end half their distance before the edge, which makes the area smaller; cells of a metre round the rest
         let tolerance = |area: f64| 0.1 * area;
         for plane in &planes[..2] {
             assert!((plane.tilt().to_degrees() - 40.0).abs() < 1.0, "{}", plane.tilt().to_degrees());
@@ -79,7 +79,7 @@ fn cells_lie_in_their_plane_in_level_rows() {
 
 #[test]
 fn area_is_that_of_a_turned_rectangle() {
-    // rims that run across the cells
+    // edges that run across the cells
     for turn in [0.0, 17.0, 45.0_f64] {
         let (sin, cos) = turn.to_radians().sin_cos();
         #[expect(clippy::cast_possible_truncation, reason = "local metres")]
@@ -92,7 +92,7 @@ fn area_is_that_of_a_turned_rectangle() {
             .collect();
         let planes = roof_planes(&turned, &RoofPlaneParams::default(), &Control::none()).unwrap();
         assert_eq!(planes.len(), 1);
-        // cells at the rim are chance: a twentieth of 126 m²
+        // cells at the edge are chance: a twentieth of 126 m²
         assert!((planes[0].area - 126.0).abs() < 6.3, "{turn}: {}", planes[0].area);
     }
 }

@@ -1,4 +1,4 @@
-//! Rows of the visibility matrix as a stream: the same whatever the blocks, and stopped where that is asked for.
+//! Rows of the visibility matrix as a stream: the same for any blocks, and stopped where that is requested.
 
 use belvedere::apps::exposure::{ShadeAtEachSun, scene_exposure, shaded_shares};
 use belvedere::apps::rows::{Obstacles, fold_blocks, fold_rows};
@@ -144,7 +144,7 @@ fn a_sun_without_obstacles_lights_all_and_one_below_the_horizon_nothing() {
     assert!(shaded[0].contains(&0.0) && shaded[0].contains(&1.0), "{shaded:?}");
 }
 
-/// Cancels once it was asked so many times.
+/// Cancels after so many checks.
 struct CancelDuringRows(AtomicUsize);
 
 impl Watcher for CancelDuringRows {

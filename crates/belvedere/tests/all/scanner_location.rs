@@ -143,7 +143,7 @@ fn where_angles_say_nothing_pulses_with_several_returns_locate_the_scanner() {
     assert!(report.angle_parts.iter().all(|part| part.verdict == AngleVerdict::Contradicted), "{report:?}");
 }
 
-/// Positions for all points, told by the angles of single returns.
+/// Positions for all points, found from the angles of single returns.
 fn locate_singles(cloud: &PointCloud) -> Vec<[f32; 3]> {
     let (_, report) = found(&singles(cloud));
     let attributes = &cloud.attributes;

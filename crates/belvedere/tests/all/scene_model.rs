@@ -222,7 +222,7 @@ fn reports_use_keys_with_units_and_rounded_numbers() {
     }
 }
 
-/// Stops the work when it has asked so many times whether to go on.
+/// Stops the work after so many checks for cancellation.
 struct StopAfterChecks {
     checks: AtomicUsize,
     patience: usize,

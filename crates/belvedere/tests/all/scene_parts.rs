@@ -105,7 +105,7 @@ fn a_whole_that_is_built_as_its_own_part_is_nearly_what_it_is_without_statistics
     let cloud = survey();
     let with = ModelParams::default().with_statistics(Some(Arc::new(statistics(&cloud))));
     let far = [[-1e6; 2], [1e6; 2]];
-    // positions on a path of the facts are rounded in another way than those that are estimated with it
+    // positions on a path from the statistics are rounded differently from those that are estimated with the path
     let in_millimetres = |params: &ModelParams| {
         let balls = balls_in(&model_of(&cloud, params), &cloud, far[0], far[1]).into_iter();
         let mut balls: Vec<_> =

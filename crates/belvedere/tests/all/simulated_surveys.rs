@@ -219,7 +219,7 @@ fn info_reports_density_multi_returns_and_facade_density_as_the_simulation_knows
         let scan = scan_airborne(&scene, &params.spread_over(&scene, None, density));
         let cloud = cloud_of(&scan);
         let statistics = CloudSummary::of(&cloud, &Control::none()).unwrap();
-        // Cells on the rim count as a whole; they are a metre wide.
+        // Cells on the border count as a whole; they are a metre wide.
         assert!((statistics.occupied_area / 4e4 - 1.0).abs() < 0.03, "{}", statistics.occupied_area);
         assert!((statistics.density * statistics.occupied_area / scan.len() as f64 - 1.0).abs() < 1e-9);
         let pulses = statistics.pulses.unwrap();

@@ -146,7 +146,7 @@ fn the_clearance_is_a_millimetre_less_than_the_distance_to_the_nearest_of_all_fr
     for i in 0..300 {
         let at = |k: u64, low: f64, high: f64| low + (high - low) * uniform(7, 3 * i + k);
         let center = [at(0, -1.0, 21.0), at(1, -6.0, 6.0), at(2, -0.5, 5.0)];
-        // distance to each needle in f64, its ends included
+        // distance to each free segment in f64, its ends included
         let mut min = 0.501_f64;
         for (p, s) in cloud.positions.iter().zip(&scanner) {
             let (p, s) = (p.map(f64::from), s.map(f64::from));
@@ -162,7 +162,7 @@ fn the_clearance_is_a_millimetre_less_than_the_distance_to_the_nearest_of_all_fr
         // balls stay a millimetre clear of pulses
         let expected = min - 0.001;
         let found = free_segments.clearance(center.map(|v| v as f32), 0.5);
-        // ends and directions of needles are f32: a hundredth of a millimetre at these distances
+        // ends and directions of free segments are f32: a hundredth of a millimetre at these distances
         assert!((f64::from(found) - expected.max(0.0)).abs() < 1e-4, "{center:?}: {found} instead of {expected}");
     }
 }

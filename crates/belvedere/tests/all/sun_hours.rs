@@ -73,7 +73,7 @@ fn a_ball_before_the_sun_takes_its_width_in_hours() {
         let schedule = SunSchedule::new(&days, Binning::Auto).unwrap();
         let found = hours_at(&blockers, &schedule, &[[0.0; 3]], None);
         let possible = days[0].possible_hours();
-        // the sun of a step stands for it: each edge of the shadow errs by half a step at most; the declination moves
+        // the sun of a step represents it: each edge of the shadow errs by half a step at most; the declination moves
         // 0.1° within the 2 hours
         let tolerance = step / 3600.0 + 0.01;
         let [hours, longest, share] = [found.hours[0], found.longest[0], found.share[0]].map(f64::from);

@@ -202,7 +202,7 @@ fn parameters_out_of_range_are_refused() {
 }
 
 #[test]
-fn simplify_leaves_the_density_the_feature_size_asks_for_and_repeats_itself() {
+fn simplify_leaves_the_density_of_the_feature_size_and_repeats_itself() {
     // 100 x 100 points, 1 m apart in cells of 10 m: 100 a cell; A / (ε·m)² = 100 / (0.4 · 5)² = 25 are to stay
     let points: Vec<[f32; 3]> = (0..10_000).map(|i| [(i % 100) as f32, (i / 100) as f32, 0.0]).collect();
     let sizes = vec![5.0; points.len()];

@@ -33,7 +33,7 @@ fn gable([x, y]: [f64; 2]) -> f64 {
     if x.abs() < HALF && y.abs() < HALF { EAVES + HALF - x.abs() } else { 0.0 }
 }
 
-/// Errors at the middles of cells whose distance to eaves and rims is at least `away` metres.
+/// Errors at the middles of cells whose distance to eaves and borders is at least `away` metres.
 fn errors(found: &Raster<f32>, ground: &Ground, away: f64) -> Vec<f64> {
     let grid = ground.grid;
     let mut errors = Vec::new();

@@ -114,7 +114,7 @@ fn balls_queried_part_by_part_give_the_bits_of_all_at_once() {
         }
         assert!(free.into_matrix() == expected, "{count} parts");
     }
-    // what is not asked about stays free
+    // directions that are not tested stay free
     let mut free = FreeLines::new(&targets, &directions).unwrap();
     free.hide_behind_balls(&scene(&balls), &[70, 3], &none).unwrap();
     let matrix = free.clone().into_matrix();
@@ -175,6 +175,6 @@ fn few_lines_near_distant_balls_have_the_bits_of_many() {
         wall.push(0, far.centers[i], far.radii[i], 0);
     }
     assert!(found == scene(&wall).visibility_matrix(&targets, &directions, &none).unwrap());
-    // a tenth of 240 000 lines, below which they are asked one by one
+    // a tenth of 240 000 lines, below which they are tested one by one
     assert!(past_wall < 24_000 && count(&found) < past_wall * 9 / 10, "{past_wall}, {}", count(&found));
 }

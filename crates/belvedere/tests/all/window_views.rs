@@ -201,7 +201,7 @@ fn facade_windows(exact: &TriangleScene, truth: &Truth, origin: [f64; 3], count:
     windows
 }
 
-/// The view of exact rays in `directions` from the place that a window is asked at, with the mean range of things.
+/// The view of exact rays in `directions` from the place at which a window is tested, with the mean range of things.
 fn exact_view(
     exact: &TriangleScene,
     truth: &Truth,

@@ -115,7 +115,7 @@ impl CameraOutput<'_> {
         Ok(Some(area))
     }
 
-    /// The number of cameras of each cell; none where nothing is asked.
+    /// The number of cameras of each cell; `None` for a cell that does not count.
     fn counts(&self) -> impl Iterator<Item = Option<u32>> + '_ {
         (0..self.found.targets.len()).map(|row| self.found.count(row))
     }

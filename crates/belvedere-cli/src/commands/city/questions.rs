@@ -15,7 +15,7 @@ use belvedere::crs::Crs;
 use belvedere::io::{read_geojson, read_horizon, read_mesh, read_tif, read_weather};
 use belvedere_tiles::{CellSizes, Plan, SideFile, TileQuestion, TileRadiation, Topic};
 
-/// Refuses what cannot be asked, before the survey is read.
+/// Refuses questions that cannot be answered, before the survey is read.
 pub(super) fn check(arguments: &CityPlan) -> Result<()> {
     let usage = |text: &str| Err(Usage(text.to_owned()).into());
     let has_suns = !arguments.suns.is_empty() || !arguments.times.is_empty();
@@ -61,7 +61,7 @@ pub(super) fn check(arguments: &CityPlan) -> Result<()> {
     radiation::check_linke(arguments.clear_sky, &arguments.model)
 }
 
-/// Sides of cells, for kinds of results that are asked for.
+/// Sides of cells, for the requested kinds of results.
 pub(super) fn cells(arguments: &CityPlan) -> Result<CellSizes> {
     let mut cells = CellSizes::all(arguments.cell);
     let mut given = Vec::new();

@@ -1,4 +1,4 @@
-//! The server of `belvedere view`, asked as the page asks it.
+//! The server of `belvedere view`, queried with the requests of its page.
 
 use super::Workplace;
 use serde_json::Value;
@@ -7,7 +7,7 @@ use std::net::TcpStream;
 use std::process::{Child, Stdio};
 use std::time::{Duration, Instant};
 
-/// A program that serves a page; ended when the test is over.
+/// A program that runs the server of a page; it is ended after the test.
 pub(crate) struct Page {
     pub(crate) program: Child,
     pub(crate) host: String,
