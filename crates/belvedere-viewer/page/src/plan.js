@@ -25,12 +25,12 @@ page.when = "after";
 
 const isEmpty = ({ clear, buildings, meshes }) => !clear.length && !buildings.length && !meshes.length;
 // Number of the plan that questions are about, and whether they are also about the scene before it.
-export const planAsked = () => (page.planned && page.when !== "before" ? page.planned.plan : null);
+export const planInUse = () => (page.planned && page.when !== "before" ? page.planned.plan : null);
 export const isChange = () => page.planned !== null && page.when === "change";
 
 // What of the plan is seen: its buildings, and the points that it clears.
 function show() {
-  const isShown = planAsked() !== null;
+  const isShown = planInUse() !== null;
   cloud.setPlan(isShown ? page.planned.triangles : null);
   cloud.cleared = isShown ? page.planned.cleared : null;
   if (!page.answer || page.onLayer || !page.last) cloud.setValues(null);

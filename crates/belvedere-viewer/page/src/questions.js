@@ -3,7 +3,7 @@ import * as api from "./api.js";
 import { escape } from "./charts.js";
 import * as colors from "./colors.js";
 import { lost } from "./messages.js";
-import { finish, isChange, outline, panel, planAsked } from "./plan.js";
+import { finish, isChange, outline, panel, planInUse } from "./plan.js";
 import { setColor } from "./paint.js";
 import { csv, diagram, geojson, picture, save } from "./save.js";
 import { $, canvas, page, TOOLS } from "./state.js";
@@ -135,7 +135,7 @@ export async function ask(quick = false) {
   const start = performance.now();
   // with a plan, the change is that from the answer before it
   const answered = async (question, values) => {
-    const after = await api.ask(question, values, mine.signal, planAsked());
+    const after = await api.ask(question, values, mine.signal, planInUse());
     if (!tool.change || !isChange()) return after;
     return { ...after, before: await api.ask(question, values, mine.signal) };
   };

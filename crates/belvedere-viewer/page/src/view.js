@@ -11,23 +11,23 @@ export let renderer, cloud, mover;
 // ms.
 const SMOOTH = 33;
 const REST = 350;
-let isAsked = false;
+let isDue = false;
 let isDrawing = false;
 let afterFrame = null;
 let moved = -Infinity;
 let rest;
 // Draws the scene anew as soon as the frame before is done.
 export function draw() {
-  isAsked = true;
+  isDue = true;
   drawNext();
 }
 // A new picture if one is due; else, at rest, more points for the one that is there.
 export function drawNext() {
-  if (isDrawing || !cloud || !(isAsked || (cloud.left && performance.now() - moved >= REST))) return;
+  if (isDrawing || !cloud || !(isDue || (cloud.left && performance.now() - moved >= REST))) return;
   isDrawing = true;
   requestAnimationFrame(() => {
-    const isNew = isAsked;
-    isAsked = false;
+    const isNew = isDue;
+    isDue = false;
     const start = performance.now();
     cloud.render(mover.camera, getComputedStyle(root).getPropertyValue("--ground").trim(), isNew);
     overlay();
@@ -65,7 +65,7 @@ export function whenDrawn(look) {
 export function complete() {
   const start = performance.now();
   return new Promise((done) => {
-    const look = () => ((isDrawing || isAsked || cloud.left) && performance.now() - start < 5000 ? setTimeout(look, 20) : done());
+    const look = () => ((isDrawing || isDue || cloud.left) && performance.now() - start < 5000 ? setTimeout(look, 20) : done());
     look();
   });
 }
