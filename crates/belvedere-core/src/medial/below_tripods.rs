@@ -6,7 +6,7 @@ use belvedere_data::vector::sub;
 use std::collections::BTreeMap;
 use std::f32::consts::TAU;
 
-/// Of so many free segments one is asked where its scanner was.
+/// Number of free segments of which one is used to find the position of the scanner.
 const SAMPLE: usize = 64;
 /// Sampled free segments that a tripod has at least.
 const MIN_SAMPLED: usize = 32;

@@ -10,8 +10,8 @@ use rayon::prelude::*;
 /// How [`orient_by_carving`] works.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OrientByCarvingParams {
-    /// Normals whose sign is less sure than this are asked about, 0 to 1 (1 for all). Default 0.05: below that the way to the
-    /// scanner runs within 3° of the surface.
+    /// Normals whose sign is less certain than this are tested, 0 to 1 (1 for all). Default 0.05: below that the way to
+    /// the scanner runs within 3° of the surface.
     pub min_confidence: f32,
     /// Depth to which a point or a pulse may enter a ball, metres, above 0. Default 0.02, that of carved balls.
     pub penetration: f32,
@@ -30,7 +30,7 @@ impl Default for OrientByCarvingParams {
 /// What became of the signs in [`orient_by_carving`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct OrientByCarvingReport {
-    /// Normals asked about.
+    /// Normals tested.
     pub asked: usize,
     /// Signs changed.
     pub flipped: usize,

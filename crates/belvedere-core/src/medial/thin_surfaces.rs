@@ -1,4 +1,4 @@
-//! Surfaces with open space close below them, told by the pulses that run there: decks, canopies, balconies, bridges.
+//! Surfaces with open space close below them, found by the pulses that run there: decks, canopies, balconies, bridges.
 
 use super::carved::CarvedInput;
 use super::chains::MIN_SHARE;
@@ -16,14 +16,15 @@ use rayon::prelude::*;
 use std::f32::consts::TAU;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Cells beside a voxel, of eight, that must hold points of its height for pulses below it to be looked at. On a straight rim
-/// five do; one of these may be empty where points are sparse.
+/// Cells beside a voxel, of eight, that must hold points of its height for pulses below it to be looked at. On a
+/// straight edge five do; one of these may be empty where points are sparse.
 const MIN_BESIDE: usize = 4;
 /// How far points may lie above or below a surface and still be part of it where a pulse runs below, metres: a voxel and half
 /// of another, so that slopes up to 40° count.
 const SAME_SURFACE: f32 = 0.6;
-/// Gap about a pulse that is never taken for one below a surface, radians: hardly more than the π of a pulse below the outermost points. The rim lies
-/// farther out than these by half their spacing, and a wall below it would have stopped the pulse.
+/// Gap about a pulse that is never taken for one below a surface, radians: hardly more than the π of a pulse below the
+/// outermost points. The edge of the surface lies farther out than these points by half their spacing, and a wall below
+/// it would have stopped the pulse.
 const WIDEST_OF_ALL: f32 = 3.2;
 /// How far below a voxel a point no longer belongs to its surface, metres: more than a voxel is high.
 const OF_THE_SURFACE: f32 = 0.5;
@@ -60,8 +61,9 @@ pub struct ThinSurfaceParams {
     /// points do not reach the edge of a surface: each end of the gap may lie one mean angle between them farther, as long as the whole
     /// stays below 3.2.
     pub widest_gap: f32,
-    /// Proven cells a surface must have, in square roots of its number of cells, above 0: pulses look below a rim, and the rim
-    /// grows with that root. Default 0.5: at 0.3 more of the roofs of a real tile (Delft) are taken for thin.
+    /// Proven cells a surface must have, in square roots of its number of cells, above 0: pulses reach below an edge,
+    /// and the length of the edge grows with that root. Default 0.5: at 0.3 more of the roofs of a real tile (Delft)
+    /// are taken for thin.
     pub min_proof: f32,
     /// Distance about a pulse below a surface within which hardly a solid point may lie below that surface, metres. Default 1.5.
     /// Eaves stand out over walls, whose points betray them; without this rule two thirds of the roofs of real tiles (Delft,
