@@ -295,7 +295,8 @@ impl<S: CentralSurface> Central<S> {
     }
 }
 
-/// How a unit vector of sight passes a centre. The distance beside it is that of a vector product, which does not cancel.
+/// How a unit vector of sight passes a centre. The distance beside it is that of a vector product, which does not
+/// cancel.
 #[inline(always)]
 fn passing([cx, cy, cz]: [f32; 3], [x, y, z]: [f32; 3]) -> DirectionPassing {
     let (across, down, forward) = (cy * z - cz * y, cz * x - cx * z, cx * y - cy * x);

@@ -36,18 +36,19 @@ pub struct OrientByCarvingReport {
     pub flipped: usize,
 }
 
-/// The cloud with every normal whose sign is in doubt pointing away from the side on which points and pulses leave the larger
-/// ball: pulses sweep the outside of a surface and never its inside. Normals keep their confidence.
+/// The cloud with every normal whose sign is in doubt pointing away from the side on which points and pulses leave the
+/// larger ball: pulses sweep the outside of a surface and never its inside. Normals keep their confidence.
 ///
-/// For normals whose signs nothing tells, such as those of a file: on simulated towns with every normal turned inward it brings
-/// back all but half a point of what right signs give. It needs pulses that were measured: assumed vertical ones never see walls,
-/// and signs by up and by the vote of roof and ground ([`crate::normals::Orientation::Up`]) are better with them.
+/// For normals whose signs nothing tells, such as those of a file: on simulated towns with every normal turned inward
+/// it brings back all but half a point of what right signs give. It needs pulses that were measured: assumed vertical
+/// ones never see walls, and signs by up and by the vote of roof and ground ([`crate::normals::Orientation::Up`]) are
+/// better with them.
 ///
 /// `index` must have been built from the positions of `oriented`.
 ///
 /// # Errors
-/// [`Error::InvalidParameter`] for parameters out of range, [`Error::LengthMismatch`] where the index holds another number of
-/// points, what [`OrientedCloud::new`] refuses, and [`Error::Cancelled`].
+/// [`Error::InvalidParameter`] for parameters out of range, [`Error::LengthMismatch`] where the index holds another
+/// number of points, what [`OrientedCloud::new`] refuses, and [`Error::Cancelled`].
 ///
 /// # Source
 /// This project's own.
