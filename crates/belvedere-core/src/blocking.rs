@@ -64,8 +64,8 @@ pub struct BlockRule {
 
 impl BlockRule {
     /// For carved balls: spheres with a shell of 0.2 m and no bias. On simulated towns of another seed than those of
-    /// `research/notes/accuracy-tables.md` a bias of 0.25 m instead costs 1.7 points on facades and gains 0.7 on roofs; a
-    /// shell of 0.3 m gains 0.4 and costs 0.3.
+    /// `research/notes/accuracy-tables.md` a bias of 0.25 m instead costs 1.7 points on facades and gains 0.7 on roofs;
+    /// a shell of 0.3 m gains 0.4 and costs 0.3.
     #[must_use]
     pub fn carved() -> Self {
         Self { profile: Profile::Sphere, bias: 0.0, shell: 0.2 }

@@ -20,8 +20,8 @@ use walk::{RayScalar, TreeRay, walk};
 /// Padding of the boxes, as a share of the size of the scene: the tree works in f32 and a ray enters it at the box of
 /// the scene, so that its slab test errs by a few units of 6e-8 of that size.
 const BOX_PADDING: f64 = 1e-6;
-/// Least padding, and how much farther than asked the tree looks, metres: far more than f32 errs within some hundred
-/// metres.
+/// Minimum padding, and how much farther than requested the tree searches, metres: far more than f32 errs within some
+/// hundred metres.
 const TREE_SLACK: f64 = 1e-3;
 /// What ends a walk: no range is below zero.
 pub(crate) const END: f32 = -1.0;

@@ -42,7 +42,7 @@ pub struct CloudSummary {
 /// Pulses of a cloud.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PulseCounts {
-    /// Each point counts as the part of a pulse that it is, 1 / its return count: a pulse cut at the rim of a tile
+    /// Each point counts as the part of a pulse that it is, 1 / its return count: a pulse cut at the edge of a tile
     /// counts in part.
     pub count: f64,
     /// Those with several returns.
@@ -50,7 +50,7 @@ pub struct PulseCounts {
 }
 
 impl PulseCounts {
-    /// Pulses of points with these return counts, (N); `None` without points. A count of 0 stands for 1.
+    /// Pulses of points with these return counts, (N); `None` without points. A count of 0 means 1.
     fn of(return_counts: &[u8]) -> Option<Self> {
         let mut points = [0_usize; 256];
         return_counts.iter().for_each(|&count| points[usize::from(count)] += 1);

@@ -1,4 +1,4 @@
-//! How right answers are: counts against the truth, rates, and how sure the rates are.
+//! How accurate answers are: counts against the truth, rates, and the uncertainty of the rates.
 
 use belvedere::query::{Answer, UnprovenAs};
 use belvedere::random::uniform;
@@ -72,13 +72,14 @@ impl TruthCounts {
 /// A rate derived from [`TruthCounts`]. Targets without an answer enter [`Rate::Unanswered`] only.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rate {
-    /// Share of the visible that is called blocked.
+    /// Share of visible targets that are called blocked.
     FalseBlocked,
-    /// Share of the blocked that is called visible.
+    /// Share of blocked targets that are called visible.
     FalseVisible,
-    /// Mean of the shares of the visible and of the blocked that are called so.
+    /// Mean of the shares of visible and blocked targets that are classified correctly.
     Balanced,
-    /// Intersection over union of the blocked class: right blocked over all that is blocked in truth or by answer.
+    /// Intersection over union of the blocked class: targets blocked both in truth and by answer, over targets blocked
+    /// in truth, by answer or both.
     BlockedIou,
     /// Share of all targets without an answer.
     Unanswered,
@@ -89,7 +90,7 @@ impl Rate {
     pub const ALL: [Self; 5] =
         [Self::FalseBlocked, Self::FalseVisible, Self::Balanced, Self::BlockedIou, Self::Unanswered];
 
-    /// The rate, 0 to 1, or `None` where nothing of the kind was asked.
+    /// The rate, 0 to 1, or `None` where no target of this kind was queried.
     #[must_use]
     pub fn of(self, counts: &TruthCounts) -> Option<f64> {
         let share = |part: u64, whole: u64| (whole > 0).then(|| part as f64 / whole as f64);

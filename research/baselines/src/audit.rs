@@ -1,4 +1,4 @@
-//! Which balls are wrong, and why: the balls of a union held against the solids they should fill.
+//! Which balls are wrong, and why: the balls of a union compared with the solids that they should fill.
 
 use belvedere::medial::MedialBalls;
 use belvedere::vector::{dot, unit};

@@ -11,19 +11,19 @@ use belvedere::query::{Answer, UnprovenAs, Viewer, Visibility};
 use belvedere::vector::{length, sub, unit};
 use belvedere::{Error, Parameter, PointCloud, Result};
 
-/// What is held out and where is asked.
+/// Which pulses are held out, and at which places visibility is queried.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HeldOutParams {
     /// Any number; another one holds out other pulses. Default 1.
     pub seed: u64,
     /// Share of the pulses held out, 0 to 1, both excluded. Default 0.1.
     pub share: f64,
-    /// From how far before the first return a path is asked about, metres, above `clearance`. Default 30: above all but
-    /// towers, whose own pulses are asked about too.
+    /// How far before the first return the queried path begins, metres, above `clearance`. Default 30: above everything
+    /// except towers, whose own pulses are queried too.
     pub path_length: f64,
     /// How far before the first return the path ends, metres, 0 to 10. Default 0.3: some ten times the noise.
     pub clearance: f64,
-    /// How far behind the last return is asked, metres, each 0 to 10. Default 0.3, 0.5 and 1.
+    /// Distances behind the last return at which visibility is queried, metres, each 0 to 10. Default 0.3, 0.5 and 1.
     pub depths: Vec<f64>,
 }
 

@@ -44,8 +44,8 @@ pub struct ImplicitSurfaceParams {
     /// Greatest support as a multiple of the median, 1 or more. Default 4.
     pub max_support_in_medians: f64,
     /// The surface ends where it lies farther than this share of the support from the mean of the samples around it,
-    /// 0.1 to 1: beyond the rim of what was sampled the formula goes on, the surface does not. Default 0.5: 0.7 doubles
-    /// the false shadows of the same town.
+    /// 0.1 to 1: beyond the edge of the sampled area the formula continues, the surface does not. Default 0.5: 0.7
+    /// doubles the false shadows of the same town.
     pub edge: f64,
     /// Samples needed for a surface, 1 or more. Default 2: 3 leaves holes (roof misses 7.3 instead of 4.8 %).
     pub min_samples: usize,
@@ -88,9 +88,9 @@ struct SurfaceSample {
 /// It encloses nothing that was not scanned: an eye inside a house sees out where a wall has no points. Points whose
 /// neighbours determine no plane have no part in it.
 ///
-/// # Source
-/// Wald & Seidel 2005, "Interactive Ray Tracing of Point-based Models", after Adamson & Alexa 2003. Their weights are
-/// Gaussian and cut off at a radius; ours are a polynomial that reaches zero at that radius. The rim is ours.
+/// # Source Wald & Seidel 2005, "Interactive Ray Tracing of Point-based Models", after Adamson & Alexa 2003. Their
+/// weights are Gaussian and cut off at a radius; ours are a polynomial that reaches zero at that radius. The rule for
+/// the edge is ours.
 pub struct ImplicitSurface {
     /// In the order of the index.
     samples: Vec<SurfaceSample>,

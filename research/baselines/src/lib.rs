@@ -1,4 +1,4 @@
-//! Other ways of answering visibility on point clouds, each a [`belvedere::query::Visibility`], and how right they are.
+//! Other ways of answering visibility on point clouds, each a [`belvedere::query::Visibility`], and their accuracy.
 //!
 //! Every method gets the same [`MethodInput`]: what a LAZ file and its trajectory hold, and for some a model.
 //! [`methods::methods`] lists them all, [`agreement`] scores their answers.

@@ -20,11 +20,11 @@ use belvedere::{Mesh, PointCloud, Result};
 /// When a comparison of all methods takes one in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Listing {
-    /// Unless others are asked for.
+    /// Unless other methods are requested.
     Always,
-    /// Only where it is asked for by its full key: a variant that tells what a part of another method is worth.
+    /// Only where it is requested by its full key: a variant that shows the effect of a part of another method.
     WhenNamed,
-    /// On held-out pulses, elsewhere only where it is asked for by its full key.
+    /// On held-out pulses, elsewhere only where it is requested by its full key.
     OnHeldOutPulses,
 }
 
@@ -84,7 +84,7 @@ impl<'a> Method<'a> {
     }
 }
 
-/// Bound of the noise that the robust hidden point removal is told, metres: three times what data sheets of airborne
+/// Bound of the noise given to the robust hidden point removal, metres: three times what data sheets of airborne
 /// scanners state.
 const NOISE: f64 = 0.06;
 
@@ -92,8 +92,7 @@ const NOISE: f64 = 0.06;
 /// surface that the model gives them.
 const MESH_CLEARANCE: f64 = 0.1;
 
-/// Carved balls for surveys in winter, of which targets in the air are asked: crowns are twigs, and nothing gives way
-/// to targets.
+/// Carved balls for surveys in winter, for targets in the air: crowns are twigs, and nothing gives way to targets.
 fn carved_for_winter() -> MedialParams {
     let carving = CarvedParams::default().with_trees(Trees::Porous);
     let blocking = BlockRule { shell: 0.0, ..BlockRule::carved() };

@@ -139,7 +139,7 @@ impl ShadowMap {
                 let Some((face, x, y, depth)) = face_of(sub(target.map(f64::from), eye)) else {
                     return Answer::OutsideView;
                 };
-                // the farther rim of a face belongs to its last pixel
+                // the farther edge of a face belongs to its last pixel
                 let pixel = |v: f64| pixel_at((v + 1.0) / 2.0 * size as f64).unwrap_or(0).min(size - 1);
                 let dark = dark_beyond.get((face * size + pixel(y)) * size + pixel(x));
                 if dark.is_some_and(|&dark_beyond| depth >= dark_beyond) { Answer::Blocked } else { Answer::Visible }

@@ -1,5 +1,4 @@
-//! A triangulated surface through the highest returns: what surveyors' software makes of a cloud when asked for a
-//! model.
+//! A triangulated surface through the highest returns: the model that surveyors' software makes of a cloud.
 
 use crate::lines_of_sight::check_positive;
 use crate::mesh_rays::{MeshRays, MeshRaysParams};

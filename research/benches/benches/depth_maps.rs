@@ -1,4 +1,5 @@
-//! How long does a depth map of a million balls take from above and under a low sun, and how long a million queries on it?
+//! How long does a depth map of a million balls take from above and under a low sun, and how long a million queries on
+//! it?
 #![allow(clippy::unwrap_used, reason = "a bench that cannot go on fails")]
 
 mod common;

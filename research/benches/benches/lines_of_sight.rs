@@ -1,5 +1,5 @@
-//! How long do a million lines of sight between pairs, what an observer in a street sees of 360 000 cells, and what these see of the sky, take
-//! in a town of a million points?
+//! How long do a million lines of sight between pairs, what an observer in a street sees of 360 000 cells, and what
+//! these see of the sky, take in a town of a million points?
 #![allow(clippy::unwrap_used, reason = "a bench that cannot go on fails")]
 
 mod common;

@@ -1,5 +1,6 @@
-//! Is the index faster than a kd-tree crate where it has to be: near the surface, and from the far centres of large balls?
-//! With `--features belvedere-benches/kiddo`, which takes long to compile, that crate is measured too. And what do AVX2 instructions give?
+//! Is the index faster than a kd-tree crate where it has to be: near the surface, and from the far centres of large
+//! balls? With `--features belvedere-benches/kiddo`, which takes long to compile, that crate is measured too. And what
+//! do AVX2 instructions give?
 #![allow(clippy::unwrap_used, reason = "a bench that cannot go on fails")]
 
 mod common;

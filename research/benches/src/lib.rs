@@ -1,4 +1,5 @@
-//! A stopwatch for the benches: what they measure takes milliseconds to seconds, so that the median of a few runs says enough.
+//! A stopwatch for the benches: what they measure takes milliseconds to seconds, so that the median of a few runs says
+//! enough.
 
 use std::fmt::Display;
 use std::hint::black_box;

@@ -31,7 +31,7 @@ pub(crate) fn bounds_of(cloud: &PointCloud) -> Result<Bounds> {
     Ok(cloud.bounds().ok_or_else(|| Error::NoPoints { what: "none was read".to_owned() })?)
 }
 
-/// What a place consists of, before anything is asked.
+/// What a place consists of, before any query.
 pub(super) struct Ingredients {
     pub(super) cloud: PointCloud,
     /// Local position of the scanner for each point; empty where unknown.
@@ -65,7 +65,7 @@ pub(super) enum From {
     Eye([f64; 3]),
 }
 
-/// Targets of one kind and their exact answers in each view that asks for them.
+/// Targets of one kind and their exact answers in each view that uses them.
 pub(super) struct Set {
     pub(super) name: &'static str,
     pub(super) targets: Vec<[f32; 3]>,
@@ -123,7 +123,7 @@ impl ComparisonCase {
             let local =
                 |points: &[[f64; 3]]| -> Vec<[f32; 3]> { points.iter().map(|&p| to_local(p, origin)).collect() };
             let (targets, eyes) = (local(&drawn.positions), local(&drawn.eyes));
-            // the truth of what is asked: of positions as f32 holds them
+            // the truth for what is queried: for positions as f32 stores them
             let exact: Vec<Option<[f64; 3]>> = targets.iter().map(|&p| Some(absolute(p))).collect();
             let ends: Vec<[f64; 3]> = eyes.iter().map(|&p| absolute(p)).collect();
             sets.push(answered(name, targets, eyes, &exact, &ends, &views, (&truth, origin)));
@@ -189,7 +189,7 @@ fn answered(
     Set { name, targets, eyes, tiles, truth }
 }
 
-/// For each point what its surface is, and a point just outside that surface; `None` where that cannot be told.
+/// For each point what its surface is, and a point just outside that surface; `None` where that is unknown.
 fn sources(
     site: &QuerySite<'_>,
     cloud: &PointCloud,

@@ -1,4 +1,4 @@
-//! One method on one place: built, asked, scored, timed.
+//! One method on one place: built, queried, scored, timed.
 
 use super::case::{ComparisonCase, STREET, STREET_GROUP, Set};
 use super::results::{AblationRow, AnswerRow, AuditRow, Cost, MethodResult, MethodScore, Rated};
@@ -16,7 +16,8 @@ use std::time::Instant;
 
 /// Groups of views that rates are averaged over.
 const GROUPS: [&str; 4] = ["suns", "observers", STREET_GROUP, "pairs"];
-/// Observers in streets asked by methods that begin anew for each eye: with all forty they would take most of the time.
+/// Observers in streets that are queried with methods that begin anew for each eye: with all forty they would take most
+/// of the time.
 const COSTLY_EYES: usize = 4;
 /// Share of the observers that see worse than the figure given for the worst of them.
 const WORST_SHARE: f64 = 0.1;
@@ -206,8 +207,8 @@ pub(super) fn worth_of_answers(case: &ComparisonCase) -> belvedere::Result<Vec<A
     Ok(rows)
 }
 
-/// Which of the published balls are wrong, by the surface they are tangent at, and what people under the suns would be
-/// told if some of them were left out.
+/// Which of the published balls are wrong, by the surface they are tangent at, and the answers for people under the
+/// suns if some of them were left out.
 pub(super) fn audit_published(
     case: &ComparisonCase,
     seed: u64,

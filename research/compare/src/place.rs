@@ -26,14 +26,14 @@ pub(super) enum ComparisonPlace {
 }
 
 impl ComparisonPlace {
-    /// The places asked for.
+    /// The requested places.
     pub(super) fn all(arguments: &Compare) -> Vec<Self> {
         if let Some(mesh) = &arguments.mesh {
             let models = arguments.model.iter().map(|m| (m.name.clone(), m.file.clone())).collect();
             let (clouds, trajectory) = (arguments.scene.clone(), arguments.trajectory.clone());
             return vec![Self::Given { clouds, mesh: mesh.clone(), trajectory, models }];
         }
-        // held-out pulses alone need no town, unless one was asked for
+        // held-out pulses alone need no town, unless one was requested
         let usual = if arguments.held_out.is_empty() { &[Preset::Town][..] } else { &[] };
         let presets = if arguments.presets.is_empty() { usual } else { &arguments.presets }.iter();
         let scanners: Vec<(Regime, f64)> = arguments

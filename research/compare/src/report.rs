@@ -47,7 +47,7 @@ const ESSENCE: [(&str, &str, &str); 13] = [
 ];
 /// Lines between which tables are put into a page.
 const PAGE_MARKS: [&str; 2] = ["<!-- tables -->", "<!-- end of tables -->"];
-/// Key of the method that the others are held against.
+/// Key of the method that the others are compared with.
 const CARVED: &str = "carved";
 /// Seed of the resampling of places.
 const SEED: u64 = 1;

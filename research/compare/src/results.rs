@@ -12,14 +12,14 @@ use std::path::Path;
 /// A rate and its 95 % interval, shares from 0 to 1: value, low, high.
 pub(super) type Rated = [f64; 3];
 
-/// How right a method was on one kind of target, averaged over a group of views.
+/// Accuracy of a method on one kind of target, averaged over a group of views.
 #[derive(Clone, Debug, Serialize, Deserialize, PartialEq)]
 pub(super) struct MethodScore {
     /// Kind of target.
     pub(super) set: String,
     /// Group of views: `suns`, `observers`, `street` or `pairs`.
     pub(super) views: String,
-    /// Targets asked for in each view.
+    /// Targets queried in each view.
     pub(super) targets: usize,
     pub(super) false_blocked: Option<Rated>,
     pub(super) false_visible: Option<Rated>,
@@ -151,7 +151,7 @@ pub(super) struct HeldOutResult {
     pub(super) scanner_known: f64,
     pub(super) method: String,
     pub(super) title: String,
-    /// Name and share, 0 to 1, in the order of the table; `None` where nothing was asked.
+    /// Name and share, 0 to 1, in the order of the table; `None` where nothing was queried.
     pub(super) shares: Vec<(String, Option<f64>)>,
     /// Why there are no shares.
     pub(super) failed: Option<String>,

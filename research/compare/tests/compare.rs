@@ -243,7 +243,7 @@ fn clouds_are_judged_by_the_pulses_kept_from_the_methods() {
     let place = Workplace::with_town(Preset::Village, 6.0);
     let run = place.summary("--held-out town.laz --methods paper-sphere,carved,surfels,hidden-points -o out");
     let results = run["results"]["held_out"].as_array().unwrap().clone();
-    assert!(run["results"]["methods"].as_array().unwrap().is_empty(), "no town was asked for");
+    assert!(run["results"]["methods"].as_array().unwrap().is_empty(), "no town was requested");
     let share = |method: &str, name: &str| {
         let result = results.iter().find(|r| r["method"] == method).unwrap();
         assert!(

@@ -1,4 +1,4 @@
-//! Points that stand for nothing: flagged, repeated, or alone in the air.
+//! Points that represent no real surface: flagged, repeated, or alone in the air.
 
 mod duplicates;
 mod grid;

@@ -1,7 +1,7 @@
 //! Balls in views from an eye: how far away a ball's surface is in the direction of a pixel.
 //!
-//! All that matters is the angle between that direction and the ball's centre, so that one test serves every
-//! projection; only the directions of the pixels and the outline of a ball differ.
+//! Only the angle between that direction and the direction of the ball's centre matters, so one test is enough for
+//! every projection; only the directions of the pixels and the outline of a ball differ.
 
 use super::bounds::{BallBound, BoundSide, margin};
 use super::outline::{ALL, outline};
@@ -99,7 +99,7 @@ pub(super) struct Directions {
 
 /// What is drawn of a ball in a view from an eye.
 pub(super) trait CentralSurface: Sync {
-    /// Pixels beyond the rim of a ball whose depth may be finite.
+    /// Pixels beyond the outline of a ball whose depth may be finite.
     const BEYOND_PX: f32;
     /// Whether depths are ranges whatever the view.
     const IN_RANGE: bool;
@@ -108,7 +108,8 @@ pub(super) trait CentralSurface: Sync {
     fn radius(&self, radius: f32, size: f64, fronts: [f64; 2], min_cover: f64) -> Option<f32>;
     /// Limits of depth of what is drawn.
     fn limits(&self, view: &View) -> [f64; 2];
-    /// What a ball covers whose outline says nothing because its surface runs through the eye, as far as can be told.
+    /// What a ball covers when its surface passes through the eye, where its outline gives no information; `None` where
+    /// this is unknown.
     fn at_eye(&self, _distance: f64, _radius: f64, _margin: f64) -> Option<[[f64; 2]; 2]> {
         None
     }
@@ -294,7 +295,8 @@ impl<S: CentralSurface> Central<S> {
     }
 }
 
-/// How a unit vector of sight passes a centre. The distance beside it is that of a vector product, which does not cancel.
+/// How a unit vector of sight passes a centre. The distance beside it is that of a vector product, which does not
+/// cancel.
 #[inline(always)]
 fn passing([cx, cy, cz]: [f32; 3], [x, y, z]: [f32; 3]) -> DirectionPassing {
     let (across, down, forward) = (cy * z - cz * y, cz * x - cx * z, cx * y - cy * x);

@@ -17,9 +17,9 @@ pub(super) struct ParallelSplat {
     ball: u32,
 }
 
-/// A surface that stands for a ball, in units of its own.
+/// A surface that represents a ball, in its own units.
 pub(super) trait ParallelSurface: Sync {
-    /// Pixels beyond the rim of a ball whose depth may be finite.
+    /// Pixels beyond the outline of a ball whose depth may be finite.
     const BEYOND_PX: f32 = 0.0;
     /// Units of depth in a metre.
     fn units_per_metre(&self) -> f32 {

@@ -22,8 +22,8 @@ const MAX_LISTED_TILES: usize = 16;
 /// Balls handed to a thread at once.
 const CHUNK: usize = 8192;
 
-/// A surface that stands for a ball in a view, and what it needs to be drawn. All depths are in one unit of its own
-/// choice.
+/// A surface that represents a ball in a view, and what is needed to draw it. All depths are in one unit, which the
+/// surface chooses.
 pub(super) trait SplatSurface: Sync {
     /// A ball in the view.
     type Splat: Copy + Send + Sync;

@@ -15,7 +15,7 @@ const ON_EDGE: f64 = 1e-3;
 /// east and north ones, so that each place lies in one cell and the grids of adjoining areas share none.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MapGrid {
-    /// West and north rim, local metres.
+    /// West and north edge, local metres.
     pub corner: [f64; 2],
     /// Side of a cell, metres.
     pub cell: f64,

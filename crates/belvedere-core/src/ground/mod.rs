@@ -90,7 +90,7 @@ pub struct Ground {
     pub gaps: Raster<f32>,
 }
 
-/// Rows of the points of `cloud` that are ground, in rising order, and which way they were told.
+/// Rows of the points of `cloud` that are ground, in rising order, and the method that classified them.
 ///
 /// # Errors
 /// [`Error::NoPoints`] for an empty cloud, and for [`GroundPoints::Classed`] without class 2; otherwise those of

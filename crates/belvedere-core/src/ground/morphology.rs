@@ -16,8 +16,8 @@ pub(super) fn opened(heights: &Raster<f32>, radius: usize) -> Raster<f32> {
     window(&window(heights, radius, Extreme::Min), radius, Extreme::Max)
 }
 
-/// The extreme of the square of `2 · radius + 1` cells around each cell, cut at the rim: along rows, then along
-/// columns.
+/// The extreme of the square of `2 · radius + 1` cells around each cell, cut at the edge of the raster: along rows,
+/// then along columns.
 fn window(heights: &Raster<f32>, radius: usize, extreme: Extreme) -> Raster<f32> {
     let (width, height) = (heights.width(), heights.height());
     let mut along_rows = heights.clone();

@@ -18,7 +18,7 @@ const FEWEST: usize = 5;
 /// Determinant of the normal equations, in units of their diagonal, below which points lie on a line.
 const ON_A_LINE: f64 = 1e-3;
 
-/// How the surface at the middle of a cell is told from the points around it.
+/// How the surface at the middle of a cell is estimated from the points around it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurfaceParams {
     /// Points around the middle that are looked at, 3 to 256. Default 12: a square metre of usual airborne surveys.

@@ -29,7 +29,7 @@ pub(super) fn heights(points: &[[f32; 3]], grid: &MapGrid) -> Result<Raster<f32>
     Ok(heights)
 }
 
-/// Sets the cells whose middles lie in a triangle, its rim counted.
+/// Sets the cells whose middles lie in a triangle or on its edges.
 fn fill(heights: &mut [f32], width: usize, grid: &MapGrid, [a, b, c]: [[f64; 3]; 3]) {
     let doubled_area = (b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1]);
     if doubled_area == 0.0 {

@@ -6,7 +6,7 @@ use belvedere_data::vector::sub;
 use std::collections::BTreeMap;
 use std::f32::consts::TAU;
 
-/// Of so many free segments one is asked where its scanner was.
+/// Number of free segments of which one is used to find the position of the scanner.
 const SAMPLE: usize = 64;
 /// Sampled free segments that a tripod has at least.
 const MIN_SAMPLED: usize = 32;
@@ -14,12 +14,12 @@ const MIN_SAMPLED: usize = 32;
 const STEP_M: f32 = 0.002;
 /// Tripods stand farther apart than that, metres; what is nearer is one of them on both sides of a step.
 const MIN_APART: f32 = 0.1;
-/// Sectors about a tripod that the nearest points on the floor are looked for in, and how many must have one: its legs may hide
-/// the others.
+/// Sectors about a tripod that the nearest points on the floor are looked for in, and how many must have one: its legs
+/// may hide the others.
 const SECTORS: usize = 36;
 const MIN_SECTORS: usize = 24;
-/// Greatest distance of the floor's nearest points from the foot of a tripod, in heights of the scanner above them: scanners look down to 30° from
-/// straight down or more.
+/// Greatest distance of the floor's nearest points from the foot of a tripod, in heights of the scanner above them:
+/// scanners look down to 30° from straight down or more.
 const MAX_HEIGHTS: f32 = 1.2;
 /// A scanner is higher above the floor than that, metres; what is nearer is the tripod itself.
 const MIN_HEIGHT: f32 = 0.5;
@@ -34,8 +34,9 @@ pub(super) struct FloorPlace {
     pub(super) row: usize,
 }
 
-/// Places on the floor, at most `spacing` metres apart, that tripods among the scanners of `free_segments` stand on. They go from the foot of
-/// each to where its own pulses reached the floor. `index` must have been built from the `positions`. The result does not depend on the number of threads.
+/// Places on the floor, at most `spacing` metres apart, that tripods among the scanners of `free_segments` stand on.
+/// They go from the foot of each to where its own pulses reached the floor. `index` must have been built from the
+/// `positions`. The result does not depend on the number of threads.
 pub(super) fn floors_below(
     positions: &[[f32; 3]],
     index: &NeighborIndex,
@@ -102,7 +103,8 @@ struct Edge {
     row: usize,
 }
 
-/// Where the floor begins in each sector about the foot of the tripod, by its own pulses; empty where it does in too few.
+/// Where the floor begins in each sector about the foot of the tripod, by its own pulses; empty where it does in too
+/// few.
 fn nearest_around(
     index: &NeighborIndex,
     positions: &[[f32; 3]],
@@ -155,7 +157,8 @@ mod tests {
     /// Radius of the place that the scanner does not look at, metres.
     const BLIND: f32 = 0.8;
 
-    /// A floor that rises by a tenth to the east, measured but for what lies below the tripod, in sectors for which `is_open`.
+    /// A floor that rises by a tenth to the east, measured but for what lies below the tripod, in sectors for which
+    /// `is_open`.
     fn floor(is_open: impl Fn(f32) -> bool) -> (Vec<[f32; 3]>, NeighborIndex, FreeSegments) {
         let mut positions = Vec::new();
         for ring in 0_u8..20 {

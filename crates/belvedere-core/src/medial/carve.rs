@@ -24,11 +24,13 @@ pub struct CarveReport {
     pub limited: usize,
 }
 
-/// Cuts each of `balls` until no free segment of a pulse comes nearer than a millimetre, then brings its radius within `caps`. Row i of
-/// `balls` must be the interior ball of point i of `oriented`, as [`super::shrink`] makes it; so must row i of the caps.
+/// Cuts each of `balls` until no free segment of a pulse comes nearer than a millimetre, then brings its radius within
+/// `caps`. Row i of `balls` must be the interior ball of point i of `oriented`, as [`super::shrink`] makes it; so must
+/// row i of the caps.
 ///
-/// A ball that had met no point but meets a pulse gets [`PULSE_TOUCH`]. One that meets neither gets [`LIMIT_TOUCH`] and at most
-/// [`RadiusCaps::unbounded`]: its surface blocks all the same. The result depends on neither order nor number of threads.
+/// A ball that had met no point but meets a pulse gets [`PULSE_TOUCH`]. One that meets neither gets [`LIMIT_TOUCH`] and
+/// at most [`RadiusCaps::unbounded`]: its surface blocks all the same. The result depends on neither order nor number
+/// of threads.
 ///
 /// # Errors
 /// [`Error::LengthMismatch`] where they differ in length, [`Error::Cancelled`].

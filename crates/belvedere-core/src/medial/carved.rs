@@ -20,7 +20,8 @@ use std::collections::BTreeMap;
 pub struct CarvedInput<'a> {
     /// Points and outward normals.
     pub oriented: &'a OrientedCloud,
-    /// The points before they were moved onto their surface, (N, 3) local metres: they decide which block of 64 m a point belongs to.
+    /// The points before they were moved onto their surface, (N, 3) local metres: they decide which block of 64 m a
+    /// point belongs to.
     pub measured: &'a [[f32; 3]],
     /// Index of the same points.
     pub index: &'a NeighborIndex,
@@ -59,11 +60,11 @@ impl CarvedReport {
 /// Balls of a survey.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct CarvedBalls {
-    /// Those that are of use. [`MedialBalls::source`] and [`MedialBalls::touch`] are rows of the cloud; several balls may have
-    /// the same source.
+    /// Those that are of use. [`MedialBalls::source`] and [`MedialBalls::touch`] are rows of the cloud; several balls
+    /// may have the same source.
     pub balls: MedialBalls,
-    /// Share of the pulses that got through the piece of crown that a ball is part of, (B), 0 to 1; NaN for balls that are not
-    /// vegetation. Empty where nothing was measured.
+    /// Share of the pulses that got through the piece of crown that a ball is part of, (B), 0 to 1; NaN for balls that
+    /// are not vegetation. Empty where nothing was measured.
     pub transmission: Vec<f32>,
     /// What became of them.
     pub report: CarvedReport,
@@ -71,8 +72,9 @@ pub struct CarvedBalls {
 
 /// The interior balls of a survey as far as its pulses leave them, and those that rules add.
 ///
-/// The balls of a part of a survey ([`CarvedInput::statistics`]) whose points lie far enough from its edge are those of any other part that holds
-/// them so, bit by bit; how far that is follows from the rules ([`crate::model::SurveyStatistics::buffer`]).
+/// The balls of a part of a survey ([`CarvedInput::statistics`]) whose points lie far enough from its edge are those of
+/// any other part that holds them so, bit by bit; how far that is follows from the rules
+/// ([`crate::model::SurveyStatistics::buffer`]).
 ///
 /// # Errors
 /// Those of [`shrink`] and [`carve`]. Each rule is a stage of `control`.
@@ -155,8 +157,8 @@ mod tests {
     use crate::medial::survey::tests::with_survey;
     use belvedere_data::balls::PULSE_TOUCH;
 
-    /// A tenth rule: its file, whose line in `rules.rs` would add it to all others. It caps the first ball, cuts the second, fills below
-    /// the third.
+    /// A tenth rule: its file, whose line in `rules.rs` would add it to all others. It caps the first ball, cuts the
+    /// second, fills below the third.
     struct Tenth(Phase);
 
     impl MarkingRule for Tenth {

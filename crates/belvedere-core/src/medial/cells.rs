@@ -2,8 +2,8 @@
 
 use rayon::prelude::*;
 
-/// Side of a cell, metres: two to three times the spacing of usual airborne scans, so that few cells among roofs and trees are
-/// empty.
+/// Side of a cell, metres: two to three times the spacing of usual airborne scans, so that few cells among roofs and
+/// trees are empty.
 const SIDE_M: f64 = 1.0;
 
 /// Row and column of a cell.
@@ -48,7 +48,8 @@ impl<V: Copy + Send + Sync> Cells<V> {
         self.cells.get(place).map(|entry| entry.1)
     }
 
-    /// The values of all cells from the one with the least row and column to the one with the greatest, merged; `None` where all are empty.
+    /// The values of all cells from the one with the least row and column to the one with the greatest, merged; `None`
+    /// where all are empty.
     pub(super) fn in_rectangle(&self, low: Cell, high: Cell, merge: impl Fn(V, V) -> V) -> Option<V> {
         let of_row = |row: i32| {
             let start = self.cells.partition_point(|entry| entry.0 < (row, low.1));
@@ -91,8 +92,8 @@ impl<V: Copy + Send + Sync> Cells<V> {
     }
 }
 
-/// The lowest of `positions`, (N, 3) local metres, in each cell and those about it: the height of the ground, but below large
-/// roofs.
+/// The lowest of `positions`, (N, 3) local metres, in each cell and those about it: the height of the ground, but below
+/// large roofs.
 pub(super) fn lowest_near(positions: &[[f32; 3]]) -> Cells<f32> {
     Cells::new(positions.par_iter().map(|&p| (cell(p), p[2])).collect(), f32::min).with_neighbors(f32::min)
 }

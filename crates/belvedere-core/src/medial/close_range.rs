@@ -1,8 +1,9 @@
 //! Balls for scanners that stand among the things they measure: tripods, cars, rooms.
 //!
-//! Such a scanner sees a wall, a car or a trunk from one side, from near by, and nothing of what lies behind. Balls as thick as those of
-//! surveys from the air would fill that space, through which lines of sight run that never meet the surface. Here balls are only as
-//! thick as it takes to close the surface; what no pulse has seen is left for the pulses to call unproven.
+//! Such a scanner sees a wall, a car or a trunk from one side, from near by, and nothing of what lies behind. Balls as
+//! thick as those of surveys from the air would fill that space, through which lines of sight run that never meet the
+//! surface. Here balls are only as thick as it takes to close the surface; what no pulse has seen is left for the
+//! pulses to call unproven.
 
 use super::below_tripods::{FloorPlace, floors_below};
 use super::carve::CarveReport;
@@ -23,16 +24,18 @@ const MIN_RADIUS: f32 = 1e-3;
 /// Sizes of balls for scanners that stand among the things they measure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CloseRangeParams {
-    /// Most radius in spacings of the points around, above 0.5: below that there are gaps between points in squares. Default 2, since
-    /// scan lines are often twice as far apart as the points on them. 1.5 leaves gaps at the edges of rooms.
+    /// Most radius in spacings of the points around, above 0.5: below that there are gaps between points in squares.
+    /// Default 2, since scan lines are often twice as far apart as the points on them. 1.5 leaves gaps at the edges of
+    /// rooms.
     pub max_spacings: f32,
     /// Most radius, metres, above 0. Default 0.15: 0.25 blocks twice as much of what is visible behind cars and fences.
     pub max_radius: f32,
-    /// Depth to which points and pulses may enter a ball before it gives way to them, as a share of the most radius, 0 to 0.5. Default
-    /// 0.25. The balls that are left end as deep below the surface, so that no pulse enters them at all, and points that noise moved
-    /// inward remain visible.
+    /// Depth to which points and pulses may enter a ball before it gives way to them, as a share of the most radius, 0
+    /// to 0.5. Default 0.25. The balls that are left end as deep below the surface, so that no pulse enters them at
+    /// all, and points that noise moved inward remain visible.
     pub penetration_share: f32,
-    /// The same in metres, at most. Default 0.0075: the noise of such scanners; 0.02 makes a room of 10 × 6 × 3 m 3.5 % too large.
+    /// The same in metres, at most. Default 0.0075: the noise of such scanners; 0.02 makes a room of 10 × 6 × 3 m 3.5 %
+    /// too large.
     pub max_penetration: f32,
 }
 

@@ -49,26 +49,26 @@ impl Trees {
 pub struct CrownParams {
     /// How they are treated. Default measured.
     pub trees: Trees,
-    /// How much deeper than the first return of a pulse a later one must lie for it to have got through, metres, above 0. Default
-    /// 2.
+    /// How much deeper than the first return of a pulse a later one must lie for it to have got through, metres,
+    /// above 0. Default 2.
     pub through_depth: f32,
     /// Height above the lowest point near by below which a return lies under the crown, metres, above 0. Default 1.
     pub below_crown: f32,
     /// Pulses that the share of the whole cloud counts for in each piece of crown, above 0. Default 4: a piece has some
     /// seventy pulses at eight a square metre, and five at the edge of a sparse scan.
     pub prior_pulses: f32,
-    /// Transmission from which a measured piece is one of leaves with gaps. Default 0.5: simulated crowns of single leaves measure
-    /// 0.55 to 0.79 (middle 80 %), solid ones that pulses enter 0.11 to 0.41.
+    /// Transmission from which a measured piece is one of leaves with gaps. Default 0.5: simulated crowns of single
+    /// leaves measure 0.55 to 0.79 (middle 80 %), solid ones that pulses enter 0.11 to 0.41.
     pub porous_from: f32,
-    /// Largest radius in measured pieces with gaps, metres. Default 0.4: as large as sprays of leaves. In towns of such trees
-    /// 0.3 m lets more sun through to the streets than it should, 1 m hides more from an eye in the street.
+    /// Largest radius in measured pieces with gaps, metres. Default 0.4: as large as sprays of leaves. In towns of such
+    /// trees 0.3 m lets more sun through to the streets than it should, 1 m hides more from an eye in the street.
     pub leaf_radius: f32,
-    /// Largest radius where all trees are taken for porous, metres. Default 0.12: twigs. In AHN3, flown in winter, 6 % of
-    /// held-out pulses are then blocked before they hit something, against 11 % with leaves.
+    /// Largest radius where all trees are taken for porous, metres. Default 0.12: twigs. In AHN3, flown in winter, 6 %
+    /// of held-out pulses are then blocked before they hit something, against 11 % with leaves.
     pub porous_radius: f32,
-    /// Radius of the balls about returns within a crown that came after others, in spacings of these: the mean side of the cube that each has
-    /// to itself. Default 0.7, at which balls of neighbours meet; 0.5 lets a fifth more through crowns, 0.9 blocks a fifth more
-    /// beside them.
+    /// Radius of the balls about returns within a crown that came after others, in spacings of these: the mean side of
+    /// the cube that each has to itself. Default 0.7, at which balls of neighbours meet; 0.5 lets a fifth more through
+    /// crowns, 0.9 blocks a fifth more beside them.
     pub later_spacings: f32,
     /// Neighbours that this spacing is taken from, 1 to 64. Default 8.
     pub later_neighbors: usize,
@@ -100,9 +100,9 @@ impl MarkingRule for CrownParams {
 
     /// Caps in crowns with gaps, balls centred about later returns, and fills of solid crowns.
     ///
-    /// Within a crown neither the normal of a point nor the side it was seen from says where the crown lies: a ball that is tangent
-    /// there stands out of it as often as not. Balls of later returns are therefore centred about their points. A return that lies
-    /// alone, on a trunk, has no larger a ball than one of the typical spacing.
+    /// Within a crown neither the normal of a point nor the side it was seen from says where the crown lies: a ball
+    /// that is tangent there stands out of it as often as not. Balls of later returns are therefore centred about their
+    /// points. A return that lies alone, on a trunk, has no larger a ball than one of the typical spacing.
     fn marks(&self, survey: &Survey<'_>, _: &MedialBalls, _: &Control<'_>) -> Result<Marks> {
         let with_gaps = |row| self.max_radius(survey, row).map(|radius| Cap::tangent(row, radius));
         let mut caps: Vec<Cap> = (0..survey.positions().len()).filter_map(with_gaps).collect();
@@ -124,8 +124,8 @@ impl MarkingRule for CrownParams {
 }
 
 impl CrownParams {
-    /// Largest radius at a point of a crown with gaps, `None` at a point of a solid one or none. Crowns that were not measured are
-    /// neither solid nor have gaps: nothing is known of them.
+    /// Largest radius at a point of a crown with gaps, `None` at a point of a solid one or none. Crowns that were not
+    /// measured are neither solid nor have gaps: nothing is known of them.
     fn max_radius(&self, survey: &Survey<'_>, row: usize) -> Option<f32> {
         if survey.kinds.get(row) != Some(&Kind::Vegetation) {
             return None;
@@ -153,9 +153,9 @@ impl CrownParams {
 
     /// Fills of solid crowns.
     ///
-    /// A crown returns pulses from all through its outer metre or two, which leaves the balls between these points small and its
-    /// inside hollow. Here a ball hangs straight down from each first return, as large as the lowest vegetation within a metre
-    /// or two and the pulses leave it, if that is more than the ball at that point.
+    /// A crown returns pulses from all through its outer metre or two, which leaves the balls between these points
+    /// small and its inside hollow. Here a ball hangs straight down from each first return, as large as the lowest
+    /// vegetation within a metre or two and the pulses leave it, if that is more than the ball at that point.
     fn fills(&self, survey: &Survey<'_>) -> Vec<Fill> {
         if self.trees == Trees::Measured && survey.transmission.is_empty() {
             return Vec::new();
@@ -174,19 +174,19 @@ impl CrownParams {
     }
 }
 
-/// Measures which share of the pulses that met the crown about each point got through it, [`Survey::transmission`]: 0 to 1, NaN for
-/// points that are not vegetation.
+/// Measures which share of the pulses that met the crown about each point got through it, [`Survey::transmission`]: 0
+/// to 1, NaN for points that are not vegetation.
 ///
 /// A pulse counts where its first return is vegetation; it got through where another of its returns lies deeper by
 /// [`CrownParams::through_depth`] and near the ground. Pulses are counted by cells of 1 m and their neighbours, and
 /// [`CrownParams::prior_pulses`] pulses with the share of the whole survey are added.
 ///
-/// A beam is as wide as a hand: many that got through in part would have been stopped were they thin. This is therefore more
-/// than the share of straight lines that get through.
+/// A beam is as wide as a hand: many that got through in part would have been stopped were they thin. This is therefore
+/// more than the share of straight lines that get through.
 ///
 /// # Source
-/// Counting returns under a crown against those that met it goes back to gap fractions from airborne scans (Solberg et al. 2009,
-/// Remote Sensing of Environment 113); the prior is the mean of a Beta distribution.
+/// Counting returns under a crown against those that met it goes back to gap fractions from airborne scans (Solberg et
+/// al. 2009, Remote Sensing of Environment 113); the prior is the mean of a Beta distribution.
 pub(super) fn measure_transmission(
     survey: &mut Survey<'_>,
     pulses: &Pulses,

@@ -1,7 +1,8 @@
 //! Data voids: places on the map that pulses reached and did not return from, above all water.
 //!
-//! A ball grows from its point to the next one that it meets. Beside a canal it meets none for many metres, and reaches as far over the
-//! water as the first pulse that passes. Nothing stands there: the pulses that were sent there met neither a crown nor a roof.
+//! A ball grows from its point to the next one that it meets. Beside a canal it meets none for many metres, and reaches
+//! as far over the water as the first pulse that passes. Nothing stands there: the pulses that were sent there met
+//! neither a crown nor a roof.
 
 use super::cells::{Cell, Cells, cell};
 use super::marks::{Cut, Marks, cuts_of};
@@ -17,7 +18,8 @@ use std::collections::HashMap;
 
 /// Smaller balls reach no middle of an empty cell, which lies half a metre or more from every point.
 const MIN_RADIUS: f32 = 0.25;
-/// How far around a void its lowest point is looked for, and around a point its voids, in cells: as far as a ball of 5 m reaches.
+/// How far around a void its lowest point is looked for, and around a point its voids, in cells: as far as a ball of 5
+/// m reaches.
 const FARTHEST: i32 = 10;
 /// Rings of cells about a void, from the nearest one with a pulse on, whose pulses show where the scanner was.
 const BORDER_WIDTH: i32 = 3;
@@ -26,17 +28,19 @@ const BALLS_AT_ONCE: usize = 1 << 16;
 /// Steps towards a scanner, metres on the map: half a cell; and how many are made at most.
 const STEP_M: f32 = 0.5;
 const MAX_STEPS: u16 = 4096;
-/// Least sine of the angle between a pulse and the vertical. Pulses that are assumed to fall straight down do not tell what lies in the shadow
-/// of something.
+/// Least sine of the angle between a pulse and the vertical. Pulses that are assumed to fall straight down do not tell
+/// what lies in the shadow of something.
 const MIN_LEAN: f32 = 1e-4;
 
 /// How balls are cut at data voids.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DataVoidParams {
-    /// Greatest spacing of pulses around a void, metres, above 0. Default 0.75, a quarter of the side of the smallest void, 3 m: the lidar base
-    /// specification of the US Geological Survey calls an area without first returns a void from four spacings squared on.
+    /// Greatest spacing of pulses around a void, metres, above 0. Default 0.75, a quarter of the side of the smallest
+    /// void, 3 m: the lidar base specification of the US Geological Survey calls an area without first returns a void
+    /// from four spacings squared on.
     pub max_spacing: f32,
-    /// Height above the lowest point around a void from which on balls do not reach into it, metres, 0 or more. Default 0.5.
+    /// Height above the lowest point around a void from which on balls do not reach into it, metres, 0 or more. Default
+    /// 0.5.
     pub min_height: f32,
 }
 
@@ -85,8 +89,8 @@ impl<'a> DataVoids<'a> {
         Self { params, lowest, counts, ways, top: highest.all(f32::max).unwrap_or(f32::NEG_INFINITY), highest }
     }
 
-    /// Cuts of `balls`, row i of which is the interior ball of point i of `oriented`, where they reach over the middle of a cell in a
-    /// void. The result depends on neither the order of points nor the number of threads.
+    /// Cuts of `balls`, row i of which is the interior ball of point i of `oriented`, where they reach over the middle
+    /// of a cell in a void. The result depends on neither the order of points nor the number of threads.
     fn cuts(&self, oriented: &OrientedCloud, balls: &MedialBalls, control: &Control<'_>) -> Result<Vec<Cut>> {
         let stop = Stop::new(control);
         let (positions, normals) = (oriented.positions(), oriented.normals());
@@ -138,7 +142,8 @@ impl<'a> DataVoids<'a> {
         Cells::new(dense.into_iter().flat_map(about).map(|area| (area, ())).collect(), |(), ()| ())
     }
 
-    /// The cells without points whose middle lies below or above the ball of this radius at a point with this outward normal.
+    /// The cells without points whose middle lies below or above the ball of this radius at a point with this outward
+    /// normal.
     fn empty_cells(&self, point: [f32; 3], normal: [f32; 3], radius: f32, cells: &mut Vec<Cell>) {
         let corner = |off: f32| cell(std::array::from_fn(|axis| point[axis] - radius * normal[axis] + off));
         let ((south, west), (north, east)) = (corner(-radius), corner(radius));
@@ -151,8 +156,8 @@ impl<'a> DataVoids<'a> {
         });
     }
 
-    /// Height down to which pulses passed through a cell without points: that of the lowest point around it, if nothing stands
-    /// between there and the scanner of any pulse that ended beside the void.
+    /// Height down to which pulses passed through a cell without points: that of the lowest point around it, if nothing
+    /// stands between there and the scanner of any pulse that ended beside the void.
     fn floor(&self, cell: Cell) -> Option<f32> {
         let (low, high) = square(cell, FARTHEST);
         let count = self.counts.in_rectangle(low, high, u32::max)?;
@@ -234,8 +239,8 @@ mod tests {
     const WEST: [f32; 3] = [-0.5, 0.0, 1.0];
     const STRAIGHT_UP: [f32; 3] = [0.0, 0.0, 1.0];
 
-    /// Points of a survey of 20 m, 0.25 m apart, at the heights that `height` gives, where it gives one; before them one point 3 m above the
-    /// origin, whose inside lies to the east.
+    /// Points of a survey of 20 m, 0.25 m apart, at the heights that `height` gives, where it gives one; before them
+    /// one point 3 m above the origin, whose inside lies to the east.
     fn survey(height: impl Fn(f32, f32) -> Option<f32>) -> OrientedCloud {
         let (mut positions, mut normals) = (vec![[0.0, 0.0, 3.0]], vec![[-1.0, 0.0, 0.0]]);
         for i in 0_u8..80 {

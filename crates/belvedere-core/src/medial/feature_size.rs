@@ -22,8 +22,8 @@ impl Default for FeatureSizeParams {
     }
 }
 
-/// Distance of each point to the medial axis, (N), metres: to the nearest centre, of any of `sides`, whose bisector agrees
-/// with those around it. Infinite where no medial point is reliable.
+/// Distance of each point to the medial axis, (N), metres: to the nearest centre, of any of `sides`, whose bisector
+/// agrees with those around it. Infinite where no medial point is reliable.
 ///
 /// Balls that never shrank are left out; masbcpp compares with them, and reads bisectors for them that it never wrote.
 ///
@@ -132,8 +132,8 @@ pub struct SimplifyParams {
     pub cell_size: f32,
     /// Columns or cubes; masbcpp: cubes.
     pub cells: Cells,
-    /// A cell whose points differ in height by more than this, metres, keeps a hundred times as many: edges of roofs and
-    /// kerbs. `None`: never; masbcpp: 0.5, which only columns can exceed with its cells.
+    /// A cell whose points differ in height by more than this, metres, keeps a hundred times as many: edges of roofs
+    /// and kerbs. `None`: never; masbcpp: 0.5, which only columns can exceed with its cells.
     pub edge_height: Option<f32>,
     /// Least and most points per square metre to leave.
     pub density_limits: [f32; 2],

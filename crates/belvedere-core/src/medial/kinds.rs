@@ -7,14 +7,14 @@ use belvedere_data::Attributes;
 pub struct KindCaps {
     /// Largest radius at a point of vegetation (class 3 to 5). Default 1.
     pub vegetation_radius: f32,
-    /// Largest radius at a point that is not the first return of its pulse. Something before it let the pulse through, so that it
-    /// mostly lies in or under a crown, where neither its normal nor the side it was seen from says much. In spacings of pulses; default
-    /// 0.95.
+    /// Largest radius at a point that is not the first return of its pulse. Something before it let the pulse through,
+    /// so that it mostly lies in or under a crown, where neither its normal nor the side it was seen from says much. In
+    /// spacings of pulses; default 0.95.
     pub later_return_spacings: f32,
     /// Largest radius at a point of the ground (class 2). Default 2.
     pub ground_radius: f32,
-    /// Largest radius of a ball that neither a point nor a pulse bounds: one of the ground, or behind a wall that nothing was seen
-    /// behind. Default 0.5, as thick as balls from points alone are at most.
+    /// Largest radius of a ball that neither a point nor a pulse bounds: one of the ground, or behind a wall that
+    /// nothing was seen behind. Default 0.5, as thick as balls from points alone are at most.
     pub unbounded_radius: f32,
 }
 

@@ -6,7 +6,8 @@ use std::ops::Range;
 pub(super) const CELL: f32 = 0.5;
 /// Height of a voxel, metres.
 const STEP: f32 = 0.4;
-/// Voxels up and down that count as of the same height, which allows for slopes up to 45° and for the parapet of a balcony.
+/// Voxels up and down that count as of the same height, which allows for slopes up to 45° and for the parapet of a
+/// balcony.
 const SAME_HEIGHT: i32 = 2;
 /// Most cells: beyond this the columns would take gigabytes.
 const MAX_CELLS: f32 = 5e8;
@@ -33,8 +34,8 @@ pub(super) struct Layers {
 }
 
 impl Layers {
-    /// Voxels of `positions`, metres from `origin`, and which of them hold a point whose row is `solid`; `None` for no points, or for a
-    /// place too wide. Cells begin at the origin.
+    /// Voxels of `positions`, metres from `origin`, and which of them hold a point whose row is `solid`; `None` for no
+    /// points, or for a place too wide. Cells begin at the origin.
     pub(super) fn new(positions: &[[f32; 3]], origin: [f64; 3], solid: impl Fn(usize) -> bool) -> Option<Self> {
         let (mut low, mut high) = ([f32::INFINITY; 2], [f32::NEG_INFINITY; 2]);
         for p in positions {
@@ -103,8 +104,8 @@ impl Layers {
         Some(column.start + found)
     }
 
-    /// How many of the eight cells beside speak for a surface that goes on from a solid voxel: they hold solid points of its
-    /// height, or none at all, which says nothing. 0 for a voxel that is not solid.
+    /// How many of the eight cells beside speak for a surface that goes on from a solid voxel: they hold solid points
+    /// of its height, or none at all, which says nothing. 0 for a voxel that is not solid.
     pub(super) fn count_beside(&self, voxel: usize) -> usize {
         let own = self.cell_of(voxel);
         let goes_on = |cell: Cell| self.same_height(cell, voxel).next().is_some() || self.column(cell).is_empty();
@@ -125,8 +126,8 @@ impl Layers {
         square(self.cell_of(voxel)).for_each(|cell| self.same_height(cell, voxel).for_each(&mut visit));
     }
 
-    /// Calls `visit` with the voxels of each cell that a line crosses and where along it, metres, it enters and leaves the
-    /// cell: from `start` along the unit vector `up` for `length` metres, until `visit` says no or the raster ends.
+    /// Calls `visit` with the voxels of each cell that a line crosses and where along it, metres, it enters and leaves
+    /// the cell: from `start` along the unit vector `up` for `length` metres, until `visit` says no or the raster ends.
     pub(super) fn walk(
         &self,
         start: [f32; 3],

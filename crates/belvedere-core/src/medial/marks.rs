@@ -121,7 +121,8 @@ impl RadiusCaps {
     }
 }
 
-/// The cuts of all balls larger than `min_radius` that `left` leaves less of; it is given the row of a ball, which is that of its point.
+/// The cuts of all balls larger than `min_radius` that `left` leaves less of; it is given the row of a ball, which is
+/// that of its point.
 ///
 /// # Errors
 /// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
@@ -155,7 +156,8 @@ pub(super) fn cut(balls: &mut MedialBalls, oriented: &OrientedCloud, cuts: &[Cut
     }
 }
 
-/// Adds the balls of `fills` as far as the pulses leave them, and says how many. The first balls are those of the points of `survey`.
+/// Adds the balls of `fills` as far as the pulses leave them, and says how many. The first balls are those of the
+/// points of `survey`.
 ///
 /// # Errors
 /// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
@@ -182,7 +184,8 @@ pub(super) fn fill(
 }
 
 impl Fill {
-    /// Centre and radius of what pulses leave of the ball, where that is enough. The ball at its point has the radius `own`.
+    /// Centre and radius of what pulses leave of the ball, where that is enough. The ball at its point has the radius
+    /// `own`.
     fn ball(&self, free_segments: &FreeSegments, own: f32) -> Option<([f32; 3], f32)> {
         let most = self.max_radius;
         match self.place {

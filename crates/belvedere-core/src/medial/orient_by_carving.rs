@@ -10,8 +10,8 @@ use rayon::prelude::*;
 /// How [`orient_by_carving`] works.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OrientByCarvingParams {
-    /// Normals whose sign is less sure than this are asked about, 0 to 1 (1 for all). Default 0.05: below that the way to the
-    /// scanner runs within 3° of the surface.
+    /// Normals whose sign is less certain than this are tested, 0 to 1 (1 for all). Default 0.05: below that the way to
+    /// the scanner runs within 3° of the surface.
     pub min_confidence: f32,
     /// Depth to which a point or a pulse may enter a ball, metres, above 0. Default 0.02, that of carved balls.
     pub penetration: f32,
@@ -30,24 +30,25 @@ impl Default for OrientByCarvingParams {
 /// What became of the signs in [`orient_by_carving`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct OrientByCarvingReport {
-    /// Normals asked about.
+    /// Normals tested.
     pub asked: usize,
     /// Signs changed.
     pub flipped: usize,
 }
 
-/// The cloud with every normal whose sign is in doubt pointing away from the side on which points and pulses leave the larger
-/// ball: pulses sweep the outside of a surface and never its inside. Normals keep their confidence.
+/// The cloud with every normal whose sign is in doubt pointing away from the side on which points and pulses leave the
+/// larger ball: pulses sweep the outside of a surface and never its inside. Normals keep their confidence.
 ///
-/// For normals whose signs nothing tells, such as those of a file: on simulated towns with every normal turned inward it brings
-/// back all but half a point of what right signs give. It needs pulses that were measured: assumed vertical ones never see walls,
-/// and signs by up and by the vote of roof and ground ([`crate::normals::Orientation::Up`]) are better with them.
+/// For normals whose signs nothing tells, such as those of a file: on simulated towns with every normal turned inward
+/// it brings back all but half a point of what right signs give. It needs pulses that were measured: assumed vertical
+/// ones never see walls, and signs by up and by the vote of roof and ground ([`crate::normals::Orientation::Up`]) are
+/// better with them.
 ///
 /// `index` must have been built from the positions of `oriented`.
 ///
 /// # Errors
-/// [`Error::InvalidParameter`] for parameters out of range, [`Error::LengthMismatch`] where the index holds another number of
-/// points, what [`OrientedCloud::new`] refuses, and [`Error::Cancelled`].
+/// [`Error::InvalidParameter`] for parameters out of range, [`Error::LengthMismatch`] where the index holds another
+/// number of points, what [`OrientedCloud::new`] refuses, and [`Error::Cancelled`].
 ///
 /// # Source
 /// This project's own.

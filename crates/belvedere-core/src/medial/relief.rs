@@ -1,8 +1,8 @@
 //! Thin relief: upper edges of walls, ridges, chimneys, dormers, low walls on roofs.
 //!
-//! Where two surfaces meet at an edge, balls that touch either of them round it off, and where a thing is narrower than twice
-//! the spacing of pulses, normals at its few points say little. What is left of it lets lines of sight through just below its
-//! points, where it is most certain to be solid.
+//! Where two surfaces meet at an edge, balls that touch either of them round it off, and where a thing is narrower than
+//! twice the spacing of pulses, normals at its few points say little. What is left of it lets lines of sight through
+//! just below its points, where it is most certain to be solid.
 
 use super::chains::Chain;
 use super::marks::Marks;
@@ -15,21 +15,23 @@ use rayon::prelude::*;
 
 /// How thin relief is found and filled.
 ///
-/// Defaults were chosen on three simulated towns of seed 7 at 8 pulses per m². The rule takes the balanced rate of roofs from
-/// 95.1 to 96.5 % and what it lets through on streets from 3.3 to 3.0 %, at the cost of a quarter more balls.
+/// Defaults were chosen on three simulated towns of seed 7 at 8 pulses per m². The rule takes the balanced rate of
+/// roofs from 95.1 to 96.5 % and what it lets through on streets from 3.3 to 3.0 %, at the cost of a quarter more
+/// balls.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReliefParams {
-    /// Horizontal distance within which the next lower level is looked for, in spacings of pulses, above 0. Default 2.4: 0.85 m at 8
-    /// pulses per m², and 0.27 m at 80, where 0.75 m takes slopes for edges and costs own points 0.6 points false-blocked.
+    /// Horizontal distance within which the next lower level is looked for, in spacings of pulses, above 0. Default
+    /// 2.4: 0.85 m at 8 pulses per m², and 0.27 m at 80, where 0.75 m takes slopes for edges and costs own points 0.6
+    /// points false-blocked.
     pub reach_spacings: f32,
-    /// Least and most height above that level, metres. Default 0.2 to 1.5: less is noise; what falls off deeper may overhang,
-    /// and 2.5 m blocks a point more of what is visible from the street.
+    /// Least and most height above that level, metres. Default 0.2 to 1.5: less is noise; what falls off deeper may
+    /// overhang, and 2.5 m blocks a point more of what is visible from the street.
     pub heights: [f32; 2],
-    /// Radius above which the ball at a point represents it well enough, metres, above 0. Default 0.75: 0.4 gains 0.5 points
-    /// less on roofs; 1.5 gains another 0.1 of twice as many points.
+    /// Radius above which the ball at a point represents it well enough, metres, above 0. Default 0.75: 0.4 gains 0.5
+    /// points less on roofs; 1.5 gains another 0.1 of twice as many points.
     pub well_represented: f32,
-    /// Most radius of the balls that fill, in spacings of pulses, above 0. Default 0.47: 0.8 gains another 0.3 points on roofs and
-    /// loses 0.6 on walls, beside which no pulse passes near enough.
+    /// Most radius of the balls that fill, in spacings of pulses, above 0. Default 0.47: 0.8 gains another 0.3 points
+    /// on roofs and loses 0.6 on walls, beside which no pulse passes near enough.
     pub radius_spacings: f32,
     /// Distance of these balls below each other, metres, above 0. Default 0.15; 0.2 saves a fifth of them and lets
     /// 0.1 points more through, on roofs and streets.
@@ -44,7 +46,8 @@ impl Default for ReliefParams {
 
 /// Points handed to a thread at once.
 const CHUNK: usize = 512;
-/// Upward part of a normal below which a point lies on the face of a wall rather than on its edge: within 17° of upright.
+/// Upward part of a normal below which a point lies on the face of a wall rather than on its edge: within 17° of
+/// upright.
 const FACE_NORMAL_Z: f32 = 0.3;
 
 impl MarkingRule for ReliefParams {
@@ -69,10 +72,10 @@ impl MarkingRule for ReliefParams {
 }
 
 impl ReliefParams {
-    /// Rows of the points of thin relief, and the height of the next lower level at each: points of a small ball, as high above the
-    /// lowest point near by as the parameters say; what lies deeper than that is not looked at. Points that other rules fill below, or
-    /// that lie below a thin surface, are left out; so are those on the face of a wall, where balls would stand out of it where no
-    /// pulse says how far.
+    /// Rows of the points of thin relief, and the height of the next lower level at each: points of a small ball, as
+    /// high above the lowest point near by as the parameters say; what lies deeper than that is not looked at. Points
+    /// that other rules fill below, or that lie below a thin surface, are left out; so are those on the face of a wall,
+    /// where balls would stand out of it where no pulse says how far.
     fn points(&self, survey: &Survey<'_>, balls: &MedialBalls, control: &Control<'_>) -> Result<Vec<(usize, f32)>> {
         let stop = Stop::new(control);
         let (positions, normals) = (survey.positions(), survey.oriented.normals());

@@ -1,7 +1,8 @@
 //! Walls that no pulse reached, found by the edges of the roofs above them.
 //!
-//! Behind balconies and on walls along the flight there are hardly any points, and balls from the far side of a house bulge out
-//! between them. A house does not reach beyond its roof, so that what comes from within is cut below the roof's edge.
+//! Behind balconies and on walls along the flight there are hardly any points, and balls from the far side of a house
+//! bulge out between them. A house does not reach beyond its roof, so that what comes from within is cut below the
+//! roof's edge.
 
 use super::cells::cell;
 use super::kinds::Kind;
@@ -28,26 +29,28 @@ const WIDEST_GAP: f32 = 5.2;
 /// Distance of a wall from the roof and from the ground at which it is taken to begin, metres.
 const ENDS: f32 = 0.3;
 
-/// How balls are cut below the edges of roofs, and where they reach above the roof. Defaults were chosen on three simulated towns of seed 7 at 8 pulses per m².
+/// How balls are cut below the edges of roofs, and where they reach above the roof. Defaults were chosen on three
+/// simulated towns of seed 7 at 8 pulses per m².
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RoofEdgeParams {
-    /// Distance within which a point on a roof has no neighbour on one side if it lies at the edge, in spacings of pulses, above 0. Default
+    /// Distance within which a point on a roof has no neighbour on one side if it lies at the edge, in spacings of
+    /// pulses, above 0. Default
     /// 3. 4.5 finds fewer edges and loses a third of the gain.
     pub around_spacings: f32,
-    /// Least angle without a neighbour at an edge, radians. Default 2.6: a straight edge leaves π less what the raggedness
-    /// of its points takes.
+    /// Least angle without a neighbour at an edge, radians. Default 2.6: a straight edge leaves π less what the
+    /// raggedness of its points takes.
     pub min_gap: f32,
     /// Least height of an edge above the lowest point near by, metres, above 0. Default 2.
     pub min_height: f32,
-    /// How far beyond its outermost points a roof is taken to reach, in spacings of pulses, 0 or more. Default 0.3. 0.9 gains nothing
-    /// more on facades and lets more through houses.
+    /// How far beyond its outermost points a roof is taken to reach, in spacings of pulses, 0 or more. Default 0.3. 0.9
+    /// gains nothing more on facades and lets more through houses.
     pub outside_spacings: f32,
     /// Distance of the places on a wall below each other, metres, above 0. Default 0.5.
     pub spacing: f32,
     /// How far a ball may reach beyond these places, metres, above 0. Default 0.05.
     pub penetration: f32,
-    /// Least cosine between the way a wall faces and the way from a ball's centre to the place it touches. Default 0.85: at 0.7
-    /// houses with few points on their walls begin to leak, at 0.9 a fifth of the gain is lost.
+    /// Least cosine between the way a wall faces and the way from a ball's centre to the place it touches. Default
+    /// 0.85: at 0.7 houses with few points on their walls begin to leak, at 0.9 a fifth of the gain is lost.
     pub min_cosine: f32,
     /// Radius below which balls are not cut, metres, above 0. Default 0.5.
     pub min_radius: f32,

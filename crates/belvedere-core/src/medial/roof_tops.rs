@@ -1,7 +1,7 @@
 //! Roofs that pulses left partly without points: a building does not reach above the top of its roof.
 //!
-//! Between two strips, and where a surface is too dark or too smooth, a roof has few points or none. Balls of the walls below it then
-//! bulge out of it, as far as the next pulse.
+//! Between two strips, and where a surface is too dark or too smooth, a roof has few points or none. Balls of the walls
+//! below it then bulge out of it, as far as the next pulse.
 
 use super::cells::{Cells, cell};
 use super::roof_edges::{MIN_UP, RoofEdgeParams};
@@ -26,9 +26,9 @@ impl<'a> RoofTops<'a> {
         Self { all, near: all.with_neighbors(f32::max), level: Cells::new(level.collect(), f32::max) }
     }
 
-    /// What is left of the radius of a ball at a point of height `z`, whose outward normal has the upward part `up`: a ball is cut
-    /// where it reaches above every point over its whole width. Only where the highest of these points lies on a roof is the top of the
-    /// building known; other balls stay.
+    /// What is left of the radius of a ball at a point of height `z`, whose outward normal has the upward part `up`: a
+    /// ball is cut where it reaches above every point over its whole width. Only where the highest of these points lies
+    /// on a roof is the top of the building known; other balls stay.
     pub(super) fn radius(&self, (center, radius): ([f32; 3], f32), z: f32, up: f32, params: &RoofEdgeParams) -> f32 {
         let top = if up < 1.0 { self.over(center, radius, params.penetration) } else { None };
         let Some(top) = top else { return radius };
@@ -37,8 +37,8 @@ impl<'a> RoofTops<'a> {
         radius.min(left.max(params.min_radius))
     }
 
-    /// Height of the roof over a ball: of the highest point over its whole width; `None` where the ball does not reach above that, or where
-    /// that point is more than `tolerance` metres above every roof.
+    /// Height of the roof over a ball: of the highest point over its whole width; `None` where the ball does not reach
+    /// above that, or where that point is more than `tolerance` metres above every roof.
     fn over(&self, center: [f32; 3], radius: f32, tolerance: f32) -> Option<f32> {
         let is_below = |highest: f32| highest >= center[2] + radius - tolerance;
         // most balls lie below the points about their middle
@@ -60,7 +60,8 @@ mod tests {
     use belvedere_data::balls::MedialBalls;
     use belvedere_data::control::Control;
 
-    /// A wall from the ground to a height of 9 m, and points 0.25 m apart on the roof behind it from `from` metres behind it on.
+    /// A wall from the ground to a height of 9 m, and points 0.25 m apart on the roof behind it from `from` metres
+    /// behind it on.
     fn building(from: f32) -> OrientedCloud {
         let (mut positions, mut normals) = (Vec::new(), Vec::new());
         for i in 0_u8..36 {

@@ -48,8 +48,8 @@ pub(super) trait MarkingRule: Sync {
     }
 }
 
-/// Points are moved onto the surface that they scatter about before balls are made ([`crate::normals::Scatter`]). The model does
-/// that, with the normals; [`super::carved_balls`] takes points as they are.
+/// Points are moved onto the surface that they scatter about before balls are made ([`crate::normals::Scatter`]). The
+/// model does that, with the normals; [`super::carved_balls`] takes points as they are.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SmoothingParams;
 
@@ -77,22 +77,23 @@ macro_rules! rules {
             }
         }
 
-        /// How carved balls are made. Every rule that is `Some` is applied; [`CarvedParams::default`] applies all: the comparison of
-        /// docs/methods/carving.md shows that they earn their place.
+        /// How carved balls are made. Every rule that is `Some` is applied; [`CarvedParams::default`] applies all: the
+        /// comparison of docs/methods/carving.md shows that they earn their place.
         #[derive(Clone, Copy, Debug, PartialEq)]
         pub struct CarvedParams {
-            /// Depth to which a point may enter a ball, metres, above 0. Default 0.02: a penetration of 0.05 m costs 1.3 points on
-            /// facades. Pulses enter none.
+            /// Depth to which a point may enter a ball, metres, above 0. Default 0.02: a penetration of 0.05 m costs
+            /// 1.3 points on facades. Pulses enter none.
             pub penetration: f32,
-            /// Radius every ball starts with, metres. Default 5: 15 m answer the same, cost 40 % more a query and bulge farther where
-            /// no pulse passes; 3 m let 1.2 points more of the shade of streets through.
+            /// Radius every ball starts with, metres. Default 5: 15 m answer the same, cost 40 % more a query and bulge
+            /// farther where no pulse passes; 3 m let 1.2 points more of the shade of streets through.
             pub initial_radius: f32,
-            /// Largest radius of any ball, metres, above 0; +∞, the default, for no limit but those that pulses and rules set.
+            /// Largest radius of any ball, metres, above 0; +∞, the default, for no limit but those that pulses and
+            /// rules set.
             pub max_radius: f32,
             /// Largest radii by kind of point.
             pub kind_caps: KindCaps,
-            /// Sizes for scanners on the ground, which replace those above and leave none of the rules. `None` treats all scanners as
-            /// if they flew.
+            /// Sizes for scanners on the ground, which replace those above and leave none of the rules. `None` treats
+            /// all scanners as if they flew.
             pub close_range: Option<CloseRangeParams>,
             $($(#[$doc])* pub $field: Option<$params>,)*
         }

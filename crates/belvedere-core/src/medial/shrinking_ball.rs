@@ -15,8 +15,8 @@ pub enum ShrinkMethod {
     /// The heuristics of the paper, as its reference program masbcpp has them: the ball before the one whose separation
     /// angle is too small. Such a ball may hold points.
     Angles {
-        /// The paper's t_a: the first smaller ball is refused, and the ball stays at its initial radius, if its separation
-        /// angle is below this. Radians, 0 to π, 0 switches the test off; masbcpp: 32°.
+        /// The paper's t_a: the first smaller ball is refused, and the ball stays at its initial radius, if its
+        /// separation angle is below this. Radians, 0 to π, 0 switches the test off; masbcpp: 32°.
         first_separation_angle: f64,
         /// The paper's t_b: a later ball is refused, and its predecessor kept, if its separation angle is below this.
         /// Radians, 0 to π, 0 switches the test off; masbcpp: 20°.
@@ -24,8 +24,8 @@ pub enum ShrinkMethod {
     },
     /// Bounded penetration: the largest ball that no point enters by more than `penetration`.
     Tau {
-        /// Metres, above 0 and below the initial radius; two to three times the noise along the normals: 0.05 to 0.1 for
-        /// airborne scans, 0.01 to 0.02 for terrestrial ones.
+        /// Metres, above 0 and below the initial radius; two to three times the noise along the normals: 0.05 to 0.1
+        /// for airborne scans, 0.01 to 0.02 for terrestrial ones.
         penetration: f32,
     },
 }
@@ -37,14 +37,14 @@ pub struct ShrinkParams {
     pub method: ShrinkMethod,
     /// Radius every ball starts with, metres, up to 100 000.
     pub initial_radius: f32,
-    /// Most radius a ball is left with, metres, above 0; +∞ for no limit. A larger ball gives way to the one of this radius
-    /// within it that is tangent at the same point, and keeps its touch and separation angle. An interior ball of
-    /// [`ShrinkMethod::Tau`] that met no point gets this radius too: nothing lies behind its surface, as behind the outer walls of a scanned room,
-    /// and that surface blocks.
+    /// Most radius a ball is left with, metres, above 0; +∞ for no limit. A larger ball gives way to the one of this
+    /// radius within it that is tangent at the same point, and keeps its touch and separation angle. An interior ball
+    /// of [`ShrinkMethod::Tau`] that met no point gets this radius too: nothing lies behind its surface, as behind the
+    /// outer walls of a scanned room, and that surface blocks.
     pub max_radius: f32,
-    /// Most radius of interior balls of [`ShrinkMethod::Tau`] in point spacings at their points, above 0; +∞ for no such limit. Where points
-    /// are dense, balls need not be thick to leave no gap, and thick ones stand out of thin things. The penetration is then at most a
-    /// quarter of the limit.
+    /// Most radius of interior balls of [`ShrinkMethod::Tau`] in point spacings at their points, above 0; +∞ for no
+    /// such limit. Where points are dense, balls need not be thick to leave no gap, and thick ones stand out of thin
+    /// things. The penetration is then at most a quarter of the limit.
     pub max_spacings: f32,
 }
 
@@ -66,18 +66,19 @@ impl ShrinkParams {
     /// Balls of bounded penetration: 0.05 m, started at 30 m, which is more than half the thickness of nearly every
     /// building, and cut down to half a metre.
     ///
-    /// The limit is there for airborne scans, where large balls bulge out through facades that hardly a pulse has hit. On
-    /// simulated towns of 11 points a square metre (seeds 1 and 2, sun 30° high) unlimited balls call nine tenths of the
-    /// sunlit street shadowed; limits of 2, 1 and 0.5 m leave 46 to 52, 22 to 24 and 9 to 10 %, while missed shadow grows from
-    /// 0.1 to 2.4 %. Clouds much sparser than that want about twice their point spacing.
+    /// The limit is there for airborne scans, where large balls bulge out through facades that hardly a pulse has hit.
+    /// On simulated towns of 11 points a square metre (seeds 1 and 2, sun 30° high) unlimited balls call nine tenths of
+    /// the sunlit street shadowed; limits of 2, 1 and 0.5 m leave 46 to 52, 22 to 24 and 9 to 10 %, while missed shadow
+    /// grows from 0.1 to 2.4 %. Clouds much sparser than that want about twice their point spacing.
     #[must_use]
     pub fn tau() -> Self {
         let method = ShrinkMethod::Tau { penetration: 0.05 };
         Self { method, initial_radius: 30.0, max_radius: 0.5, max_spacings: f32::INFINITY }
     }
 
-    /// The same for clouds that no pulse can carve. Among them are scans from the ground without the place of the scanner, whose points lie millimetres apart near the scanner and decimetres far from it: balls of at most
-    /// three spacings, which overlap also where scan lines are ten times farther apart than the points on them.
+    /// The same for clouds that no pulse can carve. Among them are scans from the ground without the place of the
+    /// scanner, whose points lie millimetres apart near the scanner and decimetres far from it: balls of at most three
+    /// spacings, which overlap also where scan lines are ten times farther apart than the points on them.
     #[must_use]
     pub fn tau_by_spacing() -> Self {
         Self { max_spacings: 3.0, ..Self::tau() }
@@ -128,7 +129,8 @@ pub struct ShrinkReport {
     /// Balls that no point bounds and that were cut to the limit of radii.
     #[serde(rename = "balls_of_maximum_radius")]
     pub limited: usize,
-    /// Balls that no point bounds and that kept the initial radius. Visibility does not use them unless pulses bound them.
+    /// Balls that no point bounds and that kept the initial radius. Visibility does not use them unless pulses bound
+    /// them.
     #[serde(rename = "balls_without_bound")]
     pub never_shrunk: usize,
     /// Points without a normal, which get no ball: radius 0, no touch.
@@ -145,14 +147,14 @@ const CHUNK: usize = 512;
 /// place that touches nothing.
 ///
 /// # Errors
-/// [`Error::InvalidParameter`] for parameters out of range, [`Error::LengthMismatch`] where `index` holds another number
-/// of points, [`Error::Cancelled`].
+/// [`Error::InvalidParameter`] for parameters out of range, [`Error::LengthMismatch`] where `index` holds another
+/// number of points, [`Error::Cancelled`].
 ///
 /// # Source
 /// Ma, Bae & Choi 2012 (shrinking ball); Peters, Ledoux & Biljecki 2015, section 3.1 (angle thresholds). The order of
-/// tests and the f32 arithmetic of `Angles` follow masbcpp. `Tau` is ours: the ball of radius r that every point q enters
-/// by at most τ is the noise-free ball of radius r − τ tangent τ below p, so r = τ + min |p′−q|² / 2 n·(p′−q) with
-/// p′ = p − τn; nested balls make the minimum independent of any order.
+/// tests and the f32 arithmetic of `Angles` follow masbcpp. `Tau` is ours: the ball of radius r that every point q
+/// enters by at most τ is the noise-free ball of radius r − τ tangent τ below p, so r = τ + min |p′−q|² / 2 n·(p′−q)
+/// with p′ = p − τn; nested balls make the minimum independent of any order.
 pub fn shrink(
     cloud: &OrientedCloud,
     index: &NeighborIndex,
@@ -258,8 +260,8 @@ const LIMITED_PENETRATION: f32 = 0.25;
 /// Neighbours that tell the spacing of points: enough to reach from one scan line to the next.
 const SPACING_NEIGHBORS: usize = 12;
 
-/// Least distance between points that counts, metres: above and below a tripod scan lines lie up to 0.03 m apart, while the points on
-/// them touch, and balls must close the gaps between the lines.
+/// Least distance between points that counts, metres: above and below a tripod scan lines lie up to 0.03 m apart, while
+/// the points on them touch, and balls must close the gaps between the lines.
 const MIN_SPACING: f32 = 0.0135;
 
 /// Distance between points at `p`, metres, if those around it lay in squares; [`MIN_SPACING`] or more.

@@ -1,6 +1,7 @@
 //! Things so slender that pulses pass them closely on both sides: fences, railings, garden walls, wires, masts.
 //!
-//! Their points have no surface about them that a normal could be taken from, and the balls there fill the air beside them.
+//! Their points have no surface about them that a normal could be taken from, and the balls there fill the air beside
+//! them.
 
 use super::cells::cell;
 use super::chains::Chain;
@@ -18,27 +19,28 @@ use std::f32::consts::FRAC_1_SQRT_2;
 /// How slender things are found and represented.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SlenderParams {
-    /// A thing is slender where pulses enter the balls that touch its point from eight sides before any has this radius,
-    /// metres, above 0: into a wall, a car or a roof one of them can grow on. Default 0.5: some pulse passes within that of
-    /// most points of fences at eight pulses a square metre; 0.35 finds fewer.
+    /// A thing is slender where pulses enter the balls that touch its point from eight sides before any has this
+    /// radius, metres, above 0: into a wall, a car or a roof one of them can grow on. Default 0.5: some pulse passes
+    /// within that of most points of fences at eight pulses a square metre; 0.35 finds fewer.
     pub gap: f32,
     /// How far below its point the balls touch, metres, 0 or more; above the lowest point near by in any case. Default
     /// 0.7: more than the gap, so that pulses that end beside the point, on the same roof, do not count.
     pub lowering: f32,
-    /// Most radius of the balls at its points, in spacings of pulses, above 0. Default 0.32: pulses pass closer on both sides.
+    /// Most radius of the balls at its points, in spacings of pulses, above 0. Default 0.32: pulses pass closer on both
+    /// sides.
     pub radius_spacings: f32,
     /// Least height above the lowest point near by, metres, 0 or more. Default 0.3: kerbs and noise are lower.
     pub min_height: f32,
-    /// Height up to which it stands on the ground, rather than hang in the air, metres. Default 2.5: higher fences are rare, lower
-    /// wires too.
+    /// Height up to which it stands on the ground, rather than hang in the air, metres. Default 2.5: higher fences are
+    /// rare, lower wires too.
     pub standing_height: f32,
-    /// Most radius of the balls that fill what stands, in spacings of pulses, above 0. Default 0.47: what pulses passed by cannot be
-    /// blocked, and 0.32 lets more through.
+    /// Most radius of the balls that fill what stands, in spacings of pulses, above 0. Default 0.47: what pulses passed
+    /// by cannot be blocked, and 0.32 lets more through.
     pub standing_spacings: f32,
     /// Distance of these balls below each other, metres, above 0. Default 0.2.
     pub spacing: f32,
-    /// Most distance of two points of one thing between which it is filled as well, metres, 0 or more. Default 1: twice the
-    /// distance of most hits along a fence; wider gaps may be gates.
+    /// Most distance of two points of one thing between which it is filled as well, metres, 0 or more. Default 1: twice
+    /// the distance of most hits along a fence; wider gaps may be gates.
     pub reach: f32,
 }
 
@@ -69,8 +71,9 @@ impl MarkingRule for SlenderParams {
         Some((Phase::Points, "finding thin objects"))
     }
 
-    /// Caps at all slender things, and fills of those that stand on the ground: balls below each other, at each point from the
-    /// highest point of the thing close by down to the ground, and midway between points that have no other between them.
+    /// Caps at all slender things, and fills of those that stand on the ground: balls below each other, at each point
+    /// from the highest point of the thing close by down to the ground, and midway between points that have no other
+    /// between them.
     fn marks(&self, survey: &Survey<'_>, _: &MedialBalls, control: &Control<'_>) -> Result<Marks> {
         let heights = self.heights(survey, control)?;
         let rows = (0..heights.len()).filter(|&row| !heights[row].is_nan());
@@ -91,8 +94,9 @@ impl MarkingRule for SlenderParams {
 }
 
 impl SlenderParams {
-    /// Height of each point of a slender thing above the lowest point near by, NaN for all others: those of ground, vegetation and
-    /// buildings (class 6; what has no class and is higher than what stands), those too low, and those not passed by pulses on all sides.
+    /// Height of each point of a slender thing above the lowest point near by, NaN for all others: those of ground,
+    /// vegetation and buildings (class 6; what has no class and is higher than what stands), those too low, and those
+    /// not passed by pulses on all sides.
     fn heights(&self, survey: &Survey<'_>, control: &Control<'_>) -> Result<Vec<f32>> {
         let stop = Stop::new(control);
         let positions = survey.positions();

@@ -1,7 +1,7 @@
 //! How far pulses pass from each other: the length that sizes of balls are given in.
 //!
-//! What lies between two pulses nothing is known of. Balls that close a surface are as large as that, whatever the survey: half a metre
-//! for two pulses a square metre, half a decimetre for a hundred.
+//! What lies between two pulses nothing is known of. Balls that close a surface are as large as that, whatever the
+//! survey: half a metre for two pulses a square metre, half a decimetre for a hundred.
 
 use super::cells::{Cells, cell};
 use belvedere_data::Attributes;
@@ -10,7 +10,8 @@ use rayon::prelude::*;
 /// Area that pulses are counted on, m²: a cell and those about it.
 const AREA_M2: f32 = 9.0;
 
-/// How many pulses end in each cell and those about it, by first returns; without return numbers all of `positions`, (N, 3) local metres, count.
+/// How many pulses end in each cell and those about it, by first returns; without return numbers all of `positions`,
+/// (N, 3) local metres, count.
 pub(super) fn pulse_counts(positions: &[[f32; 3]], attributes: &Attributes) -> Cells<u32> {
     let numbers = attributes.return_number.as_deref();
     let is_first = |row: usize| numbers.and_then(|numbers| numbers.get(row)).is_none_or(|&number| number <= 1);
@@ -19,7 +20,8 @@ pub(super) fn pulse_counts(positions: &[[f32; 3]], attributes: &Attributes) -> C
     Cells::new(counts, |a, b| a + b).with_neighbors(|a, b| a + b)
 }
 
-/// Mean horizontal distance between so many pulses of [`pulse_counts`], metres: the side of the square that each has to itself.
+/// Mean horizontal distance between so many pulses of [`pulse_counts`], metres: the side of the square that each has to
+/// itself.
 pub(super) fn spacing_of(count: u32) -> f32 {
     #[expect(clippy::cast_precision_loss, reason = "a count on nine square metres")]
     let area = AREA_M2 / count.max(1) as f32;

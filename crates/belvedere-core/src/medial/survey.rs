@@ -15,7 +15,8 @@ use belvedere_data::control::Control;
 use belvedere_data::{Attributes, Result};
 use serde::{Deserialize, Serialize};
 
-/// Side of the blocks in which balls are pruned and thin surfaces end, metres: many times the largest ball, so that little is kept twice.
+/// Side of the blocks in which balls are pruned and thin surfaces end, metres: many times the largest ball, so that
+/// little is kept twice.
 pub(super) const BLOCK: f32 = 64.0;
 
 /// Statistics of a whole survey that rules need, so that a part of it has the balls of the whole.
@@ -55,7 +56,8 @@ pub(super) struct Survey<'a> {
     pub(super) lowest: Cells<f32>,
     /// Height of the highest point in each cell.
     pub(super) highest: Cells<f32>,
-    /// Share of the pulses that got through the crown about each point; NaN where there is none, empty where it was not measured.
+    /// Share of the pulses that got through the crown about each point; NaN where there is none, empty where it was not
+    /// measured.
     pub(super) transmission: Vec<f32>,
     /// Rows of later returns within crowns, and their spacing, metres.
     pub(super) later_in_crowns: Vec<(usize, f32)>,

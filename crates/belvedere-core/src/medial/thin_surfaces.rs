@@ -1,4 +1,4 @@
-//! Surfaces with open space close below them, told by the pulses that run there: decks, canopies, balconies, bridges.
+//! Surfaces with open space close below them, found by the pulses that run there: decks, canopies, balconies, bridges.
 
 use super::carved::CarvedInput;
 use super::chains::MIN_SHARE;
@@ -16,21 +16,24 @@ use rayon::prelude::*;
 use std::f32::consts::TAU;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Cells beside a voxel, of eight, that must hold points of its height for pulses below it to be looked at. On a straight rim
-/// five do; one of these may be empty where points are sparse.
+/// Cells beside a voxel, of eight, that must hold points of its height for pulses below it to be looked at. On a
+/// straight edge five do; one of these may be empty where points are sparse.
 const MIN_BESIDE: usize = 4;
-/// How far points may lie above or below a surface and still be part of it where a pulse runs below, metres: a voxel and half
-/// of another, so that slopes up to 40° count.
+/// How far points may lie above or below a surface and still be part of it where a pulse runs below, metres: a voxel
+/// and half of another, so that slopes up to 40° count.
 const SAME_SURFACE: f32 = 0.6;
-/// Gap about a pulse that is never taken for one below a surface, radians: hardly more than the π of a pulse below the outermost points. The rim lies
-/// farther out than these by half their spacing, and a wall below it would have stopped the pulse.
+/// Gap about a pulse that is never taken for one below a surface, radians: hardly more than the π of a pulse below the
+/// outermost points. The edge of the surface lies farther out than these points by half their spacing, and a wall below
+/// it would have stopped the pulse.
 const WIDEST_OF_ALL: f32 = 3.2;
 /// How far below a voxel a point no longer belongs to its surface, metres: more than a voxel is high.
 const OF_THE_SURFACE: f32 = 0.5;
-/// Farthest neighbours that a surface goes on between, in spacings of pulses: hardly any of a surface are farther apart.
+/// Farthest neighbours that a surface goes on between, in spacings of pulses: hardly any of a surface are farther
+/// apart.
 const FARTHEST_APART_SPACINGS: f32 = 3.0;
-/// Share of the gap between neighbours, about its middle, that is clear of others. Of a surface with points at random places 1.8 % stay uncovered at 0.75, with 3.4 balls more for each point,
-/// and 7.7 % at 1, with 1.9; 5 % did with balls at points only, half as large again.
+/// Share of the gap between neighbours, about its middle, that is clear of others. Of a surface with points at random
+/// places 1.8 % stay uncovered at 0.75, with 3.4 balls more for each point, and 7.7 % at 1, with 1.9; 5 % did with
+/// balls at points only, half as large again.
 const CLEAR_SHARE: f32 = 0.75;
 /// Nearest neighbours that anything is filled between, metres: above noise.
 const MIN_APART: f32 = 0.05;
@@ -43,29 +46,31 @@ const CHECK_EACH: usize = 64;
 
 /// How thin surfaces are found, and how large balls may be at them.
 ///
-/// Defaults were chosen on three simulated towns of seed 7 at 8 pulses per m²; `widest_gap`, and how far a pulse must look below an edge, later on towns of
-/// seeds 1 to 3 at 10, where small stalls were missed.
+/// Defaults were chosen on three simulated towns of seed 7 at 8 pulses per m²; `widest_gap`, and how far a pulse must
+/// look below an edge, later on towns of seeds 1 to 3 at 10, where small stalls were missed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ThinSurfaceParams {
-    /// Most radius of balls at points of a thin surface, and midway between neighbours among them, in spacings of pulses, above 0. Default 0.6. With balls
-    /// at points only it took 0.95 to close the surface, which made it half as thick again.
+    /// Most radius of balls at points of a thin surface, and midway between neighbours among them, in spacings of
+    /// pulses, above 0. Default 0.6. With balls at points only it took 0.95 to close the surface, which made it half as
+    /// thick again.
     pub radius_spacings: f32,
-    /// Least and most depth below a surface at which a pulse proves it thin, metres. Default 1 to 5: nearer is noise and relief,
-    /// farther the arcade of a house, whose roof is not thin.
+    /// Least and most depth below a surface at which a pulse proves it thin, metres. Default 1 to 5: nearer is noise
+    /// and relief, farther the arcade of a house, whose roof is not thin.
     pub depths: [f32; 2],
     /// Distance within which points of the surface must lie around a pulse below it, metres, above 0. Default 0.75.
     pub around: f32,
-    /// Widest angle, radians, between neighbouring ones of those points where points are dense. Default 2.7: at 2 pulses that look a few
-    /// decimetres below a canopy of 3 m are too few to find it. Sparse
-    /// points do not reach the edge of a surface: each end of the gap may lie one mean angle between them farther, as long as the whole
-    /// stays below 3.2.
+    /// Widest angle, radians, between neighbouring ones of those points where points are dense. Default 2.7: at 2
+    /// pulses that look a few decimetres below a canopy of 3 m are too few to find it. Sparse points do not reach the
+    /// edge of a surface: each end of the gap may lie one mean angle between them farther, as long as the whole stays
+    /// below 3.2.
     pub widest_gap: f32,
-    /// Proven cells a surface must have, in square roots of its number of cells, above 0: pulses look below a rim, and the rim
-    /// grows with that root. Default 0.5: at 0.3 more of the roofs of a real tile (Delft) are taken for thin.
+    /// Proven cells a surface must have, in square roots of its number of cells, above 0: pulses reach below an edge,
+    /// and the length of the edge grows with that root. Default 0.5: at 0.3 more of the roofs of a real tile (Delft)
+    /// are taken for thin.
     pub min_proof: f32,
-    /// Distance about a pulse below a surface within which hardly a solid point may lie below that surface, metres. Default 1.5.
-    /// Eaves stand out over walls, whose points betray them; without this rule two thirds of the roofs of real tiles (Delft,
-    /// Bresse) were taken for thin, with it 13 % and next to none.
+    /// Distance about a pulse below a surface within which hardly a solid point may lie below that surface, metres.
+    /// Default 1.5. Eaves stand out over walls, whose points betray them; without this rule two thirds of the roofs of
+    /// real tiles (Delft, Bresse) were taken for thin, with it 13 % and next to none.
     pub open_radius: f32,
     /// Points that may lie there all the same: posts, goods, the foot of the pulse itself. Default 1.
     pub max_below: usize,
@@ -85,8 +90,8 @@ impl Default for ThinSurfaceParams {
     }
 }
 
-/// Whether each point of `input` lies on a thin surface. The result depends on neither the order of points and pulses nor the number of
-/// threads.
+/// Whether each point of `input` lies on a thin surface. The result depends on neither the order of points and pulses
+/// nor the number of threads.
 ///
 /// # Errors
 /// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
@@ -121,9 +126,9 @@ impl MarkingRule for ThinSurfaceParams {
 }
 
 impl ThinSurfaceParams {
-    /// Whether each point lies on a thin surface. Surfaces end at blocks of 64 m, so that those of a block are the same in every part of a
-    /// survey that holds all of it and what lies about it. The result depends on neither the order of points and pulses nor the number
-    /// of threads.
+    /// Whether each point lies on a thin surface. Surfaces end at blocks of 64 m, so that those of a block are the same
+    /// in every part of a survey that holds all of it and what lies about it. The result depends on neither the order
+    /// of points and pulses nor the number of threads.
     fn thin_points(&self, survey: &Survey<'_>, control: &Control<'_>) -> Result<Vec<bool>> {
         let stop = Stop::new(control);
         let (positions, index) = (survey.positions(), survey.index);
@@ -158,7 +163,8 @@ impl ThinSurfaceParams {
         Ok((0..positions.len()).into_par_iter().map(is_thin).collect())
     }
 
-    /// Fills midway between neighbours among the points `rows` of thin surfaces, where no other comes close to the middle.
+    /// Fills midway between neighbours among the points `rows` of thin surfaces, where no other comes close to the
+    /// middle.
     fn fills(&self, survey: &Survey<'_>, rows: Vec<usize>, control: &Control<'_>) -> Result<Vec<Fill>> {
         let stop = Stop::new(control);
         let rows = one_in_each_cell(survey.positions(), rows, MIN_APART);
@@ -266,8 +272,8 @@ pub(super) fn widest_gap(
     Gap { width, middle, count }
 }
 
-/// Which voxels belong to a surface of which enough is proven. A surface is what hangs together of voxels that go on to all
-/// sides or are proven, with what lies beside them.
+/// Which voxels belong to a surface of which enough is proven. A surface is what hangs together of voxels that go on to
+/// all sides or are proven, with what lies beside them.
 fn surfaces(layers: &Layers, beside: &[usize], proven: &[bool], min_proof: f32) -> Vec<bool> {
     let mut seen = vec![false; layers.len()];
     let mut thin = vec![false; layers.len()];

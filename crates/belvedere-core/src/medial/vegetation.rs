@@ -29,8 +29,9 @@ impl Default for VegetationParams {
 const CHUNK: usize = 512;
 
 /// Turns points of no particular class (0, 1 or none) whose neighbourhood is not flat or lets pulses through into
-/// [`Kind::Vegetation`], and says how many: trees, hedges, and with them cars and other small things. For clouds without the classes of
-/// vegetation. `index` holds the points of `cloud`; those beyond [`FARTHEST_NEIGHBOR`] are no neighbours.
+/// [`Kind::Vegetation`], and says how many: trees, hedges, and with them cars and other small things. For clouds
+/// without the classes of vegetation. `index` holds the points of `cloud`; those beyond [`FARTHEST_NEIGHBOR`] are no
+/// neighbours.
 ///
 /// # Errors
 /// [`Error::InvalidParameter`] for a number of neighbours out of range.

@@ -9,8 +9,8 @@ pub fn vegetation_of_transmission(transmission: &[f32]) -> Vec<bool> {
     transmission.iter().map(|share| !share.is_nan()).collect()
 }
 
-/// Which balls are vegetation, (B), by the class of the points they are tangent at: low, medium and high vegetation (3 to 5).
-/// `classification` has a row for each point that the balls were made from.
+/// Which balls are vegetation, (B), by the class of the points they are tangent at: low, medium and high vegetation (3
+/// to 5). `classification` has a row for each point that the balls were made from.
 #[must_use]
 pub fn vegetation_of_classes(balls: &MedialBalls, classification: &[u8]) -> Vec<bool> {
     let is_vegetation = |source: &u32| matches!(classification.get(*source as usize), Some(3..=5));

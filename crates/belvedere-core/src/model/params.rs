@@ -9,7 +9,7 @@ use belvedere_data::trajectory::Trajectory;
 use belvedere_data::{Mesh, Result};
 use std::sync::Arc;
 
-/// How a scene model is built. [`ModelParams::default`] is what Belvedere does without being asked for anything else.
+/// How a scene model is built. [`ModelParams::default`] is what Belvedere does by default.
 ///
 /// ```
 /// use belvedere_core::medial::ShrinkParams;
@@ -140,7 +140,7 @@ impl BallParams {
         }
     }
 
-    /// How balls are made from the points where these facts decide whether pulses carve.
+    /// How balls are made from the points where these statistics decide whether pulses carve.
     pub(super) fn shrinking_by(&self, statistics: &SurveyStatistics) -> ShrinkParams {
         match self {
             Self::CarvedIfPossible(carved, _) if statistics.carves => carved.shrinking(),

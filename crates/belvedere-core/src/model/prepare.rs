@@ -226,7 +226,7 @@ fn check_surface<'a>(points: impl Iterator<Item = &'a [f32; 3]> + Clone) -> Resu
     if is_beside { Ok(()) } else { Err(Error::NoSurface { count, what: "all on one line or in one place" }) }
 }
 
-/// How normals are turned outward, decided by what was asked for and by what the cloud offers.
+/// How normals are turned outward: this depends on the requested method and on the data of the cloud.
 fn orientation<'a>(
     cloud: &PointCloud,
     params: &'a ModelParams,

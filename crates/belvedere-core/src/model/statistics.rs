@@ -18,11 +18,11 @@ const RULES_REACH: f64 = 12.0;
 /// By how much pulses may lean more than the most of a sample, as a share of that.
 const LEAN_ROOM: f64 = 1.1;
 
-/// What is estimated once from a whole survey. Parts of the survey that are built with these facts
+/// What is estimated once from a whole survey. Parts of the survey that are built with these statistics
 /// ([`ModelParams::statistics`]) and lie in one frame, whose origin is a corner of blocks of 64 m, have the same balls,
 /// bit by bit, wherever they overlap by [`SurveyStatistics::buffer`].
 ///
-/// A model of a whole cloud estimates these facts by itself, from all of its points.
+/// A model of a whole cloud estimates these statistics by itself, from all of its points.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct SurveyStatistics {
@@ -61,8 +61,9 @@ pub struct SurveyExtremes {
 }
 
 impl SurveyStatistics {
-    /// The facts of a survey of which `along_lines` is a sample that is spread over all of it, whole pulses at random,
-    /// and `places` are all points of some places, both in the frame that its parts will have. Errors call it `name`.
+    /// The statistics of a survey of which `along_lines` is a sample that is spread over all of it, whole pulses at
+    /// random, and `places` are all points of some places, both in the frame that its parts will have. Errors call it
+    /// `name`.
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] for ways of orienting that need more than the points, [`Error::Malformed`] for

@@ -37,8 +37,8 @@ pub struct Neighbor {
     pub distance_squared: f32,
 }
 
-/// How far away a point of a survey from the air may lie and still be a neighbour, metres: more than the usual 16 neighbours take wherever
-/// there is a surface.
+/// How far away a point of a survey from the air may lie and still be a neighbour, metres: more than the usual 16
+/// neighbours take wherever there is a surface.
 pub const FARTHEST_NEIGHBOR: f32 = 16.0;
 
 /// A spatial index over points, built once and searched by any number of threads.

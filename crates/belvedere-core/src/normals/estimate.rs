@@ -66,7 +66,7 @@ const CHUNK: usize = 1024;
 /// One normal per point of `positions`, (N, 3) local metres, which `index` was built from; signs are arbitrary.
 ///
 /// A point whose neighbourhood is a single spot or a line gets the normal (0, 0, 0) and quality 0. With fewer points
-/// than neighbours asked for, all points are neighbours.
+/// than requested neighbours, all points are neighbours.
 ///
 /// # Errors
 /// [`Error::InvalidParameter`] for fewer than 3 or more than 256 neighbours or a flatness that is not above zero;

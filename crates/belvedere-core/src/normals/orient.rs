@@ -19,7 +19,7 @@ const STEEP_NZ: f64 = 0.3;
 /// Weight of the vote of roof and ground: right in most cases, never proven.
 const VOTE_WEIGHT: f64 = 0.5;
 
-/// Weight of up where a better way was asked for but had nothing to say about a point.
+/// Weight of the upward direction where a better method was requested but gave no result for a point.
 const FALLBACK_WEIGHT: f64 = 0.25;
 
 /// Confidence below which a sign is as good as unknown: the line of sight runs within 3° of the surface.
@@ -146,8 +146,9 @@ impl NormalSign {
 /// zero or not finite stays zero with zero confidence. The confidence is |n·v| for the unit vector v to the scanner or
 /// up,
 /// |n·n_f| for the normal n_f of an aligned face (half of that where the mesh itself could not be verified), 0.5 for
-/// parity, 0.5·|n·h| for the vote (h horizontal), 0.25·|n_z| for up where another way was asked for but silent, 1 for
-/// given normals. For [`Orientation::Given`], `normals` may be empty; then the quality is 1.
+/// parity, 0.5·|n·h| for the vote (h horizontal), 0.25·|n_z| for the upward direction where another method was
+/// requested but gave no result, 1 for given normals. For [`Orientation::Given`], `normals` may be empty; then the
+/// quality is 1.
 ///
 /// A mesh need not be consistently oriented or closed: each of its faces is first turned to its open side where one
 /// side is open and the other enclosed (parity of crossings straight up, which needs no orientation); faces for which

@@ -22,7 +22,7 @@ const EDGE_SLACK_M: f64 = 0.1;
 const MAX_LATERAL_M: f64 = 0.25;
 
 /// Offsets along a normal at which the sides of a point are probed, smallest first: beyond the noise of laser points,
-/// below the thickness of buildings; the second serves points that lie off the surface of a generalised model.
+/// below the thickness of buildings; the second is for points that lie off the surface of a generalised model.
 const PROBE_OFFSETS_M: [f64; 2] = [0.25, 0.5];
 
 /// Offset at which the sides of a face are probed: a mesh has no noise, but thin parts (eaves, chimneys).
@@ -137,7 +137,7 @@ impl ReferenceMesh {
         for offset in PROBE_OFFSETS_M {
             if let Some(along) = self.open_side(position, normal, offset) {
                 // ground under a passage or in a court that the model filled lies near the floor of a solid, and what
-                // is below a floor counts as open: parity cannot be asked about surfaces that would face down
+                // is below a floor counts as open: parity gives no result for surfaces that would face down
                 let outward_z = if along { normal[2] } else { -normal[2] };
                 if outward_z >= -MIN_ALIGNMENT {
                     return MeshVerdict::Parity(if along { 0.5 } else { -0.5 });

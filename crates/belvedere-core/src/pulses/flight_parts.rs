@@ -160,7 +160,7 @@ pub enum AngleVerdict {
     /// Points do not lie where their angles, taken across the flight, put them: a cone, a tilted scanner, or rounded
     /// times.
     NotAcross,
-    /// Scan lines are bent, as those of a cone are, or cannot be told from bent ones.
+    /// Scan lines are bent, as those of a cone are, or cannot be distinguished from bent ones.
     Bent,
     /// Pulses with several returns point elsewhere.
     Contradicted,

@@ -22,13 +22,14 @@ pub(crate) const GAP_M: f32 = 1e-3;
 /// Pulses between two looks at whether to go on.
 const CHECK_EACH: usize = 4096;
 
-/// How pulses become needles.
+/// How pulses become free segments: pieces of lines that are proven to be empty.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FreeSegmentParams {
     /// Length before the first return that is not counted as empty, metres, 0 to 1. Default 0.05: the noise of a range.
     /// A model of a scan from one place on the ground takes less where it finds less noise.
     pub end_margin: f32,
-    /// Height above the highest return up to which needles reach, metres, above 0. Default 2; nothing stands higher.
+    /// Height above the highest return up to which free segments reach, metres, above 0. Default 2; nothing stands
+    /// higher.
     pub headroom: f32,
 }
 
@@ -47,7 +48,7 @@ struct FreeSegment {
     length: f32,
 }
 
-/// The needles of a survey, whatever way they run.
+/// The free segments of a survey, in all directions.
 pub struct FreeSegments {
     /// Those of a tree follow each other.
     free_segments: Vec<FreeSegment>,
@@ -57,10 +58,10 @@ pub struct FreeSegments {
     top: f32,
 }
 
-/// How many pulses became needles.
+/// How many pulses became free segments.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct FreeSegmentReport {
-    /// Needles.
+    /// Free segments.
     #[serde(rename = "pulses_used")]
     pub used: usize,
     /// First returns whose scanner position is unknown.
@@ -69,7 +70,7 @@ pub struct FreeSegmentReport {
 }
 
 impl FreeSegments {
-    /// Needles of the first returns of `cloud`, all its points where it has no return numbers, for scanners at
+    /// Free segments of the first returns of `cloud`, all its points where it has no return numbers, for scanners at
     /// `scanner`, (N, 3) local metres, NaN where unknown.
     ///
     /// # Errors
@@ -83,7 +84,8 @@ impl FreeSegments {
         Self::of_cloud_below(cloud, scanner, None, params, control)
     }
 
-    /// The same below the highest return of the survey that `cloud` is a part of, local metres, where that is given.
+    /// The free segments of [`FreeSegments::of_cloud`], below `highest` where it is given: the height of the highest
+    /// return of the survey that `cloud` is a part of, local metres.
     ///
     /// # Errors
     /// Those of [`FreeSegments::of_cloud`].
@@ -110,7 +112,8 @@ impl FreeSegments {
         Self::below(&returns, &scanner, highest, params, control)
     }
 
-    /// Needles from `first_returns`, (N, 3) local metres, towards `scanner`, (N, 3) local metres, NaN where unknown.
+    /// Free segments from `first_returns`, (N, 3) local metres, towards `scanner`, (N, 3) local metres, NaN where
+    /// unknown.
     ///
     /// # Errors
     /// [`Error::LengthMismatch`] where the two differ in length; [`Error::Cancelled`].
@@ -166,7 +169,7 @@ impl FreeSegments {
         Ok((Self::index(by_way, top, control)?, report))
     }
 
-    /// The same needles, each beginning `by` metres nearer to its return.
+    /// These free segments, each extended so that it begins `by` metres nearer to its return.
     ///
     /// # Errors
     /// [`Error::Cancelled`].
@@ -181,7 +184,7 @@ impl FreeSegments {
         Self::index(by_way, self.top, control)
     }
 
-    /// The needles of each way, none of which rises above `top`.
+    /// The index of the free segments of each direction, none of which rises above `top`.
     fn index(by_way: SegmentsByAxis, top: f32, control: &Control<'_>) -> Result<Self> {
         let stop = Stop::new(control);
         let (mut free_segments, mut trees) = (Vec::with_capacity(by_way.iter().map(Vec::len).sum()), Vec::new());
@@ -193,7 +196,7 @@ impl FreeSegments {
         Ok(Self { free_segments, trees, top })
     }
 
-    /// Where needle `number` begins, local metres; the unit vector along it, towards the scanner; and its length,
+    /// Where segment `number` begins, local metres; the unit vector along it, towards the scanner; and its length,
     /// metres. `None` from [`FreeSegments::len`] on. Their order is that of the index.
     #[must_use]
     pub fn segment(&self, number: usize) -> Option<([f32; 3], [f32; 3], f32)> {
@@ -202,12 +205,11 @@ impl FreeSegments {
             .map(|free_segment| (free_segment.start, free_segment.direction, free_segment.length))
     }
 
-    /// The greatest radius, below `max_radius`, of the balls of a pencil that no needle enters, or `None` where no
-    /// needle enters the ball of `max_radius`. Metres.
+    /// The greatest radius, below `max_radius`, of the balls of a pencil that no segment enters, or `None` where no
+    /// segment enters the ball of `max_radius`. Metres.
     ///
-    /// # Source
-    /// The closed form for a line is this project's: the ball of the pencil through a point at t metres along a needle
-    /// has the radius |p′−a−tu|² / 2 n·(p′−a−tu), a convex function of t.
+    /// # Source The closed form for a line is this project's: the ball of the pencil through a point at t metres along
+    /// a segment has the radius |p′−a−tu|² / 2 n·(p′−a−tu), a convex function of t.
     #[must_use]
     pub fn smallest_tangent_ball(&self, tangent: &Tangent, max_radius: f32) -> Option<f32> {
         if !(max_radius > 0.0) {
@@ -235,7 +237,7 @@ impl FreeSegments {
     }
 }
 
-/// Needles to be, by the number of their way.
+/// Segments that are not indexed yet, by the number of their direction.
 type SegmentsByAxis = [Vec<FreeSegment>; 6];
 
 impl FreeSegment {
@@ -244,7 +246,7 @@ impl FreeSegment {
         Self { start: start.map(|v| v as f32), direction: direction.map(|v| v as f32), length: length as f32 }
     }
 
-    /// Radius of the ball of the pencil through `touching` along `inward` that this needle touches, or `None` where it
+    /// Radius of the ball of the pencil through `touching` along `inward` that this segment touches, or `None` where it
     /// touches none.
     fn tangent_radius(&self, touching: [f32; 3], inward: [f32; 3]) -> Option<f64> {
         let (start, along) = (self.start.map(f64::from), self.direction.map(f64::from));

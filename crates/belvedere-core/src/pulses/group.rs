@@ -46,20 +46,19 @@ pub struct PulseReport {
     pub without_time_count: usize,
     /// Points left out because another has the same time, return number and position.
     pub duplicate_count: usize,
-    /// Points left out because their time belongs to several pulses that cannot be told apart.
+    /// Points left out because their time belongs to several pulses that cannot be distinguished.
     pub ambiguous_count: usize,
 }
 
 /// Groups the returns of `cloud` by flight line, scanner channel and GPS time.
 ///
-/// Pulses of the same time are told apart by how many returns they had; single returns are a pulse each. Points that
-/// cannot be told to belong to one pulse are left out and counted. A cloud of ground-based scans, whose times belong to
-/// a single point each, gives a pulse for each point.
+/// Pulses of the same time are distinguished by their number of returns; single returns are a pulse each. Points that
+/// cannot be assigned to one pulse are left out and counted. A cloud of ground-based scans, whose times belong to a
+/// single point each, gives a pulse for each point.
 ///
-/// # Errors
-/// [`Error::MissingAttribute`] without GPS times or return numbers, or where no pulse at all can be told from another
-/// because times are missing or too coarse. [`Error::LengthMismatch`] for a column of another length than the
-/// positions. [`Error::Cancelled`].
+/// # Errors [`Error::MissingAttribute`] without GPS times or return numbers, or where no pulse at all can be
+/// distinguished from another because times are missing or too coarse. [`Error::LengthMismatch`] for a column of
+/// another length than the positions. [`Error::Cancelled`].
 pub fn group(cloud: &PointCloud, control: &Control<'_>) -> Result<(Pulses, PulseReport)> {
     cloud.validate()?;
     let attributes = &cloud.attributes;
@@ -105,7 +104,8 @@ pub fn group(cloud: &PointCloud, control: &Control<'_>) -> Result<(Pulses, Pulse
             report.ambiguous_count += same_time.len();
             continue;
         }
-        // clocks tick nearly as slowly as scanners shoot: two pulses of one tick are told apart by their return counts
+        // clocks tick nearly as slowly as scanners shoot: two pulses of one tick are distinguished by their return
+        // counts
         for same_count in same_time.chunk_by(|a, b| a.count == b.count && a.count > 1) {
             if same_count.windows(2).any(|pair| pair[0].number == pair[1].number) {
                 report.ambiguous_count += same_count.len();

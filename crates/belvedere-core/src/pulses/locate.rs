@@ -51,14 +51,13 @@ pub struct LocateParams {
 /// Local position of the scanner for each point of `cloud`, (N, 3) metres, NaN where it is not known; and how it was
 /// found.
 ///
-/// The scanner of every point with a time on a known path is found, whether or not it could be told to which pulse it
-/// belongs. Which points and parts of lines are left out and why is in the report. The result is the same for any
-/// number of threads and, but for points of the same pulse and number, any order of the points.
+/// The scanner of every point with a time on a known path is found, even if its pulse is unknown. Which points and
+/// parts of lines are left out and why is in the report. The result is the same for any number of threads and, but for
+/// points of the same pulse and number, any order of the points.
 ///
-/// # Errors
-/// [`Error::MissingAttribute`] where the means asked for find the scanner of no point; [`Means::Automatic`] finds it
-/// for at least one of every cloud but those with poses that no point refers to: a scanner on the ground does not look
-/// straight down. [`Error::LengthMismatch`] for a column of another length than the positions,
+/// # Errors [`Error::MissingAttribute`] where the requested means find the scanner of no point; [`Means::Automatic`]
+/// finds it for at least one of every cloud but those with poses that no point refers to: a scanner on the ground does
+/// not look straight down. [`Error::LengthMismatch`] for a column of another length than the positions,
 /// [`Error::InvalidParameter`] for parameters out of range and a trajectory that covers no time of the cloud,
 /// [`Error::Cancelled`].
 pub fn locate(

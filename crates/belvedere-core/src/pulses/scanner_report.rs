@@ -1,4 +1,4 @@
-//! How the scanner was found, and what of that is told to a reader.
+//! How the scanner was found, and the text about it for a reader.
 
 use super::flight_parts::{HeightOffset, ScanAnglePart, SensorPart};
 use super::group::PulseReport;

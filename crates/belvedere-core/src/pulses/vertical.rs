@@ -20,7 +20,7 @@ pub struct VerticalParams {
     /// of usual surveys: on simulated towns 0.5 keeps so many pulses off walls that facades lose 9 points, 0.2 loses 3,
     /// and 0.1 lets pulses through crowns.
     pub reach: f32,
-    /// How far above the point it must stand for that, metres, 0 to 100. Default 0.5: less, and the slope of a roof
+    /// Minimum height of that other point above this one, metres, 0 to 100. Default 0.5: with less, the slope of a roof
     /// hides itself.
     pub rise: f32,
 }

@@ -35,7 +35,7 @@ pub trait Backend: Send + Sync + std::fmt::Debug {
         Ok(None)
     }
 
-    /// The name of the device that is ready to be asked; `None`, the default, for the processor.
+    /// The name of the device that is ready for queries; `None`, the default, for the processor.
     fn device(&self) -> Option<String> {
         None
     }

@@ -3,9 +3,9 @@
 //! All lines of sight of a box of targets run within a beam: from an eye the hull of eye and box, from the sun the box
 //! drawn out along the direction. Balls that the beam of a node misses are left out for all targets below it, a ball
 //! that covers the whole beam answers them all, and where no ball is left all are visible. What remains are targets at
-//! the rim of shadows and close to surfaces, which are asked one by one of the few balls in their beam. The answers are
-//! those of the exact lines of sight, to the last bit: a beam only ever leaves out balls that no line of sight in it
-//! can meet, and a shadow being convex, a ball that hides the corners of a box hides all in it.
+//! the edge of shadows and close to surfaces; each of these is tested against the few balls in its beam. The answers
+//! are those of the exact lines of sight, to the last bit: a beam only ever leaves out balls that no line of sight in
+//! it can meet, and a shadow being convex, a ball that hides the corners of a box hides all in it.
 
 #[cfg(target_arch = "x86_64")]
 mod avx2;
@@ -29,8 +29,8 @@ const SHARE: usize = 4096;
 
 impl MedialScene {
     /// The answer for each target, in the order in which they were given: the same as those of
-    /// [`super::Visibility::visible`], at a cost that grows with the rim of what is visible rather than with the number
-    /// of targets. Targets that are not finite are [`Answer::OutsideView`], those beside or below the cloud
+    /// [`super::Visibility::visible`], at a cost that grows with the border of the visible region rather than with the
+    /// number of targets. Targets that are not finite are [`Answer::OutsideView`], those beside or below the cloud
     /// [`Answer::OutsideCloud`].
     ///
     /// # Errors
@@ -83,8 +83,8 @@ impl MedialScene {
     }
 
     /// Calls `visit` with the place, in the order of the tree, of every target that nothing blocks, one at the viewer
-    /// itself among them, but none outside the cloud; what pulses prove is not asked. Runs on the calling thread; the
-    /// places ascend.
+    /// itself among them, but none outside the cloud; what pulses prove is not considered. Runs on the calling thread;
+    /// the places ascend.
     ///
     /// # Errors
     /// As [`MedialScene::answer_among`].

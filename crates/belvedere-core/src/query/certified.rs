@@ -40,7 +40,7 @@ pub struct CertifiedMap<'a> {
 /// How the answers of a [`CertifiedMap`] came about.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct CertifiedReport {
-    /// Targets asked about.
+    /// Targets queried.
     pub target_count: usize,
     /// Of these, settled by a bound or outside the view.
     pub settled_count: usize,

@@ -15,7 +15,7 @@ impl MedialScene {
     /// The least height above `foot`, local metres, at which `observer` sees a target straight above it, metres: 0
     /// where the foot itself is seen; `None` where nothing up to `ceiling` metres is. What is meant is the lowest such
     /// height, also where higher ones are blocked again, as below a bridge. At most 2 mm above the true one for the
-    /// balls of the scene; pulses are not asked.
+    /// balls of the scene; pulses are not considered.
     ///
     /// Every ball blocks one interval of heights, so each step goes to the top of the highest of all balls that block
     /// at once, in closed form: the upper tangent from the observer, or the ball's own top. Tops of balls near the

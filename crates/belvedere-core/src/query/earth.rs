@@ -121,7 +121,7 @@ impl EarthParams {
         (1.0 - self.refraction) * span * span * share * (1.0 - share) / (2.0 * self.radius)
     }
 
-    /// The corners of the chords that stand for the line of sight between two points, both included: two where it is
+    /// The corners of the chords that represent the line of sight between two points, both included: two where it is
     /// straight.
     #[must_use]
     pub fn corners(&self, from: [f64; 3], to: [f64; 3]) -> Vec<[f64; 3]> {

@@ -34,7 +34,7 @@ impl MedialScene {
     /// same ends ([`MedialScene::sight_answer`]), and pulses prove it. Beyond this box, and a cell of the raster around
     /// it, the raster of [`MedialScene::with_far_terrain`] blocks where it rises above the line: the same surface over
     /// the same earth as for horizons. A target on the surface does not hide itself. The profile of far terrain, which
-    /// has no distances, is not asked.
+    /// has no distances, is not considered.
     #[must_use]
     pub fn far_sight_answer(&self, observer: [f64; 3], target: [f64; 3], earth: &EarthParams) -> Answer {
         let Some(line) = FarLine::new(observer, target, earth) else { return Answer::OutsideView };

@@ -207,8 +207,8 @@ impl MedialScene {
     /// free from 0.6 on (ITU-R P.530). NaN for points that are not finite, or are the same.
     ///
     /// Balls that hold an end are left out and balls near an end give way to it, as to a target; so do triangles in
-    /// whose plane an end lies. Whether the line of sight is proven is another question, and far terrain is not asked.
-    /// On a curved line the sag is that at the middle of each ball.
+    /// whose plane an end lies. Whether the line of sight is proven is another question, and far terrain is not
+    /// considered. On a curved line the sag is that at the middle of each ball.
     #[must_use]
     pub fn fresnel_clearance(&self, ends: [[f64; 3]; 2], wave: RadioWave, earth: &EarthParams, max: f64) -> f64 {
         let Some(link) = Link::new(ends, wave, earth) else { return f64::NAN };

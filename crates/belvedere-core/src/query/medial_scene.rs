@@ -197,8 +197,8 @@ impl MedialScene {
     }
 
     /// Whether too much of the line from `target`, local metres, to `range` metres (may be infinite) along the unit
-    /// vector `towards` runs through space that no pulse came near to; false where pulses are not known. What blocks is
-    /// not asked.
+    /// vector `towards` runs through space that no pulse came near to; false where pulses are not known. What blocks
+    /// the line is not considered.
     #[must_use]
     pub fn is_unproven(&self, target: [f64; 3], towards: [f64; 3], range: f64) -> bool {
         self.proof.as_ref().is_some_and(|proof| {

@@ -15,16 +15,16 @@ pub enum BackFaces {
     NotVisible,
     /// They are not counted: shares are those of what is turned to the viewer.
     LeftOut,
-    /// They are asked as any other: for open surfaces and meshes whose triangles do not know their outside.
+    /// They are queried as any other: for open surfaces and meshes whose triangles do not know their outside.
     BothSides,
 }
 
-/// How faces are asked.
+/// How the visibility of faces is queried.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MeshTargetParams {
     /// What to make of faces turned away from the viewer. Default: not visible.
     pub back_faces: BackFaces,
-    /// How far before its face a place is asked, on the side of the viewer, metres, 0 or more. Default 0.1: balls stand
+    /// Distance between a face and its target, on the side of the viewer, metres, 0 or more. Default 0.1: balls stand
     /// out by about as much where no pulse reached. On a simulated town this takes the false-blocked share of facades
     /// in the sun from 15.7 to 9.6 % and the error of a building's share from 0.10 to 0.05, for a point more of
     /// false-visible on facades and three on roofs.

@@ -35,7 +35,7 @@ pub struct ProofParams {
 /// What is thought of space beside the box around the lower ends of all pulses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Beside {
-    /// Nothing is asked of it: a line of sight is followed to the edge of the survey.
+    /// It needs no proof: a line of sight is followed to the edge of the survey.
     Ignored,
     /// No pulse saw it.
     Unseen,

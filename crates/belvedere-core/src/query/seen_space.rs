@@ -7,19 +7,20 @@ use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::OnceLock;
 
-/// Side of a box as a share of the nearness. A needle that passes the middle of a box within nearness − side/√2 is near
-/// to all of it; the smaller the boxes, the more of them find such a needle, and the more there are.
+/// Side of a box as a share of the nearness. A pulse that passes the middle of a box within nearness − side/√2 is near
+/// to all of it. Smaller boxes more often find such a pulse, but there are more of them.
 const SIDE_PER_NEARNESS: f64 = 0.45;
-/// Height of a box as a share of the nearness: leaning needles stay in low boxes.
+/// Height of a box as a share of the nearness: leaning pulses need low boxes.
 const HEIGHT_PER_NEARNESS: f64 = 1.0;
-/// The same where needles run in all directions: cubes.
+/// Height of a box as a share of the nearness where pulses run in all directions: boxes are cubes.
 const HEIGHT_AMONG_FLAT: f64 = SIDE_PER_NEARNESS;
-/// Boxes above one another: bits of a word. Higher scenes get higher boxes, of which fewer are near one needle all the
-/// way up.
+/// Boxes above one another: bits of a word. Higher scenes get higher boxes, of which fewer are near one pulse over
+/// their whole height.
 const MAX_LAYERS: f64 = 64.0;
-/// Most columns, 160 MB; a larger survey gets larger boxes, and what these cannot prove is asked of the pulses.
+/// Maximum number of columns, 160 MB; a larger survey gets larger boxes, and what these cannot prove is tested with the
+/// pulses.
 const MAX_COLUMNS: f64 = 2e7;
-/// What rounding of f32 may shift a needle by, metres.
+/// Maximum shift of a pulse by rounding to f32, metres.
 const ROUNDING: f64 = 2e-3;
 
 /// Columns of boxes along a side of a tile: 5 m of usual pulses.
@@ -39,9 +40,9 @@ pub(super) struct SeenSpace {
     per_side: f64,
     /// Boxes above one another.
     layers: usize,
-    /// How near a needle must pass, less what rounding may shift it by.
+    /// How near a pulse must pass, less its possible shift by rounding.
     nearness: f64,
-    /// How near a needle must pass to the middle line of a box.
+    /// How near a pulse must pass to the middle line of a box.
     reach: f64,
     size: [usize; 2],
     /// Tiles in a row.
@@ -98,7 +99,7 @@ impl BoxColumns {
 }
 
 impl SeenSpace {
-    /// Boxes over the rectangle from `low` to `high`, for needles that count up to `nearness` metres.
+    /// Boxes over the rectangle from `low` to `high`, for pulses that count up to `nearness` metres.
     pub(super) fn new(free_segments: &FreeSegments, [low, high]: [[f64; 2]; 2], nearness: f64) -> Self {
         let extent = [0, 1].map(|axis| high[axis] - low[axis]);
         let side = (SIDE_PER_NEARNESS * nearness).max((extent[0] * extent[1] / MAX_COLUMNS).max(0.0).sqrt());
@@ -144,7 +145,7 @@ impl SeenSpace {
     /// The boxes of the tile whose lowest column and row are `first`.
     fn tile(&self, free_segments: &FreeSegments, first: [usize; 2]) -> Box<BoxColumns> {
         let mut boxes = [0; TILE * TILE];
-        // a box more on all sides than any needle that counts for the tile passes
+        // one more box on all sides than the pulses that count for the tile need
         let room = self.reach + self.side;
         let low = [0, 1].map(|axis| self.low[axis] + first[axis] as f64 * self.side - room);
         let high = low.map(|low| low + TILE as f64 * self.side + 2.0 * room);
@@ -155,7 +156,7 @@ impl SeenSpace {
         Box::new(BoxColumns::new(boxes))
     }
 
-    /// Marks the boxes of a tile that a needle is near to: those whose corners all are, since what is near a needle is
+    /// Marks the boxes of a tile that are near a pulse: those with all corners near it, since the space near a pulse is
     /// convex. Where it passes through a layer it must be within `reach` of the middle line of a box both where it
     /// enters and where it leaves; in the layer that it begins in, nearer, since the lower corners lie below its end.
     /// Where it does so it lies over the rectangle `over`.
@@ -176,7 +177,7 @@ impl SeenSpace {
         let layers_between = |from: f64, to: f64| {
             bits(((bottom + from) as u32).saturating_add(1), ((bottom + to) as u32).min(self.layers as u32))
         };
-        // a needle that ends at the top of all counts for the highest layer
+        // a pulse that ends at the common top counts for the highest layer
         let rise = top - bottom + ROUNDING / self.height;
         self.mark_lowest([bottom, bottom + rise], place, lean, boxes);
         // where it comes over the rectangle, and where it leaves it
@@ -224,7 +225,7 @@ impl SeenSpace {
         }
     }
 
-    /// Marks boxes of the layer in which a needle begins, if it ends above that. Its ends are in layers, and its lower
+    /// Marks boxes of the layer in which a pulse begins, if it ends above that. Its ends are in layers, and its lower
     /// end is at `place`, metres from the middle of the tile's first box.
     fn mark_lowest(&self, [bottom, top]: [f64; 2], place: [f64; 2], lean: [f64; 2], boxes: &mut [u64; TILE * TILE]) {
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "`as` saturates")]
@@ -257,7 +258,7 @@ impl SeenSpace {
         within(low)..within(high + 1.0)
     }
 
-    /// Marks those other boxes of a tile whose middle any needle passes so closely that all of the box is near to it.
+    /// Marks those other boxes of a tile whose middle any pulse passes so closely that the whole box is near to it.
     fn mark_around_middles(&self, free_segments: &FreeSegments, first: [usize; 2], boxes: &mut [u64; TILE * TILE]) {
         let reach = self.nearness - half_diagonal(self.side).hypot(self.height / 2.0);
         for (index, word) in boxes.iter_mut().enumerate() {
@@ -359,7 +360,7 @@ mod tests {
         }
     }
 
-    /// Asks for boxes near needles only, and for a share of all of them, under scanners between two places.
+    /// Asserts that only boxes near pulses are marked, and at least a share of those, for scanners between two places.
     fn assert_boxes(scanners: [[f32; 3]; 2], min_share: f64) {
         #[expect(clippy::cast_possible_truncation, reason = "positions are f32")]
         let random = |i: u64, k: u64| uniform(6, 8 * i + k) as f32;
@@ -394,7 +395,7 @@ mod tests {
             let share = (dot(way, from) / dot(way, way)).clamp(0.0, 1.0);
             length(std::array::from_fn(|i| from[i] - share * way[i]))
         };
-        // whether one needle is near to all corners, by how much
+        // by how much one pulse is near to all corners; negative where none is
         let spare = |cell: [usize; 3]| {
             let corner = |number: usize| -> [f64; 3] {
                 let sides = [space.side, space.side, space.height];
@@ -416,7 +417,7 @@ mod tests {
                     let spare = spare([column, row, layer]);
                     assert!(!marked || spare > 0.0, "column {column}, row {row}, layer {layer}: {spare}");
                     marked_count += usize::from(marked);
-                    // the grid asks for some more
+                    // marked boxes must be a little nearer than this
                     near_count += usize::from(spare > 0.0);
                     queried += 1;
                 }

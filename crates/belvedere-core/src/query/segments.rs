@@ -109,7 +109,7 @@ impl MedialScene {
     ///
     /// The answer is that of [`MedialScene::answer`] for the same pair on a plane earth. A curved line is cut into
     /// chords; the rules for the ends (balls that hold the observer are left out, balls near the target give way) are
-    /// asked of the ends of the whole line.
+    /// applied to the ends of the whole line.
     ///
     /// Where an end lies on far terrain ([`MedialScene::is_on_far_terrain`]) the answer is that of
     /// [`MedialScene::far_sight_answer`]: `None` also where one end is above the other.
@@ -198,7 +198,7 @@ impl MedialScene {
     }
 
     /// The answer for the part of a line of sight between two ends, the observer first, that runs along chords through
-    /// `corners`, from the observer's side on. The rules for the ends are asked of the whole line.
+    /// `corners`, from the observer's side on. The rules for the ends are applied to the whole line.
     pub(super) fn answer_on_chords(&self, (observer, target): ([f64; 3], [f64; 3]), corners: &[[f64; 3]]) -> Answer {
         let pieces = self.chords(observer, target, corners);
         let is_blocked = |piece: &LinePiece| {

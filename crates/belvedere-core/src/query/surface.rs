@@ -1,4 +1,4 @@
-//! Surfaces as small pieces that stand for what is seen of them: strata with a place drawn in each.
+//! Surfaces as small pieces that represent their visible parts: strata with a random place in each.
 
 use crate::neighbors::NeighborIndex;
 use belvedere_data::control::Control;
@@ -9,10 +9,10 @@ use rayon::prelude::*;
 
 /// Most pieces of a surface: 60 bytes each still fit into the memory of a usual machine.
 const MAX_PIECES: usize = 50_000_000;
-/// Neighbours whose distance tells how much surface a point stands for.
+/// Number of neighbours whose distance gives the area that a point represents.
 const NEIGHBORS: usize = 8;
 
-/// A small triangle of a surface and the place on it where it is asked whether it is seen.
+/// A small triangle of a surface and the place on it for which visibility is queried.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurfacePiece {
     /// Corners, local metres, counter-clockwise seen from outside where that is known.
@@ -21,7 +21,7 @@ pub struct SurfacePiece {
     pub place: [f32; 3],
     /// Unit normal outward: that of its face, which small corners in f32 would not tell.
     pub normal: [f32; 3],
-    /// Area it stands for, m².
+    /// Area that it represents, m².
     pub area: f32,
     /// Face that it belongs to: a triangle of a mesh, or a point.
     pub face: u32,
@@ -69,7 +69,7 @@ impl SurfacePieces {
             }
             let [a, b, c] = *corners;
             let longest = length(sub(b, a)).max(length(sub(c, b))).max(length(sub(a, c)));
-            // cells are half the square of the spacing, and those at the rim mostly two or three pieces
+            // cells are half the square of the spacing, and those at the edge mostly two or three pieces
             expected += 1.0 + 8.0 * area_of(*corners) / (spacing * spacing) + 6.0 * longest / spacing;
         }
         if !(expected <= MAX_PIECES as f64) {
@@ -269,7 +269,7 @@ fn area_of([a, b, c]: [[f64; 3]; 3]) -> f64 {
     length(cross(sub(b, a), sub(c, a))) / 2.0
 }
 
-/// The place on a triangle that two numbers from 0 to 1 stand for, evenly spread.
+/// The place on a triangle for two numbers from 0 to 1: evenly spread numbers give evenly spread places.
 fn place_on([a, b, c]: [[f64; 3]; 3], [u, v]: [f64; 2]) -> [f64; 3] {
     let [u, v] = if u + v > 1.0 { [1.0 - u, 1.0 - v] } else { [u, v] };
     std::array::from_fn(|i| a[i] + u * (b[i] - a[i]) + v * (c[i] - a[i]))

@@ -14,7 +14,7 @@ use belvedere_data::control::{Control, Stop};
 const BUILDING: u8 = 6;
 /// A surface counts as a wall where its normal rises or falls by less than this, as a sine: 17°.
 const STEEPEST_NORMAL: f32 = 0.3;
-/// Neighbours that tell how much wall a point stands for.
+/// Number of neighbours that give the area of wall that a point represents.
 const NEIGHBORS: u8 = 8;
 /// How far the eighth neighbour on a wall may be for a point to represent wall, metres: at this distance a wall has a
 /// tenth of a point per square metre, fewer than any survey of buildings leaves.
@@ -24,7 +24,7 @@ const MIN_STEEP: usize = 50;
 /// Building points looked at; of larger clouds every so manieth square is taken, so that this stays a matter of
 /// seconds.
 const MAX_POINTS: usize = 2_000_000;
-/// Side of those squares, metres: a few houses, of which little is cut at the rim.
+/// Side of those squares, metres: a few houses, of which little is cut at the edge.
 const SQUARE: f32 = 64.0;
 
 /// Walls of the buildings in a cloud.
@@ -51,7 +51,7 @@ impl FacadeSummary {
     /// Facade density of `cloud`; `None` where it has no points of class 6 (building).
     ///
     /// Points of class 6 are on a wall where the normal of their 16 neighbours of that class is within 17° of the
-    /// horizon. Each stands for an eighth of the disc that reaches to its eighth neighbour on a wall, unless that is
+    /// horizon. Each represents an eighth of the disc that reaches to its eighth neighbour on a wall, unless that is
     /// farther than 5 m. On simulated scans a tenth of the wall points, near eaves and corners, is taken for roof, and
     /// the density comes out within a quarter of that of the walls above ground. Walls without any points do not count;
     /// roofs steeper than 73° do. Clouds of more than two million building points are judged by a part of their area.
@@ -156,7 +156,7 @@ mod tests {
         for density in [1, 3] {
             let facades = FacadeSummary::of(&box_cloud(density, 6), &Control::none()).unwrap().unwrap();
             // Points near the eaves have mixed neighbours: a strip as wide as these reach, up to a fifth of a wall of
-            // 20 m at the lower density. The area loses those points, but discs at the rim reach beyond it.
+            // 20 m at the lower density. The area loses those points, but discs at the edge reach beyond it.
             let walls = facades.walls.unwrap();
             assert!((0.8..1.1).contains(&(walls.area / 2800.0)), "{facades:?}");
             assert!((0.8..1.2).contains(&(walls.density / f64::from(density))), "{facades:?}");

@@ -1,6 +1,6 @@
 //! Heights for cells without points.
 
-/// How a cell without points gets its height. Both work inward from the rim of a gap, one ring of cells after the
+/// How a cell without points gets its height. Both work inward from the edge of a gap, one ring of cells after the
 /// other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum GapFill {

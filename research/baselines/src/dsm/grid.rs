@@ -80,7 +80,7 @@ impl HeightGrid {
         if track.rise > 0.0 {
             track.end = track.end.min((f64::from(top) - track.height) / track.rise);
         } else if track.step == [0.0; 2] {
-            // straight down: all is told a metre below the lowest height
+            // straight down: a metre below the lowest height the answer is certain
             let bottom = f64::from(self.lowest) - 1.0;
             track.end = track.end.min(((bottom - track.height) / track.rise).max(ray.ranges[0]));
         }

@@ -97,7 +97,7 @@ impl<'a> Crossings<'a> {
     fn value(&self, range: f64, along: Option<[f64; 3]>) -> Option<Value> {
         let place = self.ray.at(range);
         let agreeing = self.params.signs == NormalSigns::Agreeing;
-        // (1 − d²/h²)³ reaches zero smoothly at the rim of the ball
+        // (1 − d²/h²)³ reaches zero smoothly at the surface of the ball
         let weighted = self.active.iter().filter_map(|met| {
             let sample = &self.samples[met.row];
             let offset = sub(sample.position.map(f64::from), place);

@@ -109,7 +109,7 @@ fn spread(points: &[[f64; 2]]) -> (f64, f64) {
     (xy.atan2((xx - yy) / 2.0) / 2.0, if ratio.is_nan() { 1.0 } else { ratio })
 }
 
-#[expect(clippy::cast_possible_truncation, reason = "splats are stored in f32 like the points they stand for")]
+#[expect(clippy::cast_possible_truncation, reason = "splats are stored in f32 like the points they represent")]
 fn to_f32(v: [f64; 3]) -> [f32; 3] {
     v.map(|v| v as f32)
 }

@@ -144,7 +144,7 @@ fn adding_obstacles_never_reveals() {
             Box::new(Dsm::from_points(&cloud.positions, &params).unwrap())
         };
         let mut methods = all_methods(cloud, mesh);
-        // what is filled into gaps may sink; triangles of other points are other triangles: `mesh rays` stands for both
+        // what is filled into gaps may sink; triangles of other points are other triangles: `mesh rays` represents both
         methods.retain(|(name, _)| !["columns", "bilinear", "TIN"].contains(name));
         methods.push(("columns, no gaps filled", dsm(DsmSurface::Columns)));
         methods.push(("bilinear, no gaps filled", dsm(DsmSurface::Bilinear)));

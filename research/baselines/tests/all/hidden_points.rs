@@ -55,7 +55,7 @@ fn seen(method: &HiddenPoints<'_>, viewer: Viewer<'_>, targets: &[[f32; 3]]) -> 
     method.visible(viewer, targets).unwrap().into_iter().map(|answer| answer == Answer::Visible).collect()
 }
 
-/// Mean of the shares of visible and of blocked points that are told right, 0 to 1.
+/// Mean of the shares of visible and of blocked points that are classified correctly, 0 to 1.
 fn balanced_accuracy(found: &[bool], truth: &[bool]) -> f64 {
     let share = |class: bool| {
         let members = truth.iter().zip(found).filter(|(t, _)| **t == class);
@@ -92,7 +92,7 @@ fn katz_rule_comes_near_the_best_radius() {
     let Reference { cloud, views } = reference();
     let katz = method(&cloud, HiddenPointsParams::default());
     for (i, view) in views.iter().enumerate() {
-        // the first eye stands for a sun
+        // the first eye represents a sun
         let viewer = if i == 0 { Viewer::Direction(view.eye) } else { Viewer::Eye(view.eye) };
         let (_, best) = &view.open3d[1];
         let found = seen(&katz, viewer, &cloud.positions);

@@ -12,7 +12,8 @@ use belvedere_baselines::medial::{MedialBaseline, MedialParams, Outward};
 use belvedere_baselines::simulated::flown;
 use belvedere_scenes::{AirborneParams, Material, Preset, QuerySite, TriangleScene, Truth, town};
 
-/// How far outside its face a place is asked in truth, metres: places are f32, to hundredths of a millimetre here.
+/// Distance from its face at which the truth of a place is computed, metres: places are f32, to hundredths of a
+/// millimetre here.
 const OUTSIDE: f64 = 0.01;
 /// Longest side of pieces, metres.
 const SPACING: f64 = 1.0;

@@ -164,7 +164,7 @@ fn the_implicit_plane_ends_at_its_edge_and_at_a_hole() {
     let survey = MethodInput { cloud: &cloud, scanner: &[], models: &[] };
     let surface = ImplicitSurface::new(&survey, &ImplicitSurfaceParams::default()).unwrap();
     let mut random = TestRandom(11);
-    // support: 0.9 diagonals of 0.5 m; twice that is beyond doubt on either side of the rim
+    // support: 0.9 diagonals of 0.5 m; at twice that distance from the edge there is no doubt on either side
     let margin = 2.0 * 0.9 * 0.5 * 2.0_f64.sqrt();
     let mut seen = [0; 2];
     for _ in 0..5000 {

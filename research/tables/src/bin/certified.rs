@@ -4,8 +4,8 @@
 //!     belvedere demo -o demo
 //!     cargo research certified -- demo/balls.npz [TARGETS]
 //!
-//! Ten million targets, unless told otherwise, spread evenly over the box of the balls' points, by three projections;
-//! exit status 1 if one answer differs.
+//! Ten million targets by default, spread evenly over the box of the balls' points, by three projections; exit status 1
+//! if one answer differs.
 #![allow(clippy::print_stdout, reason = "the table is what this example is for")]
 
 use belvedere::Bounds;
@@ -20,7 +20,7 @@ use std::path::Path;
 use std::process::ExitCode;
 use std::time::Instant;
 
-/// Targets asked about at once, to bound memory.
+/// Targets queried at once, to bound memory.
 const BATCH: usize = 1_000_000;
 
 fn main() -> Result<ExitCode, Box<dyn std::error::Error>> {

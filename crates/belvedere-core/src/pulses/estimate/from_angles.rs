@@ -19,7 +19,7 @@ const MAX_POINTS: usize = 20_000;
 const MIN_POINTS: usize = 200;
 /// Rounds in which height and lateral offsets are made to agree; relief of a tenth of the height settles in four.
 const ROUNDS: usize = 6;
-/// Pulses with several returns in a part from which they are asked whether they agree.
+/// Minimum number of pulses with several returns in a part for the test of whether they agree.
 const MIN_PAIRS: usize = 20;
 /// Least distance between first and last return for a pulse to tell its direction, metres.
 const MIN_LENGTH: f64 = 3.0;

@@ -17,8 +17,8 @@ const TOP_REACH: f32 = 2.0;
 const STEM_REACH: f32 = 1.2;
 
 impl FreeSegments {
-    /// The ways of `pulses` from each of their returns to the one before, as needles that reach as high as these may.
-    /// Rows of `pulses` are those of `cloud`.
+    /// The paths of `pulses` from each of their returns to the one before, as free segments with the same upper limit
+    /// of height as those of this survey. Rows of `pulses` are those of `cloud`.
     ///
     /// The rest of a beam went that way, so that nothing as large as the gaps between such pulses stands there. Stems
     /// of trees are smaller, and crowns keep pulses off them: ways near the top of a crown, below which its stem

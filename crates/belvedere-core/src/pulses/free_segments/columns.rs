@@ -1,4 +1,4 @@
-//! Needles as columns of numbers, as short as what is asked of them allows.
+//! Free segments as columns of numbers, with as few digits as the required accuracy allows.
 
 use super::tree::SegmentAxis;
 use super::{FreeSegment, FreeSegments, SegmentsByAxis};
@@ -7,15 +7,15 @@ use belvedere_data::control::Control;
 use belvedere_data::free_segments::FreeSegmentColumns;
 use rayon::prelude::*;
 
-/// Steps of a slope, metres of shift across a needle's way for each metre along it: a needle 60 m long is off by 3 mm
-/// at its far end.
+/// Steps of a slope, metres of shift across a segment's main axis for each metre along it: a segment 60 m long is off
+/// by 3 mm at its far end.
 const SLOPE_STEP: f64 = 1e-4;
-/// A needle that ends within this of the top of all, metres, reaches it.
+/// A segment that ends within this distance of the common top, metres, counts as reaching it.
 const REACHES_TOP: f64 = 1e-3;
 /// Pulses handed to a thread at once.
 const CHUNK: usize = 1 << 14;
 
-/// First ends of those pulses that [`FreeSegments::from_columns`] makes needles of, local metres.
+/// First ends of those pulses from which [`FreeSegments::from_columns`] makes free segments, local metres.
 pub(crate) fn lower_ends(columns: &FreeSegmentColumns) -> impl Iterator<Item = [f32; 3]> + '_ {
     let rows = (0..columns.starts.len()).filter(|&row| piece(columns, row).is_some());
     rows.filter_map(|row| columns.starts.get(row).copied())
@@ -49,13 +49,13 @@ impl FreeSegments {
         self.free_segments.par_iter().map(line)
     }
 
-    /// The needles as columns, in the order of the index. Directions are rounded, so that what
+    /// The free segments as columns, in the order of the index. Directions are rounded, so that what
     /// [`FreeSegments::from_columns`] makes of them lies up to 5 mm in 100 m off these; it gives the same columns
     /// again, in another order.
     #[must_use]
     pub fn to_columns(&self) -> FreeSegmentColumns {
         let top = self.top;
-        #[expect(clippy::cast_possible_truncation, reason = "`as` saturates; the flattest needle has a slope of 3.2")]
+        #[expect(clippy::cast_possible_truncation, reason = "`as` saturates; the flattest segment has a slope of 3.2")]
         let slope = |way: SegmentAxis, free_segment: &FreeSegment| {
             let along = f64::from(free_segment.direction[way.axis]).abs();
             way.across().map(|axis| (f64::from(free_segment.direction[axis]) / along / SLOPE_STEP).round() as i16)
@@ -80,13 +80,13 @@ impl FreeSegments {
         }
     }
 
-    /// The way of each needle.
+    /// The main axis of each segment.
     fn ways(&self) -> impl Iterator<Item = SegmentAxis> + '_ {
         let ends = self.trees.iter().skip(1).map(|tree| tree.first).chain([self.free_segments.len()]);
         self.trees.iter().zip(ends).flat_map(|(tree, end)| std::iter::repeat_n(tree.way, end - tree.first))
     }
 
-    /// The needles of `columns`, indexed. What begins above the top, or has no length, is left out.
+    /// The free segments of `columns`, indexed. What begins above the top, or has no length, is left out.
     ///
     /// # Errors
     /// Those of [`FreeSegmentColumns::validate`], and [`Error::Cancelled`](belvedere_data::Error::Cancelled).

@@ -6,10 +6,11 @@ use belvedere_data::vector::{dot, sub, unit};
 use std::ops::ControlFlow;
 
 /// Pieces of a line shorter than this are not worth a step, metres: more than boxes of the tree are padded by, so that
-/// the needles of a tripod, which all end at one place, need not all be asked where a line leaves what is near to that.
+/// the free segments of a tripod, which all end at one place, need not all be tested where a line leaves the
+/// surroundings of that place.
 const MIN_PIECE: f64 = 4e-3;
-/// How much nearer than the nearest one known a needle must be to be looked for, metres: where needles end at one place
-/// all are equally near.
+/// How much nearer than the nearest known segment another one must be for the search to continue, metres: where
+/// segments end at one place all are equally near.
 const WORTH_LOOKING: f64 = 5e-3;
 
 /// Share of pulses that are not upright from which on a scanner is taken to stand on the ground: those of aircraft are
@@ -17,13 +18,13 @@ const WORTH_LOOKING: f64 = 5e-3;
 const MIN_FLAT_SHARE: f64 = 0.05;
 
 impl FreeSegments {
-    /// Number of needles.
+    /// Number of free segments.
     #[must_use]
     pub fn len(&self) -> usize {
         self.free_segments.len()
     }
 
-    /// Whether there is no needle.
+    /// Whether there are no free segments.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.free_segments.is_empty()
@@ -46,19 +47,19 @@ impl FreeSegments {
         are_flat(self.len() - self.upright_count(), self.len())
     }
 
-    /// Height that no needle rises above, local metres.
+    /// Height that no segment rises above, local metres.
     #[must_use]
     pub fn top(&self) -> f32 {
         self.top
     }
 
-    /// Where needles begin, local metres, in no particular order: just before the first returns. For pulses from above
+    /// Where segments begin, local metres, in no particular order: just before the first returns. For pulses from above
     /// these are the lower ends.
     pub fn lower_ends(&self) -> impl ExactSizeIterator<Item = [f32; 3]> + '_ {
         self.free_segments.iter().map(|free_segment| free_segment.start)
     }
 
-    /// Calls `visit` with the lower and upper end, local metres, of every upright needle that may pass over the level
+    /// Calls `visit` with the lower and upper end, local metres, of every upright segment that may pass over the level
     /// rectangle between the corners `low` and `high`, in no particular order.
     pub(crate) fn each_upright_over(&self, over: [[f64; 2]; 2], mut visit: impl FnMut([[f64; 3]; 2])) {
         for tree in self.trees.iter().filter(|tree| tree.way == SegmentAxis::UP) {
@@ -76,8 +77,8 @@ impl FreeSegments {
         }
     }
 
-    /// Whether a needle passes nearer than `distance` metres to `point`, local metres. The distance to the piece of a
-    /// line is taken in f64; a point or distance that is not a number is near nothing.
+    /// Whether a free segment passes nearer than `distance` metres to `point`, local metres. The distance to the
+    /// segment is computed in f64; a point or distance that is not a number is near nothing.
     #[must_use]
     pub fn passes_within(&self, point: [f64; 3], distance: f64) -> bool {
         let found = self.visit_near(point, distance, |free_segments| {
@@ -87,13 +88,13 @@ impl FreeSegments {
         found.is_some()
     }
 
-    /// Distance of the nearest needle to `point`, local metres, if it is less than `within` metres.
+    /// Distance of the nearest free segment to `point`, local metres, if it is less than `within` metres.
     #[must_use]
     pub fn nearest_distance(&self, point: [f64; 3], within: f64) -> Option<f64> {
         self.nearest_but(point, within, 0.0)
     }
 
-    /// A distance from `point`, local metres, within which there is no needle: that of the nearest one, or a few
+    /// A distance from `point`, local metres, within which there is no free segment: that of the nearest one, or a few
     /// millimetres less, at most `within` metres.
     #[must_use]
     pub fn free_distance(&self, point: [f64; 3], within: f64) -> f64 {
@@ -103,7 +104,7 @@ impl FreeSegments {
         nearest.map_or(within, |distance| (distance - WORTH_LOOKING).max(0.0))
     }
 
-    /// The distance of a needle that no other is nearer than by more than `slack` metres, if any is nearer than
+    /// The distance of the nearest segment, or of one that is farther by at most `slack` metres, if any is nearer than
     /// `within` metres.
     fn nearest_but(&self, point: [f64; 3], within: f64, slack: f64) -> Option<f64> {
         let mut min = within * within;
@@ -120,8 +121,8 @@ impl FreeSegments {
         found.then(|| min.sqrt())
     }
 
-    /// Largest radius of a ball about `center`, local metres, that no needle comes nearer to than a millimetre, at most
-    /// `max` metres; 0 where there is none.
+    /// Largest radius of a ball about `center`, local metres, that no segment comes nearer to than a millimetre, at
+    /// most `max` metres; 0 where there is none.
     #[must_use]
     pub fn clearance(&self, center: [f32; 3], max: f32) -> f32 {
         #[expect(clippy::cast_possible_truncation, reason = "below `most`")]
@@ -129,11 +130,11 @@ impl FreeSegments {
             .map_or(max, |distance| (distance as f32 - GAP_M).max(0.0))
     }
 
-    /// A piece of the line through `origin` along the unit vector `direction` on which one needle is nearer than
+    /// A piece of the line through `origin` along the unit vector `direction` on which one segment is nearer than
     /// `distance` metres everywhere: where it begins and ends, metres from the origin, `at` being well within. `None`
-    /// where no needle is that near at `at`, or stays so for less than 4 mm.
+    /// where no segment is that near at `at`, or where it stays that near for less than 4 mm.
     ///
-    /// Of several needles it takes one that stays near for long, not always the one that does so longest.
+    /// Of several segments it takes one that stays near over a long piece, not always the one with the longest piece.
     #[must_use]
     pub fn near_piece(&self, origin: [f64; 3], direction: [f64; 3], at: f64, distance: f64) -> Option<[f64; 2]> {
         // a piece that is long enough is near there as well
@@ -152,8 +153,8 @@ impl FreeSegments {
         })
     }
 
-    /// Shows `visit` the needles of every leaf that may come nearer than `reach` metres to `point`, until it breaks
-    /// off; what it continues with is the reach from there on.
+    /// Calls `visit` with the segments of every leaf that may come nearer than `reach` metres to `point`, until it
+    /// breaks off; the value that it continues with is the reach for the rest of the search.
     fn visit_near<T>(
         &self,
         point: [f64; 3],
@@ -190,8 +191,8 @@ impl FreeSegments {
     }
 }
 
-/// The same of pulses that are no needles yet: first returns, and where the scanner was, local metres. Those with an
-/// unknown scanner do not count.
+/// Whether pulses come from a scanner on the ground, for pulses that are not free segments yet: first returns and
+/// positions of the scanner, local metres. Pulses with an unknown scanner do not count.
 pub(crate) fn come_from_the_ground(pulses: impl Iterator<Item = ([f32; 3], [f32; 3])>) -> bool {
     let way =
         |(end, scanner): ([f32; 3], [f32; 3])| SegmentAxis::of(unit(sub(scanner.map(f64::from), end.map(f64::from)))?);
@@ -208,7 +209,7 @@ fn are_flat(flat_count: usize, count: usize) -> bool {
     count > 0 && flat_count as f64 >= MIN_FLAT_SHARE * count as f64
 }
 
-/// Whether the box of a node of upright needles lies over a rectangle at some height.
+/// Whether the box of a node of upright segments lies over a rectangle at some height.
 fn may_pass_over(node: &SegmentNode, [low, high]: [[f64; 2]; 2]) -> bool {
     // shares of the way between the planes, with room for what f32 rounds
     let mut shares: [f64; 2] = [-1e-4, 1.0 + 1e-4];
@@ -231,7 +232,7 @@ fn may_pass_over(node: &SegmentNode, [low, high]: [[f64; 2]; 2]) -> bool {
 }
 
 impl FreeSegment {
-    /// Squared distance of a point to the needle, m².
+    /// Squared distance of a point to the segment, m².
     fn square_distance(&self, point: [f64; 3]) -> f64 {
         let (from, up) = (sub(point, self.start.map(f64::from)), self.direction.map(f64::from));
         let along = dot(from, up).clamp(0.0, f64::from(self.length));
@@ -239,8 +240,8 @@ impl FreeSegment {
         dot(off, off)
     }
 
-    /// The piece of a line nearer than `distance` to the needle: what it cuts from the union of a cylinder and two
-    /// spheres, which is convex.
+    /// The piece of a line nearer than `distance` to the segment: the intersection with a cylinder and two spheres,
+    /// whose union is convex.
     fn near_piece(&self, origin: [f64; 3], direction: [f64; 3], distance: f64) -> Option<[f64; 2]> {
         let up = self.direction.map(f64::from);
         let length = f64::from(self.length);
@@ -260,7 +261,7 @@ impl FreeSegment {
         let (a, c) = (dot(across, across), dot(beside, beside) - square);
         let endless = (a <= 1e-12 && c < 0.0).then_some([f64::NEG_INFINITY, f64::INFINITY]);
         let cylinder = roots(a, dot(across, beside), c).or(endless).and_then(|[mut from, mut to]| {
-            // between the ends of the needle
+            // between the ends of the segment
             if rise.abs() > 1e-12 {
                 let ends = [-base / rise, (length - base) / rise];
                 from = from.max(ends[0].min(ends[1]));

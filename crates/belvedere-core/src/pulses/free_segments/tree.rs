@@ -1,24 +1,24 @@
-//! A tree over needles that run one way: its nodes keep where their needles pass two planes.
+//! A tree over free segments of one main direction: its nodes store where their segments pass two planes.
 
 use super::FreeSegment;
 use belvedere_data::control::{Control, Stop};
 use std::ops::{ControlFlow, Range};
 
-/// Needles in a leaf.
+/// Segments in a leaf.
 const LEAF: usize = 8;
-/// Below this many needles a thread goes on alone.
+/// Below this many segments a thread continues alone.
 const PARALLEL: usize = 8192;
 /// Least distance of the two planes of a node, metres: rounding must not tilt what lies between them.
 const MIN_SPAN: f32 = 0.01;
-/// Needles that a way of parting a node is judged by.
+/// Segments by which a way of splitting a node is judged.
 const SAMPLE: usize = 32;
 /// Radius of the balls that the boxes of a tree are made for, metres.
 const TYPICAL_RADIUS: f32 = 0.1;
-/// An upright needle rises at least so much per metre of its length. Those of aircraft do, and make one tree.
+/// Minimum rise of an upright segment per metre of its length. Segments from aircraft are upright and form one tree.
 const UPRIGHT_RISE: f64 = 0.3;
 
-/// The way along which a needle gets on most, an axis and a side of it. Across it a needle shifts by 3.2 m per metre at
-/// most where it is upright, otherwise by 1 m.
+/// The main direction of a segment: an axis and a sense along it. Across this axis a segment shifts by at most 3.2 m
+/// per metre where it is upright, otherwise by at most 1 m.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct SegmentAxis {
     /// 0 east, 1 north, 2 up.
@@ -60,8 +60,8 @@ impl SegmentAxis {
     }
 }
 
-/// Where the needles of a node lie: what they span along their way, and their box at both ends of that. Between the two
-/// planes lines are straight, so that anywhere they lie within the box interpolated between the two.
+/// Where the segments of a node lie: their range along the axis, and their box at both ends of that range. Between the
+/// two planes lines are straight, so they lie everywhere within the box interpolated between the two.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SegmentNode {
     /// Least of both axes across, then most, at the lower plane.
@@ -69,23 +69,23 @@ pub(super) struct SegmentNode {
     pub(super) above: [f32; 4],
     /// The two planes: least and most along the axis.
     pub(super) planes: [f32; 2],
-    /// The first needle of a leaf, or the second child; the first child follows its parent.
+    /// The first segment of a leaf, or the second child; the first child follows its parent.
     pub(super) next: u32,
-    /// Needles of a leaf; 0 for an inner node.
+    /// Segments of a leaf; 0 for an inner node.
     pub(super) count: u32,
 }
 
-/// Needles that run one way.
+/// Segments of one main direction.
 pub(super) struct SegmentTree {
     pub(super) way: SegmentAxis,
-    /// Number of its first needle.
+    /// Number of its first segment.
     pub(super) first: usize,
     nodes: Vec<SegmentNode>,
 }
 
 impl SegmentTree {
-    /// The tree over `free_segments`, which it puts in order; their first will be needle number `first`. What is left
-    /// when the work is cancelled is no tree.
+    /// The tree over `free_segments`, which it puts in order; the first of them becomes segment number `first`. What is
+    /// left when the work is cancelled is no tree.
     pub(super) fn new(
         way: SegmentAxis,
         free_segments: &mut [FreeSegment],
@@ -98,8 +98,8 @@ impl SegmentTree {
         Self { way, first, nodes }
     }
 
-    /// Shows `visit` the numbers of the needles of every leaf that `may_hold` does not rule out, nor a node above it,
-    /// until it breaks off. Both share `state`.
+    /// Calls `visit` with the numbers of the segments of every leaf that `may_hold` does not rule out, nor a node above
+    /// it, until it breaks off. Both share `state`.
     #[inline]
     pub(super) fn walk<S>(
         &self,
@@ -129,7 +129,7 @@ impl SegmentTree {
         ControlFlow::Continue(())
     }
 
-    /// Whether a needle below `node` may enter the ball.
+    /// Whether a segment below `node` may enter the ball.
     #[inline]
     pub(super) fn may_enter(&self, node: &SegmentNode, center: [f32; 3], radius: f32) -> bool {
         // rounding of f32 at coordinates of kilometres is a tenth of a millimetre
@@ -197,7 +197,7 @@ impl SegmentNode {
     }
 }
 
-/// What needles are put in order by: a coordinate of one of their ends.
+/// The key by which segments are sorted: a coordinate of one of their ends.
 #[derive(Clone, Copy)]
 struct SegmentKey {
     axis: usize,
@@ -220,7 +220,7 @@ impl SegmentKey {
     }
 }
 
-/// Nodes of the tree over `count` needles.
+/// Nodes of the tree over `count` segments.
 fn node_count(count: usize) -> usize {
     if count <= LEAF { 1 } else { 1 + node_count(cut(count)) + node_count(count - cut(count)) }
 }
@@ -256,7 +256,7 @@ impl TreeBuild<'_> {
         best.1
     }
 
-    /// Builds the node over `items`, whose first needle is number `first`, into `nodes[0]`, and what is below it
+    /// Builds the node over `items`, whose first segment is number `first`, into `nodes[0]`, and what is below it
     /// behind.
     fn node(self, items: &mut [FreeSegment], first: usize, nodes: &mut [SegmentNode], index: usize) {
         if items.len() > PARALLEL && self.stop.is_set() {
@@ -264,7 +264,7 @@ impl TreeBuild<'_> {
         }
         let mut node = SegmentNode::around(items, self.way);
         let Some((own, below)) = nodes.split_first_mut() else { return };
-        #[expect(clippy::cast_possible_truncation, reason = "needles and nodes are numbered with 32 bits")]
+        #[expect(clippy::cast_possible_truncation, reason = "segments and nodes are numbered with 32 bits")]
         let number = |value: usize| value as u32;
         if items.len() <= LEAF {
             (node.next, node.count) = (number(first), number(items.len()));

@@ -209,7 +209,7 @@ mod tests {
                 direction: [next(), next(), 0.0].map(|v| 0.1 * v),
                 room: 0.01,
             };
-            // SAFETY of the calls: this machine has AVX2 and FMA, as asked above
+            // SAFETY of the calls: this machine has AVX2 and FMA, as tested above
             let columns = BeamAvx2::columns(&balls);
             assert_eq!(columns, Fused::columns(&balls));
             let pairs = [

@@ -19,9 +19,10 @@ const ROUNDING: f64 = 1e-6;
 /// How much smaller a ball counts where it is to hide a box, as a share of its squared radius and of squared distances:
 /// whatever f64 rounds in the exact test, and then some.
 const COVER_MARGINS: [f64; 2] = [1e-9, 1e-14];
-/// Targets of a node that stand for their shape; of more, their box does. At least the corners of a box.
+/// Maximum number of targets of a node that represent its shape themselves; more are represented by their box. At least
+/// the number of corners of a box.
 const MAX_OUTLINED: usize = 24;
-/// Balls that blocked the last targets and are asked first for the next; more find little more.
+/// Number of balls that blocked the last targets and are tested first for the next one; more would find little more.
 const RECENT: usize = 4;
 
 /// One viewer's look at a tree of targets.
@@ -98,7 +99,8 @@ impl<'a> TreeSweep<'a> {
         self.search::<BeamScalar<false>>(node, visit);
     }
 
-    /// The same. All that it calls is inlined, so that it can be compiled for other instructions.
+    /// Calls `visit` as [`TreeSweep::run`] does, with the kernels `K`. All that it calls is inlined, so that it can be
+    /// compiled for other instructions.
     #[inline(always)]
     pub(super) fn search<K: Kernels>(&self, node: usize, visit: &mut impl FnMut(usize)) {
         let mut lists = Lists::default();
@@ -183,8 +185,8 @@ impl<'a> TreeSweep<'a> {
         }
     }
 
-    /// Asks for those targets of a leaf that are visible so far whether one of some balls blocks them; false when none
-    /// is left.
+    /// Tests those targets of a leaf that are visible so far against some balls, and unsets the ones that are blocked.
+    /// False when no target is left.
     #[inline(always)]
     fn sift<K: Kernels>(&self, rays: &[Option<Ray>], visible: &mut [bool; LEAF], lists: &mut Lists, by: By) -> bool {
         let mut is_any_visible = false;
@@ -357,7 +359,7 @@ impl<'a> TreeSweep<'a> {
     /// Whether a ball blocks every line of sight of the targets, wherever in their box they lie.
     ///
     /// The shadow of a ball is convex: a box lies in it if its corners do. Targets near its surface meet a ball smaller
-    /// by up to the shell, so the shadow of that one is asked; a target counts as `bias` nearer to the viewer.
+    /// by up to the shell, so the shadow of that smaller ball is used; a target counts as `bias` nearer to the viewer.
     #[inline(always)]
     fn hides(&self, ball: u32, target: &TargetNode) -> bool {
         let params = self.scene.params();
@@ -413,7 +415,7 @@ impl<'a> TreeSweep<'a> {
         balls.into_iter().find(|&ball| self.scene.front(ball as usize, ray).is_some())
     }
 
-    /// The same.
+    /// The first ball of these blocks that blocks a line of sight; each is first tested with the fast bounds of `K`.
     #[inline(always)]
     fn blocked_among<K: Kernels>(&self, ray: &Ray, balls: &[BallBlock]) -> Option<u32> {
         #[expect(clippy::cast_possible_truncation, reason = "balls count as larger by more than what is rounded")]
@@ -440,7 +442,7 @@ fn row_at(first: u32, lane: usize) -> u32 {
     first + lane as u32
 }
 
-/// The balls that targets of a leaf are asked of.
+/// The balls against which targets of a leaf are tested.
 #[derive(Clone, Copy)]
 enum By {
     /// What blocked the last targets.

@@ -7,7 +7,7 @@ use crate::ray_index::{NodePart, PARTS, Ray};
 /// How far to the sides of a target, and how far above it, balls are taken as near, metres: beyond, rays that rise have
 /// left the surface that the target lies on.
 pub(super) const NEAR: [f64; 2] = [2.0, 0.6];
-/// By how much the cosine to the rim of a ball is taken too small: more than f32 errs.
+/// By how much the cosine to the outline of a ball is taken too small: more than the error of f32.
 const ROUNDING: f32 = 1e-5;
 /// Covers tested at once.
 const LANES: usize = 8;

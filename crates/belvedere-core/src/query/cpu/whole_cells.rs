@@ -1,5 +1,5 @@
-//! Targets and directions in whole numbers: the same line of sight has the same cell wherever it is asked for, because
-//! no step rounds.
+//! Targets and directions in whole numbers: the same line of sight has the same cell in every query, because no step
+//! rounds.
 //!
 //! A line of sight belongs to the cell in which it meets the lowest level of the layers. With the place (x, y, z) of
 //! its target in cells and the slope s of its direction this is x − z·s. Heights have 18 bits of fraction and slopes

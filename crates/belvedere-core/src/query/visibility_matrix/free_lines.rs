@@ -19,9 +19,9 @@ const BATCH: usize = 512;
 /// Targets that are looked at before the next: as many as keep what is settled of them below 100 MB.
 const MAX_TARGETS: usize = BLOCK << 10;
 
-/// Share of the lines of sight of targets that run near balls below which each is asked by itself: settling a line
-/// takes about a tenth of the time of asking one (6 and 53 ns on two cores before lines walked in packets, a strip of
-/// balls beside a tile of a village).
+/// Share of lines of sight near balls below which each such line is tested separately: settling a line takes about a
+/// tenth of the time of testing one (6 and 53 ns on two cores before lines walked in packets, a strip of balls beside a
+/// tile of a village).
 const WORTH_SETTLING: f64 = 0.1;
 
 /// By how much the box around balls is taken for larger, metres: far more than is rounded.
@@ -43,11 +43,11 @@ struct OpenBlock {
     met: Vec<u64>,
 }
 
-/// Which of many directions each of many targets sees, as far as obstacles were asked.
+/// Which of many directions each of many targets sees, for the obstacles tested so far.
 ///
 /// A line of sight is free where no obstacle blocks it, so that neither their order nor how they are cut into parts
 /// matters: with the balls of a scene one part after the other, the bits at the end are those of
-/// [`MedialScene::visibility_matrix`]. A part is asked only about lines that are still free.
+/// [`MedialScene::visibility_matrix`]. A part is tested only for lines that are still free.
 #[derive(Clone)]
 pub struct FreeLines<'a> {
     tree: Arc<TargetTree>,

@@ -1,4 +1,4 @@
-//! Neighbouring targets looked at together: what the backend left open is asked of balls.
+//! Neighbouring targets are processed together: lines that the backend left open are tested against balls.
 
 use super::super::backend::{BLOCK, Settled, WORD, WORDS, WordBits};
 use super::super::ball_tree::BallTree;
@@ -70,8 +70,8 @@ impl<'a> Sky<'a> {
     }
 
     /// Unsets the bits of directions that are blocked in the rows of the targets of a block, which is the `block`-th of
-    /// those that the backend was given. Only those that are set are asked about, in columns that are set in `met`, the
-    /// words of a row.
+    /// those that the backend was given. Only bits that are set are tested, in columns that are set in `met`, the words
+    /// of a row.
     pub(super) fn look(&self, targets: &[[f32; 3]], block: usize, met: &[u64], rows: &mut [u64]) {
         let width = met.len();
         let groups: Vec<Group> = self.numbers.chunks(WORD).zip(met).enumerate().filter_map(Group::new).collect();

@@ -89,12 +89,12 @@ impl VisibilityMatrix {
 
 impl MedialScene {
     /// Which of `directions`, (D, 3) unit vectors, each of `targets`, (M, 3) local metres, sees free of balls and of
-    /// what was added: for every pair the same as [`MedialScene::answer`] at infinite range, pulses not being asked. A
-    /// target that is not finite sees nothing. Progress counts targets.
+    /// what was added: for every pair the same as [`MedialScene::answer`] at infinite range, without a test of pulses.
+    /// A target that is not finite sees nothing. Progress counts targets.
     ///
     /// The backend settles most lines of sight ([`super::backend::PreparedBackend::settle`]). What it leaves open is
-    /// asked of the ball that blocked its neighbours, and last of all balls. What the backend makes ready stays with
-    /// the scene, so that targets may be asked in blocks.
+    /// tested against the ball that blocked the neighbours, and finally against all balls. What the backend prepares
+    /// stays with the scene, so that targets may be queried in blocks.
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] for a direction that is not of unit length (to a millionth), and

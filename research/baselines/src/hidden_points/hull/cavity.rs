@@ -12,7 +12,7 @@ pub(super) struct Cavity {
     insertion: u32,
     /// Edges around the seen facets, from and to, and the facet beyond.
     pub(super) border: Vec<[u32; 3]>,
-    /// For each point, the new facet whose rim edge starts there.
+    /// For each point, the new facet whose border edge starts there.
     pub(super) fan_from: Vec<u32>,
     /// Numbers of facets that are no longer in use.
     pub(super) free: Vec<u32>,

@@ -156,7 +156,7 @@ impl Hull {
         }
     }
 
-    /// Adds a point: the facets that it sees give way to a fan from their rim.
+    /// Adds a point: the facets that it sees give way to a fan from their border.
     fn insert(&mut self, index: u32, walk: &mut HullWalk, cavity: &mut Cavity) {
         let point = self.points[index as usize];
         let seen = self.locate(point, walk);

@@ -186,7 +186,7 @@ fn judge(place: &CarvingSite, model: &MedialBaseline, seconds: f64) -> Result<Sc
     })
 }
 
-/// The line of sight of a viewer, for the questions asked here.
+/// The line of sight of a viewer, for the queries of this program.
 fn towards(viewer: Viewer<'_>, target: [f32; 3]) -> Option<([f64; 3], f64)> {
     viewer.line_of_sight(0, target)
 }

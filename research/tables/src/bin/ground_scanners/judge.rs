@@ -1,4 +1,4 @@
-//! A model of a cloud, held against the exact town.
+//! A model of a cloud, compared with the exact town.
 
 use belvedere::control::{Control, StageEnd, Watcher};
 use belvedere::medial::CarvedParams;
@@ -151,7 +151,7 @@ impl fmt::Display for ScannerResults {
         let peak = self.peak_mib.map_or("unknown".to_owned(), |mib| format!("{mib:.0} MiB"));
         writeln!(
             f,
-            "  built in {:.1} s, at most {peak}; {} balls; asked in {:.1} s",
+            "  built in {:.1} s, at most {peak}; {} balls; queried in {:.1} s",
             self.build_seconds, self.balls, self.query_seconds
         )?;
         if let Some(pulses) = &self.report.pulses {

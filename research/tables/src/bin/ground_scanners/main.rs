@@ -1,4 +1,4 @@
-//! How right the default model is on scans from tripods and from a car, in streets of simulated towns.
+//! Accuracy of the default model on scans from tripods and from a car, in streets of simulated towns.
 //!
 //! ```sh
 //! cargo research ground_scanners -- tripods,car town 110 77

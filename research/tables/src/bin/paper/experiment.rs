@@ -61,7 +61,7 @@ pub(crate) fn compare_profiles(model: &PaperModel, views: &[(&str, View)], table
         ));
     }
     tables.line(
-        "\n| view | visible, cone | visible, sphere | visible, sphere with bias | changed | of the blocked | \
+        "\n| view | visible, cone | visible, sphere | visible, sphere with bias | changed | of blocked targets | \
          cone blocks, sphere does not | depth map cone / sphere | queries |",
     );
     tables.line("|---|---|---|---|---|---|---|---|---|");

@@ -158,7 +158,7 @@ pub(crate) fn close_views(folder: &Path, cloud: &PointCloud, way: &NormalMethod<
     for (name, window, viewer) in
         [("figure7_roof.png", crate::ROOF, [235.0, 30.0]), ("figure7_trees.png", crate::TREES, [200.0, 15.0])]
     {
-        // balls are made with the surroundings, as the rim of a cloud has too large ones
+        // balls are made with the surroundings, as the edge of a cloud has too large ones
         let [west, south, east, north] = window;
         let around = within_window(cloud, [west - 30.0, south - 30.0, east + 30.0, north + 30.0]);
         let shown = within_window(cloud, window);

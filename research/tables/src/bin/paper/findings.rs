@@ -133,7 +133,7 @@ fn people(cloud: &PointCloud, city: &Truth) -> People {
     let classes = cloud.attributes.classification.as_deref().unwrap_or(&[]);
     let ground = cloud.positions.iter().zip(classes).filter(|&(_, &class)| class == 2);
     let all: Vec<[f32; 3]> = ground.map(|(p, _)| [p[0], p[1], p[2] + EYE_HEIGHT as f32]).collect();
-    // the model has no rim that could be looked up; looking down on it from well above tells where it is
+    // the model stores no outline; looking down on it from well above shows where it is
     let has_model = |[x, y, z]: [f64; 3], (dx, dy): (f64, f64)| {
         city.first_hit([x + REACH * dx, y + REACH * dy, z + 100.0], [0.0, 0.0, -1.0], f64::INFINITY).is_some()
     };

@@ -1,8 +1,8 @@
 //! Regenerates the experiments of the paper: Peters, Ledoux & Biljecki 2015, section 4.
 //!
-//! `cargo research paper -- OUTDIR` writes pictures like Figures 4 to 7 and `tables.md` with
-//! every figure that docs/paper.md quotes. Data are looked for under `BELVEDERE_TEST_DATA` (default: `shared` beside the
-//! repository); data sets that are not there are skipped, and the run says so.
+//! `cargo research paper -- OUTDIR` writes pictures like Figures 4 to 7 and `tables.md` with every figure that
+//! docs/paper.md quotes. Data are looked for under `BELVEDERE_TEST_DATA` (default: `shared` beside the repository);
+//! data sets that are not there are skipped, and the run says so.
 #![allow(clippy::print_stdout, reason = "an example reports on the terminal")]
 #![allow(clippy::cast_possible_truncation, reason = "sizes of pictures and local coordinates are small")]
 

@@ -211,7 +211,7 @@ impl LightTown {
         if at_wall { Setting::AtWall } else { Setting::Open }
     }
 
-    /// What balls that block as `params` say answer for places, asked `lift` metres higher.
+    /// Answers for places of balls that block as `params` say; the places are queried `lift` metres higher.
     pub(crate) fn judge(
         &self,
         places: &JudgedTargets,

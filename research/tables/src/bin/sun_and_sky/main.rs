@@ -1,4 +1,4 @@
-//! How right sun hours and sky views of carved balls are on simulated towns.
+//! Accuracy of sun hours and sky views of carved balls on simulated towns.
 //!
 //! ```sh
 //! cargo research sun_and_sky -- village,town,old-town 150 0.5 4000 11
@@ -33,7 +33,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let roofs = town.roofs(count, &light);
         let returns = town.roof_returns(count, &light);
         for (what, places) in [
-            ("ground, asked 0.1 m higher", &ground),
+            ("ground, queried 0.1 m higher", &ground),
             ("0.1 m above ground", &town.ground_cells(0.1, count, &light)),
             ("1.5 m above ground", &town.ground_cells(1.5, count, &light)),
             ("0.1 m off roofs", &roofs),
@@ -42,13 +42,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 &town.roof_cells(CellTops::Highest, 0.1, count, &light)?,
             ),
             ("0.1 m above the surface at cells of roofs", &town.roof_cells(CellTops::Surface, 0.1, count, &light)?),
-            ("returns of roofs, asked 0.1 m higher", &returns),
+            ("returns of roofs, queried 0.1 m higher", &returns),
         ] {
             let lift = if what.ends_with("higher") { 0.1 } else { 0.0 };
             let score = town.judge(places, &light, lift, &carved)?;
             println!("  {what} ({})", places.len());
             let [mean, absolute] = LightTown::heights_off(places, town.cloud.frame.origin[2]);
-            println!("    asked {mean:+.3} m too high, {absolute:.3} m off");
+            println!("    queried {mean:+.3} m too high, {absolute:.3} m off");
             print_score(&score);
             let raster = town.judge_other(&raster, places, &light)?;
             println!(

@@ -26,7 +26,7 @@ pub(crate) struct LightDirections {
     pub(crate) directions: Vec<[f64; 3]>,
     /// How many of them are of the sun; those of the sky follow.
     pub(crate) sun_count: usize,
-    /// Hours that each of the sun stands for.
+    /// Hours that each direction of the sun represents.
     pub(super) hours: f64,
 }
 

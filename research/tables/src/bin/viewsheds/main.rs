@@ -1,4 +1,4 @@
-//! How right and how quick viewsheds of carved balls are on simulated towns.
+//! Accuracy and speed of viewsheds of carved balls on simulated towns.
 //!
 //! ```sh
 //! cargo research viewsheds -- village,town,old-town 300 0.5 10
