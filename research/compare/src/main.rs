@@ -85,7 +85,12 @@ fn compare_all(arguments: &Compare, run: &mut Run) -> Result<()> {
 }
 
 /// Judges every method on a place, taking over what an earlier run has found.
-fn compare_on(place: &ComparisonPlace, arguments: &Compare, run: &mut Run, found: &mut report::ComparisonResults) -> Result<()> {
+fn compare_on(
+    place: &ComparisonPlace,
+    arguments: &Compare,
+    run: &mut Run,
+    found: &mut report::ComparisonResults,
+) -> Result<()> {
     let name = place.name();
     let results = arguments.output.join("results");
     let version = env!("CARGO_PKG_VERSION");
@@ -115,7 +120,8 @@ fn compare_on(place: &ComparisonPlace, arguments: &Compare, run: &mut Run, found
 
     let (ingredients, warnings) = run.stage("building place", || place.make())?;
     run.warnings.extend(warnings);
-    let case = run.stage("testing lines of sight", || ComparisonCase::new(ingredients, arguments.targets, arguments.seed))?;
+    let case =
+        run.stage("testing lines of sight", || ComparisonCase::new(ingredients, arguments.targets, arguments.seed))?;
     let survey = case.survey();
     let methods = methods(&survey);
     arguments.check_methods(&methods.iter().map(|method| method.key.clone()).collect::<Vec<_>>())?;

@@ -205,7 +205,6 @@ fn refused_words_are_found_in_messages_and_not_in_comments() {
 }
 
 #[test]
-#[ignore = "comments are being reworded; `cargo test -- --ignored code_uses_plain_words` lists what is left"]
 fn code_uses_plain_words() {
     let sources = sources();
     assert!(sources.len() > 500, "{}", sources.len());
@@ -217,7 +216,6 @@ fn code_uses_plain_words() {
 }
 
 #[test]
-#[ignore = "comments of two folders are not wrapped yet"]
 fn comments_wrap_at_120() {
     let found: Vec<String> = sources()
         .iter()
