@@ -151,9 +151,9 @@ impl BlockRule {
         (exit > self.bias).then_some(exit)
     }
 
-    /// The same for a chord of a line of sight that is curved: where the chord leaves the ball, metres from its start,
-    /// or its end where the ball reaches past it. Balls may reach over both ends of a chord; viewer and target are
-    /// those of the whole line.
+    /// Where a chord of a curved line of sight leaves a ball that blocks it, metres from its start, or its end where
+    /// the ball reaches past it. Balls may reach over both ends of a chord; viewer and target are those of the whole
+    /// line.
     #[must_use]
     #[inline]
     pub fn blocks_chord(&self, ball: Ball, chord: &Chord) -> Option<f64> {

@@ -1,4 +1,4 @@
-//! What a cloud holds, in numbers: for people who ask what can be done with a file.
+//! What a cloud holds, in numbers: for people who need to know what can be done with a file.
 
 mod facades;
 mod survey;
@@ -82,7 +82,7 @@ pub struct GpsTimes {
 }
 
 impl GpsTimes {
-    /// Whether times can tell pulses apart: a time shared by more than twenty points is no time of one pulse.
+    /// Whether times can distinguish pulses: a time shared by more than twenty points is no time of one pulse.
     #[must_use]
     pub fn can_separate_pulses(&self, point_count: usize) -> bool {
         self.distinct_count * 20 > point_count - self.missing_count.min(point_count)

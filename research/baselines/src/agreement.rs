@@ -78,7 +78,7 @@ pub enum Rate {
     FalseVisible,
     /// Mean of the shares of visible and blocked targets that are classified correctly.
     Balanced,
-    /// Intersection over union of the blocked class: targets blocked both in truth and by answer, over targets blocked
+    /// Intersection over union for blocked targets: targets blocked both in truth and by answer, over targets blocked
     /// in truth, by answer or both.
     BlockedIou,
     /// Share of all targets without an answer.

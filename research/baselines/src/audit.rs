@@ -47,7 +47,7 @@ pub enum BallVerdict {
 }
 
 /// Holds each ball against the truth: `points`, (N, 3) local metres, are those the balls were made for, `sources`, (N),
-/// what is known of each of them, and `is_inside` tells whether a local position lies in a solid.
+/// what is known of each of them, and `is_inside` returns whether a local position lies in a solid.
 ///
 /// Returns a verdict for each ball, and the audit of each kind of surface in the order in which kinds occur first.
 /// Balls of points of which nothing is known get a verdict and enter no audit.

@@ -2,7 +2,7 @@
 //!
 //! The way of a pulse to its first return is free, and what lies just behind its last return is not seen from the
 //! scanner. Behind trees, fences and wires that is less certain than behind ground and buildings: a part of the beam
-//! may pass beside them, too weak for another return. Pulses that a method never saw therefore tell how often it blocks
+//! may pass beside them, too weak for another return. Pulses that a method never saw therefore show how often it blocks
 //! what is free and sees through what is solid. Neighbouring pulses that it did see lie close by: the test says nothing
 //! of space that no pulse reached.
 
@@ -60,7 +60,7 @@ pub struct HeldOutPairs {
 pub struct HeldOut {
     /// Points to build from: all but the returns of pulses held out. Points that belong to no pulse are among them.
     pub kept: Vec<u32>,
-    /// Pulses held out whose scanner position is known: the others ask nothing.
+    /// Pulses held out whose scanner position is known: the others give no queries.
     pub pulse_count: usize,
     /// Paths that are free: from before the first return to higher up the pulse.
     pub free: HeldOutPairs,
@@ -133,11 +133,11 @@ impl HeldOutPairs {
     }
 }
 
-/// Holds out a random share of `pulses` with all their returns, and asks with those whose position in `scanner` is
-/// known.
+/// Holds out a random share of `pulses` with all their returns, and makes queries from those whose position in
+/// `scanner` is known.
 ///
-/// Which pulses are held out depends on the seed and their order alone. A pulse whose first return is missing asks
-/// nothing of the way to it, one whose last return is missing nothing of what is behind. A free path ends at the
+/// Which pulses are held out depends on the seed and their order alone. A pulse whose first return is missing gives no
+/// queries on the path to it, and one whose last return is missing gives none behind it. A free path ends at the
 /// scanner if that is nearer than [`HeldOutParams::path_length`].
 ///
 /// # Errors

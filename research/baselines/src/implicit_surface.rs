@@ -88,9 +88,10 @@ struct SurfaceSample {
 /// It encloses nothing that was not scanned: an eye inside a house sees out where a wall has no points. Points whose
 /// neighbours determine no plane have no part in it.
 ///
-/// # Source Wald & Seidel 2005, "Interactive Ray Tracing of Point-based Models", after Adamson & Alexa 2003. Their
-/// weights are Gaussian and cut off at a radius; ours are a polynomial that reaches zero at that radius. The rule for
-/// the edge is ours.
+/// # Source
+/// Wald & Seidel 2005, "Interactive Ray Tracing of Point-based Models", after Adamson & Alexa 2003. Their weights are
+/// Gaussian and cut off at a radius; ours are a polynomial that reaches zero at that radius. The rule for the edge is
+/// ours.
 pub struct ImplicitSurface {
     /// In the order of the index.
     samples: Vec<SurfaceSample>,

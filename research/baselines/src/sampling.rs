@@ -38,7 +38,7 @@ pub(crate) fn for_neighborhoods<T: Send + Clone + Default>(
 /// those above zero: a point that stands alone would otherwise count for a wide surface.
 pub(crate) fn capped_spacing(positions: &[[f32; 3]], index: &NeighborIndex, k: usize, cap: f64) -> Vec<f32> {
     let mut spacing = for_neighborhoods(positions, index, k, |_, _, farthest| farthest);
-    // duplicates have no spacing to tell
+    // duplicates have no spacing
     let mut sorted: Vec<f32> = spacing.iter().copied().filter(|&distance| distance > 0.0).collect();
     let middle = sorted.len() / 2;
     if sorted.is_empty() {

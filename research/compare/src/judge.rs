@@ -30,7 +30,7 @@ pub(super) struct PictureAnswers {
     pub(super) answers: Vec<Answer>,
 }
 
-/// Builds `method` on `case` and asks it everything.
+/// Builds `method` on `case` and runs all queries with it.
 pub(super) fn judge(
     case: &ComparisonCase,
     method: &Method<'_>,

@@ -43,7 +43,7 @@ pub(super) struct Cost {
     pub(super) seconds_per_view: f64,
     /// Over all views and sets; `None` where nothing was answered.
     pub(super) queries_per_second: Option<f64>,
-    /// Peak of resident memory above what it was before building, MiB; `None` where the system does not tell.
+    /// Peak of resident memory above what it was before building, MiB; `None` where the system does not report it.
     pub(super) peak_mib: Option<f64>,
 }
 

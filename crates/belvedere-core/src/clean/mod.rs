@@ -28,7 +28,7 @@ pub enum Treatment {
 /// Which points to leave out.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CleanParams {
-    /// Points flagged as withheld. Default: dropped, as the LAS specification asks readers to.
+    /// Points flagged as withheld. Default: dropped, as the LAS specification recommends.
     pub withheld: Treatment,
     /// ASPRS classes left out; empty for none. Default: 7 and 18, low and high noise (LAS 1.4 R15, table 17).
     pub dropped_classes: Vec<u8>,
@@ -67,19 +67,19 @@ impl CleanParams {
         }
     }
 
-    /// The same with points of noise classes and those flagged as withheld.
+    /// These parameters, which keep points of noise classes and those flagged as withheld.
     #[must_use]
     pub fn keeping_noise(self) -> Self {
         Self { withheld: Treatment::Keep, dropped_classes: Vec::new(), ..self }
     }
 
-    /// The same with points that repeat others.
+    /// These parameters, which keep points that repeat others.
     #[must_use]
     pub fn keeping_duplicates(self) -> Self {
         Self { exact_duplicates: Treatment::Keep, near_duplicate_distance: None, ..self }
     }
 
-    /// The same with points that have hardly another around them.
+    /// These parameters, which keep points with hardly any other around them.
     #[must_use]
     pub fn keeping_isolated(self) -> Self {
         Self { isolated: None, ..self }

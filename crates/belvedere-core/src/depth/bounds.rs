@@ -13,7 +13,7 @@ use belvedere_data::{Error, Parameter, Result};
 /// Rounding of f32 as a share of the coordinates it works on: 32 units of 2⁻²³. Positions in the view, directions of
 /// pixels and products of both err by fewer than 16 of them together.
 const ROUNDING: f64 = 4e-6;
-/// The same near the origin of the view, metres.
+/// Rounding of f32 near the origin of the view, metres.
 const MIN_ROUNDING: f64 = 1e-6;
 
 /// What bounds of depth are to allow for.

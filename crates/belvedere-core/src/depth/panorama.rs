@@ -54,7 +54,7 @@ pub fn panorama(
     panorama_of_maps(balls, eye, width, items, draw)
 }
 
-/// The same, from two depth maps with item buffers, however `draw` makes them.
+/// The panorama of [`panorama`], from two depth maps with item buffers that `draw` makes.
 pub(crate) fn panorama_of_maps(
     balls: &MedialBalls,
     eye: [f64; 3],

@@ -34,8 +34,8 @@ pub struct CloseRangeParams {
     /// to 0.5. Default 0.25. The balls that are left end as deep below the surface, so that no pulse enters them at
     /// all, and points that noise moved inward remain visible.
     pub penetration_share: f32,
-    /// The same in metres, at most. Default 0.0075: the noise of such scanners; 0.02 makes a room of 10 × 6 × 3 m 3.5 %
-    /// too large.
+    /// Maximum of that depth, metres. Default 0.0075: the noise of such scanners; 0.02 makes a room of 10 × 6 × 3 m 3.5
+    /// % too large.
     pub max_penetration: f32,
 }
 

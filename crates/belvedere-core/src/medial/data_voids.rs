@@ -199,7 +199,7 @@ fn touching(point: [f32; 3], normal: [f32; 3], (row, column): Cell) -> f32 {
     square / ((outward * outward + up * square).sqrt() - outward).max(0.0)
 }
 
-/// The same cells, sorted and each once.
+/// These cells, sorted and without duplicates.
 fn unique(mut cells: Vec<Cell>) -> Vec<Cell> {
     cells.par_sort_unstable();
     cells.dedup();

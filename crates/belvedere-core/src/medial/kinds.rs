@@ -1,4 +1,4 @@
-//! What points lie on, as far as their class and return number tell, and how large balls may be there.
+//! What points lie on, as far as their class and return number show it, and how large balls may be there.
 
 use belvedere_data::Attributes;
 
@@ -24,7 +24,7 @@ impl Default for KindCaps {
     }
 }
 
-/// What a point lies on, as far as its class and return number tell.
+/// What a point lies on, as far as its class and return number show it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// Class 2.

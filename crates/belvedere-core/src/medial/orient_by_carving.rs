@@ -1,4 +1,4 @@
-//! The sign of normals where no scanner tells it: inside is where carved balls stay large.
+//! The sign of normals where no scanner gives it: inside is where carved balls stay large.
 
 use crate::neighbors::{NeighborIndex, Tangent};
 use crate::normals::OrientedCloud;

@@ -112,7 +112,7 @@ macro_rules! rules {
         }
 
         impl CarvedParams {
-            /// The same without one rule.
+            /// These parameters without one rule.
             #[must_use]
             pub fn without(mut self, rule: Rule) -> Self {
                 match rule {
@@ -152,7 +152,7 @@ rules! {
 }
 
 impl CarvedParams {
-    /// The same with crowns treated as `trees`, unless their rule is left out.
+    /// These parameters with crowns treated as `trees`, unless their rule is left out.
     #[must_use]
     pub fn with_trees(mut self, trees: Trees) -> Self {
         self.crowns = self.crowns.map(|crowns| CrownParams { trees, ..crowns });

@@ -76,7 +76,7 @@ impl ShrinkParams {
         Self { method, initial_radius: 30.0, max_radius: 0.5, max_spacings: f32::INFINITY }
     }
 
-    /// The same for clouds that no pulse can carve. Among them are scans from the ground without the place of the
+    /// The parameters for clouds that no pulse can carve. Among them are scans from the ground without the place of the
     /// scanner, whose points lie millimetres apart near the scanner and decimetres far from it: balls of at most three
     /// spacings, which overlap also where scan lines are ten times farther apart than the points on them.
     #[must_use]
@@ -257,7 +257,7 @@ impl Ball {
 
 /// Share of the limit of a radius that penetration is at most, where spacing limits it.
 const LIMITED_PENETRATION: f32 = 0.25;
-/// Neighbours that tell the spacing of points: enough to reach from one scan line to the next.
+/// Number of neighbours that give the spacing of points: enough to reach from one scan line to the next.
 const SPACING_NEIGHBORS: usize = 12;
 
 /// Least distance between points that counts, metres: above and below a tripod scan lines lie up to 0.03 m apart, while

@@ -32,8 +32,8 @@ impl SceneModel {
         Ok((model, report))
     }
 
-    /// The same for a cloud that nothing else needs: its memory is freed on the way, and the model has no
-    /// [`SceneModel::normals`].
+    /// The result of [`SceneModel::build`] for a cloud that nothing else needs: its memory is freed on the way, and the
+    /// model has no [`SceneModel::normals`].
     ///
     /// # Errors
     /// Those of [`SceneModel::build`].

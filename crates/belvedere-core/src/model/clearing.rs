@@ -16,7 +16,7 @@ const ABOVE_GROUND: f64 = 0.3;
 /// Distance on the map from a point that is cleared up to which its column is, metres: across gaps between points on
 /// roofs and in crowns.
 const AROUND: f64 = 2.0;
-/// The same where points of a class are cleared, which may stand close to others.
+/// That distance where points of a class are cleared, metres: these may stand close to other points.
 const AROUND_OF_CLASS: f64 = 1.0;
 /// Distance to the next ground point from which the ground is closed with balls, metres: beyond what ground points hold
 /// themselves.

@@ -14,10 +14,10 @@ const MIN_DISTANCE: f64 = 0.01;
 /// How far from a place all points count at least, in noises of ranges: a smaller part of a surface is as thick as it
 /// is wide.
 const NOISES_WIDE: f32 = 5.0;
-/// Neighbours that tell how far others count where neighbourhoods choose their size.
+/// Number of neighbours that determine how far others count where neighbourhoods choose their size.
 const USUAL_NEIGHBORS: usize = 16;
 
-/// What the neighbourhoods of points from the ground tell.
+/// Results of the neighbourhoods of points that were scanned from the ground.
 pub(super) struct CloseRange {
     /// One per point.
     pub(super) normals: Normals,

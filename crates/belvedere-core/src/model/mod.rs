@@ -120,7 +120,7 @@ impl SceneModel {
 
     /// The same model before the terrain of an elevation raster, local metres, which `name` names in errors: directions
     /// below the horizon of a target are blocked for it. Within the box of the cloud on the map, and a cell of the
-    /// raster around it, terrain blocks nothing: what stands there the cloud tells. It is not saved.
+    /// raster around it, terrain blocks nothing: the cloud shows what stands there. It is not saved.
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] for terrain that does not reach the cloud, or lies far above or below it.
@@ -145,7 +145,7 @@ impl SceneModel {
         &self.parts
     }
 
-    /// The same, of a model that is needed no more.
+    /// What [`SceneModel::parts`] returns, of a model that is no longer needed.
     #[must_use]
     pub fn into_parts(self) -> ModelParts {
         self.parts
@@ -210,7 +210,7 @@ impl SceneModel {
         self.normals.as_deref()
     }
 
-    /// The same, taken out of the model.
+    /// The normals of [`SceneModel::normals`], taken out of the model.
     pub fn take_normals(&mut self) -> Option<Vec<[f32; 3]>> {
         self.normals.take()
     }

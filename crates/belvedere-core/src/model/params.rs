@@ -9,7 +9,7 @@ use belvedere_data::trajectory::Trajectory;
 use belvedere_data::{Mesh, Result};
 use std::sync::Arc;
 
-/// How a scene model is built. [`ModelParams::default`] is what Belvedere does by default.
+/// How a scene model is built. [`ModelParams::default`] is what Belvedere uses where nothing else is requested.
 ///
 /// ```
 /// use belvedere_core::medial::ShrinkParams;

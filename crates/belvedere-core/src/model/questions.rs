@@ -35,9 +35,9 @@ impl SceneModel {
 
     /// The scene that answers lines of sight by `rule`.
     ///
-    /// Its answers tell unproven from visible where the pulses are known. With [`UnprovenAs::Visible`] that makes no
-    /// difference, and the pulses are left out. They are indexed when a line of sight first needs them. What lies
-    /// beside or below the cloud has no answer ([`SceneModel::coverage`]).
+    /// Its answers distinguish unproven from visible where the pulses are known. With [`UnprovenAs::Visible`] that
+    /// makes no difference, and the pulses are left out. They are indexed when a line of sight first needs them. What
+    /// lies beside or below the cloud has no answer ([`SceneModel::coverage`]).
     ///
     /// # Errors
     /// Those of [`BallTree::new`] and [`Proof::from_columns`]; [`Error::Cancelled`](belvedere_data::Error::Cancelled).
@@ -52,7 +52,8 @@ impl SceneModel {
         Ok(scene.with_pulses(Proof::from_columns(pulses.clone(), &ProofParams::default())?))
     }
 
-    /// The same without the balls that are vegetation, and without pulses: what blocks where no tree stood.
+    /// The scene of [`SceneModel::scene`] without the balls that are vegetation, and without pulses: what blocks where
+    /// no tree stood.
     ///
     /// # Errors
     /// [`Error::LengthMismatch`](belvedere_data::Error::LengthMismatch) where it is not known which balls are

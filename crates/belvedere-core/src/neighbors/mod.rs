@@ -1,4 +1,4 @@
-//! Neighbours of points: the one spatial index, used by every stage that asks what lies near.
+//! Neighbours of points: the one spatial index, used by every stage that searches for near points.
 //!
 //! A tree with eight children a node and tight boxes, over leaves of 32 points kept as structure of arrays. Ball
 //! centres lie far from the surface, where thousands of points are nearly equally far; only tight boxes tell them

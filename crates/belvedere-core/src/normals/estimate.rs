@@ -98,7 +98,7 @@ pub fn estimate_with_scatter(
     estimate_within(positions, index, neighborhood, f32::INFINITY, control)
 }
 
-/// The same with neighbours no farther than `farthest` metres away.
+/// As [`estimate_with_scatter`], with neighbours no farther than `farthest` metres away.
 ///
 /// # Errors
 /// Those of [`estimate`].

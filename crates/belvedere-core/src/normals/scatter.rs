@@ -57,7 +57,8 @@ impl Scatter {
         self.smoothed_within(self.noise(), positions)
     }
 
-    /// The same where the noise of the cloud is given: that of a larger one that it is a part of.
+    /// The positions of [`Scatter::smoothed`] where the noise is given: that of a larger cloud of which this one is a
+    /// part.
     #[must_use]
     pub fn smoothed_within(&self, noise: Option<f32>, positions: &[[f32; 3]]) -> (Vec<[f32; 3]>, usize) {
         let max = noise.map_or(0.0, |noise| MAX_NOISE * noise);

@@ -1,4 +1,4 @@
-//! The highest points round about, to tell which side of a steep surface the building is on.
+//! The highest points in the surroundings, which show on which side of a steep surface the building is.
 
 use rayon::prelude::*;
 

@@ -1,4 +1,4 @@
-//! What parts of flight lines tell of the scanner, and when it is trusted.
+//! What parts of flight lines show about the scanner, and when this is trusted.
 
 use belvedere_data::{Error, Parameter, Result};
 
@@ -8,13 +8,13 @@ pub struct SensorEstimateParams {
     /// Longest part of a flight line that is taken for straight and evenly flown, seconds, 0.5 to 60. Default 5: gusts
     /// move an aircraft by a metre in that time, and a tile cut from a line often holds no more.
     pub part_s: f64,
-    /// Least distance between first and last return for a pulse to tell its direction, metres, 0.5 to 50. Default 3:
+    /// Least distance between first and last return for a pulse to give its direction, metres, 0.5 to 50. Default 3:
     /// with 2 cm noise the direction is then good to half a degree.
     pub min_length: f64,
     /// Fewest such pulses in a part, 6 to 100 000. Default 30.
     pub min_pair_count: usize,
     /// Standard deviation of the vertical speed about zero, metres per second, 0.1 to 100. Default 2: surveys fly
-    /// level, and a tile that took two seconds to pass hardly tells climb from scale.
+    /// level, and a tile that took two seconds to pass hardly distinguishes climb from scale.
     pub vertical_speed_sd: f64,
     /// Standard deviation of the acceleration, white over a second, that the parts of a line are joined with, metres
     /// per second squared, 0.01 to 100. Default 1: an autopilot in gusts.
@@ -74,7 +74,7 @@ pub struct SensorPart {
 pub enum PartVerdict {
     /// Used.
     Accepted,
-    /// Used, though its own pulses do not suffice: other parts of the line tell where it must have been.
+    /// Used, though its own pulses do not suffice: other parts of the line show where it must have been.
     Bridged,
     /// Too few pulses with returns far enough apart.
     TooFewPairs,
@@ -117,7 +117,7 @@ pub struct ScanAngleParams {
     /// Least standard deviation of the angles of a part, radians. Default 1°: a tile of 30 m below a scanner 450 m up.
     pub min_spread: f64,
     /// Greatest median angle by which points may miss their place, across and along the flight, radians. Default 1°:
-    /// half a degree of rounding, and a pitch that angles do not tell.
+    /// half a degree of rounding, and a pitch that angles do not give.
     pub greatest_miss: f64,
     /// Greatest bend of scan lines, metres along the flight for each metre of height and square of the tangent of the
     /// angle, that passes for straight. Default 0.35: a cone of 20° bends by 1.4, one of 45° by 0.5.
@@ -155,7 +155,7 @@ pub enum AngleVerdict {
     Accepted,
     /// Too few points with a time and an angle.
     TooFewPoints,
-    /// Angles or times that span too little to tell height and flight.
+    /// The range of angles or times is too small to give height and flight.
     TooNarrow,
     /// Points do not lie where their angles, taken across the flight, put them: a cone, a tilted scanner, or rounded
     /// times.
@@ -168,7 +168,7 @@ pub enum AngleVerdict {
     Implausible,
 }
 
-/// What the scan angles of a part of a flight line tell.
+/// What the scan angles of a part of a flight line show.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScanAnglePart {
     /// Flight line.
@@ -185,8 +185,8 @@ pub struct ScanAnglePart {
     pub height: f64,
     /// Median angles by which points miss their place, across and along the flight, radians.
     pub misses: [f64; 2],
-    /// Angle by which the scanner looks ahead, radians, as far as pulses with several returns tell; 0 where these are
-    /// too few.
+    /// Angle by which the scanner looks ahead, radians, as far as pulses with several returns show it; 0 where these
+    /// are too few.
     pub pitch: f64,
     /// Median angle to the pulses with several returns, radians; NaN where these are too few.
     pub contradiction: f64,
@@ -202,7 +202,7 @@ pub struct HeightOffset {
     pub offset: f64,
     /// Its standard deviation, metres.
     pub sd: f64,
-    /// Pulses with several returns that tell it.
+    /// Pulses with several returns from which it was estimated.
     pub pair_count: usize,
     /// Whether it stands out from chance and from what beams feign, exceeds a metre, and was therefore added.
     pub is_applied: bool,

@@ -208,8 +208,9 @@ impl FreeSegments {
     /// The greatest radius, below `max_radius`, of the balls of a pencil that no segment enters, or `None` where no
     /// segment enters the ball of `max_radius`. Metres.
     ///
-    /// # Source The closed form for a line is this project's: the ball of the pencil through a point at t metres along
-    /// a segment has the radius |p′−a−tu|² / 2 n·(p′−a−tu), a convex function of t.
+    /// # Source
+    /// The closed form for a line is this project's: the ball of the pencil through a point at t metres along a segment
+    /// has the radius |p′−a−tu|² / 2 n·(p′−a−tu), a convex function of t.
     #[must_use]
     pub fn smallest_tangent_ball(&self, tangent: &Tangent, max_radius: f32) -> Option<f32> {
         if !(max_radius > 0.0) {

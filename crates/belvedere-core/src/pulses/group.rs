@@ -56,9 +56,10 @@ pub struct PulseReport {
 /// cannot be assigned to one pulse are left out and counted. A cloud of ground-based scans, whose times belong to a
 /// single point each, gives a pulse for each point.
 ///
-/// # Errors [`Error::MissingAttribute`] without GPS times or return numbers, or where no pulse at all can be
-/// distinguished from another because times are missing or too coarse. [`Error::LengthMismatch`] for a column of
-/// another length than the positions. [`Error::Cancelled`].
+/// # Errors
+/// [`Error::MissingAttribute`] without GPS times or return numbers, or where no pulse at all can be distinguished from
+/// another because times are missing or too coarse. [`Error::LengthMismatch`] for a column of another length than the
+/// positions. [`Error::Cancelled`].
 pub fn group(cloud: &PointCloud, control: &Control<'_>) -> Result<(Pulses, PulseReport)> {
     cloud.validate()?;
     let attributes = &cloud.attributes;

@@ -55,9 +55,10 @@ pub struct LocateParams {
 /// parts of lines are left out and why is in the report. The result is the same for any number of threads and, but for
 /// points of the same pulse and number, any order of the points.
 ///
-/// # Errors [`Error::MissingAttribute`] where the requested means find the scanner of no point; [`Means::Automatic`]
-/// finds it for at least one of every cloud but those with poses that no point refers to: a scanner on the ground does
-/// not look straight down. [`Error::LengthMismatch`] for a column of another length than the positions,
+/// # Errors
+/// [`Error::MissingAttribute`] where the requested means find the scanner of no point; [`Means::Automatic`] finds it
+/// for at least one of every cloud but those with poses that no point refers to: a scanner on the ground does not look
+/// straight down. [`Error::LengthMismatch`] for a column of another length than the positions,
 /// [`Error::InvalidParameter`] for parameters out of range and a trajectory that covers no time of the cloud,
 /// [`Error::Cancelled`].
 pub fn locate(

@@ -1,4 +1,4 @@
-//! Pulses that are assumed to fall straight down, where nothing tells where the scanner was.
+//! Pulses that are assumed to fall straight down, where the position of the scanner is unknown.
 
 use belvedere_data::control::{Control, Stop};
 use belvedere_data::{Error, Parameter, Result};

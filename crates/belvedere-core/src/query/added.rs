@@ -130,7 +130,8 @@ impl AddedMeshes {
         self.tree.triangles()
     }
 
-    /// The same without the triangles whose middles, local metres, `is_cleared` names; `None` where none is left.
+    /// These meshes without the triangles for whose middles, local metres, `is_cleared` is true; `None` where none is
+    /// left.
     ///
     /// # Errors
     /// Those of [`TriangleTree::new`].
@@ -197,7 +198,7 @@ impl AddedMeshes {
         self.blocks_piece(&ray, &ends)
     }
 
-    /// The same for the piece `ray` of a line of sight between `ends`.
+    /// Whether a triangle blocks the piece `ray` of a line of sight between `ends`.
     pub(super) fn blocks_piece(&self, ray: &Ray, ends: &LineEnds) -> bool {
         self.tree.any(ray, |row| self.is_between(row, ends))
     }

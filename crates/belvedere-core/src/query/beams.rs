@@ -106,8 +106,9 @@ impl MedialScene {
         control.check()
     }
 
-    /// The same for each of `eyes`, local metres, one after the other: `visit` gets the number of the eye too. An eye
-    /// that is not finite sees nothing. `looked` is called with the number of each eye after it.
+    /// Calls `visit` as [`MedialScene::visible_among`] does, for each of `eyes`, local metres, one after the other;
+    /// `visit` gets the number of the eye too. An eye that is not finite sees nothing. `looked` is called with the
+    /// number of each eye after it.
     ///
     /// # Errors
     /// As [`MedialScene::answer_among`].

@@ -47,7 +47,8 @@ impl MedialScene {
         }
     }
 
-    /// The same with what blocks first; `None` instead of [`Answer::OutsideView`].
+    /// The answer of [`MedialScene::far_sight_answer`] and what blocks first; `None` instead of
+    /// [`Answer::OutsideView`].
     pub(super) fn far_line_of_sight(
         &self,
         observer: [f64; 3],

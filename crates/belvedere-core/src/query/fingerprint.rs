@@ -1,4 +1,4 @@
-//! A number that tells whether two scenes are the same, so that what was found in one is not taken for what is in the
+//! A number that shows whether two scenes are the same, so that what was found in one is not taken for what is in the
 //! other.
 
 use crate::blocking::{BlockRule, Profile};

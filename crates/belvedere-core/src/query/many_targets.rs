@@ -55,7 +55,7 @@ impl MedialScene {
         }
     }
 
-    /// The same by lines of sight that the backend settles, if it is fast at that.
+    /// The answers for one direction by lines of sight that the backend settles, if it is fast at that.
     fn visible_by_backend(
         &self,
         to_viewer: [f64; 3],
@@ -76,7 +76,7 @@ impl MedialScene {
         Ok(Some(self.marked(viewer, targets, answers)))
     }
 
-    /// The same by bounds of depth, for spheres.
+    /// The answers for one direction by bounds of depth, for spheres.
     fn visible_by_map(&self, to_viewer: [f64; 3], targets: &[[f32; 3]], control: &Control<'_>) -> Result<Vec<Answer>> {
         if self.ball_count() == 0 {
             let viewer = Viewer::Direction(to_viewer);

@@ -93,7 +93,7 @@ impl MedialScene {
         self.prepared.get_or_make(|| self.backend.prepare(&self.tree)).map(AsRef::as_ref)
     }
 
-    /// The same balls, which from now on tell what is proven visible from what is not.
+    /// The same balls, with a distinction of what is proven visible from what is not.
     #[must_use]
     pub fn with_pulses(mut self, proof: Proof) -> Self {
         self.proof = Some(proof);
@@ -188,7 +188,7 @@ impl MedialScene {
         self.answer_unblocked(target, towards, range)
     }
 
-    /// The same for a line of sight of which it is known that no ball blocks it.
+    /// The answer for a line of sight of which it is known that no ball blocks it.
     pub(super) fn answer_unblocked(&self, target: [f64; 3], towards: [f64; 3], range: f64) -> Answer {
         if self.is_behind_others(target, towards, range) {
             return Answer::Blocked;

@@ -1,6 +1,6 @@
 //! Queries: which targets can be seen.
 //!
-//! There are three ways of asking a [`MedialScene`]:
+//! There are three kinds of queries of a [`MedialScene`]:
 //!
 //! - a pair of points: [`MedialScene::line_of_sight`] (what blocks it first, how much of it is not proven), with
 //!   [`MedialScene::crossings`], [`MedialScene::min_visible_height`], [`MedialScene::seen_along`],
@@ -9,8 +9,8 @@
 //! - many directions at many targets: [`MedialScene::visibility_matrix`].
 //!
 //! Other models of a scene answer the second and the third by the trait [`Visibility`]. [`target_tree`] and
-//! [`certified`] hold what these are made of, for those who ask about the same targets or the same view again and
-//! again. A [`Backend`] settles lines of sight in bulk.
+//! [`certified`] hold what these are made of, for repeated queries of the same targets or the same view. A [`Backend`]
+//! settles lines of sight in bulk.
 
 mod added;
 pub mod backend;

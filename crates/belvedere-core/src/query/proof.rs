@@ -47,7 +47,7 @@ impl Default for ProofParams {
     }
 }
 
-/// Pulses that tell how much of a line of sight none of them came near to. Their index is made when it is first needed,
+/// Pulses that show how much of a line of sight none of them came near to. Their index is made when it is first needed,
 /// once for all clones.
 #[derive(Clone)]
 pub struct Proof {
@@ -105,7 +105,7 @@ impl Proof {
         Self::of_pulses(ProofSource::Indexed(Arc::new(free_segments)), nearness, params)
     }
 
-    /// The same for pulses as ball files hold them, which are not even indexed before the first line of sight needs it.
+    /// Takes pulses as ball files store them; these are not indexed before the first line of sight needs it.
     ///
     /// # Errors
     /// As [`Proof::new`], and those of [`FreeSegmentColumns::validate`].
@@ -140,7 +140,7 @@ impl Proof {
         self.index.get_or_make(|| self.make_index(control)).map(|_| ())
     }
 
-    /// The same for everything that lines of sight anywhere need, so that none of them waits.
+    /// Indexes the pulses and prepares everything else that lines of sight anywhere need, so that none of them waits.
     ///
     /// # Errors
     /// [`Error::Cancelled`].

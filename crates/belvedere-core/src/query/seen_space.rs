@@ -60,7 +60,7 @@ struct BoxColumns {
     columns: [u64; TILE * TILE],
     /// The layers on which all columns of a block are near pulses, so that a line crosses it in one step.
     blocks: [u64; BLOCKS * BLOCKS],
-    /// The same for all of the tile.
+    /// The layers on which all columns of the tile are near pulses.
     all: u64,
 }
 

@@ -322,7 +322,7 @@ impl MedialScene {
         self.chords(observer, target, &earth.corners(observer, target))
     }
 
-    /// The same through given corners.
+    /// The chords of a line through given corners, each with what the line passed before it, metres.
     fn chords(&self, observer: [f64; 3], target: [f64; 3], corners: &[[f64; 3]]) -> Vec<(LinePiece, f64)> {
         let mut passed = 0.0;
         let mut pieces = Vec::with_capacity(corners.len());

@@ -17,7 +17,7 @@ pub enum Viewer<'a> {
 /// Answers for targets, (M, 3) local metres, in their order; what [`Visibility::seen_from`] returns.
 pub type Sight<'a> = Box<dyn Fn(&[[f32; 3]]) -> Result<Vec<Answer>> + Sync + 'a>;
 
-/// A model of a scene that can tell what is visible: medial balls, and every other method that is compared with them.
+/// A model of a scene that gives what is visible: medial balls, and every other method that is compared with them.
 pub trait Visibility: Sync {
     /// Prepares whatever does not depend on the targets, such as a depth map or a convex hull, and returns what answers
     /// them.

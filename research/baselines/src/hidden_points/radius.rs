@@ -31,8 +31,8 @@ pub(crate) fn extent(positions: &[[f32; 3]]) -> ([f64; 3], f64) {
 /// The exponent that makes most points visible from exactly one of two opposite viewpoints; the lower of two equals.
 /// All of the cloud is used: the best radius grows with the density of points, so that a thinned cloud would find one
 /// that is too small. Beyond the best radius ever more points are visible from both sides, so larger ones are not tried
-/// once the number has fallen by half. Where no radius tells the two viewpoints apart, because they are the same, it is
-/// [`FALLBACK_EXPONENT`].
+/// once the number has fallen by half. Where no radius distinguishes the two viewpoints, because they are the same, it
+/// is [`FALLBACK_EXPONENT`].
 ///
 /// # Source
 /// Katz, Tal & Basri 2007, section 4: no point of a closed surface is visible from both sides. The grid is ours.

@@ -139,7 +139,7 @@ impl<'a> Crossings<'a> {
     }
 
     /// Where the local plane of either end of a step meets the ray, if that is within the step and nearly on the
-    /// surface: at ridges and corners, signs that agree along the ray cannot tell the two sides apart.
+    /// surface: at ridges and corners, signs that agree along the ray cannot distinguish the two sides.
     fn aimed_at(&self, near: Value, far: Value) -> Option<Value> {
         let tolerance = AIM_TOLERANCE * (far.range - near.range);
         [near, far].into_iter().find_map(|end| {

@@ -39,7 +39,7 @@ fn all_methods(cloud: &PointCloud, mesh: &Mesh) -> Vec<NamedMethod> {
     methods
 }
 
-/// Few pixels: these tests ask for sameness, not for accuracy.
+/// Few pixels: these tests require equal results, not accuracy.
 fn small_shadow_map(cloud: &PointCloud, mesh: &Mesh) -> ShadowMap {
     let params = ShadowMapParams { pixel_size: 0.5, face_px: 128, ..ShadowMapParams::default() };
     ShadowMap::new(mesh, cloud.frame.origin, &params).unwrap()

@@ -116,7 +116,7 @@ fn shadow_maps_agree_with_mesh_rays_away_from_the_edges_of_shadows() {
     let mesh = blocks();
     let params = ShadowMapParams::default();
     let map = ShadowMap::new(&mesh, [0.0; 3], &params).unwrap();
-    // what lies within the greatest bias of a target, a map cannot tell from the target's own surface
+    // a map cannot distinguish what lies within the greatest bias of a target from the target's own surface
     let bias = params.depth_bias + params.max_slope_bias;
     let [near, far] =
         [0.0, 2.0 * bias].map(|clearance| MeshRays::new(&mesh, [0.0; 3], &MeshRaysParams { clearance }).unwrap());

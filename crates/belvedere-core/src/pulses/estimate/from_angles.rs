@@ -21,7 +21,7 @@ const MIN_POINTS: usize = 200;
 const ROUNDS: usize = 6;
 /// Minimum number of pulses with several returns in a part for the test of whether they agree.
 const MIN_PAIRS: usize = 20;
-/// Least distance between first and last return for a pulse to tell its direction, metres.
+/// Least distance between first and last return for a pulse to give its direction, metres.
 const MIN_LENGTH: f64 = 3.0;
 
 /// A point with what is needed of it.
@@ -33,12 +33,12 @@ struct AngleSample {
     tangent: f64,
 }
 
-/// The paths of flight lines that scan angles tell, by line, and the parts of lines that were looked at. None for a
-/// cloud without angles (or whose angles are all 0) or times.
+/// The paths of flight lines that follow from scan angles, by line, and the parts of lines that were looked at. None
+/// for a cloud without angles (or whose angles are all 0) or times.
 ///
 /// Taken across the flight, an angle a puts a point beside the scanner's path by (height) tan a. Position, velocity,
 /// height and direction of the scan lines that fit this best follow from linear least squares. How far the scanner
-/// looks ahead, the angles do not tell; the pulses with several returns among `pulses` do, where there are some. A line
+/// looks ahead, the angles do not show; the pulses with several returns among `pulses` do, where there are some. A line
 /// is not trusted where points miss their place, where scan lines are bent, or where those pulses point elsewhere: all
 /// that cones and tilted scanners give away.
 ///

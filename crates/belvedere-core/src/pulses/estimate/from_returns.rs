@@ -117,7 +117,8 @@ fn join(line: &mut [PartEstimate], params: &SensorEstimateParams) -> Option<Line
     (!path.is_empty()).then(|| LinePath::new(source_id, FoundBy::Returns, stretches, path))
 }
 
-/// The paths of flight lines that pulses with several returns tell, by line, and the parts of lines they were found in.
+/// The paths of flight lines that follow from pulses with several returns, by line, and the parts of lines they were
+/// found in.
 ///
 /// # Errors
 /// [`Error::InvalidParameter`] for a parameter outside its range.

@@ -124,7 +124,7 @@ impl ScannerState {
         std::array::from_fn(|i| self.covariance[(i, i)].max(0.0).sqrt())
     }
 
-    /// The same at `time`, before or after.
+    /// This state predicted for `time`, which may be earlier or later.
     fn predicted(&self, time: f64, acceleration_sd: f64) -> Self {
         let seconds = time - self.time;
         let step = transition(seconds);

@@ -1,8 +1,8 @@
 //! The first backend: the processor itself.
 //!
-//! Each direction is swept through cells of space, 64 lines of sight at a time, which tells of most whether they meet
-//! cells that no ball reaches only, or one that a ball fills. Balls near a target, where cells cannot tell, are
-//! gathered once for all directions. What is left is open.
+//! Each direction is swept through cells of space, 64 lines of sight at a time, which shows for most of them whether
+//! they meet cells that no ball reaches only, or one that a ball fills. Balls near a target, where cells do not decide,
+//! are gathered once for all directions. What is left is open.
 
 mod nearby;
 mod space_layers;

@@ -33,15 +33,15 @@ pub struct FarTerrain {
 }
 
 impl FarTerrain {
-    /// The same with a profile for all places, azimuths from grid north, in place of one that it has.
+    /// This terrain with a profile for all places, azimuths from grid north, in place of an earlier profile.
     #[must_use]
     pub fn with_profile(mut self, profile: HorizonProfile) -> Self {
         self.profile = Some(Arc::new(profile));
         self
     }
 
-    /// The same with a raster, in place of one that it has; within the box `cloud` on the map, local metres, it blocks
-    /// nothing.
+    /// This terrain with a raster, in place of an earlier one; within the box `cloud` on the map, local metres, it
+    /// blocks nothing.
     #[must_use]
     pub fn with_grid(mut self, grid: ElevationGrid, cloud: Option<([f64; 2], [f64; 2])>) -> Self {
         self.relief = Some(Arc::new(TerrainHeights::new(grid, cloud)));

@@ -305,7 +305,7 @@ impl TerrainHeights {
         self.descend_from(self.levels.len(), [0, 0], lines, spans, top, visit)
     }
 
-    /// The same below a block of `1 << level` patches a side.
+    /// Does the work of [`TerrainHeights::descend`] below a block of `1 << level` patches a side.
     fn descend_from(
         &self,
         level: usize,

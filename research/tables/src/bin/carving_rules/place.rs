@@ -29,7 +29,7 @@ const THIN: [f64; 2] = [0.2, 0.5];
 /// From one side of a surface to the other, metres.
 const SKIN: f64 = 1e-3;
 
-/// What one viewer asks of one set of targets.
+/// The queries of one viewer for one set of targets.
 pub(crate) struct ViewerTargets {
     pub(crate) set: &'static str,
     pub(crate) views: &'static str,

@@ -34,7 +34,8 @@ pub(crate) struct ScannerResults {
     blockers: BTreeMap<&'static str, (usize, f64)>,
 }
 
-/// Builds the default model of `cloud`, whose points were measured from `scanner`, and asks what people in streets see.
+/// Builds the default model of `cloud`, whose points were measured from `scanner`, and queries what people in streets
+/// see.
 pub(crate) fn judge(
     scene: &TriangleScene,
     cloud: &PointCloud,

@@ -63,7 +63,7 @@ impl LightDirections {
 pub(crate) struct LightScore {
     /// Hours of sun: mean true, mean absolute error, and mean hours wrongly lit and wrongly shaded.
     pub(crate) sun: [f64; 4],
-    /// The same with the sun above 5 degrees.
+    /// These values with the sun above 5 degrees.
     pub(crate) sun_above_5: [f64; 4],
     /// Sky view factor of the level plane, and openness: mean true, mean absolute error, bias.
     pub(crate) factor: [f64; 3],

@@ -46,7 +46,8 @@ const MAX_BESIDE: f64 = 0.6;
 /// simulated tripods have less than 0.05 and 0.5, other places of their clouds and of clouds from the air 0.5 to 50 and
 /// 1 to 50.
 const CROWDING: [(f64, f64); 2] = [(0.3, 0.25), (1.0, 0.7)];
-/// The same in the larger cells from the height that is tried first, some decimetres beside the station.
+/// How much directions may be crowded in the larger cells, seen from the height that is tried first, some decimetres
+/// beside the station.
 const START_CROWDING: f64 = 1.8;
 /// Share of all directions that points near a station fill at least.
 const MIN_FILLED: f64 = 0.15;

@@ -8,7 +8,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 const MAX_ELEVATION: f64 = 1.22;
 /// How far the way from a direction to the next may differ from a step of the grid, in steps.
 const TOLERANCE: f64 = 0.3;
-/// The same near the end.
+/// That tolerance in the last rounds, in steps.
 const LAST_TOLERANCE: f64 = 0.15;
 /// Rounds in which pairs are found and the station is fitted to them.
 const ROUNDS: usize = 8;
