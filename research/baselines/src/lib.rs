@@ -16,6 +16,7 @@ mod lines_of_sight;
 pub mod medial;
 pub mod mesh_rays;
 pub mod methods;
+pub mod orient_by_carving;
 pub mod poisson;
 mod sampling;
 pub mod shadow_map;

@@ -3,7 +3,7 @@
 
 use crate::common::place::TownWithLight;
 use belvedere::control::Control;
-use belvedere::medial::{CarvedInput, CarvedParams, OrientByCarvingParams, carved_balls, orient_by_carving};
+use belvedere::medial::{CarvedInput, CarvedParams, carved_balls};
 use belvedere::neighbors::NeighborIndex;
 use belvedere::normals::estimate::{Neighborhood, estimate};
 use belvedere::normals::{Orientation, OrientedCloud, orient};
@@ -11,6 +11,7 @@ use belvedere::pulses::{FreeSegmentParams, FreeSegments, VerticalParams, vertica
 use belvedere::query::{BlockRule, MedialScene, Viewer, Visibility};
 use belvedere_baselines::agreement::{Rate, TruthCounts};
 use belvedere_baselines::medial::DEPTH_BIAS;
+use belvedere_baselines::orient_by_carving::{OrientByCarvingParams, orient_by_carving};
 use belvedere_scenes::Preset;
 
 impl TownWithLight {

@@ -1,10 +1,10 @@
 //! The sign of normals where no scanner gives it: inside is where carved balls stay large.
 
-use crate::neighbors::{NeighborIndex, Tangent};
-use crate::normals::OrientedCloud;
-use crate::pulses::FreeSegments;
-use belvedere_data::control::{Control, Stop};
-use belvedere_data::{Error, Parameter, Result};
+use belvedere::control::{Control, Stop};
+use belvedere::neighbors::{NeighborIndex, Tangent};
+use belvedere::normals::OrientedCloud;
+use belvedere::pulses::FreeSegments;
+use belvedere::{Error, Parameter, Result};
 use rayon::prelude::*;
 
 /// How [`orient_by_carving`] works.
@@ -31,7 +31,7 @@ impl Default for OrientByCarvingParams {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct OrientByCarvingReport {
     /// Normals tested.
-    pub asked: usize,
+    pub tested: usize,
     /// Signs changed.
     pub flipped: usize,
 }
@@ -41,7 +41,7 @@ pub struct OrientByCarvingReport {
 ///
 /// For normals whose signs nothing tells, such as those of a file: on simulated towns with every normal turned inward
 /// it brings back all but half a point of what right signs give. It needs pulses that were measured: assumed vertical
-/// ones never see walls, and signs by up and by the vote of roof and ground ([`crate::normals::Orientation::Up`]) are
+/// ones never see walls, and signs by up and by the vote of roof and ground ([`belvedere::normals::Orientation::Up`]) are
 /// better with them.
 ///
 /// `index` must have been built from the positions of `oriented`.
@@ -75,12 +75,12 @@ pub fn orient_by_carving(
     if index.len() != count {
         return Err(Error::LengthMismatch { what: "neighbour index", expected: count, found: index.len() });
     }
-    let is_asked = |row: usize| {
+    let needs_test = |row: usize| {
         let is_unsure = params.min_confidence >= 1.0 || oriented.confidence()[row] < params.min_confidence;
         is_unsure && oriented.normals()[row] != [0.0; 3]
     };
     // neighbours one after the other: their searches share the cache
-    let asked: Vec<u32> = index.tree_order().iter().copied().filter(|&row| is_asked(row as usize)).collect();
+    let tested: Vec<u32> = index.tree_order().iter().copied().filter(|&row| needs_test(row as usize)).collect();
     let radius = |point: [f32; 3], inward: [f32; 3]| {
         let tangent = Tangent { point, inward, margin: params.penetration };
         let most = params.initial_radius - params.penetration;
@@ -88,7 +88,7 @@ pub fn orient_by_carving(
         free_segments.smallest_tangent_ball(&tangent, by_points).unwrap_or(by_points)
     };
     let stop = Stop::new(control);
-    let flipped: Vec<u32> = asked
+    let flipped: Vec<u32> = tested
         .par_iter()
         .copied()
         .filter(|&row| {
@@ -105,7 +105,7 @@ pub fn orient_by_carving(
     for &row in &flipped {
         normals[row as usize] = normals[row as usize].map(|v| -v);
     }
-    let report = OrientByCarvingReport { asked: asked.len(), flipped: flipped.len() };
+    let report = OrientByCarvingReport { tested: tested.len(), flipped: flipped.len() };
     let turned =
         OrientedCloud::new(positions.to_vec(), normals, oriented.quality().to_vec(), oriented.confidence().to_vec())?;
     Ok((turned.with_place(oriented.origin(), oriented.crs().clone()), report))
