@@ -86,7 +86,7 @@ pub(crate) fn ball_tiles(
             }
             Some(TileRecord { outcome: TileOutcome::Done | TileOutcome::Nothing, .. }) => {}
             Some(TileRecord { outcome: TileOutcome::Failed(_), .. }) | None => {
-                found.missing.extend(unknown(plan, tile))
+                found.missing.extend(unknown(plan, tile));
             }
         }
     }
