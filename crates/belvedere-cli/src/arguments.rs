@@ -93,8 +93,8 @@ pub(crate) struct Global {
     /// Number of threads, at most 1024; it does not change results [default: all processors]
     #[arg(long, global = true, value_name = "N", value_parser = at_most::<1024>)]
     pub(crate) threads: Option<usize>,
-    /// What tests many lines of sight and draws depth maps: auto, cpu, gpu, or the number of a device. It does not
-    /// change answers; depths of pictures differ by at most 0.00001 of themselves
+    /// What tests many lines of sight and draws depth maps; it does not change answers: auto, cpu, gpu, or the number
+    /// of a device
     #[arg(long, global = true, value_name = "DEVICE", default_value = "auto", allow_negative_numbers = true)]
     pub(crate) device: DeviceChoice,
     /// Seed of the random numbers

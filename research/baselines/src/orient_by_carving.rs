@@ -41,8 +41,8 @@ pub struct OrientByCarvingReport {
 ///
 /// For normals whose signs nothing tells, such as those of a file: on simulated towns with every normal turned inward
 /// it brings back all but half a point of what right signs give. It needs pulses that were measured: assumed vertical
-/// ones never see walls, and signs by up and by the vote of roof and ground ([`belvedere::normals::Orientation::Up`]) are
-/// better with them.
+/// ones never see walls, and signs by up and by the vote of roof and ground ([`belvedere::normals::Orientation::Up`])
+/// are better with them.
 ///
 /// `index` must have been built from the positions of `oriented`.
 ///

@@ -179,11 +179,12 @@ impl Layers {
         [0, 1].map(|axis| cell_from_origin(point[axis]).saturating_sub(self.first_cell[axis]))
     }
 
-    /// Number east and north, in the reference system, of the block of `cells` by `cells` cells that a voxel lies in.
-    pub(super) fn block(&self, voxel: usize, cells: i64) -> [i64; 2] {
+    /// Number east and north of the block of `cells` by `cells` cells that a voxel lies in. Blocks begin `offset` cells
+    /// west and south of the origin of the reference system.
+    pub(super) fn block(&self, voxel: usize, cells: i64, offset: [i64; 2]) -> [i64; 2] {
         let own = self.cell_of(voxel);
         [0, 1].map(|axis| {
-            let local = i64::from(self.first_cell[axis]) + i64::from(own[axis]);
+            let local = i64::from(self.first_cell[axis]) + i64::from(own[axis]) + offset[axis];
             self.origin[axis].saturating_add(local).div_euclid(cells)
         })
     }

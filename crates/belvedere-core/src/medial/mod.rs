@@ -41,6 +41,7 @@ pub use roof_edges::RoofEdgeParams;
 pub use rules::{CarvedParams, Rule, SmoothingParams};
 pub use shrinking_ball::{ShrinkMethod, ShrinkParams, ShrinkReport, shrink};
 pub use slender::SlenderParams;
+pub(crate) use survey::BLOCK;
 pub use survey::RuleStatistics;
 pub use thin_surfaces::{ThinSurfaceParams, on_thin_surfaces};
 pub use vegetation::VegetationParams;

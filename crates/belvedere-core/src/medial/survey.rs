@@ -17,7 +17,7 @@ use serde::{Deserialize, Serialize};
 
 /// Side of the blocks in which balls are pruned and thin surfaces end, metres: many times the largest ball, so that
 /// little is kept twice.
-pub(super) const BLOCK: f32 = 64.0;
+pub(crate) const BLOCK: f32 = 64.0;
 
 /// Statistics of a whole survey that rules need, so that a part of it has the balls of the whole.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]

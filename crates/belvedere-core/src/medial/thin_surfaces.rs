@@ -272,14 +272,31 @@ pub(super) fn widest_gap(
     Gap { width, middle, count }
 }
 
-/// Which voxels belong to a surface of which enough is proven. A surface is what hangs together of voxels that go on to
-/// all sides or are proven, with what lies beside them.
+/// Which voxels belong to a surface of which enough is proven. Surfaces end at blocks, so that those of a block are the
+/// same in every part of a survey that holds it. Blocks are laid four times, moved by half their side: a surface up to
+/// that wide lies in one of them.
 fn surfaces(layers: &Layers, beside: &[usize], proven: &[bool], min_proof: f32) -> Vec<bool> {
+    #[expect(clippy::cast_possible_truncation, reason = "64")]
+    let half = (BLOCK / CELL / 2.0) as i64;
+    let offsets = [[0, 0], [half, 0], [0, half], [half, half]];
+    let blocks = offsets.map(|offset| move |voxel: usize| layers.block(voxel, 2 * half, offset));
+    let found = blocks.par_iter().map(|block| surfaces_in_blocks(layers, beside, proven, min_proof, block));
+    let either = |a: Vec<bool>, b: Vec<bool>| a.into_iter().zip(b).map(|(a, b)| a || b).collect();
+    found.reduce_with(either).unwrap_or_default()
+}
+
+/// [`surfaces`] for one way to lay blocks. A surface is what hangs together of voxels that go on to all sides or are
+/// proven, with what lies beside them.
+fn surfaces_in_blocks(
+    layers: &Layers,
+    beside: &[usize],
+    proven: &[bool],
+    min_proof: f32,
+    block: impl Fn(usize) -> [i64; 2],
+) -> Vec<bool> {
     let mut seen = vec![false; layers.len()];
     let mut thin = vec![false; layers.len()];
     let mut surface = Vec::new();
-    #[expect(clippy::cast_possible_truncation, reason = "128")]
-    let block = |voxel: usize| layers.block(voxel, (BLOCK / CELL) as i64);
     for first in (0..layers.len()).filter(|&voxel| proven[voxel]) {
         if seen[first] {
             continue;

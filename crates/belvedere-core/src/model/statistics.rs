@@ -3,7 +3,7 @@
 use super::params::{BallParams, ModelParams, OrientBy};
 use super::prepare::{OrientedSurvey, prepare};
 use crate::clean::{CleanParams, IsolatedPoints, IsolationRadius};
-use crate::medial::{CarvedInput, CarvedParams, RuleStatistics, rule_statistics};
+use crate::medial::{BLOCK, CarvedInput, CarvedParams, RuleStatistics, rule_statistics};
 use crate::neighbors::FARTHEST_NEIGHBOR;
 use crate::pulses::{LinePath, Means, VerticalParams, locate, positions_on_paths, vertical_pulses};
 use belvedere_data::control::Control;
@@ -155,7 +155,9 @@ impl SurveyStatistics {
         let points = ball + 2.0 * f64::from(noise) + 2.0 * f64::from(FARTHEST_NEIGHBOR);
         // or at pulses that end lower, and these hold other returns
         let pulses = ball + (self.relief + ball) * self.max_lean;
-        points.max(pulses) + isolation + RULES_REACH
+        // or at a thin surface, which pulses prove that pass half a block away and end lower
+        let thin = f64::from(BLOCK) / 2.0 + self.relief * self.max_lean;
+        points.max(pulses).max(thin) + isolation + RULES_REACH
     }
 
     /// Whether pulses are assumed to fall straight down.
