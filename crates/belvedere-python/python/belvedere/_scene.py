@@ -281,14 +281,15 @@ class Scene(Sights, Outlook, Sunlight, Energy, Planning, Cameras):
         """The same scene, whose lines of sight and depth maps are the work of a graphics processor.
 
         Answers are the same. Depths of depth maps and panoramas differ by at most 0.00001 of themselves, and with
-        ``"cpu"`` not at all. Wheels are built without graphics processors: the page on graphics processors tells how to build one with them.
+        ``"cpu"`` not at all. Wheels are built without graphics processors: the page on graphics processors says how to
+        build one with them.
 
         Parameters
         ----------
         device : str or int
-            ``"auto"``: a graphics card, for questions of many lines of sight and large depth maps. ``"cpu"``. ``"gpu"``:
-            the first graphics card, or else integrated graphics; where there is none, the CPU, with a warning. A
-            number: that of :func:`belvedere.devices`.
+            ``"auto"``: a graphics card, for questions of many lines of sight and large depth maps. ``"cpu"``.
+            ``"gpu"``: the first graphics card, or else integrated graphics; where there is none, the CPU, with a
+            warning. A number: that of :func:`belvedere.devices`.
 
         Examples
         --------
