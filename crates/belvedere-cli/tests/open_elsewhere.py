@@ -4,6 +4,7 @@ Usage: open_elsewhere.py BELVEDERE FOLDER
 """
 
 import json
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -23,6 +24,8 @@ def run(*words):
     return json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
 
 
+# what is left of an earlier program may have another plan
+shutil.rmtree(folder, ignore_errors=True)
 run("demo", "-o", folder)
 town, balls = folder / "town.laz", folder / "balls.npz"
 scene = [balls, "--ground", f"cloud={town}"]

@@ -218,9 +218,10 @@ def check_results():
     again = values(loaded("layer.tif"))
     assert sum(a != b for a, b in zip(cells, again)) < 0.005 * len(cells)
 
-    # the parcel was drawn in degrees: its columns are there and nowhere else
+    # the parcel of 400 m2 was drawn in degrees: its columns are there and nowhere else, but for its canal of 69 m2,
+    # from which no pulse returned
     heights = [height for height in values(layers["envelope.tif"]) if height is not None]
-    assert abs(len(heights) * 0.25 - 400) < 25 and 0 < min(heights) <= max(heights) <= 25, (len(heights), min(heights))
+    assert abs(len(heights) * 0.25 - 331) < 25 and 0 < min(heights) <= max(heights) <= 25, (len(heights), min(heights))
 
 
 def check_errors():
