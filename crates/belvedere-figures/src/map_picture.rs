@@ -14,7 +14,7 @@ use belvedere_io::colors::ramp;
 /// Maps smaller than this are enlarged.
 const MIN_SIDE: usize = 600;
 /// Where nothing is known of the relief.
-const UNKNOWN: [f64; 3] = [236.0, 237.0, 240.0];
+const UNKNOWN: [u8; 3] = [236, 237, 240];
 /// Share of a pixel that the colour of the map takes, the rest is relief.
 const TINT: f64 = 0.5;
 /// Towards the light, from the north-west, 45° high (east, north, up).
@@ -107,7 +107,7 @@ pub fn map_picture(map: &MapPicture<'_>) -> Result<Picture> {
     let mut picture = Picture::filled(width, height, PAPER);
     picture.rgb.par_chunks_exact_mut(3).enumerate().for_each(|(at, pixel)| {
         let light = shade(map.relief, at % width, at / width, map.cell);
-        let base = light.map_or(UNKNOWN, |light| [70.0 + 180.0 * light; 3]);
+        let base = light.map_or(UNKNOWN.map(f64::from), |light| [70.0 + 180.0 * light; 3]);
         for (channel, out) in pixel.iter_mut().enumerate() {
             let value = match map.colors.get(at).copied().flatten() {
                 // the relief darkens the colour, so that both are seen
@@ -290,8 +290,15 @@ fn legend_lines(map: &MapPicture<'_>) -> Vec<([u8; 3], String)> {
         MapLegend::Colors(colors) => (Vec::new(), *colors),
         MapLegend::Ramp(_, range, others) => (ticks(*range), *others),
     };
-    let without = map.colors.contains(&None).then_some((BARE, "no answer"));
-    let classes = classes.iter().copied().chain(without).map(|(color, text)| (color, text.to_owned()));
+    // a cell without a colour is bare relief, or blank where the survey has a hole
+    let without = |has_relief: bool| {
+        let mut cells = map.colors.iter().enumerate().filter(|(_, color)| color.is_none());
+        let width = map.relief.width().max(1);
+        cells.any(|(at, _)| map.relief.get(at % width, at / width).is_some_and(f32::is_finite) == has_relief)
+    };
+    let bare = without(true).then_some((BARE, "no answer"));
+    let blank = without(false).then_some((UNKNOWN, "no data"));
+    let classes = classes.iter().copied().chain(bare).chain(blank).map(|(color, text)| (color, text.to_owned()));
     ticks.into_iter().rev().map(|(share, text)| (ramp(share), text)).chain(classes).collect()
 }
 
@@ -466,6 +473,11 @@ mod tests {
         assert!((0..4).all(|i| (0..i).all(|j| lines[i].0 != lines[j].0)));
         // a map with an answer everywhere has no such line
         let lines = legend_lines(&MapPicture { colors: &[Some(unproven.0); 4], ..map });
+        assert!(lines.iter().all(|(_, text)| text != "no answer"));
+        // a hole of the survey is blank, and so is its line
+        let hole = Raster::filled(2, 2, f32::NAN);
+        let lines = legend_lines(&MapPicture { relief: &hole, ..map });
+        assert_eq!(lines.last(), Some(&(UNKNOWN, "no data".to_owned())));
         assert!(lines.iter().all(|(_, text)| text != "no answer"));
         assert_eq!(ticks([0.0, 2.0]).into_iter().map(|(_, text)| text).collect::<Vec<_>>(), ["0", "1", "2"]);
     }
