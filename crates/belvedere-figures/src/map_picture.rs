@@ -471,14 +471,15 @@ mod tests {
         assert_eq!(texts, ["3", "2", "1", "0", "unproven", "no answer"]);
         assert_eq!([lines[3].0, lines[1].0, lines[0].0].map(Some), colors[..3]);
         assert!((0..4).all(|i| (0..i).all(|j| lines[i].0 != lines[j].0)));
-        // a map with an answer everywhere has no such line
-        let lines = legend_lines(&MapPicture { colors: &[Some(unproven.0); 4], ..map });
-        assert!(lines.iter().all(|(_, text)| text != "no answer"));
         // a hole of the survey is blank, and so is its line
         let hole = Raster::filled(2, 2, f32::NAN);
-        let lines = legend_lines(&MapPicture { relief: &hole, ..map });
+        let map = MapPicture { relief: &hole, ..map };
+        let lines = legend_lines(&map);
         assert_eq!(lines.last(), Some(&(UNKNOWN, "no data".to_owned())));
         assert!(lines.iter().all(|(_, text)| text != "no answer"));
+        // a map with an answer everywhere has no such line
+        let lines = legend_lines(&MapPicture { colors: &[Some(unproven.0); 4], ..map });
+        assert!(lines.iter().all(|(_, text)| text != "no answer" && text != "no data"));
         assert_eq!(ticks([0.0, 2.0]).into_iter().map(|(_, text)| text).collect::<Vec<_>>(), ["0", "1", "2"]);
     }
 
