@@ -45,18 +45,7 @@ pub fn sight_profile(
     step: Option<f64>,
     control: &Control<'_>,
 ) -> Result<SightProfile> {
-    let span = (target[0] - observer[0]).hypot(target[1] - observer[1]);
-    if !(span.is_finite() && span > 0.0 && observer[2].is_finite() && target[2].is_finite()) {
-        let value = format!("{observer:?} to {target:?}");
-        let expected = "finite, and at different positions on the map";
-        return Err(Error::InvalidParameter { parameter: Parameter::ProfileLine, value, expected });
-    }
-    let step = step.unwrap_or((span / 1000.0).max(0.1));
-    if !(step > 0.0 && span / step <= MAX_ROWS) {
-        let value = format!("{step} m on {span} m");
-        let expected = "above zero, and large enough for a million rows";
-        return Err(Error::InvalidParameter { parameter: Parameter::ProfileStep, value, expected });
-    }
+    let (span, step) = span_and_step([observer, target], step)?;
     let is_far = |place: [f64; 3]| scene.is_on_far_terrain(place);
     let is_over_terrain = is_far(observer) || is_far(target);
     let bends = earth.bends(observer, target) || (is_over_terrain && earth.curvature != Curvature::Off);
@@ -97,4 +86,21 @@ pub fn sight_profile(
         profile.blocked.push(is_blocked);
     }
     Ok(profile)
+}
+
+/// The length of a line on the map and the distance between rows of its profile, both checked, metres.
+fn span_and_step([observer, target]: [[f64; 3]; 2], step: Option<f64>) -> Result<(f64, f64)> {
+    let span = (target[0] - observer[0]).hypot(target[1] - observer[1]);
+    if !(span.is_finite() && span > 0.0 && observer[2].is_finite() && target[2].is_finite()) {
+        let value = format!("{observer:?} to {target:?}");
+        let expected = "finite, and at different positions on the map";
+        return Err(Error::InvalidParameter { parameter: Parameter::ProfileLine, value, expected });
+    }
+    let step = step.unwrap_or((span / 1000.0).max(0.1));
+    if !(step > 0.0 && span / step <= MAX_ROWS) {
+        let value = format!("{step} m on {span} m");
+        let expected = "above zero, and large enough for a million rows";
+        return Err(Error::InvalidParameter { parameter: Parameter::ProfileStep, value, expected });
+    }
+    Ok((span, step))
 }

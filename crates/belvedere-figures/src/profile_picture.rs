@@ -87,16 +87,20 @@ pub fn profile_picture(profile: &DistanceProfile<'_>) -> Picture {
     }
     sheet.fill_rectangle([left, top], [2, bottom - top], INK);
     sheet.fill_rectangle([left, bottom], [right - left, 2], INK);
+    draw_legend(&mut sheet, [left, right], SIZE[1] - margin - 9 * SCALE);
+    sheet
+}
+
+/// What the colours mean, in a row between two columns.
+fn draw_legend(sheet: &mut Picture, [left, right]: [usize; 2], row: usize) {
     let mut at = left;
     for (color, text) in [(GROUND, "ground"), (SOLID, "blocks"), (SEEN, "seen"), (HIDDEN, "hidden")] {
-        let row = SIZE[1] - margin - 9 * SCALE;
         sheet.fill_rectangle([at, row], [12 * SCALE, 8 * SCALE], color);
-        draw_text(&mut sheet, at + 16 * SCALE, row + SCALE / 2, text, SCALE, INK);
+        draw_text(sheet, at + 16 * SCALE, row + SCALE / 2, text, SCALE, INK);
         at += 30 * SCALE + text_width(text, SCALE);
     }
     let note = "metres; heights exaggerated";
-    draw_text(&mut sheet, right - text_width(note, SCALE), SIZE[1] - margin - 9 * SCALE, note, SCALE, INK);
-    sheet
+    draw_text(sheet, right - text_width(note, SCALE), row, note, SCALE, INK);
 }
 
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within the picture, `as` saturates")]

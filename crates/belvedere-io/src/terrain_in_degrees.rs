@@ -47,16 +47,7 @@ pub(crate) fn projected(
         let [x, y] = projection.project(latitude, longitude).map_err(|_| too_large(name))?;
         Ok([x - frame.origin[0], y - frame.origin[1]])
     };
-    let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
-    for i in 0..=PLACES {
-        let share = i as f64 / PLACES as f64;
-        let [u, v] = last.map(|last| last * share);
-        for node in [[u, 0.0], [u, last[1]], [0.0, v], [last[0], v]] {
-            let at = on_plane(node)?;
-            low = [low[0].min(at[0]), low[1].min(at[1])];
-            high = [high[0].max(at[0]), high[1].max(at[1])];
-        }
-    }
+    let [low, high] = corners_on_plane(last, on_plane)?;
     let middle = last.map(|last| last / 2.0);
     let [at, beside, below] = [middle, [middle[0] + 1.0, middle[1]], [middle[0], middle[1] + 1.0]].map(on_plane);
     let (at, beside, below) = (at?, beside?, below?);
@@ -93,6 +84,22 @@ pub(crate) fn projected(
     };
     let heights = Raster::from_values(width, height, (0..width * height).map(value).collect())?;
     ElevationGrid::new(heights, [low[0], high[1]], cell).map_err(|error| Error::malformed(name, error.to_string()))
+}
+
+/// The lowest and highest coordinates on the plane that the border of a raster reaches, whose `last` column and row
+/// these are.
+fn corners_on_plane(last: [f64; 2], on_plane: impl Fn([f64; 2]) -> Result<[f64; 2]>) -> Result<[[f64; 2]; 2]> {
+    let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+    for i in 0..=PLACES {
+        let share = i as f64 / PLACES as f64;
+        let [u, v] = last.map(|last| last * share);
+        for node in [[u, 0.0], [u, last[1]], [0.0, v], [last[0], v]] {
+            let at = on_plane(node)?;
+            low = [low[0].min(at[0]), low[1].min(at[1])];
+            high = [high[0].max(at[0]), high[1].max(at[1])];
+        }
+    }
+    Ok([low, high])
 }
 
 fn too_large(name: &Path) -> Error {

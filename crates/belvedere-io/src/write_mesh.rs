@@ -2,6 +2,7 @@
 
 use crate::colors::ramp;
 use crate::output::Output;
+use belvedere_data::crs::Crs;
 use belvedere_data::crs::text::comment_lines;
 use belvedere_data::{Error, Mesh, Parameter, Result};
 
@@ -42,22 +43,7 @@ pub fn write_mesh_values<'a>(
     }
     let faces: Vec<([[f64; 3]; 3], f64)> =
         values.iter().enumerate().filter_map(|(t, &value)| Some((mesh.corners(t)?, value))).collect();
-    let mut header = String::from("ply\nformat binary_little_endian 1.0\ncomment written by belvedere\n");
-    for line in comment_lines(&mesh.crs) {
-        let line: String = line.chars().map(|c| if c.is_ascii() && !c.is_ascii_control() { c } else { '?' }).collect();
-        header.push_str(&format!("comment {line}\n"));
-    }
-    header.push_str(&format!("element vertex {}\n", 3 * faces.len()));
-    for axis in ["x", "y", "z"] {
-        header.push_str(&format!("property double {axis}\n"));
-    }
-    for channel in ["red", "green", "blue"] {
-        header.push_str(&format!("property uchar {channel}\n"));
-    }
-    header.push_str(&format!(
-        "property float {name}\nelement face {}\nproperty list uchar uint vertex_indices\nend_header\n",
-        faces.len()
-    ));
+    let header = header(&mesh.crs, name, faces.len());
     output.into().write(|path, output| {
         let mut write = |bytes: &[u8]| output.write_all(bytes).map_err(Error::io(path));
         write(header.as_bytes())?;
@@ -80,4 +66,24 @@ pub fn write_mesh_values<'a>(
         }
         Ok(())
     })
+}
+
+/// The header of a PLY file of `face_count` triangles with vertices of their own, whose values are called `name`.
+fn header(crs: &Crs, name: &str, face_count: usize) -> String {
+    let mut header = String::from("ply\nformat binary_little_endian 1.0\ncomment written by belvedere\n");
+    for line in comment_lines(crs) {
+        let line: String = line.chars().map(|c| if c.is_ascii() && !c.is_ascii_control() { c } else { '?' }).collect();
+        header.push_str(&format!("comment {line}\n"));
+    }
+    header.push_str(&format!("element vertex {}\n", 3 * face_count));
+    for axis in ["x", "y", "z"] {
+        header.push_str(&format!("property double {axis}\n"));
+    }
+    for channel in ["red", "green", "blue"] {
+        header.push_str(&format!("property uchar {channel}\n"));
+    }
+    header.push_str(&format!(
+        "property float {name}\nelement face {face_count}\nproperty list uchar uint vertex_indices\nend_header\n",
+    ));
+    header
 }

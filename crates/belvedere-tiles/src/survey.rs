@@ -78,14 +78,7 @@ pub(crate) fn survey(
     // sources live as long as the work
     for batch in read_batches(files.to_vec(), &options.clone().with_row_numbers(), control)? {
         let CloudBatch { cloud, source, rows } = batch?;
-        let of_file = pieces.entry(source).or_default();
-        for (&row, &p) in rows.iter().zip(&cloud.positions) {
-            let number = usize::try_from(row / PIECE_ROWS).unwrap_or(usize::MAX);
-            if number >= of_file.len() {
-                of_file.resize(number + 1, NOWHERE);
-            }
-            hold(&mut of_file[number], p);
-        }
+        hold_rows(pieces.entry(source).or_default(), &rows, &cloud.positions);
         let flags = cloud.attributes.flags.as_deref().unwrap_or_default();
         let classes = cloud.attributes.classification.as_deref().unwrap_or_default();
         let times = cloud.attributes.gps_time.as_deref().filter(|_| columns.gps_times);
@@ -117,8 +110,25 @@ pub(crate) fn survey(
         window::append(&mut of_places, cloud.select(&in_places), columns);
     }
     let blocks: Vec<SurveyBlock> = blocks.into_iter().filter_map(|(at, counted)| counted.into_block(at)).collect();
+    add_heights(&mut extremes, &blocks);
+    Ok(SurveyOverview { blocks, bounds, extremes, along_lines, places: of_places, pieces })
+}
+
+/// Widens the cells of the pieces that `rows` of a file belong to.
+fn hold_rows(pieces: &mut Vec<PieceCell>, rows: &[u64], positions: &[[f32; 3]]) {
+    for (&row, &p) in rows.iter().zip(positions) {
+        let number = usize::try_from(row / PIECE_ROWS).unwrap_or(usize::MAX);
+        if number >= pieces.len() {
+            pieces.resize(number + 1, NOWHERE);
+        }
+        hold(&mut pieces[number], p);
+    }
+}
+
+/// The top of all blocks, and the largest height of one above the lowest around it.
+fn add_heights(extremes: &mut SurveyExtremes, blocks: &[SurveyBlock]) {
     let by_place: BTreeMap<[i32; 2], f32> = blocks.iter().map(|block| (block.at, block.heights[0])).collect();
-    for block in &blocks {
+    for block in blocks {
         extremes.top = extremes.top.max(block.heights[1]);
         let [east, north] = block.at;
         let around = (north - AROUND..=north + AROUND)
@@ -126,7 +136,6 @@ pub(crate) fn survey(
         let lowest = around.filter_map(|at| by_place.get(&at)).copied().fold(f32::INFINITY, f32::min);
         extremes.relief = extremes.relief.max(f64::from(block.heights[1]) - f64::from(lowest));
     }
-    Ok(SurveyOverview { blocks, bounds, extremes, along_lines, places: of_places, pieces })
 }
 
 impl PointCounts {

@@ -103,14 +103,8 @@ impl Plans {
         if let Some(planned) = self.kept().plans.iter().find(|planned| planned.plan == plan) {
             return Ok(Arc::clone(planned));
         }
-        if !plan.clear.is_empty() && text.cloud_beside.is_some() {
-            return Err(Refusal("Areas can be cleared only where the balls are built from the cloud: start the program with the cloud alone.".to_owned()));
-        }
-        if !plan.clear.is_empty() && scene.model().added().is_some() {
-            return Err(Refusal(
-                "Areas are cleared before meshes are added: start the program without --add, and load the mesh here."
-                    .to_owned(),
-            ));
+        if !plan.clear.is_empty() {
+            check_can_clear(scene, text)?;
         }
         let frame = scene.model().frame();
         let areas = plan.clear.iter().map(|corners| area(corners, frame)).collect::<Result<Vec<_>, _>>()?;
@@ -159,6 +153,18 @@ impl Plans {
     fn kept(&self) -> MutexGuard<'_, KeptPlans> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
+}
+
+/// Refuses to clear areas of a scene where what stands in them is not known any more.
+fn check_can_clear(scene: &PageScene, text: &SceneText) -> Result<(), Refusal> {
+    let reason = if text.cloud_beside.is_some() {
+        "Areas can be cleared only where the balls are built from the cloud: start the program with the cloud alone."
+    } else if scene.model().added().is_some() {
+        "Areas are cleared before meshes are added: start the program without --add, and load the mesh here."
+    } else {
+        return Ok(());
+    };
+    Err(Refusal(reason.to_owned()))
 }
 
 /// A word as a shell takes it for one.

@@ -66,6 +66,30 @@ struct AtPrices {
     picked: Vec<usize>,
 }
 
+impl Relaxation {
+    /// What the cameras at some prices give, without shares.
+    fn of(at: &AtPrices, prices: &[f64]) -> Self {
+        let (covered, picked) = (at.covered.clone(), at.picked.clone());
+        Self { bound: at.bound, prices: prices.to_vec(), covered, shares: Vec::new(), picked }
+    }
+}
+
+/// Turns the direction in which prices fall after a selection; returns its squared length.
+fn turn(direction: &mut [f64], problem: &Problem<'_>, selection: &CameraSelection<'_>, prices: &[f64]) -> f64 {
+    let mut size = 0.0;
+    for (target, slope) in direction.iter_mut().enumerate() {
+        let (price, worth) = (prices[target], problem.worth[target]);
+        // more cameras than needed ask for a lower price; at either end of the range prices only move inwards
+        let excess = f64::from(selection.counts[target]) - f64::from(problem.required);
+        *slope = excess + MEMORY * *slope;
+        if (price >= worth && *slope < 0.0) || (price <= 0.0 && *slope > 0.0) {
+            *slope = 0.0;
+        }
+        size += *slope * *slope;
+    }
+    size
+}
+
 impl BranchNode<'_> {
     fn at(&self, prices: &[f64]) -> AtPrices {
         let covered_by = |(camera, fate): (usize, &CandidateFate)| match fate {
@@ -99,13 +123,7 @@ impl BranchNode<'_> {
         let ins: Vec<usize> = (0..self.fates.len()).filter(|&camera| self.fates[camera] == CandidateFate::In).collect();
         let base = CameraSelection::of(problem, &ins);
         let mut at = self.at(&prices);
-        let mut found = Relaxation {
-            bound: at.bound,
-            prices: prices.clone(),
-            covered: at.covered.clone(),
-            shares: vec![0.0; self.fates.len()],
-            picked: at.picked.clone(),
-        };
+        let mut found = Relaxation { shares: vec![0.0; self.fates.len()], ..Relaxation::of(&at, &prices) };
         let mut prices = prices;
         let mut direction = vec![0.0; prices.len()];
         let (mut scale, mut waited, mut done) = (1.0, 0, 0.0);
@@ -125,17 +143,7 @@ impl BranchNode<'_> {
             if !problem.is_better(found.bound, best.value) || scale < MIN_STEP || self.left == 0 {
                 break;
             }
-            let mut size = 0.0;
-            for (target, slope) in direction.iter_mut().enumerate() {
-                let (price, worth) = (prices[target], problem.worth[target]);
-                // more cameras than needed ask for a lower price; at either end of the range prices only move inwards
-                let excess = f64::from(selection.counts[target]) - f64::from(problem.required);
-                *slope = excess + MEMORY * *slope;
-                if (price >= worth && *slope < 0.0) || (price <= 0.0 && *slope > 0.0) {
-                    *slope = 0.0;
-                }
-                size += *slope * *slope;
-            }
+            let size = turn(&mut direction, problem, &selection, &prices);
             if size == 0.0 {
                 break;
             }
@@ -145,10 +153,7 @@ impl BranchNode<'_> {
             }
             at = self.at(&prices);
             if at.bound < found.bound - TOLERANCE * found.bound {
-                found.bound = at.bound;
-                found.prices.clone_from(&prices);
-                found.covered.clone_from(&at.covered);
-                found.picked.clone_from(&at.picked);
+                found = Relaxation { shares: found.shares, ..Relaxation::of(&at, &prices) };
                 waited = 0;
             } else {
                 waited += 1;

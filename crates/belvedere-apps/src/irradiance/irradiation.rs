@@ -150,15 +150,7 @@ pub(super) fn on_plane(
         return;
     }
     groups.fill(Irradiation::default());
-    for share in &radiation.sun {
-        let Some(sum) = groups.get_mut(share.group) else { continue };
-        let (beam, around) = (dot(share.beam, normal).max(0.0), dot(share.around, normal).max(0.0));
-        sum.unshaded += beam + around;
-        if beam + around > 0.0 && is_free(share.direction) {
-            sum.beam += beam;
-            sum.diffuse += around;
-        }
-    }
+    add_sun(radiation, normal, &is_free, groups);
     let first = radiation.sun_directions.len();
     let (mut sky, mut horizon) = (SeenWeights::default(), SeenWeights::default());
     let group_count = groups.len();
@@ -198,6 +190,19 @@ pub(super) fn on_plane(
             Surroundings::LikeGround => reflected * (1.0 - seen),
         };
         *sum = sum.scaled(0.001);
+    }
+}
+
+/// Adds what comes from the sun and from the sky around it.
+fn add_sun(radiation: &PeriodRadiation, normal: [f64; 3], is_free: impl Fn(usize) -> bool, groups: &mut [Irradiation]) {
+    for share in &radiation.sun {
+        let Some(sum) = groups.get_mut(share.group) else { continue };
+        let (beam, around) = (dot(share.beam, normal).max(0.0), dot(share.around, normal).max(0.0));
+        sum.unshaded += beam + around;
+        if beam + around > 0.0 && is_free(share.direction) {
+            sum.beam += beam;
+            sum.diffuse += around;
+        }
     }
 }
 

@@ -202,6 +202,22 @@ impl PeriodReport {
     }
 }
 
+/// The sun's shares of each group of instants in cells of direction.
+type SunCells = BTreeMap<(u32, u32), BTreeMap<usize, SunShare>>;
+
+/// The mean direction of each cell, weighted by radiation, and the shares with the rows of their directions.
+fn in_rows(cells: &SunCells) -> (Vec<[f64; 3]>, Vec<SunShare>) {
+    let mut directions = Vec::with_capacity(cells.len());
+    let mut shares = Vec::new();
+    for groups in cells.values() {
+        let sum = |axis: usize| groups.values().map(|share| share.beam[axis] + share.around[axis]).sum::<f64>();
+        let Some(direction) = unit([0, 1, 2].map(sum)) else { continue };
+        shares.extend(groups.values().map(|share| SunShare { direction: directions.len(), ..*share }));
+        directions.push(direction);
+    }
+    (directions, shares)
+}
+
 impl PeriodRadiation {
     /// Gathers `instants`.
     ///
@@ -222,7 +238,7 @@ impl PeriodRadiation {
             Grouping::Whole => 1,
             Grouping::Months => MONTHS,
         };
-        let mut cells: BTreeMap<(u32, u32), BTreeMap<usize, SunShare>> = BTreeMap::new();
+        let mut cells = SunCells::new();
         let mut evenly = vec![Evenly::default(); group_count];
         let mut patches = vec![0.0; sky.directions.len() * group_count];
         let mut of_instant = Vec::new();
@@ -263,14 +279,7 @@ impl PeriodRadiation {
                 }
             }
         }
-        let mut sun_directions = Vec::with_capacity(cells.len());
-        let mut sun = Vec::new();
-        for groups in cells.values() {
-            let sum = |axis: usize| groups.values().map(|share| share.beam[axis] + share.around[axis]).sum::<f64>();
-            let Some(direction) = unit([0, 1, 2].map(sum)) else { continue };
-            sun.extend(groups.values().map(|share| SunShare { direction: sun_directions.len(), ..*share }));
-            sun_directions.push(direction);
-        }
+        let (sun_directions, sun) = in_rows(&cells);
         report.sun_direction_count = sun_directions.len();
         Ok(Self { params: *params, sky, sun_directions, sun, evenly, patches, report })
     }

@@ -14,16 +14,7 @@ use belvedere::model::{BallParams, ModelParams, ModelParts, OrientedSurvey, Scen
 
 pub(crate) fn run(arguments: &BallsArguments, global: &Global) -> Result<Summary> {
     let is_folder = is_folder(&arguments.output);
-    if !is_folder && (arguments.nan || arguments.simplify.is_some()) {
-        return Err(
-            Usage("--nan and --simplify write into a folder: give -o a name without extension".to_owned()).into()
-        );
-    }
-    if is_folder {
-        check_parent(&arguments.output)?;
-    } else {
-        check_output("-o", &arguments.output, &["npz", "ply", "laz", "las"])?;
-    }
+    check(arguments, is_folder)?;
     let method = match (is_folder, arguments.side) {
         (true, _) => MethodChoice::Angles,
         (false, SideChoice::Interior) => MethodChoice::Carved,
@@ -72,6 +63,20 @@ pub(crate) fn run(arguments: &BallsArguments, global: &Global) -> Result<Summary
         .headline("thinning keeps <thinning_kept_percent> % of the points");
     run.summary.add("written", arguments.output.display().to_string());
     Ok(run.finish())
+}
+
+/// Refuses what cannot be written to the output, before any point is read.
+fn check(arguments: &BallsArguments, is_folder: bool) -> Result<()> {
+    if is_folder {
+        check_parent(&arguments.output)?;
+        return Ok(());
+    }
+    if arguments.nan || arguments.simplify.is_some() {
+        let what = "--nan and --simplify write into a folder: give -o a name without extension";
+        return Err(Usage(what.to_owned()).into());
+    }
+    check_output("-o", &arguments.output, &["npz", "ply", "laz", "las"])?;
+    Ok(())
 }
 
 /// The scene model, as it is saved.

@@ -81,34 +81,34 @@ pub(crate) fn run(arguments: &Demo, global: &Global) -> Result<Summary> {
 
     run.stage("writing pictures", 0, |_| write_pictures(folder, &cloud, balls, &map, &answers, (low, high)))?;
     run.stage("writing results", 0, |_| -> Result<()> {
-        let codes: Vec<u8> = answers.iter().map(|&answer| answer as u8).collect();
-        let column = ExtraColumn {
-            name: "answer",
-            description: "0 blocked 1 visible 3 outside",
-            values: ExtraValues::U8(&codes),
-        };
-        write_cloud(&folder.join("town_lit.laz"), &cloud, &[column])?;
-        write_tif_f32(
-            &folder.join("seen_from_the_sun.tif"),
-            &map.depth,
-            None,
-            None,
-            Some("depth in metres from the sun"),
-        )?;
-        write_balls(&folder.join("balls.npz"), model.parts())?;
-        Ok(())
+        write_lit(&folder.join("town_lit.laz"), &cloud, &answers)?;
+        let description = Some("depth in metres from the sun");
+        write_tif_f32(&folder.join("seen_from_the_sun.tif"), &map.depth, None, None, description)?;
+        Ok(write_balls(&folder.join("balls.npz"), model.parts())?)
     })?;
     let mut summary = run.finish();
-    let report = serde_json::Value::from(summary.clone());
-    atomic::write(&folder.join("numbers.json"), |file| {
-        writeln!(file, "{report:#}").map_err(belvedere::Error::io(&folder.join("numbers.json")))
-    })?;
+    write_summary(&folder.join("numbers.json"), &summary)?;
     summary
         .headline("A simulated town of <points> points from <town.pulses> pulses, with all results in its folder")
         .headline("in shadow, with the sun in the south-west at 30 degrees: <points_in_shadow_percent> % of the points")
         .headline("errors by the exact mesh, for pedestrians: <errors_by_ground_truth.pedestrians.false_blocked_percent> % falsely blocked, <errors_by_ground_truth.pedestrians.false_visible_percent> % falsely visible");
     summary.add("open", folder.join("shadows.png").display().to_string());
     Ok(summary)
+}
+
+fn write_summary(path: &Path, summary: &Summary) -> Result<()> {
+    let report = serde_json::Value::from(summary.clone());
+    atomic::write(path, |file| writeln!(file, "{report:#}").map_err(belvedere::Error::io(path)))?;
+    Ok(())
+}
+
+/// The points with what the sun does to them.
+fn write_lit(path: &Path, cloud: &PointCloud, answers: &[Answer]) -> Result<()> {
+    let codes: Vec<u8> = answers.iter().map(|&answer| answer as u8).collect();
+    let column =
+        ExtraColumn { name: "answer", description: "0 blocked 1 visible 3 outside", values: ExtraValues::U8(&codes) };
+    write_cloud(path, cloud, &[column])?;
+    Ok(())
 }
 
 fn town_section(scene: &TriangleScene, scan: &Scan) -> Summary {

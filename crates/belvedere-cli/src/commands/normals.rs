@@ -6,9 +6,11 @@ use crate::pipeline::{self, params};
 use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::Result;
+use belvedere::PointCloud;
 use belvedere::io::{ExtraColumn, ExtraValues, MasbcppFolder, WriteReport, write_cloud, write_masbcpp};
 use belvedere::medial::ShrinkParams;
 use belvedere::model::{BallParams, OrientedSurvey};
+use std::path::Path;
 
 pub(crate) fn run(arguments: &NormalsArguments, global: &Global) -> Result<Summary> {
     let output = &arguments.output;
@@ -51,19 +53,7 @@ pub(crate) fn run(arguments: &NormalsArguments, global: &Global) -> Result<Summa
             write_masbcpp(output, &folder)?;
             return Ok(WriteReport::default());
         }
-        let mut kept = if survey.kept.len() == cloud.len() { cloud.clone() } else { cloud.select(&survey.kept) };
-        kept.attributes.normals = None;
-        let normals = NormalColumns::new(oriented.normals());
-        let [x, y, z] = normals.columns(output);
-        let column = |name, description, values| ExtraColumn { name, description, values: ExtraValues::F32(values) };
-        let columns = [
-            x,
-            y,
-            z,
-            column("quality", "how well the line is known", oriented.quality()),
-            column("confidence", "how sure the sign is", oriented.confidence()),
-        ];
-        Ok(write_cloud(output, &kept, &columns)?)
+        write_points(output, &cloud, &survey)
     })?;
     run.summary.add_writing(&report);
     run.summary
@@ -71,4 +61,22 @@ pub(crate) fn run(arguments: &NormalsArguments, global: &Global) -> Result<Summa
         .headline("uncertain sign: <normals.low_confidence_percent> % of the points");
     run.summary.add("written", output.display().to_string());
     Ok(run.finish())
+}
+
+/// The points that cleaning kept, with their normals and how well these are known.
+fn write_points(output: &Path, cloud: &PointCloud, survey: &OrientedSurvey) -> Result<WriteReport> {
+    let mut kept = if survey.kept.len() == cloud.len() { cloud.clone() } else { cloud.select(&survey.kept) };
+    kept.attributes.normals = None;
+    let oriented = &survey.oriented;
+    let normals = NormalColumns::new(oriented.normals());
+    let [x, y, z] = normals.columns(output);
+    let column = |name, description, values| ExtraColumn { name, description, values: ExtraValues::F32(values) };
+    let columns = [
+        x,
+        y,
+        z,
+        column("quality", "how well the line is known", oriented.quality()),
+        column("confidence", "how sure the sign is", oriented.confidence()),
+    ];
+    Ok(write_cloud(output, &kept, &columns)?)
 }

@@ -71,9 +71,15 @@ pub fn carve(
         control.advance(carved.len());
         Ok(())
     })?;
+    Ok(settle(balls, oriented, &carved, caps))
+}
+
+/// Gives each ball the radius that its pulses leave of it, which `carved` holds where a pulse comes near, within `caps`.
+fn settle(balls: &mut MedialBalls, oriented: &OrientedCloud, carved: &[Option<f32>], caps: &RadiusCaps) -> CarveReport {
+    let (positions, normals) = (oriented.positions(), oriented.normals());
     let mut report = CarveReport::default();
-    for (row, carved) in carved.into_iter().enumerate() {
-        if let Some(radius) = carved.filter(|_| is_centred(row)) {
+    for (row, &carved) in carved.iter().enumerate() {
+        if let Some(radius) = carved.filter(|_| caps.is_centred.get(row) == Some(&true)) {
             (balls.centers[row], balls.radii[row]) = (positions[row], radius);
             balls.separation_angles[row] = f32::NAN;
             // what the pulses leave nothing of blocks nothing
@@ -109,5 +115,5 @@ pub fn carve(
             balls.touch[row] = LIMIT_TOUCH;
         }
     }
-    Ok(report)
+    report
 }

@@ -52,20 +52,19 @@ fn of_survey(
     control: &Control<'_>,
 ) -> Result<(SceneModel, BuildReport)> {
     let (mut balls, transmission);
-    let statistics = params.statistics.as_deref();
     let settled = match params.balls {
         BallParams::CarvedIfPossible(carved, _) if survey.carving.is_some() => BallParams::Carved(carved),
         BallParams::CarvedIfPossible(_, shrunk) => BallParams::Shrunk(shrunk),
         settled => settled,
     };
     match (&settled, &survey.carving) {
-        (BallParams::Carved(params), Some(input)) => {
+        (BallParams::Carved(carved), Some(input)) => {
             let (attributes, free_segments, pulses) = (&input.attributes, &input.free_segments, input.pulses.as_ref());
             let (oriented, measured, index) = (&survey.oriented, &survey.measured[..], &survey.index);
-            let statistics = statistics.map(|statistics| &statistics.whole);
+            let statistics = params.statistics.as_deref().map(|statistics| &statistics.whole);
             let input = CarvedInput { oriented, measured, index, attributes, free_segments, pulses, statistics };
             let found;
-            CarvedBalls { balls, transmission, report: found } = carved_balls(&input, params, control)?;
+            CarvedBalls { balls, transmission, report: found } = carved_balls(&input, carved, control)?;
             report.interior_balls = Some(BallsReport::Carved(found));
         }
         (BallParams::Shrunk(params), _) => {
@@ -77,11 +76,8 @@ fn of_survey(
             report.interior_balls = Some(found);
         }
         _ => {
-            return Err(Error::MissingAttribute {
-                attribute: "pulses that can carve",
-                needed_for: "carving",
-                advice: "build balls from the points only",
-            });
+            let (attribute, advice) = ("pulses that can carve", "build balls from the points only");
+            return Err(Error::MissingAttribute { attribute, needed_for: "carving", advice });
         }
     }
     let vegetation = match &survey.classification {
@@ -95,17 +91,18 @@ fn of_survey(
         ("method".to_owned(), settled.name().to_owned()),
         ("parameters".to_owned(), format!("{settled:?}")),
     ]);
-    let mut tree = None;
     // pulses at the edge of a part lack the balls beyond
-    let checked = report.pulses.as_mut().filter(|_| statistics.is_none());
-    if let (BallParams::Carved(_), Some(input), Some(pulses)) = (&settled, &survey.carving, checked) {
-        let own = control.stage("indexing balls", balls.len(), || BallTree::new(&balls, &BlockRule::carved()))?;
-        let free_segments = &input.free_segments;
-        pulses.blocked = Some(
-            control.stage("checking pulses", free_segments.len(), || blocked_pulses(&own, free_segments, control))?,
-        );
-        tree = Some(own);
-    }
+    let checked = report.pulses.as_mut().filter(|_| params.statistics.is_none());
+    let tree = match (&settled, &survey.carving, checked) {
+        (BallParams::Carved(_), Some(input), Some(pulses)) => {
+            let tree = control.stage("indexing balls", balls.len(), || BallTree::new(&balls, &BlockRule::carved()))?;
+            let free = &input.free_segments;
+            pulses.blocked =
+                Some(control.stage("checking pulses", free.len(), || blocked_pulses(&tree, free, control))?);
+            Some(tree)
+        }
+        _ => None,
+    };
     let parts = ModelParts { frame, bounds: survey.bounds, balls, transmission, pulses: survey.pulses(), provenance };
     Ok((SceneModel { parts, vegetation, tree, ..SceneModel::default() }, report))
 }

@@ -139,24 +139,17 @@ pub(super) fn prepare(
     let classification = cloud.attributes.classification.clone();
     if let Cow::Owned(owned) = &mut cloud {
         // only orientation needs attributes from here on, and they take more memory than the positions
-        let attributes = std::mem::take(&mut owned.attributes);
-        owned.attributes = Attributes {
-            normals: attributes.normals,
-            scanner_index: attributes.scanner_index,
-            gps_time: attributes.gps_time.filter(|_| matches!(params.orient, OrientBy::Trajectory(_))),
-            gps_time_kind: attributes.gps_time_kind,
-            ..Attributes::default()
-        };
+        owned.attributes = for_orientation(std::mem::take(&mut owned.attributes), params);
     }
     let index = control.stage("indexing points", cloud.len(), || NeighborIndex::new(&cloud.positions, control))?;
     let by = orientation(&cloud, params, &scanner, wants_scanner, carving.is_some());
     let is_from_the_ground = carving.as_ref().is_some_and(|input| input.free_segments.are_from_the_ground());
     let mut noise = statistics.and_then(|statistics| statistics.noise);
+    let (points, size) = (&cloud.positions, params.neighborhood);
     let (normals, scatter) = match by {
         Orientation::Given => (Normals::default(), Scatter::default()),
         _ if is_from_the_ground => control.stage("estimating normals", cloud.len(), || {
-            let found =
-                CloseRange::estimate(&cloud.positions, &index, &scanner.positions, params.neighborhood, control)?;
+            let found = CloseRange::estimate(points, &index, &scanner.positions, size, control)?;
             noise = found.noise;
             Ok((found.normals, found.scatter))
         })?,
@@ -164,7 +157,7 @@ pub(super) fn prepare(
             // points that nothing carves may be in any unit
             let is_flown = statistics.is_some() || carving.is_some();
             let farthest = if is_flown { FARTHEST_NEIGHBOR } else { f32::INFINITY };
-            estimate_within(&cloud.positions, &index, params.neighborhood, farthest, control)
+            estimate_within(points, &index, size, farthest, control)
         })?,
     };
     let scatter = (carving.is_some() && params.balls.smooths() && !scatter.roughness.is_empty()).then_some(scatter);
@@ -187,6 +180,17 @@ pub(super) fn prepare(
     }
     let bounds = cloud.bounds().ok_or_else(|| Error::NoPoints { what: "none was read".to_owned() })?;
     Ok((OrientedSurvey { oriented, index, kept, bounds, measured, classification, carving }, report))
+}
+
+/// The attributes that [`orient()`] reads.
+fn for_orientation(attributes: Attributes, params: &ModelParams) -> Attributes {
+    Attributes {
+        normals: attributes.normals,
+        scanner_index: attributes.scanner_index,
+        gps_time: attributes.gps_time.filter(|_| matches!(params.orient, OrientBy::Trajectory(_))),
+        gps_time_kind: attributes.gps_time_kind,
+        ..Attributes::default()
+    }
 }
 
 impl CarvingInput {

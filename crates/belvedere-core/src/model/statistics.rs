@@ -76,17 +76,20 @@ impl SurveyStatistics {
         params: &ModelParams,
         control: &Control<'_>,
     ) -> Result<Self> {
-        if !matches!(params.orient, OrientBy::Auto | OrientBy::Up | OrientBy::Pulses) {
-            let value = "a scanner, a trajectory or a mesh that is given".to_owned();
-            let expected = "auto, pulses or up where a survey is built in parts";
-            return Err(Error::InvalidParameter { parameter: Parameter::Orientation, value, expected });
-        }
-        let means = if matches!(params.orient, OrientBy::Pulses) { Means::Pulses } else { Means::Automatic };
+        let means = match params.orient {
+            OrientBy::Pulses => Means::Pulses,
+            OrientBy::Auto | OrientBy::Up => Means::Automatic,
+            _ => {
+                let value = "a scanner, a trajectory or a mesh that is given".to_owned();
+                let expected = "auto, pulses or up where a survey is built in parts";
+                return Err(Error::InvalidParameter { parameter: Parameter::Orientation, value, expected });
+            }
+        };
         let (positions, report) = control.stage("estimating scanner positions", along_lines.len(), || {
             locate(along_lines, &means, &params.locate, control)
         })?;
-        let pairs = along_lines.positions.iter().zip(&positions);
-        let max_lean = if report.paths.is_empty() { 0.0 } else { pairs.filter_map(lean).fold(0.0, f64::max) };
+        let leans = along_lines.positions.iter().zip(&positions).filter_map(lean);
+        let max_lean = if report.paths.is_empty() { 0.0 } else { leans.fold(0.0, f64::max) };
         let mut statistics = Self {
             paths: report.paths,
             max_lean: LEAN_ROOM * max_lean,
@@ -103,15 +106,12 @@ impl SurveyStatistics {
         };
         // what the model of these places estimates for itself
         let cloud = places.clone();
-        let free = params.clone().with_orient(OrientBy::ScannerOfEachPoint(statistics.scanner(&cloud, control)?));
-        let free = if statistics.paths.is_empty() { params.clone() } else { free };
+        let scanner = OrientBy::ScannerOfEachPoint(statistics.scanner(&cloud, control)?);
+        let free = if statistics.paths.is_empty() { params.clone() } else { params.clone().with_orient(scanner) };
         let (survey, report) = prepare(Cow::Owned(cloud), &free, control)?;
         statistics.isolation_radius = report.removed_by_cleaning.isolation_radius;
         statistics.noise = report.smoothing.map(|smoothing| smoothing.noise);
-        let Some(input) = &survey.carving else {
-            statistics.carves = false;
-            return Ok(statistics);
-        };
+        let Some(input) = &survey.carving else { return Ok(Self { carves: false, ..statistics }) };
         if input.free_segments.are_from_the_ground() {
             return Err(Error::malformed(
                 name,
@@ -121,12 +121,8 @@ impl SurveyStatistics {
         }
         statistics.measures_crowns = input.pulses.is_some();
         if let BallParams::Carved(carved) | BallParams::CarvedIfPossible(carved, _) = &params.balls {
-            let whole = statistics.crowns(&survey, carved, control)?;
-            statistics.whole = RuleStatistics {
-                transmission: whole.transmission,
-                crown_spacing: whole.crown_spacing,
-                ..statistics.whole
-            };
+            let RuleStatistics { transmission, crown_spacing, .. } = statistics.crowns(&survey, carved, control)?;
+            statistics.whole = RuleStatistics { transmission, crown_spacing, ..statistics.whole };
         }
         Ok(statistics)
     }

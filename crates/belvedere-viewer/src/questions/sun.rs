@@ -47,12 +47,7 @@ pub(super) fn answer(question: &SunRequest, context: &RequestContext<'_>) -> Res
         ask::ask(&scene.inner, &question, &Places::Targets(Arc::clone(&targets)), control)
     };
     let of_day = hours_on(date)?;
-    let first = |answers: &Answers<OnTargets>, name: &str| {
-        let measure = answers.measures.iter().find(|measure| measure.name == name);
-        measure.and_then(|measure| measure.values.first()).map_or(Value::Null, |&v| number(f64::from(v), 3))
-    };
     let steps_on = |date: Date| sun_days(&site, &zone, &Period::Days(vec![date]), &DayParams::default());
-    let possible = |days: &[SunDay]| days.iter().map(SunDay::possible_hours).sum::<f64>();
     let day = steps_on(date)?;
     let months: Result<Vec<Value>, Refusal> = (1..=12)
         .map(|month| {
@@ -66,8 +61,8 @@ pub(super) fn answer(question: &SunRequest, context: &RequestContext<'_>) -> Res
             }))
         })
         .collect();
-    let skyline =
-        horizons(&blockers, &[place], &HorizonParams::default().with_turn(scene.grid_north(Some(place))), control)?;
+    let skyline = HorizonParams::default().with_turn(scene.grid_north(Some(place)));
+    let skyline = horizons(&blockers, &[place], &skyline, control)?;
     let horizon: Vec<Value> = skyline.iter().flatten().map(|point| number(point.elevation.to_degrees(), 3)).collect();
     let lit = lit(&blockers, &targets, &day);
     let path: Vec<Value> = day.iter().flat_map(|day| path(&site, day)).collect();
@@ -91,6 +86,17 @@ pub(super) fn answer(question: &SunRequest, context: &RequestContext<'_>) -> Res
         "command": command_at(context, question.place, "sun-hours", &flags),
     });
     Ok(QuestionReply::of(head))
+}
+
+/// The measure `name` of the first target.
+fn first(answers: &Answers<OnTargets>, name: &str) -> Value {
+    let measure = answers.measures.iter().find(|measure| measure.name == name);
+    measure.and_then(|measure| measure.values.first()).map_or(Value::Null, |&v| number(f64::from(v), 3))
+}
+
+/// Hours of sun over a free horizon.
+fn possible(days: &[SunDay]) -> f64 {
+    days.iter().map(SunDay::possible_hours).sum()
 }
 
 /// The place as the only target.

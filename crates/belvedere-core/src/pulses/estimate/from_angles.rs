@@ -160,19 +160,7 @@ fn estimate(part: &[AngleSample], pairs: &[Direction], params: &ScanAngleParams)
         });
         result.contradiction = median(apart.collect());
     }
-    let [slowest, fastest] = params.speeds;
-    let is_plausible = (slowest..=fastest).contains(&length(fit.velocity)) && fit.height >= params.min_height;
-    result.verdict = if fit.misses.iter().any(|miss| *miss > params.greatest_miss) || fit.crab > params.greatest_crab {
-        AngleVerdict::NotAcross
-    } else if fit.bend.abs() > params.greatest_bend || !(fit.bend_sd < params.greatest_bend) {
-        AngleVerdict::Bent
-    } else if !is_plausible {
-        AngleVerdict::Implausible
-    } else if result.contradiction > params.greatest_contradiction {
-        AngleVerdict::Contradicted
-    } else {
-        AngleVerdict::Accepted
-    };
+    result.verdict = fit.verdict(result.contradiction, params);
     let path = (result.verdict == AngleVerdict::Accepted).then(|| {
         // misses of a whole line share their cause, so that their number makes nothing surer
         let aside = fit.height * fit.misses[0].max(fit.misses[1]);
@@ -203,36 +191,59 @@ struct ScanLineFit {
     bend_sd: f64,
 }
 
+/// The coefficients of x and of y (at `middle`, a second, a tangent of the scan angle) and the height above the mean
+/// height `ground` of the points, by least squares.
+fn path_and_height(samples: &[AngleSample], middle: f64, ground: f64) -> Option<([Vector3<f64>; 2], f64)> {
+    let mut height = f64::INFINITY;
+    let mut columns = [Vector3::zeros(); 2];
+    for _ in 0..ROUNDS {
+        // the tangent counts for more where the ground is lower
+        let row = |s: &AngleSample| {
+            let lower = 1.0 - (s.place[2] - ground) / height;
+            Vector3::new(1.0, s.time - middle, s.tangent * lower)
+        };
+        let (mut normal, mut right) = (Matrix3::zeros(), [Vector3::zeros(); 2]);
+        for sample in samples {
+            let row = row(sample);
+            normal += row * row.transpose();
+            right[0] += row * sample.place[0];
+            right[1] += row * sample.place[1];
+        }
+        let factors = normal.cholesky()?;
+        columns = right.map(|right| factors.solve(&right));
+        height = columns[0][2].hypot(columns[1][2]);
+        if !(height.is_finite() && height > 1.0) {
+            return None;
+        }
+    }
+    Some((columns, height))
+}
+
 impl ScanLineFit {
+    /// What to make of the fit, where pulses with several returns contradict it by an angle of `contradiction`.
+    fn verdict(&self, contradiction: f64, params: &ScanAngleParams) -> AngleVerdict {
+        let [slowest, fastest] = params.speeds;
+        let is_plausible = (slowest..=fastest).contains(&length(self.velocity)) && self.height >= params.min_height;
+        if self.misses.iter().any(|miss| *miss > params.greatest_miss) || self.crab > params.greatest_crab {
+            AngleVerdict::NotAcross
+        } else if self.bend.abs() > params.greatest_bend || !(self.bend_sd < params.greatest_bend) {
+            AngleVerdict::Bent
+        } else if !is_plausible {
+            AngleVerdict::Implausible
+        } else if contradiction > params.greatest_contradiction {
+            AngleVerdict::Contradicted
+        } else {
+            AngleVerdict::Accepted
+        }
+    }
+
     fn of(samples: &[AngleSample], middle: f64) -> Option<Self> {
         let count = samples.len() as f64;
         let mean = |value: &dyn Fn(&AngleSample) -> f64| samples.iter().map(value).sum::<f64>() / count;
         let ground = mean(&|s| s.place[2]);
         let mean_tangent = mean(&|s| s.tangent);
         let angle_spread = mean(&|s| (s.tangent - mean_tangent).powi(2)).sqrt().atan();
-        let mut height = f64::INFINITY;
-        let mut columns = [Vector3::zeros(); 2];
-        for _ in 0..ROUNDS {
-            // the tangent counts for more where the ground is lower
-            let row = |s: &AngleSample| {
-                let lower = 1.0 - (s.place[2] - ground) / height;
-                Vector3::new(1.0, s.time - middle, s.tangent * lower)
-            };
-            let (mut normal, mut right) = (Matrix3::zeros(), [Vector3::zeros(); 2]);
-            for sample in samples {
-                let row = row(sample);
-                normal += row * row.transpose();
-                right[0] += row * sample.place[0];
-                right[1] += row * sample.place[1];
-            }
-            let factors = normal.cholesky()?;
-            columns = right.map(|right| factors.solve(&right));
-            height = columns[0][2].hypot(columns[1][2]);
-            if !(height.is_finite() && height > 1.0) {
-                return None;
-            }
-        }
-        let [x, y] = columns;
+        let ([x, y], height) = path_and_height(samples, middle, ground)?;
         let speed = x[1].hypot(y[1]);
         let forward = [x[1] / speed, y[1] / speed];
         let right = [forward[1], -forward[0]];
