@@ -1,20 +1,14 @@
 //! Bounds of depth that hold for every point of a pixel, not only for its centre.
 
+use super::ball_bound::{BallBound, BoundSide};
 use super::central::{self, Central};
-use super::depth_map::ItemBuffer;
 use super::parallel::{self, Parallel};
-use super::tiles;
+use super::tiles::{self, ItemBuffer};
 use crate::blocking::{Ball, BlockRule};
 use belvedere_data::control::Control;
 use belvedere_data::raster::Raster;
 use belvedere_data::view::{Projection, View};
 use belvedere_data::{Error, Parameter, Result};
-
-/// Rounding of f32 as a share of the coordinates it works on: 32 units of 2⁻²³. Positions in the view, directions of
-/// pixels and products of both err by fewer than 16 of them together.
-const ROUNDING: f64 = 4e-6;
-/// Rounding of f32 near the origin of the view, metres.
-const MIN_ROUNDING: f64 = 1e-6;
 
 /// What bounds of depth are to allow for.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -103,60 +97,4 @@ pub fn depth_bounds(balls: &[Ball], view: &View, params: &BoundsParams, control:
     let bounds = lower.values().iter().zip(upper.values()).map(|(&lower, &upper)| [lower, upper]).collect();
     let [width, height] = view.size_px;
     Ok(DepthBounds { view: *view, bounds: Raster::from_values(width, height, bounds)? })
-}
-
-/// Which of both bounds is drawn.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum BoundSide {
-    Lower,
-    Upper,
-}
-
-/// How a ball counts for a bound.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct BallBound {
-    pub(super) side: BoundSide,
-    rule: BlockRule,
-    /// Where lines of sight end on the viewer's side, the nearest and the farthest of them, metres.
-    start: [f64; 2],
-}
-
-impl BallBound {
-    /// The radius to draw a ball with, `None` where it does not count. `size` is at least the largest of its
-    /// coordinates, metres; `fronts` the least and the most depth of its front; nothing smaller than `min_cover` covers
-    /// a pixel at its distance.
-    #[expect(clippy::cast_possible_truncation, reason = "rounded outward on purpose")]
-    pub(super) fn radius(&self, radius: f32, size: f64, [min, max]: [f64; 2], min_cover: f64) -> Option<f32> {
-        let radius = f64::from(radius);
-        let margin = margin(size, radius);
-        match self.side {
-            BoundSide::Lower => (max + margin > self.start[0]).then(|| ((radius + margin) as f32).next_up()),
-            BoundSide::Upper => {
-                // twice, since giving way halves what is left of one
-                let drawn = radius - 2.0 * margin;
-                (drawn > min_cover && min - margin > self.start[1]).then(|| (drawn as f32).next_down())
-            }
-        }
-    }
-}
-
-impl BallBound {
-    /// The radius that is left of a ball drawn with `radius` for any target, however near to its surface.
-    #[inline(always)]
-    pub(super) fn min_radius(&self, radius: f32) -> f32 {
-        self.rule.min_radius_f32(radius)
-    }
-
-    /// A depth behind which every target lies farther than the shell from a ball drawn with `radius` around `center`
-    /// deep, so that it counts with all of its radius.
-    #[inline(always)]
-    #[expect(clippy::cast_possible_truncation, reason = "a length")]
-    pub(super) fn behind(&self, center: f32, radius: f32, margin: f32) -> f32 {
-        center + radius + self.rule.shell as f32 + 4.0 * margin
-    }
-}
-
-/// By how much a ball is drawn too large or too small, metres.
-pub(super) fn margin(size: f64, radius: f64) -> f64 {
-    ROUNDING * (size + radius) + MIN_ROUNDING
 }

@@ -3,7 +3,7 @@
 //! Only the angle between that direction and the direction of the ball's centre matters, so one test is enough for
 //! every projection; only the directions of the pixels and the outline of a ball differ.
 
-use super::bounds::{BallBound, BoundSide, margin};
+use super::ball_bound::{BallBound, BoundSide, margin};
 use super::outline::{ALL, outline};
 use super::tiles::{BLOCK, SplatSurface, TILE};
 use belvedere_data::vector::{cross, length};

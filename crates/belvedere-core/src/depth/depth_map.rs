@@ -2,7 +2,7 @@
 
 use super::central::{self, Central};
 use super::parallel::{self, Parallel};
-use super::tiles;
+use super::tiles::{self, ItemBuffer};
 use crate::blocking::{Ball, Profile, SLOPE, SURFACE_DEVIATION, holds_at};
 use crate::medial::{MedialBalls, NO_TOUCH};
 use belvedere_data::control::Control;
@@ -10,19 +10,6 @@ use belvedere_data::raster::Raster;
 use belvedere_data::view::{Projection, View};
 use belvedere_data::{Error, Parameter, Result};
 use rayon::prelude::*;
-
-/// Value of the item buffer where no ball is hit.
-pub const NO_BALL: u32 = u32::MAX;
-
-/// Whether a depth map also says which ball each pixel shows.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum ItemBuffer {
-    /// Depths only.
-    #[default]
-    Without,
-    /// The ball of each pixel beside its depth.
-    With,
-}
 
 /// Depth along each pixel of a view.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,7 +21,7 @@ pub struct DepthMap {
     /// Depth in metres: along the view's forward vector, from its picture plane or its eye, and straight from the eye
     /// for [`Projection::Hemispherical`]; +∞ where nothing is hit.
     pub depth: Raster<f32>,
-    /// Row of the ball each pixel shows, [`NO_BALL`] where nothing is hit; of equally near balls the one with the
+    /// Row of the ball each pixel shows, [`NO_BALL`](super::NO_BALL) where nothing is hit; of equally near balls the one with the
     /// lowest row. Only where requested.
     pub balls: Option<Raster<u32>>,
     /// Balls that hold the eye of a view: left out, so that a wrong ball does not blind it.

@@ -1,6 +1,7 @@
 //! Depth all around an eye, as a picture that people read: azimuth across, elevation down.
 
-use super::depth_map::{DepthMap, ItemBuffer, NO_BALL, depth_map};
+use super::depth_map::{DepthMap, depth_map};
+use super::tiles::{ItemBuffer, NO_BALL};
 use crate::blocking::Profile;
 use crate::medial::MedialBalls;
 use belvedere_data::Result;

@@ -1,6 +1,6 @@
 //! Balls in parallel views: where a ball lies on the picture plane and how deep its surface is at a pixel.
 
-use super::bounds::{BallBound, BoundSide, margin};
+use super::ball_bound::{BallBound, BoundSide, margin};
 use super::tiles::{BLOCK, SplatSurface};
 use belvedere_data::view::View;
 

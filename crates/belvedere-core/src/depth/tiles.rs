@@ -5,12 +5,24 @@
 //! farthest depth, and a ball skips those it cannot come nearer in. Large balls (a 30 m ball covers thousands of
 //! pixels) thus cost what is seen of them.
 
-use super::depth_map::{ItemBuffer, NO_BALL};
 use crate::blocking::Ball;
 use belvedere_data::Result;
 use belvedere_data::control::Control;
 use belvedere_data::raster::Raster;
 use rayon::prelude::*;
+
+/// Value of the item buffer where no ball is hit.
+pub const NO_BALL: u32 = u32::MAX;
+
+/// Whether a depth map also says which ball each pixel shows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum ItemBuffer {
+    /// Depths only.
+    #[default]
+    Without,
+    /// The ball of each pixel beside its depth.
+    With,
+}
 
 /// Side of a tile in pixels: its depths fill half a first-level cache.
 pub(super) const TILE: usize = 64;

@@ -2,38 +2,18 @@
 
 use super::carve::{CarveReport, carve};
 use super::close_range::CloseRangeBalls;
+use super::crowns;
+use super::marking_rule::{MarkingRule, Phase};
 use super::marks::{self, RadiusCaps};
-use super::rules::{CarvedParams, MarkingRule, Phase};
+use super::rules::CarvedParams;
 use super::shrinking_ball::{ShrinkReport, shrink};
-use super::survey::{RuleStatistics, Survey};
-use crate::neighbors::NeighborIndex;
-use crate::normals::OrientedCloud;
-use crate::pulses::{FreeSegments, Pulses};
+use super::survey::{CarvedInput, RuleStatistics, Survey};
+use super::vegetation::find_vegetation;
+use belvedere_data::Result;
 use belvedere_data::balls::{MedialBalls, Side};
 use belvedere_data::control::Control;
-use belvedere_data::{Attributes, Result};
 use serde::Serialize;
 use std::collections::BTreeMap;
-
-/// What carved balls are made from. All columns have a row for each point.
-#[derive(Clone, Copy)]
-pub struct CarvedInput<'a> {
-    /// Points and outward normals.
-    pub oriented: &'a OrientedCloud,
-    /// The points before they were moved onto their surface, (N, 3) local metres: they decide which block of 64 m a
-    /// point belongs to.
-    pub measured: &'a [[f32; 3]],
-    /// Index of the same points.
-    pub index: &'a NeighborIndex,
-    /// Class, return number and return count are used where present.
-    pub attributes: &'a Attributes,
-    /// What the pulses prove empty.
-    pub free_segments: &'a FreeSegments,
-    /// Which returns share a pulse, rows as in the cloud; without it no crown is measured.
-    pub pulses: Option<&'a Pulses>,
-    /// Statistics of the survey that the points are a part of; `None` where they are the whole.
-    pub statistics: Option<&'a RuleStatistics>,
-}
 
 /// What became of the balls in [`carved_balls`].
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
@@ -86,7 +66,7 @@ pub fn carved_balls(input: &CarvedInput<'_>, params: &CarvedParams, control: &Co
             let report = CarvedReport { shrinking, carving, rules };
             Ok(CarvedBalls { balls: balls.shrunk(), transmission: Vec::new(), report })
         }
-        None => carve_survey(Survey::new(input, params, control)?, &params.rules(), params, control),
+        None => carve_survey(survey(input, params, control)?, &params.rules(), params, control),
     }
 }
 
@@ -99,7 +79,32 @@ pub(crate) fn rule_statistics(
     params: &CarvedParams,
     control: &Control<'_>,
 ) -> Result<RuleStatistics> {
-    Ok(Survey::new(input, params, control)?.statistics)
+    Ok(survey(input, params, control)?.statistics)
+}
+
+/// The survey of `input`, with vegetation found and crowns measured as `params` want it.
+///
+/// # Errors
+/// [`Error::InvalidParameter`](belvedere_data::Error::InvalidParameter) for parameters of vegetation out of range,
+/// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
+fn survey<'a>(input: &CarvedInput<'a>, params: &CarvedParams, control: &Control<'_>) -> Result<Survey<'a>> {
+    let CarvedInput { oriented, index, attributes, pulses, statistics, .. } = *input;
+    let mut survey = Survey::of(input);
+    // where classes tell vegetation, its shape need not
+    if let Some(vegetation) = params.vegetation.as_ref().filter(|_| !survey.statistics.has_vegetation) {
+        survey.found_vegetation = control.stage("finding vegetation", oriented.len(), || {
+            find_vegetation(&mut survey.kinds, oriented, index, attributes, vegetation, control)
+        })?;
+    }
+    if let Some(params) = &params.crowns {
+        control.stage("measuring crowns", 0, || {
+            if let Some(pulses) = pulses {
+                crowns::measure_transmission(&mut survey, pulses, params, statistics, control)?;
+            }
+            crowns::measure_spacing(&mut survey, params, statistics, control)
+        })?;
+    }
+    Ok(survey)
 }
 
 /// Applies `rules` to a survey: caps before the pulses carve, cuts after, fills at the end.
@@ -121,7 +126,7 @@ fn carve_survey(
     for (rule, stage) in in_phase(Phase::Points) {
         let none = MedialBalls::default();
         let marks = control.stage(stage, oriented.len(), || rule.marks(&survey, &none, control))?;
-        survey.claim(&marks.caps);
+        survey.claim(marks.caps.iter().filter(|cap| cap.is_claimed).map(|cap| cap.row));
         caps.tighten(&marks.caps);
         report.rules.extend(marks.counts);
         fills.push((rule.fills_name(), marks.fills));
@@ -155,6 +160,7 @@ mod tests {
     use super::*;
     use crate::medial::marks::{Cap, Cut, Fill, FillPlace, Marks};
     use crate::medial::survey::tests::with_survey;
+    use crate::normals::OrientedCloud;
     use belvedere_data::balls::PULSE_TOUCH;
 
     /// A tenth rule: its file, whose line in `rules.rs` would add it to all others. It caps the first ball, cuts the

@@ -7,8 +7,8 @@
 
 use super::below_tripods::{FloorPlace, floors_below};
 use super::carve::CarveReport;
-use super::carved::CarvedInput;
 use super::shrinking_ball::{ShrinkMethod, ShrinkParams, ShrinkReport, shrink, spacing_at};
+use super::survey::CarvedInput;
 use crate::neighbors::Tangent;
 use crate::pulses::GAP_M;
 use belvedere_data::Result;

@@ -2,8 +2,8 @@
 
 use super::cells::{Cell, Cells, cell};
 use super::kinds::Kind;
+use super::marking_rule::{MarkingRule, Phase};
 use super::marks::{Cap, Fill, FillPlace, Marks};
-use super::rules::{MarkingRule, Phase};
 use super::survey::{RuleStatistics, Survey};
 use crate::pulses::Pulses;
 use belvedere_data::Result;

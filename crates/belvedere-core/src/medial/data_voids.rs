@@ -5,8 +5,8 @@
 //! neither a crown nor a roof.
 
 use super::cells::{Cell, Cells, cell};
+use super::marking_rule::{MarkingRule, Phase};
 use super::marks::{Cut, Marks, cuts_of};
-use super::rules::{MarkingRule, Phase};
 use super::spacing::spacing_of;
 use super::survey::Survey;
 use crate::normals::OrientedCloud;

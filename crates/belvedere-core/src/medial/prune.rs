@@ -1,7 +1,7 @@
 //! Fewer balls for the same surface.
 
+use super::marking_rule::{MarkingRule, Phase};
 use super::marks::{Cut, Marks, cut};
-use super::rules::{MarkingRule, Phase};
 use super::survey::{BLOCK, Survey};
 use crate::neighbors::NeighborIndex;
 use crate::normals::OrientedCloud;

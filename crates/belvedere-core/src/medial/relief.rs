@@ -5,8 +5,8 @@
 //! just below its points, where it is most certain to be solid.
 
 use super::chains::Chain;
+use super::marking_rule::{MarkingRule, Phase};
 use super::marks::Marks;
-use super::rules::{MarkingRule, Phase};
 use super::survey::Survey;
 use belvedere_data::Result;
 use belvedere_data::balls::MedialBalls;

@@ -6,9 +6,9 @@
 
 use super::cells::cell;
 use super::kinds::Kind;
+use super::marking_rule::{MarkingRule, Phase};
 use super::marks::{Marks, cuts_of};
 use super::roof_tops::RoofTops;
-use super::rules::{MarkingRule, Phase};
 use super::survey::Survey;
 use super::thin_surfaces::{Gap, widest_gap};
 use crate::neighbors::NeighborIndex;

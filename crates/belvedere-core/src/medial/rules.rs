@@ -4,49 +4,14 @@ use super::close_range::CloseRangeParams;
 use super::crowns::{CrownParams, Trees};
 use super::data_voids::DataVoidParams;
 use super::kinds::KindCaps;
-use super::marks::Marks;
+use super::marking_rule::MarkingRule;
 use super::prune::PruneParams;
 use super::relief::ReliefParams;
 use super::roof_edges::RoofEdgeParams;
 use super::shrinking_ball::{ShrinkMethod, ShrinkParams};
 use super::slender::SlenderParams;
-use super::survey::Survey;
 use super::thin_surfaces::ThinSurfaceParams;
 use super::vegetation::VegetationParams;
-use belvedere_data::Result;
-use belvedere_data::balls::MedialBalls;
-use belvedere_data::control::Control;
-
-/// When a rule marks.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Phase {
-    /// Before there are balls: its caps shorten the search of the pulses.
-    Points,
-    /// After the pulses have carved the balls of the points.
-    Balls,
-}
-
-/// A rule that marks a survey. Its parameters are the rule.
-pub(super) trait MarkingRule: Sync {
-    /// When it marks, and what progress calls that; `None` for what the survey and the model do by these parameters.
-    fn stage(&self) -> Option<(Phase, &'static str)> {
-        None
-    }
-
-    /// What it marks. Row i of `balls` is the ball of point i; there is none in [`Phase::Points`].
-    ///
-    /// # Errors
-    /// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
-    fn marks(&self, survey: &Survey<'_>, balls: &MedialBalls, control: &Control<'_>) -> Result<Marks> {
-        let _ = (survey, balls, control);
-        Ok(Marks::default())
-    }
-
-    /// Name of its fills in the report.
-    fn fills_name(&self) -> &'static str {
-        ""
-    }
-}
 
 /// Points are moved onto the surface that they scatter about before balls are made ([`crate::normals::Scatter`]). The
 /// model does that, with the normals; [`super::carved_balls`] takes points as they are.

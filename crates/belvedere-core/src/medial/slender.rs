@@ -5,9 +5,9 @@
 
 use super::cells::cell;
 use super::chains::Chain;
+use super::marking_rule::{MarkingRule, Phase};
 use super::marks::{Cap, Fill, Marks};
 use super::midway::{apart, neighbors_after, one_in_each_cell};
-use super::rules::{MarkingRule, Phase};
 use super::survey::Survey;
 use crate::neighbors::{NeighborIndex, Tangent};
 use belvedere_data::Result;

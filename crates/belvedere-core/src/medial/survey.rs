@@ -1,18 +1,12 @@
 //! What rules read: the points of a survey, what each of them is, and the statistics of the whole.
 
-use super::carved::CarvedInput;
 use super::cells::{Cells, highest, lowest_near};
-use super::crowns;
 use super::kinds::{Kind, kinds};
-use super::marks::Cap;
-use super::rules::CarvedParams;
 use super::spacing::{pulse_counts, pulse_spacing};
-use super::vegetation::find_vegetation;
 use crate::neighbors::NeighborIndex;
 use crate::normals::OrientedCloud;
-use crate::pulses::FreeSegments;
-use belvedere_data::control::Control;
-use belvedere_data::{Attributes, Result};
+use crate::pulses::{FreeSegments, Pulses};
+use belvedere_data::Attributes;
 use serde::{Deserialize, Serialize};
 
 /// Side of the blocks in which balls are pruned and thin surfaces end, metres: many times the largest ball, so that
@@ -30,6 +24,26 @@ pub struct RuleStatistics {
     pub transmission: f64,
     /// Median spacing of later returns within crowns, metres; `None` where there are none.
     pub crown_spacing: Option<f32>,
+}
+
+/// What carved balls are made from. All columns have a row for each point.
+#[derive(Clone, Copy)]
+pub struct CarvedInput<'a> {
+    /// Points and outward normals.
+    pub oriented: &'a OrientedCloud,
+    /// The points before they were moved onto their surface, (N, 3) local metres: they decide which block of 64 m a
+    /// point belongs to.
+    pub measured: &'a [[f32; 3]],
+    /// Index of the same points.
+    pub index: &'a NeighborIndex,
+    /// Class, return number and return count are used where present.
+    pub attributes: &'a Attributes,
+    /// What the pulses prove empty.
+    pub free_segments: &'a FreeSegments,
+    /// Which returns share a pulse, rows as in the cloud; without it no crown is measured.
+    pub pulses: Option<&'a Pulses>,
+    /// Statistics of the survey that the points are a part of; `None` where they are the whole.
+    pub statistics: Option<&'a RuleStatistics>,
 }
 
 /// The points of a survey, or of a part of one, as rules read them. Columns have a row for each point.
@@ -68,13 +82,10 @@ pub(super) struct Survey<'a> {
 }
 
 impl<'a> Survey<'a> {
-    /// The survey of `input`. Without statistics of a whole it is the whole, and they are measured from its own points.
-    ///
-    /// # Errors
-    /// [`Error::InvalidParameter`](belvedere_data::Error::InvalidParameter) for parameters of vegetation out of range,
-    /// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
-    pub(super) fn new(input: &CarvedInput<'a>, params: &CarvedParams, control: &Control<'_>) -> Result<Self> {
-        let CarvedInput { oriented, measured, index, attributes, free_segments, pulses, statistics: given } = *input;
+    /// The survey of `input`, before vegetation is found and crowns are measured. Without statistics of a whole it is the
+    /// whole.
+    pub(super) fn of(input: &CarvedInput<'a>) -> Self {
+        let CarvedInput { oriented, measured, index, attributes, free_segments, statistics, .. } = *input;
         let positions = oriented.positions();
         let kinds = kinds(attributes, oriented.len());
         let counts = pulse_counts(positions, attributes);
@@ -83,8 +94,8 @@ impl<'a> Survey<'a> {
             has_vegetation: kinds.contains(&Kind::Vegetation),
             ..RuleStatistics::default()
         };
-        let mut survey = Survey {
-            statistics: given.copied().unwrap_or_else(own),
+        Self {
+            statistics: statistics.copied().unwrap_or_else(own),
             oriented,
             measured,
             index,
@@ -99,22 +110,7 @@ impl<'a> Survey<'a> {
             later_in_crowns: Vec::new(),
             claimed: vec![false; oriented.len()],
             kinds,
-        };
-        // where classes tell vegetation, its shape need not
-        if let Some(vegetation) = params.vegetation.as_ref().filter(|_| !survey.statistics.has_vegetation) {
-            survey.found_vegetation = control.stage("finding vegetation", oriented.len(), || {
-                find_vegetation(&mut survey.kinds, oriented, index, attributes, vegetation, control)
-            })?;
         }
-        if let Some(params) = &params.crowns {
-            control.stage("measuring crowns", 0, || {
-                if let Some(pulses) = pulses {
-                    crowns::measure_transmission(&mut survey, pulses, params, given, control)?;
-                }
-                crowns::measure_spacing(&mut survey, params, given, control)
-            })?;
-        }
-        Ok(survey)
     }
 
     /// The points, (N, 3) local metres.
@@ -138,9 +134,9 @@ impl<'a> Survey<'a> {
     }
 
     /// Takes note of the points that a rule claims.
-    pub(super) fn claim(&mut self, caps: &[Cap]) {
-        for cap in caps.iter().filter(|cap| cap.is_claimed) {
-            if let Some(claimed) = self.claimed.get_mut(cap.row) {
+    pub(super) fn claim(&mut self, rows: impl Iterator<Item = usize>) {
+        for row in rows {
+            if let Some(claimed) = self.claimed.get_mut(row) {
                 *claimed = true;
             }
         }
@@ -155,8 +151,8 @@ impl<'a> Survey<'a> {
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
-    use crate::medial::Rule;
     use crate::pulses::FreeSegmentParams;
+    use belvedere_data::control::Control;
 
     /// A survey made of its own points and classes, whose pulses came from `scanner`, (N, 3) or empty for none.
     pub(in super::super) fn with_survey<T>(
@@ -180,7 +176,6 @@ pub(super) mod tests {
             pulses: None,
             statistics: None,
         };
-        let params = CarvedParams::default().without(Rule::Vegetation).without(Rule::Crowns);
-        read(Survey::new(&input, &params, &none).unwrap())
+        read(Survey::of(&input))
     }
 }

@@ -1,12 +1,11 @@
 //! Surfaces with open space close below them, found by the pulses that run there: decks, canopies, balconies, bridges.
 
-use super::carved::CarvedInput;
 use super::chains::MIN_SHARE;
 use super::layers::{CELL, Layers};
+use super::marking_rule::{MarkingRule, Phase};
 use super::marks::{Cap, Fill, FillPlace, Marks};
 use super::midway::{neighbors_after, one_in_each_cell};
-use super::rules::{CarvedParams, MarkingRule, Phase, Rule};
-use super::survey::{BLOCK, Survey};
+use super::survey::{BLOCK, CarvedInput, Survey};
 use crate::neighbors::NeighborIndex;
 use crate::pulses::FreeSegments;
 use belvedere_data::Result;
@@ -100,8 +99,7 @@ pub fn on_thin_surfaces(
     params: &ThinSurfaceParams,
     control: &Control<'_>,
 ) -> Result<Vec<bool>> {
-    let only_this = CarvedParams::default().without(Rule::Vegetation).without(Rule::Crowns);
-    params.thin_points(&Survey::new(input, &only_this, control)?, control)
+    params.thin_points(&Survey::of(input), control)
 }
 
 impl MarkingRule for ThinSurfaceParams {

@@ -1,22 +1,12 @@
 //! What is estimated once from a whole survey, so that parts of it that are built on their own become one model.
 
-use super::params::{BallParams, ModelParams, OrientBy};
-use super::prepare::{OrientedSurvey, prepare};
 use crate::clean::{CleanParams, IsolatedPoints, IsolationRadius};
-use crate::medial::{BLOCK, CarvedInput, CarvedParams, RuleStatistics, rule_statistics};
+use crate::medial::RuleStatistics;
 use crate::neighbors::FARTHEST_NEIGHBOR;
-use crate::pulses::{LinePath, Means, VerticalParams, locate, positions_on_paths, vertical_pulses};
+use crate::pulses::{LinePath, VerticalParams, positions_on_paths, vertical_pulses};
 use belvedere_data::control::Control;
-use belvedere_data::{Error, Parameter, PointCloud, Result};
+use belvedere_data::{PointCloud, Result};
 use serde::{Deserialize, Serialize};
-use std::borrow::Cow;
-use std::path::Path;
-
-/// How far the rules for balls look beyond a point, metres: edges of roofs within three spacings of pulses, of which
-/// the widest is 3 m; cells of a metre with those about them, crowns and relief less.
-const RULES_REACH: f64 = 12.0;
-/// By how much pulses may lean more than the most of a sample, as a share of that.
-const LEAN_ROOM: f64 = 1.1;
 
 /// What is estimated once from a whole survey. Parts of the survey that are built with these statistics
 /// ([`ModelParams::statistics`]) and lie in one frame, whose origin is a corner of blocks of 64 m, have the same balls,
@@ -47,115 +37,7 @@ pub struct SurveyStatistics {
     pub whole: RuleStatistics,
 }
 
-/// What a pass over all points of a survey found.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct SurveyExtremes {
-    /// Highest point, local metres.
-    pub top: f32,
-    /// As [`SurveyStatistics::relief`].
-    pub relief: f64,
-    /// Whether any point has class 2, ground.
-    pub has_ground: bool,
-    /// Whether any point has a class of vegetation, 3 to 5.
-    pub has_vegetation: bool,
-}
-
 impl SurveyStatistics {
-    /// The statistics of a survey of which `along_lines` is a sample that is spread over all of it, whole pulses at
-    /// random, and `places` are all points of some places, both in the frame that its parts will have. Errors call it
-    /// `name`.
-    ///
-    /// # Errors
-    /// [`Error::InvalidParameter`] for ways of orienting that need more than the points, [`Error::Malformed`] for
-    /// scanners on the ground; those of [`super::SceneModel::build`].
-    pub fn estimate(
-        name: &Path,
-        along_lines: &PointCloud,
-        places: &PointCloud,
-        extremes: &SurveyExtremes,
-        params: &ModelParams,
-        control: &Control<'_>,
-    ) -> Result<Self> {
-        let means = match params.orient {
-            OrientBy::Pulses => Means::Pulses,
-            OrientBy::Auto | OrientBy::Up => Means::Automatic,
-            _ => {
-                let value = "a scanner, a trajectory or a mesh that is given".to_owned();
-                let expected = "auto, pulses or up where a survey is built in parts";
-                return Err(Error::InvalidParameter { parameter: Parameter::Orientation, value, expected });
-            }
-        };
-        let (positions, report) = control.stage("estimating scanner positions", along_lines.len(), || {
-            locate(along_lines, &means, &params.locate, control)
-        })?;
-        let leans = along_lines.positions.iter().zip(&positions).filter_map(lean);
-        let max_lean = if report.paths.is_empty() { 0.0 } else { leans.fold(0.0, f64::max) };
-        let mut statistics = Self {
-            paths: report.paths,
-            max_lean: LEAN_ROOM * max_lean,
-            carves: true,
-            top: extremes.top,
-            relief: extremes.relief,
-            measures_crowns: true,
-            whole: RuleStatistics {
-                has_ground: extremes.has_ground,
-                has_vegetation: extremes.has_vegetation,
-                ..RuleStatistics::default()
-            },
-            ..Self::default()
-        };
-        // what the model of these places estimates for itself
-        let cloud = places.clone();
-        let scanner = OrientBy::ScannerOfEachPoint(statistics.scanner(&cloud, control)?);
-        let free = if statistics.paths.is_empty() { params.clone() } else { params.clone().with_orient(scanner) };
-        let (survey, report) = prepare(Cow::Owned(cloud), &free, control)?;
-        statistics.isolation_radius = report.removed_by_cleaning.isolation_radius;
-        statistics.noise = report.smoothing.map(|smoothing| smoothing.noise);
-        let Some(input) = &survey.carving else { return Ok(Self { carves: false, ..statistics }) };
-        if input.free_segments.are_from_the_ground() {
-            return Err(Error::malformed(
-                name,
-                "this survey was measured from the ground, and only surveys from the air can be worked on in tiles; \
-                 ask about one cloud at a time, with `balls`, `shadow` or `viewshed`",
-            ));
-        }
-        statistics.measures_crowns = input.pulses.is_some();
-        if let BallParams::Carved(carved) | BallParams::CarvedIfPossible(carved, _) = &params.balls {
-            let RuleStatistics { transmission, crown_spacing, .. } = statistics.crowns(&survey, carved, control)?;
-            statistics.whole = RuleStatistics { transmission, crown_spacing, ..statistics.whole };
-        }
-        Ok(statistics)
-    }
-
-    fn crowns(&self, survey: &OrientedSurvey, params: &CarvedParams, control: &Control<'_>) -> Result<RuleStatistics> {
-        let Some(input) = &survey.carving else { return Ok(RuleStatistics::default()) };
-        let input = CarvedInput {
-            oriented: &survey.oriented,
-            measured: &survey.measured,
-            index: &survey.index,
-            attributes: &input.attributes,
-            free_segments: &input.free_segments,
-            pulses: input.pulses.as_ref(),
-            statistics: None,
-        };
-        rule_statistics(&input, params, control)
-    }
-
-    /// How far around a place points must be known for its balls to be those of the whole survey, metres.
-    #[must_use]
-    pub fn buffer(&self, params: &ModelParams) -> f64 {
-        let isolation = self.isolation_radius.unwrap_or(0.0);
-        let (ball, noise) =
-            (2.0 * f64::from(params.balls.shrinking_by(self).initial_radius), self.noise.unwrap_or(0.0));
-        // a ball ends at points, whose planes and kinds follow from neighbours, and these from theirs
-        let points = ball + 2.0 * f64::from(noise) + 2.0 * f64::from(FARTHEST_NEIGHBOR);
-        // or at pulses that end lower, and these hold other returns
-        let pulses = ball + (self.relief + ball) * self.max_lean;
-        // or at a thin surface, which pulses prove that pass half a block away and end lower
-        let thin = f64::from(BLOCK) / 2.0 + self.relief * self.max_lean;
-        points.max(pulses).max(thin) + isolation + RULES_REACH
-    }
-
     /// Whether pulses are assumed to fall straight down.
     #[must_use]
     pub fn are_pulses_assumed(&self) -> bool {
@@ -181,7 +63,7 @@ impl SurveyStatistics {
     /// Local position of the scanner for each point, NaN where it is not known.
     ///
     /// # Errors
-    /// [`Error::Cancelled`].
+    /// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
     pub(super) fn scanner(&self, cloud: &PointCloud, control: &Control<'_>) -> Result<Vec<[f32; 3]>> {
         if self.are_pulses_assumed() {
             return vertical_pulses(&cloud.positions, &VerticalParams::default(), control);
@@ -199,7 +81,7 @@ impl SurveyStatistics {
 
 /// How far the pulse from a scanner to a point leans: horizontal metres for each metre of height; `None` where it is
 /// not known or does not come from above.
-fn lean((point, scanner): (&[f32; 3], &[f32; 3])) -> Option<f64> {
+pub(super) fn lean((point, scanner): (&[f32; 3], &[f32; 3])) -> Option<f64> {
     let [x, y, z] = std::array::from_fn(|i| f64::from(scanner[i]) - f64::from(point[i]));
     (z > 0.0).then(|| x.hypot(y) / z).filter(|lean| lean.is_finite())
 }
