@@ -250,6 +250,7 @@ class Scene:
 def read(
     inputs: list[Any],
     crs: str | None,
+    crs_override: bool,
     up: str,
     bounds: list[list[float]] | None,
     classes: list[int] | None,
