@@ -36,8 +36,8 @@ pub struct GeojsonFeature {
 /// Coordinates are longitude and latitude of WGS 84 (RFC 7946) unless the file names a system in the older member
 /// `crs`: longitude and latitude of another datum are brought into WGS 84, a plane must be that of the cloud. In a file
 /// without that member coordinates that can be no longitude and latitude, and all where the cloud has no place on
-/// earth, are taken as those of the cloud's file. Heights are in the unit of the cloud's heights. Features without geometry are passed
-/// over.
+/// earth, are taken as those of the cloud's file. Heights are in the unit of the cloud's heights. Features without
+/// geometry are passed over.
 ///
 /// # Errors
 /// [`Error::Io`]; [`Error::Malformed`] for what is no GeoJSON and for coordinates that are not finite;
@@ -155,8 +155,8 @@ fn position(numbers: &Position, path: &Path) -> Result<[f64; 3]> {
     }
 }
 
-/// The system of a name such as `urn:ogc:def:crs:EPSG::4258`, `EPSG:28992`, `http://www.opengis.net/def/crs/EPSG/0/4258`
-/// or `urn:ogc:def:crs:OGC:1.3:CRS84`. Longitude comes first whatever the authority says, as all programs write it.
+/// The system of a name such as `urn:ogc:def:crs:EPSG::4258`, `EPSG:28992`, `urn:ogc:def:crs:OGC:1.3:CRS84` or the
+/// address `http://www.opengis.net/def/crs/EPSG/0/4258`. Longitude comes first whatever the authority says, as all programs write it.
 fn system_of_name(name: &str) -> Option<Crs> {
     let code = name.trim().rsplit([':', '/', '#']).next().unwrap_or(name);
     match code.to_ascii_uppercase().as_str() {

@@ -284,7 +284,10 @@ pub(super) fn open<'a>(mut source: Source<'a>, reading: &Reading<'_>) -> Result<
     let somewhere = header.first_point(&path, &mut source.reader)?;
     part.somewhere = (header.points > 0).then_some(somewhere);
     find_crs(&mut part, header, [somewhere[0], somewhere[1]]);
-    let crs = reading.forced.unwrap_or(&part.crs);
+    if header.points > 0 {
+        reading.check_given(&part.crs, [somewhere[0], somewhere[1]], &path)?;
+    }
+    let crs = &reading.system(&part.crs);
     if let Some(what) = crs.refusal(somewhere).or_else(|| unnamed_degrees(crs, header, somewhere)) {
         return Err(Error::UnusableCrs { path, what });
     }

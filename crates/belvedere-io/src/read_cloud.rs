@@ -9,7 +9,7 @@ use super::las;
 use super::part::FilePart;
 #[cfg(feature = "ply")]
 use super::ply;
-use super::read_options::{Insistence, ReadOptions, Reading, UpAxis};
+use super::read_options::{ReadOptions, Reading, UpAxis};
 use super::source::{Source, extension, unusable};
 use super::{assemble, pcd, ptx, vpc, xyz};
 #[cfg(feature = "npy")]
@@ -156,10 +156,8 @@ impl Systems {
         if let Some(beside) = crs_beside(&part.report.path)? {
             take_crs_beside(part, beside, on_map);
         }
-        if let Some(given) = reading.forced {
-            if reading.options.crs_against_files == Insistence::Refuse {
-                given.check_given(&part.crs, on_map, &part.report.path)?;
-            }
+        if reading.forced.is_some() {
+            reading.check_given(&part.crs, on_map, &part.report.path)?;
             part.set_crs(reading.system(&part.crs), "option");
         }
         let path = &part.report.path;

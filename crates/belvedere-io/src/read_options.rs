@@ -5,6 +5,8 @@ use belvedere_data::control::Control;
 use belvedere_data::crs::{Crs, CrsKind};
 use belvedere_data::{Bounds, Error, Frame, Parameter, Result};
 
+use std::path::Path;
+
 use super::part::{Coordinates, FilePart};
 
 /// How often readers that go point by point look whether the work was cancelled: a few milliseconds of points.
@@ -198,6 +200,17 @@ impl Reading<'_> {
             // the unit does not matter
             Within::File { .. } => self.selection(&Crs::default())?.file_box(),
             Within::Local(_) => self.selection(known?)?.file_box(),
+        }
+    }
+
+    /// Refuses the system of the option for a file at `path` that names `of_file`, at coordinates in its unit.
+    ///
+    /// # Errors
+    /// Those of [`Crs::check_given`].
+    pub(super) fn check_given(&self, of_file: &Crs, coordinates: [f64; 2], path: &Path) -> Result<()> {
+        match (self.forced, self.options.crs_against_files) {
+            (Some(given), Insistence::Refuse) => given.check_given(of_file, coordinates, path),
+            _ => Ok(()),
         }
     }
 

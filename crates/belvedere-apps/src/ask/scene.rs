@@ -66,8 +66,11 @@ impl Whereabouts<'_> {
         context.add(distance.map(|distance| {
             let how_far = if distance.is_finite() { distance_in_words(distance) } else { "far".to_owned() };
             let text = format!("the scene lies {how_far} outside of the area of use of {}", crs.describe());
-            let remark =
-                Remark::warning("outside-area-of-use", text).with("distance_km", rounded(distance / 1000.0, 1));
+            let remark = Remark::warning("outside-area-of-use", text);
+            let remark = match distance.is_finite() {
+                true => remark.with("distance_km", rounded(distance / 1000.0, 1)),
+                false => remark,
+            };
             // countries use zones beyond their edges
             if distance > CONTRADICTION_DISTANCE { remark } else { remark.into_note() }
         }));

@@ -250,8 +250,8 @@ def read(
     Raises
     ------
     BelvedereError
-        For a format that is not known, a damaged file, a file without points, coordinates in degrees, and a `crs` that contradicts a
-        file.
+        For a format that is not known, a damaged file, a file without points, coordinates in degrees, and a `crs` that
+        contradicts a file.
     FileNotFoundError
         For a file that is missing.
 
