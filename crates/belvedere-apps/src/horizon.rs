@@ -2,7 +2,8 @@
 
 use belvedere_core::query::{EarthParams, MedialScene, SkylinePoint};
 use belvedere_data::control::Control;
-use belvedere_data::crs::Crs;
+use belvedere_data::crs::evidence::{CONTRADICTION_DISTANCE, distance_in_words};
+use belvedere_data::crs::{Crs, GeographicProjection};
 use belvedere_data::{Error, Parameter, Result};
 use std::f64::consts::{PI, TAU};
 
@@ -87,12 +88,34 @@ pub fn azimuth_count(step: f64) -> Result<usize> {
 }
 
 /// Meridian convergence at `position`, (x, y) metres in the system `crs`: the azimuth of grid north, clockwise from
-/// true north, radians. An azimuth from true north is that from grid north plus this.
+/// true north, radians. An azimuth from true north is that from grid north plus this. Where the place on earth is not
+/// known it follows from the parameters of the projection.
 ///
 /// # Errors
-/// Those of [`Crs::geographic_projection`], and where the place has no latitude.
+/// Those of [`Crs::grid_projection`], and where the place has no latitude or lies far outside of the area of use.
 pub fn convergence(crs: &Crs, position: [f64; 2]) -> Result<f64> {
-    let projection = crs.geographic_projection()?;
+    if let Some(value) = far_outside(crs, position) {
+        let expected = "one whose area of use holds the scene";
+        return Err(Error::InvalidParameter { parameter: Parameter::ReferenceSystem, value, expected });
+    }
+    let by_place = crs.geographic_projection().and_then(|projection| convergence_of(&projection, position));
+    by_place.or_else(|error| match crs.grid_projection() {
+        Ok(projection) => convergence_of(&projection, position),
+        Err(_) => Err(error),
+    })
+}
+
+/// In words, where `position`, metres, lies too far outside of the area of use of a system to be meant; `None` where it
+/// does not.
+pub(crate) fn far_outside(crs: &Crs, position: [f64; 2]) -> Option<String> {
+    let distance = crs.distance_to_area_of_use(position.map(|v| v / crs.metres_per_unit))?;
+    (distance > CONTRADICTION_DISTANCE).then(|| match distance.is_finite() {
+        true => format!("{}, from whose area of use the scene is {} away", crs.describe(), distance_in_words(distance)),
+        false => format!("{}, in which the coordinates of the scene are no place", crs.describe()),
+    })
+}
+
+fn convergence_of(projection: &GeographicProjection, position: [f64; 2]) -> Result<f64> {
     let [latitude, longitude] = projection.unproject(position)?;
     // 1 km to the north along the meridian: short against its curvature, long against rounding
     let [x, y] = projection.project(latitude + 1000.0 / belvedere_core::query::earth::EARTH_RADIUS, longitude)?;

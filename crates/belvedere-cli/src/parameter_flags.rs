@@ -98,6 +98,7 @@ pub(crate) fn flags_of(parameter: Parameter) -> &'static [&'static str] {
         Parameter::TileMemory => &["--memory"],
         Parameter::Shard => &["--shard"],
         Parameter::Crs => &["--crs"],
+        Parameter::CrsOverride => &["--crs-override"],
         Parameter::UpAxis => &["--up"],
         Parameter::FrameTime => &["--frame-duration-s"],
         Parameter::Device => &["--device"],

@@ -51,18 +51,18 @@ pub(crate) fn check_every_row(report: &ReadReport) -> Result<()> {
 }
 
 fn read_counted(input: &CloudInput, run: &mut CommandContext) -> Result<(PointCloud, ReadReport)> {
-    let mut options = ReadOptions::new();
-    options.crs = input.crs.clone();
-    options.up = input.up.into();
+    let options = input.read_options();
     let (cloud, report) = run.stage("reading", 0, |control| read_cloud(&input.clouds, &options, control))?;
     run.summary.add("points", cloud.len());
     run.summary.add("reading", Summary::of(&report));
-    warn_of_missing(&report, &mut run.summary);
+    warn_of_files(&report, &mut run.summary);
     Ok((cloud, report))
 }
 
-/// Warns of files that hold fewer points than their headers announce.
-pub(crate) fn warn_of_missing(report: &ReadReport, summary: &mut Summary) {
+/// Warns of files that hold fewer points than their headers announce, and of what speaks against their reference
+/// system.
+pub(crate) fn warn_of_files(report: &ReadReport, summary: &mut Summary) {
+    summary.remarks(ask::remark_on_doubt(report.doubt.as_deref()));
     for file in report.files.iter().filter(|file| file.missing_points > 0) {
         let (path, count) = (file.path.display(), file.missing_points);
         summary.warn(

@@ -88,8 +88,12 @@ impl Summary {
     pub(crate) fn remarks(&mut self, added: impl IntoIterator<Item = Remark>) {
         for remark in added {
             let remarks = self.entries.entry(REMARKS).or_insert_with(|| Value::Array(Vec::new()));
-            if let Value::Array(remarks) = remarks {
-                remarks.push(Self::of(&remark).into());
+            // what reading and a question both say is said once
+            let remark = Value::from(Self::of(&remark));
+            if let Value::Array(remarks) = remarks
+                && !remarks.contains(&remark)
+            {
+                remarks.push(remark);
             }
         }
     }

@@ -3,6 +3,7 @@
 //! The cargo feature `crs` (on by default) brings the database of systems. Without it a [`Crs`] can be carried, written
 //! and read from well-known text; codes alone are kept, but their names, units and projections are not known.
 
+pub mod evidence;
 #[cfg(not(feature = "crs"))]
 #[path = "crs/no_registry.rs"]
 mod registry;
@@ -34,6 +35,8 @@ pub struct Crs {
     pub vertical_metres_per_unit: f64,
     /// What the coordinates are.
     pub kind: CrsKind,
+    /// What in the files speaks against this system, in words; `None` where nothing does.
+    pub doubt: Option<String>,
 }
 
 /// What the coordinates of a reference system are.
@@ -61,6 +64,7 @@ impl Default for Crs {
             metres_per_unit: 1.0,
             vertical_metres_per_unit: 1.0,
             kind: CrsKind::Unknown,
+            doubt: None,
         }
     }
 }
@@ -94,6 +98,18 @@ impl Crs {
         registry::system_of_code(code)
     }
 
+    /// Longitude and latitude of WGS 84.
+    #[must_use]
+    pub fn wgs_84() -> Self {
+        Self { epsg: Some(4326), kind: CrsKind::Geographic, ..Self::default() }
+    }
+
+    /// Whether this is longitude and latitude of WGS 84 itself.
+    #[must_use]
+    pub fn is_wgs_84(&self) -> bool {
+        self.kind == CrsKind::Geographic && matches!(self.epsg, Some(4326 | 4979))
+    }
+
     /// The system that a GeoTIFF key directory (the bytes of LAS record 34735, little-endian u16) names, or `None`
     /// where it names none. Keys that need the double or text records are not followed: only codes and units count.
     #[must_use]
@@ -121,12 +137,17 @@ impl Crs {
         let mut crs = epsg.and_then(Self::from_epsg).unwrap_or_default();
         (crs.epsg, crs.kind) = (epsg, kind);
         if let Some(unit) = value(3076).and_then(unit_of_code) {
+            if epsg.is_some() {
+                crs.doubt = units_apart("the unit", unit, crs.metres_per_unit);
+            }
             crs.metres_per_unit = unit;
         }
-        crs.vertical_metres_per_unit = value(4099)
-            .and_then(unit_of_code)
-            .or_else(|| registry::vertical_metres_of_code(vertical?))
-            .unwrap_or(crs.metres_per_unit);
+        let (own, of_code) = (value(4099).and_then(unit_of_code), vertical.and_then(registry::vertical_metres_of_code));
+        if let Some(what) = own.zip(of_code).and_then(|(own, of_code)| units_apart("the unit of heights", own, of_code))
+        {
+            crs = crs.doubted(what);
+        }
+        crs.vertical_metres_per_unit = own.or(of_code).unwrap_or(crs.metres_per_unit);
         crs.vertical_epsg = vertical;
         Some(crs)
     }
@@ -281,6 +302,13 @@ fn unit_of_code(code: u16) -> Option<f64> {
     UNIT_CODES.iter().find(|&&(known, _)| known == code).map(|&(_, metres)| metres)
 }
 
+/// What speaks against a unit beside a code that has another.
+fn units_apart(what: &str, own: f64, of_code: f64) -> Option<String> {
+    let [named, known] = [own, of_code].map(unit_name);
+    ((own - of_code).abs() > 1e-7 * of_code)
+        .then(|| format!("{what} is given as {named}, but that of its code is {known}"))
+}
+
 fn unit_name(metres: f64) -> String {
     let is = |unit: f64| (metres - unit).abs() < 1e-9 * unit;
     if is(1.0) {
@@ -303,7 +331,8 @@ fn utm_zone(longitude: f64, latitude: f64) -> u32 {
 
 // ---- geographic coordinates into the plane of a reference system ----
 
-/// Turns latitude and longitude (WGS 84) into the metres of one reference system, and back.
+/// Turns latitude and longitude (WGS 84) into the metres of one reference system, and back. The step between the datums
+/// is the one that is best at the first place.
 pub struct GeographicProjection {
     projection: registry::CrsProjection,
     metres_per_unit: f64,
@@ -316,10 +345,26 @@ impl Crs {
     /// [`Error::MissingAttribute`] where neither EPSG code nor well-known text is there,
     /// [`Error::InvalidParameter`] where it cannot be projected into.
     pub fn geographic_projection(&self) -> Result<GeographicProjection> {
+        self.projection(registry::CrsProjection::new)
+    }
+
+    /// The projection alone, from latitude and longitude of a datum that nothing ties to WGS 84: directions are true,
+    /// places may be hundreds of metres off. For systems that have no [`Crs::geographic_projection`].
+    ///
+    /// # Errors
+    /// Those of [`Crs::geographic_projection`], where not even the projection is known.
+    pub fn grid_projection(&self) -> Result<GeographicProjection> {
+        self.projection(registry::CrsProjection::untied)
+    }
+
+    fn projection(
+        &self,
+        make: impl Fn(&str) -> std::result::Result<registry::CrsProjection, String>,
+    ) -> Result<GeographicProjection> {
         let by_code = self.epsg.map(|code| format!("EPSG:{code}"));
         let mut failure = None;
         for definition in [by_code.as_deref(), self.wkt.as_deref()].into_iter().flatten() {
-            match registry::CrsProjection::new(definition) {
+            match make(definition) {
                 Ok(projection) => {
                     return Ok(GeographicProjection { projection, metres_per_unit: self.metres_per_unit });
                 }
@@ -327,10 +372,10 @@ impl Crs {
             }
         }
         Err(match failure {
-            Some(value) => Error::InvalidParameter {
+            Some(reason) => Error::InvalidParameter {
                 parameter: Parameter::ReferenceSystem,
-                value,
-                expected: "a projected system known by EPSG code or well-known text",
+                value: format!("{} ({reason})", self.describe()),
+                expected: "a projected system whose place on earth is known, by EPSG code or well-known text",
             },
             None => Error::MissingAttribute {
                 attribute: "reference system",

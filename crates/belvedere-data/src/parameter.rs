@@ -237,6 +237,8 @@ parameters! {
     // Files and reference systems
     /// Text of a reference system.
     Crs => "crs",
+    /// Whether a reference system that is given holds against the files.
+    CrsOverride => "crs_override",
     /// Reference system of a cloud or of targets.
     ReferenceSystem => "reference system",
     /// Latitude and longitude to project.

@@ -50,6 +50,10 @@ pub(super) fn assemble(mut parts: Vec<FilePart>, options: &ReadOptions) -> Resul
         // a file can tell its unit without naming a system
         cloud.frame.crs = part.crs.clone();
     }
+    if cloud.frame.crs.doubt.is_none() {
+        cloud.frame.crs.doubt = parts.iter().find_map(|part| part.crs.doubt.clone());
+    }
+    report.doubt.clone_from(&cloud.frame.crs.doubt);
     report.crs = cloud.frame.crs.describe();
     if cloud.frame.crs.kind == CrsKind::Unknown && bounds.looks_like_degrees() {
         report.notes.push(

@@ -7,6 +7,7 @@ use serde_json::Value;
 
 use super::polygons::{MeshBuilder, MeshReport};
 use super::source::Source;
+use belvedere_data::crs::{Crs, CrsKind};
 use belvedere_data::{Error, Mesh, Parameter, Result};
 
 /// Which of the levels of detail of each city object to read.
@@ -24,7 +25,7 @@ pub enum LevelOfDetail {
 ///
 /// Solids, multi- and composite surfaces and solids, and instances of geometry templates are read; rings with holes are
 /// triangulated in their plane. The turning sense of the file is kept: counter-clockwise seen from outside. Coordinates
-/// are taken as metres; an EPSG code in `metadata.referenceSystem` is kept in the mesh's `crs.epsg`.
+/// are taken as they are; the system that `metadata.referenceSystem` names by an EPSG code is that of the mesh.
 ///
 /// # Errors
 /// [`Error::Io`] where the file cannot be read, [`Error::Malformed`] for anything that is not CityJSON, indices without
@@ -47,7 +48,11 @@ pub fn read_cityjson<'a>(source: impl Into<Source<'a>>, level_of_detail: &LevelO
         return Err(Error::malformed(path, what));
     }
     let mut builder = MeshBuilder::new(path);
-    builder.mesh.crs.epsg = root.pointer("/metadata/referenceSystem").and_then(Value::as_str).and_then(epsg_code);
+    if let Some(code) = root.pointer("/metadata/referenceSystem").and_then(Value::as_str).and_then(epsg_code) {
+        // city models are in planes; a code that is not known is kept, and differs from all others
+        let unknown = || Crs { epsg: Some(code), kind: CrsKind::Projected, ..Crs::default() };
+        builder.mesh.crs = Crs::from_epsg(code).unwrap_or_else(unknown);
+    }
     let (scale, translate) = match root.get("transform") {
         Some(transform) => (
             triple(path, transform.get("scale"), "transform.scale")?,

@@ -7,6 +7,7 @@ use serde_json::{Map, Value};
 
 use super::source::{Source, refuse_other_shapes};
 
+use belvedere_data::crs::evidence::Comparison;
 use belvedere_data::crs::{Crs, CrsKind, GeographicProjection};
 use belvedere_data::{Error, Result};
 
@@ -33,13 +34,15 @@ pub struct GeojsonFeature {
 /// Reads the shapes of a GeoJSON file and brings them into the system `crs` of the cloud.
 ///
 /// Coordinates are longitude and latitude of WGS 84 (RFC 7946) unless the file names a system in the older member
-/// `crs`. Then, or where `crs` gives no longitude and latitude, or where a coordinate can be neither, they are taken as
-/// those of the cloud's file. Heights are in the unit of the cloud's heights. Features without geometry are passed
-/// over.
+/// `crs`: longitude and latitude of another datum are brought into WGS 84, a plane must be that of the cloud. In a file
+/// without that member coordinates that can be no longitude and latitude, and all where the cloud has no place on
+/// earth, are taken as those of the cloud's file. Heights are in the unit of the cloud's heights. Features without
+/// geometry are passed over.
 ///
 /// # Errors
 /// [`Error::Io`]; [`Error::Malformed`] for what is no GeoJSON and for coordinates that are not finite;
-/// [`Error::UnusableCrs`] where the file names another system than the cloud's.
+/// [`Error::UnusableCrs`] where the file names another plane than the cloud's, a system that is not known, or degrees
+/// that do not lead to the cloud.
 pub fn read_geojson<'a>(source: impl Into<Source<'a>>, crs: &Crs) -> Result<Vec<GeojsonFeature>> {
     let source = source.into();
     refuse_other_shapes(source.name())?;
@@ -67,8 +70,8 @@ pub fn read_geojson<'a>(source: impl Into<Source<'a>>, crs: &Crs) -> Result<Vec<
             members
         }
     };
-    let named = members.as_ref().and_then(|members| members.get("crs")?.pointer("/properties/name")?.as_str());
-    let placing = Placing::new(named, &raw, path, crs)?;
+    let named = named_system(members.as_ref().and_then(|members| members.get("crs")), path)?;
+    let placing = Placing::new(named.as_deref(), &raw, path, crs)?;
     for feature in &mut raw {
         match &mut feature.shape {
             FeatureShape::Point(p) => *p = placing.place(*p, path)?,
@@ -81,6 +84,21 @@ pub fn read_geojson<'a>(source: impl Into<Source<'a>>, crs: &Crs) -> Result<Vec<
         }
     }
     Ok(raw)
+}
+
+/// The system that the member `crs` names (GeoJSON 2008, section 3), by name or as the older drafts by code.
+fn named_system(member: Option<&Value>, path: &Path) -> Result<Option<String>> {
+    let Some(member) = member.filter(|member| !member.is_null()) else { return Ok(None) };
+    let properties = member.get("properties");
+    let name = properties.and_then(|properties| properties.get("name")).and_then(Value::as_str).map(str::to_owned);
+    let code = || properties?.get("code")?.as_u64().map(|code| format!("EPSG:{code}"));
+    match name.or_else(code) {
+        Some(named) => Ok(Some(named)),
+        None => Err(Error::UnusableCrs {
+            path: path.to_owned(),
+            what: format!("its reference system {member} has no name; write the file in WGS 84, as RFC 7946 requires"),
+        }),
+    }
 }
 
 fn place_all(corners: &mut [[f64; 3]], placing: &Placing, path: &Path) -> Result<()> {
@@ -137,51 +155,86 @@ fn position(numbers: &Position, path: &Path) -> Result<[f64; 3]> {
     }
 }
 
+/// The system of a name such as `urn:ogc:def:crs:EPSG::4258`, `EPSG:28992`, `urn:ogc:def:crs:OGC:1.3:CRS84` or the
+/// address `http://www.opengis.net/def/crs/EPSG/0/4258`. Longitude comes first whatever the authority says, as all programs write it.
+fn system_of_name(name: &str) -> Option<Crs> {
+    let code = name.trim().rsplit([':', '/', '#']).next().unwrap_or(name);
+    match code.to_ascii_uppercase().as_str() {
+        "CRS84" | "CRS84H" | "84" => Some(Crs::wgs_84()),
+        "CRS83" | "83" => Crs::from_epsg(4269),
+        "CRS27" | "27" => Crs::from_epsg(4267),
+        _ => Crs::parse(&format!("EPSG:{code}")).ok(),
+    }
+}
+
 /// How coordinates of the file become metres of the cloud's system.
 struct Placing {
     projection: Option<GeographicProjection>,
+    /// From longitude and latitude of another datum to those of WGS 84.
+    datum: Option<GeographicProjection>,
     scale: [f64; 3],
 }
 
 impl Placing {
     fn new(named: Option<&str>, features: &[GeojsonFeature], path: &Path, crs: &Crs) -> Result<Self> {
         let scale = crs.metres_per_unit_xyz();
-        if let Some(name) = named.filter(|name| !name.ends_with("CRS84")) {
-            let code = name.rsplit(':').next().unwrap_or(name);
-            let given = Crs::parse(&format!("EPSG:{code}")).map_err(|_| Error::UnusableCrs {
-                path: path.to_owned(),
-                what: format!(
-                    "its reference system \"{name}\" is unknown; write the file in WGS 84, as RFC 7946 requires"
-                ),
-            })?;
-            if given.kind != CrsKind::Geographic {
-                if crs.kind != CrsKind::Unknown && !given.same_system(crs) {
-                    let what = format!(
-                        "is in {}, but the cloud is in {}; write the file in WGS 84, as RFC 7946 requires",
-                        given.describe(),
-                        crs.describe()
-                    );
-                    return Err(Error::UnusableCrs { path: path.to_owned(), what });
-                }
-                return Ok(Self { projection: None, scale });
-            }
-        }
+        let unusable = |what: String| Error::UnusableCrs { path: path.to_owned(), what };
         let all = features.iter().flat_map(|feature| match &feature.shape {
             FeatureShape::Point(p) => vec![*p],
             FeatureShape::Line(corners) => corners.clone(),
             FeatureShape::Polygon(rings) => rings.concat(),
         });
-        let is_degrees = all.into_iter().all(|[x, y, _]| x.abs() <= 360.0 && y.abs() <= 90.0);
-        let projection = if is_degrees { crs.geographic_projection().ok() } else { None };
-        Ok(Self { projection, scale })
+        let all: Vec<[f64; 3]> = all.collect();
+        let no_degrees = all.iter().find(|[x, y, _]| !(x.abs() <= 360.0 && y.abs() <= 90.0));
+        let Some(name) = named else {
+            let projection = if no_degrees.is_none() { crs.geographic_projection().ok() } else { None };
+            return Ok(Self { projection, datum: None, scale });
+        };
+        let given = system_of_name(name).ok_or_else(|| {
+            unusable(format!(
+                "its reference system \"{name}\" is unknown; write the file in WGS 84, as RFC 7946 requires"
+            ))
+        })?;
+        let own = given.describe();
+        if given.kind != CrsKind::Geographic {
+            let somewhere = all.first().map_or([f64::NAN; 2], |p| [p[0], p[1]]);
+            let is_apart = matches!(given.compare(crs, somewhere), Comparison::Apart(_));
+            if is_apart || (given.contradicts(crs) && given.compare(crs, somewhere) == Comparison::Unknown) {
+                let cloud = crs.describe();
+                return Err(unusable(format!(
+                    "is in {own}, but the cloud is in {cloud}; write the file in WGS 84, as RFC 7946 requires"
+                )));
+            }
+            return Ok(Self { projection: None, datum: None, scale });
+        }
+        if let Some([x, y, _]) = no_degrees {
+            return Err(unusable(format!(
+                "names {own}, but {x}, {y} are no longitude and latitude; correct its member \"crs\""
+            )));
+        }
+        let projection = crs.geographic_projection().map_err(|error| {
+            unusable(format!("is in {own}, which cannot be brought into the system of the cloud: {error}"))
+        })?;
+        let datum = match given.is_wgs_84() {
+            true => None,
+            false => Some(given.geographic_projection().map_err(|_| {
+                unusable(format!("is in {own}, whose step to WGS 84 is not known; write the file in WGS 84"))
+            })?),
+        };
+        Ok(Self { projection: Some(projection), datum, scale })
     }
 
     fn place(&self, [x, y, z]: [f64; 3], path: &Path) -> Result<[f64; 3]> {
         let [x, y] = match &self.projection {
             None => [x * self.scale[0], y * self.scale[1]],
-            Some(projection) => projection
-                .project(y.to_radians(), x.to_radians())
-                .map_err(|e| Error::malformed(path, format!("longitude {x}, latitude {y}: {e}")))?,
+            Some(projection) => {
+                let wrong = |e: Error| Error::malformed(path, format!("longitude {x}, latitude {y}: {e}"));
+                let [latitude, longitude] = match &self.datum {
+                    None => [y.to_radians(), x.to_radians()],
+                    Some(datum) => datum.unproject([x, y]).map_err(wrong)?,
+                };
+                projection.project(latitude, longitude).map_err(wrong)?
+            }
         };
         Ok([x, y, z * self.scale[2]])
     }

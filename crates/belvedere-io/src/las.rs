@@ -19,6 +19,7 @@ use super::part::{Coordinates, FilePart};
 use super::read_options::{FileBox, PassedOver, Reading, RowNumbers, Selection};
 use super::source::{Input, Source, SourceReader};
 use belvedere_data::cloud::{Attributes, GpsTimeKind};
+use belvedere_data::crs::evidence::Comparison;
 use belvedere_data::crs::{Crs, CrsKind};
 use belvedere_data::{Error, Result};
 
@@ -280,11 +281,13 @@ pub(super) fn open<'a>(mut source: Source<'a>, reading: &Reading<'_>) -> Result<
     if header.broken_records > 0 {
         part.note("a variable-length record is cut off; it and the following records are ignored");
     }
-    if reading.forced.is_none() {
-        find_crs(&mut part, header);
-    }
-    let crs = reading.forced.unwrap_or(&part.crs);
     let somewhere = header.first_point(&path, &mut source.reader)?;
+    part.somewhere = (header.points > 0).then_some(somewhere);
+    find_crs(&mut part, header, [somewhere[0], somewhere[1]]);
+    if header.points > 0 {
+        reading.check_given(&part.crs, [somewhere[0], somewhere[1]], &path)?;
+    }
+    let crs = &reading.system(&part.crs);
     if let Some(what) = crs.refusal(somewhere).or_else(|| unnamed_degrees(crs, header, somewhere)) {
         return Err(Error::UnusableCrs { path, what });
     }
@@ -412,28 +415,73 @@ fn point_format(path: &Path, header: &LasHeader) -> Result<Format> {
     Ok(format)
 }
 
-/// Takes the system from a WKT record, or else from GeoTIFF keys.
-fn find_crs(part: &mut FilePart, header: &LasHeader) {
+/// Takes the system from the records of a file. Of several that agree, well-known text says most; where they do not
+/// agree, the bit of the header decides (LAS 1.4 R15, section 2.4), and the system is doubtful.
+fn find_crs(part: &mut FilePart, header: &LasHeader, somewhere: [f64; 2]) {
     const USER: &str = "LASF_Projection";
     let mut unread = false;
-    for (user, source) in [(USER, "WKT record"), ("liblas", "WKT record of libLAS")] {
-        for record in header.records(user, 2112) {
+    let mut text_of = |user: &'static str| {
+        header.records(user, 2112).find_map(|record| {
             let text = String::from_utf8_lossy(record);
             let text = text.trim_matches(|c: char| c == '\0' || c.is_whitespace());
-            match Crs::parse(text) {
-                Ok(crs) => return part.set_crs(crs, source),
-                Err(_) => unread |= !text.is_empty(),
+            let read = Crs::parse(text);
+            unread |= read.is_err() && !text.is_empty();
+            read.ok()
+        })
+    };
+    let texts = [(text_of(USER), "WKT record"), (text_of("liblas"), "WKT record of libLAS")];
+    let keys = header.record(USER, 34735).and_then(Crs::from_geotiff_keys);
+    let [own, of_liblas] = texts.map(|(crs, source)| crs.map(|crs| (crs, source)));
+    let mut named: Vec<(Crs, &str)> =
+        [own, keys.map(|crs| (crs, "GeoTIFF keys")), of_liblas].into_iter().flatten().collect();
+    let is_apart = |named: &[(Crs, &str)]| match named {
+        [(first, _), (second, _), ..] => says_otherwise(second, first, somewhere).is_some(),
+        _ => false,
+    };
+    if is_apart(&named) && !header.wkt_decides && named[1].1 == "GeoTIFF keys" {
+        named.swap(0, 1);
+    }
+    let mut named = named.into_iter();
+    let Some((mut crs, source)) = named.next() else {
+        part.note(if unread {
+            "its WKT record is not readable; coordinates are taken as metres"
+        } else {
+            "it names no reference system; coordinates are taken as metres"
+        });
+        return;
+    };
+    if unread {
+        part.note(format!("a WKT record is not readable; the {source} give the reference system"));
+    }
+    for (other, other_source) in named {
+        if let Some(how) = says_otherwise(&other, &crs, somewhere) {
+            let what = format!(
+                "the {source} of the file name {}, but its {other_source} {} ({how}); the first is used",
+                crs.describe(),
+                other.describe()
+            );
+            crs = crs.doubted(what);
+        } else if !crs.names_heights() && other.names_heights() {
+            let unit = other.vertical_metres_per_unit;
+            crs = crs.with_heights_of(&other);
+            if unit.to_bits() != crs.metres_per_unit.to_bits() {
+                part.note(format!("the {source} name no heights; their unit is that of the {other_source}"));
             }
         }
-        if let Some(crs) = header.record(USER, 34735).and_then(Crs::from_geotiff_keys) {
-            return part.set_crs(crs, "GeoTIFF keys");
-        }
     }
-    part.note(if unread {
-        "its WKT record is not readable; coordinates are taken as metres"
-    } else {
-        "it names no reference system; coordinates are taken as metres"
-    });
+    part.set_crs(crs, source);
+}
+
+/// In what a record of a file contradicts another; `None` where it does not. Keys without a code say too little to.
+fn says_otherwise(record: &Crs, other: &Crs, somewhere: [f64; 2]) -> Option<String> {
+    let says_nothing = |crs: &Crs| crs.wkt.is_none() && crs.epsg.is_none() && crs.kind == other.kind;
+    if says_nothing(record) || (other.wkt.is_none() && other.epsg.is_none() && record.kind == other.kind) {
+        return None;
+    }
+    match record.compare(other, somewhere) {
+        Comparison::Apart(how) => Some(how),
+        Comparison::Same | Comparison::Unknown => None,
+    }
 }
 
 /// A file without a system whose scale and offset speak of degrees.
@@ -498,7 +546,7 @@ pub fn read_las_head<'a>(source: impl Into<Source<'a>>) -> Result<LasHead> {
         return Err(Error::malformed(&file.name, "has no bounds in its header; write it again, for example with PDAL"));
     }
     let mut part = FilePart::new(&file.name, "");
-    find_crs(&mut part, header);
+    find_crs(&mut part, header, [0, 1].map(|axis| f64::midpoint(bounds[axis][0], bounds[axis][1])));
     let kind = if header.adjusted_gps_time { GpsTimeKind::AdjustedStandard } else { GpsTimeKind::SecondsOfWeek };
     Ok(LasHead {
         points: file.points_in_file(),

@@ -23,6 +23,8 @@ pub(super) struct LasHeader {
     pub(super) bounds: [[f64; 2]; 3],
     /// Global encoding bit 0.
     pub(super) adjusted_gps_time: bool,
+    /// Global encoding bit 4: the system is that of the WKT record. Point formats from 6 on require it.
+    pub(super) wkt_decides: bool,
     /// Whether the number of points of the old and the new field differ.
     pub(super) counts_differ: bool,
     /// Whether Belvedere wrote the file.
@@ -91,6 +93,7 @@ pub(super) fn read_header(path: &Path, file: &mut (impl Read + Seek), size: u64)
             [fields.f64(219)?, fields.f64(211)?],
         ],
         adjusted_gps_time: version.1 >= 2 && fields.u16(6)? & 1 != 0,
+        wkt_decides: version.1 >= 4 && (fields.u16(6)? & 0x10 != 0 || format & 0x3f >= 6),
         counts_differ: legacy_points != 0 && long_points != 0 && legacy_points != long_points,
         records: Vec::new(),
         broken_records: 0,

@@ -8,7 +8,7 @@ use super::obj;
 use super::polygons::MeshReport;
 use super::source::{Source, unusable};
 use belvedere_data::crs::Crs;
-use belvedere_data::{Mesh, Result};
+use belvedere_data::{Error, Mesh, Result};
 
 /// The mesh of a source (`.obj`, `.ply`, or CityJSON as `.city.json`, `.json`, `.cityjson`) and what was left out of
 /// it. CityJSON is read at the highest level of detail of each object.
@@ -32,11 +32,14 @@ pub fn read_mesh<'a>(source: impl Into<Source<'a>>) -> Result<(Mesh, MeshReport)
 /// The same for a scene in the reference system `crs`, in metres.
 ///
 /// # Errors
-/// Those of [`read_mesh`], and [`belvedere_data::Error::UnusableCrs`] for a mesh in another system.
+/// Those of [`read_mesh`], and [`belvedere_data::Error::UnusableCrs`] for a mesh in another system, or in degrees.
 pub fn read_mesh_in<'a>(source: impl Into<Source<'a>>, crs: &Crs) -> Result<(Mesh, MeshReport)> {
     let source = source.into();
     let path = source.name().to_owned();
     let (mesh, report) = read_mesh(source)?;
     mesh.crs.check_for(crs, "mesh", &path)?;
+    if let Some(what) = mesh.vertices.first().and_then(|&vertex| mesh.crs.refusal(vertex)) {
+        return Err(Error::UnusableCrs { path, what });
+    }
     Ok((mesh.scaled_to_metres(crs), report))
 }

@@ -23,6 +23,8 @@ pub(super) struct FilePart {
     /// Scanner positions that `attributes.scanner_index` refers to.
     pub(super) scanners: Vec<[f64; 3]>,
     pub(super) crs: Crs,
+    /// A position of the file, in its unit, where one is known before its points are read.
+    pub(super) somewhere: Option<[f64; 3]>,
     /// Row of each point in the file where they are wanted and differ from 0, 1, 2 …
     pub(super) rows: Option<Vec<u64>>,
     /// Whether the file keeps its coordinates as f32.

@@ -16,6 +16,7 @@ use super::{assemble, pcd, ptx, vpc, xyz};
 use super::{masbcpp, npy};
 use belvedere_data::cloud::PointCloud;
 use belvedere_data::control::Control;
+use belvedere_data::crs::evidence::Comparison;
 use belvedere_data::crs::{Crs, CrsKind};
 use belvedere_data::{Error, Result};
 
@@ -34,6 +35,8 @@ pub struct ReadReport {
     pub crs: String,
     /// Where it was found, such as "WKT record" or "option"; empty where none is known.
     pub crs_source: String,
+    /// What in the files speaks against the reference system; `None` where nothing does.
+    pub doubt: Option<String>,
     /// Attributes that only some of the files have and the cloud therefore lacks.
     pub dropped_attributes: Vec<&'static str>,
     /// Files of a folder that are no point clouds although their names look so: tables without x, y and z.
@@ -146,11 +149,21 @@ impl Systems {
 
     /// Gives `part` the system of the option, and refuses one that cannot be used together with the others.
     pub(super) fn accept(&mut self, part: &mut FilePart, reading: &Reading<'_>) -> Result<()> {
-        if let Some(crs) = reading.forced {
-            part.set_crs(crs.clone(), "option");
+        let somewhere = part.somewhere.unwrap_or_else(|| assemble::any_position(part));
+        // a file without a point lies nowhere
+        let is_empty = part.somewhere.is_none() && part.coordinates.len() == 0;
+        let on_map = if is_empty { [f64::NAN; 2] } else { [somewhere[0], somewhere[1]] };
+        if let Some(beside) = crs_beside(&part.report.path)? {
+            take_crs_beside(part, beside, on_map);
+        }
+        if reading.forced.is_some() {
+            reading.check_given(&part.crs, on_map, &part.report.path)?;
+            part.set_crs(reading.system(&part.crs), "option");
         }
         let path = &part.report.path;
-        if let Some(what) = part.crs.refusal(assemble::any_position(part)) {
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        part.crs.doubt = part.crs.doubt.take().map(|doubt| format!("{name}: {doubt}"));
+        if let Some(what) = part.crs.refusal(somewhere) {
             return Err(Error::UnusableCrs { path: path.clone(), what });
         }
         if part.crs.kind == CrsKind::Unknown {
@@ -169,6 +182,42 @@ impl Systems {
             Some(_) => {}
         }
         Ok(())
+    }
+}
+
+/// What a `.prj` file beside a point cloud says of its reference system.
+///
+/// # Errors
+/// [`Error::Io`] and [`Error::Malformed`] for one that cannot be read.
+fn crs_beside(path: &Path) -> Result<Option<(Crs, PathBuf)>> {
+    let beside = path.with_extension("prj");
+    if !path.is_file() || !beside.is_file() {
+        return Ok(None);
+    }
+    let text = std::fs::read(&beside).map_err(Error::io(&beside))?;
+    match Crs::parse(&String::from_utf8_lossy(&text)) {
+        Ok(crs) => Ok(Some((crs, beside))),
+        Err(error) => Err(Error::malformed(&beside, format!("is no reference system: {error}"))),
+    }
+}
+
+/// Takes the system beside a file where the file names none, and doubts that of the file where it says something else.
+fn take_crs_beside(part: &mut FilePart, beside: (Crs, PathBuf), somewhere: [f64; 2]) {
+    let (crs, path) = beside;
+    let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    if part.crs.kind == CrsKind::Unknown {
+        part.report.notes.retain(|note| !note.contains("names no reference system"));
+        return part.set_crs(crs, format!("{name} beside it"));
+    }
+    if let Comparison::Apart(how) = crs.compare(&part.crs, somewhere) {
+        let what = format!(
+            "the file names {}, but {name} beside it {} ({how}); the first is used",
+            part.crs.describe(),
+            crs.describe()
+        );
+        part.crs = part.crs.clone().doubted(what);
+    } else {
+        part.crs = part.crs.clone().with_heights_of(&crs);
     }
 }
 

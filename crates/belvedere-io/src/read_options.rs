@@ -5,6 +5,8 @@ use belvedere_data::control::Control;
 use belvedere_data::crs::{Crs, CrsKind};
 use belvedere_data::{Bounds, Error, Frame, Parameter, Result};
 
+use std::path::Path;
+
 use super::part::{Coordinates, FilePart};
 
 /// How often readers that go point by point look whether the work was cancelled: a few milliseconds of points.
@@ -14,8 +16,11 @@ const POINTS_PER_CHECK: u64 = 1 << 14;
 #[derive(Clone, Debug, Default)]
 #[non_exhaustive]
 pub struct ReadOptions {
-    /// Reference system as for [`Crs::parse`], in place of what the files say. Default: none, the files are believed.
+    /// Reference system as for [`Crs::parse`] of files that name none, or the same. Default: none, the files are
+    /// believed.
     pub crs: Option<String>,
+    /// Whether `crs` holds against the files and the coordinates. Default: contradictions are errors.
+    pub crs_against_files: Insistence,
     /// Frame of the cloud, so that clouds that are read separately have comparable local positions. A frame without a
     /// reference system takes that of the files. Default: none, the origin is chosen near the middle of the points.
     pub frame: Option<Frame>,
@@ -27,6 +32,16 @@ pub struct ReadOptions {
     pub row_numbers: RowNumbers,
     /// Which axis of the files is up. Default: z.
     pub up: UpAxis,
+}
+
+/// What becomes of a reference system that is given and contradicted by what is known.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Insistence {
+    /// It is refused.
+    #[default]
+    Refuse,
+    /// It holds.
+    Insist,
 }
 
 /// Which axis of a file is up.
@@ -70,7 +85,14 @@ impl ReadOptions {
         Self::default()
     }
 
-    /// The same with a reference system in place of what the files say.
+    /// The same, and the given reference system holds whatever the files and the coordinates say.
+    #[must_use]
+    pub fn insisting_on_crs(mut self) -> Self {
+        self.crs_against_files = Insistence::Insist;
+        self
+    }
+
+    /// The same with a reference system for files that name none, or the same.
     #[must_use]
     pub fn with_crs(mut self, crs: impl Into<String>) -> Self {
         self.crs = Some(crs.into());
@@ -144,6 +166,9 @@ impl ReadOptions {
             }
             _ => {}
         }
+        if self.crs.is_none() && self.crs_against_files == Insistence::Insist {
+            return invalid(Parameter::CrsOverride, "given".to_owned(), "given together with a reference system");
+        }
         self.crs.as_deref().map(Crs::parse).transpose()
     }
 }
@@ -178,9 +203,30 @@ impl Reading<'_> {
         }
     }
 
+    /// Refuses the system of the option for a file at `path` that names `of_file`, at coordinates in its unit.
+    ///
+    /// # Errors
+    /// Those of [`Crs::check_given`].
+    pub(super) fn check_given(&self, of_file: &Crs, coordinates: [f64; 2], path: &Path) -> Result<()> {
+        match (self.forced, self.options.crs_against_files) {
+            (Some(given), Insistence::Refuse) => given.check_given(of_file, coordinates, path),
+            _ => Ok(()),
+        }
+    }
+
+    /// The system of a file that names `of_file`: the one of the option, with the heights of the file where it names
+    /// none.
+    pub(super) fn system(&self, of_file: &Crs) -> Crs {
+        match (self.forced, self.options.crs_against_files) {
+            (None, _) => of_file.clone(),
+            (Some(given), Insistence::Insist) => given.clone(),
+            (Some(given), Insistence::Refuse) => given.clone().with_heights_of(of_file),
+        }
+    }
+
     /// Which points of a file in the system `crs` are read, or `None` for all.
     pub(super) fn selection(&self, crs: &Crs) -> Option<Selection> {
-        let crs = self.forced.unwrap_or(crs);
+        let crs = &self.system(crs);
         let place = match (self.options.within, &self.options.frame) {
             (Some(Within::File { low, high }), _) => Some(SelectedBox::File { low, high }),
             (Some(Within::Local(bounds)), Some(frame)) => {

@@ -17,7 +17,7 @@ impl Serialize for ReadReport {
             let name = file.path.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
             file.notes.iter().map(move |note| format!("{name}: {note}"))
         });
-        let notes: Vec<String> = self.notes.iter().cloned().chain(of_files).collect();
+        let notes: Vec<String> = self.doubt.iter().chain(&self.notes).cloned().chain(of_files).collect();
         let mut map = serializer.serialize_map(None)?;
         map.serialize_entry("reference_system", if self.crs.is_empty() { "unknown" } else { &self.crs })?;
         map.serialize_entry("left_out", &left_out)?;

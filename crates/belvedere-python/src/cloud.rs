@@ -78,11 +78,12 @@ impl Seek for PythonFile<'_> {
 
 /// The cloud of some inputs, and the report on reading it as JSON.
 #[pyfunction]
-#[pyo3(signature = (inputs, crs, up, bounds, classes, progress))]
+#[pyo3(signature = (inputs, crs, crs_override, up, bounds, classes, progress))]
 pub(crate) fn read(
     py: Python<'_>,
     inputs: Vec<PyInput>,
     crs: Option<String>,
+    crs_override: bool,
     up: &str,
     bounds: Option<[[f64; 3]; 2]>,
     classes: Option<Vec<u8>>,
@@ -95,6 +96,9 @@ pub(crate) fn read(
     };
     let mut options = ReadOptions::new().with_up(up);
     options.crs = crs;
+    if crs_override {
+        options = options.insisting_on_crs();
+    }
     options.within = bounds.map(|[low, high]| Within::File { low, high });
     options.classes = classes;
     let (cloud, report) = run(py, progress, move |control| {

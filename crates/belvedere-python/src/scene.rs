@@ -13,7 +13,7 @@ use belvedere::apps::horizon::convergence;
 use belvedere::clean::CleanParams;
 use belvedere::crs::Crs;
 use belvedere::io::{
-    Output, is_ball_file, read_balls, read_horizon, read_mesh, read_stations, read_terrain, read_trajectory,
+    Output, is_ball_file, read_balls, read_horizon, read_mesh_in, read_stations, read_terrain, read_trajectory,
     write_balls,
 };
 use belvedere::medial::{CarvedParams, Rule, ShrinkMethod, ShrinkParams, Trees};
@@ -120,7 +120,7 @@ impl Choices {
             return Ok(OrientBy::Trajectory(read_trajectory(path, &frame.crs).map_err(exception)?.0));
         }
         if let Some(path) = &self.mesh {
-            return Ok(OrientBy::Mesh(read_mesh(path).map_err(exception)?.0.scaled_to_metres(&frame.crs)));
+            return Ok(OrientBy::Mesh(read_mesh_in(path, &frame.crs).map_err(exception)?.0));
         }
         match self.orient.as_deref() {
             None | Some("auto") => Ok(OrientBy::Auto),

@@ -10,7 +10,7 @@ use pyo3::prelude::*;
 pub(crate) struct System(pub(crate) Crs);
 
 /// What a system is made of, for pickling.
-type CrsState = (Option<String>, Option<u32>, Option<u32>, f64, f64, u8);
+type CrsState = (Option<String>, Option<u32>, Option<u32>, f64, f64, u8, Option<String>);
 
 const KINDS: [CrsKind; 5] =
     [CrsKind::Unknown, CrsKind::Projected, CrsKind::Geographic, CrsKind::Geocentric, CrsKind::Local];
@@ -25,18 +25,18 @@ impl System {
 
     #[staticmethod]
     fn from_state(state: CrsState) -> PyResult<Self> {
-        let (wkt, epsg, vertical_epsg, metres_per_unit, vertical_metres_per_unit, kind) = state;
+        let (wkt, epsg, vertical_epsg, metres_per_unit, vertical_metres_per_unit, kind, doubt) = state;
         let Some(&kind) = KINDS.get(usize::from(kind)) else {
             return Err(wrong("kind of reference system", &kind.to_string(), "unpickle with the version that pickled"));
         };
-        Ok(Self(Crs { wkt, epsg, vertical_epsg, metres_per_unit, vertical_metres_per_unit, kind }))
+        Ok(Self(Crs { wkt, epsg, vertical_epsg, metres_per_unit, vertical_metres_per_unit, kind, doubt }))
     }
 
     #[getter]
     fn state(&self) -> CrsState {
-        let Crs { wkt, epsg, vertical_epsg, metres_per_unit, vertical_metres_per_unit, kind } = self.0.clone();
+        let Crs { wkt, epsg, vertical_epsg, metres_per_unit, vertical_metres_per_unit, kind, doubt } = self.0.clone();
         let kind = (0..).zip(KINDS).find(|(_, known)| *known == kind).map_or(0, |(number, _)| number);
-        (wkt, epsg, vertical_epsg, metres_per_unit, vertical_metres_per_unit, kind)
+        (wkt, epsg, vertical_epsg, metres_per_unit, vertical_metres_per_unit, kind, doubt)
     }
 
     /// Well-known text, or `EPSG:CODE`, or nothing where no system is known.

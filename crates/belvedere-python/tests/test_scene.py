@@ -34,6 +34,25 @@ def wall():
     return belvedere.Scene(wall_on_a_plain(), method="tau", orient="given", keep_isolated=True)
 
 
+def test_a_system_that_contradicts_the_file_is_refused_unless_it_is_insisted_on(tmp_path):
+    path = tmp_path / "wall.las"
+    wall_on_a_plain().save(path)
+    assert belvedere.read(path, crs="EPSG:28992").crs == "EPSG:28992"
+    with pytest.raises(belvedere.BelvedereError, match=r"EPSG:2154.*wall\.las.*EPSG:28992"):
+        belvedere.read(path, crs="EPSG:2154")
+    assert belvedere.read(path, crs="EPSG:2154", crs_override=True).crs == "EPSG:2154"
+    with pytest.raises(belvedere.BelvedereError, match="crs_override"):
+        belvedere.read(path, crs_override=True)
+
+
+def test_a_location_far_from_the_system_is_refused_and_a_nearer_one_is_warned_of(wall):
+    with pytest.raises(belvedere.BelvedereError, match="swapped"):
+        wall.sun_position("2026-06-21T10:00Z", location=(5.39, 52.15))
+    with pytest.warns(belvedere.BelvedereWarning) as warned:
+        wall.shadow(time="2026-06-21T10:00Z", location=(52.4, 4.9), cell=5)
+    assert "location-far-away" in [one.message.key for one in warned]
+
+
 def test_the_shadow_of_a_wall_is_as_long_as_the_tangent_says(wall):
     # the sun stands in the grid's south at 45 degrees: shade reaches 6 m beyond the north face at y = 0.5
     y = np.arange(0.8, 15, 0.1)

@@ -13,7 +13,7 @@ use belvedere::apps::tree_light::CrownLight;
 use belvedere::control::Control;
 use belvedere::crs::Crs;
 use belvedere::ground::{Ground, GroundParams};
-use belvedere::io::{LasHead, atomic, cloud_files};
+use belvedere::io::{Insistence, LasHead, atomic, cloud_files};
 use belvedere::model::{ClearedArea, ModelParams, SurveyStatistics};
 use belvedere::query::Coverage;
 use belvedere::results::ResultKind;
@@ -41,8 +41,10 @@ const GROUND_AROUND: f64 = 32.0;
 pub struct PlanParams {
     /// Files, folders and catalogues of tiles.
     pub clouds: Vec<PathBuf>,
-    /// Reference system in place of what the files say.
+    /// Reference system of files that name none, or the same.
     pub crs: Option<String>,
+    /// Whether it holds against the files and their coordinates. Default: contradictions are errors.
+    pub crs_against_files: Insistence,
     /// Side of a tile, metres. Default 512: a multiple of the blocks of 64 m, so that no point is looked at for
     /// nothing.
     pub tile_size: f64,
@@ -62,6 +64,7 @@ impl Default for PlanParams {
         Self {
             clouds: Vec::new(),
             crs: None,
+            crs_against_files: Insistence::Refuse,
             tile_size: 512.0,
             cells: CellSizes::default(),
             places: Vec::new(),
@@ -79,8 +82,11 @@ pub struct Plan {
     pub program: String,
     /// Files of the survey.
     pub inputs: Vec<InputFile>,
-    /// Reference system that was given in place of what the files say.
+    /// Reference system that was given.
     pub(crate) crs: Option<String>,
+    /// Whether it holds against the files.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub(crate) crs_override: bool,
     frame: PlanFrame,
     pub(crate) columns: PointColumns,
     /// Side of a tile, metres.
@@ -128,6 +134,9 @@ pub struct PlanFrame {
     pub metres_per_unit: [f64; 3],
     /// Reference system as text; empty where it is not known.
     pub system: String,
+    /// What in the files speaks against it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub doubt: Option<String>,
 }
 
 /// What plans of all versions say.
@@ -147,10 +156,7 @@ impl Plan {
         check_sizes(params)?;
         let (mut inputs, heads) = inputs(&params.clouds)?;
         let with_crs = heads.iter().position(|head| head.crs.epsg.is_some() || head.crs.wkt.is_some()).unwrap_or(0);
-        let crs = match &params.crs {
-            Some(crs) => Crs::parse(crs)?,
-            None => heads[with_crs].crs.clone(),
-        };
+        let crs = system_of(params, &inputs, &heads, with_crs)?;
         let metres_per_unit = crs.metres_per_unit_xyz();
         let ends = |end: usize, axis: usize| {
             inputs.iter().filter(|file| file.points > 0).map(move |file| file.bounds[end][axis] * metres_per_unit[axis])
@@ -178,7 +184,7 @@ impl Plan {
             });
         }
         let system = crs.wkt.clone().or_else(|| crs.epsg.map(|code| format!("EPSG:{code}"))).unwrap_or_default();
-        let frame = PlanFrame { origin, metres_per_unit, system };
+        let frame = PlanFrame { origin, metres_per_unit, system, doubt: crs.doubt.clone() };
         if frame.to_frame().is_err() {
             let what =
                 format!("its reference system, {}, is not known to this program; give it with --crs", crs.describe());
@@ -189,7 +195,7 @@ impl Plan {
         let points = inputs.iter().map(|file| file.points).sum();
         let local = |v: [f64; 3]| [v[0] - origin[0], v[1] - origin[1]];
         let area = MapArea { low: local(low), high: local(high) };
-        let options = window::options(params.crs.as_deref(), frame.to_frame()?);
+        let options = window::options(params.crs.as_deref(), params.crs_against_files, frame.to_frame()?);
         let found = control.stage("surveying", usize::try_from(points).unwrap_or(0), || {
             survey(&files, &options, columns, points, &area, control)
         })?;
@@ -207,6 +213,7 @@ impl Plan {
             program: params.program.clone(),
             inputs,
             crs: params.crs.clone(),
+            crs_override: params.crs_against_files == Insistence::Insist,
             columns,
             tile_size: params.tile_size,
             cells: params.cells.clone(),
@@ -231,6 +238,11 @@ impl Plan {
             Some(memory) => plan.fitting(memory),
             None => Ok(plan),
         }
+    }
+
+    /// Whether the reference system that was given holds against the files.
+    pub(crate) fn insistence(&self) -> Insistence {
+        if self.crs_override { Insistence::Insist } else { Insistence::Refuse }
     }
 
     /// Reads the plan of a run.
@@ -501,17 +513,37 @@ impl Plan {
 
 impl PlanFrame {
     fn to_frame(&self) -> Result<Frame> {
-        let crs = if self.system.is_empty() {
-            Crs {
-                metres_per_unit: self.metres_per_unit[0],
-                vertical_metres_per_unit: self.metres_per_unit[2],
-                ..Crs::default()
-            }
-        } else {
-            Crs::parse(&self.system)?
+        let named = if self.system.is_empty() { Crs::default() } else { Crs::parse(&self.system)? };
+        // units may follow from another record than the system
+        let crs = Crs {
+            metres_per_unit: self.metres_per_unit[0],
+            vertical_metres_per_unit: self.metres_per_unit[2],
+            doubt: self.doubt.clone(),
+            ..named
         };
         Ok(Frame { origin: self.origin, crs })
     }
+}
+
+/// The reference system of a survey: the one that is given, with the heights of the files where it names none, or that
+/// of the file that names one.
+fn system_of(params: &PlanParams, inputs: &[InputFile], heads: &[LasHead], with_crs: usize) -> Result<Crs> {
+    let of_files = &heads[with_crs].crs;
+    let Some(text) = &params.crs else { return Ok(of_files.clone()) };
+    let given = Crs::parse(text)?;
+    if params.crs_against_files == Insistence::Insist {
+        return Ok(given);
+    }
+    for (input, head) in inputs.iter().zip(heads).filter(|(_, head)| head.points > 0) {
+        let middle = [0, 1].map(|axis| f64::midpoint(head.bounds[0][axis], head.bounds[1][axis]));
+        given.check_given(&head.crs, middle, &input.path)?;
+    }
+    Ok(given.with_heights_of(of_files))
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "the signature that serde calls")]
+fn is_false(value: &bool) -> bool {
+    !value
 }
 
 fn without_ground(value: String) -> Error {

@@ -4,7 +4,7 @@ use crate::grid::MapArea;
 use crate::inputs::PointColumns;
 use crate::plan::Plan;
 use belvedere::control::Control;
-use belvedere::io::{ReadOptions, Within, read_batches};
+use belvedere::io::{Insistence, ReadOptions, Within, read_batches};
 use belvedere::{Attributes, Error, Frame, PointCloud, Result};
 
 /// The points of the plan's files within `area`, in the order of the files and of their points.
@@ -22,18 +22,20 @@ pub(crate) fn read(plan: &Plan, area: &MapArea, control: &Control<'_>) -> Result
     if files.is_empty() {
         return Ok(cloud);
     }
-    let options = options(plan.crs.as_deref(), plan.frame()?).with_points_within(Within::Local(column));
+    let options =
+        options(plan.crs.as_deref(), plan.insistence(), plan.frame()?).with_points_within(Within::Local(column));
     for batch in read_batches(files, &options, control)? {
         append(&mut cloud, batch?.cloud, plan.columns);
     }
     Ok(cloud)
 }
 
-pub(crate) fn options(crs: Option<&str>, frame: Frame) -> ReadOptions {
+pub(crate) fn options(crs: Option<&str>, insistence: Insistence, frame: Frame) -> ReadOptions {
     let options = ReadOptions::new().with_frame(frame);
-    match crs {
-        Some(crs) => options.with_crs(crs),
-        None => options,
+    match (crs, insistence) {
+        (Some(crs), Insistence::Refuse) => options.with_crs(crs),
+        (Some(crs), Insistence::Insist) => options.with_crs(crs).insisting_on_crs(),
+        (None, _) => options,
     }
 }
 

@@ -38,6 +38,7 @@ mod sky_view;
 pub mod sun;
 mod sun_hours;
 mod sun_position;
+mod terrain_heights;
 mod trees;
 mod viewer;
 mod viewshed;
@@ -71,7 +72,7 @@ pub use sun::{Days, NamedSun, SunPlace, Suns};
 pub use sun_hours::{PreparedSun, SunHoursQuestion, rules};
 pub use sun_position::{SunPositionQuestion, SunStands};
 pub use trees::ThroughTrees;
-pub use viewer::{remark_on_cleared, remark_on_eye, remark_on_outside};
+pub use viewer::{remark_on_cleared, remark_on_doubt, remark_on_eye, remark_on_outside};
 pub use viewshed::{
     FarSeen, SeenSection, StandingObserver, ViewLimits, ViewshedQuestion, ViewshedResults, ViewshedTargets,
 };
@@ -215,6 +216,8 @@ pub trait Ask {
 pub fn ask<Q: Ask>(scene: &Scene, question: &Q, places: &Places, control: &Control<'_>) -> Result<Answers<Q::Found>> {
     question.check()?;
     let mut context = Context::default();
+    scene.whereabouts().remark(&mut context);
+    context.add(scene.remark_on_terrain());
     let answers = question.answer(scene, places, &mut context, control)?;
     Ok(answers.with(context))
 }
@@ -241,7 +244,8 @@ impl<F> Answers<F> {
 impl Context {
     /// Adds a remark, if there is one.
     pub fn add(&mut self, remark: Option<Remark>) {
-        self.remarks.extend(remark);
+        // what is found on two ways is said once
+        self.remarks.extend(remark.filter(|remark| !self.remarks.contains(remark)));
     }
 
     /// Adds a line of the answer.

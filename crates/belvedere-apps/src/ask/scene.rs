@@ -1,12 +1,17 @@
 //! The scene that questions are put to: a model with its cloud, and what takes long to make and several questions need.
 
+use super::terrain_heights;
+use super::viewer::remark_on_doubt;
+use super::{Context, Remark};
 use crate::horizon::convergence;
 use belvedere_core::ground::{Ground, GroundParams, GroundPoints, GroundReport, MapGrid};
 use belvedere_core::model::SceneModel;
 use belvedere_core::query::{BlockRule, MedialScene, Proof, UnprovenAs};
 use belvedere_data::control::Control;
 use belvedere_data::crs::CrsKind;
+use belvedere_data::crs::evidence::{CONTRADICTION_DISTANCE, distance_in_words};
 use belvedere_data::frame::{Bounds, Frame};
+use belvedere_data::report::rounded;
 use belvedere_data::{Error, Parameter, PointCloud, Result};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -51,11 +56,34 @@ impl Whereabouts<'_> {
         convergence(&self.frame.crs, [0, 1].map(|axis| self.frame.origin[axis] + place[axis])).ok()
     }
 
+    /// Remarks on what speaks against the reference system.
+    pub fn remark(&self, context: &mut Context) {
+        let (crs, origin) = (&self.frame.crs, self.frame.origin);
+        context.add(remark_on_doubt(crs.doubt.as_deref()));
+        let middle = self.middle();
+        let of_file = [0, 1].map(|axis| (origin[axis] + middle[axis]) / crs.metres_per_unit);
+        let distance = crs.distance_to_area_of_use(of_file).filter(|&distance| distance > OUTSIDE_AREA);
+        context.add(distance.map(|distance| {
+            let how_far = if distance.is_finite() { distance_in_words(distance) } else { "far".to_owned() };
+            let text = format!("the scene lies {how_far} outside of the area of use of {}", crs.describe());
+            let remark = Remark::warning("outside-area-of-use", text);
+            let remark = match distance.is_finite() {
+                true => remark.with("distance_km", rounded(distance / 1000.0, 1)),
+                false => remark,
+            };
+            // countries use zones beyond their edges
+            if distance > CONTRADICTION_DISTANCE { remark } else { remark.into_note() }
+        }));
+    }
+
     /// What titles say where far terrain counts.
     pub(super) fn far_in_words(&self) -> &'static str {
         if self.has_far_terrain { ", with far terrain" } else { "" }
     }
 }
+
+/// Boxes of areas of use are rounded, metres.
+const OUTSIDE_AREA: f64 = 2e3;
 
 /// The ground on a grid, and where it came from.
 pub struct KnownGround {
@@ -220,6 +248,12 @@ impl Scene {
             value: "given".to_owned(),
             expected: "left out: it needs pulses, from a cloud with known scanner positions or an .npz ball file of such a cloud",
         })
+    }
+
+    /// A warning where far terrain and the scene disagree on heights.
+    pub(super) fn remark_on_terrain(&self) -> Option<Remark> {
+        let grid = self.model.far_terrain().grid()?;
+        terrain_heights::remark(grid, self.model.balls(), self.model.frame().origin[2])
     }
 
     /// Where it lies.

@@ -11,10 +11,12 @@ use crate::sun::{
 };
 use crate::sun_hours::RuleDays;
 use crate::tree_light::Season;
+use belvedere_data::crs::evidence::{CONTRADICTION_DISTANCE, distance_in_words, distance_on_earth, place_in_words};
 use belvedere_data::frame::{Bounds, Frame};
 use belvedere_data::report::rounded;
 use belvedere_data::{Error, Parameter, Result};
 use serde::{Deserialize, Serialize};
+use std::fmt::{Display, Formatter};
 
 /// Most suns of which the report says where they stand.
 pub const MAX_LISTED_SUNS: usize = 5;
@@ -32,6 +34,32 @@ pub struct SunPlace {
     pub refraction: Refraction,
     /// Which north azimuths count from.
     pub north: North,
+}
+
+/// Locations this near, metres, are those of a scene: the sun stands 0.1° elsewhere.
+const NEAR: f64 = 10e3;
+
+/// A given location beside that of the reference system.
+struct LocationBeside {
+    /// Degrees.
+    given: [f64; 2],
+    /// Radians.
+    by_crs: [f64; 2],
+    /// Metres.
+    distance: f64,
+    is_swapped: bool,
+}
+
+impl Display for LocationBeside {
+    fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
+        let ([latitude, longitude], distance) = (self.given, distance_in_words(self.distance));
+        let by_crs = place_in_words(self.by_crs);
+        write!(f, "{latitude},{longitude}, {distance} from where the reference system puts the scene ({by_crs})")?;
+        if self.is_swapped {
+            write!(f, ": latitude and longitude look swapped")?;
+        }
+        Ok(())
+    }
 }
 
 /// Suns, one by one.
@@ -95,17 +123,43 @@ impl SunPlace {
     /// Where the middle of a scene lies on earth: as given, else as its reference system says, else `elsewhere`.
     ///
     /// # Errors
-    /// [`Error::InvalidParameter`] where nothing says it, and those of [`Site::of_scene`].
+    /// [`Error::InvalidParameter`] where nothing says it, for a given location that is far from what the reference
+    /// system says, and those of [`Site::of_scene`].
     pub fn site_of(&self, frame: &Frame, bounds: &Bounds, elsewhere: Option<[f64; 2]>) -> Result<(Site, SiteFrom)> {
         let given = self.location.map(|location| location.map(f64::to_radians));
-        Site::of_scene(frame, bounds, given, elsewhere).or_else(|error| match error {
-            Error::MissingAttribute { .. } => refused(
-                Parameter::Location,
-                "unknown",
-                "given as latitude and longitude, or follow from a reference system of the scene (EPSG:CODE)",
-            ),
+        let unknown = |value: String| {
+            let expected =
+                "given as latitude and longitude, or follow from a reference system of the scene (EPSG:CODE)";
+            refused(Parameter::Location, value, expected)
+        };
+        let found = Site::of_scene(frame, bounds, given, elsewhere).or_else(|error| match error {
+            Error::MissingAttribute { .. } => unknown("unknown".to_owned()),
+            Error::InvalidParameter { parameter: Parameter::ReferenceSystem, value, .. } => {
+                unknown(format!("unknown by {value}"))
+            }
+            Error::InvalidParameter {
+                parameter: Parameter::Position | Parameter::LatitudeLongitude, value, ..
+            } if given.is_none() => unknown(format!("unknown by {} at {value}", frame.crs.describe())),
             other => Err(other),
-        })
+        })?;
+        match self.beside(frame, bounds) {
+            Some(beside) if beside.distance > CONTRADICTION_DISTANCE => {
+                let expected = "near the scene, or left out; where the reference system is wrong, give the right one with its override";
+                refused(Parameter::Location, beside.to_string(), expected)
+            }
+            _ => Ok(found),
+        }
+    }
+
+    /// How far the given location is from what the reference system says.
+    fn beside(&self, frame: &Frame, bounds: &Bounds) -> Option<LocationBeside> {
+        let given = self.location?;
+        let (by_crs, _) = Site::of_scene(frame, bounds, None, None).ok()?;
+        let by_crs = [by_crs.latitude, by_crs.longitude];
+        let distance_of = |place: [f64; 2]| distance_on_earth(place.map(f64::to_radians), by_crs);
+        let (distance, swapped) = (distance_of(given), distance_of([given[1], given[0]]));
+        let is_swapped = distance > CONTRADICTION_DISTANCE && swapped < CONTRADICTION_DISTANCE;
+        Some(LocationBeside { given, by_crs, distance, is_swapped })
     }
 
     pub(super) fn site(&self, scene: &Scene, context: &mut Context, elsewhere: Option<[f64; 2]>) -> Result<Site> {
@@ -123,6 +177,12 @@ impl SunPlace {
         elsewhere: Option<[f64; 2]>,
     ) -> Result<Site> {
         let found = self.site_of(whereabouts.frame, &whereabouts.bounds, elsewhere)?;
+        let beside = self.beside(whereabouts.frame, &whereabouts.bounds).filter(|beside| beside.distance > NEAR);
+        context.add(beside.map(|beside| {
+            let text = format!("the location is {beside}");
+            Remark::warning("location-far-away", text).with("distance_km", rounded(beside.distance / 1000.0, 1))
+        }));
+        context.add(North::True.of(whereabouts.convergence_at(whereabouts.middle())).remark());
         context.report.location = Some(LocationSection::of(&found));
         Ok(found.0)
     }

@@ -19,6 +19,12 @@ pub fn remark_on_outside(outside: usize, count: usize, things: &str) -> Option<R
     Remark::of_share("targets-outside-cloud", outside, count, things, OUTSIDE_CLOUD)
 }
 
+/// A warning of what speaks against a reference system.
+#[must_use]
+pub fn remark_on_doubt(doubt: Option<&str>) -> Option<Remark> {
+    doubt.map(|doubt| Remark::warning("reference-system-doubtful", doubt))
+}
+
 /// A warning that nothing was cleared, where `points` of the cloud were.
 #[must_use]
 pub fn remark_on_cleared(points: usize) -> Option<Remark> {

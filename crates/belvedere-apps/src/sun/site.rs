@@ -1,6 +1,6 @@
 //! Where on earth a scene lies.
 
-use crate::horizon::convergence;
+use crate::horizon::{convergence, far_outside};
 use belvedere_core::query::earth::EARTH_RADIUS;
 use belvedere_data::crs::Crs;
 use belvedere_data::frame::{Bounds, Frame};
@@ -45,7 +45,8 @@ impl Site {
     /// Where it lies on earth follows from `location`, latitude and longitude in radians, where given; else from the
     /// reference system of `frame`; else from `elsewhere`, such as the place of a weather station. The height is that
     /// of the middle of the scene, and the axes of its grid lie as its reference system says, whatever names the place;
-    /// along the meridian where that is not known.
+    /// along the meridian where that is not known. A `location` that is far from what the reference system says is not
+    /// refused here, but by [`SunPlace::site_of`](crate::ask::SunPlace::site_of).
     ///
     /// # Errors
     /// Those of [`Site::of`] where nothing says where the scene lies, and of [`Site::validate`].
@@ -57,14 +58,15 @@ impl Site {
     ) -> Result<(Self, SiteFrom)> {
         let (low, high) = bounds.corners();
         let middle: [f64; 3] = std::array::from_fn(|i| frame.origin[i] + f64::midpoint(low[i], high[i]));
-        let by_crs = Self::of(&frame.crs, [middle[0], middle[1]], middle[2]);
+        let on_map = [middle[0], middle[1]];
+        let by_crs = Self::of(&frame.crs, on_map, middle[2]);
         let (place, from) = match (location, elsewhere) {
             (Some(place), _) => (place, SiteFrom::Location),
             (None, Some(place)) if by_crs.is_err() => (place, SiteFrom::Elsewhere),
             _ => return Ok((by_crs?, SiteFrom::ReferenceSystem)),
         };
         let [latitude, longitude] = place;
-        let convergence = by_crs.map_or(0.0, |site| site.convergence);
+        let convergence = convergence(&frame.crs, on_map).unwrap_or(0.0);
         let site = Self { latitude, longitude, height: middle[2].clamp(LOWEST, HIGHEST), convergence };
         Ok((site.validate()?, from))
     }
@@ -94,6 +96,10 @@ impl Site {
             }
             other => other?,
         };
+        if let Some(value) = far_outside(crs, position) {
+            let expected = "one whose area of use holds the scene";
+            return Err(Error::InvalidParameter { parameter: Parameter::ReferenceSystem, value, expected });
+        }
         let [latitude, longitude] = projection.unproject(position)?;
         let height = height.clamp(LOWEST, HIGHEST);
         Self { latitude, longitude, height, convergence: convergence(crs, position)? }.validate()

@@ -36,9 +36,14 @@ pub(crate) struct CityPlan {
     /// one look at the whole.
     #[arg(value_name = "CLOUD", required = true)]
     pub(crate) clouds: Vec<PathBuf>,
-    /// Coordinate reference system, as EPSG:CODE or WKT [default: that of the files]
+    /// Coordinate reference system of files that name none, as EPSG:CODE or WKT [default: that of the files]
+    ///
+    /// One that contradicts a file, or whose area of use is more than 300 km away, is refused: see --crs-override.
     #[arg(long, value_name = "CRS", value_parser = known_crs)]
     pub(crate) crs: Option<String>,
+    /// Use --crs whatever the files and the coordinates say
+    #[arg(long, requires = "crs", hide_short_help = true)]
+    pub(crate) crs_override: bool,
     /// A sun direction for a shadow map: azimuth clockwise from true north and elevation, in degrees; repeatable
     ///
     /// See --grid-north.

@@ -2,6 +2,7 @@
 
 use super::balls::trees;
 use super::{OrientChoice, known_crs};
+use belvedere::io::ReadOptions;
 use belvedere::medial::Trees;
 use clap::{Args, ValueEnum};
 use serde::Deserialize;
@@ -15,15 +16,30 @@ pub(crate) struct CloudInput {
     /// web server (https://...). A folder with coords.npy is read in the layout of masbcpp.
     #[arg(value_name = "CLOUD", required = true, help_heading = None::<&'static str>)]
     pub(crate) clouds: Vec<PathBuf>,
-    /// Coordinate reference system, as EPSG:CODE or WKT [default: that of the file]
+    /// Coordinate reference system of files that name none, as EPSG:CODE or WKT [default: that of the file]
+    ///
+    /// One that contradicts the file, or whose area of use is more than 300 km away, is refused: see --crs-override.
+    /// Where it names no heights, their unit is that of the file.
     #[arg(long, value_name = "CRS", value_parser = known_crs, help_heading = "Scene")]
     pub(crate) crs: Option<String>,
+    /// Use --crs whatever the files and the coordinates say
+    #[arg(long, requires = "crs", help_heading = "Scene", hide_short_help = true)]
+    pub(crate) crs_override: bool,
     /// Axis of the clouds that is up: z, or y as in computer graphics
     ///
     /// With y, coordinates x, y, z are read as x, -z, y. Results are in these coordinates, and so are observers and
     /// targets.
     #[arg(long, value_enum, value_name = "AXIS", default_value_t = UpChoice::Z, help_heading = "Scene", hide_short_help = true)]
     pub(crate) up: UpChoice,
+}
+
+impl CloudInput {
+    /// How the clouds are read.
+    pub(crate) fn read_options(&self) -> ReadOptions {
+        let mut options = ReadOptions::new().with_up(self.up.into());
+        options.crs.clone_from(&self.crs);
+        if self.crs_override { options.insisting_on_crs() } else { options }
+    }
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]

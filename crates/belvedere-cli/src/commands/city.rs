@@ -10,6 +10,7 @@ use crate::summary::{Summary, rounded};
 use anyhow::{Result, bail};
 use belvedere::apps::ask::remark_on_cleared;
 use belvedere::apps::tree_light::Transmissivity;
+use belvedere::io::Insistence;
 use belvedere::{Error, Parameter};
 use belvedere_tiles::{
     Plan, PlanParams, RunParams, Shard, SideFile, Steps, TileQuestion, merge, run as run_tiles, status as status_of,
@@ -36,6 +37,7 @@ fn plan(arguments: &CityPlan, global: &Global) -> Result<Summary> {
     let params = PlanParams {
         clouds: arguments.clouds.clone(),
         crs: arguments.crs.clone(),
+        crs_against_files: if arguments.crs_override { Insistence::Insist } else { Insistence::Refuse },
         tile_size: arguments.tile_size,
         cells: questions::cells(arguments)?,
         places: arguments.observers.iter().filter(|place| place.1.is_none()).map(|place| place.0).collect(),

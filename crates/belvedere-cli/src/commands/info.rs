@@ -5,7 +5,7 @@ use crate::pipeline::{self, is_file};
 use crate::run::CommandContext;
 use crate::summary::{Summary, rounded, sections, whole};
 use anyhow::Result;
-use belvedere::io::{ReadOptions, is_ball_file, read_balls, read_cloud};
+use belvedere::io::{is_ball_file, read_balls, read_cloud};
 use belvedere::model::ModelParts;
 use belvedere::pulses::{FoundBy, LocateParams, Means, ScannerReport, locate};
 use belvedere::summary::{CloudSummary, FacadeSummary, SurveyKind};
@@ -21,11 +21,9 @@ pub(crate) fn run(arguments: &Info, global: &Global) -> Result<Summary> {
     }
     let mut summary = Summary::default();
     summary.is_report();
-    let mut options = ReadOptions::new();
-    options.crs = arguments.input.crs.clone();
-    options.up = arguments.input.up.into();
+    let options = arguments.input.read_options();
     let (cloud, report) = run.stage("reading", 0, |control| read_cloud(&arguments.input.clouds, &options, control))?;
-    pipeline::warn_of_missing(&report, &mut summary);
+    pipeline::warn_of_files(&report, &mut summary);
     let files = report.files.iter().map(|file| {
         let mut section = Summary::default();
         section

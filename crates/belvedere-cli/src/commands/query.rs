@@ -9,7 +9,7 @@ use anyhow::{Result, bail};
 use belvedere::apps::ask;
 use belvedere::depth::{ItemBuffer, Profile, depth_map};
 use belvedere::io::{
-    ExtraColumn, ExtraValues, ReadOptions, TextRows, WriteReport, read_cloud, read_text_rows, write_cloud,
+    ExtraColumn, ExtraValues, ReadOptions, TextRows, UpAxis, WriteReport, read_cloud, read_text_rows, write_cloud,
     write_npy_u8, write_text_rows,
 };
 use belvedere::model::SceneModel;
@@ -206,7 +206,7 @@ fn targets(
         return Ok(frame(run.compute("choosing random targets", || random_targets(low, high, count, run.seed))));
     }
     if let Some(path) = &arguments.targets.targets {
-        return points_of_file(path, arguments.scene.input.crs.clone(), &scene.frame, run);
+        return points_of_file(path, &arguments.scene.input.read_options().with_up(UpAxis::Z), &scene.frame, run);
     }
     if scene.is_empty() {
         return Err(Usage("--self needs a cloud; a ball file has no points".to_owned()).into());
@@ -214,17 +214,15 @@ fn targets(
     Ok(scene)
 }
 
-/// The points of a file as a cloud in the frame of the scene, which is in `crs` where the file says nothing.
+/// The points of a file as a cloud in the frame of the scene, read with these options.
 pub(super) fn points_of_file(
     path: &Path,
-    crs: Option<String>,
+    options: &ReadOptions,
     frame: &Frame,
     run: &mut CommandContext,
 ) -> Result<PointCloud> {
-    let mut options = ReadOptions::new();
-    options.crs = crs;
     let (cloud, report) =
-        run.stage("reading targets", 0, |control| read_cloud(&[path.to_owned()], &options, control))?;
+        run.stage("reading targets", 0, |control| read_cloud(&[path.to_owned()], options, control))?;
     pipeline::check_every_row(&report)?;
     run.summary.add("reading_targets", Summary::of(&report));
     cloud.frame.crs.check_for(&frame.crs, "cloud of targets", path)?;

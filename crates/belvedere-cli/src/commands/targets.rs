@@ -12,7 +12,7 @@ use belvedere::apps::ask::{GridCells, OnTargets, Places, Scene, Turned};
 use belvedere::apps::targets::{CellLevel, Facing, Measure, MeshParams};
 use belvedere::figures::{Picture, write_png};
 use belvedere::ground::{GroundPoints, highest_points};
-use belvedere::io::{Georeference, atomic, write_tif_u8};
+use belvedere::io::{Georeference, ReadOptions, atomic, write_tif_u8};
 use belvedere::raster::Raster;
 use belvedere::results::{ResultKind, TakenFrom, georeference, measure_map, write_measures, write_raster};
 use belvedere::{Mesh, PointCloud};
@@ -121,7 +121,7 @@ impl SkyPlaces {
             let params = self.spacing.map_or(usual, |spacing| usual.with_spacing(spacing));
             return Ok((Places::Mesh(Arc::clone(&mesh), params), TargetSource::Mesh(mesh)));
         }
-        let cloud = Arc::new(points_of_file(path, None, scene.frame(), run)?);
+        let cloud = Arc::new(points_of_file(path, &ReadOptions::new(), scene.frame(), run)?);
         let normals = match (self.facing, &cloud.attributes.normals) {
             (Some(FacingChoice::Normals), None) => {
                 let what = "--facing normals: the points have none; `belvedere normals` estimates them";

@@ -12,6 +12,7 @@ use anyhow::{Result, bail};
 use belvedere::Error;
 use belvedere::apps::ask::{self, Ask, Places};
 use belvedere::apps::window_views::{SeenKind, are_made_from};
+use belvedere::io::ReadOptions;
 use belvedere::query::UnprovenAs;
 use results::WindowOutput;
 
@@ -97,7 +98,7 @@ fn take_classes(arguments: &WindowViewsArguments, scene: &mut LoadedScene, run: 
         );
     }
     let frame = &scene.cloud.frame;
-    let cloud = run.aside(|run| super::query::points_of_file(path, None, frame, run)).0?;
+    let cloud = run.aside(|run| super::query::points_of_file(path, &ReadOptions::new(), frame, run)).0?;
     if !are_made_from(scene.model.balls(), &cloud.positions) {
         bail!("--classes-of {}: the balls were not built from this cloud", path.display());
     }

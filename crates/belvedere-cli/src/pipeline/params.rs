@@ -6,7 +6,7 @@ use crate::scene_config::BallParameters;
 use anyhow::Result;
 use belvedere::clean::CleanParams;
 use belvedere::crs::Crs;
-use belvedere::io::{read_mesh, read_stations, read_trajectory};
+use belvedere::io::{read_mesh_in, read_stations, read_trajectory};
 use belvedere::medial::{CarvedParams, ShrinkMethod, ShrinkParams};
 use belvedere::model::{BallParams, ModelParams, OrientBy};
 use belvedere::normals::estimate::Neighborhood;
@@ -40,9 +40,8 @@ pub(crate) fn model(
             OrientBy::Trajectory(trajectory)
         }
         OrientChoice::Mesh(path) => {
-            let (mesh, _) = run.stage("reading mesh", 0, |_| read_mesh(path))?;
             // like every position that is typed or read, in the unit of the cloud's file
-            OrientBy::Mesh(mesh.scaled_to_metres(crs))
+            OrientBy::Mesh(run.stage("reading mesh", 0, |_| read_mesh_in(path, crs))?.0)
         }
     };
     Ok(defaults

@@ -38,7 +38,46 @@ fn web_mercator_is_refused_with_a_system_to_convert_to() {
     let words = ["web.laz", "Web Mercator", "EPSG:32631", "reprojection"];
     place.refusal(1, "info web.laz", &words);
     place.write_cloud("house.laz", &house());
-    place.refusal(1, "info house.laz --crs EPSG:3857", &["Web Mercator"]);
+    place.refusal(2, "info house.laz --crs EPSG:3857", &["--crs", "EPSG:3857", "EPSG:28992"]);
+    place.refusal(1, "info house.laz --crs EPSG:3857 --crs-override", &["Web Mercator"]);
+}
+
+#[test]
+fn what_contradicts_the_file_is_refused_by_every_command_that_takes_it() {
+    let place = Workplace::new();
+    place.write_cloud("house.laz", &house());
+    let words = ["--crs", "house.laz", "EPSG:2154", "EPSG:28992", "km apart", "override"];
+    for command in [
+        "info house.laz",
+        "balls house.laz -o balls.npz",
+        "shadow house.laz --sun 180,30 -o a.tif",
+        "query house.laz --sun 180,30 --random 5 -o a.csv",
+        "city plan house.laz --sky-view --cell 4 -o run",
+    ] {
+        place.refusal(2, &format!("{command} --crs EPSG:2154"), &words);
+        place.refusal(2, &format!("{command} --crs-override"), &["--crs"]);
+    }
+    assert_eq!(place.summary("info house.laz --crs EPSG:2154 --crs-override")["crs"], "EPSG:2154");
+    place.summary("city plan house.laz --sky-view --cell 4 -o run --crs EPSG:2154 --crs-override");
+    // where the file names nothing, the area of use speaks
+    let mut unnamed = house();
+    unnamed.frame.crs = Crs::default();
+    place.write_cloud("unnamed.ply", &unnamed);
+    place.refusal(2, "info unnamed.ply --crs EPSG:2056", &["unnamed.ply", "EPSG:2056", "area of use"]);
+}
+
+#[test]
+fn a_location_far_from_the_reference_system_is_refused_and_a_near_one_has_a_remark() {
+    let place = Workplace::new();
+    place.write_cloud("house.laz", &house());
+    let shadow =
+        |location: &str| format!("shadow {HOUSE} --time 2026-06-21T10:00Z --cell 4 --location {location} -o a.tif");
+    place.refusal(2, &shadow("4.37,52"), &["--location", "swapped", "52.00° N 4.37° E"]);
+    place.refusal(2, &shadow("-52,4.37"), &["--location", "km from where"]);
+    let keys = |location: &str| place.summary(&shadow(location))["remarks"].to_string();
+    let far = keys("52.37,4.9");
+    assert!(far.contains("location-far-away") && far.contains("distance_km"), "{far}");
+    assert!(!keys("52,4.37").contains("location-far-away"));
 }
 
 #[test]

@@ -213,8 +213,10 @@ fn targets_in_another_reference_system_are_refused() {
     let words = ["belgian.laz", "EPSG:31370", "EPSG:28992", "convert"];
     place.refusal(1, "query house.laz --sun 180,30 --targets belgian.laz -o out.laz", &words);
     assert!(!place.path("out.laz").exists());
-    // said to be the same for all
+    // said to be the same for all, against what one file says
     let arguments = "query house.laz --sun 180,30 --targets belgian.laz -o out.laz --crs EPSG:28992";
+    place.refusal(2, arguments, &["--crs", "belgian.laz", "EPSG:31370", "EPSG:28992"]);
+    let arguments = &format!("{arguments} --crs-override");
     assert_eq!(count(&place.summary(arguments), "targets"), house().len());
 }
 

@@ -178,7 +178,7 @@ fn what_cannot_be_is_refused_with_advice() {
         ("--sun 180 -o no.csv", "2 numbers"),
         ("--sun nan,30 -o no.csv", "finite"),
         ("--sun 180,30 --time 2026-06-21T15:00Z -o no.csv", "--time"),
-        ("--date shortest-day --location 80,15 -o no.csv", "does not rise"),
+        ("--date shortest-day --location 80,15 -o no.csv", "km from where the reference system puts the scene"),
         ("--date 2026-06-21 --min-sun-elevation 80 -o no.csv", "the sun stays below it"),
         ("--date 2026-06-21 --min-sun-elevation 95 -o no.csv", "--min-sun-elevation: minimum elevation"),
         ("--date 2026-06-21 --time-step-min 120 -o no.csv", "--time-step-min: "),

@@ -29,11 +29,19 @@ pub(super) fn wkt(_text: &str) -> Option<String> {
     None
 }
 
+pub(super) fn area_of_use(_code: u32) -> Option<[f64; 4]> {
+    None
+}
+
 /// A projection that cannot be made.
 pub(super) enum CrsProjection {}
 
 impl CrsProjection {
     pub(super) fn new(_definition: &str) -> Result<Self, String> {
+        Err(REASON.to_owned())
+    }
+
+    pub(super) fn untied(_definition: &str) -> Result<Self, String> {
         Err(REASON.to_owned())
     }
 

@@ -32,7 +32,7 @@ pub(super) fn to_json(parts: &ModelParts, units: &str) -> String {
     let crs = &parts.frame.crs;
     let provenance: Map<String, Value> =
         parts.provenance.iter().map(|(k, v)| (k.clone(), Value::String(v.clone()))).collect();
-    json!({
+    let mut json = json!({
         "format": FORMAT,
         "units": units,
         "origin": parts.frame.origin,
@@ -46,8 +46,11 @@ pub(super) fn to_json(parts: &ModelParts, units: &str) -> String {
             "kind": KINDS.iter().find(|(kind, _)| *kind == crs.kind).map(|&(_, name)| name),
         },
         "provenance": provenance,
-    })
-    .to_string()
+    });
+    if let Some(doubt) = &crs.doubt {
+        json["crs"]["doubt"] = doubt.as_str().into();
+    }
+    json.to_string()
 }
 
 /// What [`to_json`] keeps; what a file lacks is `None` or the default.
@@ -92,6 +95,7 @@ pub(super) fn from_json(text: &str) -> Result<Metadata, String> {
             vertical_metres_per_unit: unit("vertical_metres_per_unit")?,
             // balls are only ever made in a plane
             kind: named.unwrap_or(if is_known { CrsKind::Projected } else { CrsKind::Unknown }),
+            doubt: crs["doubt"].as_str().map(str::to_owned),
         },
         provenance: provenance.filter_map(|(k, v)| Some((k.clone(), v.as_str()?.to_owned()))).collect(),
         origin: three(&value["origin"]),

@@ -211,6 +211,7 @@ def read(
     source: Source | list[Source],
     *,
     crs: str | None = None,
+    crs_override: bool = False,
     up: str = "z",
     name: str | None = None,
     bounds: npt.ArrayLike | None = None,
@@ -224,7 +225,10 @@ def read(
     source : path, bytes, binary file, laspy object, or a list of these
         ``.las .laz .copc.laz .ply .xyz .txt .csv .pcd .e57 .ptx .npy``, or a folder of them. Several become one cloud.
     crs : str, optional
-        Coordinate reference system in place of what the file says, such as ``"EPSG:28992"``.
+        Coordinate reference system of files that name none, such as ``"EPSG:28992"``. One that contradicts a file, or
+        whose area of use is more than 300 km away, is refused.
+    crs_override : bool
+        Use `crs` whatever the files and the coordinates say.
     up : {'z', 'y'}
         Which axis of the file is up.
     name : str, optional
@@ -246,7 +250,8 @@ def read(
     Raises
     ------
     BelvedereError
-        For a format that is not known, a damaged file, a file without points, and coordinates in degrees.
+        For a format that is not known, a damaged file, a file without points, coordinates in degrees, and a `crs` that
+        contradicts a file.
     FileNotFoundError
         For a file that is missing.
 
@@ -268,7 +273,7 @@ def read(
     box = None if bounds is None else map_box(bounds, "bounds")
     wanted = None if classes is None else class_numbers(classes)
     inputs = [native_source(one, name, in_parts=box is not None) for one in sources]
-    core, text = _core.read(inputs, crs, up, box, wanted, reporter(progress))
+    core, text = _core.read(inputs, crs, bool(crs_override), up, box, wanted, reporter(progress))
     report = json.loads(text)
     for note in _notes(report):
         _warn(note)

@@ -10,7 +10,7 @@ _Grid = tuple[int, int, Sequence[float]]
 _Columns = list[tuple[str, str, npt.NDArray[Any]]]
 _Remarks = list[dict[str, Any]]
 _Results = tuple[list[tuple[str, str, npt.NDArray[Any], bool]], _Grid | None, dict[str, Any] | None, _Remarks]
-_CrsState = tuple[str | None, int | None, int | None, float, float, int]
+_CrsState = tuple[str | None, int | None, int | None, float, float, int, str | None]
 
 __all__ = ["NO_VALUE", "Cloud", "Crs", "Mesh", "Scene", "__version__", "devices", "read", "simulate", "write_geotiff"]
 
@@ -250,6 +250,7 @@ class Scene:
 def read(
     inputs: list[Any],
     crs: str | None,
+    crs_override: bool,
     up: str,
     bounds: list[list[float]] | None,
     classes: list[int] | None,

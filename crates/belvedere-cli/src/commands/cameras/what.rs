@@ -11,7 +11,7 @@ use belvedere::Frame;
 use belvedere::apps::ask::{self, GridCells, Places, PrivatePlaces, Standing};
 use belvedere::apps::cameras::WeightedArea;
 use belvedere::apps::targets::MeshParams;
-use belvedere::io::{FeatureShape, RowsAre, read_geojson, read_observers};
+use belvedere::io::{FeatureShape, ReadOptions, RowsAre, read_geojson, read_observers};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -77,7 +77,7 @@ pub(super) fn places(
             Ok(Places::Mesh(Arc::new(mesh), params))
         }
         Some((path, TargetFileKind::Cloud)) => {
-            let cloud = points_of_file(path, None, frame, run)?;
+            let cloud = points_of_file(path, &ReadOptions::new(), frame, run)?;
             let normals = cloud.attributes.normals.clone();
             Ok(Places::Cloud(Arc::new(cloud), normals))
         }

@@ -126,6 +126,7 @@ pub(super) fn questions(arguments: &CityPlan, plan: &Plan, run: &mut CommandCont
     let frame = plan.frame()?;
     let whereabouts = Whereabouts { frame: &frame, bounds: plan.bounds(), has_far_terrain: false };
     let mut context = Context::default();
+    whereabouts.remark(&mut context);
     let mut questions = Vec::new();
     for question in of_sun_and_sky(arguments)? {
         questions.extend(TileQuestion::of(&question, &whereabouts, &mut context)?);
