@@ -10,14 +10,14 @@ use std::path::{Path, PathBuf};
 use ::las::point::Format;
 use ::las::{PointData, PointDataBuilder, Transform, Vector};
 
-use super::copc::{self, ChunkPlace};
+use super::copc::{self, ChunkPlace, CopcNodes};
 use super::las_columns::LasColumns;
 use super::las_extra::{ExtraField, ExtraNormals, described, find_columns, find_extra_normals};
-use super::las_header::{LasHeader, read_header};
+use super::las_header::{COPC, LasHeader, read_header};
 use super::laz::{ExtraBytes, LazReader, NeededChunks, is_chunked};
 use super::part::{Coordinates, FilePart};
 use super::read_options::{FileBox, PassedOver, Reading, RowNumbers, Selection};
-use super::source::{Input, Source, SourceReader};
+use super::source::{Input, Source, SourceReader, SystemBeside};
 use belvedere_data::cloud::{Attributes, GpsTimeKind};
 use belvedere_data::crs::{Crs, CrsKind};
 use belvedere_data::{Error, Result};
@@ -73,41 +73,45 @@ impl<'a> LasFile<'a> {
         self.batches_of(extra, rows, None)
     }
 
-    /// The points that may lie in `wanted`, many at a time in file order, and how many are passed over because they
-    /// cannot: in COPC by its hierarchy, in other files because they are in none of `rows`, where these are known.
+    /// The chunks of COPC that may hold points of `wanted`, of all of its points without a box.
+    fn copc_nodes(&mut self, wanted: Option<&FileBox>) -> Result<CopcNodes> {
+        if !self.header.compressed || self.points_in_file() == 0 {
+            return Ok(CopcNodes::None);
+        }
+        copc::nodes_within(&self.name, &mut self.reader, &self.header, self.size, wanted)
+    }
+
+    /// The points that may lie in `wanted`, many at a time in file order, how many are passed over because they cannot,
+    /// and what to note: in COPC by its hierarchy, in other files because they are in none of `rows`, where these are
+    /// known.
     fn batches_within(
         mut self,
         extra: ExtraBytes,
         wanted: &FileBox,
         rows: Option<Vec<Range<u64>>>,
-    ) -> Result<(Batches<'a>, u64)> {
+    ) -> Result<(Batches<'a>, u64, Option<String>)> {
         let all = self.points_in_file();
         let bounds = self.header.bounds;
         let room = room(self.header.scale);
         let low = std::array::from_fn(|i| bounds[i][0] - room[i]);
         let high = std::array::from_fn(|i| bounds[i][1] + room[i]);
         if are_given(&bounds) && !wanted.meets(low, high) {
-            return Ok((self.batches_of(extra, iter::empty(), None)?, all));
+            return Ok((self.batches_of(extra, iter::empty(), None)?, all, None));
         }
-        let chunks = if self.header.compressed && all > 0 {
-            copc::chunks_within(&self.name, &mut self.reader, &self.header, self.size, wanted)?
-        } else {
-            None
-        };
-        let batches = match chunks {
-            Some(chunks) => {
+        let nodes = self.copc_nodes(Some(wanted))?;
+        let note = nodes.note();
+        let batches = match (nodes, rows) {
+            (CopcNodes::Chunks(chunks), _) => {
                 let within = chunks.iter().fold(0_u64, |sum, chunk| sum.saturating_add(chunk.points));
                 self.batches_of(extra, iter::once(0..within), Some(chunks))?
             }
-            None => match rows {
-                Some(rows) => {
-                    self.batches_of(extra, rows.into_iter().map(|rows| rows.start..rows.end.min(all)), None)?
-                }
-                None => self.batches_of(extra, iter::once(0..all), None)?,
-            },
+            (_, Some(rows)) => {
+                self.batches_of(extra, rows.into_iter().map(|rows| rows.start..rows.end.min(all)), None)?
+            }
+            (_, None) => self.batches_of(extra, iter::once(0..all), None)?,
         };
         let left = batches.records.left();
-        Ok((batches, all.saturating_sub(left)))
+        Ok((batches, all.saturating_sub(left), note))
     }
 
     /// The points of `rows`, ranges in their order; of LAZ whole chunks that hold such rows, or those at `places`.
@@ -270,6 +274,7 @@ fn check_bounds(mut part: FilePart, bounds: [[f64; 2]; 3], scale: [f64; 3]) -> R
 /// The points of a source, batch by batch, and what is known of all of them.
 pub(super) fn open<'a>(mut source: Source<'a>, reading: &Reading<'_>) -> Result<(FilePart, LasPoints<'a>)> {
     let rows = source.likely_rows.take();
+    let beside = source.system_beside();
     let mut source = LasFile::open(source.open()?)?;
     let path = source.name.clone();
     let header = &source.header;
@@ -281,7 +286,7 @@ pub(super) fn open<'a>(mut source: Source<'a>, reading: &Reading<'_>) -> Result<
         part.note("a variable-length record is cut off; it and the following records are ignored");
     }
     if reading.forced.is_none() {
-        find_crs(&mut part, header);
+        find_crs(&mut part, header, beside);
     }
     let crs = reading.forced.unwrap_or(&part.crs);
     let somewhere = header.first_point(&path, &mut source.reader)?;
@@ -304,8 +309,9 @@ pub(super) fn open<'a>(mut source: Source<'a>, reading: &Reading<'_>) -> Result<
     let mut passed_over = PassedOver::default();
     let batches = match wanted {
         Some(wanted) => {
-            let (batches, outside) = source.batches_within(extra, &wanted, rows)?;
+            let (batches, outside, note) = source.batches_within(extra, &wanted, rows)?;
             passed_over.outside(outside);
+            part.report.notes.extend(note);
             batches
         }
         None => source.batches(extra)?,
@@ -380,7 +386,7 @@ impl LasPoints<'_> {
 
 fn describe(path: &Path, header: &LasHeader) -> String {
     let (major, minor) = header.version;
-    let copc = header.record("copc", 1).is_some();
+    let copc = header.record(COPC, 1).is_some();
     let kind = match (header.compressed, copc) {
         (true, true) => ", LAZ (COPC)",
         (true, false) => ", LAZ",
@@ -412,8 +418,8 @@ fn point_format(path: &Path, header: &LasHeader) -> Result<Format> {
     Ok(format)
 }
 
-/// Takes the system from a WKT record, or else from GeoTIFF keys.
-fn find_crs(part: &mut FilePart, header: &LasHeader) {
+/// Takes the system from a WKT record, or else from GeoTIFF keys, or else from what stands `beside` the file.
+fn find_crs(part: &mut FilePart, header: &LasHeader, beside: Option<SystemBeside>) {
     const USER: &str = "LASF_Projection";
     let mut unread = false;
     for (user, source) in [(USER, "WKT record"), ("liblas", "WKT record of libLAS")] {
@@ -429,11 +435,15 @@ fn find_crs(part: &mut FilePart, header: &LasHeader) {
             return part.set_crs(crs, "GeoTIFF keys");
         }
     }
-    part.note(if unread {
-        "its WKT record is not readable; coordinates are taken as metres"
-    } else {
-        "it names no reference system; coordinates are taken as metres"
-    });
+    part.take_system(beside);
+    match (part.crs.kind != CrsKind::Unknown, unread) {
+        (true, false) => {}
+        (true, true) => {
+            part.note(format!("its WKT record is not readable; that of {} is used", part.report.crs_source))
+        }
+        (false, true) => part.note("its WKT record is not readable; coordinates are taken as metres"),
+        (false, false) => part.note("it names no reference system; coordinates are taken as metres"),
+    }
 }
 
 /// A file without a system whose scale and offset speak of degrees.
@@ -484,21 +494,27 @@ pub struct LasHead {
     pub gps_times: Option<GpsTimeKind>,
     /// Whether points name the channel of their scanner: point formats 6 to 10.
     pub has_channels: bool,
+    /// What is odd about the file.
+    pub notes: Vec<String>,
 }
 
-/// What the header of a LAS, LAZ or COPC file says, without a look at its points.
+/// What the header of a LAS, LAZ or COPC file says, without a look at its points, and whether the hierarchy of COPC is
+/// that of its points.
 ///
 /// # Errors
 /// [`Error::Io`], and [`Error::Malformed`] for a damaged header and for one without usable bounds.
 pub fn read_las_head<'a>(source: impl Into<Source<'a>>) -> Result<LasHead> {
-    let file = LasFile::open(source.into().open()?)?;
+    let source = source.into();
+    let beside = source.system_beside();
+    let mut file = LasFile::open(source.open()?)?;
+    let note = file.copc_nodes(None)?.note();
     let header = &file.header;
     let bounds = header.bounds;
     if header.points > 0 && (!are_given(&bounds) || !bounds.as_flattened().iter().all(|v| v.is_finite())) {
         return Err(Error::malformed(&file.name, "has no bounds in its header; write it again, for example with PDAL"));
     }
     let mut part = FilePart::new(&file.name, "");
-    find_crs(&mut part, header);
+    find_crs(&mut part, header, beside);
     let kind = if header.adjusted_gps_time { GpsTimeKind::AdjustedStandard } else { GpsTimeKind::SecondsOfWeek };
     Ok(LasHead {
         points: file.points_in_file(),
@@ -508,5 +524,6 @@ pub fn read_las_head<'a>(source: impl Into<Source<'a>>) -> Result<LasHead> {
         crs: part.crs,
         gps_times: file.format.has_gps_time.then_some(kind),
         has_channels: file.format.is_extended,
+        notes: note.into_iter().collect(),
     })
 }

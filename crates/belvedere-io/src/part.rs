@@ -4,9 +4,10 @@ use std::path::Path;
 
 use super::read_cloud::{FileReport, LeftOut};
 use super::read_options::{PassedOver, Reading};
+use super::source::SystemBeside;
 use belvedere_data::Result;
 use belvedere_data::cloud::Attributes;
-use belvedere_data::crs::Crs;
+use belvedere_data::crs::{Crs, CrsKind};
 
 /// GPS times are of no use to order pulses when a file of more points than this has only [`FEW_TIMES`] of them.
 const MANY_POINTS: usize = 1000;
@@ -123,6 +124,17 @@ impl FilePart {
         self.report.crs = crs.describe();
         self.report.crs_source = source.into();
         self.crs = crs;
+    }
+
+    /// Takes the system that stands beside a file which names none.
+    pub(super) fn take_system(&mut self, beside: Option<SystemBeside>) {
+        match beside.filter(|_| self.crs.kind == CrsKind::Unknown) {
+            Some(SystemBeside::Known { crs, found_in }) => self.set_crs(crs, found_in),
+            Some(SystemBeside::Unreadable { found_in }) => {
+                self.note(format!("{found_in} beside it names no system that is known"));
+            }
+            None => {}
+        }
     }
 
     /// Turns a part whose y is up: positions, normals and scanners (x, y, z) become (x, −z, y).

@@ -19,6 +19,19 @@ pub fn remark_on_outside(outside: usize, count: usize, things: &str) -> Option<R
     Remark::of_share("targets-outside-cloud", outside, count, things, OUTSIDE_CLOUD)
 }
 
+/// A warning that columns or properties of a `file` look as if they said how observers look, but are not used.
+#[must_use]
+pub fn remark_on_unused(file: &str, names: &[String]) -> Option<Remark> {
+    let text = || {
+        format!(
+            "{file}: not used: {}; what is understood is z, height, min_distance, max_distance, azimuth_from, azimuth_to, \
+             elevation_from, elevation_to, and these as QGIS and ArcGIS name them",
+            names.join(", ")
+        )
+    };
+    (!names.is_empty()).then(|| Remark::warning("columns-not-used", text()).with("count", names.len() as f64))
+}
+
 /// A warning that nothing was cleared, where `points` of the cloud were.
 #[must_use]
 pub fn remark_on_cleared(points: usize) -> Option<Remark> {
