@@ -16,7 +16,7 @@ use super::las_header::{COPC, LasHeader};
 use super::laz;
 use super::octree::OctreeCube;
 use super::read_options::FileBox;
-use super::source::SourceReader;
+use super::source::{SourceReader, web_address};
 use belvedere_data::{Error, Result};
 
 /// Bytes of an entry of the hierarchy.
@@ -61,7 +61,7 @@ impl CopcNodes {
 
 /// The chunks of nodes that meet `wanted`, of all nodes without a box. `size` is that of the file in bytes.
 ///
-/// A small hierarchy is read whole and must name all points; of a large one only pages of nodes that meet the box are
+/// A small hierarchy on this machine is read whole and must name all points; of others only pages of nodes that meet the box are
 /// read. Every chunk must be one of the chunk table.
 ///
 /// # Errors
@@ -118,7 +118,8 @@ fn walk(
     let octree = CopcOctree::of_info(info).ok_or_else(|| Misfit::of("its root is not usable"))?;
     let room = header.scale.map(|scale| ROOM_STEPS * scale.abs());
     let record = header.copc_pages.clone().ok_or_else(|| Misfit::of("it is missing"))?;
-    let is_read_whole = wanted.is_none() || record.end - record.start <= SMALL_HIERARCHY;
+    let is_near = web_address(path).is_none();
+    let is_read_whole = wanted.is_none() || is_near && record.end - record.start <= SMALL_HIERARCHY;
     let mut pages = vec![octree.root];
     let (mut seen, mut chunks, mut points) = (HashSet::from([octree.root.0]), Vec::new(), 0_u64);
     let (mut page_bytes, mut bytes) = (0_u64, Vec::new());
@@ -133,8 +134,7 @@ fn walk(
         file.seek(SeekFrom::Start(start)).map_err(Error::io(path))?;
         file.take(length).read_to_end(&mut bytes).map_err(Error::io(path))?;
         for entry in bytes.as_chunks::<32>().0.iter().map(HierarchyEntry::of) {
-            let meets = |wanted: &FileBox| octree.cube.node_meets(entry.key, room, wanted);
-            let is_wanted = wanted.map_or(Some(true), meets);
+            let is_wanted = octree.cube.node_meets(entry.key, room, wanted);
             let is_wanted = is_wanted.ok_or_else(|| Misfit::of(format!("node {:?}", entry.key)))?;
             match (entry.points, u64::try_from(entry.bytes)) {
                 (0, _) => {}

@@ -67,8 +67,8 @@ pub(super) fn files_within(path: &Path, wanted: Option<&FileBox>) -> Result<Vec<
         for (name, count) in entries {
             let key = key(name).ok_or_else(|| damaged(format!("node {name}")))?;
             let count = count.as_i64().ok_or_else(|| damaged(format!("node {name} has {count} points")))?;
-            let meets = |wanted: &FileBox| description.cube.node_meets(key, description.room, wanted);
-            if !wanted.map_or(Some(true), meets).ok_or_else(|| damaged(format!("node {name}")))? {
+            let meets = description.cube.node_meets(key, description.room, wanted);
+            if !meets.ok_or_else(|| damaged(format!("node {name}")))? {
                 continue;
             }
             match count {
@@ -119,7 +119,9 @@ fn describe(path: &Path) -> Result<EptDescription> {
         own.and_then(|column| column.get("scale")?.as_f64()).filter(|step| step.is_finite()).unwrap_or(USUAL_STEP)
     };
     let room = ["X", "Y", "Z"].map(|axis| ROOM_STEPS * step(axis).abs());
-    let folder = path.parent().unwrap_or(Path::new("")).to_owned();
+    // an address ends before its query
+    let plain = web_address(path).and_then(|text| text.split(['?', '#']).next()).map_or(path, Path::new);
+    let folder = plain.parent().unwrap_or(Path::new("")).to_owned();
     Ok(EptDescription { folder, cube, room, system: content.get("srs").and_then(system) })
 }
 

@@ -12,9 +12,9 @@ pub(super) struct OctreeCube {
 }
 
 impl OctreeCube {
-    /// Whether the cell of a node, widened by `room`, meets `wanted`; `None` for a node that cannot be. The key is its
-    /// level, and its number along x, y and z.
-    pub(super) fn node_meets(&self, key: [i32; 4], room: [f64; 3], wanted: &FileBox) -> Option<bool> {
+    /// Whether the cell of a node, widened by `room`, meets `wanted`, as all cells do without a box; `None` for a node
+    /// that cannot be. The key is its level, and its number along x, y and z.
+    pub(super) fn node_meets(&self, key: [i32; 4], room: [f64; 3], wanted: Option<&FileBox>) -> Option<bool> {
         let [level, place @ ..] = key;
         if !(0..=DEEPEST).contains(&level) {
             return None;
@@ -25,6 +25,6 @@ impl OctreeCube {
         }
         let low: [f64; 3] = std::array::from_fn(|i| self.low[i] + f64::from(place[i]) * side - room[i]);
         let high: [f64; 3] = std::array::from_fn(|i| low[i] + side + 2.0 * room[i]);
-        Some(wanted.meets(low, high))
+        Some(wanted.is_none_or(|wanted| wanted.meets(low, high)))
     }
 }

@@ -7,6 +7,7 @@ use crate::pipeline::{self, KeepPoints};
 use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::{Result, bail};
+use belvedere::Frame;
 use belvedere::apps::ask::{
     self, Ask, LinesOfSightQuestion, Places, ProfileRows, Scene, SightColumns, SightsResults, Standing,
 };

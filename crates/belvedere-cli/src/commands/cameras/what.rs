@@ -4,6 +4,7 @@ use crate::arguments::{CameraTargetsArguments, Usage};
 use crate::commands::extension;
 use crate::commands::mesh_targets::is_mesh;
 use crate::commands::query::points_of_file;
+use crate::commands::surroundings::{ObserverUse, observer_rows};
 use crate::pipeline::mesh_in;
 use crate::run::CommandContext;
 use anyhow::{Result, bail};
