@@ -17,7 +17,7 @@ use super::las_header::{COPC, LasHeader, read_header};
 use super::laz::{ExtraBytes, LazReader, NeededChunks, is_chunked};
 use super::part::{Coordinates, FilePart};
 use super::read_options::{FileBox, PassedOver, Reading, RowNumbers, Selection};
-use super::source::{Input, Source, SourceReader, SystemBeside};
+use super::source::{Input, Source, SourceReader, SystemBeside, web_address};
 use belvedere_data::cloud::{Attributes, GpsTimeKind};
 use belvedere_data::crs::{Crs, CrsKind};
 use belvedere_data::{Error, Result};
@@ -300,6 +300,13 @@ pub(super) fn open<'a>(mut source: Source<'a>, reading: &Reading<'_>) -> Result<
         part.note(format!("the header announces {announced} points, but the file holds only {present}"));
         part.leave_out_missing(announced - present);
     }
+    // a window looks at the hierarchy itself
+    let is_looked_at = reading.options.within.is_none() && web_address(&path).is_none();
+    if let Some(note) = if is_looked_at { source.copc_nodes(None)?.note() } else { None } {
+        part.report.format = part.report.format.replace(" (COPC)", "");
+        part.note(note);
+    }
+    let header = &source.header;
     let selection = reading.selection(&part.crs);
     // rows are counted in whole files
     let wanted = selection.as_ref().filter(|_| reading.options.row_numbers == RowNumbers::Dropped);

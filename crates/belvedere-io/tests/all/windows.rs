@@ -299,6 +299,10 @@ fn records_of_copc_that_a_plain_file_kept_are_passed_over() {
         let source = Source::bytes("tile.laz", &bytes);
         let (cloud, report) = read_cloud([source], &options, &Control::none()).unwrap_or_else(|e| panic!("{e}"));
         assert_eq!(cloud.len(), expected);
+        let (all, whole) =
+            read_cloud([Source::bytes("tile.laz", &bytes)], &ReadOptions::new(), &Control::none()).unwrap();
+        assert_eq!((all.len(), whole.files[0].format.as_str()), (12_000, "LAS 1.4, point format 6, LAZ"));
+        assert!(whole.files[0].notes.iter().any(|note| note.contains("hierarchy is not that")), "{:?}", whole.files);
         assert!(report.files[0].notes.iter().any(|note| note.contains("hierarchy is not that")), "{:?}", report.files);
     }
 }
