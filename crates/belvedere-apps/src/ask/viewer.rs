@@ -19,17 +19,18 @@ pub fn remark_on_outside(outside: usize, count: usize, things: &str) -> Option<R
     Remark::of_share("targets-outside-cloud", outside, count, things, OUTSIDE_CLOUD)
 }
 
-/// A warning that columns or properties of a `file` look as if they said how observers look, but are not used.
+/// A warning that a `file` has columns or properties that are not used: those that look as if they said how observers
+/// look and are not understood, and `limits` that are understood, but of no use to the question.
 #[must_use]
-pub fn remark_on_unused(file: &str, names: &[String]) -> Option<Remark> {
-    let text = || {
-        format!(
-            "{file}: not used: {}; what is understood is z, height, min_distance, max_distance, azimuth_from, azimuth_to, \
-             elevation_from, elevation_to, and these as QGIS and ArcGIS name them",
-            names.join(", ")
-        )
-    };
-    (!names.is_empty()).then(|| Remark::warning("columns-not-used", text()).with("count", names.len() as f64))
+pub fn remark_on_unused(file: &str, unknown: &[String], limits: &[String]) -> Option<Remark> {
+    let advice = "understood are z, height, min_distance, max_distance, azimuth_from, azimuth_to, elevation_from, \
+                  elevation_to, and these as QGIS and ArcGIS name them";
+    let unknown_names = (!unknown.is_empty()).then(|| format!("not used: {}; {advice}", unknown.join(", ")));
+    let limit_names = (!limits.is_empty()).then(|| format!("not used for this question: {}", limits.join(", ")));
+    let parts: Vec<String> = limit_names.into_iter().chain(unknown_names).collect();
+    let count = unknown.len() + limits.len();
+    let text = format!("{file}: {}", parts.join("; "));
+    (count > 0).then(|| Remark::warning("columns-not-used", text).with("count", count as f64))
 }
 
 /// A warning that nothing was cleared, where `points` of the cloud were.

@@ -62,11 +62,9 @@ pub(super) fn observer_rows(
     needed: ObserverUse,
     run: &mut CommandContext,
 ) -> Result<Vec<ObserverRow>> {
-    let ObserverRows { rows, mut unused, limits } = read_observers(path, &frame.crs, rows_are)?;
-    if needed == ObserverUse::Places {
-        unused.extend(limits);
-    }
-    run.summary.remarks(remark_on_unused(&path.display().to_string(), &unused));
+    let ObserverRows { rows, unused, limits } = read_observers(path, &frame.crs, rows_are)?;
+    let limits = if needed == ObserverUse::Places { &limits[..] } else { &[] };
+    run.summary.remarks(remark_on_unused(&path.display().to_string(), &unused, limits));
     Ok(rows)
 }
 
