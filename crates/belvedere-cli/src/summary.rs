@@ -57,6 +57,12 @@ impl Summary {
         self
     }
 
+    /// The remarks alone.
+    pub(crate) fn only_remarks(self) -> Self {
+        let entries = self.entries.into_iter().filter(|(name, _)| name == REMARKS).collect();
+        Self { entries, ..Self::default() }
+    }
+
     /// Adds all figures of `other`.
     pub(crate) fn add_all(&mut self, other: Self) -> &mut Self {
         for (name, value) in other.entries {

@@ -1,6 +1,7 @@
-//! CityJSON city models, versions 1.0 to 2.0.
+//! CityJSON city models, versions 1.0 to 2.0, whole or as a sequence of features (CityJSONSeq).
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 use std::path::Path;
 
 use serde_json::Value;
@@ -20,7 +21,7 @@ pub enum LevelOfDetail {
     Only(String),
 }
 
-/// The surfaces of a CityJSON file as triangles, one object per city object (in the order of their identifiers), and
+/// The surfaces of a CityJSON file, or of a sequence of features, as triangles, one object per city object (in the order of their identifiers), and
 /// what was left out.
 ///
 /// Solids, multi- and composite surfaces and solids, and instances of geometry templates are read; rings with holes are
@@ -34,11 +35,11 @@ pub enum LevelOfDetail {
 /// # Source
 /// CityJSON 2.0.1 specification, sections 2 to 5 and "Geometry templates".
 pub fn read_cityjson<'a>(source: impl Into<Source<'a>>, level_of_detail: &LevelOfDetail) -> Result<(Mesh, MeshReport)> {
-    let (name, bytes) = source.into().read_all()?;
+    let (name, bytes) = source.into().read_text()?;
     let path = name.as_path();
-    let root: Value =
-        serde_json::from_slice(&bytes).map_err(|e| Error::malformed(path, format!("not readable JSON: {e}")))?;
-    drop(bytes);
+    let mut values = serde_json::Deserializer::from_slice(&bytes).into_iter::<Value>();
+    let mut next = || values.next().transpose().map_err(|e| Error::malformed(path, format!("not readable JSON: {e}")));
+    let root = next()?.unwrap_or_default();
     if root.get("type").and_then(Value::as_str) != Some("CityJSON") {
         return Err(Error::malformed(path, "not CityJSON: its \"type\" is not \"CityJSON\""));
     }
@@ -53,30 +54,27 @@ pub fn read_cityjson<'a>(source: impl Into<Source<'a>>, level_of_detail: &LevelO
         let unknown = || Crs { epsg: Some(code), kind: CrsKind::Projected, ..Crs::default() };
         builder.mesh.crs = Crs::from_epsg(code).unwrap_or_else(unknown);
     }
-    let (scale, translate) = match root.get("transform") {
-        Some(transform) => (
+    let mut file = CityFile { path, vertices: 0..0, builder, templates: None, transform: None };
+    if let Some(transform) = root.get("transform") {
+        file.transform = Some((
             triple(path, transform.get("scale"), "transform.scale")?,
             triple(path, transform.get("translate"), "transform.translate")?,
-        ),
-        None => ([1.0; 3], [0.0; 3]),
-    };
-    for (row, vertex) in array(path, root.get("vertices"), "vertices")?.iter().enumerate() {
-        let v = triple(path, Some(vertex), &format!("vertex {row}"))?;
-        builder.push_vertex(std::array::from_fn(|i| v[i] * scale[i] + translate[i]))?;
+        ));
     }
-    let mut file = CityFile { path, file_vertex_count: builder.mesh.vertices.len(), builder, templates: None };
     if let Some(templates) = root.get("geometry-templates") {
         file.templates = Some((
             array(path, templates.get("templates"), "geometry-templates.templates")?,
             array(path, templates.get("vertices-templates"), "geometry-templates.vertices-templates")?,
         ));
     }
-    let objects = root
-        .get("CityObjects")
-        .and_then(Value::as_object)
-        .ok_or_else(|| Error::malformed(path, "no CityObjects; a CityJSON file needs them"))?;
-    for (name, object) in objects {
-        file.push_city_object(name, object, level_of_detail)?;
+    file.push_objects(&root, level_of_detail)?;
+    for number in 2.. {
+        let Some(feature) = next()? else { break };
+        if feature.get("type").and_then(Value::as_str) != Some("CityJSONFeature") {
+            let what = format!("object {number} of the sequence is no CityJSONFeature; after the first, all must be");
+            return Err(Error::malformed(path, what));
+        }
+        file.push_objects(&feature, level_of_detail)?;
     }
     file.builder.finish()
 }
@@ -85,13 +83,37 @@ pub fn read_cityjson<'a>(source: impl Into<Source<'a>>, level_of_detail: &LevelO
 struct CityFile<'a> {
     path: &'a Path,
     builder: MeshBuilder<'a>,
-    /// Vertices that boundaries may refer to: those appended for instances of templates come after.
-    file_vertex_count: usize,
+    /// Vertices that boundaries may refer to, numbered from the first: those of the file, or of a feature of a sequence.
+    /// Those appended for instances of templates come after.
+    vertices: Range<usize>,
     templates: Option<(&'a [Value], &'a [Value])>,
+    /// Scale and translation of vertices.
+    transform: Option<([f64; 3], [f64; 3])>,
 }
 
 impl<'a> CityFile<'a> {
-    fn push_city_object(&mut self, name: &str, object: &'a Value, wanted: &LevelOfDetail) -> Result<()> {
+    /// Appends the city objects of a file, or of a feature, with their vertices.
+    fn push_objects(&mut self, owner: &Value, level_of_detail: &LevelOfDetail) -> Result<()> {
+        let (scale, translate) = self.transform.unwrap_or(([1.0; 3], [0.0; 3]));
+        let start = self.builder.mesh.vertices.len();
+        for (row, vertex) in array(self.path, owner.get("vertices"), "vertices")?.iter().enumerate() {
+            let v = triple(self.path, Some(vertex), &format!("vertex {row}"))?;
+            self.builder.push_vertex(std::array::from_fn(|i| v[i] * scale[i] + translate[i]))?;
+        }
+        self.vertices = start..self.builder.mesh.vertices.len();
+        let objects = owner
+            .get("CityObjects")
+            .and_then(Value::as_object)
+            .ok_or_else(|| Error::malformed(self.path, "no CityObjects; a CityJSON file needs them"))?;
+        objects.iter().try_for_each(|(name, object)| self.push_city_object(name, object, level_of_detail))
+    }
+
+    /// Index in the mesh of the vertex that a boundary refers to.
+    fn vertex(&self, number: usize) -> Option<usize> {
+        self.vertices.start.checked_add(number).filter(|index| *index < self.vertices.end)
+    }
+
+    fn push_city_object(&mut self, name: &str, object: &Value, wanted: &LevelOfDetail) -> Result<()> {
         let Some(geometries) = object.get("geometry").and_then(Value::as_array) else { return Ok(()) };
         let mut levels = Vec::with_capacity(geometries.len());
         for geometry in geometries {
@@ -132,16 +154,15 @@ impl<'a> CityFile<'a> {
         template.map(Some).ok_or_else(|| self.bad(name, "refers to a missing geometry template"))
     }
 
-    fn push_geometry(&mut self, name: &str, geometry: &'a Value, object: u32) -> Result<()> {
+    fn push_geometry(&mut self, name: &str, geometry: &Value, object: u32) -> Result<()> {
         let Some(template) = self.template_of(name, geometry)? else {
-            let (mut surfaces, end) = (Vec::new(), self.file_vertex_count);
-            self.collect_surfaces(name, geometry, &mut surfaces, &mut |i| (i < end).then_some(i))?;
+            let mut surfaces = Vec::new();
+            self.collect_surfaces(name, geometry, &mut surfaces, &mut |i| self.vertex(i))?;
             return surfaces.iter().try_for_each(|rings| self.builder.push_polygon(rings, Some(object)));
         };
         let anchor = geometry.pointer("/boundaries/0").and_then(Value::as_u64).and_then(|i| usize::try_from(i).ok());
         let anchor = anchor
-            .filter(|&i| i < self.file_vertex_count)
-            .and_then(|i| self.builder.mesh.vertices.get(i).copied())
+            .and_then(|i| self.builder.mesh.vertices.get(self.vertex(i)?).copied())
             .ok_or_else(|| self.bad(name, "has a geometry instance without an anchor vertex"))?;
         let matrix = self.matrix(name, geometry)?;
         let template_vertices = self.templates.map_or(&[][..], |(_, vertices)| vertices);

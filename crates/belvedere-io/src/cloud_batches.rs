@@ -65,7 +65,7 @@ pub fn read_batches<'a, S: Into<Source<'a>>>(
     }
     let forced = options.forced_crs()?;
     let reading = Reading { options, forced: forced.as_ref(), control };
-    let pending = files_of(sources.into_iter().map(Into::into), &reading)?.0.into();
+    let pending = files_of(sources.into_iter().map(Into::into), &reading)?.sources.into();
     Ok(CloudBatches {
         pending,
         forced,

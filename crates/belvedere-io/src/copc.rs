@@ -1,8 +1,9 @@
 //! Which chunks of a COPC file hold the points of a box: a walk through the hierarchy of the file.
 //!
 //! COPC is LAZ whose chunks are the nodes of an octree. The hierarchy names for each node where its chunk lies; it
-//! comes in pages, and only pages of nodes that meet the box are read. Everything the hierarchy claims is compared with
-//! the size of the file before it is used, and the chunks are decompressed by the same reader as those of any LAZ file.
+//! comes in pages, and of a large one only pages of nodes that meet the box are read. What the hierarchy claims is compared
+//! with the chunk table before it is used, and the chunks are decompressed by the same reader as those of any LAZ file.
+//! Programs that rewrite a file may leave the records of an older order of its points; then these are passed over.
 //!
 //! # Source
 //! COPC specification 1.0: info record, section 3.1; hierarchy, section 3.2 (Bell, Belcher & Manning 2021).
@@ -11,19 +12,22 @@ use std::collections::HashSet;
 use std::io::{Read, Seek, SeekFrom};
 use std::path::Path;
 
-use super::las_header::LasHeader;
+use super::las_header::{COPC, LasHeader};
+use super::laz;
+use super::octree::OctreeCube;
 use super::read_options::FileBox;
+use super::source::{SourceReader, web_address};
 use belvedere_data::{Error, Result};
 
 /// Bytes of an entry of the hierarchy.
 const ENTRY_BYTES: u64 = 32;
-/// Deepest level of the octree that is believed: a kilometre in cells of a nanometre.
-const DEEPEST: i32 = 40;
+/// Hierarchies of up to this many bytes, for 8000 nodes, are read whole: a millisecond, and nothing can be hidden.
+const SMALL_HIERARCHY: u64 = 1 << 18;
 /// How far points may lie outside the cell of their node, in steps of the coordinates: what writers round them by.
 const ROOM_STEPS: f64 = 10.0;
 
 /// Where a chunk lies in its file, as the file says it.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct ChunkPlace {
     pub(super) start: u64,
     pub(super) bytes: u64,
@@ -31,71 +35,136 @@ pub(super) struct ChunkPlace {
 }
 
 /// The octree of a file.
-struct Octree {
-    low: [f64; 3],
-    side: f64,
+struct CopcOctree {
+    cube: OctreeCube,
+    /// First byte and bytes of the root page.
     root: (u64, u64),
 }
 
-/// The chunks of nodes that meet `wanted`, in the order of the file, or `None` where the file is no COPC. `size` is
-/// that of the file in bytes.
+/// What a file says of its nodes.
+pub(super) enum CopcNodes {
+    /// The file is no COPC.
+    None,
+    /// Chunks of the nodes that are wanted, in the order of the file.
+    Chunks(Vec<ChunkPlace>),
+    /// The hierarchy is not that of the points, and why: a program rewrote the points and kept the records.
+    Unfit(String),
+}
+
+impl CopcNodes {
+    /// What to say of a hierarchy that is passed over.
+    pub(super) fn note(&self) -> Option<String> {
+        let Self::Unfit(what) = self else { return None };
+        Some(format!("its COPC hierarchy is not that of its points ({what}); they are read in the order of the file"))
+    }
+}
+
+/// The chunks of nodes that meet `wanted`, of all nodes without a box. `size` is that of the file in bytes.
+///
+/// A small hierarchy on this machine is read whole and must name all points; of others only pages of nodes that meet the box are
+/// read. Every chunk must be one of the chunk table.
 ///
 /// # Errors
-/// [`Error::Malformed`] for a hierarchy that does not fit the file.
-pub(super) fn chunks_within(
+/// [`Error::Io`]; [`Error::Malformed`] for a damaged chunk table.
+pub(super) fn nodes_within(
     path: &Path,
-    file: &mut (impl Read + Seek),
+    file: &mut SourceReader<'_>,
     header: &LasHeader,
     size: u64,
-    wanted: &FileBox,
-) -> Result<Option<Vec<ChunkPlace>>> {
-    let Some(info) = header.record("copc", 1) else { return Ok(None) };
-    let damaged = |what: String| Error::malformed(path, format!("has a damaged COPC hierarchy: {what}"));
-    let octree = Octree::of_info(info).ok_or_else(|| damaged("its root is not usable".to_owned()))?;
+    wanted: Option<&FileBox>,
+) -> Result<CopcNodes> {
+    let Some(info) = header.record(COPC, 1) else { return Ok(CopcNodes::None) };
+    let walked = walk(path, file, header, info, wanted).and_then(|chunks| {
+        let table = laz::chunk_table(path, file, header, size)?;
+        let table = table.ok_or_else(|| Misfit::of("the chunks of the file all have one size"))?;
+        match chunks.iter().find(|chunk| table.binary_search(chunk).is_err()) {
+            Some(chunk) => Err(Misfit::of(format!("it names a chunk at byte {}, where none is", chunk.start))),
+            None => Ok(chunks),
+        }
+    });
+    match walked {
+        Ok(chunks) => Ok(CopcNodes::Chunks(chunks)),
+        Err(Misfit::Hierarchy(what)) => Ok(CopcNodes::Unfit(what)),
+        Err(Misfit::File(error)) => Err(error),
+    }
+}
+
+/// Why a hierarchy gives no chunks.
+enum Misfit {
+    Hierarchy(String),
+    File(Error),
+}
+
+impl Misfit {
+    fn of(what: impl Into<String>) -> Self {
+        Self::Hierarchy(what.into())
+    }
+}
+
+impl From<Error> for Misfit {
+    fn from(error: Error) -> Self {
+        Self::File(error)
+    }
+}
+
+/// The chunks that the hierarchy names.
+fn walk(
+    path: &Path,
+    file: &mut SourceReader<'_>,
+    header: &LasHeader,
+    info: &[u8],
+    wanted: Option<&FileBox>,
+) -> std::result::Result<Vec<ChunkPlace>, Misfit> {
+    let octree = CopcOctree::of_info(info).ok_or_else(|| Misfit::of("its root is not usable"))?;
     let room = header.scale.map(|scale| ROOM_STEPS * scale.abs());
+    let record = header.copc_pages.clone().ok_or_else(|| Misfit::of("it is missing"))?;
+    let is_near = web_address(path).is_none();
+    let is_read_whole = wanted.is_none() || is_near && record.end - record.start <= SMALL_HIERARCHY;
     let mut pages = vec![octree.root];
-    let (mut seen, mut chunks) = (HashSet::from([octree.root.0]), Vec::new());
+    let (mut seen, mut chunks, mut points) = (HashSet::from([octree.root.0]), Vec::new(), 0_u64);
     let (mut page_bytes, mut bytes) = (0_u64, Vec::new());
     while let Some((start, length)) = pages.pop() {
         page_bytes = page_bytes.saturating_add(length);
-        let ends_within = start.checked_add(length).is_some_and(|end| end <= size);
-        // pages do not overlap, so that all of them together are smaller than the file
-        if !ends_within || page_bytes > size || length % ENTRY_BYTES != 0 {
-            return Err(damaged(format!("a page of {length} bytes at byte {start} of {size}")));
+        let is_within = start >= record.start && start.checked_add(length).is_some_and(|end| end <= record.end);
+        // pages do not overlap, so that all of them together are smaller than the record
+        if !is_within || length == 0 || page_bytes > record.end - record.start || length % ENTRY_BYTES != 0 {
+            return Err(Misfit::of(format!("a page of {length} bytes at byte {start}")));
         }
         bytes.clear();
         file.seek(SeekFrom::Start(start)).map_err(Error::io(path))?;
         file.take(length).read_to_end(&mut bytes).map_err(Error::io(path))?;
         for entry in bytes.as_chunks::<32>().0.iter().map(HierarchyEntry::of) {
-            if !octree.node_meets(&entry, room, wanted).ok_or_else(|| damaged(format!("node {:?}", entry.key)))? {
-                continue;
-            }
+            let is_wanted = octree.cube.node_meets(entry.key, room, wanted);
+            let is_wanted = is_wanted.ok_or_else(|| Misfit::of(format!("node {:?}", entry.key)))?;
             match (entry.points, u64::try_from(entry.bytes)) {
                 (0, _) => {}
                 (-1, Ok(length)) => {
                     if !seen.insert(entry.start) {
-                        return Err(damaged(format!("the page at byte {} is named twice", entry.start)));
+                        return Err(Misfit::of(format!("the page at byte {} is named twice", entry.start)));
                     }
-                    pages.push((entry.start, length));
+                    if is_wanted || is_read_whole {
+                        pages.push((entry.start, length));
+                    }
                 }
-                (points @ 1.., Ok(length)) => {
-                    let points = u64::from(points.unsigned_abs());
-                    chunks.push(ChunkPlace { start: entry.start, bytes: length, points });
+                (count @ 1.., Ok(length)) => {
+                    let count = u64::from(count.unsigned_abs());
+                    points = points.saturating_add(count);
+                    if is_wanted {
+                        chunks.push(ChunkPlace { start: entry.start, bytes: length, points: count });
+                    }
                 }
-                _ => return Err(damaged(format!("{} points in {} bytes", entry.points, entry.bytes))),
+                _ => return Err(Misfit::of(format!("{} points in {} bytes", entry.points, entry.bytes))),
             }
         }
     }
-    chunks.sort_unstable_by_key(|chunk| chunk.start);
-    let mut free = header.points_start;
-    for chunk in &chunks {
-        let end = chunk.start.saturating_add(chunk.bytes);
-        if chunk.start < free || end > size {
-            return Err(damaged(format!("a chunk at bytes {} to {end} of {size}", chunk.start)));
-        }
-        free = end;
+    if is_read_whole && points != header.points {
+        return Err(Misfit::of(format!("it names {points} of {} points", header.points)));
     }
-    Ok(Some(chunks))
+    chunks.sort_unstable();
+    match chunks.windows(2).find(|pair| pair[0].start == pair[1].start) {
+        Some(pair) => Err(Misfit::of(format!("the chunk at byte {} is named twice", pair[0].start))),
+        None => Ok(chunks),
+    }
 }
 
 /// An entry of the hierarchy.
@@ -122,28 +191,13 @@ impl HierarchyEntry {
     }
 }
 
-impl Octree {
+impl CopcOctree {
     fn of_info(info: &[u8]) -> Option<Self> {
         let number = |at: usize| info.get(8 * at..).and_then(|rest| rest.first_chunk::<8>()).copied();
         let real = |at: usize| number(at).map(f64::from_le_bytes);
         let (center, half) = ([real(0)?, real(1)?, real(2)?], real(3)?);
         let is_sound = half > 0.0 && half.is_finite() && center.iter().all(|v| v.is_finite());
         let root = (number(5).map(u64::from_le_bytes)?, number(6).map(u64::from_le_bytes)?);
-        is_sound.then(|| Self { low: center.map(|v| v - half), side: 2.0 * half, root })
-    }
-
-    /// Whether the cell of the node of `entry`, widened by `room`, meets `wanted`; `None` for a node that cannot be.
-    fn node_meets(&self, entry: &HierarchyEntry, room: [f64; 3], wanted: &FileBox) -> Option<bool> {
-        let [level, place @ ..] = entry.key;
-        if !(0..=DEEPEST).contains(&level) {
-            return None;
-        }
-        let side = self.side / f64::from(level).exp2();
-        if place.iter().any(|&v| v < 0 || f64::from(v) >= f64::from(level).exp2()) {
-            return None;
-        }
-        let low: [f64; 3] = std::array::from_fn(|i| self.low[i] + f64::from(place[i]) * side - room[i]);
-        let high: [f64; 3] = std::array::from_fn(|i| low[i] + side + 2.0 * room[i]);
-        Some(wanted.meets(low, high))
+        is_sound.then(|| Self { cube: OctreeCube { low: center.map(|v| v - half), side: 2.0 * half }, root })
     }
 }

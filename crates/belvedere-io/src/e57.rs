@@ -12,6 +12,10 @@ use super::source::Input;
 use belvedere_data::crs::Crs;
 use belvedere_data::{Error, Result};
 
+/// Quaternions this far from unit length are noted, and those this short have no direction.
+const LENGTH_TOLERANCE: f64 = 1e-3;
+const MIN_LENGTH: f64 = 1e-9;
+
 /// The valid points of all scans of the source.
 ///
 /// Poses are applied to points and normals. The scanner is where the pose puts it; without a pose at (0, 0, 0) if
@@ -42,6 +46,16 @@ pub(super) fn read(input: Input<'_>, reading: &Reading<'_>) -> Result<FilePart> 
             continue;
         }
         plan.check(path, scan, i, size)?;
+        if let Some(fault) = pose_fault(scan) {
+            let what = format!("the pose of scan {}{} {fault}; export it again", i + 1, named(scan));
+            return Err(Error::malformed(path, what));
+        }
+        if let Some(length) = scan.transform.as_ref().map(|pose| quaternion_length(&pose.rotation))
+            && (length - 1.0).abs() > LENGTH_TOLERANCE
+        {
+            let what = format!("the rotation of scan {}{} has the length {length:.4}", i + 1, named(scan));
+            part.note(format!("{what}; it is used as a rotation without scale"));
+        }
         let index = plan.scanner.map_or(u16::MAX, |position| {
             part.scanners.push(position);
             u16::try_from(part.scanners.len() - 1).unwrap_or(u16::MAX)
@@ -278,6 +292,27 @@ fn read_scan<R: Read + Seek>(
     Ok(())
 }
 
+/// Name of a scan for messages.
+fn named(scan: &Scan) -> String {
+    let name: String = scan.name.as_deref().unwrap_or_default().chars().take(40).collect();
+    if name.is_empty() { String::new() } else { format!(" (\"{name}\")") }
+}
+
+/// Why a pose cannot be used. A quaternion is a rotation whatever its length, unless it has none.
+fn pose_fault(scan: &Scan) -> Option<&'static str> {
+    let pose = scan.transform.as_ref()?;
+    let length = quaternion_length(&pose.rotation);
+    let shift = [pose.translation.x, pose.translation.y, pose.translation.z];
+    if !shift.iter().all(|v| v.is_finite()) || !length.is_finite() {
+        return Some("has numbers that are not finite");
+    }
+    (length <= MIN_LENGTH).then_some("has a rotation of zeros")
+}
+
+fn quaternion_length(q: &Quaternion) -> f64 {
+    (q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z).sqrt()
+}
+
 /// A rigid motion from scan to file coordinates.
 struct ScanPose {
     rotation: [[f64; 3]; 3],
@@ -311,7 +346,7 @@ impl ScanPose {
 
 /// The matrix of a quaternion of any length; the identity where it has none.
 fn rotation(q: &Quaternion) -> [[f64; 3]; 3] {
-    let length = (q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z).sqrt();
+    let length = quaternion_length(q);
     if !length.is_finite() || length == 0.0 {
         return [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     }

@@ -5,6 +5,7 @@ use std::path::Path;
 use geojson::{Feature, FeatureCollection, Geometry, Position};
 use serde_json::{Map, Value};
 
+use crate::antimeridian;
 use crate::output::Output;
 use belvedere_data::crs::{Crs, GeographicProjection};
 use belvedere_data::report::rounded;
@@ -45,13 +46,13 @@ pub enum GeojsonCoordinates {
 
 /// Writes each of `areas` as a feature with a multipolygon, and tells in which coordinates: longitude and latitude
 /// where `crs`, the system of the areas, gives these; else easting and northing in the unit of `crs`, with a member
-/// `crs_note` that says so.
+/// `crs_note` that says so. Polygons that cross 180 degrees are cut there.
 ///
 /// # Errors
 /// [`Error::Io`], and [`Error::UnusableCrs`] for places that have no longitude and latitude.
 ///
 /// # Source
-/// RFC 7946, sections 3.1.7, 3.3 and 4.
+/// RFC 7946, sections 3.1.7, 3.1.9, 3.3 and 4.
 pub fn write_geojson_areas<'a>(
     output: impl Into<Output<'a>>,
     areas: &[PolygonArea],
@@ -78,8 +79,7 @@ pub fn write_geojson<'a>(
         let [x, y, z] = spot.place;
         let on_map = written_ring(&[[x, y]], projection.as_ref(), crs, output.name())?;
         let height = rounded(z / crs.metres_per_unit_xyz()[2], METRE_DECIMALS);
-        let position: Vec<f64> =
-            on_map.iter().flat_map(|position| position.as_slice()).copied().chain([height]).collect();
+        let position: Vec<f64> = on_map.into_iter().flatten().chain([height]).collect();
         collection.features.push(Feature {
             geometry: Some(Geometry::new_point(Position::from(position))),
             properties: Some(spot.properties.clone()),
@@ -90,7 +90,10 @@ pub fn write_geojson<'a>(
         let mut polygons = Vec::with_capacity(area.polygons.len());
         for polygon in &area.polygons {
             let ring = |ring: &Vec<[f64; 2]>| written_ring(ring, projection.as_ref(), crs, output.name());
-            polygons.push(polygon.iter().map(ring).collect::<Result<Vec<_>>>()?);
+            let rings = polygon.iter().map(ring).collect::<Result<Vec<_>>>()?;
+            let parts = if projection.is_some() { antimeridian::cut(rings) } else { vec![rings] };
+            let positions = |ring: Vec<[f64; 2]>| ring.into_iter().map(Position::from).collect::<Vec<_>>();
+            polygons.extend(parts.into_iter().map(|part| part.into_iter().map(positions).collect::<Vec<_>>()));
         }
         collection.features.push(Feature {
             geometry: Some(Geometry::new_multi_polygon(polygons)),
@@ -114,7 +117,7 @@ fn written_ring(
     projection: Option<&GeographicProjection>,
     crs: &Crs,
     path: &Path,
-) -> Result<Vec<Position>> {
+) -> Result<Vec<[f64; 2]>> {
     let written = |&place: &[f64; 2]| {
         let (values, decimals) = match projection {
             Some(projection) => {
@@ -122,11 +125,15 @@ fn written_ring(
                     path: path.to_owned(),
                     what: format!("{e}; give the right system with --crs"),
                 })?;
-                ([longitude.to_degrees(), latitude.to_degrees()], DEGREE_DECIMALS)
+                // projections count on beyond 180 degrees
+                let longitude = longitude.to_degrees();
+                let longitude =
+                    if longitude.abs() > 180.0 { (longitude + 180.0).rem_euclid(360.0) - 180.0 } else { longitude };
+                ([longitude, latitude.to_degrees()], DEGREE_DECIMALS)
             }
             None => (place.map(|v| v / crs.metres_per_unit), METRE_DECIMALS),
         };
-        Ok(Position::from(values.map(|v| rounded(v, decimals))))
+        Ok(values.map(|v| rounded(v, decimals)))
     };
     ring.iter().map(written).collect()
 }

@@ -46,10 +46,10 @@ pub struct GeojsonFeature {
 pub fn read_geojson<'a>(source: impl Into<Source<'a>>, crs: &Crs) -> Result<Vec<GeojsonFeature>> {
     let source = source.into();
     refuse_other_shapes(source.name())?;
-    let (name, bytes) = source.read_all()?;
+    let (name, bytes) = source.read_text()?;
     let path = name.as_path();
-    let file: GeoJson = serde_json::from_slice(bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes))
-        .map_err(|e| Error::malformed(path, format!("is not GeoJSON: {e}")))?;
+    let file: GeoJson =
+        serde_json::from_slice(&bytes).map_err(|e| Error::malformed(path, format!("is not GeoJSON: {e}")))?;
     let mut raw = Vec::new();
     let members = match file {
         GeoJson::FeatureCollection(collection) => {

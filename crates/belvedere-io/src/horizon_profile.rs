@@ -13,8 +13,8 @@ use serde_json::Value;
 /// # Errors
 /// [`Error::Io`]; [`Error::Malformed`] for what holds no profile, and for numbers that [`HorizonProfile::new`] refuses.
 pub fn read_horizon<'a>(source: impl Into<Source<'a>>) -> Result<HorizonProfile> {
-    let (name, bytes) = source.into().read_all()?;
-    let text = String::from_utf8_lossy(bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes)).into_owned();
+    let (name, bytes) = source.into().read_text()?;
+    let text = String::from_utf8_lossy(&bytes).into_owned();
     let rows = if text.trim_start().starts_with('{') { of_json(&text) } else { of_table(&text) };
     let rows = rows.map_err(|what| Error::malformed(&name, what))?;
     HorizonProfile::new(rows.into_iter().map(|row| row.map(f64::to_radians)))

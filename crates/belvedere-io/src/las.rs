@@ -10,14 +10,14 @@ use std::path::{Path, PathBuf};
 use ::las::point::Format;
 use ::las::{PointData, PointDataBuilder, Transform, Vector};
 
-use super::copc::{self, ChunkPlace};
+use super::copc::{self, ChunkPlace, CopcNodes};
 use super::las_columns::LasColumns;
 use super::las_extra::{ExtraField, ExtraNormals, described, find_columns, find_extra_normals};
-use super::las_header::{LasHeader, read_header};
+use super::las_header::{COPC, LasHeader, read_header};
 use super::laz::{ExtraBytes, LazReader, NeededChunks, is_chunked};
 use super::part::{Coordinates, FilePart};
 use super::read_options::{FileBox, PassedOver, Reading, RowNumbers, Selection};
-use super::source::{Input, Source, SourceReader};
+use super::source::{Input, Source, SourceReader, SystemBeside, web_address};
 use belvedere_data::cloud::{Attributes, GpsTimeKind};
 use belvedere_data::crs::evidence::Comparison;
 use belvedere_data::crs::{Crs, CrsKind};
@@ -74,41 +74,45 @@ impl<'a> LasFile<'a> {
         self.batches_of(extra, rows, None)
     }
 
-    /// The points that may lie in `wanted`, many at a time in file order, and how many are passed over because they
-    /// cannot: in COPC by its hierarchy, in other files because they are in none of `rows`, where these are known.
+    /// The chunks of COPC that may hold points of `wanted`, of all of its points without a box.
+    fn copc_nodes(&mut self, wanted: Option<&FileBox>) -> Result<CopcNodes> {
+        if !self.header.compressed || self.points_in_file() == 0 {
+            return Ok(CopcNodes::None);
+        }
+        copc::nodes_within(&self.name, &mut self.reader, &self.header, self.size, wanted)
+    }
+
+    /// The points that may lie in `wanted`, many at a time in file order, how many are passed over because they cannot,
+    /// and what to note: in COPC by its hierarchy, in other files because they are in none of `rows`, where these are
+    /// known.
     fn batches_within(
         mut self,
         extra: ExtraBytes,
         wanted: &FileBox,
         rows: Option<Vec<Range<u64>>>,
-    ) -> Result<(Batches<'a>, u64)> {
+    ) -> Result<(Batches<'a>, u64, Option<String>)> {
         let all = self.points_in_file();
         let bounds = self.header.bounds;
         let room = room(self.header.scale);
         let low = std::array::from_fn(|i| bounds[i][0] - room[i]);
         let high = std::array::from_fn(|i| bounds[i][1] + room[i]);
         if are_given(&bounds) && !wanted.meets(low, high) {
-            return Ok((self.batches_of(extra, iter::empty(), None)?, all));
+            return Ok((self.batches_of(extra, iter::empty(), None)?, all, None));
         }
-        let chunks = if self.header.compressed && all > 0 {
-            copc::chunks_within(&self.name, &mut self.reader, &self.header, self.size, wanted)?
-        } else {
-            None
-        };
-        let batches = match chunks {
-            Some(chunks) => {
+        let nodes = self.copc_nodes(Some(wanted))?;
+        let note = nodes.note();
+        let batches = match (nodes, rows) {
+            (CopcNodes::Chunks(chunks), _) => {
                 let within = chunks.iter().fold(0_u64, |sum, chunk| sum.saturating_add(chunk.points));
                 self.batches_of(extra, iter::once(0..within), Some(chunks))?
             }
-            None => match rows {
-                Some(rows) => {
-                    self.batches_of(extra, rows.into_iter().map(|rows| rows.start..rows.end.min(all)), None)?
-                }
-                None => self.batches_of(extra, iter::once(0..all), None)?,
-            },
+            (_, Some(rows)) => {
+                self.batches_of(extra, rows.into_iter().map(|rows| rows.start..rows.end.min(all)), None)?
+            }
+            (_, None) => self.batches_of(extra, iter::once(0..all), None)?,
         };
         let left = batches.records.left();
-        Ok((batches, all.saturating_sub(left)))
+        Ok((batches, all.saturating_sub(left), note))
     }
 
     /// The points of `rows`, ranges in their order; of LAZ whole chunks that hold such rows, or those at `places`.
@@ -271,6 +275,7 @@ fn check_bounds(mut part: FilePart, bounds: [[f64; 2]; 3], scale: [f64; 3]) -> R
 /// The points of a source, batch by batch, and what is known of all of them.
 pub(super) fn open<'a>(mut source: Source<'a>, reading: &Reading<'_>) -> Result<(FilePart, LasPoints<'a>)> {
     let rows = source.likely_rows.take();
+    let beside = source.system_beside();
     let mut source = LasFile::open(source.open()?)?;
     let path = source.name.clone();
     let header = &source.header;
@@ -283,7 +288,7 @@ pub(super) fn open<'a>(mut source: Source<'a>, reading: &Reading<'_>) -> Result<
     }
     let somewhere = header.first_point(&path, &mut source.reader)?;
     part.somewhere = (header.points > 0).then_some(somewhere);
-    find_crs(&mut part, header, [somewhere[0], somewhere[1]]);
+    find_crs(&mut part, header, beside, [somewhere[0], somewhere[1]]);
     if header.points > 0 {
         reading.check_given(&part.crs, [somewhere[0], somewhere[1]], &path)?;
     }
@@ -298,6 +303,13 @@ pub(super) fn open<'a>(mut source: Source<'a>, reading: &Reading<'_>) -> Result<
         part.note(format!("the header announces {announced} points, but the file holds only {present}"));
         part.leave_out_missing(announced - present);
     }
+    // a window looks at the hierarchy itself
+    let is_looked_at = reading.options.within.is_none() && web_address(&path).is_none();
+    if let Some(note) = if is_looked_at { source.copc_nodes(None)?.note() } else { None } {
+        part.report.format = part.report.format.replace(" (COPC)", "");
+        part.note(note);
+    }
+    let header = &source.header;
     let selection = reading.selection(&part.crs);
     // rows are counted in whole files
     let wanted = selection.as_ref().filter(|_| reading.options.row_numbers == RowNumbers::Dropped);
@@ -307,8 +319,9 @@ pub(super) fn open<'a>(mut source: Source<'a>, reading: &Reading<'_>) -> Result<
     let mut passed_over = PassedOver::default();
     let batches = match wanted {
         Some(wanted) => {
-            let (batches, outside) = source.batches_within(extra, &wanted, rows)?;
+            let (batches, outside, note) = source.batches_within(extra, &wanted, rows)?;
             passed_over.outside(outside);
+            part.report.notes.extend(note);
             batches
         }
         None => source.batches(extra)?,
@@ -383,7 +396,7 @@ impl LasPoints<'_> {
 
 fn describe(path: &Path, header: &LasHeader) -> String {
     let (major, minor) = header.version;
-    let copc = header.record("copc", 1).is_some();
+    let copc = header.record(COPC, 1).is_some();
     let kind = match (header.compressed, copc) {
         (true, true) => ", LAZ (COPC)",
         (true, false) => ", LAZ",
@@ -416,8 +429,9 @@ fn point_format(path: &Path, header: &LasHeader) -> Result<Format> {
 }
 
 /// Takes the system from the records of a file. Of several that agree, well-known text says most; where they do not
-/// agree, the bit of the header decides (LAS 1.4 R15, section 2.4), and the system is doubtful.
-fn find_crs(part: &mut FilePart, header: &LasHeader, somewhere: [f64; 2]) {
+/// agree, the bit of the header decides (LAS 1.4 R15, section 2.4), and the system is doubtful. A file without one has
+/// that of what stands `beside` it.
+fn find_crs(part: &mut FilePart, header: &LasHeader, beside: Option<SystemBeside>, somewhere: [f64; 2]) {
     const USER: &str = "LASF_Projection";
     let mut unread = false;
     let mut text_of = |user: &'static str| {
@@ -443,11 +457,15 @@ fn find_crs(part: &mut FilePart, header: &LasHeader, somewhere: [f64; 2]) {
     }
     let mut named = named.into_iter();
     let Some((mut crs, source)) = named.next() else {
-        part.note(if unread {
-            "its WKT record is not readable; coordinates are taken as metres"
-        } else {
-            "it names no reference system; coordinates are taken as metres"
-        });
+        part.take_system(beside, somewhere);
+        match (part.crs.kind != CrsKind::Unknown, unread) {
+            (true, false) => {}
+            (true, true) => {
+                part.note(format!("its WKT record is not readable; that of {} is used", part.report.crs_source));
+            }
+            (false, true) => part.note("its WKT record is not readable; coordinates are taken as metres"),
+            (false, false) => part.note("it names no reference system; coordinates are taken as metres"),
+        }
         return;
     };
     if unread {
@@ -470,6 +488,7 @@ fn find_crs(part: &mut FilePart, header: &LasHeader, somewhere: [f64; 2]) {
         }
     }
     part.set_crs(crs, source);
+    part.take_system(beside, somewhere);
 }
 
 /// In what a record of a file contradicts another; `None` where it does not. Keys without a code say too little to.
@@ -532,21 +551,27 @@ pub struct LasHead {
     pub gps_times: Option<GpsTimeKind>,
     /// Whether points name the channel of their scanner: point formats 6 to 10.
     pub has_channels: bool,
+    /// What is odd about the file.
+    pub notes: Vec<String>,
 }
 
-/// What the header of a LAS, LAZ or COPC file says, without a look at its points.
+/// What the header of a LAS, LAZ or COPC file says, without a look at its points, and whether the hierarchy of COPC is
+/// that of its points.
 ///
 /// # Errors
 /// [`Error::Io`], and [`Error::Malformed`] for a damaged header and for one without usable bounds.
 pub fn read_las_head<'a>(source: impl Into<Source<'a>>) -> Result<LasHead> {
-    let file = LasFile::open(source.into().open()?)?;
+    let source = source.into();
+    let beside = source.system_beside();
+    let mut file = LasFile::open(source.open()?)?;
+    let note = file.copc_nodes(None)?.note();
     let header = &file.header;
     let bounds = header.bounds;
     if header.points > 0 && (!are_given(&bounds) || !bounds.as_flattened().iter().all(|v| v.is_finite())) {
         return Err(Error::malformed(&file.name, "has no bounds in its header; write it again, for example with PDAL"));
     }
     let mut part = FilePart::new(&file.name, "");
-    find_crs(&mut part, header, [0, 1].map(|axis| f64::midpoint(bounds[axis][0], bounds[axis][1])));
+    find_crs(&mut part, header, beside, [0, 1].map(|axis| f64::midpoint(bounds[axis][0], bounds[axis][1])));
     let kind = if header.adjusted_gps_time { GpsTimeKind::AdjustedStandard } else { GpsTimeKind::SecondsOfWeek };
     Ok(LasHead {
         points: file.points_in_file(),
@@ -556,5 +581,6 @@ pub fn read_las_head<'a>(source: impl Into<Source<'a>>) -> Result<LasHead> {
         crs: part.crs,
         gps_times: file.format.has_gps_time.then_some(kind),
         has_channels: file.format.is_extended,
+        notes: note.into_iter().collect(),
     })
 }

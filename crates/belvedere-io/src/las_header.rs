@@ -3,6 +3,7 @@
 //! The las crate allocates what the header promises; here every length is compared with the size of the file first.
 
 use std::io::{Read, Seek, SeekFrom};
+use std::ops::Range;
 use std::path::Path;
 
 use belvedere_data::{Error, Result};
@@ -30,6 +31,8 @@ pub(super) struct LasHeader {
     /// Whether Belvedere wrote the file.
     pub(super) is_of_belvedere: bool,
     pub(super) records: Vec<VariableRecord>,
+    /// Bytes of the file that hold the hierarchy of a COPC file.
+    pub(super) copc_pages: Option<Range<u64>>,
     /// Records that could not be read whole.
     pub(super) broken_records: usize,
 }
@@ -39,7 +42,12 @@ pub(super) struct VariableRecord {
     pub(super) user: String,
     pub(super) id: u16,
     pub(super) data: Vec<u8>,
+    /// Bytes that it has in the file; of some records the data are not read.
+    length: u64,
 }
+
+/// User of the records of COPC.
+pub(super) const COPC: &str = "copc";
 
 /// Extended records larger than this are passed over: only reference systems are looked for there.
 const MAX_EXTENDED: u64 = 1 << 20;
@@ -96,6 +104,7 @@ pub(super) fn read_header(path: &Path, file: &mut (impl Read + Seek), size: u64)
         wkt_decides: version.1 >= 4 && (fields.u16(6)? & 0x10 != 0 || format & 0x3f >= 6),
         counts_differ: legacy_points != 0 && long_points != 0 && legacy_points != long_points,
         records: Vec::new(),
+        copc_pages: None,
         broken_records: 0,
     };
     if header.scale.iter().any(|s| !s.is_finite() || *s == 0.0) || header.offset.iter().any(|o| !o.is_finite()) {
@@ -120,7 +129,7 @@ fn read_records(
     file: &mut (impl Read + Seek),
     header: &mut LasHeader,
     length: Length,
-    range: std::ops::Range<u64>,
+    range: Range<u64>,
     count: u32,
 ) -> Result<()> {
     let mut position = range.start;
@@ -134,7 +143,10 @@ fn read_records(
         match read_record(file, length, range.end - position).map_err(Error::io(path))? {
             Some((record, length)) => {
                 position += length;
-                header.records.extend(record);
+                if is_extended && record.user == COPC && record.id == 1000 {
+                    header.copc_pages = Some(position - record.length..position);
+                }
+                header.records.extend(Some(record).filter(|record| record.length == record.data.len() as u64));
             }
             None => {
                 header.broken_records += 1;
@@ -151,25 +163,21 @@ enum Length {
     Long,
 }
 
-/// The next record, unless it is too large to be of interest, and its length; `None` where `room` bytes do not hold it.
-fn read_record(
-    file: &mut impl Read,
-    length: Length,
-    room: u64,
-) -> std::io::Result<Option<(Option<VariableRecord>, u64)>> {
+/// The next record, without its data where it is too large to be of interest, and its length; `None` where `room` bytes do not hold it.
+fn read_record(file: &mut impl Read, length: Length, room: u64) -> std::io::Result<Option<(VariableRecord, u64)>> {
     let head_length: u64 = if length == Length::Short { 54 } else { 60 };
     let mut head = Vec::new();
     file.take(head_length.min(room)).read_to_end(&mut head)?;
     let Some((user, id, data_length)) = record_head(&head, length) else { return Ok(None) };
     let Some(total) = head_length.checked_add(data_length).filter(|&total| total <= room) else { return Ok(None) };
     // the hierarchy of a COPC file is read page by page where it is needed
-    if data_length > MAX_EXTENDED || length == Length::Long && user == "copc" {
-        return Ok(Some((None, total)));
-    }
     let mut data = Vec::new();
+    if data_length > MAX_EXTENDED || length == Length::Long && user == COPC {
+        return Ok(Some((VariableRecord { user, id, data, length: data_length }, total)));
+    }
     file.take(data_length).read_to_end(&mut data)?;
     let is_whole = data.len() as u64 == data_length;
-    Ok(is_whole.then_some((Some(VariableRecord { user, id, data }), total)))
+    Ok(is_whole.then_some((VariableRecord { user, id, data, length: data_length }, total)))
 }
 
 /// User, number and length of a record; `None` for a head that is cut off.

@@ -73,28 +73,11 @@ impl<'a> LazReader<'a> {
         extra: ExtraBytes,
         wanted: NeededChunks,
     ) -> Result<Self> {
-        let damaged = |what: String| Error::malformed(path, what);
-        let record = header.record(LazVlr::USER_ID, LazVlr::RECORD_ID);
-        let record = record.ok_or_else(|| damaged("lacks the LAZ record that describes its compression".to_owned()))?;
-        let vlr = LazVlr::from_buffer(record).map_err(|e| damaged(format!("has an unreadable LAZ record: {e}")))?;
-        let items_match = vlr.items().iter().all(|item| item.size() == nominal_size(item.item_type()));
-        let item_bytes: u64 = vlr.items().iter().map(|item| u64::from(item.size())).sum();
-        if !items_match || item_bytes != u64::from(header.record_length) {
-            return Err(damaged(format!(
-                "has a LAZ record for points of {item_bytes} bytes that does not fit the {} bytes of its header",
-                header.record_length
-            )));
-        }
+        let vlr = compression(path, header)?;
         let layers = layer_count(&vlr);
         let chunks = match wanted {
             NeededChunks::Places(places) => chunks_at(path, &places, header)?,
-            NeededChunks::Rows(rows) => {
-                file.seek(SeekFrom::Start(header.points_start)).map_err(Error::io(path))?;
-                check_chunk_count(path, &mut file, header, size)?;
-                let table = ChunkTable::read_from(&mut file, &vlr)
-                    .map_err(|e| damaged(format!("has no readable LAZ chunk table: {e}")))?;
-                with_rows(checked_chunks(path, &table, &vlr, header, size)?, &rows)
-            }
+            NeededChunks::Rows(rows) => with_rows(all_chunks(path, &mut file, &vlr, header, size)?, &rows),
         };
         let selection = DecompressionSelection::all().skip_user_data().skip_nir().skip_wavepacket();
         let selection = if extra == ExtraBytes::Skip { selection.skip_extra_bytes() } else { selection };
@@ -188,6 +171,56 @@ impl<'a> LazReader<'a> {
 /// tables.
 fn begins_soundly(stream: &[u8]) -> bool {
     stream.first_chunk() != Some(&[0xff; 4])
+}
+
+/// The record that describes the compression, which must fit the points of the header.
+fn compression(path: &Path, header: &LasHeader) -> Result<LazVlr> {
+    let damaged = |what: String| Error::malformed(path, what);
+    let record = header.record(LazVlr::USER_ID, LazVlr::RECORD_ID);
+    let record = record.ok_or_else(|| damaged("lacks the LAZ record that describes its compression".to_owned()))?;
+    let vlr = LazVlr::from_buffer(record).map_err(|e| damaged(format!("has an unreadable LAZ record: {e}")))?;
+    let items_match = vlr.items().iter().all(|item| item.size() == nominal_size(item.item_type()));
+    let item_bytes: u64 = vlr.items().iter().map(|item| u64::from(item.size())).sum();
+    if !items_match || item_bytes != u64::from(header.record_length) {
+        return Err(damaged(format!(
+            "has a LAZ record for points of {item_bytes} bytes that does not fit the {} bytes of its header",
+            header.record_length
+        )));
+    }
+    Ok(vlr)
+}
+
+/// All chunks of a file of `size` bytes.
+fn all_chunks(
+    path: &Path,
+    file: &mut SourceReader<'_>,
+    vlr: &LazVlr,
+    header: &LasHeader,
+    size: u64,
+) -> Result<Vec<LazChunk>> {
+    file.seek(SeekFrom::Start(header.points_start)).map_err(Error::io(path))?;
+    check_chunk_count(path, file, header, size)?;
+    let table = ChunkTable::read_from(&mut *file, vlr)
+        .map_err(|e| Error::malformed(path, format!("has no readable LAZ chunk table: {e}")))?;
+    checked_chunks(path, &table, vlr, header, size)
+}
+
+/// Where the chunks of a file lie, in its order; `None` where all have the same number of points, which those of COPC
+/// have not.
+pub(super) fn chunk_table(
+    path: &Path,
+    file: &mut SourceReader<'_>,
+    header: &LasHeader,
+    size: u64,
+) -> Result<Option<Vec<ChunkPlace>>> {
+    let vlr = compression(path, header)?;
+    if !vlr.uses_variable_size_chunks() {
+        return Ok(None);
+    }
+    let chunks = all_chunks(path, file, &vlr, header, size)?;
+    let place =
+        |LazChunk { start, entry }: LazChunk| ChunkPlace { start, bytes: entry.byte_count, points: entry.point_count };
+    Ok(Some(chunks.into_iter().map(place).collect()))
 }
 
 /// Bytes of an item, which the file states again, as the decompressor knows them.

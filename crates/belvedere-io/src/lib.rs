@@ -6,11 +6,12 @@
 //!
 //! # Features
 //! Formats that need crates of their own are features, all on by default: `las` (LAS, LAZ, COPC), `e57`, `ply`
-//! (reading), `npy` (NPY, NPZ ball files, masbcpp's folders), `tiff` (GeoTIFF), `obj` (reading). `http` reads files on
-//! web servers. `crs` (from `belvedere-data`) is the database of reference systems. Text, PCD, PTX, GeoJSON, CityJSON,
-//! tables, weather files and trajectories are always there. A format that was not built in gives
+//! (reading), `npy` (NPY, NPZ ball files, masbcpp's folders), `tiff` (GeoTIFF). `http` reads files on web servers. `crs`
+//! (from `belvedere-data`) is the database of reference systems. Text, PCD, PTX, OBJ, GeoJSON, CityJSON, tables, weather
+//! files and trajectories are always there. A format that was not built in gives
 //! [`belvedere_data::Error::MissingFeature`].
 
+mod antimeridian;
 mod assemble;
 pub mod atomic;
 mod ball_formats;
@@ -23,6 +24,8 @@ mod columns;
 mod copc;
 #[cfg(feature = "e57")]
 mod e57;
+#[cfg(feature = "las")]
+mod ept;
 mod geojson;
 mod geojson_read;
 #[cfg(feature = "tiff")]
@@ -55,9 +58,10 @@ mod npy;
 mod npy_header;
 #[cfg(feature = "npy")]
 mod npz_arrays;
-#[cfg(feature = "obj")]
 mod obj;
 mod observers;
+#[cfg(feature = "las")]
+mod octree;
 mod outline;
 mod output;
 mod part;
@@ -74,6 +78,8 @@ mod remote;
 mod rows;
 #[cfg(feature = "npy")]
 mod saved_matrix;
+mod scan_pose;
+mod simple_faces;
 mod source;
 mod stations;
 mod table;
@@ -123,7 +129,7 @@ pub use las::{LasHead, read_las_head};
 #[cfg(feature = "las")]
 pub use las_results::{PointResults, has_point_results, read_point_results};
 pub use mesh::{read_mesh, read_mesh_in};
-pub use observers::{ObserverRow, RowsAre, read_observers};
+pub use observers::{ObserverRow, ObserverRows, RowsAre, property, read_observers};
 pub use outline::{GridPolygon, outlines};
 pub use output::{Output, WriteSeek};
 pub use polygons::MeshReport;
@@ -133,7 +139,7 @@ pub use read_options::{Insistence, ReadOptions, RowNumbers, UpAxis, Within};
 pub use saved_matrix::{
     MatrixHead, RowSink, SavedMatrix, read_matrix, read_matrix_head, read_matrix_rows, write_matrix, write_matrix_rows,
 };
-pub use source::{ReadSeek, Source, web_address};
+pub use source::{ReadSeek, Source, SystemBeside, web_address};
 pub use stations::read_stations;
 pub use table::{Table, TableCells, read_table, write_table};
 #[cfg(feature = "tiff")]

@@ -3,15 +3,15 @@
 use super::cityjson::{LevelOfDetail, read_cityjson};
 #[cfg(feature = "ply")]
 use super::mesh_ply;
-#[cfg(feature = "obj")]
 use super::obj;
 use super::polygons::MeshReport;
-use super::source::{Source, unusable};
+use super::source::{Source, SystemBeside, unusable};
 use belvedere_data::crs::Crs;
 use belvedere_data::{Error, Mesh, Result};
 
-/// The mesh of a source (`.obj`, `.ply`, or CityJSON as `.city.json`, `.json`, `.cityjson`) and what was left out of
-/// it. CityJSON is read at the highest level of detail of each object.
+/// The mesh of a source (`.obj`, `.ply`, or CityJSON as `.city.json`, `.json`, `.cityjson`, `.jsonl`) and what was left
+/// out of it. CityJSON is read at the highest level of detail of each object. A mesh that names no reference system has
+/// that of the file `.prj` beside it, if there is one.
 ///
 /// # Errors
 /// [`belvedere_data::Error::UnknownFormat`] for other extensions, [`belvedere_data::Error::MissingFeature`];
@@ -19,14 +19,18 @@ use belvedere_data::{Error, Mesh, Result};
 /// errors, indices without a vertex, coordinates that are not finite, and files without a triangle.
 pub fn read_mesh<'a>(source: impl Into<Source<'a>>) -> Result<(Mesh, MeshReport)> {
     let source = source.into();
-    match source.extension().as_str() {
-        #[cfg(feature = "obj")]
-        "obj" => obj::read(source.open()?),
+    let beside = source.system_beside();
+    let (mut mesh, report) = match source.extension().as_str() {
+        "obj" => obj::read(source)?,
         #[cfg(feature = "ply")]
-        "ply" => mesh_ply::read(source),
-        "json" | "cityjson" => read_cityjson(source, &LevelOfDetail::Highest),
-        _ => Err(unusable(source.name(), "mesh", ".obj, .ply, .city.json, .json or .cityjson")),
+        "ply" => mesh_ply::read(source)?,
+        "json" | "cityjson" | "jsonl" => read_cityjson(source, &LevelOfDetail::Highest)?,
+        _ => return Err(unusable(source.name(), "mesh", ".obj, .ply, .city.json, .city.jsonl, .json or .cityjson")),
+    };
+    if let Some(SystemBeside::Known { crs, .. }) = beside.filter(|_| mesh.crs == Crs::default()) {
+        mesh.crs = crs;
     }
+    Ok((mesh, report))
 }
 
 /// The same for a scene in the reference system `crs`, in metres.

@@ -1,76 +1,161 @@
 //! Wavefront OBJ meshes.
 
-use super::polygons::{MeshBuilder, MeshReport};
-use super::source::Input;
-use belvedere_data::{Error, Mesh, Result};
-use std::io::{BufRead, Seek};
+use std::borrow::Cow;
+use std::collections::HashMap;
+use std::path::Path;
 
-/// Name the parser gives to faces that come before any `o` or `g` line.
+use super::polygons::{MeshBuilder, MeshReport};
+use super::source::Source;
+use belvedere_data::{Error, Mesh, Result};
+
+/// Name of the object of faces that come before any `o` or `g` line, where other faces have one.
 const UNNAMED: &str = "unnamed_object";
 
-/// The line, from 1, of the first face with an index of a vertex that is not there, the index, and the number of
-/// vertices of the file.
-fn bad_face(reader: &mut (impl BufRead + Seek)) -> Option<(usize, i64, i64)> {
-    reader.rewind().ok()?;
-    let (mut count, mut faces) = (0_i64, Vec::new());
-    for (number, line) in (1..).zip(reader.lines()) {
-        let line = line.ok()?;
-        let mut words = line.split_ascii_whitespace();
-        match words.next() {
-            Some("v") => count += 1,
-            Some("f") => {
-                let indices = words.filter_map(|word| word.split('/').next()?.parse::<i64>().ok());
-                // negative indices count from the last vertex before the face
-                faces.extend(indices.map(|index| (number, index, if index < 0 { count + 1 + index } else { index })));
-            }
-            _ => {}
-        }
-    }
-    let (line, index, _) = faces.into_iter().find(|(_, _, vertex)| !(1..=count).contains(vertex))?;
-    Some((line, index, count))
+/// What a file says, before faces find their vertices: they may stand in front of these.
+#[derive(Default)]
+struct ObjFile<'a> {
+    /// Position of each vertex, and its line from 1.
+    vertices: Vec<([f64; 3], usize)>,
+    faces: Vec<ObjFace>,
+    /// Names of the `o` and `g` lines.
+    names: Vec<&'a str>,
+}
+
+/// A face as the file has it.
+struct ObjFace {
+    line: usize,
+    /// Index into the names; `None` before the first.
+    name: Option<usize>,
+    /// Number of the vertex at each corner, from 0.
+    corners: Vec<usize>,
 }
 
 /// The triangles of an OBJ file, one object per `o` or `g` line, and what was left out.
 ///
 /// Polygons may be concave. Points, lines, materials and textures are passed over; a material library need not be
-/// there. Coordinates are taken as metres.
+/// there. A backslash at the end of a line continues it. Coordinates are taken as metres.
 ///
 /// # Errors
-/// [`Error::Io`] where the file cannot be opened, [`Error::Malformed`] for syntax errors, indices without a vertex,
-/// coordinates that are not finite, and files without a triangle.
-pub(super) fn read(input: Input<'_>) -> Result<(Mesh, MeshReport)> {
-    let Input { name, mut reader, .. } = input;
+/// [`Error::Io`] where the file cannot be opened; [`Error::Malformed`], which names the line, for syntax errors, decimal
+/// commas, indices without a vertex, and coordinates that are not finite; also for files without a triangle.
+pub(super) fn read(source: Source<'_>) -> Result<(Mesh, MeshReport)> {
+    let (name, bytes) = source.read_text()?;
     let path = name.as_path();
-    // the parser would cut polygons into fans, which is wrong for concave ones
-    let options =
-        tobj::LoadOptions { triangulate: false, ignore_points: true, ignore_lines: true, ..Default::default() };
-    let (models, _materials) = tobj::load_obj_buf(&mut reader, &options, |_| Err(tobj::LoadError::GenericFailure))
-        .map_err(|error| (error, bad_face(&mut reader)))
-        .map_err(|(error, bad)| match bad {
-            Some((line, index, count)) => {
-                let what = format!("line {line}: a face refers to vertex {index}, but there are only {count} vertices");
-                Error::malformed(path, what)
-            }
-            None => Error::malformed(path, format!("not a readable OBJ file: {error}")),
-        })?;
-    let names_objects = models.iter().any(|model| model.name != UNNAMED);
-    let mut builder = MeshBuilder::new(path);
-    for model in &models {
-        let object = names_objects.then(|| builder.push_object(&model.name));
-        let offset = builder.mesh.vertices.len();
-        for vertex in model.mesh.positions.chunks_exact(3) {
-            builder.push_vertex([vertex[0], vertex[1], vertex[2]])?;
+    let text = String::from_utf8_lossy(&bytes);
+    let mut lines = text.lines().enumerate();
+    let mut logical: Vec<(usize, Cow<'_, str>)> = Vec::new();
+    while let Some((row, line)) = lines.next() {
+        let mut whole = Cow::Borrowed(line);
+        while whole.trim_end().ends_with('\\') {
+            let mut start = whole.into_owned();
+            start.truncate(start.trim_end().len() - 1);
+            start.push(' ');
+            start.push_str(lines.next().map_or("", |(_, next)| next));
+            whole = Cow::Owned(start);
         }
-        let offset = u32::try_from(offset).map_err(|_| Error::malformed(path, "too many vertices; split the file"))?;
-        let mut rest = model.mesh.indices.as_slice();
-        let mut arities = model.mesh.face_arities.iter();
-        while !rest.is_empty() {
-            let arity = arities.next().map_or(3, |&arity| arity as usize).clamp(1, rest.len());
-            let (face, after) = rest.split_at(arity);
-            rest = after;
-            let ring = face.iter().map(|&i| i.saturating_add(offset)).collect();
-            builder.push_polygon(&[ring], object)?;
+        logical.push((row + 1, whole));
+    }
+    let mut file = ObjFile::default();
+    for (line, text) in &logical {
+        file.take(text).map_err(|what| Error::malformed(path, format!("line {line}: {what}")))?;
+        file.number_last(*line);
+    }
+    file.into_mesh(path)
+}
+
+impl<'a> ObjFile<'a> {
+    /// Takes one line; an error is why it cannot be read.
+    fn take(&mut self, line: &'a str) -> std::result::Result<(), String> {
+        let line = line.split_once('#').map_or(line, |(before, _)| before).trim();
+        let (keyword, rest) = line.split_once(|c: char| c.is_ascii_whitespace()).unwrap_or((line, ""));
+        match keyword {
+            "v" => self.vertices.push((position(rest)?, 0)),
+            "f" => {
+                let count = self.vertices.len();
+                let corners = rest.split_ascii_whitespace().map(|word| corner(word, count));
+                let corners = corners.collect::<std::result::Result<Vec<_>, String>>()?;
+                self.faces.push(ObjFace { line: 0, name: self.names.len().checked_sub(1), corners });
+            }
+            "o" | "g" => self.names.push(rest.trim()),
+            _ => {}
+        }
+        Ok(())
+    }
+
+    /// Gives what the last line made its number.
+    fn number_last(&mut self, line: usize) {
+        if let Some((_, own)) = self.vertices.last_mut().filter(|(_, own)| *own == 0) {
+            *own = line;
+        }
+        if let Some(face) = self.faces.last_mut().filter(|face| face.line == 0) {
+            face.line = line;
         }
     }
-    builder.finish()
+
+    fn into_mesh(self, path: &Path) -> Result<(Mesh, MeshReport)> {
+        let mut builder = MeshBuilder::new(path);
+        let names_objects = self.faces.iter().any(|face| face.name.is_some());
+        // vertices that no face has are no part of the mesh
+        let mut indices: HashMap<usize, u32> = HashMap::new();
+        for face in &self.faces {
+            let mut ring = Vec::with_capacity(face.corners.len());
+            for &corner in &face.corners {
+                let index = match (indices.get(&corner), self.vertices.get(corner)) {
+                    (Some(&index), _) => index,
+                    (None, Some(&(place, line))) => {
+                        builder.line = line;
+                        let index = builder.push_vertex(place)?;
+                        indices.insert(corner, index);
+                        index
+                    }
+                    (None, None) => {
+                        let (line, number, count) = (face.line, corner.saturating_add(1), self.vertices.len());
+                        let what = format!("line {line}: a face refers to vertex {number}, but there are only {count}");
+                        return Err(Error::malformed(path, what));
+                    }
+                };
+                ring.push(index);
+            }
+            builder.line = face.line;
+            let name = face.name.and_then(|name| self.names.get(name)).copied().unwrap_or(UNNAMED);
+            let object = names_objects.then(|| builder.push_object(name));
+            builder.push_polygon(&[ring], object)?;
+        }
+        builder.line = 0;
+        builder.finish()
+    }
+}
+
+fn position(text: &str) -> std::result::Result<[f64; 3], String> {
+    let mut words = text.split_ascii_whitespace();
+    let mut next = || {
+        let word = words.next().ok_or_else(|| format!("a vertex needs x, y and z, but has \"{}\"", shortened(text)))?;
+        word.parse::<f64>().map_err(|_| {
+            if word.replacen(',', ".", 1).parse::<f64>().is_ok() {
+                format!("decimal commas ({}); replace them by points, for example with: tr ',' '.'", shortened(text))
+            } else {
+                format!("\"{}\" is not a number", shortened(word))
+            }
+        })
+    };
+    Ok([next()?, next()?, next()?])
+}
+
+/// Number of a vertex, from 0, where `count` vertices stand before the face: `7`, `7/1`, `7//3`, `7/1/3` and -1 for the
+/// last one before it.
+fn corner(word: &str, count: usize) -> std::result::Result<usize, String> {
+    let index = word.split('/').next().and_then(|index| index.parse::<i64>().ok());
+    let index = index.ok_or_else(|| format!("\"{}\" is not a corner of a face", shortened(word)))?;
+    let back = usize::try_from(index.unsigned_abs()).unwrap_or(usize::MAX);
+    match index {
+        1.. => Ok(back - 1),
+        0 => Err("a face refers to vertex 0, but vertices are counted from 1".to_owned()),
+        _ => count
+            .checked_sub(back)
+            .ok_or_else(|| format!("a face refers to vertex {index}, but only {count} vertices stand before it")),
+    }
+}
+
+fn shortened(text: &str) -> String {
+    text.trim().chars().take(40).collect()
 }

@@ -1,5 +1,6 @@
 //! Observers and paths from tables and GeoJSON.
 
+use std::ops::Range;
 use std::path::Path;
 
 use serde_json::{Map, Value};
@@ -33,20 +34,62 @@ pub struct ObserverRow {
     pub weight: Option<f64>,
 }
 
-/// Names of the columns, and of the properties in GeoJSON, in the order of [`from_values`].
-const NAMES: [&str; 11] = [
-    "height",
-    "min_distance",
-    "max_distance",
-    "azimuth_from",
-    "azimuth_to",
-    "elevation_from",
-    "elevation_to",
-    "heading",
-    "tilt",
-    "fov",
-    "weight",
+/// What a column of a table, or a property in GeoJSON, may say of an observer: in the order of [`from_values`].
+const MEANINGS: [Meaning; 13] = [
+    Meaning { names: &["height", "observ_hgt", "offseta", "observer_height", "eye_height"], unit: Unit::Height },
+    Meaning { names: &["min_distance", "radius1", "radius_in"], unit: Unit::Distance },
+    Meaning { names: &["max_distance", "radius2", "radius"], unit: Unit::Distance },
+    Meaning { names: &["azimuth_from", "azimuth1", "azim_1"], unit: Unit::None },
+    Meaning { names: &["azimuth_to", "azimuth2", "azim_2"], unit: Unit::None },
+    Meaning { names: &["elevation_from", "vert2", "angle_down"], unit: Unit::None },
+    Meaning { names: &["elevation_to", "vert1", "angle_up"], unit: Unit::None },
+    Meaning { names: &["heading"], unit: Unit::None },
+    Meaning { names: &["tilt"], unit: Unit::None },
+    Meaning { names: &["fov"], unit: Unit::None },
+    Meaning { names: &["weight"], unit: Unit::None },
+    Meaning { names: &["z"], unit: Unit::HeightOfFile },
+    Meaning { names: &["spot"], unit: Unit::HeightOfFile },
 ];
+
+/// Which of these say how far and where somebody looks.
+const LIMITS: Range<usize> = 1..10;
+
+/// The names of one meaning, in lower case: the first is our own, in metres or degrees, and stands above the others,
+/// which are those of the visibility tools of QGIS and ArcGIS and are in the unit of the file.
+struct Meaning {
+    names: &'static [&'static str],
+    unit: Unit,
+}
+
+#[derive(Clone, Copy)]
+enum Unit {
+    None,
+    Distance,
+    Height,
+    /// Under every name.
+    HeightOfFile,
+}
+
+/// Parts of names that speak of how somebody looks. What no [`Meaning`] has of these is named as not used.
+const TELLING: [&str; 15] = [
+    "hgt", "height", "offset", "radius", "azim", "vert", "angle", "spot", "dist", "heading", "bearing", "tilt",
+    "pitch", "fov", "elev",
+];
+
+/// Height above its place that an observer with `SPOT` alone has in ArcGIS, in the unit of the file.
+const OFFSET_OF_SPOT: f64 = 1.0;
+
+/// Observers and paths of a file, and what of it was not used.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ObserverRows {
+    /// One for each row or shape.
+    pub rows: Vec<ObserverRow>,
+    /// Names of columns or properties that look as if they said how somebody looks, and are not understood.
+    pub unused: Vec<String>,
+    /// Names of those that were understood and say how far and where somebody looks: a question that is about places
+    /// does not use them.
+    pub limits: Vec<String>,
+}
 
 /// What the rows of a table are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -59,15 +102,20 @@ pub enum RowsAre {
 
 /// Reads observers from a table (.csv .txt) or GeoJSON (.geojson .json).
 ///
-/// A table has columns x and y in the coordinates of the cloud's file, and may have z (height of the eye; empty where
-/// it follows from the ground), height (above the ground, metres), min_distance and max_distance (metres),
-/// azimuth_from, azimuth_to, elevation_from, elevation_to, heading, tilt and fov (degrees) and weight. GeoJSON has
-/// these as properties; points are observers, lines are paths, and the corners of polygons are walked around.
+/// A table has columns x and y in the coordinates of the cloud's file, and may have z (height of the eye, in the unit of
+/// the file; empty where it follows from the ground), height (above the ground, metres), min_distance and max_distance
+/// (metres), azimuth_from, azimuth_to, elevation_from, elevation_to, heading, tilt and fov (degrees) and weight. GeoJSON
+/// has these as properties; points are observers, lines are paths, and the corners of polygons are walked around. A
+/// property z stands above the third coordinate. Upper and lower case are the same.
+///
+/// Names of other programs are understood, lengths in the unit of the file: observ_hgt, radius, radius_in, azim_1,
+/// azim_2, angle_down and angle_up of QGIS, OFFSETA, RADIUS1, RADIUS2, AZIMUTH1, AZIMUTH2, VERT1, VERT2 and SPOT of
+/// ArcGIS: the eye is OFFSETA above SPOT, or 1. Of a range with one end the other is that of all directions.
 ///
 /// # Errors
 /// [`Error::UnknownFormat`], [`Error::Malformed`] for missing columns, text in place of numbers and files without
 /// observers, and what [`read_table`] and [`read_geojson`] refuse.
-pub fn read_observers<'a>(source: impl Into<Source<'a>>, crs: &Crs, rows_are: RowsAre) -> Result<Vec<ObserverRow>> {
+pub fn read_observers<'a>(source: impl Into<Source<'a>>, crs: &Crs, rows_are: RowsAre) -> Result<ObserverRows> {
     let source = source.into();
     let name = source.name().to_owned();
     let path = name.as_path();
@@ -80,37 +128,47 @@ pub fn read_observers<'a>(source: impl Into<Source<'a>>, crs: &Crs, rows_are: Ro
             return Err(Error::UnknownFormat { path: path.to_owned(), kind: "observers", supported });
         }
     };
-    if rows.is_empty() {
+    if rows.rows.is_empty() {
         return Err(Error::malformed(path, "has no places; give a row with x and y for each"));
     }
     Ok(rows)
 }
 
-fn of_table(source: Source<'_>, path: &Path, crs: &Crs, rows_are: RowsAre) -> Result<Vec<ObserverRow>> {
+fn of_table(source: Source<'_>, path: &Path, crs: &Crs, rows_are: RowsAre) -> Result<ObserverRows> {
     let table = read_table(source)?;
     let scale = crs.metres_per_unit_xyz();
     let (x, y) = (table.full_column(path, "x")?, table.full_column(path, "y")?);
-    let z = table.column(path, "z")?;
-    let mut columns: [Option<&[f64]>; NAMES.len()] = [None; NAMES.len()];
-    for (column, name) in columns.iter_mut().zip(NAMES) {
-        *column = table.column(path, name)?;
-    }
-    let mut rows: Vec<ObserverRow> = Vec::new();
-    for (i, (x, y)) in x.iter().zip(y).enumerate() {
-        let z = z.and_then(|z| z.get(i)).copied().unwrap_or(f64::NAN);
-        let corner = [x * scale[0], y * scale[1], z * scale[2]];
-        if let (RowsAre::Corners, Some(path)) = (rows_are, rows.first_mut()) {
-            path.corners.push(corner);
-            continue;
+    let mut columns: [Option<(&[f64], usize)>; MEANINGS.len()] = [None; MEANINGS.len()];
+    let mut used: Vec<(&str, usize)> = Vec::new();
+    for (index, (column, meaning)) in columns.iter_mut().zip(&MEANINGS).enumerate() {
+        for (number, name) in meaning.names.iter().enumerate() {
+            if column.is_none()
+                && let Some(values) = table.column(path, name)?
+            {
+                *column = Some((values, number));
+                used.push((name, index));
+            }
         }
-        let values = columns.map(|column| column?.get(i).copied());
-        rows.push(from_values(vec![corner], values, path)?);
     }
-    Ok(rows)
+    let mut found = ObserverRows::of_names(table.names(), &used);
+    for (i, (x, y)) in x.iter().zip(y).enumerate() {
+        let value = |column: usize| {
+            let (values, number) = columns[column]?;
+            Some(MEANINGS[column].metres(number, *values.get(i)?, scale))
+        };
+        let values = std::array::from_fn(value);
+        let row = from_values(vec![[x * scale[0], y * scale[1], f64::NAN]], values, scale[2], path)?;
+        match (rows_are, found.rows.first_mut()) {
+            (RowsAre::Corners, Some(path)) => path.corners.extend(row.corners),
+            _ => found.rows.push(row),
+        }
+    }
+    Ok(found)
 }
 
-fn of_geojson(source: Source<'_>, path: &Path, crs: &Crs) -> Result<Vec<ObserverRow>> {
-    let mut rows = Vec::new();
+fn of_geojson(source: Source<'_>, path: &Path, crs: &Crs) -> Result<ObserverRows> {
+    let scale = crs.metres_per_unit_xyz();
+    let (mut rows, mut names, mut used) = (Vec::new(), Vec::<String>::new(), Vec::new());
     for feature in read_geojson(source, crs)? {
         let corners = match feature.shape {
             FeatureShape::Point(place) => vec![place],
@@ -120,17 +178,60 @@ fn of_geojson(source: Source<'_>, path: &Path, crs: &Crs) -> Result<Vec<Observer
         if corners.is_empty() {
             continue;
         }
-        let mut values = [None; NAMES.len()];
-        for (value, name) in values.iter_mut().zip(NAMES) {
-            *value = number(&feature.properties, name, path)?;
+        let mut values = [None; MEANINGS.len()];
+        for (index, (value, meaning)) in values.iter_mut().zip(&MEANINGS).enumerate() {
+            for (number, name) in meaning.names.iter().enumerate() {
+                let Some(own) = number_of(&feature.properties, name, path)?.filter(|_| value.is_none()) else {
+                    continue;
+                };
+                *value = Some(meaning.metres(number, own, scale));
+                used.push((*name, index));
+            }
         }
-        rows.push(from_values(corners, values, path)?);
+        let others: Vec<String> = feature.properties.keys().filter(|name| !names.contains(name)).cloned().collect();
+        names.extend(others);
+        rows.push(from_values(corners, values, scale[2], path)?);
     }
-    Ok(rows)
+    Ok(ObserverRows { rows, ..ObserverRows::of_names(&names, &used) })
 }
 
-fn number(properties: &Map<String, Value>, name: &str, path: &Path) -> Result<Option<f64>> {
-    match properties.get(name) {
+impl Meaning {
+    /// Metres or degrees of a `value` of the file under the name with this number.
+    fn metres(&self, number: usize, value: f64, scale: [f64; 3]) -> f64 {
+        match self.unit {
+            // ArcGIS marks distances along the line of sight by a minus
+            Unit::Distance if number > 0 => value.abs() * scale[0],
+            Unit::Height if number > 0 => value * scale[2],
+            Unit::HeightOfFile => value * scale[2],
+            _ => value,
+        }
+    }
+}
+
+impl ObserverRows {
+    /// What the `names` of a file are for, of which those in `used` had the meaning with that index.
+    fn of_names(names: &[String], used: &[(&str, usize)]) -> Self {
+        let mut found = Self::default();
+        for name in names {
+            let plain = name.trim().to_ascii_lowercase();
+            match used.iter().find(|(own, _)| *own == plain) {
+                Some((_, index)) if LIMITS.contains(index) => found.limits.push(name.clone()),
+                None if TELLING.iter().any(|part| plain.contains(part)) => found.unused.push(name.clone()),
+                _ => {}
+            }
+        }
+        found
+    }
+}
+
+/// The property of that name, in upper or lower case.
+pub fn property<'a>(properties: &'a Map<String, Value>, name: &str) -> Option<&'a Value> {
+    let any_case = || properties.iter().find(|(own, _)| own.trim().eq_ignore_ascii_case(name));
+    properties.get(name).or_else(|| any_case().map(|(_, value)| value))
+}
+
+fn number_of(properties: &Map<String, Value>, name: &str, path: &Path) -> Result<Option<f64>> {
+    match property(properties, name) {
         None | Some(Value::Null) => Ok(None),
         Some(Value::Number(number)) => Ok(number.as_f64()),
         Some(Value::String(text)) if text.trim().is_empty() => Ok(None),
@@ -142,25 +243,44 @@ fn number(properties: &Map<String, Value>, name: &str, path: &Path) -> Result<Op
     }
 }
 
-fn from_values(corners: Vec<[f64; 3]>, values: [Option<f64>; NAMES.len()], path: &Path) -> Result<ObserverRow> {
+/// An observer at `corners` with `values` in metres and degrees, where a unit of heights of the file has
+/// `metres_per_height`.
+fn from_values(
+    mut corners: Vec<[f64; 3]>,
+    values: [Option<f64>; MEANINGS.len()],
+    metres_per_height: f64,
+    path: &Path,
+) -> Result<ObserverRow> {
     if let Some(corner) = corners.iter().find(|c| !(c[0].is_finite() && c[1].is_finite())) {
         return Err(Error::malformed(path, format!("an observer has the position {corner:?}")));
     }
-    let [height, min, max, azimuth_from, azimuth_to, elevation_from, elevation_to, heading, tilt, fov, weight] =
+    let [height, min, max, azimuth_from, azimuth_to, elevation_from, elevation_to, heading, tilt, fov, weight, z, spot] =
         values.map(|value| value.filter(|v| !v.is_nan()));
     if let Some(height) = height.filter(|height| !(*height >= 0.0 && height.is_finite())) {
         let what = format!("an observer has the height {height}; heights above the ground are 0 metres or more");
         return Err(Error::malformed(path, what));
     }
+    let above_spot = spot.map(|spot| spot + height.unwrap_or(OFFSET_OF_SPOT * metres_per_height));
+    if let Some(z) = z.or(above_spot) {
+        corners.iter_mut().for_each(|corner| corner[2] = z);
+    }
     Ok(ObserverRow {
         corners,
         height,
         distance: [min, max],
-        azimuth_deg: [azimuth_from, azimuth_to],
-        elevation_deg: [elevation_from, elevation_to],
+        azimuth_deg: whole_range([azimuth_from, azimuth_to], [0.0, 360.0]),
+        elevation_deg: whole_range([elevation_from, elevation_to], [-90.0, 90.0]),
         heading_deg: heading,
         tilt_deg: tilt,
         fov_deg: fov,
         weight,
     })
+}
+
+/// A range of which one end may be missing: then it is that of `all`.
+fn whole_range(range: [Option<f64>; 2], all: [f64; 2]) -> [Option<f64>; 2] {
+    match range {
+        [None, None] => range,
+        [from, to] => [from.or(Some(all[0])), to.or(Some(all[1]))],
+    }
 }

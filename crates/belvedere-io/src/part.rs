@@ -4,9 +4,11 @@ use std::path::Path;
 
 use super::read_cloud::{FileReport, LeftOut};
 use super::read_options::{PassedOver, Reading};
+use super::source::SystemBeside;
 use belvedere_data::Result;
 use belvedere_data::cloud::Attributes;
-use belvedere_data::crs::Crs;
+use belvedere_data::crs::evidence::Comparison;
+use belvedere_data::crs::{Crs, CrsKind};
 
 /// GPS times are of no use to order pulses when a file of more points than this has only [`FEW_TIMES`] of them.
 const MANY_POINTS: usize = 1000;
@@ -125,6 +127,29 @@ impl FilePart {
         self.report.crs = crs.describe();
         self.report.crs_source = source.into();
         self.crs = crs;
+    }
+
+    /// Takes the system beside a file where the file names none, and doubts that of the file where it says something
+    /// else of the place `somewhere`.
+    pub(super) fn take_system(&mut self, beside: Option<SystemBeside>, somewhere: [f64; 2]) {
+        match beside {
+            Some(SystemBeside::Known { crs, found_in }) if self.crs.kind == CrsKind::Unknown => {
+                self.set_crs(crs, found_in);
+            }
+            Some(SystemBeside::Known { crs, found_in }) => match crs.compare(&self.crs, somewhere) {
+                Comparison::Apart(how) => {
+                    let (own, other) = (self.crs.describe(), crs.describe());
+                    let what =
+                        format!("the file names {own}, but {found_in} beside it {other} ({how}); the first is used");
+                    self.crs = self.crs.clone().doubted(what);
+                }
+                Comparison::Same | Comparison::Unknown => self.crs = self.crs.clone().with_heights_of(&crs),
+            },
+            Some(SystemBeside::Unreadable { found_in }) if self.crs.kind == CrsKind::Unknown => {
+                self.note(format!("{found_in} beside it names no system that is known"));
+            }
+            Some(SystemBeside::Unreadable { .. }) | None => {}
+        }
     }
 
     /// Turns a part whose y is up: positions, normals and scanners (x, y, z) become (x, −z, y).

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use earcut::Earcut;
 
+use super::simple_faces::{crosses_itself, without_repeats};
 use belvedere_data::vector::{cross, dot, length, sub};
 use belvedere_data::{Error, Mesh, Result};
 
@@ -14,6 +15,16 @@ const MAX_COORDINATE: f64 = 1e9;
 /// 1e6 m determine a height over a 1 m edge to 1e-10 at best.
 const DEGENERATE_AREA_RATIO: f64 = 1e-10;
 
+/// Corners up to which no face takes longer than microseconds, whatever its shape.
+const FEW_CORNERS: usize = 16;
+
+/// A face that crosses itself is triangulated as well as that goes, in a time that grows with the cube of its corners.
+/// More than this for all such faces of a file would take more than a few seconds.
+const MAX_CROSSED_CUBES: f64 = 1e10;
+
+/// Most corners of a face, in all its rings: the time grows with their square where a face winds around itself.
+const MAX_CORNERS: usize = 20_000;
+
 /// What was found in, and left out of, a mesh file.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct MeshReport {
@@ -23,6 +34,8 @@ pub struct MeshReport {
     pub degenerate_triangle_count: usize,
     /// Polygons that gave no triangle at all: fewer than three distinct corners, or all in one line.
     pub degenerate_polygon_count: usize,
+    /// Polygons that pass their corners so often that they can only turn around in themselves: each corner was kept once.
+    pub repeated_polygon_count: usize,
     /// Geometries without surfaces (points, lines) or of an unknown kind that were passed over.
     pub skipped_geometry_count: usize,
     /// Geometries passed over for another level of detail of the same object.
@@ -32,14 +45,33 @@ pub struct MeshReport {
 /// Collects vertices and polygons of one file.
 pub(super) struct MeshBuilder<'a> {
     path: &'a Path,
+    /// Line of the file that is being read, from 1, for messages; 0 in files without lines.
+    pub(super) line: usize,
     pub(super) mesh: Mesh,
     pub(super) report: MeshReport,
     earcut: Earcut<f64>,
+    /// Sum of the cubes of the corners of faces that cross themselves.
+    crossed_cubes: f64,
 }
 
 impl<'a> MeshBuilder<'a> {
     pub(super) fn new(path: &'a Path) -> Self {
-        Self { path, mesh: Mesh::default(), report: MeshReport::default(), earcut: Earcut::new() }
+        Self {
+            path,
+            line: 0,
+            mesh: Mesh::default(),
+            report: MeshReport::default(),
+            earcut: Earcut::new(),
+            crossed_cubes: 0.0,
+        }
+    }
+
+    /// An error that names the line.
+    pub(super) fn malformed(&self, what: impl std::fmt::Display) -> Error {
+        match self.line {
+            0 => Error::malformed(self.path, what.to_string()),
+            line => Error::malformed(self.path, format!("line {line}: {what}")),
+        }
     }
 
     /// Appends a vertex, metres; returns its index.
@@ -51,10 +83,10 @@ impl<'a> MeshBuilder<'a> {
         if !vertex.iter().all(|v| v.abs() < MAX_COORDINATE) {
             let what =
                 format!("a vertex lies at {vertex:?}; coordinates must be numbers of metres below {MAX_COORDINATE:e}");
-            return Err(Error::malformed(self.path, what));
+            return Err(self.malformed(what));
         }
         let index = u32::try_from(self.mesh.vertices.len())
-            .map_err(|_| Error::malformed(self.path, "more than 4294967295 vertices; split the file"))?;
+            .map_err(|_| self.malformed("more than 4294967295 vertices; split the file"))?;
         self.mesh.vertices.push(vertex);
         Ok(index)
     }
@@ -71,11 +103,13 @@ impl<'a> MeshBuilder<'a> {
     /// triangles to `object` with the turning sense of the outline.
     ///
     /// # Errors
-    /// [`Error::Malformed`] for an index without a vertex.
+    /// [`Error::Malformed`] for an index without a vertex, for a polygon of more than 20 000 corners, and for those with
+    /// many corners that cross themselves: they cannot be triangulated in bounded time.
     pub(super) fn push_polygon(&mut self, rings: &[Vec<u32>], object: Option<u32>) -> Result<()> {
         self.report.polygon_count += 1;
         let mut corners: Vec<u32> = Vec::new();
         let mut hole_starts: Vec<u32> = Vec::new();
+        let mut is_repeating = false;
         for (ring_index, ring) in rings.iter().enumerate() {
             if let Some(bad) = ring.iter().find(|&&i| i as usize >= self.mesh.vertices.len()) {
                 let what = format!(
@@ -83,16 +117,11 @@ impl<'a> MeshBuilder<'a> {
                     self.report.polygon_count,
                     self.mesh.vertices.len()
                 );
-                return Err(Error::malformed(self.path, what));
+                return Err(self.malformed(what));
             }
             let start = corners.len();
-            corners.extend_from_slice(ring);
-            // some files repeat the first corner at the end of a ring, others repeat corners in a row
-            let mut tail = corners.split_off(start);
-            tail.dedup();
-            while tail.len() > 1 && tail.first() == tail.last() {
-                tail.pop();
-            }
+            let (tail, is_repeated) = without_repeats(ring, &self.mesh.vertices);
+            is_repeating |= is_repeated;
             if ring_index == 0 && tail.len() < 3 {
                 self.report.degenerate_polygon_count += 1;
                 return Ok(());
@@ -104,11 +133,12 @@ impl<'a> MeshBuilder<'a> {
                 corners.extend(tail);
             }
         }
+        self.report.repeated_polygon_count += usize::from(is_repeating);
         let before = self.mesh.triangles.len();
         if let [a, b, c] = *corners {
             self.push_triangle([a, b, c], object);
         } else {
-            self.push_triangulated(&corners, &hole_starts, object);
+            self.push_triangulated(&corners, &hole_starts, object)?;
         }
         if self.mesh.triangles.len() == before {
             self.report.degenerate_polygon_count += 1;
@@ -116,9 +146,21 @@ impl<'a> MeshBuilder<'a> {
         Ok(())
     }
 
-    fn push_triangulated(&mut self, corners: &[u32], hole_starts: &[u32], object: Option<u32>) {
+    fn push_triangulated(&mut self, corners: &[u32], hole_starts: &[u32], object: Option<u32>) -> Result<()> {
+        if corners.len() > MAX_CORNERS {
+            let what = format!("a face has {} corners; split it into faces of at most {MAX_CORNERS}", corners.len());
+            return Err(self.malformed(what));
+        }
         let outline_length = hole_starts.first().map_or(corners.len(), |&start| start as usize);
-        let Some(flat) = flatten(&self.mesh.vertices, corners, outline_length) else { return };
+        let Some(flat) = flatten(&self.mesh.vertices, corners, outline_length) else { return Ok(()) };
+        if corners.len() > FEW_CORNERS && crosses_itself(&flat, hole_starts) {
+            self.crossed_cubes += (corners.len() as f64).powi(3);
+            if self.crossed_cubes > MAX_CROSSED_CUBES {
+                let number = self.report.polygon_count;
+                let what = format!("face {number}, of {} corners, crosses itself; repair the mesh", corners.len());
+                return Err(self.malformed(what));
+            }
+        }
         let mut triangles: Vec<u32> = Vec::new();
         self.earcut.earcut_slice(&flat, hole_starts, &mut triangles);
         for triangle in triangles.chunks_exact(3) {
@@ -129,6 +171,7 @@ impl<'a> MeshBuilder<'a> {
             let ordered = if area >= 0.0 { [i, j, k] } else { [i, k, j] };
             self.push_triangle(ordered.map(|n| corners[n]), object);
         }
+        Ok(())
     }
 
     fn push_triangle(&mut self, triangle: [u32; 3], object: Option<u32>) {

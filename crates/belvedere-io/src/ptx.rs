@@ -6,6 +6,7 @@ use std::path::Path;
 use super::part::FilePart;
 use super::read_options::Reading;
 use super::rows::{POSITION, Role, Row, Rows};
+use super::scan_pose::fault_of_rotation;
 use super::source::Input;
 use belvedere_data::{Error, Result};
 
@@ -18,7 +19,8 @@ const HEADER_LINES: usize = 10;
 /// The points of all scans of the source; grid cells at (0, 0, 0), where nothing came back, are left out.
 ///
 /// # Errors
-/// [`Error::Malformed`] for a header that is no scan's, an unreadable line, or a scan that is cut off.
+/// [`Error::Malformed`] for a header that is no scan's, a transformation that is no rotation with a shift, an unreadable
+/// line, or a scan that is cut off.
 pub(super) fn read(input: Input<'_>, reading: &Reading<'_>) -> Result<FilePart> {
     let Input { name, reader: file, size } = input;
     let path = name.as_path();
@@ -28,6 +30,15 @@ pub(super) fn read(input: Input<'_>, reading: &Reading<'_>) -> Result<FilePart> 
     let mut scanner_index: Vec<u16> = Vec::new();
     let mut empty = 0;
     while let Some(header) = read_header(&mut lines)? {
+        if let Some(fault) = header.fault() {
+            let scan = part.scanners.len() + 1;
+            let what = format!(
+                "its transformation, in lines {} to {}, {fault}; only a rotation and a shift can be used, so export the scan again",
+                header.line + 6,
+                header.line + 9
+            );
+            return Err(Error::malformed(path, format!("scan {scan}: {what}")));
+        }
         // A point takes at least "0 0 0" and a line break.
         if header.cells.saturating_mul(6) > size + 1 {
             let what = format!("announces {} grid cells, more than its {size} bytes can hold", header.cells);
@@ -65,15 +76,32 @@ pub(super) fn read(input: Input<'_>, reading: &Reading<'_>) -> Result<FilePart> 
 }
 
 struct PtxHeader {
+    /// Its first line, from 1.
+    line: usize,
     cells: u64,
     scanner: [f64; 3],
     /// Rows of the matrix that turns scan into file coordinates; points are row vectors multiplied from the left.
     matrix: [[f64; 4]; 4],
 }
 
+impl PtxHeader {
+    /// Why the matrix is not a rotation with a shift.
+    fn fault(&self) -> Option<String> {
+        let [x, y, z, shift] = self.matrix;
+        if [x[3], y[3], z[3]] != [0.0; 3] || shift[3] != 1.0 {
+            return Some("has a last column that is not 0, 0, 0, 1".to_owned());
+        }
+        if !shift.iter().all(|v| v.is_finite()) {
+            return Some("has a shift that is not finite".to_owned());
+        }
+        fault_of_rotation([x, y, z].map(|[a, b, c, _]| [a, b, c]))
+    }
+}
+
 /// The header of the next scan, or `None` at the end of the file.
 fn read_header<R: BufRead>(lines: &mut PtxLines<'_, R>) -> Result<Option<PtxHeader>> {
     let Some(columns) = lines.next()? else { return Ok(None) };
+    let line = lines.number;
     let mut all = vec![columns];
     while all.len() < HEADER_LINES {
         all.push(lines.next()?.ok_or_else(|| lines.malformed("ends within the header of a scan"))?);
@@ -90,6 +118,7 @@ fn read_header<R: BufRead>(lines: &mut PtxLines<'_, R>) -> Result<Option<PtxHead
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "whole and below 1e18, as just seen")]
     let cells = (columns * rows) as u64;
     Ok(Some(PtxHeader {
+        line,
         cells,
         scanner: std::array::from_fn(|i| value(9, i)),
         matrix: std::array::from_fn(|row| std::array::from_fn(|column| value(6 + row, column))),

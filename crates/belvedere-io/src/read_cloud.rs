@@ -4,27 +4,30 @@ use std::path::{Path, PathBuf};
 
 #[cfg(feature = "e57")]
 use super::e57;
-#[cfg(feature = "las")]
-use super::las;
 use super::part::FilePart;
 #[cfg(feature = "ply")]
 use super::ply;
 use super::read_options::{ReadOptions, Reading, UpAxis};
 use super::source::{Source, extension, unusable};
 use super::{assemble, pcd, ptx, vpc, xyz};
+#[cfg(feature = "las")]
+use super::{ept, las};
 #[cfg(feature = "npy")]
 use super::{masbcpp, npy};
 use belvedere_data::cloud::PointCloud;
 use belvedere_data::control::Control;
-use belvedere_data::crs::evidence::Comparison;
 use belvedere_data::crs::{Crs, CrsKind};
 use belvedere_data::{Error, Result};
 
 /// File extensions [`read_cloud`] knows, in lower case.
-pub const CLOUD_EXTENSIONS: &[&str] = &["las", "laz", "ply", "xyz", "txt", "csv", "pcd", "e57", "npy", "ptx"];
+pub const CLOUD_EXTENSIONS: &[&str] =
+    &["las", "laz", "ply", "xyz", "txt", "csv", "pts", "asc", "pcd", "e57", "npy", "ptx"];
+
+/// Names of passed-over files that a note gives.
+const MAX_NAMED: usize = 5;
 
 /// The same for messages.
-const SUPPORTED: &str = ".las, .laz, .ply, .xyz, .txt, .csv, .pcd, .e57, .npy, .ptx, .vpc";
+const SUPPORTED: &str = ".las, .laz, .ply, .xyz, .txt, .csv, .pts, .asc, .pcd, .e57, .npy, .ptx, .vpc, ept.json";
 
 /// What reading a cloud found.
 #[derive(Clone, Debug, Default)]
@@ -39,7 +42,8 @@ pub struct ReadReport {
     pub doubt: Option<String>,
     /// Attributes that only some of the files have and the cloud therefore lacks.
     pub dropped_attributes: Vec<&'static str>,
-    /// Files of a folder that are no point clouds although their names look so: tables without x, y and z.
+    /// Files of a folder that are no point clouds although their names look so: tables without x, y and z, grids of
+    /// heights.
     pub skipped_files: Vec<PathBuf>,
     /// What should be known before the cloud is used.
     pub notes: Vec<String>,
@@ -92,9 +96,9 @@ impl ReadReport {
 ///
 /// A path to a folder means all files in it with one of [`CLOUD_EXTENSIONS`], sorted by name; a folder with
 /// `coords.npy` has the layout of masbcpp and is one cloud with its normals. A catalogue of tiles (`.vpc`) means its
-/// files. Of a box ([`ReadOptions::within`]) only those files of a catalogue are opened, those LAS and LAZ files are
-/// read beyond their header, and those chunks of COPC files are read, whose bounds meet it. The extension selects the
-/// format, in upper or lower case.
+/// files, and so do entwine point tiles (`ept.json`, or its folder, with LAZ nodes). Of a box ([`ReadOptions::within`])
+/// only those files of a catalogue are opened, those LAS and LAZ files are read beyond their header, and those chunks of
+/// COPC files are read, whose bounds meet it. The extension selects the format, in upper or lower case.
 ///
 /// Coordinates become metres by the unit of the reference system and f32 relative to a near origin: that of
 /// [`ReadOptions::frame`], or else the middle, in whole metres, of the points within 10 km of the median point of all
@@ -118,7 +122,7 @@ pub fn read_cloud<'a, S: Into<Source<'a>>>(
     let reading = Reading { options, forced: forced.as_ref(), control };
     let mut systems = Systems::new(options);
     let mut parts: Vec<FilePart> = Vec::new();
-    let (sources, skipped_files) = files_of(sources.into_iter().map(Into::into), &reading)?;
+    let CloudFiles { sources, tables, notes } = files_of(sources.into_iter().map(Into::into), &reading)?;
     for source in sources {
         control.check()?;
         let mut part = read_one(source, &reading)?;
@@ -131,8 +135,9 @@ pub fn read_cloud<'a, S: Into<Source<'a>>>(
         parts.push(part);
     }
     control.check()?;
-    let (cloud, report) = assemble::assemble(parts, options)?;
-    Ok((cloud, ReadReport { skipped_files, ..report }))
+    let (cloud, mut report) = assemble::assemble(parts, options)?;
+    report.notes.splice(..0, notes);
+    Ok((cloud, ReadReport { skipped_files: tables, ..report }))
 }
 
 /// The reference system that all files must share.
@@ -153,9 +158,6 @@ impl Systems {
         // a file without a point lies nowhere
         let is_empty = part.somewhere.is_none() && part.coordinates.len() == 0;
         let on_map = if is_empty { [f64::NAN; 2] } else { [somewhere[0], somewhere[1]] };
-        if let Some(beside) = crs_beside(&part.report.path)? {
-            take_crs_beside(part, beside, on_map);
-        }
         if reading.forced.is_some() {
             reading.check_given(&part.crs, on_map, &part.report.path)?;
             part.set_crs(reading.system(&part.crs), "option");
@@ -185,42 +187,6 @@ impl Systems {
     }
 }
 
-/// What a `.prj` file beside a point cloud says of its reference system.
-///
-/// # Errors
-/// [`Error::Io`] and [`Error::Malformed`] for one that cannot be read.
-fn crs_beside(path: &Path) -> Result<Option<(Crs, PathBuf)>> {
-    let beside = path.with_extension("prj");
-    if !path.is_file() || !beside.is_file() {
-        return Ok(None);
-    }
-    let text = std::fs::read(&beside).map_err(Error::io(&beside))?;
-    match Crs::parse(&String::from_utf8_lossy(&text)) {
-        Ok(crs) => Ok(Some((crs, beside))),
-        Err(error) => Err(Error::malformed(&beside, format!("is no reference system: {error}"))),
-    }
-}
-
-/// Takes the system beside a file where the file names none, and doubts that of the file where it says something else.
-fn take_crs_beside(part: &mut FilePart, beside: (Crs, PathBuf), somewhere: [f64; 2]) {
-    let (crs, path) = beside;
-    let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    if part.crs.kind == CrsKind::Unknown {
-        part.report.notes.retain(|note| !note.contains("names no reference system"));
-        return part.set_crs(crs, format!("{name} beside it"));
-    }
-    if let Comparison::Apart(how) = crs.compare(&part.crs, somewhere) {
-        let what = format!(
-            "the file names {}, but {name} beside it {} ({how}); the first is used",
-            part.crs.describe(),
-            crs.describe()
-        );
-        part.crs = part.crs.clone().doubted(what);
-    } else {
-        part.crs = part.crs.clone().with_heights_of(&crs);
-    }
-}
-
 /// The files that `paths` mean: folders and catalogues of tiles (`.vpc`) replaced by their files, in the order that
 /// [`read_cloud`] has.
 ///
@@ -229,66 +195,106 @@ fn take_crs_beside(part: &mut FilePart, beside: (Crs, PathBuf), somewhere: [f64;
 pub fn cloud_files(paths: &[PathBuf]) -> Result<Vec<PathBuf>> {
     let (options, control) = (ReadOptions::default(), Control::none());
     let reading = Reading { options: &options, forced: None, control: &control };
-    let (sources, _) = files_of(paths.iter().map(Source::from), &reading)?;
-    Ok(sources.iter().map(|source| source.name().to_owned()).collect())
+    let files = files_of(paths.iter().map(Source::from), &reading)?;
+    Ok(files.sources.iter().map(|source| source.name().to_owned()).collect())
 }
 
-/// The sources with folders and catalogues replaced by their files, and the files of folders that are tables of
-/// something else. Tiles of catalogues that cannot have a point that `reading` requests are left out.
-pub(super) fn files_of<'a>(
-    sources: impl Iterator<Item = Source<'a>>,
-    reading: &Reading<'_>,
-) -> Result<(Vec<Source<'a>>, Vec<PathBuf>)> {
-    let (mut found, mut skipped) = (Vec::new(), Vec::new());
+/// What the sources of a cloud mean.
+pub(super) struct CloudFiles<'a> {
+    pub(super) sources: Vec<Source<'a>>,
+    /// Files of folders that are tables or grids of something else.
+    tables: Vec<PathBuf>,
+    /// What was passed over in folders.
+    notes: Vec<String>,
+}
+
+/// The sources with folders and catalogues replaced by their files. Tiles of catalogues that cannot have a point that
+/// `reading` requests are left out.
+pub(super) fn files_of<'a>(sources: impl Iterator<Item = Source<'a>>, reading: &Reading<'_>) -> Result<CloudFiles<'a>> {
+    let mut found = CloudFiles { sources: Vec::new(), tables: Vec::new(), notes: Vec::new() };
     for source in sources {
-        if source.extension() == "vpc" {
-            let name = source.name().to_owned();
-            let files = vpc::files_within(source, reading.box_of_unopened().as_ref())?;
-            if files.is_empty() {
+        let name = source.name().to_owned();
+        let source = match opened(source, reading)? {
+            Opened::Other(source) => source,
+            Opened::Catalogue(files) if files.is_empty() => {
                 let what = format!("no file of {} lies in the box to read", name.display());
                 return Err(Error::NoPoints { what });
             }
-            found.extend(files.into_iter().map(Source::path));
-            continue;
-        }
+            Opened::Catalogue(files) => {
+                found.sources.extend(files);
+                continue;
+            }
+        };
         let Some(folder) = source.folder().filter(|folder| !is_masbcpp(folder)) else {
-            found.push(source);
+            found.sources.push(source);
             continue;
         };
-        let (others, clouds): (Vec<PathBuf>, Vec<PathBuf>) =
-            files_in(folder)?.into_iter().partition(|file| is_stray(file));
+        let (files, note) = files_in(folder)?;
+        let (others, clouds): (Vec<PathBuf>, Vec<PathBuf>) = files.into_iter().partition(|file| is_stray(file));
         if clouds.is_empty() {
             return Err(Error::malformed(folder, "the folder holds tables, but none with columns x, y and z"));
         }
-        found.extend(clouds.into_iter().map(Source::path));
-        skipped.extend(others);
+        found.sources.extend(clouds.into_iter().map(Source::path));
+        found.tables.extend(others);
+        found.notes.extend(note);
     }
-    if found.is_empty() {
+    if found.sources.is_empty() {
         return Err(Error::NoPoints { what: "no file was given".to_owned() });
     }
-    Ok((found, skipped))
+    Ok(found)
 }
 
-/// Whether a file beside clouds is a table that belongs to them, such as a trajectory of other columns or a list of
-/// tiles.
+/// What a source is.
+enum Opened<'a> {
+    /// A catalogue, with its files that may have points in the box to read.
+    Catalogue(Vec<Source<'static>>),
+    Other(Source<'a>),
+}
+
+fn opened<'a>(source: Source<'a>, reading: &Reading<'_>) -> Result<Opened<'a>> {
+    let wanted = reading.box_of_unopened();
+    #[cfg(feature = "las")]
+    if let Some(description) = ept::description(&source) {
+        return ept::files_within(&description, wanted.as_ref()).map(Opened::Catalogue);
+    }
+    if source.extension() != "vpc" {
+        return Ok(Opened::Other(source));
+    }
+    let files = vpc::files_within(source, wanted.as_ref())?;
+    Ok(Opened::Catalogue(files.into_iter().map(Source::path).collect()))
+}
+
+/// Whether a file beside clouds is a table or a grid that belongs to them, such as a trajectory of other columns, a list
+/// of tiles or a model of the ground.
 fn is_stray(file: &Path) -> bool {
-    ["xyz", "txt", "csv"].contains(&extension(file).as_str())
-        && Source::path(file).open().is_ok_and(xyz::is_another_table)
+    ["xyz", "txt", "csv", "pts", "asc"].contains(&extension(file).as_str())
+        && Source::path(file).open_text().is_ok_and(xyz::is_another_table)
 }
 
-fn files_in(folder: &Path) -> Result<Vec<PathBuf>> {
+/// The files of a folder with an extension of clouds, by name, and a note on the others. Those that systems and
+/// programs keep for themselves begin with a point or with `~$`, as `._tile.laz` of macOS.
+fn files_in(folder: &Path) -> Result<(Vec<PathBuf>, Option<String>)> {
     let entries =
         folder.read_dir().and_then(Iterator::collect::<std::io::Result<Vec<_>>>).map_err(Error::io(folder))?;
-    let mut files: Vec<PathBuf> = entries
-        .into_iter()
-        .map(|entry| entry.path())
-        .filter(|file| file.is_file() && CLOUD_EXTENSIONS.contains(&extension(file).as_str()))
-        .collect();
+    let files = entries.into_iter().map(|entry| entry.path()).filter(|path| path.is_file());
+    let name = |file: &PathBuf| file.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+    let (mut files, mut others): (Vec<PathBuf>, Vec<PathBuf>) = files.partition(|file| {
+        let name = name(file);
+        CLOUD_EXTENSIONS.contains(&extension(file).as_str()) && !name.starts_with('.') && !name.starts_with("~$")
+    });
     if files.is_empty() {
         return Err(Error::malformed(folder, "the folder holds no point cloud file"));
     }
     files.sort();
-    Ok(files)
+    others.sort();
+    let named: Vec<String> = others.iter().take(MAX_NAMED).map(name).collect();
+    let note = || {
+        let more = if others.len() > MAX_NAMED { ", …" } else { "" };
+        let (folder, count) = (folder.display(), others.len());
+        format!("{folder}: files that are no point clouds were passed over: {count} ({}{more})", named.join(", "))
+    };
+    let note = (!others.is_empty()).then(note);
+    Ok((files, note))
 }
 
 /// Whether a folder has the layout of masbcpp.
@@ -305,22 +311,27 @@ pub(super) fn read_one(source: Source<'_>, reading: &Reading<'_>) -> Result<File
         let part = Err(Error::missing_feature(folder, "npy"));
         return selected(part?, reading);
     }
-    let part = match source.extension().as_str() {
+    let beside = source.system_beside();
+    let mut part = match source.extension().as_str() {
         // the points of these files are selected batch by batch
         #[cfg(feature = "las")]
         "las" | "laz" => return las::read(source, reading),
         #[cfg(feature = "ply")]
         "ply" => ply::read(source.open()?, reading),
-        "xyz" | "txt" | "csv" => xyz::read(source.open()?, reading),
+        "xyz" | "txt" | "csv" | "pts" | "asc" => xyz::read(source.open_text()?, reading),
         "pcd" => pcd::read(source.open()?, reading),
         #[cfg(feature = "e57")]
         "e57" => e57::read(source.open()?, reading),
         #[cfg(feature = "npy")]
         "npy" => npy::read(source.open()?),
-        "ptx" => ptx::read(source.open()?, reading),
+        "ptx" => ptx::read(source.open_text()?, reading),
         _ => Err(unusable(source.name(), "point cloud", SUPPORTED)),
-    };
-    selected(part?, reading)
+    }?;
+    if beside.is_some() {
+        let [x, y, _] = assemble::any_position(&part);
+        part.take_system(beside, [x, y]);
+    }
+    selected(part, reading)
 }
 
 fn selected(mut part: FilePart, reading: &Reading<'_>) -> Result<FilePart> {

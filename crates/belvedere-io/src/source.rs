@@ -5,6 +5,7 @@ use std::io::{BufReader, Cursor, Read, Seek, SeekFrom};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
+use belvedere_data::crs::Crs;
 use belvedere_data::{Error, Result};
 
 /// What a [`Source`] can read from. Implemented for everything that reads, seeks and may move to another thread.
@@ -14,6 +15,9 @@ impl<T: Read + Seek + Send> ReadSeek for T {}
 /// Bytes read ahead of the parser: more than most headers, and little beside a window of a large file or a chunk of
 /// one.
 const BUFFER_BYTES: usize = 1 << 12;
+
+/// Well-known text longer than this names no system.
+const MAX_PRJ_BYTES: usize = 1 << 20;
 
 /// One input with a name. The extension of the name selects the format; messages about the input begin with the name.
 ///
@@ -37,6 +41,25 @@ pub struct Source<'a> {
     content: Content<'a>,
     /// Rows of points that are not known to lie beside a window.
     pub(crate) likely_rows: Option<Vec<Range<u64>>>,
+    /// The system of a source that names none, where a catalogue gives it.
+    pub(crate) system: Option<SystemBeside>,
+}
+
+/// What stands beside a file about its reference system.
+#[derive(Clone, Debug, PartialEq)]
+pub enum SystemBeside {
+    /// A system, and the file that names it.
+    Known {
+        /// The system.
+        crs: Crs,
+        /// Where it was found, such as "tile.prj".
+        found_in: String,
+    },
+    /// A file that should name a system, which cannot be read.
+    Unreadable {
+        /// The file.
+        found_in: String,
+    },
 }
 
 enum Content<'a> {
@@ -49,7 +72,7 @@ impl<'a> Source<'a> {
     /// The file or folder at `path`, or the file at an address of the web.
     #[must_use]
     pub fn path(path: impl Into<PathBuf>) -> Self {
-        Self { name: path.into(), content: Content::Path, likely_rows: None }
+        Self { name: path.into(), content: Content::Path, likely_rows: None, system: None }
     }
 
     /// Bytes in memory, such as a download. `name` needs an extension, such as `tile.laz`.
@@ -61,7 +84,7 @@ impl<'a> Source<'a> {
     /// Anything that reads and seeks, from its first byte to its last. `name` needs an extension, such as `tile.laz`.
     #[must_use]
     pub fn reader(name: impl Into<PathBuf>, reader: impl Read + Seek + Send + 'a) -> Self {
-        Self { name: name.into(), content: Content::Reader(Box::new(reader)), likely_rows: None }
+        Self { name: name.into(), content: Content::Reader(Box::new(reader)), likely_rows: None, system: None }
     }
 
     /// The same, of which it is known that the points of a window ([`crate::ReadOptions::within`]) lie in `rows` only:
@@ -72,6 +95,18 @@ impl<'a> Source<'a> {
     pub fn with_likely_rows(mut self, rows: Vec<Range<u64>>) -> Self {
         self.likely_rows = Some(rows);
         self
+    }
+
+    /// The system of the source where it names none itself: that of its entwine point tiles, or of the file with the
+    /// extension `.prj` beside it on this machine. `None` where there is neither.
+    #[must_use]
+    pub fn system_beside(&self) -> Option<SystemBeside> {
+        let is_path = matches!(self.content, Content::Path);
+        let found = self.system.clone();
+        #[cfg(feature = "las")]
+        let found = found.or_else(|| if is_path { super::ept::system_of_node(&self.name) } else { None });
+        let is_local = is_path && web_address(&self.name).is_none();
+        found.or_else(|| if is_local { prj_beside(&self.name) } else { None })
     }
 
     /// The path, or the name that was given.
@@ -122,6 +157,22 @@ impl<'a> Source<'a> {
         Ok((input.reader, input.size))
     }
 
+    /// The same, as UTF-8 where it is UTF-16.
+    pub(crate) fn open_text(self) -> Result<Input<'a>> {
+        self.open()?.into_utf8()
+    }
+
+    /// The name and all bytes of a text, as UTF-8 without a byte order mark.
+    pub(crate) fn read_text(self) -> Result<(PathBuf, Vec<u8>)> {
+        let Input { name, mut reader, size } = self.open_text()?;
+        let mut bytes = Vec::with_capacity(usize::try_from(size).unwrap_or(0));
+        reader.read_to_end(&mut bytes).map_err(Error::io(&name))?;
+        if bytes.starts_with(UTF8_MARK) {
+            bytes.drain(..UTF8_MARK.len());
+        }
+        Ok((name, bytes))
+    }
+
     /// The name and all bytes of the source.
     pub(crate) fn read_all(self) -> Result<(PathBuf, Vec<u8>)> {
         let Input { name, mut reader, size } = self.open()?;
@@ -138,6 +189,69 @@ pub(crate) struct Input<'a> {
     pub(crate) reader: SourceReader<'a>,
     /// Number of bytes.
     pub(crate) size: u64,
+}
+
+/// Byte order mark of UTF-8.
+const UTF8_MARK: &[u8] = b"\xef\xbb\xbf";
+
+impl<'a> Input<'a> {
+    /// The same as UTF-8 where it is UTF-16, which spreadsheets call "Unicode text": with a byte order mark, or with a
+    /// zero in each of the first characters, which no text has.
+    pub(crate) fn into_utf8(mut self) -> Result<Self> {
+        let mut start = Vec::new();
+        (&mut self.reader).take(4).read_to_end(&mut start).map_err(Error::io(&self.name))?;
+        self.reader.seek(SeekFrom::Start(0)).map_err(Error::io(&self.name))?;
+        let decode = match start[..] {
+            [0xff, 0xfe, 0, 0] | [0, 0, 0xfe, 0xff] => {
+                return Err(Error::malformed(&self.name, "is UTF-32; save it as UTF-8"));
+            }
+            [0xff, 0xfe, ..] | [1..=255, 0, 1..=255, 0] => u16::from_le_bytes,
+            [0xfe, 0xff, ..] | [0, 1..=255, 0, 1..=255] => u16::from_be_bytes,
+            _ => return Ok(self),
+        };
+        let mut bytes = Vec::new();
+        self.reader.read_to_end(&mut bytes).map_err(Error::io(&self.name))?;
+        let units = bytes.as_chunks::<2>().0.iter().map(|&unit| decode(unit));
+        let text: String = char::decode_utf16(units).map(|c| c.unwrap_or(char::REPLACEMENT_CHARACTER)).collect();
+        let text = text.trim_start_matches('\u{feff}').to_owned().into_bytes();
+        let size = text.len() as u64;
+        let reader: Box<dyn ReadSeek + 'a> = Box::new(Cursor::new(text));
+        Ok(Self { name: self.name, reader: BufReader::with_capacity(BUFFER_BYTES, reader), size })
+    }
+}
+
+/// What a file `.prj` beside `path` says: `tile.prj` beside `tile.laz`, and beside `tile.copc.laz` too.
+fn prj_beside(path: &Path) -> Option<SystemBeside> {
+    let whole = path.file_stem()?;
+    let short = Path::new(whole).file_stem().filter(|short| *short != whole);
+    let names = [Some(whole), short].into_iter().flatten().flat_map(|stem| {
+        ["prj", "PRJ"].map(|extension| {
+            let mut name = stem.to_owned();
+            name.push(".");
+            name.push(extension);
+            path.with_file_name(name)
+        })
+    });
+    let found = names.into_iter().find(|name| name.is_file())?;
+    let found_in = found.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+    let text = Source::path(&found).read_text().ok().filter(|(_, bytes)| bytes.len() <= MAX_PRJ_BYTES);
+    let text = text.map(|(_, bytes)| String::from_utf8_lossy(&bytes).into_owned());
+    match text.and_then(|text| Crs::parse(text.trim()).ok()) {
+        Some(crs) => Some(SystemBeside::Known { crs, found_in }),
+        None => Some(SystemBeside::Unreadable { found_in }),
+    }
+}
+
+/// Where a file lies that a catalogue in `folder` names; either may be an address.
+pub(crate) fn place_in(folder: &Path, path: &str) -> PathBuf {
+    if web_address(Path::new(path)).is_some() {
+        return PathBuf::from(path);
+    }
+    match web_address(folder) {
+        // servers know no `.`
+        Some(folder) => format!("{}/{}", folder.trim_end_matches('/'), path.trim_start_matches("./")).into(),
+        None => folder.join(path),
+    }
 }
 
 /// Reader of an open source.
@@ -194,7 +308,6 @@ pub(crate) fn unusable(name: &Path, kind: &'static str, supported: &'static str)
         "ply" if !cfg!(feature = "ply") => Some("ply"),
         "e57" if !cfg!(feature = "e57") => Some("e57"),
         "npy" | "npz" if !cfg!(feature = "npy") => Some("npy"),
-        "obj" if !cfg!(feature = "obj") => Some("obj"),
         _ => None,
     };
     match feature.filter(|_| supported.contains(&format!(".{extension}"))) {

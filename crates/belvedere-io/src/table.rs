@@ -74,13 +74,13 @@ impl Table {
     }
 }
 
-/// Reads a table with a header row, its cells parted by commas, semicolons or tabs, whichever the header has. Rows are
-/// counted from 1 below the header in messages.
+/// Reads a table with a header row, its cells parted by commas, semicolons or tabs, whichever the header has, in UTF-8 or
+/// UTF-16. Rows are counted from 1 below the header in messages.
 ///
 /// # Errors
 /// [`Error::Io`], and [`Error::Malformed`] for rows of different lengths and for text that is no UTF-8.
 pub fn read_table<'a>(source: impl Into<Source<'a>>) -> Result<Table> {
-    let Input { name, reader: mut file, .. } = source.into().open()?;
+    let Input { name, reader: mut file, .. } = source.into().open_text()?;
     let path = name.as_path();
     let mut header = String::new();
     // a file without line breaks must not fill the memory

@@ -98,7 +98,7 @@ pub fn with_columns_read<'a>(
 /// # Errors
 /// Those of reading the points.
 pub fn read_text_rows<'a>(source: impl Into<Source<'a>>) -> Result<TextRows> {
-    xyz::read_text(source.into().open()?)
+    xyz::read_text(source.into().open_text()?)
 }
 
 /// Writes rows as they were given, with `results` behind them, as a table: cells parted by commas (.csv) or blanks

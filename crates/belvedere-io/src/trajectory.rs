@@ -41,7 +41,7 @@ pub fn read_trajectory<'a>(source: impl Into<Source<'a>>, cloud_crs: &Crs) -> Re
     let path = name.as_path();
     let records = match source.extension().as_str() {
         "sbet" | "out" => sbet_records(path, &source.read_all()?.1, cloud_crs)?,
-        "csv" | "txt" => table_records(path, &source.read_all()?.1, cloud_crs)?,
+        "csv" | "txt" => table_records(path, &source.read_text()?.1, cloud_crs)?,
         _ => {
             let supported = ".sbet, .out, .csv or .txt";
             return Err(Error::UnknownFormat { path: path.to_owned(), kind: "trajectory", supported });

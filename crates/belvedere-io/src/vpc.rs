@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use serde_json::Value;
 
 use super::read_options::FileBox;
-use super::source::{Source, web_address};
+use super::source::{Source, place_in, web_address};
 use belvedere_data::{Error, Result};
 
 /// Largest catalogue that is read, bytes: a million tiles, and far below the memory of any machine.
@@ -42,22 +42,10 @@ pub(super) fn files_within(source: Source<'_>, wanted: Option<&FileBox>) -> Resu
             )));
         }
         if wanted.is_none_or(|wanted| bounds(tile).is_none_or(|(low, high)| wanted.meets(low, high))) {
-            files.push(place(folder, path));
+            files.push(place_in(folder, path));
         }
     }
     Ok(files)
-}
-
-/// Where a tile lies that a catalogue in `folder` names; either may be an address.
-fn place(folder: &Path, path: &str) -> PathBuf {
-    if web_address(Path::new(path)).is_some() {
-        return PathBuf::from(path);
-    }
-    match web_address(folder) {
-        // servers know no `.`
-        Some(folder) => format!("{}/{}", folder.trim_end_matches('/'), path.trim_start_matches("./")).into(),
-        None => folder.join(path),
-    }
 }
 
 /// Bounds of a tile in the coordinates of its file, unlimited in height where the catalogue gives none; `None` where it

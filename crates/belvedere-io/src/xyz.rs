@@ -1,4 +1,5 @@
-//! Text files with one point a line: blanks, tabs, commas or semicolons between numbers, with or without a header.
+//! Text files with one point a line: blanks, tabs, commas or semicolons between numbers, with or without a header. A
+//! first line of nothing but a count makes the file PTS, which may have a count before each of its scans.
 
 use std::io::BufRead;
 use std::path::Path;
@@ -84,7 +85,7 @@ pub(super) fn read(input: Input<'_>, reading: &Reading<'_>) -> Result<FilePart> 
     let Input { name, reader: mut file, size } = input;
     let path = name.as_path();
     let mut part = FilePart::new(path, "text");
-    let mut lines = XyzLines { path, file: &mut file, number: 0, bytes: Vec::new() };
+    let mut lines = XyzLines { path, file: &mut file, number: 0, bytes: Vec::new(), announced: None };
     let Some(start) = find_start(path, &mut part, &mut lines)? else {
         part.report.format = "text, empty".to_owned();
         return Ok(part);
@@ -112,6 +113,11 @@ pub(super) fn read(input: Input<'_>, reading: &Reading<'_>) -> Result<FilePart> 
     }
     bad.judge(&mut part, path)?;
     debug_assert!(bad.good as u64 <= size, "every line has a byte");
+    let (announced, found) = (lines.announced.unwrap_or(0), (bad.good + bad.count) as u64);
+    if announced > found {
+        part.note(format!("its counts announce {announced} points, but it has only {found} lines of points"));
+        part.leave_out_missing(announced - found);
+    }
     rows.finish(&mut part);
     Ok(part)
 }
@@ -121,7 +127,7 @@ pub(super) fn read_text(input: Input<'_>) -> Result<TextRows> {
     let Input { name, reader: mut file, .. } = input;
     let path = name.as_path();
     let mut part = FilePart::new(path, "text");
-    let mut lines = XyzLines { path, file: &mut file, number: 0, bytes: Vec::new() };
+    let mut lines = XyzLines { path, file: &mut file, number: 0, bytes: Vec::new(), announced: None };
     let Some(start) = find_start(path, &mut part, &mut lines)? else { return Ok(TextRows::default()) };
     let Start { separator, mut names, ahead, .. } = start;
     let width = ahead.first().map_or(0, |(_, line)| separator.split(line).count());
@@ -145,9 +151,14 @@ pub(super) fn read_text(input: Input<'_>) -> Result<TextRows> {
 /// Whether a text file is a table of something else: its first line has names, but not of x, y and z.
 pub(super) fn is_another_table(input: Input<'_>) -> bool {
     let Input { name, reader: mut file, .. } = input;
-    let mut lines = XyzLines { path: &name, file: &mut file, number: 0, bytes: Vec::new() };
+    let mut lines = XyzLines { path: &name, file: &mut file, number: 0, bytes: Vec::new(), announced: None };
     let Ok(Some((_, line))) = lines.next_data() else { return false };
     is_names(&line) && header(&line).is_none()
+}
+
+/// Whether a first line is that of an ESRI ASCII grid, whose files have the extension `.asc` as text clouds have.
+fn is_grid(line: &str) -> bool {
+    line.split_ascii_whitespace().next().is_some_and(|word| word.eq_ignore_ascii_case("ncols"))
 }
 
 /// Whether a first line has names of columns.
@@ -170,6 +181,8 @@ struct XyzLines<'a, R> {
     file: &'a mut R,
     number: usize,
     bytes: Vec<u8>,
+    /// Points that the counts of a PTS file announce; `None` for other files.
+    announced: Option<u64>,
 }
 
 impl<R: BufRead> XyzLines<'_, R> {
@@ -185,14 +198,21 @@ impl<R: BufRead> XyzLines<'_, R> {
         Ok(Some((self.number, line.trim().trim_start_matches('\u{feff}').to_owned())))
     }
 
-    /// The next line that is neither empty nor a comment.
+    /// The next line that is neither empty nor a comment, nor a count of a PTS file.
     fn next_data(&mut self) -> Result<Option<(usize, String)>> {
         while let Some((number, line)) = self.next()? {
-            if !line.is_empty() && !is_comment(&line) {
+            if !line.is_empty() && !is_comment(&line) && !self.takes_count(&line) {
                 return Ok(Some((number, line)));
             }
         }
         Ok(None)
+    }
+
+    /// Whether a line is the count of another scan of a PTS file.
+    fn takes_count(&mut self, line: &str) -> bool {
+        let sum = self.announced.and_then(|sum| sum.checked_add(line.parse().ok()?));
+        self.announced = sum.or(self.announced);
+        sum.is_some()
     }
 }
 
@@ -218,6 +238,13 @@ fn find_start<R: BufRead>(path: &Path, part: &mut FilePart, lines: &mut XyzLines
         }
         if ahead.is_empty() && !header_seen && is_names(&line) {
             header_seen = true;
+            if is_grid(&line) {
+                let (own, tif) = (path.display(), path.with_extension("tif").display().to_string());
+                let what = format!(
+                    "is a grid of heights (ESRI ASCII), not a point cloud; for terrain convert it: gdal_translate {own} {tif}"
+                );
+                return Err(Error::malformed(path, what));
+            }
             names = header(&line);
             if names.is_none() {
                 let what = format!("has a header line ({number}) without columns x, y and z: {}", shorten(&line));
@@ -228,6 +255,9 @@ fn find_start<R: BufRead>(path: &Path, part: &mut FilePart, lines: &mut XyzLines
         // A first line with nothing but a count is how PTS files begin.
         if ahead.is_empty() && !header_seen && line.parse::<u64>().is_ok() {
             header_seen = true;
+            lines.announced = Some(0);
+        }
+        if lines.takes_count(&line) {
             continue;
         }
         ahead.push((number, line));

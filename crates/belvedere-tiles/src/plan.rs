@@ -123,6 +123,9 @@ pub struct Plan {
     /// What records name the plan by that they belong to: a fingerprint of its file; empty before it was read from one.
     #[serde(skip)]
     pub(crate) name: String,
+    /// What is odd about the files, while the plan is made.
+    #[serde(skip)]
+    pub notes: Vec<String>,
 }
 
 /// Where local coordinates lie.
@@ -191,6 +194,11 @@ impl Plan {
             return Err(Error::UnusableCrs { path: inputs[with_crs].path.clone(), what });
         }
         let columns = PointColumns::common(&heads);
+        let of_file = |(file, head): (&InputFile, &LasHead)| {
+            let path = file.path.display().to_string();
+            head.notes.iter().map(|note| format!("{path}: {note}")).collect::<Vec<_>>()
+        };
+        let notes: Vec<String> = inputs.iter().zip(&heads).flat_map(of_file).collect();
         let files: Vec<PathBuf> = inputs.iter().map(|file| file.path.clone()).collect();
         let points = inputs.iter().map(|file| file.points).sum();
         let local = |v: [f64; 3]| [v[0] - origin[0], v[1] - origin[1]];
@@ -232,6 +240,7 @@ impl Plan {
             blocks: found.blocks,
             frame,
             name: String::new(),
+            notes,
         };
         plan.tiles = plan.tiles_with_cells();
         match params.memory {

@@ -72,7 +72,7 @@ pub use sun::{Days, NamedSun, SunPlace, Suns};
 pub use sun_hours::{PreparedSun, SunHoursQuestion, rules};
 pub use sun_position::{SunPositionQuestion, SunStands};
 pub use trees::ThroughTrees;
-pub use viewer::{remark_on_cleared, remark_on_doubt, remark_on_eye, remark_on_outside};
+pub use viewer::{remark_on_cleared, remark_on_doubt, remark_on_eye, remark_on_outside, remark_on_unused};
 pub use viewshed::{
     FarSeen, SeenSection, StandingObserver, ViewLimits, ViewshedQuestion, ViewshedResults, ViewshedTargets,
 };

@@ -40,12 +40,14 @@ pub fn weather_instants(weather: &Weather, site: &Site, parts: usize) -> Result<
 
 fn of_step(step: &WeatherStep, site: &Site, parts: usize) -> Result<Vec<Instant>> {
     let is_dark = |v: Option<f64>| v.unwrap_or(0.0) <= 0.0;
-    if step.ghi <= 0.0 && is_dark(step.dni) && is_dark(step.dhi) {
+    if is_dark(step.ghi) && is_dark(step.dni) && is_dark(step.dhi) {
         return Ok(Vec::new());
     }
     let outside = extraterrestrial(step.instant);
     let zenith = zenith(&sun_position(site, step.instant)?);
-    let whole = complete(step.ghi, step.dni, step.dhi, zenith, outside);
+    // on a level plane both parts together are global radiation
+    let sum = || step.dni.unwrap_or(0.0) * zenith.cos().max(0.0) + step.dhi.unwrap_or(0.0);
+    let whole = complete(step.ghi.unwrap_or_else(sum), step.dni, step.dhi, zenith, outside);
     let length = step.hours / parts as f64;
     let mut instants = Vec::with_capacity(parts);
     for part in 0..parts {

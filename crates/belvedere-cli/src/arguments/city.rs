@@ -30,7 +30,7 @@ pub(crate) enum CityStep {
 
 #[derive(Args)]
 pub(crate) struct CityPlan {
-    /// Tiles of the survey (.las .laz .copc.laz), a catalogue of tiles (.vpc), or a folder of tiles
+    /// Tiles of the survey (.las .laz .copc.laz), a catalogue of tiles (.vpc, ept.json), or a folder of tiles
     ///
     /// Tiles may lie on a web server (https://...): only the parts near each tile of the plan are transferred, after
     /// one look at the whole.

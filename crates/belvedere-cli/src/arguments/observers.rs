@@ -222,7 +222,7 @@ pub(crate) struct Who {
     /// Observers from a table with columns x and y (.csv) or from GeoJSON, whose lines are paths
     ///
     /// Columns or properties z, height, min_distance, max_distance, azimuth_from, azimuth_to, elevation_from and
-    /// elevation_to override the flags.
+    /// elevation_to override the flags, also under their names in QGIS (observ_hgt, radius) and ArcGIS (OFFSETA, RADIUS2).
     #[arg(long, value_name = "FILE")]
     pub(crate) observers: Option<PathBuf>,
     /// Reverse viewshed: the cells from which this target is seen

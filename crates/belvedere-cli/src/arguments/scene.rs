@@ -10,7 +10,8 @@ use std::path::PathBuf;
 
 #[derive(Args, Clone)]
 pub(crate) struct CloudInput {
-    /// Point clouds (.las .laz .copc.laz .ply .xyz .txt .csv .pcd .e57 .ptx .npy), a catalogue (.vpc), or a folder
+    /// Point clouds (.las .laz .copc.laz .ply .xyz .txt .csv .pts .asc .pcd .e57 .ptx .npy), a catalogue (.vpc, ept.json), or
+    /// a folder
     ///
     /// Several files, a folder, or the files of a catalogue of tiles (.vpc) are read as one cloud. A file may lie on a
     /// web server (https://...). A folder with coords.npy is read in the layout of masbcpp.

@@ -28,13 +28,14 @@ pub(crate) fn run(arguments: &CamerasArguments, global: &Global) -> Result<Summa
     let scene = scene.into_question_scene(Some(&arguments.targets.ground), arguments.giving_way.shell, &run)?;
     let places = what::places(&arguments.targets, &frame, &mut question.targets, &mut run)?;
     if let Some(path) = &arguments.lens.private {
-        question.targets.private = what::private(path, &frame)?;
+        question.targets.private = what::private(path, &frame, &mut run)?;
     }
     if let Some(path) = &arguments.existing {
-        question.existing = places::cameras(path, f64::INFINITY, &frame)?;
+        question.existing = places::cameras(path, f64::INFINITY, &frame, &mut run)?;
     }
     if let Some(path) = &arguments.candidates.file {
-        question.candidates = Candidates::Given(places::cameras(path, arguments.step.unwrap_or(places::STEP), &frame)?);
+        let step = arguments.step.unwrap_or(places::STEP);
+        question.candidates = Candidates::Given(places::cameras(path, step, &frame, &mut run)?);
     }
     let answers = ask::ask(&scene, &question, &places, &run.control())?;
     run.answered(&answers);

@@ -28,7 +28,7 @@ pub(crate) fn run(arguments: &HorizonArguments, global: &Global) -> Result<Summa
     check_formats(arguments, min_count(arguments.eyes.eye.len(), arguments.eyes.eyes.as_deref())?)?;
     let mut run = CommandContext::new(global);
     let scene = arguments.eyes.scene(&arguments.scene, Some(&arguments.far), &mut run)?;
-    let standing = arguments.eyes.standing(scene.frame())?;
+    let standing = arguments.eyes.standing(scene.frame(), &mut run)?;
     check_formats(arguments, standing.len())?;
     let answers = ask::ask(&scene, &question, &Places::Eyes(standing), &run.control())?;
     run.answered(&answers);

@@ -29,7 +29,7 @@ pub(crate) fn run(arguments: &IsovistArguments, global: &Global) -> Result<Summa
     check_pictures(arguments, min_count(arguments.eyes.eye.len(), arguments.eyes.eyes.as_deref())?)?;
     let mut run = CommandContext::new(global);
     let scene = arguments.eyes.scene(&arguments.scene, None, &mut run)?;
-    let standing = arguments.eyes.standing(scene.frame())?;
+    let standing = arguments.eyes.standing(scene.frame(), &mut run)?;
     check_pictures(arguments, standing.len())?;
     let answers = ask::ask(&scene, &question, &Places::Eyes(standing), &run.control())?;
     run.answered(&answers);

@@ -3,7 +3,7 @@
 mod results;
 pub(super) mod what;
 
-use super::surroundings::rows_as_given;
+use super::surroundings::{ObserverUse, observer_rows, rows_as_given};
 use super::{check_output, extension};
 use crate::arguments::{Global, LandmarkArguments, Usage};
 use crate::pipeline::{self, KeepPoints};
@@ -12,7 +12,7 @@ use crate::summary::Summary;
 use anyhow::Result;
 use belvedere::Frame;
 use belvedere::apps::ask::{self, LandmarkShape, Places, Standing};
-use belvedere::io::{RowsAre, read_observers};
+use belvedere::io::RowsAre;
 use belvedere::query::{BackFaces, UnprovenAs};
 
 pub(crate) fn run(arguments: &LandmarkArguments, global: &Global) -> Result<Summary> {
@@ -23,7 +23,7 @@ pub(crate) fn run(arguments: &LandmarkArguments, global: &Global) -> Result<Summ
     let scene = pipeline::scene(&arguments.scene, KeepPoints::Keep, &mut run)?;
     let scene = scene.into_question_scene(Some(&arguments.ground), arguments.giving_way.shell, &run)?;
     let shape = what::shape(&arguments.shape, scene.frame(), &mut run)?;
-    let question = question(arguments, shape, scene.frame())?;
+    let question = question(arguments, shape, scene.frame(), &mut run)?;
     let answers = ask::ask(&scene, &question, &Places::Scene, &run.control())?;
     run.answered(&answers);
     let found = &answers.found;
@@ -44,10 +44,15 @@ pub(crate) fn run(arguments: &LandmarkArguments, global: &Global) -> Result<Summ
     Ok(run.finish())
 }
 
-fn question(arguments: &LandmarkArguments, shape: LandmarkShape, frame: &Frame) -> Result<ask::LandmarkQuestion> {
+fn question(
+    arguments: &LandmarkArguments,
+    shape: LandmarkShape,
+    frame: &Frame,
+    run: &mut CommandContext,
+) -> Result<ask::LandmarkQuestion> {
     Ok(ask::LandmarkQuestion {
         shape,
-        observers: observers(arguments, frame)?,
+        observers: observers(arguments, frame, run)?,
         observer_height: arguments.observer_height,
         cell: arguments.cell,
         ground: arguments.ground.points(),
@@ -73,10 +78,10 @@ fn check_outputs(arguments: &LandmarkArguments) -> Result<()> {
 }
 
 /// Observers of a file, if one was named.
-fn observers(arguments: &LandmarkArguments, frame: &Frame) -> Result<Option<Vec<Standing>>> {
+fn observers(arguments: &LandmarkArguments, frame: &Frame, run: &mut CommandContext) -> Result<Option<Vec<Standing>>> {
     let Some(path) = &arguments.observers else { return Ok(None) };
     let mut observers = Vec::new();
-    for row in read_observers(path, &frame.crs, RowsAre::Places)? {
+    for row in observer_rows(path, frame, RowsAre::Places, ObserverUse::Places, run)? {
         let place = |corner: &[f64; 3]| std::array::from_fn(|i| corner[i] - frame.origin[i]);
         observers.extend(row.corners.iter().map(|corner| Standing { place: place(corner), height: row.height }));
     }

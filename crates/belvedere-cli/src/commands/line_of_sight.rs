@@ -7,19 +7,25 @@ use crate::pipeline::{self, KeepPoints};
 use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::{Result, bail};
+use belvedere::Frame;
 use belvedere::apps::ask::{
     self, Ask, LinesOfSightQuestion, Places, ProfileRows, Scene, SightColumns, SightsResults, Standing,
 };
 use belvedere::apps::profile::SightProfile;
 use belvedere::figures::{DistanceProfile, profile_picture, write_png};
 use belvedere::io::{
-    FeatureShape, GeojsonFeature, TableCells, TextRows, read_geojson, read_table, with_columns_read, write_table,
+    FeatureShape, GeojsonFeature, TableCells, TextRows, property, read_geojson, read_table, with_columns_read,
+    write_table,
 };
 use belvedere::query::{UnprovenAs, random_pairs};
+use serde_json::Value;
 use std::path::Path;
 
 /// Columns of a table of pairs.
 const ENDS: [&str; 6] = ["ax", "ay", "az", "bx", "by", "bz"];
+/// Columns or properties of the heights of observer and target above the ground, as ArcGIS names them, in the unit of
+/// the file.
+const HEIGHTS: [&str; 2] = ["OFFSETA", "OFFSETB"];
 
 pub(crate) fn run(arguments: &LineOfSightArguments, global: &Global) -> Result<Summary> {
     let question = question(arguments)?;
@@ -103,7 +109,7 @@ fn pairs(
     };
     if ["geojson", "json"].contains(&extension(path).as_str()) {
         let features = run.stage("reading pairs", 0, |_| read_geojson(path, &frame.crs))?;
-        return Ok((ends_of_lines(path, &features, frame.origin)?, TextRows::default()));
+        return Ok((ends_of_lines(path, &features, frame)?, TextRows::default()));
     }
     let table = run.stage("reading pairs", 0, |_| read_table(path))?;
     let mut columns: [&[f64]; 6] = [&[]; 6];
@@ -111,19 +117,32 @@ fn pairs(
         let is_height = name.ends_with('z');
         *column = if is_height { table.column(path, name)?.unwrap_or(&[]) } else { table.full_column(path, name)? };
     }
-    let end = |row: usize, first: usize| {
-        let place = std::array::from_fn(|i| columns[first + i].get(row).copied().unwrap_or(f64::NAN));
-        standing(frame.local_from_file(place))
+    let heights = HEIGHTS.map(|name| table.column(path, name));
+    let [above_observer, above_target] = heights;
+    let heights = [above_observer?.unwrap_or(&[]), above_target?.unwrap_or(&[])];
+    let unit = frame.crs.metres_per_unit_xyz()[2];
+    let end = |row: usize, end: usize| {
+        let place = std::array::from_fn(|i| columns[3 * end + i].get(row).copied().unwrap_or(f64::NAN));
+        let height = heights[end].get(row).filter(|height| height.is_finite()).map(|height| height * unit);
+        Standing { height, ..standing(frame.local_from_file(place)) }
     };
-    let pairs = (0..table.row_count()).map(|row| [end(row, 0), end(row, 3)]).collect();
+    let pairs = (0..table.row_count()).map(|row| [end(row, 0), end(row, 1)]).collect();
     Ok((pairs, table.into_text()))
 }
 
 /// The first and the last corner of each line, local metres.
-fn ends_of_lines(path: &Path, features: &[GeojsonFeature], origin: [f64; 3]) -> Result<Vec<[Standing; 2]>> {
-    let local = |corner: &[f64; 3]| standing(std::array::from_fn(|axis| corner[axis] - origin[axis]));
+fn ends_of_lines(path: &Path, features: &[GeojsonFeature], frame: &Frame) -> Result<Vec<[Standing; 2]>> {
+    let unit = frame.crs.metres_per_unit_xyz()[2];
+    let local = |corner: &[f64; 3]| std::array::from_fn(|axis| corner[axis] - frame.origin[axis]);
+    let end = |corner: &[f64; 3], feature: &GeojsonFeature, name: &str| {
+        let height = property(&feature.properties, name).and_then(Value::as_f64).map(|height| height * unit);
+        Standing { height, ..standing(local(corner)) }
+    };
     let ends = |(number, feature): (usize, &GeojsonFeature)| match &feature.shape {
-        FeatureShape::Line(corners) if corners.len() > 1 => Ok([&corners[0], &corners[corners.len() - 1]].map(local)),
+        FeatureShape::Line(corners) if corners.len() > 1 => {
+            let [above_observer, above_target] = HEIGHTS;
+            Ok([end(&corners[0], feature, above_observer), end(&corners[corners.len() - 1], feature, above_target)])
+        }
         _ => bail!("{}: feature {} is not a line; lines of sight need lines", path.display(), number + 1),
     };
     let pairs: Vec<_> = features.iter().enumerate().map(ends).collect::<Result<_>>()?;

@@ -21,7 +21,7 @@ pub(super) const SPACING: f64 = 0.5;
 /// Whether a file of targets is a mesh: by its extension, or, for PLY, by its faces.
 pub(crate) fn is_mesh(path: &Path) -> bool {
     match extension(path).as_str() {
-        "obj" | "json" | "cityjson" => true,
+        "obj" | "json" | "jsonl" | "cityjson" => true,
         "ply" => {
             let text = start_of(path).unwrap_or_default();
             let header = text.split("end_header").next().unwrap_or_default();

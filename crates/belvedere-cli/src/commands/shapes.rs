@@ -59,6 +59,7 @@ pub(super) fn shapes(
             })
             .collect(),
         _ => read_observers(path, &frame.crs, RowsAre::Corners)?
+            .rows
             .iter()
             .map(|row| NamedShape { shape: shape(row.corners.iter().map(from_origin).collect()), name: file.clone() })
             .collect(),

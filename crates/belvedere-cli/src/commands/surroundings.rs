@@ -6,20 +6,20 @@ use crate::pipeline::{self, KeepPoints};
 use crate::run::CommandContext;
 use anyhow::Result;
 use belvedere::Frame;
-use belvedere::apps::ask::{self, Standing};
-use belvedere::io::{RowsAre, TextRows, read_observers, read_table};
+use belvedere::apps::ask::{self, Standing, remark_on_unused};
+use belvedere::io::{ObserverRow, ObserverRows, RowsAre, TextRows, read_observers, read_table};
 use std::path::Path;
 
 impl EyesArguments {
     /// The observers that were typed or are in the file named.
-    pub(super) fn standing(&self, frame: &Frame) -> Result<Vec<Standing>> {
+    pub(super) fn standing(&self, frame: &Frame, run: &mut CommandContext) -> Result<Vec<Standing>> {
         let typed = |&MapPosition([x, y], z): &MapPosition| Standing {
             place: frame.local_from_file([x, y, z.unwrap_or(f64::NAN)]),
             height: None,
         };
         let mut standing: Vec<Standing> = self.eye.iter().map(typed).collect();
         if let Some(path) = &self.eyes {
-            for row in read_observers(path, &frame.crs, RowsAre::Places)? {
+            for row in observer_rows(path, frame, RowsAre::Places, ObserverUse::Places, run)? {
                 let place = |corner: &[f64; 3]| std::array::from_fn(|i| corner[i] - frame.origin[i]);
                 let height = row.height;
                 standing.extend(row.corners.iter().map(|corner| Standing { place: place(corner), height }));
@@ -43,6 +43,29 @@ impl EyesArguments {
         }
         scene.into_question_scene(needs_ground.then_some(&self.ground), None, run)
     }
+}
+
+/// What a command uses of observers in a file.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum ObserverUse {
+    /// Where they are.
+    Places,
+    /// And how far and where they look.
+    Limits,
+}
+
+/// The observers of a file, with a remark on what of it is not used.
+pub(super) fn observer_rows(
+    path: &Path,
+    frame: &Frame,
+    rows_are: RowsAre,
+    needed: ObserverUse,
+    run: &mut CommandContext,
+) -> Result<Vec<ObserverRow>> {
+    let ObserverRows { rows, unused, limits } = read_observers(path, &frame.crs, rows_are)?;
+    let limits = if needed == ObserverUse::Places { &limits[..] } else { &[] };
+    run.summary.remarks(remark_on_unused(&path.display().to_string(), &unused, limits));
+    Ok(rows)
 }
 
 /// How many observers there are at least: those typed, or the rows of a table; one for other files.

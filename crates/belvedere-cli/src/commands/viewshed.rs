@@ -34,7 +34,7 @@ pub(crate) fn run(arguments: &ViewshedArguments, global: &Global) -> Result<Summ
     let scene = scene.into_question_scene(Some(&arguments.ground), arguments.giving_way.shell, &run)?;
     let areas: Vec<PathBuf> = arguments.output.iter().chain(&arguments.far_output).cloned().collect();
     warn_of_geojson(&areas, &scene.frame().crs, &mut run.summary);
-    question.observers = who::observers(arguments, scene.frame())?;
+    question.observers = who::observers(arguments, scene.frame(), &mut run)?;
     let answers = ask::ask(&scene, &question, &Places::Scene, &run.control())?;
     run.answered(&answers);
     write(arguments, &answers.found, &scene, &mut run)?;

@@ -27,8 +27,8 @@ pub struct WeatherStep {
     pub hours: f64,
     /// Month in the time of the file, 1 to 12.
     pub month: u8,
-    /// Global radiation on a level plane, W/m².
-    pub ghi: f64,
+    /// Global radiation on a level plane, W/m²; without it there are both of the others, from which it follows.
+    pub ghi: Option<f64>,
     /// Direct radiation towards the sun, W/m², where the file has it.
     pub dni: Option<f64>,
     /// Diffuse radiation on a level plane, W/m², where the file has it.
@@ -116,15 +116,17 @@ impl Weather {
             });
         }
         for step in &self.steps {
-            let values = [Some(step.ghi), step.dni, step.dhi];
+            let values = [step.ghi, step.dni, step.dhi];
+            let is_complete = step.ghi.is_some() || step.dni.zip(step.dhi).is_some();
             if !values.iter().flatten().all(|v| v.is_finite() && *v >= 0.0)
+                || !is_complete
                 || !(step.hours > 0.0)
                 || step.hours > 8784.0
             {
                 return Err(Error::InvalidParameter {
                     parameter: Parameter::Weather,
                     value: format!("a row of {step:?}"),
-                    expected: "finite, not below zero",
+                    expected: "finite, not below zero, and global radiation or both of its parts",
                 });
             }
         }
@@ -141,7 +143,7 @@ mod tests {
             instant: f64::from(hour) * 3600.0,
             hours: 1.0,
             month: 1,
-            ghi: 100.0,
+            ghi: Some(100.0),
             dni: None,
             dhi: None,
             temperature: None,

@@ -1,6 +1,6 @@
 //! EnergyPlus weather.
 
-use super::lines::{WeatherLine, WeatherLines};
+use super::lines::{DECIMAL_COMMAS, WeatherLine, WeatherLines};
 use belvedere_data::Result;
 use belvedere_data::weather::{RowsHold, Weather, WeatherStep, unix_day};
 
@@ -11,14 +11,22 @@ const TEMPERATURE: usize = 6;
 const GLOBAL: usize = 13;
 const DIRECT: usize = 14;
 const DIFFUSE: usize = 15;
-/// Radiation from which on it is missing: 9999, and 999900 of old converters.
-const MISSING: f64 = 9999.0;
+/// Cells that a row has, and the line of the place. More are decimal commas.
+const MAX_CELLS: usize = 35;
+const PLACE_CELLS: usize = 10;
 /// Temperature from which on it is missing.
 const MISSING_TEMPERATURE: f64 = 99.9;
 
 pub(super) fn read(lines: &WeatherLines<'_>) -> Result<Weather> {
     let place = lines.line(1)?;
-    let cells = place.cells();
+    let mut cells = place.cells();
+    while cells.last().is_some_and(|cell| cell.is_empty()) {
+        cells.pop();
+    }
+    if cells.len() > PLACE_CELLS {
+        let count = cells.len();
+        return Err(place.wrong(&format!("has {count} cells, but LOCATION has {PLACE_CELLS}{DECIMAL_COMMAS}")));
+    }
     let latitude = place.number_in(&cells, 6, "the latitude")?;
     let longitude = place.number_in(&cells, 7, "the longitude")?;
     let zone = place.number_in(&cells, 8, "the time zone")?;
@@ -41,8 +49,19 @@ pub(super) fn read(lines: &WeatherLines<'_>) -> Result<Weather> {
         left_out_count: 0,
         notes: Vec::new(),
     };
+    let mut first: Option<(usize, usize)> = None;
     for line in lines.all().skip(HEAD).filter(|line| !line.text.is_empty()) {
-        match step(&line, zone, per_hour)? {
+        let cells = line.cells();
+        let (number, expected) = *first.get_or_insert((line.number, cells.len()));
+        if cells.len() > MAX_CELLS {
+            let count = cells.len();
+            return Err(line.wrong(&format!("has {count} cells, but a row of EPW has {MAX_CELLS}{DECIMAL_COMMAS}")));
+        }
+        if cells.len() != expected {
+            let count = cells.len();
+            return Err(line.wrong(&format!("has {count} cells, but line {number} has {expected}{DECIMAL_COMMAS}")));
+        }
+        match step(&line, &cells, zone, per_hour)? {
             Some(step) => weather.steps.push(step),
             None => weather.left_out_count += 1,
         }
@@ -50,23 +69,23 @@ pub(super) fn read(lines: &WeatherLines<'_>) -> Result<Weather> {
     Ok(weather)
 }
 
-fn step(line: &WeatherLine<'_>, zone: f64, per_hour: i32) -> Result<Option<WeatherStep>> {
-    let cells = line.cells();
-    let whole = |column: usize, name: &str| line.whole_in(&cells, column, name);
+fn step(line: &WeatherLine<'_>, cells: &[&str], zone: f64, per_hour: i32) -> Result<Option<WeatherStep>> {
+    let whole = |column: usize, name: &str| line.whole_in(cells, column, name);
     let day = line.day(whole(0, "the year")?, whole(1, "the month")?, whole(2, "the day")?)?;
     let (hour, minute) = (whole(3, "the hour")?, whole(4, "the minute")?);
     if !(1..=24).contains(&hour) || !(0..=60).contains(&minute) {
         return Err(line.wrong(&format!("hour {hour} and minute {minute}, but must be 1 to 24 and 0 to 60")));
     }
-    let radiation = |column: usize, name: &str| line.radiation_in(&cells, column, name, |v| v >= MISSING);
+    let radiation = |column: usize, name: &str| line.radiation_in(cells, column, name);
     let (ghi, dni, dhi) = (
         radiation(GLOBAL, "global horizontal radiation")?,
         radiation(DIRECT, "direct normal radiation")?,
         radiation(DIFFUSE, "diffuse horizontal radiation")?,
     );
-    let Some(ghi) = ghi else { return Ok(None) };
-    let temperature =
-        Some(line.number_in(&cells, TEMPERATURE, "the temperature")?).filter(|v| *v < MISSING_TEMPERATURE);
+    if ghi.is_none() && dni.zip(dhi).is_none() {
+        return Ok(None);
+    }
+    let temperature = Some(line.number_in(cells, TEMPERATURE, "the temperature")?).filter(|v| *v < MISSING_TEMPERATURE);
     let hours = 1.0 / f64::from(per_hour);
     // with one record an hour programs write 0 or 60 for the minute, and mean the same
     let end = if per_hour == 1 { f64::from(hour) } else { f64::from(hour - 1) + f64::from(minute) / 60.0 };

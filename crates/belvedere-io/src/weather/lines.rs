@@ -6,8 +6,14 @@ use std::path::Path;
 
 /// Most radiation that any instrument below the atmosphere shows, W/m², with room for clouds that reflect.
 const MAX_RADIATION: f64 = 3000.0;
+/// What programs write where radiation is missing: nines, here and there with zeros behind.
+const MISSING: std::ops::RangeInclusive<f64> = 9999.0..=1e7;
+const MISSING_BELOW_ZERO: [f64; 5] = [-99.0, -999.0, -9999.0, -9900.0, -99900.0];
 /// Noise of sensors at night, W/m².
 const NOISE: f64 = -20.0;
+
+/// What more cells than names come from.
+pub(super) const DECIMAL_COMMAS: &str = "; are there decimal commas? Numbers need points: 10.5";
 
 /// The lines of a weather file.
 pub(super) struct WeatherLines<'a> {
@@ -50,13 +56,14 @@ impl<'a> WeatherLine<'a> {
 
     /// The cells of a row, of which there must be as many as the head of the table has.
     pub(super) fn row_of(&self, names: &[&str]) -> Result<Vec<&'a str>> {
-        let cells = self.cells();
-        if cells.len() < names.len() {
-            return Err(self.wrong(&format!(
-                "has {} cells, but the header of the table has {}",
-                cells.len(),
-                names.len()
-            )));
+        let mut cells = self.cells();
+        while cells.len() > names.len() && cells.last().is_some_and(|cell| cell.is_empty()) {
+            cells.pop();
+        }
+        if cells.len() != names.len() {
+            let (count, expected) = (cells.len(), names.len());
+            let advice = if count > expected { DECIMAL_COMMAS } else { "" };
+            return Err(self.wrong(&format!("has {count} cells, but the header of the table has {expected}{advice}")));
         }
         Ok(cells)
     }
@@ -87,19 +94,14 @@ impl<'a> WeatherLine<'a> {
         }
     }
 
-    /// Radiation in a cell, W/m²; `None` where the cell is empty or `is_missing`.
-    pub(super) fn radiation_in(
-        &self,
-        cells: &[&str],
-        column: usize,
-        name: &str,
-        is_missing: impl Fn(f64) -> bool,
-    ) -> Result<Option<f64>> {
+    /// Radiation in a cell, W/m²; `None` where the cell is empty, or has a value that formats and programs mark as
+    /// missing: 9999 and more, -99, -999 and so on.
+    pub(super) fn radiation_in(&self, cells: &[&str], column: usize, name: &str) -> Result<Option<f64>> {
         if cells.get(column).is_some_and(|cell| cell.is_empty()) {
             return Ok(None);
         }
         let value = self.number_in(cells, column, name)?;
-        if is_missing(value) {
+        if MISSING.contains(&value) || MISSING_BELOW_ZERO.contains(&value) {
             return Ok(None);
         }
         if !(NOISE..=MAX_RADIATION).contains(&value) {

@@ -15,7 +15,7 @@ mod pvgis;
 mod tmy3;
 
 use crate::source::{Input, Source};
-use belvedere_data::weather::Weather;
+use belvedere_data::weather::{Weather, WeatherStep};
 use belvedere_data::{Error, Result};
 use lines::WeatherLines;
 use std::io::Read;
@@ -25,8 +25,9 @@ const MAX_BYTES: u64 = 500_000_000;
 
 /// Reads the radiation of a weather file. Its rows keep their own years, of which a typical year has several.
 ///
-/// What is missing in a row stays missing where other columns make up for it; rows without global radiation, or with a
-/// value that the format marks as missing, are left out and counted. Values below zero that are noise of sensors at
+/// What is missing in a row, or has a value that marks it as missing, stays missing where other columns make up for it,
+/// which the notes count; rows that tell neither global radiation, nor direct and diffuse radiation, are left out and
+/// counted. Values below zero that are noise of sensors at
 /// night, down to −20 W/m², count as zero.
 ///
 /// # Errors
@@ -38,7 +39,7 @@ const MAX_BYTES: u64 = 500_000_000;
 /// EnergyPlus, Auxiliary Programs, "EnergyPlus Weather File (EPW) Data Dictionary"; Wilcox & Marion 2008, User's manual
 /// for TMY3 data sets; PVGIS user manual, sections 4 and 6; NSRDB, "PSM v3 and v4 CSV".
 pub fn read_weather<'a>(source: impl Into<Source<'a>>) -> Result<Weather> {
-    let Input { name, mut reader, size } = source.into().open()?;
+    let Input { name, mut reader, size } = source.into().open_text()?;
     let path = name.as_path();
     if size > MAX_BYTES {
         return Err(Error::malformed(path, format!("{size} bytes are too many for a weather file")));
@@ -51,7 +52,7 @@ pub fn read_weather<'a>(source: impl Into<Source<'a>>) -> Result<Weather> {
     let lines = WeatherLines::new(path, text);
     let first = text.lines().next().unwrap_or("");
     let second = text.lines().nth(1).unwrap_or("");
-    let weather = if first.starts_with("LOCATION,") {
+    let mut weather = if first.starts_with("LOCATION,") {
         epw::read(&lines)?
     } else if first.trim_start().starts_with("Latitude") {
         pvgis::read(&lines)?
@@ -59,11 +60,34 @@ pub fn read_weather<'a>(source: impl Into<Source<'a>>) -> Result<Weather> {
         tmy3::read(&lines)?
     } else if first.starts_with("Source,") {
         nsrdb::read(&lines)?
+    } else if first.starts_with("LOCATION;") {
+        return Err(Error::malformed(
+            path,
+            "is EPW with semicolons, as a spreadsheet saves it; EPW has commas and decimal points",
+        ));
     } else {
         let what = "not a known weather file: EPW begins with LOCATION, PVGIS (as CSV) with Latitude, NSRDB with Source, and TMY3 has \
                     Date (MM/DD/YYYY) in its second line";
         return Err(Error::malformed(path, what));
     };
+    weather.notes.extend(missing_values(&weather));
     weather.validate().map_err(|error| Error::malformed(path, error.to_string()))?;
     Ok(weather)
+}
+
+/// Notes on rows that lack what other rows of the file have.
+fn missing_values(weather: &Weather) -> Vec<String> {
+    let note = |name: &str, follows_from: &str, value: fn(&WeatherStep) -> Option<f64>| {
+        let missing = weather.steps.iter().filter(|step| value(step).is_none()).count();
+        let is_some_there = missing < weather.steps.len();
+        let all = weather.steps.len();
+        (missing > 0 && is_some_there)
+            .then(|| format!("{missing} of {all} rows have no {name}; it follows from {follows_from}"))
+    };
+    let notes = [
+        note("global radiation", "direct and diffuse radiation and the height of the sun", |step| step.ghi),
+        note("direct radiation", "global and diffuse radiation and the height of the sun", |step| step.dni),
+        note("diffuse radiation", "global and direct radiation and the height of the sun", |step| step.dhi),
+    ];
+    notes.into_iter().flatten().collect()
 }

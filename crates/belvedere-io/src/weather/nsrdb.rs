@@ -9,7 +9,10 @@ const USUAL_STEP: f64 = 1.0;
 
 pub(super) fn read(lines: &WeatherLines<'_>) -> Result<Weather> {
     let (names, values, head) = (lines.line(1)?, lines.line(2)?, lines.line(3)?);
-    let (names, cells, columns) = (names.cells(), values.cells(), head.cells());
+    let (names, cells, mut columns) = (names.cells(), values.cells(), head.cells());
+    while columns.last().is_some_and(|name| name.is_empty()) {
+        columns.pop();
+    }
     let of_place = |name: &str| {
         let column = names.iter().position(|own| own.eq_ignore_ascii_case(name));
         let column = column.ok_or_else(|| values.wrong(&format!("the line above does not name {name}")))?;
@@ -48,16 +51,17 @@ pub(super) fn read(lines: &WeatherLines<'_>) -> Result<Weather> {
             min_step = min_step.min(step / 3600.0);
         }
         before = Some(local);
-        let radiation = |column: usize, name: &str| line.radiation_in(&cells, column, name, |v| v <= -99.0);
+        let radiation = |column: usize, name: &str| line.radiation_in(&cells, column, name);
         let optional = |column: Option<usize>, name: &str| match column {
             Some(column) => radiation(column, name),
             None => Ok(None),
         };
         let (dni, dhi) = (optional(direct, "DNI")?, optional(diffuse, "DHI")?);
-        let Some(ghi) = radiation(global, "GHI")? else {
+        let ghi = radiation(global, "GHI")?;
+        if ghi.is_none() && dni.zip(dhi).is_none() {
             weather.left_out_count += 1;
             continue;
-        };
+        }
         let temperature = air.and_then(|column| cells.get(column)?.parse().ok()).filter(|v| (-90.0..=70.0).contains(v));
         let instant = local - zone * 3600.0;
         weather.steps.push(WeatherStep { instant, hours: USUAL_STEP, month: date.month, ghi, dni, dhi, temperature });

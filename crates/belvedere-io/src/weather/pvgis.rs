@@ -129,7 +129,7 @@ fn step(
     if !(0..24).contains(&hour) || !(0..60).contains(&minute) {
         return Err(line.wrong(&format!("the time is {hour}:{minute:02}, but must be 00:00 to 23:59")));
     }
-    let radiation = |column: usize, name: &str| line.radiation_in(&cells, column, name, |_| false);
+    let radiation = |column: usize, name: &str| line.radiation_in(&cells, column, name);
     let (ghi, dni, dhi) = match columns {
         RadiationColumns::Typical([ghi, dni, dhi]) => {
             (radiation(ghi, "G(h)")?, radiation(dni, "Gb(n)")?, radiation(dhi, "Gd(h)")?)
@@ -143,7 +143,9 @@ fn step(
         }
         RadiationColumns::Global(global) => (radiation(global, "G(i)")?, None, None),
     };
-    let Some(ghi) = ghi else { return Ok(None) };
+    if ghi.is_none() && dni.zip(dhi).is_none() {
+        return Ok(None);
+    }
     let temperature = air.and_then(|column| cells.get(column)?.parse().ok()).filter(|v| (-90.0..=70.0).contains(v));
     let clock = f64::from(hour) + f64::from(minute) / 60.0 + offset;
     let instant = unix_day(date) as f64 * 86_400.0 + clock * 3600.0;

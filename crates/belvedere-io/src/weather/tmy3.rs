@@ -4,9 +4,6 @@ use super::lines::WeatherLines;
 use belvedere_data::Result;
 use belvedere_data::weather::{RowsHold, Weather, WeatherStep, unix_day};
 
-/// Values at and below which are missing.
-const MISSING: f64 = -99.0;
-
 pub(super) fn read(lines: &WeatherLines<'_>) -> Result<Weather> {
     let place = lines.line(1)?;
     let cells = place.cells();
@@ -42,16 +39,17 @@ pub(super) fn read(lines: &WeatherLines<'_>) -> Result<Weather> {
         if !(0..=24).contains(&hour) || !(0..60).contains(&minute) {
             return Err(line.wrong(&format!("the time is {hour}:{minute:02}, but must be 00:00 to 24:00")));
         }
-        let radiation = |column: usize, name: &str| line.radiation_in(&cells, column, name, |v| v <= MISSING);
+        let radiation = |column: usize, name: &str| line.radiation_in(&cells, column, name);
         let optional = |column: Option<usize>, name: &str| match column {
             Some(column) => radiation(column, name),
             None => Ok(None),
         };
         let (dni, dhi) = (optional(direct, "DNI")?, optional(diffuse, "DHI")?);
-        let Some(ghi) = radiation(global, "GHI")? else {
+        let ghi = radiation(global, "GHI")?;
+        if ghi.is_none() && dni.zip(dhi).is_none() {
             weather.left_out_count += 1;
             continue;
-        };
+        }
         let temperature = air.and_then(|column| text(column).parse().ok()).filter(|v| (-90.0..=70.0).contains(v));
         let middle = f64::from(hour) + f64::from(minute) / 60.0 - 0.5 - zone;
         let instant = unix_day(day) as f64 * 86_400.0 + middle * 3600.0;

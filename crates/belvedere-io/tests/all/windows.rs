@@ -4,10 +4,9 @@
 use std::io::{Cursor, Read, Seek, SeekFrom};
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use belvedere_data::Error;
 use belvedere_data::control::Control;
 use belvedere_data::random::uniform;
-use belvedere_io::{ReadOptions, Source, Within, read_batches, read_cloud};
+use belvedere_io::{ReadOptions, Source, Within, read_batches, read_cloud, read_las_head};
 use laz::laszip::{ChunkTable, LasZipCompressor, LazVlrBuilder};
 
 use crate::common::data;
@@ -221,21 +220,31 @@ fn of_rows_that_hold_a_window_no_more_is_read_and_nothing_is_lost() {
     }
 }
 
+/// The points of a window and what the report says of the hierarchy, which `damage` changed.
+fn window_of(nodes: &[OctreeNode], damage: &dyn Fn(&mut Vec<u8>), options: &ReadOptions) -> (usize, String) {
+    let bytes = copc(nodes, damage);
+    let (cloud, report) = read_cloud([Source::bytes("tile.copc.laz", &bytes)], options, &Control::none())
+        .unwrap_or_else(|e| panic!("{e}"));
+    let about = report.files[0].notes.iter().find(|note| note.contains("hierarchy"));
+    let head = read_las_head(Source::bytes("tile.copc.laz", &bytes)).unwrap();
+    assert_eq!(head.notes.len(), usize::from(about.is_some()), "{:?}", head.notes);
+    (cloud.len(), about.cloned().unwrap_or_default())
+}
+
 #[test]
-fn a_damaged_hierarchy_is_refused_and_never_followed() {
+fn a_hierarchy_that_is_not_that_of_the_points_is_passed_over() {
     let nodes = nodes(12_000);
     let options = window([10.0, 10.0], 50.0);
-    let refused = |damage: &dyn Fn(&mut Vec<u8>)| {
-        let bytes = copc(&nodes, damage);
-        let source = Source::bytes("tile.copc.laz", &bytes);
-        let error = read_cloud([source], &options, &Control::none()).err();
-        match error {
-            Some(Error::Malformed { what, .. }) => what,
-            other => panic!("{other:?}"),
-        }
-    };
+    let (expected, note) = window_of(&nodes, &|_| {}, &options);
+    assert!(expected > 10 && note.is_empty(), "{note}");
     // the last 32 bytes are an entry of the root page; the first node stands in front of the pages' entries
     let root = |hierarchy: &mut Vec<u8>| hierarchy.len() - 32;
+    let damaged = |damage: &dyn Fn(&mut Vec<u8>)| {
+        let (found, note) = window_of(&nodes, damage, &options);
+        assert_eq!(found, expected, "{note}");
+        assert!(note.contains("read in the order of the file"), "{note}");
+        note
+    };
     for (at, field) in [
         // bytes of a page: negative, beyond the file
         (24, (-5_i32).to_le_bytes().to_vec()),
@@ -245,26 +254,57 @@ fn a_damaged_hierarchy_is_refused_and_never_followed() {
         // points of a chunk in these bytes
         (28, i32::MAX.to_le_bytes().to_vec()),
         (28, (-2_i32).to_le_bytes().to_vec()),
+        // a node that is hidden
+        (28, 0_i32.to_le_bytes().to_vec()),
         // no octree is as deep, no cell there
         (0, 1000_i32.to_le_bytes().to_vec()),
         (0, (-1_i32).to_le_bytes().to_vec()),
         (4, (-1_i32).to_le_bytes().to_vec()),
     ] {
-        let what = refused(&|hierarchy| {
+        damaged(&|hierarchy| {
             let first = root(hierarchy);
             // a node that meets the window
             hierarchy[first..first + 16].fill(0);
             hierarchy[first + at..first + at + field.len()].copy_from_slice(&field);
         });
-        assert!(what.contains("hierarchy") || what.contains("LAZ chunk"), "{what}");
     }
     // two entries of the root page name the same page
-    let what = refused(&|hierarchy| {
+    let note = damaged(&|hierarchy| {
         let first = root(hierarchy);
         hierarchy[first..first + 16].fill(0);
         hierarchy.copy_within(first..first + 32, first - 32);
     });
-    assert!(what.contains("named twice"), "{what}");
+    assert!(note.contains("named twice"), "{note}");
+    // two chunks that change places, as where another program has sorted the points
+    damaged(&|hierarchy| {
+        let (a, b) = (60..92, 92..124);
+        let [first, second] = [a.clone(), b.clone()].map(|at| hierarchy[at][16..28].to_vec());
+        hierarchy[a][16..28].copy_from_slice(&second);
+        hierarchy[b][16..28].copy_from_slice(&first);
+    });
+}
+
+#[test]
+fn records_of_copc_that_a_plain_file_kept_are_passed_over() {
+    let nodes = nodes(12_000);
+    let options = window([10.0, 10.0], 50.0);
+    let expected = window_of(&nodes, &|_| {}, &options).0;
+    let mut bytes = copc(&nodes, |_| {});
+    // a program that does not know the extended record leaves it out, and the record of the octree in
+    bytes[243..247].fill(0);
+    for names_root in [true, false] {
+        if !names_root {
+            bytes[375 + 54 + 24..375 + 54 + 56].fill(0);
+        }
+        let source = Source::bytes("tile.laz", &bytes);
+        let (cloud, report) = read_cloud([source], &options, &Control::none()).unwrap_or_else(|e| panic!("{e}"));
+        assert_eq!(cloud.len(), expected);
+        let (all, whole) =
+            read_cloud([Source::bytes("tile.laz", &bytes)], &ReadOptions::new(), &Control::none()).unwrap();
+        assert_eq!((all.len(), whole.files[0].format.as_str()), (12_000, "LAS 1.4, point format 6, LAZ"));
+        assert!(whole.files[0].notes.iter().any(|note| note.contains("hierarchy is not that")), "{:?}", whole.files);
+        assert!(report.files[0].notes.iter().any(|note| note.contains("hierarchy is not that")), "{:?}", report.files);
+    }
 }
 
 #[test]

@@ -223,7 +223,8 @@ def read(
     Parameters
     ----------
     source : path, bytes, binary file, laspy object, or a list of these
-        ``.las .laz .copc.laz .ply .xyz .txt .csv .pcd .e57 .ptx .npy``, or a folder of them. Several become one cloud.
+        ``.las .laz .copc.laz .ply .xyz .txt .csv .pts .asc .pcd .e57 .ptx .npy ept.json``, or a folder of them.
+        Several become one cloud.
     crs : str, optional
         Coordinate reference system of files that name none, such as ``"EPSG:28992"``. One that contradicts a file, or
         whose area of use is more than 300 km away, is refused.

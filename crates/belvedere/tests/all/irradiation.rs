@@ -233,7 +233,7 @@ fn weather(steps: Vec<WeatherStep>) -> Weather {
 
 fn step(hour_of_year: f64, dni: f64) -> WeatherStep {
     let instant = year_start(YEAR) + hour_of_year * 3600.0;
-    WeatherStep { instant, hours: 1.0, month: 6, ghi: 300.0, dni: Some(dni), dhi: Some(100.0), temperature: None }
+    WeatherStep { instant, hours: 1.0, month: 6, ghi: Some(300.0), dni: Some(dni), dhi: Some(100.0), temperature: None }
 }
 
 #[test]

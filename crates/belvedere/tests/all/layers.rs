@@ -58,7 +58,6 @@ const ONE_HOME: [(&str, &str); 34] = [
     ("tiff::", "io/src/geotiff"),
     ("flate2::", "io/src/geotiff_cog.rs"),
     ("geojson::", "io/src/geojson"),
-    ("tobj::", "io/src/obj.rs"),
     ("earcut::", "io/src/"),
     ("ply_rs_bw::", "io/src/"),
     ("pollster::", "gpu/src/device.rs"),

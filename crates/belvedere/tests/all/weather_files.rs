@@ -1,5 +1,7 @@
 //! Weather files: what the readers make of each format, and what they refuse.
 
+use belvedere::apps::irradiance::weather_instants;
+use belvedere::apps::sun::Site;
 use belvedere::io::read_weather;
 use belvedere::weather::{CalendarDay, RowsHold, Weather, unix_day};
 
@@ -29,20 +31,20 @@ fn epw(rows: &str) -> String {
 
 #[test]
 fn hours_of_epw_end_in_local_standard_time() {
-    let rows = epw_row("1999,6,21,13,60", "800", "700", "150") + &epw_row("2003,12,31,24,0", "9999", "0", "0");
+    let rows = epw_row("1999,6,21,13,60", "800", "700", "150") + &epw_row("2003,12,31,24,0", "9999", "0", "9999");
     let weather = read(&epw(&rows)).unwrap();
     assert_eq!((weather.format, weather.rows_hold), ("EPW", RowsHold::Means));
     assert!((weather.latitude.to_degrees() - 52.3).abs() < 1e-9 && (weather.height - -3.0).abs() < 1e-9);
     // hour 13 is 12:00 to 13:00 in a zone one hour ahead of UTC: its middle is 11:30 UTC
     let step = weather.steps[0];
     assert_eq!((step.instant, step.hours, step.month), (instant(1999, 6, 21, 11.5), 1.0, 6));
-    assert_eq!((step.ghi, step.dni, step.dhi, step.temperature), (800.0, Some(700.0), Some(150.0), Some(10.5)));
-    // the other has no global radiation
+    assert_eq!((step.ghi, step.dni, step.dhi, step.temperature), (Some(800.0), Some(700.0), Some(150.0), Some(10.5)));
+    // the other has neither global radiation nor both of its parts
     assert_eq!((weather.steps.len(), weather.left_out_count), (1, 1));
     // missing direct and diffuse radiation is not zero; noise at night is
     let rows = epw_row("1999,6,21,13,60", "800", "9999", "9999") + &epw_row("1999,6,22,1,60", "-1.5", "0", "0");
     let weather = read(&epw(&rows)).unwrap();
-    assert_eq!((weather.steps[0].dni, weather.steps[0].dhi, weather.steps[1].ghi), (None, None, 0.0));
+    assert_eq!((weather.steps[0].dni, weather.steps[0].dhi, weather.steps[1].ghi), (None, None, Some(0.0)));
     // four records an hour end at their minutes
     let quarters = epw(&epw_row("1999,6,21,13,15", "800", "700", "150")).replace("PERIODS,1,1,", "PERIODS,1,4,");
     let step = read(&quarters).unwrap().steps[0];
@@ -65,7 +67,7 @@ fn rows_of_pvgis_are_instants_of_utc_with_an_offset() {
     );
     let step = weather.steps[0];
     assert!((step.instant - (instant(2016, 1, 1, 11.0) + 0.1761 * 3600.0)).abs() < 1e-6);
-    assert_eq!((step.ghi, step.dni, step.dhi, step.temperature), (310.0, Some(520.5), Some(95.0), Some(3.1)));
+    assert_eq!((step.ghi, step.dni, step.dhi, step.temperature), (Some(310.0), Some(520.5), Some(95.0), Some(3.1)));
     assert_eq!((weather.steps[1].month, weather.steps[1].dni), (2, Some(0.0)));
     let older = PVGIS_TYPICAL.replace("Irradiance Time Offset (h): 0.1761\r\n", "");
     assert_eq!(read(&older).unwrap().steps[0].instant, instant(2016, 1, 1, 11.0));
@@ -80,9 +82,9 @@ fn series_of_pvgis_on_a_level_plane_give_global_and_diffuse() {
     let weather = read(PVGIS_SERIES).unwrap();
     let step = weather.steps[0];
     assert_eq!(step.instant, instant(2023, 6, 1, 11.0 + 1.0 / 6.0));
-    assert_eq!((step.ghi, step.dni, step.dhi), (720.5, None, Some(120.0)));
+    assert_eq!((step.ghi, step.dni, step.dhi), (Some(720.5), None, Some(120.0)));
     let global = PVGIS_SERIES.replace("Gb(i),Gd(i),Gr(i)", "G(i),A,B");
-    assert_eq!((read(&global).unwrap().steps[0].ghi, read(&global).unwrap().steps[0].dhi), (600.5, None));
+    assert_eq!((read(&global).unwrap().steps[0].ghi, read(&global).unwrap().steps[0].dhi), (Some(600.5), None));
     let tilted = PVGIS_SERIES.replace("Slope: 0 deg.", "Slope: 35 deg. (optimum)");
     let message = read(&tilted).unwrap_err().to_string();
     assert!(message.contains("35") && message.contains("slope 0"), "{message}");
@@ -115,7 +117,7 @@ fn rows_of_nsrdb_are_instants_of_the_zone_in_their_head() {
     assert_eq!((weather.format, weather.rows_hold), ("NSRDB", RowsHold::Instants));
     let step = weather.steps[1];
     assert_eq!((step.instant, step.hours), (instant(2017, 7, 1, 17.5), 0.5));
-    assert_eq!((step.ghi, step.dni, step.dhi, step.temperature), (775.0, Some(690.0), Some(160.0), Some(27.5)));
+    assert_eq!((step.ghi, step.dni, step.dhi, step.temperature), (Some(775.0), Some(690.0), Some(160.0), Some(27.5)));
     assert!((weather.hours() - 1.5).abs() < 1e-12);
 }
 
@@ -128,7 +130,14 @@ fn what_is_wrong_is_named_with_its_line() {
         (epw(""), &["no row"]),
         (epw(&row.replace("800", "hot")), &["line 9", "global", "hot"]),
         (epw(&row.replace("800", "NaN")), &["line 9", "NaN"]),
-        (epw(&row.replace("800", "1e308")), &["no row"]),
+        (epw(&row.replace("800", "1e308")), &["line 9", "3000"]),
+        // what spreadsheets make of numbers where commas are decimal
+        (epw(&row.replace("10.5", "10,5")) + &row, &["line 10", "cells", "decimal commas"]),
+        (epw(&row).replace("52.3,4.77", "52,3,4,77"), &["line 1", "12 cells", "decimal commas"]),
+        (epw(&format!("{}{}", row.trim_end(), ",0".repeat(20))), &["line 9", "decimal commas"]),
+        (epw(&row).replace(',', ";"), &["semicolons"]),
+        (NSRDB.replace("27.5", "27,5"), &["line 5", "decimal commas"]),
+        (PVGIS_TYPICAL.replace("310.0,520.5", "310,0,520,5"), &["line 9", "decimal commas"]),
         (epw(&row.replace("800", "5000")), &["line 9", "5000", "3000"]),
         (epw(&row.replace("800", "-300")), &["line 9", "-300"]),
         (epw(&row.replace("1999,6,21", "1999,2,30")), &["line 9", "1999-02-30"]),
@@ -158,4 +167,39 @@ fn what_is_wrong_is_named_with_its_line() {
         }
     }
     assert!(read_weather(std::path::Path::new("/nowhere/at.epw")).is_err());
+}
+
+#[test]
+fn what_a_row_lacks_follows_from_the_rest_of_it() {
+    let rows: String = (10..15_u8)
+        .map(|hour| {
+            let (ghi, dni, dhi) = match hour {
+                10 => ("9999", "700", "150"),
+                11 => ("99999", "700", "150"),
+                12 => ("800", "9999", "150"),
+                13 => ("800", "700", "999900"),
+                _ => ("-999", "9999", "150"),
+            };
+            epw_row(&format!("1999,6,21,{hour},60"), ghi, dni, dhi)
+        })
+        .collect();
+    let weather = read(&epw(&rows)).unwrap();
+    assert_eq!((weather.steps.len(), weather.left_out_count), (4, 1));
+    assert_eq!(weather.notes.len(), 3, "{:?}", weather.notes);
+    assert!(weather.notes[0].starts_with("2 of 4 rows have no global radiation"), "{:?}", weather.notes);
+    let site = Site { latitude: weather.latitude, longitude: weather.longitude, ..Site::default() };
+    let instants = weather_instants(&weather, &site, 1).unwrap();
+    for instant in &instants[..2] {
+        let expected = 700.0 * instant.zenith.cos() + 150.0;
+        assert!((instant.irradiance.ghi - expected).abs() < 1e-9, "{instant:?}");
+    }
+    assert!((instants[2].irradiance.dni - 650.0 / instants[2].zenith.cos()).abs() < 1e-9);
+    assert!((instants[3].irradiance.dhi - (800.0 - 700.0 * instants[3].zenith.cos())).abs() < 1e-9);
+}
+
+#[test]
+fn weather_in_utf_16_is_read() {
+    let bytes: Vec<u8> = format!("\u{feff}{NSRDB}").encode_utf16().flat_map(u16::to_le_bytes).collect();
+    let weather = read_weather(belvedere::io::Source::bytes("a.csv", &bytes)).unwrap();
+    assert_eq!(weather, read(NSRDB).unwrap());
 }

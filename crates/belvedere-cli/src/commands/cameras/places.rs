@@ -1,11 +1,13 @@
 //! Where cameras stand and how they look: from flags and files to a question.
 
 use crate::arguments::CameraLensArguments;
+use crate::commands::surroundings::{ObserverUse, observer_rows};
+use crate::run::CommandContext;
 use anyhow::Result;
 use belvedere::Frame;
 use belvedere::apps::ask::{self, GivenCamera};
 use belvedere::apps::viewshed::places_along;
-use belvedere::io::{ObserverRow, RowsAre, read_observers};
+use belvedere::io::{ObserverRow, RowsAre};
 use std::path::Path;
 
 /// Metres between the candidates on a line of GeoJSON.
@@ -27,9 +29,9 @@ pub(super) fn lens(flags: &CameraLensArguments) -> ask::CameraLens {
 }
 
 /// The cameras of a file, those on lines `step` metres apart.
-pub(super) fn cameras(path: &Path, step: f64, frame: &Frame) -> Result<Vec<GivenCamera>> {
+pub(super) fn cameras(path: &Path, step: f64, frame: &Frame, run: &mut CommandContext) -> Result<Vec<GivenCamera>> {
     let mut cameras = Vec::new();
-    for row in read_observers(path, &frame.crs, RowsAre::Places)? {
+    for row in observer_rows(path, frame, RowsAre::Places, ObserverUse::Limits, run)? {
         let corners: Vec<[f64; 3]> =
             row.corners.iter().map(|c| std::array::from_fn(|i| c[i] - frame.origin[i])).collect();
         cameras.extend(places_along(&corners, step)?.into_iter().map(|place| camera(place, &row)));

@@ -4,6 +4,7 @@ use crate::arguments::{CameraTargetsArguments, Usage};
 use crate::commands::extension;
 use crate::commands::mesh_targets::is_mesh;
 use crate::commands::query::points_of_file;
+use crate::commands::surroundings::{ObserverUse, observer_rows};
 use crate::pipeline::mesh_in;
 use crate::run::CommandContext;
 use anyhow::{Result, bail};
@@ -11,7 +12,7 @@ use belvedere::Frame;
 use belvedere::apps::ask::{self, GridCells, Places, PrivatePlaces, Standing};
 use belvedere::apps::cameras::WeightedArea;
 use belvedere::apps::targets::MeshParams;
-use belvedere::io::{FeatureShape, ReadOptions, RowsAre, read_geojson, read_observers};
+use belvedere::io::{FeatureShape, ReadOptions, RowsAre, property, read_geojson};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -67,7 +68,7 @@ pub(super) fn places(
             Ok(cells())
         }
         Some((path, TargetFileKind::Places)) => {
-            (targets.points, targets.weights) = points(path, frame)?;
+            (targets.points, targets.weights) = points(path, frame, run)?;
             Ok(Places::Scene)
         }
         Some((path, TargetFileKind::Mesh)) => {
@@ -85,10 +86,10 @@ pub(super) fn places(
 }
 
 /// The places that no camera may see.
-pub(super) fn private(path: &Path, frame: &Frame) -> Result<PrivatePlaces> {
+pub(super) fn private(path: &Path, frame: &Frame, run: &mut CommandContext) -> Result<PrivatePlaces> {
     match kind(path) {
         TargetFileKind::Areas => Ok(PrivatePlaces::Areas(areas(path, frame)?)),
-        TargetFileKind::Places => Ok(PrivatePlaces::Points(points(path, frame)?.0)),
+        TargetFileKind::Places => Ok(PrivatePlaces::Points(points(path, frame, run)?.0)),
         _ => {
             let path = path.display();
             Err(Usage(format!("--private {path}: use points (.csv .geojson) or polygons (.geojson)")).into())
@@ -104,7 +105,7 @@ fn areas(path: &Path, frame: &Frame) -> Result<Vec<WeightedArea>> {
         let FeatureShape::Polygon(rings) = feature.shape else {
             bail!("{}: use polygons, or points, but not both in one file", path.display());
         };
-        let weight = match feature.properties.get("weight") {
+        let weight = match property(&feature.properties, "weight") {
             None => 1.0,
             Some(value) => match value.as_f64() {
                 Some(weight) => weight,
@@ -118,9 +119,9 @@ fn areas(path: &Path, frame: &Frame) -> Result<Vec<WeightedArea>> {
 }
 
 /// The points of a file, and the weight of each.
-fn points(path: &Path, frame: &Frame) -> Result<(Vec<Standing>, Vec<f64>)> {
+fn points(path: &Path, frame: &Frame, run: &mut CommandContext) -> Result<(Vec<Standing>, Vec<f64>)> {
     let (mut points, mut weights) = (Vec::new(), Vec::new());
-    for row in read_observers(path, &frame.crs, RowsAre::Places)? {
+    for row in observer_rows(path, frame, RowsAre::Places, ObserverUse::Places, run)? {
         for corner in &row.corners {
             let place = std::array::from_fn(|i| corner[i] - frame.origin[i]);
             points.push(Standing { place, height: row.height });

@@ -2,12 +2,13 @@
 
 use crate::arguments::{MapPosition, Usage, ViewshedArguments};
 use crate::commands::extension;
-use crate::commands::surroundings::min_count;
+use crate::commands::surroundings::{ObserverUse, min_count, observer_rows};
+use crate::run::CommandContext;
 use anyhow::Result;
 use belvedere::Frame;
 use belvedere::apps::ask::{Standing, StandingObserver, ViewLimits};
 use belvedere::apps::viewshed::places_along;
-use belvedere::io::{ObserverRow, RowsAre, read_observers};
+use belvedere::io::{ObserverRow, RowsAre};
 use std::path::PathBuf;
 
 /// Metres between the observers on a line of GeoJSON.
@@ -54,7 +55,11 @@ pub(super) fn limits(arguments: &ViewshedArguments) -> ViewLimits {
 }
 
 /// The observers of the flags or of the file, or the target.
-pub(super) fn observers(arguments: &ViewshedArguments, frame: &Frame) -> Result<Vec<StandingObserver>> {
+pub(super) fn observers(
+    arguments: &ViewshedArguments,
+    frame: &Frame,
+    run: &mut CommandContext,
+) -> Result<Vec<StandingObserver>> {
     let (who, looking) = (&arguments.who, &arguments.looking);
     let at = |place: [f64; 3], height: Option<f64>, limits: ViewLimits| StandingObserver {
         standing: Standing { place, height },
@@ -70,7 +75,7 @@ pub(super) fn observers(arguments: &ViewshedArguments, frame: &Frame) -> Result<
     let rows_are = if looking.step.is_some() { RowsAre::Corners } else { RowsAre::Places };
     let usual = limits(arguments);
     let mut observers = Vec::new();
-    for row in read_observers(path, &frame.crs, rows_are)? {
+    for row in observer_rows(path, frame, rows_are, ObserverUse::Limits, run)? {
         let limits = limits_of(&row);
         limits.or(&usual).check().map_err(|error| Usage(format!("{}: {error}", path.display())))?;
         let corners: Vec<[f64; 3]> =
