@@ -8,8 +8,8 @@ use belvedere_data::report::rounded;
 use rayon::prelude::*;
 use serde::Serialize;
 
-/// How deep an eye may lie in an obstacle or below the ground, metres: what points and the surface tolerance of balls
-/// leave open. An eye on a wall or a roof is a usual question.
+/// How deep an eye may lie below the ground, metres: what points leave open. In an obstacle it may lie as deep as balls
+/// give way ([`MedialScene::is_inside_obstacle`]): an eye on a wall or a roof is a usual question.
 const TOLERANCE: f64 = 0.2;
 
 /// Why nobody can look from a place.
@@ -153,8 +153,7 @@ pub fn fault_of(scene: &MedialScene, ground: Option<&Ground>, place: [f64; 3]) -
     {
         return Some(EyeFault::BelowGround(rounded(below, 3)));
     }
-    let depth = scene.enclosure(place).depth;
-    (depth > TOLERANCE.max(scene.params().shell)).then(|| EyeFault::InsideObstacle(rounded(depth, 3)))
+    scene.is_inside_obstacle(place).then(|| EyeFault::InsideObstacle(rounded(scene.enclosure(place).depth, 3)))
 }
 
 /// The same where lines of sight may leave the cloud.

@@ -1,7 +1,7 @@
 //! What to know of targets of one viewer, however they are tested.
 
 use super::Remark;
-use belvedere_core::query::Coverage;
+use belvedere_core::query::{Coverage, MedialScene};
 
 const OUTSIDE_CLOUD: &str = "are outside the cloud, where nothing is known, and have no answer";
 
@@ -17,6 +17,26 @@ pub fn remark_on_eye(coverage: Option<&Coverage>, eye: [f64; 3]) -> Option<Remar
 #[must_use]
 pub fn remark_on_outside(outside: usize, count: usize, things: &str) -> Option<Remark> {
     Remark::of_share("targets-outside-cloud", outside, count, things, OUTSIDE_CLOUD)
+}
+
+/// A note that `inside` of `count` targets are inside an obstacle; `None` where none is.
+#[must_use]
+pub fn remark_on_targets_inside(inside: usize, count: usize) -> Option<Remark> {
+    let so = "are inside an obstacle, or their eye is: they are neither visible nor blocked";
+    Remark::of_share("targets-inside-obstacle", inside, count, "targets", so).map(Remark::into_note)
+}
+
+/// A warning of an end of lines of sight that lies so deep in an obstacle that nothing is seen from there, nor it from
+/// anywhere; `what` it is is a word such as "eye".
+#[must_use]
+pub fn remark_on_inside(blockers: &MedialScene, end: [f64; 3], what: &str) -> Option<Remark> {
+    blockers.is_inside_obstacle(end).then(|| {
+        let depth = blockers.enclosure(end).depth;
+        let text = format!(
+            "the {what} is inside an obstacle, {depth:.2} m deep: it sees nothing, and nothing sees it; give a place outside"
+        );
+        Remark::warning("end-inside-obstacle", text).with("depth_m", depth)
+    })
 }
 
 /// A warning that nothing was cleared, where `points` of the cloud were.

@@ -125,11 +125,7 @@ impl LineInView {
 }
 
 /// The line of sight of a target in the first of `views` that has one.
-fn line_of_sight<'v>(
-    mut views: impl Iterator<Item = &'v View>,
-    scope: Scope,
-    target: [f32; 3],
-) -> Option<LineInView> {
+fn line_of_sight<'v>(mut views: impl Iterator<Item = &'v View>, scope: Scope, target: [f32; 3]) -> Option<LineInView> {
     match scope {
         Scope::View => views.find_map(|view| line_in_view(view, target)),
         Scope::Viewer => {

@@ -378,13 +378,8 @@ impl MedialScene {
     /// As [`MedialScene::front`], for a chord of a longer line.
     fn front_on(&self, number: usize, piece: &LinePiece) -> Option<f64> {
         let LinePiece { ray, counted, target, observer } = piece;
-        let chord = Chord {
-            start: ray.origin,
-            towards: ray.direction,
-            ranges: *counted,
-            target: *target,
-            observer: *observer,
-        };
+        let chord =
+            Chord { start: ray.origin, towards: ray.direction, ranges: *counted, target: *target, observer: *observer };
         self.tree().rule().blocks_chord(*self.tree().balls().get(number)?, &chord)
     }
 }
