@@ -32,7 +32,9 @@ impl std::fmt::Display for EyeFault {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::NoGround => f.write_str("there is no ground known below it; give its height as a third coordinate"),
-            Self::OutsideCloud => f.write_str("it is outside the cloud; is it in the coordinates of the cloud?"),
+            Self::OutsideCloud => f.write_str(
+                "it is outside the cloud, and not in the air above all of it; is it in the coordinates of the cloud?",
+            ),
             Self::OutsideHeights => f.write_str(
                 "its height is below the cloud, or more than 10 km above it; leave it out for the height of the ground",
             ),
@@ -140,7 +142,8 @@ fn skip(
 #[must_use]
 pub fn fault_of(scene: &MedialScene, ground: Option<&Ground>, place: [f64; 3]) -> Option<EyeFault> {
     let [x, y, z] = place;
-    let is_over = |coverage: &Coverage| if z.is_nan() { coverage.holds_on_map(place) } else { coverage.holds(place) };
+    let is_over =
+        |coverage: &Coverage| if z.is_nan() { coverage.holds_on_map(place) } else { coverage.holds_end(place) };
     if let Some(coverage) = scene.coverage().filter(|coverage| !is_over(coverage)) {
         let is_on_map = coverage.holds_on_map(place);
         return Some(if is_on_map { EyeFault::OutsideHeights } else { EyeFault::OutsideCloud });

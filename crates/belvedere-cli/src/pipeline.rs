@@ -51,9 +51,7 @@ pub(crate) fn check_every_row(report: &ReadReport) -> Result<()> {
 }
 
 fn read_counted(input: &CloudInput, run: &mut CommandContext) -> Result<(PointCloud, ReadReport)> {
-    let mut options = ReadOptions::new();
-    options.crs = input.crs.clone();
-    options.up = input.up.into();
+    let options = input.options();
     let (cloud, report) = run.stage("reading", 0, |control| read_cloud(&input.clouds, &options, control))?;
     run.summary.add("points", cloud.len());
     run.summary.add("reading", Summary::of(&report));

@@ -1,6 +1,6 @@
 //! Lines of sight: whether the observers of pairs see their targets, and what blocks first.
 
-use super::observers::{Standing, check_height, note_enclosed, stand};
+use super::observers::{Standing, check_height, note_beside, note_enclosed, stand};
 use super::report::LinesSection;
 use super::scene::Scene;
 use super::{Answers, Ask, Context, GridCells, Places, Remark, remark_on_inside};
@@ -241,6 +241,8 @@ impl Ask for LinesOfSightQuestion {
         };
         let outside = section.outside_cloud;
         context.add(Remark::of_share("lines-outside-cloud", outside, answers.len(), "lines of sight", is_outside));
+        let ends: Vec<[f64; 3]> = pairs.iter().flatten().copied().collect();
+        note_beside(&blockers, &ends, "end", context);
         if pairs.len() > 1 {
             let so = "have an end inside an obstacle: they are neither visible nor blocked";
             let count = section.inside_obstacle;

@@ -71,7 +71,9 @@ pub use sun::{Days, NamedSun, SunPlace, SunRange, Suns, check_sun, remark_on_sun
 pub use sun_hours::{PreparedSun, SunHoursQuestion, rules};
 pub use sun_position::{SunPositionQuestion, SunStands};
 pub use trees::ThroughTrees;
-pub use viewer::{remark_on_cleared, remark_on_eye, remark_on_inside, remark_on_outside, remark_on_targets_inside};
+pub use viewer::{
+    remark_on_axis, remark_on_cleared, remark_on_eye, remark_on_inside, remark_on_outside, remark_on_targets_inside,
+};
 pub use viewshed::{
     FarSeen, SeenSection, StandingObserver, ViewLimits, ViewshedQuestion, ViewshedResults, ViewshedTargets,
 };
@@ -218,6 +220,7 @@ pub trait Ask {
 pub fn ask<Q: Ask>(scene: &Scene, question: &Q, places: &Places, control: &Control<'_>) -> Result<Answers<Q::Found>> {
     question.check()?;
     let mut context = Context::default();
+    context.add(remark_on_axis(scene.model().looks_y_up()));
     let answers = question.answer(scene, places, &mut context, control)?;
     Ok(answers.with(context))
 }

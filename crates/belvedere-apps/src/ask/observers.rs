@@ -3,6 +3,7 @@
 
 use super::places::Places;
 use super::scene::Scene;
+use super::viewer::remark_on_beside;
 use super::{Context, Remark};
 use crate::eyes::{EyeFault, EyesReport, SkippedEye, skip_unfit_eyes, skip_unfit_far_eyes};
 use crate::targets::{grid_around, set_on_ground, set_on_terrain};
@@ -198,7 +199,22 @@ pub(super) fn skip_unfit(
         Reach::FarTerrain => skip_unfit_far_eyes(blockers, ground, &mut eyes, control),
     })?;
     remark_on_skipped(&report, who, scene, context)?;
+    note_beside(blockers, &eyes, who, context);
     Ok(Eyes { places, eyes, report })
+}
+
+/// Notes eyes in the air beside the cloud.
+pub(super) fn note_beside(blockers: &MedialScene, eyes: &[[f64; 3]], who: &str, context: &mut Context) {
+    let is_beside = |eye: &&[f64; 3]| {
+        let coverage = blockers.coverage().filter(|coverage| !coverage.holds(**eye));
+        coverage.is_some_and(|coverage| coverage.holds_end(**eye)) && !blockers.is_on_far_terrain(**eye)
+    };
+    let count = eyes.iter().filter(is_beside).count();
+    let who_are = match eyes.len() {
+        1 => format!("the {who} is"),
+        all => format!("{count} of {all} {who}s are"),
+    };
+    context.add((count > 0).then(|| remark_on_beside(&who_are)));
 }
 
 /// Names those who are skipped.

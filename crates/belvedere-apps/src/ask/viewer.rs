@@ -5,12 +5,23 @@ use belvedere_core::query::{Coverage, MedialScene};
 
 const OUTSIDE_CLOUD: &str = "are outside the cloud, where nothing is known, and have no answer";
 
-/// A warning of an eye outside the cloud.
+/// A warning of an eye outside the cloud; a note of one in the air beside it.
 #[must_use]
 pub fn remark_on_eye(coverage: Option<&Coverage>, eye: [f64; 3]) -> Option<Remark> {
-    let is_outside = coverage.is_some_and(|coverage| !coverage.holds(eye));
-    let text = "the eye is outside the cloud: what stands around it and before it is unknown";
-    is_outside.then(|| Remark::warning("eye-outside-cloud", text))
+    let coverage = coverage.filter(|coverage| !coverage.holds(eye))?;
+    Some(match coverage.holds_end(eye) {
+        true => remark_on_beside("the eye is"),
+        false => {
+            let text = "the eye is outside the cloud: what stands around it and before it is unknown";
+            Remark::warning("eye-outside-cloud", text)
+        }
+    })
+}
+
+/// A note of those who look from the air beside the cloud.
+pub(super) fn remark_on_beside(who_are: &str) -> Remark {
+    let text = format!("{who_are} beside the cloud: what stands between the two is unknown, and counts as free");
+    Remark::note("eye-beside-cloud", text)
 }
 
 /// A warning that `outside` of `count` targets, which are called `things`, are outside the cloud; `None` where none is.
@@ -37,6 +48,14 @@ pub fn remark_on_inside(blockers: &MedialScene, end: [f64; 3], what: &str) -> Op
         );
         Remark::warning("end-inside-obstacle", text).with("depth_m", depth)
     })
+}
+
+/// A warning that a cloud lies on its side.
+#[must_use]
+pub fn remark_on_axis(looks_y_up: bool) -> Option<Remark> {
+    let text = "y looks up in this cloud, not z: its flat surfaces face along y, and it is lowest that way; \
+                if so, read it with y as the axis that is up (--up y, up=\"y\")";
+    looks_y_up.then(|| Remark::warning("y-looks-up", text))
 }
 
 /// A warning that nothing was cleared, where `points` of the cloud were.

@@ -2,6 +2,7 @@
 
 use super::balls::trees;
 use super::{OrientChoice, known_crs};
+use belvedere::io::ReadOptions;
 use belvedere::medial::Trees;
 use clap::{Args, ValueEnum};
 use serde::Deserialize;
@@ -24,6 +25,21 @@ pub(crate) struct CloudInput {
     /// targets.
     #[arg(long, value_enum, value_name = "AXIS", default_value_t = UpChoice::Z, help_heading = "Scene", hide_short_help = true)]
     pub(crate) up: UpChoice,
+    /// Leave out files whose points all lie more than 1000 km from those of the others, which is an error otherwise
+    #[arg(long, help_heading = "Scene", hide_short_help = true)]
+    pub(crate) skip_distant: bool,
+}
+
+impl CloudInput {
+    /// How the clouds are read.
+    pub(crate) fn options(&self) -> ReadOptions {
+        let mut options = ReadOptions::new().with_up(self.up.into());
+        options.crs = self.crs.clone();
+        match self.skip_distant {
+            true => options.without_distant_files(),
+            false => options,
+        }
+    }
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]

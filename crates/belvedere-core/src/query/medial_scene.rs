@@ -204,10 +204,11 @@ impl MedialScene {
         })
     }
 
-    /// Whether a position, local metres, lies beside or below the cloud.
+    /// Whether a position, local metres, lies beside or below the cloud, so that no line of sight ends there
+    /// ([`Coverage::holds_end`]): in the air beside the cloud and above all of it they do.
     #[must_use]
     pub fn is_outside_cloud(&self, position: [f64; 3]) -> bool {
-        self.coverage.is_some_and(|coverage| !coverage.holds(position))
+        self.coverage.is_some_and(|coverage| !coverage.holds_end(position))
     }
 
     /// `answers` of `targets`, with those of what lies outside the cloud as such.

@@ -212,6 +212,7 @@ def read(
     *,
     crs: str | None = None,
     up: str = "z",
+    skip_distant: bool = False,
     name: str | None = None,
     bounds: npt.ArrayLike | None = None,
     classes: Iterable[int] | None = None,
@@ -227,6 +228,8 @@ def read(
         Coordinate reference system in place of what the file says, such as ``"EPSG:28992"``.
     up : {'z', 'y'}
         Which axis of the file is up.
+    skip_distant : bool
+        Leave out files whose points all lie more than 1000 km from those of the others, which is an error otherwise.
     name : str, optional
         Name of bytes or of a file without a name, such as ``"tile.laz"``; its extension selects the format.
     bounds : array_like, (2, 2) or (2, 3), optional
@@ -268,7 +271,7 @@ def read(
     box = None if bounds is None else map_box(bounds, "bounds")
     wanted = None if classes is None else class_numbers(classes)
     inputs = [native_source(one, name, in_parts=box is not None) for one in sources]
-    core, text = _core.read(inputs, crs, up, box, wanted, reporter(progress))
+    core, text = _core.read(inputs, crs, up, skip_distant, box, wanted, reporter(progress))
     report = json.loads(text)
     for note in _notes(report):
         _warn(note)

@@ -251,6 +251,7 @@ def read(
     inputs: list[Any],
     crs: str | None,
     up: str,
+    skip_distant: bool,
     bounds: list[list[float]] | None,
     classes: list[int] | None,
     progress: _Progress,
