@@ -169,8 +169,7 @@ fn by_lines_of_sight(
     let viewer = eye.map_or(Viewer::Direction([0.0, 0.0, 1.0]), Viewer::Eye);
     let (answers, report) = run.stage("querying", 0, |control| {
         let (mut answers, report) = scene.visible_in_views(views, scope, targets, control)?;
-        scene.mark_inside_obstacles(viewer, targets, &mut answers, control)?;
-        Ok((answers, report))
+        scene.mark_inside_obstacles(viewer, targets, &mut answers, control).map(|()| (answers, report))
     })?;
     match report {
         None => section.add("method", "lines of sight"),
