@@ -55,7 +55,7 @@ pub enum Error {
     },
     /// A file of several whose points all lie far away from those of the others.
     #[error(
-        "{}: all of its points lie more than 1000 km from the middle of the other files; is it in another reference system? Convert it, leave it away, or say that distant files are to be skipped",
+        "{}: all of its points lie more than 1000 km from the middle of the other files; is it in another reference system? Convert it, leave it away, or skip such files (--skip-distant, in Python skip_distant=True)",
         path.display()
     )]
     DistantFile {
