@@ -8,8 +8,8 @@ use belvedere_data::report::rounded;
 use rayon::prelude::*;
 use serde::Serialize;
 
-/// How deep an eye may lie in an obstacle or below the ground, metres: what points and the surface tolerance of balls
-/// leave open. An eye on a wall or a roof is a usual question.
+/// How deep an eye may lie below the ground, metres: what points leave open. In an obstacle it may lie as deep as balls
+/// give way ([`MedialScene::is_inside_obstacle`]): an eye on a wall or a roof is a usual question.
 const TOLERANCE: f64 = 0.2;
 
 /// Why nobody can look from a place.
@@ -32,7 +32,9 @@ impl std::fmt::Display for EyeFault {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::NoGround => f.write_str("there is no ground known below it; give its height as a third coordinate"),
-            Self::OutsideCloud => f.write_str("it is outside the cloud; is it in the coordinates of the cloud?"),
+            Self::OutsideCloud => f.write_str(
+                "it is outside the cloud, and not in the air above all of it; is it in the coordinates of the cloud?",
+            ),
             Self::OutsideHeights => f.write_str(
                 "its height is below the cloud, or more than 10 km above it; leave it out for the height of the ground",
             ),
@@ -140,7 +142,8 @@ fn skip(
 #[must_use]
 pub fn fault_of(scene: &MedialScene, ground: Option<&Ground>, place: [f64; 3]) -> Option<EyeFault> {
     let [x, y, z] = place;
-    let is_over = |coverage: &Coverage| if z.is_nan() { coverage.holds_on_map(place) } else { coverage.holds(place) };
+    let is_over =
+        |coverage: &Coverage| if z.is_nan() { coverage.holds_on_map(place) } else { coverage.holds_end(place) };
     if let Some(coverage) = scene.coverage().filter(|coverage| !is_over(coverage)) {
         let is_on_map = coverage.holds_on_map(place);
         return Some(if is_on_map { EyeFault::OutsideHeights } else { EyeFault::OutsideCloud });
@@ -153,8 +156,7 @@ pub fn fault_of(scene: &MedialScene, ground: Option<&Ground>, place: [f64; 3]) -
     {
         return Some(EyeFault::BelowGround(rounded(below, 3)));
     }
-    let depth = scene.enclosure(place).depth;
-    (depth > TOLERANCE.max(scene.params().shell)).then(|| EyeFault::InsideObstacle(rounded(depth, 3)))
+    scene.is_inside_obstacle(place).then(|| EyeFault::InsideObstacle(rounded(scene.enclosure(place).depth, 3)))
 }
 
 /// The same where lines of sight may leave the cloud.

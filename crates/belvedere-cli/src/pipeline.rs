@@ -297,9 +297,8 @@ impl ViewChoice {
             self.camera(eye.0, |place| place)?;
         } else if let Some(direction) = kind.direction {
             View::parallel(direction.0, [0.0; 3], [1.0; 3], 1.0)?;
-        } else if let Some(sun) = kind.sun.filter(|sun| !(0.0..=90.0).contains(&sun.0[1])) {
-            let elevation = sun.0[1];
-            return Err(Usage(format!("--sun: the elevation is {elevation}, but must be 0 to 90 degrees")).into());
+        } else if let Some(sun) = kind.sun {
+            ask::check_sun(sun.0, ask::SunRange::NotBelowHorizon)?;
         } else if let Some(viewport) = &kind.viewport {
             let (vx, vy) = (viewport.vx, viewport.vy);
             View::from_viewport(viewport.p0, vx, vy, viewport.pixels_per_unit)?;
@@ -346,6 +345,8 @@ impl ViewChoice {
             let [azimuth, elevation] = sun.0.map(f64::to_radians);
             let north = self.north.of_scene(scene);
             north.report(summary);
+            let site = ask::SunPlace::default().site_of(scene.model.frame(), &scene.model.bounds(), None).ok();
+            summary.remarks(ask::remark_on_sun(site.map(|(site, _)| site), sun.0));
             let sun = to_sun(azimuth - north.of_grid, elevation);
             View::parallel(sun.map(|v| -v), low, high, pixel)?
         } else if let Some(direction) = &self.kind.direction {

@@ -4,9 +4,14 @@
 //! operation. Lengths are metres, positions are local, directions are unit vectors. A line of sight runs from its
 //! *target* (range 0) *towards* its viewer (range `reach`, infinite for a viewer infinitely far away).
 //!
-//! The rule: a ball blocks a line of sight if the line leaves it more than [`BlockRule::bias`] metres after the target
-//! and before the viewer. A ball that holds the viewer blocks nothing, so that one wrong ball does not blind an
-//! observer. A ball near the target counts with a smaller radius ([`BlockRule::radius_for`]).
+//! The rule: a ball blocks a line of sight if a piece of the line more than [`BlockRule::bias`] metres from either end
+//! runs through it. A ball near an end counts with a smaller radius ([`BlockRule::radius_for`]), so that one wrong ball
+//! neither blinds an observer on a surface nor hides what lies on it. Both ends are treated alike: who looks and what is
+//! looked at can change places. An end that a ball holds even so is inside an obstacle ([`BlockRule::holds_end`]), and
+//! all its lines of sight are blocked.
+//!
+//! A picture plane, or the near limit of a picture, is no end at which anybody looks: what it cuts is taken away
+//! ([`BlockRule::blocks_before_plane`]).
 //!
 //! # Source
 //! Peters, Ledoux & Biljecki 2015, section 3 (balls that block, and the cone of [`Profile::PaperCone`]). Bias and shell
@@ -53,10 +58,10 @@ pub enum Profile {
 pub struct BlockRule {
     /// Surface that represents a ball. Default the sphere.
     pub profile: Profile,
-    /// How far a target may lie inside a ball, along its line of sight, and still count as visible, metres, 0 or more.
+    /// How far an end may lie inside a ball, along its line of sight, and the line still be free, metres, 0 or more.
     /// Default 0.
     pub bias: f64,
-    /// How far a ball gives way to a target near its surface, metres, 0 or more: see [`BlockRule::radius_for`]. Balls
+    /// How far a ball gives way to an end near its surface, metres, 0 or more: see [`BlockRule::radius_for`]. Balls
     /// bulge by centimetres between the points of a surface, and what lies on that surface must not vanish in them.
     /// Default 0. Depth maps have no shell: they do not know the target when balls are drawn.
     pub shell: f64,
@@ -95,14 +100,14 @@ impl BlockRule {
         Ok(())
     }
 
-    /// The most by which a ball of `radius` gives way to any target, metres.
+    /// The most by which a ball of `radius` gives way to any end of a line, metres.
     #[must_use]
     #[inline]
     pub fn shell_of(&self, radius: f64) -> f64 {
         self.shell.min(SHELL_SHARE * radius)
     }
 
-    /// The least radius that a ball of `radius` counts with, however near its surface a target lies.
+    /// The least radius that a ball of `radius` counts with, however near its surface an end lies.
     #[must_use]
     #[inline]
     pub fn min_radius(&self, radius: f64) -> f64 {
@@ -117,9 +122,10 @@ impl BlockRule {
         radius - (self.shell as f32).min(SHELL_SHARE as f32 * radius)
     }
 
-    /// The radius that a ball of `radius` counts with for a target `distance` metres from its centre.
+    /// The radius that a ball of `radius` counts with for an end `distance` metres from its centre; between two ends the
+    /// lesser of both counts.
     ///
-    /// With s the lesser of the shell and half the radius: r − s for a target less than s inside the surface, r − (s −
+    /// With s the lesser of the shell and half the radius: r − s for an end less than s inside the surface, r − (s −
     /// (distance − r)) for one less than s outside, and the whole r for all others.
     #[must_use]
     #[inline]
@@ -129,8 +135,16 @@ impl BlockRule {
         if outside.abs() < shell { radius - (shell - outside.max(0.0)) } else { radius }
     }
 
-    /// Where the line of sight from `target` along `towards` leaves a ball that blocks it, metres from the target;
-    /// `None` for a ball that does not block. The line ends at the viewer, `reach` metres from the target.
+    /// Whether an end of a line of sight lies so deep in a ball, or deeper, that the ball does not give way: it blocks
+    /// every line from there.
+    #[must_use]
+    #[inline]
+    pub fn holds_end(&self, ball: Ball, end: [f64; 3]) -> bool {
+        ball.depth_of(end) > self.shell_of(f64::from(ball.radius)) + self.bias.max(0.0)
+    }
+
+    /// Where the line of sight from `target` along `towards` leaves a ball that blocks it, metres from the target, at
+    /// most `reach`; `None` for a ball that does not block. The line ends at the viewer, `reach` metres from the target.
     #[must_use]
     #[inline]
     pub fn blocks_line(&self, ball: Ball, target: [f64; 3], towards: [f64; 3], reach: f64) -> Option<f64> {
@@ -139,16 +153,27 @@ impl BlockRule {
         if beside_square >= whole * whole {
             return None;
         }
-        // a ball that reaches past the viewer holds it
-        if along + (whole * whole - beside_square).sqrt() >= reach {
-            return None;
-        }
-        let radius = self.radius_for(whole, origin_square.sqrt());
+        let before_viewer = reach - along;
+        let viewer_square = beside_square + before_viewer * before_viewer;
+        let radius = self.radius_for(whole, origin_square.sqrt()).min(self.radius_for(whole, viewer_square.sqrt()));
         if radius < whole && (radius <= 0.0 || beside_square >= radius * radius) {
             return None;
         }
-        let exit = along + self.half_chord(radius, beside_square);
-        (exit > self.bias).then_some(exit)
+        let half = self.half_chord(radius, beside_square);
+        (half + along > self.bias && half + before_viewer > self.bias).then(|| (along + half).min(reach))
+    }
+
+    /// As [`BlockRule::blocks_line`], for a line that a picture plane or a near limit cuts `reach` metres from the
+    /// target: balls that reach past it block nothing.
+    #[must_use]
+    #[inline]
+    pub fn blocks_before_plane(&self, ball: Ball, target: [f64; 3], towards: [f64; 3], reach: f64) -> Option<f64> {
+        let whole = f64::from(ball.radius);
+        let LinePassing { along, beside_square, .. } = LinePassing::new(ball.center, target, towards);
+        if beside_square >= whole * whole || along + (whole * whole - beside_square).sqrt() >= reach {
+            return None;
+        }
+        self.blocks_line(ball, target, towards, f64::INFINITY)
     }
 
     /// Where a chord of a curved line of sight leaves a ball that blocks it, metres from its start, or its end where
@@ -157,10 +182,9 @@ impl BlockRule {
     #[must_use]
     #[inline]
     pub fn blocks_chord(&self, ball: Ball, chord: &Chord) -> Option<f64> {
-        if ball.holds(chord.observer) {
-            return None;
-        }
-        let radius = self.radius_for(f64::from(ball.radius), ball.distance_to(chord.target));
+        let whole = f64::from(ball.radius);
+        let [to_target, to_observer] = [chord.target, chord.observer].map(|end| ball.distance_to(end));
+        let radius = self.radius_for(whole, to_target).min(self.radius_for(whole, to_observer));
         let LinePassing { along, beside_square, .. } = LinePassing::new(ball.center, chord.start, chord.towards);
         if radius <= 0.0 || beside_square >= radius * radius {
             return None;
@@ -231,7 +255,7 @@ pub struct Chord {
     pub start: [f64; 3],
     /// Direction from there to the observer's side.
     pub towards: [f64; 3],
-    /// Ranges that count, from and to, metres from the start.
+    /// Ranges that count, from and to, metres from the start: at an end of the whole line less the bias.
     pub ranges: [f64; 2],
     /// Target of the whole line.
     pub target: [f64; 3],
@@ -298,14 +322,6 @@ impl Ball {
     #[inline]
     pub fn depth_of(&self, point: [f64; 3]) -> f64 {
         f64::from(self.radius) - self.distance_to(point)
-    }
-
-    /// Whether the ball holds `eye`: it then blocks no line of sight of that eye.
-    #[must_use]
-    #[inline]
-    pub fn holds(&self, eye: [f64; 3]) -> bool {
-        let (offset, radius) = (sub(self.center.map(f64::from), eye), f64::from(self.radius));
-        dot(offset, offset) <= radius * radius
     }
 
     /// The piece of the line from `origin` along `direction` that lies in the whole ball, however it blocks: from and

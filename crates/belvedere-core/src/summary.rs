@@ -2,6 +2,7 @@
 
 mod facades;
 mod survey;
+mod up_axis;
 
 use belvedere_data::Bounds;
 use belvedere_data::Result;
@@ -11,6 +12,7 @@ use std::collections::BTreeMap;
 
 pub use facades::{FacadeSummary, Walls};
 pub use survey::SurveyKind;
+pub use up_axis::{cloud_looks_y_up, looks_y_up};
 
 /// Counts and ranges of a cloud.
 #[derive(Clone, Debug, Default)]

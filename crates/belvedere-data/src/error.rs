@@ -53,6 +53,15 @@ pub enum Error {
         /// Which system was found and which conversion to run first.
         what: String,
     },
+    /// A file of several whose points all lie far away from those of the others.
+    #[error(
+        "{}: all of its points lie more than 1000 km from the middle of the other files; is it in another reference system? Convert it, leave it away, or skip such files (--skip-distant, in Python skip_distant=True)",
+        path.display()
+    )]
+    DistantFile {
+        /// The file.
+        path: PathBuf,
+    },
     /// A graphics processor is missing, or fails.
     #[error("{what}")]
     Device {

@@ -81,6 +81,18 @@ const STACK: u32 = 32u;
 var<workgroup> free_words: array<atomic<u32>, 2>;
 var<workgroup> blocked_words: array<atomic<u32>, 2>;
 
+// Bounds of `BlockRule::radius_for` for an end that lies this far outside a ball, within `room`.
+fn counted(radius: f32, shell: f32, outside: f32, room: f32) -> vec2<f32> {
+    var bounds = vec2<f32>(radius);
+    if outside + room > -shell {
+        bounds.x = radius - (shell - clamp(outside - room, 0.0, shell));
+        if outside - room > -shell {
+            bounds.y = radius - (shell - clamp(outside + room, 0.0, shell));
+        }
+    }
+    return bounds;
+}
+
 fn block(ball: vec4<f32>, place: vec3<f32>, sight: Sight) -> u32 {
     let offset = ball.xyz - place;
     let radius = ball.w;
@@ -91,40 +103,39 @@ fn block(ball: vec4<f32>, place: vec3<f32>, sight: Sight) -> u32 {
     if beside >= radius + room {
         return FREE;
     }
-    // bounds of `BlockRule::radius_for`
     let shell = min(scene.shell, 0.5 * radius);
-    let outside = distance - radius;
-    var least = radius;
-    var most = radius;
-    if outside + room > -shell {
-        least = radius - (shell - clamp(outside - room, 0.0, shell));
-        if outside - room > -shell {
-            most = radius - (shell - clamp(outside + room, 0.0, shell));
-        }
+    var bounds = counted(radius, shell, distance - radius, room);
+    let is_to_eye = sight.reach.x < ENDLESS;
+    if is_to_eye {
+        // the other end, whose place along the line is known within the bounds of its range
+        let from_eye = length(vec2<f32>(beside, 0.5 * (sight.reach.x + sight.reach.y) - along));
+        let eye_room = 2.0 * room + (sight.reach.y - sight.reach.x);
+        bounds = min(bounds, counted(radius, shell, from_eye - radius, eye_room));
     }
+    let least = bounds.x;
+    let most = bounds.y;
     if beside >= most + room {
         return FREE;
     }
-    let exit_most = along + room + (1.0 + ROOT_ROOM) * sqrt(max(most - beside + room, 0.0) * (most + beside + room));
-    if exit_most <= scene.bias_low {
+    let half_most = (1.0 + ROOT_ROOM) * sqrt(max(most - beside + room, 0.0) * (most + beside + room)) + room;
+    if along + half_most <= scene.bias_low {
         return FREE;
     }
-    if sight.reach.x < ENDLESS {
-        // a ball that reaches past the viewer holds it
-        let end_least = along - room + (1.0 - ROOT_ROOM) * sqrt(max(radius - beside - room, 0.0) * (radius + beside));
-        if end_least >= sight.reach.y {
-            return FREE;
-        }
-        let end_most = along + room + (1.0 + ROOT_ROOM) * sqrt(max(radius - beside + room, 0.0) * (radius + beside + room));
-        if end_most >= sight.reach.x {
-            return OPEN;
-        }
+    if is_to_eye && along - half_most >= sight.reach.y - scene.bias_low {
+        return FREE;
     }
     let inside = least - beside - room;
-    if inside > 0.0 && along - room + (1.0 - ROOT_ROOM) * sqrt(inside * (least + beside)) > scene.bias_high {
-        return BLOCKED;
+    if inside <= 0.0 {
+        return OPEN;
     }
-    return OPEN;
+    let half_least = (1.0 - ROOT_ROOM) * sqrt(inside * (least + beside)) - room;
+    if along + half_least <= scene.bias_high {
+        return OPEN;
+    }
+    if is_to_eye && along - half_least >= sight.reach.x - scene.bias_high {
+        return OPEN;
+    }
+    return BLOCKED;
 }
 
 // Bytes as numbers.

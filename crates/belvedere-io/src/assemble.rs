@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::part::{Coordinates, FilePart, unquantise};
 use super::read_cloud::ReadReport;
-use super::read_options::{ReadOptions, RowNumbers};
+use super::read_options::{DistantFiles, ReadOptions, RowNumbers};
 use belvedere_data::Frame;
 use belvedere_data::cloud::{PointCloud, centre_rounded, to_local};
 use belvedere_data::crs::{Crs, CrsKind};
@@ -62,6 +62,9 @@ pub(super) fn assemble(mut parts: Vec<FilePart>, options: &ReadOptions) -> Resul
         );
     }
 
+    if fixed.is_none() && options.distant == DistantFiles::Refused {
+        refuse_distant(&parts, &found)?;
+    }
     let any_scanners = parts.iter().any(|part| part.attributes.scanner_index.is_some());
     for (mut part, found) in parts.into_iter().zip(found) {
         part.leave_out(found.not_finite, "coordinates are not finite");
@@ -108,6 +111,17 @@ pub(super) fn assemble(mut parts: Vec<FilePart>, options: &ReadOptions) -> Resul
     }
     cloud.validate()?;
     Ok((cloud, report))
+}
+
+/// Refuses a file of several of which nothing is near the middle of all.
+fn refuse_distant(parts: &[FilePart], found: &[PartPass]) -> Result<()> {
+    let is_distant = |(part, one): &(&FilePart, &PartPass)| {
+        one.far > 0 && one.far + one.not_finite == part.coordinates.len() && parts.len() > 1
+    };
+    match parts.iter().zip(found).find(is_distant) {
+        Some((part, _)) => Err(Error::DistantFile { path: part.report.path.clone() }),
+        None => Ok(()),
+    }
 }
 
 /// Gives the files without a system that of the frame, or else of the other files.

@@ -134,7 +134,7 @@ pub use outline::{GridPolygon, outlines};
 pub use output::{Output, WriteSeek};
 pub use polygons::MeshReport;
 pub use read_cloud::{CLOUD_EXTENSIONS, FileReport, LeftOut, ReadReport, cloud_files, read_cloud};
-pub use read_options::{Insistence, ReadOptions, RowNumbers, UpAxis, Within};
+pub use read_options::{DistantFiles, Insistence, ReadOptions, RowNumbers, UpAxis, Within};
 #[cfg(feature = "npy")]
 pub use saved_matrix::{
     MatrixHead, RowSink, SavedMatrix, read_matrix, read_matrix_head, read_matrix_rows, write_matrix, write_matrix_rows,

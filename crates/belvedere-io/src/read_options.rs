@@ -32,6 +32,18 @@ pub struct ReadOptions {
     pub row_numbers: RowNumbers,
     /// Which axis of the files is up. Default: z.
     pub up: UpAxis,
+    /// What becomes of a file of a set that lies as a whole more than 1000 km from the others. Default: refused.
+    pub distant: DistantFiles,
+}
+
+/// What becomes of a file whose points all lie too far from those of the other files to be read with them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum DistantFiles {
+    /// It is an error: mostly such a file is in another reference system.
+    #[default]
+    Refused,
+    /// It is left out, and its points are counted.
+    LeftOut,
 }
 
 /// What becomes of a reference system that is given and contradicted by what is known.
@@ -124,6 +136,13 @@ impl ReadOptions {
     #[must_use]
     pub fn with_up(mut self, up: UpAxis) -> Self {
         self.up = up;
+        self
+    }
+
+    /// The same without files that lie too far from the others.
+    #[must_use]
+    pub fn without_distant_files(mut self) -> Self {
+        self.distant = DistantFiles::LeftOut;
         self
     }
 

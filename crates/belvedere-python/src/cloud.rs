@@ -78,13 +78,15 @@ impl Seek for PythonFile<'_> {
 
 /// The cloud of some inputs, and the report on reading it as JSON.
 #[pyfunction]
-#[pyo3(signature = (inputs, crs, crs_override, up, bounds, classes, progress))]
+#[pyo3(signature = (inputs, crs, crs_override, up, skip_distant, bounds, classes, progress))]
+#[expect(clippy::too_many_arguments, reason = "keywords in Python")]
 pub(crate) fn read(
     py: Python<'_>,
     inputs: Vec<PyInput>,
     crs: Option<String>,
     crs_override: bool,
     up: &str,
+    skip_distant: bool,
     bounds: Option<[[f64; 3]; 2]>,
     classes: Option<Vec<u8>>,
     progress: Option<Py<PyAny>>,
@@ -95,6 +97,9 @@ pub(crate) fn read(
         _ => return Err(wrong("up", &format!("'{up}'"), "use 'z' or 'y'")),
     };
     let mut options = ReadOptions::new().with_up(up);
+    if skip_distant {
+        options = options.without_distant_files();
+    }
     options.crs = crs;
     if crs_override {
         options = options.insisting_on_crs();

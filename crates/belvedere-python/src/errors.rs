@@ -16,6 +16,7 @@ pub(crate) fn exception(error: Error) -> PyErr {
         Error::Malformed { path, what } | Error::UnusableCrs { path, what } => {
             (what.clone(), path.display().to_string(), what)
         }
+        Error::DistantFile { path } => ("distant file".to_owned(), path.display().to_string(), message.clone()),
         Error::UnknownFormat { path, kind, supported } => {
             (format!("{kind} format"), path.display().to_string(), format!("use one of {supported}"))
         }

@@ -47,6 +47,7 @@ impl PictureCamera {
         let local = |place| scene.frame().local_from_file(place);
         let view = match (self.sun, self.direction, self.eye, self.look_at) {
             (Some([azimuth, elevation]), ..) => {
+                ask::check_sun([azimuth, elevation], ask::SunRange::NotBelowHorizon)?;
                 let north = place.grid_north_of(scene);
                 let sun = to_sun(azimuth.to_radians() - north, elevation.to_radians());
                 View::parallel(sun.map(|v| -v), low, high, pixel)?
@@ -88,9 +89,11 @@ impl PyScene {
     ) -> PyResult<Depths<'py>> {
         let scene = Arc::clone(&self.0);
         let from = camera.from(&scene, &place).map_err(exception)?;
+        let site = ask::SunPlace::default().site_of(scene.frame(), &scene.model().bounds(), None).ok();
+        let of_sun = camera.sun.and_then(|sun| ask::remark_on_sun(site.map(|(site, _)| site), sun));
         let question = ask::DepthMapQuestion { from: Some(from), ball_ids: true };
         let answers = run(py, progress, move |control| ask::ask(&scene, &question, &Places::Scene, control))?;
-        let remarks = remarks_of(py, &answers.remarks)?;
+        let remarks = remarks_of(py, of_sun.iter().chain(&answers.remarks))?;
         let balls = answers.found.balls.map(|balls| to_array(py, balls)).transpose()?;
         Ok((to_array(py, answers.found.depth)?, balls, remarks))
     }

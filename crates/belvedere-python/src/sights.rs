@@ -73,7 +73,7 @@ impl PyScene {
         let inner = Arc::clone(&self.0);
         let eye = inner.frame().local_from_file(eye);
         let places = targets.chosen(py, &inner)?.places;
-        let answers = run(py, progress, move |control| {
+        let (answers, of_obstacles) = run(py, progress, move |control| {
             // targets outside the cloud have an answer of their own
             let positions = match places {
                 ask::Places::Points(positions, _) => positions,
@@ -81,13 +81,19 @@ impl PyScene {
                 other => other.targets(&inner, &mut ask::Context::default(), control)?.positions.clone(),
             };
             let scene = inner.blockers(unproven, control)?;
-            let answers = control.stage("testing targets", positions.len(), || {
-                scene.visible_from(Viewer::Eye(eye), &positions, control)
-            })?;
-            Ok(answers.into_iter().map(|answer| unproven.settle(answer)).collect::<Vec<_>>())
+            let viewer = Viewer::Eye(eye);
+            let mut answers = control
+                .stage("testing targets", positions.len(), || scene.visible_from(viewer, &positions, control))?;
+            scene.mark_inside_obstacles(viewer, &positions, &mut answers, control)?;
+            let inside = AnswerCounts::of(&answers).inside_obstacle;
+            let remarks =
+                [ask::remark_on_inside(&scene, eye, "eye"), ask::remark_on_targets_inside(inside, answers.len())];
+            let answers: Vec<_> = answers.into_iter().map(|answer| unproven.settle(answer)).collect();
+            Ok((answers, remarks))
         })?;
         let outside = AnswerCounts::of(&answers).outside_cloud;
-        let remarks = self.remarks_on_viewer(py, eye, (outside, answers.len()), "targets")?;
+        let mut remarks = self.remarks_on_viewer(py, eye, (outside, answers.len()), "targets")?;
+        remarks.extend(remarks_of(py, of_obstacles.iter().flatten())?);
         let codes: Vec<u8> = answers.into_iter().map(|answer| answer as u8).collect();
         Ok((to_1d(py, codes).into_any(), remarks))
     }

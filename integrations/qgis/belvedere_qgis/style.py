@@ -32,6 +32,7 @@ SIGHTS = (
     (2, UNPROVEN, "unproven"),
     (3, OUTSIDE, "no line"),
     (4, OUTSIDE, "outside the cloud"),
+    (5, OUTSIDE, "inside an obstacle"),
 )
 AREAS = (("visible", VISIBLE, "visible"), ("unproven", UNPROVEN, "unproven"))
 EDGES = ((0, "#ffffff00", "reliable"), (1, EDGE, "near the edge of the cloud"))

@@ -1,7 +1,7 @@
 //! Comfort: what walkers on routes, and windows, get of sun and sky.
 
 use super::places::{leave_out_outside, test_edge};
-use super::report::{GroundSection, LinesSection, NamedValues, PeriodSection};
+use super::report::{LinesSection, NamedValues, PeriodSection};
 use super::sun::{Days, SunPlace};
 use super::sun_hours::days_in_words;
 use super::windows::{GivenWindows, WindowTargets};
@@ -132,7 +132,7 @@ impl ComfortQuestion {
         let count = places().count();
         let Some(grid) = grid_around(places(), scene.frame().origin)? else { return Ok(routes) };
         let known = scene.ground(grid, self.ground, control)?;
-        context.report.ground = Some(GroundSection::of(&known));
+        context.ground(&known);
         let height = self.target_height.unwrap_or(WALKER_HEIGHT);
         let all = routes.iter_mut().flat_map(|route| &mut route.places).map(|place| (place, height));
         let unknown = set_on_ground(all, &known.ground).len();

@@ -1,8 +1,8 @@
 //! The solar envelope: how high one may build on a parcel without taking protected sun from others.
 
-use super::report::{GroundSection, LinesSection, PeriodSection};
+use super::report::{LinesSection, PeriodSection};
 use super::scene::KnownGround;
-use super::sun::{Days, SunPlace};
+use super::sun::{Days, SunPlace, SunRange, check_sun, remark_on_sun};
 use super::{Answers, Ask, Context, Places, Remark, Scene, SharedObject};
 use crate::solar_envelope::{
     EnvelopeParams, Parcel, ProtectedPiece, SolarEnvelope, check_fence, check_hours, envelope_suns, existing_shade,
@@ -172,6 +172,8 @@ impl EnvelopeQuestion {
             ProtectedSuns::Directions(directions) => {
                 let north = self.place.north.of_scene(scene);
                 context.north(&north);
+                let site = self.place.site_of(scene.frame(), &scene.model().bounds(), None).ok();
+                directions.iter().for_each(|&sun| context.add(remark_on_sun(site.map(|(site, _)| site), sun)));
                 let to_one = |&[azimuth, elevation]: &[f64; 2]| {
                     to_sun(azimuth.to_radians() - north.of_grid, elevation.to_radians())
                 };
@@ -303,10 +305,7 @@ impl Ask for EnvelopeQuestion {
         let anywhere = self.place.check()?;
         match &self.suns {
             ProtectedSuns::Directions(directions) => {
-                let is_up = |sun: &&[f64; 2]| sun[0].is_finite() && sun[1] > 0.0 && sun[1] <= 90.0;
-                if let Some([azimuth, elevation]) = directions.iter().find(|sun| !is_up(sun)) {
-                    return refused(Parameter::SunDirection, format!("{azimuth},{elevation}"), SUN_EXPECTED);
-                }
+                directions.iter().try_for_each(|&sun| check_sun(sun, SunRange::AboveHorizon))?;
                 if directions.is_empty() {
                     return refused(Parameter::SunDirection, "missing", SUN_EXPECTED);
                 }
@@ -333,7 +332,7 @@ impl Ask for EnvelopeQuestion {
         let [wide, narrow] = self.grids(&parcel, scene)?;
         let around = scene.ground(wide, self.ground, control)?;
         let below = scene.ground(narrow, self.ground, control)?;
-        context.report.ground = Some(GroundSection::of(&below));
+        context.ground(&below);
         let land = self.land(&around.ground, scene, control)?;
         let parts = land.unknown + land.pieces.len();
         let so = "have no known ground, and are not protected";

@@ -2,7 +2,7 @@
 
 use super::observers::{Reach, Standing, check_height, skip_unfit};
 use super::places::cells_of;
-use super::report::{GroundSection, LinesSection};
+use super::report::LinesSection;
 use super::scene::KnownGround;
 use super::{Answers, Ask, Context, Places, Scene};
 use crate::landmark::{
@@ -259,7 +259,7 @@ impl Ask for LandmarkQuestion {
         let area = section.area_m2;
         context.report.landmark = Some(section);
         let known = scene.ground(self.grid(scene)?, self.ground, control)?;
-        context.report.ground = Some(GroundSection::of(&known));
+        context.ground(&known);
         let blockers = scene.blockers(self.unproven(), control)?;
         context.report.lines_of_sight = Some(LinesSection::of(&blockers, None));
         let ground = &known.ground;

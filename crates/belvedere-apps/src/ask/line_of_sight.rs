@@ -1,10 +1,9 @@
 //! Lines of sight: whether the observers of pairs see their targets, and what blocks first.
 
-use super::observers::{Standing, check_height, note_enclosed, stand};
-use super::report::{GroundSection, LinesSection};
+use super::observers::{Standing, check_height, note_beside, note_enclosed, stand};
+use super::report::LinesSection;
 use super::scene::Scene;
-use super::{Answers, Ask, Context, GridCells, Places, Remark};
-use crate::eyes::skip_unfit_eyes;
+use super::{Answers, Ask, Context, GridCells, Places, Remark, remark_on_inside};
 use crate::profile::{SightProfile, sight_profile};
 use crate::viewshed::{OBSERVER_HEIGHT, TARGET_HEIGHT};
 use belvedere_core::ground::GroundPoints;
@@ -14,6 +13,7 @@ use belvedere_core::query::{
 use belvedere_data::control::Control;
 use belvedere_data::report::{percent, rounded};
 use belvedere_data::{Error, Parameter, Result};
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 const OUTSIDE_CLOUD: &str = "have an end outside the cloud, where nothing is known, and no answer";
@@ -26,7 +26,7 @@ const OUTSIDE_CLOUD_AND_TERRAIN: &str =
 pub struct LinesOfSightQuestion {
     /// Height above the ground of observers without one, metres, 0 or more; `None` for 1.7.
     pub observer_height: Option<f64>,
-    /// Height above the ground of targets without one, metres, 0 or more; `None` for 0.
+    /// Height above the ground of targets without one, metres, 0 or more; `None` for 0.1.
     pub target_height: Option<f64>,
     /// Which points are ground.
     pub ground: GroundPoints,
@@ -96,8 +96,11 @@ pub(super) struct PairsSection {
     unproven: Option<usize>,
     no_line: usize,
     outside_cloud: usize,
+    /// Lines with an end inside an obstacle, which are neither visible nor blocked.
+    inside_obstacle: usize,
     visible_percent: f64,
     observers_inside_obstacle: usize,
+    targets_inside_obstacle: usize,
 }
 
 /// A single line.
@@ -165,7 +168,7 @@ impl LinesOfSightQuestion {
             Err(_) => None,
         };
         if let Some(known) = &known {
-            context.report.ground = Some(GroundSection::of(known));
+            context.ground(known);
         }
         let ground = known.as_ref().map(|known| &known.ground);
         let made = control
@@ -228,11 +231,9 @@ impl Ask for LinesOfSightQuestion {
         let settled =
             |sight: &Option<LineOfSight>| sight.map_or(Answer::OutsideView, |sight| unproven.settle(sight.answer));
         let answers: Vec<Answer> = sights.iter().map(settled).collect();
-        let mut observers: Vec<[f64; 3]> = pairs.iter().map(|[observer, _]| *observer).collect();
-        let fit = control.stage("testing observers", observers.len(), || {
-            skip_unfit_eyes(&blockers, None, &mut observers, control)
-        })?;
-        let section = PairsSection::of(&answers, unproven, fit.skipped_inside_obstacle);
+        let inside =
+            control.stage("testing ends", pairs.len(), || ends_inside(&blockers, &pairs, &answers, control))?;
+        let section = PairsSection::of(&answers, unproven, inside);
         context.report.lines_of_sight = Some(LinesSection::of(&blockers, None).with_pairs(section));
         let is_outside = match scene.model().far_terrain().grid() {
             Some(_) => OUTSIDE_CLOUD_AND_TERRAIN,
@@ -240,12 +241,22 @@ impl Ask for LinesOfSightQuestion {
         };
         let outside = section.outside_cloud;
         context.add(Remark::of_share("lines-outside-cloud", outside, answers.len(), "lines of sight", is_outside));
+        let ends: Vec<[f64; 3]> = pairs.iter().flatten().copied().collect();
+        note_beside(&blockers, &ends, "end", context);
+        if pairs.len() > 1 {
+            let so = "have an end inside an obstacle: they are neither visible nor blocked";
+            let count = section.inside_obstacle;
+            context.add(Remark::of_share("lines-inside-obstacle", count, answers.len(), "lines of sight", so));
+        }
         let profile = self.profile(&pairs, (scene, &blockers), context, control)?;
         let is_proof_tested = blockers.proof().is_some();
         let found = SightsResults { pairs, answers, sights, fresnel, is_proof_tested, profile };
         match &found.pairs[..] {
-            [[observer, _]] => {
-                note_enclosed(&blockers, &[*observer], "observer", context);
+            [[observer, target]] => {
+                for (end, what) in [(*observer, "observer"), (*target, "target")] {
+                    context.add(remark_on_inside(&blockers, end, what));
+                    note_enclosed(&blockers, &[end], what, context);
+                }
                 let line = LineSection::of(&found, scene);
                 line.summarise(context);
                 context.report.line = Some(line);
@@ -295,18 +306,35 @@ fn mesh_name(scene: &Scene, blocker: Blocker) -> Option<&str> {
     scene.model().added()?.names().get(blocker.mesh()?).map(String::as_str)
 }
 
+/// How many observers, and how many targets, of lines that are inside an obstacle are so themselves.
+fn ends_inside(
+    blockers: &MedialScene,
+    pairs: &[[[f64; 3]; 2]],
+    answers: &[Answer],
+    control: &Control<'_>,
+) -> Result<[usize; 2]> {
+    let inside = pairs.par_iter().zip(answers).filter(|(_, answer)| **answer == Answer::InsideObstacle);
+    let counted = inside.map(|(ends, _)| {
+        control.check()?;
+        Ok(ends.map(|end| usize::from(blockers.is_inside_obstacle(end))))
+    });
+    counted.try_reduce(|| [0; 2], |a, b| Ok([a[0] + b[0], a[1] + b[1]]))
+}
+
 fn name_of(answer: Answer) -> &'static str {
     match answer {
         Answer::Visible => "visible",
         Answer::Blocked => "blocked",
         Answer::Unproven => "unproven",
         Answer::OutsideCloud => "outside the cloud",
+        Answer::InsideObstacle => "inside an obstacle",
         _ => "no line",
     }
 }
 
 impl PairsSection {
-    fn of(answers: &[Answer], unproven: UnprovenAs, observers_inside_obstacle: usize) -> Self {
+    fn of(answers: &[Answer], unproven: UnprovenAs, inside: [usize; 2]) -> Self {
+        let [observers_inside_obstacle, targets_inside_obstacle] = inside;
         let counts = AnswerCounts::of(answers);
         Self {
             pairs: answers.len(),
@@ -315,8 +343,10 @@ impl PairsSection {
             unproven: (unproven == UnprovenAs::Reported).then_some(counts.unproven),
             no_line: counts.outside_view,
             outside_cloud: counts.outside_cloud,
+            inside_obstacle: counts.inside_obstacle,
             visible_percent: percent(counts.visible, answers.len()),
             observers_inside_obstacle,
+            targets_inside_obstacle,
         }
     }
 
@@ -325,7 +355,11 @@ impl PairsSection {
         context.headline(format!("{visible} of {pairs} lines of sight ({visible_percent} %) are visible"));
         let unproven = self.unproven.map_or_else(String::new, |unproven| format!(", {unproven} unproven"));
         let rest = self.no_line + self.outside_cloud;
-        context.headline(format!("{blocked} are blocked{unproven}, {rest} without an answer"));
+        let inside = match self.inside_obstacle {
+            0 => String::new(),
+            count => format!(", {count} with an end inside an obstacle"),
+        };
+        context.headline(format!("{blocked} are blocked{unproven}{inside}, {rest} without an answer"));
     }
 }
 

@@ -68,11 +68,14 @@ pub use scene::Scene;
 pub use shadow::{ShadowQuestion, ShadowResults, UNPROVEN};
 pub use shared::SharedObject;
 pub use sky_view::{SkyParts, SkyViewQuestion};
-pub use sun::{Days, NamedSun, SunPlace, Suns};
+pub use sun::{Days, NamedSun, SunPlace, SunRange, Suns, check_sun, remark_on_sun};
 pub use sun_hours::{PreparedSun, SunHoursQuestion, rules};
 pub use sun_position::{SunPositionQuestion, SunStands};
 pub use trees::ThroughTrees;
-pub use viewer::{remark_on_cleared, remark_on_doubt, remark_on_eye, remark_on_outside, remark_on_unused};
+pub use viewer::{
+    remark_on_axis, remark_on_cleared, remark_on_doubt, remark_on_eye, remark_on_inside, remark_on_outside,
+    remark_on_targets_inside, remark_on_unused,
+};
 pub use viewshed::{
     FarSeen, SeenSection, StandingObserver, ViewLimits, ViewshedQuestion, ViewshedResults, ViewshedTargets,
 };
@@ -80,10 +83,13 @@ pub use window_views::{WindowViewsQuestion, WindowViewsResults};
 pub use windows::{GivenWindow, GivenWindows};
 
 use crate::targets::Measure;
+use belvedere_core::ground::GroundReport;
 use belvedere_data::Result;
 use belvedere_data::control::Control;
 use belvedere_data::report::rounded;
 use north::AzimuthNorth;
+use report::GroundSection;
+use scene::KnownGround;
 use serde::{Deserialize, Serialize};
 
 /// All questions.
@@ -218,6 +224,7 @@ pub fn ask<Q: Ask>(scene: &Scene, question: &Q, places: &Places, control: &Contr
     let mut context = Context::default();
     scene.whereabouts().remark(&mut context);
     context.add(scene.remark_on_terrain());
+    context.add(remark_on_axis(scene.model().looks_y_up()));
     let answers = question.answer(scene, places, &mut context, control)?;
     Ok(answers.with(context))
 }
@@ -257,6 +264,18 @@ impl Context {
     #[must_use]
     pub fn into_answers(self) -> Answers<()> {
         Answers::new((), Vec::new()).with(self)
+    }
+
+    /// Reports on the ground, and warns of points that say they are ground and are not believed.
+    fn ground(&mut self, known: &KnownGround) {
+        self.report.ground = Some(GroundSection::of(known));
+        let GroundReport { doubted_count, point_count, .. } = known.report;
+        let so = "lie metres below or above the ground around, and are not believed";
+        let count = doubted_count + point_count;
+        let is_new = self.remarks.iter().all(|remark| remark.key != "ground-not-believed");
+        self.add(
+            Remark::of_share("ground-not-believed", doubted_count, count, "points of class 2", so).filter(|_| is_new),
+        );
     }
 
     fn north(&mut self, north: &AzimuthNorth) {

@@ -1,7 +1,7 @@
 //! The places that questions are about: from what a user gives to targets, with what has no answer and why.
 
 use super::observers::Standing;
-use super::report::{GroundSection, PlacesReport};
+use super::report::PlacesReport;
 use super::scene::Scene;
 use super::{Context, Remark, remark_on_outside};
 use crate::edge::{EdgeReport, near_edge};
@@ -204,7 +204,7 @@ impl GridCells {
 
     fn targets(&self, scene: &Scene, context: &mut Context, control: &Control<'_>) -> Result<Targets> {
         let known = scene.ground(self.grid(scene)?, self.ground, control)?;
-        context.report.ground = Some(GroundSection::of(&known));
+        context.ground(&known);
         let mut params = CellParams::default().with_level(self.level);
         if let Some(height) = self.height {
             params = params.with_height(height);

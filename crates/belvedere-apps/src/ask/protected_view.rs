@@ -1,7 +1,7 @@
 //! Protected views: how high one may build without entering the view of a landmark.
 
 use super::observers::{Eyes, ObserversSection, Reach, Standing, note_enclosed, skip_unfit, stand};
-use super::report::{GroundSection, LinesSection};
+use super::report::LinesSection;
 use super::scene::KnownGround;
 use super::{Answers, Ask, Context, Places, Remark, Scene, SharedObject};
 use crate::landmark::LandmarkParams;
@@ -150,7 +150,7 @@ impl Ask for ProtectedViewQuestion {
         let unproven = self.unproven.unwrap_or(UnprovenAs::Reported);
         let standing = stand(&self.observers, (self.observer_height, cells.ground), scene, context, control)?;
         let ground = scene.ground(cells.grid(scene)?, cells.ground, control)?;
-        context.report.ground = Some(GroundSection::of(&ground));
+        context.ground(&ground);
         let blockers = scene.blockers(unproven, control)?;
         context.report.lines_of_sight = Some(LinesSection::of(&blockers, None));
         let eyes =

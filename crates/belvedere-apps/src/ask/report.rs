@@ -278,10 +278,17 @@ pub struct RadiationSection {
 pub struct GroundSection {
     source: &'static str,
     points: usize,
+    #[serde(skip_serializing_if = "is_zero")]
+    points_not_believed: usize,
     grid_columns: usize,
     grid_rows: usize,
     cell_m: f64,
     cells_without_ground: usize,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde wants a reference")]
+fn is_zero(count: &usize) -> bool {
+    *count == 0
 }
 
 impl GroundSection {
@@ -296,6 +303,7 @@ impl GroundSection {
         Self {
             source,
             points: known.report.point_count,
+            points_not_believed: known.report.doubted_count,
             grid_columns: grid.width,
             grid_rows: grid.height,
             cell_m: rounded(grid.cell, 4),

@@ -103,6 +103,67 @@ pub struct NamedSun {
     pub title: String,
 }
 
+/// Where a sun may stand.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SunRange {
+    /// At any elevation; nothing is lit by one below the horizon.
+    AnyElevation,
+    /// On the horizon or above it.
+    NotBelowHorizon,
+    /// Above the horizon.
+    AboveHorizon,
+}
+
+/// Refuses a direction of the sun, azimuth and elevation in degrees, that cannot be. Azimuths run from 0 to 360, or from
+/// -180 to 180.
+///
+/// # Errors
+/// [`Error::InvalidParameter`].
+pub fn check_sun([azimuth, elevation]: [f64; 2], range: SunRange) -> Result<()> {
+    let is_azimuth = |angle: f64| (-180.0..=360.0).contains(&angle);
+    let is_elevation = |angle: f64| match range {
+        SunRange::AnyElevation => (-90.0..=90.0).contains(&angle),
+        SunRange::NotBelowHorizon => (0.0..=90.0).contains(&angle),
+        SunRange::AboveHorizon => angle > 0.0 && angle <= 90.0,
+    };
+    if is_azimuth(azimuth) && is_elevation(elevation) {
+        return Ok(());
+    }
+    let expected = match range {
+        _ if is_azimuth(elevation) && is_elevation(azimuth) && elevation > 90.0 => {
+            "the azimuth first, then the elevation: the two look swapped"
+        }
+        SunRange::AnyElevation => "an azimuth of 0 to 360 degrees and an elevation of -90 to 90",
+        SunRange::NotBelowHorizon => "an azimuth of 0 to 360 degrees and an elevation of 0 to 90",
+        SunRange::AboveHorizon => "an azimuth of 0 to 360 degrees and an elevation above 0 and at most 90",
+    };
+    refused(Parameter::SunDirection, format!("{azimuth},{elevation}"), expected)
+}
+
+/// The greatest declination of the sun, degrees, and what air, grids and rounded numbers add.
+const MAX_DECLINATION: f64 = 25.0;
+
+/// What to know of a sun, azimuth and elevation in degrees, that never stands there over `site`, where that is known: a
+/// warning where it would, were the two swapped.
+#[must_use]
+pub fn remark_on_sun(site: Option<Site>, [azimuth, elevation]: [f64; 2]) -> Option<Remark> {
+    let site = site.filter(|_| elevation > 0.0)?;
+    let is_possible = |azimuth: f64, elevation: f64| {
+        let [azimuth, elevation] = [azimuth, elevation].map(f64::to_radians);
+        let sine = site.latitude.sin() * elevation.sin() + site.latitude.cos() * elevation.cos() * azimuth.cos();
+        sine.asin().to_degrees().abs() <= MAX_DECLINATION
+    };
+    if is_possible(azimuth, elevation) {
+        return None;
+    }
+    let latitude = rounded(site.latitude.to_degrees(), 1);
+    let text = format!("the sun never stands at azimuth {azimuth}, elevation {elevation} at a latitude of {latitude}");
+    Some(match (0.0..=90.0).contains(&azimuth) && is_possible(elevation, azimuth) {
+        true => Remark::warning("sun-never-there", format!("{text}: azimuth comes first, then elevation")),
+        false => Remark::note("sun-never-there", text),
+    })
+}
+
 fn refused<T>(parameter: Parameter, value: impl Into<String>, expected: &'static str) -> Result<T> {
     Err(Error::InvalidParameter { parameter, value: value.into(), expected })
 }
@@ -310,16 +371,9 @@ impl Suns {
     pub fn check(&self, place: &SunPlace) -> Result<()> {
         place.check()?;
         match self {
-            Self::Directions(directions) => directions.iter().try_for_each(|&[azimuth, elevation]| {
-                if azimuth.is_finite() && (-90.0..=90.0).contains(&elevation) {
-                    return Ok(());
-                }
-                refused(
-                    Parameter::SunDirection,
-                    format!("{azimuth},{elevation}"),
-                    "azimuth and elevation in degrees, the elevation from -90 to 90",
-                )
-            }),
+            Self::Directions(directions) => {
+                directions.iter().try_for_each(|&sun| check_sun(sun, SunRange::AnyElevation))
+            }
             Self::Times(times) => times.iter().try_for_each(|time| place.instant(time).map(|_| ())),
             Self::Days(days) => days.check(place),
         }
@@ -342,6 +396,8 @@ impl Suns {
             Self::Directions(directions) => {
                 let north = place.north.of(whereabouts.convergence_at(whereabouts.middle()));
                 context.north(&north);
+                let site = place.site_of(whereabouts.frame, &whereabouts.bounds, None).ok();
+                directions.iter().for_each(|&sun| context.add(remark_on_sun(site.map(|(site, _)| site), sun)));
                 let named = |(number, &[azimuth, elevation]): (usize, &[f64; 2])| {
                     below += usize::from(elevation <= 0.0);
                     let is_one = directions.len() == 1;

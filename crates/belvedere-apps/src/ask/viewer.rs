@@ -1,16 +1,27 @@
 //! What to know of targets of one viewer, however they are tested.
 
 use super::Remark;
-use belvedere_core::query::Coverage;
+use belvedere_core::query::{Coverage, MedialScene};
 
 const OUTSIDE_CLOUD: &str = "are outside the cloud, where nothing is known, and have no answer";
 
-/// A warning of an eye outside the cloud.
+/// A warning of an eye outside the cloud; a note of one in the air beside it.
 #[must_use]
 pub fn remark_on_eye(coverage: Option<&Coverage>, eye: [f64; 3]) -> Option<Remark> {
-    let is_outside = coverage.is_some_and(|coverage| !coverage.holds(eye));
-    let text = "the eye is outside the cloud: what stands around it and before it is unknown";
-    is_outside.then(|| Remark::warning("eye-outside-cloud", text))
+    let coverage = coverage.filter(|coverage| !coverage.holds(eye))?;
+    Some(match coverage.holds_end(eye) {
+        true => remark_on_beside("the eye is"),
+        false => {
+            let text = "the eye is outside the cloud: what stands around it and before it is unknown";
+            Remark::warning("eye-outside-cloud", text)
+        }
+    })
+}
+
+/// A note of those who look from the air beside the cloud.
+pub(super) fn remark_on_beside(who_are: &str) -> Remark {
+    let text = format!("{who_are} beside the cloud: what stands between the two is unknown, and counts as free");
+    Remark::note("eye-beside-cloud", text)
 }
 
 /// A warning that `outside` of `count` targets, which are called `things`, are outside the cloud; `None` where none is.
@@ -37,6 +48,34 @@ pub fn remark_on_unused(file: &str, unknown: &[String], limits: &[String]) -> Op
     let count = unknown.len() + limits.len();
     let text = format!("{file}: {}", parts.join("; "));
     (count > 0).then(|| Remark::warning("columns-not-used", text).with("count", count as f64))
+}
+
+/// A note that `inside` of `count` targets are inside an obstacle; `None` where none is.
+#[must_use]
+pub fn remark_on_targets_inside(inside: usize, count: usize) -> Option<Remark> {
+    let so = "are inside an obstacle, or their eye is: they are neither visible nor blocked";
+    Remark::of_share("targets-inside-obstacle", inside, count, "targets", so).map(Remark::into_note)
+}
+
+/// A warning of an end of lines of sight that lies so deep in an obstacle that nothing is seen from there, nor it from
+/// anywhere; `what` it is is a word such as "eye".
+#[must_use]
+pub fn remark_on_inside(blockers: &MedialScene, end: [f64; 3], what: &str) -> Option<Remark> {
+    blockers.is_inside_obstacle(end).then(|| {
+        let depth = blockers.enclosure(end).depth;
+        let text = format!(
+            "the {what} is inside an obstacle, {depth:.2} m deep: it sees nothing, and nothing sees it; give a place outside"
+        );
+        Remark::warning("end-inside-obstacle", text).with("depth_m", depth)
+    })
+}
+
+/// A warning that a cloud lies on its side.
+#[must_use]
+pub fn remark_on_axis(looks_y_up: bool) -> Option<Remark> {
+    let text = "y looks up in this cloud, not z: its flat surfaces face along y, and it is lowest that way; \
+                if so, read it with y as the axis that is up (--up y, up=\"y\")";
+    looks_y_up.then(|| Remark::warning("y-looks-up", text))
 }
 
 /// A warning that nothing was cleared, where `points` of the cloud were.

@@ -7,8 +7,8 @@ pub use limits::{StandingObserver, ViewLimits};
 pub use sights::{FarSeen, SeenSection};
 
 use super::north::North;
-use super::observers::{Eyes, ObserversSection, Reach, check_height, note_enclosed, skip_unfit};
-use super::report::{GroundSection, LinesSection};
+use super::observers::{Eyes, ObserversSection, Reach, check_height, note_enclosed, remark_on_footing, skip_unfit};
+use super::report::LinesSection;
 use super::scene::KnownGround;
 use super::{Answers, Ask, Context, Places, Remark, Scene};
 use crate::eyes::{EyesReport, fault_of_target};
@@ -41,7 +41,7 @@ pub struct ViewshedQuestion {
     pub reverse: bool,
     /// Height of observers above the ground, metres, 0 or more; `None` for 1.7.
     pub observer_height: Option<f64>,
-    /// Height of targets above the ground, metres, 0 or more; `None` for 0.
+    /// Height of targets above the ground, metres, 0 or more; `None` for 0.1.
     pub target_height: Option<f64>,
     /// Where observers look, unless they have limits of their own. Default: everywhere.
     pub limits: ViewLimits,
@@ -179,7 +179,13 @@ impl ViewshedQuestion {
         let mut places: Vec<[f64; 3]> = self.observers.iter().map(|one| one.standing.place).collect();
         let heights = || self.observers.iter().map(|one| one.standing.height.unwrap_or(usual));
         set_on_terrain(places.iter_mut().zip(heights()), scene.model());
+        let is_on_ground: Vec<bool> = places.iter().map(|place| place[2].is_nan()).collect();
         set_on_ground(places.iter_mut().zip(heights()), ground);
+        let feet =
+            places.iter().zip(heights()).zip(is_on_ground).map(|((&[x, y, z], height), is_on_ground)| {
+                if is_on_ground { [x, y, z - height] } else { [f64::NAN; 3] }
+            });
+        remark_on_footing(feet, ground, self.who(), scene, context);
         if let [place] = places[..]
             && self.reverse
             && fault_of_target(blockers, place).is_none()
@@ -318,7 +324,7 @@ impl Ask for ViewshedQuestion {
         }
         let limits = self.sight_limits(scene, context)?;
         let known = scene.ground(self.grid(scene, &limits)?, self.ground, control)?;
-        context.report.ground = Some(GroundSection::of(&known));
+        context.ground(&known);
         let blockers = scene.blockers(self.unproven(), control)?;
         context.report.lines_of_sight = Some(LinesSection::of(&blockers, None));
         let ground = &known.ground;

@@ -141,7 +141,7 @@ impl Targets {
         outside.map(|position| *position = [f32::NAN; 3]).count()
     }
 
-    /// Leaves out targets that lie inside a ball of `scene`; returns how many.
+    /// Leaves out targets that lie inside an obstacle of `scene` ([`MedialScene::is_inside_obstacle`]); returns how many.
     ///
     /// # Errors
     /// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
@@ -149,7 +149,7 @@ impl Targets {
         let is_enclosed = |position: &[f32; 3]| {
             control.check()?;
             let is_target = position.iter().all(|v| v.is_finite());
-            Ok(is_target && scene.enclosure(position.map(f64::from)).ball_count > 0)
+            Ok(is_target && scene.is_inside_obstacle(position.map(f64::from)))
         };
         let enclosed: Vec<bool> = self.positions.par_iter().map(is_enclosed).collect::<Result<_>>()?;
         for (position, _) in self.positions.iter_mut().zip(&enclosed).filter(|(_, is_enclosed)| **is_enclosed) {

@@ -42,8 +42,8 @@ pub(crate) struct LineOfSightArguments {
     pub(crate) terrain: Option<PathBuf>,
     /// Table with a row for each pair, in their order (.csv)
     ///
-    /// Columns: ax,ay,az,bx,by,bz, answer (0 blocked, 1 visible, 2 unproven, 3 no line, 4 outside the cloud),
-    /// first_block_range_m from A, unproven_m (not with --unproven as-visible, which is faster), fresnel_free_percent
+    /// Columns: ax,ay,az,bx,by,bz, answer (0 blocked, 1 visible, 2 unproven, 3 no line, 4 outside the cloud, 5 an end
+    /// inside an obstacle), first_block_range_m from A, unproven_m (not with --unproven as-visible, which is faster), fresnel_free_percent
     /// (with --frequency-ghz), block_x, block_y, block_z, and block_ball and block_source: the rows of the first
     /// blocking ball and of the point that it touches. With --terrain: block_terrain, 1 where the terrain blocks first.
     #[arg(short, long, value_name = "OUT", required_unless_present = "from", help_heading = "Result")]
@@ -80,7 +80,7 @@ pub(crate) struct EndHeights {
     /// Height of observers without Z above the ground in metres [default: 1.7]
     #[arg(long, value_name = "M", value_parser = height::<f64>, conflicts_with = "random", allow_negative_numbers = true)]
     pub(crate) observer_height: Option<f64>,
-    /// Height of targets without Z above the ground in metres [default: 0]
+    /// Height of targets without Z above the ground in metres [default: 0.1]
     #[arg(long, value_name = "M", value_parser = height::<f64>, conflicts_with = "random", allow_negative_numbers = true)]
     pub(crate) target_height: Option<f64>,
 }
@@ -243,7 +243,7 @@ pub(crate) struct LookingArguments {
     /// Height of observers above the ground in metres [default: 1.7]
     #[arg(long, value_name = "M", value_parser = height::<f64>, allow_negative_numbers = true)]
     pub(crate) observer_height: Option<f64>,
-    /// Height of targets above the ground in metres [default: 0]
+    /// Height of targets above the ground in metres [default: 0.1]
     #[arg(long, value_name = "M", value_parser = height::<f64>, allow_negative_numbers = true)]
     pub(crate) target_height: Option<f64>,
     /// Maximum horizontal distance in metres [default: no limit]

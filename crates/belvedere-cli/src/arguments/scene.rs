@@ -32,6 +32,9 @@ pub(crate) struct CloudInput {
     /// targets.
     #[arg(long, value_enum, value_name = "AXIS", default_value_t = UpChoice::Z, help_heading = "Scene", hide_short_help = true)]
     pub(crate) up: UpChoice,
+    /// Leave out files whose points all lie more than 1000 km from those of the others, which is an error otherwise
+    #[arg(long, help_heading = "Scene", hide_short_help = true)]
+    pub(crate) skip_distant: bool,
 }
 
 impl CloudInput {
@@ -39,7 +42,10 @@ impl CloudInput {
     pub(crate) fn read_options(&self) -> ReadOptions {
         let mut options = ReadOptions::new().with_up(self.up.into());
         options.crs.clone_from(&self.crs);
-        if self.crs_override { options.insisting_on_crs() } else { options }
+        if self.crs_override {
+            options = options.insisting_on_crs();
+        }
+        if self.skip_distant { options.without_distant_files() } else { options }
     }
 }
 

@@ -5,10 +5,11 @@ use crate::pipeline::{self, is_file};
 use crate::run::CommandContext;
 use crate::summary::{Summary, rounded, sections, whole};
 use anyhow::Result;
+use belvedere::apps::ask;
 use belvedere::io::{is_ball_file, read_balls, read_cloud};
 use belvedere::model::ModelParts;
 use belvedere::pulses::{FoundBy, LocateParams, Means, ScannerReport, locate};
-use belvedere::summary::{CloudSummary, FacadeSummary, SurveyKind};
+use belvedere::summary::{CloudSummary, FacadeSummary, SurveyKind, cloud_looks_y_up};
 use belvedere::{Error, PointCloud};
 
 pub(crate) fn run(arguments: &Info, global: &Global) -> Result<Summary> {
@@ -37,6 +38,8 @@ pub(crate) fn run(arguments: &Info, global: &Global) -> Result<Summary> {
     });
     summary.add("file", files.collect::<Vec<_>>());
     summary.add("points", cloud.len());
+    let looks_y_up = run.stage("looking for the axis that is up", 0, |control| cloud_looks_y_up(&cloud, control))?;
+    summary.remarks(ask::remark_on_axis(looks_y_up));
     let statistics = run.stage("counting points", 0, |control| CloudSummary::of(&cloud, control))?;
     let (positions, scanner) = match run.stage("estimating scanner positions", 0, |control| {
         locate(&cloud, &Means::Automatic, &LocateParams::default(), control)

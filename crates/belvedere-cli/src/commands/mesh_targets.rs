@@ -67,8 +67,7 @@ pub(super) fn run(arguments: &Query, path: &Path, global: &Global) -> Result<Sum
     let giving_way = GivingWay { shell: arguments.shell, unproven: arguments.unproven };
     let (blockers, unproven) = sights::proving_blockers(&scene, profile, &giving_way, &mut run)?;
     if let Some(view) = views.first().filter(|view| view.is_central()) {
-        let note = sights::enclosure_note(&blockers, view.frame.eye, "the eye");
-        run.summary.add("notes", note.into_iter().collect::<Vec<_>>());
+        run.summary.remarks(ask::remark_on_inside(&blockers, view.frame.eye, "eye"));
     }
     let spacing = arguments.mesh.spacing.unwrap_or(SPACING);
     let surface = run

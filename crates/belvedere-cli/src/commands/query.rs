@@ -43,6 +43,7 @@ pub(crate) fn run(arguments: &Query, global: &Global) -> Result<Summary> {
     if arguments.shell.is_some() && !scene.model.is_carved() {
         return Err(Usage("--shell applies only to carved balls, and these are not carved".to_owned()).into());
     }
+    run.summary.remarks(ask::remark_on_axis(scene.model.looks_y_up()));
     let mut views = arguments.view.views(&scene, &mut run.summary)?;
     if arguments.targets.own && extension(output) == "npy" {
         pipeline::check_every_row(&scene.left_out)?;
@@ -72,8 +73,9 @@ pub(crate) fn run(arguments: &Query, global: &Global) -> Result<Summary> {
         }
         answers
     };
-    let outside = AnswerCounts::of(&answers).outside_cloud;
-    run.summary.remarks(ask::remark_on_outside(outside, answers.len(), "targets"));
+    let counts = AnswerCounts::of(&answers);
+    run.summary.remarks(ask::remark_on_outside(counts.outside_cloud, answers.len(), "targets"));
+    run.summary.remarks(ask::remark_on_targets_inside(counts.inside_obstacle, answers.len()));
     let unproven_as = arguments.unproven.map_or(UnprovenAs::Reported, UnprovenAs::from);
     let codes: Vec<u8> = answers.iter().map(|&answer| unproven_as.settle(answer) as u8).collect();
     run.summary.add("answers", counted(&answers, unproven_as, section));
@@ -83,7 +85,7 @@ pub(crate) fn run(arguments: &Query, global: &Global) -> Result<Summary> {
         }
         let column = ExtraColumn {
             name: "answer",
-            description: "0 no 1 yes 2 unproven 3 4 outside",
+            description: "0 no 1 yes 2 ? 3 4 out 5 inside",
             values: ExtraValues::U8(&codes),
         };
         if let Some(rows) = &rows {
@@ -102,7 +104,8 @@ pub(crate) fn run(arguments: &Query, global: &Global) -> Result<Summary> {
     run.summary
         .headline("visible <answers.visible_percent> % of <answers.targets> targets")
         .headline("blocked: <answers.blocked> targets")
-        .headline("unproven: <answers.unproven> targets");
+        .headline("unproven: <answers.unproven> targets")
+        .headline("inside an obstacle: <answers.inside_obstacle> targets");
     run.summary.add("written", output.display().to_string());
     Ok(run.finish())
 }
@@ -154,15 +157,20 @@ fn by_lines_of_sight(
     let unproven_as = arguments.unproven.map_or(UnprovenAs::Reported, UnprovenAs::from);
     let scene = model.scene(&rule, unproven_as, &run.control())?;
     section.add("depth_bias_m", rounded(depth_bias, 4)).add("shell_m", rounded(shell, 4));
-    if let Some(view) = views.iter().find(|view| view.is_central()) {
-        section.add("balls_around_eye_ignored", scene.around_eye_count(view.frame.eye));
+    let eye = views.iter().find(|view| view.is_central()).map(|view| view.frame.eye);
+    if let Some(eye) = eye {
+        section.add("balls_around_eye", scene.around_eye_count(eye));
+        run.summary.remarks(ask::remark_on_inside(&scene, eye, "eye"));
     }
     sights::add_proof(&scene, section);
     // the sun, a direction and a panorama only say from where: without a picture there is nothing beside it
     let has_picture = arguments.view.kind.viewport.is_some() || arguments.view.kind.eye.is_some();
     let scope = if has_picture { Scope::View } else { Scope::Viewer };
-    let (answers, report) =
-        run.stage("querying", 0, |control| scene.visible_in_views(views, scope, targets, control))?;
+    let viewer = eye.map_or(Viewer::Direction([0.0, 0.0, 1.0]), Viewer::Eye);
+    let (answers, report) = run.stage("querying", 0, |control| {
+        let (mut answers, report) = scene.visible_in_views(views, scope, targets, control)?;
+        scene.mark_inside_obstacles(viewer, targets, &mut answers, control).map(|()| (answers, report))
+    })?;
     match report {
         None => section.add("method", "lines of sight"),
         Some(CertifiedReport { target_count, settled_count }) => section
@@ -189,6 +197,7 @@ fn counted(answers: &[Answer], unproven_as: UnprovenAs, how: Summary) -> Summary
     section
         .add("outside_view", counts.outside_view)
         .add("outside_cloud", counts.outside_cloud)
+        .add("inside_obstacle", counts.inside_obstacle)
         .add("visible_percent", percent(counts.visible, answers.len()))
         .add_all(how);
     section

@@ -55,14 +55,3 @@ impl Earth {
         Ok(params)
     }
 }
-
-/// Notes for people on an eye inside something solid.
-pub(crate) fn enclosure_note(blockers: &MedialScene, eye: [f64; 3], who: &str) -> Option<String> {
-    let enclosure = blockers.enclosure(eye);
-    (enclosure.ball_count > 0).then(|| {
-        format!(
-            "{who} is inside an obstacle: {} balls, up to {:.2} m deep; these balls are ignored",
-            enclosure.ball_count, enclosure.depth
-        )
-    })
-}

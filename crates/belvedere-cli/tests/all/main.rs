@@ -25,6 +25,7 @@ mod language;
 mod limits;
 mod masbcpp_folder;
 mod odd_clouds;
+mod odd_places;
 mod other_programs;
 mod plans;
 mod protected_views;

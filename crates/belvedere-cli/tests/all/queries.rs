@@ -355,7 +355,7 @@ fn a_camera_and_a_panorama_answer_by_exact_lines_of_sight() {
         let expected: Vec<u8> = targets.iter().map(|t| t.1[i]).collect();
         assert_eq!(place.npy::<u8>("answers.npy").1, expected, "{view}");
         assert_eq!(summary["answers"]["method"], "lines of sight");
-        assert_eq!(summary["answers"]["balls_around_eye_ignored"], 0);
+        assert_eq!(summary["answers"]["balls_around_eye"], 0);
     }
     place.refusal(
         2,

@@ -22,9 +22,22 @@ pub(super) struct BallBound {
     pub(super) rule: BlockRule,
     /// Where lines of sight end on the viewer's side, the nearest and the farthest of them, metres.
     pub(super) start: [f64; 2],
+    /// Whether lines of sight end at the eye.
+    pub(super) is_to_eye: bool,
 }
 
 impl BallBound {
+    /// What a ball of `radius` whose centre is `distance` metres from the eye counts with, metres, within `margin`: at
+    /// least that for the lower bound, and for the upper one no more than it counts with for any target.
+    pub(super) fn radius_at_eye(&self, radius: f64, distance: f64, margin: f64) -> f64 {
+        let (outside, shell) = (distance - radius, self.rule.shell_of(radius));
+        match self.side {
+            _ if !self.is_to_eye || outside >= shell + margin || outside <= margin - shell => radius,
+            BoundSide::Lower => self.rule.radius_for(radius, distance),
+            BoundSide::Upper => self.rule.min_radius(radius),
+        }
+    }
+
     /// The radius to draw a ball with, `None` where it does not count. `size` is at least the largest of its
     /// coordinates, metres; `fronts` the least and the most depth of its front; nothing smaller than `min_cover` covers
     /// a pixel at its distance.

@@ -13,12 +13,13 @@ use belvedere_data::{Error, Parameter, Result};
 /// What bounds of depth are to allow for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BoundsParams {
-    /// How far balls may give way to a target near their surface, metres, 0 or more, never more than half their radius:
-    /// see [`BlockRule::shell`]. Default 0.
+    /// How far balls may give way to a target, or an eye, near their surface, metres, 0 or more, never more than half
+    /// their radius: see [`BlockRule::shell`]. Default 0.
     pub shell: f64,
     /// Where lines of sight end on the viewer's side, as a depth or, in a view from an eye, as a range in metres: balls
     /// that reach before it block nothing. −∞ for a viewer infinitely far away. Default 0, the picture plane or the
-    /// eye. In a perspective view a plane of this depth.
+    /// eye. In a perspective view a plane of this depth. At an eye balls give way to it, and one that holds it even so
+    /// blocks all.
     pub start: f64,
 }
 
@@ -54,7 +55,8 @@ pub struct DepthBounds {
 }
 
 /// Bounds of depth in `view` over the balls given as centre (local) and radius, metres; those that are not finite are
-/// left out, and those that hold the eye of the view.
+/// left out. Where lines of sight end at the eye of the view, balls near it count with the radius that they give way to
+/// ([`BlockRule::radius_for`]), and the lower bound is 0 everywhere where a ball holds the eye even so.
 ///
 /// Over the square of a pixel the front of a ball is nearest at the point nearest to the ball's middle and farthest at
 /// a corner. The lower bound is the least of the former over all balls that touch the square, the upper bound the least
@@ -79,7 +81,7 @@ pub fn depth_bounds(balls: &[Ball], view: &View, params: &BoundsParams, control:
     let start = params.starts(view);
     let draw = |side: BoundSide| {
         let rule = BlockRule { shell: params.shell, ..BlockRule::default() };
-        let bound = BallBound { side, rule, start };
+        let bound = BallBound { side, rule, start, is_to_eye: view.is_central() && params.start == 0.0 };
         let drawn = match view.projection {
             Projection::Orthographic { pixels_per_metre } => {
                 let surface = parallel::ParallelBound::new(bound, pixels_per_metre);

@@ -106,10 +106,14 @@ pub(super) trait CentralSurface: Sync {
     /// The radius to draw with, or `None` where a ball does not count. `fronts` is the least and the most range of its
     /// front; nothing smaller than `min_cover` covers a pixel at its range.
     fn radius(&self, radius: f32, size: f64, fronts: [f64; 2], min_cover: f64) -> Option<f32>;
+    /// The radius that a ball counts with in a view from an eye that is `distance` metres from its centre.
+    fn radius_at_eye(&self, radius: f64, _distance: f64, _margin: f64) -> f64 {
+        radius
+    }
     /// Limits of depth of what is drawn.
     fn limits(&self, view: &View) -> [f64; 2];
-    /// What a ball covers when its surface passes through the eye, where its outline gives no information; `None` where
-    /// this is unknown.
+    /// What a ball covers when its surface passes through the eye, or it holds the eye, where its outline gives no
+    /// information; `None` where it is nothing.
     fn at_eye(&self, _distance: f64, _radius: f64, _margin: f64) -> Option<[[f64; 2]; 2]> {
         None
     }
@@ -181,6 +185,8 @@ impl<S: CentralSurface> SplatSurface for Central<S> {
         }
         let size = center.iter().map(|v| v.abs()).sum();
         let margin = margin(size, whole);
+        let whole = self.surface.radius_at_eye(whole, distance, margin);
+        let radius = whole as f32;
         let silhouette = ((distance - whole) * (distance + whole)).max(0.0).sqrt();
         let radius = self.surface.radius(radius, size, [distance - whole, silhouette], distance * self.min_pixel)?;
         let extent = outline(&self.view, center, whole).or_else(|| self.surface.at_eye(distance, whole, margin))?;
@@ -350,9 +356,13 @@ impl CentralSurface for CentralBound {
         [0.0, f64::INFINITY]
     }
 
+    fn radius_at_eye(&self, radius: f64, distance: f64, margin: f64) -> f64 {
+        self.0.radius_at_eye(radius, distance, margin)
+    }
+
     fn at_eye(&self, distance: f64, radius: f64, margin: f64) -> Option<[[f64; 2]; 2]> {
-        // exact lines of sight decide whether it holds the eye
-        ((distance - radius).abs() < margin && self.0.side == BoundSide::Lower).then_some(ALL)
+        // exact lines of sight decide what it blocks
+        (distance - radius < margin && self.0.side == BoundSide::Lower).then_some(ALL)
     }
 
     #[inline(always)]

@@ -1,7 +1,7 @@
 //! Which points are ground, where no class says so: the simple morphological filter.
 
 use super::morphology::opened;
-use super::{Ground, MapGrid};
+use super::{Ground, MapGrid, WITHHELD};
 use belvedere_data::Bounds;
 use belvedere_data::control::Control;
 use belvedere_data::raster::Raster;
@@ -9,8 +9,6 @@ use belvedere_data::{Error, Parameter, PointCloud, Result};
 
 /// Classes that are never ground: noise, low and high.
 const NOISE: [u8; 2] = [7, 18];
-/// LAS flag of points that the supplier withdrew.
-const WITHHELD: u8 = 4;
 /// How far below its surroundings a cell is taken for an error, metres (Pingel et al.: a slope of 500 % from cell to
 /// cell).
 const PIT: f32 = 5.0;

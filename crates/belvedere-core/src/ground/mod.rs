@@ -1,5 +1,6 @@
 //! The ground below a cloud: heights on a grid, from points classed as ground or from points found to be.
 
+mod believed;
 pub mod find;
 pub mod map_grid;
 mod morphology;
@@ -23,6 +24,8 @@ use serde::{Deserialize, Serialize};
 
 /// ASPRS class of ground.
 const GROUND: u8 = 2;
+/// LAS flag of points that the supplier withdrew.
+const WITHHELD: u8 = 4;
 /// Ground points beyond the outermost of which the nearest one's height is still taken, metres: a few spacings of
 /// sparse surveys.
 const MAX_EXTRAPOLATION: f32 = 5.0;
@@ -50,7 +53,7 @@ pub enum GroundPoints {
     /// Class 2 where at least one point in a thousand has it, else [`GroundPoints::Found`].
     #[default]
     Auto,
-    /// Those of class 2.
+    /// Those of class 2, less small groups metres below or above the rest.
     Classed,
     /// Those that [`find_ground`] finds, whatever their class.
     Found,
@@ -74,6 +77,9 @@ pub struct GroundReport {
     pub from: GroundPoints,
     /// Number of ground points.
     pub point_count: usize,
+    /// Number of points of class 2 that are not believed: they lie metres below or above the ground around, alone or in
+    /// small groups.
+    pub doubted_count: usize,
     /// Cells of the grid that have a height.
     pub cell_count: usize,
 }
@@ -90,7 +96,9 @@ pub struct Ground {
     pub gaps: Raster<f32>,
 }
 
-/// Rows of the points of `cloud` that are ground, in rising order, and the method that classified them.
+/// Rows of the points of `cloud` that are ground, in rising order, and the method that classified them. Of class 2,
+/// withheld points are none, nor are small groups that lie metres below or above the ground around
+/// ([`GroundReport::doubted_count`]).
 ///
 /// # Errors
 /// [`Error::NoPoints`] for an empty cloud, and for [`GroundPoints::Classed`] without class 2; otherwise those of
@@ -100,31 +108,48 @@ pub fn ground_points(
     params: &GroundParams,
     control: &Control<'_>,
 ) -> Result<(Vec<u32>, GroundPoints)> {
+    tested_points(cloud, params, control).map(|GroundRows { rows, from, .. }| (rows, from))
+}
+
+/// The points that are ground.
+struct GroundRows {
+    rows: Vec<u32>,
+    from: GroundPoints,
+    doubted_count: usize,
+}
+
+fn tested_points(cloud: &PointCloud, params: &GroundParams, control: &Control<'_>) -> Result<GroundRows> {
     if cloud.is_empty() {
         return Err(Error::NoPoints { what: "the ground needs a cloud".to_owned() });
     }
-    let classed = || -> Vec<u32> {
-        let classes = cloud.attributes.classification.as_deref().unwrap_or_default();
-        (0_u32..).zip(classes).filter(|(_, class)| **class == GROUND).map(|(row, _)| row).collect()
+    let found = || {
+        let rows = find_ground(cloud, &params.finder, control)?;
+        Ok(GroundRows { rows, from: GroundPoints::Found, doubted_count: 0 })
     };
-    match params.points {
-        GroundPoints::Found => Ok((find_ground(cloud, &params.finder, control)?, GroundPoints::Found)),
-        GroundPoints::Classed => {
-            let rows = classed();
-            if rows.is_empty() {
-                let what = "no point has class 2 (ground); detect the ground from all points".to_owned();
-                return Err(Error::NoPoints { what });
-            }
-            Ok((rows, GroundPoints::Classed))
-        }
-        GroundPoints::Auto => {
-            let rows = classed();
-            if rows.len() * 1000 >= cloud.len() {
-                return Ok((rows, GroundPoints::Classed));
-            }
-            Ok((find_ground(cloud, &params.finder, control)?, GroundPoints::Found))
-        }
+    if params.points == GroundPoints::Found {
+        return found();
     }
+    let classes = cloud.attributes.classification.as_deref().unwrap_or_default();
+    let flags = cloud.attributes.flags.as_deref().unwrap_or_default();
+    let is_ground = |(row, class): &(u32, &u8)| {
+        **class == GROUND && flags.get(*row as usize).is_none_or(|flags| flags & WITHHELD == 0)
+    };
+    let classed: Vec<u32> = (0_u32..).zip(classes).filter(is_ground).map(|(row, _)| row).collect();
+    match params.points {
+        GroundPoints::Classed if classed.is_empty() => {
+            let what = "no point has class 2 (ground); detect the ground from all points".to_owned();
+            return Err(Error::NoPoints { what });
+        }
+        GroundPoints::Auto if classed.len() * 1000 < cloud.len() => return found(),
+        _ => {}
+    }
+    let points: Vec<[f32; 3]> = classed.iter().filter_map(|&row| cloud.positions.get(row as usize).copied()).collect();
+    let believed = believed::believed(&points, control)?;
+    let count = classed.len();
+    let rows: Vec<u32> =
+        classed.into_iter().zip(believed).filter(|(_, believed)| *believed).map(|(row, _)| row).collect();
+    let doubted_count = count - rows.len();
+    Ok(GroundRows { rows, from: GroundPoints::Classed, doubted_count })
 }
 
 impl Ground {
@@ -148,7 +173,7 @@ impl Ground {
                 expected: "above zero metres",
             });
         }
-        let (rows, from) = ground_points(cloud, params, control)?;
+        let GroundRows { rows, from, doubted_count } = tested_points(cloud, params, control)?;
         let points: Vec<[f32; 3]> = rows.iter().filter_map(|&row| cloud.positions.get(row as usize).copied()).collect();
         let mut ground = Self::of_points(&points, grid, params.reach, control)?;
         let left = cloud.positions.iter().map(|p| [f64::from(p[0]), f64::from(p[1])]);
@@ -158,7 +183,7 @@ impl Ground {
             *height = f32::NAN;
         }
         let cell_count = ground.heights.values().iter().filter(|h| h.is_finite()).count();
-        Ok((ground, GroundReport { from, point_count: points.len(), cell_count }))
+        Ok((ground, GroundReport { from, point_count: points.len(), doubted_count, cell_count }))
     }
 
     /// The ground through `points`, (N, 3) local metres, on `grid`, given as far as `reach` metres from the next of
@@ -198,6 +223,29 @@ impl Ground {
                 Ok(())
             })?;
         Ok(Self { grid, heights, gaps })
+    }
+
+    /// Between which heights most of the ground lies `radius` metres around a place on the map, local metres: the 5 %
+    /// lowest and the 5 % highest cells left out, and those within a quarter of the radius; `None` where it is not
+    /// known.
+    #[must_use]
+    pub fn heights_around(&self, [x, y]: [f64; 2], radius: f64) -> Option<[f64; 2]> {
+        let middle = self.grid.cell_position([x, y])?;
+        let reach = radius / self.grid.cell;
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "`as` saturates at the grid")]
+        let span = |at: f64, count: usize| ((at - reach).max(0.0) as usize)..((at + reach).ceil() as usize).min(count);
+        let mut heights: Vec<f32> = Vec::new();
+        for row in span(middle[1], self.grid.height) {
+            for column in span(middle[0], self.grid.width) {
+                let [east, north] = self.grid.center(column, row);
+                let height = self.heights.get(column, row).filter(|height| height.is_finite());
+                let is_around = (0.25 * radius..=radius).contains(&(east - x).hypot(north - y));
+                heights.extend(height.filter(|_| is_around));
+            }
+        }
+        heights.sort_unstable_by(f32::total_cmp);
+        let last = heights.len().checked_sub(1)?;
+        Some([last / 20, last - last / 20].map(|at| f64::from(heights[at])))
     }
 
     /// Height of the ground at a local position on the map, between the middles of cells linearly, local metres; `None`

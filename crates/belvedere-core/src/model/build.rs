@@ -4,13 +4,15 @@ use super::blocked_pulses::blocked_pulses;
 use super::params::{BallParams, ModelParams};
 use super::prepare::{OrientedSurvey, prepare};
 use super::report::{BallsReport, BuildReport};
-use super::{ModelParts, SceneModel};
+use super::{LOOKS_UP, ModelParts, SceneModel};
 use crate::medial::{
     CarvedBalls, CarvedInput, MedialBalls, ShrinkParams, Side, carved_balls, shrink, vegetation_of_classes,
     vegetation_of_transmission,
 };
 use crate::query::{BallTree, BlockRule};
+use crate::summary::looks_y_up;
 use belvedere_data::control::Control;
+use belvedere_data::crs::CrsKind;
 use belvedere_data::{Error, Frame, PointCloud, Result};
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -86,11 +88,16 @@ fn of_survey(
         None => Vec::new(),
     };
     survey.restore_rows(&mut balls);
-    let provenance = BTreeMap::from([
+    let mut provenance = BTreeMap::from([
         ("side".to_owned(), "interior".to_owned()),
         ("method".to_owned(), settled.name().to_owned()),
         ("parameters".to_owned(), format!("{settled:?}")),
     ]);
+    // surveys with a reference system have z up, and parts of them are not judged alone
+    let is_unknown = frame.crs.kind == CrsKind::Unknown && params.statistics.is_none();
+    if is_unknown && looks_y_up(survey.oriented.positions(), survey.oriented.normals()) {
+        provenance.insert(LOOKS_UP[0].to_owned(), LOOKS_UP[1].to_owned());
+    }
     // pulses at the edge of a part lack the balls beyond
     let checked = report.pulses.as_mut().filter(|_| params.statistics.is_none());
     let tree = match (&settled, &survey.carving, checked) {

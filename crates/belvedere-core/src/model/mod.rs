@@ -60,7 +60,17 @@ pub struct SceneModel {
     backend: Option<Arc<dyn Backend>>,
 }
 
+/// What the provenance of a model says where its cloud looks as if y were up.
+const LOOKS_UP: [&str; 2] = ["axis_that_looks_up", "y"];
+
 impl SceneModel {
+    /// Whether its cloud, which has no reference system, looks as if y were up and not z
+    /// ([`crate::summary::looks_y_up`]).
+    #[must_use]
+    pub fn looks_y_up(&self) -> bool {
+        self.parts.provenance.get(LOOKS_UP[0]).is_some_and(|axis| axis == LOOKS_UP[1])
+    }
+
     /// The model of saved parts, as [`SceneModel::parts`] gave them.
     ///
     /// # Errors

@@ -8,6 +8,9 @@ use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::Arc;
 
+/// Length of the ray that finds what holds a point, metres: any will do.
+pub(super) const PROBE: f64 = 1e-3;
+
 /// Balls, the rule by which they block, and a tree of boxes around them. A backend takes its balls from here.
 #[derive(Clone)]
 pub struct BallTree {
@@ -110,17 +113,34 @@ impl BallTree {
     /// The line of sight from `target` along `towards`, as `BallTree::front` takes it.
     #[inline]
     pub(crate) fn ray(&self, target: [f64; 3], towards: [f64; 3], range: f64) -> Ray {
-        Ray { origin: target, direction: towards, ranges: [self.rule.bias, range] }
+        // where the bias leaves nothing between the ends, what blocks holds the middle; below zero it reaches past both
+        let bias = self.rule.bias;
+        Ray { origin: target, direction: towards, ranges: [bias.min(0.5 * range), range - bias.min(0.0)] }
     }
 
     /// Where a line of sight leaves the ball of a row, metres from its target, if that ball blocks it.
     #[inline]
     pub(super) fn front(&self, row: usize, ray: &Ray) -> Option<f64> {
-        self.rule.blocks_line(*self.balls.get(row)?, ray.origin, ray.direction, ray.ranges[1])
+        let reach = ray.ranges[1] + self.rule.bias.min(0.0);
+        self.rule.blocks_line(*self.balls.get(row)?, ray.origin, ray.direction, reach)
     }
 
     /// Whether any ball blocks a line of sight.
     pub(crate) fn blocks(&self, ray: &Ray) -> bool {
         self.index.any(ray, |row| self.front(row, ray).is_some())
+    }
+
+    /// Whether any ball blocks the line from `target` along `towards` to a picture plane or a near limit `range` metres
+    /// away.
+    pub(super) fn blocks_before_plane(&self, target: [f64; 3], towards: [f64; 3], range: f64) -> bool {
+        let ray = Ray { origin: target, direction: towards, ranges: [self.rule.bias, range] };
+        let blocks = |ball: &Ball| self.rule.blocks_before_plane(*ball, target, towards, range).is_some();
+        self.index.any(&ray, |row| self.balls.get(row).is_some_and(blocks))
+    }
+
+    /// Whether a ball holds an end of lines of sight, so that all of them are blocked ([`BlockRule::holds_end`]).
+    pub(super) fn holds_end(&self, end: [f64; 3]) -> bool {
+        let holds = |row: usize| self.balls.get(row).is_some_and(|ball| self.rule.holds_end(*ball, end));
+        Ray::new(end, [0.0, 0.0, 1.0], [0.0, PROBE]).is_some_and(|ray| self.index.any(&ray, holds))
     }
 }

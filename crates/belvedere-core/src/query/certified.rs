@@ -70,7 +70,11 @@ impl MedialScene {
             let (answers, report) = CertifiedMap::new(self, views, scope, control)?.answers(targets, control)?;
             return Ok((answers, Some(report)));
         }
-        let answers = self.answer_each(targets, control, |_, target| line_of_sight(views.iter(), scope, target))?;
+        let answer = |_, target: [f32; 3]| {
+            let line = line_of_sight(views.iter(), scope, target)?;
+            Some(self.answer_of(target.map(f64::from), &line))
+        };
+        let answers = self.answer_by(targets, control, answer)?;
         let answers = match views.first() {
             Some(view) => self.marked(viewer_of(view), targets, answers),
             None => answers,
@@ -94,15 +98,39 @@ fn check_views(views: &[View]) -> Result<()> {
     }
 }
 
-/// The line of sight of a target in the first of `views` that has one: unit vector towards the viewer, and its range.
-fn line_of_sight<'v>(
-    mut views: impl Iterator<Item = &'v View>,
-    scope: Scope,
-    target: [f32; 3],
-) -> Option<([f64; 3], f64)> {
+/// The line of sight of a target in a view.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct LineInView {
+    /// Unit vector towards the viewer.
+    pub(super) towards: [f64; 3],
+    /// How far away it ends, metres.
+    pub(super) range: f64,
+    /// Where it ends.
+    pub(super) end: LineEnd,
+}
+
+/// Where the line of sight of a target in a view ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum LineEnd {
+    /// At the viewer.
+    Viewer,
+    /// At the picture plane, or the near limit of a view from an eye.
+    Plane,
+}
+
+impl LineInView {
+    fn to_viewer((towards, range): ([f64; 3], f64)) -> Self {
+        Self { towards, range, end: LineEnd::Viewer }
+    }
+}
+
+/// The line of sight of a target in the first of `views` that has one.
+fn line_of_sight<'v>(mut views: impl Iterator<Item = &'v View>, scope: Scope, target: [f32; 3]) -> Option<LineInView> {
     match scope {
         Scope::View => views.find_map(|view| line_in_view(view, target)),
-        Scope::Viewer => views.next().and_then(|view| viewer_of(view).line_of_sight(0, target)),
+        Scope::Viewer => {
+            views.next().and_then(|view| viewer_of(view).line_of_sight(0, target)).map(LineInView::to_viewer)
+        }
     }
 }
 
@@ -169,17 +197,20 @@ impl<'a> CertifiedMap<'a> {
 
     fn answer(&self, target: [f32; 3]) -> (Answer, BoundCheck) {
         let line = line_of_sight(self.bounds.iter().map(|bounds| &bounds.view), self.scope, target);
-        let Some((towards, range)) = line else { return (Answer::OutsideView, BoundCheck::Settled) };
+        let Some(line) = line else { return (Answer::OutsideView, BoundCheck::Settled) };
         let position = target.map(f64::from);
+        let bias = self.scene.params().bias;
+        // a bias below zero lets balls behind an eye block, and one above lets those just before it block nothing
+        let is_eye = line.end == LineEnd::Viewer && line.range.is_finite();
         match self.bounds.iter().find_map(|bounds| self.bracket(bounds, target)) {
-            Some((depth, [lower, _])) if depth < lower => {
-                (self.scene.answer_unblocked(position, towards, range), BoundCheck::Settled)
+            Some((depth, [lower, _])) if depth < lower && (bias >= 0.0 || !is_eye) => {
+                (self.scene.answer_unblocked(position, line.towards, line.range), BoundCheck::Settled)
             }
             // before its surface a target may lie in the shell of a ball that reaches past it
-            Some((depth, [_, upper])) if depth > upper && self.scene.params().bias >= 0.0 => {
+            Some((depth, [_, upper])) if depth > upper && bias >= 0.0 && (upper > bias || !is_eye) => {
                 (Answer::Blocked, BoundCheck::Settled)
             }
-            _ => (self.scene.answer(position, towards, range), BoundCheck::ByLineOfSight),
+            _ => (self.scene.answer_of(position, &line), BoundCheck::ByLineOfSight),
         }
     }
 
@@ -220,24 +251,25 @@ pub(super) fn viewer_of(view: &View) -> Viewer<'static> {
     if view.is_central() { Viewer::Eye(view.frame.eye) } else { Viewer::Direction(view.frame.forward.map(|v| -v)) }
 }
 
-/// The line of sight of a target within the picture and limits of `view`: unit vector from the target to the viewer,
-/// and the range at which it meets the picture plane or the near limit; `None` for any other target.
-pub(super) fn line_in_view(view: &View, target: [f32; 3]) -> Option<([f64; 3], f64)> {
+/// The line of sight of a target within the picture and limits of `view`, up to its picture plane or near limit, or to
+/// the eye of a view without such a limit; `None` for any other target.
+pub(super) fn line_in_view(view: &View, target: [f32; 3]) -> Option<LineInView> {
     let place = view.project(target)?;
     view.pixel(place)?;
     let depth = place[2];
     if !depth.is_finite() {
         return None;
     }
+    let to_eye = || viewer_of(view).line_of_sight(0, target).map(LineInView::to_viewer);
+    let up_to = |line: LineInView, limit: f64| match limit > 0.0 {
+        true => LineInView { range: line.range - limit, end: LineEnd::Plane, ..line },
+        false => line,
+    };
     match view.projection {
-        Projection::Orthographic { .. } => Some((view.frame.forward.map(|v| -v), depth)),
-        Projection::Perspective { near, .. } => {
-            let (towards, range) = viewer_of(view).line_of_sight(0, target)?;
-            Some((towards, range - near * (range / depth)))
+        Projection::Orthographic { .. } => {
+            Some(LineInView { towards: view.frame.forward.map(|v| -v), range: depth, end: LineEnd::Plane })
         }
-        Projection::Hemispherical { near, .. } => {
-            let (towards, range) = viewer_of(view).line_of_sight(0, target)?;
-            Some((towards, range - near))
-        }
+        Projection::Perspective { near, .. } => to_eye().map(|line| up_to(line, near * (line.range / depth))),
+        Projection::Hemispherical { near, .. } => to_eye().map(|line| up_to(line, near)),
     }
 }

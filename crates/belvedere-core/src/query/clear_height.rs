@@ -2,9 +2,8 @@
 
 use super::skyline::cut;
 use super::{EarthParams, MedialScene};
-use crate::ray_index::Ray;
 use crate::triangle_tree::Corners;
-use belvedere_data::vector::{length, sub};
+use belvedere_data::vector::{length, sub, unit};
 
 /// Least step upward, metres: where rounding leaves a line of sight in a ball whose top it just reached.
 const MIN_STEP: f64 = 1e-3;
@@ -58,17 +57,20 @@ impl MedialScene {
     fn top(&self, number: usize, observer: [f64; 3], target: [f64; 3], earth: &EarthParams) -> f64 {
         let Some(ball) = self.tree().balls().get(number) else { return target[2] };
         let (center, radius) = (ball.center.map(f64::from), f64::from(ball.radius));
-        let whole = shadow_top(center, radius, observer, target, earth);
+        let rule = self.tree().rule();
+        // it gives way to the observer too
+        let seen_radius = rule.radius_for(radius, ball.distance_to(observer));
+        let whole = shadow_top(center, seen_radius, observer, target, earth);
         let beside = (center[0] - target[0]).hypot(center[1] - target[1]);
-        let margin = self.tree().rule().shell + self.tree().rule().bias;
+        let margin = rule.shell + rule.bias;
         if beside > radius + margin || earth.bends(target, observer) {
             return whole;
         }
         let blocks = |z: f64| {
             let place = [target[0], target[1], z];
             let towards = sub(observer, place);
-            Ray::new(place, towards, [self.tree().rule().bias, length(towards)])
-                .is_some_and(|ray| self.front(number, &ray).is_some())
+            let ray = unit(towards).map(|unit| self.ray(place, unit, length(towards)));
+            ray.is_some_and(|ray| self.front(number, &ray).is_some())
         };
         // above the ball itself it no longer gives way: only the tangent counts there
         let (mut low, mut high) = (target[2], whole.min(center[2] + radius + margin));

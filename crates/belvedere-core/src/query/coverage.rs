@@ -50,6 +50,15 @@ impl Coverage {
         self.holds_on_map(position) && (low[2] - MARGIN..=high[2] + CEILING).contains(&position[2])
     }
 
+    /// Whether lines of sight may end at `position`, local metres: over the cloud, or beside it, up to 10 km away, in the
+    /// air above all of it. What stands between the two is unknown and counts as free, as everything beside the cloud.
+    #[must_use]
+    pub fn holds_end(&self, position: [f64; 3]) -> bool {
+        let (low, high) = self.bounds.corners();
+        let is_near = (0..2).all(|i| (low[i] - CEILING..=high[i] + CEILING).contains(&position[i]));
+        self.holds(position) || (is_near && (high[2]..=high[2] + CEILING).contains(&position[2]))
+    }
+
     /// Whether the box between two corners, local metres, meets the space over the cloud.
     #[must_use]
     pub fn meets(&self, low: [f64; 3], high: [f64; 3]) -> bool {
@@ -70,18 +79,19 @@ impl Coverage {
         position.iter().all(|v| v.is_finite()) && !self.holds(position.map(f64::from))
     }
 
-    /// Makes the answers for `targets`, (M, 3) local metres, seen by `viewer`, [`Answer::OutsideCloud`] where the
-    /// target or its eye does not lie over the cloud. Answers of targets that are not finite stay.
+    /// Makes the answers for `targets`, (M, 3) local metres, seen by `viewer`, [`Answer::OutsideCloud`] where no line of
+    /// sight may end at the target or at its eye ([`Coverage::holds_end`]). Answers of targets that are not finite stay.
     pub fn mark_outside(&self, viewer: Viewer<'_>, targets: &[[f32; 3]], answers: &mut [Answer]) {
+        let is_off = |end: [f32; 3]| end.iter().all(|v| v.is_finite()) && !self.holds_end(end.map(f64::from));
         let is_eye_outside = |row: usize| match viewer {
             Viewer::Direction(_) => false,
-            Viewer::Eye(eye) => !self.holds(eye),
-            Viewer::Each(eyes) => eyes.get(row).is_some_and(|&eye| self.is_outside(eye)),
+            Viewer::Eye(eye) => !self.holds_end(eye),
+            Viewer::Each(eyes) => eyes.get(row).is_some_and(|&eye| is_off(eye)),
         };
         let pairs = answers.par_iter_mut().zip(targets).enumerate().with_min_len(CHUNK);
         pairs.for_each(|(row, (answer, &target))| {
             let is_finite = target.iter().all(|v| v.is_finite());
-            if is_finite && (is_eye_outside(row) || self.is_outside(target)) {
+            if is_finite && (is_eye_outside(row) || is_off(target)) {
                 *answer = Answer::OutsideCloud;
             }
         });
@@ -102,7 +112,12 @@ mod tests {
             [[3_100.0, 25.0, 10.0], [50.0, -1.1, 10.0], [50.0, 25.0, -3.1], [50.0, 25.0, 1e30], [f64::NAN; 3]]
         {
             assert!(!coverage.holds(outside), "{outside:?}");
+            assert!(!coverage.holds_end(outside), "{outside:?}");
         }
+        // a drone beside the cloud, and one whose coordinates are a mistake
+        let beside = [600.0, 25.0, 530.0];
+        assert!(!coverage.holds(beside) && coverage.holds_end(beside));
+        assert!(!coverage.holds_end([600_000.0, 25.0, 530.0]) && !coverage.holds_end([600.0, 25.0, 29.0]));
         assert_eq!(Coverage::of(Bounds::default()), None);
     }
 
@@ -118,6 +133,7 @@ mod tests {
         };
         assert_eq!(marked(Viewer::Direction([0.0, 0.0, 1.0])), [Visible, OutsideCloud, OutsideView, OutsideCloud]);
         assert_eq!(marked(Viewer::Eye([1.0, 1.0, 300.0])), [Visible, OutsideCloud, OutsideView, OutsideCloud]);
+        assert_eq!(marked(Viewer::Eye([99.0, 1.0, 300.0]))[0], Visible);
         assert_eq!(marked(Viewer::Eye([99.0, 1.0, 3.0])), [OutsideCloud, OutsideCloud, OutsideView, OutsideCloud]);
         let eyes = [[99.0, 5.0, 5.0], [5.0; 3], [5.0; 3], [5.0; 3]];
         assert_eq!(marked(Viewer::Each(&eyes))[0], OutsideCloud);

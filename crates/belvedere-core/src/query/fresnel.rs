@@ -269,7 +269,7 @@ impl MedialScene {
             control.check()?;
             let clearance = match sight.map(|sight| sight.answer) {
                 None | Some(Answer::OutsideCloud | Answer::OutsideView) => f64::NAN,
-                Some(Answer::Blocked) => 0.0,
+                Some(Answer::Blocked | Answer::InsideObstacle) => 0.0,
                 Some(Answer::Visible | Answer::Unproven) => self.fresnel_clearance(ends, wave, earth, 1.0),
             };
             control.advance(1);

@@ -3,7 +3,7 @@
 use super::added::{AddedMeshes, LineEnds};
 use super::backend::{Backend, PreparedBackend};
 use super::ball_tree::BallTree;
-use super::certified::{line_in_view, viewer_of};
+use super::certified::{LineEnd, LineInView, line_in_view, viewer_of};
 use super::cpu::Cpu;
 use super::far_terrain::FarTerrain;
 use super::freed_space::{FreedSpace, outside};
@@ -12,9 +12,9 @@ use super::{Answer, Blocker, Coverage, Proof, Sight, Viewer, Visibility};
 use crate::blocking::{Ball, BlockRule};
 use crate::medial::MedialBalls;
 use crate::ray_index::Ray;
-use belvedere_data::Result;
 use belvedere_data::control::Control;
 use belvedere_data::view::View;
+use belvedere_data::{Error, Result};
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -23,10 +23,11 @@ const CHUNK: usize = 1024;
 
 /// Medial balls indexed for exact lines of sight, for any number of viewers.
 ///
-/// A target is blocked if its line of sight to the viewer leaves a ball more than [`BlockRule::bias`] on: the same rule
-/// as for a depth map ([`super::query_points`]), without pixels. Balls that hold the viewer are left out for that line
-/// of sight, so that one wrong ball does not blind an observer; balls that hold the target are not, but give way by
-/// [`BlockRule::shell`], which depth maps know nothing of.
+/// A target is blocked if its line of sight to the viewer runs through a ball more than [`BlockRule::bias`] metres from
+/// both ends. Balls give way to both ends by [`BlockRule::shell`], which depth maps ([`super::query_points`]) know
+/// nothing of, so that a ball that bulges a little neither blinds an observer nor hides a target. The two ends of a line
+/// can change places. Ends that lie deeper in a ball are inside an obstacle: all their lines of sight are blocked, and
+/// [`MedialScene::mark_inside_obstacles`] tells these from others.
 ///
 /// With pulses ([`MedialScene::with_pulses`]) a target that nothing blocks is [`Answer::Unproven`] where too much of
 /// its line of sight runs through space that no pulse came near to.
@@ -158,10 +159,56 @@ impl MedialScene {
         self.coverage.as_ref()
     }
 
-    /// Whether a position, local metres, lies beside or below the cloud.
+    /// Whether an end of lines of sight, local metres, lies inside an obstacle: deeper in a ball than the ball gives way
+    /// ([`BlockRule::holds_end`]). Nothing is seen from there, and nothing there is seen.
+    #[must_use]
+    pub fn is_inside_obstacle(&self, end: [f64; 3]) -> bool {
+        self.tree.holds_end(end)
+    }
+
+    /// Makes those of `answers`, (M,), of `targets`, (M, 3) local metres, seen by `viewer`, that are
+    /// [`Answer::Blocked`] because the target or the eye is inside an obstacle [`Answer::InsideObstacle`].
+    ///
+    /// # Errors
+    /// [`Error::LengthMismatch`] for lists of unequal length, and [`Error::Cancelled`].
+    pub fn mark_inside_obstacles(
+        &self,
+        viewer: Viewer<'_>,
+        targets: &[[f32; 3]],
+        answers: &mut [Answer],
+        control: &Control<'_>,
+    ) -> Result<()> {
+        if answers.len() != targets.len() {
+            let (expected, found) = (targets.len(), answers.len());
+            return Err(Error::LengthMismatch { what: "answers of targets", expected, found });
+        }
+        viewer.validate_count(targets)?;
+        let is_eye_inside = matches!(viewer, Viewer::Eye(eye) if self.is_inside_obstacle(eye));
+        let each_eye = |number: usize| match viewer {
+            Viewer::Each(eyes) => eyes.get(number).map(|eye| eye.map(f64::from)),
+            _ => None,
+        };
+        let chunks = answers.par_chunks_mut(CHUNK).zip(targets.par_chunks(CHUNK)).enumerate();
+        chunks.try_for_each(|(chunk, (answers, targets))| {
+            control.check()?;
+            for (i, (answer, &target)) in answers.iter_mut().zip(targets).enumerate() {
+                if *answer == Answer::Blocked
+                    && (is_eye_inside
+                        || self.is_inside_obstacle(target.map(f64::from))
+                        || each_eye(chunk * CHUNK + i).is_some_and(|eye| self.is_inside_obstacle(eye)))
+                {
+                    *answer = Answer::InsideObstacle;
+                }
+            }
+            Ok(())
+        })
+    }
+
+    /// Whether a position, local metres, lies beside or below the cloud, so that no line of sight ends there
+    /// ([`Coverage::holds_end`]): in the air beside the cloud and above all of it they do.
     #[must_use]
     pub fn is_outside_cloud(&self, position: [f64; 3]) -> bool {
-        self.coverage.is_some_and(|coverage| !coverage.holds(position))
+        self.coverage.is_some_and(|coverage| !coverage.holds_end(position))
     }
 
     /// `answers` of `targets`, with those of what lies outside the cloud as such.
@@ -186,6 +233,17 @@ impl MedialScene {
             return Answer::Blocked;
         }
         self.answer_unblocked(target, towards, range)
+    }
+
+    /// As [`MedialScene::answer`] where the line ends at a viewer; where it ends at a picture plane or a near limit,
+    /// balls that reach past that block nothing.
+    pub(super) fn answer_of(&self, target: [f64; 3], line: &LineInView) -> Answer {
+        let &LineInView { towards, range, end } = line;
+        let is_blocked = match end {
+            LineEnd::Viewer => self.tree.blocks(&self.tree.ray(target, towards, range)),
+            LineEnd::Plane => self.tree.blocks_before_plane(target, towards, range),
+        };
+        if is_blocked { Answer::Blocked } else { self.answer_unblocked(target, towards, range) }
     }
 
     /// The answer for a line of sight of which it is known that no ball blocks it.
@@ -220,7 +278,7 @@ impl MedialScene {
         self.tree.rule()
     }
 
-    /// How many balls hold `eye`, local metres: these are left out of lines of sight to it.
+    /// How many balls hold `eye`, local metres: they give way to it, or it is inside an obstacle.
     #[must_use]
     pub fn around_eye_count(&self, eye: [f64; 3]) -> usize {
         self.tree.balls().par_iter().with_min_len(CHUNK).filter(|ball| ball.depth_of(eye) >= 0.0).count()
@@ -264,13 +322,14 @@ impl MedialScene {
     /// Answers for `targets`, (M, 3) local metres, in `view`, as [`super::query_points`] gives them from its depth map,
     /// but by exact lines of sight: each ends at the picture plane, or at the near limit of a view from an eye. What
     /// lies beside the picture or beyond its limits is [`Answer::OutsideView`], and balls that reach before the plane
-    /// or the limit block nothing, as those that hold a viewer. [`MedialScene::visible_in_views`] gives the same
+    /// or the limit block nothing. [`MedialScene::visible_in_views`] gives the same
     /// answers, faster where there are many.
     ///
     /// # Errors
-    /// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
+    /// [`Error::Cancelled`].
     pub fn query_view(&self, view: &View, targets: &[[f32; 3]], control: &Control<'_>) -> Result<Vec<Answer>> {
-        let answers = self.answer_each(targets, control, |_, target| line_in_view(view, target))?;
+        let answer = |_, target: [f32; 3]| Some(self.answer_of(target.map(f64::from), &line_in_view(view, target)?));
+        let answers = self.answer_by(targets, control, answer)?;
         Ok(self.marked(viewer_of(view), targets, answers))
     }
 

@@ -21,6 +21,9 @@ pub enum Answer {
     OutsideView = 3,
     /// The target or its eye lies beside or below the cloud, of which nothing is known ([`super::Coverage`]).
     OutsideCloud = 4,
+    /// The target or its eye lies inside an obstacle, deeper than balls give way
+    /// ([`super::MedialScene::is_inside_obstacle`]): nothing is seen from there, and nothing there is seen.
+    InsideObstacle = 5,
 }
 
 /// What to make of [`Answer::Unproven`].
@@ -60,6 +63,8 @@ pub struct AnswerCounts {
     pub outside_view: usize,
     /// [`Answer::OutsideCloud`].
     pub outside_cloud: usize,
+    /// [`Answer::InsideObstacle`].
+    pub inside_obstacle: usize,
 }
 
 impl AnswerCounts {
@@ -73,6 +78,7 @@ impl AnswerCounts {
             unproven: count(Answer::Unproven),
             outside_view: count(Answer::OutsideView),
             outside_cloud: count(Answer::OutsideCloud),
+            inside_obstacle: count(Answer::InsideObstacle),
         }
     }
 }

@@ -194,6 +194,16 @@ impl Proof {
 
     /// The unseen length, or something above `enough` as soon as it is known to exceed that.
     fn length(&self, target: [f64; 3], towards: [f64; 3], range: f64, enough: f64) -> f64 {
+        // the same steps whichever end is the target: a piece shorter than a step counts or not by where steps begin
+        if range.is_finite() && towards.into_iter().find(|v| *v != 0.0).is_some_and(|v| v < 0.0) {
+            let viewer = std::array::from_fn(|i| target[i] + range * towards[i]);
+            return self.length_from(viewer, towards.map(|v| -v), range, enough);
+        }
+        self.length_from(target, towards, range, enough)
+    }
+
+    /// The same, in steps from `target` on.
+    fn length_from(&self, target: [f64; 3], towards: [f64; 3], range: f64, enough: f64) -> f64 {
         let Some(index) = self.index.get(|control| self.make_index(control)) else { return range };
         if index.free_segments.is_empty() {
             return range;

@@ -1,6 +1,7 @@
 //! Lines of sight between pairs of points: what blocks them first, and all that lies on them.
 
 use super::added::LineEnds;
+use super::ball_tree::PROBE;
 use super::medial_scene::nearer;
 use super::{Answer, EarthParams, MedialScene};
 use crate::blocking::Chord;
@@ -8,13 +9,11 @@ use crate::ray_index::Ray;
 use crate::triangle_tree::Corners;
 use belvedere_data::Result;
 use belvedere_data::control::Control;
-use belvedere_data::vector::{length, sub};
+use belvedere_data::vector::{length, sub, unit};
 use rayon::prelude::*;
 
 /// Pairs handed to a thread at once.
 const CHUNK: usize = 256;
-/// Length of the ray that finds what holds a point, metres: any will do.
-const PROBE: f64 = 1e-3;
 
 /// What is known of a line of sight.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -85,8 +84,10 @@ pub struct Enclosure {
 
 /// A piece of a line of sight between two points.
 struct LinePiece {
-    /// From the end nearer to the target towards the observer.
+    /// From the end nearer to the target towards the observer: all of it.
     ray: Ray,
+    /// Ranges in which balls count: less the bias where it reaches an end of the whole line.
+    counted: [f64; 2],
     /// Ends of the whole line.
     target: [f64; 3],
     observer: [f64; 3],
@@ -97,9 +98,9 @@ impl LinePiece {
         LineEnds { target: self.target, viewer: Some(self.observer) }
     }
 
-    /// All of it: a bias concerns balls only.
-    fn unbiased(&self) -> Ray {
-        Ray { ranges: [0.0, self.ray.ranges[1]], ..self.ray }
+    /// What is looked at for balls.
+    fn for_balls(&self) -> Ray {
+        Ray { ranges: self.counted, ..self.ray }
     }
 }
 
@@ -107,9 +108,10 @@ impl MedialScene {
     /// What is known of the line of sight from `observer` to `target`, local metres, over the earth of `earth`; `None`
     /// where a coordinate is not finite or both are the same point.
     ///
-    /// The answer is that of [`MedialScene::answer`] for the same pair on a plane earth. A curved line is cut into
-    /// chords; the rules for the ends (balls that hold the observer are left out, balls near the target give way) are
-    /// applied to the ends of the whole line.
+    /// The answer is that of [`MedialScene::answer`] for the same pair on a plane earth. It stays the same when the two
+    /// change places. A curved line is cut into chords; the rules for the ends (balls near them give way) are applied to
+    /// the ends of the whole line. [`Answer::InsideObstacle`] where balls block the line because an end is inside an
+    /// obstacle ([`MedialScene::is_inside_obstacle`]).
     ///
     /// Where an end lies on far terrain ([`MedialScene::is_on_far_terrain`]) the answer is that of
     /// [`MedialScene::far_sight_answer`]: `None` also where one end is above the other.
@@ -126,7 +128,8 @@ impl MedialScene {
         let pieces = if earth.bends(target, observer) {
             self.pieces(observer, target, earth)
         } else {
-            vec![(LinePiece { ray: self.biased(straight), target, observer }, 0.0)]
+            let counted = self.ray(target, straight.direction, straight.ranges[1]).ranges;
+            vec![(LinePiece { ray: straight, counted, target, observer }, 0.0)]
         };
         Some(self.sight_on_pieces(&pieces, pieces.len() == 1))
     }
@@ -145,7 +148,8 @@ impl MedialScene {
             if let Some((blocker, from_observer)) = self.first_on(piece, whole) {
                 let place = piece.ray.at(piece.ray.ranges[1] - from_observer);
                 let block = Obstruction { range: passed + from_observer, blocker, place };
-                return LineOfSight { answer: Answer::Blocked, first_block: Some(block), unproven_length: 0.0 };
+                let answer = self.blocked_between([piece.observer, piece.target]);
+                return LineOfSight { answer, first_block: Some(block), unproven_length: 0.0 };
             }
         }
         let Some(proof) = &self.proof else {
@@ -192,7 +196,10 @@ impl MedialScene {
             return Answer::OutsideCloud;
         }
         if !earth.bends(target, observer) {
-            return self.answer(target, ray.direction, range);
+            return match self.answer(target, ray.direction, range) {
+                Answer::Blocked => self.blocked_between([observer, target]),
+                answer => answer,
+            };
         }
         self.answer_on_chords((observer, target), &earth.corners(observer, target))
     }
@@ -202,11 +209,11 @@ impl MedialScene {
     pub(super) fn answer_on_chords(&self, (observer, target): ([f64; 3], [f64; 3]), corners: &[[f64; 3]]) -> Answer {
         let pieces = self.chords(observer, target, corners);
         let is_blocked = |piece: &LinePiece| {
-            self.tree().index().any(&piece.ray, |number| self.front_on(number, piece).is_some())
-                || self.added().is_some_and(|added| added.blocks_piece(&piece.unbiased(), &piece.ends()))
+            self.tree().index().any(&piece.for_balls(), |number| self.front_on(number, piece).is_some())
+                || self.added().is_some_and(|added| added.blocks_piece(&piece.ray, &piece.ends()))
         };
         if pieces.iter().any(|(piece, _)| is_blocked(piece)) {
-            return Answer::Blocked;
+            return self.blocked_between([observer, target]);
         }
         let Some(proof) = &self.proof else { return Answer::Visible };
         let mut unseen = 0.0;
@@ -217,6 +224,14 @@ impl MedialScene {
             }
         }
         Answer::Visible
+    }
+
+    /// What a line of sight between two ends that something blocks is called.
+    fn blocked_between(&self, ends: [[f64; 3]; 2]) -> Answer {
+        match ends.into_iter().any(|end| self.is_inside_obstacle(end)) {
+            true => Answer::InsideObstacle,
+            false => Answer::Blocked,
+        }
     }
 
     /// Every ball and mesh on the line of sight from `observer` to `target`, local metres, by its whole radius, in the
@@ -259,7 +274,8 @@ impl MedialScene {
         crossings
     }
 
-    /// The balls that hold `point`, local metres. An observer there would be blind, were these not left out.
+    /// The balls that hold `point`, local metres. An observer there is blind, unless it is so little that they give way
+    /// ([`MedialScene::is_inside_obstacle`]).
     #[must_use]
     pub fn enclosure(&self, point: [f64; 3]) -> Enclosure {
         let mut enclosure = Enclosure::default();
@@ -286,14 +302,14 @@ impl MedialScene {
     ) {
         if earth.bends(target, observer) {
             for (piece, _) in self.pieces(observer, target, earth) {
-                self.tree().index().each(&piece.ray, |number| {
+                self.tree().index().each(&piece.for_balls(), |number| {
                     if self.front_on(number, &piece).is_some() {
                         visit(number);
                     }
                 });
             }
-        } else if let Some(ray) = Ray::new(target, sub(observer, target), [0.0, length(sub(observer, target))]) {
-            let ray = self.biased(ray);
+        } else if let Some(towards) = unit(sub(observer, target)) {
+            let ray = self.ray(target, towards, length(sub(observer, target)));
             self.tree().index().each(&ray, |number| {
                 if self.front(number, &ray).is_some() {
                     visit(number);
@@ -313,7 +329,7 @@ impl MedialScene {
     ) {
         let Some(added) = self.added() else { return };
         for (piece, _) in self.pieces(observer, target, earth) {
-            added.each_blocking(&piece.unbiased(), &piece.ends(), &mut visit);
+            added.each_blocking(&piece.ray, &piece.ends(), &mut visit);
         }
     }
 
@@ -330,16 +346,13 @@ impl MedialScene {
             let &[near, far] = pair else { continue };
             let size = length(sub(near, far));
             let Some(ray) = Ray::new(far, sub(near, far), [0.0, size]) else { continue };
-            let ray = if far == target { self.biased(ray) } else { ray };
-            pieces.push((LinePiece { ray, target, observer }, passed));
+            let bias = self.tree().rule().bias;
+            let at = |is_end: bool| if is_end { bias } else { 0.0 };
+            let counted = [at(far == target), size - at(near == observer)];
+            pieces.push((LinePiece { ray, counted, target, observer }, passed));
             passed += size;
         }
         pieces
-    }
-
-    fn biased(&self, mut ray: Ray) -> Ray {
-        ray.ranges[0] = self.tree().rule().bias;
-        ray
     }
 
     /// What the observer meets first on a piece, and where, metres from the end of the piece on the observer's side.
@@ -349,27 +362,24 @@ impl MedialScene {
         let back = Ray {
             origin: ray.at(reach),
             direction: ray.direction.map(|v| -v),
-            ranges: [0.0, (reach - ray.ranges[0]).max(0.0)],
+            ranges: [reach - piece.counted[1], reach - piece.counted[0]],
         };
+        let straight = self.ray(ray.origin, ray.direction, reach);
         let ball = self.tree().index().nearest(&back, |number| {
-            let front = if whole { self.front(number, ray) } else { self.front_on(number, piece) };
+            let front = if whole { self.front(number, &straight) } else { self.front_on(number, piece) };
             front.map(|front| reach - front)
         });
-        let ball = ball.and_then(|(number, range)| Some((self.blocker_of_ball(number)?, range)));
+        // a bias below zero lets balls beyond the ends block
+        let ball = ball.and_then(|(number, range)| Some((self.blocker_of_ball(number)?, range.max(0.0))));
         let whole = Ray { ranges: [0.0, reach], ..back };
         nearer(ball, self.added().and_then(|added| added.nearest(&whole, &piece.ends())))
     }
 
     /// As [`MedialScene::front`], for a chord of a longer line.
     fn front_on(&self, number: usize, piece: &LinePiece) -> Option<f64> {
-        let LinePiece { ray, target, observer } = piece;
-        let chord = Chord {
-            start: ray.origin,
-            towards: ray.direction,
-            ranges: ray.ranges,
-            target: *target,
-            observer: *observer,
-        };
+        let LinePiece { ray, counted, target, observer } = piece;
+        let chord =
+            Chord { start: ray.origin, towards: ray.direction, ranges: *counted, target: *target, observer: *observer };
         self.tree().rule().blocks_chord(*self.tree().balls().get(number)?, &chord)
     }
 }

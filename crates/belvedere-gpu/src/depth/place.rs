@@ -100,8 +100,15 @@ fn place_central(picture: &DevicePicture<'_>, ball: Ball, min_pixel: f64) -> Bal
     let [near, far] = picture.limits;
     let room = CENTRAL_ROOM * (distance + radius + near) + MIN_ROOM;
     let is_at_eye = (distance - radius).abs() <= room;
-    // bounds leave the eye at the surface of a ball to exact lines of sight
-    if holds_at(radius, distance) && !(is_at_eye && picture.shows == Shows::Bounds) {
+    if picture.shows == Shows::Bounds {
+        // the CPU knows how balls around an eye, or just before it, give way where lines of sight end there; a limit
+        // takes those that hold the eye away
+        match picture.starts == [0.0; 2] {
+            true if distance - radius <= picture.shell + room => return BallPlace::OfCpu,
+            false if holds_at(radius, distance) && !is_at_eye => return BallPlace::AroundEye,
+            _ => {}
+        }
+    } else if holds_at(radius, distance) {
         return BallPlace::AroundEye;
     }
     let middle = if matches!(view.projection, Projection::Perspective { .. }) { center[2] } else { distance };

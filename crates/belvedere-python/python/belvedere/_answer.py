@@ -20,6 +20,8 @@ class Answer(IntEnum):
         3: the target is the eye itself, or nobody looks at it.
     OUTSIDE_CLOUD
         4: the target or the eye lies beside or below the cloud, where nothing is known.
+    INSIDE_OBSTACLE
+        5: the target or the eye lies inside an obstacle: nothing is seen from there, and nothing there is seen.
 
     Examples
     --------
@@ -33,3 +35,4 @@ class Answer(IntEnum):
     UNPROVEN = 2
     OUTSIDE_VIEW = 3
     OUTSIDE_CLOUD = 4
+    INSIDE_OBSTACLE = 5

@@ -213,6 +213,7 @@ def read(
     crs: str | None = None,
     crs_override: bool = False,
     up: str = "z",
+    skip_distant: bool = False,
     name: str | None = None,
     bounds: npt.ArrayLike | None = None,
     classes: Iterable[int] | None = None,
@@ -232,6 +233,8 @@ def read(
         Use `crs` whatever the files and the coordinates say.
     up : {'z', 'y'}
         Which axis of the file is up.
+    skip_distant : bool
+        Leave out files whose points all lie more than 1000 km from those of the others, which is an error otherwise.
     name : str, optional
         Name of bytes or of a file without a name, such as ``"tile.laz"``; its extension selects the format.
     bounds : array_like, (2, 2) or (2, 3), optional
@@ -274,7 +277,8 @@ def read(
     box = None if bounds is None else map_box(bounds, "bounds")
     wanted = None if classes is None else class_numbers(classes)
     inputs = [native_source(one, name, in_parts=box is not None) for one in sources]
-    core, text = _core.read(inputs, crs, bool(crs_override), up, box, wanted, reporter(progress))
+    options = (crs, bool(crs_override), up, bool(skip_distant))
+    core, text = _core.read(inputs, *options, box, wanted, reporter(progress))
     report = json.loads(text)
     for note in _notes(report):
         _warn(note)

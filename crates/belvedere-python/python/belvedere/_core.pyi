@@ -252,6 +252,7 @@ def read(
     crs: str | None,
     crs_override: bool,
     up: str,
+    skip_distant: bool,
     bounds: list[list[float]] | None,
     classes: list[int] | None,
     progress: _Progress,

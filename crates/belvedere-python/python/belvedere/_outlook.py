@@ -58,7 +58,7 @@ class Outlook:
         observer_height : float, optional
             Height of eyes above the ground, metres; 1.7 if not given.
         target_height : float, optional
-            Height of what is looked at above the ground, metres; 0 if not given.
+            Height of what is looked at above the ground, metres; 0.1 if not given.
         cell : float, optional
             Side of a cell, metres; 0.5 if not given, more for large scenes.
         ground : {'auto', 'class', 'found'}, optional

@@ -136,7 +136,7 @@ class Sights:
         observer_height : float, optional
             Height of observers without z above the ground, metres; 1.7 if not given.
         target_height : float, optional
-            Height of targets without z above the ground, metres; 0 if not given.
+            Height of targets without z above the ground, metres; 0.1 if not given.
         ground : {'auto', 'class', 'found'}, optional
             Which points are ground, as for `viewshed`.
         unproven : {'report', 'as-visible', 'as-blocked'}

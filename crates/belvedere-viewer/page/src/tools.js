@@ -110,7 +110,7 @@ export const TOOLS = [
     properties: (answer) => ({ sky_view_factor: answer.sky_view_factor, sky_openness: answer.sky_openness, ...answer.isovist }),
   },
   {
-    name: "who", short: "Seen from", title: "Who sees this", icon: icon('<circle cx="12" cy="12" r="2.500"/><path d="M4 7V4h3M20 7V4h-3M4 17v3h3M20 17v3h-3M12 5v3M12 16v3M5 12h3M16 12h3"/>'), height: ["Height above the clicked point", 0], places: 1,
+    name: "who", short: "Seen from", title: "Who sees this", icon: icon('<circle cx="12" cy="12" r="2.500"/><path d="M4 7V4h3M20 7V4h-3M4 17v3h3M20 17v3h-3M12 5v3M12 16v3M5 12h3M16 12h3"/>'), height: ["Height above the clicked point", 0.1], places: 1,
     hint: "Click a target to see from where people can see it.",
     ask: ([place]) => ["who", { place }],
     show(answer, page) {

@@ -34,6 +34,7 @@ pub(super) fn answer(question: &LineRequest, context: &RequestContext<'_>) -> Re
         Some(Sight::Visible) => "visible",
         Some(Sight::Blocked) => "blocked",
         Some(Sight::Unproven) => "unproven",
+        Some(Sight::InsideObstacle) => "inside an obstacle",
         _ => "outside the cloud",
     };
     let block = sight.and_then(|sight| sight.first_block).map(

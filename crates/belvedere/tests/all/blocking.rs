@@ -64,20 +64,23 @@ fn expected(case: &BlockingCase) -> Result<Option<f64>, f64> {
     let BlockingCase { ball, target, towards, reach, rule } = case;
     let (center, radius) = (ball.center.map(f64::from), f64::from(ball.radius));
     let sure = |distance: f64| if distance.abs() < UNDECIDED { Err(distance) } else { Ok(distance > 0.0) };
-    let outside = length(sub(center, *target)) - radius;
-    // the radius jumps where the shell begins inside
-    sure(outside + rule.shell_of(radius))?;
-    let counts = counted(rule, radius, outside);
+    let mut counts = radius;
+    let viewer: [f64; 3] = std::array::from_fn(|i| target[i] + reach * towards[i]);
+    for end in [*target, viewer].into_iter().filter(|end| end.iter().all(|v| v.is_finite())) {
+        let outside = length(sub(center, end)) - radius;
+        // the radius jumps where the shell begins inside
+        sure(outside + rule.shell_of(radius))?;
+        counts = counts.min(counted(rule, radius, outside));
+    }
     let beside = length(sub(sub(center, *target), towards.map(|v| v * dot(sub(center, *target), *towards))));
     if !sure(radius - beside)? || !sure(counts - beside)? {
         return Ok(None);
     }
-    let [_, leaves_whole] = roots(center, radius, *target, *towards).unwrap();
-    if reach.is_finite() && !sure(reach - leaves_whole)? {
+    let [enters, leaves] = roots(center, counts, *target, *towards).unwrap();
+    if reach.is_finite() && !sure(reach - rule.bias - enters)? {
         return Ok(None);
     }
-    let [_, leaves] = roots(center, counts, *target, *towards).unwrap();
-    Ok(sure(leaves - rule.bias)?.then_some(leaves))
+    Ok(sure(leaves - rule.bias)?.then_some(leaves.min(*reach)))
 }
 
 #[test]
@@ -108,17 +111,53 @@ fn a_straight_line_is_a_chord_of_itself() {
         let observer = std::array::from_fn(|i| target[i] + reach * towards[i]);
         let case = BlockingCase { ball, target, towards, reach, rule };
         // a ball that touches one of the ends or the line is decided by rounding
-        if expected(&case).is_err() || ball.depth_of(observer).abs() < UNDECIDED {
+        if expected(&case).is_err() {
             continue;
         }
-        let chord = Chord { start: target, towards, ranges: [rule.bias, reach], target, observer };
+        let chord = Chord { start: target, towards, ranges: [rule.bias, reach - rule.bias], target, observer };
         let on_chord = rule.blocks_chord(ball, &chord).is_some();
         let on_line = rule.blocks_line(ball, target, towards, reach).is_some();
-        // a ball beyond the observer is left by the whole line only after its end
         assert_eq!(on_chord, on_line, "case {number}");
         blocked += usize::from(on_line);
     }
     assert!(blocked > 1000, "{blocked}");
+}
+
+#[test]
+fn the_ends_of_a_line_can_change_places() {
+    let (mut blocked, mut held) = (0, 0);
+    for number in 0..CASES {
+        let BlockingCase { ball, target, towards, rule, .. } = case(number);
+        let reach = 0.1 + 12.0 * uniform(5, number);
+        let viewer = std::array::from_fn(|i| target[i] + reach * towards[i]);
+        if expected(&BlockingCase { ball, target, towards, reach, rule }).is_err() {
+            continue;
+        }
+        let there = rule.blocks_line(ball, target, towards, reach).is_some();
+        let back = rule.blocks_line(ball, viewer, towards.map(|v| -v), reach).is_some();
+        assert_eq!(there, back, "case {number}");
+        // from inside an obstacle no line is free, but one that the bias takes away as a whole
+        let is_held = [target, viewer].iter().any(|end| rule.holds_end(ball, *end));
+        assert!(!is_held || there || reach <= rule.bias, "case {number}");
+        blocked += usize::from(there);
+        held += usize::from(is_held);
+    }
+    assert!(blocked > 1000 && held > 500, "{blocked} {held}");
+}
+
+#[test]
+fn what_a_plane_cuts_blocks_nothing_and_what_it_does_not_blocks_as_ever() {
+    let mut cut = 0;
+    for number in 0..CASES {
+        let BlockingCase { ball, target, towards, rule, .. } = case(number);
+        let reach = 12.0 * uniform(5, number);
+        let to_plane = rule.blocks_before_plane(ball, target, towards, reach);
+        let without = rule.blocks_line(ball, target, towards, f64::INFINITY);
+        let is_past = ball.interval(target, towards).is_some_and(|[_, leaves]| leaves >= reach);
+        assert_eq!(to_plane, without.filter(|_| !is_past), "case {number}");
+        cut += usize::from(is_past);
+    }
+    assert!(cut > 500, "{cut}");
 }
 
 #[test]

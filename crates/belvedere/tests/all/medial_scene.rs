@@ -30,8 +30,7 @@ fn random_balls(count: u64) -> MedialBalls {
     balls(random_points(3, count, 100.0), radii)
 }
 
-/// The rule of the documentation, ball after ball: on the way from the target to the viewer the line leaves the ball
-/// farther than `bias` on, and the ball does not hold the viewer.
+/// The rule of the documentation, ball after ball: a piece of the line more than `bias` from either end lies in the ball.
 fn brute_force(balls: &MedialBalls, target: [f32; 3], eye: [f64; 3], bias: f64) -> bool {
     let target = target.map(f64::from);
     let d: Vec<f64> = (0..3).map(|i| eye[i] - target[i]).collect();
@@ -42,7 +41,7 @@ fn brute_force(balls: &MedialBalls, target: [f32; 3], eye: [f64; 3], bias: f64) 
         let b: f64 = (0..3).map(|i| c[i] * d[i] / range).sum();
         let q: f64 = c.iter().map(|v| v * v).sum::<f64>() - f64::from(*radius).powi(2);
         let discriminant = b * b - q;
-        discriminant > 0.0 && b + discriminant.sqrt() > bias && b + discriminant.sqrt() < range
+        discriminant > 0.0 && b + discriminant.sqrt() > bias && b - discriminant.sqrt() < range - bias
     })
 }
 
@@ -67,9 +66,8 @@ fn answers_equal_those_of_every_ball_tried_in_turn() {
     }
 }
 
-/// The rule of the documentation for [`BlockRule::shell`], ball after ball: a ball whose whole extent the line leaves
-/// before the viewer counts with radius r − (shell − max(d − r, 0)) where the target at distance d from its centre lies
-/// less than the shell from its surface.
+/// The rule of the documentation for [`BlockRule::shell`], ball after ball: a ball counts with radius r − (shell − max(d
+/// − r, 0)) where an end at distance d from its centre lies less than the shell from its surface; the lesser of two.
 fn brute_force_with_shell(balls: &MedialBalls, target: [f32; 3], eye: [f64; 3], bias: f64, shell: f64) -> bool {
     (0..balls.len()).any(|i| {
         let one = |radius: f64| {
@@ -80,13 +78,14 @@ fn brute_force_with_shell(balls: &MedialBalls, target: [f32; 3], eye: [f64; 3], 
             one
         };
         let radius = f64::from(balls.radii[i]);
-        let square = |(a, b): (&f32, f32)| (f64::from(*a) - f64::from(b)).powi(2);
-        let d = balls.centers[i].iter().zip(target).map(square).sum::<f64>().sqrt();
-        // the viewer must lie beyond the whole ball
-        let whole = brute_force(&one(radius), target, eye, f64::NEG_INFINITY);
         let shell = shell.min(radius / 2.0);
-        let counts = if (d - radius).abs() < shell { radius - (shell - (d - radius).max(0.0)) } else { radius };
-        whole && counts > 0.0 && brute_force(&one(counts), target, eye, bias)
+        let counts = [target.map(f64::from), eye].map(|end| {
+            let square = |(a, b): (&f32, f64)| (f64::from(*a) - b).powi(2);
+            let d = balls.centers[i].iter().zip(end).map(square).sum::<f64>().sqrt();
+            if (d - radius).abs() < shell { radius - (shell - (d - radius).max(0.0)) } else { radius }
+        });
+        let counts = counts[0].min(counts[1]);
+        counts > 0.0 && brute_force(&one(counts), target, eye, bias)
     })
 }
 

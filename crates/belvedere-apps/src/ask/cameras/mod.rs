@@ -10,7 +10,7 @@ pub(super) use report::CamerasReport;
 pub use standing::{Candidates, GivenCamera};
 pub use targets::{CameraTargets, PrivatePlaces};
 
-use super::report::{GroundSection, LinesSection};
+use super::report::LinesSection;
 use super::{Answers, Ask, Context, GridCells, North, Places, Scene};
 use crate::cameras::{
     CameraPose, CoverageParams, CoverageReport, CoverageTable, FREE_FRESNEL_SHARE, FresnelZone, Goal, Mount, Placement,
@@ -272,7 +272,7 @@ impl Ask for CamerasQuestion {
             private_places: private.as_ref().map(Targets::target_count),
             ..CamerasReport::default()
         };
-        context.report.ground = Some(GroundSection::of(&known));
+        context.ground(&known);
         context.report.lines_of_sight = Some(LinesSection::of(&blockers, None));
         let (existing, candidates) = self.poses(private.as_ref(), &site, &mut report, context, control)?;
         let poses: Vec<CameraPose> = existing.iter().chain(&candidates).copied().collect();

@@ -8,12 +8,15 @@ use crate::viewshed::{
     Masks, Observer, Viewshed as Seen, ViewshedParams, far_viewshed, min_visible_heights, tested_height, viewshed,
 };
 use belvedere_core::ground::Ground;
-use belvedere_core::query::{Answer, AnswerCounts, MedialScene, UnprovenAs};
+use belvedere_core::query::{Answer, AnswerCounts, MedialScene, UnprovenAs, Viewer};
 use belvedere_data::control::Control;
 use belvedere_data::raster::Raster;
 use belvedere_data::report::{percent, rounded};
 use belvedere_data::{ElevationGrid, Result};
 use serde::Serialize;
+
+/// Lines of sight of which it is told how soon they end, where an eye sees nothing.
+const SAMPLE: usize = 200;
 
 /// What was seen of far terrain.
 pub struct FarSeen {
@@ -33,6 +36,8 @@ pub struct SeenSection {
     #[serde(skip_serializing_if = "Option::is_none")]
     unproven_percent: Option<f64>,
     blocked: usize,
+    /// Of those blocked, what lies inside an obstacle itself.
+    inside_obstacle: usize,
     outside_view: usize,
     outside_cloud: usize,
     visible_percent: f64,
@@ -77,8 +82,9 @@ impl Sights<'_> {
             viewshed(blockers, observers, &targets.positions, &params, control)
         })?;
         let things = Things { where_to: "", name: "cells", area: Some(cell * cell) };
-        context.report.cells = Some(self.counted(&seen.answers, &things, context));
-        self.remark_on_blind(&seen, context);
+        let counts = self.counted(&seen.answers, &targets.positions, &things, context, control)?;
+        context.report.cells = Some(counts);
+        self.remark_on_blind(&seen, &targets.positions, context);
         Ok(seen)
     }
 
@@ -88,7 +94,7 @@ impl Sights<'_> {
         let seen = control
             .stage("testing points", observers.len(), || viewshed(blockers, observers, positions, &params, control))?;
         let things = Things { where_to: "", name: "points", area: None };
-        let section = self.counted(&seen.answers, &things, context);
+        let section = self.counted(&seen.answers, positions, &things, context, control)?;
         let (outside, count) = (section.outside_cloud, seen.answers.len());
         context.add(remark_on_outside(outside, count, "points"));
         context.report.cloud_points = Some(section);
@@ -109,7 +115,7 @@ impl Sights<'_> {
         let known: Vec<Answer> = seen.answers.iter().copied().filter(|&one| one != Answer::OutsideCloud).collect();
         let [width, depth] = terrain.cell();
         let things = Things { where_to: "beyond the cloud ", name: "cells", area: Some(width * depth) };
-        context.report.far_cells = Some(self.counted(&known, &things, context));
+        context.report.far_cells = Some(self.section(&known, &things, context));
         Ok(FarSeen { seen, terrain })
     }
 
@@ -120,16 +126,23 @@ impl Sights<'_> {
         })
     }
 
-    /// Remarks on observers that see nothing.
-    fn remark_on_blind(&self, seen: &Seen, context: &mut Context) {
+    /// Remarks on observers that see nothing, and why.
+    fn remark_on_blind(&self, seen: &Seen, targets: &[[f32; 3]], context: &mut Context) {
         let observers = self.observers;
         let is_seen = |answer: &Answer| matches!(answer, Answer::Visible | Answer::Unproven);
-        if observers.len() == 1 && !seen.answers.iter().any(is_seen) {
-            let text = match self.question.reverse {
-                true => "no cell sees the target: is it below or inside an obstacle?",
-                false => "the observer sees no cell: does it stand below a tree or between obstacles?",
+        if let [observer] = observers
+            && !seen.answers.iter().any(is_seen)
+        {
+            let who = match self.question.reverse {
+                true => "no cell sees the target",
+                false => "the observer sees no cell",
             };
-            context.add(Some(Remark::warning("nothing-seen", text)));
+            let (why, range) = self.why_blind(observer.eye, seen, targets);
+            let remark = Remark::warning("nothing-seen", format!("{who}: {why}"));
+            context.add(Some(match range {
+                Some(range) => remark.with("blocked_within_m", range),
+                None => remark,
+            }));
         }
         let is_blind = |(observer, count): &(&Observer, &usize)| **count == 0 && observer.eye[0].is_finite();
         let blind = observers.iter().zip(&seen.seen_counts).filter(is_blind).count();
@@ -138,8 +151,59 @@ impl Sights<'_> {
         }
     }
 
+    /// Why an eye is not connected to any of `targets`, and within which range all lines of sight end where that is so.
+    fn why_blind(&self, eye: [f64; 3], seen: &Seen, targets: &[[f32; 3]]) -> (String, Option<f64>) {
+        let Self { question, blockers, params, .. } = *self;
+        if blockers.is_inside_obstacle(eye) {
+            let depth = blockers.enclosure(eye).depth;
+            return (
+                format!("it is inside an obstacle, {depth:.2} m deep; give a place outside, or a height above it"),
+                None,
+            );
+        }
+        let blocked: Vec<[f64; 3]> = seen
+            .answers
+            .iter()
+            .zip(targets)
+            .filter(|(answer, _)| **answer == Answer::Blocked)
+            .map(|(_, target)| target.map(f64::from))
+            .collect();
+        if blocked.is_empty() {
+            return ("there is none within the limits of sight".to_owned(), None);
+        }
+        let some = blocked.iter().step_by(blocked.len().div_ceil(SAMPLE));
+        let first = |target: &[f64; 3]| Some(blockers.line_of_sight(eye, *target, &params.earth)?.first_block?.range);
+        let farthest = some.filter_map(first).fold(0.0, f64::max);
+        let give = match question.reverse {
+            true => "; give a greater height above its surface",
+            false => "; does it stand below a tree or between obstacles?",
+        };
+        (format!("all lines of sight end within {farthest:.2} m of it{give}"), Some(rounded(farthest, 3)))
+    }
+
+    /// How many of `targets` are seen, with those that lie inside an obstacle.
+    fn counted(
+        &self,
+        answers: &[Answer],
+        targets: &[[f32; 3]],
+        things: &Things,
+        context: &mut Context,
+        control: &Control<'_>,
+    ) -> Result<SeenSection> {
+        let mut marked = answers.to_vec();
+        // of observers only those that are not inside look at all
+        let anywhere = Viewer::Direction([0.0, 0.0, 1.0]);
+        self.blockers.mark_inside_obstacles(anywhere, targets, &mut marked, control)?;
+        let inside_obstacle = AnswerCounts::of(&marked).inside_obstacle;
+        let section = SeenSection { inside_obstacle, ..self.section(answers, things, context) };
+        let so = "lie inside an obstacle, and count as blocked";
+        let remark = Remark::of_share("targets-inside-obstacle", inside_obstacle, section.targets, things.name, so);
+        context.add(remark.map(Remark::into_note));
+        Ok(section)
+    }
+
     /// How many targets are seen.
-    fn counted(&self, answers: &[Answer], things: &Things, context: &mut Context) -> SeenSection {
+    fn section(&self, answers: &[Answer], things: &Things, context: &mut Context) -> SeenSection {
         let counts = AnswerCounts::of(answers);
         let targets = answers.len() - counts.outside_view - counts.outside_cloud;
         let unproven = (self.params.unproven == UnprovenAs::Reported).then_some(counts.unproven);
@@ -149,6 +213,7 @@ impl Sights<'_> {
             unproven,
             unproven_percent: unproven.map(|count| percent(count, targets)),
             blocked: counts.blocked,
+            inside_obstacle: 0,
             outside_view: counts.outside_view,
             outside_cloud: counts.outside_cloud,
             visible_percent: percent(counts.visible, targets),

@@ -367,8 +367,8 @@ impl<'a> TreeSweep<'a> {
             return false;
         }
         let Ball { center, radius } = self.balls[ball as usize];
-        let (center, whole) = (center.map(f64::from), f64::from(radius));
-        let radius = params.min_radius(whole);
+        let center = center.map(f64::from);
+        let radius = params.min_radius(f64::from(radius));
         let outline = self.outline(target, params.bias.max(0.0));
         let corners = outline.points();
         let squared = |v: [f64; 3]| dot(v, v);
@@ -385,8 +385,9 @@ impl<'a> TreeSweep<'a> {
             (Apex::Eye(_), Viewer::Eye(eye)) => {
                 let offset = sub(center, eye);
                 let distance = squared(offset);
-                // a ball that holds the viewer blocks nothing
-                if distance <= whole * whole * (1.0 + COVER_MARGINS[0]) {
+                // single lines decide about a ball at the eye
+                let clear = radius + params.bias.max(0.0);
+                if distance <= clear * clear * (1.0 + COVER_MARGINS[0]) {
                     return false;
                 }
                 let square = radius * radius * (1.0 - COVER_MARGINS[0]) - COVER_MARGINS[1] * (farthest + distance);
