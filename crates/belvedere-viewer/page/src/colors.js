@@ -27,7 +27,7 @@ export const ANSWERS = () => {
   const dark = document.documentElement.dataset.theme === "dark";
   return {
     0: ["blocked", dark ? "#59616d" : "#8f969f"], 1: ["visible", "#ffb000"], 2: ["unproven", dark ? "#6ea5ff" : "#3f7be0"],
-    3: ["no answer", "#30343a"], 4: ["outside the cloud", "#30343a"], 255: ["no answer", "#30343a"],
+    3: ["no answer", "#30343a"], 4: ["outside the cloud", "#30343a"], 5: ["inside an obstacle", "#30343a"], 255: ["no answer", "#30343a"],
   };
 };
 export const LIGHT = { 0: ["in shadow", "#33406f"], 1: ["lit", "#ffd36b"], 2: ["lit, unproven", "#6ea5ff"], 255: ["no answer", "#777777"] };

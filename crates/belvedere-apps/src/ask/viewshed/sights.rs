@@ -15,7 +15,7 @@ use belvedere_data::report::{percent, rounded};
 use belvedere_data::{ElevationGrid, Result};
 use serde::Serialize;
 
-/// Lines of sight of which it is told how soon they end, where an eye sees nothing.
+/// Lines of sight whose ends are looked at, where an eye sees nothing.
 const SAMPLE: usize = 200;
 
 /// What was seen of far terrain.
