@@ -82,6 +82,17 @@ impl<'a> LasFile<'a> {
         copc::nodes_within(&self.name, &mut self.reader, &self.header, self.size, wanted)
     }
 
+    /// Notes a hierarchy that is not that of the points; on a web server that is not worth its transfer.
+    fn check_hierarchy(&mut self, part: &mut FilePart) -> Result<()> {
+        if web_address(&self.name).is_none()
+            && let Some(note) = self.copc_nodes(None)?.note()
+        {
+            part.report.format = part.report.format.replace(" (COPC)", "");
+            part.note(note);
+        }
+        Ok(())
+    }
+
     /// The points that may lie in `wanted`, many at a time in file order, how many are passed over because they cannot,
     /// and what to note: in COPC by its hierarchy, in other files because they are in none of `rows`, where these are
     /// known.
@@ -304,10 +315,8 @@ pub(super) fn open<'a>(mut source: Source<'a>, reading: &Reading<'_>) -> Result<
         part.leave_out_missing(announced - present);
     }
     // a window looks at the hierarchy itself
-    let is_looked_at = reading.options.within.is_none() && web_address(&path).is_none();
-    if let Some(note) = if is_looked_at { source.copc_nodes(None)?.note() } else { None } {
-        part.report.format = part.report.format.replace(" (COPC)", "");
-        part.note(note);
+    if reading.options.within.is_none() {
+        source.check_hierarchy(&mut part)?;
     }
     let header = &source.header;
     let selection = reading.selection(&part.crs);

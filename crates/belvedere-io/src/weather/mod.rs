@@ -79,9 +79,10 @@ pub fn read_weather<'a>(source: impl Into<Source<'a>>) -> Result<Weather> {
 fn missing_values(weather: &Weather) -> Vec<String> {
     let note = |name: &str, follows_from: &str, value: fn(&WeatherStep) -> Option<f64>| {
         let missing = weather.steps.iter().filter(|step| value(step).is_none()).count();
-        let is_some_there = missing < weather.steps.len();
+        // every row of EPW has a cell for it; other formats may have no column
+        let is_meant = missing < weather.steps.len() || weather.format == "EPW";
         let all = weather.steps.len();
-        (missing > 0 && is_some_there)
+        (missing > 0 && is_meant)
             .then(|| format!("{missing} of {all} rows have no {name}; it follows from {follows_from}"))
     };
     let notes = [
