@@ -153,6 +153,7 @@ impl Cloud {
             scanner_positions: fixed_rows(&scanner_positions, "scanner positions")?,
             // only the cloud of a scene has them
             cleared_places: Vec::new(),
+            ..PointCloud::default()
         };
         cloud.validate().map_err(exception)?;
         Ok(Self(Arc::new(cloud)))

@@ -212,7 +212,7 @@ impl<'a> TargetOutput<'a> {
             return Ok(write_png(output, &map(&relief)?)?);
         }
         let rows = match &self.source {
-            TargetSource::File(_, file) => text_rows_for(file, output, summary)?,
+            TargetSource::File(_, file) => text_rows_for(file, output)?,
             _ => None,
         };
         let from = match &self.source {

@@ -103,7 +103,7 @@ export const TOOLS = [
       const { isovist: v } = answer;
       return { html: `<p class="verdict">Sky view factor ${answer.sky_view_factor.toFixed(2)}</p><p class="note">1 under a free sky, 0 without any sky.</p><figure id="panorama"><figcaption>Panorama from north to north: sky blue, near dark, far light</figcaption></figure>`
         + `<figure>${charts.plan(answer)}<figcaption>Plan of the visible space at the height of the eye</figcaption></figure>`
-        + list([["Sky openness", answer.sky_openness.toFixed(3)], ["Visible area in plan", `${count(Math.round(v.plan_area_m2))} m²`], ["Visible volume", `${count(Math.round(v.volume_m3))} m³`], ["Farthest view in plan", `${v.plan_range_max_m.toFixed(1)} m`], ["Nearest obstacle in plan", `${v.plan_range_min_m.toFixed(1)} m`]]),
+        + list([["Sky openness", answer.sky_openness.toFixed(3)], ["Visible area in plan", `${count(Math.round(v.plan_area_m2))} m²`], ["Visible volume", `${count(Math.round(v.volume_m3))} m³`], ["Of it before something", `${count(Math.round(v.blocked_volume_m3))} m³`], ["Farthest view in plan", `${v.plan_range_max_m.toFixed(1)} m`], ["Nearest obstacle in plan", `${v.plan_range_min_m.toFixed(1)} m`]]),
         after: (card) => card.querySelector("#panorama").prepend(charts.panorama(new Uint8Array(answer.body), answer.panorama)) };
     },
     rows: (answer) => [["measure", "value"], ["sky_view_factor", answer.sky_view_factor], ["sky_openness", answer.sky_openness], ...Object.entries(answer.isovist)],
