@@ -199,6 +199,20 @@ impl FilePart {
         self.report.attributes = self.attributes.columns().into_iter().map(|(name, _)| name).collect();
     }
 
+    /// Whether no point has a colour other than black.
+    pub(super) fn is_black(&self) -> bool {
+        self.attributes.color.iter().flatten().flatten().all(|&value| value == 0)
+    }
+
+    /// Drops colours, all of which are black.
+    pub(super) fn drop_black(&mut self) {
+        let Some(colors) = self.attributes.color.take() else { return };
+        if !colors.is_empty() {
+            self.note("all colours are zero, so the file has none");
+        }
+        self.report.attributes.retain(|name| *name != "color");
+    }
+
     fn check_gps_times(&mut self) {
         let Some(times) = &mut self.attributes.gps_time else { return };
         let (count, zero) = (times.len(), times.iter().filter(|&&t| t == 0.0).count());

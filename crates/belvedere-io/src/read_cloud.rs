@@ -96,7 +96,7 @@ impl ReadReport {
 /// Coordinates become metres by the unit of the reference system and f32 relative to a near origin: that of
 /// [`ReadOptions::frame`], or else the middle, in whole metres, of the points within 10 km of the median point of all
 /// files. Points more than 1000 km from the median (or from the given origin) along an axis, and points that are not
-/// finite, are left out and counted. An attribute that one of the files lacks is dropped; files without any point are
+/// finite, are left out and counted. Colours that are all zero are none. An attribute that one of the files lacks is dropped; files without any point are
 /// ignored. The result does not depend on the number of threads. The items of progress are points. Tables without x, y
 /// and z in a folder are skipped and reported.
 ///
@@ -128,6 +128,10 @@ pub fn read_cloud<'a, S: Into<Source<'a>>>(
         parts.push(part);
     }
     control.check()?;
+    // black in all files is a field that nobody filled; black in one of several may be what was measured
+    if parts.iter().all(FilePart::is_black) {
+        parts.iter_mut().for_each(FilePart::drop_black);
+    }
     let (cloud, report) = assemble::assemble(parts, options)?;
     Ok((cloud, ReadReport { skipped_files, ..report }))
 }

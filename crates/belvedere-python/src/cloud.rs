@@ -3,7 +3,9 @@
 use crate::arrays::{PositionArray, column, fixed_rows, to_1d, to_2d};
 use crate::errors::{belvedere_error, exception, wrong};
 use crate::system::System;
+use crate::targets::remarks_of;
 use crate::work::run;
+use belvedere::apps::ask::remark_on_left_out;
 use belvedere::io::{ReadOptions, Source, UpAxis, Within, read_cloud, write_cloud};
 use belvedere::{Attributes, Frame, GpsTimeKind, PointCloud};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
@@ -226,10 +228,11 @@ impl Cloud {
         [bounds.low, bounds.high].map(|corner| self.0.frame.to_file_coordinates(corner))
     }
 
-    fn write(&self, py: Python<'_>, path: PathBuf) -> PyResult<Vec<String>> {
+    /// Writes the cloud, and gives the remarks on what the file has not.
+    fn write<'py>(&self, py: Python<'py>, path: PathBuf) -> PyResult<Vec<Bound<'py, PyDict>>> {
         let cloud = Arc::clone(&self.0);
         let report = run(py, None, move |_| write_cloud(&path, &cloud, &[]))?;
-        Ok(report.left_out.into_iter().map(Into::into).collect())
+        remarks_of(py, &remark_on_left_out(&report.left_out).into_iter().collect::<Vec<_>>())
     }
 
     fn __len__(&self) -> usize {

@@ -108,7 +108,7 @@ impl Plans {
         }
         if !plan.clear.is_empty() && scene.model().added().is_some() {
             return Err(Refusal(
-                "Areas are cleared before meshes are added: start the program without --add, and load the mesh here."
+                "Areas are cleared before meshes are added: start Belvedere without the mesh, and load the mesh here."
                     .to_owned(),
             ));
         }

@@ -14,6 +14,7 @@ import numpy.typing as npt
 from . import _core
 from ._errors import BelvedereWarning, wrong
 from ._inputs import Places, Progress, Source, class_numbers, map_box, native_source, places, reporter
+from ._remarks import warned
 
 #: Attributes of points: their types, and their columns where there are several.
 ATTRIBUTES: Mapping[str, tuple[Any, int]] = {
@@ -170,7 +171,13 @@ class Cloud:
     def save(self, path: str | os.PathLike[str]) -> None:
         """Writes the cloud; the extension selects the format: ``.laz .las .ply .csv .xyz .txt``.
 
-        Warns of attributes that the format has no place for.
+        A ``.laz`` or ``.las`` file of points that were read from such files keeps all that these have: extra bytes,
+        further fields, records of the header, point format and steps of coordinates.
+
+        Warns
+        -----
+        BelvedereWarning
+            Of what the file cannot hold.
 
         Examples
         --------
@@ -178,9 +185,7 @@ class Cloud:
         >>> len(belvedere.read(folder / "cloud.laz")) == len(cloud)
         True
         """
-        left_out = self._core.write(os.fspath(path))
-        if left_out:
-            _warn(f"{os.fspath(path)}: the format has no place for {', '.join(left_out)}")
+        warned(self._core.write(os.fspath(path)))
 
     def __len__(self) -> int:
         return len(self._core)

@@ -63,7 +63,7 @@ class Cloud:
     def crs(self) -> Crs: ...
     @property
     def bounds(self) -> list[list[float]]: ...
-    def write(self, path: str | os.PathLike[str]) -> list[str]: ...
+    def write(self, path: str | os.PathLike[str]) -> list[dict[str, Any]]: ...
     def __len__(self) -> int: ...
 
 @final
@@ -232,6 +232,7 @@ class Scene:
         radiation: dict[str, Any],
         min_area: float | None,
         panel: float | None,
+        min_cells: int | None,
         ground: str | None,
         trees: dict[str, Any],
         progress: _Progress,

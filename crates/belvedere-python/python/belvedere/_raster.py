@@ -181,7 +181,9 @@ class Raster(np.lib.mixins.NDArrayOperatorsMixin):
             if isinstance(other, Raster):
                 self._check_grid(other)
             elif not isinstance(other, (np.ndarray, np.generic, int, float, complex, list, tuple)):
-                return NotImplemented
+                if hasattr(other, "__array_ufunc__"):
+                    return NotImplemented
+                raise TypeError(f"a Raster is not computed with a {type(other).__name__}; use its `values`")
         if keywords.get("out") is not None:
             raise TypeError("a Raster is no place for results of NumPy; use its `values`")
         arrays = [one._known() if isinstance(one, Raster) else one for one in inputs]

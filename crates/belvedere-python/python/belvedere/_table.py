@@ -75,8 +75,6 @@ class Table(dict[str, "npt.NDArray[Any]"]):
     def __eq__(self, other: object) -> bool:
         raise TypeError("a Table is not compared as a whole; take a column by name, or use to_pandas()")
 
-    __hash__ = None  # type: ignore[assignment]
-
     def __array__(self, dtype: npt.DTypeLike | None = None, copy: bool | None = None) -> npt.NDArray[Any]:
         raise TypeError("a Table is no array; take a column by name, or use to_pandas()")
 

@@ -126,9 +126,9 @@ export const TOOLS = [
     ask: ([place]) => ["roof", { place }],
     show(answer, page) {
       page.plane(answer);
-      return `<p class="verdict">${count(Math.round(answer.kwh / 100) * 100)} kWh a year</p><p class="note">of sun and sky on ${answer.panel_area_m2.toFixed(0)} m² of panels under a sky without clouds: an upper bound. With weather, use the command below and --weather.</p>`
+      return `<p class="verdict">${count(Math.round(answer.kwh / 100) * 100)} kWh a year</p><p class="note">of sun and sky on ${answer.panel_area_m2.toFixed(0)} m² of panels under a sky without clouds: an upper bound. With a file of weather, the command below gives less.</p>`
         + list([["Energy on a square metre", `${count(Math.round(answer.kwh_m2))} kWh`], ["Without any shade", `${count(Math.round(answer.free_kwh_m2))} kWh`], ["Lost by shade, each panel for itself", percent(answer.min_loss, 1)], ["Lost by shade, panels in strings", percent(answer.max_loss, 1)],
-          ["Tilt", `${answer.tilt_deg.toFixed(0)}°`], ["Faces", `${answer.azimuth_deg.toFixed(0)}° from north`], ["Area of the plane", `${answer.area_m2.toFixed(1)} m²`], ["Plane", `${answer.plane} of ${answer.planes}`]])
+          ["Tilt", `${answer.tilt_deg.toFixed(0)}°`], ["Faces", `${answer.azimuth_deg === null ? "up" : `${answer.azimuth_deg.toFixed(0)}° from north`}`], ["Area of the plane", `${answer.area_m2.toFixed(1)} m²`], ["Plane", `${answer.plane} of ${answer.planes}`]])
         + `<h3>kWh/m² in each month</h3><figure>${charts.energy(answer.months_kwh_m2)}</figure>`;
     },
     rows: (answer) => [["month", "kwh_m2"], ...answer.months_kwh_m2.map((v, i) => [i + 1, v])],

@@ -20,6 +20,7 @@ mod close_range;
 mod closed_form_shadows;
 mod closed_form_skies;
 mod common;
+mod copied_records;
 mod crowns;
 mod depth_map;
 mod exposure;

@@ -36,7 +36,7 @@ fn house(density: f64) -> Vec<[f32; 3]> {
 }
 
 fn faces(plane: &RoofPlane, azimuth_deg: f64) -> bool {
-    (plane.azimuth().to_degrees() - azimuth_deg).abs() < 2.0
+    plane.azimuth().is_some_and(|azimuth| (azimuth.to_degrees() - azimuth_deg).abs() < 2.0)
 }
 
 #[test]
