@@ -81,7 +81,8 @@ impl<'a> RecordCopy<'a> {
         let first = files.first()?;
         let transforms = transforms_of(&first.header);
         let format = first.format;
-        let mut copy = Self { cloud, files, format, transforms, extra: Vec::new(), lost: Vec::new(), keeps_times: true };
+        let mut copy =
+            Self { cloud, files, format, transforms, extra: Vec::new(), lost: Vec::new(), keeps_times: true };
         copy.choose_format();
         copy.choose_transforms();
         copy.choose_extra(columns);
@@ -93,9 +94,8 @@ impl<'a> RecordCopy<'a> {
         let formats: Vec<Format> = self.files.iter().map(|file| file.format).collect();
         let all = |has: &dyn Fn(&Format) -> bool| formats.iter().all(has);
         let any = |has: &dyn Fn(&Format) -> bool| formats.iter().any(has);
-        let same_times = self.files.windows(2).all(|pair| {
-            pair[0].header.adjusted_gps_time == pair[1].header.adjusted_gps_time
-        });
+        let same_times =
+            self.files.windows(2).all(|pair| pair[0].header.adjusted_gps_time == pair[1].header.adjusted_gps_time);
         let has_times = all(&|format| format.has_gps_time) && same_times;
         let has_color = all(&|format| format.has_color);
         let has_nir = all(&|format| format.has_nir);
@@ -143,7 +143,8 @@ impl<'a> RecordCopy<'a> {
 
     /// Extra bytes that all files describe in the same way, except those whose name one of `columns` has.
     fn choose_extra(&mut self, columns: &[Column<'_>]) {
-        let described: Vec<Vec<ExtraDescription>> = self.files.iter().map(|file| described(&file.header, &file.format)).collect();
+        let described: Vec<Vec<ExtraDescription>> =
+            self.files.iter().map(|file| described(&file.header, &file.format)).collect();
         let Some(of_first) = described.first() else { return };
         let is_one = described.len() == 1;
         let mut at = base_length(&self.format);
@@ -196,7 +197,8 @@ impl<'a> RecordCopy<'a> {
             guid: header.identifier,
             ..::las::raw::Header::default()
         };
-        let mut builder = Builder::new(raw).map_err(|e| Error::malformed(first.path, format!("cannot be copied: {e}")))?;
+        let mut builder =
+            Builder::new(raw).map_err(|e| Error::malformed(first.path, format!("cannot be copied: {e}")))?;
         builder.version = (1, 4).into();
         builder.system_identifier = String::from_utf8_lossy(&header.system)
             .trim_end_matches(['\0', ' '])
@@ -208,9 +210,7 @@ impl<'a> RecordCopy<'a> {
         builder.point_format.extra_bytes = 0;
         builder.transforms = self.transforms;
         let mut lost = Vec::new();
-        let is_in_all = |record: &&VariableRecord| {
-            self.files.iter().all(|file| file.header.records.contains(record))
-        };
+        let is_in_all = |record: &&VariableRecord| self.files.iter().all(|file| file.header.records.contains(record));
         for file in &self.files {
             let of_file = las_records::kept(&file.header).filter(|record| !is_in_all(record));
             lost.extend(of_file.map(las_records::in_words));
@@ -344,8 +344,7 @@ impl RecordCopy<'_> {
     fn check(&self, file: &CopiedFile<'_>, batch: &PointData, chosen: &[usize], first: usize) -> Result<()> {
         let changed = || Error::malformed(file.path, "has other points than when it was read");
         let header = &file.header;
-        let mut columns =
-            LasColumns::new(&file.format, header.scale, header.offset, header.adjusted_gps_time, None, 0);
+        let mut columns = LasColumns::new(&file.format, header.scale, header.offset, header.adjusted_gps_time, None, 0);
         columns.append(batch);
         let (coordinates, attributes, _) = columns.finish();
         let indices: Option<Vec<u32>> = chosen.iter().map(|&row| u32::try_from(row).ok()).collect();

@@ -80,12 +80,7 @@ pub(crate) fn write(
 }
 
 /// Writes what `cloud` holds.
-fn write_anew(
-    output: Output<'_>,
-    cloud: &PointCloud,
-    extra: &[Column<'_>],
-    records: &[Vlr],
-) -> Result<WriteReport> {
+fn write_anew(output: Output<'_>, cloud: &PointCloud, extra: &[Column<'_>], records: &[Vlr]) -> Result<WriteReport> {
     let name = output.name().to_owned();
     let mut columns = extra.to_vec();
     let has_normals = |column: &Column<'_>| column.name.eq_ignore_ascii_case(NORMALS[0]);
@@ -149,8 +144,7 @@ fn finished(
     builder.point_format.is_compressed = extension == "laz";
     builder.point_format.extra_bytes = 0;
     let fields = usize::from(builder.point_format.len());
-    let extra_bytes: usize =
-        length.saturating_sub(fields) + columns.iter().map(|c| c.values.width()).sum::<usize>();
+    let extra_bytes: usize = length.saturating_sub(fields) + columns.iter().map(|c| c.values.width()).sum::<usize>();
     builder.point_format.extra_bytes = u16::try_from(extra_bytes).unwrap_or(u16::MAX);
     // a record has its fields too
     if extra_bytes + fields > usize::from(u16::MAX) {

@@ -89,8 +89,7 @@ pub fn horizon_places(planes: &[RoofPlane], scene: &MedialScene) -> Vec<([f32; 3
         let distance = |place: &[f64; 3]| length(sub(*place, plane.middle));
         let mut places: Vec<[f64; 3]> = plane.cells.middles().into_iter().map(|(place, _)| place).collect();
         places.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
-        let places: Vec<[f32; 3]> =
-            places.into_iter().map(|place| above_roof(place, plane.normal)).collect();
+        let places: Vec<[f32; 3]> = places.into_iter().map(|place| above_roof(place, plane.normal)).collect();
         let is_open = |place: &&[f32; 3]| {
             let place = place.map(f64::from);
             scene.enclosure(place).ball_count == 0 && scene.seen_from_surface(place, [0.0, 0.0, 1.0]).is_none()

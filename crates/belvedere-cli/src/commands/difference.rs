@@ -9,8 +9,8 @@ use belvedere::apps::ask::Remark;
 use belvedere::apps::difference::{clear_added, clear_unproven, difference};
 use belvedere::figures::write_png;
 use belvedere::io::{
-    BandValues, Bands, Georeference, NamedBand, PlacedRaster, ReadOptions, TableCells, read_cloud, read_tif, write_table,
-    write_tif_bands,
+    BandValues, Bands, Georeference, NamedBand, PlacedRaster, ReadOptions, TableCells, read_cloud, read_tif,
+    write_table, write_tif_bands,
 };
 use belvedere::raster::Raster;
 use belvedere::results::{ADDED_BAND, ResultKind, UNPROVEN_BAND, difference_map, relief_of};
@@ -117,7 +117,8 @@ fn further_changes(
         let others: Vec<&str> =
             bands.iter().map(|band| band.name.as_str()).filter(|name| name.is_empty() || !in_both(name)).collect();
         if !others.is_empty() {
-            let text = format!("{}: bands that the other raster has not are left out: {}", path.display(), others.join(", "));
+            let text =
+                format!("{}: bands that the other raster has not are left out: {}", path.display(), others.join(", "));
             summary.warn("bands-left-out", text);
         }
     }
@@ -143,7 +144,8 @@ fn leave_out_added(before: &mut PlacedRaster, after: &mut PlacedRaster, summary:
         .map(|added| clear_added(before.values.values_mut(), after.values.values_mut(), &added))
         .sum();
     if count > 0 {
-        let text = format!("{count} cells on top of what was added are not compared: they are other places than before");
+        let text =
+            format!("{count} cells on top of what was added are not compared: they are other places than before");
         summary.remarks([Remark::note("cells-on-added-left-out", text).with("count", count as f64)]);
     }
 }

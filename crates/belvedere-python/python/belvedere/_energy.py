@@ -166,9 +166,9 @@ class Energy:
         Returns
         -------
         Table
-            A row for each plane: ``cells``, ``area_m2``, ``tilt_deg``, ``azimuth_deg`` from true north (NaN for a
-            level plane), ``kwh_m2`` and its parts, ``min_loss`` where each panel works alone, ``max_loss`` where the worst panel limits its row, and
-            ``kwh``. `places` has the middle of each plane.
+            A row for each plane: ``cells``, ``area_m2``, ``tilt_deg``, ``azimuth_deg`` from true north (NaN for a level
+            plane), ``kwh_m2`` and its parts, ``min_loss`` where each panel works alone, ``max_loss`` where the worst
+            panel limits its row, and ``kwh``. `places` has the middle of each plane.
 
         Raises
         ------

@@ -234,9 +234,11 @@ fn a_file_that_changed_is_not_copied_and_what_is_lost_is_listed() {
         cloud.attributes.classification.iter_mut().flatten().for_each(|class| *class = 6);
         cloud
     };
-    let lost = |report: &WriteReport| ["Amplitude", "user data", "MyCompany", "steps of coordinates"].map(|what| {
-        assert!(report.left_out.iter().any(|name| name.contains(what)), "{what}: {:?}", report.left_out);
-    });
+    let lost = |report: &WriteReport| {
+        ["Amplitude", "user data", "MyCompany", "steps of coordinates"].map(|what| {
+            assert!(report.left_out.iter().any(|name| name.contains(what)), "{what}: {:?}", report.left_out);
+        })
+    };
     // classes of one's own are written, not those of the file
     lost(&with_answers(&to, &edited()));
     assert!(raw(&to).1.iter().all(|record| record[16] == 6));

@@ -11,8 +11,8 @@ use belvedere::apps::ask::{IrradianceResults, Remark, RoofsResults, Scene};
 use belvedere::apps::horizon::{HorizonParams, horizons};
 use belvedere::apps::irradiance::{RoofColumn, horizon_places, roof_columns};
 use belvedere::apps::sun::Site;
-use belvedere::query::SkylinePoint;
 use belvedere::io::{PolygonArea, TableCells, atomic, outlines, write_geojson_areas, write_table};
+use belvedere::query::SkylinePoint;
 
 use std::f64::consts::FRAC_PI_2;
 
