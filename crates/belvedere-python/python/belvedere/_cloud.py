@@ -208,6 +208,7 @@ class Cloud:
             core.adjusted_gps_time,
             core.scanner_positions,
             core.crs.state,
+            core.files,
         )
         return _unpickled, (state, self.report)
 
@@ -312,7 +313,7 @@ def _column(name: str, values: npt.ArrayLike, count: int) -> npt.NDArray[Any]:
     return converted
 
 
-def _unpickled(state: tuple[Any, Any, Any, bool, Any, Any], report: dict[str, Any]) -> Cloud:
-    origin, positions, attributes, adjusted, scanners, system = state
+def _unpickled(state: tuple[Any, Any, Any, bool, Any, Any, Any], report: dict[str, Any]) -> Cloud:
+    origin, positions, attributes, adjusted, scanners, system, files = state
     crs = _core.Crs.from_state(system)
-    return Cloud._of(_core.Cloud.from_state(origin, positions, attributes, adjusted, scanners, crs), report)
+    return Cloud._of(_core.Cloud.from_state(origin, positions, attributes, adjusted, scanners, crs, files), report)

@@ -33,6 +33,8 @@ class Crs:
     @property
     def metres_per_unit(self) -> float: ...
 
+_FilesState = tuple[list[tuple[Any, int, list[str], list[str]]], list[int] | None, bool]
+
 @final
 class Cloud:
     def __new__(
@@ -46,7 +48,10 @@ class Cloud:
         adjusted_gps_time: bool,
         scanner_positions: npt.NDArray[np.float32],
         crs: Crs,
+        files: _FilesState,
     ) -> Cloud: ...
+    @property
+    def files(self) -> _FilesState: ...
     @property
     def positions(self) -> npt.NDArray[np.float32]: ...
     @property
