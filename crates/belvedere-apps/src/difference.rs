@@ -80,6 +80,13 @@ pub fn clear_unproven(values: &mut [f32], unproven: &[f32], description: Option<
     cells.map(|(value, _)| *value = f32::NAN).count()
 }
 
+/// Takes the values of cells on top of what was added away, before and after, and returns their number: they are other
+/// places than before. `added`, (M), is above 0 there.
+pub fn clear_added(before: &mut [f32], after: &mut [f32], added: &[f32]) -> usize {
+    let pairs = before.iter_mut().zip(after).zip(added).filter(|(_, added)| **added > 0.0);
+    pairs.map(|((before, after), _)| (*before, *after) = (f32::NAN, f32::NAN)).count()
+}
+
 /// The change from `before` to `after`, one value for each cell of `cell_area` m²; NaN for a cell without a value.
 ///
 /// # Errors
@@ -155,6 +162,10 @@ mod tests {
             assert_eq!(clear_unproven(&mut values, &unproven, description), count);
             assert_eq!(values.iter().filter(|v| v.is_nan()).count(), 1 + count);
         }
+        let (mut before, mut after) = ([1.0, 2.0, 3.0], [4.0, 9.0, 3.0]);
+        assert_eq!(clear_added(&mut before, &mut after, &[0.0, 1.0, f32::NAN]), 1);
+        let report = difference(&before, &after, 1.0).unwrap().report;
+        assert_eq!((report.cells_gain, report.sum_gain, report.cells_only_before), (1, 3.0, 0));
         // what f32 rounds is no change
         assert_eq!(difference(&[1000.0], &[1000.0001], 1.0).unwrap().report.cells_gain, 0);
     }

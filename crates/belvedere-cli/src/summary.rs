@@ -1,7 +1,7 @@
 //! What a command found, for people and as JSON.
 
 use crate::arguments::Global;
-use belvedere::apps::ask::Remark;
+use belvedere::apps::ask::{Remark, remark_on_left_out};
 use belvedere::io::WriteReport;
 use belvedere::report;
 use serde::Serialize;
@@ -121,10 +121,11 @@ impl Summary {
         self.add("seconds", section)
     }
 
-    /// Adds what a format had no room for.
+    /// Adds what an output has no room for.
     pub(crate) fn add_writing(&mut self, report: &WriteReport) -> &mut Self {
         if !report.left_out.is_empty() {
             self.add("attributes_not_written", report.left_out.clone());
+            self.remarks(remark_on_left_out(&report.left_out));
         }
         if report.clamped_count > 0 {
             self.add("values_clamped", report.clamped_count);

@@ -1,5 +1,7 @@
 //! Point clouds: f32 positions relative to an f64 origin, with the attributes a laser file carries as columns.
 
+use std::path::PathBuf;
+
 use crate::crs::Crs;
 use crate::frame::{Bounds, Frame};
 use crate::{Error, Parameter, Result};
@@ -22,6 +24,59 @@ pub struct PointCloud {
     /// Places on the map, local metres, that the survey measured and whose points were cleared since, (C, 2): there is
     /// no hole in the survey.
     pub cleared_places: Vec<[f32; 2]>,
+    /// The files that the points come from, for writers that keep what a cloud does not hold. Empty where points come
+    /// from elsewhere.
+    pub files: CloudFiles,
+}
+
+/// The files that the points of a cloud come from.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct CloudFiles {
+    /// The files, in the order of their points.
+    pub files: Vec<CloudFile>,
+    /// Which rows of them the points are.
+    pub rows: FileRows,
+}
+
+/// A file that points come from, and what it holds that a cloud has no place for.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct CloudFile {
+    /// Its path, or its name where it is no file.
+    pub path: PathBuf,
+    /// Number of its points, with those that were not read.
+    pub row_count: u64,
+    /// What its points have beside the attributes of a cloud, in words.
+    pub other_attributes: Vec<String>,
+    /// Records of its header that a cloud has no place for, in words.
+    pub records: Vec<String>,
+}
+
+/// Which rows of files the points of a cloud are.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub enum FileRows {
+    /// All of them, in their order.
+    #[default]
+    All,
+    /// The row of each point, counted over all files after each other.
+    Of(Vec<u64>),
+    /// Not known.
+    Unknown,
+}
+
+impl CloudFiles {
+    /// The files of the points at `indices`, in that order.
+    #[must_use]
+    pub fn select(&self, indices: &[u32]) -> Self {
+        let rows = match &self.rows {
+            FileRows::All => FileRows::Of(indices.iter().map(|&i| u64::from(i)).collect()),
+            FileRows::Of(rows) => {
+                let selected: Option<Vec<u64>> = indices.iter().map(|&i| rows.get(i as usize).copied()).collect();
+                selected.map_or(FileRows::Unknown, FileRows::Of)
+            }
+            FileRows::Unknown => FileRows::Unknown,
+        };
+        Self { files: self.files.clone(), rows }
+    }
 }
 
 /// Attributes of the points of a [`PointCloud`], each with one value per point where present.
@@ -200,6 +255,7 @@ impl PointCloud {
             attributes: self.attributes.select(indices),
             scanner_positions: self.scanner_positions.clone(),
             cleared_places: self.cleared_places.clone(),
+            files: self.files.select(indices),
         }
     }
 

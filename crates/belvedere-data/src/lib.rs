@@ -25,7 +25,7 @@ pub mod vector;
 pub mod view;
 pub mod weather;
 
-pub use cloud::{Attributes, GpsTimeKind, PointCloud};
+pub use cloud::{Attributes, CloudFile, CloudFiles, FileRows, GpsTimeKind, PointCloud};
 pub use elevation::ElevationGrid;
 pub use error::{Error, Result};
 pub use frame::{Bounds, Frame};

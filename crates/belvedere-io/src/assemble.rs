@@ -6,7 +6,7 @@ use super::part::{Coordinates, FilePart, unquantise};
 use super::read_cloud::ReadReport;
 use super::read_options::{DistantFiles, ReadOptions, RowNumbers};
 use belvedere_data::Frame;
-use belvedere_data::cloud::{PointCloud, centre_rounded, to_local};
+use belvedere_data::cloud::{CloudFile, CloudFiles, FileRows, PointCloud, centre_rounded, to_local};
 use belvedere_data::crs::{Crs, CrsKind};
 use belvedere_data::{Error, Parameter, Result};
 
@@ -80,6 +80,7 @@ pub(super) fn assemble(mut parts: Vec<FilePart>, options: &ReadOptions) -> Resul
             let kept = kept_indices(&part, middle);
             part.keep(&kept);
         }
+        add_file(&mut cloud.files, &mut part);
         if options.row_numbers == RowNumbers::Kept {
             report.rows.extend(part.rows.take().unwrap_or_else(|| (0..part.coordinates.len() as u64).collect()));
         }
@@ -122,6 +123,31 @@ fn refuse_distant(parts: &[FilePart], found: &[PartPass]) -> Result<()> {
         Some((part, _)) => Err(Error::DistantFile { path: part.report.path.clone() }),
         None => Ok(()),
     }
+}
+
+/// Adds the file of `part` to those of a cloud.
+fn add_file(files: &mut CloudFiles, part: &mut FilePart) {
+    let count = part.coordinates.len() as u64;
+    let before: u64 = files.files.iter().map(|file| file.row_count).sum();
+    let is_whole = part.rows.is_none() && part.row_count == Some(count);
+    files.rows = match (std::mem::take(&mut files.rows), part.row_count) {
+        (FileRows::All, Some(_)) if is_whole => FileRows::All,
+        (rows @ (FileRows::All | FileRows::Of(_)), Some(_)) => {
+            let mut rows = if let FileRows::Of(rows) = rows { rows } else { (0..before).collect() };
+            match &part.rows {
+                Some(own) => rows.extend(own.iter().map(|row| before + row)),
+                None => rows.extend(before..before + count),
+            }
+            FileRows::Of(rows)
+        }
+        _ => FileRows::Unknown,
+    };
+    files.files.push(CloudFile {
+        path: part.report.path.clone(),
+        row_count: part.row_count.unwrap_or(count),
+        other_attributes: std::mem::take(&mut part.other_attributes),
+        records: std::mem::take(&mut part.records),
+    });
 }
 
 /// Gives the files without a system that of the frame, or else of the other files.

@@ -94,6 +94,9 @@ impl CloudBatches<'_> {
             if let Some(some) = points.next(&reading)? {
                 let mut part = FilePart::new(&whole.report.path, whole.report.format.clone());
                 part.crs = whole.crs.clone();
+                part.row_count = whole.row_count;
+                part.other_attributes = whole.other_attributes.clone();
+                part.records = whole.records.clone();
                 (part.coordinates, part.attributes, part.rows) = (some.coordinates, some.attributes, Some(some.rows));
                 return Ok(Some(part));
             }

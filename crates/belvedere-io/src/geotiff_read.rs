@@ -107,6 +107,8 @@ fn bands<T: Copy>([width, height]: [usize; 2], values: Vec<T>) -> Result<Vec<Ras
 pub struct PlacedRaster {
     /// Values of the first band; NaN where the file says that there is none.
     pub values: Raster<f32>,
+    /// Name of the first band; empty where the file says none.
+    pub name: String,
     /// Where it lies, if the file says so.
     pub place: Option<Georeference>,
     /// What its values are, if Belvedere wrote the file and said so.
@@ -158,6 +160,7 @@ pub fn read_placed<'a>(source: impl Into<Source<'a>>) -> Result<PlacedRaster> {
     let names = decoder.get_tag_ascii_string(Tag::Unknown(GDAL_METADATA)).unwrap_or_default();
     let named = |(band, values)| NamedBand { name: name_of_band(&names, band), values };
     let further_bands = (1..).zip(further).map(named).collect();
+    let name_of_first = name_of_band(&names, 0);
     let keys = decoder.get_tag_u16_vec(Tag::GeoKeyDirectoryTag).unwrap_or_default();
     // coordinates that count from the middles of pixels instead of their corners (GTRasterTypeGeoKey, PixelIsPoint)
     let of_middles = keys.as_chunks::<4>().0.iter().any(|&[key, _, _, value]| key == 1025 && value == 2);
@@ -185,7 +188,7 @@ pub fn read_placed<'a>(source: impl Into<Source<'a>>) -> Result<PlacedRaster> {
         Georeference { upper_left, ..place }
     };
     let place = if of_middles { place.map(to_corner) } else { place };
-    Ok(PlacedRaster { values, place, description, further_bands })
+    Ok(PlacedRaster { values, name: name_of_first, place, description, further_bands })
 }
 
 /// The name of a band, by its number from 0, in what GDAL keeps of it; empty where it has none.

@@ -11,10 +11,11 @@ use ::las::point::Format;
 use ::las::{PointData, PointDataBuilder, Transform, Vector};
 
 use super::copc::{self, ChunkPlace, CopcNodes};
-use super::las_columns::LasColumns;
-use super::las_extra::{ExtraField, ExtraNormals, described, find_columns, find_extra_normals};
-use super::las_header::{COPC, LasHeader, read_header};
-use super::laz::{ExtraBytes, LazReader, NeededChunks, is_chunked};
+use super::las_columns::{LasColumns, UnreadFields};
+use super::las_extra::{ExtraField, ExtraNormals, find_columns, find_extra_normals};
+use super::las_header::{COPC, LasHeader, RecordSize, read_header};
+use super::las_records;
+use super::laz::{LazFields, LazReader, NeededChunks, is_chunked};
 use super::part::{Coordinates, FilePart};
 use super::read_options::{FileBox, PassedOver, Reading, RowNumbers, Selection};
 use super::source::{Input, Source, SourceReader, SystemBeside, web_address};
@@ -38,25 +39,30 @@ pub(super) struct LasFile<'a> {
     reader: SourceReader<'a>,
     size: u64,
     pub(super) header: LasHeader,
-    format: Format,
+    pub(super) format: Format,
 }
 
 impl<'a> LasFile<'a> {
     pub(super) fn open(input: Input<'a>) -> Result<Self> {
+        Self::open_with(input, RecordSize::OfReferenceSystems)
+    }
+
+    /// The same with all records of the header up to a size.
+    pub(super) fn open_with(input: Input<'a>, size_of_records: RecordSize) -> Result<Self> {
         let Input { name, mut reader, size } = input;
-        let header = read_header(&name, &mut reader, size)?;
+        let header = read_header(&name, &mut reader, size, size_of_records)?;
         let format = point_format(&name, &header)?;
         Ok(Self { name, reader, size, header, format })
+    }
+
+    /// Its header, and the format of its points.
+    pub(super) fn into_header(self) -> (LasHeader, Format) {
+        (self.header, self.format)
     }
 
     /// The extra columns of these names, `None` for those the file lacks.
     pub(super) fn columns<const N: usize>(&self, names: [&str; N]) -> [Option<ExtraField>; N] {
         find_columns(&self.header, &self.format, names)
-    }
-
-    /// All extra columns of single numbers that the file describes.
-    pub(super) fn all_columns(&self) -> Vec<(String, ExtraField)> {
-        described(&self.header, &self.format).into_iter().filter(|(_, field)| field.is_number()).collect()
     }
 
     /// Points that the file really holds of those its header announces; a LAZ file is checked when it is decompressed.
@@ -69,7 +75,7 @@ impl<'a> LasFile<'a> {
     }
 
     /// All points in file order, many at a time.
-    pub(super) fn batches(self, extra: ExtraBytes) -> Result<Batches<'a>> {
+    pub(super) fn batches(self, extra: LazFields) -> Result<Batches<'a>> {
         let rows = iter::once(0..self.points_in_file());
         self.batches_of(extra, rows, None)
     }
@@ -98,7 +104,7 @@ impl<'a> LasFile<'a> {
     /// known.
     fn batches_within(
         mut self,
-        extra: ExtraBytes,
+        extra: LazFields,
         wanted: &FileBox,
         rows: Option<Vec<Range<u64>>>,
     ) -> Result<(Batches<'a>, u64, Option<String>)> {
@@ -129,7 +135,7 @@ impl<'a> LasFile<'a> {
     /// The points of `rows`, ranges in their order; of LAZ whole chunks that hold such rows, or those at `places`.
     fn batches_of(
         self,
-        extra: ExtraBytes,
+        extra: LazFields,
         rows: impl Iterator<Item = Range<u64>>,
         places: Option<Vec<ChunkPlace>>,
     ) -> Result<Batches<'a>> {
@@ -222,11 +228,14 @@ pub(super) fn read(source: Source<'_>, reading: &Reading<'_>) -> Result<FilePart
             reading.control.advance(batch.len());
             reading.control.check()?;
         }
-        (part.coordinates, part.attributes) = columns.finish();
+        let unread;
+        (part.coordinates, part.attributes, unread) = columns.finish();
+        part.other_attributes.extend(unread.in_words());
         return check_bounds(part, points.bounds, points.scale);
     }
-    (part.coordinates, part.attributes) = columns.finish();
-    part.rows = (reading.options.row_numbers == RowNumbers::Kept).then(Vec::new);
+    (part.coordinates, part.attributes, _) = columns.finish();
+    // of a box whole pieces of the file may be passed over, so that its rows are not counted
+    part.rows = part.row_count.map(|_| Vec::new());
     while let Some(batch) = points.next(reading)? {
         let count = part.coordinates.len();
         let added = batch.coordinates.len();
@@ -237,6 +246,7 @@ pub(super) fn read(source: Source<'_>, reading: &Reading<'_>) -> Result<FilePart
         }
     }
     points.passed_over.report(&mut part);
+    part.other_attributes.extend(points.unread.in_words());
     check_bounds(part, points.bounds, points.scale)
 }
 
@@ -308,7 +318,9 @@ pub(super) fn open<'a>(mut source: Source<'a>, reading: &Reading<'_>) -> Result<
         return Err(Error::UnusableCrs { path, what });
     }
     let normals = find_extra_normals(&mut part, header, &source.format);
-    let extra = if normals.is_some() { ExtraBytes::Decompress } else { ExtraBytes::Skip };
+    let extra = if normals.is_some() { LazFields::AttributesAndExtraBytes } else { LazFields::Attributes };
+    part.other_attributes.extend(las_records::other_attributes(header, &source.format));
+    part.records.extend(las_records::kept(header).map(las_records::in_words));
     let (announced, present) = (header.points, source.points_in_file());
     if announced > present {
         part.note(format!("the header announces {announced} points, but the file holds only {present}"));
@@ -333,7 +345,10 @@ pub(super) fn open<'a>(mut source: Source<'a>, reading: &Reading<'_>) -> Result<
             part.report.notes.extend(note);
             batches
         }
-        None => source.batches(extra)?,
+        None => {
+            part.row_count = Some(present);
+            source.batches(extra)?
+        }
     };
     let points = LasPoints {
         likely,
@@ -345,6 +360,7 @@ pub(super) fn open<'a>(mut source: Source<'a>, reading: &Reading<'_>) -> Result<
         normals,
         selection,
         passed_over,
+        unread: UnreadFields::default(),
         next_row: 0,
         batches,
     };
@@ -364,6 +380,7 @@ pub(super) struct LasPoints<'a> {
     /// Number of points that the header and the size of the file make likely.
     likely: u64,
     passed_over: PassedOver,
+    unread: UnreadFields,
     next_row: u64,
 }
 
@@ -390,7 +407,8 @@ impl LasPoints<'_> {
         reading.control.advance(count);
         let first_row = self.next_row;
         self.next_row += count as u64;
-        let (coordinates, attributes) = columns.finish();
+        let (coordinates, attributes, unread) = columns.finish();
+        self.unread.add(unread);
         let Some(selection) = &self.selection else {
             return Ok(Some(SomePoints { coordinates, attributes, rows: (first_row..self.next_row).collect() }));
         };
@@ -440,7 +458,7 @@ fn point_format(path: &Path, header: &LasHeader) -> Result<Format> {
 /// Takes the system from the records of a file. Of several that agree, well-known text says most; where they do not
 /// agree, the bit of the header decides (LAS 1.4 R15, section 2.4), and the system is doubtful. A file without one has
 /// that of what stands `beside` it.
-fn find_crs(part: &mut FilePart, header: &LasHeader, beside: Option<SystemBeside>, somewhere: [f64; 2]) {
+pub(super) fn find_crs(part: &mut FilePart, header: &LasHeader, beside: Option<SystemBeside>, somewhere: [f64; 2]) {
     const USER: &str = "LASF_Projection";
     let mut unread = false;
     let mut text_of = |user: &'static str| {
@@ -580,7 +598,7 @@ pub fn read_las_head<'a>(source: impl Into<Source<'a>>) -> Result<LasHead> {
         return Err(Error::malformed(&file.name, "has no bounds in its header; write it again, for example with PDAL"));
     }
     let mut part = FilePart::new(&file.name, "");
-    find_crs(&mut part, header, beside, [0, 1].map(|axis| f64::midpoint(bounds[axis][0], bounds[axis][1])));
+    find_crs(&mut part, header, beside, header.middle());
     let kind = if header.adjusted_gps_time { GpsTimeKind::AdjustedStandard } else { GpsTimeKind::SecondsOfWeek };
     Ok(LasHead {
         points: file.points_in_file(),

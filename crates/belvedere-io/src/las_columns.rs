@@ -18,6 +18,31 @@ pub(super) struct LasColumns {
     attributes: Attributes,
     extended: bool,
     extra_normals: Option<ExtraNormals>,
+    unread: UnreadFields,
+}
+
+/// Fields of all records that are no attributes of a cloud, all bits of all points together.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct UnreadFields {
+    user_data: u8,
+    scan_bits: u8,
+}
+
+impl UnreadFields {
+    pub(super) fn add(&mut self, other: Self) {
+        self.user_data |= other.user_data;
+        self.scan_bits |= other.scan_bits;
+    }
+
+    /// Those that are set at any point, in words.
+    pub(super) fn in_words(self) -> impl Iterator<Item = String> {
+        let fields = [
+            ("user data", self.user_data != 0),
+            ("scan direction flags", self.scan_bits & 1 << 6 != 0),
+            ("edge of flight line flags", self.scan_bits & 1 << 7 != 0),
+        ];
+        fields.into_iter().filter(|(_, is_set)| *is_set).map(|(name, _)| name.to_owned())
+    }
 }
 
 impl LasColumns {
@@ -45,7 +70,8 @@ impl LasColumns {
             color: format.has_color.then(|| Vec::with_capacity(capacity)),
             scanner_index: None,
         };
-        Self { positions: Vec::with_capacity(capacity), scale, offset, attributes, extended, extra_normals }
+        let positions = Vec::with_capacity(capacity);
+        Self { positions, scale, offset, attributes, extended, extra_normals, unread: UnreadFields::default() }
     }
 
     /// Decodes a batch, one task per column.
@@ -68,8 +94,15 @@ impl LasColumns {
             color,
             ..
         } = &mut self.attributes;
-        let (positions, extra_normals) = (&mut self.positions, self.extra_normals);
+        let (positions, extra_normals, unread) = (&mut self.positions, self.extra_normals, &mut self.unread);
         rayon::scope(|scope| {
+            scope.spawn(move |_| {
+                // the direction of the mirror and the edge of a flight line are the highest bits of one byte
+                let scan_bits_at = if extended { 15 } else { 14 };
+                for record in records() {
+                    unread.add(UnreadFields { user_data: byte(record, 17), scan_bits: byte(record, scan_bits_at) });
+                }
+            });
             scope.spawn(|_| {
                 let xyz = batch.x_raw().zip(batch.y_raw()).zip(batch.z_raw());
                 positions.extend(xyz.map(|((x, y), z)| [x, y, z]));
@@ -117,9 +150,10 @@ impl LasColumns {
         });
     }
 
-    pub(super) fn finish(self) -> (Coordinates, Attributes) {
+    /// The columns, and what of the records is no column.
+    pub(super) fn finish(self) -> (Coordinates, Attributes, UnreadFields) {
         let coordinates = Coordinates::Quantised { values: self.positions, scale: self.scale, offset: self.offset };
-        (coordinates, self.attributes)
+        (coordinates, self.attributes, self.unread)
     }
 }
 

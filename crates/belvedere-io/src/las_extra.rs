@@ -49,24 +49,44 @@ fn extra_size(kind: u8, options: u8) -> usize {
     }
 }
 
+/// A description of extra bytes, as the file has it, and where in the record they lie.
+#[derive(Clone, Debug)]
+pub(super) struct ExtraDescription {
+    pub(super) bytes: [u8; 192],
+    pub(super) at: usize,
+    pub(super) size: usize,
+}
+
+impl ExtraDescription {
+    pub(super) fn name(&self) -> String {
+        let name = self.bytes[4..36].split(|&byte| byte == 0).next().unwrap_or_default();
+        String::from_utf8_lossy(name).into_owned()
+    }
+}
+
+/// The extra bytes as the file describes them.
+pub(super) fn descriptions(header: &LasHeader, format: &Format) -> Vec<ExtraDescription> {
+    let mut at = usize::from(format.len().saturating_sub(format.extra_bytes));
+    let described = header.records("LASF_Spec", 4).flat_map(|record| record.as_chunks::<192>().0);
+    let one = |&bytes: &[u8; 192]| {
+        let size = extra_size(bytes[2], bytes[3]);
+        at += size;
+        ExtraDescription { bytes, at: at - size, size }
+    };
+    described.map(one).collect()
+}
+
 /// The names of the extra bytes as the file describes them, and how to read each.
 pub(super) fn described(header: &LasHeader, format: &Format) -> Vec<(String, ExtraField)> {
-    let mut at = usize::from(format.len().saturating_sub(format.extra_bytes));
-    let mut fields = Vec::new();
-    for descriptor in header.records("LASF_Spec", 4).flat_map(|record| record.as_chunks::<192>().0) {
-        let (kind, options) = (descriptor[2], descriptor[3]);
-        let name = descriptor[4..36].split(|&byte| byte == 0).next().unwrap_or_default();
-        let f64_at = |i: usize| descriptor[i..].first_chunk().map_or(0.0, |&bytes| f64::from_le_bytes(bytes));
-        let field = ExtraField {
-            at,
-            kind,
-            scale: if options & 8 != 0 { f64_at(112) } else { 1.0 },
-            offset: if options & 16 != 0 { f64_at(136) } else { 0.0 },
-        };
-        fields.push((String::from_utf8_lossy(name).into_owned(), field));
-        at += extra_size(kind, options);
-    }
-    fields
+    let field = |described: ExtraDescription| {
+        let ExtraDescription { bytes, at, .. } = &described;
+        let (kind, options) = (bytes[2], bytes[3]);
+        let f64_at = |i: usize| bytes[i..].first_chunk().map_or(0.0, |&bytes| f64::from_le_bytes(bytes));
+        let scale = if options & 8 != 0 { f64_at(112) } else { 1.0 };
+        let offset = if options & 16 != 0 { f64_at(136) } else { 0.0 };
+        (described.name(), ExtraField { at: *at, kind, scale, offset })
+    };
+    descriptions(header, format).into_iter().map(field).collect()
 }
 
 /// The extra columns of these names, in whatever case the file writes them; `None` for those it lacks.

@@ -24,8 +24,15 @@ pub(super) struct LasHeader {
     pub(super) bounds: [[f64; 2]; 3],
     /// Global encoding bit 0.
     pub(super) adjusted_gps_time: bool,
-    /// Global encoding bit 4: the system is that of the WKT record. Point formats from 6 on require it.
+    /// Global encoding bit 3.
+    pub(super) has_synthetic_returns: bool,
+    /// Global encoding bit 4.
+    pub(super) has_wkt: bool,
+    /// Whether the system is that of the WKT record, as this bit says and point formats from 6 on require.
     pub(super) wkt_decides: bool,
+    pub(super) file_source: u16,
+    pub(super) identifier: [u8; 16],
+    pub(super) system: [u8; 32],
     /// Whether the number of points of the old and the new field differ.
     pub(super) counts_differ: bool,
     /// Whether Belvedere wrote the file.
@@ -38,9 +45,14 @@ pub(super) struct LasHeader {
 }
 
 /// A variable-length record.
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct VariableRecord {
     pub(super) user: String,
     pub(super) id: u16,
+    pub(super) description: String,
+    /// Whether it stands behind the points.
+    pub(super) is_extended: bool,
+    /// Empty where it is larger than is of interest.
     pub(super) data: Vec<u8>,
     /// Bytes that it has in the file; of some records the data are not read.
     length: u64,
@@ -49,23 +61,47 @@ pub(super) struct VariableRecord {
 /// User of the records of COPC.
 pub(super) const COPC: &str = "copc";
 
-/// Extended records larger than this are passed over: only reference systems are looked for there.
-const MAX_EXTENDED: u64 = 1 << 20;
+/// Which records are read with their data.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum RecordSize {
+    /// Those as large as the definition of a reference system, at most a megabyte.
+    OfReferenceSystems,
+    /// All that the file holds.
+    Any,
+}
+
+impl RecordSize {
+    fn max_bytes(self) -> u64 {
+        if self == Self::Any { u64::MAX } else { 1 << 20 }
+    }
+}
 
 impl LasHeader {
+    /// The middle of the bounds on the map, in the unit of the file.
+    pub(super) fn middle(&self) -> [f64; 2] {
+        [0, 1].map(|axis| f64::midpoint(self.bounds[axis][0], self.bounds[axis][1]))
+    }
+
     /// Data of the first record with this user and number.
     pub(super) fn record(&self, user: &str, id: u16) -> Option<&[u8]> {
-        self.records.iter().find(|record| record.id == id && record.user == user).map(|record| record.data.as_slice())
+        let is_wanted = |r: &&VariableRecord| r.id == id && r.user == user && !r.data.is_empty();
+        self.records.iter().find(is_wanted).map(|record| record.data.as_slice())
     }
 
     /// Data of all records with this user and number.
     pub(super) fn records<'a>(&'a self, user: &'a str, id: u16) -> impl Iterator<Item = &'a [u8]> {
-        self.records.iter().filter(move |r| r.id == id && r.user == user).map(|r| r.data.as_slice())
+        let is_wanted = move |r: &&VariableRecord| r.id == id && r.user == user && !r.data.is_empty();
+        self.records.iter().filter(is_wanted).map(|r| r.data.as_slice())
     }
 }
 
-/// Reads the header of a file of `size` bytes.
-pub(super) fn read_header(path: &Path, file: &mut (impl Read + Seek), size: u64) -> Result<LasHeader> {
+/// Reads the header of a file of `size` bytes, and its records up to a size.
+pub(super) fn read_header(
+    path: &Path,
+    file: &mut (impl Read + Seek),
+    size: u64,
+    size_of_records: RecordSize,
+) -> Result<LasHeader> {
     let mut bytes = Vec::new();
     file.take(375).read_to_end(&mut bytes).map_err(Error::io(path))?;
     if bytes.get(..4) != Some(b"LASF") {
@@ -85,6 +121,7 @@ pub(super) fn read_header(path: &Path, file: &mut (impl Read + Seek), size: u64)
     let legacy_points = u64::from(fields.u32(107)?);
     let long_points = if version.1 >= 4 && header_size >= 375 { fields.u64(247)? } else { 0 };
     let format = fields.u8(104)?;
+    let encoding = if version.1 >= 2 { fields.u16(6)? } else { 0 };
     let mut header = LasHeader {
         is_of_belvedere: bytes.get(58..90).is_some_and(|name| name.starts_with(b"belvedere\0")),
         version,
@@ -100,8 +137,13 @@ pub(super) fn read_header(path: &Path, file: &mut (impl Read + Seek), size: u64)
             [fields.f64(203)?, fields.f64(195)?],
             [fields.f64(219)?, fields.f64(211)?],
         ],
-        adjusted_gps_time: version.1 >= 2 && fields.u16(6)? & 1 != 0,
-        wkt_decides: version.1 >= 4 && (fields.u16(6)? & 0x10 != 0 || format & 0x3f >= 6),
+        adjusted_gps_time: encoding & 1 != 0,
+        has_synthetic_returns: encoding & 1 << 3 != 0,
+        has_wkt: encoding & 1 << 4 != 0,
+        wkt_decides: version.1 >= 4 && (encoding & 1 << 4 != 0 || format & 0x3f >= 6),
+        file_source: if version.1 >= 1 { fields.u16(4)? } else { 0 },
+        identifier: fields.array(8)?,
+        system: fields.array(26)?,
         counts_differ: legacy_points != 0 && long_points != 0 && legacy_points != long_points,
         records: Vec::new(),
         copc_pages: None,
@@ -115,10 +157,11 @@ pub(super) fn read_header(path: &Path, file: &mut (impl Read + Seek), size: u64)
         let what = format!("has its points at byte {points_start} of {size}; the file is cut off or damaged");
         return Err(Error::malformed(path, what));
     }
-    read_records(path, file, &mut header, Length::Short, header_size..points_start, record_count)?;
+    let wanted = (Length::Short, size_of_records);
+    read_records(path, file, &mut header, wanted, header_size..points_start, record_count)?;
     if version.1 >= 4 && header_size >= 375 {
         let (start, count) = (fields.u64(235)?, fields.u32(243)?);
-        read_records(path, file, &mut header, Length::Long, start..size, count)?;
+        read_records(path, file, &mut header, (Length::Long, size_of_records), start..size, count)?;
     }
     Ok(header)
 }
@@ -128,7 +171,7 @@ fn read_records(
     path: &Path,
     file: &mut (impl Read + Seek),
     header: &mut LasHeader,
-    length: Length,
+    (length, size_of_records): (Length, RecordSize),
     range: Range<u64>,
     count: u32,
 ) -> Result<()> {
@@ -140,7 +183,7 @@ fn read_records(
             break;
         }
         file.seek(SeekFrom::Start(position)).map_err(Error::io(path))?;
-        match read_record(file, length, range.end - position).map_err(Error::io(path))? {
+        match read_record(file, length, range.end - position, size_of_records).map_err(Error::io(path))? {
             Some((record, length)) => {
                 position += length;
                 if is_extended && record.user == COPC && record.id == 1000 {
@@ -163,32 +206,40 @@ enum Length {
     Long,
 }
 
-/// The next record, without its data where it is too large to be of interest, and its length; `None` where `room` bytes do not hold it.
-fn read_record(file: &mut impl Read, length: Length, room: u64) -> std::io::Result<Option<(VariableRecord, u64)>> {
+/// The next record, without its data where it is too large to be of interest, and its length; `None` where `room` bytes
+/// do not hold it.
+fn read_record(
+    file: &mut impl Read,
+    length: Length,
+    room: u64,
+    size_of_records: RecordSize,
+) -> std::io::Result<Option<(VariableRecord, u64)>> {
     let head_length: u64 = if length == Length::Short { 54 } else { 60 };
     let mut head = Vec::new();
     file.take(head_length.min(room)).read_to_end(&mut head)?;
-    let Some((user, id, data_length)) = record_head(&head, length) else { return Ok(None) };
-    let Some(total) = head_length.checked_add(data_length).filter(|&total| total <= room) else { return Ok(None) };
+    let Some(mut record) = record_head(&head, length) else { return Ok(None) };
+    let Some(total) = head_length.checked_add(record.length).filter(|&total| total <= room) else { return Ok(None) };
     // the hierarchy of a COPC file is read page by page where it is needed
-    let mut data = Vec::new();
-    if data_length > MAX_EXTENDED || length == Length::Long && user == COPC {
-        return Ok(Some((VariableRecord { user, id, data, length: data_length }, total)));
+    if record.length > size_of_records.max_bytes() || record.is_extended && record.user == COPC {
+        return Ok(Some((record, total)));
     }
-    file.take(data_length).read_to_end(&mut data)?;
-    let is_whole = data.len() as u64 == data_length;
-    Ok(is_whole.then_some((VariableRecord { user, id, data, length: data_length }, total)))
+    file.take(record.length).read_to_end(&mut record.data)?;
+    let is_whole = record.data.len() as u64 == record.length;
+    Ok(is_whole.then_some((record, total)))
 }
 
-/// User, number and length of a record; `None` for a head that is cut off.
-fn record_head(head: &[u8], length: Length) -> Option<(String, u16, u64)> {
-    let user = String::from_utf8_lossy(head.get(2..18)?).trim_end_matches(['\0', ' ']).to_owned();
+/// A record without its data; `None` for a head that is cut off.
+fn record_head(head: &[u8], length: Length) -> Option<VariableRecord> {
+    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).trim_end_matches(['\0', ' ']).to_owned();
+    let user = text(head.get(2..18)?);
     let id = u16::from_le_bytes(*head.get(18..)?.first_chunk()?);
-    let data_length = match length {
-        Length::Short => u64::from(u16::from_le_bytes(*head.get(20..)?.first_chunk()?)),
-        Length::Long => u64::from_le_bytes(*head.get(20..)?.first_chunk()?),
+    let (length_of_data, description) = match length {
+        Length::Short => (u64::from(u16::from_le_bytes(*head.get(20..)?.first_chunk()?)), head.get(22..54)),
+        Length::Long => (u64::from_le_bytes(*head.get(20..)?.first_chunk()?), head.get(28..60)),
     };
-    Some((user, id, data_length))
+    let description = text(description.unwrap_or_default());
+    let is_extended = length == Length::Long;
+    Some(VariableRecord { user, id, description, is_extended, data: Vec::new(), length: length_of_data })
 }
 
 /// Little-endian fields of the fixed part.

@@ -1,8 +1,12 @@
 //! Results at points: the extra bytes of LAS and LAZ files that Belvedere wrote.
 
+use ::las::point::Format;
+
 use super::las::LasFile;
-use super::las_extra::ExtraField;
-use super::laz::ExtraBytes;
+use super::las_extra::{ExtraField, described};
+use super::las_header::LasHeader;
+use super::las_records;
+use super::laz::LazFields;
 use super::part::narrow;
 use super::source::Source;
 use belvedere_data::{Error, Result};
@@ -21,7 +25,8 @@ pub struct PointResults {
 /// # Errors
 /// [`Error::Io`]; [`Error::Malformed`] for what is no such file.
 pub fn has_point_results<'a>(source: impl Into<Source<'a>>) -> Result<bool> {
-    Ok(!results(&LasFile::open(source.into().open()?)?).is_empty())
+    let file = LasFile::open(source.into().open()?)?;
+    Ok(!result_columns(&file.header, &file.format).is_empty())
 }
 
 /// Reads the points of a LAS or LAZ file and its columns of results.
@@ -32,7 +37,7 @@ pub fn read_point_results<'a>(source: impl Into<Source<'a>>) -> Result<PointResu
     let input = source.into().open()?;
     let name = input.name.clone();
     let file = LasFile::open(input)?;
-    let fields = results(&file);
+    let fields = result_columns(&file.header, &file.format);
     if fields.is_empty() {
         return Err(Error::malformed(
             &name,
@@ -40,7 +45,7 @@ pub fn read_point_results<'a>(source: impl Into<Source<'a>>) -> Result<PointResu
         ));
     }
     let (mut places, mut values) = (Vec::new(), vec![Vec::new(); fields.len()]);
-    let mut batches = file.batches(ExtraBytes::Decompress)?;
+    let mut batches = file.batches(LazFields::AttributesAndExtraBytes)?;
     while let Some(batch) = batches.next()? {
         places.extend(batch.x().zip(batch.y()).zip(batch.z()).map(|((x, y), z)| [x, y, z]));
         for record in batch.raw_bytes().chunks_exact(batch.record_len().max(1)) {
@@ -53,10 +58,14 @@ pub fn read_point_results<'a>(source: impl Into<Source<'a>>) -> Result<PointResu
     Ok(PointResults { places, columns: names.zip(values).collect() })
 }
 
-/// The columns of numbers that are results: all but normals.
-fn results(file: &LasFile<'_>) -> Vec<(String, ExtraField)> {
-    if !file.header.is_of_belvedere {
+/// The columns of numbers that are results of Belvedere: those that a file names, or in older files all but normals.
+pub(super) fn result_columns(header: &LasHeader, format: &Format) -> Vec<(String, ExtraField)> {
+    if !header.is_of_belvedere {
         return Vec::new();
     }
-    file.all_columns().into_iter().filter(|(name, _)| !name.starts_with("Normal")).collect()
+    let (user, id) = las_records::RESULTS;
+    let names = header.record(user, id).map(String::from_utf8_lossy);
+    let is_result = |name: &str| names.as_ref().is_none_or(|names| names.split('\n').any(|result| result == name));
+    let columns = described(header, format).into_iter().filter(|(_, field)| field.is_number());
+    columns.filter(|(name, _)| is_result(name) && !name.starts_with("Normal")).collect()
 }

@@ -27,11 +27,15 @@ const MAX_CHUNK_BYTES: u64 = 1 << 30;
 const MAX_RATIO: u64 = 256;
 const FREE_CHUNK_BYTES: u64 = 1 << 26;
 
-/// Whether extra bytes are wanted.
+/// Which fields of points are wanted, where a file has them in layers of their own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum ExtraBytes {
-    Decompress,
-    Skip,
+pub(super) enum LazFields {
+    /// Those that are attributes of a cloud.
+    Attributes,
+    /// Extra bytes too.
+    AttributesAndExtraBytes,
+    /// All but waveforms.
+    All,
 }
 
 /// Which chunks are wanted.
@@ -70,7 +74,7 @@ impl<'a> LazReader<'a> {
         mut file: SourceReader<'a>,
         header: &LasHeader,
         size: u64,
-        extra: ExtraBytes,
+        fields: LazFields,
         wanted: NeededChunks,
     ) -> Result<Self> {
         let vlr = compression(path, header)?;
@@ -79,8 +83,13 @@ impl<'a> LazReader<'a> {
             NeededChunks::Places(places) => chunks_at(path, &places, header)?,
             NeededChunks::Rows(rows) => with_rows(all_chunks(path, &mut file, &vlr, header, size)?, &rows),
         };
-        let selection = DecompressionSelection::all().skip_user_data().skip_nir().skip_wavepacket();
-        let selection = if extra == ExtraBytes::Skip { selection.skip_extra_bytes() } else { selection };
+        // user data are looked at, so that a user hears when an output has no place for them
+        let all = DecompressionSelection::all().skip_wavepacket();
+        let selection = match fields {
+            LazFields::Attributes => all.skip_nir().skip_extra_bytes(),
+            LazFields::AttributesAndExtraBytes => all.skip_nir(),
+            LazFields::All => all,
+        };
         Ok(Self {
             file: file.into_inner(),
             place: None,

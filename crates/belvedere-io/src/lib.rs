@@ -40,9 +40,13 @@ mod las;
 #[cfg(feature = "las")]
 mod las_columns;
 #[cfg(feature = "las")]
+mod las_copy;
+#[cfg(feature = "las")]
 mod las_extra;
 #[cfg(feature = "las")]
 mod las_header;
+#[cfg(feature = "las")]
+mod las_records;
 #[cfg(feature = "las")]
 mod las_results;
 #[cfg(feature = "las")]

@@ -29,6 +29,13 @@ pub(super) struct FilePart {
     pub(super) somewhere: Option<[f64; 3]>,
     /// Row of each point in the file where they are wanted and differ from 0, 1, 2 …
     pub(super) rows: Option<Vec<u64>>,
+    /// Number of points of the file where `rows`, or else 0, 1, 2 … are the rows of its points; `None` where these are
+    /// not known.
+    pub(super) row_count: Option<u64>,
+    /// What its points have beside `attributes`, in words.
+    pub(super) other_attributes: Vec<String>,
+    /// Records of its header that are not understood here, in words.
+    pub(super) records: Vec<String>,
     /// Whether the file keeps its coordinates as f32.
     pub(super) single_precision: bool,
     pub(super) report: FileReport,
@@ -154,6 +161,7 @@ impl FilePart {
 
     /// Turns a part whose y is up: positions, normals and scanners (x, y, z) become (x, −z, y).
     pub(super) fn turn_y_up(&mut self) {
+        self.row_count = None;
         self.coordinates = Coordinates::Real(self.coordinates.positions().map(|[x, y, z]| [x, -z, y]).collect());
         self.scanners.iter_mut().for_each(|p| *p = [p[0], -p[2], p[1]]);
         self.attributes.normals.iter_mut().flatten().for_each(|n| *n = [n[0], -n[2], n[1]]);
@@ -216,6 +224,20 @@ impl FilePart {
         }
         self.report.notes.append(&mut notes);
         self.report.attributes = self.attributes.columns().into_iter().map(|(name, _)| name).collect();
+    }
+
+    /// Whether no point has a colour other than black.
+    pub(super) fn is_black(&self) -> bool {
+        self.attributes.color.iter().flatten().flatten().all(|&value| value == 0)
+    }
+
+    /// Drops colours, all of which are black.
+    pub(super) fn drop_black(&mut self) {
+        let Some(colors) = self.attributes.color.take() else { return };
+        if !colors.is_empty() {
+            self.note("all colours are zero, so the file has none");
+        }
+        self.report.attributes.retain(|name| *name != "color");
     }
 
     fn check_gps_times(&mut self) {

@@ -65,6 +65,7 @@ pub(super) fn read(input: Input<'_>, reading: &Reading<'_>) -> Result<FilePart> 
         .collect();
     if !dropped.is_empty() {
         part.note(format!("fields dropped: {}", dropped.join(", ")));
+        part.other_attributes.extend(dropped.into_iter().map(str::to_owned));
     }
     part.single_precision = header.fields.iter().any(|f| f.kind == 'F' && f.size == 4 && f.roles() == [Role::X]);
     match header.data.as_str() {

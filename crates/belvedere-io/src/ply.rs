@@ -185,6 +185,7 @@ fn note_unknown(part: &mut FilePart, element: &ElementDef) {
         element.properties.keys().filter(|name| role_of(name).is_none()).map(String::as_str).collect();
     if !unknown.is_empty() {
         part.note(format!("properties dropped: {}", unknown.join(", ")));
+        part.other_attributes.extend(unknown.into_iter().map(str::to_owned));
     }
 }
 

@@ -104,7 +104,8 @@ impl ReadReport {
 /// [`ReadOptions::frame`], or else the middle, in whole metres, of the points within 10 km of the median point of all
 /// files. Points more than 1000 km from the median (or from the given origin) along an axis, and points that are not
 /// finite, are left out and counted. A file of several that lies there as a whole is refused, unless
-/// [`ReadOptions::distant`] says otherwise. An attribute that one of the files lacks is dropped; files without any point are
+/// [`ReadOptions::distant`] says otherwise. Colours that are all zero are none. An attribute that one of the files lacks
+/// is dropped; files without any point are
 /// ignored. The result does not depend on the number of threads. The items of progress are points. Tables without x, y
 /// and z in a folder are skipped and reported.
 ///
@@ -136,6 +137,10 @@ pub fn read_cloud<'a, S: Into<Source<'a>>>(
         parts.push(part);
     }
     control.check()?;
+    // black in all files is a field that nobody filled; black in one of several may be what was measured
+    if parts.iter().all(FilePart::is_black) {
+        parts.iter_mut().for_each(FilePart::drop_black);
+    }
     let (cloud, mut report) = assemble::assemble(parts, options)?;
     report.notes.splice(..0, notes);
     Ok((cloud, ReadReport { skipped_files: tables, ..report }))

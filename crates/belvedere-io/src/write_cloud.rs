@@ -42,8 +42,8 @@ pub enum ExtraValues<'a> {
 pub struct WriteReport {
     /// Number of points written.
     pub point_count: usize,
-    /// Attributes of the cloud that the format has no place for.
-    pub left_out: Vec<&'static str>,
+    /// What the cloud, or the files that its points come from, have and the output has not, in words.
+    pub left_out: Vec<String>,
     /// Values that did not fit their field and were cut to its range, such as a 16th return.
     pub clamped_count: usize,
 }
@@ -52,8 +52,9 @@ pub struct WriteReport {
 /// from the extension (.las .laz .ply .csv .xyz .txt .npy). Coordinates are those of the reference system and unit of
 /// the cloud's file.
 ///
-/// LAS and LAZ files hold every attribute but normals, which go in as extra columns `NormalX`, `NormalY` and `NormalZ`
-/// where wanted. PLY files and tables hold scan angles in degrees (`scan_angle_deg`) and colours in 8 bits; tables have
+/// LAS and LAZ files hold every attribute. Where the points come from LAS and LAZ files
+/// ([`belvedere_data::CloudFiles`]), their records are copied: extra bytes, further fields, records of the header,
+/// point format, and steps of coordinates stay; of several files what all of them have. What is lost is reported. PLY files and tables hold scan angles in degrees (`scan_angle_deg`) and colours in 8 bits; tables have
 /// a header row. NPY files hold (N, 3) f64 coordinates and nothing else.
 ///
 /// # Errors
@@ -73,9 +74,9 @@ pub fn write_cloud<'a>(
     match output.extension().as_str() {
         #[cfg(feature = "las")]
         "las" | "laz" => write_las::write(output, cloud, &columns, &[]),
-        "ply" => write_ply::write(output, cloud, &columns, &[]),
-        "csv" => write_table::write(output, cloud, &columns, ','),
-        "xyz" | "txt" => write_table::write(output, cloud, &columns, ' '),
+        "ply" => write_ply::write(output, cloud, &columns, &[]).map(|report| of_attributes(report, cloud)),
+        "csv" => write_table::write(output, cloud, &columns, ',').map(|report| of_attributes(report, cloud)),
+        "xyz" | "txt" => write_table::write(output, cloud, &columns, ' ').map(|report| of_attributes(report, cloud)),
         "npy" if !columns.is_empty() => Err(Error::InvalidParameter {
             parameter: Parameter::ResultColumns,
             value: "written as .npy".to_owned(),
@@ -85,6 +86,23 @@ pub fn write_cloud<'a>(
         "npy" => write_npy::write_coordinates(output, cloud),
         _ => Err(unusable(output.name(), "point cloud output", SUPPORTED)),
     }
+}
+
+/// The report with what only the files of the cloud have.
+fn of_attributes(mut report: WriteReport, cloud: &PointCloud) -> WriteReport {
+    report.left_out.extend(not_in_cloud(cloud));
+    report
+}
+
+/// What the points of the files of a cloud have and the cloud has not.
+pub(crate) fn not_in_cloud(cloud: &PointCloud) -> Vec<String> {
+    let mut names: Vec<String> = Vec::new();
+    for name in cloud.files.files.iter().flat_map(|file| &file.other_attributes) {
+        if !names.contains(name) {
+            names.push(name.clone());
+        }
+    }
+    names
 }
 
 pub(crate) fn to_column<'a>(extra: &ExtraColumn<'a>) -> Column<'a> {

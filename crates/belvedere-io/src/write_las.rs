@@ -5,30 +5,37 @@ use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
-use las::{Builder, GpsTimeType, PointDataBuilder, Transform, Vector, Vlr};
+use las::{Builder, GpsTimeType, PointData, PointDataBuilder, Transform, Vector, Vlr};
 use rayon::prelude::*;
 
 use crate::atomic;
 use crate::columns::{Column, ColumnValues};
+use crate::las_copy::{RecordCopy, results_record};
 use crate::output::{Output, WriteSeek};
-use crate::write_cloud::WriteReport;
+use crate::source;
+use crate::write_cloud::{WriteReport, not_in_cloud};
 use belvedere_data::Bounds;
 use belvedere_data::cloud::GpsTimeKind;
 use belvedere_data::crs::text;
-use belvedere_data::{Error, Parameter, PointCloud, Result};
+use belvedere_data::{CloudFile, Error, Parameter, PointCloud, Result};
 
 /// Points encoded at a time: many LAZ chunks of 50 000, so that all threads compress, yet little memory.
 const POINTS_PER_SLAB: usize = 1 << 20;
 /// Degrees per step of the scan angle of point formats 6 and up (LAS 1.4 R15, table 17).
 const DEGREES_PER_SCAN_STEP: f64 = 0.006;
+/// Names of the columns that readers look for normals in.
+const NORMALS: [&str; 3] = ["NormalX", "NormalY", "NormalZ"];
+/// Most letters of the name of a column.
+const MAX_NAME: usize = 31;
 /// Coarsest step between coordinates, metres.
 const MAX_STEP: f64 = 0.001;
 
 /// Writes `cloud` with its attributes, `extra` columns as extra bytes, and `records` as further variable length
 /// records; compressed where the extension is `laz`.
 ///
-/// Attributes beyond the standard fields (scanner index) become extra bytes too. Where the cloud has no return numbers,
-/// each point is the only return of its pulse and the file says that these numbers are synthetic.
+/// Where the points come from LAS files, their records are copied with the columns as further extra bytes. Otherwise
+/// attributes beyond the standard fields (normals, scanner index) become extra bytes, and where the cloud has no return
+/// numbers, each point is the only return of its pulse and the file says that these numbers are synthetic.
 pub(crate) fn write(
     output: Output<'_>,
     cloud: &PointCloud,
@@ -36,8 +43,54 @@ pub(crate) fn write(
     records: &[Vlr],
 ) -> Result<WriteReport> {
     let name = output.name().to_owned();
-    let las_error = |e: las::Error| Error::malformed(&name, format!("cannot be written: {e}"));
+    let Some(mut copy) = RecordCopy::of(cloud, extra) else { return write_anew(output, cloud, extra, records) };
+    let (mut builder, mut results) = copy.builder()?;
+    builder.gps_time_type = gps_time_type(cloud);
+    builder.vlrs.extend_from_slice(records);
+    if builder.point_format.is_extended && !builder.vlrs.iter().chain(&builder.evlrs).any(|r| r.record_id == 2112) {
+        builder.vlrs.extend(crs_records(cloud));
+    }
+    let kept: Vec<[u8; 192]> = copy.extra_descriptions().collect();
+    results.extend(extra.iter().map(|column| column.name.chars().take(MAX_NAME).collect()));
+    let length = copy.length();
+    let header = finished(&name, builder, (&output.extension(), length), &kept, extra, &results)?;
+    let mut copied = copy.records(extra);
+    let mut has_changed = false;
+    let mut next = |header: &las::Header| {
+        let next = copied.next(header);
+        has_changed |= next.is_err();
+        next
+    };
+    let written = if output.is_path() {
+        put_file(&name, header, &mut next).map(|()| None)
+    } else {
+        encode(&name, Cursor::new(Vec::new()), header, &mut next).map(Some)
+    };
+    match written {
+        Ok(bytes) => {
+            if let Some(bytes) = bytes {
+                output.write(|name, output| output.write_all(bytes.get_ref()).map_err(Error::io(name)))?;
+            }
+            Ok(WriteReport { point_count: cloud.len(), left_out: copy.lost(), clamped_count: 0 })
+        }
+        // the files are not those any more that were read: what is known of their points is written
+        Err(_) if has_changed => write_anew(output, cloud, extra, records),
+        Err(error) => Err(error),
+    }
+}
+
+/// Writes what `cloud` holds.
+fn write_anew(output: Output<'_>, cloud: &PointCloud, extra: &[Column<'_>], records: &[Vlr]) -> Result<WriteReport> {
+    let name = output.name().to_owned();
     let mut columns = extra.to_vec();
+    let has_normals = |column: &Column<'_>| column.name.eq_ignore_ascii_case(NORMALS[0]);
+    if let Some(normals) = cloud.attributes.normals.as_ref().filter(|_| !extra.iter().any(has_normals)) {
+        columns.extend(NORMALS.into_iter().enumerate().map(|(axis, name)| Column {
+            name: name.into(),
+            description: "unit normal".into(),
+            values: ColumnValues::F32(normals.iter().map(|n| n[axis]).collect()),
+        }));
+    }
     if let Some(index) = &cloud.attributes.scanner_index {
         columns.push(Column {
             name: "scanner_index".into(),
@@ -46,82 +99,106 @@ pub(crate) fn write(
         });
     }
     let mut builder = Builder::from((1, 4));
-    builder.point_format =
-        las::point::Format::new(if cloud.attributes.color.is_some() { 7 } else { 6 }).map_err(las_error)?;
-    builder.point_format.is_compressed = output.extension() == "laz";
-    let extra_bytes: usize = columns.iter().map(|c| c.values.width()).sum();
+    builder.point_format = las::point::Format::new(if cloud.attributes.color.is_some() { 7 } else { 6 })
+        .map_err(|e| Error::malformed(&name, format!("cannot be written: {e}")))?;
+    builder.system_identifier = "OTHER".to_owned();
+    builder.gps_time_type = gps_time_type(cloud);
+    builder.has_synthetic_return_numbers = cloud.attributes.return_number.is_none();
+    builder.transforms = transforms(cloud);
+    builder.vlrs.extend(crs_records(cloud));
+    builder.vlrs.extend_from_slice(records);
+    let length = usize::from(builder.point_format.len());
+    let results: Vec<String> = extra.iter().map(|column| column.name.chars().take(MAX_NAME).collect()).collect();
+    let header = finished(&name, builder, (&output.extension(), length), &[], &columns, &results)?;
+    let mut encoder = Encoder { cloud, columns: &columns, transforms: *header.transforms(), next: 0, clamped_count: 0 };
+    let mut next = |header: &las::Header| Ok(encoder.next(header));
+    if output.is_path() {
+        put_file(&name, header, &mut next)?;
+    } else {
+        // The LAS writer wants to own what it writes to; a borrowed writer gets the finished file.
+        output.write(|name, output| {
+            let bytes = encode(name, Cursor::new(Vec::new()), header, &mut next)?;
+            output.write_all(bytes.get_ref()).map_err(Error::io(name))
+        })?;
+    }
+    let of_las = |file: &CloudFile| matches!(source::extension(&file.path).as_str(), "las" | "laz");
+    let mut left_out = not_in_cloud(cloud);
+    if cloud.files.files.iter().any(of_las) {
+        left_out.extend(cloud.files.files.iter().flat_map(|file| file.records.iter().cloned()));
+        left_out.push("steps of coordinates and point format of the input".to_owned());
+    }
+    Ok(WriteReport { point_count: cloud.len(), left_out, clamped_count: encoder.clamped_count })
+}
+
+/// The header of a file whose points have `length` bytes before `columns`, with the descriptions of the extra bytes
+/// among these and of the columns.
+fn finished(
+    name: &Path,
+    mut builder: Builder,
+    (extension, length): (&str, usize),
+    kept: &[[u8; 192]],
+    columns: &[Column<'_>],
+    results: &[String],
+) -> Result<las::Header> {
+    builder.generating_software = "belvedere".to_owned();
+    builder.point_format.is_compressed = extension == "laz";
+    builder.point_format.extra_bytes = 0;
+    let fields = usize::from(builder.point_format.len());
+    let extra_bytes: usize = length.saturating_sub(fields) + columns.iter().map(|c| c.values.width()).sum::<usize>();
     builder.point_format.extra_bytes = u16::try_from(extra_bytes).unwrap_or(u16::MAX);
-    if usize::from(builder.point_format.extra_bytes) != extra_bytes {
+    // a record has its fields too
+    if extra_bytes + fields > usize::from(u16::MAX) {
         return Err(Error::InvalidParameter {
             parameter: Parameter::ResultColumns,
             value: format!("{} in number", columns.len()),
             expected: "few enough for 65535 bytes per point",
         });
     }
-    builder.generating_software = "belvedere".to_owned();
-    builder.system_identifier = "OTHER".to_owned();
-    builder.gps_time_type = match cloud.attributes.gps_time_kind {
-        GpsTimeKind::SecondsOfWeek => GpsTimeType::Week,
-        GpsTimeKind::AdjustedStandard => GpsTimeType::Standard,
-    };
-    builder.has_synthetic_return_numbers = cloud.attributes.return_number.is_none();
-    builder.transforms = transforms(cloud);
-    builder.vlrs.extend(crs_records(cloud));
-    if !columns.is_empty() {
+    if extra_bytes > 0 {
         builder.vlrs.push(Vlr {
             user_id: "LASF_Spec".to_owned(),
             record_id: 4,
             description: "extra bytes".to_owned(),
-            data: columns.iter().flat_map(descriptor).collect(),
+            data: kept.iter().copied().chain(columns.iter().map(descriptor)).flatten().collect(),
         });
     }
-    builder.vlrs.extend_from_slice(records);
-    let header = builder.into_header().map_err(las_error)?;
-
-    let clamped_count = if output.is_path() {
-        atomic::write(&name, |file| {
-            let file = file.get_ref().try_clone().map_err(Error::io(&name))?;
-            Ok(encode(&name, file, header, cloud, &columns)?.1)
-        })?
-    } else {
-        // The LAS writer wants to own what it writes to; a borrowed writer gets the finished file.
-        output.write(|name, output| {
-            let (bytes, clamped) = encode(name, Cursor::new(Vec::new()), header, cloud, &columns)?;
-            output.write_all(bytes.get_ref()).map_err(Error::io(name))?;
-            Ok(clamped)
-        })?
-    };
-    let normals_requested = extra.iter().any(|c| c.name.eq_ignore_ascii_case("NormalX"));
-    let left_out = if cloud.attributes.normals.is_some() && !normals_requested { vec!["normals"] } else { Vec::new() };
-    Ok(WriteReport { point_count: cloud.len(), left_out, clamped_count })
+    if !results.is_empty() {
+        builder.vlrs.push(results_record(results));
+    }
+    builder.into_header().map_err(|e| Error::malformed(name, format!("cannot be written: {e}")))
 }
 
-/// Writes header and points to `output`; gives it back, with the number of values that were cut to their field.
+fn gps_time_type(cloud: &PointCloud) -> GpsTimeType {
+    match cloud.attributes.gps_time_kind {
+        GpsTimeKind::SecondsOfWeek => GpsTimeType::Week,
+        GpsTimeKind::AdjustedStandard => GpsTimeType::Standard,
+    }
+}
+
+/// The next points of a file with that header; `None` at the end.
+type NextPoints<'n> = dyn FnMut(&las::Header) -> Result<Option<PointData>> + 'n;
+
+/// Writes the file at a path.
+fn put_file(name: &Path, header: las::Header, next: &mut NextPoints<'_>) -> Result<()> {
+    atomic::write(name, |file| {
+        let file = file.get_ref().try_clone().map_err(Error::io(name))?;
+        encode(name, file, header, next).map(|_| ())
+    })
+}
+
+/// Writes header and points to `output`, and gives it back.
 fn encode<W: WriteSeek + Send + Sync + 'static>(
     name: &Path,
     output: W,
     header: las::Header,
-    cloud: &PointCloud,
-    columns: &[Column<'_>],
-) -> Result<(W, usize)> {
+    next: &mut NextPoints<'_>,
+) -> Result<W> {
     let las_error = |e: las::Error| Error::malformed(name, format!("cannot be written: {e}"));
     let failure = Arc::new(Mutex::new(None));
     let latched = Latched { inner: BufWriter::with_capacity(1 << 18, output), failure: Arc::clone(&failure) };
     let mut writer = las::Writer::new(latched, header).map_err(las_error)?;
-    let encoder = Encoder { cloud, columns, transforms: *writer.header().transforms() };
-    let clamped = AtomicUsize::new(0);
-    for start in (0..cloud.len()).step_by(POINTS_PER_SLAB) {
-        let mut slab = PointDataBuilder::new().for_header(writer.header()).build();
-        let record_bytes = slab.record_len();
-        slab.resize_for(POINTS_PER_SLAB.min(cloud.len() - start)).par_chunks_mut(record_bytes).enumerate().for_each(
-            |(i, record)| {
-                let count = encoder.encode(record, start + i);
-                if count > 0 {
-                    clamped.fetch_add(count, Ordering::Relaxed);
-                }
-            },
-        );
-        writer.write_points(&slab).map_err(las_error)?;
+    while let Some(points) = next(writer.header())? {
+        writer.write_points(&points).map_err(las_error)?;
     }
     writer.close().map_err(las_error)?;
     let mut latched = writer.into_inner().map_err(las_error)?;
@@ -129,8 +206,7 @@ fn encode<W: WriteSeek + Send + Sync + 'static>(
     if let Some(error) = failure.lock().unwrap_or_else(PoisonError::into_inner).take() {
         return Err(Error::io(name)(error));
     }
-    let output = latched.inner.into_inner().map_err(|e| Error::io(name)(e.into_error()))?;
-    Ok((output, clamped.into_inner()))
+    latched.inner.into_inner().map_err(|e| Error::io(name)(e.into_error()))
 }
 
 /// A writer that keeps its first error and swallows what follows: the LAS writer closes itself when it is dropped and
@@ -242,9 +318,34 @@ struct Encoder<'a> {
     cloud: &'a PointCloud,
     columns: &'a [Column<'a>],
     transforms: Vector<Transform>,
+    /// First point that is not encoded yet.
+    next: usize,
+    /// Values that were cut to their field.
+    clamped_count: usize,
 }
 
 impl Encoder<'_> {
+    /// The next points for a file with that header; `None` at the end.
+    fn next(&mut self, header: &las::Header) -> Option<PointData> {
+        let (start, left) = (self.next, self.cloud.len() - self.next);
+        if left == 0 {
+            return None;
+        }
+        let mut slab = PointDataBuilder::new().for_header(header).build();
+        let record_bytes = slab.record_len();
+        let clamped = AtomicUsize::new(0);
+        let this = &*self;
+        slab.resize_for(POINTS_PER_SLAB.min(left)).par_chunks_mut(record_bytes).enumerate().for_each(|(i, record)| {
+            let count = this.encode(record, start + i);
+            if count > 0 {
+                clamped.fetch_add(count, Ordering::Relaxed);
+            }
+        });
+        self.next += slab.len();
+        self.clamped_count += clamped.into_inner();
+        Some(slab)
+    }
+
     /// Fills a record of point format 6 or 7 with point `index`; returns how many values were cut to their field.
     fn encode(&self, record: &mut [u8], index: usize) -> usize {
         let a = &self.cloud.attributes;

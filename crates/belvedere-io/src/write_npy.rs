@@ -26,7 +26,7 @@ pub(crate) fn write_array<T: AutoSerialize>(
 pub(crate) fn write_coordinates(output: Output<'_>, cloud: &PointCloud) -> Result<WriteReport> {
     let coordinates = cloud.positions.iter().flat_map(|&p| cloud.frame.to_file_coordinates(p));
     write_array(output, &[cloud.len(), 3], coordinates)?;
-    let left_out = cloud.attributes.columns().into_iter().map(|(name, _)| name).collect();
+    let left_out = cloud.attributes.columns().into_iter().map(|(name, _)| name.to_owned()).collect();
     Ok(WriteReport { point_count: cloud.len(), left_out, clamped_count: 0 })
 }
 

@@ -277,6 +277,8 @@ fn find_start<R: BufRead>(path: &Path, part: &mut FilePart, lines: &mut XyzLines
         return Err(Error::malformed(path, what));
     }
     let (columns, names) = names.unwrap_or_else(|| (guess_columns(part, separator, &ahead), Vec::new()));
+    let without_role = names.iter().filter(|name| role_of(name).is_none());
+    part.other_attributes.extend(without_role.cloned());
     if separator.split(first).count() > columns.len() {
         part.note(format!("columns ignored: all after number {}", columns.len()));
     }

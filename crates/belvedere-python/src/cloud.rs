@@ -3,7 +3,10 @@
 use crate::arrays::{PositionArray, column, fixed_rows, to_1d, to_2d};
 use crate::errors::{belvedere_error, exception, wrong};
 use crate::system::System;
+use crate::targets::remarks_of;
 use crate::work::run;
+use belvedere::apps::ask::remark_on_left_out;
+use belvedere::cloud::{CloudFile, CloudFiles, FileRows};
 use belvedere::io::{ReadOptions, Source, UpAxis, Within, read_cloud, write_cloud};
 use belvedere::{Attributes, Frame, GpsTimeKind, PointCloud};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
@@ -154,6 +157,7 @@ impl Cloud {
         adjusted_gps_time: bool,
         scanner_positions: PyReadonlyArray2<'_, f32>,
         crs: System,
+        files: FilesState,
     ) -> PyResult<Self> {
         let cloud = PointCloud {
             frame: Frame { origin, crs: crs.0 },
@@ -162,9 +166,23 @@ impl Cloud {
             scanner_positions: fixed_rows(&scanner_positions, "scanner positions")?,
             // only the cloud of a scene has them
             cleared_places: Vec::new(),
+            files: files_of(files),
         };
         cloud.validate().map_err(exception)?;
         Ok(Self(Arc::new(cloud)))
+    }
+
+    /// The files that the points come from.
+    #[getter]
+    fn files(&self) -> FilesState {
+        let file =
+            |file: &CloudFile| (file.path.clone(), file.row_count, file.other_attributes.clone(), file.records.clone());
+        let files = self.0.files.files.iter().map(file).collect();
+        match &self.0.files.rows {
+            FileRows::All => (files, None, true),
+            FileRows::Of(rows) => (files, Some(rows.clone()), true),
+            FileRows::Unknown => (files, None, false),
+        }
     }
 
     #[getter]
@@ -234,15 +252,30 @@ impl Cloud {
         [bounds.low, bounds.high].map(|corner| self.0.frame.to_file_coordinates(corner))
     }
 
-    fn write(&self, py: Python<'_>, path: PathBuf) -> PyResult<Vec<String>> {
+    /// Writes the cloud, and gives the remarks on what the file has not.
+    fn write<'py>(&self, py: Python<'py>, path: PathBuf) -> PyResult<Vec<Bound<'py, PyDict>>> {
         let cloud = Arc::clone(&self.0);
         let report = run(py, None, move |_| write_cloud(&path, &cloud, &[]))?;
-        Ok(report.left_out.into_iter().map(Into::into).collect())
+        remarks_of(py, &remark_on_left_out(&report.left_out).into_iter().collect::<Vec<_>>())
     }
 
     fn __len__(&self) -> usize {
         self.0.len()
     }
+}
+
+/// Path, number of points, further attributes and records of each file; the rows of the points, unless these are all of
+/// them; and whether the rows are known.
+type FilesState = (Vec<(PathBuf, u64, Vec<String>, Vec<String>)>, Option<Vec<u64>>, bool);
+
+fn files_of((files, rows, is_known): FilesState) -> CloudFiles {
+    let file = |(path, row_count, other_attributes, records)| CloudFile { path, row_count, other_attributes, records };
+    let rows = match rows {
+        _ if !is_known => FileRows::Unknown,
+        Some(rows) => FileRows::Of(rows),
+        None => FileRows::All,
+    };
+    CloudFiles { files: files.into_iter().map(file).collect(), rows }
 }
 
 /// The columns of a dictionary, whose types Python has made right.

@@ -117,11 +117,13 @@ impl PyScene {
         radiation: RadiationKeywords,
         min_area: Option<f64>,
         panel: Option<f64>,
+        min_cells: Option<usize>,
         ground: Option<&str>,
         trees: Through,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<RoofColumns<'py>> {
-        let question = radiation.question(&trees, Some(Roofs { min_area, panel, ground: ground_points(ground)? }))?;
+        let roofs = Roofs { min_area, panel, min_cells, ground: ground_points(ground)? };
+        let question = radiation.question(&trees, Some(roofs))?;
         let scene = Arc::clone(&self.0);
         let of_work = Arc::clone(&scene);
         let answers = run(py, progress, move |control| ask::ask(&of_work, &question, &ask::Places::Scene, control))?;

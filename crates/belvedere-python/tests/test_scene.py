@@ -259,3 +259,85 @@ def test_a_device_changes_no_result(scene, eye, targets):
     else:
         with pytest.raises(belvedere.BelvedereError, match=r"without the cargo feature `gpu`|there is no device 0"):
             scene.with_device(0)
+
+
+def test_a_raster_is_compared_and_computed_cell_by_cell(scene):
+    """As numpy and xarray users expect: elementwise, on the same grid, NaN where there is no value."""
+    lit = scene.shadow(sun=(180, 30), cell=2)
+    known = ~np.isnan(lit.values)
+    assert 0 < known.sum() < known.size, "the tile has cells without a value"
+    for same in (lit == 1, np.float32(1) == lit, lit >= 1, np.equal(lit, 1), np.isclose(lit, 1)):
+        assert np.array_equal(np.asarray(same), np.isclose(lit.values, 1))
+    assert isinstance(lit == 1, belvedere.Raster) and (lit == 1).transform == lit.transform
+    assert (lit == 1).sum() == np.nansum(lit.values) and (lit != 1).values.sum() == known.size - (lit == 1).sum()
+    shade = 1 - lit
+    assert np.array_equal(shade.values, 1 - lit.values, equal_nan=True) and shade.crs == lit.crs
+    assert np.array_equal(((lit + shade) == 1).values, known)
+    assert np.array_equal((lit * lit.values).values, lit.values**2, equal_nan=True)
+    assert np.array_equal(np.sqrt(lit).values, np.sqrt(lit.values), equal_nan=True)
+    assert np.array_equal(lit[lit == 1], lit.values[lit.values == 1])
+    assert np.where(lit == 1, 5, 0).max() == 5 and np.maximum(lit, 0.5).min() == 0.5
+    for truth in (lit, lit == 1):
+        with pytest.raises(ValueError, match="any"):
+            bool(truth)
+    for other in ("lit", None, {}):
+        with pytest.raises(TypeError, match="`values`"):
+            lit == other  # noqa: B015
+    with pytest.raises(belvedere.BelvedereError, match="grid"):
+        lit + scene.shadow(sun=(180, 30), cell=4)
+    with pytest.raises(TypeError, match="values"):
+        np.add(lit, 1, out=lit)
+
+
+def test_means_leave_cells_without_a_value_out(scene, standing):
+    lit = scene.shadow(sun=(180, 30), cell=2)
+    known = lit.values[~np.isnan(lit.values)]
+    for name in ("mean", "sum", "min", "max", "std", "var"):
+        expected = getattr(np, name)(known)
+        for found in (getattr(np, name)(lit), getattr(lit, name)()):
+            assert found == pytest.approx(expected, rel=1e-5), name
+    assert np.mean(lit, axis=0).shape == (lit.shape[1],)
+    # unsigned integers have a number for no value, which counts nowhere
+    seen = scene.viewshed(standing, cell=2)
+    assert seen.values.dtype.kind == "u" and (seen.values == seen.nodata).any()
+    valid = seen.values[seen.values != seen.nodata]
+    assert np.mean(seen) == pytest.approx(valid.mean()) and seen.max() <= 1
+    assert np.nanmean(seen) == pytest.approx(valid.mean()) and np.isnan(np.asarray(seen)).sum() == (
+        seen.values.size - valid.size
+    )
+    assert (seen > 0).sum() == (valid > 0).sum() and seen.any() and not (seen > 1).any()
+
+
+def test_a_table_becomes_a_data_frame_with_its_values(scene, eye, targets):
+    pandas = pytest.importorskip("pandas")
+    sights = scene.line_of_sight(eye, targets)
+    frame = pandas.DataFrame(sights)
+    assert list(frame.columns) == list(sights) and len(frame) == sights.row_count
+    assert frame.equals(sights.to_pandas()) and np.array_equal(frame["answer"], sights["answer"])
+    space = scene.isovist(eye)
+    assert space["blocked_volume_m3"][0] <= space["volume_m3"][0]
+    for raised in (lambda: sights == 1, lambda: np.mean(sights), lambda: scene.sky_view(cell=4) == 1):
+        with pytest.raises(TypeError, match="by name"):
+            raised()
+
+
+def test_a_cloud_is_saved_with_what_its_file_holds(cloud, tile, folder):
+    laspy = pytest.importorskip("laspy")
+    own = laspy.read(tile)
+    rich = laspy.LasData(laspy.LasHeader(point_format=8, version="1.4"))
+    rich.header.scales, rich.header.offsets = [0.01] * 3, np.floor(own.header.mins)
+    rich.header.vlrs.append(laspy.VLR("MyCompany", 7, "of a test", b"flight 12"))
+    rich.add_extra_dim(laspy.ExtraBytesParams("Amplitude", "uint16"))
+    rich.x, rich.y, rich.z = own.x, own.y, own.z
+    rich.classification, rich.return_number, rich.number_of_returns = own.classification, *np.ones((2, len(own)), int)
+    rich.user_data, rich.nir = np.arange(len(own)) % 200, np.arange(len(own)) % 999
+    rich["Amplitude"] = np.arange(len(own)) % 5000
+    rich.write(folder / "rich.laz")
+    pickle.loads(pickle.dumps(belvedere.read(folder / "rich.laz"))).save(folder / "again.laz")
+    again = laspy.read(folder / "again.laz")
+    assert again.header.point_format.id == 8 and list(again.header.scales) == [0.01] * 3
+    for name in ("X", "Y", "Z", "user_data", "nir", "Amplitude", "classification"):
+        assert np.array_equal(again[name], rich[name]), name
+    assert [vlr.record_data for vlr in again.header.vlrs if vlr.user_id == "MyCompany"] == [b"flight 12"]
+    with pytest.warns(belvedere.BelvedereWarning, match="Amplitude, near infrared, user data"):
+        belvedere.read(folder / "rich.laz").save(folder / "again.ply")

@@ -359,7 +359,15 @@ fn cells(
     let gaps = Raster::filled(count, count, f32::NAN);
     let layout = TargetLayout::Cells(Box::new(Ground { grid, heights, gaps }));
     let frame = cloud.frame.clone();
-    Ok(Targets { frame, positions, normals: None, weights: Vec::new(), groups: Vec::new(), layout })
+    Ok(Targets {
+        frame,
+        positions,
+        normals: None,
+        weights: Vec::new(),
+        groups: Vec::new(),
+        layout,
+        on_added: Vec::new(),
+    })
 }
 
 #[cfg(test)]

@@ -144,11 +144,11 @@ pub fn merged_within(
     let (pixels, place, _) = gather(plan, folder, question, &tiles, control)?;
     let description = Some(question.description().to_owned());
     let mut bands = question.bands(pixels.kind()).into_iter().zip(pixels.to_numbers()?);
-    let Some((_, values)) = bands.next() else {
+    let Some((name, values)) = bands.next() else {
         return Err(Error::NoPoints { what: "the result has no band".to_owned() });
     };
     let further_bands = bands.map(|(name, values)| NamedBand { name, values }).collect();
-    Ok(PlacedRaster { values, place: Some(place), description, further_bands })
+    Ok(PlacedRaster { values, name, place: Some(place), description, further_bands })
 }
 
 /// The results of `tiles` that are there, in one raster around all of them.

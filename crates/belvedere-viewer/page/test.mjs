@@ -267,6 +267,46 @@ async function main() {
     await page.evaluate(() => { document.getElementById("zone").value = "Mars"; belvedere.time.zone = "Mars"; belvedere.choose("shadow"); });
     await page.waitForFunction(() => /No answer[\s\S]*Mars/.test(document.getElementById("card").innerText), null, { timeout: 5000 });
   });
+  await step("an empty date and a click beside the cloud are answered in words", async () => {
+    await page.evaluate(() => { belvedere.time.zone = "Europe/Amsterdam"; document.getElementById("zone").value = "Europe/Amsterdam"; belvedere.choose("sun"); });
+    await page.fill("#date", "");
+    await page.dispatchEvent("#date", "change");
+    await page.mouse.click(...roof);
+    await page.waitForFunction(() => /date is missing[\s\S]*Choose a day/.test(document.getElementById("card").innerText), null, { timeout: 5000 });
+    await page.fill("#date", "2026-06-21");
+    await page.dispatchEvent("#date", "change");
+    await page.evaluate(() => belvedere.choose("seen"));
+    const empty = await page.evaluate(() => {
+      for (let y = 80; y < 600; y += 10) for (let x = 320; x < 860; x += 10) if (!belvedere.placeAt(x, y)) return [x, y];
+      return null;
+    });
+    assert.ok(empty, "there is a place without points");
+    await page.mouse.click(...empty);
+    await page.waitForFunction(() => /no point of the cloud[\s\S]*Click on a point/.test(document.getElementById("message").innerText), null, { timeout: 5000 });
+    assert.equal(await page.evaluate(() => belvedere.places.length), 0);
+  });
+  await step("a steep scene is shown whole", async () => {
+    // a slope of 45 degrees, and a mast on its upper end
+    const rows = Array.from({ length: 10_000 }, (_, i) => [2 * (i % 100), 2 * Math.floor(i / 100), 2 * Math.floor(i / 100)]);
+    rows.push([100, 198, 320]);
+    writeFileSync(join(folder, "slope.xyz"), `${rows.map((row) => row.join(" ")).join("\n")}\n`);
+    const { url: other } = await serve("slope.xyz");
+    const shown = await open(browser, other);
+    await shown.waitForFunction(() => window.belvedere?.isLoaded && belvedere.frames > 0, null, { timeout: 30_000 });
+    for (const button of ["#home", "#top"]) {
+      await shown.click(button);
+      await shown.waitForTimeout(200);
+      const [left, top, right, bottom, bar] = await shown.evaluate(() => {
+        const seen = belvedere.cloud.chunks.flatMap(({ low, step, places, count }) => Array.from({ length: count }, (_, i) => belvedere.onScreen([0, 1, 2].map((k) => low[k] + places[4 * i + k] * step[k]))));
+        if (seen.includes(null)) return [-1, -1, -1, -1, 0];
+        const of = (axis, choose) => seen.reduce((v, at) => choose(v, at[axis]), seen[0][axis]);
+        return [of(0, Math.min), of(1, Math.min), of(0, Math.max), of(1, Math.max), document.getElementById("bar").offsetHeight];
+      });
+      assert.ok(left >= 0 && right <= 1280 && top >= bar && bottom <= 720, `${button}: ${[left, top, right, bottom, bar]}`);
+      assert.ok(right - left > 300 || bottom - top > 300, `${button}: it is large enough`);
+    }
+    await shown.close();
+  });
   await step("a page in one file shows the shadows of a day and the views of viewpoints without a server", async () => {
     const viewpoints = ["--observer", "155000,463000", "--observer", "154985,463010,30"];
     execFileSync(program, ["view", "town/cloud.laz", "--export", "page.html", "--date", "2026-06-21", "--zone", "Europe/Amsterdam", ...viewpoints], { cwd: folder, stdio: "ignore" });

@@ -160,7 +160,7 @@ fn check_can_clear(scene: &PageScene, text: &SceneText) -> Result<(), Refusal> {
     let reason = if text.cloud_beside.is_some() {
         "Areas can be cleared only where the balls are built from the cloud: start the program with the cloud alone."
     } else if scene.model().added().is_some() {
-        "Areas are cleared before meshes are added: start the program without --add, and load the mesh here."
+        "Areas are cleared before meshes are added: start Belvedere without the mesh, and load the mesh here."
     } else {
         return Ok(());
     };

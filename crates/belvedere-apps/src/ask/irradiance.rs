@@ -21,6 +21,8 @@ use belvedere_data::{Error, Parameter, Result};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
+/// Least number of cells of a plane that is listed.
+const MIN_CELLS: usize = 10;
 /// Distance from which on a weather file counts as that of another place, metres.
 const FAR: f64 = 50_000.0;
 
@@ -88,6 +90,9 @@ pub struct Roofs {
     pub min_area: Option<f64>,
     /// Side of a panel, metres; `None` for the default of [`RoofPlaneParams`].
     pub panel: Option<f64>,
+    /// Least number of cells of a plane that is listed; smaller ones are counted. `None` for 10: the panels of the
+    /// smallest plant that is worth its inverter.
+    pub min_cells: Option<usize>,
     /// Which points are ground.
     #[serde(skip)]
     pub ground: GroundPoints,
@@ -95,7 +100,7 @@ pub struct Roofs {
 
 impl Default for Roofs {
     fn default() -> Self {
-        Self { min_area: None, panel: None, ground: GroundPoints::Auto }
+        Self { min_area: None, panel: None, min_cells: None, ground: GroundPoints::Auto }
     }
 }
 
@@ -235,7 +240,7 @@ impl Roofs {
         usual.with_min_area(self.min_area.unwrap_or(usual.min_area)).with_cell(self.panel.unwrap_or(usual.cell))
     }
 
-    /// The planes of a scene.
+    /// The planes of a scene that are listed.
     fn find(&self, scene: &Scene, context: &mut Context, control: &Control<'_>) -> Result<Vec<RoofPlane>> {
         let (low, high) = scene.model().bounds().on_map();
         let [x, y, _] = scene.frame().origin;
@@ -244,17 +249,31 @@ impl Roofs {
         let (rows, from) = roof_points(cloud, &known.ground)?;
         let places: Vec<[f32; 3]> = rows.iter().filter_map(|&row| cloud.positions.get(row as usize).copied()).collect();
         let planes = control.stage("detecting roof planes", 0, || roof_planes(&places, &self.params(), control))?;
+        let min_cells = self.min_cells.unwrap_or(MIN_CELLS);
+        let (listed, small): (Vec<RoofPlane>, Vec<RoofPlane>) =
+            planes.into_iter().partition(|plane| plane.cells.count() >= min_cells);
+        let small_area = rounded(small.iter().map(|plane| plane.area).sum(), 1);
         context.report.roofs = Some(RoofsSection {
             source: match from {
                 RoofsFrom::Class => "class 6",
                 RoofsFrom::Height => "height above the ground (no class 6)",
             },
             points: places.len(),
-            points_on_planes: planes.iter().map(|plane| plane.points.len()).sum(),
-            planes: planes.len(),
-            area_m2: rounded(planes.iter().map(|plane| plane.area).sum(), 1),
+            points_on_planes: listed.iter().chain(&small).map(|plane| plane.points.len()).sum(),
+            planes: listed.len(),
+            area_m2: rounded(listed.iter().map(|plane| plane.area).sum(), 1),
+            small_planes: small.len(),
+            small_planes_area_m2: small_area,
         });
-        Ok(planes)
+        if !small.is_empty() {
+            let (count, area) = (small.len(), small_area);
+            let text = format!(
+                "{count} planes of roofs ({area} m²) have fewer than {min_cells} cells for panels and are not listed"
+            );
+            let remark = Remark::note("small-roof-planes", text).with("count", count as f64).with("area_m2", area);
+            context.add(Some(remark));
+        }
+        Ok(listed)
     }
 }
 

@@ -134,6 +134,8 @@ impl IsovistsResults {
         let count = self.isovists.len();
         let who = if count == 1 { "1 observer".to_owned() } else { format!("{count} observers") };
         context.headline(format!("space seen by {who}: volume {}", spread(&values("volume_m3"), 0, "m³")));
+        let blocked = spread(&values("blocked_volume_m3"), 0, "m³");
+        context.headline(format!("volume in the directions that hit something: {blocked}"));
         context.headline(format!("openness: {}", spread(&values("openness"), 3, "")));
     }
 }

@@ -62,7 +62,7 @@ pub use north::North;
 pub use observers::{Eyes, Standing};
 pub use places::{GridCells, Places, Turned, remark_on_edge};
 pub use protected_view::{ProtectedViewQuestion, ProtectedViewResults};
-pub use remark::{Remark, Severity};
+pub use remark::{Remark, Severity, remark_on_left_out};
 pub use report::Report;
 pub use scene::Scene;
 pub use shadow::{ShadowQuestion, ShadowResults, UNPROVEN};

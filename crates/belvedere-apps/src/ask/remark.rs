@@ -72,6 +72,13 @@ impl Remark {
     }
 }
 
+/// What a user must know of a written file: `names` what the input has and the file has not.
+#[must_use]
+pub fn remark_on_left_out(names: &[String]) -> Option<Remark> {
+    let text = || format!("the output does not have what the input has: {}", names.join(", "));
+    (!names.is_empty()).then(|| Remark::warning("not-written", text()).with("count", names.len() as f64))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

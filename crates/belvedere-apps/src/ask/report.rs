@@ -320,6 +320,8 @@ pub struct RoofsSection {
     pub(super) points_on_planes: usize,
     pub(super) planes: usize,
     pub(super) area_m2: f64,
+    pub(super) small_planes: usize,
+    pub(super) small_planes_area_m2: f64,
 }
 
 /// What lines of sight meet.

@@ -98,8 +98,7 @@ impl Ask for ShadowQuestion {
         let decimals = if self.edges == Edges::Soft { 4 } else { 2 };
         let kind =
             if self.edges == Edges::Hard && light.trees.is_none() { ResultKind::Answer } else { ResultKind::Number };
-        // one raster, with a band for each sun
-        let as_band = |measure: Measure| measure.with_range(Some([0.0, 1.0])).with_kind(kind).as_further_band();
+        let as_band = |measure: Measure| measure.with_range(Some([0.0, 1.0])).with_kind(kind);
         let of_sun = |(sun, values): (&NamedSun, Vec<f32>)| {
             as_band(Measure::new(&sun.column, values).with_description(LIT).with_decimals(decimals))
         };

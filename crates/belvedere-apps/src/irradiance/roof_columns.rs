@@ -18,7 +18,7 @@ pub struct RoofColumn {
 }
 
 /// The columns of `planes` and their energies, `rows`: the middle in the coordinates and unit of the file of `frame`,
-/// areas, tilt, azimuth from true north, energy, and losses. Months where the energies have them.
+/// areas, tilt, azimuth from true north (NaN for level planes), energy, and losses. Months where the energies have them.
 #[must_use]
 pub fn roof_columns(planes: &[RoofPlane], rows: &[RoofIrradiation], frame: &Frame, site: &Site) -> Vec<RoofColumn> {
     let of_planes = |value: &dyn Fn(&RoofPlane) -> f64| -> Vec<f64> { planes.iter().map(value).collect() };
@@ -28,7 +28,8 @@ pub fn roof_columns(planes: &[RoofPlane], rows: &[RoofIrradiation], frame: &Fram
     };
     let scale = frame.crs.metres_per_unit_xyz();
     let middle = |axis: usize| of_planes(&|plane| (plane.middle[axis] + frame.origin[axis]) / scale[axis]);
-    let azimuth = |plane: &RoofPlane| (plane.azimuth() + site.convergence).to_degrees().rem_euclid(360.0);
+    let from_north = |azimuth: f64| (azimuth + site.convergence).to_degrees().rem_euclid(360.0);
+    let azimuth = |plane: &RoofPlane| plane.azimuth().map_or(f64::NAN, from_north);
     let column = |name, values, decimals| RoofColumn { name, values, decimals };
     let mut columns = vec![
         column("x", middle(0), 3),

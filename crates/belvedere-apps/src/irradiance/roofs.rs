@@ -14,8 +14,6 @@ use serde::Serialize;
 
 /// Height of panels above their roof, metres: that of usual rails, which balls of a rough roof do not reach.
 pub const PANEL_HEIGHT: f64 = 0.1;
-/// Cells of a plane that are tried for the place of its horizon.
-const MAX_TRIES: usize = 16;
 
 /// Energy of a plane over a period.
 #[derive(Clone, Debug, PartialEq)]
@@ -83,17 +81,19 @@ pub fn above_roof(place: [f64; 3], normal: [f64; 3]) -> [f32; 3] {
 }
 
 /// Where the horizon of each of `planes` is measured: above the middle of the cell nearest to the middle of the plane
-/// that lies in no ball of `scene`, of the nearest 16; above the nearest cell where all do. With it whether it lies in
-/// none.
+/// over which nothing of `scene` is; above the nearest cell where something is over all of them. With it whether
+/// nothing is. Under a ball, however small, the horizon is 90° all around.
 #[must_use]
 pub fn horizon_places(planes: &[RoofPlane], scene: &MedialScene) -> Vec<([f32; 3], bool)> {
     let of_plane = |plane: &RoofPlane| {
         let distance = |place: &[f64; 3]| length(sub(*place, plane.middle));
         let mut places: Vec<[f64; 3]> = plane.cells.middles().into_iter().map(|(place, _)| place).collect();
         places.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
-        let places: Vec<[f32; 3]> =
-            places.into_iter().take(MAX_TRIES).map(|place| above_roof(place, plane.normal)).collect();
-        let is_open = |place: &&[f32; 3]| scene.enclosure(place.map(f64::from)).ball_count == 0;
+        let places: Vec<[f32; 3]> = places.into_iter().map(|place| above_roof(place, plane.normal)).collect();
+        let is_open = |place: &&[f32; 3]| {
+            let place = place.map(f64::from);
+            scene.enclosure(place).ball_count == 0 && scene.seen_from_surface(place, [0.0, 0.0, 1.0]).is_none()
+        };
         match (places.iter().find(is_open), places.first()) {
             (Some(open), _) => (*open, true),
             (None, Some(first)) => (*first, false),

@@ -21,8 +21,12 @@ impl Isovist {
         let [east, north, up] = self.drift;
         let drift_azimuth = (plan.drift[0].atan2(plan.drift[1]) + grid_north).to_degrees().rem_euclid(360.0);
         let figure = |(name, value, decimals)| IsovistFigure { name, value, decimals };
-        let space =
-            [("volume_m3", self.volume, 2), ("openness", self.openness, 5), ("sky_openness", self.sky_openness, 5)];
+        let space = [
+            ("volume_m3", self.volume, 2),
+            ("blocked_volume_m3", self.blocked_volume, 2),
+            ("openness", self.openness, 5),
+            ("sky_openness", self.sky_openness, 5),
+        ];
         let names = ["range_min_m", "range_mean_m", "range_max_m", "range_variance_m2", "range_skewness"];
         let ranges = statistics(names, &self.ranges);
         let names = [

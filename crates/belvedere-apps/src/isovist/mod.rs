@@ -72,8 +72,11 @@ pub struct Isovist {
     /// south at the left edge over west, north in the middle and east to south again; a row is an elevation, from the
     /// zenith down to the nadir.
     pub panorama: Raster<f32>,
-    /// Volume seen, m³.
+    /// Volume seen, m³. Directions in which nothing blocks reach to the greatest range: a few of them through gaps of
+    /// a wall are most of it.
     pub volume: f64,
+    /// Volume seen in the directions in which something blocks, m³.
+    pub blocked_volume: f64,
     /// Ranges in all directions, each counting by its solid angle, open ones as the greatest range.
     pub ranges: RadialStatistics,
     /// Share of all directions in which nothing blocks within the greatest range, 0 to 1.
@@ -144,7 +147,7 @@ pub fn isovist(scene: &MedialScene, eye: [f64; 3], params: &IsovistParams, contr
 /// `None` where nothing does. It is evaluated on a regular grid of azimuths and elevations, where each ray represents
 /// its cell, and along the horizon.
 ///
-/// The volume is the sum of r³ / 3 over solid angles: exact where ranges are equal, otherwise right to the order of the
+/// Volumes are sums of r³ / 3 over solid angles: exact where ranges are equal, otherwise right to the order of the
 /// square of the step.
 ///
 /// # Errors
@@ -187,7 +190,10 @@ pub fn isovist_of(
         rows().filter(|(_, range)| range.is_none()).map(|(w, _)| w.1).sum::<f64>()
             / rows().map(|(w, _)| w.1).sum::<f64>()
     };
-    let volume: f64 = weighted.iter().map(|(range, weight)| weight * range.powi(3) / 3.0).sum();
+    let cone = |(range, weight): &(f64, f64)| weight * range.powi(3) / 3.0;
+    let volume: f64 = weighted.iter().map(cone).sum();
+    let blocked = weighted.iter().zip(&ranges).filter(|(_, range)| range.is_some());
+    let blocked_volume: f64 = blocked.map(|(weighted, _)| cone(weighted)).sum();
     let mut drift = [0.0; 3];
     for (at, (range, weight)) in weighted.iter().enumerate() {
         // the middle of a cone lies at three quarters of its height
@@ -201,6 +207,7 @@ pub fn isovist_of(
     Ok(Isovist {
         panorama: Raster::from_values(width, height, panorama)?,
         volume,
+        blocked_volume,
         ranges: RadialStatistics::of(&weighted),
         openness: open(0, height),
         sky_openness: open(0, height / 2),

@@ -1,4 +1,4 @@
-//! The cells of a plane: where panels would lie.
+//! The cells of a plane: where it is, and where panels would lie.
 
 use super::fit::{PlaneFit, axes};
 use belvedere_data::raster::Raster;
@@ -8,6 +8,13 @@ use belvedere_data::vector::{dot, sub};
 const MAX_CELLS: f64 = 20_000.0;
 /// Shares of a side by which cells are shifted to measure an area.
 const SHIFTS: [f64; 4] = [0.125, 0.375, 0.625, 0.875];
+/// Points of a cell of the extent of a plane: of so many, cells that the outline crosses reach over it by as much as
+/// they lack ([`area`] has the formula), and few cells within it are empty by chance.
+const POINTS_OF_CELL: f64 = 2.0;
+/// Least side of a cell of an extent, metres: outlines of denser clouds need not be finer.
+const MIN_EXTENT_CELL: f64 = 0.2;
+/// Holes of an extent up to this area belong to it, m²: chimneys, windows and dormers.
+const MAX_HOLE: f64 = 2.0;
 
 /// Square cells in a plane, rows along its contour lines from its lower edge up.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,8 +27,8 @@ pub struct PlaneCells {
     pub along: [f64; 3],
     /// Unit vector from row to row, up the slope.
     pub up: [f64; 3],
-    /// On which cells a panel can lie: their middle is among points of the plane, and nothing stands on them; row 0
-    /// lowest.
+    /// The cells; row 0 lowest. Of panels those on which one can lie: their middle is among points of the plane, and
+    /// nothing stands on them.
     pub filled: Raster<bool>,
 }
 
@@ -44,6 +51,14 @@ impl PlaneCells {
             .map(|i| cells.filled.values()[i] && is_usable(&cells, cells.middle(i % width, i / width)))
             .collect();
         cells.filled.values_mut().copy_from_slice(&keep);
+        cells
+    }
+
+    /// The plane of `area` m² that `rows` among `points` were drawn from, without holes that are small.
+    pub(super) fn extent(points: &[[f32; 3]], rows: &[u32], plane: &PlaneFit, area: f64) -> Self {
+        let cell = (POINTS_OF_CELL * area / (rows.len().max(1) as f64)).sqrt().max(MIN_EXTENT_CELL);
+        let mut cells = Self::of(points, rows, plane, cell, |_, _| true);
+        fill_holes(&mut cells.filled, MAX_HOLE / (cells.cell * cells.cell));
         cells
     }
 
@@ -117,6 +132,29 @@ fn filled(flat: &[[f64; 2]], cell: f64, shift: f64) -> (Raster<bool>, [f64; 2], 
         }
     }
     (without_gaps(&filled), low, cell)
+}
+
+/// Fills groups of at most `max_count` empty cells that filled ones enclose.
+fn fill_holes(cells: &mut Raster<bool>, max_count: f64) {
+    let (width, height) = (cells.width(), cells.height());
+    let mut is_seen = cells.values().to_vec();
+    for first in 0..is_seen.len() {
+        let (mut group, mut next, mut is_enclosed) = (Vec::new(), vec![first], true);
+        while let Some(at) = next.pop() {
+            if std::mem::replace(&mut is_seen[at], true) {
+                continue;
+            }
+            group.push(at);
+            let (column, row) = (at % width, at / width);
+            is_enclosed &= column > 0 && row > 0 && column + 1 < width && row + 1 < height;
+            let beside = [(column > 0, 1), (row > 0, width)].into_iter().filter(|(has, _)| *has).map(|(_, by)| at - by);
+            let beyond = [(column + 1 < width, 1), (row + 1 < height, width)];
+            next.extend(beside.chain(beyond.into_iter().filter(|(has, _)| *has).map(|(_, by)| at + by)));
+        }
+        if is_enclosed && group.len() as f64 <= max_count {
+            group.into_iter().for_each(|at| cells.values_mut()[at] = true);
+        }
+    }
 }
 
 /// How many cells `point_count` points that fill these were drawn from.

@@ -23,6 +23,10 @@ pub const BUILDING: u8 = 6;
 /// Least side of a cell, metres: points do not tell more, and the cells of a whole town would fill the memory.
 const MIN_CELL: f64 = 0.1;
 
+/// Tilt up to which a plane is level and faces nowhere, radians: roofs that are called flat have 2 to 3 % of slope for
+/// the rain, and a few of these degrees are noise.
+const MAX_LEVEL: f64 = 2.0 * std::f64::consts::PI / 180.0;
+
 /// How planes are found.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
@@ -110,6 +114,8 @@ pub struct RoofPlane {
     pub roughness: f64,
     /// Its cells.
     pub cells: PlaneCells,
+    /// The plane itself, chimneys and the like on it included, in cells as small as its points allow.
+    pub extent: PlaneCells,
     /// Area in the plane, m², chimneys and the like on it included.
     pub area: f64,
 }
@@ -127,10 +133,10 @@ impl RoofPlane {
         self.cells.count() as f64 * self.cells.cell.powi(2)
     }
 
-    /// Azimuth that it faces, clockwise from grid north, radians, 0 to 2π; means little where it is level.
+    /// Azimuth that it faces, clockwise from grid north, radians, 0 to 2π; `None` where it is level.
     #[must_use]
-    pub fn azimuth(&self) -> f64 {
-        self.normal[0].atan2(self.normal[1]).rem_euclid(TAU)
+    pub fn azimuth(&self) -> Option<f64> {
+        (self.tilt() > MAX_LEVEL).then(|| self.normal[0].atan2(self.normal[1]).rem_euclid(TAU))
     }
 }
 
@@ -164,7 +170,9 @@ pub fn roof_planes(points: &[[f32; 3]], params: &RoofPlaneParams, control: &Cont
             let fits = |cells: &PlaneCells, middle| room.fits(number, cells, fit.normal, middle);
             let cells = PlaneCells::of(points, &rows, &fit, params.cell, fits);
             let area = cells::area(points, &rows, &fit, params.cell);
-            RoofPlane { points: rows, middle: fit.middle, normal: fit.normal, roughness: fit.roughness, cells, area }
+            let extent = PlaneCells::extent(points, &rows, &fit, area);
+            let (middle, normal, roughness) = (fit.middle, fit.normal, fit.roughness);
+            RoofPlane { points: rows, middle, normal, roughness, cells, extent, area }
         })
         .filter(|plane| plane.cells.count() > 0)
         .collect();

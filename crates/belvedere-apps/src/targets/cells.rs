@@ -117,7 +117,11 @@ impl Targets {
     pub fn set_on_added(&mut self, added: &AddedMeshes, params: &CellParams) -> usize {
         let TargetLayout::Cells(ground) = &mut self.layout else { return 0 };
         if params.level == CellLevel::Surface {
+            let before = ground.heights.clone();
             added.raise(&mut ground.heights, &ground.grid);
+            let heights = ground.heights.values().iter().zip(before.values());
+            let on_added: Vec<bool> = heights.map(|(after, before)| after.to_bits() != before.to_bits()).collect();
+            self.on_added = if on_added.contains(&true) { on_added } else { Vec::new() };
             self.positions = cell_targets(ground, params.height);
             return 0;
         }

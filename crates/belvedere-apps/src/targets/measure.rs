@@ -17,8 +17,6 @@ pub struct Measure {
     pub range: Option<[f64; 2]>,
     /// What its values are, which decides the type of its raster. Default: numbers.
     pub kind: ResultKind,
-    /// Whether it is a band of the raster of the first measure rather than a raster of its own. Default: its own.
-    pub is_further_band: bool,
     /// (M), NaN where there is none.
     pub values: Vec<f32>,
 }
@@ -39,7 +37,7 @@ impl Measure {
     #[must_use]
     pub fn new(name: &str, values: Vec<f32>) -> Self {
         let (name, kind) = (name.to_owned(), ResultKind::Number);
-        Self { name, description: "", decimals: 4, range: None, kind, is_further_band: false, values }
+        Self { name, description: "", decimals: 4, range: None, kind, values }
     }
 
     /// This with another description.
@@ -64,12 +62,6 @@ impl Measure {
     #[must_use]
     pub fn with_kind(self, kind: ResultKind) -> Self {
         Self { kind, ..self }
-    }
-
-    /// This as a band of the raster of the first measure.
-    #[must_use]
-    pub fn as_further_band(self) -> Self {
-        Self { is_further_band: true, ..self }
     }
 
     /// The same measure of no target.

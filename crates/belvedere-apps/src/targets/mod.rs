@@ -54,6 +54,8 @@ pub struct Targets {
     pub groups: Vec<Range<usize>>,
     /// What targets are.
     pub layout: TargetLayout,
+    /// Whether each target stands on top of a mesh that was added, (M); empty where none does.
+    pub on_added: Vec<bool>,
 }
 
 /// What targets are, with what is needed to write their values.
@@ -81,7 +83,7 @@ impl Targets {
     }
 
     fn at(frame: Frame, positions: Vec<[f32; 3]>, normals: Option<Vec<[f32; 3]>>, layout: TargetLayout) -> Self {
-        Self { frame, positions, normals, weights: Vec::new(), groups: Vec::new(), layout }
+        Self { frame, positions, normals, weights: Vec::new(), groups: Vec::new(), layout, on_added: Vec::new() }
     }
 
     /// Number of targets, including those that are left out.

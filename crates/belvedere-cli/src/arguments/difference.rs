@@ -13,9 +13,13 @@ pub(crate) struct DifferenceArguments {
     pub(crate) after: PathBuf,
     /// Raster of the change (.tif), map with a legend of gains and losses (.png) or table of sums (.csv); repeatable
     ///
-    /// .tif: value after less value before, nodata -9999 where either has no value.
+    /// .tif: value after less value before, nodata -9999 where either has no value. Cells on top of what was added
+    /// (--surface with --add) are other places than before, and are not compared.
     #[arg(short, long, value_name = "OUT", required = true, help_heading = "Result")]
     pub(crate) output: Vec<PathBuf>,
+    /// Cloud, or raster of heights with the same cells (.tif), whose relief the map shows
+    #[arg(long, value_name = "FILE", help_heading = "Result")]
+    pub(crate) relief: Option<PathBuf>,
     /// Title of the map [default: the names of the two files]
     #[arg(long, value_name = "TEXT", help_heading = "Result")]
     pub(crate) title: Option<String>,

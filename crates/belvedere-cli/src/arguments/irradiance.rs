@@ -45,9 +45,13 @@ pub(crate) struct IrradianceArguments {
     #[arg(long, value_name = "M", requires = "planes", value_parser = above_zero::<f64>, allow_negative_numbers = true,
         help_heading = "Roofs")]
     pub(crate) panel: Option<f64>,
+    /// Minimum number of cells of a roof plane that is listed; smaller planes are only counted [default: 10]
+    #[arg(long = "min-cells", value_name = "N", requires = "planes", help_heading = "Roofs")]
+    pub(crate) min_cells: Option<usize>,
     /// Also write the horizon of each roof plane into this folder (for PVGIS); created if it does not exist
     ///
-    /// One elevation in degrees for each of 48 azimuths, clockwise from true north, from the middle of the plane.
+    /// One elevation in degrees for each of 48 azimuths, clockwise from true north, from the cell
+    /// nearest to the middle of the plane that has nothing above it.
     #[arg(long, value_name = "DIR", requires = "planes", help_heading = "Roofs")]
     pub(crate) horizons: Option<PathBuf>,
     /// Also report the energy of each month
@@ -103,8 +107,8 @@ pub(crate) struct RadiationChoice {
 pub(crate) struct IrradianceOutputs {
     /// Raster (.tif), map (.png), points (.laz .las .ply .csv) or mesh table (.csv .ply); repeatable
     ///
-    /// On a grid: .tif is the raster of the total with nodata -9999, and .png a map with a legend. Cells and points:
-    /// all measures as columns. A mesh: a table with a row for each object and each face (.csv), or the mesh coloured
+    /// On a grid: .tif has all measures as bands, the total first, with nodata -9999, and .png is a map of the total
+    /// with a legend. Cells and points: all measures as columns. A mesh: a table with a row for each object and each face (.csv), or the mesh coloured
     /// by the total (.ply).
     #[arg(short, long, value_name = "OUT", required_unless_present = "planes", help_heading = "Result")]
     pub(crate) output: Vec<PathBuf>,

@@ -5,11 +5,15 @@ use crate::arguments::{DifferenceArguments, Global};
 use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::{Result, bail};
-use belvedere::apps::difference::{clear_unproven, difference};
+use belvedere::apps::ask::Remark;
+use belvedere::apps::difference::{clear_added, clear_unproven, difference};
 use belvedere::figures::write_png;
-use belvedere::io::{Georeference, PlacedRaster, TableCells, read_tif, write_table, write_tif_f32};
+use belvedere::io::{
+    BandValues, Bands, Georeference, NamedBand, PlacedRaster, ReadOptions, TableCells, read_cloud, read_tif,
+    write_table, write_tif_bands,
+};
 use belvedere::raster::Raster;
-use belvedere::results::{ResultKind, UNPROVEN_BAND, difference_map};
+use belvedere::results::{ADDED_BAND, ResultKind, UNPROVEN_BAND, difference_map, relief_of};
 use std::path::Path;
 
 /// Share of a cell by which two rasters may lie apart and still have the same cells.
@@ -40,9 +44,6 @@ pub(crate) fn run(arguments: &DifferenceArguments, global: &Global) -> Result<Su
         let band = raster.further_bands.iter().find(|band| band.name == UNPROVEN_BAND);
         let unproven = band.map_or(&[][..], |band| band.values.values());
         let unproven = clear_unproven(raster.values.values_mut(), unproven, raster.description.as_deref());
-        if raster.further_bands.iter().any(|band| band.name != UNPROVEN_BAND) {
-            run.summary.warn("bands-left-out", format!("{}: only the first band is compared", path.display()));
-        }
         if unproven > 0 {
             run.summary.warn(
                 "unproven-cells-left-out",
@@ -50,16 +51,21 @@ pub(crate) fn run(arguments: &DifferenceArguments, global: &Global) -> Result<Su
             );
         }
     }
+    leave_out_added(&mut before, &mut after, &mut run.summary);
+    let relief = arguments.relief.as_deref().map(|path| relief(path, &before, &mut run)).transpose()?;
     let place = before.place.as_ref();
     let unit = place.map_or(1.0, |place| place.crs.metres_per_unit);
     let [column, row] = place.map_or([[1.0, 0.0], [0.0, -1.0]], |place| [place.column_step, place.row_step]);
     let cell_area = (column[0] * row[1] - column[1] * row[0]).abs() * unit * unit;
     let change = difference(before.values.values(), after.values.values(), cell_area)?;
-    let values = Raster::from_values(before.values.width(), before.values.height(), change.values)?;
+    let size = [before.values.width(), before.values.height()];
+    let values = Raster::from_values(size[0], size[1], change.values)?;
+    let further = further_changes(&before, &after, arguments, &mut run.summary);
     run.summary.add("difference", Summary::of(&change.report));
     let name = |path: &Path| path.file_stem().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     let title = || format!("Change from {} to {}", name(&arguments.before), name(&arguments.after));
     let title = arguments.title.clone().unwrap_or_else(title);
+    let first_name = before.name.clone();
     for output in &arguments.output {
         run.stage("writing", 0, |_| match extension(output).as_str() {
             "csv" => {
@@ -73,8 +79,15 @@ pub(crate) fn run(arguments: &DifferenceArguments, global: &Global) -> Result<Su
                     .collect();
                 write_table(output, &columns)
             }
-            "png" => write_png(output, &difference_map(&values, cell_area.sqrt(), place, &title)?),
-            _ => write_tif_f32(output, &values, place, Some(ResultKind::NO_NUMBER), Some("after less before")),
+            "png" => write_png(output, &difference_map(&values, relief.as_ref(), cell_area.sqrt(), place, &title)?),
+            _ => {
+                let mut names = vec![first_name.clone()];
+                names.extend(further.iter().map(|band| band.name.clone()));
+                let rasters: Vec<Raster<f32>> =
+                    std::iter::once(&values).chain(further.iter().map(|band| &band.values)).cloned().collect();
+                let values = BandValues::F32(&rasters, ResultKind::NO_NUMBER);
+                write_tif_bands(output, &Bands { values, names: &names, description: Some("after less before") }, place)
+            }
         })?;
     }
     run.summary
@@ -85,6 +98,72 @@ pub(crate) fn run(arguments: &DifferenceArguments, global: &Global) -> Result<Su
         .headline("largest gain <difference.largest_gain>, largest loss <difference.largest_loss>");
     run.summary.add("written", arguments.output.iter().map(|path| path.display().to_string()).collect::<Vec<_>>());
     Ok(run.finish())
+}
+
+/// The changes of the further results that both rasters have.
+fn further_changes(
+    before: &PlacedRaster,
+    after: &PlacedRaster,
+    arguments: &DifferenceArguments,
+    summary: &mut Summary,
+) -> Vec<NamedBand> {
+    let results = |raster: &PlacedRaster| -> Vec<NamedBand> {
+        let is_result = |band: &&NamedBand| band.name != UNPROVEN_BAND && band.name != ADDED_BAND;
+        raster.further_bands.iter().filter(is_result).cloned().collect()
+    };
+    let (before_bands, after_bands) = (results(before), results(after));
+    let in_both = |name: &str| before_bands.iter().chain(&after_bands).filter(|band| band.name == name).count() == 2;
+    for (path, bands) in [(&arguments.before, &before_bands), (&arguments.after, &after_bands)] {
+        let others: Vec<&str> =
+            bands.iter().map(|band| band.name.as_str()).filter(|name| name.is_empty() || !in_both(name)).collect();
+        if !others.is_empty() {
+            let text =
+                format!("{}: bands that the other raster has not are left out: {}", path.display(), others.join(", "));
+            summary.warn("bands-left-out", text);
+        }
+    }
+    let change = |mut band: NamedBand| {
+        let other = after_bands.iter().find(|other| other.name == band.name)?;
+        // cells that are not compared have no value in the first band
+        let is_compared = before.values.values().iter().zip(after.values.values());
+        let both = band.values.values_mut().iter_mut().zip(other.values.values()).zip(is_compared);
+        both.for_each(|((own, other), (a, b))| *own = if a.is_nan() && b.is_nan() { f32::NAN } else { other - *own });
+        Some(band)
+    };
+    before_bands.into_iter().filter(|band| !band.name.is_empty()).filter_map(change).collect()
+}
+
+/// Leaves out the cells on top of what was added, before or after, which are reported.
+fn leave_out_added(before: &mut PlacedRaster, after: &mut PlacedRaster, summary: &mut Summary) {
+    let added = |raster: &PlacedRaster| {
+        raster.further_bands.iter().find(|band| band.name == ADDED_BAND).map(|band| band.values.values().to_vec())
+    };
+    let count: usize = [added(before), added(after)]
+        .into_iter()
+        .flatten()
+        .map(|added| clear_added(before.values.values_mut(), after.values.values_mut(), &added))
+        .sum();
+    if count > 0 {
+        let text =
+            format!("{count} cells on top of what was added are not compared: they are other places than before");
+        summary.remarks([Remark::note("cells-on-added-left-out", text).with("count", count as f64)]);
+    }
+}
+
+/// The heights whose relief a map shows: of a cloud, or of a raster of the same cells.
+fn relief(path: &Path, raster: &PlacedRaster, run: &mut CommandContext) -> Result<Raster<f32>> {
+    let size = [raster.values.width(), raster.values.height()];
+    if ["tif", "tiff"].contains(&extension(path).as_str()) {
+        let heights = run.stage("reading relief", 0, |_| read_tif(path))?.values;
+        if [heights.width(), heights.height()] != size {
+            bail!("{}: its cells are not those of the rasters that are compared", path.display());
+        }
+        return Ok(heights);
+    }
+    let Some(place) = &raster.place else { bail!("--relief: the rasters do not say where they lie") };
+    let (cloud, _) = run.stage("reading relief", 0, |control| read_cloud([path], &ReadOptions::new(), control))?;
+    cloud.frame.crs.check_for(&place.crs, "relief", path)?;
+    Ok(relief_of(&cloud, place, size)?)
 }
 
 /// Refuses rasters whose cells are not the same.

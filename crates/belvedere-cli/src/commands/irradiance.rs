@@ -24,8 +24,8 @@ pub(crate) fn run(arguments: &IrradianceArguments, global: &Global) -> Result<Su
     let mut run = CommandContext::new(global);
     let grouping = if arguments.months { Grouping::Months } else { Grouping::Whole };
     let params = radiation::params(&arguments.model).with_grouping(grouping);
-    let roofs =
-        Roofs { min_area: arguments.min_area, panel: arguments.panel, ground: arguments.places.ground.points() };
+    let IrradianceArguments { min_area, panel, min_cells, .. } = *arguments;
+    let roofs = Roofs { min_area, panel, min_cells, ground: arguments.places.ground.points() };
     let question = ask::IrradianceQuestion {
         // a mistyped weather file must not be found out after the balls were made
         radiation: radiation::of(arguments, &params, &run)?,

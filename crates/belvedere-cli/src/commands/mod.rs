@@ -46,8 +46,7 @@ use crate::help;
 use crate::summary::Summary;
 use anyhow::{Context, Result};
 use outputs::{
-    NormalColumns, check_folder, check_output, check_parent, extension, is_folder, is_las, is_written_back,
-    warn_of_geojson,
+    NormalColumns, check_folder, check_output, check_parent, extension, is_folder, is_written_back, warn_of_geojson,
 };
 use std::io::Write;
 

@@ -32,7 +32,7 @@ impl NormalColumns {
     }
 }
 
-pub(super) fn is_las(path: &Path) -> bool {
+fn is_las(path: &Path) -> bool {
     matches!(extension(path).as_str(), "las" | "laz")
 }
 

@@ -1,6 +1,6 @@
 //! `belvedere query`.
 
-use super::{NormalColumns, check_output, extension, is_las, mesh_targets, sights};
+use super::{check_output, extension, mesh_targets, sights};
 use crate::arguments::{Global, Query, Usage};
 use crate::pipeline::{self, KeepPoints, LoadedScene};
 use crate::run::CommandContext;
@@ -48,9 +48,9 @@ pub(crate) fn run(arguments: &Query, global: &Global) -> Result<Summary> {
     if arguments.targets.own && extension(output) == "npy" {
         pipeline::check_every_row(&scene.left_out)?;
     }
-    let rows = rows_as_given(arguments, &scene, &mut run.summary)?;
+    let rows = rows_as_given(arguments, &scene)?;
     let LoadedScene { model, cloud, .. } = scene;
-    let mut targets = targets(arguments, cloud, model.bounds(), &mut run)?;
+    let targets = targets(arguments, cloud, model.bounds(), &mut run)?;
     if arguments.view.kind.viewport.is_none() {
         // a view that fits the scene has no plane of its own that a target could lie before
         views = views.iter().map(|view| view.moved_before(&targets.positions)).collect();
@@ -91,13 +91,6 @@ pub(crate) fn run(arguments: &Query, global: &Global) -> Result<Summary> {
         if let Some(rows) = &rows {
             return write_text_rows(output, rows, &[column]).map(|()| WriteReport::default());
         }
-        if is_las(output)
-            && let Some(normals) = targets.attributes.normals.take()
-        {
-            let normals = NormalColumns::new(&normals);
-            let [x, y, z] = normals.columns(output);
-            return write_cloud(output, &targets, &[x, y, z, column]);
-        }
         write_cloud(output, &targets, &[column])
     })?;
     run.summary.add_writing(&report);
@@ -111,33 +104,21 @@ pub(crate) fn run(arguments: &Query, global: &Global) -> Result<Summary> {
 }
 
 /// The rows of the targets as they were given, where they go from a table to a table.
-fn rows_as_given(arguments: &Query, scene: &LoadedScene, summary: &mut Summary) -> Result<Option<TextRows>> {
+fn rows_as_given(arguments: &Query, scene: &LoadedScene) -> Result<Option<TextRows>> {
     let clouds = &arguments.scene.input.clouds;
     match (&arguments.targets.targets, &clouds[..]) {
-        (Some(path), _) => text_rows_for(path, &arguments.output, summary),
+        (Some(path), _) => text_rows_for(path, &arguments.output),
         (None, [path]) if arguments.targets.own && scene.left_out.left_out_count() == 0 => {
-            text_rows_for(path, &arguments.output, summary)
+            text_rows_for(path, &arguments.output)
         }
         _ => Ok(None),
     }
 }
 
-/// The rows of a table of points for an output that is a table too. Columns that another output has no place for are
-/// reported.
-pub(super) fn text_rows_for(path: &Path, output: &Path, summary: &mut Summary) -> Result<Option<TextRows>> {
+/// The rows of a table of points for an output that is a table too.
+pub(super) fn text_rows_for(path: &Path, output: &Path) -> Result<Option<TextRows>> {
     let is_table = |path: &Path| ["csv", "txt", "xyz"].contains(&extension(path).as_str());
-    if !is_table(path) {
-        return Ok(None);
-    }
-    let rows = read_text_rows(path)?;
-    if is_table(output) {
-        return Ok(Some(rows));
-    }
-    let lost = rows.names_without_role();
-    if !lost.is_empty() {
-        summary.add("columns_not_written", lost);
-    }
-    Ok(None)
+    if is_table(path) && is_table(output) { Ok(Some(read_text_rows(path)?)) } else { Ok(None) }
 }
 
 /// Answers by exact lines of sight, separated into proven and unproven by pulses where these are known.

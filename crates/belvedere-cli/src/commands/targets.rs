@@ -8,7 +8,7 @@ use crate::pipeline::mesh_in;
 use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::Result;
-use belvedere::apps::ask::{GridCells, OnTargets, Places, Scene, Turned};
+use belvedere::apps::ask::{GridCells, OnTargets, Places, Remark, Scene, Turned};
 use belvedere::apps::targets::{CellLevel, Facing, Measure, MeshParams};
 use belvedere::figures::{Picture, write_png};
 use belvedere::ground::{GroundPoints, highest_points};
@@ -171,7 +171,10 @@ impl<'a> TargetOutput<'a> {
         let map = |relief: &HighestPoints| {
             measure_map(&measures[0], &relief.heights, relief.cell, &relief.place, &self.on.title)
         };
-        self.write_with(outputs, measures, &map, run)
+        self.write_with(outputs, measures, &map, run)?;
+        let maps = outputs.output.iter().filter(|output| extension(output) == "png");
+        maps.for_each(|output| run.summary.remarks(remark_on_first(output, measures)));
+        Ok(())
     }
 
     /// Writes all measures to each of the outputs, with maps of one's own.
@@ -197,6 +200,10 @@ impl<'a> TargetOutput<'a> {
                 written.push(path.display().to_string());
             }
         }
+        if matches!(self.source, TargetSource::Mesh(_)) {
+            let meshes = outputs.output.iter().filter(|output| extension(output) == "ply");
+            meshes.for_each(|output| run.summary.remarks(remark_on_first(output, measures)));
+        }
         run.summary.add("written", written);
         Ok(())
     }
@@ -212,7 +219,7 @@ impl<'a> TargetOutput<'a> {
             return Ok(write_png(output, &map(&relief)?)?);
         }
         let rows = match &self.source {
-            TargetSource::File(_, file) => text_rows_for(file, output, summary)?,
+            TargetSource::File(_, file) => text_rows_for(file, output)?,
             _ => None,
         };
         let from = match &self.source {
@@ -224,4 +231,11 @@ impl<'a> TargetOutput<'a> {
         summary.add_writing(&write_measures(output, &self.on.targets, from, measures)?);
         Ok(())
     }
+}
+
+/// What a user must know of a file that has room for one of several measures.
+fn remark_on_first(output: &Path, measures: &[Measure]) -> Option<Remark> {
+    let (output, count, name) = (output.display(), measures.len(), &measures.first()?.name);
+    let text = || format!("{output}: shows {name}, the first of {count} results; .tif and .csv hold all of them");
+    (count > 1).then(|| Remark::note("one-result-of-several", text()).with("count", count as f64))
 }

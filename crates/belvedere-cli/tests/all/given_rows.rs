@@ -47,7 +47,7 @@ fn targets_keep_their_columns_and_coordinates() {
     place.summary("query house.laz --direction 0,0,-1 --targets targets.txt -o down.xyz");
     assert_eq!(place.text("down.xyz"), format!("x y z column_4 answer\n{x} {y} {z} 0.50 1\n"));
     let run = place.summary("query house.laz --sun 180,45 --targets targets.csv -o answers.laz");
-    assert_eq!(run["columns_not_written"], serde_json::json!(["id", "Owner", "note"]));
+    assert_eq!(run["attributes_not_written"], serde_json::json!(["id", "Owner", "note"]));
 }
 
 #[test]

@@ -62,7 +62,16 @@ fn roofs_are_planes_with_bounds_of_their_loss() {
     }
     let area = numbers(&text, "area_m2");
     assert!(area.iter().all(|area| (area - 50.0).abs() < 8.0), "10 m by 5 m each: {area:?}");
-    assert!(place.text("roofs.geojson").contains("max_loss"));
+    let features: serde_json::Value = serde_json::from_str(&place.text("roofs.geojson")).unwrap();
+    let features = features["features"].as_array().unwrap();
+    let kinds: Vec<&str> = features.iter().map(|feature| feature["properties"]["kind"].as_str().unwrap()).collect();
+    assert_eq!(kinds, ["roof", "panels", "roof", "panels"]);
+    assert!(features.iter().all(|feature| feature["properties"]["max_loss"].is_number()));
+    assert_eq!((&summary["roofs"]["small_planes"], &summary["horizons_inside_obstacles"]), (&0.into(), &0.into()));
+    // planes of 10 m by 5 m have at most 50 cells
+    let few = place.summary(&format!("irradiance {HOUSE} --clear-sky haurwitz --planes few.csv --min-cells 60"));
+    assert_eq!((&few["roofs"]["planes"], &few["roofs"]["small_planes"]), (&0.into(), &2.into()));
+    assert!(remarks(&few).iter().any(|remark| remark.contains("2 planes") && remark.contains("60 cells")), "{few}");
     for plane in ["plane_1.txt", "plane_2.txt"] {
         let horizon = place.text(&format!("horizons/{plane}"));
         assert_eq!(horizon.lines().filter(|line| line.parse::<f64>().is_ok()).count(), 48);

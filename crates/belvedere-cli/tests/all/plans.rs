@@ -2,6 +2,7 @@
 
 use crate::common::{EAST, NORTH, Workplace, at, column, house, remarks};
 use belvedere::apps::viewshed::SEEN;
+use belvedere::io::{PlacedRaster, read_tif};
 use belvedere::results::{Pixels, ResultRaster};
 
 const HOUSE: &str = "house.laz --orient given --scene-config ../tau.json";
@@ -162,6 +163,34 @@ fn differences_are_those_of_the_two_results_cell_by_cell() {
     place.refusal(1, "difference before.tif coarse.tif -o change.tif", &["coarse.tif", "--cell"]);
     place.refusal(1, "difference before.tif before.csv -o change.tif", &["before.csv"]);
     place.refusal(2, "difference before.tif after.tif -o change.gif", &["extension"]);
+}
+
+#[test]
+fn the_top_of_what_is_added_is_no_gain_and_a_map_shows_relief() {
+    let place = Workplace::new();
+    place.write_cloud("house.laz", &house());
+    place.write("plan.obj", box_obj([8.0, -2.0], [11.0, 2.0], 9.0));
+    let hours =
+        format!("sun-hours {HOUSE} --ground found --date 2026-03-21 --zone Europe/Amsterdam --cell 1 --surface");
+    place.summary(&format!("{hours} -o before.tif"));
+    place.summary(&format!("{hours} --add plan.obj -o after.tif"));
+    let run = place.summary("difference before.tif after.tif -o level.png -o change.tif");
+    let relief = place.summary("difference before.tif after.tif --relief house.laz -o relief.png");
+    let note = remarks(&run).into_iter().find(|remark| remark.contains("on top of what was added")).unwrap();
+    // cells whose middle is in 3 m by 4 m
+    assert!(note.starts_with("12 cells"), "{note}");
+    assert_eq!((run["difference"]["cells_gain"].as_u64(), &relief["difference"]), (Some(0), &run["difference"]));
+    assert!(run["difference"]["cells_loss"].as_u64().unwrap() > 10, "{run}");
+    assert_ne!(place.bytes("level.png"), place.bytes("relief.png"));
+    // a band for each result, and its change
+    let raster = |name: &str| read_tif(place.path(name)).unwrap();
+    let names = |raster: &PlacedRaster| -> Vec<String> {
+        std::iter::once(&raster.name).chain(raster.further_bands.iter().map(|band| &band.name)).cloned().collect()
+    };
+    let (before, after, change) =
+        (names(&raster("before.tif")), names(&raster("after.tif")), names(&raster("change.tif")));
+    assert!(before.len() > 2 && before == change, "{before:?} {change:?}");
+    assert_eq!(after, [&before[..], &["added".to_owned()]].concat());
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Answers that can be worked out by hand, in every kind of file.
 #![expect(clippy::unwrap_used, reason = "tests stop at the first surprise")]
 
-use crate::common::{Workplace, at, house, house_in_a_field};
+use crate::common::{Workplace, at, house, house_in_a_field, remarks};
 use belvedere::Frame;
 use belvedere::PointCloud;
 use belvedere::crs::Crs;
@@ -380,4 +380,22 @@ fn many_targets_for_few_pixels_are_settled_by_a_certified_map_with_the_same_answ
     assert_eq!(many["answers"]["method"], "lines of sight");
     let [few, many] = ["few.npy", "many.npy"].map(|name| place.npy::<u8>(name).1);
     assert!(few == many && few.contains(&BLOCKED) && few.contains(&VISIBLE) && few.contains(&OUTSIDE));
+}
+
+#[test]
+fn what_the_input_has_and_the_output_has_not_is_one_remark() {
+    let place = Workplace::new();
+    place.write_cloud("house.laz", &house());
+    let query = "--orient given --scene-config ../tau.json --direction 0,0,-1 --self";
+    place.summary(&format!("query house.laz {query} -o first.laz"));
+    // the records of the first result are copied, and its column is replaced
+    let again = place.summary(&format!("query first.laz {query} -o again.laz"));
+    let lost = remarks(&again);
+    assert_eq!(lost.iter().filter(|remark| remark.contains("the earlier values of answer")).count(), 1, "{lost:?}");
+    let table = place.summary(&format!("query first.laz {query} -o again.csv"));
+    assert!(
+        remarks(&table).iter().any(|remark| remark.contains("does not have what the input has: answer")),
+        "{table}"
+    );
+    assert!(remarks(&place.summary(&format!("query house.laz {query} -o plain.csv"))).is_empty());
 }

@@ -1,6 +1,6 @@
 //! Shadows on the command line, around a house whose shadow is known.
 
-use crate::common::{EAST, NORTH, Workplace, at, column, house, is_hidden};
+use crate::common::{EAST, NORTH, Workplace, at, column, house, is_hidden, remarks};
 
 const HOUSE: &str = "house.laz --orient given --scene-config ../tau.json --ground found";
 
@@ -207,4 +207,21 @@ fn what_cannot_be_is_refused_with_advice() {
         "{:?}",
         place.names()
     );
+}
+
+#[test]
+fn a_raster_has_a_band_for_each_sun_named_by_its_time() {
+    let place = place();
+    let day = "--date 2026-06-21 --zone Europe/Amsterdam --time-step-min 120 --cell 2";
+    let run = place.summary(&format!("shadow {HOUSE} {day} -o day.tif -o day.csv -o day.png"));
+    let columns: Vec<String> =
+        place.text("day.csv").lines().next().unwrap().split(',').skip(3).map(str::to_owned).collect();
+    assert!(columns.len() > 5 && columns.iter().all(|name| name.starts_with("lit_20260621_")), "{columns:?}");
+    let raster = belvedere::io::read_tif(place.path("day.tif")).unwrap();
+    let bands: Vec<&str> = std::iter::once(raster.name.as_str())
+        .chain(raster.further_bands.iter().map(|band| band.name.as_str()))
+        .collect();
+    assert_eq!(bands, columns);
+    // a picture has room for one
+    assert!(remarks(&run).iter().any(|remark| remark.contains("day.png") && remark.contains("first of")), "{run}");
 }

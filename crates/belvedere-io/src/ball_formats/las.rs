@@ -5,7 +5,7 @@ use ::las::Vlr;
 use super::{FileBall, as_cloud, index, metadata};
 use crate::las::LasFile;
 use crate::las_extra::ExtraField;
-use crate::laz::ExtraBytes;
+use crate::laz::LazFields;
 use crate::output::Output;
 use crate::part::narrow;
 use crate::source::Input;
@@ -43,7 +43,7 @@ pub(crate) fn read_las(input: Input<'_>) -> Result<ModelParts> {
         return Err(Error::malformed(path, format!("ends after {present} of {announced} balls")));
     }
     let mut rows = Vec::new();
-    let mut batches = file.batches(ExtraBytes::Decompress)?;
+    let mut batches = file.batches(LazFields::AttributesAndExtraBytes)?;
     while let Some(batch) = batches.next()? {
         let records = batch.raw_bytes().chunks_exact(batch.record_len().max(1));
         let centers = batch.x().zip(batch.y()).zip(batch.z());

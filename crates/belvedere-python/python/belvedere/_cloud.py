@@ -14,6 +14,7 @@ import numpy.typing as npt
 from . import _core
 from ._errors import BelvedereWarning, wrong
 from ._inputs import Places, Progress, Source, class_numbers, map_box, native_source, places, reporter
+from ._remarks import warned
 
 #: Attributes of points: their types, and their columns where there are several.
 ATTRIBUTES: Mapping[str, tuple[Any, int]] = {
@@ -170,7 +171,13 @@ class Cloud:
     def save(self, path: str | os.PathLike[str]) -> None:
         """Writes the cloud; the extension selects the format: ``.laz .las .ply .csv .xyz .txt``.
 
-        Warns of attributes that the format has no place for.
+        A ``.laz`` or ``.las`` file of points that were read from such files keeps all that these have: extra bytes,
+        further fields, records of the header, point format and steps of coordinates.
+
+        Warns
+        -----
+        BelvedereWarning
+            Of what the file cannot hold.
 
         Examples
         --------
@@ -178,9 +185,7 @@ class Cloud:
         >>> len(belvedere.read(folder / "cloud.laz")) == len(cloud)
         True
         """
-        left_out = self._core.write(os.fspath(path))
-        if left_out:
-            _warn(f"{os.fspath(path)}: the format has no place for {', '.join(left_out)}")
+        warned(self._core.write(os.fspath(path)))
 
     def __len__(self) -> int:
         return len(self._core)
@@ -203,6 +208,7 @@ class Cloud:
             core.adjusted_gps_time,
             core.scanner_positions,
             core.crs.state,
+            core.files,
         )
         return _unpickled, (state, self.report)
 
@@ -317,7 +323,7 @@ def _column(name: str, values: npt.ArrayLike, count: int) -> npt.NDArray[Any]:
     return converted
 
 
-def _unpickled(state: tuple[Any, Any, Any, bool, Any, Any], report: dict[str, Any]) -> Cloud:
-    origin, positions, attributes, adjusted, scanners, system = state
+def _unpickled(state: tuple[Any, Any, Any, bool, Any, Any, Any], report: dict[str, Any]) -> Cloud:
+    origin, positions, attributes, adjusted, scanners, system, files = state
     crs = _core.Crs.from_state(system)
-    return Cloud._of(_core.Cloud.from_state(origin, positions, attributes, adjusted, scanners, crs), report)
+    return Cloud._of(_core.Cloud.from_state(origin, positions, attributes, adjusted, scanners, crs, files), report)

@@ -33,6 +33,8 @@ class Crs:
     @property
     def metres_per_unit(self) -> float: ...
 
+_FilesState = tuple[list[tuple[Any, int, list[str], list[str]]], list[int] | None, bool]
+
 @final
 class Cloud:
     def __new__(
@@ -46,7 +48,10 @@ class Cloud:
         adjusted_gps_time: bool,
         scanner_positions: npt.NDArray[np.float32],
         crs: Crs,
+        files: _FilesState,
     ) -> Cloud: ...
+    @property
+    def files(self) -> _FilesState: ...
     @property
     def positions(self) -> npt.NDArray[np.float32]: ...
     @property
@@ -63,7 +68,7 @@ class Cloud:
     def crs(self) -> Crs: ...
     @property
     def bounds(self) -> list[list[float]]: ...
-    def write(self, path: str | os.PathLike[str]) -> list[str]: ...
+    def write(self, path: str | os.PathLike[str]) -> list[dict[str, Any]]: ...
     def __len__(self) -> int: ...
 
 @final
@@ -232,6 +237,7 @@ class Scene:
         radiation: dict[str, Any],
         min_area: float | None,
         panel: float | None,
+        min_cells: int | None,
         ground: str | None,
         trees: dict[str, Any],
         progress: _Progress,

@@ -140,6 +140,7 @@ class Energy:
         sun_cell_deg: float | None = None,
         min_area: float | None = None,
         panel: float | None = None,
+        min_cells: int | None = None,
         ground: str | None = None,
         through_trees: str | float | None = None,
         leaves: str | None = None,
@@ -158,14 +159,16 @@ class Energy:
             Smallest area of a plane, square metres; that of the command line if not given.
         panel : float, optional
             Side of the panels that a plane is divided into, metres; a row of panels is a string.
+        min_cells : int, optional
+            Smallest number of cells of a plane that is listed; 10 if not given. Smaller planes are counted in a remark.
         progress : bool or callable, optional
 
         Returns
         -------
         Table
-            A row for each plane: ``cells``, ``area_m2``, ``tilt_deg``, ``azimuth_deg`` from true north, ``kwh_m2`` and
-            its parts, ``min_loss`` where each panel works alone, ``max_loss`` where the worst panel limits its row, and
-            ``kwh``. `places` has the middle of each plane.
+            A row for each plane: ``cells``, ``area_m2``, ``tilt_deg``, ``azimuth_deg`` from true north (NaN for a level
+            plane), ``kwh_m2`` and its parts, ``min_loss`` where each panel works alone, ``max_loss`` where the worst
+            panel limits its row, and ``kwh``. `places` has the middle of each plane.
 
         Raises
         ------
@@ -198,7 +201,9 @@ class Energy:
             location=location,
         )
         trees = {"share": through_trees, "leaves": leaves}
-        columns, cells, given = self._core.roof_planes(radiation, min_area, panel, ground, trees, reporter(progress))
+        columns, cells, given = self._core.roof_planes(
+            radiation, min_area, panel, min_cells, ground, trees, reporter(progress)
+        )
         middle = np.column_stack([values for _, values in columns[:3]])
         found = {"cells": np.array(cells, np.int64), **dict(columns[3:])}
         table = Table(found, places=middle, crs=self._core.crs.text)

@@ -309,8 +309,9 @@ class Outlook:
         Returns
         -------
         Table
-            ``volume_m3``, ``openness``, ``sky_openness``, ranges, drift, area and perimeter of the plan; a row for
-            each observer, NaN for one that is skipped. The attribute `panoramas` has the ranges in all directions.
+            ``volume_m3``, ``blocked_volume_m3`` of the directions in which something blocks, ``openness``,
+            ``sky_openness``, ranges, drift, area and perimeter of the plan; a row for each observer, NaN for one that
+            is skipped. The attribute `panoramas` has the ranges in all directions.
 
         Raises
         ------

@@ -17,8 +17,13 @@ if TYPE_CHECKING:
     import xarray
 
 
-class Raster:
+class Raster(np.lib.mixins.NDArrayOperatorsMixin):
     """A grid of values on the map, rows from the north.
+
+    Comparisons, arithmetic and the elementwise functions of NumPy work cell by cell and give rasters on the same grid;
+    the other operand is a number, an array or a raster on that grid. In all of them, in `numpy.asarray`, and in `mean`,
+    `sum`, `min`, `max`, `std` and `var` with their functions of NumPy, a cell without a value is NaN; the latter leave
+    such cells out. `values` has the numbers as they are.
 
     Attributes
     ----------
@@ -42,7 +47,9 @@ class Raster:
     >>> lit = scene.shadow(sun=(180, 30))
     >>> lit
     <belvedere.Raster 'lit': ... rows x ... columns of 0.5 m, EPSG:7415 (Amersfoort / RD New + NAP height), metres>
-    >>> round(float(np.nanmean(lit)), 1) <= 1.0
+    >>> bool(0 <= np.mean(lit) <= 1)
+    True
+    >>> int((lit == 1).sum()) <= lit.values.size
     True
     """
 
@@ -155,13 +162,142 @@ class Raster:
             attrs=attributes,
         )
 
+    def _known(self) -> npt.NDArray[Any]:
+        """The values, as numbers with NaN where there is none."""
+        if self.nodata is None or not np.isfinite(self.nodata):
+            return self.values
+        return np.where(self.values == self.nodata, np.nan, self.values).astype(np.float32)
+
     def __array__(self, dtype: npt.DTypeLike | None = None, copy: bool | None = None) -> npt.NDArray[Any]:
+        known = self._known()
         if copy:
-            return np.array(self.values, dtype)
-        return np.asarray(self.values, dtype)
+            return np.array(known, dtype)
+        if copy is False and known is not self.values:
+            raise ValueError("an array with NaN for nodata is a copy; `values` has the numbers as they are")
+        return np.asarray(known, dtype)
+
+    def __array_ufunc__(self, ufunc: np.ufunc, method: str, *inputs: Any, **keywords: Any) -> Any:
+        for other in inputs:
+            if isinstance(other, Raster):
+                self._check_grid(other)
+            elif not isinstance(other, (np.ndarray, np.generic, int, float, complex, list, tuple)):
+                if hasattr(other, "__array_ufunc__"):
+                    return NotImplemented
+                raise TypeError(f"a Raster is not computed with a {type(other).__name__}; use its `values`")
+        if keywords.get("out") is not None:
+            raise TypeError("a Raster is no place for results of NumPy; use its `values`")
+        arrays = [one._known() if isinstance(one, Raster) else one for one in inputs]
+        found = getattr(ufunc, method)(*arrays, **keywords)
+        if isinstance(found, tuple):
+            return tuple(self._on_grid(one) for one in found)
+        return self._on_grid(found)
+
+    def _check_grid(self, other: Raster) -> None:
+        if other.shape != self.shape or other.transform != self.transform:
+            raise wrong("raster", "on another grid", "use rasters of the same cells, or their `values`")
+
+    def _on_grid(self, found: Any) -> Any:
+        """A result of NumPy as a raster where it has a value for each cell."""
+        if not isinstance(found, np.ndarray) or found.shape != self.values.shape:
+            return found
+        return Raster(found, self.transform, self._crs, nodata=np.nan if found.dtype.kind == "f" else None)
+
+    def __bool__(self) -> bool:
+        raise ValueError("a Raster is neither true nor false; use `.any()` or `.all()`")
+
+    def any(self) -> bool:
+        """Whether any cell that has a value is not zero.
+
+        Examples
+        --------
+        >>> bool((scene.shadow(sun=(180, 30)) == 2).any())
+        False
+        """
+        return bool(np.nan_to_num(self._known()).any())
+
+    def all(self) -> bool:
+        """Whether no cell that has a value is zero.
+
+        Examples
+        --------
+        >>> (scene.shadow(sun=(180, 30)) <= 1).any()
+        True
+        """
+        known = self._known()
+        return bool(np.where(np.isnan(known), 1, known).all()) if known.dtype.kind == "f" else bool(known.all())
+
+    def _reduced(self, name: str, keywords: dict[str, Any]) -> Any:
+        """A reduction of NumPy over the cells that have a value."""
+        if keywords.pop("out", None) is not None:
+            raise TypeError("a Raster is no place for results of NumPy; use its `values`")
+        return getattr(np, f"nan{name}")(self._known(), **keywords)
+
+    def mean(self, axis: int | None = None, **keywords: Any) -> Any:
+        """Mean of the cells that have a value; also `numpy.mean`.
+
+        Examples
+        --------
+        >>> bool(0 <= scene.shadow(sun=(180, 30)).mean() <= 1)
+        True
+        """
+        return self._reduced("mean", {"axis": axis, **keywords})
+
+    def sum(self, axis: int | None = None, **keywords: Any) -> Any:
+        """Sum of the cells that have a value; also `numpy.sum`.
+
+        Examples
+        --------
+        >>> lit = scene.shadow(sun=(180, 30))
+        >>> bool(lit.sum() == (lit == 1).sum())
+        True
+        """
+        return self._reduced("sum", {"axis": axis, **keywords})
+
+    def min(self, axis: int | None = None, **keywords: Any) -> Any:
+        """Least of the cells that have a value; also `numpy.min`.
+
+        Examples
+        --------
+        >>> bool(scene.sky_view(cell=2)["sky_view_factor"].min() >= 0)
+        True
+        """
+        return self._reduced("min", {"axis": axis, **keywords})
+
+    def max(self, axis: int | None = None, **keywords: Any) -> Any:
+        """Greatest of the cells that have a value; also `numpy.max`.
+
+        Examples
+        --------
+        >>> bool(scene.sky_view(cell=2)["sky_view_factor"].max() <= 1)
+        True
+        """
+        return self._reduced("max", {"axis": axis, **keywords})
+
+    def std(self, axis: int | None = None, **keywords: Any) -> Any:
+        """Standard deviation of the cells that have a value; also `numpy.std`.
+
+        Examples
+        --------
+        >>> bool(scene.sky_view(cell=2)["sky_view_factor"].std() >= 0)
+        True
+        """
+        return self._reduced("std", {"axis": axis, **keywords})
+
+    def var(self, axis: int | None = None, **keywords: Any) -> Any:
+        """Variance of the cells that have a value; also `numpy.var`.
+
+        Examples
+        --------
+        >>> bool(scene.sky_view(cell=2)["sky_view_factor"].var() >= 0)
+        True
+        """
+        return self._reduced("var", {"axis": axis, **keywords})
 
     def __getitem__(self, cells: Any) -> Any:
-        return self.values[cells]
+        return self.values[cells.values if isinstance(cells, Raster) else cells]
+
+    def __len__(self) -> int:
+        return len(self.values)
 
     def __repr__(self) -> str:
         rows, columns = self.shape
@@ -198,6 +334,12 @@ class Rasters(Mapping[str, Raster]):
 
     def __getitem__(self, name: str) -> Raster:
         return self._rasters[name]
+
+    def __eq__(self, other: object) -> bool:
+        raise TypeError(f"Rasters are not compared as a whole; take one by name, such as rasters[{next(iter(self))!r}]")
+
+    def __array__(self, dtype: npt.DTypeLike | None = None, copy: bool | None = None) -> npt.NDArray[Any]:
+        raise TypeError(f"Rasters are no array; take one by name, such as rasters[{next(iter(self))!r}]")
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._rasters)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -16,10 +16,11 @@ if TYPE_CHECKING:
     import pandas
 
 
-class Table(Mapping[str, "npt.NDArray[Any]"]):
+class Table(dict[str, "npt.NDArray[Any]"]):
     """Columns of values, a row for each target.
 
-    Columns of two dimensions, such as places of shape (N, 3), become one column for each of their own in `to_pandas`.
+    It is a dictionary of its columns, which `pandas.DataFrame` takes as it is. A column of two dimensions, such as
+    places of shape (N, 3), is also found by its own name, and listed as one column for each of its own: ``place_x``.
 
     Attributes
     ----------
@@ -56,7 +57,8 @@ class Table(Mapping[str, "npt.NDArray[Any]"]):
         lengths = {len(values) for values in columns.values()}
         if len(lengths) > 1:
             raise wrong("columns", f"of {sorted(lengths)} rows", "give columns of one length")
-        self._columns = dict(columns)
+        super().__init__(_flat(columns))
+        self._wide = {name: values for name, values in columns.items() if values.ndim > 1}
         self._count = lengths.pop() if lengths else 0
         self.places = places
         self.crs = crs
@@ -64,14 +66,17 @@ class Table(Mapping[str, "npt.NDArray[Any]"]):
         self.objects = objects
         self.remarks: tuple[Remark, ...] = ()
 
-    def __getitem__(self, name: str) -> npt.NDArray[Any]:
-        return self._columns[name]
+    def __missing__(self, name: str) -> npt.NDArray[Any]:
+        return self._wide[name]
 
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._columns)
+    def __contains__(self, name: object) -> bool:
+        return super().__contains__(name) or name in self._wide
 
-    def __len__(self) -> int:
-        return len(self._columns)
+    def __eq__(self, other: object) -> bool:
+        raise TypeError("a Table is not compared as a whole; take a column by name, or use to_pandas()")
+
+    def __array__(self, dtype: npt.DTypeLike | None = None, copy: bool | None = None) -> npt.NDArray[Any]:
+        raise TypeError("a Table is no array; take a column by name, or use to_pandas()")
 
     @property
     def row_count(self) -> int:
@@ -83,16 +88,6 @@ class Table(Mapping[str, "npt.NDArray[Any]"]):
         True
         """
         return self._count
-
-    def _flat(self) -> dict[str, npt.NDArray[Any]]:
-        flat: dict[str, npt.NDArray[Any]] = {}
-        for name, values in self._columns.items():
-            if values.ndim == 1:
-                flat[name] = values
-            else:
-                names = ("x", "y", "z") if values.shape[1] == 3 else tuple(map(str, range(values.shape[1])))
-                flat |= {f"{name}_{part}": values[:, i] for i, part in enumerate(names)}
-        return flat
 
     def to_pandas(self) -> pandas.DataFrame:
         """A `pandas.DataFrame`.
@@ -106,7 +101,7 @@ class Table(Mapping[str, "npt.NDArray[Any]"]):
             import pandas
         except ImportError:
             raise missing("pandas", "to_pandas") from None
-        return pandas.DataFrame(self._flat())
+        return pandas.DataFrame(dict(self))
 
     def to_geodataframe(self) -> geopandas.GeoDataFrame:
         """A `geopandas.GeoDataFrame` of points.
@@ -123,7 +118,7 @@ class Table(Mapping[str, "npt.NDArray[Any]"]):
         if self.places is None:
             raise wrong("places", "missing", "these rows lie nowhere on the map; use to_pandas")
         points = geopandas.points_from_xy(self.places[:, 0], self.places[:, 1], self.places[:, 2])
-        return geopandas.GeoDataFrame(self._flat(), geometry=points, crs=self.crs)
+        return geopandas.GeoDataFrame(dict(self), geometry=points, crs=self.crs)
 
     def __repr__(self) -> str:
         return f"<belvedere.Table: {self._count} rows of {', '.join(self)}>"
@@ -133,3 +128,15 @@ class Table(Mapping[str, "npt.NDArray[Any]"]):
             return str(self.to_pandas().to_html(max_rows=10))
         except ValueError:
             return f"<pre>{self!r}</pre>".replace("<belvedere", "&lt;belvedere")
+
+
+def _flat(columns: Mapping[str, npt.NDArray[Any]]) -> dict[str, npt.NDArray[Any]]:
+    """The columns, each of several dimensions as several."""
+    flat: dict[str, npt.NDArray[Any]] = {}
+    for name, values in columns.items():
+        if values.ndim == 1:
+            flat[name] = values
+        else:
+            names = ("x", "y", "z") if values.shape[1] == 3 else tuple(map(str, range(values.shape[1])))
+            flat |= {f"{name}_{part}": values[:, i] for i, part in enumerate(names)}
+    return flat

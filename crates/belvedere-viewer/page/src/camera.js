@@ -25,31 +25,30 @@ export class Mover {
     canvas.addEventListener("pointerup", () => { last = null; });
   }
 
-  // Shows a box as a whole in the part of the picture, across and upright, that no bar covers.
-  show(low, high, flat = false, [across, upright] = [1, 1]) {
+  // Shows boxes as a whole in the part of the picture, across and upright, that no bar covers.
+  show(boxes, flat = false, [across, upright] = [1, 1]) {
+    const low = [0, 1, 2].map((axis) => boxes.reduce((v, box) => Math.min(v, box[0][axis]), Infinity));
+    const high = [0, 1, 2].map((axis) => boxes.reduce((v, box) => Math.max(v, box[1][axis]), -Infinity));
     const middle = low.map((v, i) => (v + high[i]) / 2);
     const size = Math.hypot(...low.map((v, i) => high[i] - v)) || 10;
     this.size = size;
-    // towers make boxes high: most of what is seen lies on the ground
-    const top = low[2] + 0.3 * (high[2] - low[2]);
-    middle[2] = (low[2] + top) / 2;
     const away = new Vector3(...(flat ? [0, -0.001, 1] : [-0.4, -0.62, 0.56])).normalize();
     this.camera.position.set(...middle).add(away);
     this.orbit.target.set(...middle);
     this.camera.lookAt(this.orbit.target);
     const slope = Math.tan((this.camera.fov * Math.PI) / 360);
     const [right, up, back] = [0, 1, 2].map((axis) => new Vector3().setComponent(axis, 1).applyQuaternion(this.camera.quaternion));
-    const corners = [0, 1, 2, 3, 4, 5, 6, 7].map((corner) => new Vector3(...[0, 1, 2].map((axis) => ((corner >> axis) & 1 ? (axis === 2 ? top : high[axis]) : low[axis]))));
+    const corners = boxes.flatMap((box) => [0, 1, 2, 3, 4, 5, 6, 7].map((corner) => new Vector3(...[0, 1, 2].map((axis) => box[(corner >> axis) & 1][axis]))));
     const target = new Vector3(...middle);
     let distance = size;
     // nearer corners look larger: what is shown moves until it lies in the middle of the picture
     for (let i = 0; i < 5; i++) {
       const offsets = corners.map((corner) => corner.clone().sub(target)).map((v) => [v.dot(right), v.dot(up), v.dot(back)]);
-      distance = Math.max(0.2 * size, ...offsets.map(([x, y, z]) => Math.max(Math.abs(x) / (slope * this.camera.aspect * across), Math.abs(y) / (slope * upright)) + z));
+      distance = offsets.reduce((d, [x, y, z]) => Math.max(d, Math.abs(x) / (slope * this.camera.aspect * across) + z, Math.abs(y) / (slope * upright) + z), 0.2 * size);
       for (const [axis, direction] of [right, up].entries()) {
-        const seen = offsets.map((v) => v[axis] / (distance - v[2]));
+        const [least, greatest] = offsets.map((v) => v[axis] / (distance - v[2])).reduce(([l, g], v) => [Math.min(l, v), Math.max(g, v)], [Infinity, -Infinity]);
         const level = direction.clone().setZ(0);
-        target.addScaledVector(level, ((Math.min(...seen) + Math.max(...seen)) / 2) * distance / level.lengthSq());
+        target.addScaledVector(level, ((least + greatest) / 2) * distance / level.lengthSq());
       }
     }
     this.camera.position.copy(target).addScaledVector(away, distance);

@@ -15,6 +15,14 @@ export function report(error) {
   $("message").innerHTML = `<strong>${escape(error.message)}</strong><br><button>Close</button>`;
   $("message").querySelector("button").onclick = () => { $("message").hidden = true; };
 }
+let fading;
+// Says for some seconds what to do instead.
+export function hint(text) {
+  clearTimeout(fading);
+  $("message").hidden = false;
+  $("message").innerHTML = `<span id="hint" role="status">${escape(text)}</span>`;
+  fading = setTimeout(() => { if ($("hint")) $("message").hidden = true; }, 5000);
+}
 const KEYS = () => [
   [`1 to ${Math.min(TOOLS.length, 9)}${TOOLS.length > 9 ? ", 0" : ""}`, "Choose a question"], ["Enter", "Ask at the centre of the view"], ["Esc", "Close the answer"], ["Arrow keys", "Turn"], ["W A S D, Q E", "Move; down and up"],
   ["+ and −", "Zoom"], ["H", "Whole scene"], ["T", "From above"], ["C", "Next colour"], ["M", "Next way of moving"],

@@ -2,7 +2,7 @@
 import * as api from "./api.js";
 import { escape } from "./charts.js";
 import * as colors from "./colors.js";
-import { lost } from "./messages.js";
+import { hint, lost } from "./messages.js";
 import { finish, isChange, outline, panel, planInUse } from "./plan.js";
 import { setColor } from "./paint.js";
 import { csv, diagram, geojson, picture, save } from "./save.js";
@@ -67,7 +67,7 @@ export const corners = ({ length }) => `${length} ${length === 1 ? "corner" : "c
 
 export function click(x, y) {
   const near = placeAt(x, y);
-  if (!near) return;
+  if (!near) return hint(page.tool.places === 0 ? "This question is about all points. It needs no click." : "There is no point of the cloud at this place. Click on a point.");
   const found = cloud.nearest(near);
   // what is planned has no points
   const isPoint = found && (!cloud.plan || found.away < (2 * cloud.own.size.value) ** 2);
@@ -124,7 +124,15 @@ export async function ask(quick = false) {
     return;
   }
   if (tool.time && page.scene.latitude_deg === null) {
-    card(`<p class="verdict">The location is unknown</p><p class="note">The sun needs to know where on earth the cloud lies. Start again with its reference system, for example <code>--crs EPSG:7415</code>.</p>`);
+    card(`<p class="verdict">The location is unknown</p><p class="note">The sun needs to know where on earth the cloud lies, but its file names no reference system. Close this page and start Belvedere again with the reference system of the cloud.</p>`);
+    return;
+  }
+  if (tool.time && !page.time.date) {
+    card(`<p class="verdict">The date is missing</p><p class="note">Choose a day below.</p>`);
+    return;
+  }
+  if (tool.time && !page.time.zone) {
+    card(`<p class="verdict">The time zone is missing</p><p class="note">Write one below, such as Europe/Amsterdam or +02:00.</p>`);
     return;
   }
   const places = page.places.map(({ local }) => toFile(local));

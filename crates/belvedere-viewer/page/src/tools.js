@@ -103,7 +103,7 @@ export const TOOLS = [
       const { isovist: v } = answer;
       return { html: `<p class="verdict">Sky view factor ${answer.sky_view_factor.toFixed(2)}</p><p class="note">1 under a free sky, 0 without any sky.</p><figure id="panorama"><figcaption>Panorama from north to north: sky blue, near dark, far light</figcaption></figure>`
         + `<figure>${charts.plan(answer)}<figcaption>Plan of the visible space at the height of the eye</figcaption></figure>`
-        + list([["Sky openness", answer.sky_openness.toFixed(3)], ["Visible area in plan", `${count(Math.round(v.plan_area_m2))} m²`], ["Visible volume", `${count(Math.round(v.volume_m3))} m³`], ["Farthest view in plan", `${v.plan_range_max_m.toFixed(1)} m`], ["Nearest obstacle in plan", `${v.plan_range_min_m.toFixed(1)} m`]]),
+        + list([["Sky openness", answer.sky_openness.toFixed(3)], ["Visible area in plan", `${count(Math.round(v.plan_area_m2))} m²`], ["Visible volume", `${count(Math.round(v.volume_m3))} m³`], ["Of it before something", `${count(Math.round(v.blocked_volume_m3))} m³`], ["Farthest view in plan", `${v.plan_range_max_m.toFixed(1)} m`], ["Nearest obstacle in plan", `${v.plan_range_min_m.toFixed(1)} m`]]),
         after: (card) => card.querySelector("#panorama").prepend(charts.panorama(new Uint8Array(answer.body), answer.panorama)) };
     },
     rows: (answer) => [["measure", "value"], ["sky_view_factor", answer.sky_view_factor], ["sky_openness", answer.sky_openness], ...Object.entries(answer.isovist)],
@@ -126,9 +126,9 @@ export const TOOLS = [
     ask: ([place]) => ["roof", { place }],
     show(answer, page) {
       page.plane(answer);
-      return `<p class="verdict">${count(Math.round(answer.kwh / 100) * 100)} kWh a year</p><p class="note">of sun and sky on ${answer.panel_area_m2.toFixed(0)} m² of panels under a sky without clouds: an upper bound. With weather, use the command below and --weather.</p>`
+      return `<p class="verdict">${count(Math.round(answer.kwh / 100) * 100)} kWh a year</p><p class="note">of sun and sky on ${answer.panel_area_m2.toFixed(0)} m² of panels under a sky without clouds: an upper bound. With a file of weather, the command below gives less.</p>`
         + list([["Energy on a square metre", `${count(Math.round(answer.kwh_m2))} kWh`], ["Without any shade", `${count(Math.round(answer.free_kwh_m2))} kWh`], ["Lost by shade, each panel for itself", percent(answer.min_loss, 1)], ["Lost by shade, panels in strings", percent(answer.max_loss, 1)],
-          ["Tilt", `${answer.tilt_deg.toFixed(0)}°`], ["Faces", `${answer.azimuth_deg.toFixed(0)}° from north`], ["Area of the plane", `${answer.area_m2.toFixed(1)} m²`], ["Plane", `${answer.plane} of ${answer.planes}`]])
+          ["Tilt", `${answer.tilt_deg.toFixed(0)}°`], ["Faces", `${answer.azimuth_deg === null ? "up" : `${answer.azimuth_deg.toFixed(0)}° from north`}`], ["Area of the plane", `${answer.area_m2.toFixed(1)} m²`], ["Plane", `${answer.plane} of ${answer.planes}`]])
         + `<h3>kWh/m² in each month</h3><figure>${charts.energy(answer.months_kwh_m2)}</figure>`;
     },
     rows: (answer) => [["month", "kwh_m2"], ...answer.months_kwh_m2.map((v, i) => [i + 1, v])],

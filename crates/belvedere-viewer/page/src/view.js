@@ -90,7 +90,9 @@ export function resize() {
 export function showAll(flat = false) {
   const bars = 2 * Math.max($("bar").offsetHeight, $("status").offsetHeight);
   const shares = [1 - (1.2 * $("tools").offsetWidth) / canvas.clientWidth, 0.97 - bars / canvas.clientHeight];
-  mover.show(page.scene.low, page.scene.high, flat, shares.map((share) => Math.max(share, 0.3)));
+  // a tower fills the box of its own square of the map only
+  const squares = (page.scene.chunks ?? []).map(({ low, step }) => [low, low.map((v, i) => v + 65535 * step[i])]);
+  mover.show(squares.length ? squares : [[page.scene.low, page.scene.high]], flat, shares.map((share) => Math.max(share, 0.3)));
 }
 
 // ---- coordinates ----

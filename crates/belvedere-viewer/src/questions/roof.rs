@@ -81,14 +81,14 @@ pub(super) fn answer(
     let Some(energy) = energies.first() else {
         return Err(Error::NoPoints { what: "the plane has no cells".to_owned() }.into());
     };
-    let azimuth = (plane.azimuth() + site.convergence).to_degrees().rem_euclid(360.0);
+    let from_north = |azimuth: f64| (azimuth + site.convergence).to_degrees().rem_euclid(360.0);
     let months: Vec<Value> = energy.groups.iter().map(|&v| number(v, 2)).collect();
     let head = json!({
         "plane": plane_index + 1,
         "area_m2": number(plane.area, 2),
         "panel_area_m2": number(energy.panel_area(plane), 2),
         "tilt_deg": number(plane.tilt().to_degrees(), 2),
-        "azimuth_deg": number(azimuth, 2),
+        "azimuth_deg": number(plane.azimuth().map_or(f64::NAN, from_north), 2),
         "kwh_m2": number(energy.mean.total(), 1),
         "free_kwh_m2": number(energy.mean.unshaded, 1),
         "min_loss": number(energy.mean.loss(), 4),
@@ -98,7 +98,7 @@ pub(super) fn answer(
         "year": CLEAR_SKY_YEAR,
         "planes": roofs.planes.len(),
         "roofs_m2": rounded(roofs.planes.iter().map(|plane| plane.area).sum(), 1),
-        "command": context.text.command_on_ground("irradiance", "--clear-sky ineichen --months --planes roofs.csv"),
+        "command": context.text.command_on_ground("irradiance", "--clear-sky ineichen --months --min-cells 1 --planes roofs.csv"),
     });
     let points = plane.points.iter().filter_map(|&row| roofs.points.get(row as usize));
     Ok(QuestionReply { head, body: points.flatten().flat_map(|v| v.to_le_bytes()).collect() })

@@ -1,9 +1,9 @@
 //! Changes of cells as maps.
 
-use crate::Result;
 use crate::figures::{MapLegend, MapPicture, Picture, map_picture};
 use crate::io::Georeference;
 use crate::raster::Raster;
+use crate::{PointCloud, Result};
 
 /// Colours of losses and gains from small to large: blue and orange, which people with any colour vision can
 /// distinguish, and which grow darker, so that they differ in print too.
@@ -16,11 +16,43 @@ const SAME: [u8; 3] = [242, 242, 242];
 /// Share of the changed cells whose change the darkest colours show.
 const DARKEST: f64 = 0.2;
 
-/// A map of `change`, NaN where there is none, of cells of `cell` metres at `place`, with a legend of losses and gains.
+/// The highest points of `cloud` in the cells of a raster of `size` (width, height) at `place`, local metres of the
+/// cloud, which has the reference system of the place; NaN where a cell has none.
+///
+/// # Errors
+/// Those of [`Raster::from_values`].
+pub fn relief_of(cloud: &PointCloud, place: &Georeference, [width, height]: [usize; 2]) -> Result<Raster<f32>> {
+    let mut heights = vec![f32::NAN; width * height];
+    let ([a, b], [c, d]) = (place.column_step, place.row_step);
+    let determinant = a * d - b * c;
+    for position in &cloud.positions {
+        let [x, y, _] = cloud.frame.to_file_coordinates(*position);
+        let [x, y] = [x - place.upper_left[0], y - place.upper_left[1]];
+        let (column, row) = ((d * x - c * y) / determinant, (a * y - b * x) / determinant);
+        if !(column >= 0.0 && row >= 0.0 && column < width as f64 && row < height as f64) {
+            continue;
+        }
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within the raster")]
+        let at = row as usize * width + column as usize;
+        if let Some(highest) = heights.get_mut(at) {
+            *highest = highest.max(position[2]);
+        }
+    }
+    Raster::from_values(width, height, heights)
+}
+
+/// A map of `change`, NaN where there is none, of cells of `cell` metres at `place` over shaded `relief`, with a legend
+/// of losses and gains. Without a relief all is level.
 ///
 /// # Errors
 /// Those of [`map_picture`].
-pub fn difference_map(change: &Raster<f32>, cell: f64, place: Option<&Georeference>, title: &str) -> Result<Picture> {
+pub fn difference_map(
+    change: &Raster<f32>,
+    relief: Option<&Raster<f32>>,
+    cell: f64,
+    place: Option<&Georeference>,
+    title: &str,
+) -> Result<Picture> {
     let mut sizes: Vec<f32> = change.values().iter().map(|v| v.abs()).filter(|v| *v > 0.0).collect();
     sizes.sort_by(f32::total_cmp);
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a place in the list")]
@@ -50,9 +82,9 @@ pub fn difference_map(change: &Raster<f32>, cell: f64, place: Option<&Georeferen
     meanings.push((SAME, "no change"));
     meanings.extend(LOSS.into_iter().zip(losses.iter().map(String::as_str)));
     meanings.retain(|(color, _)| used(*color));
-    let relief = Raster::filled(change.width(), change.height(), 0.0);
+    let level = Raster::filled(change.width(), change.height(), 0.0);
     let legend = MapLegend::Colors(&meanings);
-    map_picture(&MapPicture::of_colors(&relief, cell, place, &colors, title, legend))
+    map_picture(&MapPicture::of_colors(relief.unwrap_or(&level), cell, place, &colors, title, legend))
 }
 
 /// The largest of 1, 2 and 5 times a power of ten that is at most `value`.

@@ -2,7 +2,7 @@
 //!
 //! | targets | `.tif` | `.laz` `.las` `.ply` `.csv` |
 //! |---|---|---|
-//! | cells of a grid | the first measure, with its further bands | a point for each target, all measures as columns |
+//! | cells of a grid | all measures as bands with their names | a point for each target, all measures as columns |
 //! | points | | the points with their attributes, all measures as columns; `.csv` of a table: its rows |
 //! | faces of a mesh | | `.csv`: a row for each object and face; `.ply`: the mesh coloured by the first measure |
 
@@ -14,11 +14,11 @@ mod map;
 mod raster;
 
 #[cfg(feature = "figures")]
-pub use difference::difference_map;
+pub use difference::{difference_map, relief_of};
 pub use faces::FaceRows;
 #[cfg(feature = "figures")]
 pub use map::measure_map;
-pub use raster::{Pixels, ResultRaster, UNPROVEN_BAND, viewshed_words};
+pub use raster::{ADDED_BAND, Pixels, ResultRaster, UNPROVEN_BAND, viewshed_words};
 
 pub use crate::apps::targets::ResultKind;
 
@@ -83,9 +83,7 @@ pub fn write_measures(
     let is_tiff = matches!(extension.as_str(), "tif" | "tiff");
     match (&targets.layout, from) {
         (TargetLayout::Cells(_), _) if is_tiff => {
-            let further = measures.iter().skip(1).filter(|measure| measure.is_further_band);
-            let bands: Vec<&Measure> = std::iter::once(first).chain(further).collect();
-            write_raster(path, targets, &bands).map(|()| WriteReport::default())
+            write_raster(path, targets, &measures.iter().collect::<Vec<_>>()).map(|()| WriteReport::default())
         }
         (TargetLayout::Surface(surface), TakenFrom::Mesh(mesh)) => {
             match extension.as_str() {
@@ -117,7 +115,8 @@ pub fn write_measures(
 
 /// Writes measures of the cells of a grid as the bands of a raster, with the reference system of their frame. Their
 /// kind decides the type of the pixels and their value for no data; measures of several kinds are numbers. Cells that
-/// are no targets have no value in any band.
+/// are no targets have no value in any band. Where cells stand on a mesh that was added, a last band says which
+/// ([`ADDED_BAND`]).
 ///
 /// # Errors
 /// [`Error::UnsupportedTargets`] for targets that are no cells, [`Error::LengthMismatch`] unless there is a value for
@@ -126,6 +125,10 @@ pub fn write_raster(path: &Path, targets: &Targets, measures: &[&Measure]) -> Re
     let grid = cells(targets)?.grid;
     let place = georeference(&grid, &targets.frame);
     let mut bands: Vec<Measure> = measures.iter().map(|&measure| measure.clone()).collect();
+    if let Some(first) = bands.first().filter(|_| !targets.on_added.is_empty()) {
+        let values = targets.on_added.iter().map(|&is_added| f32::from(u8::from(is_added))).collect();
+        bands.push(Measure::new(ADDED_BAND, values).with_kind(first.kind));
+    }
     bands.iter_mut().for_each(|band| targets.clear_unasked(&mut band.values));
     ResultRaster::of_measures(&bands, [grid.width, grid.height])?.write(path, Some(&place))
 }

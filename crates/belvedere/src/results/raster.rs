@@ -13,6 +13,10 @@ use std::path::Path;
 /// proven or blocked; of several observers how many of those that it counts are not proven.
 pub const UNPROVEN_BAND: &str = crate::apps::ask::UNPROVEN;
 
+/// Name of the band that is 1 where a cell stands on a mesh that was added, and 0 elsewhere: there is no such place in
+/// the scene as it is.
+pub const ADDED_BAND: &str = "added";
+
 /// The bands of a result, all of one kind.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Pixels {

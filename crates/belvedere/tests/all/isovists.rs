@@ -54,6 +54,7 @@ fn in_a_box_room_volume_area_perimeter_and_drift_are_those_of_the_room() {
     let found = seen(walls([-5.0, -3.5, -1.6], [3.0, 2.5, 1.4]), 100.0);
     // rays a degree apart: corners of the room are cut by what 1° is at 6 m, 0.1 m
     near(found.volume, 144.0, 2e-3);
+    assert_eq!(found.blocked_volume, found.volume);
     for (found, expected) in found.drift.into_iter().zip([-1.0, -0.5, -0.1]) {
         assert!((found - expected).abs() < 0.01, "{found} {expected}");
     }
@@ -64,6 +65,22 @@ fn in_a_box_room_volume_area_perimeter_and_drift_are_those_of_the_room() {
     assert_eq!((found.plan.occlusivity, found.openness), (0.0, 0.0));
     near(found.ranges.greatest, (25.0f64 + 12.25 + 2.56).sqrt(), 0.01);
     near(found.ranges.min, 1.4, 1e-3);
+}
+
+#[test]
+fn a_gap_in_the_wall_of_a_room_is_in_its_volume_but_not_in_that_of_what_blocks() {
+    let room = walls([-4.0, -3.0, -1.5], [4.0, 3.0, 1.5]);
+    // a slit in the north wall, from floor to ceiling, through which the rays of two columns of the panorama pass
+    let slit = 0.6f64.to_radians();
+    let with_gap = |d: [f64; 3]| {
+        let is_through = d[1] > 0.0 && (d[0] / d[1]).abs() < slit && (d[2] * 3.0 / d[1]).abs() < 1.5;
+        if is_through { None } else { room(d) }
+    };
+    let found = seen(with_gap, 100.0);
+    // 2° wide and 53° high: 0.03 sr, whose rays end at 100 m instead of 3 m
+    assert!(found.openness > 0.0 && found.volume > 10.0 * 144.0, "{} {}", found.openness, found.volume);
+    // what is missing is the slit alone: 2 of 360 degrees, in which the room is 3 m deep
+    near(found.blocked_volume, 144.0, 7e-3);
 }
 
 #[test]
@@ -120,6 +137,8 @@ fn a_ball_takes_its_cap_from_the_openness_and_its_cone_from_the_volume() {
         })
         .sum();
     near(found.volume, (1.0 - cap) * 4.0 * PI / 3.0 * reach.powi(3) + in_cone, 1e-3);
+    // rings of a quarter degree over a cone of 24°
+    near(found.blocked_volume, in_cone, 0.02);
     near(found.ranges.min, 6.0, 1e-4);
     // the tangent is 9.165 m long: two edges hide what lies behind, up to the greatest range
     near(found.plan.occlusivity, 2.0 * (reach - (distance * distance - radius * radius).sqrt()), 0.01);

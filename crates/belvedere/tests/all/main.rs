@@ -21,6 +21,7 @@ mod closed_form_shadows;
 mod closed_form_skies;
 mod common;
 mod contradictions;
+mod copied_records;
 mod crowns;
 mod depth_map;
 mod exposure;

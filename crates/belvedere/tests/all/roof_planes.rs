@@ -1,10 +1,16 @@
 //! Roofs as planes, against roofs whose tilt, azimuth and area are known.
 
+use belvedere::apps::horizon::{HorizonParams, horizons};
+use belvedere::apps::irradiance::horizon_places;
 use belvedere::apps::roof_planes::{RoofPlane, RoofPlaneParams, RoofsFrom, roof_planes, roof_points};
 use belvedere::control::Control;
 use belvedere::ground::{Ground, MapGrid};
+use belvedere::io::outlines;
+use belvedere::medial::MedialBalls;
+use belvedere::query::{BlockRule, MedialScene};
 use belvedere::random::uniform;
 use belvedere::{Attributes, PointCloud};
+use std::f64::consts::FRAC_PI_2;
 
 /// Noise of airborne scans, metres, evenly spread.
 const NOISE: f64 = 0.04;
@@ -36,7 +42,7 @@ fn house(density: f64) -> Vec<[f32; 3]> {
 }
 
 fn faces(plane: &RoofPlane, azimuth_deg: f64) -> bool {
-    (plane.azimuth().to_degrees() - azimuth_deg).abs() < 2.0
+    plane.azimuth().is_some_and(|azimuth| (azimuth.to_degrees() - azimuth_deg).abs() < 2.0)
 }
 
 #[test]
@@ -193,4 +199,56 @@ fn parameters_out_of_range_are_refused() {
     ] {
         assert!(roof_planes(&house(4.0), &params, &Control::none()).is_err(), "{params:?}");
     }
+}
+
+#[test]
+fn the_extent_of_a_plane_has_its_area_and_no_holes_of_chimneys() {
+    for density in [4.0, 12.0, 40.0] {
+        for plane in roof_planes(&house(density), &RoofPlaneParams::default(), &Control::none()).unwrap() {
+            let area = plane.extent.count() as f64 * plane.extent.cell.powi(2);
+            // squares at the outline reach over it by chance: a tenth of small planes
+            assert!((area / plane.area - 1.0).abs() < 0.12, "{density}: {area} of {} m²", plane.area);
+            assert!(plane.panel_area() < area);
+        }
+    }
+    let planes = roof_planes(&flat_roof(), &RoofPlaneParams::default(), &Control::none()).unwrap();
+    let outlines = outlines(&planes[0].extent.filled);
+    assert_eq!((outlines.len(), outlines[0].holes.len()), (1, 0), "{outlines:?}");
+}
+
+#[test]
+fn a_level_plane_faces_nowhere() {
+    let planes = roof_planes(&house(12.0), &RoofPlaneParams::default(), &Control::none()).unwrap();
+    assert_eq!(planes.iter().map(|plane| plane.azimuth().is_some()).collect::<Vec<_>>(), [true, true, false]);
+    // three degrees are a slope, which is seen in its normals
+    let slope = 3f64.to_radians().tan();
+    let sloped = sheet(4, 20.0, [0.0, 12.0], [0.0, 9.0], |x, _| 5.0 + slope * x);
+    let planes = roof_planes(&sloped, &RoofPlaneParams::default(), &Control::none()).unwrap();
+    assert!((planes[0].azimuth().unwrap().to_degrees() - 270.0).abs() < 5.0, "{:?}", planes[0].azimuth());
+}
+
+#[test]
+fn the_horizon_of_a_roof_is_that_of_a_cell_with_nothing_above() {
+    let planes = roof_planes(
+        &sheet(5, 12.0, [0.0, 12.0], [0.0, 8.0], |_, _| 5.0),
+        &RoofPlaneParams::default(),
+        &Control::none(),
+    );
+    let planes = planes.unwrap();
+    let under = |center: [f32; 3], radius: f32| {
+        let (centers, radii) = (vec![center], vec![radius]);
+        let balls = MedialBalls { centers, radii, source: vec![0], touch: vec![0], separation_angles: vec![1.0] };
+        let scene = MedialScene::new(&balls, &BlockRule::default()).unwrap();
+        let (place, is_open) = horizon_places(&planes, &scene)[0];
+        let eyes = [place.map(f64::from)];
+        let skyline = horizons(&scene, &eyes, &HorizonParams::default(), &Control::none()).unwrap().remove(0);
+        let is_closed = skyline.iter().all(|point| point.elevation >= FRAC_PI_2);
+        (place, is_open, is_closed)
+    };
+    // a crown above the middle of the roof: no ball holds the middle, yet it sees no zenith
+    let (place, is_open, is_closed) = under([6.0, 4.0, 8.5], 1.5);
+    let away = f64::from(place[0] - 6.0).hypot(f64::from(place[1] - 4.0));
+    assert!(is_open && !is_closed && away > 1.5 && away < 4.0, "{place:?}");
+    let (_, is_open, is_closed) = under([6.0, 4.0, 40.0], 20.0);
+    assert!(!is_open && is_closed, "a crown above all of it");
 }

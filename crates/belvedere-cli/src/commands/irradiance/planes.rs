@@ -7,11 +7,14 @@ use crate::run::CommandContext;
 use crate::summary::{Summary, rounded};
 use anyhow::Result;
 use belvedere::Frame;
-use belvedere::apps::ask::{IrradianceResults, RoofsResults, Scene};
+use belvedere::apps::ask::{IrradianceResults, Remark, RoofsResults, Scene};
 use belvedere::apps::horizon::{HorizonParams, horizons};
 use belvedere::apps::irradiance::{RoofColumn, horizon_places, roof_columns};
 use belvedere::apps::sun::Site;
 use belvedere::io::{PolygonArea, TableCells, atomic, outlines, write_geojson_areas, write_table};
+use belvedere::query::SkylinePoint;
+
+use std::f64::consts::FRAC_PI_2;
 
 /// Azimuths of a horizon: steps of 7.5 degrees, as PVGIS has them.
 const AZIMUTHS: usize = 48;
@@ -48,6 +51,8 @@ pub(super) fn write(
         let enclosed = write_horizons(folder, roofs, found, run)?;
         run.summary.add("horizons_written", folder.display().to_string());
         run.summary.add("horizons_inside_obstacles", enclosed);
+        let so = "have something above all of their cells, so that their horizon is 90 degrees all around";
+        run.summary.remarks(Remark::of_share("horizons-inside-obstacles", enclosed, roofs.planes.len(), "planes", so));
     }
     Ok(())
 }
@@ -66,12 +71,16 @@ fn write_rows(output: &std::path::Path, roofs: &RoofsResults, frame: &Frame, sit
     Ok(write_table(output, &table)?)
 }
 
+/// Writes two areas for each plane: its extent, and the cells that panels would lie on, which say so in `kind`.
 fn write_outlines(output: &std::path::Path, roofs: &RoofsResults, frame: &Frame, site: &Site) -> Result<()> {
-    let rows = &roofs.energies;
     let columns = columns(roofs, frame, site);
-    let mut areas = Vec::with_capacity(rows.len());
-    for (number, plane) in roofs.planes.iter().enumerate() {
+    let mut areas = Vec::with_capacity(2 * roofs.planes.len());
+    let kinds = roofs.planes.iter().enumerate().flat_map(|(number, plane)| {
+        [("roof", &plane.extent), ("panels", &plane.cells)].map(|(kind, cells)| (number, kind, cells))
+    });
+    for (number, kind, cells) in kinds {
         let mut area = PolygonArea::default();
+        area.properties.insert("kind".to_owned(), kind.into());
         area.properties.insert("plane".to_owned(), (number + 1).into());
         for column in columns.iter().skip(3) {
             let digits = i32::try_from(column.decimals).unwrap_or(2);
@@ -79,10 +88,10 @@ fn write_outlines(output: &std::path::Path, roofs: &RoofsResults, frame: &Frame,
             area.properties.insert(column.name.to_owned(), rounded(value, digits));
         }
         let corner = |corner: &[usize; 2]| {
-            let place = plane.cells.place(corner.map(|v| v as f64));
+            let place = cells.place(corner.map(|v| v as f64));
             [place[0] + frame.origin[0], place[1] + frame.origin[1]]
         };
-        for polygon in outlines(&plane.cells.filled) {
+        for polygon in outlines(&cells.filled) {
             let rings = std::iter::once(&polygon.exterior).chain(&polygon.holes);
             // rows run up the slope here, not down a picture, so that rings come out the other way round
             area.polygons.push(rings.map(|ring| ring.iter().rev().map(corner).collect()).collect());
@@ -93,7 +102,8 @@ fn write_outlines(output: &std::path::Path, roofs: &RoofsResults, frame: &Frame,
     Ok(())
 }
 
-/// Writes the horizon of each plane, and gives how many are measured inside an obstacle, for want of a better place.
+/// Writes the horizon of each plane, and gives how many are measured inside or below an obstacle, for want of a better
+/// place.
 fn write_horizons(
     folder: &std::path::Path,
     roofs: &RoofsResults,
@@ -110,5 +120,7 @@ fn write_horizons(
         let path = folder.join(format!("plane_{}.txt", number + 1));
         write_lines(&path, skyline.iter().map(|point| format!("{:.2}", point.elevation.to_degrees().max(0.0))))?;
     }
-    Ok(places.iter().filter(|(_, is_open)| !is_open).count())
+    let is_closed = |skyline: &[SkylinePoint]| skyline.iter().all(|point| point.elevation >= FRAC_PI_2);
+    let is_enclosed = |((_, is_open), skyline): (&([f32; 3], bool), &Vec<SkylinePoint>)| !is_open || is_closed(skyline);
+    Ok(places.iter().zip(&skylines).filter(|&pair| is_enclosed(pair)).count())
 }

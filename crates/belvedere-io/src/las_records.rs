@@ -1,0 +1,68 @@
+//! What LAS files hold beside the attributes of a cloud, and which of their records a copy of their points keeps.
+
+use ::las::Vlr;
+use ::las::point::Format;
+
+use super::las_extra::descriptions;
+use super::las_header::{LasHeader, VariableRecord};
+
+/// The user of records about reference systems.
+const PROJECTION: &str = "LASF_Projection";
+/// The user of records that the format defines.
+const SPECIFICATION: &str = "LASF_Spec";
+/// The user and the number of the record that names the columns of results that Belvedere wrote.
+pub(super) const RESULTS: (&str, u16) = ("belvedere", 2);
+
+/// What the points of a file have beside the attributes of a cloud and beside rare fields, in words.
+pub(super) fn other_attributes(header: &LasHeader, format: &Format) -> Vec<String> {
+    let described = descriptions(header, format);
+    let described_bytes: usize = described.iter().map(|field| field.size).sum();
+    let names = described.iter().map(|field| field.name());
+    let mut found: Vec<String> = names.filter(|name| !name.starts_with("Normal")).collect();
+    if usize::from(format.extra_bytes) > described_bytes {
+        found.push(format!("{} extra bytes without a description", usize::from(format.extra_bytes) - described_bytes));
+    }
+    found.extend(format.has_nir.then(|| "near infrared".to_owned()));
+    found.extend(format.has_waveform.then(|| "waveforms".to_owned()));
+    found
+}
+
+/// Whether a record is about the reference system.
+pub(super) fn is_projection(record: &VariableRecord) -> bool {
+    record.user == PROJECTION || record.user == "liblas" && record.id == 2112
+}
+
+/// The records that a copy of all points keeps: all but those of the compression, of extra bytes and results, which are
+/// made anew, those of waveforms and of the hierarchy of COPC, and those of reference systems.
+pub(super) fn kept(header: &LasHeader) -> impl Iterator<Item = &VariableRecord> {
+    let is_made_anew = |record: &VariableRecord| {
+        let key = (record.user.as_str(), record.id);
+        key == ("laszip encoded", 22204) || key == (SPECIFICATION, 4) || key == RESULTS
+    };
+    header.records.iter().filter(move |record| {
+        !is_made_anew(record) && !is_projection(record) && !is_of_waveforms(record) && record.user != "copc"
+    })
+}
+
+/// Whether a record describes or holds waveforms.
+fn is_of_waveforms(record: &VariableRecord) -> bool {
+    record.user == SPECIFICATION && (matches!(record.id, 100..=354) || record.id == 65535)
+}
+
+/// Name of a record.
+pub(super) fn in_words(record: &VariableRecord) -> String {
+    format!("the record {} of {}", record.id, record.user)
+}
+
+/// A record as it is written. Its texts have 16 and 32 bytes of ASCII.
+pub(super) fn to_vlr(record: &VariableRecord) -> Vlr {
+    let ascii = |text: &str, length: usize| -> String {
+        text.chars().map(|c| if c.is_ascii() { c } else { '?' }).take(length).collect()
+    };
+    Vlr {
+        user_id: ascii(&record.user, 16),
+        record_id: record.id,
+        description: ascii(&record.description, 32),
+        data: record.data.clone(),
+    }
+}
