@@ -455,7 +455,7 @@ fn find_crs(part: &mut FilePart, header: &LasHeader, beside: Option<SystemBeside
     match (part.crs.kind != CrsKind::Unknown, unread) {
         (true, false) => {}
         (true, true) => {
-            part.note(format!("its WKT record is not readable; that of {} is used", part.report.crs_source))
+            part.note(format!("its WKT record is not readable; that of {} is used", part.report.crs_source));
         }
         (false, true) => part.note("its WKT record is not readable; coordinates are taken as metres"),
         (false, false) => part.note("it names no reference system; coordinates are taken as metres"),
