@@ -51,7 +51,7 @@ fn side(rings: &[Vec<[f64; 2]>], is_inside: impl Fn(f64) -> bool) -> Vec<DegreeR
             let crossing = || a[1] + (180.0 - a[0]) / (b[0] - a[0]) * (b[1] - a[1]);
             match (is_inside(a[0]), is_inside(b[0])) {
                 (false, true) => {
-                    open = Some(Chain { corners: vec![[180.0, crossing()], b], from: crossing(), to: 0.0 })
+                    open = Some(Chain { corners: vec![[180.0, crossing()], b], from: crossing(), to: 0.0 });
                 }
                 (true, true) => open.iter_mut().for_each(|chain| chain.corners.push(b)),
                 (true, false) => {

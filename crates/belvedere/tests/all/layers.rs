@@ -46,7 +46,7 @@ const LEVELS: [(&str, u8); 14] = [
 ];
 
 /// Crates of others that only one file or folder may name.
-const ONE_HOME: [(&str, &str); 34] = [
+const ONE_HOME: [(&str, &str); 33] = [
     ("ab_glyph::", "figures/src/font.rs"),
     ("colorous::", "io/src/colors.rs"),
     ("las::", "io/src/"),
