@@ -6,8 +6,8 @@ use crate::system::System;
 use crate::targets::remarks_of;
 use crate::work::run;
 use belvedere::apps::ask::remark_on_left_out;
-use belvedere::io::{ReadOptions, Source, UpAxis, Within, read_cloud, write_cloud};
 use belvedere::cloud::{CloudFile, CloudFiles, FileRows};
+use belvedere::io::{ReadOptions, Source, UpAxis, Within, read_cloud, write_cloud};
 use belvedere::{Attributes, Frame, GpsTimeKind, PointCloud};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyOSError;
@@ -166,9 +166,8 @@ impl Cloud {
     /// The files that the points come from.
     #[getter]
     fn files(&self) -> FilesState {
-        let file = |file: &CloudFile| {
-            (file.path.clone(), file.row_count, file.other_attributes.clone(), file.records.clone())
-        };
+        let file =
+            |file: &CloudFile| (file.path.clone(), file.row_count, file.other_attributes.clone(), file.records.clone());
         let files = self.0.files.files.iter().map(file).collect();
         match &self.0.files.rows {
             FileRows::All => (files, None, true),
