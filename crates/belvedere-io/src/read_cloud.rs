@@ -96,9 +96,9 @@ impl ReadReport {
 /// Coordinates become metres by the unit of the reference system and f32 relative to a near origin: that of
 /// [`ReadOptions::frame`], or else the middle, in whole metres, of the points within 10 km of the median point of all
 /// files. Points more than 1000 km from the median (or from the given origin) along an axis, and points that are not
-/// finite, are left out and counted. Colours that are all zero are none. An attribute that one of the files lacks is dropped; files without any point are
-/// ignored. The result does not depend on the number of threads. The items of progress are points. Tables without x, y
-/// and z in a folder are skipped and reported.
+/// finite, are left out and counted. Colours that are all zero are none. An attribute that one of the files lacks is
+/// dropped; files without any point are ignored. The result does not depend on the number of threads. The items of
+/// progress are points. Tables without x, y and z in a folder are skipped and reported.
 ///
 /// # Errors
 /// [`Error::Io`], [`Error::UnknownFormat`], [`Error::MissingFeature`] and [`Error::Malformed`] about the source at

@@ -65,7 +65,7 @@ pub(crate) fn run(arguments: &NormalsArguments, global: &Global) -> Result<Summa
         ];
         Ok(write_cloud(output, &kept, &columns)?)
     })?;
-    run.summary.add_writing(&report);
+    run.summary.add_writing(output, &report);
     run.summary
         .headline("normals of <points> points, oriented by <normals.oriented_by>")
         .headline("uncertain sign: <normals.low_confidence_percent> % of the points");
