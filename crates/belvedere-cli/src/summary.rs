@@ -7,6 +7,7 @@ use belvedere::report;
 use serde::Serialize;
 use serde_json::{Map, Value};
 use std::io::Write;
+use std::path::Path;
 use std::process::ExitCode;
 
 mod short;
@@ -122,10 +123,10 @@ impl Summary {
     }
 
     /// Adds what an output has no room for.
-    pub(crate) fn add_writing(&mut self, report: &WriteReport) -> &mut Self {
+    pub(crate) fn add_writing(&mut self, output: &Path, report: &WriteReport) -> &mut Self {
         if !report.left_out.is_empty() {
             self.add("attributes_not_written", report.left_out.clone());
-            self.remarks(remark_on_left_out(&report.left_out));
+            self.remarks(remark_on_left_out(output, &report.left_out));
         }
         if report.clamped_count > 0 {
             self.add("values_clamped", report.clamped_count);

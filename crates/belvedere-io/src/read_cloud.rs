@@ -105,16 +105,15 @@ impl ReadReport {
 /// files. Points more than 1000 km from the median (or from the given origin) along an axis, and points that are not
 /// finite, are left out and counted. A file of several that lies there as a whole is refused, unless
 /// [`ReadOptions::distant`] says otherwise. Colours that are all zero are none. An attribute that one of the files lacks
-/// is dropped; files without any point are
-/// ignored. The result does not depend on the number of threads. The items of progress are points. Tables without x, y
-/// and z in a folder are skipped and reported.
+/// is dropped; files without any point are ignored. The result does not depend on the number of threads. The items of
+/// progress are points. Tables without x, y and z in a folder are skipped and reported.
 ///
 /// # Errors
 /// [`Error::Io`], [`Error::UnknownFormat`], [`Error::MissingFeature`] and [`Error::Malformed`] about the source at
 /// fault; [`Error::UnusableCrs`] for degrees, earth-centred coordinates and files whose systems differ from each other
-/// or from that of the frame; [`Error::DistantFile`]; [`Error::NoPoints`] where no file has a point; [`Error::InvalidParameter`] for options
-/// that cannot be followed; [`Error::MissingAttribute`] where classes are requested but a file has none;
-/// [`Error::Cancelled`].
+/// or from that of the frame; [`Error::DistantFile`]; [`Error::NoPoints`] where no file has a point;
+/// [`Error::InvalidParameter`] for options that cannot be followed; [`Error::MissingAttribute`] where classes are
+/// requested but a file has none; [`Error::Cancelled`].
 pub fn read_cloud<'a, S: Into<Source<'a>>>(
     sources: impl IntoIterator<Item = S>,
     options: &ReadOptions,

@@ -54,8 +54,9 @@ pub struct WriteReport {
 ///
 /// LAS and LAZ files hold every attribute. Where the points come from LAS and LAZ files
 /// ([`belvedere_data::CloudFiles`]), their records are copied: extra bytes, further fields, records of the header,
-/// point format, and steps of coordinates stay; of several files what all of them have. What is lost is reported. PLY files and tables hold scan angles in degrees (`scan_angle_deg`) and colours in 8 bits; tables have
-/// a header row. NPY files hold (N, 3) f64 coordinates and nothing else.
+/// point format, and steps of coordinates stay; of several files what all of them have. What is lost is reported. PLY
+/// files and tables hold scan angles in degrees (`scan_angle_deg`) and colours in 8 bits; tables have a header row. NPY
+/// files hold (N, 3) f64 coordinates and nothing else.
 ///
 /// # Errors
 /// [`Error::UnknownFormat`] for other extensions, [`Error::LengthMismatch`] when a column does not have one value per

@@ -83,6 +83,13 @@ pub(crate) fn write(
 fn write_anew(output: Output<'_>, cloud: &PointCloud, extra: &[Column<'_>], records: &[Vlr]) -> Result<WriteReport> {
     let name = output.name().to_owned();
     let mut columns = extra.to_vec();
+    if let Some(index) = &cloud.attributes.scanner_index {
+        columns.push(Column {
+            name: "scanner_index".into(),
+            description: "scanner set-up, 65535 unknown".into(),
+            values: ColumnValues::U16(index.into()),
+        });
+    }
     let has_normals = |column: &Column<'_>| column.name.eq_ignore_ascii_case(NORMALS[0]);
     if let Some(normals) = cloud.attributes.normals.as_ref().filter(|_| !extra.iter().any(has_normals)) {
         columns.extend(NORMALS.into_iter().enumerate().map(|(axis, name)| Column {
@@ -90,13 +97,6 @@ fn write_anew(output: Output<'_>, cloud: &PointCloud, extra: &[Column<'_>], reco
             description: "unit normal".into(),
             values: ColumnValues::F32(normals.iter().map(|n| n[axis]).collect()),
         }));
-    }
-    if let Some(index) = &cloud.attributes.scanner_index {
-        columns.push(Column {
-            name: "scanner_index".into(),
-            description: "scanner set-up, 65535 unknown".into(),
-            values: ColumnValues::U16(index.into()),
-        });
     }
     let mut builder = Builder::from((1, 4));
     builder.point_format = las::point::Format::new(if cloud.attributes.color.is_some() { 7 } else { 6 })

@@ -255,8 +255,9 @@ impl Cloud {
     /// Writes the cloud, and gives the remarks on what the file has not.
     fn write<'py>(&self, py: Python<'py>, path: PathBuf) -> PyResult<Vec<Bound<'py, PyDict>>> {
         let cloud = Arc::clone(&self.0);
+        let output = path.clone();
         let report = run(py, None, move |_| write_cloud(&path, &cloud, &[]))?;
-        remarks_of(py, &remark_on_left_out(&report.left_out).into_iter().collect::<Vec<_>>())
+        remarks_of(py, &remark_on_left_out(&output, &report.left_out).into_iter().collect::<Vec<_>>())
     }
 
     fn __len__(&self) -> usize {

@@ -3,6 +3,7 @@
 use belvedere_data::report::percent;
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
+use std::path::Path;
 
 /// How much a remark matters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
@@ -72,10 +73,10 @@ impl Remark {
     }
 }
 
-/// What a user must know of a written file: `names` what the input has and the file has not.
+/// What a user must know of the written file `output`: `names` what the input has and the file has not.
 #[must_use]
-pub fn remark_on_left_out(names: &[String]) -> Option<Remark> {
-    let text = || format!("the output does not have what the input has: {}", names.join(", "));
+pub fn remark_on_left_out(output: &Path, names: &[String]) -> Option<Remark> {
+    let text = || format!("{} does not have what the input has: {}", output.display(), names.join(", "));
     (!names.is_empty()).then(|| Remark::warning("not-written", text()).with("count", names.len() as f64))
 }
 

@@ -18,7 +18,8 @@ pub struct RoofColumn {
 }
 
 /// The columns of `planes` and their energies, `rows`: the middle in the coordinates and unit of the file of `frame`,
-/// areas, tilt, azimuth from true north (NaN for level planes), energy, and losses. Months where the energies have them.
+/// areas, tilt, azimuth from true north (NaN for level planes), energy, and losses. Months where the energies have
+/// them.
 #[must_use]
 pub fn roof_columns(planes: &[RoofPlane], rows: &[RoofIrradiation], frame: &Frame, site: &Site) -> Vec<RoofColumn> {
     let of_planes = |value: &dyn Fn(&RoofPlane) -> f64| -> Vec<f64> { planes.iter().map(value).collect() };

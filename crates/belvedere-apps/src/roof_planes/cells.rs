@@ -13,7 +13,8 @@ const SHIFTS: [f64; 4] = [0.125, 0.375, 0.625, 0.875];
 const POINTS_OF_CELL: f64 = 2.0;
 /// Least side of a cell of an extent, metres: outlines of denser clouds need not be finer.
 const MIN_EXTENT_CELL: f64 = 0.2;
-/// Holes of an extent up to this area belong to it, m²: chimneys, windows and dormers.
+/// Holes of an extent up to this area belong to it, m²: chimneys, windows and dormers. Pieces beside it of this area do
+/// not.
 const MAX_HOLE: f64 = 2.0;
 
 /// Square cells in a plane, rows along its contour lines from its lower edge up.
@@ -58,7 +59,7 @@ impl PlaneCells {
     pub(super) fn extent(points: &[[f32; 3]], rows: &[u32], plane: &PlaneFit, area: f64) -> Self {
         let cell = (POINTS_OF_CELL * area / (rows.len().max(1) as f64)).sqrt().max(MIN_EXTENT_CELL);
         let mut cells = Self::of(points, rows, plane, cell, |_, _| true);
-        fill_holes(&mut cells.filled, MAX_HOLE / (cells.cell * cells.cell));
+        smooth(&mut cells.filled, MAX_HOLE / (cells.cell * cells.cell));
         cells
     }
 
@@ -134,27 +135,47 @@ fn filled(flat: &[[f64; 2]], cell: f64, shift: f64) -> (Raster<bool>, [f64; 2], 
     (without_gaps(&filled), low, cell)
 }
 
-/// Fills groups of at most `max_count` empty cells that filled ones enclose.
-fn fill_holes(cells: &mut Raster<bool>, max_count: f64) {
+/// Turns groups of at most `max_count` cells into what surrounds them: empty ones that filled ones enclose, and filled
+/// ones that touch the others at a corner only.
+fn smooth(cells: &mut Raster<bool>, max_count: f64) {
+    for value in [false, true] {
+        for group in groups(cells, value) {
+            let is_part = value || group.is_enclosed;
+            if is_part && group.cells.len() as f64 <= max_count {
+                group.cells.into_iter().for_each(|at| cells.values_mut()[at] = !value);
+            }
+        }
+    }
+}
+
+/// Cells of one value that hang together by their sides.
+struct CellGroup {
+    cells: Vec<usize>,
+    /// Whether none is at the border.
+    is_enclosed: bool,
+}
+
+fn groups(cells: &Raster<bool>, value: bool) -> Vec<CellGroup> {
     let (width, height) = (cells.width(), cells.height());
-    let mut is_seen = cells.values().to_vec();
+    let mut is_seen: Vec<bool> = cells.values().iter().map(|own| *own != value).collect();
+    let mut found = Vec::new();
     for first in 0..is_seen.len() {
-        let (mut group, mut next, mut is_enclosed) = (Vec::new(), vec![first], true);
+        let (mut group, mut next) = (CellGroup { cells: Vec::new(), is_enclosed: true }, vec![first]);
         while let Some(at) = next.pop() {
             if std::mem::replace(&mut is_seen[at], true) {
                 continue;
             }
-            group.push(at);
+            group.cells.push(at);
             let (column, row) = (at % width, at / width);
-            is_enclosed &= column > 0 && row > 0 && column + 1 < width && row + 1 < height;
-            let beside = [(column > 0, 1), (row > 0, width)].into_iter().filter(|(has, _)| *has).map(|(_, by)| at - by);
-            let beyond = [(column + 1 < width, 1), (row + 1 < height, width)];
-            next.extend(beside.chain(beyond.into_iter().filter(|(has, _)| *has).map(|(_, by)| at + by)));
+            group.is_enclosed &= column > 0 && row > 0 && column + 1 < width && row + 1 < height;
+            next.extend((column > 0).then(|| at - 1));
+            next.extend((row > 0).then(|| at - width));
+            next.extend((column + 1 < width).then_some(at + 1));
+            next.extend((row + 1 < height).then_some(at + width));
         }
-        if is_enclosed && group.len() as f64 <= max_count {
-            group.into_iter().for_each(|at| cells.values_mut()[at] = true);
-        }
+        found.extend((!group.cells.is_empty()).then_some(group));
     }
+    found
 }
 
 /// How many cells `point_count` points that fill these were drawn from.

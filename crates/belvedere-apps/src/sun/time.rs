@@ -212,7 +212,7 @@ pub fn parse_instant(text: &str, zone: Option<&Zone>) -> Result<f64> {
     let text = text.trim();
     let invalid = |expected| Error::InvalidParameter { parameter: Parameter::Time, value: shortened(text), expected };
     const WRITING: &str =
-        "written as 2026-06-21T12:00+02:00 or 2026-06-21T12:00[Europe/Amsterdam], or given with a time zone beside it";
+        "written as 2026-06-21T12:00+02:00, with a zone as 2026-06-21T12:00[Europe/Amsterdam], or with --zone";
     let pieces = Pieces::parse(text).map_err(|_| match Date::parse(text.get(..10).unwrap_or_default()) {
         Err(_) if is_like_date(text) => invalid("on a day of the calendar, in the years 1000 to 2999"),
         _ => invalid(WRITING),

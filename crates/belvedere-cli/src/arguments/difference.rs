@@ -18,7 +18,7 @@ pub(crate) struct DifferenceArguments {
     #[arg(short, long, value_name = "OUT", required = true, help_heading = "Result")]
     pub(crate) output: Vec<PathBuf>,
     /// Cloud, or raster of heights with the same cells (.tif), whose relief the map shows
-    #[arg(long, value_name = "FILE", help_heading = "Result")]
+    #[arg(long, value_name = "FILE")]
     pub(crate) relief: Option<PathBuf>,
     /// Title of the map [default: the names of the two files]
     #[arg(long, value_name = "TEXT", help_heading = "Result")]

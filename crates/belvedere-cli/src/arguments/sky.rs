@@ -94,8 +94,8 @@ pub(crate) struct SkyOutputs {
     /// Raster (.tif), map (.png), points (.laz .las .ply .csv) or mesh table (.csv .ply); repeatable
     ///
     /// On a grid: .tif has all measures as bands with their names (nodata: 255 of yes or no, -9999 of numbers), and
-    /// .png is a map of the first with a legend. Cells and points: all measures as columns. A mesh: a table with a row for each object and each
-    /// face (.csv), or the mesh coloured by the first measure (.ply).
+    /// .png is a map of the first with a legend. Cells and points: all measures as columns. A mesh: a table with a row
+    /// for each object and each face (.csv), or the mesh coloured by the first measure (.ply).
     #[arg(short, long, value_name = "OUT", required = true, help_heading = "Result")]
     pub(crate) output: Vec<PathBuf>,
     /// Also write a raster of each measure of a grid into this folder; created if it does not exist

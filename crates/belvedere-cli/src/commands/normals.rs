@@ -55,7 +55,7 @@ pub(crate) fn run(arguments: &NormalsArguments, global: &Global) -> Result<Summa
         }
         write_points(output, &cloud, &survey)
     })?;
-    run.summary.add_writing(&report);
+    run.summary.add_writing(output, &report);
     run.summary
         .headline("normals of <points> points, oriented by <normals.oriented_by>")
         .headline("uncertain sign: <normals.low_confidence_percent> % of the points");

@@ -93,7 +93,7 @@ pub(crate) fn run(arguments: &Query, global: &Global) -> Result<Summary> {
         }
         write_cloud(output, &targets, &[column])
     })?;
-    run.summary.add_writing(&report);
+    run.summary.add_writing(output, &report);
     run.summary
         .headline("visible <answers.visible_percent> % of <answers.targets> targets")
         .headline("blocked: <answers.blocked> targets")

@@ -228,7 +228,7 @@ impl<'a> TargetOutput<'a> {
             TargetSource::File(cloud, _) => rows.as_ref().map_or(TakenFrom::Cloud(cloud), TakenFrom::Rows),
             TargetSource::Mesh(mesh) => TakenFrom::Mesh(mesh),
         };
-        summary.add_writing(&write_measures(output, &self.on.targets, from, measures)?);
+        summary.add_writing(output, &write_measures(output, &self.on.targets, from, measures)?);
         Ok(())
     }
 }

@@ -114,7 +114,7 @@ fn write(
     if let Some(seen) = &found.points {
         for output in arguments.output.iter().filter(|path| is_of_points(path)) {
             let report = run.stage("writing", 0, |_| on_points(output, seen, cloud))?;
-            run.summary.add_writing(&report);
+            run.summary.add_writing(output, &report);
         }
     }
     if let Some(far) = &found.far {

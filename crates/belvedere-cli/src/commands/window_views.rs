@@ -65,7 +65,7 @@ pub(crate) fn run(arguments: &WindowViewsArguments, global: &Global) -> Result<S
             shown.write_map(output, &title, seen, &mut run)?;
         } else {
             let report = run.stage("writing", 0, |_| shown.write(output))?;
-            run.summary.add_writing(&report);
+            run.summary.add_writing(output, &report);
         }
     }
     if let Some(output) = &arguments.buildings {

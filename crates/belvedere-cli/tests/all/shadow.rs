@@ -212,7 +212,7 @@ fn what_cannot_be_is_refused_with_advice() {
 #[test]
 fn a_raster_has_a_band_for_each_sun_named_by_its_time() {
     let place = place();
-    let day = "--date 2026-06-21 --zone Europe/Amsterdam --time-step-min 120 --cell 2";
+    let day = "--date 2026-06-21 --zone Europe/Amsterdam --time-step-min 60 --cell 2";
     let run = place.summary(&format!("shadow {HOUSE} {day} -o day.tif -o day.csv -o day.png"));
     let columns: Vec<String> =
         place.text("day.csv").lines().next().unwrap().split(',').skip(3).map(str::to_owned).collect();

@@ -116,7 +116,7 @@ fn las_and_laz_hold_every_attribute() {
         let descriptors = header.vlrs().iter().find(|v| v.user_id == "LASF_Spec" && v.record_id == 4).unwrap();
         assert_eq!(descriptors.data.len(), 7 * 192);
         let kinds: Vec<u8> = descriptors.data.chunks(192).map(|d| d[2]).collect();
-        assert_eq!(kinds, [1, 5, 9, 9, 9, 9, 3]);
+        assert_eq!(kinds, [1, 5, 9, 3, 9, 9, 9]);
         assert!(descriptors.data[4..].starts_with(b"visible\0"));
         assert!(descriptors.data[160..].starts_with(b"0 blocked, 1 visible\0"));
 
