@@ -362,22 +362,20 @@ impl Crs {
         make: impl Fn(&str) -> std::result::Result<registry::CrsProjection, String>,
     ) -> Result<GeographicProjection> {
         let by_code = self.epsg.map(|code| format!("EPSG:{code}"));
-        let mut failure = None;
+        let mut is_named = false;
         for definition in [by_code.as_deref(), self.wkt.as_deref()].into_iter().flatten() {
-            match make(definition) {
-                Ok(projection) => {
-                    return Ok(GeographicProjection { projection, metres_per_unit: self.metres_per_unit });
-                }
-                Err(reason) => failure = Some(reason),
+            is_named = true;
+            if let Ok(projection) = make(definition) {
+                return Ok(GeographicProjection { projection, metres_per_unit: self.metres_per_unit });
             }
         }
-        Err(match failure {
-            Some(reason) => Error::InvalidParameter {
+        Err(match is_named {
+            true => Error::InvalidParameter {
                 parameter: Parameter::ReferenceSystem,
-                value: format!("{} ({reason})", self.describe()),
-                expected: "a projected system whose place on earth is known, by EPSG code or well-known text",
+                value: format!("{}, whose place on earth is not known here", self.describe()),
+                expected: "a projected system by EPSG code or well-known text",
             },
-            None => Error::MissingAttribute {
+            false => Error::MissingAttribute {
                 attribute: "reference system",
                 needed_for: "projecting latitude and longitude",
                 advice: "name its EPSG code",

@@ -196,11 +196,11 @@ impl SunPlace {
         let found = Site::of_scene(frame, bounds, given, elsewhere).or_else(|error| match error {
             Error::MissingAttribute { .. } => unknown("unknown".to_owned()),
             Error::InvalidParameter { parameter: Parameter::ReferenceSystem, value, .. } => {
-                unknown(format!("unknown by {value}"))
+                unknown(format!("unknown ({value})"))
             }
             Error::InvalidParameter {
                 parameter: Parameter::Position | Parameter::LatitudeLongitude, value, ..
-            } if given.is_none() => unknown(format!("unknown by {} at {value}", frame.crs.describe())),
+            } if given.is_none() => unknown(format!("unknown ({} at {value})", frame.crs.describe())),
             other => Err(other),
         })?;
         match self.beside(frame, bounds) {

@@ -11,6 +11,9 @@ const EARTH_RADIUS: f64 = 6_371_000.0;
 /// metre or two.
 const SAME_PLACE: f64 = 5.0;
 
+/// The same without the steps between datums, metres: these move places by a kilometre at most.
+const SAME_ROUGH_PLACE: f64 = 5e3;
+
 /// What is further apart than this contradicts itself, metres: no survey, and no country's use of the zone beside it,
 /// reaches so far.
 pub const CONTRADICTION_DISTANCE: f64 = 300e3;
@@ -144,8 +147,20 @@ impl Crs {
                 distance_in_words(distance_on_earth(own, others))
             )),
             _ if self.same_system(other) => Comparison::Same,
-            _ => Comparison::Unknown,
+            _ => match (self.rough_place_of(coordinates), other.rough_place_of(coordinates)) {
+                (Some(own), Some(others)) if distance_on_earth(own, others) > SAME_ROUGH_PLACE => {
+                    let distance = distance_in_words(distance_on_earth(own, others));
+                    Comparison::Apart(format!("the same coordinates lie about {distance} apart in them"))
+                }
+                _ => Comparison::Unknown,
+            },
         }
+    }
+
+    /// [`Crs::place_of`], or where the step to WGS 84 is not known there, the place without it: at most a kilometre off.
+    fn rough_place_of(&self, coordinates: [f64; 2]) -> Option<[f64; 2]> {
+        let metres = coordinates.map(|v| v * self.metres_per_unit);
+        self.place_of(coordinates).or_else(|| self.grid_projection().ok()?.unproject(metres).ok())
     }
 
     /// Refuses this system, which a user gives, for the file at `path`: where the file names another, and where the
