@@ -44,7 +44,7 @@ mod windows;
 use crate::arguments::{Cli, Command};
 use crate::help;
 use crate::summary::Summary;
-use anyhow::{Context, Result};
+use anyhow::Result;
 use outputs::{
     NormalColumns, check_folder, check_output, check_parent, extension, is_folder, is_las, is_written_back,
     warn_of_geojson,
@@ -54,9 +54,7 @@ use std::io::Write;
 /// Runs the command that was typed.
 pub(crate) fn run(cli: &Cli) -> Result<Summary> {
     let global = &cli.global;
-    if let Some(threads) = global.threads {
-        rayon::ThreadPoolBuilder::new().num_threads(threads).build_global().context("--threads")?;
-    }
+    crate::environment::apply(global)?;
     crate::device::choose(global)?;
     let mut summary = run_command(cli)?;
     crate::device::report(&mut summary);
