@@ -2,8 +2,14 @@
 
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
 use tokio::sync::Notify;
 use tokio::task::AbortHandle;
+
+/// How long a connection must rest before it makes room for another: a new one has its request read by then.
+const MIN_REST: Duration = Duration::from_millis(40);
+/// How often it is looked for one.
+const POLL: Duration = Duration::from_millis(5);
 
 /// The open connections of a server.
 #[derive(Default)]
@@ -16,18 +22,17 @@ pub(crate) struct Connections {
 #[derive(Default)]
 struct OpenConnections {
     by_number: HashMap<u64, OpenConnection>,
-    /// Grows with each beginning and each rest.
-    clock: u64,
+    /// Connections so far.
+    count: u64,
 }
 
-#[derive(Default)]
 struct OpenConnection {
     /// What ends it; `None` until its task runs.
     task: Option<AbortHandle>,
     /// Requests that are being answered.
     requests: usize,
     /// When it began to rest.
-    rests_since: u64,
+    rests_since: Instant,
 }
 
 /// A connection that is open until this is dropped.
@@ -47,26 +52,28 @@ impl Connections {
             if let Some(number) = self.number(max) {
                 return Place { connections: Arc::clone(self), number };
             }
-            self.changed.notified().await;
+            // one that rests may have rested long enough by then
+            let _ = tokio::time::timeout(POLL, self.changed.notified()).await;
         }
     }
 
     fn number(&self, max: usize) -> Option<u64> {
         let mut open = self.open();
         if open.by_number.len() >= max {
-            open.end_one();
+            open.end_one(MIN_REST);
         }
         if open.by_number.len() >= max {
             return None;
         }
-        let now = open.tick();
-        open.by_number.insert(now, OpenConnection { rests_since: now, ..OpenConnection::default() });
-        Some(now)
+        open.count += 1;
+        let number = open.count;
+        open.by_number.insert(number, OpenConnection { task: None, requests: 0, rests_since: Instant::now() });
+        Some(number)
     }
 
     /// Ends the connection that rests for longest, if one does.
     pub(crate) fn end_one(&self) {
-        self.open().end_one();
+        self.open().end_one(Duration::ZERO);
     }
 
     fn open(&self) -> MutexGuard<'_, OpenConnections> {
@@ -75,13 +82,11 @@ impl Connections {
 }
 
 impl OpenConnections {
-    fn tick(&mut self) -> u64 {
-        self.clock += 1;
-        self.clock
-    }
-
-    fn end_one(&mut self) {
-        let resting = self.by_number.iter().filter(|(_, connection)| connection.requests == 0);
+    /// Ends the connection that rests for longest, if one rests for so long.
+    fn end_one(&mut self, rest: Duration) {
+        let is_resting =
+            |connection: &OpenConnection| connection.requests == 0 && connection.rests_since.elapsed() >= rest;
+        let resting = self.by_number.iter().filter(|(_, connection)| is_resting(connection));
         let longest = resting.min_by_key(|(_, connection)| connection.rests_since).map(|(&number, _)| number);
         if let Some(task) = longest.and_then(|number| self.by_number.remove(&number)?.task) {
             task.abort();
@@ -117,10 +122,9 @@ impl AnsweredRequest {
 impl Drop for AnsweredRequest {
     fn drop(&mut self) {
         let mut open = self.0.connections.open();
-        let now = open.tick();
         if let Some(own) = open.by_number.get_mut(&self.0.number) {
             own.requests = own.requests.saturating_sub(1);
-            own.rests_since = now;
+            own.rests_since = Instant::now();
         }
         drop(open);
         self.0.connections.changed.notify_one();

@@ -44,7 +44,7 @@ mod windows;
 use crate::arguments::{Cli, Command};
 use crate::help;
 use crate::summary::Summary;
-use anyhow::Result;
+use anyhow::{Context, Result};
 use outputs::{
     NormalColumns, check_folder, check_output, check_parent, extension, is_folder, is_las, is_written_back,
     warn_of_geojson,
