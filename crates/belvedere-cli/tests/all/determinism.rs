@@ -58,7 +58,7 @@ fn outputs_have_the_same_bytes_without_avx2() {
         ("shadow house.laz --sun 160,35 --cell 0.5", "shadow.tif"),
         ("sky-view house.laz --directions 49 --cell 1", "sky.tif"),
         ("query house.laz --sun 160,35 --random 20000", "random.csv"),
-        ("viewshed house.laz --observer 85003,446998 --cell 0.5", "seen.tif"),
+        ("viewshed house.laz --observer 85000,445988 --cell 0.5", "seen.tif"),
     ] {
         run(&format!("{arguments} -o on_{name}"), "on");
         run(&format!("{arguments} -o off_{name}"), "off");

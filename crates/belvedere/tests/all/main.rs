@@ -21,6 +21,7 @@ mod closed_form_shadows;
 mod closed_form_skies;
 mod common;
 mod crowns;
+mod dependencies;
 mod depth_map;
 mod exposure;
 mod far_lines;
