@@ -165,7 +165,7 @@ fn areas_beside_the_survey_and_its_ground_are_refused_and_empty_ones_found() {
     let beside = ClearedArea::Polygon(vec![vec![[9000.0, 0.0], [9001.0, 0.0], [9001.0, 1.0]]]);
     for (area, word) in [
         (beside, "on the cloud"),
-        (ClearedArea::Polygon(vec![vec![[0.0; 2]; 2]]), "at least 3"),
+        (ClearedArea::Polygon(vec![vec![[0.0; 2]; 2]]), "three corners"),
         (ClearedArea::Class(2), "stands on the ground"),
     ] {
         let error = plan.clone().with_cleared(vec![area]).unwrap_err().to_string();

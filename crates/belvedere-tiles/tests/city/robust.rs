@@ -269,7 +269,7 @@ fn a_plan_that_was_edited_or_leads_out_of_its_folder_is_refused() {
         format!("{{\"checksum\":\"{:08x}\",{rest}", crc32fast::hash(rest.as_bytes()))
     };
     for name in ["../out", "/tmp/out", "a/b", "a\\\\b", ".", "..", "", "balls", "shadow_20", "c:out", "a\\u0000b"] {
-        refused(&named(name), "name");
+        refused(&named(name), "questions is");
     }
     std::fs::write(&path, named("shadow-5.5+a")).unwrap();
     assert!(Plan::read(&folder).is_ok());

@@ -101,7 +101,8 @@ fn crates_of_others_have_licences_that_are_allowed_and_few_are_there_twice() {
         assert!(is_own || package["source"].as_str().is_some_and(|source| source.starts_with("registry+")), "{name}");
         *versions.entry(name.to_owned()).or_default() += 1;
     }
-    let found: BTreeSet<String> = versions.iter().filter(|(_, count)| **count > 1).map(|(name, _)| name.clone()).collect();
+    let found: BTreeSet<String> =
+        versions.iter().filter(|(_, count)| **count > 1).map(|(name, _)| name.clone()).collect();
     assert_eq!(found, twice, "crates in more than one version, and those that deny.toml names");
     for name in ["ttf-parser", "owned_ttf_parser", "aes"] {
         assert!(!versions.contains_key(name), "{name}");
