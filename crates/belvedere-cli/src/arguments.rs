@@ -87,11 +87,14 @@ pub(crate) struct Cli {
     pub(crate) command: Command,
 }
 
+/// Most threads.
+pub(crate) const MAX_THREADS: usize = 1024;
+
 #[derive(Args)]
 #[command(next_help_heading = "Global options")]
 pub(crate) struct Global {
     /// Number of threads, at most 1024; it does not change results [default: all processors]
-    #[arg(long, global = true, value_name = "N", value_parser = at_most::<1024>)]
+    #[arg(long, global = true, value_name = "N", value_parser = at_most::<MAX_THREADS>)]
     pub(crate) threads: Option<usize>,
     /// What tests many lines of sight and draws depth maps; it does not change answers: auto, cpu, gpu, or the number
     /// of a device

@@ -32,7 +32,20 @@ pub(crate) fn listen() {
     if let Err(error) = listening {
         note(&format!("Ctrl-C may leave unfinished files: {error}"));
     }
+    catch_file_limit();
 }
+
+/// Lets a file that becomes too large be an error of writing, rather than the end of the program.
+#[cfg(unix)]
+fn catch_file_limit() {
+    // nobody looks at the flag: what matters is that there is a handler
+    let is_reached = std::sync::Arc::new(AtomicBool::new(false));
+    let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, is_reached);
+}
+
+/// Other systems have no such signal.
+#[cfg(not(unix))]
+fn catch_file_limit() {}
 
 /// Says once that the run was interrupted.
 fn report() {

@@ -3,6 +3,7 @@
 mod arguments;
 mod commands;
 mod device;
+mod environment;
 mod help;
 mod interrupt;
 mod memory;

@@ -1,5 +1,10 @@
 //! Which instructions of the processor the indexes run on. Answers are the same bits on all of them.
 
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Whether a face turned AVX2 off.
+static IS_SCALAR: AtomicBool = AtomicBool::new(false);
+
 /// Instructions that a search runs on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Instructions {
@@ -12,9 +17,18 @@ pub enum Instructions {
 }
 
 impl Instructions {
-    /// The fastest set this machine has.
+    /// From now on indexes use no more than every machine has: to look for faults of a processor or of a virtual
+    /// machine. Answers stay the same bits. For programs, before any other call.
+    pub fn turn_avx2_off() {
+        IS_SCALAR.store(true, Ordering::Relaxed);
+    }
+
+    /// The fastest set this machine has, unless it was turned off.
     #[must_use]
     pub fn detect() -> Self {
+        if IS_SCALAR.load(Ordering::Relaxed) {
+            return Self::Scalar;
+        }
         #[cfg(target_arch = "x86_64")]
         if std::arch::is_x86_feature_detected!("avx2")
             && std::arch::is_x86_feature_detected!("fma")

@@ -150,6 +150,12 @@ fn refusal(source: &std::io::Error) -> String {
         ErrorKind::PermissionDenied => "access is denied; check the permissions".to_owned(),
         ErrorKind::UnexpectedEof => "ends too early; is the file complete?".to_owned(),
         ErrorKind::StorageFull => "the disk is full; free some space".to_owned(),
+        ErrorKind::QuotaExceeded => "your share of the disk is full (quota); free some space".to_owned(),
+        ErrorKind::FileTooLarge => {
+            "it would be larger than the system lets a file be; raise the limit (ulimit -f), or write to another disk"
+                .to_owned()
+        }
+        ErrorKind::OutOfMemory => "the system gives no more memory; use a smaller part".to_owned(),
         _ => source.to_string(),
     }
 }

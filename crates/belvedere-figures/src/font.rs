@@ -4,7 +4,11 @@
 //! A character that it lacks, such as an Arabic or a Chinese one, is drawn as a box.
 
 use crate::picture::Picture;
-use ab_glyph::{Font, FontRef, Glyph, PxScale, ScaleFont, point};
+use ab_glyph_rasterizer::{Point, Rasterizer, point};
+use skrifa::instance::{LocationRef, Size};
+use skrifa::metrics::BoundingBox;
+use skrifa::outline::{DrawSettings, OutlinePen};
+use skrifa::{FontRef, GlyphId, MetadataProvider};
 
 /// Rows of a line of text at scale 1, pixels: capitals and what hangs below them.
 pub(crate) const HEIGHT: usize = 8;
@@ -17,37 +21,133 @@ const FONT_HEIGHT: f32 = 11.5;
 /// Where letters stand at scale 1, pixels below the upper edge of a line.
 const BASELINE: f32 = 7.0;
 
-/// The glyphs of `text` at `scale`, from `x` and `y` on, and where the next would begin.
-fn set(text: &str, x: f32, y: f32, scale: usize) -> (Vec<Glyph>, f32) {
-    // the font was parsed by the tests
-    let Ok(font) = FontRef::try_from_slice(FONT) else { return (Vec::new(), x) };
-    let size = PxScale::from(FONT_HEIGHT * scale as f32);
-    let font = font.as_scaled(size);
-    let (mut glyphs, mut at, mut before) = (Vec::new(), x, None);
-    for c in text.chars().filter(|c| !c.is_control()) {
-        let id = font.glyph_id(c);
-        at += before.map_or(0.0, |before| font.kern(before, id));
-        glyphs.push(id.with_scale_and_position(size, point(at, y + BASELINE * scale as f32)));
-        at += font.h_advance(id);
-        before = Some(id);
+/// The font at a scale.
+struct ScaledFont {
+    font: FontRef<'static>,
+    /// Pixels per unit of its outlines.
+    pixels_per_unit: f32,
+}
+
+/// A letter of a line of text.
+struct PlacedGlyph {
+    id: GlyphId,
+    /// Where it stands on the line, pixels.
+    x: f32,
+}
+
+impl ScaledFont {
+    fn new(scale: usize) -> Option<Self> {
+        // the font was parsed by the tests
+        let font = FontRef::new(FONT).ok()?;
+        let metrics = font.metrics(Size::unscaled(), LocationRef::default());
+        Some(Self { font, pixels_per_unit: FONT_HEIGHT * scale as f32 / (metrics.ascent - metrics.descent) })
     }
-    (glyphs, at)
+
+    /// The glyphs of `text` from `x` on, and where the next would begin.
+    fn set(&self, text: &str, x: f32) -> (Vec<PlacedGlyph>, f32) {
+        let (letters, metrics) =
+            (self.font.charmap(), self.font.glyph_metrics(Size::unscaled(), LocationRef::default()));
+        let (mut glyphs, mut x) = (Vec::new(), x);
+        for c in text.chars().filter(|c| !c.is_control()) {
+            // number 0 is the box
+            let id = letters.map(c).unwrap_or_default();
+            glyphs.push(PlacedGlyph { id, x });
+            x += metrics.advance_width(id).unwrap_or(0.0) * self.pixels_per_unit;
+        }
+        (glyphs, x)
+    }
+
+    /// How much of each pixel a glyph covers whose line stands at `y`; `None` for one without ink.
+    fn drawn(&self, glyph: &PlacedGlyph, y: f32) -> Option<GlyphPixels> {
+        let outline = self.font.outline_glyphs().get(glyph.id)?;
+        let bounds = self.font.glyph_metrics(Size::unscaled(), LocationRef::default()).bounds(glyph.id)?;
+        let mut pen = GlyphPixels::around(bounds, [glyph.x, y], self.pixels_per_unit);
+        outline.draw(DrawSettings::unhinted(Size::unscaled(), LocationRef::default()), &mut pen).ok()?;
+        Some(pen)
+    }
+}
+
+/// The pixels of a glyph while its outline is drawn.
+struct GlyphPixels {
+    cover: Rasterizer,
+    /// The upper left corner of the pixels in the picture.
+    corner: [f32; 2],
+    /// Where the glyph stands in its pixels, and pixels per unit of the outline.
+    place: [f32; 2],
+    pixels_per_unit: f32,
+    start: Point,
+    last: Point,
+}
+
+impl GlyphPixels {
+    /// Nothing drawn yet, in pixels that hold `bounds` of a glyph that stands at `place`.
+    fn around(bounds: BoundingBox, place: [f32; 2], pixels_per_unit: f32) -> Self {
+        // y grows downwards in pictures; a pixel of room on all sides holds what is rounded
+        let low = [place[0] + bounds.x_min * pixels_per_unit, place[1] - bounds.y_max * pixels_per_unit];
+        let high = [place[0] + bounds.x_max * pixels_per_unit, place[1] - bounds.y_min * pixels_per_unit];
+        let corner = low.map(|v| v.floor() - 1.0);
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "not negative, `as` saturates")]
+        let [width, height] = [0, 1].map(|i| (high[i].ceil() + 1.0 - corner[i]) as usize);
+        Self {
+            cover: Rasterizer::new(width, height),
+            corner,
+            place: [place[0] - corner[0], place[1] - corner[1]],
+            pixels_per_unit,
+            start: point(0.0, 0.0),
+            last: point(0.0, 0.0),
+        }
+    }
+
+    fn point(&self, x: f32, y: f32) -> Point {
+        point(self.place[0] + x * self.pixels_per_unit, self.place[1] - y * self.pixels_per_unit)
+    }
+}
+
+impl OutlinePen for GlyphPixels {
+    fn move_to(&mut self, x: f32, y: f32) {
+        self.start = self.point(x, y);
+        self.last = self.start;
+    }
+
+    fn line_to(&mut self, x: f32, y: f32) {
+        let end = self.point(x, y);
+        self.cover.draw_line(self.last, end);
+        self.last = end;
+    }
+
+    fn quad_to(&mut self, cx0: f32, cy0: f32, x: f32, y: f32) {
+        let end = self.point(x, y);
+        self.cover.draw_quad(self.last, self.point(cx0, cy0), end);
+        self.last = end;
+    }
+
+    fn curve_to(&mut self, cx0: f32, cy0: f32, cx1: f32, cy1: f32, x: f32, y: f32) {
+        let end = self.point(x, y);
+        self.cover.draw_cubic(self.last, self.point(cx0, cy0), self.point(cx1, cy1), end);
+        self.last = end;
+    }
+
+    fn close(&mut self) {
+        self.cover.draw_line(self.last, self.start);
+        self.last = self.start;
+    }
 }
 
 /// Width in pixels of `text` at `scale`.
 pub(crate) fn text_width(text: &str, scale: usize) -> usize {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "not negative, `as` saturates")]
-    let width = set(text, 0.0, 0.0, scale).1.ceil() as usize;
+    let width = ScaledFont::new(scale).map_or(0.0, |font| font.set(text, 0.0).1).ceil() as usize;
     width
 }
 
 /// Draws `text` with the upper left corner of its line at (`x`, `y`); what lies outside the picture is cut off.
 pub(crate) fn draw_text(picture: &mut Picture, x: usize, y: usize, text: &str, scale: usize, color: [u8; 3]) {
-    let Ok(font) = FontRef::try_from_slice(FONT) else { return };
-    for outline in set(text, x as f32, y as f32, scale).0.into_iter().filter_map(|glyph| font.outline_glyph(glyph)) {
-        let corner = outline.px_bounds().min;
-        outline.draw(|column, row, cover| {
-            let (column, row) = (corner.x + column as f32, corner.y + row as f32);
+    let Some(font) = ScaledFont::new(scale) else { return };
+    let line = y as f32 + BASELINE * scale as f32;
+    for glyph in font.set(text, x as f32).0.iter().filter_map(|glyph| font.drawn(glyph, line)) {
+        let corner = glyph.corner;
+        glyph.cover.for_each_pixel_2d(|column, row, cover| {
+            let (column, row) = (corner[0] + column as f32, corner[1] + row as f32);
             if column < 0.0 || row < 0.0 {
                 return;
             }

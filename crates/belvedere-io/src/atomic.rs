@@ -4,7 +4,8 @@ use std::ffi::OsStr;
 use std::fs::{self, File, OpenOptions};
 use std::io::{BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{LazyLock, Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
 
 use belvedere_data::{Error, Result};
 
@@ -13,6 +14,21 @@ const MAX_NAME_ATTEMPTS: u32 = 1000;
 
 /// Bytes gathered before they are handed to the operating system.
 const BUFFER_BYTES: usize = 1 << 18;
+
+/// How long an unfinished file that this computer cannot judge is left alone after it was written to last: runs write
+/// all the time, and none pauses for a day.
+const OLD: Duration = Duration::from_secs(24 * 3600);
+
+/// Where this process has its number: the start of this computer, and the space of process numbers, of which each
+/// container has its own. Part of the names of unfinished files, so that computers and containers with a common folder
+/// do not take the files of each other for leftovers. Only Linux says it.
+static HOST: LazyLock<String> = LazyLock::new(|| {
+    let boot = fs::read_to_string("/proc/sys/kernel/random/boot_id").unwrap_or_default();
+    let space = fs::read_link("/proc/self/ns/pid").unwrap_or_default();
+    let digits = |text: &str| text.chars().filter(char::is_ascii_hexdigit).collect::<String>();
+    let (boot, space) = (digits(&boot), digits(space.to_string_lossy().trim_start_matches("pid")));
+    if boot.is_empty() || space.is_empty() { String::new() } else { format!("{boot:.12}{space}") }
+});
 
 /// A file that is removed again unless it was renamed to its final place.
 struct Temporary {
@@ -132,25 +148,51 @@ fn check_parent(path: &Path) -> Result<()> {
     }
 }
 
-/// Removes the temporary files that runs left when they were killed while they wrote `target`.
-fn remove_leftovers(target: &Path, name: &OsStr) {
-    // only Linux tells without further ado which processes there are
-    if !Path::new("/proc/self/stat").exists() {
-        return;
-    }
+/// Removes the temporary files that runs left when they were killed while they wrote `target`: those of processes of
+/// this computer that are no more, and old ones of others. `own` is the one that was just made.
+fn remove_leftovers(target: &Path, name: &OsStr, own: &Path) {
+    let Ok(now) = fs::metadata(own) else { return };
     let folder = target.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let start = format!(".{}.", name.to_string_lossy());
     for entry in folder.read_dir().into_iter().flatten().flatten() {
         let found = entry.file_name();
-        let numbers =
-            found.to_str().and_then(|found| found.strip_prefix(&start)?.strip_suffix(".part")?.split_once('-'));
-        let Some((process, attempt)) = numbers else { continue };
-        let is_number = |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
-        if is_number(process) && is_number(attempt) && !Path::new("/proc").join(process).exists() {
+        let Some(maker) = found.to_str().and_then(|found| found.strip_prefix(&start)?.strip_suffix(".part")) else {
+            continue;
+        };
+        let is_number = |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_hexdigit());
+        let (true, Ok(metadata)) = (maker.contains('-') && maker.split('-').all(is_number), entry.metadata()) else {
+            continue;
+        };
+        // the same clock gave both times
+        let age =
+            now.modified().ok().zip(metadata.modified().ok()).and_then(|(now, then)| now.duration_since(then).ok());
+        if is_abandoned(maker, &now, &metadata) || age.is_some_and(|age| age > OLD) {
             // one that cannot be removed is in nobody's way
             let _ = fs::remove_file(entry.path());
         }
     }
+}
+
+/// Whether the process that made an unfinished file is known to be no more; `maker` is its host, its number and that of
+/// the file.
+fn is_abandoned(maker: &str, own: &fs::Metadata, other: &fs::Metadata) -> bool {
+    let mut parts = maker.split('-');
+    let (Some(host), Some(process), Some(_), None) = (parts.next(), parts.next(), parts.next(), parts.next()) else {
+        return false;
+    };
+    // processes of other users may be hidden
+    !HOST.is_empty() && host == *HOST && is_of_one_user(own, other) && !Path::new("/proc").join(process).exists()
+}
+
+#[cfg(unix)]
+fn is_of_one_user(own: &fs::Metadata, other: &fs::Metadata) -> bool {
+    use std::os::unix::fs::MetadataExt;
+    own.uid() == other.uid()
+}
+
+#[cfg(not(unix))]
+fn is_of_one_user(_own: &fs::Metadata, _other: &fs::Metadata) -> bool {
+    true
 }
 
 fn create_beside(target: &Path) -> Result<(File, Temporary)> {
@@ -158,12 +200,12 @@ fn create_beside(target: &Path) -> Result<(File, Temporary)> {
     let Some(name) = target.file_name() else {
         return Err(Error::io(target)(std::io::Error::new(ErrorKind::InvalidInput, "names no file")));
     };
-    remove_leftovers(target, name);
     for attempt in 0..MAX_NAME_ATTEMPTS {
         let mut hidden = std::ffi::OsString::from(".");
         hidden.push(name);
-        // the process is part of the name, so that two programs never write to one file
-        hidden.push(format!(".{}-{attempt}.part", std::process::id()));
+        // host and process are part of the name, so that two programs never write to one file
+        let host = if HOST.is_empty() { "0" } else { HOST.as_str() };
+        hidden.push(format!(".{host}-{}-{attempt}.part", std::process::id()));
         let path = target.with_file_name(hidden);
         let mut unfinished = unfinished();
         if unfinished.is_abandoned {
@@ -172,6 +214,8 @@ fn create_beside(target: &Path) -> Result<(File, Temporary)> {
         match OpenOptions::new().read(true).write(true).create_new(true).open(&path) {
             Ok(file) => {
                 unfinished.paths.push(path.clone());
+                drop(unfinished);
+                remove_leftovers(target, name, &path);
                 return Ok((file, Temporary { path, kept: false }));
             }
             Err(e) if e.kind() == ErrorKind::AlreadyExists => {}

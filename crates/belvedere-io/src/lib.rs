@@ -143,7 +143,7 @@ pub use read_options::{DistantFiles, Insistence, ReadOptions, RowNumbers, UpAxis
 pub use saved_matrix::{
     MatrixHead, RowSink, SavedMatrix, read_matrix, read_matrix_head, read_matrix_rows, write_matrix, write_matrix_rows,
 };
-pub use source::{ReadSeek, Source, SystemBeside, web_address};
+pub use source::{OpenSource, ReadSeek, Source, SystemBeside, web_address};
 pub use stations::read_stations;
 pub use table::{Table, TableCells, read_table, write_table};
 #[cfg(feature = "tiff")]

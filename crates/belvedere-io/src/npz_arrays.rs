@@ -4,7 +4,7 @@ use std::io::{self, BufReader, Read, Seek, SeekFrom, Take, Write};
 
 use npyz::{AutoSerialize, Deserialize, NpyReader, NpyWriter, Order, WriteOptions, WriterBuilder};
 use zip::read::ZipFile;
-use zip::write::FileOptions;
+use zip::write::SimpleFileOptions;
 use zip::{ZipArchive, ZipWriter};
 
 use crate::npy_header::read_header;
@@ -12,15 +12,57 @@ use crate::npy_header::read_header;
 /// Writes an archive, whose arrays `body` appends.
 pub(crate) fn write_archive<W: Write + Seek, E: From<io::Error>>(
     output: W,
-    body: impl FnOnce(&mut ZipWriter<W>) -> Result<(), E>,
+    body: impl FnOnce(&mut ZipWriter<ArchiveFile<W>>) -> Result<(), E>,
 ) -> Result<(), E> {
-    let mut archive = ZipWriter::new(output);
-    let written = body(&mut archive).and_then(|()| Ok(archive.finish().map_err(io::Error::from)?.flush()?));
-    if written.is_err() {
-        // dropped without its end, the writer of the crate tries again to write it, and prints its own error
+    let mut archive = ZipWriter::new(ArchiveFile { output, has_failed: false });
+    if let Err(error) = body(&mut archive) {
+        // dropped, the writer of the crate would end the archive all the same
         std::mem::forget(archive);
+        return Err(error);
     }
-    written
+    Ok(archive.finish().map_err(io::Error::from)?.flush()?)
+}
+
+/// The file of an archive. After a failure everything else seems to succeed: the writer of the crate tries again when it
+/// is dropped, and prints what fails then.
+pub(crate) struct ArchiveFile<W> {
+    output: W,
+    has_failed: bool,
+}
+
+impl<W> ArchiveFile<W> {
+    fn noting_failure<T>(&mut self, done: io::Result<T>) -> io::Result<T> {
+        self.has_failed |= done.as_ref().is_err_and(|error| error.kind() != io::ErrorKind::Interrupted);
+        done
+    }
+}
+
+impl<W: Write> Write for ArchiveFile<W> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        if self.has_failed {
+            return Ok(bytes.len());
+        }
+        let written = self.output.write(bytes);
+        self.noting_failure(written)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        if self.has_failed {
+            return Ok(());
+        }
+        let flushed = self.output.flush();
+        self.noting_failure(flushed)
+    }
+}
+
+impl<W: Seek> Seek for ArchiveFile<W> {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        if self.has_failed {
+            return Ok(0);
+        }
+        let found = self.output.seek(to);
+        self.noting_failure(found)
+    }
 }
 
 /// Appends an array to an archive.
@@ -43,7 +85,7 @@ pub(crate) fn begin_array<'a, T: AutoSerialize, W: Write + Seek>(
 ) -> io::Result<NpyWriter<T, &'a mut ZipWriter<W>>> {
     // stored, as NumPy does: floats hardly shrink, and loading stays a copy; without the time of day, so that the same
     // balls give the same bytes
-    let options = FileOptions::default()
+    let options = SimpleFileOptions::default()
         .compression_method(zip::CompressionMethod::Stored)
         .last_modified_time(zip::DateTime::default())
         .large_file(true);
@@ -160,13 +202,13 @@ pub(crate) fn in_blocks<T: Deserialize, R: Read + Seek, E: From<io::Error>>(
 }
 
 /// The values of an array, by way of a buffer: a value at a time, the entry of an archive is slow.
-type NpzValues<'a, 'z, T> = NpyReader<T, &'a mut BufReader<Take<ZipFile<'z>>>>;
+type NpzValues<'a, 'z, T, R> = NpyReader<T, &'a mut BufReader<Take<ZipFile<'z, R>>>>;
 
 /// Lets `read` read an array, of which it is given the shape and the values, and checks the sum of the whole.
 fn read_array<T: Deserialize, R: Read + Seek, O, E: From<io::Error>>(
     archive: &mut ZipArchive<R>,
     name: &str,
-    read: impl FnOnce(&[u64], &mut NpzValues<'_, '_, T>) -> Result<O, E>,
+    read: impl FnOnce(&[u64], &mut NpzValues<'_, '_, T, R>) -> Result<O, E>,
 ) -> Result<O, E> {
     if !has(archive, name) {
         return Err(invalid(format!("there is no array {name}")).into());

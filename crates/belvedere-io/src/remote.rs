@@ -24,14 +24,22 @@ const MAX_BYTES: u64 = 1 << 24;
 const MAX_WHOLE: u64 = 1 << 28;
 /// Time to wait before asking again, where a server was busy or a connection broke.
 const PAUSES: [Duration; 3] = [Duration::from_millis(300), Duration::from_secs(1), Duration::from_secs(3)];
-/// Longest wait for a connection, for an answer, and for all of it: a whole file of the largest size at half a megabyte
-/// a second.
+/// Longest wait for a connection, for the next bytes, and for all of an answer: a whole file of the largest size at
+/// half a megabyte a second.
 const CONNECT: Duration = Duration::from_secs(20);
-const ANSWER: Duration = Duration::from_secs(60);
+const NO_PROGRESS: Duration = Duration::from_secs(30);
 const WHOLE_ANSWER: Duration = Duration::from_secs(600);
 
+/// What is said of a server that sends nothing for too long.
+const SILENT: &str = "the server does not answer: it sent nothing for 30 s; try again later";
+/// What is said of a file that is not the one of which parts were read before.
+const CHANGED: &str = "the file on the server changed while it was read; run again";
+
 /// Connections are kept open from one part to the next. The authorities that are trusted are those of the system.
-static AGENT: LazyLock<Agent> = LazyLock::new(|| {
+static AGENT: LazyLock<Agent> = LazyLock::new(|| agent(NO_PROGRESS));
+
+/// A client that gives up when a server sends nothing for so long.
+fn agent(no_progress: Duration) -> Agent {
     let provider = Arc::new(rustls::crypto::ring::default_provider());
     let authorities = rustls_native_certs::load_native_certs().certs;
     let authorities = authorities.iter().map(|authority| Certificate::from_der(authority).to_owned()).collect();
@@ -43,12 +51,14 @@ static AGENT: LazyLock<Agent> = LazyLock::new(|| {
         .tls_config(tls)
         .http_status_as_error(false)
         .user_agent(concat!("belvedere/", env!("CARGO_PKG_VERSION")))
+        .timeout_resolve(Some(CONNECT))
         .timeout_connect(Some(CONNECT))
-        .timeout_recv_response(Some(ANSWER))
+        .timeout_recv_response(Some(no_progress))
+        .timeout_per_read(Some(no_progress))
         .timeout_recv_body(Some(WHOLE_ANSWER))
         .build();
     Agent::new_with_config(config)
-});
+}
 
 /// A file on a server. Only those parts of it are transferred that are read.
 pub(crate) struct Remote {
@@ -82,16 +92,35 @@ struct Failure {
     may_pass: bool,
 }
 
+/// A part of a file to request.
+#[derive(Clone, Copy)]
+struct Part {
+    start: u64,
+    length: u64,
+    /// Size of the file, where an earlier answer said it.
+    size: Option<u64>,
+}
+
 impl Remote {
-    /// The file at `address`, with its size.
+    /// The file at `address`.
     ///
     /// # Errors
     /// Those of connecting and of the server, in words that say what to do.
-    pub(crate) fn open(address: &str) -> Result<(Self, u64)> {
-        let Reply { bytes, size, version, .. } = patiently(|| request(address, 0, FIRST_BYTES))?;
+    pub(crate) fn open(address: &str) -> Result<Self> {
+        let first = Part { start: 0, length: FIRST_BYTES, size: None };
+        let Reply { bytes, size, version, .. } = patiently(|| request(&AGENT, address, first))?;
         let address = address.to_owned();
-        let file = Self { address, size, version, position: 0, part: bytes, part_start: 0, run_start: 0 };
-        Ok((file, size))
+        Ok(Self { address, size, version, position: 0, part: bytes, part_start: 0, run_start: 0 })
+    }
+
+    /// Size of the file, bytes.
+    pub(crate) fn size(&self) -> u64 {
+        self.size
+    }
+
+    /// What the server calls this version of the file; `None` where it does not say.
+    pub(crate) fn version(&self) -> Option<&str> {
+        self.version.as_deref()
     }
 
     /// The end of the last part that came.
@@ -107,9 +136,10 @@ impl Remote {
         }
         let ahead = ((self.position - self.run_start) / 2).clamp(MIN_BYTES, MAX_AHEAD);
         let length = wanted.max(ahead).min(MAX_BYTES).min(self.size - self.position);
-        let reply = patiently(|| request(&self.address, self.position, length))?;
+        let part = Part { start: self.position, length, size: Some(self.size) };
+        let reply = patiently(|| request(&AGENT, &self.address, part))?;
         if reply.is_whole || reply.size != self.size || reply.version != self.version {
-            return Err(Error::other("the file on the server changed while it was read; run again"));
+            return Err(Error::other(CHANGED));
         }
         self.part = reply.bytes;
         self.part_start = self.position;
@@ -156,10 +186,11 @@ fn patiently(ask: impl Fn() -> std::result::Result<Reply, Failure>) -> Result<Re
     ask().map_err(|failure| failure.error)
 }
 
-/// Asks once for `length` bytes from byte `start`, or fewer where the file ends before.
-fn request(address: &str, start: u64, length: u64) -> std::result::Result<Reply, Failure> {
+/// Asks once for a part, or fewer bytes where the file ends before.
+fn request(agent: &Agent, address: &str, part: Part) -> std::result::Result<Reply, Failure> {
+    let Part { start, length, size: known } = part;
     let last = start.saturating_add(length).saturating_sub(1);
-    let mut response = AGENT
+    let mut response = agent
         .get(address)
         .header(header::RANGE, format!("bytes={start}-{last}"))
         .header(header::ACCEPT_ENCODING, "identity")
@@ -173,6 +204,7 @@ fn request(address: &str, start: u64, length: u64) -> std::result::Result<Reply,
         return Err(lasting("the server sends the file in compressed form only; download it first".to_owned()));
     }
     match (status, text(header::CONTENT_RANGE).and_then(ContentRange::parse)) {
+        (206, Some(range)) if known.is_some_and(|size| size != range.size) => Err(lasting(CHANGED.to_owned())),
         (206, Some(range)) => {
             let end = start.saturating_add(length).min(range.size);
             if range.start != start || range.end != end {
@@ -198,6 +230,8 @@ fn request(address: &str, start: u64, length: u64) -> std::result::Result<Reply,
         }
         // the first byte of an empty file is none
         (416, _) if start == 0 => Ok(Reply { bytes: Vec::new(), size: 0, version, is_whole: false }),
+        // it ends earlier than before, or is gone
+        (404 | 410 | 416, _) if known.is_some() => Err(lasting(CHANGED.to_owned())),
         (401 | 403 | 407, _) => Err(lasting(format!("the server refuses access (status {status})"))),
         (404 | 410, _) => Err(lasting(format!("the server has no such file (status {status}); check the address"))),
         (408 | 429 | 500..=599, _) => {
@@ -243,6 +277,9 @@ fn broken(error: Error) -> Failure {
     let of_client = error.get_ref().and_then(|inner| inner.downcast_ref::<ureq::Error>());
     // who was slow once will be slow again
     let may_pass = !matches!(of_client, Some(ureq::Error::Timeout(_)));
+    if !may_pass {
+        return lasting(SILENT.to_owned());
+    }
     let what = format!("the connection to the server broke ({error}); try again");
     Failure { error: Error::new(error.kind(), what), may_pass }
 }
@@ -264,7 +301,7 @@ fn is_passing(error: &ureq::Error) -> bool {
 fn described(error: &ureq::Error) -> String {
     match error {
         ureq::Error::HostNotFound => "there is no such server; check the address and the connection".to_owned(),
-        ureq::Error::Timeout(_) => "the server does not answer; try again later".to_owned(),
+        ureq::Error::Timeout(_) => SILENT.to_owned(),
         ureq::Error::TooManyRedirects | ureq::Error::RedirectFailed => {
             "the server sends on to nowhere; check the address".to_owned()
         }
@@ -274,5 +311,44 @@ fn described(error: &ureq::Error) -> String {
              SSL_CERT_FILE names"
         ),
         _ => format!("cannot be reached: {error}; check the address and the connection"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::io::Write;
+    use std::net::TcpListener;
+    use std::time::Instant;
+
+    #[test]
+    fn a_server_that_stops_in_the_middle_is_given_up_soon_and_one_that_goes_on_slowly_is_not() {
+        for (pause, ends) in [(Duration::from_millis(150), true), (Duration::from_secs(20), false)] {
+            let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+            let address = format!("http://{}/a.las", listener.local_addr().unwrap());
+            std::thread::spawn(move || {
+                let (mut stream, _) = listener.accept().unwrap();
+                let mut head = [0; 4096];
+                let _ = stream.read(&mut head);
+                let _ =
+                    stream.write_all(b"HTTP/1.1 206 Part\r\nContent-Range: bytes 0-9/10\r\nContent-Length: 10\r\n\r\n");
+                for byte in 0..10 {
+                    sleep(pause);
+                    let _ = stream.write_all(&[byte]);
+                }
+            });
+            let begin = Instant::now();
+            let part = Part { start: 0, length: 10, size: None };
+            let reply = request(&agent(Duration::from_secs(1)), &address, part);
+            match reply {
+                Ok(reply) => assert!(ends && reply.bytes.len() == 10),
+                Err(failure) => {
+                    let text = failure.error.to_string();
+                    assert!(!ends && !failure.may_pass && text.contains("sent nothing for 30 s"), "{text}");
+                    assert!(begin.elapsed() < Duration::from_secs(5), "{:?}", begin.elapsed());
+                }
+            }
+        }
+        assert_eq!(AGENT.config().timeout_per_read(), Some(NO_PROGRESS));
     }
 }

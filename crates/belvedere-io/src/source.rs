@@ -128,8 +128,13 @@ impl<'a> Source<'a> {
 
     /// Opens the source at its first byte.
     pub(crate) fn open(self) -> Result<Input<'a>> {
+        let (name, OpenSource { reader, size, .. }) = self.opened()?;
+        Ok(Input { name, reader: BufReader::with_capacity(BUFFER_BYTES, reader), size })
+    }
+
+    fn opened(self) -> Result<(PathBuf, OpenSource<'a>)> {
         let Self { name, content, .. } = self;
-        let (reader, size): (Box<dyn ReadSeek + 'a>, u64) = match content {
+        let opened = match content {
             Content::Path if web_address(&name).is_some() => remote(&name)?,
             Content::Path => {
                 let file = File::open(&name).map_err(Error::io(&name))?;
@@ -137,15 +142,26 @@ impl<'a> Source<'a> {
                 if !metadata.is_file() {
                     return Err(Error::malformed(&name, "is not a file"));
                 }
-                (Box::new(file), metadata.len())
+                let modified =
+                    metadata.modified().ok().and_then(|time| time.duration_since(std::time::UNIX_EPOCH).ok());
+                let version = modified.map(|time| time.as_nanos().to_string());
+                OpenSource { reader: Box::new(file), size: metadata.len(), version }
             }
             Content::Reader(mut reader) => {
                 let size = reader.seek(SeekFrom::End(0)).map_err(Error::io(&name))?;
                 reader.seek(SeekFrom::Start(0)).map_err(Error::io(&name))?;
-                (reader, size)
+                OpenSource { reader, size, version: None }
             }
         };
-        Ok(Input { name, reader: BufReader::with_capacity(BUFFER_BYTES, reader), size })
+        Ok((name, opened))
+    }
+
+    /// The source at its first byte, without a buffer, and what tells its versions apart.
+    ///
+    /// # Errors
+    /// [`Error::Io`]; [`Error::Malformed`] for what is no file.
+    pub fn into_versioned_reader(self) -> Result<OpenSource<'a>> {
+        Ok(self.opened()?.1)
     }
 
     /// A reader at the first byte of the source, and its size in bytes.
@@ -180,6 +196,17 @@ impl<'a> Source<'a> {
         reader.read_to_end(&mut bytes).map_err(Error::io(&name))?;
         Ok((name, bytes))
     }
+}
+
+/// A source at its first byte.
+pub struct OpenSource<'a> {
+    /// Reads it, without a buffer.
+    pub reader: Box<dyn ReadSeek + 'a>,
+    /// Size, bytes.
+    pub size: u64,
+    /// What changes with its content: when a file was changed last, nanoseconds since 1970, or what a server calls its
+    /// version. `None` where that is not known.
+    pub version: Option<String>,
 }
 
 /// An open source.
@@ -257,15 +284,16 @@ pub(crate) fn place_in(folder: &Path, path: &str) -> PathBuf {
 /// Reader of an open source.
 pub(crate) type SourceReader<'a> = BufReader<Box<dyn ReadSeek + 'a>>;
 
-/// The file at an address of the web, and its size.
+/// The file at an address of the web.
 #[cfg(feature = "http")]
-fn remote<'a>(name: &Path) -> Result<(Box<dyn ReadSeek + 'a>, u64)> {
-    let (file, size) = super::remote::Remote::open(web_address(name).unwrap_or_default()).map_err(Error::io(name))?;
-    Ok((Box::new(file), size))
+fn remote<'a>(name: &Path) -> Result<OpenSource<'a>> {
+    let file = super::remote::Remote::open(web_address(name).unwrap_or_default()).map_err(Error::io(name))?;
+    let (size, version) = (file.size(), file.version().map(str::to_owned));
+    Ok(OpenSource { reader: Box::new(file), size, version })
 }
 
 #[cfg(not(feature = "http"))]
-fn remote<'a>(name: &Path) -> Result<(Box<dyn ReadSeek + 'a>, u64)> {
+fn remote<'a>(name: &Path) -> Result<OpenSource<'a>> {
     Err(Error::missing_feature(name, "http"))
 }
 

@@ -34,6 +34,9 @@ use pyo3::prelude::*;
 /// What the package is made of.
 #[pymodule]
 fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    if std::env::var("BELVEDERE_AVX2").is_ok_and(|text| text == "off") {
+        belvedere::neighbors::Instructions::turn_avx2_off();
+    }
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add("NO_VALUE", belvedere::results::ResultKind::NO_NUMBER)?;
     module.add_class::<cloud::Cloud>()?;

@@ -2,7 +2,7 @@
 
 use crate::errors::exception;
 use belvedere::control::{Control, OpenStages, StageEnd, Watcher};
-use pyo3::exceptions::PyRuntimeError;
+use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
@@ -52,6 +52,21 @@ impl Watch {
     }
 }
 
+/// Most threads, as the program has it.
+const MAX_THREADS: u64 = 1024;
+
+/// Refuses a number of threads in the environment that no computer needs.
+fn check_threads() -> PyResult<()> {
+    let threads = std::env::var("RAYON_NUM_THREADS").ok().and_then(|text| text.trim().parse::<u64>().ok());
+    match threads.filter(|&threads| threads > MAX_THREADS) {
+        Some(threads) => {
+            let what = format!("the variable RAYON_NUM_THREADS is {threads}, but must be at most {MAX_THREADS}");
+            Err(PyValueError::new_err(what))
+        }
+        None => Ok(()),
+    }
+}
+
 /// Runs `work` on a thread of its own while other Python threads run.
 ///
 /// # Errors
@@ -61,6 +76,7 @@ pub(crate) fn run<T: Send + 'static>(
     progress: Option<Py<PyAny>>,
     work: impl FnOnce(&Control<'_>) -> belvedere::Result<T> + Send + 'static,
 ) -> PyResult<T> {
+    check_threads()?;
     let watch = Arc::new(Watch::default());
     let (sender, receiver) = channel();
     let receiver = Mutex::new(receiver);

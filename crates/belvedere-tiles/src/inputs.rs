@@ -1,14 +1,23 @@
 //! The files of a survey, and whether they are still what they were when the plan was made.
 
-use belvedere::io::{LasHead, Source, read_las_head, web_address};
+use belvedere::io::{LasHead, OpenSource, ReadSeek, Source, read_las_head, web_address};
 use belvedere::{Bounds, Error, GpsTimeKind, Result};
 use serde::{Deserialize, Serialize};
 use std::io::{Read, Seek, SeekFrom};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 
-/// Bytes at either end of a file that its quick fingerprint is taken of.
+/// Samples of a file that its fingerprint is taken of: their number and bytes. What changed at random in a hundredth of
+/// it is found by them alone.
+const SAMPLES: u64 = 64;
+const SAMPLE_BYTES: u64 = 1 << 12;
+/// Samples of a file on a server, of which each is a request.
+const REMOTE_SAMPLES: u64 = 4;
+/// Bytes at either end of a file on the disk that are sampled too: headers and tables.
 const ENDS: u64 = 1 << 16;
+/// Bytes that are read at once for the checksum of a whole file.
+const AT_ONCE: usize = 1 << 20;
 
 /// A file of a survey.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -21,8 +30,17 @@ pub struct InputFile {
     pub points: u64,
     /// Lowest and highest corner, in its own coordinates.
     pub bounds: [[f64; 3]; 2],
-    /// CRC-32 over its size and its first and last 64 KiB, as hexadecimal digits.
+    /// CRC-32 over its size and samples all over it, as hexadecimal digits.
     pub fingerprint: String,
+    /// When it was changed last, or what its server calls its version, where that is known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    version: Option<String>,
+    /// CRC-32 of all of it, as hexadecimal digits; `None` for a file on a server.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    contents: Option<String>,
+    /// A version that was found to be the file of the plan, so that it is compared once.
+    #[serde(skip)]
+    compared: OnceLock<Option<String>>,
     /// The rectangle around each piece of its rows: west, south, east and north, whole local metres. Empty where that
     /// is not known.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -66,11 +84,19 @@ impl InputFile {
             return Err(Error::malformed(path, what));
         }
         let path = absolute(path)?;
-        let (_, fingerprint) = fingerprint(&path)?;
-        Ok((
-            Self { path, bytes: head.bytes, points: head.points, bounds: head.bounds, fingerprint, pieces: Vec::new() },
-            head,
-        ))
+        let mut version = FileVersion::of(&path)?;
+        let file = Self {
+            fingerprint: version.fingerprint(&path)?,
+            contents: if web_address(&path).is_none() { Some(contents(&path)?) } else { None },
+            version: version.name,
+            compared: OnceLock::new(),
+            bytes: version.bytes,
+            points: head.points,
+            bounds: head.bounds,
+            pieces: Vec::new(),
+            path,
+        };
+        Ok((file, head))
     }
 
     /// The file, of which only rows are read that may lie in a column of local coordinates.
@@ -100,15 +126,37 @@ impl InputFile {
         self.pieces.is_empty() || self.pieces.len() as u64 == self.points.div_ceil(PIECE_ROWS)
     }
 
-    /// Refuses a file that is no longer what it was.
+    /// Refuses a file that is no longer what it was: its size, its samples, and where its time is another one, its whole
+    /// content. Of a file on a server, its version, its size and samples.
     ///
     /// # Errors
     /// [`Error::Io`] for a file that is gone, [`Error::Malformed`] for one that changed.
     pub(crate) fn check(&self) -> Result<()> {
-        if fingerprint(&self.path)? != (self.bytes, self.fingerprint.clone()) {
-            let what = "is no longer what it was when the plan was made; make the plan again";
-            return Err(Error::malformed(&self.path, what));
+        let path = &self.path;
+        let is_remote = web_address(path).is_some();
+        let changed = || {
+            let place = if is_remote { "changed on the server since" } else { "is no longer what it was when" };
+            Err(Error::malformed(path, format!("{place} the plan was made; make the plan again")))
+        };
+        let mut now = FileVersion::of(path)?;
+        let was_compared = self.compared.get() == Some(&now.name);
+        if now.bytes != self.bytes {
+            return changed();
         }
+        // samples of a file on a server are taken once; those of the disk also find what keeps its time
+        if is_remote && was_compared && now.name.is_some() {
+            return Ok(());
+        }
+        if now.fingerprint(path)? != self.fingerprint {
+            return changed();
+        }
+        if now.name != self.version && !was_compared {
+            match &self.contents {
+                Some(before) if contents(path)? == *before => {}
+                _ => return changed(),
+            }
+        }
+        self.compared.get_or_init(|| now.name);
         Ok(())
     }
 }
@@ -121,14 +169,48 @@ pub(crate) fn absolute(path: &Path) -> Result<PathBuf> {
     }
 }
 
-/// The size of a file in bytes, and the hash of the size and of its ends.
-fn fingerprint(path: &Path) -> Result<(u64, String)> {
-    let (mut file, size) = Source::path(path).into_reader()?;
-    let mut bytes = size.to_le_bytes().to_vec();
-    file.by_ref().take(ENDS).read_to_end(&mut bytes).map_err(Error::io(path))?;
-    file.seek(SeekFrom::Start(size.saturating_sub(ENDS))).map_err(Error::io(path))?;
-    file.take(ENDS).read_to_end(&mut bytes).map_err(Error::io(path))?;
-    Ok((size, hash(&bytes)))
+/// What is known of a file without a look at its content.
+struct FileVersion {
+    reader: Box<dyn ReadSeek>,
+    bytes: u64,
+    /// When it was changed last, or what its server calls its version.
+    name: Option<String>,
+}
+
+impl FileVersion {
+    fn of(path: &Path) -> Result<Self> {
+        let OpenSource { reader, size, version } = Source::path(path).into_versioned_reader()?;
+        Ok(Self { reader, bytes: size, name: version })
+    }
+
+    /// The hash of the size of a file and of samples all over it.
+    fn fingerprint(&mut self, path: &Path) -> Result<String> {
+        let (samples, ends) =
+            if web_address(path).is_some() { (REMOTE_SAMPLES, SAMPLE_BYTES) } else { (SAMPLES, ENDS) };
+        let last = |length: u64| self.bytes.saturating_sub(length);
+        let mut parts = vec![(0, ends)];
+        let place = |number: u64| u128::from(last(SAMPLE_BYTES)) * u128::from(number) / u128::from(samples);
+        parts.extend((1..samples).map(|number| (u64::try_from(place(number)).unwrap_or(0), SAMPLE_BYTES)));
+        parts.push((last(ends), ends));
+        let mut bytes = self.bytes.to_le_bytes().to_vec();
+        for (start, length) in parts {
+            self.reader.seek(SeekFrom::Start(start)).map_err(Error::io(path))?;
+            self.reader.by_ref().take(length).read_to_end(&mut bytes).map_err(Error::io(path))?;
+        }
+        Ok(hash(&bytes))
+    }
+}
+
+/// The hash of all of a file.
+fn contents(path: &Path) -> Result<String> {
+    let mut file = Source::path(path).into_versioned_reader()?.reader;
+    let (mut sum, mut bytes) = (crc32fast::Hasher::new(), vec![0; AT_ONCE]);
+    loop {
+        match file.read(&mut bytes).map_err(Error::io(path))? {
+            0 => return Ok(format!("{:08x}", sum.finalize())),
+            count => sum.update(bytes.get(..count).unwrap_or_default()),
+        }
+    }
 }
 
 /// CRC-32, as hexadecimal digits: what changed is to be found, and no more than that.

@@ -4,6 +4,7 @@ use crate::cleared::{ClassedPoint, classed, clear_balls};
 use crate::grid::{MapArea, TOP_SIDE, TileId, square_at};
 use crate::plan::Plan;
 use crate::record::{Stage, Stamp, TileOutcome, TileRecord};
+use crate::survey::check_counts;
 use crate::window;
 use belvedere::control::Control;
 use belvedere::io::{atomic, write_balls};
@@ -17,10 +18,12 @@ use std::path::Path;
 /// the same balls.
 ///
 /// # Errors
-/// Those of reading the files and of [`SceneModel::build`].
+/// Those of reading the files and of [`SceneModel::build`]; [`Error::Malformed`](belvedere::Error::Malformed) where points
+/// that the plan counted are not found.
 pub fn make_balls(plan: &Plan, run: &Path, tile: TileId, control: &Control<'_>) -> Result<TileRecord> {
     atomic::make_folder(&Stage::Balls.folder(run))?;
     let cloud = control.stage("reading", 0, || window::read(plan, &plan.window(tile), control))?;
+    check_counts(plan, &cloud, &plan.grid().core(tile).in_blocks())?;
     let record = made(plan, run, tile, cloud, control)?;
     record.write(plan, run, Stage::Balls, tile)?;
     Ok(record)

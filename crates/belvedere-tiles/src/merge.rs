@@ -1,9 +1,10 @@
 //! All tiles of a result as one: a catalogue that programs of GIS open, or one raster.
 
-use crate::grid::TileId;
+use crate::grid::{MapArea, TileId};
 use crate::plan::Plan;
 use crate::question::TileQuestion;
 use crate::record::{Stage, TileOutcome, TileRecord};
+use belvedere::apps::ask::Remark;
 use belvedere::control::Control;
 use belvedere::crs::text::wkt_line;
 use belvedere::ground::MapGrid;
@@ -17,44 +18,101 @@ use std::path::Path;
 /// Most cells of a merged raster: a gigabyte of floats.
 const MAX_CELLS: usize = 1 << 28;
 
+/// What is done with a run that is not finished.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum UnfinishedRun {
+    /// It is refused.
+    #[default]
+    Refused,
+    /// What is there is merged.
+    Merged,
+}
+
 /// What was merged.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Merged {
     /// Tiles that have a result.
     pub tiles: usize,
-    /// Tiles of the plan that have none, because they are empty, failed or are not done.
-    pub without_result: usize,
+    /// Tiles of the plan on which nothing is.
+    pub empty: usize,
+    /// Tiles of the plan that failed, are not done yet, or have a damaged result.
+    pub missing: usize,
 }
 
-/// Those of `tiles` with a result, and the grid of cells around all of them.
-fn results(plan: &Plan, folder: &Path, question: &TileQuestion, tiles: &[TileId]) -> Result<(Vec<TileId>, MapGrid)> {
-    let has_result = |tile: &TileId| {
-        TileRecord::read(plan, folder, Stage::Answer(question), *tile)
-            .is_some_and(|record| record.outcome == TileOutcome::Done)
-    };
-    let grid = plan.grid();
-    let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+impl Merged {
+    /// What to know of it.
+    #[must_use]
+    pub fn remarks(&self) -> Vec<Remark> {
+        let Self { tiles, empty, missing } = *self;
+        let text = format!(
+            "the run is not finished: {missing} of {} tiles have no result yet, and their cells have no data",
+            tiles + empty + missing
+        );
+        (missing > 0)
+            .then(|| Remark::warning("run-unfinished", text).with("count", missing as f64))
+            .into_iter()
+            .collect()
+    }
+}
+
+/// Those of `tiles` with a result, and how many there are of each kind.
+fn results(plan: &Plan, folder: &Path, question: &TileQuestion, tiles: &[TileId]) -> (Vec<TileId>, Merged) {
+    let stage = Stage::Answer(question);
+    let (mut with_result, mut counts) = (Vec::new(), Merged::default());
     for &tile in tiles {
-        let core = grid.core(tile);
-        low = [0, 1].map(|axis| low[axis].min(core.low[axis]));
-        high = [0, 1].map(|axis| high[axis].max(core.high[axis]));
+        match TileRecord::read(plan, folder, stage, tile).map(|record| record.outcome) {
+            Some(TileOutcome::Done) => {
+                counts.tiles += 1;
+                with_result.push(tile);
+            }
+            Some(TileOutcome::Nothing) => counts.empty += 1,
+            Some(TileOutcome::Failed(_)) | None => counts.missing += 1,
+        }
     }
-    if tiles.is_empty() {
-        return Err(Error::NoPoints { what: "the plan has no tile there".to_owned() });
-    }
+    (with_result, counts)
+}
+
+/// The area of all of `tiles`.
+fn area_of(plan: &Plan, tiles: &[TileId]) -> Result<MapArea> {
+    let cores = tiles.iter().map(|&tile| plan.grid().core(tile));
+    let area = cores.reduce(|area, core| area.joined(&core));
+    area.ok_or_else(|| Error::NoPoints { what: "the plan has no tile there".to_owned() })
+}
+
+/// The part of the area of `tiles` in which cells of a question may have a value: as far as points reach.
+fn area_with_cells(plan: &Plan, question: &TileQuestion, tiles: &[TileId]) -> Result<MapArea> {
+    let (whole, cell) = (area_of(plan, tiles)?, plan.cells.of(question));
+    let (low, high) = plan.bounds().on_map();
+    let near = MapArea { low, high }.widened(plan.reach(cell));
+    let edge =
+        |axis: usize, v: f64, round: fn(f64) -> f64| whole.low[axis] + round((v - whole.low[axis]) / cell) * cell;
+    Ok(MapArea {
+        low: [0, 1].map(|axis| edge(axis, near.low[axis], f64::floor).max(whole.low[axis])),
+        high: [0, 1].map(|axis| edge(axis, near.high[axis], f64::ceil).min(whole.high[axis])),
+    })
+}
+
+/// The cells of the result of a question over an area.
+fn cells_over(plan: &Plan, question: &TileQuestion, area: &MapArea) -> MapGrid {
     let cell = plan.cells.of(question);
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a whole number of cells")]
-    let count = |axis: usize| ((high[axis] - low[axis]) / cell).round() as usize;
-    let cells = MapGrid { corner: [low[0], high[1]], cell, width: count(0), height: count(1) };
-    Ok((tiles.iter().copied().filter(has_result).collect(), cells))
+    let count = |axis: usize| ((area.high[axis] - area.low[axis]) / cell).round() as usize;
+    MapGrid { corner: [area.low[0], area.high[1]], cell, width: count(0), height: count(1) }
 }
 
-/// Column and row of the first cell of a tile, and cells along its side.
-fn place_of(plan: &Plan, cells: &MapGrid, tile: TileId) -> [usize; 3] {
+/// Column and row of the first cell of a tile, which may lie beside the cells.
+fn place_of(plan: &Plan, cells: &MapGrid, tile: TileId) -> [i64; 2] {
     let core = plan.grid().core(tile);
+    #[expect(clippy::cast_possible_truncation, reason = "a whole number of cells")]
+    let number = |metres: f64| (metres / cells.cell).round() as i64;
+    [number(core.low[0] - cells.corner[0]), number(cells.corner[1] - core.high[1])]
+}
+
+/// Cells along the side of a tile.
+fn side_of(plan: &Plan, cells: &MapGrid) -> usize {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a whole number of cells")]
-    let number = |metres: f64| (metres / cells.cell).round() as usize;
-    [number(core.low[0] - cells.corner[0]), number(cells.corner[1] - core.high[1]), number(plan.tile_size)]
+    let side = (plan.tile_size / cells.cell).round() as usize;
+    side
 }
 
 fn in_xml(text: &str) -> String {
@@ -68,7 +126,8 @@ fn in_xml(text: &str) -> String {
 /// [`Error::Io`].
 pub fn write_catalogue(plan: &Plan, folder: &Path, question: &TileQuestion) -> Result<Merged> {
     let planned = plan.tiles_of(question);
-    let (tiles, cells) = results(plan, folder, question, &planned)?;
+    let (tiles, counts) = results(plan, folder, question, &planned);
+    let cells = cells_over(plan, question, &area_of(plan, &planned)?);
     let frame = plan.frame()?;
     let place = georeference(&cells, &frame);
     let (kind, no_data) = plan.kind_of(question).in_gdal();
@@ -87,7 +146,7 @@ pub fn write_catalogue(plan: &Plan, folder: &Path, question: &TileQuestion) -> R
         let _ = writeln!(text, "  <VRTRasterBand dataType=\"{kind}\" band=\"{band}\">");
         let _ = writeln!(text, "    <Description>{name}</Description>\n    <NoDataValue>{no_data}</NoDataValue>");
         for &tile in &tiles {
-            let [column, row, side] = place_of(plan, &cells, tile);
+            let ([column, row], side) = (place_of(plan, &cells, tile), side_of(plan, &cells));
             let _ = writeln!(
                 text,
                 "    <SimpleSource><SourceFilename relativeToVRT=\"1\">{}/{}.tif</SourceFilename>\
@@ -102,21 +161,40 @@ pub fn write_catalogue(plan: &Plan, folder: &Path, question: &TileQuestion) -> R
     text.push_str("</VRTDataset>\n");
     let path = folder.join(format!("{}.vrt", question.name()));
     atomic::write(&path, |file| file.write_all(text.as_bytes()).map_err(Error::io(&path)))?;
-    Ok(Merged { tiles: tiles.len(), without_result: planned.len() - tiles.len() })
+    Ok(counts)
 }
 
-/// Writes the results of a question that are there as one cloud-optimised GeoTIFF, which says what its values are.
+/// Writes the results of a question as one cloud-optimised GeoTIFF, which says what its values are. It reaches as far as
+/// points do.
 ///
 /// # Errors
-/// [`Error::InvalidParameter`] for more cells than fit into memory; those of reading and writing rasters.
+/// [`Error::Malformed`] for a run without a result, and for one that is not finished unless it is to be merged
+/// nevertheless; [`Error::InvalidParameter`] for more cells than fit into memory; those of reading and writing rasters.
 pub fn merge(
     plan: &Plan,
     folder: &Path,
     question: &TileQuestion,
     output: &Path,
+    unfinished: UnfinishedRun,
     control: &Control<'_>,
 ) -> Result<Merged> {
-    let (pixels, place, merged) = gather(plan, folder, question, &plan.tiles_of(question), control)?;
+    let tiles = plan.tiles_of(question);
+    let (with_result, merged) = results(plan, folder, question, &tiles);
+    let refused = |what: String| Err(Error::malformed(folder, what));
+    let (name, Merged { missing, .. }) = (question.name(), merged);
+    if with_result.is_empty() {
+        let advice = if missing > 0 { "compute it with `belvedere city run`" } else { "no tile has a cell for it" };
+        return refused(format!("has no result of {name}: {advice}"));
+    }
+    if missing > 0 && unfinished == UnfinishedRun::Refused {
+        let count = tiles.len();
+        return refused(format!(
+            "is a run that is not finished: {missing} of {count} tiles have no result of {name} (`belvedere city status` \
+             says which); run `belvedere city run` again, or merge what is there with --unfinished"
+        ));
+    }
+    let cells = cells_over(plan, question, &area_with_cells(plan, question, &tiles)?);
+    let (pixels, place) = gather(plan, folder, question, (&with_result, &cells), control)?;
     let names = question.bands(pixels.kind());
     ResultRaster { pixels, names, description: question.description().to_owned() }.write_cog(output, &place)?;
     Ok(merged)
@@ -141,7 +219,9 @@ pub fn merged_within(
         (0..2).all(|i| core.low[i] < high[i] - origin[i] && core.high[i] > low[i] - origin[i])
     };
     let tiles: Vec<TileId> = plan.tiles_of(question).into_iter().filter(touches).collect();
-    let (pixels, place, _) = gather(plan, folder, question, &tiles, control)?;
+    let cells = cells_over(plan, question, &area_of(plan, &tiles)?);
+    let with_result = results(plan, folder, question, &tiles).0;
+    let (pixels, place) = gather(plan, folder, question, (&with_result, &cells), control)?;
     let description = Some(question.description().to_owned());
     let mut bands = question.bands(pixels.kind()).into_iter().zip(pixels.to_numbers()?);
     let Some((name, values)) = bands.next() else {
@@ -151,15 +231,14 @@ pub fn merged_within(
     Ok(PlacedRaster { values, name, place: Some(place), description, further_bands })
 }
 
-/// The results of `tiles` that are there, in one raster around all of them.
+/// The results of tiles in one raster of cells.
 fn gather(
     plan: &Plan,
     folder: &Path,
     question: &TileQuestion,
-    tiles: &[TileId],
+    (tiles, cells): (&[TileId], &MapGrid),
     control: &Control<'_>,
-) -> Result<(Pixels, Georeference, Merged)> {
-    let (with_result, cells) = results(plan, folder, question, tiles)?;
+) -> Result<(Pixels, Georeference)> {
     let (width, height) = (cells.width, cells.height);
     if width.saturating_mul(height) > MAX_CELLS {
         return Err(Error::InvalidParameter {
@@ -170,14 +249,13 @@ fn gather(
     }
     let kind = plan.kind_of(question);
     let mut all = Pixels::nothing(kind, question.bands(kind).len(), [width, height]);
-    for &tile in &with_result {
+    for &tile in tiles {
         control.check()?;
         let stage = Stage::Answer(question);
         let Some(record) = TileRecord::read(plan, folder, stage, tile) else { continue };
         let path = stage.result(folder, tile);
         let values = Pixels::read(Source::bytes(&path, &record.read_result(&path)?))?;
-        all.put(&values, place_of(plan, &cells, tile))?;
+        all.put(&values, place_of(plan, cells, tile), side_of(plan, cells))?;
     }
-    let merged = Merged { tiles: with_result.len(), without_result: tiles.len() - with_result.len() };
-    Ok((all, georeference(&cells, &plan.frame()?), merged))
+    Ok((all, georeference(cells, &plan.frame()?)))
 }

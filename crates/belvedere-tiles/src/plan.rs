@@ -6,6 +6,7 @@ use crate::inputs::{InputFile, NOWHERE, PIECE_ROWS, PointColumns, hash};
 use crate::planned::{Others, SideFile, added_meshes, far_terrain};
 use crate::question::TileQuestion;
 use crate::record::Stage;
+use crate::sealed::{is_sound, sealed};
 use crate::survey::{SurveyBlock, survey};
 use crate::window;
 use belvedere::apps::targets::{grid_around, set_on_ground};
@@ -25,7 +26,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// Version of the layout of plans and records.
-const LAYOUT: u32 = 8;
+const LAYOUT: u32 = 9;
 /// Corners that the origin of local coordinates is one of, metres: of blocks of 64 m, and few, so that neighbouring
 /// surveys share it.
 const ORIGIN_STEP: f64 = 1024.0;
@@ -276,10 +277,16 @@ impl Plan {
                 "is a plan of {program} in layout {layout}, but this program reads layout {LAYOUT}; make it, in another folder,"
             ));
         }
+        if !is_sound(&bytes) {
+            return refused("is no plan, or a damaged or edited one: its checksum does not fit; make it".to_owned());
+        }
         let mut plan: Self = match serde_json::from_slice(&bytes) {
             Ok(plan) => plan,
             Err(error) => return refused(format!("is no plan, or a damaged one ({error}); make it")),
         };
+        if let Err(error) = check_names(&plan.questions) {
+            return refused(format!("is a damaged plan: {error}; make it"));
+        }
         if check_numbers(&plan).is_none() {
             return refused("is a damaged plan: its numbers cannot be; make it".to_owned());
         }
@@ -294,8 +301,7 @@ impl Plan {
     pub fn write(&self, folder: &Path) -> Result<()> {
         atomic::make_folder(folder)?;
         let path = Self::path(folder);
-        let text =
-            serde_json::to_string(self).map_err(|e| Error::malformed(&path, format!("cannot be written: {e}")))?;
+        let text = sealed(self).map_err(|e| Error::malformed(&path, format!("cannot be written: {e}")))?;
         let has_results =
             || folder.read_dir().is_ok_and(|mut entries| entries.any(|entry| entry.is_ok_and(|e| e.path().is_dir())));
         // a damaged plan may be that of the results
@@ -402,11 +408,7 @@ impl Plan {
     /// [`Error::InvalidParameter`] for two questions whose results would lie in one folder and for parameters outside
     /// their range; those of reading weather.
     pub fn with_questions(self, questions: Vec<TileQuestion>, control: &Control<'_>) -> Result<Self> {
-        let mut names = BTreeSet::from([Stage::Balls.name()]);
-        if let Some(name) = questions.iter().map(TileQuestion::name).find(|name| !names.insert(name)) {
-            let (value, expected) = (format!("{name} twice"), "each question once");
-            return Err(Error::InvalidParameter { parameter: Parameter::Questions, value, expected });
-        }
+        check_names(&questions)?;
         questions.iter().try_for_each(|question| question.prepare(self.trees, control).map(|_| ()))?;
         Ok(Self { questions, ..self })
     }
@@ -578,6 +580,23 @@ fn check_sizes(params: &PlanParams) -> Result<()> {
     if !((MIN_TILE..=LARGEST_TILE).contains(&size) && params.cells.divide(size)) {
         let expected = "16 to 8192 m, and a whole number of cells";
         return Err(Error::InvalidParameter { parameter: Parameter::TileSize, value: format!("{size} m"), expected });
+    }
+    Ok(())
+}
+
+/// Refuses questions whose results would lie in one folder, or in one that is not below that of the run.
+fn check_names(questions: &[TileQuestion]) -> Result<()> {
+    let mut names = BTreeSet::from([Stage::Balls.name()]);
+    for name in questions.iter().map(TileQuestion::name) {
+        let is_plain = |c: char| c.is_alphanumeric() || "_-+.".contains(c);
+        let refused =
+            |value: String, expected| Err(Error::InvalidParameter { parameter: Parameter::Questions, value, expected });
+        if name.is_empty() || name.starts_with('.') || !name.chars().all(is_plain) {
+            return refused(format!("{name:?}"), "names of letters, digits, _, -, + and ., which are those of folders");
+        }
+        if !names.insert(name) {
+            return refused(format!("{name} twice"), "each question once");
+        }
     }
     Ok(())
 }

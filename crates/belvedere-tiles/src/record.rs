@@ -4,11 +4,13 @@ use crate::grid::TileId;
 use crate::inputs::hash;
 use crate::plan::Plan;
 use crate::question::TileQuestion;
+use crate::sealed::{is_sound, sealed};
 use belvedere::io::atomic;
 use belvedere::{Error, Result};
 use serde::{Deserialize, Serialize};
 use std::io::Write;
 use std::path::{Path, PathBuf};
+use std::time::UNIX_EPOCH;
 
 /// Largest record that is believed, bytes.
 const MAX_BYTES: u64 = 1 << 26;
@@ -66,13 +68,29 @@ pub(crate) struct Stamp {
     bytes: u64,
     /// CRC-32, as hexadecimal digits.
     fingerprint: String,
+    /// When it was changed last, where that is known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    modified: Option<String>,
 }
 
 impl Stamp {
     pub(crate) fn of(path: &Path) -> Result<Self> {
+        let modified = modified(path);
         let bytes = std::fs::read(path).map_err(Error::io(path))?;
-        Ok(Self { bytes: bytes.len() as u64, fingerprint: hash(&bytes) })
+        Ok(Self { bytes: bytes.len() as u64, fingerprint: hash(&bytes), modified })
     }
+
+    /// Whether the file is what was written. Its content is looked at where it has another time.
+    fn fits(&self, path: &Path) -> bool {
+        (self.modified.is_some() && modified(path) == self.modified)
+            || std::fs::read(path).is_ok_and(|bytes| hash(&bytes) == self.fingerprint)
+    }
+}
+
+/// When a file was changed last, nanoseconds since 1970.
+fn modified(path: &Path) -> Option<String> {
+    let time = std::fs::metadata(path).ok()?.modified().ok()?;
+    Some(time.duration_since(UNIX_EPOCH).ok()?.as_nanos().to_string())
 }
 
 /// The record of a tile.
@@ -121,13 +139,14 @@ fn is_zero(count: &usize) -> bool {
 }
 
 impl TileRecord {
-    /// The record of a tile in a run; `None` where there is none that belongs to the plan.
+    /// The record of a tile in a run; `None` where there is none that belongs to the plan and is what was written.
     pub(crate) fn read(plan: &Plan, run: &Path, stage: Stage<'_>, tile: TileId) -> Option<Self> {
         let path = stage.record(run, tile);
         if std::fs::metadata(&path).ok()?.len() > MAX_BYTES {
             return None;
         }
-        let record: Self = serde_json::from_slice(&std::fs::read(&path).ok()?).ok()?;
+        let bytes = std::fs::read(&path).ok()?;
+        let record: Self = is_sound(&bytes).then(|| serde_json::from_slice(&bytes).ok())??;
         (record.plan == plan.name).then_some(record)
     }
 
@@ -137,13 +156,13 @@ impl TileRecord {
         !matches!(self.outcome, TileOutcome::Failed(_))
     }
 
-    /// What became of the file of its result since, as far as its size tells; `None` where nothing did.
+    /// What became of the file of its result since; `None` where nothing did.
     pub(crate) fn damage(&self, run: &Path, stage: Stage<'_>, tile: TileId) -> Option<String> {
         let stamp = self.result.as_ref()?;
         let path = stage.result(run, tile);
         let what = match std::fs::metadata(&path) {
             Err(_) => "is gone",
-            Ok(found) if found.len() != stamp.bytes => "is damaged",
+            Ok(found) if found.len() != stamp.bytes || !stamp.fits(&path) => "is damaged",
             Ok(_) => return None,
         };
         Some(format!("{} {what}", path.display()))
@@ -156,10 +175,7 @@ impl TileRecord {
     pub(crate) fn read_result(&self, path: &Path) -> Result<Vec<u8>> {
         let bytes = std::fs::read(path).map_err(Error::io(path))?;
         if self.result.as_ref().is_some_and(|stamp| stamp.fingerprint != hash(&bytes)) {
-            return Err(Error::malformed(
-                path,
-                "is damaged: remove it, and compute it again with `belvedere city run`",
-            ));
+            return Err(Error::malformed(path, "is damaged: compute it again with `belvedere city run`"));
         }
         Ok(bytes)
     }
@@ -167,8 +183,7 @@ impl TileRecord {
     pub(crate) fn write(&self, plan: &Plan, run: &Path, stage: Stage<'_>, tile: TileId) -> Result<()> {
         let path = stage.record(run, tile);
         let record = Self { plan: plan.name.clone(), ..self.clone() };
-        let text =
-            serde_json::to_string(&record).map_err(|e| Error::malformed(&path, format!("cannot be written: {e}")))?;
+        let text = sealed(&record).map_err(|e| Error::malformed(&path, format!("cannot be written: {e}")))?;
         atomic::write(&path, |file| file.write_all(text.as_bytes()).map_err(Error::io(&path)))
     }
 }

@@ -17,6 +17,7 @@
 //! ```
 
 mod chunks;
+mod connections;
 mod export;
 mod guard;
 mod loading;

@@ -95,7 +95,8 @@ impl Loading {
         drop(state);
         // what the first questions need is made while people still look; not on a thread of the pool, which must not
         // wait for locks
-        std::thread::spawn(move || scene.prepare());
+        // where the system refuses a thread, the first question makes it
+        let _ = std::thread::Builder::new().spawn(move || scene.prepare());
     }
 
     /// Reports why nothing can be shown and no question can be answered.

@@ -10,6 +10,7 @@ use belvedere::{Frame, Mesh};
 use serde::Deserialize;
 use serde_json::json;
 use std::fmt::Write;
+use std::io::{Cursor, Read, Seek, SeekFrom};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// Plans that are kept: one for each of a few tabs. Each holds as much as the scene.
@@ -81,9 +82,17 @@ impl Plans {
         found.ok_or_else(|| Refusal("The plan is not kept any more: change it, or load the page again.".to_owned()))
     }
 
-    /// Takes a mesh file; returns its number.
-    pub(crate) fn load(&self, name: &str, bytes: &[u8], frame: &Frame) -> Result<usize, Refusal> {
-        let (mesh, _) = read_mesh_in(Source::bytes(name, bytes), &frame.crs)?;
+    /// Takes a mesh file; returns its number. Reading ends when nobody waits for it any more.
+    pub(crate) fn load(
+        &self,
+        name: &str,
+        bytes: &[u8],
+        frame: &Frame,
+        control: &Control<'_>,
+    ) -> Result<usize, Refusal> {
+        let reader = WatchedBytes { bytes: Cursor::new(bytes), control };
+        let (mesh, _) = read_mesh_in(Source::reader(name, reader), &frame.crs)?;
+        control.check()?;
         let mut kept = self.kept();
         if kept.meshes.len() >= MAX_MESHES {
             return Err(Refusal(format!("No more than {MAX_MESHES} meshes can be loaded: start the program again.")));
@@ -146,7 +155,8 @@ impl Plans {
         kept.plans.push(Arc::clone(&planned));
         drop(kept);
         // as for the scene without a plan
-        std::thread::spawn(move || scene.prepare());
+        // where the system refuses a thread, the first question makes it
+        let _ = std::thread::Builder::new().spawn(move || scene.prepare());
         Ok(planned)
     }
 
@@ -165,6 +175,25 @@ fn check_can_clear(scene: &PageScene, text: &SceneText) -> Result<(), Refusal> {
         return Ok(());
     };
     Err(Refusal(reason.to_owned()))
+}
+
+/// Bytes that cannot be read any more once the work is cancelled.
+struct WatchedBytes<'a> {
+    bytes: Cursor<&'a [u8]>,
+    control: &'a Control<'a>,
+}
+
+impl Read for WatchedBytes<'_> {
+    fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
+        self.control.check().map_err(std::io::Error::other)?;
+        self.bytes.read(buffer)
+    }
+}
+
+impl Seek for WatchedBytes<'_> {
+    fn seek(&mut self, to: SeekFrom) -> std::io::Result<u64> {
+        self.bytes.seek(to)
+    }
 }
 
 /// A word as a shell takes it for one.
@@ -238,7 +267,34 @@ fn obj(buildings: &[Building], frame: &Frame) -> Result<String, Refusal> {
 
 #[cfg(test)]
 mod tests {
-    use super::quoted;
+    use super::*;
+    use belvedere::control::Watcher;
+    use std::sync::atomic::{AtomicUsize, Ordering};
+
+    /// Gives up after some looks at whether to go on.
+    struct Impatient(AtomicUsize);
+
+    impl Watcher for Impatient {
+        fn is_cancelled(&self) -> bool {
+            self.0.fetch_update(Ordering::Relaxed, Ordering::Relaxed, |left| left.checked_sub(1)).is_err()
+        }
+    }
+
+    #[test]
+    fn reading_a_mesh_ends_when_nobody_waits_for_it() {
+        let mut text = String::from("v 0 0 0\nv 1 0 0\nv 0 1 0\n");
+        (0..100_000).for_each(|_| text.push_str("f 1 2 3\n"));
+        let (plans, frame) = (Plans::default(), Frame::default());
+        let load = |looks: usize| {
+            let watcher = Impatient(AtomicUsize::new(looks));
+            let loaded = plans.load("a.obj", text.as_bytes(), &frame, &Control::new(&watcher));
+            (loaded.is_ok(), watcher.0.into_inner())
+        };
+        assert_eq!(load(50), (false, 0));
+        let (is_loaded, left) = load(100_000);
+        assert!(is_loaded && left < 99_900, "{left}");
+        assert_eq!(plans.kept().meshes.len(), 1);
+    }
 
     #[test]
     fn words_are_quoted_only_where_a_shell_would_part_them() {

@@ -217,8 +217,8 @@ async fn plan_mesh(
         Err(response) => return response,
     };
     let plans = Arc::clone(&shared.plans);
-    in_turn(&shared, move |scene, _| {
-        let number = plans.load(&name, &body, scene.model().frame())?;
+    in_turn(&shared, move |scene, control| {
+        let number = plans.load(&name, &body, scene.model().frame(), control)?;
         Ok(QuestionReply::of(json!({ "mesh": number, "name": name })))
     })
     .await

@@ -1,9 +1,11 @@
-//! The server: one address of this computer, few connections, and none that waits for ever.
+//! The server: one address of this computer, few connections, and none that waits for ever or for those that rest.
 
+use crate::connections::{AnsweredRequest, Connections};
 use crate::guard::Guard;
 use crate::loading::Loading;
 use crate::routes;
 use crate::scene_text::SceneText;
+use hyper::service::{Service, service_fn};
 use hyper_util::rt::{TokioIo, TokioTimer};
 use hyper_util::service::TowerToHyperService;
 use std::net::{Ipv4Addr, SocketAddr};
@@ -12,9 +14,8 @@ use std::sync::Arc;
 use std::time::Duration;
 use tokio::net::TcpListener;
 use tokio::runtime::Runtime;
-use tokio::sync::Semaphore;
 
-/// Connections at once: a browser opens six for each tab. Others wait.
+/// Connections at once: a browser opens six for each tab. For others, those that rest are ended.
 const MAX_CONNECTIONS: usize = 256;
 /// How long the head of a request may take, and a connection may rest before the next.
 const PATIENCE: Duration = Duration::from_secs(15);
@@ -94,21 +95,31 @@ impl Drop for PageServer {
 }
 
 async fn accept(listener: TcpListener, app: axum::Router) {
-    let places = Arc::new(Semaphore::new(MAX_CONNECTIONS));
+    let connections = Arc::new(Connections::default());
     loop {
-        let Ok(place) = Arc::clone(&places).acquire_owned().await else { return };
+        let place = Arc::new(connections.place(MAX_CONNECTIONS).await);
         let Ok((stream, _)) = listener.accept().await else {
-            // too many open files, perhaps: others close soon
-            tokio::time::sleep(Duration::from_millis(50)).await;
+            // too many open files, perhaps
+            drop(place);
+            connections.end_one();
+            tokio::time::sleep(Duration::from_millis(10)).await;
             continue;
         };
-        let service = TowerToHyperService::new(app.clone());
-        tokio::spawn(async move {
+        let (router, own) = (TowerToHyperService::new(app.clone()), Arc::clone(&place));
+        let service = service_fn(move |request| {
+            let (request_open, answer) = (AnsweredRequest::of(&own), router.call(request));
+            async move {
+                let answer = answer.await;
+                drop(request_open);
+                answer
+            }
+        });
+        let task = tokio::spawn(async move {
             let mut server = hyper::server::conn::http1::Builder::new();
             server.timer(TokioTimer::new()).header_read_timeout(PATIENCE);
             // an error means that the client broke off: nobody is left to answer
             let _ = server.serve_connection(TokioIo::new(stream), service).await;
-            drop(place);
         });
+        place.is_served_by(task.abort_handle());
     }
 }

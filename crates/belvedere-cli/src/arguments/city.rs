@@ -181,6 +181,9 @@ pub(crate) struct CityMerge {
     /// Result to merge: the name of its folder [default: the only one]
     #[arg(long, value_name = "NAME")]
     pub(crate) result: Option<String>,
+    /// Merge what is there of a run that is not finished; without it such a run is refused
+    #[arg(long)]
+    pub(crate) unfinished: bool,
     /// Raster of all tiles (.tif)
     #[arg(short, long, value_name = "OUT")]
     pub(crate) output: PathBuf,

@@ -13,7 +13,8 @@ use belvedere::apps::tree_light::Transmissivity;
 use belvedere::io::Insistence;
 use belvedere::{Error, Parameter};
 use belvedere_tiles::{
-    Plan, PlanParams, RunParams, Shard, SideFile, Steps, TileQuestion, merge, run as run_tiles, status as status_of,
+    Plan, PlanParams, RunParams, Shard, SideFile, Steps, TileQuestion, UnfinishedRun, merge, run as run_tiles,
+    status as status_of,
 };
 use std::path::PathBuf;
 use std::time::Instant;
@@ -152,10 +153,13 @@ fn merge_tiles(arguments: &CityMerge, global: &Global) -> Result<Summary> {
             .ok_or_else(|| Usage(format!("--result {name}: the results are {}", names())))?,
     };
     let mut run = CommandContext::new(global);
-    let merged =
-        run.stage("merging", 0, |control| merge(&plan, &arguments.run, question, &arguments.output, control))?;
-    run.summary.add("tiles", merged.tiles).add("tiles_without_result", merged.without_result);
-    run.summary.headline("merged <tiles> tiles, and <tiles_without_result> without a result");
+    let unfinished = if arguments.unfinished { UnfinishedRun::Merged } else { UnfinishedRun::Refused };
+    let merged = run.stage("merging", 0, |control| {
+        merge(&plan, &arguments.run, question, &arguments.output, unfinished, control)
+    })?;
+    run.summary.add("tiles", merged.tiles).add("tiles_empty", merged.empty).add("tiles_missing", merged.missing);
+    run.summary.headline("merged <tiles> tiles; on <tiles_empty> others nothing is");
+    run.summary.remarks(merged.remarks());
     run.summary.add("written", arguments.output.display().to_string());
     Ok(run.finish())
 }

@@ -53,9 +53,7 @@ use std::io::Write;
 /// Runs the command that was typed.
 pub(crate) fn run(cli: &Cli) -> Result<Summary> {
     let global = &cli.global;
-    if let Some(threads) = global.threads {
-        rayon::ThreadPoolBuilder::new().num_threads(threads).build_global().context("--threads")?;
-    }
+    crate::environment::apply(global)?;
     crate::device::choose(global)?;
     let mut summary = run_command(cli)?;
     crate::device::report(&mut summary);

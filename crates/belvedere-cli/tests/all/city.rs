@@ -20,6 +20,17 @@ fn results(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     found
 }
 
+/// A plan as text with its checksum, after it was changed.
+fn sealed(plan: &mut serde_json::Value) -> String {
+    plan.as_object_mut().unwrap().remove("checksum");
+    let text = plan.to_string();
+    let rest = text.strip_prefix('{').unwrap();
+    let crc = !rest.bytes().fold(u32::MAX, |crc, byte| {
+        (0..8).fold(crc ^ u32::from(byte), |crc, _| (crc >> 1) ^ if crc & 1 == 1 { 0xedb8_8320 } else { 0 })
+    });
+    format!("{{\"checksum\":\"{crc:08x}\",{rest}")
+}
+
 fn town(place: &Workplace) {
     assert_eq!(place.run("simulate village -o town --extent 130 --density 3").status, 0);
 }
@@ -146,7 +157,7 @@ fn pieces_of_files_save_reading_and_change_no_result() {
     let points = whole["inputs"][0]["points"].as_u64().unwrap();
     assert_eq!(pieces.as_array().unwrap().len() as u64, points.div_ceil(50_000));
     assert!(points > 200_000, "{points}");
-    place.write("whole/plan.json", &whole.to_string());
+    place.write("whole/plan.json", &sealed(&mut whole));
     for run in ["pieces", "whole"] {
         place.summary(&format!("city run {run} --shard 1/6"));
     }
@@ -155,8 +166,8 @@ fn pieces_of_files_save_reading_and_change_no_result() {
     assert!(found == expected, "the results differ");
     // pieces of another file are no plan
     whole["inputs"][0]["pieces"] = serde_json::json!([[0, 0, 1, 1]]);
-    place.write("whole/plan.json", &whole.to_string());
-    place.refusal(1, "city run whole", &["plan.json"]);
+    place.write("whole/plan.json", &sealed(&mut whole));
+    place.refusal(1, "city run whole", &["plan.json", "damaged"]);
 }
 
 #[test]
@@ -287,14 +298,14 @@ fn questions_are_those_of_the_commands_they_are_named_after() {
     assert!((150..200).contains(&(of_code(0) + of_code(1))), "{} {}", of_code(0), of_code(1));
     assert!(of_code(1) > 20 && of_code(2) == 0, "{}", of_code(1));
     let raster = |name: &str| belvedere::io::read_tif(place.path(&format!("{name}.tif")).as_path()).unwrap();
-    let width = |name: &str| raster(name).values.width();
+    let cell = |name: &str| raster(name).place.unwrap().column_step[0];
     // rasters say what they hold, as those of single scenes do: other quantities are neither subtracted without a word
     // nor taken for terrain
     let shadow = "shadow_20260320_124500";
     place.summary(&format!("city merge run --result {shadow} -o {shadow}.tif"));
     let what = |name: &str| belvedere::io::read_tif(place.path(name).as_path()).unwrap().description.unwrap();
     assert_eq!(what(&format!("{shadow}.tif")), "share of the sun, 0 in shadow");
-    assert_eq!(width(shadow), 2 * width("sun_hours"));
+    assert_eq!([cell(shadow), cell("sun_hours")], [2.0, 4.0]);
     let catalogue = place.text(&format!("run/{shadow}.vrt"));
     assert!(catalogue.contains(">share of the sun, 0 in shadow</MDI>"), "{catalogue}");
     for (band, name) in [(1, "lit"), (2, "unproven")] {

@@ -45,6 +45,32 @@ fn outputs_have_the_same_bytes_for_any_number_of_threads() {
 }
 
 #[test]
+fn outputs_have_the_same_bytes_without_avx2() {
+    let place = Workplace::new();
+    place.write_cloud("house.laz", &house());
+    let run = |arguments: &str, avx2: &str| {
+        let output = place.command(arguments).env("BELVEDERE_AVX2", avx2).output().unwrap();
+        assert!(output.status.success(), "{arguments}: {output:?}");
+    };
+    for (arguments, name) in [
+        ("balls house.laz", "balls.npz"),
+        ("normals house.laz", "normals.laz"),
+        ("shadow house.laz --sun 160,35 --cell 0.5", "shadow.tif"),
+        ("sky-view house.laz --directions 49 --cell 1", "sky.tif"),
+        ("query house.laz --sun 160,35 --random 20000", "random.csv"),
+        ("viewshed house.laz --observer 85000,445988 --cell 0.5", "seen.tif"),
+    ] {
+        run(&format!("{arguments} -o on_{name}"), "on");
+        run(&format!("{arguments} -o off_{name}"), "off");
+        assert!(place.bytes(&format!("on_{name}")) == place.bytes(&format!("off_{name}")), "{name} differs");
+    }
+    let output = place.command("info house.laz").env("BELVEDERE_AVX2", "maybe").output().unwrap();
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{message}");
+    assert!(message.contains("BELVEDERE_AVX2") && message.contains("on or off"), "{message}");
+}
+
+#[test]
 fn another_seed_gives_other_random_targets_and_the_same_seed_the_same() {
     let place = Workplace::new();
     place.write_cloud("house.laz", &house());

@@ -70,6 +70,48 @@ fn options_are_refused_before_a_cloud_is_read() {
 }
 
 #[test]
+fn threads_of_the_environment_are_bounded_like_those_of_the_flag() {
+    let place = Workplace::new();
+    place.write_cloud("house.laz", &house());
+    let run = |threads: &str| {
+        let output = place.command("info house.laz").env("RAYON_NUM_THREADS", threads).output().unwrap();
+        (output.status.code(), String::from_utf8(output.stderr).unwrap())
+    };
+    let (status, message) = run("2000");
+    assert!(
+        status == Some(2) && message.contains("RAYON_NUM_THREADS is 2000") && message.contains("1024"),
+        "{message}"
+    );
+    assert_eq!(run("3").0, Some(0));
+}
+
+/// What the system refuses ends in a sentence, and no output is half written.
+#[cfg(target_os = "linux")]
+#[test]
+fn limits_of_the_system_are_named() {
+    let place = Workplace::new();
+    place.write_cloud("house.laz", &house());
+    let run = |limits: &str, arguments: &str| {
+        let script = format!("{limits}; exec \"$BELVEDERE\" {arguments}");
+        let mut shell = std::process::Command::new("bash");
+        shell.args(["-c", &script]).current_dir(place.path("")).env("BELVEDERE", env!("CARGO_BIN_EXE_belvedere"));
+        let output = shell.output().unwrap();
+        (output.status.code(), String::from_utf8(output.stderr).unwrap())
+    };
+    // files of at most 8 kB, and memory for few threads
+    let (status, message) = run("ulimit -f 8", "balls house.laz -o balls.npz");
+    assert!(
+        status == Some(1) && message.contains("balls.npz") && message.contains("ulimit -f"),
+        "{status:?} {message}"
+    );
+    assert!(!message.contains("panicked") && message.lines().count() <= 3, "{message}");
+    let (status, message) = run("ulimit -v 1500000", "balls house.laz -o balls.npz --threads 1000");
+    assert!(status == Some(1) && message.contains("refuses 1000") && message.contains("--threads"), "{message}");
+    assert!(!message.contains("panicked"), "{message}");
+    assert_eq!(place.names(), ["house.laz"]);
+}
+
+#[test]
 fn missing_files_are_reported_before_a_cloud_is_read() {
     let place = Workplace::new();
     place.write("junk.laz", "no point cloud");

@@ -8,7 +8,7 @@ use crate::neighbors::NeighborIndex;
 use crate::query::FreedSpace;
 use belvedere_data::balls::LIMIT_TOUCH;
 use belvedere_data::control::Control;
-use belvedere_data::polygon::is_inside;
+use belvedere_data::polygon::{PolygonIndex, simple_rings};
 use belvedere_data::{Bounds, Error, Parameter, PointCloud, Result};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -65,7 +65,8 @@ impl SceneModel {
         }
         let mut report = ClearReport::default();
         if let (Some(added), ClearedArea::Polygon(rings)) = (&self.added, area) {
-            self.added = added.without(|[x, y, _]| is_inside(rings, [x, y]))?;
+            let index = PolygonIndex::new(rings);
+            self.added = added.without(|[x, y, _]| index.holds([x, y]))?;
         }
         let Some(grid) = grid_over(area, cloud)? else { return Ok((self, cloud.clone(), report)) };
         let clearing = Clearing::new(area, cloud, grid, control)?;
@@ -182,10 +183,10 @@ impl ClearedArea {
         let low = [0, 1].map(|axis| bound(axis, f64::min, f64::INFINITY));
         let high = [0, 1].map(|axis| bound(axis, f64::max, f64::NEG_INFINITY));
         let (first, last) = bounds.on_map();
-        if corners().flatten().any(|v| !v.is_finite()) || rings.first().is_none_or(|ring| ring.len() < 3) {
-            let corners = rings.first().map_or(0, Vec::len);
-            return invalid(format!("{corners} corners"), "a polygon of at least 3 finite corners");
+        if rings.is_empty() {
+            return invalid("0 corners".to_owned(), "a polygon: three corners or more in each ring");
         }
+        simple_rings(rings).map_err(|fault| fault.refusal(Parameter::ClearedArea))?;
         if (0..2).any(|axis| low[axis] > last[axis] || high[axis] < first[axis]) {
             let [x, y] = [0, 1].map(|axis| low[axis] + origin[axis]);
             return invalid(format!("from x {x:.1}, y {y:.1} m on"), "on the cloud, in its coordinates");

@@ -3,7 +3,7 @@
 use super::ClearedArea;
 use crate::ground::{Ground, GroundParams, GroundPoints, MapGrid, ground_points};
 use belvedere_data::control::Control;
-use belvedere_data::polygon::is_inside;
+use belvedere_data::polygon::PolygonIndex;
 use belvedere_data::raster::Raster;
 use belvedere_data::vector::{sub, unit};
 use belvedere_data::{PointCloud, Result};
@@ -33,7 +33,7 @@ const HALVINGS: usize = 10;
 /// An area that is cleared over the cells of a grid.
 #[derive(Clone, Debug)]
 pub struct Clearing {
-    area: ClearedArea,
+    area: IndexedArea,
     ground: Ground,
     /// Rows of the cloud that are points of the ground.
     ground_rows: Vec<u32>,
@@ -41,6 +41,13 @@ pub struct Clearing {
     tops: Raster<f32>,
     /// Whether points below what is cleared go too, unless their class is ground.
     clears_low: bool,
+}
+
+/// What is cleared, with an index of the sides of a polygon.
+#[derive(Clone, Debug)]
+enum IndexedArea {
+    Polygon(PolygonIndex),
+    Class(u8),
 }
 
 impl Clearing {
@@ -60,7 +67,11 @@ impl Clearing {
         let ground = Ground::of_points(&points, grid, params.reach, control)?;
         let clears_low = matches!((area, from), (ClearedArea::Polygon(_), GroundPoints::Classed));
         let nothing = Raster::filled(grid.width, grid.height, f32::NAN);
-        let clearing = Self { area: area.clone(), ground, ground_rows: rows, tops: nothing, clears_low };
+        let area = match area {
+            ClearedArea::Polygon(rings) => IndexedArea::Polygon(PolygonIndex::new(rings)),
+            ClearedArea::Class(class) => IndexedArea::Class(*class),
+        };
+        let clearing = Self { area, ground, ground_rows: rows, tops: nothing, clears_low };
         let tops = clearing.tops_of(cloud);
         Ok(Self { tops, ..clearing })
     }
@@ -91,7 +102,7 @@ impl Clearing {
     #[must_use]
     pub fn cut(&self, center: [f32; 3], radius: f32, point: [f32; 3]) -> Option<([f32; 3], f32)> {
         let (middle, whole) = (center.map(f64::from), f64::from(radius));
-        if matches!(self.area, ClearedArea::Class(_)) || !self.reaches_in(middle, whole) {
+        if matches!(self.area, IndexedArea::Class(_)) || !self.reaches_in(middle, whole) {
             return Some((center, radius));
         }
         let inward = unit(sub(middle, point.map(f64::from)))?;
@@ -140,10 +151,10 @@ impl Clearing {
     fn stands_in(&self, position: [f32; 3], class: Option<u8>) -> bool {
         let [x, y, z] = position.map(f64::from);
         match &self.area {
-            ClearedArea::Class(own) => class == Some(*own),
-            ClearedArea::Polygon(rings) => {
+            IndexedArea::Class(own) => class == Some(*own),
+            IndexedArea::Polygon(index) => {
                 self.ground.grid.cell_of([x, y]).is_some()
-                    && is_inside(rings, [x, y])
+                    && index.holds([x, y])
                     && !self.ground.height_at([x, y]).is_some_and(|height| z <= height + ABOVE_GROUND)
             }
         }
@@ -175,7 +186,7 @@ impl Clearing {
     fn tops_of(&self, cloud: &PointCloud) -> Raster<f32> {
         let grid = &self.ground.grid;
         let mut tops = Raster::filled(grid.width, grid.height, f32::NAN);
-        let around = if matches!(self.area, ClearedArea::Class(_)) { AROUND_OF_CLASS } else { AROUND };
+        let around = if matches!(self.area, IndexedArea::Class(_)) { AROUND_OF_CLASS } else { AROUND };
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a few cells")]
         let reach = (around / grid.cell) as usize;
         let mut highest = Raster::filled(grid.width, grid.height, f32::NEG_INFINITY);
@@ -188,19 +199,20 @@ impl Clearing {
                 *highest = highest.max(position[2]);
             }
         }
+        let middles = (0..grid.height).flat_map(|row| (0..grid.width).map(move |column| grid.center(column, row)));
+        let is_in: Vec<bool> = match &self.area {
+            IndexedArea::Class(_) => vec![true; grid.width * grid.height],
+            IndexedArea::Polygon(index) => middles.map(|middle| index.holds(middle)).collect(),
+        };
         for row in 0..grid.height {
             for column in 0..grid.width {
                 let Some(top) = highest.get(column, row).filter(|top| top.is_finite()) else { continue };
                 for near_row in row.saturating_sub(reach)..(row + reach + 1).min(grid.height) {
                     for near in column.saturating_sub(reach)..(column + reach + 1).min(grid.width) {
-                        let is_in = match &self.area {
-                            ClearedArea::Class(_) => true,
-                            ClearedArea::Polygon(rings) => is_inside(rings, grid.center(near, near_row)),
-                        };
+                        let cell = near_row * grid.width + near;
                         let is_near = near.abs_diff(column).pow(2) + near_row.abs_diff(row).pow(2) <= reach * reach;
-                        if let Some(own) =
-                            tops.values_mut().get_mut(near_row * grid.width + near).filter(|_| is_in && is_near)
-                        {
+                        let is_in = is_in.get(cell).is_some_and(|&is_in| is_in);
+                        if let Some(own) = tops.values_mut().get_mut(cell).filter(|_| is_in && is_near) {
                             *own = own.max(top);
                         }
                     }

@@ -3,6 +3,7 @@
 use belvedere_data::Result;
 use belvedere_data::control::Control;
 use std::sync::{Mutex, OnceLock, PoisonError};
+use std::time::Duration;
 
 /// A value that is made on first use.
 ///
@@ -46,16 +47,40 @@ impl<T: Send + Sync> Lazy<T> {
     }
 }
 
+/// How long a thread is waited for that the system refuses, and how often it is tried.
+const PAUSE: Duration = Duration::from_millis(50);
+const MAX_TRIES: usize = 100;
+
 /// Runs `work` on as many new threads as the caller may use.
 fn on_own_threads<T: Send>(work: impl FnOnce() -> T + Send) -> T {
     let threads = rayon::current_num_threads();
-    let run = || match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
-        Ok(pool) => pool.install(work),
-        // without more threads those of everybody must do
-        Err(_) => work(),
+    let work = Mutex::new(Some(work));
+    let take = || work.lock().unwrap_or_else(PoisonError::into_inner).take();
+    let run = || {
+        let work = take()?;
+        // without more threads the new one does all of it
+        let alone = || rayon::ThreadPoolBuilder::new().num_threads(1).use_current_thread().build();
+        match rayon::ThreadPoolBuilder::new().num_threads(threads).build().or_else(|_| alone()) {
+            Ok(pool) => Some(pool.install(work)),
+            Err(_) => Some(work()),
+        }
     };
-    std::thread::scope(|scope| match scope.spawn(run).join() {
-        Ok(value) => value,
-        Err(panic) => std::panic::resume_unwind(panic),
-    })
+    for _ in 0..MAX_TRIES {
+        let done = std::thread::scope(|scope| {
+            let thread = std::thread::Builder::new().spawn_scoped(scope, run).ok()?;
+            match thread.join() {
+                Ok(value) => value,
+                Err(panic) => std::panic::resume_unwind(panic),
+            }
+        });
+        if let Some(value) = done {
+            return value;
+        }
+        std::thread::sleep(PAUSE);
+    }
+    // the system gives no thread at all: this one must do
+    match take() {
+        Some(work) => work(),
+        None => unreachable!("a thread that took the work has returned its value"),
+    }
 }

@@ -117,7 +117,7 @@ fn no_flipped_bit_of_an_archive_changes_its_balls_without_an_error() {
 /// An archive with one array, whose values are all zero.
 fn archive_of_zeros(name: &str, shape: &str, bytes: usize) -> Vec<u8> {
     let mut archive = zip::ZipWriter::new(Cursor::new(Vec::new()));
-    let options = zip::write::FileOptions::default().compression_method(zip::CompressionMethod::Deflated);
+    let options = zip::write::SimpleFileOptions::default().compression_method(zip::CompressionMethod::Deflated);
     archive.start_file(format!("{name}.npy"), options).unwrap();
     let header = format!("{{'descr': '<f4', 'fortran_order': False, 'shape': {shape}, }}\n");
     archive.write_all(b"\x93NUMPY\x01\x00").unwrap();

@@ -1,7 +1,10 @@
 //! Files appear whole or not at all, and writers get the same bytes as files.
 
+use std::cell::RefCell;
+use std::fs::File;
 use std::io::{Cursor, Write};
 use std::path::Path;
+use std::time::{Duration, SystemTime};
 
 use belvedere_data::crs::Crs;
 use belvedere_data::raster::Raster;
@@ -78,18 +81,39 @@ fn a_cancelled_output_leaves_what_was_there() {
 fn files_that_killed_runs_left_are_removed_and_those_of_others_are_not() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("result.csv");
+    // the name of an unfinished file of this process says what its host is called
+    let name = RefCell::new(String::new());
+    atomic::write(&path, |_| {
+        *name.borrow_mut() = names_in(folder.path()).remove(0);
+        Ok(())
+    })
+    .unwrap();
+    std::fs::remove_file(&path).unwrap();
+    let name = name.into_inner();
+    let host = name.strip_prefix(".result.csv.").unwrap().split('-').next().unwrap().to_owned();
     // beyond the largest number of a process
-    let dead = 4_194_305;
-    let own = std::process::id();
+    let (dead, own) = (4_194_305, std::process::id());
+    let write = |name: &str, age_hours: u64| {
+        let path = folder.path().join(name);
+        std::fs::write(&path, "unfinished").unwrap();
+        let then = SystemTime::now() - Duration::from_secs(age_hours * 3600);
+        File::options().write(true).open(&path).unwrap().set_modified(then).unwrap();
+    };
     let kept = [
-        format!(".result.csv.{own}-9.part"),
-        format!(".other.csv.{dead}-0.part"),
+        format!(".result.csv.{host}-{own}-9.part"),
+        format!(".other.csv.{host}-{dead}-0.part"),
         ".result.csv.old-0.part".to_owned(),
-        format!(".result.csv.{dead}-0.part.txt"),
+        format!(".result.csv.{host}-{dead}-0.part.txt"),
+        // of another computer or container, whose processes are not seen here
+        format!(".result.csv.0123456789ab4026531836-{dead}-0.part"),
     ];
-    for name in kept.iter().chain([&format!(".result.csv.{dead}-0.part"), &format!(".result.csv.{dead}-12.part")]) {
-        std::fs::write(folder.path().join(name), "unfinished").unwrap();
+    kept.iter().for_each(|name| write(name, 20));
+    for name in [format!(".result.csv.{host}-{dead}-0.part"), format!(".result.csv.{host}-{dead}-12.part")] {
+        write(&name, 0);
     }
+    // nobody has written to these since long ago; the last is named as earlier versions did
+    write(&format!(".result.csv.0123456789ab4026531836-{own}-1.part"), 25);
+    write(&format!(".result.csv.{dead}-3.part"), 25);
     write_table(path.as_path(), &[("x", TableCells::Real(&[1.0], 1))]).unwrap();
     let mut expected = kept.to_vec();
     expected.push("result.csv".to_owned());

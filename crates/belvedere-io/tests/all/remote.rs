@@ -90,6 +90,8 @@ fn servers_that_fail_or_lie_are_named_with_what_to_do() {
         (Manner::AnotherPart, "sends another part"),
         (Manner::Compressed, "compressed form only; download it first"),
         (Manner::Changing, "changed while it was read; run again"),
+        (Manner::Shrinking, "changed while it was read; run again"),
+        (Manner::Vanishing, "changed while it was read; run again"),
     ] {
         let server = WebServer::start([("cloud.las", large.clone())], manner);
         let address = server.address("cloud.las");

@@ -17,6 +17,9 @@ pub(crate) enum Manner {
     AnotherPart,
     /// Every part of another version of the file.
     Changing,
+    /// After the first answer, the file is shorter, or gone.
+    Shrinking,
+    Vanishing,
     /// In compressed form, although this was not requested.
     Compressed,
     /// The first answer to each part is this status.
@@ -91,6 +94,7 @@ fn serve(stream: TcpStream, files: &HashMap<String, Vec<u8>>, counts: &RequestCo
         let file = files.get(path.split('?').next().unwrap_or_default());
         let failure = match manner {
             Manner::Status(status) => Some(status),
+            Manner::Vanishing if number > 0 => Some(404),
             Manner::FirstStatus(status) if number.is_multiple_of(2) => Some(status),
             _ => None,
         };
@@ -98,6 +102,8 @@ fn serve(stream: TcpStream, files: &HashMap<String, Vec<u8>>, counts: &RequestCo
             write!(stream, "HTTP/1.1 {} No\r\nContent-Length: 0\r\n\r\n", failure.unwrap_or(404))?;
             continue;
         };
+        let shorter = &file[..file.len() / 2];
+        let file = if manner == Manner::Shrinking && number > 0 { shorter } else { &file[..] };
         let [first, last]: [usize; 2] = range.unwrap_or([0, usize::MAX]);
         let (first, end) = (first.min(file.len()), last.saturating_add(1).min(file.len()));
         let end = if manner == Manner::AnotherPart { (first + 1).min(end) } else { end };

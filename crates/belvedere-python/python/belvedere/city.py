@@ -110,8 +110,14 @@ def status(folder: str | Path) -> dict[str, Any]:
     return _program("status", folder)
 
 
-def merge(folder: str | Path, output: str | Path, *, result: str | None = None) -> dict[str, Any]:
-    """Writes the tiles of a result as one cloud-optimised GeoTIFF.
+def merge(
+    folder: str | Path,
+    output: str | Path,
+    *,
+    result: str | None = None,
+    unfinished: bool = False,
+) -> dict[str, Any]:
+    """Writes the tiles of a result as one cloud-optimised GeoTIFF, which reaches as far as the points do.
 
     Parameters
     ----------
@@ -121,8 +127,12 @@ def merge(folder: str | Path, output: str | Path, *, result: str | None = None) 
         Raster of all tiles (.tif).
     result
         Name of the result [default: the only one].
+    unfinished
+        Merge what is there of a run that is not finished, with a warning [default: such a run is
+        an error].
     """
-    return _program("merge", folder, "-o", output, *(["--result", result] if result else []))
+    words = [*(["--result", result] if result else []), *(["--unfinished"] if unfinished else [])]
+    return _program("merge", folder, "-o", output, *words)
 
 
 def _typed(name: str, value: object) -> list[str]:

@@ -6,7 +6,9 @@ use belvedere::apps::shadow::ShadowSun;
 use belvedere::apps::sun::Site;
 use belvedere::control::Control;
 use belvedere::io::read_tif;
-use belvedere_tiles::{CellSizes, Plan, PlanParams, TileQuestion, Topic, merge, status, write_catalogue};
+use belvedere_tiles::{
+    CellSizes, Plan, PlanParams, TileQuestion, Topic, UnfinishedRun, merge, status, write_catalogue,
+};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -44,7 +46,7 @@ fn done(clouds: &[PathBuf], folder: &Path, tile_size: f64, cells: CellSizes, que
 /// The merged raster of a result.
 fn raster(plan: &Plan, folder: &Path, question: &TileQuestion) -> Vec<u8> {
     let path = folder.join("merged.tif");
-    merge(plan, folder, question, &path, &Control::none()).unwrap();
+    merge(plan, folder, question, &path, UnfinishedRun::Refused, &Control::none()).unwrap();
     std::fs::read(path).unwrap()
 }
 

@@ -7,7 +7,7 @@ use belvedere::control::Control;
 use belvedere::io::{ReadOptions, read_balls, read_cloud, read_tif_f32, read_tif_u8};
 use belvedere::medial::{LIMIT_TOUCH, MedialBalls};
 use belvedere::model::{ClearedArea, ModelParams, SceneModel};
-use belvedere_tiles::{Plan, TileQuestion, merge, status};
+use belvedere_tiles::{Plan, TileQuestion, UnfinishedRun, merge, status};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
@@ -62,15 +62,15 @@ fn closing(balls: &MedialBalls, rows: std::ops::Range<usize>) -> BTreeMap<[u32; 
 
 fn values(plan: &Plan, folder: &Path, question: &TileQuestion) -> BTreeMap<[i64; 2], u32> {
     let path = folder.join("merged.tif");
-    merge(plan, folder, question, &path, &Control::none()).unwrap();
+    merge(plan, folder, question, &path, UnfinishedRun::Refused, &Control::none()).unwrap();
     if let TileQuestion::Shadow { .. } = question {
         let raster = read_tif_u8(&path).unwrap();
         let wide: Vec<u32> = raster.values().iter().map(|&v| v.into()).collect();
-        return cells(plan, &wide, raster.width(), 255);
+        return cells(&path, &wide, raster.width(), 255);
     }
     let raster = read_tif_f32(&path).unwrap();
     let bits: Vec<u32> = raster.values().iter().map(|v| v.to_bits()).collect();
-    cells(plan, &bits, raster.width(), (-9999.0_f32).to_bits())
+    cells(&path, &bits, raster.width(), (-9999.0_f32).to_bits())
 }
 
 #[test]
@@ -165,7 +165,7 @@ fn areas_beside_the_survey_and_its_ground_are_refused_and_empty_ones_found() {
     let beside = ClearedArea::Polygon(vec![vec![[9000.0, 0.0], [9001.0, 0.0], [9001.0, 1.0]]]);
     for (area, word) in [
         (beside, "on the cloud"),
-        (ClearedArea::Polygon(vec![vec![[0.0; 2]; 2]]), "at least 3"),
+        (ClearedArea::Polygon(vec![vec![[0.0; 2]; 2]]), "three corners"),
         (ClearedArea::Class(2), "stands on the ground"),
     ] {
         let error = plan.clone().with_cleared(vec![area]).unwrap_err().to_string();

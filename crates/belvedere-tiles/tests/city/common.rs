@@ -5,7 +5,7 @@ use belvedere::apps::shadow::ShadowSun;
 use belvedere::cloud::to_local;
 use belvedere::control::Control;
 use belvedere::crs::Crs;
-use belvedere::io::write_cloud;
+use belvedere::io::{read_tif, write_cloud};
 use belvedere::{Attributes, Frame, GpsTimeKind, PointCloud};
 use belvedere_scenes::{AirborneParams, TownParams, scan_airborne, town};
 use belvedere_tiles::{Plan, PlanParams, RunParams, RunReport, Shard, Steps, TileQuestion, run};
@@ -74,13 +74,9 @@ pub(crate) fn run_with(plan: &Plan, folder: &Path, max_balls: Option<usize>) -> 
     run(plan, folder, &params, &Control::none()).unwrap()
 }
 
-/// Values of all cells of 1 m by their place in local cells, without those of no data.
-pub(crate) fn cells<T: Copy + PartialEq>(plan: &Plan, values: &[T], width: usize, none: T) -> BTreeMap<[i64; 2], T> {
-    let grid = plan.grid();
-    let place = |number: i64| number as f64 * grid.size;
-    let west = plan.tiles.iter().map(|tile| tile.east).min().unwrap();
-    let north = plan.tiles.iter().map(|tile| tile.north).max().unwrap();
-    let corner = [place(west), place(north + 1)].map(|v| v.round() as i64);
+/// Values of all cells of 1 m of a merged raster by their place, metres, without those of no data.
+pub(crate) fn cells<T: Copy + PartialEq>(path: &Path, values: &[T], width: usize, none: T) -> BTreeMap<[i64; 2], T> {
+    let corner = read_tif(path).unwrap().place.unwrap().upper_left.map(|v| v.round() as i64);
     let cell = |(number, &value): (usize, &T)| {
         let [column, row] = [number % width, number / width].map(|v| v as i64);
         (value != none).then_some(([corner[0] + column, corner[1] - row], value))

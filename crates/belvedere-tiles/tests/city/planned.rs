@@ -10,7 +10,7 @@ use belvedere::control::Control;
 use belvedere::crs::Crs;
 use belvedere::io::{Georeference, read_tif_f32, read_tif_u8, write_tif_f32};
 use belvedere::raster::Raster;
-use belvedere_tiles::{Plan, SideFile, TileQuestion, TileRadiation, merge};
+use belvedere_tiles::{Plan, SideFile, TileQuestion, TileRadiation, UnfinishedRun, merge};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -52,16 +52,16 @@ fn meets_block(place: [f64; 3], towards: [f64; 3]) -> bool {
 
 fn codes(plan: &Plan, folder: &Path, question: &TileQuestion) -> CellMap<u8> {
     let path = folder.join("merged.tif");
-    merge(plan, folder, question, &path, &Control::none()).unwrap();
+    merge(plan, folder, question, &path, UnfinishedRun::Refused, &Control::none()).unwrap();
     let raster = read_tif_u8(&path).unwrap();
-    cells(plan, raster.values(), raster.width(), 255)
+    cells(&path, raster.values(), raster.width(), 255)
 }
 
 fn numbers(plan: &Plan, folder: &Path, question: &TileQuestion) -> CellMap<f32> {
     let path = folder.join("merged.tif");
-    merge(plan, folder, question, &path, &Control::none()).unwrap();
+    merge(plan, folder, question, &path, UnfinishedRun::Refused, &Control::none()).unwrap();
     let raster = read_tif_f32(&path).unwrap();
-    cells(plan, raster.values(), raster.width(), -9999.0)
+    cells(&path, raster.values(), raster.width(), -9999.0)
 }
 
 /// A plan with what is changed of it, run to its end; in small tiles with so few balls at a time that each needs many

@@ -5,9 +5,13 @@ use belvedere::Error;
 use belvedere::control::{Control, Watcher};
 use belvedere::crs::Crs;
 use belvedere::io::{ReadBands, ReadOptions, read_cloud, read_tif_bands, write_cloud};
-use belvedere_tiles::{CellSizes, Plan, PlanParams, RunParams, Shard, Steps, merge, run, status};
+use belvedere_tiles::{
+    CellSizes, Plan, PlanParams, RunParams, Shard, Steps, TileQuestion, UnfinishedRun, merge, run, status,
+};
+use std::fs::File;
 use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::{Duration, SystemTime};
 
 /// All results of a run: file names below its folder, and their bytes.
 fn results(folder: &Path) -> Vec<(String, Vec<u8>)> {
@@ -16,11 +20,25 @@ fn results(folder: &Path) -> Vec<(String, Vec<u8>)> {
         for file in std::fs::read_dir(&stage).unwrap().map(|entry| entry.unwrap().path()) {
             let name = file.strip_prefix(folder).unwrap().to_string_lossy().into_owned();
             assert!(file.extension().is_some_and(|e| e == "npz" || e == "tif" || e == "json"), "{name} is left");
-            found.push((name, std::fs::read(&file).unwrap()));
+            let mut bytes = std::fs::read(&file).unwrap();
+            if name.ends_with("json") {
+                bytes = without_times(&bytes);
+            }
+            found.push((name, bytes));
         }
     }
     found.sort();
     found
+}
+
+/// A record without the time at which the file of its result was written, and without its checksum.
+fn without_times(record: &[u8]) -> Vec<u8> {
+    let mut record: serde_json::Value = serde_json::from_slice(record).unwrap();
+    record.as_object_mut().unwrap().remove("checksum");
+    if let Some(result) = record.get_mut("result") {
+        result.as_object_mut().unwrap().remove("modified");
+    }
+    record.to_string().into_bytes()
 }
 
 /// Stops the work after some number of looks at whether to stop.
@@ -101,12 +119,17 @@ fn a_file_that_is_gone_is_named_and_what_it_may_block_is_unproven() {
     assert!(!status(&plan, &broken).is_complete());
     let values = |plan: &Plan, folder: &Path| {
         let path = folder.join("merged.tif");
-        merge(plan, folder, &sun[0], &path, &Control::none()).unwrap();
+        merge(plan, folder, &sun[0], &path, UnfinishedRun::Merged, &Control::none()).unwrap();
         let ReadBands::U8(bands) = read_tif_bands(&path).unwrap() else { panic!("bytes") };
         let pairs = bands[0].values().iter().zip(bands[1].values());
         pairs.map(|(&lit, &unproven)| [lit, unproven]).collect::<Vec<[u8; 2]>>()
     };
     let (expected, found) = (values(&whole, &straight), values(&plan, &broken));
+    // it is merged only where that is wanted
+    let path = place.path().join("refused.tif");
+    let error = merge(&plan, &broken, &sun[0], &path, UnfinishedRun::Refused, &Control::none()).unwrap_err();
+    let words = ["broken", "not finished", "--unfinished", "belvedere city run"];
+    assert!(words.iter().all(|word| error.to_string().contains(word)) && !path.exists(), "{error}");
     assert_eq!(expected.len(), found.len());
     let pairs = || expected.iter().zip(&found);
     assert!(pairs().filter(|(_, found)| **found == [1, 1]).count() > 100);
@@ -148,36 +171,157 @@ fn balls_and_answers_that_were_damaged_are_named_and_made_again() {
     balls[1..].iter().for_each(|name| damage(name, &flip));
     answers.iter().for_each(|name| std::fs::remove_file(folder.join(name)).unwrap());
     let left = status(&plan, &folder).stages.iter().map(|stage| stage.left).collect::<Vec<_>>();
-    assert_eq!(left, [1, answers.len()]);
+    assert_eq!(left, [balls.len(), answers.len()]);
     let report = run_all(&plan, &folder);
     assert!(report.failed.is_empty() && report.unproven_cells == 0, "{report:?}");
     for name in balls.iter().chain(&answers) {
         assert!(report.damaged.iter().any(|damage| damage.contains(name)), "{name}: {:?}", report.damaged);
     }
     assert!(results(&folder) == expected);
-    // a changed answer is not merged
+    // a changed answer is not merged, and made again
     damage(&answers[0], &flip);
-    let merged = merge(&plan, &folder, &plan.questions[0], &place.path().join("all.tif"), &Control::none());
+    assert_eq!(status(&plan, &folder).stages.iter().map(|stage| stage.left).collect::<Vec<_>>(), [0, 1]);
+    let merged = merge(
+        &plan,
+        &folder,
+        &plan.questions[0],
+        &place.path().join("all.tif"),
+        UnfinishedRun::Refused,
+        &Control::none(),
+    );
     let error = merged.unwrap_err().to_string();
     assert!(error.contains(&answers[0]) && error.contains("compute it again"), "{error}");
     assert!(!place.path().join("all.tif").exists());
-    std::fs::remove_file(folder.join(&answers[0])).unwrap();
+    assert_eq!(run_all(&plan, &folder).answers_made, 1);
+    assert!(results(&folder) == expected);
+    // one that was only copied is not
+    let (path, copy) = (folder.join(&answers[0]), place.path().join("copy"));
+    std::fs::copy(&path, &copy).unwrap();
+    std::fs::rename(&copy, &path).unwrap();
+    assert_eq!(run_all(&plan, &folder).answers_made, 0);
+    // a record that was edited is none
+    let record = path.with_extension("json");
+    let text = std::fs::read_to_string(&record).unwrap();
+    std::fs::write(&record, text.replacen("\"points\":", "\"points\":1", 1)).unwrap();
     assert_eq!(run_all(&plan, &folder).answers_made, 1);
     assert!(results(&folder) == expected);
 }
 
 #[test]
-fn a_file_that_changed_since_the_plan_is_refused() {
+fn a_file_that_changed_since_the_plan_is_refused_and_one_that_was_copied_is_not() {
     let place = tempfile::tempdir().unwrap();
     let clouds = write_town(place.path(), 100.0, 1.0);
     let folder = place.path().join("run");
     let plan = plan(&clouds, &folder, 128.0, suns());
-    let mut bytes = std::fs::read(&clouds[0]).unwrap();
-    let middle = bytes.len() - 300;
-    bytes[middle] ^= 1;
-    std::fs::write(&clouds[0], bytes).unwrap();
-    let report = run_all(&plan, &folder);
-    assert!(report.failed.iter().any(|why| why.contains("half_0.laz") && why.contains("make the plan again")));
+    let written = std::fs::read(&clouds[0]).unwrap();
+    let time = std::fs::metadata(&clouds[0]).unwrap().modified().unwrap();
+    let middle = written.len() / 2;
+    let flip = |range: std::ops::Range<usize>| {
+        let mut bytes = written.clone();
+        bytes[range].iter_mut().for_each(|byte| *byte ^= 1);
+        bytes
+    };
+    let with_time = |bytes: &[u8], time: SystemTime| {
+        std::fs::write(&clouds[0], bytes).unwrap();
+        File::options().write(true).open(&clouds[0]).unwrap().set_modified(time).unwrap();
+    };
+    let refused = |why: &str| {
+        let report = run_all(&plan, &folder);
+        let is_refusal = |why: &String| why.contains("half_0.laz") && why.contains("make the plan again");
+        assert!(report.failed.iter().any(is_refusal), "{why}: {:?}", report.failed);
+    };
+    // one byte in the middle, near the end, and a third that keeps the time of the file
+    let later = time + Duration::from_secs(3);
+    with_time(&flip(middle..middle + 1), later);
+    refused("a byte in the middle");
+    with_time(&flip(written.len() - 300..written.len() - 299), later);
+    refused("a byte near the end");
+    with_time(&flip(middle..middle + written.len() / 3), time);
+    refused("a third with the time as before");
+    with_time(&written[..middle], time);
+    refused("a half");
+    // the same bytes at another time are the same file
+    with_time(&written, later);
+    assert!(run_all(&plan, &folder).failed.is_empty());
+}
+
+#[test]
+fn a_plan_that_was_edited_or_leads_out_of_its_folder_is_refused() {
+    let place = tempfile::tempdir().unwrap();
+    let clouds = write_town(place.path(), 60.0, 0.5);
+    let folder = place.path().join("run");
+    let good = plan(&clouds, &folder, 64.0, suns()[..2].to_vec());
+    let path = Plan::path(&folder);
+    let text = std::fs::read_to_string(&path).unwrap();
+    let refused = |text: &str, word: &str| {
+        std::fs::write(&path, text).unwrap();
+        let error = Plan::read(&folder).unwrap_err().to_string();
+        assert!(
+            error.contains("plan.json") && error.contains(word) && error.contains("belvedere city plan"),
+            "{error}"
+        );
+    };
+    refused(&text.replacen("\"tile_size\":64", "\"tile_size\":65", 1), "checksum");
+    refused(&text.replacen("shadow_5", "shadow_6", 1), "checksum");
+    // with the right checksum, names are looked at all the same
+    let named = |name: &str| {
+        let rest = text.split_once(',').unwrap().1.replacen("shadow_5", name, 1);
+        format!("{{\"checksum\":\"{:08x}\",{rest}", crc32fast::hash(rest.as_bytes()))
+    };
+    for name in ["../out", "/tmp/out", "a/b", "a\\\\b", ".", "..", "", "balls", "shadow_20", "c:out", "a\\u0000b"] {
+        refused(&named(name), "questions is");
+    }
+    std::fs::write(&path, named("shadow-5.5+a")).unwrap();
+    assert!(Plan::read(&folder).is_ok());
+    let question = |name: &str| match suns().remove(0) {
+        TileQuestion::Shadow { to_sun, season, .. } => TileQuestion::Shadow { name: name.to_owned(), to_sun, season },
+        other => other,
+    };
+    assert!(good.with_questions(vec![question("../out")], &Control::none()).is_err());
+}
+
+#[test]
+fn a_run_without_a_result_is_not_merged_and_a_raster_ends_where_points_do() {
+    let place = tempfile::tempdir().unwrap();
+    let clouds = write_town(place.path(), 60.0, 0.5);
+    let folder = place.path().join("run");
+    let plan = plan(&clouds, &folder, 512.0, suns()[2..].to_vec());
+    let path = place.path().join("all.tif");
+    let merged = |unfinished| merge(&plan, &folder, &plan.questions[0], &path, unfinished, &Control::none());
+    for unfinished in [UnfinishedRun::Refused, UnfinishedRun::Merged] {
+        let error = merged(unfinished).unwrap_err().to_string();
+        assert!(error.contains("no result of shadow_60") && error.contains("belvedere city run"), "{error}");
+        assert!(!path.exists());
+    }
+    run_all(&plan, &folder);
+    assert_eq!(merged(UnfinishedRun::Refused).unwrap().missing, 0);
+    let ReadBands::U8(bands) = read_tif_bands(&path).unwrap() else { panic!("bytes") };
+    let with_value = bands[0].values().iter().filter(|&&value| value != 255).count();
+    let bounds = plan.bounds().size();
+    // cells of 1 m may have a value 2 m beside the points
+    assert!(bands[0].width() as f32 <= bounds[0] + 6.0 && bands[0].height() as f32 <= bounds[1] + 6.0);
+    assert!(with_value * 10 > bands[0].values().len() * 7, "{with_value} of {}", bands[0].values().len());
+}
+
+/// A COPC file claims points that it hides, or a file has fewer than the plan counted: here a plan of a file, and a run
+/// of one that has other points and the fingerprint of the first.
+#[test]
+fn points_that_the_plan_counted_and_the_run_does_not_find_are_an_error() {
+    let place = tempfile::tempdir().unwrap();
+    let clouds = write_town(place.path(), 60.0, 0.5);
+    let folder = place.path().join("run");
+    plan(&clouds, &folder, 64.0, suns()[2..].to_vec());
+    let path = Plan::path(&folder);
+    let text = std::fs::read_to_string(&path).unwrap();
+    let mut rest: serde_json::Value = serde_json::from_str(&text).unwrap();
+    rest.as_object_mut().unwrap().remove("checksum");
+    let points = rest["blocks"][0]["points"].as_u64().unwrap();
+    rest["blocks"][0]["points"] = (points + 1).into();
+    let rest = rest.to_string()[1..].to_owned();
+    std::fs::write(&path, format!("{{\"checksum\":\"{:08x}\",{rest}", crc32fast::hash(rest.as_bytes()))).unwrap();
+    let report = run_all(&Plan::read(&folder).unwrap(), &folder);
+    let words = [format!("gives {points} points"), format!("counted {}", points + 1), "make the plan again".to_owned()];
+    assert!(report.failed.iter().any(|why| words.iter().all(|word| why.contains(word))), "{:?}", report.failed);
 }
 
 #[test]

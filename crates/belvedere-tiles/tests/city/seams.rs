@@ -6,7 +6,7 @@ use belvedere::apps::irradiance::{ClearSky, IrradianceParams, clear_instants};
 use belvedere::apps::sun::{Date, DayParams, Period, Site, SunStep, Zone, sun_days};
 use belvedere::control::Control;
 use belvedere::io::{read_balls, read_tif_f32, read_tif_u8, read_tif_u16};
-use belvedere_tiles::{Plan, TileQuestion, TileRadiation, merge, status};
+use belvedere_tiles::{Plan, TileQuestion, TileRadiation, UnfinishedRun, merge, status};
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -75,22 +75,22 @@ fn suns_of_the_day() -> Vec<(TileQuestion, f64)> {
 
 fn values(plan: &Plan, folder: &Path, question: &TileQuestion) -> BTreeMap<[i64; 2], u32> {
     let path = folder.join("merged.tif");
-    merge(plan, folder, question, &path, &Control::none()).unwrap();
+    merge(plan, folder, question, &path, UnfinishedRun::Refused, &Control::none()).unwrap();
     match question {
         TileQuestion::Shadow { .. } => {
             let raster = read_tif_u8(&path).unwrap();
             let wide: Vec<u32> = raster.values().iter().map(|&v| v.into()).collect();
-            cells(plan, &wide, raster.width(), 255)
+            cells(&path, &wide, raster.width(), 255)
         }
         TileQuestion::Viewshed { .. } => {
             let raster = read_tif_u16(&path).unwrap();
             let wide: Vec<u32> = raster.values().iter().map(|&v| v.into()).collect();
-            cells(plan, &wide, raster.width(), 65_535)
+            cells(&path, &wide, raster.width(), 65_535)
         }
         _ => {
             let raster = read_tif_f32(&path).unwrap();
             let bits: Vec<u32> = raster.values().iter().map(|v| v.to_bits()).collect();
-            cells(plan, &bits, raster.width(), (-9999.0_f32).to_bits())
+            cells(&path, &bits, raster.width(), (-9999.0_f32).to_bits())
         }
     }
 }

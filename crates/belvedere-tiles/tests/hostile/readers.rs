@@ -80,8 +80,8 @@ pub(crate) const READERS: &[TriedReader] = &[
     TriedReader { file: "matrix.npz", read: |file, bytes| settle(read_matrix(Source::bytes(file, bytes))) },
     TriedReader { file: "raster.tif", read: |file, bytes| settle(read_tif(Source::bytes(file, bytes))) },
     TriedReader { file: "tiles.vpc", read: |file, bytes| in_folder(file, bytes, catalogue) },
-    TriedReader { file: "plan.json", read: |file, bytes| in_folder(file, bytes, plan) },
-    TriedReader { file: "record.json", read: |file, bytes| in_folder(file, bytes, record) },
+    TriedReader { file: "plan.json", read: |file, bytes| in_folder(file, &with_checksum(bytes), plan) },
+    TriedReader { file: "record.json", read: |file, bytes| in_folder(file, &with_checksum(bytes), record) },
     TriedReader { file: "system.wkt", read: system },
 ];
 
@@ -166,7 +166,7 @@ fn plan(folder: &Path) -> bool {
 
 /// A record of the balls of a tile of the plan that lies beside it among the inputs.
 fn record(folder: &Path) -> bool {
-    let plan = include_bytes!("inputs/plan.json/valid");
+    let plan = with_checksum(include_bytes!("inputs/plan.json/valid"));
     let place = folder.join("balls");
     let is_there = std::fs::write(folder.join("plan.json"), plan)
         .and_then(|()| std::fs::create_dir(&place))
@@ -174,6 +174,13 @@ fn record(folder: &Path) -> bool {
         .and_then(|()| std::fs::rename(folder.join("record.json"), place.join("e2422_n7233.json")));
     let (Ok(()), Ok(plan)) = (is_there, Plan::read(folder)) else { return false };
     status(&plan, folder).stages.iter().any(|stage| stage.done > 0)
+}
+
+/// JSON with the checksum that plans and records begin with, which few files with changes have.
+fn with_checksum(bytes: &[u8]) -> Vec<u8> {
+    let rest = bytes.strip_prefix(b"{").unwrap_or(bytes);
+    let start = format!("{{\"checksum\":\"{:08x}\",", crc32fast::hash(rest));
+    [start.as_bytes(), rest].concat()
 }
 
 /// The bytes with the right checksum at the end of each page of an E57 file, which few files with changes have.

@@ -203,6 +203,34 @@ fn huge_false_and_slow_requests_do_no_harm() {
 }
 
 #[test]
+fn connections_that_rest_or_crawl_hold_up_nobody() {
+    let viewer = viewer();
+    let (host, token) = address(&viewer);
+    // 300 that send nothing, 300 that stop within the head of a request, and 20 that were answered and stay
+    let mut held: Vec<TcpStream> = (0..600).map(|_| TcpStream::connect(&host).unwrap()).collect();
+    held.iter_mut().skip(300).for_each(|stream| stream.write_all(b"GET / HT").unwrap());
+    for _ in 0..20 {
+        let mut stream = TcpStream::connect(&host).unwrap();
+        stream.write_all(b"GET /x HTTP/1.1\r\nHost: localhost\r\n\r\n").unwrap();
+        held.push(stream);
+    }
+    let times: Vec<Duration> = (0..20)
+        .map(|_| {
+            let start = Instant::now();
+            is_well(&host, &token);
+            start.elapsed()
+        })
+        .collect();
+    let mut sorted = times.clone();
+    sorted.sort();
+    // a tenth of a second on a machine with nothing else to do: the middle of twenty
+    assert!(sorted[10] < Duration::from_millis(100), "{times:?}");
+    assert!(sorted[19] < Duration::from_secs(2), "{times:?}");
+    drop(held);
+    is_well(&host, &token);
+}
+
+#[test]
 fn a_thousand_at_once_are_answered_or_refused_and_the_page_lives_on() {
     let viewer = viewer();
     let (host, token) = address(&viewer);

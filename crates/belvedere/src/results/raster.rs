@@ -140,15 +140,16 @@ impl Pixels {
         }
     }
 
-    /// Puts the values of a square tile at a column and row of these; `side` is that of the tile in cells.
+    /// Puts the values of a square tile at a column and row of these, which may lie beside them: what does is left out.
+    /// `side` is that of the tile in cells.
     ///
     /// # Errors
     /// [`Error::LengthMismatch`] for a tile of another kind, size or number of bands.
-    pub fn put(&mut self, tile: &Self, [column, row, side]: [usize; 3]) -> Result<()> {
+    pub fn put(&mut self, tile: &Self, place: [i64; 2], side: usize) -> Result<()> {
         match (self, tile) {
-            (Self::Answers(all), Self::Answers(tile)) => put(all, tile, [column, row, side]),
-            (Self::Counts(all), Self::Counts(tile)) => put(all, tile, [column, row, side]),
-            (Self::Numbers(all), Self::Numbers(tile)) => put(all, tile, [column, row, side]),
+            (Self::Answers(all), Self::Answers(tile)) => put(all, tile, place, side),
+            (Self::Counts(all), Self::Counts(tile)) => put(all, tile, place, side),
+            (Self::Numbers(all), Self::Numbers(tile)) => put(all, tile, place, side),
             _ => Err(Error::LengthMismatch { what: "values of a tile", expected: side, found: 0 }),
         }
     }
@@ -241,21 +242,49 @@ fn in_f32<T: Copy + PartialEq + Into<f32>>(raster: &Raster<T>, nothing: T) -> Re
     Raster::from_values(raster.width(), raster.height(), raster.values().iter().map(number).collect())
 }
 
-fn put<T: Copy>(all: &mut [Raster<T>], tile: &[Raster<T>], [column, row, side]: [usize; 3]) -> Result<()> {
+fn put<T: Copy>(all: &mut [Raster<T>], tile: &[Raster<T>], [column, row]: [i64; 2], side: usize) -> Result<()> {
     if all.len() != tile.len() {
         return Err(Error::LengthMismatch { what: "bands of a tile", expected: all.len(), found: tile.len() });
     }
+    let count = |number: i64| usize::try_from(number).unwrap_or(0);
     for (all, tile) in all.iter_mut().zip(tile) {
         if tile.width() != side || tile.height() != side {
             return Err(Error::LengthMismatch { what: "columns of a tile", expected: side, found: tile.width() });
         }
         let width = all.width();
-        for (number, values) in tile.values().chunks(side.max(1)).enumerate() {
-            let from = (row + number) * width + column;
+        // columns and rows of the tile that lie to the left of these and above
+        let (left, above) = (count(-column), count(-row));
+        for (number, values) in tile.values().chunks(side.max(1)).enumerate().skip(above) {
+            let length = side.saturating_sub(left).min(width.saturating_sub(count(column)));
+            let from = (count(row) + number - above) * width + count(column);
+            let values = values.get(left..left + length).unwrap_or_default();
             if let Some(place) = all.values_mut().get_mut(from..from + values.len()) {
                 place.copy_from_slice(values);
             }
         }
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_of_a_tile_lies_beside_is_left_out() {
+        let tile = Pixels::answers([(1..=9).collect()], [3, 3]).unwrap();
+        for (place, expected) in [
+            ([0, 0], [1, 2, 3, 255, 4, 5, 6, 255]),
+            ([2, 1], [255, 255, 255, 255, 255, 255, 1, 2]),
+            ([-2, -1], [6, 255, 255, 255, 9, 255, 255, 255]),
+            ([-3, 0], [255; 8]),
+            ([4, 0], [255; 8]),
+            ([0, 2], [255; 8]),
+            ([0, -3], [255; 8]),
+        ] {
+            let mut all = Pixels::nothing(ResultKind::Answer, 1, [4, 2]);
+            all.put(&tile, place, 3).unwrap();
+            assert_eq!(all, Pixels::answers([expected.to_vec()], [4, 2]).unwrap(), "{place:?}");
+        }
+    }
 }

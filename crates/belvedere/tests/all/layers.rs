@@ -46,8 +46,9 @@ const LEVELS: [(&str, u8); 14] = [
 ];
 
 /// Crates of others that only one file or folder may name.
-const ONE_HOME: [(&str, &str); 33] = [
-    ("ab_glyph::", "figures/src/font.rs"),
+const ONE_HOME: [(&str, &str); 34] = [
+    ("ab_glyph_rasterizer::", "figures/src/font.rs"),
+    ("skrifa::", "figures/src/font.rs"),
     ("colorous::", "io/src/colors.rs"),
     ("las::", "io/src/"),
     ("laz::", "io/src/laz"),

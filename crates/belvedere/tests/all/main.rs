@@ -23,6 +23,7 @@ mod common;
 mod contradictions;
 mod copied_records;
 mod crowns;
+mod dependencies;
 mod depth_map;
 mod exposure;
 mod far_lines;

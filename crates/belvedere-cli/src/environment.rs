@@ -1,0 +1,58 @@
+//! What the environment says of threads and of the instructions of the processor.
+
+use crate::arguments::{Global, MAX_THREADS, Usage};
+use anyhow::{Result, anyhow};
+use belvedere::neighbors::Instructions;
+use std::env;
+
+/// Threads, as other programs with the same library have it.
+const THREADS: &str = "RAYON_NUM_THREADS";
+/// Whether AVX2 is used where the processor has it: on or off.
+const AVX2: &str = "BELVEDERE_AVX2";
+
+/// Makes the threads of the program, and turns AVX2 off where that is wanted.
+///
+/// # Errors
+/// [`Usage`] for what a variable cannot be; what the system says where it refuses a thread.
+pub(crate) fn apply(global: &Global) -> Result<()> {
+    match env::var(AVX2).as_deref() {
+        Err(_) | Ok("" | "on") => {}
+        Ok("off") => Instructions::turn_avx2_off(),
+        Ok(other) => return Err(Usage(format!("the variable {AVX2} is {other:?}, but must be on or off")).into()),
+    }
+    let threads = match global.threads {
+        Some(threads) => threads,
+        None => threads_of(env::var(THREADS).ok().as_deref())?,
+    };
+    rayon::ThreadPoolBuilder::new().num_threads(threads).build_global().map_err(|error| {
+        let count = if threads == 0 { "as many threads as there are processors".to_owned() } else { threads.to_string() };
+        anyhow!("the system refuses {count} ({error}); give fewer with --threads, or raise its limits (ulimit -u, ulimit -v)")
+    })
+}
+
+/// Threads that the variable names, 0 for all processors: what is no number is passed over, as the library does it.
+fn threads_of(variable: Option<&str>) -> Result<usize> {
+    let threads = variable.and_then(|text| text.trim().parse::<u64>().ok()).unwrap_or(0);
+    match usize::try_from(threads) {
+        Ok(threads) if threads <= MAX_THREADS => Ok(threads),
+        _ => Err(Usage(format!("the variable {THREADS} is {threads}, but must be at most {MAX_THREADS}")).into()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn threads_of_the_environment_are_bounded() {
+        for (text, expected) in
+            [(None, 0), (Some(""), 0), (Some("x"), 0), (Some("-3"), 0), (Some(" 7 "), 7), (Some("1024"), 1024)]
+        {
+            assert_eq!(threads_of(text).unwrap(), expected, "{text:?}");
+        }
+        for text in ["1025", "18446744073709551615"] {
+            let error = threads_of(Some(text)).unwrap_err();
+            assert!(error.is::<Usage>() && error.to_string().contains("at most 1024"), "{error}");
+        }
+    }
+}
