@@ -3,8 +3,8 @@
 use rayon::prelude::*;
 
 use super::part::{Coordinates, FilePart, unquantise};
-use super::read_cloud::ReadReport;
 use super::read_options::{DistantFiles, ReadOptions, RowNumbers};
+use super::read_report::ReadReport;
 use belvedere_data::Frame;
 use belvedere_data::cloud::{CloudFile, CloudFiles, FileRows, PointCloud, centre_rounded, to_local};
 use belvedere_data::crs::{Crs, CrsKind};

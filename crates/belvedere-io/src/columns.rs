@@ -119,3 +119,56 @@ pub(crate) fn attribute_columns(cloud: &PointCloud) -> Vec<Column<'_>> {
     }
     columns
 }
+
+/// A column of results beside the attributes of a cloud.
+#[derive(Clone, Copy, Debug)]
+pub struct ExtraColumn<'a> {
+    /// Name, such as `visible`; at most 31 bytes are kept in LAS files.
+    pub name: &'a str,
+    /// What the values mean, with their unit; at most 31 bytes are kept in LAS files.
+    pub description: &'a str,
+    /// One value per point.
+    pub values: ExtraValues<'a>,
+}
+
+/// Values of an [`ExtraColumn`], (N).
+#[derive(Clone, Copy, Debug)]
+pub enum ExtraValues<'a> {
+    /// Small numbers, such as classes of answers.
+    U8(&'a [u8]),
+    /// Counts and indices.
+    U32(&'a [u32]),
+    /// Measurements.
+    F32(&'a [f32]),
+}
+
+/// What became of a cloud that was written.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct WriteReport {
+    /// Number of points written.
+    pub point_count: usize,
+    /// What the cloud, or the files that its points come from, have and the output has not, in words.
+    pub left_out: Vec<String>,
+    /// Values that did not fit their field and were cut to its range, such as a 16th return.
+    pub clamped_count: usize,
+}
+
+/// What the points of the files of a cloud have and the cloud has not.
+pub(crate) fn not_in_cloud(cloud: &PointCloud) -> Vec<String> {
+    let mut names: Vec<String> = Vec::new();
+    for name in cloud.files.files.iter().flat_map(|file| &file.other_attributes) {
+        if !names.contains(name) {
+            names.push(name.clone());
+        }
+    }
+    names
+}
+
+pub(crate) fn to_column<'a>(extra: &ExtraColumn<'a>) -> Column<'a> {
+    let values = match extra.values {
+        ExtraValues::U8(v) => ColumnValues::U8(Cow::Borrowed(v)),
+        ExtraValues::U32(v) => ColumnValues::U32(Cow::Borrowed(v)),
+        ExtraValues::F32(v) => ColumnValues::F32(Cow::Borrowed(v)),
+    };
+    Column { name: extra.name.into(), description: extra.description.into(), values }
+}

@@ -16,6 +16,7 @@ mod assemble;
 pub mod atomic;
 mod ball_formats;
 mod balls;
+mod beside;
 mod cityjson;
 mod cloud_batches;
 pub mod colors;
@@ -113,6 +114,7 @@ pub use balls::{is_ball_file, read_balls, write_balls};
 pub use cityjson::{LevelOfDetail, read_cityjson};
 pub use cloud_batches::{CloudBatch, CloudBatches, read_batches};
 pub use colors::{class_color, in_shadow, ramp, ramp_colors};
+pub use columns::{ExtraColumn, ExtraValues, WriteReport};
 pub use geojson::{GeojsonCoordinates, PolygonArea, Spot, write_geojson, write_geojson_areas};
 pub use geojson_read::{FeatureShape, GeojsonFeature, read_geojson};
 #[cfg(feature = "tiff")]
@@ -137,8 +139,9 @@ pub use observers::{ObserverRow, ObserverRows, RowsAre, property, read_observers
 pub use outline::{GridPolygon, outlines};
 pub use output::{Output, WriteSeek};
 pub use polygons::MeshReport;
-pub use read_cloud::{CLOUD_EXTENSIONS, FileReport, LeftOut, ReadReport, cloud_files, read_cloud};
+pub use read_cloud::{CLOUD_EXTENSIONS, cloud_files, read_cloud};
 pub use read_options::{DistantFiles, Insistence, ReadOptions, RowNumbers, UpAxis, Within};
+pub use read_report::{FileReport, LeftOut, ReadReport};
 #[cfg(feature = "npy")]
 pub use saved_matrix::{
     MatrixHead, RowSink, SavedMatrix, read_matrix, read_matrix_head, read_matrix_rows, write_matrix, write_matrix_rows,
@@ -148,10 +151,10 @@ pub use stations::read_stations;
 pub use table::{Table, TableCells, read_table, write_table};
 #[cfg(feature = "tiff")]
 pub use terrain::read_terrain;
-pub use text_rows::{TextRows, read_text_rows, with_columns_read, write_text_rows};
+pub use text_rows::{TextRows, with_columns_read, write_text_rows};
 pub use trajectory::{TrajectoryReport, read_trajectory};
 pub use weather::read_weather;
-pub use write_cloud::{ExtraColumn, ExtraValues, WriteReport, write_cloud};
+pub use write_cloud::write_cloud;
 pub use write_faces::write_mesh;
 #[cfg(feature = "npy")]
 pub use write_masbcpp::{MasbcppFolder, write_masbcpp};
@@ -159,3 +162,4 @@ pub use write_mesh::write_mesh_values;
 #[cfg(feature = "npy")]
 pub use write_npy::{write_npy_f32, write_npy_f32_2d, write_npy_u8, write_npy_u32_2d, write_npy_u32_bands};
 pub use write_trajectory::{VehicleHeading, write_found_trajectory, write_trajectory};
+pub use xyz::read_text_rows;

@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use super::read_cloud::{FileReport, LeftOut};
 use super::read_options::{PassedOver, Reading};
+use super::read_report::{FileReport, LeftOut};
 use super::source::SystemBeside;
 use belvedere_data::Result;
 use belvedere_data::cloud::Attributes;

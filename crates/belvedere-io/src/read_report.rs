@@ -1,7 +1,71 @@
 //! The report of reading a cloud.
 
-use super::read_cloud::ReadReport;
+use std::path::PathBuf;
+
 use serde::{Serialize, Serializer, ser::SerializeMap};
+
+/// What reading a cloud found.
+#[derive(Clone, Debug, Default)]
+pub struct ReadReport {
+    /// One entry per file, in the order of their points.
+    pub files: Vec<FileReport>,
+    /// The reference system of the cloud in words, see [`Crs::describe`](belvedere_data::crs::Crs::describe).
+    pub crs: String,
+    /// Where it was found, such as "WKT record" or "option"; empty where none is known.
+    pub crs_source: String,
+    /// What in the files speaks against the reference system; `None` where nothing does.
+    pub doubt: Option<String>,
+    /// Attributes that only some of the files have and the cloud therefore lacks.
+    pub dropped_attributes: Vec<&'static str>,
+    /// Files of a folder that are no point clouds although their names look so: tables without x, y and z, grids of
+    /// heights.
+    pub skipped_files: Vec<PathBuf>,
+    /// What should be known before the cloud is used.
+    pub notes: Vec<String>,
+    /// Row of each point among the points of its file, from 0, where [`ReadOptions::row_numbers`](crate::ReadOptions::row_numbers) requests it; empty
+    /// otherwise. The points of the files follow each other as in `files`.
+    pub rows: Vec<u64>,
+}
+
+/// What reading one file found.
+#[derive(Clone, Debug, Default)]
+pub struct FileReport {
+    /// The path, or the name of the source.
+    pub path: PathBuf,
+    /// Its format, such as "LAS 1.2, point format 1, LAZ".
+    pub format: String,
+    /// Points taken from it.
+    pub points: usize,
+    /// Points left out, by reason.
+    pub left_out: Vec<LeftOut>,
+    /// Of these, points that the header announces but the file lacks: it is cut off.
+    pub missing_points: usize,
+    /// Names of the attributes found, as in [`belvedere_data::cloud::Attributes::columns`].
+    pub attributes: Vec<&'static str>,
+    /// Its reference system in words; empty where it gives none.
+    pub crs: String,
+    /// Where that was found; empty where nowhere.
+    pub crs_source: String,
+    /// What is odd about it.
+    pub notes: Vec<String>,
+}
+
+/// Points left out for one reason.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LeftOut {
+    /// How many.
+    pub count: usize,
+    /// Why.
+    pub reason: String,
+}
+
+impl ReadReport {
+    /// Points left out of all files.
+    #[must_use]
+    pub fn left_out_count(&self) -> usize {
+        self.files.iter().flat_map(|file| &file.left_out).map(|left_out| left_out.count).sum()
+    }
+}
 
 /// Reference system, points left out by reason, attributes that only some files have, and notes that begin with the
 /// name of the file they are about.

@@ -16,9 +16,6 @@ impl<T: Read + Seek + Send> ReadSeek for T {}
 /// one.
 const BUFFER_BYTES: usize = 1 << 12;
 
-/// Well-known text longer than this names no system.
-const MAX_PRJ_BYTES: usize = 1 << 20;
-
 /// One input with a name. The extension of the name selects the format; messages about the input begin with the name.
 ///
 /// Paths become sources by themselves: wherever a source is expected, a path will do. So will the address of a file on
@@ -37,8 +34,8 @@ const MAX_PRJ_BYTES: usize = 1 << 20;
 /// # }
 /// ```
 pub struct Source<'a> {
-    name: PathBuf,
-    content: Content<'a>,
+    pub(crate) name: PathBuf,
+    pub(crate) content: Content<'a>,
     /// Rows of points that are not known to lie beside a window.
     pub(crate) likely_rows: Option<Vec<Range<u64>>>,
     /// The system of a source that names none, where a catalogue gives it.
@@ -62,7 +59,7 @@ pub enum SystemBeside {
     },
 }
 
-enum Content<'a> {
+pub(crate) enum Content<'a> {
     /// The file, folder or address that the source is named after.
     Path,
     Reader(Box<dyn ReadSeek + 'a>),
@@ -95,18 +92,6 @@ impl<'a> Source<'a> {
     pub fn with_likely_rows(mut self, rows: Vec<Range<u64>>) -> Self {
         self.likely_rows = Some(rows);
         self
-    }
-
-    /// The system of the source where it names none itself: that of its entwine point tiles, or of the file with the
-    /// extension `.prj` beside it on this machine. `None` where there is neither.
-    #[must_use]
-    pub fn system_beside(&self) -> Option<SystemBeside> {
-        let is_path = matches!(self.content, Content::Path);
-        let found = self.system.clone();
-        #[cfg(feature = "las")]
-        let found = found.or_else(|| if is_path { super::ept::system_of_node(&self.name) } else { None });
-        let is_local = is_path && web_address(&self.name).is_none();
-        found.or_else(|| if is_local { prj_beside(&self.name) } else { None })
     }
 
     /// The path, or the name that was given.
@@ -244,28 +229,6 @@ impl<'a> Input<'a> {
         let size = text.len() as u64;
         let reader: Box<dyn ReadSeek + 'a> = Box::new(Cursor::new(text));
         Ok(Self { name: self.name, reader: BufReader::with_capacity(BUFFER_BYTES, reader), size })
-    }
-}
-
-/// What a file `.prj` beside `path` says: `tile.prj` beside `tile.laz`, and beside `tile.copc.laz` too.
-fn prj_beside(path: &Path) -> Option<SystemBeside> {
-    let whole = path.file_stem()?;
-    let short = Path::new(whole).file_stem().filter(|short| *short != whole);
-    let names = [Some(whole), short].into_iter().flatten().flat_map(|stem| {
-        ["prj", "PRJ"].map(|extension| {
-            let mut name = stem.to_owned();
-            name.push(".");
-            name.push(extension);
-            path.with_file_name(name)
-        })
-    });
-    let found = names.into_iter().find(|name| name.is_file())?;
-    let found_in = found.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-    let text = Source::path(&found).read_text().ok().filter(|(_, bytes)| bytes.len() <= MAX_PRJ_BYTES);
-    let text = text.map(|(_, bytes)| String::from_utf8_lossy(&bytes).into_owned());
-    match text.and_then(|text| Crs::parse(text.trim()).ok()) {
-        Some(crs) => Some(SystemBeside::Known { crs, found_in }),
-        None => Some(SystemBeside::Unreadable { found_in }),
     }
 }
 

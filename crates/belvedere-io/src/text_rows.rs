@@ -3,12 +3,10 @@
 use std::borrow::Cow;
 
 use crate::columns::{Column, check_lengths};
+use crate::columns::{ExtraColumn, to_column};
 use crate::output::Output;
 use crate::rows::role_of;
-use crate::source::Source;
 use crate::table::{TableCells, quoted, separator_of};
-use crate::write_cloud::{ExtraColumn, to_column};
-use crate::xyz;
 use belvedere_data::{Error, Result};
 
 /// Cells of a table as text, with the names of their columns.
@@ -89,16 +87,6 @@ pub fn with_columns_read<'a>(
     let carried = read.iter().filter(|(name, _)| !is_among(&result_names, name));
     let carried = carried.map(|(name, texts)| (*name, TableCells::Words(texts.as_slice())));
     given.into_iter().map(as_read).chain(carried).chain(others).collect()
-}
-
-/// Reads the rows of a text file of points (.csv .txt .xyz) as they are: one for each line that
-/// [`read_cloud`](crate::read_cloud) reads or leaves out. Columns without a name are called x, y, z, column_4 and so
-/// on.
-///
-/// # Errors
-/// Those of reading the points.
-pub fn read_text_rows<'a>(source: impl Into<Source<'a>>) -> Result<TextRows> {
-    xyz::read_text(source.into().open_text()?)
 }
 
 /// Writes rows as they were given, with `results` behind them, as a table: cells parted by commas (.csv) or blanks

@@ -10,10 +10,10 @@ use rayon::prelude::*;
 
 use crate::atomic;
 use crate::columns::{Column, ColumnValues};
+use crate::columns::{WriteReport, not_in_cloud};
 use crate::las_copy::{RecordCopy, results_record};
 use crate::output::{Output, WriteSeek};
 use crate::source;
-use crate::write_cloud::{WriteReport, not_in_cloud};
 use belvedere_data::Bounds;
 use belvedere_data::cloud::GpsTimeKind;
 use belvedere_data::crs::text;

@@ -2,8 +2,8 @@
 
 use npyz::{AutoSerialize, WriterBuilder};
 
+use crate::columns::WriteReport;
 use crate::output::Output;
-use crate::write_cloud::WriteReport;
 use belvedere_data::raster::Raster;
 use belvedere_data::{Error, PointCloud, Result};
 

@@ -2,9 +2,9 @@
 
 use rayon::prelude::*;
 
+use crate::columns::WriteReport;
 use crate::columns::{Column, ColumnValues, attribute_columns};
 use crate::output::Output;
-use crate::write_cloud::WriteReport;
 use belvedere_data::crs::text::comment_lines;
 use belvedere_data::{Error, PointCloud, Result};
 

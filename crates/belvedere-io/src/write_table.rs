@@ -4,9 +4,9 @@ use std::io::Write;
 
 use rayon::prelude::*;
 
+use crate::columns::WriteReport;
 use crate::columns::{Column, attribute_columns};
 use crate::output::Output;
-use crate::write_cloud::WriteReport;
 use belvedere_data::{Error, PointCloud, Result};
 
 /// Points printed by one task.

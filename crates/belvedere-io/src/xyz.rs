@@ -7,7 +7,7 @@ use std::path::Path;
 use super::part::FilePart;
 use super::read_options::Reading;
 use super::rows::{Role, Row, Rows, role_of};
-use super::source::Input;
+use super::source::{Input, Source};
 use super::text_rows::TextRows;
 use belvedere_data::{Error, Result};
 
@@ -409,4 +409,14 @@ fn columns_in_words(separator: Separator, columns: &[Option<Role>]) -> String {
 
 fn shorten(line: &str) -> String {
     line.chars().take(40).collect()
+}
+
+/// Reads the rows of a text file of points (.csv .txt .xyz) as they are: one for each line that
+/// [`read_cloud`](crate::read_cloud) reads or leaves out. Columns without a name are called x, y, z, column_4 and so
+/// on.
+///
+/// # Errors
+/// Those of reading the points.
+pub fn read_text_rows<'a>(source: impl Into<Source<'a>>) -> Result<TextRows> {
+    read_text(source.into().open_text()?)
 }

@@ -2,8 +2,8 @@
 
 use crate::arrays::{PositionArray, column, fixed_rows, to_1d, to_2d};
 use crate::errors::{belvedere_error, exception, wrong};
+use crate::remarks::remarks_of;
 use crate::system::System;
-use crate::targets::remarks_of;
 use crate::work::run;
 use belvedere::apps::ask::remark_on_left_out;
 use belvedere::cloud::{CloudFile, CloudFiles, FileRows};

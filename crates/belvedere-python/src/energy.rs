@@ -2,8 +2,9 @@
 
 use crate::arrays::to_1d;
 use crate::errors::{exception, wrong};
+use crate::remarks::remarks_of;
 use crate::scene::PyScene;
-use crate::targets::{RequestedTargets, TargetResults, ground_points, remarks_of};
+use crate::targets::{RequestedTargets, TargetResults, ground_points};
 use crate::trees::Through;
 use crate::work::run;
 use belvedere::apps::ask::{self, Roofs, SunPlace};

@@ -4,8 +4,9 @@ use crate::arrays::to_1d;
 use crate::mesh::PyMesh;
 use crate::observers::standing_observers;
 use crate::outlook::LookingKeywords;
-use crate::scene::{PyScene, unproven_as, unproven_choice};
-use crate::targets::{Grid, PyColumn, grid_of, ground_points, remarks_of};
+use crate::remarks::remarks_of;
+use crate::scene::{PyScene, local_ring, unproven_as, unproven_choice};
+use crate::targets::{Grid, PyColumn, grid_of, ground_points};
 use crate::work::run;
 use belvedere::apps::ask::{self, LandmarkShape, SharedObject};
 use belvedere::apps::targets::Measure;
@@ -27,15 +28,6 @@ pub(crate) struct LandmarkKeywords {
     class: Option<u8>,
     /// Rings of (x, y) in the coordinates of the file.
     polygon: Option<Vec<Vec<[f64; 2]>>>,
-}
-
-/// A ring in local metres.
-pub(crate) fn local_ring(inner: &ask::Scene, ring: &[[f64; 2]]) -> Vec<[f64; 2]> {
-    let local = |&[x, y]: &[f64; 2]| {
-        let [x, y, _] = inner.frame().local_from_file([x, y, 0.0]);
-        [x, y]
-    };
-    ring.iter().map(local).collect()
 }
 
 impl LandmarkKeywords {

@@ -16,6 +16,7 @@ mod outlook;
 mod pictures;
 mod planning;
 mod raster;
+mod remarks;
 mod scene;
 mod shadow;
 mod sights;

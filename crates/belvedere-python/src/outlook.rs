@@ -2,10 +2,11 @@
 
 use crate::arrays::{to_1d, to_2d};
 use crate::observers::standing_observers;
+use crate::remarks::remarks_of;
 use crate::scene::PyScene;
 use crate::sights::earth;
 use crate::sun::SiteKeywords;
-use crate::targets::{ground_points, remarks_of};
+use crate::targets::ground_points;
 use crate::work::run;
 use belvedere::apps::ask::{self, BelowLevel};
 use belvedere::query::EarthParams;

@@ -1,9 +1,9 @@
 //! Depth maps.
 
 use crate::errors::exception;
+use crate::remarks::remarks_of;
 use crate::scene::PyScene;
 use crate::sun::SiteKeywords;
-use crate::targets::remarks_of;
 use crate::work::run;
 use belvedere::apps::ask::{self, Places, ViewFrom};
 use belvedere::raster::Raster;

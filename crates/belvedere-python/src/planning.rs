@@ -1,11 +1,12 @@
 //! Sun on walks and windows, and how high one may build.
 
 use crate::arrays::{to_1d, to_2d};
-use crate::landmark::local_ring;
+use crate::remarks::remarks_of;
 use crate::scene::PyScene;
+use crate::scene::local_ring;
 use crate::sky::{DaysKeywords, sky_parts};
 use crate::sun::SiteKeywords;
-use crate::targets::{Grid, PyColumn, grid_of, ground_points, remarks_of};
+use crate::targets::{Grid, PyColumn, grid_of, ground_points};
 use crate::windows::{WindowRow, given};
 use crate::work::run;
 use belvedere::Frame;

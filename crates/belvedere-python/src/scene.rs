@@ -3,10 +3,9 @@
 use crate::cloud::{Cloud, PyInput, json};
 use crate::device::backend;
 use crate::errors::{belvedere_error, exception, wrong};
-use crate::landmark::local_ring;
 use crate::mesh::PyMesh;
+use crate::remarks::remarks_of;
 use crate::system::System;
-use crate::targets::remarks_of;
 use crate::work::run;
 use belvedere::apps::ask;
 use belvedere::apps::horizon::convergence;
@@ -346,4 +345,13 @@ impl PyScene {
     fn provenance(&self) -> Vec<(String, String)> {
         self.0.model().parts().provenance.iter().map(|(name, value)| (name.clone(), value.clone())).collect()
     }
+}
+
+/// A ring in local metres.
+pub(crate) fn local_ring(inner: &ask::Scene, ring: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    let local = |&[x, y]: &[f64; 2]| {
+        let [x, y, _] = inner.frame().local_from_file([x, y, 0.0]);
+        [x, y]
+    };
+    ring.iter().map(local).collect()
 }

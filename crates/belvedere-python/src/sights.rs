@@ -4,8 +4,9 @@ use crate::arrays::{to_1d, to_2d};
 use crate::errors::{exception, wrong};
 use crate::mesh::{Faces, rows_of};
 use crate::observers::standing;
+use crate::remarks::remarks_of;
 use crate::scene::{PyScene, unproven_as};
-use crate::targets::{RequestedTargets, ground_points, remarks_of};
+use crate::targets::{RequestedTargets, ground_points};
 use crate::work::run;
 use belvedere::apps::ask::{self, LinesOfSightQuestion};
 use belvedere::query::{

@@ -4,7 +4,8 @@ use crate::arrays::{PositionArray, fixed_rows, to_1d};
 use crate::cloud::Cloud;
 use crate::errors::wrong;
 use crate::mesh::{Faces, rows_of};
-use belvedere::apps::ask::{self, Remark, Severity};
+use crate::remarks::remarks_of;
+use belvedere::apps::ask::{self, Remark};
 use belvedere::apps::targets::{CellLevel, Measure, ResultKind, Targets};
 use belvedere::ground::{GroundPoints, MapGrid};
 use belvedere::io::Georeference;
@@ -130,26 +131,4 @@ impl Chosen {
         let grid = targets.ground().map(|ground| grid_of(&ground.grid, &targets.frame));
         Ok((measures.into_iter().map(column).collect(), grid, None, remarks))
     }
-}
-
-/// All remarks.
-pub(crate) fn remarks_of<'a, 'py>(
-    py: Python<'py>,
-    remarks: impl IntoIterator<Item = &'a Remark>,
-) -> PyResult<Vec<Bound<'py, PyDict>>> {
-    remarks.into_iter().map(|remark| remark_of(py, remark)).collect()
-}
-
-/// A remark: key, severity, text and numbers.
-fn remark_of<'py>(py: Python<'py>, remark: &Remark) -> PyResult<Bound<'py, PyDict>> {
-    let dict = PyDict::new(py);
-    dict.set_item("key", remark.key)?;
-    dict.set_item("severity", if remark.severity == Severity::Warning { "warning" } else { "note" })?;
-    dict.set_item("text", &remark.text)?;
-    let numbers = PyDict::new(py);
-    for (name, number) in &remark.numbers {
-        numbers.set_item(name, number)?;
-    }
-    dict.set_item("numbers", numbers)?;
-    Ok(dict)
 }

@@ -3,9 +3,10 @@
 use crate::arrays::{to_1d, to_2d};
 use crate::errors::{exception, wrong};
 use crate::mesh::PyMesh;
+use crate::remarks::remarks_of;
 use crate::scene::{PyScene, unproven_as};
 use crate::sun::SiteKeywords;
-use crate::targets::{PyColumn, remarks_of};
+use crate::targets::PyColumn;
 use crate::work::run;
 use belvedere::Frame;
 use belvedere::apps::ask::{self, GivenWindow, GivenWindows, SharedObject};

@@ -3,7 +3,8 @@
 use crate::cleared::{ClassedPoint, classed, clear_balls};
 use crate::grid::{MapArea, TOP_SIDE, TileId, square_at};
 use crate::plan::Plan;
-use crate::record::{Stage, Stamp, TileOutcome, TileRecord};
+use crate::record::{Stamp, TileOutcome, TileRecord};
+use crate::stage::Stage;
 use crate::survey::check_counts;
 use crate::window;
 use belvedere::control::Control;

@@ -3,7 +3,8 @@
 use crate::grid::{MapArea, TileId};
 use crate::plan::Plan;
 use crate::question::TileQuestion;
-use crate::record::{Stage, TileOutcome, TileRecord};
+use crate::record::{TileOutcome, TileRecord};
+use crate::stage::Stage;
 use belvedere::apps::ask::Remark;
 use belvedere::control::Control;
 use belvedere::crs::text::wkt_line;

@@ -3,51 +3,17 @@
 use crate::grid::TileId;
 use crate::inputs::hash;
 use crate::plan::Plan;
-use crate::question::TileQuestion;
 use crate::sealed::{is_sound, sealed};
+use crate::stage::Stage;
 use belvedere::io::atomic;
 use belvedere::{Error, Result};
 use serde::{Deserialize, Serialize};
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::UNIX_EPOCH;
 
 /// Largest record that is believed, bytes.
 const MAX_BYTES: u64 = 1 << 26;
-
-/// A step of the run of a tile.
-#[derive(Clone, Copy, Debug)]
-pub enum Stage<'a> {
-    /// Its balls.
-    Balls,
-    /// The answer to a question.
-    Answer(&'a TileQuestion),
-}
-
-impl Stage<'_> {
-    /// The name of its folder in a run.
-    #[must_use]
-    pub fn name(&self) -> &str {
-        match self {
-            Self::Balls => "balls",
-            Self::Answer(question) => question.name(),
-        }
-    }
-
-    pub(crate) fn folder(&self, run: &Path) -> PathBuf {
-        run.join(self.name())
-    }
-
-    /// Where the result of a tile lies.
-    pub(crate) fn result(&self, run: &Path, tile: TileId) -> PathBuf {
-        let extension = if matches!(self, Self::Balls) { "npz" } else { "tif" };
-        self.folder(run).join(format!("{}.{extension}", tile.name()))
-    }
-
-    fn record(&self, run: &Path, tile: TileId) -> PathBuf {
-        self.folder(run).join(format!("{}.json", tile.name()))
-    }
-}
 
 /// What became of a tile.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]

@@ -1,7 +1,8 @@
 //! How far a run has come.
 
 use crate::plan::Plan;
-use crate::record::{Stage, TileOutcome, TileRecord};
+use crate::record::{TileOutcome, TileRecord};
+use crate::stage::Stage;
 use serde::Serialize;
 use std::path::Path;
 

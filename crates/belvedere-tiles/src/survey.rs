@@ -1,9 +1,9 @@
 //! One pass over all points: where they lie, how high, and samples of them.
 
+use crate::columns::append;
 use crate::grid::{MapArea, block_area, block_of};
 use crate::inputs::{NOWHERE, PIECE_ROWS, PieceCell, PointColumns, hold};
 use crate::plan::Plan;
-use crate::window;
 use belvedere::control::Control;
 use belvedere::io::{CloudBatch, ReadOptions, read_batches};
 use belvedere::model::SurveyExtremes;
@@ -106,8 +106,8 @@ pub(crate) fn survey(
             let own = Bounds { low: p, high: p };
             bounds = Some(bounds.map_or(own, |bounds| joined(&bounds, &own)));
         }
-        window::append(&mut along_lines, cloud.select(&sampled), columns);
-        window::append(&mut of_places, cloud.select(&in_places), columns);
+        append(&mut along_lines, cloud.select(&sampled), columns);
+        append(&mut of_places, cloud.select(&in_places), columns);
     }
     let blocks: Vec<SurveyBlock> = blocks.into_iter().filter_map(|(at, counted)| counted.into_block(at)).collect();
     add_heights(&mut extremes, &blocks);

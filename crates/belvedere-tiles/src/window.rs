@@ -1,11 +1,11 @@
 //! The points of a rectangle of the survey, the same in every tile that reads them.
 
+use crate::columns::append;
 use crate::grid::MapArea;
-use crate::inputs::PointColumns;
 use crate::plan::Plan;
 use belvedere::control::Control;
 use belvedere::io::{Insistence, ReadOptions, Within, read_batches};
-use belvedere::{Attributes, Error, Frame, PointCloud, Result};
+use belvedere::{Error, Frame, PointCloud, Result};
 
 /// The points of the plan's files within `area`, in the order of the files and of their points.
 ///
@@ -36,31 +36,6 @@ pub(crate) fn options(crs: Option<&str>, insistence: Insistence, frame: Frame) -
         (Some(crs), Insistence::Refuse) => options.with_crs(crs),
         (Some(crs), Insistence::Insist) => options.with_crs(crs).insisting_on_crs(),
         (None, _) => options,
-    }
-}
-
-/// Adds the points of `more`, with the columns that tiles need and all files have.
-pub(crate) fn append(cloud: &mut PointCloud, more: PointCloud, columns: PointColumns) {
-    let count = more.len();
-    let attributes = needed(more.attributes, columns);
-    cloud.attributes.append(cloud.positions.len(), attributes, count);
-    cloud.positions.extend(more.positions);
-    cloud.frame = more.frame;
-}
-
-/// The columns that tiles need and all files have.
-pub(crate) fn needed(attributes: Attributes, columns: PointColumns) -> Attributes {
-    Attributes {
-        classification: attributes.classification,
-        gps_time: attributes.gps_time.filter(|_| columns.gps_times),
-        gps_time_kind: attributes.gps_time_kind,
-        return_number: attributes.return_number,
-        return_count: attributes.return_count,
-        scan_angle: attributes.scan_angle,
-        point_source_id: attributes.point_source_id,
-        scanner_channel: attributes.scanner_channel.filter(|_| columns.channels),
-        flags: attributes.flags,
-        ..Attributes::default()
     }
 }
 

@@ -26,6 +26,7 @@ mod plans;
 mod questions;
 mod replies;
 mod results;
+mod roof_planes;
 mod routes;
 mod scene;
 mod scene_text;

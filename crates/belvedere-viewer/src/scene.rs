@@ -1,7 +1,7 @@
 //! What is shown, and what questions are about. What takes long to make is made once.
 
 use crate::chunks::Chunks;
-use crate::questions::RoofPlanes;
+use crate::roof_planes::RoofPlanes;
 use crate::target_points::{SAMPLE, TargetPoints};
 use belvedere::apps::ask::scene::KnownGround;
 use belvedere::apps::ask::{self, GridCells, North, SunPlace};

@@ -1,7 +1,7 @@
 //! Comfort: what walkers on routes, and windows, get of sun and sky.
 
 use super::places::{leave_out_outside, test_edge};
-use super::report::{LinesSection, NamedValues, PeriodSection};
+use super::sections::{LinesSection, NamedValues, PeriodSection};
 use super::sun::{Days, SunPlace};
 use super::sun_hours::days_in_words;
 use super::windows::{GivenWindows, WindowTargets};

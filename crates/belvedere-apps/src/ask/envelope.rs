@@ -1,7 +1,7 @@
 //! The solar envelope: how high one may build on a parcel without taking protected sun from others.
 
-use super::report::{LinesSection, PeriodSection};
 use super::scene::KnownGround;
+use super::sections::{LinesSection, PeriodSection};
 use super::sun::{Days, SunPlace, SunRange, check_sun, remark_on_sun};
 use super::{Answers, Ask, Context, Places, Remark, Scene, SharedObject};
 use crate::solar_envelope::{

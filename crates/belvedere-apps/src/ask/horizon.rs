@@ -2,8 +2,8 @@
 
 use super::observers::{Eyes, Observers, check_height};
 use super::places::EDGE_WARNING_PERCENT;
-use super::report::LinesSection;
 use super::scene::Scene;
+use super::sections::LinesSection;
 use super::{Answers, Ask, Context, North, Places, Remark};
 use crate::edge::horizon_share_near_edge;
 use crate::horizon::{HorizonParams, azimuth_count, horizons};

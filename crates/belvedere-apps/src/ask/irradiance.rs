@@ -1,7 +1,7 @@
 //! Irradiance: the energy that sun and sky send to places, and to the planes of roofs.
 
 use super::light::{Light, OnTargets};
-use super::report::{LinesSection, MeasuresSection, PlacesReport, RadiationSection, RoofsSection};
+use super::sections::{LinesSection, MeasuresSection, PlacesReport, RadiationSection, RoofsSection};
 use super::sun::SunPlace;
 use super::{Answers, Ask, Context, Places, Remark, Scene, ThroughTrees, spread};
 use crate::irradiance::{

@@ -1,8 +1,8 @@
 //! Isovist: the space that observers see, in numbers.
 
 use super::observers::{Eyes, Observers, check_height};
-use super::report::{LinesSection, NamedValues};
 use super::scene::Scene;
+use super::sections::{LinesSection, NamedValues};
 use super::{Answers, Ask, Context, North, Places, spread};
 use crate::isovist::{Isovist, IsovistFigure, IsovistParams, isovist};
 use belvedere_core::ground::GroundPoints;

@@ -2,8 +2,8 @@
 
 use super::observers::{Reach, Standing, check_height, skip_unfit};
 use super::places::cells_of;
-use super::report::LinesSection;
 use super::scene::KnownGround;
+use super::sections::LinesSection;
 use super::{Answers, Ask, Context, Places, Scene};
 use crate::landmark::{
     LandmarkParams, LandmarkPoints, LandmarkReport, LandmarkView, MEASURES, landmark_points, landmark_views,

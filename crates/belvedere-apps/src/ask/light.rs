@@ -1,8 +1,8 @@
 //! What questions about sun and sky share: targets, what blocks, and light through trees.
 
 use super::places::test_edge;
-use super::report::LinesSection;
 use super::scene::Scene;
+use super::sections::LinesSection;
 use super::trees::ThroughTrees;
 use super::{Context, Places};
 use crate::rows::Obstacles;

@@ -1,17 +1,17 @@
 //! Lines of sight: whether the observers of pairs see their targets, and what blocks first.
 
 use super::observers::{Standing, check_height, note_beside, note_enclosed, stand};
-use super::report::LinesSection;
 use super::scene::Scene;
+use super::sections::{LinesSection, PairsSection};
 use super::{Answers, Ask, Context, GridCells, Places, Remark, remark_on_inside};
 use crate::profile::{SightProfile, sight_profile};
 use crate::viewshed::{OBSERVER_HEIGHT, TARGET_HEIGHT};
 use belvedere_core::ground::GroundPoints;
 use belvedere_core::query::{
-    Answer, AnswerCounts, Blocker, EarthParams, LineOfSight, MedialScene, Obstruction, RadioWave, UnprovenAs,
+    Answer, Blocker, EarthParams, LineOfSight, MedialScene, Obstruction, RadioWave, UnprovenAs,
 };
 use belvedere_data::control::Control;
-use belvedere_data::report::{percent, rounded};
+use belvedere_data::report::rounded;
 use belvedere_data::{Error, Parameter, Result};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -84,23 +84,6 @@ pub struct SightColumns<'a> {
     pub meshes: Option<Vec<&'a str>>,
     /// Whether far terrain blocks first, where there is any; `None` where nothing blocks.
     pub is_terrain: Option<Vec<Option<bool>>>,
-}
-
-/// How many pairs have which answer.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub(super) struct PairsSection {
-    pairs: usize,
-    visible: usize,
-    blocked: usize,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    unproven: Option<usize>,
-    no_line: usize,
-    outside_cloud: usize,
-    /// Lines with an end inside an obstacle, which are neither visible nor blocked.
-    inside_obstacle: usize,
-    visible_percent: f64,
-    observers_inside_obstacle: usize,
-    targets_inside_obstacle: usize,
 }
 
 /// A single line.
@@ -329,37 +312,6 @@ fn name_of(answer: Answer) -> &'static str {
         Answer::OutsideCloud => "outside the cloud",
         Answer::InsideObstacle => "inside an obstacle",
         _ => "no line",
-    }
-}
-
-impl PairsSection {
-    fn of(answers: &[Answer], unproven: UnprovenAs, inside: [usize; 2]) -> Self {
-        let [observers_inside_obstacle, targets_inside_obstacle] = inside;
-        let counts = AnswerCounts::of(answers);
-        Self {
-            pairs: answers.len(),
-            visible: counts.visible,
-            blocked: counts.blocked,
-            unproven: (unproven == UnprovenAs::Reported).then_some(counts.unproven),
-            no_line: counts.outside_view,
-            outside_cloud: counts.outside_cloud,
-            inside_obstacle: counts.inside_obstacle,
-            visible_percent: percent(counts.visible, answers.len()),
-            observers_inside_obstacle,
-            targets_inside_obstacle,
-        }
-    }
-
-    fn summarise(&self, context: &mut Context) {
-        let Self { pairs, visible, blocked, visible_percent, .. } = self;
-        context.headline(format!("{visible} of {pairs} lines of sight ({visible_percent} %) are visible"));
-        let unproven = self.unproven.map_or_else(String::new, |unproven| format!(", {unproven} unproven"));
-        let rest = self.no_line + self.outside_cloud;
-        let inside = match self.inside_obstacle {
-            0 => String::new(),
-            count => format!(", {count} with an end inside an obstacle"),
-        };
-        context.headline(format!("{blocked} are blocked{unproven}{inside}, {rest} without an answer"));
     }
 }
 

@@ -32,6 +32,7 @@ mod protected_view;
 pub mod remark;
 pub mod report;
 pub mod scene;
+mod sections;
 mod shadow;
 mod shared;
 mod sky_view;
@@ -88,8 +89,8 @@ use belvedere_data::Result;
 use belvedere_data::control::Control;
 use belvedere_data::report::rounded;
 use north::AzimuthNorth;
-use report::GroundSection;
 use scene::KnownGround;
+use sections::GroundSection;
 use serde::{Deserialize, Serialize};
 
 /// All questions.

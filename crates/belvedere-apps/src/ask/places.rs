@@ -1,8 +1,8 @@
 //! The places that questions are about: from what a user gives to targets, with what has no answer and why.
 
 use super::observers::Standing;
-use super::report::PlacesReport;
 use super::scene::Scene;
+use super::sections::PlacesReport;
 use super::{Context, Remark, remark_on_outside};
 use crate::edge::{EdgeReport, near_edge};
 use crate::targets::{CellLevel, CellParams, MeshParams, TargetLayout, Targets};

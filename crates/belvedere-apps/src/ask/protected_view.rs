@@ -1,8 +1,8 @@
 //! Protected views: how high one may build without entering the view of a landmark.
 
 use super::observers::{Eyes, ObserversSection, Reach, Standing, note_enclosed, skip_unfit, stand};
-use super::report::LinesSection;
 use super::scene::KnownGround;
+use super::sections::LinesSection;
 use super::{Answers, Ask, Context, Places, Remark, Scene, SharedObject};
 use crate::landmark::LandmarkParams;
 use crate::protected_view::{self as limits, ViewpointReport, protected_view};

@@ -1,7 +1,7 @@
 //! Shadow: what of one or more suns reaches places.
 
 use super::light::{Light, OnTargets};
-use super::report::{MeasuresSection, PlacesReport};
+use super::sections::{MeasuresSection, PlacesReport};
 use super::sun::{MAX_LISTED_SUNS, NamedSun, SunPlace, Suns};
 use super::{Answers, Ask, Context, Places, Remark, Scene, ThroughTrees, spread};
 use crate::shadow::{Edges, LIT, ShadowSun, scene_shadow, sun_directions, unproven_light};

@@ -1,7 +1,7 @@
 //! Sky view: how much of the sky places see.
 
 use super::light::{Light, OnTargets};
-use super::report::{MeasuresSection, PlacesReport};
+use super::sections::{MeasuresSection, PlacesReport};
 use super::{Answers, Ask, Context, Places, Scene, ThroughTrees, spread};
 use crate::sky_view::{SKY_DIRECTIONS, SkyDirections, scene_sky_view};
 use belvedere_core::query::UnprovenAs;

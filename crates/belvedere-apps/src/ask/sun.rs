@@ -1,8 +1,8 @@
 //! Where on earth a scene lies, how clocks run there, and which suns and days a user chooses.
 
 use super::north::North;
-use super::report::{LocationSection, SunAt, SunSection};
 use super::scene::{Scene, Whereabouts};
+use super::sections::{LocationSection, SunAt, SunSection};
 use super::{Context, Remark};
 use crate::shadow::ShadowSun;
 use crate::sun::{

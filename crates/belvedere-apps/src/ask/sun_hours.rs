@@ -1,7 +1,7 @@
 //! Sun hours: how long the sun reaches places on days, and whether rules of daylight are met.
 
 use super::light::{Light, OnTargets};
-use super::report::{MeasuresSection, NamedValues, PeriodSection, PlacesReport};
+use super::sections::{MeasuresSection, NamedValues, PeriodSection, PlacesReport};
 use super::sun::{Days, SunPlace};
 use super::{Answers, Ask, Context, Places, Scene, ThroughTrees, spread};
 use crate::rows::Obstacles;

@@ -1,8 +1,8 @@
 //! What gets through trees, as a user chooses it.
 
 use super::Context;
-use super::report::TreesSection;
 use super::scene::Scene;
+use super::sections::TreesSection;
 use crate::tree_light::{CrownLight, Leaves, Transmissivity, TreeLight};
 use belvedere_data::control::Control;
 use belvedere_data::{Error, Parameter, Result};

@@ -8,8 +8,8 @@ pub use sights::{FarSeen, SeenSection};
 
 use super::north::North;
 use super::observers::{Eyes, ObserversSection, Reach, check_height, note_enclosed, remark_on_footing, skip_unfit};
-use super::report::LinesSection;
 use super::scene::KnownGround;
+use super::sections::LinesSection;
 use super::{Answers, Ask, Context, Places, Remark, Scene};
 use crate::eyes::{EyesReport, fault_of_target};
 use crate::targets::{Targets, set_on_ground, set_on_terrain};

@@ -1,7 +1,7 @@
 //! Window views: what is seen from windows, and how far.
 
 use super::places::{leave_out_outside, test_edge};
-use super::report::{LinesSection, NamedValues};
+use super::sections::{LinesSection, NamedValues};
 use super::windows::{GivenWindows, WindowTargets};
 use super::{Answers, Ask, Context, North, Places, Remark, Scene, spread};
 use crate::targets::{Measure, MeasureStatistics, Window};

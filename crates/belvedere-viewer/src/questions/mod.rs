@@ -16,7 +16,6 @@ use crate::replies::{QuestionReply, Refusal};
 use crate::scene::PageScene;
 use crate::scene_text::SceneText;
 use belvedere::control::Control;
-pub(crate) use roof::RoofPlanes;
 use serde::de::DeserializeOwned;
 
 /// What every question knows.

@@ -10,7 +10,7 @@ pub(super) use report::CamerasReport;
 pub use standing::{Candidates, GivenCamera};
 pub use targets::{CameraTargets, PrivatePlaces};
 
-use super::report::LinesSection;
+use super::sections::LinesSection;
 use super::{Answers, Ask, Context, GridCells, North, Places, Scene};
 use crate::cameras::{
     CameraPose, CoverageParams, CoverageReport, CoverageTable, FREE_FRESNEL_SHARE, FresnelZone, Goal, Mount, Placement,
