@@ -126,8 +126,8 @@ impl InputFile {
         self.pieces.is_empty() || self.pieces.len() as u64 == self.points.div_ceil(PIECE_ROWS)
     }
 
-    /// Refuses a file that is no longer what it was: its size, its samples, and where its time is another one, its whole
-    /// content. Of a file on a server, its version, its size and samples.
+    /// Refuses a file that is no longer what it was: its size, its samples, and where its time is another one, its
+    /// whole content. Of a file on a server, its version, its size and samples.
     ///
     /// # Errors
     /// [`Error::Io`] for a file that is gone, [`Error::Malformed`] for one that changed.

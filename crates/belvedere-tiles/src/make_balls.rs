@@ -19,8 +19,8 @@ use std::path::Path;
 /// the same balls.
 ///
 /// # Errors
-/// Those of reading the files and of [`SceneModel::build`]; [`Error::Malformed`](belvedere::Error::Malformed) where points
-/// that the plan counted are not found.
+/// Those of reading the files and of [`SceneModel::build`]; [`belvedere::Error::Malformed`] where points that the plan
+/// counted are not found.
 pub fn make_balls(plan: &Plan, run: &Path, tile: TileId, control: &Control<'_>) -> Result<TileRecord> {
     atomic::make_folder(&Stage::Balls.folder(run))?;
     let cloud = control.stage("reading", 0, || window::read(plan, &plan.window(tile), control))?;

@@ -165,8 +165,8 @@ pub fn write_catalogue(plan: &Plan, folder: &Path, question: &TileQuestion) -> R
     Ok(counts)
 }
 
-/// Writes the results of a question as one cloud-optimised GeoTIFF, which says what its values are. It reaches as far as
-/// points do.
+/// Writes the results of a question as one cloud-optimised GeoTIFF, which says what its values are. It reaches as far
+/// as points do.
 ///
 /// # Errors
 /// [`Error::Malformed`] for a run without a result, and for one that is not finished unless it is to be merged

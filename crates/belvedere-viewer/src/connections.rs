@@ -95,8 +95,8 @@ impl OpenConnections {
 }
 
 impl Place {
-    /// The task that serves the connection.
-    pub(crate) fn is_served_by(&self, task: AbortHandle) {
+    /// Names the task that answers the connection, so that it can be ended.
+    pub(crate) fn set_task(&self, task: AbortHandle) {
         if let Some(own) = self.connections.open().by_number.get_mut(&self.number) {
             own.task = Some(task);
         }

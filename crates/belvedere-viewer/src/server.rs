@@ -120,6 +120,6 @@ async fn accept(listener: TcpListener, app: axum::Router) {
             // an error means that the client broke off: nobody is left to answer
             let _ = server.serve_connection(TokioIo::new(stream), service).await;
         });
-        place.is_served_by(task.abort_handle());
+        place.set_task(task.abort_handle());
     }
 }
