@@ -244,7 +244,7 @@ impl Ask for LinesOfSightQuestion {
                 line.summarise(context);
                 context.report.line = Some(line);
             }
-            _ => section.summarise(context),
+            _ => section.headlines().into_iter().for_each(|line| context.headline(line)),
         }
         Ok(Answers::new(found, Vec::new()))
     }

@@ -32,7 +32,7 @@ mod protected_view;
 pub mod remark;
 pub mod report;
 pub mod scene;
-mod sections;
+pub mod sections;
 mod shadow;
 mod shared;
 mod sky_view;

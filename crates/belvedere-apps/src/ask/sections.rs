@@ -329,15 +329,18 @@ impl PairsSection {
         }
     }
 
-    fn summarise(&self, context: &mut Context) {
+    /// The answer in two lines.
+    pub(super) fn headlines(&self) -> [String; 2] {
         let Self { pairs, visible, blocked, visible_percent, .. } = self;
-        context.headline(format!("{visible} of {pairs} lines of sight ({visible_percent} %) are visible"));
         let unproven = self.unproven.map_or_else(String::new, |unproven| format!(", {unproven} unproven"));
         let rest = self.no_line + self.outside_cloud;
         let inside = match self.inside_obstacle {
             0 => String::new(),
             count => format!(", {count} with an end inside an obstacle"),
         };
-        context.headline(format!("{blocked} are blocked{unproven}{inside}, {rest} without an answer"));
+        [
+            format!("{visible} of {pairs} lines of sight ({visible_percent} %) are visible"),
+            format!("{blocked} are blocked{unproven}{inside}, {rest} without an answer"),
+        ]
     }
 }

@@ -3,10 +3,9 @@
 use super::RequestContext;
 use super::places::{local, number, rounded};
 use crate::replies::{QuestionReply, Refusal};
-use crate::roof_planes::RoofPlanes;
+use belvedere::Error;
 use belvedere::apps::irradiance::{CLEAR_SKY_YEAR, roof_irradiation};
 use belvedere::query::UnprovenAs;
-use belvedere::{Error, Result};
 use serde::Deserialize;
 use serde_json::{Value, json};
 
@@ -16,10 +15,7 @@ pub(super) struct RoofRequest {
     place: [f64; 3],
 }
 
-pub(super) fn answer(
-    question: &RoofRequest,
-    context: &RequestContext<'_>,
-) -> std::result::Result<QuestionReply, Refusal> {
+pub(super) fn answer(question: &RoofRequest, context: &RequestContext<'_>) -> Result<QuestionReply, Refusal> {
     let (scene, control) = (context.scene, context.control);
     let place = local(context, question.place)?;
     let site = scene.site()?;

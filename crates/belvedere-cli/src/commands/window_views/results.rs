@@ -5,7 +5,7 @@ use crate::commands::windows::WindowColumn;
 use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::Result;
-use belvedere::apps::ask::report::GroundSection;
+use belvedere::apps::ask::sections::GroundSection;
 use belvedere::apps::ask::{self, Scene, WindowViewsResults};
 use belvedere::apps::targets::{Measure, Targets};
 use belvedere::apps::window_views::{SeenKind, named_columns};
