@@ -113,7 +113,7 @@ fn serve(stream: TcpStream, files: &HashMap<String, Vec<u8>>, counts: &RequestCo
             write!(stream, "HTTP/1.1 416 No\r\nContent-Range: bytes */{}\r\nContent-Length: 0\r\n\r\n", file.len())?;
             continue;
         }
-        let part = if manner == Manner::Whole { &file[..] } else { &file[first..end] };
+        let part = if manner == Manner::Whole { file } else { &file[first..end] };
         if manner == Manner::Whole {
             write!(stream, "HTTP/1.1 200 OK\r\n")?;
         } else {
