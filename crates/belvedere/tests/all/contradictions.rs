@@ -59,11 +59,11 @@ fn las(records: &[LasRecord], wkt_decides: bool, place: [f64; 3]) -> Vec<u8> {
     put(105, &20_u16.to_le_bytes());
     put(107, &POINTS.to_le_bytes());
     put(247, &u64::from(POINTS).to_le_bytes());
-    for axis in 0..3 {
+    for (axis, low) in place.into_iter().enumerate() {
         put(131 + 8 * axis, &0.01_f64.to_le_bytes());
-        put(155 + 8 * axis, &place[axis].to_le_bytes());
-        put(179 + 16 * axis, &(place[axis] + 2.0).to_le_bytes());
-        put(187 + 16 * axis, &place[axis].to_le_bytes());
+        put(155 + 8 * axis, &low.to_le_bytes());
+        put(179 + 16 * axis, &(low + 2.0).to_le_bytes());
+        put(187 + 16 * axis, &low.to_le_bytes());
     }
     for (user, id, content) in records {
         let mut head = vec![0; 54];
