@@ -86,7 +86,7 @@ mod tests {
         #[expect(clippy::cast_possible_truncation, reason = "tests")]
         let center = |i: usize| {
             let (x, y) = (100.0 + (i % 20) as f64 * 4.0, 100.0 + (i / 20) as f64 * 4.0);
-            let roof = if i % 2 == 0 { 9.0 } else { 0.0 };
+            let roof = if i.is_multiple_of(2) { 9.0 } else { 0.0 };
             [x as f32, y as f32, (height(x) + roof - 3.0) as f32]
         };
         let centers: Vec<[f32; 3]> = (0..400).map(center).collect();
