@@ -6,7 +6,11 @@ use std::sync::OnceLock;
 
 /// The system that a code such as `EPSG:28992` or a PROJ string names.
 pub(super) fn system(text: &str) -> Option<Crs> {
-    proj_wkt::parse_crs(text).ok().map(|definition| from_definition(&definition))
+    let definition = proj_wkt::parse_crs(text).ok()?;
+    let crs = from_definition(&definition);
+    // a string of PROJ has no code: its parameters are kept as text
+    let wkt = if crs.epsg.is_none() { proj_wkt::to_wkt(&definition).ok() } else { None };
+    Some(Crs { wkt, ..crs })
 }
 
 /// The system with an EPSG code.

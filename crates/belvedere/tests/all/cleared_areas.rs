@@ -173,7 +173,7 @@ fn areas_that_cannot_be_cleared_are_refused() {
     };
     refused(square(&cloud, [900.0, 30.0], 5.0), &["area", "cloud"]);
     refused(ClearedArea::Class(2), &["class 2"]);
-    refused(ClearedArea::Polygon(vec![vec![[0.0, 0.0], [1.0, 0.0]]]), &["3"]);
+    refused(ClearedArea::Polygon(vec![vec![[0.0, 0.0], [1.0, 0.0]]]), &["three corners"]);
     // no point of this class: nothing changes
     let (same, left, report) = model.clone().without(&ClearedArea::Class(17), &cloud, &Control::none()).unwrap();
     assert!(same_balls(&same, &model) && left.len() == cloud.len() && report == Default::default());

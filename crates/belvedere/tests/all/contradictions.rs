@@ -83,7 +83,11 @@ fn las(records: &[LasRecord], wkt_decides: bool, place: [f64; 3]) -> Vec<u8> {
 /// What reading says against the reference system: an error, or the doubt of the cloud.
 fn said_of(path: &Path, options: &ReadOptions) -> Option<String> {
     match read_cloud([path], options, &Control::none()) {
-        Ok((cloud, _)) => cloud.frame.crs.doubt,
+        Ok((cloud, report)) => {
+            let of_others =
+                report.files.into_iter().flat_map(|file| file.notes).find(|note| note.contains("beside it"));
+            cloud.frame.crs.doubt.or(of_others)
+        }
         Err(error) => Some(error.to_string()),
     }
 }
@@ -194,7 +198,8 @@ fn pairs_within_a_file() -> Vec<Pair> {
     let in_feet = {
         let at = zone_10.rfind("UNIT[").unwrap();
         let end = at + zone_10[at..].find(']').unwrap();
-        format!("{}UNIT[\"US survey foot\",0.304800609601219{}", &zone_10[..at], &zone_10[end..])
+        // what is left out has a code of its own
+        format!("{}UNIT[\"US survey foot\",0.304800609601219{}", &zone_10[..at], &zone_10[end + 1..])
     };
     let twice = |first: &str, second: &str, place| said_of_las(&[text_record(first), text_record(second)], place, None);
     let liblas = ("liblas", 2112, wkt("EPSG:26911").into_bytes());
