@@ -60,8 +60,8 @@ fn a_carved_ball_file_answers_as_the_cloud_does_and_reports_what_was_cut() {
     let cloud = place.npy::<u8>("from_cloud.npy").1;
     let answers = &run["answers"];
     assert_eq!(answers["method"], "lines of sight");
-    let counts = ["blocked", "visible", "unproven"].map(|name| answers[name].as_u64().unwrap());
-    assert_eq!(counts, [0, 1, 2].map(|code| cloud.iter().filter(|&&answer| answer == code).count() as u64));
+    let counts = ["blocked", "visible", "unproven", "inside_obstacle"].map(|name| answers[name].as_u64().unwrap());
+    assert_eq!(counts, [0, 1, 2, 5].map(|code| cloud.iter().filter(|&&answer| answer == code).count() as u64));
     assert!(counts.iter().all(|&count| count > 10) && counts.iter().sum::<u64>() == 20_000, "{counts:?}");
     for file in ["balls.npz", "balls.ply", "balls.laz"] {
         let written = place.summary(&format!("balls town/cloud.laz --method carved -o {file}"));

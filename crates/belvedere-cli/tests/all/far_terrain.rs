@@ -152,7 +152,7 @@ fn lines_of_sight_reach_the_terrain_beyond_the_cloud() {
         format!("{x},{mast},,{x},{y},{z}"),
         format!("{x},{y},{z},{x},{mast},480"),
         format!("{west},{y},,{east},{},", y + 1500.0),
-        format!("{x},{y},{z},{far},{y},100"),
+        format!("{x},{y},{z},{far},{y},5"),
         format!("{x},{y},{z},{far},{y},"),
     ];
     place.write("pairs.csv", format!("ax,ay,az,bx,by,bz\n{}\n", rows.join("\n")));
@@ -213,7 +213,7 @@ fn observers_and_targets_of_viewsheds_stand_on_the_terrain() {
     assert!(run.status == 0 && run.stderr.contains("note: the far terrain changes nothing"), "{run:?}");
     for (wrong, status, parts) in [
         (format!("--observer {x},{hill},390 -o none.tif"), 1, &["10.00 m below the ground"][..]),
-        (format!("--observer {x},{},50 -o none.tif", hill - 900.0), 1, &["outside the cloud"]),
+        (format!("--observer {x},{},5 -o none.tif", hill - 900.0), 1, &["outside the cloud"]),
         (format!("--observer {x},{hill} -o none.tif --heights none.npy"), 2, &["--heights", "observer 1", "terrain"]),
     ] {
         place.refusal(status, &format!("{flags} {wrong}"), parts);

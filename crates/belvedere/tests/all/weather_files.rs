@@ -92,12 +92,13 @@ fn series_of_pvgis_on_a_level_plane_give_global_and_diffuse() {
 
 const TMY3: &str = "703165,\"SAND POINT\",AK,-9.0,55.317,-160.517,7\n\
     Date (MM/DD/YYYY),Time (HH:MM),ETR (W/m^2),ETRN (W/m^2),GHI (W/m^2),GHI source,GHI uncert (%),DNI (W/m^2),DHI (W/m^2),Dry-bulb (C)\n\
-    01/31/1997,24:00,0,0,0,1,0,0,0,2.0\n06/21/2001,13:00,1100,1330,480,1,9,350,200,11.5\n06/21/2001,14:00,1100,1330,-9900,1,9,350,200,11.5\n";
+    01/31/1997,24:00,0,0,0,1,0,0,0,2.0\n06/21/2001,13:00,1100,1330,480,1,9,350,200,11.5\n06/21/2001,14:00,1100,1330,-9900,1,9,350,200,11.5\n\
+    06/21/2001,15:00,1100,1330,-9900,1,9,-9900,200,11.5\n";
 
 #[test]
 fn hours_of_tmy3_end_in_local_standard_time() {
     let weather = read(TMY3).unwrap();
-    assert_eq!((weather.format, weather.steps.len(), weather.left_out_count), ("TMY3", 2, 1));
+    assert_eq!((weather.format, weather.steps.len(), weather.left_out_count), ("TMY3", 3, 1));
     // 24:00 of a day whose zone is nine hours behind: the middle of its last hour is 8:30 UTC of the next
     assert_eq!((weather.steps[0].instant, weather.steps[0].month), (instant(1997, 2, 1, 8.5), 1));
     let step = weather.steps[1];
@@ -105,6 +106,9 @@ fn hours_of_tmy3_end_in_local_standard_time() {
         (step.instant, step.ghi, step.dni, step.dhi),
         (instant(2001, 6, 21, 21.5), Some(480.0), Some(350.0), Some(200.0))
     );
+    // what global radiation lacks follows from the others; with diffuse alone nothing does
+    let step = weather.steps[2];
+    assert_eq!((step.ghi, step.dni, step.dhi), (None, Some(350.0), Some(200.0)));
 }
 
 const NSRDB: &str = "Source,Location ID,City,State,Country,Latitude,Longitude,Time Zone,Elevation,Local Time Zone\n\
