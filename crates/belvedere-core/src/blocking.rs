@@ -6,9 +6,9 @@
 //!
 //! The rule: a ball blocks a line of sight if a piece of the line more than [`BlockRule::bias`] metres from either end
 //! runs through it. A ball near an end counts with a smaller radius ([`BlockRule::radius_for`]), so that one wrong ball
-//! neither blinds an observer on a surface nor hides what lies on it. Both ends are treated alike: who looks and what is
-//! looked at can change places. An end that a ball holds even so is inside an obstacle ([`BlockRule::holds_end`]), and
-//! all its lines of sight are blocked.
+//! neither blinds an observer on a surface nor hides what lies on it. Both ends are treated alike: who looks and what
+//! is looked at can change places. An end that a ball holds even so is inside an obstacle ([`BlockRule::holds_end`]),
+//! and all its lines of sight are blocked.
 //!
 //! A picture plane, or the near limit of a picture, is no end at which anybody looks: what it cuts is taken away
 //! ([`BlockRule::blocks_before_plane`]).
@@ -122,8 +122,8 @@ impl BlockRule {
         radius - (self.shell as f32).min(SHELL_SHARE as f32 * radius)
     }
 
-    /// The radius that a ball of `radius` counts with for an end `distance` metres from its centre; between two ends the
-    /// lesser of both counts.
+    /// The radius that a ball of `radius` counts with for an end `distance` metres from its centre; between two ends
+    /// the lesser of both counts.
     ///
     /// With s the lesser of the shell and half the radius: r − s for an end less than s inside the surface, r − (s −
     /// (distance − r)) for one less than s outside, and the whole r for all others.
@@ -144,7 +144,8 @@ impl BlockRule {
     }
 
     /// Where the line of sight from `target` along `towards` leaves a ball that blocks it, metres from the target, at
-    /// most `reach`; `None` for a ball that does not block. The line ends at the viewer, `reach` metres from the target.
+    /// most `reach`; `None` for a ball that does not block. The line ends at the viewer, `reach` metres from the
+    /// target.
     #[must_use]
     #[inline]
     pub fn blocks_line(&self, ball: Ball, target: [f64; 3], towards: [f64; 3], reach: f64) -> Option<f64> {

@@ -21,8 +21,8 @@ pub enum LevelOfDetail {
     Only(String),
 }
 
-/// The surfaces of a CityJSON file, or of a sequence of features, as triangles, one object per city object (in the order of their identifiers), and
-/// what was left out.
+/// The surfaces of a CityJSON file, or of a sequence of features, as triangles, one object per city object (in the
+/// order of their identifiers), and what was left out.
 ///
 /// Solids, multi- and composite surfaces and solids, and instances of geometry templates are read; rings with holes are
 /// triangulated in their plane. The turning sense of the file is kept: counter-clockwise seen from outside. Coordinates
@@ -83,8 +83,8 @@ pub fn read_cityjson<'a>(source: impl Into<Source<'a>>, level_of_detail: &LevelO
 struct CityFile<'a> {
     path: &'a Path,
     builder: MeshBuilder<'a>,
-    /// Vertices that boundaries may refer to, numbered from the first: those of the file, or of a feature of a sequence.
-    /// Those appended for instances of templates come after.
+    /// Vertices that boundaries may refer to, numbered from the first: those of the file, or of a feature of a
+    /// sequence. Those appended for instances of templates come after.
     vertices: Range<usize>,
     templates: Option<(&'a [Value], &'a [Value])>,
     /// Scale and translation of vertices.

@@ -1,9 +1,10 @@
 //! Which chunks of a COPC file hold the points of a box: a walk through the hierarchy of the file.
 //!
 //! COPC is LAZ whose chunks are the nodes of an octree. The hierarchy names for each node where its chunk lies; it
-//! comes in pages, and of a large one only pages of nodes that meet the box are read. What the hierarchy claims is compared
-//! with the chunk table before it is used, and the chunks are decompressed by the same reader as those of any LAZ file.
-//! Programs that rewrite a file may leave the records of an older order of its points; then these are passed over.
+//! comes in pages, and of a large one only pages of nodes that meet the box are read. What the hierarchy claims is
+//! compared with the chunk table before it is used, and the chunks are decompressed by the same reader as those of any
+//! LAZ file. Programs that rewrite a file may leave the records of an older order of its points; then these are passed
+//! over.
 //!
 //! # Source
 //! COPC specification 1.0: info record, section 3.1; hierarchy, section 3.2 (Bell, Belcher & Manning 2021).
@@ -61,8 +62,8 @@ impl CopcNodes {
 
 /// The chunks of nodes that meet `wanted`, of all nodes without a box. `size` is that of the file in bytes.
 ///
-/// A small hierarchy on this machine is read whole and must name all points; of others only pages of nodes that meet the box are
-/// read. Every chunk must be one of the chunk table.
+/// A small hierarchy on this machine is read whole and must name all points; of others only pages of nodes that meet
+/// the box are read. Every chunk must be one of the chunk table.
 ///
 /// # Errors
 /// [`Error::Io`]; [`Error::Malformed`] for a damaged chunk table.

@@ -49,8 +49,8 @@ struct EptDescription {
     system: Option<SystemBeside>,
 }
 
-/// The LAZ files of the nodes that may have points in `wanted`, level by level; of all nodes without a box. Each has the
-/// system of the description, where it names none itself.
+/// The LAZ files of the nodes that may have points in `wanted`, level by level; of all nodes without a box. Each has
+/// the system of the description, where it names none itself.
 ///
 /// # Errors
 /// [`Error::Io`]; [`Error::Malformed`] for what is no description or no hierarchy, and for nodes that are not LAZ.

@@ -156,7 +156,8 @@ fn position(numbers: &Position, path: &Path) -> Result<[f64; 3]> {
 }
 
 /// The system of a name such as `urn:ogc:def:crs:EPSG::4258`, `EPSG:28992`, `urn:ogc:def:crs:OGC:1.3:CRS84` or the
-/// address `http://www.opengis.net/def/crs/EPSG/0/4258`. Longitude comes first whatever the authority says, as all programs write it.
+/// address `http://www.opengis.net/def/crs/EPSG/0/4258`. Longitude comes first whatever the authority says, as all
+/// programs write it.
 fn system_of_name(name: &str) -> Option<Crs> {
     let code = name.trim().rsplit([':', '/', '#']).next().unwrap_or(name);
     match code.to_ascii_uppercase().as_str() {

@@ -6,9 +6,9 @@
 //!
 //! # Features
 //! Formats that need crates of their own are features, all on by default: `las` (LAS, LAZ, COPC), `e57`, `ply`
-//! (reading), `npy` (NPY, NPZ ball files, masbcpp's folders), `tiff` (GeoTIFF). `http` reads files on web servers. `crs`
-//! (from `belvedere-data`) is the database of reference systems. Text, PCD, PTX, OBJ, GeoJSON, CityJSON, tables, weather
-//! files and trajectories are always there. A format that was not built in gives
+//! (reading), `npy` (NPY, NPZ ball files, masbcpp's folders), `tiff` (GeoTIFF). `http` reads files on web servers.
+//! `crs` (from `belvedere-data`) is the database of reference systems. Text, PCD, PTX, OBJ, GeoJSON, CityJSON, tables,
+//! weather files and trajectories are always there. A format that was not built in gives
 //! [`belvedere_data::Error::MissingFeature`].
 
 mod antimeridian;

@@ -36,8 +36,8 @@ struct ObjFace {
 /// there. A backslash at the end of a line continues it. Coordinates are taken as metres.
 ///
 /// # Errors
-/// [`Error::Io`] where the file cannot be opened; [`Error::Malformed`], which names the line, for syntax errors, decimal
-/// commas, indices without a vertex, and coordinates that are not finite; also for files without a triangle.
+/// [`Error::Io`] where the file cannot be opened; [`Error::Malformed`], which names the line, for syntax errors,
+/// decimal commas, indices without a vertex, and coordinates that are not finite; also for files without a triangle.
 pub(super) fn read(source: Source<'_>) -> Result<(Mesh, MeshReport)> {
     let (name, bytes) = source.read_text()?;
     let path = name.as_path();

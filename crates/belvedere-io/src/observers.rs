@@ -102,11 +102,11 @@ pub enum RowsAre {
 
 /// Reads observers from a table (.csv .txt) or GeoJSON (.geojson .json).
 ///
-/// A table has columns x and y in the coordinates of the cloud's file, and may have z (height of the eye, in the unit of
-/// the file; empty where it follows from the ground), height (above the ground, metres), min_distance and max_distance
-/// (metres), azimuth_from, azimuth_to, elevation_from, elevation_to, heading, tilt and fov (degrees) and weight. GeoJSON
-/// has these as properties; points are observers, lines are paths, and the corners of polygons are walked around. A
-/// property z stands above the third coordinate. Upper and lower case are the same.
+/// A table has columns x and y in the coordinates of the cloud's file, and may have z (height of the eye, in the unit
+/// of the file; empty where it follows from the ground), height (above the ground, metres), min_distance and
+/// max_distance (metres), azimuth_from, azimuth_to, elevation_from, elevation_to, heading, tilt and fov (degrees) and
+/// weight. GeoJSON has these as properties; points are observers, lines are paths, and the corners of polygons are
+/// walked around. A property z stands above the third coordinate. Upper and lower case are the same.
 ///
 /// Names of other programs are understood, lengths in the unit of the file: observ_hgt, radius, radius_in, azim_1,
 /// azim_2, angle_down and angle_up of QGIS, OFFSETA, RADIUS1, RADIUS2, AZIMUTH1, AZIMUTH2, VERT1, VERT2 and SPOT of

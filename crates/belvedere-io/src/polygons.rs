@@ -34,7 +34,8 @@ pub struct MeshReport {
     pub degenerate_triangle_count: usize,
     /// Polygons that gave no triangle at all: fewer than three distinct corners, or all in one line.
     pub degenerate_polygon_count: usize,
-    /// Polygons that pass their corners so often that they can only turn around in themselves: each corner was kept once.
+    /// Polygons that pass their corners so often that they can only turn around in themselves: each corner was kept
+    /// once.
     pub repeated_polygon_count: usize,
     /// Geometries without surfaces (points, lines) or of an unknown kind that were passed over.
     pub skipped_geometry_count: usize,
@@ -103,8 +104,8 @@ impl<'a> MeshBuilder<'a> {
     /// triangles to `object` with the turning sense of the outline.
     ///
     /// # Errors
-    /// [`Error::Malformed`] for an index without a vertex, for a polygon of more than 20 000 corners, and for those with
-    /// many corners that cross themselves: they cannot be triangulated in bounded time.
+    /// [`Error::Malformed`] for an index without a vertex, for a polygon of more than 20 000 corners, and for those
+    /// with many corners that cross themselves: they cannot be triangulated in bounded time.
     pub(super) fn push_polygon(&mut self, rings: &[Vec<u32>], object: Option<u32>) -> Result<()> {
         self.report.polygon_count += 1;
         let mut corners: Vec<u32> = Vec::new();

@@ -19,8 +19,8 @@ const HEADER_LINES: usize = 10;
 /// The points of all scans of the source; grid cells at (0, 0, 0), where nothing came back, are left out.
 ///
 /// # Errors
-/// [`Error::Malformed`] for a header that is no scan's, a transformation that is no rotation with a shift, an unreadable
-/// line, or a scan that is cut off.
+/// [`Error::Malformed`] for a header that is no scan's, a transformation that is no rotation with a shift, an
+/// unreadable line, or a scan that is cut off.
 pub(super) fn read(input: Input<'_>, reading: &Reading<'_>) -> Result<FilePart> {
     let Input { name, reader: file, size } = input;
     let path = name.as_path();

@@ -35,16 +35,16 @@ const SUPPORTED: &str = ".las, .laz, .ply, .xyz, .txt, .csv, .pts, .asc, .pcd, .
 /// A path to a folder means all files in it with one of [`CLOUD_EXTENSIONS`], sorted by name; a folder with
 /// `coords.npy` has the layout of masbcpp and is one cloud with its normals. A catalogue of tiles (`.vpc`) means its
 /// files, and so do entwine point tiles (`ept.json`, or its folder, with LAZ nodes). Of a box ([`ReadOptions::within`])
-/// only those files of a catalogue are opened, those LAS and LAZ files are read beyond their header, and those chunks of
-/// COPC files are read, whose bounds meet it. The extension selects the format, in upper or lower case.
+/// only those files of a catalogue are opened, those LAS and LAZ files are read beyond their header, and those chunks
+/// of COPC files are read, whose bounds meet it. The extension selects the format, in upper or lower case.
 ///
 /// Coordinates become metres by the unit of the reference system and f32 relative to a near origin: that of
 /// [`ReadOptions::frame`], or else the middle, in whole metres, of the points within 10 km of the median point of all
 /// files. Points more than 1000 km from the median (or from the given origin) along an axis, and points that are not
 /// finite, are left out and counted. A file of several that lies there as a whole is refused, unless
-/// [`ReadOptions::distant`] says otherwise. Colours that are all zero are none. An attribute that one of the files lacks
-/// is dropped; files without any point are ignored. The result does not depend on the number of threads. The items of
-/// progress are points. Tables without x, y and z in a folder are skipped and reported.
+/// [`ReadOptions::distant`] says otherwise. Colours that are all zero are none. An attribute that one of the files
+/// lacks is dropped; files without any point are ignored. The result does not depend on the number of threads. The
+/// items of progress are points. Tables without x, y and z in a folder are skipped and reported.
 ///
 /// # Errors
 /// [`Error::Io`], [`Error::UnknownFormat`], [`Error::MissingFeature`] and [`Error::Malformed`] about the source at
@@ -207,8 +207,8 @@ fn opened<'a>(source: Source<'a>, reading: &Reading<'_>) -> Result<Opened<'a>> {
     Ok(Opened::Catalogue(files.into_iter().map(Source::path).collect()))
 }
 
-/// Whether a file beside clouds is a table or a grid that belongs to them, such as a trajectory of other columns, a list
-/// of tiles or a model of the ground.
+/// Whether a file beside clouds is a table or a grid that belongs to them, such as a trajectory of other columns, a
+/// list of tiles or a model of the ground.
 fn is_stray(file: &Path) -> bool {
     ["xyz", "txt", "csv", "pts", "asc"].contains(&extension(file).as_str())
         && Source::path(file).open_text().is_ok_and(xyz::is_another_table)

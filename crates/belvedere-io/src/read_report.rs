@@ -22,8 +22,9 @@ pub struct ReadReport {
     pub skipped_files: Vec<PathBuf>,
     /// What should be known before the cloud is used.
     pub notes: Vec<String>,
-    /// Row of each point among the points of its file, from 0, where [`ReadOptions::row_numbers`](crate::ReadOptions::row_numbers) requests it; empty
-    /// otherwise. The points of the files follow each other as in `files`.
+    /// Row of each point among the points of its file, from 0, where
+    /// [`ReadOptions::row_numbers`](crate::ReadOptions::row_numbers) requests it; empty otherwise. The points of the
+    /// files follow each other as in `files`.
     pub rows: Vec<u64>,
 }
 

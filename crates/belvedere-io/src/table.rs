@@ -74,8 +74,8 @@ impl Table {
     }
 }
 
-/// Reads a table with a header row, its cells parted by commas, semicolons or tabs, whichever the header has, in UTF-8 or
-/// UTF-16. Rows are counted from 1 below the header in messages.
+/// Reads a table with a header row, its cells parted by commas, semicolons or tabs, whichever the header has, in UTF-8
+/// or UTF-16. Rows are counted from 1 below the header in messages.
 ///
 /// # Errors
 /// [`Error::Io`], and [`Error::Malformed`] for rows of different lengths and for text that is no UTF-8.

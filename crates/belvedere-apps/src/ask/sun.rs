@@ -114,8 +114,8 @@ pub enum SunRange {
     AboveHorizon,
 }
 
-/// Refuses a direction of the sun, azimuth and elevation in degrees, that cannot be. Azimuths run from 0 to 360, or from
-/// -180 to 180.
+/// Refuses a direction of the sun, azimuth and elevation in degrees, that cannot be. Azimuths run from 0 to 360, or
+/// from -180 to 180.
 ///
 /// # Errors
 /// [`Error::InvalidParameter`].

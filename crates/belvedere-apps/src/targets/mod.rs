@@ -143,7 +143,8 @@ impl Targets {
         outside.map(|position| *position = [f32::NAN; 3]).count()
     }
 
-    /// Leaves out targets that lie inside an obstacle of `scene` ([`MedialScene::is_inside_obstacle`]); returns how many.
+    /// Leaves out targets that lie inside an obstacle of `scene` ([`MedialScene::is_inside_obstacle`]); returns how
+    /// many.
     ///
     /// # Errors
     /// [`Error::Cancelled`](belvedere_data::Error::Cancelled).

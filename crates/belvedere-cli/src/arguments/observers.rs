@@ -43,9 +43,10 @@ pub(crate) struct LineOfSightArguments {
     /// Table with a row for each pair, in their order (.csv)
     ///
     /// Columns: ax,ay,az,bx,by,bz, answer (0 blocked, 1 visible, 2 unproven, 3 no line, 4 outside the cloud, 5 an end
-    /// inside an obstacle), first_block_range_m from A, unproven_m (not with --unproven as-visible, which is faster), fresnel_free_percent
-    /// (with --frequency-ghz), block_x, block_y, block_z, and block_ball and block_source: the rows of the first
-    /// blocking ball and of the point that it touches. With --terrain: block_terrain, 1 where the terrain blocks first.
+    /// inside an obstacle), first_block_range_m from A, unproven_m (not with --unproven as-visible, which is faster),
+    /// fresnel_free_percent (with --frequency-ghz), block_x, block_y, block_z, and block_ball and block_source: the
+    /// rows of the first blocking ball and of the point that it touches. With --terrain: block_terrain, 1 where the
+    /// terrain blocks first.
     #[arg(short, long, value_name = "OUT", required_unless_present = "from", help_heading = "Result")]
     pub(crate) output: Option<PathBuf>,
     #[command(flatten)]
@@ -222,7 +223,8 @@ pub(crate) struct Who {
     /// Observers from a table with columns x and y (.csv) or from GeoJSON, whose lines are paths
     ///
     /// Columns or properties z, height, min_distance, max_distance, azimuth_from, azimuth_to, elevation_from and
-    /// elevation_to override the flags, also under their names in QGIS (observ_hgt, radius) and ArcGIS (OFFSETA, RADIUS2).
+    /// elevation_to override the flags, also under their names in QGIS (observ_hgt, radius) and ArcGIS (OFFSETA,
+    /// RADIUS2).
     #[arg(long, value_name = "FILE")]
     pub(crate) observers: Option<PathBuf>,
     /// Reverse viewshed: the cells from which this target is seen

@@ -12,9 +12,9 @@ use std::path::PathBuf;
 pub(crate) struct CloudInput {
     /// Point clouds (.las .laz .ply .e57 .xyz ...), a catalogue (.vpc, ept.json), or a folder
     ///
-    /// Extensions are .las .laz .copc.laz .ply .xyz .txt .csv .pts .asc .pcd .e57 .ptx .npy. Several files, a folder, or
-    /// the files of a catalogue of tiles (.vpc) are read as one cloud. A file may lie on a web server (https://...). A
-    /// folder with coords.npy is read in the layout of masbcpp.
+    /// Extensions are .las .laz .copc.laz .ply .xyz .txt .csv .pts .asc .pcd .e57 .ptx .npy. Several files, a folder,
+    /// or the files of a catalogue of tiles (.vpc) are read as one cloud. A file may lie on a web server (https://...).
+    /// A folder with coords.npy is read in the layout of masbcpp.
     #[arg(value_name = "CLOUD", required = true, help_heading = None::<&'static str>)]
     pub(crate) clouds: Vec<PathBuf>,
     /// Coordinate reference system of files that name none, as EPSG:CODE or WKT [default: that of the file]

@@ -125,7 +125,8 @@ pub(crate) struct EyesArguments {
     pub(crate) eye: Vec<MapPosition>,
     /// Observers from a table with columns x and y (.csv) or from GeoJSON
     ///
-    /// Columns or properties z and height override the flags, also as observ_hgt of QGIS, and OFFSETA and SPOT of ArcGIS.
+    /// Columns or properties z and height override the flags, also as observ_hgt of QGIS, and OFFSETA and SPOT of
+    /// ArcGIS.
     #[arg(long = "observers", value_name = "FILE", conflicts_with = "eye")]
     pub(crate) eyes: Option<PathBuf>,
     /// Height of observers above the ground in metres [default: 1.7]

@@ -22,7 +22,8 @@ fn run_everything(place: &Workplace, name: &str) -> usize {
             let arguments = format!("{command} {name} {}", if command.starts_with("info") { "" } else { flags });
             let run = place.run(&arguments);
             if run.status == 0 {
-                assert_eq!(run.stderr, "", "{arguments}");
+                // of a handful of points some lie inside the balls of the others
+                assert!(run.stderr.lines().all(|line| line.starts_with("note: ")), "{arguments}: {run:?}");
                 done += 1;
             } else {
                 assert_eq!(run.status, 1, "{arguments}: {run:?}");

@@ -445,10 +445,9 @@ fn results_of_other_commands_are_shown_where_they_lie() {
         state["results"].as_array().unwrap().iter().map(|file| json!([file["name"], file["columns"]])).collect();
     // the columns of the simulated cloud itself come last
     let own = json!(["cloud.laz", ["lit_110_20", "lit_180_65", "lit_240_35"]]);
-    assert_eq!(
-        described,
-        [json!(["lit.tif", [""]]), json!(["lit.laz", ["lit", "unproven"]]), json!(["walk.geojson", []]), own]
-    );
+    // and stay in a shadow of its points
+    let of_shadow = json!(["lit.laz", ["lit_110_20", "lit_180_65", "lit_240_35", "lit", "unproven"]]);
+    assert_eq!(described, [json!(["lit.tif", [""]]), of_shadow, json!(["walk.geojson", []]), own]);
     let (head, _) = page.ask("shadow", &json!({ "time": "2026-06-21T17:00", "zone": "Europe/Amsterdam" }));
     assert!(head["command"].as_str().unwrap().starts_with("belvedere shadow town/cloud.laz --time"), "{head}");
 

@@ -21,8 +21,8 @@ pub struct DepthMap {
     /// Depth in metres: along the view's forward vector, from its picture plane or its eye, and straight from the eye
     /// for [`Projection::Hemispherical`]; +∞ where nothing is hit.
     pub depth: Raster<f32>,
-    /// Row of the ball each pixel shows, [`NO_BALL`](super::NO_BALL) where nothing is hit; of equally near balls the one with the
-    /// lowest row. Only where requested.
+    /// Row of the ball each pixel shows, [`NO_BALL`](super::NO_BALL) where nothing is hit; of equally near balls the
+    /// one with the lowest row. Only where requested.
     pub balls: Option<Raster<u32>>,
     /// Balls that hold the eye of a view: left out, so that a wrong ball does not blind it.
     pub around_eye_count: usize,

@@ -43,7 +43,7 @@ struct Placed {
 
 /// Groups of levels that hang together.
 struct Groups {
-    /// For each level another one of its group; itself for one that stands for all of them.
+    /// For each level another one of its group; itself for one that represents all of them.
     parents: Vec<usize>,
 }
 
@@ -189,7 +189,7 @@ impl Groups {
         self.parents[second] = first;
     }
 
-    /// The one that stands for the group of a level, with the way there halved.
+    /// The one that represents the group of a level, with the way there halved.
     fn shortened(&mut self, mut level: usize) -> usize {
         while self.parents[level] != level {
             let next = self.parents[self.parents[level]];

@@ -74,7 +74,8 @@ pub fn carve(
     Ok(settle(balls, oriented, &carved, caps))
 }
 
-/// Gives each ball the radius that its pulses leave of it, which `carved` holds where a pulse comes near, within `caps`.
+/// Gives each ball the radius that its pulses leave of it, which `carved` holds where a pulse comes near, within
+/// `caps`.
 fn settle(balls: &mut MedialBalls, oriented: &OrientedCloud, carved: &[Option<f32>], caps: &RadiusCaps) -> CarveReport {
     let (positions, normals) = (oriented.positions(), oriented.normals());
     let mut report = CarveReport::default();

@@ -82,8 +82,8 @@ pub(super) struct Survey<'a> {
 }
 
 impl<'a> Survey<'a> {
-    /// The survey of `input`, before vegetation is found and crowns are measured. Without statistics of a whole it is the
-    /// whole.
+    /// The survey of `input`, before vegetation is found and crowns are measured. Without statistics of a whole it is
+    /// the whole.
     pub(super) fn of(input: &CarvedInput<'a>) -> Self {
         let CarvedInput { oriented, measured, index, attributes, free_segments, statistics, .. } = *input;
         let positions = oriented.positions();

@@ -50,8 +50,9 @@ impl Coverage {
         self.holds_on_map(position) && (low[2] - MARGIN..=high[2] + CEILING).contains(&position[2])
     }
 
-    /// Whether lines of sight may end at `position`, local metres: over the cloud, or beside it, up to 10 km away, in the
-    /// air above all of it. What stands between the two is unknown and counts as free, as everything beside the cloud.
+    /// Whether lines of sight may end at `position`, local metres: over the cloud, or beside it, up to 10 km away, in
+    /// the air above all of it. What stands between the two is unknown and counts as free, as everything beside the
+    /// cloud.
     #[must_use]
     pub fn holds_end(&self, position: [f64; 3]) -> bool {
         let (low, high) = self.bounds.corners();
@@ -79,8 +80,9 @@ impl Coverage {
         position.iter().all(|v| v.is_finite()) && !self.holds(position.map(f64::from))
     }
 
-    /// Makes the answers for `targets`, (M, 3) local metres, seen by `viewer`, [`Answer::OutsideCloud`] where no line of
-    /// sight may end at the target or at its eye ([`Coverage::holds_end`]). Answers of targets that are not finite stay.
+    /// Makes the answers for `targets`, (M, 3) local metres, seen by `viewer`, [`Answer::OutsideCloud`] where no line
+    /// of sight may end at the target or at its eye ([`Coverage::holds_end`]). Answers of targets that are not finite
+    /// stay.
     pub fn mark_outside(&self, viewer: Viewer<'_>, targets: &[[f32; 3]], answers: &mut [Answer]) {
         let is_off = |end: [f32; 3]| end.iter().all(|v| v.is_finite()) && !self.holds_end(end.map(f64::from));
         let is_eye_outside = |row: usize| match viewer {

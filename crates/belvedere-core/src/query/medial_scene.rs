@@ -25,9 +25,9 @@ const CHUNK: usize = 1024;
 ///
 /// A target is blocked if its line of sight to the viewer runs through a ball more than [`BlockRule::bias`] metres from
 /// both ends. Balls give way to both ends by [`BlockRule::shell`], which depth maps ([`super::query_points`]) know
-/// nothing of, so that a ball that bulges a little neither blinds an observer nor hides a target. The two ends of a line
-/// can change places. Ends that lie deeper in a ball are inside an obstacle: all their lines of sight are blocked, and
-/// [`MedialScene::mark_inside_obstacles`] tells these from others.
+/// nothing of, so that a ball that bulges a little neither blinds an observer nor hides a target. The two ends of a
+/// line can change places. Ends that lie deeper in a ball are inside an obstacle: all their lines of sight are blocked,
+/// and [`MedialScene::mark_inside_obstacles`] tells these from others.
 ///
 /// With pulses ([`MedialScene::with_pulses`]) a target that nothing blocks is [`Answer::Unproven`] where too much of
 /// its line of sight runs through space that no pulse came near to.
@@ -159,8 +159,8 @@ impl MedialScene {
         self.coverage.as_ref()
     }
 
-    /// Whether an end of lines of sight, local metres, lies inside an obstacle: deeper in a ball than the ball gives way
-    /// ([`BlockRule::holds_end`]). Nothing is seen from there, and nothing there is seen.
+    /// Whether an end of lines of sight, local metres, lies inside an obstacle: deeper in a ball than the ball gives
+    /// way ([`BlockRule::holds_end`]). Nothing is seen from there, and nothing there is seen.
     #[must_use]
     pub fn is_inside_obstacle(&self, end: [f64; 3]) -> bool {
         self.tree.holds_end(end)

@@ -109,8 +109,8 @@ impl MedialScene {
     /// where a coordinate is not finite or both are the same point.
     ///
     /// The answer is that of [`MedialScene::answer`] for the same pair on a plane earth. It stays the same when the two
-    /// change places. A curved line is cut into chords; the rules for the ends (balls near them give way) are applied to
-    /// the ends of the whole line. [`Answer::InsideObstacle`] where balls block the line because an end is inside an
+    /// change places. A curved line is cut into chords; the rules for the ends (balls near them give way) are applied
+    /// to the ends of the whole line. [`Answer::InsideObstacle`] where balls block the line because an end is inside an
     /// obstacle ([`MedialScene::is_inside_obstacle`]).
     ///
     /// Where an end lies on far terrain ([`MedialScene::is_on_far_terrain`]) the answer is that of

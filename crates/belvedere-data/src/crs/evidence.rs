@@ -157,7 +157,8 @@ impl Crs {
         }
     }
 
-    /// [`Crs::place_of`], or where the step to WGS 84 is not known there, the place without it: at most a kilometre off.
+    /// [`Crs::place_of`], or where the step to WGS 84 is not known there, the place without it: at most a kilometre
+    /// off.
     fn rough_place_of(&self, coordinates: [f64; 2]) -> Option<[f64; 2]> {
         let metres = coordinates.map(|v| v * self.metres_per_unit);
         self.place_of(coordinates).or_else(|| self.grid_projection().ok()?.unproject(metres).ok())

@@ -1,4 +1,5 @@
-//! Tables and shapes of other programs: names of QGIS and ArcGIS, encodings of spreadsheets, the meridian of 180 degrees.
+//! Tables and shapes of other programs: names of QGIS and ArcGIS, encodings of spreadsheets, the meridian of 180
+//! degrees.
 
 use std::io::Cursor;
 

@@ -30,7 +30,8 @@ fn random_balls(count: u64) -> MedialBalls {
     balls(random_points(3, count, 100.0), radii)
 }
 
-/// The rule of the documentation, ball after ball: a piece of the line more than `bias` from either end lies in the ball.
+/// The rule of the documentation, ball after ball: a piece of the line more than `bias` from either end lies in the
+/// ball.
 fn brute_force(balls: &MedialBalls, target: [f32; 3], eye: [f64; 3], bias: f64) -> bool {
     let target = target.map(f64::from);
     let d: Vec<f64> = (0..3).map(|i| eye[i] - target[i]).collect();
@@ -66,8 +67,9 @@ fn answers_equal_those_of_every_ball_tried_in_turn() {
     }
 }
 
-/// The rule of the documentation for [`BlockRule::shell`], ball after ball: a ball counts with radius r − (shell − max(d
-/// − r, 0)) where an end at distance d from its centre lies less than the shell from its surface; the lesser of two.
+/// The rule of the documentation for [`BlockRule::shell`], ball after ball: a ball counts with radius r − (shell −
+/// max(d − r, 0)) where an end at distance d from its centre lies less than the shell from its surface; the lesser of
+/// two.
 fn brute_force_with_shell(balls: &MedialBalls, target: [f32; 3], eye: [f64; 3], bias: f64, shell: f64) -> bool {
     (0..balls.len()).any(|i| {
         let one = |radius: f64| {
