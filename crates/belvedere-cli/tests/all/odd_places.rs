@@ -77,7 +77,8 @@ fn a_drone_beside_the_cloud_and_above_it_sees_it() {
 fn an_end_inside_an_obstacle_is_an_answer_of_its_own() {
     let place = Workplace::new();
     place.write_cloud("house.laz", &house());
-    let (inside, free) = (at(0.0, 0.0, 2.5), at(-12.0, 0.0, 2.0));
+    // a metre behind the west wall, where balls are thickest
+    let (inside, free) = (at(-4.0, 0.0, 2.5), at(-12.0, 0.0, 2.0));
     let row = |a: [f64; 3], b: [f64; 3]| a.iter().chain(&b).map(f64::to_string).collect::<Vec<_>>().join(",");
     let rows = [row(inside, free), row(free, inside), row(free, at(-12.0, 7.0, 2.0))];
     place.write("pairs.csv", format!("ax,ay,az,bx,by,bz\n{}\n", rows.join("\n")));

@@ -100,7 +100,7 @@ fn landmarks_give_tables_rasters_and_maps() {
     assert!((column(&place, "views.csv", "horizon_share")[0] - extent / 360.0).abs() < 1e-4);
     assert!(column(&place, "views.csv", "nearest_m")[1].is_nan());
     let run = place.summary(&format!(
-        "landmark {HOUSE} --ground found --targets wall.obj --cell 3 --measures all -o share.tif -o share.png -o grid.csv"
+        "landmark {HOUSE} --ground found --targets wall.obj --cell 2 --measures all -o share.tif -o share.png -o grid.csv"
     ));
     let standing = run["observers"]["count"].as_u64().unwrap();
     assert!(run["observers"]["observers_inside_obstacles"].as_u64().unwrap() > 0, "{run}");
