@@ -33,7 +33,8 @@ x, y = 155000, 462985
 outputs = {name: folder / f"seen.{name}" for name in ("tif", "geojson", "laz", "png")}
 flags = [flag for path in outputs.values() for flag in ("-o", path)]
 heights, masks = folder / "heights.tif", folder / "masks.npy"
-result = run("viewshed", *scene, "--observer", f"{x},{y}", "--max-distance", 40, "--heights", heights, *flags)
+of_ground = ["--observer", f"{x},{y}", "--max-distance", 40, "--target-height", 0]
+result = run("viewshed", *scene, *of_ground, "--heights", heights, *flags)
 
 with rasterio.open(outputs["tif"]) as raster:
     seen = raster.read(1)

@@ -365,8 +365,14 @@ def test_a_line_of_sight_is_the_same_on_the_page(scene, ask_program, ask_page, s
     assert of_page["answer"] == summary["line"]["answer"]
     assert (of_page["first_block"] or {}).get("range_m") == summary["line"].get("first_block_range_m")
     assert of_page["unproven_m"] == summary["line"].get("unproven_m")
-    of_python = scene.line_of_sight(observer, target)
-    assert of_python.answer.name.lower() == of_page["answer"]
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        of_python = scene.line_of_sight(observer, target)
+    # half a metre above the ground the target is inside an obstacle
+    is_inside = rise == 0.5
+    assert [one.message.key for one in caught] == ["end-inside-obstacle"] * is_inside
+    assert (of_python.answer is belvedere.Answer.INSIDE_OBSTACLE) is is_inside
+    assert of_page["answer"] == ("inside an obstacle" if is_inside else of_python.answer.name.lower())
     assert said(of_page["remarks"]) == said(summary.get("remarks", [])) == said(of_python.remarks)
 
 
@@ -494,12 +500,15 @@ def test_nothing_to_clear_is_said_on_every_face(scene, cloud, ask_program, ask_p
 
 def test_targets_and_eyes_outside_the_cloud_are_said_by_program_and_python(scene, cloud, ask_program, folder, standing):
     x, y = standing
-    z = float(cloud.xyz[:, 2].max())
-    far = [float(v) for v in cloud.bounds[1] + [700, 0, 0]]
-    places = [(x, y, z), far, (x + 1, y, z)]
+    top = float(cloud.xyz[:, 2].max())
+    far = [float(v) for v in cloud.bounds[1] + [700, 0, -5]]
+    places = [(x, y, top), far, (x + 1, y, top)]
     (folder / "far.csv").write_text("x,y,z\n" + "".join(f"{a},{b},{c}\n" for a, b, c in places))
-    for eye in [(x, y, z + 5), far]:
+    # far away, below the top of the cloud, nothing is known; in the air above the top, lines of sight may end
+    beside = (*far[:2], top + 5)
+    for eye, key in [((x, y, top + 5), None), (far, "eye-outside-cloud"), (beside, "eye-beside-cloud")]:
         typed = ",".join(map(str, eye))
         summary = ask_program("query", "tile.laz", "--panorama", typed, "--targets", "far.csv", "-o", "far_seen.csv")
+        assert [one["key"] for one in summary["remarks"] if one["key"].startswith("eye-")] == [key] * (key is not None)
         of_program = sorted(warnings_of(summary["remarks"]))
         assert of_program and sorted(warned_of(lambda eye=eye: scene.visible(eye, places))) == of_program

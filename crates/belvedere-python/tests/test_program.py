@@ -253,8 +253,13 @@ def test_lines_of_sight(scene, run_program, folder, eye, targets):
     table.to_csv(folder / "pairs.csv", header=["ax", "ay", "az", "bx", "by", "bz"], index=False)
     run_program("line-of-sight", "tile.laz", "--pairs", "pairs.csv", "-o", "sights.csv")
     theirs = pandas.read_csv(folder / "sights.csv")
-    ours = scene.line_of_sight(eye, targets).to_pandas()
+    # half a metre above a point of a crown or below a roof is inside of it
+    with pytest.warns(belvedere.BelvedereWarning, match="have an end inside an obstacle") as caught:
+        sights = scene.line_of_sight(eye, targets)
+    ours = sights.to_pandas()
     assert (ours["answer"] == theirs["answer"]).all()
+    assert [one.message.key for one in caught] == ["lines-inside-obstacle"]
+    assert caught[0].message.numbers["count"] == (ours["answer"] == belvedere.Answer.INSIDE_OBSTACLE).sum()
     for name in ("first_block_range_m", "unproven_m", "block_x", "block_y", "block_z"):
         assert np.allclose(ours[name], theirs[name], rtol=0, atol=6e-4, equal_nan=True), name
     assert (ours["block_ball"] == theirs["block_ball"].fillna(-1)).all()
@@ -266,7 +271,11 @@ def test_lines_of_sight_without_heights(scene, run_program, folder, standing, ta
     pandas.DataFrame(flat).to_csv(folder / "flat.csv", header=["ax", "ay", "bx", "by"], index=False)
     run_program("line-of-sight", "tile.laz", "--pairs", "flat.csv", "--target-height", 1, "-o", "flat-sights.csv")
     theirs = pandas.read_csv(folder / "flat-sights.csv")
-    ours = scene.line_of_sight(standing, targets[:, :2], target_height=1)
+    # a metre above the ground, below roofs and crowns
+    with pytest.warns(belvedere.BelvedereWarning, match="have an end inside an obstacle") as caught:
+        ours = scene.line_of_sight(standing, targets[:, :2], target_height=1)
+    assert [one.message.key for one in caught] == ["lines-inside-obstacle"]
+    assert caught[0].message.numbers["count"] == (ours["answer"] == belvedere.Answer.INSIDE_OBSTACLE).sum()
     assert np.abs(ours.places[:, 2] - theirs["bz"]).max() < 6e-5
     assert (ours["answer"] == theirs["answer"]).all() and len(set(ours["answer"])) > 1
 

@@ -154,8 +154,9 @@ class Sights:
         -------
         Sight or Table
             A `Sight` for one pair. For several a `Table` with ``answer``, ``first_block_range_m``, ``unproven_m``
-            (where pulses are known), ``fresnel_free_percent`` (with a frequency), ``block`` (N, 3), ``block_ball``,
-            ``block_source`` (-1 where no ball blocks) and ``block_terrain`` (with terrain).
+            (where pulses are known), ``fresnel_free_percent`` (with a frequency), ``block_x``, ``block_y``, ``block_z``
+            (together ``block``, (N, 3)), ``block_ball``, ``block_source`` (-1 where no ball blocks) and
+            ``block_terrain`` (with terrain).
 
         Raises
         ------
@@ -165,12 +166,13 @@ class Sights:
         Warns
         -----
         BelvedereWarning
-            Of lines with an end outside the cloud, and of ends without known ground.
+            Of lines with an end outside the cloud or inside an obstacle, and of ends without known ground.
 
         Examples
         --------
         >>> scene.line_of_sight(eye, targets)
-        <belvedere.Table: ... rows of answer, first_block_range_m, unproven_m, block, block_ball, block_source>
+        <belvedere.Table: ... rows of answer, first_block_range_m, unproven_m, block_x, block_y, block_z,
+        block_ball, block_source>
         """
         check_finite(refraction=refraction, frequency_ghz=frequency_ghz)
         check_finite(observer_height=observer_height, target_height=target_height)
