@@ -149,6 +149,16 @@ impl BlockRule {
     #[must_use]
     #[inline]
     pub fn blocks_line(&self, ball: Ball, target: [f64; 3], towards: [f64; 3], reach: f64) -> Option<f64> {
+        self.blocked_piece(ball, target, towards, reach).map(|[_, leaves]| leaves.min(reach))
+    }
+
+    /// The piece of the line of sight from `target` along `towards` to `reach` metres that a ball blocks: where the
+    /// line enters and leaves the ball, which may lie beyond the ends, metres from the target; `None` for a ball that
+    /// does not block. Which end is the target changes the answer by no more than what is rounded, and not at all where
+    /// lines are given as [`Ray::between`](crate::ray_index::Ray::between) gives them.
+    #[must_use]
+    #[inline]
+    pub fn blocked_piece(&self, ball: Ball, target: [f64; 3], towards: [f64; 3], reach: f64) -> Option<[f64; 2]> {
         let whole = f64::from(ball.radius);
         let LinePassing { along, beside_square, origin_square } = LinePassing::new(ball.center, target, towards);
         if beside_square >= whole * whole {
@@ -161,7 +171,7 @@ impl BlockRule {
             return None;
         }
         let half = self.half_chord(radius, beside_square);
-        (half + along > self.bias && half + before_viewer > self.bias).then(|| (along + half).min(reach))
+        (half + along > self.bias && half + before_viewer > self.bias).then_some([along - half, along + half])
     }
 
     /// As [`BlockRule::blocks_line`], for a line that a picture plane or a near limit cuts `reach` metres from the
@@ -177,12 +187,12 @@ impl BlockRule {
         self.blocks_line(ball, target, towards, f64::INFINITY)
     }
 
-    /// Where a chord of a curved line of sight leaves a ball that blocks it, metres from its start, or its end where
-    /// the ball reaches past it. Balls may reach over both ends of a chord; viewer and target are those of the whole
-    /// line.
+    /// The piece of a chord of a curved line of sight that a ball blocks: where the chord enters and leaves the ball,
+    /// which may lie beyond its ends, metres from its start; `None` for a ball that does not block. Viewer and target
+    /// are those of the whole line.
     #[must_use]
     #[inline]
-    pub fn blocks_chord(&self, ball: Ball, chord: &Chord) -> Option<f64> {
+    pub fn blocks_chord(&self, ball: Ball, chord: &Chord) -> Option<[f64; 2]> {
         let whole = f64::from(ball.radius);
         let [to_target, to_observer] = [chord.target, chord.observer].map(|end| ball.distance_to(end));
         let radius = self.radius_for(whole, to_target).min(self.radius_for(whole, to_observer));
@@ -192,7 +202,7 @@ impl BlockRule {
         }
         let half = self.half_chord(radius, beside_square);
         let [from, to] = chord.ranges;
-        (along - half < to && along + half > from).then(|| (along + half).min(to))
+        (along - half < to && along + half > from).then_some([along - half, along + half])
     }
 
     /// Where a viewer at `eye` who looks along `direction` meets a ball, metres from the eye; `None` for a ball that

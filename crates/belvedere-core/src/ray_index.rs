@@ -10,7 +10,7 @@ pub(crate) use opened::{OpenNode, PartSides};
 pub(crate) use walk::Visit;
 
 use crate::instructions::Instructions;
-use belvedere_data::vector::unit;
+use belvedere_data::vector::{dot, length, sub, unit};
 use belvedere_data::{Error, Parameter, Result};
 use obvhs::aabb::Aabb;
 use obvhs::cwbvh::CwBvh;
@@ -46,11 +46,31 @@ impl Ray {
         usable.then_some(Self { origin, direction: unit(direction)?, ranges })
     }
 
+    /// The ray between two ends, `None` as for [`Ray::new`]. It starts at the end that [`in_order`] puts first, so that
+    /// it is the same to the last bit whichever end is given first.
+    #[must_use]
+    pub fn between(a: [f64; 3], b: [f64; 3]) -> Option<Self> {
+        let [from, to] = in_order([a, b]);
+        let across = sub(to, from);
+        Self::new(from, across, [0.0, length(across)])
+    }
+
     /// The point at `range`.
     #[must_use]
     pub fn at(&self, range: f64) -> [f64; 3] {
         std::array::from_fn(|i| self.origin[i] + range * self.direction[i])
     }
+}
+
+/// Two ends of a line in the one order in which it is looked at: first the one nearer to the local origin, since less is
+/// rounded from there than from a viewer far away; by x, then y, then z where both are equally far.
+///
+/// What is rounded depends on the end from which a line is looked at. With one order for all, who looks and what is
+/// looked at can change places, and no answer changes.
+#[must_use]
+pub fn in_order([a, b]: [[f64; 3]; 2]) -> [[f64; 3]; 2] {
+    let key = |end: [f64; 3]| (dot(end, end), end);
+    if key(b) < key(a) { [b, a] } else { [a, b] }
 }
 
 /// Boxes in a tree. It proposes boxes that a ray may meet and leaves the exact test to the caller, so that results

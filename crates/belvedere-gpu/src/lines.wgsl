@@ -168,9 +168,10 @@ fn line(place: vec3<f32>, sight: Sight) -> u32 {
     }
     let inverse = vec3<f32>(along_axis(sight.towards.x), along_axis(sight.towards.y), along_axis(sight.towards.z));
     let widening = scene.widening * abs(inverse);
-    // ranges before the bias and behind the viewer do not count; a metre more does not matter
+    // ranges nearer to an end than the bias do not count, beyond both ends where it is below zero; a metre more does not
+    // matter
     let begin = scene.bias_low - 1.0;
-    let end = sight.reach.y + 1.0;
+    let end = sight.reach.y + 1.0 - min(scene.bias_low, 0.0);
     var state = FREE;
     var stack: array<vec2<u32>, STACK>;
     var height = 0u;

@@ -203,6 +203,18 @@ impl AddedMeshes {
         self.tree.any(ray, |row| self.is_between(row, ends))
     }
 
+    /// The mesh that the piece `ray` of a line of sight between `ends` meets last, by its number, and the range.
+    pub(super) fn farthest(&self, ray: &Ray, ends: &LineEnds) -> Option<(usize, f64)> {
+        let mut last: Option<(usize, f64)> = None;
+        self.tree.each(ray, |row, range| {
+            if self.is_between(row, ends) && last.is_none_or(|(_, farthest)| range > farthest) {
+                last = Some((row, range));
+            }
+        });
+        let (row, range) = last?;
+        Some((self.faces.get(row)?.mesh as usize, range))
+    }
+
     /// The mesh that the piece `ray` of a line of sight between `ends` meets first, by its number, and the range.
     pub(super) fn nearest(&self, ray: &Ray, ends: &LineEnds) -> Option<(usize, f64)> {
         let (row, range) = self.tree.nearest(ray, |row| self.is_between(row, ends))?;

@@ -121,8 +121,19 @@ impl BallTree {
     /// Where a line of sight leaves the ball of a row, metres from its target, if that ball blocks it.
     #[inline]
     pub(super) fn front(&self, row: usize, ray: &Ray) -> Option<f64> {
-        let reach = ray.ranges[1] + self.rule.bias.min(0.0);
-        self.rule.blocks_line(*self.balls.get(row)?, ray.origin, ray.direction, reach)
+        self.rule.blocks_line(*self.balls.get(row)?, ray.origin, ray.direction, self.reach(ray))
+    }
+
+    /// The piece of a line of sight that the ball of a row blocks, as [`BlockRule::blocked_piece`] gives it.
+    #[inline]
+    pub(super) fn blocked_piece(&self, row: usize, ray: &Ray) -> Option<[f64; 2]> {
+        self.rule.blocked_piece(*self.balls.get(row)?, ray.origin, ray.direction, self.reach(ray))
+    }
+
+    /// How far a line of sight of `BallTree::ray` reaches, metres.
+    #[inline]
+    fn reach(&self, ray: &Ray) -> f64 {
+        ray.ranges[1] + self.rule.bias.min(0.0)
     }
 
     /// Whether any ball blocks a line of sight.

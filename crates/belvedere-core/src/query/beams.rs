@@ -18,9 +18,9 @@ use super::backend::{LineAnswer, Settled, Viewers};
 use super::medial_scene::MedialScene;
 use super::target_tree::TargetTree;
 use super::{Answer, Viewer};
+use crate::ray_index::Ray;
 use belvedere_data::Result;
 use belvedere_data::control::Control;
-use belvedere_data::vector::sub;
 use rayon::prelude::*;
 use sweep::TreeSweep;
 
@@ -64,11 +64,11 @@ impl MedialScene {
                 places
                     .map(|place| {
                         let target = targets.positions()[place];
-                        let answer = match viewer.line_of_sight(place, target) {
+                        let answer = match viewer.sight(place, target) {
                             _ if eye_outside || self.is_outside_cloud(target.map(f64::from)) => Answer::OutsideCloud,
                             None => Answer::OutsideView,
                             Some(_) if !seen[place - first] => Answer::Blocked,
-                            Some((towards, range)) => self.answer_unblocked(target.map(f64::from), towards, range),
+                            Some(sight) => self.answer_unblocked(sight.origin, sight.direction, sight.ranges[1]),
                         };
                         Ok((targets.rows()[place], answer))
                     })
@@ -158,11 +158,11 @@ impl MedialScene {
     /// Whether no ball blocks the line of sight of a target of which `line` is known; true for one at the viewer
     /// itself.
     pub(super) fn sees(&self, viewer: Viewer<'_>, target: [f32; 3], line: LineAnswer) -> bool {
-        match (line, viewer.line_of_sight(0, target)) {
+        match (line, viewer.sight(0, target)) {
             (LineAnswer::Free, _) | (LineAnswer::Open, None) => true,
             (LineAnswer::Blocked, _) => false,
-            (LineAnswer::Open, Some((towards, range))) => {
-                !self.tree().blocks(&self.ray(target.map(f64::from), towards, range))
+            (LineAnswer::Open, Some(sight)) => {
+                !self.tree().blocks(&self.ray(sight.origin, sight.direction, sight.ranges[1]))
             }
         }
     }
@@ -171,8 +171,8 @@ impl MedialScene {
     fn is_hidden_otherwise(&self, viewer: Viewer<'_>, target: [f32; 3]) -> bool {
         let is_hidden = (self.added.is_some() || !self.far_terrain.is_empty())
             && viewer
-                .line_of_sight(0, target)
-                .is_some_and(|(towards, range)| self.is_behind_others(target.map(f64::from), towards, range));
+                .sight(0, target)
+                .is_some_and(|sight| self.is_behind_others(sight.origin, sight.direction, sight.ranges[1]));
         is_hidden || self.is_outside_cloud(target.map(f64::from))
     }
 
@@ -180,10 +180,9 @@ impl MedialScene {
     /// [`Answer::OutsideView`] where the two are one.
     #[must_use]
     pub fn answer_unblocked_from(&self, eye: [f64; 3], target: [f64; 3]) -> Answer {
-        let towards = sub(eye, target);
-        match belvedere_data::vector::unit(towards) {
+        match Ray::between(eye, target) {
             None => Answer::OutsideView,
-            Some(unit) => self.answer_unblocked(target, unit, belvedere_data::vector::length(towards)),
+            Some(sight) => self.answer_unblocked(sight.origin, sight.direction, sight.ranges[1]),
         }
     }
 }

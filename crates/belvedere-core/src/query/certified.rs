@@ -3,6 +3,7 @@
 use super::{Answer, MedialScene, Viewer};
 use crate::blocking::Profile;
 use crate::depth::DepthBounds;
+use crate::ray_index::Ray;
 use belvedere_data::control::Control;
 use belvedere_data::view::{Projection, View};
 use belvedere_data::{Error, Parameter, Result};
@@ -70,10 +71,7 @@ impl MedialScene {
             let (answers, report) = CertifiedMap::new(self, views, scope, control)?.answers(targets, control)?;
             return Ok((answers, Some(report)));
         }
-        let answer = |_, target: [f32; 3]| {
-            let line = line_of_sight(views.iter(), scope, target)?;
-            Some(self.answer_of(target.map(f64::from), &line))
-        };
+        let answer = |_, target: [f32; 3]| Some(self.answer_of(&line_of_sight(views.iter(), scope, target)?));
         let answers = self.answer_by(targets, control, answer)?;
         let answers = match views.first() {
             Some(view) => self.marked(viewer_of(view), targets, answers),
@@ -101,10 +99,8 @@ fn check_views(views: &[View]) -> Result<()> {
 /// The line of sight of a target in a view.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct LineInView {
-    /// Unit vector towards the viewer.
-    pub(super) towards: [f64; 3],
-    /// How far away it ends, metres.
-    pub(super) range: f64,
+    /// All of it, from the target on where it ends at a plane.
+    pub(super) sight: Ray,
     /// Where it ends.
     pub(super) end: LineEnd,
 }
@@ -119,8 +115,8 @@ pub(super) enum LineEnd {
 }
 
 impl LineInView {
-    fn to_viewer((towards, range): ([f64; 3], f64)) -> Self {
-        Self { towards, range, end: LineEnd::Viewer }
+    fn to_viewer(sight: Ray) -> Self {
+        Self { sight, end: LineEnd::Viewer }
     }
 }
 
@@ -128,9 +124,7 @@ impl LineInView {
 fn line_of_sight<'v>(mut views: impl Iterator<Item = &'v View>, scope: Scope, target: [f32; 3]) -> Option<LineInView> {
     match scope {
         Scope::View => views.find_map(|view| line_in_view(view, target)),
-        Scope::Viewer => {
-            views.next().and_then(|view| viewer_of(view).line_of_sight(0, target)).map(LineInView::to_viewer)
-        }
+        Scope::Viewer => views.next().and_then(|view| viewer_of(view).sight(0, target)).map(LineInView::to_viewer),
     }
 }
 
@@ -198,19 +192,19 @@ impl<'a> CertifiedMap<'a> {
     fn answer(&self, target: [f32; 3]) -> (Answer, BoundCheck) {
         let line = line_of_sight(self.bounds.iter().map(|bounds| &bounds.view), self.scope, target);
         let Some(line) = line else { return (Answer::OutsideView, BoundCheck::Settled) };
-        let position = target.map(f64::from);
         let bias = self.scene.params().bias;
         // a bias below zero lets balls behind an eye block, and one above lets those just before it block nothing
-        let is_eye = line.end == LineEnd::Viewer && line.range.is_finite();
+        let Ray { origin, direction, ranges: [_, range] } = line.sight;
+        let is_eye = line.end == LineEnd::Viewer && range.is_finite();
         match self.bounds.iter().find_map(|bounds| self.bracket(bounds, target)) {
             Some((depth, [lower, _])) if depth < lower && (bias >= 0.0 || !is_eye) => {
-                (self.scene.answer_unblocked(position, line.towards, line.range), BoundCheck::Settled)
+                (self.scene.answer_unblocked(origin, direction, range), BoundCheck::Settled)
             }
             // before its surface a target may lie in the shell of a ball that reaches past it
             Some((depth, [_, upper])) if depth > upper && bias >= 0.0 && (upper > bias || !is_eye) => {
                 (Answer::Blocked, BoundCheck::Settled)
             }
-            _ => (self.scene.answer_of(position, &line), BoundCheck::ByLineOfSight),
+            _ => (self.scene.answer_of(&line), BoundCheck::ByLineOfSight),
         }
     }
 
@@ -260,16 +254,20 @@ pub(super) fn line_in_view(view: &View, target: [f32; 3]) -> Option<LineInView> 
     if !depth.is_finite() {
         return None;
     }
-    let to_eye = || viewer_of(view).line_of_sight(0, target).map(LineInView::to_viewer);
-    let up_to = |line: LineInView, limit: f64| match limit > 0.0 {
-        true => LineInView { range: line.range - limit, end: LineEnd::Plane, ..line },
-        false => line,
+    let to_plane = |direction: [f64; 3], range: f64| LineInView {
+        sight: Ray { origin: target.map(f64::from), direction, ranges: [0.0, range] },
+        end: LineEnd::Plane,
+    };
+    let to_near = |near: f64, range_per_depth: &dyn Fn(f64) -> f64| {
+        if near > 0.0 {
+            let (towards, range) = viewer_of(view).line_of_sight(0, target)?;
+            return Some(to_plane(towards, range - near * range_per_depth(range)));
+        }
+        viewer_of(view).sight(0, target).map(LineInView::to_viewer)
     };
     match view.projection {
-        Projection::Orthographic { .. } => {
-            Some(LineInView { towards: view.frame.forward.map(|v| -v), range: depth, end: LineEnd::Plane })
-        }
-        Projection::Perspective { near, .. } => to_eye().map(|line| up_to(line, near * (line.range / depth))),
-        Projection::Hemispherical { near, .. } => to_eye().map(|line| up_to(line, near)),
+        Projection::Orthographic { .. } => Some(to_plane(view.frame.forward.map(|v| -v), depth)),
+        Projection::Perspective { near, .. } => to_near(near, &|range| range / depth),
+        Projection::Hemispherical { near, .. } => to_near(near, &|_| 1.0),
     }
 }

@@ -26,8 +26,8 @@ impl<'a> FarLine<'a> {
         Some(Self { observer, target, along: across.map(|v| v / span), span, tangent, earth })
     }
 
-    pub(super) fn ends(&self) -> ([f64; 3], [f64; 3]) {
-        (self.observer, self.target)
+    pub(super) fn ends(&self) -> [[f64; 3]; 2] {
+        [self.observer, self.target]
     }
 
     /// Its place `span` metres from the observer on the map.

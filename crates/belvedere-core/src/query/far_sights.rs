@@ -3,6 +3,7 @@
 use super::far_line::FarLine;
 use super::far_terrain::piece_over;
 use super::{Answer, Blocker, EarthParams, LineOfSight, MedialScene, Obstruction};
+use crate::ray_index::in_order;
 use belvedere_data::vector::{length, sub};
 
 impl MedialScene {
@@ -37,7 +38,8 @@ impl MedialScene {
     /// has no distances, is not considered.
     #[must_use]
     pub fn far_sight_answer(&self, observer: [f64; 3], target: [f64; 3], earth: &EarthParams) -> Answer {
-        let Some(line) = FarLine::new(observer, target, earth) else { return Answer::OutsideView };
+        let [first, second] = in_order([observer, target]);
+        let Some(line) = FarLine::new(first, second, earth) else { return Answer::OutsideView };
         if self.far_terrain.blocks_sight(&line) {
             return Answer::Blocked;
         }
@@ -56,10 +58,16 @@ impl MedialScene {
         earth: &EarthParams,
     ) -> Option<LineOfSight> {
         let line = FarLine::new(observer, target, earth)?;
-        let terrain = self.far_terrain.meets_sight(&line);
+        // whether it is blocked does not depend on who looks, what blocks first does
+        let ends = in_order([observer, target]);
+        let ordered = FarLine::new(ends[0], ends[1], earth)?;
+        let terrain = self.far_terrain.meets_sight(&ordered).map(|span| {
+            let mirrored = if observer == ends[0] { span } else { line.span - span };
+            self.far_terrain.meets_sight(&line).unwrap_or(mirrored)
+        });
         let free = LineOfSight { answer: Answer::Visible, first_block: None, unproven_length: 0.0 };
-        let mut sight = match self.corners_over_cloud(&line) {
-            Some(corners) => self.sight_on_chords(line.ends(), &corners),
+        let mut sight = match self.corners_over_cloud(&ordered) {
+            Some(corners) => self.sight_on_chords(observer, ends, &corners),
             None => free,
         };
         if let Some(span) = terrain

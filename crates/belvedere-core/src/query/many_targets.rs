@@ -48,10 +48,7 @@ impl MedialScene {
             Viewer::Direction(to_viewer) if targets.len() >= MAP_FROM && self.params().profile == Profile::Sphere => {
                 self.visible_by_map(to_viewer, targets, control)
             }
-            _ => {
-                let line = |number, target| viewer.line_of_sight(number, target);
-                Ok(self.marked(viewer, targets, self.answer_each(targets, control, line)?))
-            }
+            _ => Ok(self.marked(viewer, targets, self.answer_each(viewer, targets, control)?)),
         }
     }
 
@@ -79,8 +76,7 @@ impl MedialScene {
     /// The answers for one direction by bounds of depth, for spheres.
     fn visible_by_map(&self, to_viewer: [f64; 3], targets: &[[f32; 3]], control: &Control<'_>) -> Result<Vec<Answer>> {
         if self.ball_count() == 0 {
-            let viewer = Viewer::Direction(to_viewer);
-            return self.answer_each(targets, control, |number, target| viewer.line_of_sight(number, target));
+            return self.answer_each(Viewer::Direction(to_viewer), targets, control);
         }
         let index = self.tree().index();
         let corner = |sign: f64| std::array::from_fn(|i| index.center()[i] + sign * index.half_size()[i]);

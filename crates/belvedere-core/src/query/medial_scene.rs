@@ -237,13 +237,13 @@ impl MedialScene {
 
     /// As [`MedialScene::answer`] where the line ends at a viewer; where it ends at a picture plane or a near limit,
     /// balls that reach past that block nothing.
-    pub(super) fn answer_of(&self, target: [f64; 3], line: &LineInView) -> Answer {
-        let &LineInView { towards, range, end } = line;
+    pub(super) fn answer_of(&self, line: &LineInView) -> Answer {
+        let &LineInView { sight: Ray { origin, direction, ranges: [_, range] }, end } = line;
         let is_blocked = match end {
-            LineEnd::Viewer => self.tree.blocks(&self.tree.ray(target, towards, range)),
-            LineEnd::Plane => self.tree.blocks_before_plane(target, towards, range),
+            LineEnd::Viewer => self.tree.blocks(&self.tree.ray(origin, direction, range)),
+            LineEnd::Plane => self.tree.blocks_before_plane(origin, direction, range),
         };
-        if is_blocked { Answer::Blocked } else { self.answer_unblocked(target, towards, range) }
+        if is_blocked { Answer::Blocked } else { self.answer_unblocked(origin, direction, range) }
     }
 
     /// The answer for a line of sight of which it is known that no ball blocks it.
@@ -284,17 +284,17 @@ impl MedialScene {
         self.tree.balls().par_iter().with_min_len(CHUNK).filter(|ball| ball.depth_of(eye) >= 0.0).count()
     }
 
-    /// The answer for each of `targets`, (M, 3) local metres, by an exact line of sight: `line` gives the unit vector
-    /// to the viewer and its range for the target of a number, `None` for one that has no line of sight.
+    /// The answer for each of `targets`, (M, 3) local metres, seen by `viewer`, by an exact line of sight; the cloud is
+    /// not considered.
     pub(super) fn answer_each(
         &self,
+        viewer: Viewer<'_>,
         targets: &[[f32; 3]],
         control: &Control<'_>,
-        line: impl Fn(usize, [f32; 3]) -> Option<([f64; 3], f64)> + Sync,
     ) -> Result<Vec<Answer>> {
         self.answer_by(targets, control, |number, target| {
-            let (towards, range) = line(number, target)?;
-            Some(self.answer(target.map(f64::from), towards, range))
+            let Ray { origin, direction, ranges: [_, range] } = viewer.sight(number, target)?;
+            Some(self.answer(origin, direction, range))
         })
     }
 
@@ -328,7 +328,7 @@ impl MedialScene {
     /// # Errors
     /// [`Error::Cancelled`].
     pub fn query_view(&self, view: &View, targets: &[[f32; 3]], control: &Control<'_>) -> Result<Vec<Answer>> {
-        let answer = |_, target: [f32; 3]| Some(self.answer_of(target.map(f64::from), &line_in_view(view, target)?));
+        let answer = |_, target: [f32; 3]| Some(self.answer_of(&line_in_view(view, target)?));
         let answers = self.answer_by(targets, control, answer)?;
         Ok(self.marked(viewer_of(view), targets, answers))
     }
@@ -395,8 +395,7 @@ impl Visibility for MedialScene {
         viewer.validate()?;
         Ok(Box::new(move |targets| {
             viewer.validate_count(targets)?;
-            let line = |number, target| viewer.line_of_sight(number, target);
-            Ok(self.marked(viewer, targets, self.answer_each(targets, &Control::none(), line)?))
+            Ok(self.marked(viewer, targets, self.answer_each(viewer, targets, &Control::none())?))
         }))
     }
 }

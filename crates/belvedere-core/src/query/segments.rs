@@ -5,11 +5,11 @@ use super::ball_tree::PROBE;
 use super::medial_scene::nearer;
 use super::{Answer, EarthParams, MedialScene};
 use crate::blocking::Chord;
-use crate::ray_index::Ray;
+use crate::ray_index::{Ray, in_order};
 use crate::triangle_tree::Corners;
 use belvedere_data::Result;
 use belvedere_data::control::Control;
-use belvedere_data::vector::{length, sub, unit};
+use belvedere_data::vector::{length, sub};
 use rayon::prelude::*;
 
 /// Pairs handed to a thread at once.
@@ -82,25 +82,25 @@ pub struct Enclosure {
     pub depth: f64,
 }
 
-/// A piece of a line of sight between two points.
+/// A piece of a line of sight between two ends.
 struct LinePiece {
-    /// From the end nearer to the target towards the observer: all of it.
+    /// All of it, from the side of the end that [`in_order`] puts first.
     ray: Ray,
-    /// Ranges in which balls count: less the bias where it reaches an end of the whole line.
-    counted: [f64; 2],
-    /// Ends of the whole line.
-    target: [f64; 3],
-    observer: [f64; 3],
+    /// The ranges in which balls count: less the bias where it reaches an end of the whole line.
+    for_balls: Ray,
+    /// Whether it is the whole line.
+    is_whole: bool,
+    /// Ends of the whole line, in order.
+    ends: [[f64; 3]; 2],
 }
 
 impl LinePiece {
-    fn ends(&self) -> LineEnds {
-        LineEnds { target: self.target, viewer: Some(self.observer) }
+    fn line_ends(&self) -> LineEnds {
+        LineEnds { target: self.ends[0], viewer: Some(self.ends[1]) }
     }
 
-    /// What is looked at for balls.
-    fn for_balls(&self) -> Ray {
-        Ray { ranges: self.counted, ..self.ray }
+    fn length(&self) -> f64 {
+        self.ray.ranges[1]
     }
 }
 
@@ -117,7 +117,7 @@ impl MedialScene {
     /// [`MedialScene::far_sight_answer`]: `None` also where one end is above the other.
     #[must_use]
     pub fn line_of_sight(&self, observer: [f64; 3], target: [f64; 3], earth: &EarthParams) -> Option<LineOfSight> {
-        let straight = Ray::new(target, sub(observer, target), [0.0, length(sub(observer, target))])?;
+        Ray::between(observer, target)?;
         if self.leaves_cloud([observer, target]) {
             return self.far_line_of_sight(observer, target, earth);
         }
@@ -125,39 +125,33 @@ impl MedialScene {
             let answer = Answer::OutsideCloud;
             return Some(LineOfSight { answer, first_block: None, unproven_length: f64::NAN });
         }
-        let pieces = if earth.bends(target, observer) {
-            self.pieces(observer, target, earth)
-        } else {
-            let counted = self.ray(target, straight.direction, straight.ranges[1]).ranges;
-            vec![(LinePiece { ray: straight, counted, target, observer }, 0.0)]
-        };
-        Some(self.sight_on_pieces(&pieces, pieces.len() == 1))
+        let ends = in_order([observer, target]);
+        Some(self.sight_on_chords(observer, ends, &earth.corners(ends[0], ends[1])))
     }
 
-    /// What is known of the part of a line of sight that [`MedialScene::answer_on_chords`] answers.
-    pub(super) fn sight_on_chords(
-        &self,
-        (observer, target): ([f64; 3], [f64; 3]),
-        corners: &[[f64; 3]],
-    ) -> LineOfSight {
-        self.sight_on_pieces(&self.chords(observer, target, corners), false)
-    }
-
-    fn sight_on_pieces(&self, pieces: &[(LinePiece, f64)], whole: bool) -> LineOfSight {
-        for (piece, passed) in pieces {
-            if let Some((blocker, from_observer)) = self.first_on(piece, whole) {
-                let place = piece.ray.at(piece.ray.ranges[1] - from_observer);
-                let block = Obstruction { range: passed + from_observer, blocker, place };
-                let answer = self.blocked_between([piece.observer, piece.target]);
+    /// What `observer` knows of the part of a line of sight that [`MedialScene::answer_on_chords`] answers.
+    pub(super) fn sight_on_chords(&self, observer: [f64; 3], ends: [[f64; 3]; 2], corners: &[[f64; 3]]) -> LineOfSight {
+        let pieces = self.chords(ends, corners);
+        let is_from_start = observer == ends[0];
+        let mut from_observer: Vec<&LinePiece> = pieces.iter().collect();
+        if !is_from_start {
+            from_observer.reverse();
+        }
+        let mut passed = 0.0;
+        for piece in from_observer {
+            if let Some((blocker, range)) = self.first_on(piece, is_from_start) {
+                let place = piece.ray.at(if is_from_start { range } else { piece.length() - range });
+                let block = Obstruction { range: passed + range, blocker, place };
+                let answer = self.blocked_between(ends);
                 return LineOfSight { answer, first_block: Some(block), unproven_length: 0.0 };
             }
+            passed += piece.length();
         }
         let Some(proof) = &self.proof else {
             return LineOfSight { answer: Answer::Visible, first_block: None, unproven_length: 0.0 };
         };
-        let unseen = |(piece, _): &(LinePiece, f64)| {
-            self.unproven_length(proof, piece.ray.origin, piece.ray.direction, piece.ray.ranges[1])
-        };
+        let unseen =
+            |piece: &LinePiece| self.unproven_length(proof, piece.ray.origin, piece.ray.direction, piece.length());
         let unproven_length = pieces.iter().map(unseen).sum();
         let answer = if unproven_length > proof.tolerance() { Answer::Unproven } else { Answer::Visible };
         LineOfSight { answer, first_block: None, unproven_length }
@@ -187,8 +181,7 @@ impl MedialScene {
     /// is not finite or is the observer's own.
     #[must_use]
     pub fn sight_answer(&self, observer: [f64; 3], target: [f64; 3], earth: &EarthParams) -> Answer {
-        let range = length(sub(observer, target));
-        let Some(ray) = Ray::new(target, sub(observer, target), [0.0, range]) else { return Answer::OutsideView };
+        let Some(ray) = Ray::between(observer, target) else { return Answer::OutsideView };
         if self.leaves_cloud([observer, target]) {
             return self.far_sight_answer(observer, target, earth);
         }
@@ -196,29 +189,31 @@ impl MedialScene {
             return Answer::OutsideCloud;
         }
         if !earth.bends(target, observer) {
-            return match self.answer(target, ray.direction, range) {
+            return match self.answer(ray.origin, ray.direction, ray.ranges[1]) {
                 Answer::Blocked => self.blocked_between([observer, target]),
                 answer => answer,
             };
         }
-        self.answer_on_chords((observer, target), &earth.corners(observer, target))
+        let ends = in_order([observer, target]);
+        self.answer_on_chords(ends, &earth.corners(ends[0], ends[1]))
     }
 
-    /// The answer for the part of a line of sight between two ends, the observer first, that runs along chords through
-    /// `corners`, from the observer's side on. The rules for the ends are applied to the whole line.
-    pub(super) fn answer_on_chords(&self, (observer, target): ([f64; 3], [f64; 3]), corners: &[[f64; 3]]) -> Answer {
-        let pieces = self.chords(observer, target, corners);
+    /// The answer for the part of a line of sight between two ends, given in order ([`in_order`]), that runs along
+    /// chords through `corners`, from the side of the first end on. The rules for the ends are applied to the whole
+    /// line.
+    pub(super) fn answer_on_chords(&self, ends: [[f64; 3]; 2], corners: &[[f64; 3]]) -> Answer {
+        let pieces = self.chords(ends, corners);
         let is_blocked = |piece: &LinePiece| {
-            self.tree().index().any(&piece.for_balls(), |number| self.front_on(number, piece).is_some())
-                || self.added().is_some_and(|added| added.blocks_piece(&piece.ray, &piece.ends()))
+            self.tree().index().any(&piece.for_balls, |number| self.blocked_on(number, piece).is_some())
+                || self.added().is_some_and(|added| added.blocks_piece(&piece.ray, &piece.line_ends()))
         };
-        if pieces.iter().any(|(piece, _)| is_blocked(piece)) {
-            return self.blocked_between([observer, target]);
+        if pieces.iter().any(is_blocked) {
+            return self.blocked_between(ends);
         }
         let Some(proof) = &self.proof else { return Answer::Visible };
         let mut unseen = 0.0;
-        for (piece, _) in &pieces {
-            unseen += self.unproven_length(proof, piece.ray.origin, piece.ray.direction, piece.ray.ranges[1]);
+        for piece in &pieces {
+            unseen += self.unproven_length(proof, piece.ray.origin, piece.ray.direction, piece.length());
             if unseen > proof.tolerance() {
                 return Answer::Unproven;
             }
@@ -300,18 +295,9 @@ impl MedialScene {
         earth: &EarthParams,
         mut visit: impl FnMut(usize),
     ) {
-        if earth.bends(target, observer) {
-            for (piece, _) in self.pieces(observer, target, earth) {
-                self.tree().index().each(&piece.for_balls(), |number| {
-                    if self.front_on(number, &piece).is_some() {
-                        visit(number);
-                    }
-                });
-            }
-        } else if let Some(towards) = unit(sub(observer, target)) {
-            let ray = self.ray(target, towards, length(sub(observer, target)));
-            self.tree().index().each(&ray, |number| {
-                if self.front(number, &ray).is_some() {
+        for piece in self.pieces(observer, target, earth) {
+            self.tree().index().each(&piece.for_balls, |number| {
+                if self.blocked_on(number, &piece).is_some() {
                     visit(number);
                 }
             });
@@ -328,58 +314,68 @@ impl MedialScene {
         mut visit: impl FnMut(&Corners),
     ) {
         let Some(added) = self.added() else { return };
-        for (piece, _) in self.pieces(observer, target, earth) {
-            added.each_blocking(&piece.ray, &piece.ends(), &mut visit);
+        for piece in self.pieces(observer, target, earth) {
+            added.each_blocking(&piece.ray, &piece.line_ends(), &mut visit);
         }
     }
 
-    /// The chords of a curved line from the observer on, each with what the line passed before it, metres.
-    fn pieces(&self, observer: [f64; 3], target: [f64; 3], earth: &EarthParams) -> Vec<(LinePiece, f64)> {
-        self.chords(observer, target, &earth.corners(observer, target))
+    /// The chords of the line of sight between two points, from the end on that [`in_order`] puts first.
+    fn pieces(&self, observer: [f64; 3], target: [f64; 3], earth: &EarthParams) -> Vec<LinePiece> {
+        let ends = in_order([observer, target]);
+        self.chords(ends, &earth.corners(ends[0], ends[1]))
     }
 
-    /// The chords of a line through given corners, each with what the line passed before it, metres.
-    fn chords(&self, observer: [f64; 3], target: [f64; 3], corners: &[[f64; 3]]) -> Vec<(LinePiece, f64)> {
-        let mut passed = 0.0;
-        let mut pieces = Vec::with_capacity(corners.len());
-        for pair in corners.windows(2) {
-            let &[near, far] = pair else { continue };
-            let size = length(sub(near, far));
-            let Some(ray) = Ray::new(far, sub(near, far), [0.0, size]) else { continue };
-            let bias = self.tree().rule().bias;
-            let at = |is_end: bool| if is_end { bias } else { 0.0 };
-            let counted = [at(far == target), size - at(near == observer)];
-            pieces.push((LinePiece { ray, counted, target, observer }, passed));
-            passed += size;
-        }
-        pieces
-    }
-
-    /// What the observer meets first on a piece, and where, metres from the end of the piece on the observer's side.
-    fn first_on(&self, piece: &LinePiece, whole: bool) -> Option<(Blocker, f64)> {
-        let ray = &piece.ray;
-        let reach = ray.ranges[1];
-        let back = Ray {
-            origin: ray.at(reach),
-            direction: ray.direction.map(|v| -v),
-            ranges: [reach - piece.counted[1], reach - piece.counted[0]],
+    /// The chords through given corners of a line between two ends in order.
+    fn chords(&self, ends: [[f64; 3]; 2], corners: &[[f64; 3]]) -> Vec<LinePiece> {
+        let is_whole = corners == ends;
+        let bias = self.tree().rule().bias;
+        let at = |is_end: bool| if is_end { bias } else { 0.0 };
+        let piece = |pair: &[[f64; 3]]| {
+            let &[from, to] = pair else { return None };
+            let size = length(sub(to, from));
+            let ray = Ray::new(from, sub(to, from), [0.0, size])?;
+            let for_balls = match is_whole {
+                true => self.ray(from, ray.direction, size),
+                false => Ray { ranges: [at(from == ends[0]), size - at(to == ends[1])], ..ray },
+            };
+            Some(LinePiece { ray, for_balls, is_whole, ends })
         };
-        let straight = self.ray(ray.origin, ray.direction, reach);
-        let ball = self.tree().index().nearest(&back, |number| {
-            let front = if whole { self.front(number, &straight) } else { self.front_on(number, piece) };
-            front.map(|front| reach - front)
-        });
-        // a bias below zero lets balls beyond the ends block
-        let ball = ball.and_then(|(number, range)| Some((self.blocker_of_ball(number)?, range.max(0.0))));
-        let whole = Ray { ranges: [0.0, reach], ..back };
-        nearer(ball, self.added().and_then(|added| added.nearest(&whole, &piece.ends())))
+        corners.windows(2).filter_map(piece).collect()
     }
 
-    /// As [`MedialScene::front`], for a chord of a longer line.
-    fn front_on(&self, number: usize, piece: &LinePiece) -> Option<f64> {
-        let LinePiece { ray, counted, target, observer } = piece;
-        let chord =
-            Chord { start: ray.origin, towards: ray.direction, ranges: *counted, target: *target, observer: *observer };
+    /// What an observer beyond the start of a piece, or beyond its end, meets first on it, and where, metres from the
+    /// end of the piece on the observer's side.
+    fn first_on(&self, piece: &LinePiece, is_from_start: bool) -> Option<(Blocker, f64)> {
+        let reach = piece.length();
+        // a bias below zero lets balls beyond the ends block
+        let beyond = self.tree().rule().bias.min(0.0);
+        let ranges = [beyond, reach - beyond];
+        let look = match is_from_start {
+            true => Ray { ranges, ..piece.ray },
+            false => Ray { origin: piece.ray.at(reach), direction: piece.ray.direction.map(|v| -v), ranges },
+        };
+        let ball = self.tree().index().nearest(&look, |number| {
+            let [enters, leaves] = self.blocked_on(number, piece)?;
+            let range = if is_from_start { enters } else { reach - leaves };
+            Some(range.max(0.0).min(reach))
+        });
+        let ball = ball.and_then(|(number, range)| Some((self.blocker_of_ball(number)?, range)));
+        let ends = piece.line_ends();
+        let mesh = self.added().and_then(|added| match is_from_start {
+            true => added.nearest(&piece.ray, &ends),
+            false => added.farthest(&piece.ray, &ends).map(|(mesh, range)| (mesh, reach - range)),
+        });
+        nearer(ball, mesh)
+    }
+
+    /// The piece of a chord that a ball blocks, as [`BlockRule::blocked_piece`](super::BlockRule::blocked_piece) gives
+    /// it, from the start of the chord.
+    fn blocked_on(&self, number: usize, piece: &LinePiece) -> Option<[f64; 2]> {
+        let LinePiece { ray, for_balls, is_whole, ends: [target, observer] } = *piece;
+        if is_whole {
+            return self.tree().blocked_piece(number, &for_balls);
+        }
+        let chord = Chord { start: ray.origin, towards: ray.direction, ranges: for_balls.ranges, target, observer };
         self.tree().rule().blocks_chord(*self.tree().balls().get(number)?, &chord)
     }
 }

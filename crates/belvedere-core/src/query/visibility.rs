@@ -1,6 +1,7 @@
 //! What any way of answering visibility has in common.
 
 use super::Answer;
+use crate::ray_index::Ray;
 use belvedere_data::{Error, Parameter, Result};
 
 /// Who looks at the targets: the other end of each line of sight.
@@ -71,6 +72,21 @@ impl Viewer<'_> {
                 Err(Error::LengthMismatch { what: "eyes", expected: targets.len(), found: eyes.len() })
             }
             _ => Ok(()),
+        }
+    }
+
+    /// The line of sight of target number `index` as exact answers look at it: between both ends, from the first of
+    /// them by [`Ray::between`], or from the target towards a viewer infinitely far away. `None` where a coordinate is
+    /// not finite or the two points are the same.
+    #[must_use]
+    pub fn sight(&self, index: usize, target: [f32; 3]) -> Option<Ray> {
+        match self {
+            Self::Direction(_) => {
+                let (direction, range) = self.line_of_sight(index, target)?;
+                Some(Ray { origin: target.map(f64::from), direction, ranges: [0.0, range] })
+            }
+            Self::Eye(eye) => Ray::between(target.map(f64::from), *eye),
+            Self::Each(eyes) => Ray::between(target.map(f64::from), eyes.get(index)?.map(f64::from)),
         }
     }
 

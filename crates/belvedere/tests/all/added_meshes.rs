@@ -150,9 +150,18 @@ fn all_ways_of_asking_agree_about_added_meshes() {
     let (by_map, report) = scene.visible_in_views(&[view], Scope::Viewer, &targets, &control).unwrap();
     assert!(report.is_some_and(|report| report.settled_count > 1000));
     assert_eq!(by_map, expected);
-    // pairs, straight and over a curved earth that is as good as flat
+    // pairs say which of the blocked lines have an end inside an obstacle, the others once they are marked; straight
+    // and over a curved earth that is as good as flat
+    let mut marked = expected.clone();
+    scene.mark_inside_obstacles(viewer, &targets, &mut marked, &control).unwrap();
+    assert!(!scene.is_inside_obstacle(eye));
+    for ((target, expected), marked) in targets.iter().zip(&expected).zip(&marked) {
+        let is_inside = *expected == Answer::Blocked && scene.is_inside_obstacle(target.map(f64::from));
+        assert_eq!(*marked, if is_inside { Answer::InsideObstacle } else { *expected }, "{target:?}");
+    }
+    assert!(marked[..2000].contains(&Answer::InsideObstacle) && marked[..2000].contains(&Answer::Blocked));
     let curved = EarthParams { curvature: Curvature::On, refraction: 0.999, ..EarthParams::default() };
-    for (target, &answer) in targets.iter().zip(&expected).take(2000) {
+    for (target, &answer) in targets.iter().zip(&marked).take(2000) {
         let target = target.map(f64::from);
         let sight = scene.line_of_sight(eye, target, &EarthParams::flat()).unwrap();
         assert_eq!(sight.answer, answer);

@@ -49,9 +49,10 @@ fn targets(seed: u64, count: usize, shift: f32) -> Vec<[f32; 3]> {
 fn viewers(targets: &[[f32; 3]], shift: f64) -> Vec<Viewer<'static>> {
     let eye = |eye: [f64; 3]| Viewer::Eye(eye.map(|v| v + shift));
     vec![
-        eye([50.0, 50.0, 1.7]),
+        // between the blocks, over the ground
+        eye([43.5, 50.0, 1.7]),
         eye([18.0, 70.0, 3.0]),
-        // underground, in a ball
+        // underground, in a ball: inside an obstacle
         eye([60.0, 30.0, -3.0]),
         // far off, and at a target
         eye([-4000.0, 900.0, 300.0]),
@@ -101,6 +102,9 @@ fn the_scene_of_these_tests_has_targets_of_either_kind() {
     let answers = scene.answer_among(viewers(&targets, 0.0)[0], &TargetTree::new(&targets), &Control::none()).unwrap();
     let visible = answers.iter().filter(|&&answer| answer == Answer::Visible).count();
     assert!((100..5900).contains(&visible), "{visible} of 6000 visible");
+    let is_inside = |viewer: &Viewer<'_>| matches!(viewer, Viewer::Eye(eye) if scene.is_inside_obstacle(*eye));
+    let inside: Vec<usize> = (0..9).filter(|&number| is_inside(&viewers(&targets, 0.0)[number])).collect();
+    assert_eq!(inside, [2], "one eye is inside an obstacle, and the others are not");
 }
 
 #[test]

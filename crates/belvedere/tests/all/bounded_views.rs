@@ -19,11 +19,12 @@ pub(crate) fn balls(count: u64, seed: u64) -> MedialBalls {
     MedialBalls { centers, radii, source: vec![0; n], touch: vec![0; n], separation_angles: vec![1.0; n] }
 }
 
-/// The same with some around the eye, one of which has it on its surface as nearly as f32 can tell.
+/// The same with some around the eye, one of which has it on its surface as nearly as f32 can tell. Two hold it 0.1 m
+/// deep: without a shell it is inside an obstacle, with one of [`RULES`] they give way to it.
 pub(crate) fn balls_at_eye() -> MedialBalls {
     let mut balls = balls(3000, 1);
     balls.centers[..3].copy_from_slice(&[[31.0, 28.0, 12.2], [30.0, 27.5, 11.0], [31.0, 28.0, 11.5]]);
-    balls.radii[..3].copy_from_slice(&[0.3, 2.0, 0.5]);
+    balls.radii[..3].copy_from_slice(&[0.3, 1.6, 0.5]);
     balls
 }
 
@@ -122,7 +123,9 @@ pub(crate) fn assert_answers_are_exact(scene: &MedialScene, views: &[View], targ
     let differ = answers.iter().zip(&exact).filter(|(answer, exact)| answer != exact).count();
     assert_eq!(differ, 0, "{what}");
     assert_eq!(report.target_count, targets.len());
-    assert!(exact.contains(&Answer::Blocked) && exact.contains(&Answer::Visible), "{what}");
+    // from inside an obstacle nothing is seen
+    let is_inside = matches!(viewer, Viewer::Eye(eye) if scene.is_inside_obstacle(eye));
+    assert!(exact.contains(&Answer::Blocked) && exact.contains(&Answer::Visible) != is_inside, "{what}");
     if let [view] = views {
         let (answers, _) = certified(Scope::View);
         assert!(answers == scene.query_view(view, targets, &Control::none()).unwrap(), "{what} within the view");

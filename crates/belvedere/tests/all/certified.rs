@@ -12,13 +12,21 @@ use crate::bounded_views::{
 
 #[test]
 fn certified_answers_are_those_of_exact_lines_of_sight() {
-    let balls = balls_at_eye();
-    let targets = targets(&balls, 10_000);
+    let around_eye = balls_at_eye();
+    let targets = targets(&around_eye, 10_000);
     for (bias, shell) in RULES {
-        let scene = MedialScene::new(&balls, &BlockRule { profile: Profile::Sphere, bias, shell }).unwrap();
+        let scene = MedialScene::new(&around_eye, &BlockRule { profile: Profile::Sphere, bias, shell }).unwrap();
+        assert_eq!(scene.is_inside_obstacle(EYE), shell == 0.0);
         for (name, views) in views() {
             assert_answers_are_exact(&scene, &views, &targets, &format!("{name}, bias {bias}, shell {shell}"));
         }
+    }
+    // without a shell from an eye that is outside all balls
+    let (free, rule) = (balls(3000, 1), BlockRule::default());
+    let scene = MedialScene::new(&free, &rule).unwrap();
+    assert!(!scene.is_inside_obstacle(EYE));
+    for (name, views) in views() {
+        assert_answers_are_exact(&scene, &views, &targets, &format!("{name}, an eye in the open"));
     }
 }
 

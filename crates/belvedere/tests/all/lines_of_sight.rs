@@ -2,6 +2,7 @@
 #![expect(clippy::cast_possible_truncation, reason = "test places in f32")]
 
 use crate::common;
+use belvedere::blocking::Ball;
 use belvedere::control::Control;
 use belvedere::depth::Profile;
 use belvedere::io::{ReadOptions, read_cloud};
@@ -12,6 +13,7 @@ use belvedere::query::{
     Answer, BlockRule, Blocker, Curvature, EarthParams, MedialScene, UnprovenAs, Viewer, merged_crossings,
 };
 use belvedere::random::uniform;
+use belvedere::vector::{sub, unit};
 
 fn balls(list: &[([f32; 3], f32)]) -> MedialBalls {
     MedialBalls {
@@ -109,7 +111,11 @@ fn observer_and_target_can_change_places() {
         let scene = MedialScene::new(&balls(&list), &rule).unwrap();
         for earth in &earths {
             let mut counts = [0; 3];
-            for [a, b] in pairs_around(&list, 4000, [60.0; 3]) {
+            // and short lines, some of which are shorter than the bias
+            let shortened = |[a, b]: [[f64; 3]; 2]| [a, std::array::from_fn(|i| a[i] + 0.005 * (b[i] - a[i]))];
+            let pairs = pairs_around(&list, 4000, [60.0; 3]);
+            let short: Vec<[[f64; 3]; 2]> = pairs.iter().copied().map(shortened).collect();
+            for [a, b] in pairs.into_iter().chain(short) {
                 let [there, back] = [scene.line_of_sight(a, b, earth), scene.line_of_sight(b, a, earth)];
                 let [there, back] = [there, back].map(|sight| sight.unwrap());
                 assert_eq!(there.answer, back.answer, "{rule:?} {a:?} {b:?}");
@@ -126,6 +132,82 @@ fn observer_and_target_can_change_places() {
             assert!(counts.iter().all(|count| *count > 100), "{rule:?}: {counts:?}");
         }
     }
+}
+
+/// Lines that touch a ball of whole metres, lines whose ends lie exactly on its surface, and lines whose ends lie
+/// exactly one metre below it: for each a ball and two ends, of whole numbers all.
+fn undecided_lines(number: u64) -> [(([f32; 3], f32), [[f64; 3]; 2]); 3] {
+    let whole = |k: u64, count: f64| (count * uniform(23, 16 * number + k)).floor();
+    let center = [0, 1, 2].map(|k| whole(k, 900.0));
+    let turned = |[x, y, z]: [f64; 3]| match number % 6 {
+        0 => [x, y, z],
+        1 => [y, z, x],
+        2 => [z, x, y],
+        3 => [-x, y, z],
+        4 => [y, -z, x],
+        _ => [z, x, -y],
+    };
+    // 3, 4, 5: `along` and `across` are at right angles, and five steps are five metres long
+    let place = |along: f64, across: f64| {
+        let from_center = turned([3.0 * along - 4.0 * across, 4.0 * along + 3.0 * across, 0.0]);
+        std::array::from_fn(|k| center[k] + from_center[k])
+    };
+    let size = 1.0 + whole(3, 6.0);
+    let (there, back) = (1.0 + whole(4, 40.0), -1.0 - whole(5, 40.0));
+    let ball = |radius: f64| (center.map(|v| v as f32), radius as f32);
+    [
+        (ball(5.0 * size), [place(back, size), place(there, size)]),
+        (ball(5.0 * size), [place(0.0, size), place(there, size + whole(6, 9.0) - 4.0)]),
+        (ball(5.0 * size + 1.0), [place(0.0, size), place(there, size + whole(7, 9.0) - 4.0)]),
+    ]
+}
+
+#[test]
+fn ends_can_change_places_where_rounding_decides() {
+    let earths = [EarthParams::flat(), EarthParams { curvature: Curvature::On, ..EarthParams::default() }];
+    let one_metre = BlockRule { bias: 1.0, ..BlockRule::default() };
+    let rules = [BlockRule::default(), one_metre, BlockRule { bias: 0.0, shell: 1.0, ..one_metre }];
+    let mut decided_by_rounding = 0;
+    for number in 0..1500 {
+        for (ball, [a, b]) in undecided_lines(number) {
+            if a == b {
+                continue;
+            }
+            for rule in rules {
+                let scene = MedialScene::new(&balls(&[ball]), &rule).unwrap();
+                for earth in &earths {
+                    let [there, back] = [scene.line_of_sight(a, b, earth), scene.line_of_sight(b, a, earth)];
+                    let [there, back] = [there, back].map(|sight| sight.unwrap());
+                    assert_eq!(there.answer, back.answer, "{rule:?} {ball:?} {a:?} {b:?}");
+                    assert_eq!(there.first_block.is_some(), there.answer != Answer::Visible);
+                    assert_eq!(back.first_block.is_some(), back.answer != Answer::Visible);
+                    let short = [scene.sight_answer(a, b, earth), scene.sight_answer(b, a, earth)];
+                    assert_eq!(short, [there.answer; 2], "{rule:?} {ball:?} {a:?} {b:?}");
+                }
+                let flat = scene.sight_answer(a, b, &EarthParams::flat());
+                for (eye, target) in [(a, b), (b, a)] {
+                    let (viewer, targets) = (Viewer::Eye(eye), [target.map(|v| v as f32)]);
+                    let each = [eye.map(|v| v as f32)];
+                    let tree = TargetTree::new(&targets);
+                    for mut answers in [
+                        scene.answer_among(viewer, &tree, &Control::none()).unwrap(),
+                        scene.visible_from(viewer, &targets, &Control::none()).unwrap(),
+                        scene.visible_from(Viewer::Each(&each), &targets, &Control::none()).unwrap(),
+                    ] {
+                        scene.mark_inside_obstacles(viewer, &targets, &mut answers, &Control::none()).unwrap();
+                        assert_eq!(answers, [flat], "{rule:?} {ball:?} {eye:?} {target:?}");
+                    }
+                }
+                let blocks = |from: [f64; 3], to: [f64; 3]| {
+                    let ball = Ball { center: ball.0, radius: ball.1 };
+                    rule.blocks_line(ball, from, unit(sub(to, from)).unwrap(), distance(from, to)).is_some()
+                };
+                decided_by_rounding += usize::from(blocks(a, b) != blocks(b, a));
+            }
+        }
+    }
+    // or this test says nothing
+    assert!(decided_by_rounding > 0);
 }
 
 #[test]

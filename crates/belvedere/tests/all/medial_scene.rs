@@ -1,5 +1,6 @@
 //! Exact lines of sight through a union of balls, against every ball tried in turn and against closed forms.
 
+use belvedere::control::Control;
 use belvedere::depth::Profile;
 use belvedere::medial::{MedialBalls, NO_TOUCH};
 use belvedere::query::{Answer, BlockRule, MedialScene, Viewer, Visibility};
@@ -177,18 +178,24 @@ fn the_cone_hides_less_than_the_sphere_by_the_depth_between_them() {
 }
 
 #[test]
-fn balls_that_hold_the_viewer_lie_behind_it_or_never_shrank_hide_nothing() {
+fn balls_that_hold_the_viewer_hide_all_and_those_behind_it_or_that_never_shrank_nothing() {
     let mut three = balls(vec![[0.0; 3], [20.0, 0.0, 0.0], [10.0, 0.0, 0.0]], vec![2.0, 3.0, 1.0]);
     three.touch[2] = NO_TOUCH;
     let scene = MedialScene::new(&three, &params(Profile::Sphere, 0.0)).unwrap();
     let target = [[5.0, 0.0, 0.0]];
     for (eye, expected) in [
-        ([1.0, 0.0, 0.0], Answer::Visible),  // within the first ball
+        ([1.0, 0.0, 0.0], Answer::Blocked), // within the first ball: from there nothing is seen
+        ([3.0, 0.0, 0.0], Answer::Visible), // before the first ball, with its back to it
         ([15.0, 0.0, 0.0], Answer::Visible), // beyond the one that never shrank
         ([-3.0, 0.0, 0.0], Answer::Blocked), // beyond the first ball
         ([5.0, 0.0, 0.0], Answer::OutsideView),
     ] {
-        assert_eq!(scene.visible(Viewer::Eye(eye), &target).unwrap(), [expected], "eye at {eye:?}");
+        let mut answers = scene.visible(Viewer::Eye(eye), &target).unwrap();
+        assert_eq!(answers, [expected], "eye at {eye:?}");
+        // those who want to know why have it marked
+        scene.mark_inside_obstacles(Viewer::Eye(eye), &target, &mut answers, &Control::none()).unwrap();
+        let is_inside = eye == [1.0, 0.0, 0.0];
+        assert_eq!(answers, [if is_inside { Answer::InsideObstacle } else { expected }], "eye at {eye:?}");
     }
 }
 

@@ -406,8 +406,8 @@ impl<'a> TreeSweep<'a> {
     /// The line of sight of the target at `place`; `None` for one at the viewer itself, which nothing blocks.
     fn ray(&self, place: usize) -> Option<Ray> {
         let target = self.targets.positions()[place];
-        let (towards, range) = self.viewer.line_of_sight(place, target)?;
-        Some(self.scene.ray(target.map(f64::from), towards, range))
+        let sight = self.viewer.sight(place, target)?;
+        Some(self.scene.ray(sight.origin, sight.direction, sight.ranges[1]))
     }
 
     /// The first of these balls that blocks a line of sight.
