@@ -161,8 +161,12 @@ for result, kind, nodata, names in (
     with rasterio.open(merged) as raster, rasterio.open(city / f"{result}.vrt") as tiles:
         values = raster.read(1)
         assert set(raster.dtypes) == {kind} and raster.descriptions == names and raster.nodata == tiles.nodata == nodata, raster.meta
-        assert raster.crs.to_epsg() in (7415, 28992) and raster.transform == tiles.transform
-        assert (values == tiles.read(1)).all() and (values != nodata).any()
+        assert raster.crs.to_epsg() in (7415, 28992) and raster.res == tiles.res
+        # the merged raster ends with the cloud, and whole tiles have no value beyond
+        window = tiles.window(*raster.bounds).round_offsets().round_lengths()
+        assert tiles.window_bounds(window) == tuple(raster.bounds), (window, raster.bounds)
+        assert values.size < tiles.width * tiles.height and (values == tiles.read(1, window=window)).all()
+        assert (values != nodata).sum() == (tiles.read(1) != nodata).sum() > 0
         what = raster.tags()["TIFFTAG_IMAGEDESCRIPTION"]
         assert tiles.tags()["TIFFTAG_IMAGEDESCRIPTION"] == what and tiles.descriptions == names, tiles.tags()
         levels = raster.overviews(1)
