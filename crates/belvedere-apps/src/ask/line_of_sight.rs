@@ -229,8 +229,7 @@ impl Ask for LinesOfSightQuestion {
         if pairs.len() > 1 {
             let so = "have an end inside an obstacle: they are neither visible nor blocked";
             let count = section.inside_obstacle;
-            let remark = Remark::of_share("lines-inside-obstacle", count, answers.len(), "lines of sight", so);
-            context.add(remark.map(Remark::into_note));
+            context.add(Remark::of_share("lines-inside-obstacle", count, answers.len(), "lines of sight", so));
         }
         let profile = self.profile(&pairs, (scene, &blockers), context, control)?;
         let is_proof_tested = blockers.proof().is_some();
