@@ -62,8 +62,8 @@ impl Ray {
     }
 }
 
-/// Two ends of a line in the one order in which it is looked at: first the one nearer to the local origin, since less is
-/// rounded from there than from a viewer far away; by x, then y, then z where both are equally far.
+/// Two ends of a line in the one order in which it is looked at: first the one nearer to the local origin, since less
+/// is rounded from there than from a viewer far away; by x, then y, then z where both are equally far.
 ///
 /// What is rounded depends on the end from which a line is looked at. With one order for all, who looks and what is
 /// looked at can change places, and no answer changes.

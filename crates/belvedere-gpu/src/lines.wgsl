@@ -168,8 +168,8 @@ fn line(place: vec3<f32>, sight: Sight) -> u32 {
     }
     let inverse = vec3<f32>(along_axis(sight.towards.x), along_axis(sight.towards.y), along_axis(sight.towards.z));
     let widening = scene.widening * abs(inverse);
-    // ranges nearer to an end than the bias do not count, beyond both ends where it is below zero; a metre more does not
-    // matter
+    // ranges nearer to an end than the bias do not count, beyond both ends where it is below zero; a metre more does
+    // not matter
     let begin = scene.bias_low - 1.0;
     let end = sight.reach.y + 1.0 - min(scene.bias_low, 0.0);
     var state = FREE;

@@ -45,7 +45,7 @@ fn places_outside_the_cloud_have_an_answer_of_their_own_in_all_ways_of_asking() 
     }
 
     let pair = |a: [f64; 3], b: [f64; 3]| a.into_iter().chain(b).collect::<Vec<f64>>();
-    let pairs = [pair(places[0], places[3]), pair(places[0], places[1]), pair(at(FAR, 0.0, 9.0), at(FAR, 9.0, 9.0))];
+    let pairs = [pair(places[0], places[3]), pair(places[0], places[1]), pair(at(FAR, 0.0, 2.0), at(FAR, 9.0, 2.0))];
     place.write("pairs.csv", table("ax,ay,az,bx,by,bz", &pairs));
     let summary = place
         .summary("line-of-sight house.laz --scene-config ../tau.json --orient given --pairs pairs.csv -o sights.csv");

@@ -160,7 +160,7 @@ fn lines_of_sight_reach_the_terrain_beyond_the_cloud() {
     assert!(run.status == 0 && run.stderr.contains("outside the cloud and the terrain"), "{run:?}");
     assert_eq!(column(&place, "lines.csv", "answer"), [0.0, 1.0, 1.0, 4.0, 3.0]);
     let [az, bz] = ["az", "bz"].map(|name| column(&place, "lines.csv", name));
-    assert_eq!((az[0], az[2], bz[2], bz[4].is_nan()), (401.7, 1.7, 0.0, true));
+    assert_eq!((az[0], az[2], bz[2], bz[4].is_nan()), (401.7, 1.7, 0.1, true));
     // the first leaves its hill, 1.7 m below its eye, after 7.848 m
     let blocked = |name: &str| column(&place, "lines.csv", name)[0];
     assert!((blocked("first_block_range_m") - 8.030).abs() < 2e-3 && (blocked("block_z") - 400.0).abs() < 2e-3);

@@ -150,7 +150,7 @@ fn all_ways_of_asking_agree_about_added_meshes() {
     let (by_map, report) = scene.visible_in_views(&[view], Scope::Viewer, &targets, &control).unwrap();
     assert!(report.is_some_and(|report| report.settled_count > 1000));
     assert_eq!(by_map, expected);
-    // pairs say which of the blocked lines have an end inside an obstacle, the others once they are marked; straight
+    // pairs say which blocked lines have an end inside an obstacle, the others once they are marked; straight
     // and over a curved earth that is as good as flat
     let mut marked = expected.clone();
     scene.mark_inside_obstacles(viewer, &targets, &mut marked, &control).unwrap();
