@@ -506,7 +506,7 @@ fn results_of_other_commands_are_shown_where_they_lie() {
 
     // alone, points with results are the cloud too
     let alone = Page::open(&place, "lit.laz").state();
-    assert!(alone["results"][0]["columns"][0] == "lit" && alone["shown"]["point_count"].as_u64().unwrap() > 1000);
+    assert!(alone["results"][0]["columns"][3] == "lit" && alone["shown"]["point_count"].as_u64().unwrap() > 1000);
 
     place.write("far.geojson", "{\"type\":\"Point\",\"coordinates\":[100000,400000]}");
     place.write("bad.tif", "not a raster");
