@@ -9,8 +9,8 @@ use belvedere_data::{PointCloud, Result};
 use serde::{Deserialize, Serialize};
 
 /// What is estimated once from a whole survey. Parts of the survey that are built with these statistics
-/// ([`ModelParams::statistics`]) and lie in one frame, whose origin is a corner of blocks of 64 m, have the same balls,
-/// bit by bit, wherever they overlap by [`SurveyStatistics::buffer`].
+/// ([`statistics`](super::ModelParams::statistics)) and lie in one frame, whose origin is a corner of blocks of 64 m,
+/// have the same balls, bit by bit, wherever they overlap by [`SurveyStatistics::buffer`].
 ///
 /// A model of a whole cloud estimates these statistics by itself, from all of its points.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
