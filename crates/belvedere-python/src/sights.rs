@@ -113,20 +113,23 @@ impl PyScene {
         let eye = inner.frame().local_from_file(eye);
         let (mesh, params) = faces.owned(&inner)?;
         let of_work = Arc::clone(&mesh);
-        let (seen, outside) = run(py, progress, move |control| {
+        let things = "sample points of the mesh";
+        let (seen, outside, beside) = run(py, progress, move |control| {
             let surface = SurfacePieces::of_mesh(&of_work, inner.frame().origin, params.spacing, params.seed)?;
             let scene = inner.blockers(unproven, control)?;
             let places: Vec<[f32; 3]> = surface.pieces.iter().map(|piece| piece.place).collect();
             let outside = inner.model().coverage().map_or(0, |coverage| coverage.outside_count(&places));
+            let beside = ask::remark_on_targets_beside(inner.model().coverage().as_ref(), &places, things);
             let eye = Viewer::Eye(eye);
             let seen = seen_faces(&surface, eye, &MeshTargetParams::default(), |places| {
                 let answers =
                     control.stage("testing targets", places.len(), || scene.visible_from(eye, places, control))?;
                 Ok(answers.into_iter().map(|answer| unproven.settle(answer)).collect())
             })?;
-            Ok((seen, (outside, places.len())))
+            Ok((seen, (outside, places.len()), beside))
         })?;
-        let remarks = self.remarks_on_viewer(py, eye, outside, "sample points of the mesh")?;
+        let mut remarks = self.remarks_on_viewer(py, eye, outside, things)?;
+        remarks.extend(remarks_of(py, &beside)?);
         Ok((rows_of(py, FaceRows::of_seen(&mesh, &seen))?, remarks))
     }
 

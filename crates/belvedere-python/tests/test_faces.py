@@ -502,13 +502,15 @@ def test_targets_and_eyes_outside_the_cloud_are_said_by_program_and_python(scene
     x, y = standing
     top = float(cloud.xyz[:, 2].max())
     far = [float(v) for v in cloud.bounds[1] + [700, 0, -5]]
-    places = [(x, y, top), far, (x + 1, y, top)]
+    beside = (*far[:2], top + 5)
+    places = [(x, y, top), far, (x + 1, y, top), (far[0] + 9, far[1], top + 5)]
     (folder / "far.csv").write_text("x,y,z\n" + "".join(f"{a},{b},{c}\n" for a, b, c in places))
     # far away, below the top of the cloud, nothing is known; in the air above the top, lines of sight may end
-    beside = (*far[:2], top + 5)
     for eye, key in [((x, y, top + 5), None), (far, "eye-outside-cloud"), (beside, "eye-beside-cloud")]:
         typed = ",".join(map(str, eye))
         summary = ask_program("query", "tile.laz", "--panorama", typed, "--targets", "far.csv", "-o", "far_seen.csv")
         assert [one["key"] for one in summary["remarks"] if one["key"].startswith("eye-")] == [key] * (key is not None)
+        notes = {one["key"]: one["numbers"]["count"] for one in summary["remarks"] if one["severity"] == "note"}
+        assert notes["targets-beside-cloud"] == 1
         of_program = sorted(warnings_of(summary["remarks"]))
         assert of_program and sorted(warned_of(lambda eye=eye: scene.visible(eye, places))) == of_program

@@ -4,6 +4,7 @@ use super::Remark;
 use belvedere_core::query::{Coverage, MedialScene};
 
 const OUTSIDE_CLOUD: &str = "are outside the cloud, where nothing is known, and have no answer";
+const BESIDE_CLOUD: &str = "beside the cloud: what stands between the two is unknown, and counts as free";
 
 /// A warning of an eye outside the cloud; a note of one in the air beside it.
 #[must_use]
@@ -20,8 +21,15 @@ pub fn remark_on_eye(coverage: Option<&Coverage>, eye: [f64; 3]) -> Option<Remar
 
 /// A note of those who look from the air beside the cloud.
 pub(super) fn remark_on_beside(who_are: &str) -> Remark {
-    let text = format!("{who_are} beside the cloud: what stands between the two is unknown, and counts as free");
-    Remark::note("eye-beside-cloud", text)
+    Remark::note("eye-beside-cloud", format!("{who_are} {BESIDE_CLOUD}"))
+}
+
+/// A note of `targets`, local metres, which are called `things`, in the air beside the cloud; `None` where none is.
+#[must_use]
+pub fn remark_on_targets_beside(coverage: Option<&Coverage>, targets: &[[f32; 3]], things: &str) -> Option<Remark> {
+    let beside = coverage.map_or(0, |coverage| coverage.beside_count(targets));
+    let are_so = format!("are {BESIDE_CLOUD}");
+    Remark::of_share("targets-beside-cloud", beside, targets.len(), things, &are_so).map(Remark::into_note)
 }
 
 /// A warning that `outside` of `count` targets, which are called `things`, are outside the cloud; `None` where none is.

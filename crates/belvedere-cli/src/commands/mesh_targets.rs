@@ -94,7 +94,9 @@ pub(super) fn run(arguments: &Query, path: &Path, global: &Global) -> Result<Sum
     run.summary.add("faces", face_summary(&faces, &surface, spacing));
     let places: Vec<[f32; 3]> = surface.pieces.iter().map(|piece| piece.place).collect();
     let outside = scene.model.coverage().map_or(0, |coverage| coverage.outside_count(&places));
-    run.summary.remarks(ask::remark_on_outside(outside, places.len(), "sample points of the mesh"));
+    let things = "sample points of the mesh";
+    run.summary.remarks(ask::remark_on_outside(outside, places.len(), things));
+    run.summary.remarks(ask::remark_on_targets_beside(scene.model.coverage().as_ref(), &places, things));
     run.stage("writing", 0, |_| match extension(output).as_str() {
         "ply" => {
             let shares: Vec<f64> = faces.iter().map(SeenArea::visible_share).collect();

@@ -75,6 +75,7 @@ pub(crate) fn run(arguments: &Query, global: &Global) -> Result<Summary> {
     };
     let counts = AnswerCounts::of(&answers);
     run.summary.remarks(ask::remark_on_outside(counts.outside_cloud, answers.len(), "targets"));
+    run.summary.remarks(ask::remark_on_targets_beside(model.coverage().as_ref(), &targets.positions, "targets"));
     run.summary.remarks(ask::remark_on_targets_inside(counts.inside_obstacle, answers.len()));
     let unproven_as = arguments.unproven.map_or(UnprovenAs::Reported, UnprovenAs::from);
     let codes: Vec<u8> = answers.iter().map(|&answer| unproven_as.settle(answer) as u8).collect();

@@ -68,10 +68,18 @@ impl Coverage {
         (0..3).all(|i| low[i] <= last[i] + room[i] && high[i] >= first[i] - MARGIN)
     }
 
-    /// Number of finite `positions`, (N, 3) local metres, that do not lie over the cloud.
+    /// Number of finite `positions`, (N, 3) local metres, at which no line of sight may end ([`Coverage::holds_end`]).
     #[must_use]
     pub fn outside_count(&self, positions: &[[f32; 3]]) -> usize {
-        positions.par_iter().with_min_len(CHUNK).filter(|&&position| self.is_outside(position)).count()
+        let is_off = |&&position: &&[f32; 3]| self.is_outside(position) && !self.holds_end(position.map(f64::from));
+        positions.par_iter().with_min_len(CHUNK).filter(is_off).count()
+    }
+
+    /// Number of `positions`, (N, 3) local metres, in the air beside the cloud, at which lines of sight may end.
+    #[must_use]
+    pub fn beside_count(&self, positions: &[[f32; 3]]) -> usize {
+        let is_beside = |&&position: &&[f32; 3]| self.is_outside(position) && self.holds_end(position.map(f64::from));
+        positions.par_iter().with_min_len(CHUNK).filter(is_beside).count()
     }
 
     /// Whether a finite `position`, local metres, does not lie over the cloud.
@@ -139,6 +147,9 @@ mod tests {
         assert_eq!(marked(Viewer::Eye([99.0, 1.0, 3.0])), [OutsideCloud, OutsideCloud, OutsideView, OutsideCloud]);
         let eyes = [[99.0, 5.0, 5.0], [5.0; 3], [5.0; 3], [5.0; 3]];
         assert_eq!(marked(Viewer::Each(&eyes))[0], OutsideCloud);
-        assert_eq!(coverage.outside_count(&targets), 2);
+        assert_eq!((coverage.outside_count(&targets), coverage.beside_count(&targets)), (2, 0));
+        // in the air above all of the cloud, a target has an answer
+        let high = [[90.0, 5.0, 50.0], [5.0, 5.0, 50.0], [90.0, 5.0, 5.0], [f32::NAN; 3]];
+        assert_eq!((coverage.outside_count(&high), coverage.beside_count(&high)), (1, 1));
     }
 }
