@@ -7,12 +7,13 @@ use ::las::point::Format;
 use ::las::{Builder, PointData, PointDataBuilder, Transform, Vector, Vlr};
 use rayon::prelude::*;
 
-use super::las::{Batches, LasFile, find_crs};
+use super::las::{Batches, LasFile};
 use super::las_columns::LasColumns;
 use super::las_extra::{ExtraDescription, descriptions};
 use super::las_header::{LasHeader, RecordSize, VariableRecord};
 use super::las_records;
 use super::las_results::result_columns;
+use super::las_system::find_crs;
 use super::laz::LazFields;
 use super::part::{Coordinates, FilePart};
 use super::source::Source;

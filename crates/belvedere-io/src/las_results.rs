@@ -58,14 +58,19 @@ pub fn read_point_results<'a>(source: impl Into<Source<'a>>) -> Result<PointResu
     Ok(PointResults { places, columns: names.zip(values).collect() })
 }
 
-/// The columns of numbers that are results of Belvedere: those that a file names, or in older files all but normals.
+/// The columns of numbers that are results of Belvedere: those that a file names, in its order, or in older files all
+/// but normals.
 pub(super) fn result_columns(header: &LasHeader, format: &Format) -> Vec<(String, ExtraField)> {
     if !header.is_of_belvedere {
         return Vec::new();
     }
     let (user, id) = las_records::RESULTS;
-    let names = header.record(user, id).map(String::from_utf8_lossy);
-    let is_result = |name: &str| names.as_ref().is_none_or(|names| names.split('\n').any(|result| result == name));
     let columns = described(header, format).into_iter().filter(|(_, field)| field.is_number());
-    columns.filter(|(name, _)| is_result(name) && !name.starts_with("Normal")).collect()
+    let mut columns: Vec<(String, ExtraField)> = columns.filter(|(name, _)| !name.starts_with("Normal")).collect();
+    if let Some(names) = header.record(user, id).map(String::from_utf8_lossy) {
+        let place = |name: &str| names.split('\n').position(|result| result == name);
+        columns.retain(|(name, _)| place(name).is_some());
+        columns.sort_by_key(|(name, _)| place(name));
+    }
+    columns
 }

@@ -51,6 +51,8 @@ mod las_records;
 #[cfg(feature = "las")]
 mod las_results;
 #[cfg(feature = "las")]
+mod las_system;
+#[cfg(feature = "las")]
 mod laz;
 #[cfg(feature = "npy")]
 mod masbcpp;

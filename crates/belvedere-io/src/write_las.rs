@@ -44,14 +44,16 @@ pub(crate) fn write(
 ) -> Result<WriteReport> {
     let name = output.name().to_owned();
     let Some(mut copy) = RecordCopy::of(cloud, extra) else { return write_anew(output, cloud, extra, records) };
-    let (mut builder, mut results) = copy.builder()?;
+    let (mut builder, earlier_results) = copy.builder()?;
     builder.gps_time_type = gps_time_type(cloud);
     builder.vlrs.extend_from_slice(records);
     if builder.point_format.is_extended && !builder.vlrs.iter().chain(&builder.evlrs).any(|r| r.record_id == 2112) {
         builder.vlrs.extend(crs_records(cloud));
     }
     let kept: Vec<[u8; 192]> = copy.extra_descriptions().collect();
-    results.extend(extra.iter().map(|column| column.name.chars().take(MAX_NAME).collect()));
+    // the newest first: programs show the first
+    let results = extra.iter().map(|column| column.name.chars().take(MAX_NAME).collect()).chain(earlier_results);
+    let results: Vec<String> = results.collect();
     let length = copy.length();
     let header = finished(&name, builder, (&output.extension(), length), &kept, extra, &results)?;
     let mut copied = copy.records(extra);

@@ -9,6 +9,9 @@ use std::collections::BTreeMap;
 const CELL_STEP: f64 = 1.0 / 64.0;
 /// Largest side, metres.
 const LARGEST: f64 = 64.0;
+/// Smallest and largest side of a tile, metres.
+pub(crate) const MIN_TILE: f64 = 16.0;
+const LARGEST_TILE: f64 = 8192.0;
 
 /// What a result is about. Results about the same have cells of the same size.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -96,9 +99,22 @@ impl CellSizes {
         self.sides().map(|side| tile_size / side).all(|cells| cells == cells.floor())
     }
 
+    /// Checks these and the side of a tile that they divide.
+    ///
+    /// # Errors
+    /// [`Error::InvalidParameter`] for a side out of range, and for a tile that is no whole number of cells.
+    pub(crate) fn check_tile(&self, tile_size: f64) -> Result<()> {
+        self.check()?;
+        if (MIN_TILE..=LARGEST_TILE).contains(&tile_size) && self.divide(tile_size) {
+            return Ok(());
+        }
+        let (value, expected) = (format!("{tile_size} m"), "16 to 8192 m, and a whole number of cells");
+        Err(Error::InvalidParameter { parameter: Parameter::TileSize, value, expected })
+    }
+
     /// # Errors
     /// [`Error::InvalidParameter`] for a side out of range.
-    pub(crate) fn check(&self) -> Result<()> {
+    fn check(&self) -> Result<()> {
         let check = |parameter, side: f64| {
             let steps = side / CELL_STEP;
             if steps >= 1.0 && steps == steps.floor() && side <= LARGEST {

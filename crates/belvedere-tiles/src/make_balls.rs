@@ -5,7 +5,6 @@ use crate::grid::{MapArea, TOP_SIDE, TileId, square_at};
 use crate::plan::Plan;
 use crate::record::{Stamp, TileOutcome, TileRecord};
 use crate::stage::Stage;
-use crate::survey::check_counts;
 use crate::window;
 use belvedere::control::Control;
 use belvedere::io::{atomic, write_balls};
@@ -24,7 +23,7 @@ use std::path::Path;
 pub fn make_balls(plan: &Plan, run: &Path, tile: TileId, control: &Control<'_>) -> Result<TileRecord> {
     atomic::make_folder(&Stage::Balls.folder(run))?;
     let cloud = control.stage("reading", 0, || window::read(plan, &plan.window(tile), control))?;
-    check_counts(plan, &cloud, &plan.grid().core(tile).in_blocks())?;
+    window::check_counts(plan, &cloud, &plan.grid().core(tile).in_blocks())?;
     let record = made(plan, run, tile, cloud, control)?;
     record.write(plan, run, Stage::Balls, tile)?;
     Ok(record)

@@ -1,13 +1,12 @@
 //! One pass over all points: where they lie, how high, and samples of them.
 
 use crate::columns::append;
-use crate::grid::{MapArea, block_area, block_of};
+use crate::grid::{MapArea, block_of};
 use crate::inputs::{NOWHERE, PIECE_ROWS, PieceCell, PointColumns, hold};
-use crate::plan::Plan;
 use belvedere::control::Control;
 use belvedere::io::{CloudBatch, ReadOptions, read_batches};
 use belvedere::model::SurveyExtremes;
-use belvedere::{Bounds, Error, PointCloud, Result};
+use belvedere::{Bounds, PointCloud, Result};
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, HashMap};
 use std::path::PathBuf;
@@ -139,39 +138,8 @@ fn add_heights(extremes: &mut SurveyExtremes, blocks: &[SurveyBlock]) {
 }
 
 /// Whether a point is one of those that blocks count: neither noise nor withheld.
-fn is_counted(p: [f32; 3], class: u8, flags: u8) -> bool {
+pub(crate) fn is_counted(p: [f32; 3], class: u8, flags: u8) -> bool {
     flags & WITHHELD == 0 && !NOISE.contains(&class) && p.iter().all(|v| v.is_finite())
-}
-
-/// Refuses points of a run that are not those that the plan counted in the blocks of `area`, all of which they hold.
-///
-/// # Errors
-/// [`Error::Malformed`] for a file that hides points, or has more.
-pub(crate) fn check_counts(plan: &Plan, cloud: &PointCloud, area: &MapArea) -> Result<()> {
-    let flags = cloud.attributes.flags.as_deref().unwrap_or_default();
-    let classes = cloud.attributes.classification.as_deref().unwrap_or_default();
-    let mut found: HashMap<[i32; 2], u64> = HashMap::new();
-    for (row, &p) in cloud.positions.iter().enumerate() {
-        if is_counted(p, classes.get(row).copied().unwrap_or(0), flags.get(row).copied().unwrap_or(0)) {
-            *found.entry(block_of([p[0], p[1]])).or_default() += 1;
-        }
-    }
-    for block in plan.blocks_in(area) {
-        let count = found.get(&block.at).copied().unwrap_or(0);
-        if count != block.points {
-            let of_block = block_area(block.at);
-            let path = plan.files_meeting(&of_block).next().map_or_else(PathBuf::new, |file| file.path.clone());
-            let origin = plan.frame()?.origin;
-            let [x, y] = [0, 1].map(|axis| of_block.low[axis] + origin[axis]);
-            let what = format!(
-                "gives {count} points in the 64 m from {x} m east and {y} m north, where the plan counted {}: it changed, \
-                 or its COPC hierarchy hides points; write it again (PDAL, las2las), and make the plan again",
-                block.points
-            );
-            return Err(Error::malformed(&path, what));
-        }
-    }
-    Ok(())
 }
 
 impl PointCounts {

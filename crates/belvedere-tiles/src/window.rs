@@ -1,11 +1,14 @@
 //! The points of a rectangle of the survey, the same in every tile that reads them.
 
 use crate::columns::append;
-use crate::grid::MapArea;
+use crate::grid::{MapArea, block_area, block_of};
 use crate::plan::Plan;
+use crate::survey::is_counted;
 use belvedere::control::Control;
 use belvedere::io::{Insistence, ReadOptions, Within, read_batches};
 use belvedere::{Error, Frame, PointCloud, Result};
+use std::collections::HashMap;
+use std::path::PathBuf;
 
 /// The points of the plan's files within `area`, in the order of the files and of their points.
 ///
@@ -28,6 +31,37 @@ pub(crate) fn read(plan: &Plan, area: &MapArea, control: &Control<'_>) -> Result
         append(&mut cloud, batch?.cloud, plan.columns);
     }
     Ok(cloud)
+}
+
+/// Refuses points of a run that are not those that the plan counted in the blocks of `area`, all of which they hold.
+///
+/// # Errors
+/// [`Error::Malformed`] for a file that hides points, or has more.
+pub(crate) fn check_counts(plan: &Plan, cloud: &PointCloud, area: &MapArea) -> Result<()> {
+    let flags = cloud.attributes.flags.as_deref().unwrap_or_default();
+    let classes = cloud.attributes.classification.as_deref().unwrap_or_default();
+    let mut found: HashMap<[i32; 2], u64> = HashMap::new();
+    for (row, &p) in cloud.positions.iter().enumerate() {
+        if is_counted(p, classes.get(row).copied().unwrap_or(0), flags.get(row).copied().unwrap_or(0)) {
+            *found.entry(block_of([p[0], p[1]])).or_default() += 1;
+        }
+    }
+    for block in plan.blocks_in(area) {
+        let count = found.get(&block.at).copied().unwrap_or(0);
+        if count != block.points {
+            let of_block = block_area(block.at);
+            let path = plan.files_meeting(&of_block).next().map_or_else(PathBuf::new, |file| file.path.clone());
+            let origin = plan.frame()?.origin;
+            let [x, y] = [0, 1].map(|axis| of_block.low[axis] + origin[axis]);
+            let what = format!(
+                "gives {count} points in the 64 m from {x} m east and {y} m north, where the plan counted {}: it changed, \
+                 or its COPC hierarchy hides points; write it again (PDAL, las2las), and make the plan again",
+                block.points
+            );
+            return Err(Error::malformed(&path, what));
+        }
+    }
+    Ok(())
 }
 
 pub(crate) fn options(crs: Option<&str>, insistence: Insistence, frame: Frame) -> ReadOptions {

@@ -445,29 +445,28 @@ fn results_of_other_commands_are_shown_where_they_lie() {
         state["results"].as_array().unwrap().iter().map(|file| json!([file["name"], file["columns"]])).collect();
     // the columns of the simulated cloud itself come last
     let own = json!(["cloud.laz", ["lit_110_20", "lit_180_65", "lit_240_35"]]);
-    // and stay in a shadow of its points
-    let of_shadow = json!(["lit.laz", ["lit_110_20", "lit_180_65", "lit_240_35", "lit", "unproven"]]);
+    // and stay in a shadow of its points, behind it
+    let of_shadow = json!(["lit.laz", ["lit", "unproven", "lit_110_20", "lit_180_65", "lit_240_35"]]);
     assert_eq!(described, [json!(["lit.tif", [""]]), of_shadow, json!(["walk.geojson", []]), own]);
     let (head, _) = page.ask("shadow", &json!({ "time": "2026-06-21T17:00", "zone": "Europe/Amsterdam" }));
     assert!(head["command"].as_str().unwrap().starts_with("belvedere shadow town/cloud.laz --time"), "{head}");
 
     let origin = [0, 1, 2].map(|i| state["shown"]["origin"][i].as_f64().unwrap());
-    let layer = |number: usize, column: usize| -> (Vec<[f64; 3]>, Vec<u8>) {
+    let layer = |number: usize| -> (Vec<[f64; 3]>, Vec<u8>) {
         let (head, mut body) = page.answer("GET", &format!("results/{number}"), "");
         let count = head["count"].as_u64().unwrap() as usize;
-        // a byte of each place, column by column
-        let mut values = body.split_off(8 * count).split_off(column * count);
+        let mut values = body.split_off(8 * count);
         values.truncate(count);
         let at = |key: &str, axis: usize| head[key][axis].as_f64().unwrap();
         let place = |bytes: &[u8]| {
             let steps = |axis: usize| f64::from(u16::from_le_bytes([bytes[2 * axis], bytes[2 * axis + 1]]));
             [0, 1, 2].map(|axis| origin[axis] + at("low", axis) + steps(axis) * at("step", axis))
         };
-        assert_eq!(head["columns"][column]["are_codes"], true, "{head}");
+        assert_eq!(head["columns"][0]["are_codes"], true, "{head}");
         (body.chunks(8).map(place).collect(), values)
     };
     // the cells of the raster, on the ground
-    let (places, values) = layer(0, 0);
+    let (places, values) = layer(0);
     let rows = |rows: &mut dyn Iterator<Item = ([f64; 2], f64)>| {
         let mut rows: Vec<[i64; 3]> =
             rows.map(|([x, y], v)| [(x * 2.0).round() as i64, (y * 2.0).round() as i64, v as i64]).collect();
@@ -482,7 +481,7 @@ fn results_of_other_commands_are_shown_where_they_lie() {
         z.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &z| (low.min(z), high.max(z)));
     assert!(places.iter().all(|place| place[2] > lowest - 0.3 && place[2] < highest + 0.5), "{lowest} to {highest}");
     // the points of the cloud with their column
-    let (places, values) = layer(1, 3);
+    let (places, values) = layer(1);
     let of_points = column(&place, "points.csv", "lit");
     assert!(places.len() == of_points.len() && values.len() == of_points.len());
     let count = |values: &mut dyn Iterator<Item = f64>| values.filter(|&v| v == 1.0).count();
@@ -506,7 +505,7 @@ fn results_of_other_commands_are_shown_where_they_lie() {
 
     // alone, points with results are the cloud too
     let alone = Page::open(&place, "lit.laz").state();
-    assert!(alone["results"][0]["columns"][3] == "lit" && alone["shown"]["point_count"].as_u64().unwrap() > 1000);
+    assert!(alone["results"][0]["columns"][0] == "lit" && alone["shown"]["point_count"].as_u64().unwrap() > 1000);
 
     place.write("far.geojson", "{\"type\":\"Point\",\"coordinates\":[100000,400000]}");
     place.write("bad.tif", "not a raster");

@@ -2,9 +2,17 @@
 
 use super::blockers::IndexNode;
 use super::lanes::ConvexSpace;
-use super::sweep::{Apex, TreeSweep};
 use crate::query::target_tree::TargetNode;
 use belvedere_data::vector::{cross, dot, sub};
+
+/// Where beams come from.
+#[derive(Clone, Copy)]
+pub(super) enum Apex {
+    /// Local metres.
+    Eye([f64; 3]),
+    /// Unit vector.
+    Direction([f64; 3]),
+}
 
 /// A node of balls is opened where it is larger than so many widths of the beam: with less, balls that only a part of
 /// the beam meets are looked at by all of it, with more, parts of the beam open the same nodes again. For targets on
@@ -21,20 +29,19 @@ pub(super) struct Beam {
 }
 
 impl Beam {
-    pub(super) fn new(sweep: &TreeSweep<'_>, target: &TargetNode) -> Self {
-        let outline = sweep.outline(target, 0.0);
-        let corners = outline.points();
+    /// The beam from `apex` over the targets of a node, whose outline has these `corners`, widened by `room` metres.
+    pub(super) fn new(apex: Apex, room: f64, corners: &[[f64; 3]], target: &TargetNode) -> Self {
         let width = (0..3).map(|i| f64::from(target.high[i]) - f64::from(target.low[i])).fold(0.0, f64::max);
         let middle =
             std::array::from_fn(|i| corners.iter().map(|corner| corner[i]).sum::<f64>() / corners.len() as f64);
-        let forward = match sweep.apex {
+        let forward = match apex {
             Apex::Eye(eye) => belvedere_data::vector::unit(sub(middle, eye)),
             Apex::Direction(direction) => Some(direction),
         };
         let mut beam = Self { space: ConvexSpace::all(), width: 0.0, growth: [0.0; 3] };
         #[expect(clippy::cast_possible_truncation, reason = "widened by more than what is rounded")]
         let mut bound = |plane: usize, normal: [f64; 3], offset: f64| {
-            beam.space.set(plane, normal.map(|v| v as f32), (offset + sweep.room) as f32);
+            beam.space.set(plane, normal.map(|v| v as f32), (offset + room) as f32);
         };
         let range = |value: &dyn Fn(&[f64; 3]) -> f64| {
             let values = corners.iter().map(value);
@@ -47,7 +54,7 @@ impl Beam {
             let right = belvedere_data::vector::unit(cross(forward, up)).unwrap_or([1.0, 0.0, 0.0]);
             let sides = [right, cross(right, forward)];
             let [near, far] = range(&|corner| dot(*corner, forward));
-            match sweep.apex {
+            match apex {
                 Apex::Direction(_) => {
                     for (number, side) in sides.into_iter().enumerate() {
                         let [low, high] = range(&|corner| dot(*corner, side));
@@ -63,7 +70,7 @@ impl Beam {
                         range(&|corner| dot(sub(*corner, eye), side) / (dot(*corner, forward) - start))
                     };
                     // an eye between the targets, or almost, sees them all around
-                    if near - start > 10.0 * sweep.room {
+                    if near - start > 10.0 * room {
                         for (number, side) in sides.into_iter().enumerate() {
                             let [low, high] = slopes(side);
                             let edge = |slope: f64| -> [f64; 3] {

@@ -1,6 +1,6 @@
 //! One viewer's look at a tree of targets: the search itself.
 
-use super::beam::Beam;
+use super::beam::{Apex, Beam};
 use super::blockers::{BallBlock, BeamBlock, Blocks, IndexNode, LANES, NodeBlock};
 use super::lanes::{BeamScalar, HalfLine, Kernels, LaneBits, LaneColumns};
 use crate::blocking::{Ball, Profile};
@@ -36,15 +36,6 @@ pub(super) struct TreeSweep<'a> {
     /// By how much beams are widened, metres: what f32 may misplace anything in the scene by.
     pub(super) room: f64,
     control: &'a Control<'a>,
-}
-
-/// Where beams come from.
-#[derive(Clone, Copy)]
-pub(super) enum Apex {
-    /// Local metres.
-    Eye([f64; 3]),
-    /// Unit vector.
-    Direction([f64; 3]),
 }
 
 impl<'a> TreeSweep<'a> {
@@ -126,7 +117,7 @@ impl<'a> TreeSweep<'a> {
             if lists.hider.is_some_and(|ball| self.hides(ball, target)) {
                 continue;
             }
-            let beam = Beam::new(self, target);
+            let beam = Beam::new(self.apex, self.room, self.outline(target, 0.0).points(), target);
             let [[first_node, first_ball], [end_node, end_ball]] = given;
             if self.narrow_balls::<K>(target, &beam, &mut lists, first_ball..end_ball)
                 || self.open_large_nodes::<K>(target, &beam, &mut lists, first_node..end_node)
@@ -170,7 +161,7 @@ impl<'a> TreeSweep<'a> {
         if !self.sift::<K>(rays, &mut visible, lists, By::Recent) {
             return;
         }
-        let beam = Beam::new(self, target);
+        let beam = Beam::new(self.apex, self.room, self.outline(target, 0.0).points(), target);
         let [[first_node, first_ball], [end_node, end_ball]] = given;
         if self.narrow_balls::<K>(target, &beam, lists, first_ball..end_ball)
             || !self.sift::<K>(rays, &mut visible, lists, By::BallsFrom(end_ball))

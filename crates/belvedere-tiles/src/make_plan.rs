@@ -1,0 +1,222 @@
+//! From the files of a survey to the plan of its tiles.
+
+use crate::cell_sizes::{CellSizes, MIN_TILE};
+use crate::grid::MapArea;
+use crate::inputs::{InputFile, NOWHERE, PIECE_ROWS, PointColumns};
+use crate::plan::{LAYOUT, Plan, PlanFrame, without_ground};
+use crate::survey::survey;
+use crate::window;
+use belvedere::control::Control;
+use belvedere::crs::Crs;
+use belvedere::io::{Insistence, LasHead, cloud_files};
+use belvedere::model::{ModelParams, SurveyStatistics};
+use belvedere::{Error, Parameter, Result};
+use std::path::{Path, PathBuf};
+
+/// Corners that the origin of local coordinates is one of, metres: of blocks of 64 m, and few, so that neighbouring
+/// surveys share it.
+const ORIGIN_STEP: f64 = 1024.0;
+/// Farthest that a point may lie from the origin, metres: up to here f32 keeps a millimetre.
+const FARTHEST: f64 = 16_384.0;
+
+/// How a plan is made.
+#[derive(Clone, Debug)]
+pub struct PlanParams {
+    /// Files, folders and catalogues of tiles.
+    pub clouds: Vec<PathBuf>,
+    /// Reference system of files that name none, or the same.
+    pub crs: Option<String>,
+    /// Whether it holds against the files and their coordinates. Default: contradictions are errors.
+    pub crs_against_files: Insistence,
+    /// Side of a tile, metres. Default 512: a multiple of the blocks of 64 m, so that no point is looked at for
+    /// nothing.
+    pub tile_size: f64,
+    /// Sides of the cells of results. Default 1 m.
+    pub cells: CellSizes,
+    /// Places that the survey must hold, in its coordinates: one outside is refused before points are read. Default
+    /// none.
+    pub places: Vec<[f64; 2]>,
+    /// Most memory that a tile may take, bytes: tiles are quartered until the largest fits. `None` for any.
+    pub memory: Option<u64>,
+    /// Name and version of the program.
+    pub program: String,
+}
+
+impl Default for PlanParams {
+    fn default() -> Self {
+        Self {
+            clouds: Vec::new(),
+            crs: None,
+            crs_against_files: Insistence::Refuse,
+            tile_size: 512.0,
+            cells: CellSizes::default(),
+            places: Vec::new(),
+            memory: None,
+            program: String::new(),
+        }
+    }
+}
+
+impl Plan {
+    /// Looks at all points once, and plans the tiles, without a question.
+    ///
+    /// # Errors
+    /// [`Error::InvalidParameter`] for sizes out of range, places outside, a survey that is too wide for one frame, and
+    /// memory into which no tile fits; those of reading the files, and of [`SurveyStatistics::estimate`].
+    pub fn make(params: &PlanParams, control: &Control<'_>) -> Result<Self> {
+        params.cells.check_tile(params.tile_size)?;
+        let (mut inputs, heads) = inputs(&params.clouds)?;
+        let with_crs = heads.iter().position(|head| head.crs.epsg.is_some() || head.crs.wkt.is_some()).unwrap_or(0);
+        let crs = system_of(params, &inputs, &heads, with_crs)?;
+        let (frame, [low, high]) = frame_of(&crs, params, &inputs, &inputs[with_crs].path)?;
+        let columns = PointColumns::common(&heads);
+        let of_file = |(file, head): (&InputFile, &LasHead)| {
+            let path = file.path.display().to_string();
+            head.notes.iter().map(|note| format!("{path}: {note}")).collect::<Vec<_>>()
+        };
+        let notes: Vec<String> = inputs.iter().zip(&heads).flat_map(of_file).collect();
+        let files: Vec<PathBuf> = inputs.iter().map(|file| file.path.clone()).collect();
+        let points = inputs.iter().map(|file| file.points).sum();
+        let local = |v: [f64; 3]| [v[0] - frame.origin[0], v[1] - frame.origin[1]];
+        let area = MapArea { low: local(low), high: local(high) };
+        let options = window::options(params.crs.as_deref(), params.crs_against_files, frame.to_frame()?);
+        let found = control.stage("surveying", usize::try_from(points).unwrap_or(0), || {
+            survey(&files, &options, columns, points, &area, control)
+        })?;
+        for input in &mut inputs {
+            input.pieces = found.pieces.get(&input.path).cloned().unwrap_or_default();
+            // rows at the end may all have been left out
+            input.pieces.resize(usize::try_from(input.points.div_ceil(PIECE_ROWS)).unwrap_or(0), NOWHERE);
+        }
+        let bounds = found.bounds.ok_or_else(|| Error::NoPoints { what: "all points are noise".to_owned() })?;
+        let model = ModelParams::default();
+        let statistics =
+            SurveyStatistics::estimate(&files[0], &found.along_lines, &found.places, &found.extremes, &model, control)?;
+        let mut plan = Self {
+            layout: LAYOUT,
+            program: params.program.clone(),
+            inputs,
+            crs: params.crs.clone(),
+            crs_override: params.crs_against_files == Insistence::Insist,
+            columns,
+            tile_size: params.tile_size,
+            cells: params.cells.clone(),
+            // in steps, so that it does not look more exact than it is
+            buffer: statistics.buffer(&model).ceil(),
+            questions: Vec::new(),
+            meshes: Vec::new(),
+            cleared: Vec::new(),
+            terrain: None,
+            horizon: None,
+            trees: None,
+            tiles: Vec::new(),
+            low: bounds.low,
+            high: bounds.high,
+            statistics,
+            blocks: found.blocks,
+            frame,
+            name: String::new(),
+            notes,
+        };
+        plan.tiles = plan.tiles_with_cells();
+        match params.memory {
+            Some(memory) => plan.fitting(memory),
+            None => Ok(plan),
+        }
+    }
+
+    /// This with tiles that are quartered until the largest fits into the memory, bytes: their size changes no result.
+    fn fitting(mut self, memory: u64) -> Result<Self> {
+        let (size, needed) = (self.tile_size, self.estimate().memory_bytes);
+        while self.estimate().memory_bytes > memory {
+            if self.tile_size / 2.0 < MIN_TILE || !self.cells.divide(self.tile_size / 2.0) {
+                let megabytes = |bytes: u64| bytes as f64 / 1e6;
+                return Err(Error::InvalidParameter {
+                    parameter: Parameter::TileMemory,
+                    value: format!(
+                        "{:.0} MB, but a tile of {size} m takes about {:.0} MB, and one of {} m {:.0} MB",
+                        megabytes(memory),
+                        megabytes(needed),
+                        self.tile_size,
+                        megabytes(self.estimate().memory_bytes)
+                    ),
+                    expected: "enough for a small tile with what is around it",
+                });
+            }
+            self.tile_size /= 2.0;
+            self.tiles = self.tiles_with_cells();
+        }
+        Ok(self)
+    }
+}
+
+/// The frame of a survey whose system is named in the file `named_in`, and the corners of its files, metres.
+fn frame_of(
+    crs: &Crs,
+    params: &PlanParams,
+    inputs: &[InputFile],
+    named_in: &Path,
+) -> Result<(PlanFrame, [[f64; 3]; 2])> {
+    let metres_per_unit = crs.metres_per_unit_xyz();
+    let ends = |end: usize, axis: usize| {
+        inputs.iter().filter(|file| file.points > 0).map(move |file| file.bounds[end][axis] * metres_per_unit[axis])
+    };
+    let low: [f64; 3] = std::array::from_fn(|axis| ends(0, axis).fold(f64::INFINITY, f64::min));
+    let high: [f64; 3] = std::array::from_fn(|axis| ends(1, axis).fold(f64::NEG_INFINITY, f64::max));
+    if low.iter().zip(&high).any(|(low, high)| !(low <= high)) {
+        return Err(Error::NoPoints { what: "no file has a point".to_owned() });
+    }
+    if let Some(what) = crs.refusal(low.map(|v| v / metres_per_unit[0])) {
+        return Err(Error::UnusableCrs { path: named_in.to_owned(), what });
+    }
+    let holds = |place: &[f64; 2]| (0..2).all(|i| (low[i]..=high[i]).contains(&(place[i] * metres_per_unit[i])));
+    if let Some([x, y]) = params.places.iter().find(|place| !holds(place)) {
+        return Err(without_ground(format!("{x}, {y}")));
+    }
+    let origin: [f64; 3] =
+        std::array::from_fn(|i| (f64::midpoint(low[i], high[i]) / ORIGIN_STEP).round() * ORIGIN_STEP);
+    if (0..2).any(|i| low[i] - origin[i] < -FARTHEST || high[i] - origin[i] > FARTHEST) {
+        let [width, height] = [0, 1].map(|i| ((high[i] - low[i]) / 1000.0).ceil());
+        return Err(Error::InvalidParameter {
+            parameter: Parameter::Extent,
+            value: format!("{width} x {height} km"),
+            expected: "at most 32 x 32 km; make a plan for each part, with the tiles around it",
+        });
+    }
+    let system = crs.wkt.clone().or_else(|| crs.epsg.map(|code| format!("EPSG:{code}"))).unwrap_or_default();
+    let frame = PlanFrame { origin, metres_per_unit, system, doubt: crs.doubt.clone() };
+    if frame.to_frame().is_err() {
+        let what =
+            format!("its reference system, {}, is not known to this program; give it with --crs", crs.describe());
+        return Err(Error::UnusableCrs { path: named_in.to_owned(), what });
+    }
+    Ok((frame, [low, high]))
+}
+
+/// The reference system of a survey: the one that is given, with the heights of the files where it names none, or that
+/// of the file that names one.
+fn system_of(params: &PlanParams, inputs: &[InputFile], heads: &[LasHead], with_crs: usize) -> Result<Crs> {
+    let of_files = &heads[with_crs].crs;
+    let Some(text) = &params.crs else { return Ok(of_files.clone()) };
+    let given = Crs::parse(text)?;
+    if params.crs_against_files == Insistence::Insist {
+        return Ok(given);
+    }
+    for (input, head) in inputs.iter().zip(heads).filter(|(_, head)| head.points > 0) {
+        let middle = [0, 1].map(|axis| f64::midpoint(head.bounds[0][axis], head.bounds[1][axis]));
+        given.check_given(&head.crs, middle, &input.path)?;
+    }
+    Ok(given.with_heights_of(of_files))
+}
+
+fn inputs(clouds: &[PathBuf]) -> Result<(Vec<InputFile>, Vec<LasHead>)> {
+    let found: Vec<(InputFile, LasHead)> =
+        cloud_files(clouds)?.iter().map(|file| InputFile::new(file)).collect::<Result<_>>()?;
+    if let Some((first, rest)) = found.split_first()
+        && let Some((other, _)) = rest.iter().find(|(_, head)| head.crs.contradicts(&first.1.crs))
+    {
+        let what = format!("is in another reference system than {}; convert one of them", first.0.path.display());
+        return Err(Error::UnusableCrs { path: other.path.clone(), what });
+    }
+    Ok(found.into_iter().unzip())
+}
