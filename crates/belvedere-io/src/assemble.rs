@@ -40,21 +40,7 @@ pub(super) fn assemble(mut parts: Vec<FilePart>, options: &ReadOptions) -> Resul
     let origin = fixed.map_or_else(chosen, |frame| frame.origin);
 
     let mut cloud = PointCloud::in_frame(Frame { origin, ..Frame::default() });
-    if let Some(frame) = fixed.filter(|frame| frame.crs.kind != CrsKind::Unknown) {
-        cloud.frame = frame.clone();
-        report.crs_source = "frame".to_owned();
-    } else if let Some(part) = parts.iter().find(|part| part.crs.kind != CrsKind::Unknown) {
-        cloud.frame.crs = part.crs.clone();
-        report.crs_source = part.report.crs_source.clone();
-    } else if let Some(part) = parts.first() {
-        // a file can tell its unit without naming a system
-        cloud.frame.crs = part.crs.clone();
-    }
-    if cloud.frame.crs.doubt.is_none() {
-        cloud.frame.crs.doubt = parts.iter().find_map(|part| part.crs.doubt.clone());
-    }
-    report.doubt.clone_from(&cloud.frame.crs.doubt);
-    report.crs = cloud.frame.crs.describe();
+    name_system(&mut cloud.frame, &mut report, &parts, fixed);
     if cloud.frame.crs.kind == CrsKind::Unknown && bounds.looks_like_degrees() {
         report.notes.push(
             "the reference system is unknown; the coordinates are taken as metres, but look like degrees; if they are degrees, convert them to a projected system"
@@ -112,6 +98,25 @@ pub(super) fn assemble(mut parts: Vec<FilePart>, options: &ReadOptions) -> Resul
     }
     cloud.validate()?;
     Ok((cloud, report))
+}
+
+/// Gives a cloud the system that is fixed, or else that of the first of its parts that names one.
+fn name_system(of_cloud: &mut Frame, report: &mut ReadReport, parts: &[FilePart], fixed: Option<&Frame>) {
+    if let Some(frame) = fixed.filter(|frame| frame.crs.kind != CrsKind::Unknown) {
+        *of_cloud = frame.clone();
+        report.crs_source = "frame".to_owned();
+    } else if let Some(part) = parts.iter().find(|part| part.crs.kind != CrsKind::Unknown) {
+        of_cloud.crs = part.crs.clone();
+        report.crs_source = part.report.crs_source.clone();
+    } else if let Some(part) = parts.first() {
+        // a file can tell its unit without naming a system
+        of_cloud.crs = part.crs.clone();
+    }
+    if of_cloud.crs.doubt.is_none() {
+        of_cloud.crs.doubt = parts.iter().find_map(|part| part.crs.doubt.clone());
+    }
+    report.doubt.clone_from(&of_cloud.crs.doubt);
+    report.crs = of_cloud.crs.describe();
 }
 
 /// Refuses a file of several of which nothing is near the middle of all.

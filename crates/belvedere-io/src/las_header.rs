@@ -110,10 +110,8 @@ pub(super) fn read_header(
     let fields = HeaderFields { path, bytes: &bytes };
     let version = (fields.u8(24)?, fields.u8(25)?);
     if version.0 != 1 || version.1 > 4 {
-        return Err(Error::malformed(
-            path,
-            format!("has LAS version {}.{}; 1.0 to 1.4 are read", version.0, version.1),
-        ));
+        let what = format!("has LAS version {}.{}; 1.0 to 1.4 are read", version.0, version.1);
+        return Err(Error::malformed(path, what));
     }
     let header_size = u64::from(fields.u16(94)?);
     let points_start = u64::from(fields.u32(96)?);
@@ -149,6 +147,19 @@ pub(super) fn read_header(
         copc_pages: None,
         broken_records: 0,
     };
+    check(path, &header, header_size, size)?;
+    let wanted = (Length::Short, size_of_records);
+    read_records(path, file, &mut header, wanted, header_size..points_start, record_count)?;
+    if version.1 >= 4 && header_size >= 375 {
+        let (start, count) = (fields.u64(235)?, fields.u32(243)?);
+        read_records(path, file, &mut header, (Length::Long, size_of_records), start..size, count)?;
+    }
+    Ok(header)
+}
+
+/// Refuses coordinates that cannot be computed, and points that do not lie behind the header of a file of `size` bytes.
+fn check(path: &Path, header: &LasHeader, header_size: u64, size: u64) -> Result<()> {
+    let points_start = header.points_start;
     if header.scale.iter().any(|s| !s.is_finite() || *s == 0.0) || header.offset.iter().any(|o| !o.is_finite()) {
         let what = format!("has unusable coordinate scales {:?} or offsets {:?}", header.scale, header.offset);
         return Err(Error::malformed(path, what));
@@ -157,13 +168,7 @@ pub(super) fn read_header(
         let what = format!("has its points at byte {points_start} of {size}; the file is cut off or damaged");
         return Err(Error::malformed(path, what));
     }
-    let wanted = (Length::Short, size_of_records);
-    read_records(path, file, &mut header, wanted, header_size..points_start, record_count)?;
-    if version.1 >= 4 && header_size >= 375 {
-        let (start, count) = (fields.u64(235)?, fields.u32(243)?);
-        read_records(path, file, &mut header, (Length::Long, size_of_records), start..size, count)?;
-    }
-    Ok(header)
+    Ok(())
 }
 
 /// Reads up to `count` records that lie in the bytes of `range`, until one is broken.

@@ -390,56 +390,12 @@ impl Suns {
         context: &mut Context,
     ) -> Result<Vec<NamedSun>> {
         let mut section = SunSection::default();
-        let mut below = 0;
-        let far = whereabouts.far_in_words();
         let suns = match self {
-            Self::Directions(directions) => {
-                let north = place.north.of(whereabouts.convergence_at(whereabouts.middle()));
-                context.north(&north);
-                let site = place.site_of(whereabouts.frame, &whereabouts.bounds, None).ok();
-                directions.iter().for_each(|&sun| context.add(remark_on_sun(site.map(|(site, _)| site), sun)));
-                let named = |(number, &[azimuth, elevation]): (usize, &[f64; 2])| {
-                    below += usize::from(elevation <= 0.0);
-                    let is_one = directions.len() == 1;
-                    NamedSun {
-                        sun: ShadowSun::at(azimuth.to_radians() - north.of_grid, elevation.to_radians()),
-                        label: format!("{azimuth}_{elevation}"),
-                        column: if is_one { "lit".to_owned() } else { format!("lit_{number}") },
-                        title: format!("Shadow, sun at azimuth {azimuth}, elevation {elevation} degrees{far}"),
-                    }
-                };
-                (1..).zip(directions).map(named).collect::<Vec<_>>()
-            }
-            Self::Times(_) | Self::Days(_) => {
-                let site = place.site_at(whereabouts, context, None)?;
-                let zone = place.zone_at(&site, self.times())?;
-                let instants = match self {
-                    Self::Days(days) => days.instants(place, &site, &zone)?,
-                    _ => self.times().map(|time| place.instant(time)).collect::<Result<_>>()?,
-                };
-                let mut suns = Vec::with_capacity(instants.len());
-                for &instant in &instants {
-                    let position = sun_position_with(&site, instant, place.refraction)?;
-                    below += usize::from(position.elevation <= 0.0);
-                    if instants.len() <= MAX_LISTED_SUNS {
-                        let [azimuth_deg, elevation_deg] =
-                            [position.azimuth, position.elevation].map(|angle| rounded(angle.to_degrees(), 4));
-                        section.instants.0.push((zone.display(instant), SunAt { azimuth_deg, elevation_deg }));
-                    }
-                    let season = zone.date_at(instant).ok().map(|date| Season::on(date, &site));
-                    let label = moment(&zone, instant);
-                    suns.push(NamedSun {
-                        sun: ShadowSun { to_sun: position.to_sun(&site), season },
-                        column: if instants.len() == 1 { "lit".to_owned() } else { format!("lit_{label}") },
-                        label,
-                        title: format!("Shadow, {}{far}", zone.display(instant)),
-                    });
-                }
-                section.time_zone = Some(zone.name().to_owned());
-                suns
-            }
+            Self::Directions(directions) => directions_over(directions, place, whereabouts, context),
+            Self::Times(_) | Self::Days(_) => self.instants_over(place, whereabouts, &mut section, context)?,
         };
         section.suns = suns.len();
+        let below = suns.iter().filter(|named| named.sun.to_sun[2] <= 0.0).count();
         section.suns_below_horizon = (below > 0).then_some(below);
         context.report.sun = Some(section);
         context.add(Remark::of_share(
@@ -452,6 +408,41 @@ impl Suns {
         Ok(suns)
     }
 
+    fn instants_over(
+        &self,
+        place: &SunPlace,
+        whereabouts: &Whereabouts<'_>,
+        section: &mut SunSection,
+        context: &mut Context,
+    ) -> Result<Vec<NamedSun>> {
+        let site = place.site_at(whereabouts, context, None)?;
+        let zone = place.zone_at(&site, self.times())?;
+        let instants = match self {
+            Self::Days(days) => days.instants(place, &site, &zone)?,
+            _ => self.times().map(|time| place.instant(time)).collect::<Result<_>>()?,
+        };
+        let far = whereabouts.far_in_words();
+        let mut suns = Vec::with_capacity(instants.len());
+        for &instant in &instants {
+            let position = sun_position_with(&site, instant, place.refraction)?;
+            if instants.len() <= MAX_LISTED_SUNS {
+                let [azimuth_deg, elevation_deg] =
+                    [position.azimuth, position.elevation].map(|angle| rounded(angle.to_degrees(), 4));
+                section.instants.0.push((zone.display(instant), SunAt { azimuth_deg, elevation_deg }));
+            }
+            let season = zone.date_at(instant).ok().map(|date| Season::on(date, &site));
+            let label = moment(&zone, instant);
+            suns.push(NamedSun {
+                sun: ShadowSun { to_sun: position.to_sun(&site), season },
+                column: if instants.len() == 1 { "lit".to_owned() } else { format!("lit_{label}") },
+                label,
+                title: format!("Shadow, {}{far}", zone.display(instant)),
+            });
+        }
+        section.time_zone = Some(zone.name().to_owned());
+        Ok(suns)
+    }
+
     fn times(&self) -> impl Iterator<Item = &String> {
         let (times, days) = match self {
             Self::Directions(_) => (None, None),
@@ -460,6 +451,29 @@ impl Suns {
         };
         times.into_iter().flatten().chain(days.into_iter().flat_map(Days::times))
     }
+}
+
+fn directions_over(
+    directions: &[[f64; 2]],
+    place: &SunPlace,
+    whereabouts: &Whereabouts<'_>,
+    context: &mut Context,
+) -> Vec<NamedSun> {
+    let north = place.north.of(whereabouts.convergence_at(whereabouts.middle()));
+    context.north(&north);
+    let site = place.site_of(whereabouts.frame, &whereabouts.bounds, None).ok();
+    directions.iter().for_each(|&sun| context.add(remark_on_sun(site.map(|(site, _)| site), sun)));
+    let far = whereabouts.far_in_words();
+    let named = |(number, &[azimuth, elevation]): (usize, &[f64; 2])| {
+        let is_one = directions.len() == 1;
+        NamedSun {
+            sun: ShadowSun::at(azimuth.to_radians() - north.of_grid, elevation.to_radians()),
+            label: format!("{azimuth}_{elevation}"),
+            column: if is_one { "lit".to_owned() } else { format!("lit_{number}") },
+            title: format!("Shadow, sun at azimuth {azimuth}, elevation {elevation} degrees{far}"),
+        }
+    };
+    (1..).zip(directions).map(named).collect()
 }
 
 /// An instant in names: its date and time by the clocks of the zone, such as `20260621_1500`.

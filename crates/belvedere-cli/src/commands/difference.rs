@@ -28,18 +28,7 @@ pub(crate) fn run(arguments: &DifferenceArguments, global: &Global) -> Result<Su
     let mut before = read(&arguments.before, &mut run)?;
     let mut after = read(&arguments.after, &mut run)?;
     check_same_cells(&before, &after, arguments)?;
-    if let (Some(first), Some(second)) = (&before.description, &after.description)
-        && first != second
-    {
-        let files = [&arguments.before, &arguments.after].map(|path| path.display());
-        run.summary.warn(
-            "different-quantities",
-            format!(
-                "{} holds \"{first}\" and {} \"{second}\"; a difference of different quantities means nothing",
-                files[0], files[1]
-            ),
-        );
-    }
+    warn_of_quantities(&before, &after, arguments, &mut run.summary);
     for (path, raster) in [(&arguments.before, &mut before), (&arguments.after, &mut after)] {
         let band = raster.further_bands.iter().find(|band| band.name == UNPROVEN_BAND);
         let unproven = band.map_or(&[][..], |band| band.values.values());
@@ -68,17 +57,7 @@ pub(crate) fn run(arguments: &DifferenceArguments, global: &Global) -> Result<Su
     let first_name = before.name.clone();
     for output in &arguments.output {
         run.stage("writing", 0, |_| match extension(output).as_str() {
-            "csv" => {
-                let figures = change.report.figures();
-                let cells: Vec<[f64; 1]> = figures.iter().map(|(_, value)| [*value]).collect();
-                let decimals = |name: &str| if name.starts_with("cells") { 0 } else { 4 };
-                let columns: Vec<(&str, TableCells<'_>)> = figures
-                    .iter()
-                    .zip(&cells)
-                    .map(|((name, _), value)| (*name, TableCells::Real(value, decimals(name))))
-                    .collect();
-                write_table(output, &columns)
-            }
+            "csv" => write_figures(output, &change.report.figures()),
             "png" => write_png(output, &difference_map(&values, relief.as_ref(), cell_area.sqrt(), place, &title)?),
             _ => {
                 let mut names = vec![first_name.clone()];
@@ -98,6 +77,32 @@ pub(crate) fn run(arguments: &DifferenceArguments, global: &Global) -> Result<Su
         .headline("largest gain <difference.largest_gain>, largest loss <difference.largest_loss>");
     run.summary.add("written", arguments.output.iter().map(|path| path.display().to_string()).collect::<Vec<_>>());
     Ok(run.finish())
+}
+
+fn warn_of_quantities(
+    before: &PlacedRaster,
+    after: &PlacedRaster,
+    arguments: &DifferenceArguments,
+    summary: &mut Summary,
+) {
+    if let (Some(first), Some(second)) = (&before.description, &after.description)
+        && first != second
+    {
+        let [before, after] = [&arguments.before, &arguments.after].map(|path| path.display());
+        let text = format!(
+            "{before} holds \"{first}\" and {after} \"{second}\"; a difference of different quantities means nothing"
+        );
+        summary.warn("different-quantities", text);
+    }
+}
+
+fn write_figures(output: &Path, figures: &[(&str, f64)]) -> belvedere::Result<()> {
+    let cells: Vec<[f64; 1]> = figures.iter().map(|(_, value)| [*value]).collect();
+    let decimals = |name: &str| if name.starts_with("cells") { 0 } else { 4 };
+    let columns: Vec<(&str, TableCells<'_>)> = (figures.iter().zip(&cells))
+        .map(|((name, _), value)| (*name, TableCells::Real(value, decimals(name))))
+        .collect();
+    write_table(output, &columns)
 }
 
 /// The changes of the further results that both rasters have.

@@ -6,7 +6,7 @@ use crate::run::CommandContext;
 use crate::summary::{Summary, rounded, sections, whole};
 use anyhow::Result;
 use belvedere::apps::ask;
-use belvedere::io::{is_ball_file, read_balls, read_cloud};
+use belvedere::io::{FileReport, is_ball_file, read_balls, read_cloud};
 use belvedere::model::ModelParts;
 use belvedere::pulses::{FoundBy, LocateParams, Means, ScannerReport, locate};
 use belvedere::summary::{CloudSummary, FacadeSummary, SurveyKind, cloud_looks_y_up};
@@ -25,18 +25,7 @@ pub(crate) fn run(arguments: &Info, global: &Global) -> Result<Summary> {
     let options = arguments.input.read_options();
     let (cloud, report) = run.stage("reading", 0, |control| read_cloud(&arguments.input.clouds, &options, control))?;
     pipeline::warn_of_files(&report, &mut summary);
-    let files = report.files.iter().map(|file| {
-        let mut section = Summary::default();
-        section
-            .add("path", file.path.display().to_string())
-            .add("format", file.format.clone())
-            .add("points", file.points);
-        if !file.crs_source.is_empty() {
-            section.add("reference_system", format!("{} ({})", file.crs, file.crs_source));
-        }
-        serde_json::Value::from(section)
-    });
-    summary.add("file", files.collect::<Vec<_>>());
+    summary.add("file", report.files.iter().map(of_file).collect::<Vec<_>>());
     summary.add("points", cloud.len());
     let looks_y_up = run.stage("looking for the axis that is up", 0, |control| cloud_looks_y_up(&cloud, control))?;
     summary.remarks(ask::remark_on_axis(looks_y_up));
@@ -64,15 +53,7 @@ pub(crate) fn run(arguments: &Info, global: &Global) -> Result<Summary> {
     summary.add("covered_ground_m2", rounded(statistics.occupied_area, 1));
     summary.add("points_per_m2_of_covered_ground", rounded(statistics.density, 2));
     if let Some(facades) = run.stage("measuring facades", 0, |control| FacadeSummary::of(&cloud, control))? {
-        let mut section = Summary::default();
-        section.add("steep_points", facades.steep_point_count).add("building_points", facades.building_point_count);
-        match facades.walls {
-            Some(walls) => section
-                .add("estimated_wall_area_m2", whole(walls.area))
-                .add("points_per_m2_of_wall", rounded(walls.density, 2)),
-            None => section.add("walls", "not estimable: too few points on them"),
-        };
-        summary.add("facades", section);
+        summary.add("facades", of_facades(&facades));
     }
     if let Some(pulses) = statistics.pulses {
         summary.add("pulses", whole(pulses.count));
@@ -90,6 +71,27 @@ pub(crate) fn run(arguments: &Info, global: &Global) -> Result<Summary> {
     summary.add("duplicate_points", statistics.duplicate_count);
     crate::device::list(&mut summary);
     Ok(summary)
+}
+
+fn of_file(file: &FileReport) -> serde_json::Value {
+    let mut section = Summary::default();
+    section.add("path", file.path.display().to_string()).add("format", file.format.clone()).add("points", file.points);
+    if !file.crs_source.is_empty() {
+        section.add("reference_system", format!("{} ({})", file.crs, file.crs_source));
+    }
+    section.into()
+}
+
+fn of_facades(facades: &FacadeSummary) -> Summary {
+    let mut section = Summary::default();
+    section.add("steep_points", facades.steep_point_count).add("building_points", facades.building_point_count);
+    match facades.walls {
+        Some(walls) => section
+            .add("estimated_wall_area_m2", whole(walls.area))
+            .add("points_per_m2_of_wall", rounded(walls.density, 2)),
+        None => section.add("walls", "not estimable: too few points on them"),
+    };
+    section
 }
 
 /// What a ball file holds.

@@ -60,18 +60,7 @@ pub(crate) fn run(arguments: &Query, global: &Global) -> Result<Summary> {
         by_lines_of_sight(arguments, &model, &views, &targets.positions, &mut run, &mut section)?
     } else {
         let Some(view) = views.first() else { bail!("there is no view") };
-        // by the CPU: pictures of other devices have a tolerance, answers have none
-        let map = run.stage("drawing depth map", 0, |control| {
-            depth_map(model.balls(), view, profile, ItemBuffer::Without, control)
-        })?;
-        let bias = arguments.bias.unwrap_or_else(|| map.default_depth_bias());
-        section.add("method", "depth map").add("depth_bias_m", rounded(f64::from(bias), 4));
-        let mut answers = run.compute("querying", || query_points(&map, &targets.positions, bias));
-        if let Some(coverage) = model.coverage() {
-            let viewer = Viewer::Direction(view.frame.forward.map(|v| -v));
-            coverage.mark_outside(viewer, &targets.positions, &mut answers);
-        }
-        answers
+        by_depth_map(arguments, &model, view, &targets.positions, &mut run, &mut section)?
     };
     let counts = AnswerCounts::of(&answers);
     run.summary.remarks(ask::remark_on_outside(counts.outside_cloud, answers.len(), "targets"));
@@ -102,6 +91,30 @@ pub(crate) fn run(arguments: &Query, global: &Global) -> Result<Summary> {
         .headline("inside an obstacle: <answers.inside_obstacle> targets");
     run.summary.add("written", output.display().to_string());
     Ok(run.finish())
+}
+
+/// Answers from the depth map of a parallel view, as the paper has them.
+fn by_depth_map(
+    arguments: &Query,
+    model: &SceneModel,
+    view: &View,
+    targets: &[[f32; 3]],
+    run: &mut CommandContext,
+    section: &mut Summary,
+) -> Result<Vec<Answer>> {
+    let profile = arguments.shape.of(&arguments.scene.balls)?;
+    // by the CPU: pictures of other devices have a tolerance, answers have none
+    let map = run.stage("drawing depth map", 0, |control| {
+        depth_map(model.balls(), view, profile, ItemBuffer::Without, control)
+    })?;
+    let bias = arguments.bias.unwrap_or_else(|| map.default_depth_bias());
+    section.add("method", "depth map").add("depth_bias_m", rounded(f64::from(bias), 4));
+    let mut answers = run.compute("querying", || query_points(&map, targets, bias));
+    if let Some(coverage) = model.coverage() {
+        let viewer = Viewer::Direction(view.frame.forward.map(|v| -v));
+        coverage.mark_outside(viewer, targets, &mut answers);
+    }
+    Ok(answers)
 }
 
 /// The rows of the targets as they were given, where they go from a table to a table.

@@ -88,11 +88,7 @@ fn of_survey(
         None => Vec::new(),
     };
     survey.restore_rows(&mut balls);
-    let mut provenance = BTreeMap::from([
-        ("side".to_owned(), "interior".to_owned()),
-        ("method".to_owned(), settled.name().to_owned()),
-        ("parameters".to_owned(), format!("{settled:?}")),
-    ]);
+    let mut provenance = provenance("interior", &settled);
     // surveys with a reference system have z up, and parts of them are not judged alone
     let is_unknown = frame.crs.kind == CrsKind::Unknown && params.statistics.is_none();
     if is_unknown && looks_y_up(survey.oriented.positions(), survey.oriented.normals()) {
