@@ -17,7 +17,7 @@ use belvedere::io::{
     FeatureShape, GeojsonFeature, TableCells, TextRows, property, read_geojson, read_table, with_columns_read,
     write_table,
 };
-use belvedere::query::{UnprovenAs, random_pairs};
+use belvedere::query::{Answer, UnprovenAs, random_pairs};
 use serde_json::Value;
 use std::path::Path;
 
@@ -47,7 +47,7 @@ pub(crate) fn run(arguments: &LineOfSightArguments, global: &Global) -> Result<S
         run.summary.add("written", output.display().to_string());
     }
     if let (Some(output), Some(profile)) = (&arguments.profile_out, &found.profile) {
-        run.stage("writing", 0, |_| write_profile(output, profile, &scene))?;
+        run.stage("writing", 0, |_| write_profile(output, profile, &scene, unproven_length(found, &scene)))?;
         run.summary.add("profile_written", output.display().to_string());
     }
     Ok(run.finish())
@@ -178,7 +178,13 @@ fn write(output: &Path, found: &SightsResults, scene: &Scene, rows: &TextRows) -
     write_table(output, &with_columns_read(&read, &ENDS, &columns))
 }
 
-fn write_profile(output: &Path, profile: &SightProfile, scene: &Scene) -> belvedere::Result<()> {
+/// How much of the first line no pulse came near to, metres, where that is why its answer is unproven.
+fn unproven_length(found: &SightsResults, scene: &Scene) -> Option<f64> {
+    let is_unproven = found.answers.first() == Some(&Answer::Unproven);
+    found.columns(scene).unproven.and_then(|lengths| lengths.first().copied()).filter(|_| is_unproven)
+}
+
+fn write_profile(output: &Path, profile: &SightProfile, scene: &Scene, unproven: Option<f64>) -> belvedere::Result<()> {
     let frame = scene.frame();
     let up = frame.crs.vertical_metres_per_unit;
     let height = |local: f64| (local + frame.origin[2]) / up;
@@ -188,9 +194,10 @@ fn write_profile(output: &Path, profile: &SightProfile, scene: &Scene) -> belved
         profile.solid.iter().map(|pieces| pieces.iter().map(|piece| piece.map(height)).collect()).collect();
     if extension(output) == "png" {
         let length = profile.distances.last().copied().unwrap_or(0.0);
-        let title = match profile.blocked_at {
-            Some(at) => format!("Line of sight, {length:.1} m: blocked after {at:.1} m"),
-            None => format!("Line of sight, {length:.1} m: nothing blocks"),
+        let title = match (profile.blocked_at, unproven) {
+            (Some(at), _) => format!("Line of sight, {length:.1} m: blocked after {at:.1} m"),
+            (None, Some(unproven)) => format!("Line of sight, {length:.1} m: unproven on {unproven:.1} m"),
+            (None, None) => format!("Line of sight, {length:.1} m: nothing blocks"),
         };
         let picture = profile_picture(&DistanceProfile {
             distances: &profile.distances,
