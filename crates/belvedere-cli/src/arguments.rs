@@ -103,6 +103,12 @@ pub(crate) struct Global {
     /// Seed of the random numbers
     #[arg(long, global = true, value_name = "N", default_value_t = 1)]
     pub(crate) seed: u64,
+    /// Folder where scenes are kept for the next command [default: the user's folder for such files]
+    #[arg(long, global = true, value_name = "DIR", conflicts_with = "no_cache")]
+    pub(crate) cache: Option<PathBuf>,
+    /// Build scenes anew, and keep none
+    #[arg(long, global = true)]
+    pub(crate) no_cache: bool,
     /// Print the summary as one JSON object on standard output
     #[arg(long, global = true)]
     pub(crate) json: bool,
@@ -174,6 +180,8 @@ pub(crate) enum Command {
     Normals(NormalsArguments),
     /// Build the medial balls of a scene and save them for other commands
     Balls(BallsArguments),
+    /// List the scenes that are kept for the next command, or remove them
+    Cache(CacheArguments),
     /// Compute a depth map: the distance to the first surface for each pixel of a view
     #[command(name = "depth-map")]
     DepthMap(DepthMapArguments),
@@ -241,6 +249,13 @@ pub(crate) struct Demo {
     /// Side of the simulated town in metres
     #[arg(long, value_name = "M", default_value_t = 120.0)]
     pub(crate) extent: f64,
+}
+
+#[derive(Args)]
+pub(crate) struct CacheArguments {
+    /// Remove all of them
+    #[arg(long)]
+    pub(crate) clear: bool,
 }
 
 #[derive(Args)]

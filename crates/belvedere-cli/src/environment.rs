@@ -1,7 +1,8 @@
-//! What the environment says of threads and of the instructions of the processor.
+//! What the environment says of threads, of the instructions of the processor, and of where scenes are kept.
 
 use crate::arguments::{Global, MAX_THREADS, Usage};
 use anyhow::{Result, anyhow};
+use belvedere::cache::SceneCache;
 use belvedere::neighbors::Instructions;
 use std::env;
 
@@ -28,6 +29,14 @@ pub(crate) fn apply(global: &Global) -> Result<()> {
         let count = if threads == 0 { "as many threads as there are processors".to_owned() } else { threads.to_string() };
         anyhow!("the system refuses {count} ({error}); give fewer with --threads, or raise its limits (ulimit -u, ulimit -v)")
     })
+}
+
+/// Where scenes are kept; `None` where that is not wanted, or no folder is known.
+pub(crate) fn cache(global: &Global) -> Option<SceneCache> {
+    if global.no_cache {
+        return None;
+    }
+    global.cache.clone().or_else(|| SceneCache::usual_folder(|name| env::var_os(name))).map(SceneCache::new)
 }
 
 /// Threads that the variable names, 0 for all processors: what is no number is passed over, as the library does it.

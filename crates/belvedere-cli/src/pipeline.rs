@@ -14,14 +14,17 @@ use crate::run::CommandContext;
 use crate::scene_config::BallParameters;
 use crate::summary::Summary;
 use anyhow::{Result, bail};
+use belvedere::apps::ask::scene::GroundStore;
 use belvedere::apps::ask::{self, ViewFrom};
+use belvedere::cache::{BuiltScene, ReadBefore, SceneOrigin, scene_model};
 use belvedere::crs::CrsKind;
 use belvedere::depth::Profile;
 use belvedere::io::{ReadOptions, ReadReport, UpAxis, is_ball_file, read_balls, read_cloud, web_address};
-use belvedere::model::SceneModel;
+use belvedere::model::{BallParams, ModelParams, SceneModel};
 use belvedere::query::{BlockRule, UnprovenAs};
 use belvedere::view::{CAMERA_FOV, CAMERA_SIZE, PANORAMA_WIDTH, View, default_pixel_size, to_sun};
 use belvedere::{Bounds, Error, PointCloud};
+use std::borrow::Cow;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -95,6 +98,8 @@ pub(crate) struct LoadedScene {
     pub(crate) left_out: ReadReport,
     /// Shape that represents a ball.
     pub(crate) profile: Profile,
+    /// Keeps the ground of the cloud; `None` without a cache, and where the cloud is not as it was read.
+    pub(crate) ground_store: Option<Arc<dyn GroundStore>>,
 }
 
 impl LoadedScene {
@@ -118,7 +123,8 @@ impl LoadedScene {
         let usual = self.model.rule();
         let rule = BlockRule { profile: self.profile, shell: shell.map_or(usual.shell, f64::from), ..usual };
         let frame = self.cloud.frame.clone();
-        let scene = ask::Scene::new(self.model, Arc::new(self.cloud)).with_rule(rule);
+        let scene =
+            ask::Scene::new(self.model, Arc::new(self.cloud)).with_rule(rule).with_ground_store(self.ground_store);
         let Some(GroundChoice::Cloud(path)) = ground else { return Ok(scene) };
         let (cloud, _) = run.stage("reading ground", 0, |control| {
             read_cloud(std::slice::from_ref(path), &ReadOptions::default(), control)
@@ -189,22 +195,81 @@ fn present_scene(arguments: &SceneInput, points: KeepPoints, run: &mut CommandCo
         run.summary.add("balls_read", parts.balls.len());
         let model = SceneModel::from_parts(parts)?;
         let cloud = PointCloud::in_frame(model.frame().clone());
-        return Ok(LoadedScene { model, cloud, left_out: ReadReport::default(), profile });
+        return Ok(LoadedScene { model, cloud, left_out: ReadReport::default(), profile, ground_store: None });
     }
     let balls = parameters.balls(MethodChoice::Carved)?;
-    let (mut cloud, left_out) = read_counted(&arguments.input, run)?;
+    if points == KeepPoints::LetGo
+        && let Some(model) = kept_scene(&arguments.input, &parameters, balls, run)?
+    {
+        let cloud = PointCloud::in_frame(model.frame().clone());
+        return Ok(LoadedScene { model, cloud, left_out: ReadReport::default(), profile, ground_store: None });
+    }
+    let (read, notes) = run.aside(|run| read_counted(&arguments.input, run));
+    let notes = notes.into_entries();
+    run.summary.add_report(&notes);
+    let (mut cloud, left_out) = read?;
     let frame = cloud.frame.clone();
     let params = params::model(&parameters, balls, &frame.crs, run)?;
-    let built = match points {
-        KeepPoints::Keep => SceneModel::build(&cloud, &params, &run.control()),
-        KeepPoints::LetGo => {
-            let given = std::mem::replace(&mut cloud, PointCloud::in_frame(frame));
-            SceneModel::build_owned(given, &params, &run.control())
-        }
+    let given = match points {
+        KeepPoints::Keep => Cow::Borrowed(&cloud),
+        KeepPoints::LetGo => Cow::Owned(std::mem::replace(&mut cloud, PointCloud::in_frame(frame))),
     };
-    let (model, report) = built.map_err(|error| advised(&arguments.input, error))?;
-    run.summary.add_report(&report);
-    Ok(LoadedScene { model, cloud, left_out, profile })
+    let built = built_of(given, &params, &arguments.input, run)?;
+    if let (Some(cache), Some(contents)) = (&run.cache, &built.cloud) {
+        let before = ReadBefore { frame: cloud.frame.clone(), cloud: contents.clone(), notes };
+        // what fails here has failed for the scene as well, which says it
+        let _ = cache.keep_reading(&arguments.input.clouds, &arguments.input.read_options(), &before);
+    }
+    let ground_store = run.cache.as_ref().zip(built.cloud.as_ref()).map(|(cache, contents)| cache.ground_of(contents));
+    Ok(LoadedScene { model: reported(built, run), cloud, left_out, profile, ground_store })
+}
+
+/// The model of a cloud that was read from `input`: found in the cache, or built and kept there.
+pub(crate) fn model_of(
+    cloud: Cow<'_, PointCloud>,
+    params: &ModelParams,
+    input: &CloudInput,
+    run: &mut CommandContext,
+) -> Result<SceneModel> {
+    let built = built_of(cloud, params, input, run)?;
+    Ok(reported(built, run))
+}
+
+fn built_of(
+    cloud: Cow<'_, PointCloud>,
+    params: &ModelParams,
+    input: &CloudInput,
+    run: &CommandContext,
+) -> Result<BuiltScene> {
+    let built = scene_model(cloud, params, run.cache.as_ref(), &run.control());
+    built.map_err(|error| advised(input, error))
+}
+
+/// Reports on a model that was built or found.
+fn reported(built: BuiltScene, run: &mut CommandContext) -> SceneModel {
+    run.summary.add("scene", built.origin.name());
+    if let SceneOrigin::NotKept(error) = &built.origin {
+        let advice = "free some room, give --cache DIR, or --no-cache to say nothing";
+        let text = format!("the scene could not be kept for the next command: {error}; {advice}");
+        run.summary.warn("scene-not-kept", text);
+    }
+    run.summary.add_report(&built.report);
+    built.model
+}
+
+/// The scene of files that were read before and have not changed, if it was kept.
+fn kept_scene(
+    input: &CloudInput,
+    parameters: &BallParameters,
+    balls: BallParams,
+    run: &mut CommandContext,
+) -> Result<Option<SceneModel>> {
+    let Some(cache) = run.cache.clone() else { return Ok(None) };
+    let Some(before) = cache.read_before(&input.clouds, &input.read_options()) else { return Ok(None) };
+    let params = params::model(parameters, balls, &before.frame.crs, run)?;
+    let Some(found) = cache.find(&before.cloud, &params, false, &run.control()) else { return Ok(None) };
+    run.summary.add_report(&before.notes);
+    Ok(Some(reported(found, run)))
 }
 
 /// Flags that say how to make balls are of no use where they are made already.

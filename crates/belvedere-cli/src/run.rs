@@ -4,6 +4,7 @@ use crate::arguments::Global;
 use crate::progress::CommandStages;
 use crate::summary::Summary;
 use belvedere::apps::ask::Answers;
+use belvedere::cache::SceneCache;
 use belvedere::control::{Control, Watcher};
 
 /// What every command has beside its arguments.
@@ -11,11 +12,14 @@ pub(crate) struct CommandContext {
     stages: CommandStages,
     pub(crate) summary: Summary,
     pub(crate) seed: u64,
+    /// Where scenes are kept.
+    pub(crate) cache: Option<SceneCache>,
 }
 
 impl CommandContext {
     pub(crate) fn new(global: &Global) -> Self {
-        Self { stages: CommandStages::new(global), summary: Summary::default(), seed: global.seed }
+        let cache = crate::environment::cache(global);
+        Self { stages: CommandStages::new(global), summary: Summary::default(), seed: global.seed, cache }
     }
 
     /// A run that `watcher` follows too.

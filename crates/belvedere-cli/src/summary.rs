@@ -64,6 +64,11 @@ impl Summary {
         Self { entries, ..Self::default() }
     }
 
+    /// The figures, sections and remarks.
+    pub(crate) fn into_entries(self) -> Map<String, Value> {
+        self.entries
+    }
+
     /// Adds all figures of `other`.
     pub(crate) fn add_all(&mut self, other: Self) -> &mut Self {
         for (name, value) in other.entries {

@@ -10,10 +10,12 @@ pub(crate) use opened::{OpenNode, PartSides};
 pub(crate) use walk::Visit;
 
 use crate::instructions::Instructions;
+use belvedere_data::model::TreeParts;
 use belvedere_data::vector::{dot, length, sub, unit};
 use belvedere_data::{Error, Parameter, Result};
 use obvhs::aabb::Aabb;
 use obvhs::cwbvh::CwBvh;
+use obvhs::cwbvh::node::CwBvhNode;
 use search_tree::search_tree;
 use walk::{RayScalar, TreeRay, walk};
 
@@ -319,6 +321,50 @@ impl RayIndex {
         })
     }
 
+    /// The tree as numbers.
+    pub(crate) fn to_parts(&self) -> TreeParts {
+        let (nodes, order) = (self.node_words().collect(), self.order().to_vec());
+        TreeParts { nodes, order, around: [self.center, self.half_size] }
+    }
+
+    /// The tree of such numbers over `count` boxes.
+    ///
+    /// # Errors
+    /// [`Error::InvalidParameter`] where they are not those of a tree: parts beyond its nodes or boxes, or above them.
+    pub(crate) fn from_parts(parts: TreeParts, count: usize) -> Result<Self> {
+        let TreeParts { nodes, order, around: [center, half_size] } = parts;
+        let nodes: Vec<CwBvhNode> = nodes.iter().map(node_of_words).collect();
+        let total_aabb = Aabb::new(to_f32(half_size.map(|v| -v)).into(), to_f32(half_size).into());
+        let tree = CwBvh { nodes, primitive_indices: order, total_aabb, ..CwBvh::default() };
+        let index = Self { tree, center, half_size, instructions: Instructions::detect() };
+        if index.is_sound(count) { Ok(index) } else { Err(damaged_tree()) }
+    }
+
+    /// Whether every part of a node lies within the tree, and nodes lie below the one that they are a part of, so that
+    /// every walk ends.
+    fn is_sound(&self, count: usize) -> bool {
+        let nodes = self.tree.nodes.len();
+        let is_within = |number: u32, part: NodePart| match part {
+            NodePart::Nothing => true,
+            NodePart::Node(below) => below > number && (below as usize) < nodes,
+            NodePart::Rows { first, count: rows } => first as usize + rows as usize <= count,
+        };
+        #[expect(clippy::cast_possible_truncation, reason = "nodes are numbered with 32 bits")]
+        let numbers = 0..nodes as u32;
+        let mut seen = vec![false; count];
+        self.tree.primitive_indices.len() == count
+            && self
+                .tree
+                .primitive_indices
+                .iter()
+                .all(|&row| seen.get_mut(row as usize).is_some_and(|seen| !std::mem::replace(seen, true)))
+            && (count == 0 || nodes > 0)
+            && [self.center, self.half_size].as_flattened().iter().all(|v| v.is_finite())
+            && numbers.into_iter().all(|number| {
+                self.parts(number).is_some_and(|found| found.parts.into_iter().all(|part| is_within(number, part)))
+            })
+    }
+
     /// The part of a ray inside the box of the scene, larger by `room`, as the tree takes it, or `None` where it misses
     /// the box.
     fn enter(&self, ray: &Ray, room: [f64; 3]) -> Option<PreparedRay> {
@@ -341,6 +387,38 @@ impl RayIndex {
         let origin = to_f32(std::array::from_fn(|i| local[i] + start * ray.direction[i]));
         let ray = TreeRay::new(origin, to_f32(ray.direction), to_f32(room), tree_reach(end - start));
         Some(PreparedRay { ray, start })
+    }
+}
+
+fn damaged_tree() -> Error {
+    Error::InvalidParameter {
+        parameter: Parameter::Obstacle,
+        value: "a damaged tree".to_owned(),
+        expected: "one that holds every box once",
+    }
+}
+
+/// The node of [`RayIndex::node_words`].
+fn node_of_words(words: &[u32; NODE_WORDS]) -> CwBvhNode {
+    let [x, y, z, flags, child_base_idx, primitive_base_idx, sides @ ..] = *words;
+    let [ex, ey, ez, imask] = flags.to_le_bytes();
+    let sides: [u64; (NODE_WORDS - 6) / 2] =
+        std::array::from_fn(|i| u64::from(sides[2 * i]) | u64::from(sides[2 * i + 1]) << 32);
+    let [child_meta, child_min_x, child_max_x, child_min_y, child_max_y, child_min_z, child_max_z] =
+        sides.map(u64::to_le_bytes);
+    CwBvhNode {
+        p: [x, y, z].map(f32::from_bits).into(),
+        e: [ex, ey, ez],
+        imask,
+        child_base_idx,
+        primitive_base_idx,
+        child_meta,
+        child_min_x,
+        child_max_x,
+        child_min_y,
+        child_max_y,
+        child_min_z,
+        child_max_z,
     }
 }
 

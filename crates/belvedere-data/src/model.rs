@@ -36,6 +36,28 @@ pub struct ModelParts {
     pub provenance: BTreeMap<String, String>,
 }
 
+/// What follows from the parts of a model or was found with them, and takes long to make again.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct DerivedParts {
+    /// Which balls are vegetation, (B); empty where that is not known.
+    pub vegetation: Vec<bool>,
+    /// Outward unit normals of the points that the model was built from, (N, 3); `None` where they were let go.
+    pub normals: Option<Vec<[f32; 3]>>,
+    /// The tree of boxes around the balls; `None` where it was not made.
+    pub tree: Option<TreeParts>,
+}
+
+/// A tree of boxes, as numbers.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TreeParts {
+    /// The nodes, (K, 20), each as the words of its fields.
+    pub nodes: Vec<[u32; 20]>,
+    /// For each row of the tree, which of the boxes it is, (B).
+    pub order: Vec<u32>,
+    /// Middle and half size of the box around all, local metres, (2, 3).
+    pub around: [[f64; 3]; 2],
+}
+
 impl ModelParts {
     /// The same with a further note on how they were made, such as the name of the input.
     #[must_use]

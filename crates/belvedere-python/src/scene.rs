@@ -9,6 +9,7 @@ use crate::system::System;
 use crate::work::run;
 use belvedere::apps::ask;
 use belvedere::apps::horizon::convergence;
+use belvedere::cache::{SceneCache, SceneOrigin, scene_model};
 use belvedere::clean::CleanParams;
 use belvedere::crs::Crs;
 use belvedere::io::{
@@ -22,6 +23,7 @@ use belvedere::query::UnprovenAs;
 use belvedere::{Frame, PointCloud};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
+use std::borrow::Cow;
 use std::io::Cursor;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -91,6 +93,24 @@ pub(crate) struct Choices {
     initial_radius: Option<f32>,
     max_radius: Option<f32>,
     penetration: Option<f32>,
+    cache: CacheKeyword,
+}
+
+/// Whether and where scenes are kept.
+#[derive(FromPyObject)]
+enum CacheKeyword {
+    Whether(bool),
+    Folder(PathBuf),
+}
+
+impl CacheKeyword {
+    fn cache(&self) -> Option<SceneCache> {
+        match self {
+            Self::Whether(false) => None,
+            Self::Whether(true) => SceneCache::usual_folder(|name| std::env::var_os(name)).map(SceneCache::new),
+            Self::Folder(folder) => Some(SceneCache::new(folder)),
+        }
+    }
 }
 
 impl Choices {
@@ -187,9 +207,18 @@ impl PyScene {
     fn build(py: Python<'_>, cloud: &Cloud, choices: Choices, progress: Option<Py<PyAny>>) -> PyResult<(Self, String)> {
         let cloud = Arc::clone(&cloud.0);
         let params = py.detach(|| choices.params(&cloud.frame))?;
-        let given = Arc::clone(&cloud);
-        let (model, report) = run(py, progress, move |control| SceneModel::build(&given, &params, control))?;
-        Ok((Self(Arc::new(ask::Scene::new(model, cloud))), json(&report)?))
+        let (given, cache) = (Arc::clone(&cloud), choices.cache.cache());
+        let built = run(py, progress, {
+            let cache = cache.clone();
+            move |control| scene_model(Cow::Borrowed(&*given), &params, cache.as_ref(), control)
+        })?;
+        let store = cache.zip(built.cloud).map(|(cache, contents)| cache.ground_of(&contents));
+        let mut report = built.report;
+        report.insert("scene".to_owned(), built.origin.name().into());
+        if let SceneOrigin::NotKept(error) = &built.origin {
+            report.insert("scene_not_kept".to_owned(), error.to_string().into());
+        }
+        Ok((Self(Arc::new(ask::Scene::new(built.model, cloud).with_ground_store(store))), json(&report)?))
     }
 
     /// The scene of a ball file, with the cloud that shows its ground if there is one.

@@ -32,6 +32,7 @@
 //! | which lines of sight are free | [`query`] |
 //! | shadow, sun hours, sky view, irradiance, viewsheds, landmarks, cameras, solar envelopes, comfort | `apps` |
 //! | results of applications as files | `results` |
+//! | scenes that were built before | `cache` |
 //! | pictures and films | `figures` |
 //! | progress and cancellation of long work | [`control`] |
 //! | single stages, for research | [`clean`], [`normals`], [`pulses`], [`medial`], [`depth`] |
@@ -43,6 +44,7 @@
 //! | `apps` | the applications | yes |
 //! | `io` | file formats | yes |
 //! | `figures` | pictures; needs `io` | yes |
+//! | `cache` | scenes kept in a folder; needs `apps` and `npy` | yes |
 //! | `gpu` | sky views, sun hours, irradiance and depth maps on a graphics processor, with the same answers | no |
 //! | `las` `e57` `ply` `npy` `tiff` `obj` | single file formats; need `io` | yes |
 //! | `scanner-estimate` | finding scanner positions; without it, clouds without count as scanned from above | yes |
@@ -54,8 +56,8 @@
 //! # Conventions
 //!
 //! Units are metres and radians. x is east, y north, z up. Positions are local f32 on an f64 origin ([`Frame`]). Every
-//! result is the same, bit by bit, for any number of threads. The crate prints nothing and reads neither clock nor
-//! environment. Parameters are structs with defaults; those that may grow are `#[non_exhaustive]` and have `with_…`
+//! result is the same, bit by bit, for any number of threads. The crate prints nothing and reads no environment; the
+//! clock only for when a kept scene was used. Parameters are structs with defaults; those that may grow are `#[non_exhaustive]` and have `with_…`
 //! methods.
 
 #[cfg(feature = "apps")]
@@ -76,6 +78,8 @@ pub use belvedere_figures as figures;
 pub use belvedere_gpu as gpu;
 #[cfg(feature = "io")]
 pub use belvedere_io as io;
+#[cfg(feature = "cache")]
+pub mod cache;
 #[cfg(all(feature = "apps", feature = "tiff"))]
 pub mod results;
 

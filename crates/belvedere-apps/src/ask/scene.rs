@@ -29,6 +29,7 @@ pub struct Scene {
     plain: OnceResult<MedialScene>,
     without_vegetation: OnceResult<MedialScene>,
     ground: Mutex<Option<(MapGrid, GroundPoints, Arc<KnownGround>)>>,
+    ground_store: Option<Arc<dyn GroundStore>>,
 }
 
 /// Where a scene lies: all that suns and norths need to know of it.
@@ -93,6 +94,15 @@ pub struct KnownGround {
     pub report: GroundReport,
 }
 
+/// Keeps ground for later scenes of the same cloud.
+pub trait GroundStore: Send + Sync {
+    /// The ground on a grid, if it was kept.
+    fn find(&self, grid: &MapGrid, params: &GroundParams) -> Option<KnownGround>;
+
+    /// Keeps ground that was made. What cannot be kept is made again.
+    fn keep(&self, params: &GroundParams, known: &KnownGround);
+}
+
 /// Something that is made when first needed, and can fail.
 struct OnceResult<T>(Mutex<Option<Arc<T>>>);
 
@@ -133,13 +143,20 @@ impl Scene {
             plain: OnceResult::default(),
             without_vegetation: OnceResult::default(),
             ground: Mutex::new(None),
+            ground_store: None,
         }
     }
 
     /// This, with the ground of another cloud in the same frame.
     #[must_use]
     pub fn with_ground_of(self, ground_cloud: Arc<PointCloud>) -> Self {
-        Self { ground_cloud, ground: Mutex::new(None), ..self }
+        Self { ground_cloud, ground: Mutex::new(None), ground_store: None, ..self }
+    }
+
+    /// This, with a store for the ground of its cloud.
+    #[must_use]
+    pub fn with_ground_store(self, store: Option<Arc<dyn GroundStore>>) -> Self {
+        Self { ground_store: store, ..self }
     }
 
     /// This, with balls that block by another rule.
@@ -231,9 +248,18 @@ impl Scene {
         }
         let cloud = self.ground_cloud()?;
         let params = GroundParams { points, ..GroundParams::default() };
-        let (ground, report) =
-            control.stage("computing ground", 0, || Ground::of_cloud(cloud, grid, &params, control))?;
-        let known = Arc::new(KnownGround { ground, report });
+        let store = self.ground_store.as_deref();
+        let known = match store.and_then(|store| store.find(&grid, &params)) {
+            Some(known) => known,
+            None => {
+                let (ground, report) =
+                    control.stage("computing ground", 0, || Ground::of_cloud(cloud, grid, &params, control))?;
+                let known = KnownGround { ground, report };
+                store.into_iter().for_each(|store| store.keep(&params, &known));
+                known
+            }
+        };
+        let known = Arc::new(known);
         *kept = Some((grid, points, Arc::clone(&known)));
         Ok(known)
     }

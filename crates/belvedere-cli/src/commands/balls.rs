@@ -10,7 +10,8 @@ use belvedere::PointCloud;
 use belvedere::io::{MasbcppFolder, write_balls, write_masbcpp};
 use belvedere::medial::feature_size::{FeatureSizeParams, SimplifyParams, local_feature_size, simplify};
 use belvedere::medial::{MedialBalls, NO_TOUCH, Side};
-use belvedere::model::{BallParams, ModelParams, ModelParts, OrientedSurvey, SceneModel};
+use belvedere::model::{BallParams, ModelParams, ModelParts, OrientedSurvey};
+use std::borrow::Cow;
 
 pub(crate) fn run(arguments: &BallsArguments, global: &Global) -> Result<Summary> {
     let is_folder = is_folder(&arguments.output);
@@ -86,10 +87,7 @@ fn interior(
     params: &ModelParams,
     run: &mut CommandContext,
 ) -> Result<ModelParts> {
-    let built = SceneModel::build_owned(cloud, params, &run.control());
-    let (model, report) = built.map_err(|error| pipeline::advised(input, error))?;
-    run.summary.add_report(&report);
-    Ok(model.into_parts())
+    Ok(pipeline::model_of(Cow::Owned(cloud), params, input, run)?.into_parts())
 }
 
 /// Balls in free space, which are for looking at and for other programs: no scene is made of them.

@@ -14,13 +14,14 @@ use belvedere::io::{
     ExtraColumn, ExtraValues, Georeference, atomic, read_trajectory, write_balls, write_cloud, write_tif_f32,
 };
 use belvedere::medial::{CarvedParams, MedialBalls};
-use belvedere::model::{BallParams, ModelParams, OrientBy, SceneModel};
+use belvedere::model::{BallParams, ModelParams, OrientBy};
 use belvedere::query::{Answer, MedialScene, UnprovenAs, Viewer, Visibility};
 use belvedere::raster::Raster;
 use belvedere::view::{View, default_pixel_size, to_sun};
 use belvedere_scenes::{
     AirborneParams, PlanPlacement, Scan, TownParams, TriangleScene, Truth, extruded, scan_airborne, town,
 };
+use std::borrow::Cow;
 use std::io::Write;
 use std::path::Path;
 
@@ -58,8 +59,7 @@ pub(crate) fn run(arguments: &Demo, global: &Global) -> Result<Summary> {
     let params = ModelParams::default()
         .with_orient(OrientBy::Trajectory(trajectory))
         .with_balls(BallParams::Carved(CarvedParams::default()));
-    let (model, report) = SceneModel::build(&cloud, &params, &run.control())?;
-    run.summary.add_report(&report);
+    let model = pipeline::model_of(Cow::Borrowed(&cloud), &params, &input, &mut run)?;
     let model = model.with_provenance("program", concat!("belvedere ", env!("CARGO_PKG_VERSION"), " demo"));
     let balls = model.balls();
 

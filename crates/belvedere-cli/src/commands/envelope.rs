@@ -105,7 +105,13 @@ fn scene(arguments: &EnvelopeArguments, run: &mut CommandContext) -> Result<Load
     let bounds = pipeline::bounds_of(&cloud)?;
     let parts = ModelParts { frame: cloud.frame.clone(), bounds, ..ModelParts::default() };
     let profile = arguments.scene.balls.parameters()?.profile();
-    Ok(LoadedScene { model: SceneModel::from_parts(parts)?, cloud, left_out: ReadReport::default(), profile })
+    Ok(LoadedScene {
+        model: SceneModel::from_parts(parts)?,
+        cloud,
+        left_out: ReadReport::default(),
+        profile,
+        ground_store: None,
+    })
 }
 
 /// Rings of the parcel, local metres.

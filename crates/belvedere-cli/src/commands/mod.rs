@@ -1,6 +1,7 @@
 //! The table of commands, a file for each; what they share has files of its own.
 
 mod balls;
+mod cache;
 mod cameras;
 mod city;
 mod comfort;
@@ -69,6 +70,7 @@ fn run_command(cli: &Cli) -> Result<Summary> {
         Command::Trajectory(arguments) => trajectory::run(arguments, global),
         Command::Normals(arguments) => normals::run(arguments, global),
         Command::Balls(arguments) => balls::run(arguments, global),
+        Command::Cache(arguments) => cache::run(arguments, global),
         Command::DepthMap(arguments) => depth_map::run(arguments, global),
         Command::Query(arguments) => query::run(arguments, global),
         Command::LineOfSight(arguments) => line_of_sight::run(arguments, global),

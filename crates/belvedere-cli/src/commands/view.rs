@@ -17,6 +17,7 @@ use belvedere::query::{AddedMeshes, Coverage};
 use belvedere::{Bounds, Error, Frame, PointCloud};
 use belvedere_tiles::{Plan, merged_within};
 use belvedere_viewer::{ExportParams, Loading, PageServer, PointsOf, SceneText, ViewerParams, export, quoted};
+use std::borrow::Cow;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -266,8 +267,7 @@ fn load(
         TooManyPoints::check(cloud.len(), available_bytes())?;
         let crs = &cloud.frame.crs;
         let params = params::model(&parameters, params, crs, run)?;
-        let built = SceneModel::build(&cloud, &params, &run.control());
-        let model = built.map_err(|error| pipeline::advised(&input.input, error))?.0;
+        let model = pipeline::model_of(Cow::Borrowed(&*cloud), &params, &input.input, run)?;
         return Ok((Some(cloud), pipeline::planned(model, &arguments.plan, run)?));
     };
     input.input.clouds = vec![balls.clone()];

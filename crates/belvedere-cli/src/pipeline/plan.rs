@@ -24,6 +24,7 @@ pub(super) fn clear(scene: &mut LoadedScene, plan: &PlanArguments, run: &mut Com
         let cleared = run.stage("clearing", 0, |control| model.without(&area, &scene.cloud, control));
         let report;
         (scene.model, scene.cloud, report) = cleared?;
+        scene.ground_store = None;
         sum.points_cleared += report.points_cleared;
         sum.balls_cleared += report.balls_cleared;
         sum.balls_cut += report.balls_cut;

@@ -4,13 +4,14 @@ use crate::common::{Workplace, house};
 use std::collections::BTreeSet;
 use std::path::Path;
 
-const COMMANDS: [&str; 29] = [
+const COMMANDS: [&str; 30] = [
     "demo",
     "simulate",
     "info",
     "trajectory",
     "normals",
     "balls",
+    "cache",
     "depth-map",
     "query",
     "line-of-sight",

@@ -21,6 +21,7 @@ mod implausible;
 mod info;
 mod interrupts;
 mod irradiance;
+mod kept_scenes;
 mod language;
 mod limits;
 mod masbcpp_folder;

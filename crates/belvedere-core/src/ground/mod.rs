@@ -71,7 +71,7 @@ impl Default for GroundParams {
 }
 
 /// Where the ground of a [`Ground`] came from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct GroundReport {
     /// [`GroundPoints::Classed`] or [`GroundPoints::Found`].
     pub from: GroundPoints,

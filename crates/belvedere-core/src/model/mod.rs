@@ -20,7 +20,7 @@ mod report;
 mod statistics;
 mod terrain;
 
-pub use belvedere_data::model::ModelParts;
+pub use belvedere_data::model::{DerivedParts, ModelParts};
 pub use clear::{ClearReport, ClearedArea};
 pub use clearing::Clearing;
 pub use estimate_statistics::SurveyExtremes;
@@ -87,6 +87,29 @@ impl SceneModel {
         }
         let vegetation = vegetation_of_transmission(&parts.transmission);
         Ok(Self { parts, vegetation, ..Self::default() })
+    }
+
+    /// What was made or found beside [`SceneModel::parts`], for [`SceneModel::from_kept`].
+    #[must_use]
+    pub fn derived(&self) -> DerivedParts {
+        let tree = self.tree.as_ref().map(BallTree::to_parts);
+        DerivedParts { vegetation: self.vegetation.clone(), normals: self.normals.clone(), tree }
+    }
+
+    /// The model of the parts of another one and what was derived with them: nothing is made again.
+    ///
+    /// # Errors
+    /// Those of [`SceneModel::from_parts`]; [`Error::LengthMismatch`] and [`Error::InvalidParameter`] where the two do
+    /// not belong together.
+    pub fn from_kept(parts: ModelParts, derived: DerivedParts) -> Result<Self> {
+        let mut model = Self::from_parts(parts)?;
+        let (expected, found) = (model.balls().len(), derived.vegetation.len());
+        if !(found == 0 || found == expected) {
+            return Err(Error::LengthMismatch { what: "balls that are vegetation or not", expected, found });
+        }
+        let tree = derived.tree.map(|tree| BallTree::from_parts(tree, model.balls(), &model.rule()));
+        (model.vegetation, model.normals, model.tree) = (derived.vegetation, derived.normals, tree.transpose()?);
+        Ok(model)
     }
 
     /// The same model with the triangles of `mesh`, metres of the reference system of the model

@@ -3,6 +3,7 @@
 use crate::blocking::{Ball, BlockRule};
 use crate::ray_index::{Ray, RayIndex};
 use belvedere_data::balls::{MedialBalls, NO_TOUCH};
+use belvedere_data::model::TreeParts;
 use belvedere_data::{Error, Parameter, Result};
 use rayon::prelude::*;
 use std::ops::Range;
@@ -21,6 +22,16 @@ pub struct BallTree {
     rule: BlockRule,
 }
 
+/// The balls that can be ordered into a tree, and their rows.
+fn usable(balls: &MedialBalls, rule: &BlockRule) -> Result<(Vec<Ball>, Vec<u32>)> {
+    rule.validate()?;
+    balls.validate()?;
+    let ball_of = |row: usize| Ball { center: balls.centers[row], radius: balls.radii[row] };
+    let rows = (0..balls.len()).filter(|&row| balls.touch[row] != NO_TOUCH && ball_of(row).is_usable());
+    #[expect(clippy::cast_possible_truncation, reason = "balls are numbered with 32 bits")]
+    Ok(rows.map(|row| (ball_of(row), row as u32)).unzip())
+}
+
 impl std::fmt::Debug for BallTree {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(f, "BallTree({} balls, {:?})", self.balls.len(), self.rule)
@@ -35,25 +46,36 @@ impl BallTree {
     /// [`Error::LengthMismatch`] for columns of unequal length, those of
     /// [`BlockRule::validate`] and of [`RayIndex::new`].
     pub fn new(balls: &MedialBalls, rule: &BlockRule) -> Result<Self> {
-        rule.validate()?;
-        balls.validate()?;
-        let ball_of = |row: usize| Ball { center: balls.centers[row], radius: balls.radii[row] };
-        let usable: Vec<usize> =
-            (0..balls.len()).filter(|&row| balls.touch[row] != NO_TOUCH && ball_of(row).is_usable()).collect();
-        let balls: Vec<Ball> = usable.iter().map(|&row| ball_of(row)).collect();
-        #[expect(clippy::cast_possible_truncation, reason = "balls are numbered with 32 bits")]
-        let rows: Vec<u32> = usable.into_iter().map(|row| row as u32).collect();
+        let (balls, rows) = usable(balls, rule)?;
         Self::ordered(&balls, &rows, rule)
     }
 
     /// Orders balls with their rows into a tree.
     fn ordered(balls: &[Ball], rows: &[u32], rule: &BlockRule) -> Result<Self> {
         let boxes: Vec<[[f32; 3]; 2]> = balls.par_iter().map(|ball| ball.bounds()).collect();
-        let index = RayIndex::new(&boxes)?;
+        Ok(Self::of_index(RayIndex::new(&boxes)?, balls, rows, rule))
+    }
+
+    fn of_index(index: RayIndex, balls: &[Ball], rows: &[u32], rule: &BlockRule) -> Self {
         let order = index.order();
         let balls = order.par_iter().map(|&place| balls[place as usize]).collect();
         let rows = order.iter().map(|&place| rows[place as usize]).collect();
-        Ok(Self { index: Arc::new(index), balls, rows, rule: *rule })
+        Self { index: Arc::new(index), balls, rows, rule: *rule }
+    }
+
+    /// The tree of boxes as numbers, for [`BallTree::from_parts`].
+    pub(crate) fn to_parts(&self) -> TreeParts {
+        self.index.to_parts()
+    }
+
+    /// The tree that [`BallTree::new`] makes, of the numbers of [`BallTree::to_parts`] for the same balls.
+    ///
+    /// # Errors
+    /// Those of [`BallTree::new`]; [`Error::InvalidParameter`] for numbers that are not those of a tree of as many
+    /// balls.
+    pub(crate) fn from_parts(parts: TreeParts, balls: &MedialBalls, rule: &BlockRule) -> Result<Self> {
+        let (balls, rows) = usable(balls, rule)?;
+        Ok(Self::of_index(RayIndex::from_parts(parts, balls.len())?, &balls, &rows, rule))
     }
 
     /// The balls of a part of [`BallTree::balls`] as a tree of their own.

@@ -1,5 +1,7 @@
 //! The formats of ball files.
 
+#[cfg(feature = "npy")]
+mod kept_model;
 #[cfg(feature = "las")]
 mod las;
 #[cfg_attr(
@@ -13,6 +15,8 @@ mod npz;
 mod ply;
 mod write_ply;
 
+#[cfg(feature = "npy")]
+pub use kept_model::{read_kept_model, read_kept_notes, read_kept_rasters, write_kept_model, write_kept_rasters};
 #[cfg(feature = "las")]
 pub(crate) use las::{las_has_balls, read_las, write_las};
 #[cfg(feature = "npy")]

@@ -1,6 +1,7 @@
 //! Balls in NumPy's archive format, without loss.
 
 use std::io::{self, Read, Seek, Write};
+use std::path::Path;
 use zip::{ZipArchive, ZipWriter};
 
 use super::metadata;
@@ -35,7 +36,7 @@ pub(crate) fn write_npz(output: Output<'_>, parts: &ModelParts) -> Result<()> {
     output.write(|path, output| write_archive(output, |archive| write_arrays(archive, parts)).map_err(Error::io(path)))
 }
 
-fn write_arrays<W: Write + Seek>(archive: &mut ZipWriter<W>, parts: &ModelParts) -> io::Result<()> {
+pub(super) fn write_arrays<W: Write + Seek>(archive: &mut ZipWriter<W>, parts: &ModelParts) -> io::Result<()> {
     let metadata = metadata::to_json(parts, UNITS);
     let n = parts.balls.centers.len() as u64;
     array(archive, "centers", &[n, 3], parts.balls.centers.iter().flatten().copied())?;
@@ -71,26 +72,32 @@ pub(crate) fn read_npz(input: Input<'_>) -> Result<ModelParts> {
         let what = format!("damaged, or not a ball file: no ball file has an array {unknown:?}");
         return Err(Error::malformed(path, what));
     }
-    let text = if has(&archive, "metadata") {
-        values::<u8, _>(&mut archive, "metadata", MAX_METADATA_BYTES).map_err(malformed)?.0
+    read_arrays(&mut archive, path)
+}
+
+/// The balls of an archive; `path` names it in errors.
+pub(super) fn read_arrays<R: Read + Seek>(archive: &mut ZipArchive<R>, path: &Path) -> Result<ModelParts> {
+    let malformed = |e: io::Error| Error::malformed(path, format!("damaged, or not a ball file: {e}"));
+    let text = if has(archive, "metadata") {
+        values::<u8, _>(archive, "metadata", MAX_METADATA_BYTES).map_err(malformed)?.0
     } else {
         Vec::new()
     };
     let metadata = metadata::from_json(&String::from_utf8_lossy(&text)).map_err(|e| Error::malformed(path, e))?;
-    let centers = rows::<f32, 3, _>(&mut archive, "centers").map_err(malformed)?;
-    let (origin, _) = values::<f64, _>(&mut archive, "origin", 3).map_err(malformed)?;
+    let centers = rows::<f32, 3, _>(archive, "centers").map_err(malformed)?;
+    let (origin, _) = values::<f64, _>(archive, "origin", 3).map_err(malformed)?;
     let origin = <[f64; 3]>::try_from(origin.as_slice())
         .map_err(|_| Error::malformed(path, format!("origin has {} numbers, but must have 3", origin.len())))?;
     let mut parts = metadata.balls(origin, centers);
-    parts.balls.radii = values(&mut archive, "radii", u64::MAX).map_err(malformed)?.0;
-    parts.balls.source = values(&mut archive, "source", u64::MAX).map_err(malformed)?.0;
-    parts.balls.touch = values(&mut archive, "touch", u64::MAX).map_err(malformed)?.0;
-    parts.balls.separation_angles = values(&mut archive, "separation_angles", u64::MAX).map_err(malformed)?.0;
-    if has(&archive, "transmission") {
-        parts.transmission = values(&mut archive, "transmission", u64::MAX).map_err(malformed)?.0;
+    parts.balls.radii = values(archive, "radii", u64::MAX).map_err(malformed)?.0;
+    parts.balls.source = values(archive, "source", u64::MAX).map_err(malformed)?.0;
+    parts.balls.touch = values(archive, "touch", u64::MAX).map_err(malformed)?.0;
+    parts.balls.separation_angles = values(archive, "separation_angles", u64::MAX).map_err(malformed)?.0;
+    if has(archive, "transmission") {
+        parts.transmission = values(archive, "transmission", u64::MAX).map_err(malformed)?.0;
     }
-    if PULSE_ARRAYS.iter().any(|name| has(&archive, name)) {
-        parts.pulses = Some(pulses(&mut archive).map_err(malformed)?);
+    if PULSE_ARRAYS.iter().any(|name| has(archive, name)) {
+        parts.pulses = Some(pulses(archive).map_err(malformed)?);
     }
     Ok(parts)
 }

@@ -59,6 +59,9 @@ class Scene(Sights, Outlook, Sunlight, Energy, Planning, Cameras):
         Points that a normal is estimated from.
     initial_radius, max_radius, penetration : float, optional
         Radius in metres that balls start with, their greatest radius, and how deep a point may lie in a ball.
+    cache : bool or path, optional
+        Whether the scene is kept on disk, so that the next one of the same cloud and parameters is there at once (also
+        after the cloud was read anew), or the folder for it. ``belvedere cache`` lists what is kept.
     progress : bool or callable, optional
         True shows a bar; a function is called with stage, items done and items in all, and stops the work by raising.
 
@@ -67,7 +70,7 @@ class Scene(Sights, Outlook, Sunlight, Energy, Planning, Cameras):
     cloud : Cloud or None
         The points; None for a scene from a ball file without them.
     report : dict
-        What became of the points on the way.
+        What became of the points on the way; ``"scene"`` says whether it was found in the cache or built.
 
     Raises
     ------
@@ -111,6 +114,7 @@ class Scene(Sights, Outlook, Sunlight, Energy, Planning, Cameras):
         initial_radius: float | None = None,
         max_radius: float | None = None,
         penetration: float | None = None,
+        cache: bool | str | os.PathLike[str] = True,
         progress: Progress = None,
     ) -> None:
         if isinstance(cloud, np.ndarray):
@@ -138,6 +142,7 @@ class Scene(Sights, Outlook, Sunlight, Energy, Planning, Cameras):
             "initial_radius": initial_radius,
             "max_radius": max_radius,
             "penetration": penetration,
+            "cache": cache if isinstance(cache, bool) else os.fspath(cache),
         }
         self._core, text = _core.Scene.build(cloud._core, choices, reporter(progress))
         self.cloud: Cloud | None = cloud
@@ -145,6 +150,9 @@ class Scene(Sights, Outlook, Sunlight, Energy, Planning, Cameras):
         remark = self.report.get("pulses", {}).get("remark")
         if remark:
             warnings.warn(str(remark), BelvedereWarning, stacklevel=2)
+        not_kept = self.report.get("scene_not_kept")
+        if not_kept:
+            warnings.warn(f"the scene could not be kept for next time: {not_kept}", BelvedereWarning, stacklevel=2)
 
     @classmethod
     def load(

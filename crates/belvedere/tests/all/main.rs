@@ -10,6 +10,7 @@ mod beams;
 mod between_returns;
 mod blocking;
 mod bounded_views;
+mod cache;
 mod camera_coverage;
 mod camera_placement;
 mod carving;

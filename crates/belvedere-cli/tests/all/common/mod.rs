@@ -45,6 +45,11 @@ impl Workplace {
         self.0.path().join("place")
     }
 
+    /// Where caches lie.
+    pub(crate) fn cache(&self) -> PathBuf {
+        self.0.path().join("cache")
+    }
+
     pub(crate) fn path(&self, name: &str) -> PathBuf {
         self.folder().join(name)
     }
@@ -55,6 +60,8 @@ impl Workplace {
         command.current_dir(self.folder()).args(arguments.split_ascii_whitespace()).stdin(Stdio::null());
         // drivers of graphics processors complain on computers that set none
         command.env("XDG_RUNTIME_DIR", self.folder());
+        // commands of one test share scenes, as those of a user do
+        command.env("XDG_CACHE_HOME", self.cache());
         command
     }
 

@@ -1,0 +1,70 @@
+//! Scenes are kept for the next command.
+
+use crate::common::{Workplace, house};
+use std::fs;
+
+#[test]
+fn the_second_question_finds_the_scene_and_answers_the_same() {
+    let place = Workplace::new();
+    place.write_cloud("house.laz", &house());
+    let question = "shadow house.laz --sun 180,40 --grid-north --cell 1 -o";
+    let first = place.summary(&format!("{question} first.tif"));
+    let second = place.summary(&format!("{question} second.tif"));
+    assert_eq!((&first["scene"], &second["scene"]), (&"kept".into(), &"found".into()));
+    assert!(place.bytes("first.tif") == place.bytes("second.tif"));
+    // all figures but durations and the name of the file
+    let figures = |mut summary: serde_json::Value| {
+        for name in ["seconds", "scene", "written"] {
+            summary.as_object_mut().unwrap().remove(name);
+        }
+        summary
+    };
+    let made = second["seconds"].clone();
+    assert_eq!(figures(first), figures(second));
+    assert!(made.get("estimating_normals").is_none() && made.get("reading_kept_scene").is_some(), "{made}");
+    // a saved ball file is that of a scene found
+    place.summary("balls house.laz -o found.npz");
+    place.summary("balls house.laz -o built.npz --no-cache");
+    assert!(place.bytes("found.npz") == place.bytes("built.npz"));
+
+    let listed = place.summary("cache");
+    assert_eq!((&listed["scenes"], &listed["scene"][0]["of"]), (&1.into(), &"house.laz".into()));
+    let removed = place.summary("cache --clear");
+    assert_eq!(removed["scenes_removed"], 1);
+    assert_eq!(place.summary("cache")["scenes"], 0);
+    assert_eq!(place.summary(&format!("{question} third.tif"))["scene"], "kept");
+}
+
+#[test]
+fn another_file_or_another_flag_is_another_scene_and_no_cache_leaves_nothing() {
+    let place = Workplace::new();
+    place.write_cloud("house.laz", &house());
+    let scene = |more: &str| {
+        place.summary(&format!("shadow house.laz --sun 180,40 --grid-north -o a.tif {more}"))["scene"].clone()
+    };
+    assert_eq!(scene("--no-cache"), "built");
+    assert!(!place.cache().exists());
+    assert_eq!(scene(""), "kept");
+    assert_eq!(scene("--trees opaque"), "kept");
+    assert_eq!(scene("--trees opaque"), "found");
+    assert_eq!(scene("--cache own"), "kept");
+    assert_eq!(scene("--cache own"), "found");
+    // the same name, other points
+    let mut moved = house();
+    moved.positions[7][2] += 0.5;
+    place.write_cloud("house.laz", &moved);
+    assert_eq!(scene(""), "kept");
+    assert_eq!(scene(""), "found");
+    place.refusal(2, "shadow house.laz --sun 180,40 -o a.tif --cache own --no-cache", &["--no-cache"]);
+}
+
+#[test]
+fn a_cache_that_cannot_be_written_is_named_and_the_answer_is_there() {
+    let place = Workplace::new();
+    place.write_cloud("house.laz", &house());
+    place.write("file", "");
+    let run = place.run("shadow house.laz --sun 180,40 --grid-north -o a.tif --cache file");
+    assert_eq!(run.status, 0, "{run:?}");
+    assert!(run.stderr.contains("could not be kept") && run.stderr.contains("--no-cache"), "{run:?}");
+    assert!(fs::metadata(place.path("a.tif")).unwrap().len() > 0);
+}

@@ -1,0 +1,310 @@
+//! The folder of kept scenes.
+
+use super::key::{CloudKey, of_files};
+use super::{BuiltScene, SceneOrigin};
+use crate::apps::ask::scene::{GroundStore, KnownGround};
+use crate::control::Control;
+use crate::ground::{Ground, GroundParams, GroundReport, MapGrid};
+use crate::io::atomic::make_folder;
+use crate::io::{
+    ReadOptions, read_balls, read_kept_model, read_kept_notes, read_kept_rasters, write_balls, write_kept_model,
+    write_kept_rasters,
+};
+use crate::model::{DerivedParts, ModelParams, ModelParts, SceneModel};
+use crate::raster::Raster;
+use crate::{Error, Frame, Result};
+use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value, json};
+use std::ffi::OsString;
+use std::fs::{self, File};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::SystemTime;
+
+/// Bytes that a cache may take, unless it is given another bound.
+const MAX_BYTES: u64 = 10_000_000_000;
+/// How names of entries end: scenes, their ground, and what reading files gave.
+const SCENE: &str = "scene.npz";
+const GROUND: &str = "ground.npz";
+const READING: &str = "reading.npz";
+/// Names of the notes of an entry for what reading gave.
+const CLOUD: &str = "cloud";
+const NOTES: &str = "notes";
+
+/// Scenes in a folder.
+#[derive(Clone, Debug)]
+pub struct SceneCache {
+    folder: PathBuf,
+    max_bytes: u64,
+}
+
+/// What is known of files that were read before.
+#[derive(Debug)]
+pub struct ReadBefore {
+    /// Where local coordinates lie.
+    pub frame: Frame,
+    /// The contents of the cloud.
+    pub cloud: CloudKey,
+    /// What reading reported, as it was given to [`SceneCache::keep_reading`].
+    pub notes: Map<String, Value>,
+}
+
+/// A scene of a cache.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CacheEntry {
+    /// What it is of, such as the name of a file.
+    pub name: String,
+    /// Its size, bytes.
+    pub bytes: u64,
+    /// When it was used last.
+    pub used: SystemTime,
+}
+
+impl SceneCache {
+    /// The cache in `folder`, which is made when something is kept. It takes at most 10 GB.
+    #[must_use]
+    pub fn new(folder: impl Into<PathBuf>) -> Self {
+        Self { folder: folder.into(), max_bytes: MAX_BYTES }
+    }
+
+    /// The same, which takes at most `max_bytes`.
+    #[must_use]
+    pub fn with_max_bytes(self, max_bytes: u64) -> Self {
+        Self { max_bytes, ..self }
+    }
+
+    /// Where a user's cache lies by the habits of the system, by what `variable` says of the environment:
+    /// `XDG_CACHE_HOME`, `LOCALAPPDATA` on Windows, `~/Library/Caches` on a Mac, else `~/.cache`. `None` without a home.
+    #[must_use]
+    pub fn usual_folder(variable: impl Fn(&str) -> Option<OsString>) -> Option<PathBuf> {
+        let path = |name: &str| variable(name).map(PathBuf::from).filter(|path| path.is_absolute());
+        let home = || path("HOME");
+        let caches = path("XDG_CACHE_HOME").or_else(|| {
+            if cfg!(windows) {
+                path("LOCALAPPDATA")
+            } else if cfg!(target_os = "macos") {
+                home().map(|home| home.join("Library/Caches"))
+            } else {
+                home().map(|home| home.join(".cache"))
+            }
+        });
+        caches.map(|caches| caches.join("belvedere"))
+    }
+
+    /// The folder.
+    #[must_use]
+    pub fn folder(&self) -> &Path {
+        &self.folder
+    }
+
+    /// The scene of a cloud, if it was kept. One that is damaged is removed.
+    #[must_use]
+    pub fn find(
+        &self,
+        cloud: &CloudKey,
+        params: &ModelParams,
+        needs_normals: bool,
+        control: &Control<'_>,
+    ) -> Option<BuiltScene> {
+        // a scene with normals serves those who need none
+        let mut names = [true, false].into_iter().filter(|&has_normals| has_normals || !needs_normals);
+        let path = names.find_map(|has_normals| {
+            Some(self.path(&cloud.of_scene(params, has_normals), SCENE)).filter(|p| p.is_file())
+        })?;
+        match control.stage("reading kept scene", 0, || scene_in(&path)) {
+            Ok((model, report)) => {
+                mark_as_used(&path);
+                Some(BuiltScene { model, report, origin: SceneOrigin::Found, cloud: Some(cloud.clone()) })
+            }
+            Err(_) => {
+                let _ = fs::remove_file(&path);
+                None
+            }
+        }
+    }
+
+    /// Keeps the scene of a cloud, and makes room for it. `name` says in the list what it is of.
+    ///
+    /// # Errors
+    /// [`Error::Io`] where it cannot be written; nothing is then left of it.
+    pub fn keep(
+        &self,
+        cloud: &CloudKey,
+        params: &ModelParams,
+        model: &SceneModel,
+        report: &Map<String, Value>,
+        name: &str,
+    ) -> Result<()> {
+        make_folder(&self.folder)?;
+        let derived = model.derived();
+        let path = self.path(&cloud.of_scene(params, derived.normals.is_some()), SCENE);
+        let notes = json!({ "name": name, "report": report }).to_string();
+        write_kept_model(&path, model.parts(), &derived, &notes)?;
+        self.make_room(&path);
+        Ok(())
+    }
+
+    /// What reading these files gave before; `None` where that is not known, they changed, or lie on a server.
+    #[must_use]
+    pub fn read_before(&self, paths: &[PathBuf], options: &ReadOptions) -> Option<ReadBefore> {
+        let path = self.path(&of_files(paths, options)?, READING);
+        let mut parts = read_balls(&path).ok()?;
+        let notes = serde_json::from_str(&parts.provenance.remove(NOTES)?).ok()?;
+        mark_as_used(&path);
+        Some(ReadBefore { frame: parts.frame, cloud: CloudKey(parts.provenance.remove(CLOUD)?), notes })
+    }
+
+    /// Keeps what reading these files gave.
+    ///
+    /// # Errors
+    /// [`Error::Io`] where it cannot be written.
+    pub fn keep_reading(&self, paths: &[PathBuf], options: &ReadOptions, found: &ReadBefore) -> Result<()> {
+        let Some(name) = of_files(paths, options).filter(|name| !self.path(name, READING).exists()) else {
+            return Ok(());
+        };
+        make_folder(&self.folder)?;
+        let parts = ModelParts { frame: found.frame.clone(), ..ModelParts::default() };
+        let notes = Value::Object(found.notes.clone()).to_string();
+        write_balls(
+            self.path(&name, READING),
+            &parts.with_provenance(CLOUD, &found.cloud.0).with_provenance(NOTES, notes),
+        )
+    }
+
+    /// A store for the ground of a cloud.
+    #[must_use]
+    pub fn ground_of(&self, cloud: &CloudKey) -> Arc<dyn GroundStore> {
+        Arc::new(GroundOfCloud { cache: self.clone(), cloud: cloud.clone() })
+    }
+
+    /// The scenes, the one used last first.
+    ///
+    /// # Errors
+    /// [`Error::Io`] for a folder that cannot be read; one that is not there is empty.
+    pub fn entries(&self) -> Result<Vec<CacheEntry>> {
+        let scenes = self.files()?.into_iter().filter(|file| is_named(&file.path, SCENE));
+        let mut entries: Vec<CacheEntry> = scenes
+            .map(|file| {
+                let notes = read_kept_notes(&file.path).ok();
+                let notes: Option<Value> = notes.and_then(|notes| serde_json::from_str(&notes).ok());
+                let name = notes.and_then(|notes| Some(notes["name"].as_str()?.to_owned()));
+                CacheEntry { name: name.unwrap_or_else(|| "damaged".to_owned()), bytes: file.bytes, used: file.used }
+            })
+            .collect();
+        entries.sort_by(|a, b| (b.used, &a.name).cmp(&(a.used, &b.name)));
+        Ok(entries)
+    }
+
+    /// Removes all that is kept; returns how many bytes that was. Other files of the folder stay.
+    ///
+    /// # Errors
+    /// [`Error::Io`] for what cannot be removed.
+    pub fn clear(&self) -> Result<u64> {
+        let mut bytes = 0;
+        for file in self.files()? {
+            match fs::remove_file(&file.path) {
+                Err(error) if error.kind() != std::io::ErrorKind::NotFound => return Err(Error::io(&file.path)(error)),
+                _ => bytes += file.bytes,
+            }
+        }
+        Ok(bytes)
+    }
+
+    fn path(&self, key: &str, kind: &str) -> PathBuf {
+        self.folder.join(format!("{key}.{kind}"))
+    }
+
+    /// The entries of all kinds.
+    fn files(&self) -> Result<Vec<KeptFile>> {
+        let rows = match self.folder.read_dir() {
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(Vec::new()),
+            rows => rows.map_err(Error::io(&self.folder))?,
+        };
+        let paths = rows.filter_map(|row| Some(row.ok()?.path()));
+        let files =
+            paths.filter(|path| [SCENE, GROUND, READING].iter().any(|kind| is_named(path, kind))).filter_map(|path| {
+                // another program may have removed it meanwhile
+                let metadata = path.metadata().ok()?;
+                Some(KeptFile { bytes: metadata.len(), used: metadata.modified().ok()?, path })
+            });
+        Ok(files.collect())
+    }
+
+    /// Removes what was not used for longest, until the rest is small enough; never `newest`.
+    fn make_room(&self, newest: &Path) {
+        let Ok(mut files) = self.files() else { return };
+        let mut bytes: u64 = files.iter().map(|file| file.bytes).sum();
+        files.sort_by_key(|file| file.used);
+        for file in files.iter().filter(|file| file.path != newest) {
+            if bytes <= self.max_bytes {
+                break;
+            }
+            if fs::remove_file(&file.path).is_ok() {
+                bytes -= file.bytes;
+            }
+        }
+    }
+}
+
+/// The ground of a cloud in a cache.
+struct GroundOfCloud {
+    cache: SceneCache,
+    cloud: CloudKey,
+}
+
+/// What is noted of kept ground.
+#[derive(Serialize, Deserialize)]
+struct GroundNotes {
+    corner: [f64; 2],
+    cell: f64,
+    report: GroundReport,
+}
+
+impl GroundStore for GroundOfCloud {
+    fn find(&self, grid: &MapGrid, params: &GroundParams) -> Option<KnownGround> {
+        let path = self.cache.path(&self.cloud.of_ground(grid, params), GROUND);
+        let (rasters, notes) = read_kept_rasters(&path).ok()?;
+        let GroundNotes { corner, cell, report } = serde_json::from_str(&notes).ok()?;
+        let [heights, gaps]: [Raster<f32>; 2] = rasters.try_into().ok()?;
+        let kept = MapGrid { corner, cell, width: heights.width(), height: heights.height() };
+        let is_sound = kept == *grid && (gaps.width(), gaps.height()) == (grid.width, grid.height);
+        mark_as_used(&path);
+        is_sound.then_some(KnownGround { ground: Ground { grid: kept, heights, gaps }, report })
+    }
+
+    fn keep(&self, params: &GroundParams, known: &KnownGround) {
+        let KnownGround { ground: Ground { grid, heights, gaps }, report } = known;
+        let notes = GroundNotes { corner: grid.corner, cell: grid.cell, report: *report };
+        let path = self.cache.path(&self.cloud.of_ground(grid, params), GROUND);
+        let is_kept = make_folder(&self.cache.folder).is_ok()
+            && serde_json::to_string(&notes)
+                .is_ok_and(|notes| write_kept_rasters(&path, &[heights, gaps], &notes).is_ok());
+        if is_kept {
+            self.cache.make_room(&path);
+        }
+    }
+}
+
+/// A file of the cache.
+struct KeptFile {
+    path: PathBuf,
+    bytes: u64,
+    used: SystemTime,
+}
+
+fn is_named(path: &Path, kind: &str) -> bool {
+    path.file_name().and_then(|name| name.to_str()).is_some_and(|name| name.ends_with(kind))
+}
+
+/// The time of a file says when it was used. Where that cannot be set, it counts from when it was made.
+fn mark_as_used(path: &Path) {
+    let _ = File::options().write(true).open(path).and_then(|file| file.set_modified(SystemTime::now()));
+}
+
+fn scene_in(path: &Path) -> Result<(SceneModel, Map<String, Value>)> {
+    let (parts, derived, notes): (ModelParts, DerivedParts, String) = read_kept_model(path)?;
+    let damaged = |what: String| Error::malformed(path, what);
+    let mut notes: Value = serde_json::from_str(&notes).map_err(|error| damaged(error.to_string()))?;
+    let Value::Object(report) = notes["report"].take() else { return Err(damaged("it has no report".to_owned())) };
+    Ok((SceneModel::from_kept(parts, derived)?, report))
+}

@@ -1,0 +1,206 @@
+//! What a kept scene follows from, as a name.
+
+use crate::ground::{GroundParams, MapGrid};
+use crate::io::{ReadOptions, cloud_files, web_address};
+use crate::model::ModelParams;
+use crate::{Attributes, PointCloud};
+use sha2::{Digest, Sha256};
+use std::fmt::Write as _;
+use std::fs::File;
+use std::path::{Path, PathBuf};
+
+/// The version of the program, and in its workspace the sources of the algorithms and of reading.
+const PROGRAM: &str = concat!(env!("CARGO_PKG_VERSION"), " ", env!("BELVEDERE_SOURCES"));
+
+/// The contents of a cloud: all that a scene of it follows from.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct CloudKey(pub(super) String);
+
+impl CloudKey {
+    /// The key of a cloud in memory.
+    #[must_use]
+    pub fn of(cloud: &PointCloud) -> Self {
+        let mut key = Key::new("cloud");
+        key.text(&format!("{:?}", cloud.frame));
+        key.column("positions", Some(cloud.positions.as_flattened()));
+        key.column("scanners", Some(cloud.scanner_positions.as_flattened()));
+        key.column("cleared", Some(cloud.cleared_places.as_flattened()));
+        let Attributes {
+            normals,
+            classification,
+            gps_time,
+            gps_time_kind,
+            return_number,
+            return_count,
+            scan_angle,
+            point_source_id,
+            scanner_channel,
+            flags,
+            intensity,
+            color,
+            scanner_index,
+        } = &cloud.attributes;
+        key.column("normals", normals.as_ref().map(|rows| rows.as_flattened()));
+        key.column("classification", classification.as_deref());
+        key.column("gps_time", gps_time.as_deref());
+        key.text(&format!("{gps_time_kind:?}"));
+        key.column("return_number", return_number.as_deref());
+        key.column("return_count", return_count.as_deref());
+        key.column("scan_angle", scan_angle.as_deref());
+        key.column("point_source_id", point_source_id.as_deref());
+        key.column("scanner_channel", scanner_channel.as_deref());
+        key.column("flags", flags.as_deref());
+        key.column("intensity", intensity.as_deref());
+        key.column("color", color.as_ref().map(|rows| rows.as_flattened()));
+        key.column("scanner_index", scanner_index.as_deref());
+        Self(key.finish())
+    }
+
+    /// The name of the scene of a cloud.
+    pub(super) fn of_scene(&self, params: &ModelParams, has_normals: bool) -> String {
+        let mut key = Key::new("scene");
+        key.text(&self.0);
+        key.text(if has_normals { "with normals" } else { "without" });
+        // Debug prints every number so that it is read back as it is
+        let _ = write!(key, "{params:?}");
+        key.finish()
+    }
+
+    /// The name of the ground of a cloud.
+    pub(super) fn of_ground(&self, grid: &MapGrid, params: &GroundParams) -> String {
+        let mut key = Key::new("ground");
+        key.text(&self.0);
+        key.text(&format!("{grid:?} {params:?}"));
+        key.finish()
+    }
+}
+
+/// The name of what reading these files gives: their contents, with what lies beside them under the same name, and how
+/// they are read. `None` for files on servers, which may change, and for what cannot be read.
+pub(super) fn of_files(paths: &[PathBuf], options: &ReadOptions) -> Option<String> {
+    let mut key = Key::new("files");
+    key.text(&format!("{paths:?} {options:?}"));
+    if paths.iter().any(|path| web_address(path).is_some()) {
+        return None;
+    }
+    for file in cloud_files(paths).ok()? {
+        for file in with_companions(&file)? {
+            key.text(&file.to_string_lossy());
+            key.file(&file)?;
+        }
+    }
+    Some(key.finish())
+}
+
+/// A file and those of the same folder that differ from it in the extension alone.
+fn with_companions(file: &Path) -> Option<Vec<PathBuf>> {
+    let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let is_companion = |path: &PathBuf| path.file_stem() == file.file_stem() && path.is_file();
+    let mut files: Vec<PathBuf> =
+        folder.read_dir().ok()?.filter_map(|entry| Some(entry.ok()?.path())).filter(is_companion).collect();
+    files.sort();
+    Some(files)
+}
+
+/// A sum of everything that is given to it, each with its length, so that none runs into the next.
+struct Key(Sha256);
+
+impl Key {
+    fn new(what: &str) -> Self {
+        let mut key = Self(Sha256::new());
+        key.text(PROGRAM);
+        key.text(what);
+        key
+    }
+
+    fn text(&mut self, text: &str) {
+        self.bytes(text.as_bytes());
+    }
+
+    fn bytes(&mut self, bytes: &[u8]) {
+        self.0.update((bytes.len() as u64).to_le_bytes());
+        self.0.update(bytes);
+    }
+
+    fn column<T: bytemuck::Pod>(&mut self, name: &str, values: Option<&[T]>) {
+        self.text(name);
+        self.text(if values.is_some() { "present" } else { "absent" });
+        self.bytes(bytemuck::cast_slice(values.unwrap_or_default()));
+    }
+
+    fn file(&mut self, path: &Path) -> Option<()> {
+        let mut contents = Key(Sha256::new());
+        std::io::copy(&mut File::open(path).ok()?, &mut contents.0).ok()?;
+        self.text(&contents.finish());
+        Some(())
+    }
+
+    fn finish(self) -> String {
+        self.0.finalize().iter().take(16).fold(String::new(), |mut text, byte| {
+            let _ = write!(text, "{byte:02x}");
+            text
+        })
+    }
+}
+
+impl std::fmt::Write for Key {
+    fn write_str(&mut self, text: &str) -> std::fmt::Result {
+        self.0.update(text);
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cloud::GpsTimeKind;
+
+    #[test]
+    fn a_key_depends_on_every_number_of_a_cloud_and_of_the_parameters() {
+        let cloud = PointCloud { positions: vec![[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]], ..PointCloud::default() };
+        let mut other = cloud.clone();
+        let key = CloudKey::of(&cloud);
+        assert_eq!(key, CloudKey::of(&other));
+        other.positions[1][2] = f32::from_bits(6.0_f32.to_bits() + 1);
+        assert_ne!(key, CloudKey::of(&other));
+        other = cloud.clone();
+        other.frame.origin[0] = 1.0;
+        assert_ne!(key, CloudKey::of(&other));
+        other = cloud.clone();
+        other.attributes.gps_time_kind = GpsTimeKind::AdjustedStandard;
+        assert_ne!(key, CloudKey::of(&other));
+        // the same bytes in another column
+        let [mut flags, mut counts] = [cloud.clone(), cloud.clone()];
+        flags.attributes.flags = Some(vec![1, 2]);
+        counts.attributes.return_count = Some(vec![1, 2]);
+        assert_ne!(CloudKey::of(&flags), CloudKey::of(&counts));
+        let params = ModelParams::default();
+        let mut changed = params.clone();
+        assert_eq!(key.of_scene(&params, true), key.of_scene(&changed, true));
+        assert_ne!(key.of_scene(&params, true), key.of_scene(&params, false));
+        changed.orient = crate::model::OrientBy::Up;
+        assert_ne!(key.of_scene(&params, true), key.of_scene(&changed, true));
+    }
+
+    #[test]
+    fn a_key_of_files_follows_what_is_in_them_and_beside_them() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("tile.xyz");
+        let key = || of_files(std::slice::from_ref(&path), &ReadOptions::default());
+        assert_eq!(key(), None);
+        std::fs::write(&path, "1 2 3\n").unwrap();
+        let first = key().unwrap();
+        assert_eq!(key(), Some(first.clone()));
+        std::fs::write(folder.path().join("other.prj"), "a").unwrap();
+        assert_eq!(key(), Some(first.clone()));
+        std::fs::write(folder.path().join("tile.prj"), "a").unwrap();
+        let beside = key().unwrap();
+        assert_ne!(beside, first);
+        std::fs::write(&path, "1 2 4\n").unwrap();
+        assert!(![Some(first), Some(beside)].contains(&key()));
+        let options = ReadOptions::default().with_classes([2]);
+        assert_ne!(of_files(std::slice::from_ref(&path), &options), key());
+        let address = PathBuf::from("https://example.org/tile.laz");
+        assert_eq!(of_files(&[address], &ReadOptions::default()), None);
+    }
+}
