@@ -1,8 +1,12 @@
 //! Triangles in a tree of boxes, and where rays cross them, exactly.
 
-use crate::ray_index::{Ray, RayIndex};
+use crate::ray_index::{END, Ray, RayIndex};
 use belvedere_data::Result;
 use belvedere_data::vector::sub;
+use smallvec::SmallVec;
+
+/// By how much boxes are widened before rays are tested exactly, metres: more than f32 errs in the tree.
+const ROOM: f64 = 1e-3;
 
 /// Corners of a triangle, local metres.
 pub type Corners = [[f64; 3]; 3];
@@ -53,6 +57,49 @@ impl TriangleTree {
     pub fn any(&self, ray: &Ray, mut counts: impl FnMut(usize) -> bool) -> bool {
         let crossing = RayAxes::new(ray);
         self.index.any(ray, |row| self.range(&crossing, row, ray).is_some() && counts(row))
+    }
+
+    /// Which of the rays from `origins`, at most 32 near each other, along a unit vector without end cross a triangle for
+    /// which `counts` is true: a bit each. It is given the number of the ray and the row of the triangle. Each bit is
+    /// what [`TriangleTree::any`] finds for the ray, which walk through the tree together.
+    pub(crate) fn any_of(
+        &self,
+        origins: &[[f64; 3]],
+        direction: [f64; 3],
+        mut counts: impl FnMut(usize, usize) -> bool,
+    ) -> u32 {
+        let bound = |pick: fn(f64, f64) -> f64, start: f64| -> [f64; 3] {
+            std::array::from_fn(|axis| origins.iter().map(|origin| origin[axis]).fold(start, pick))
+        };
+        let (low, high) = (bound(f64::min, f64::INFINITY), bound(f64::max, f64::NEG_INFINITY));
+        let ray = |origin: [f64; 3]| Ray { origin, direction, ranges: [0.0, f64::INFINITY] };
+        let middle = ray(std::array::from_fn(|axis| f64::midpoint(low[axis], high[axis])));
+        let room = std::array::from_fn(|axis| 0.5 * (high[axis] - low[axis]) + ROOM);
+        let axes = RayAxes::new(&middle);
+        // where the rays start as seen along them, and the box around these places
+        let starts: SmallVec<[[f64; 2]; 32]> = origins.iter().map(|&origin| axes.seen(origin)).collect();
+        let mut left = u32::MAX.checked_shr(u32::BITS - origins.len() as u32).unwrap_or(0);
+        let mut crossed = 0;
+        self.index.visit_beside(&middle, room, |row: usize| {
+            let Some(triangle) = self.triangles.get(row) else { return f32::INFINITY };
+            let [a, b, c] = triangle.map(|corner| axes.seen(corner));
+            let box_low: [f64; 2] = std::array::from_fn(|axis| a[axis].min(b[axis]).min(c[axis]) - ROOM);
+            let box_high: [f64; 2] = std::array::from_fn(|axis| a[axis].max(b[axis]).max(c[axis]) + ROOM);
+            for (number, start) in starts.iter().enumerate() {
+                let bit = 1_u32 << number;
+                let is_near = (0..2).all(|axis| box_low[axis] <= start[axis] && start[axis] <= box_high[axis]);
+                if !is_near || left & bit == 0 {
+                    continue;
+                }
+                let ray = ray(origins[number]);
+                if self.range(&RayAxes::new(&ray), row, &ray).is_some() && counts(number, row) {
+                    left &= !bit;
+                    crossed |= bit;
+                }
+            }
+            if left == 0 { END } else { f32::INFINITY }
+        });
+        crossed
     }
 
     /// The triangle for which `counts` is true that `ray` crosses first within its ranges, by its row, and the range;
@@ -114,6 +161,13 @@ impl RayAxes {
         let z = longest(longest(0, 1), 2);
         let (x, y) = ((z + 1) % 3, (z + 2) % 3);
         Self { origin: ray.origin, axes: [x, y, z], shear: [d[x] / d[z], d[y] / d[z], 1.0 / d[z]] }
+    }
+
+    /// Where a place is seen along the rays: its coordinates across the third axis.
+    fn seen(&self, place: [f64; 3]) -> [f64; 2] {
+        let ([x, y, z], [shear_x, shear_y, _]) = (self.axes, self.shear);
+        let p = sub(place, self.origin);
+        [p[x] - shear_x * p[z], p[y] - shear_y * p[z]]
     }
 
     /// Range at which the line of the ray crosses a triangle, negative behind its origin; `None` where it passes by or
