@@ -16,6 +16,7 @@ pub struct TriangleTree {
     /// In the order of the index.
     triangles: Vec<Corners>,
     index: RayIndex,
+    bounds: Option<[[f64; 3]; 2]>,
 }
 
 impl TriangleTree {
@@ -26,8 +27,10 @@ impl TriangleTree {
     pub fn new(triangles: &[Corners]) -> Result<Self> {
         let boxes: Vec<_> = triangles.iter().map(bounding_box).collect();
         let index = RayIndex::new(&boxes)?;
-        let triangles = index.order().iter().filter_map(|&i| triangles.get(i as usize).copied()).collect();
-        Ok(Self { triangles, index })
+        let triangles: Vec<Corners> =
+            index.order().iter().filter_map(|&i| triangles.get(i as usize).copied()).collect();
+        let bounds = bounds(&triangles);
+        Ok(Self { triangles, index, bounds })
     }
 
     /// For each of [`TriangleTree::triangles`] its row among those given.
@@ -45,10 +48,7 @@ impl TriangleTree {
     /// Lowest and highest corner of all triangles, or `None` without any.
     #[must_use]
     pub fn bounds(&self) -> Option<[[f64; 3]; 2]> {
-        let first = *self.triangles.first()?.first()?;
-        Some(self.triangles.as_flattened().iter().fold([first; 2], |[low, high], corner| {
-            [std::array::from_fn(|i| low[i].min(corner[i])), std::array::from_fn(|i| high[i].max(corner[i]))]
-        }))
+        self.bounds
     }
 
     /// Whether `ray` crosses a triangle within its ranges for which `counts` is true: it is given the row of the
@@ -59,15 +59,15 @@ impl TriangleTree {
         self.index.any(ray, |row| self.range(&crossing, row, ray).is_some() && counts(row))
     }
 
-    /// Which of the rays from `origins`, at most 32 near each other, along a unit vector without end cross a triangle for
-    /// which `counts` is true: a bit each. It is given the number of the ray and the row of the triangle. Each bit is
-    /// what [`TriangleTree::any`] finds for the ray, which walk through the tree together.
+    /// Looks for the rays from `origins`, neighbours together, along a unit vector without end that cross a triangle for
+    /// which `counts` is true: it is given the number of the ray and the row of the triangle, until it was true for the
+    /// ray once. Each ray is found as [`TriangleTree::any`] finds it, but they walk through the tree together.
     pub(crate) fn any_of(
         &self,
         origins: &[[f64; 3]],
         direction: [f64; 3],
         mut counts: impl FnMut(usize, usize) -> bool,
-    ) -> u32 {
+    ) {
         let bound = |pick: fn(f64, f64) -> f64, start: f64| -> [f64; 3] {
             std::array::from_fn(|axis| origins.iter().map(|origin| origin[axis]).fold(start, pick))
         };
@@ -76,30 +76,27 @@ impl TriangleTree {
         let middle = ray(std::array::from_fn(|axis| f64::midpoint(low[axis], high[axis])));
         let room = std::array::from_fn(|axis| 0.5 * (high[axis] - low[axis]) + ROOM);
         let axes = RayAxes::new(&middle);
-        // where the rays start as seen along them, and the box around these places
-        let starts: SmallVec<[[f64; 2]; 32]> = origins.iter().map(|&origin| axes.seen(origin)).collect();
-        let mut left = u32::MAX.checked_shr(u32::BITS - origins.len() as u32).unwrap_or(0);
-        let mut crossed = 0;
+        let mut groups: SmallVec<[RayGroup; 8]> =
+            origins.chunks(RayGroup::LANES).map(|origins| RayGroup::new(origins, &axes)).collect();
         self.index.visit_beside(&middle, room, |row: usize| {
             let Some(triangle) = self.triangles.get(row) else { return f32::INFINITY };
-            let [a, b, c] = triangle.map(|corner| axes.seen(corner));
-            let box_low: [f64; 2] = std::array::from_fn(|axis| a[axis].min(b[axis]).min(c[axis]) - ROOM);
-            let box_high: [f64; 2] = std::array::from_fn(|axis| a[axis].max(b[axis]).max(c[axis]) + ROOM);
-            for (number, start) in starts.iter().enumerate() {
-                let bit = 1_u32 << number;
-                let is_near = (0..2).all(|axis| box_low[axis] <= start[axis] && start[axis] <= box_high[axis]);
-                if !is_near || left & bit == 0 {
-                    continue;
+            let shadow = Shadow::new(triangle.map(|corner| axes.seen(corner)));
+            let mut left = 0;
+            for (group, start) in groups.iter_mut().zip((0..).step_by(RayGroup::LANES)) {
+                let mut near = group.near(&shadow);
+                while near != 0 {
+                    let lane = near.trailing_zeros();
+                    near &= near - 1;
+                    let number = start + lane as usize;
+                    let ray = ray(origins[number]);
+                    if self.range(&RayAxes::new(&ray), row, &ray).is_some() && counts(number, row) {
+                        group.left &= !(1 << lane);
+                    }
                 }
-                let ray = ray(origins[number]);
-                if self.range(&RayAxes::new(&ray), row, &ray).is_some() && counts(number, row) {
-                    left &= !bit;
-                    crossed |= bit;
-                }
+                left |= group.left;
             }
             if left == 0 { END } else { f32::INFINITY }
         });
-        crossed
     }
 
     /// The triangle for which `counts` is true that `ray` crosses first within its ranges, by its row, and the range;
@@ -131,6 +128,14 @@ impl TriangleTree {
         let range = crossing.range(self.triangles.get(row)?)?;
         (ray.ranges[0] <= range && range <= ray.ranges[1]).then_some(range)
     }
+}
+
+/// Lowest and highest corner of triangles, or `None` without any.
+fn bounds(triangles: &[Corners]) -> Option<[[f64; 3]; 2]> {
+    let first = *triangles.first()?.first()?;
+    Some(triangles.as_flattened().iter().fold([first; 2], |[low, high], corner| {
+        [std::array::from_fn(|i| low[i].min(corner[i])), std::array::from_fn(|i| high[i].max(corner[i]))]
+    }))
 }
 
 /// The box around a triangle, rounded outward.
@@ -186,5 +191,83 @@ impl RayAxes {
         }
         let sum = u + v + w;
         (sum != 0.0).then(|| (u * a[2] + v * b[2] + w * c[2]) * scale_z / sum)
+    }
+}
+
+/// A triangle as seen along rays, with edges that run counter-clockwise.
+struct Shadow {
+    corners: [[f64; 2]; 3],
+    /// How far outside an edge a place is still near, times the length of the edge.
+    margins: [f64; 3],
+    low: [f64; 2],
+    high: [f64; 2],
+}
+
+impl Shadow {
+    fn new([a, b, c]: [[f64; 2]; 3]) -> Self {
+        let turn = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+        let corners = if turn < 0.0 { [a, c, b] } else { [a, b, c] };
+        let margin = |i: usize| {
+            let (from, to) = (corners[i], corners[(i + 1) % 3]);
+            -ROOM * ((to[0] - from[0]).abs() + (to[1] - from[1]).abs())
+        };
+        Self {
+            corners,
+            margins: [0, 1, 2].map(margin),
+            low: std::array::from_fn(|axis| a[axis].min(b[axis]).min(c[axis]) - ROOM),
+            high: std::array::from_fn(|axis| a[axis].max(b[axis]).max(c[axis]) + ROOM),
+        }
+    }
+}
+
+/// Rays side by side, as seen along them.
+struct RayGroup {
+    /// Where they start, by axis; beyond the last ray a place that no triangle is near.
+    starts: [[f64; Self::LANES]; 2],
+    low: [f64; 2],
+    high: [f64; 2],
+    /// A bit for each ray for which nothing was found yet.
+    left: u32,
+}
+
+impl RayGroup {
+    const LANES: usize = 32;
+
+    fn new(origins: &[[f64; 3]], axes: &RayAxes) -> Self {
+        let mut group = Self {
+            starts: [[f64::INFINITY; Self::LANES]; 2],
+            low: [f64::INFINITY; 2],
+            high: [f64::NEG_INFINITY; 2],
+            left: 0,
+        };
+        for (lane, &origin) in origins.iter().take(Self::LANES).enumerate() {
+            for (axis, value) in axes.seen(origin).into_iter().enumerate() {
+                group.starts[axis][lane] = value;
+                group.low[axis] = group.low[axis].min(value);
+                group.high[axis] = group.high[axis].max(value);
+            }
+            group.left |= 1 << lane;
+        }
+        group
+    }
+
+    /// The rays that are left and may cross a triangle, a bit each.
+    #[inline]
+    fn near(&self, shadow: &Shadow) -> u32 {
+        let meets = (0..2).all(|axis| shadow.low[axis] <= self.high[axis] && self.low[axis] <= shadow.high[axis]);
+        if self.left == 0 || !meets {
+            return 0;
+        }
+        let mut is_near = [true; Self::LANES];
+        for (i, margin) in shadow.margins.into_iter().enumerate() {
+            let ([x, y], [next_x, next_y]) = (shadow.corners[i], shadow.corners[(i + 1) % 3]);
+            let (along_x, along_y) = (next_x - x, next_y - y);
+            for (lane, is_near) in is_near.iter_mut().enumerate() {
+                let beside = along_x * (self.starts[1][lane] - y) - along_y * (self.starts[0][lane] - x);
+                *is_near &= beside >= margin;
+            }
+        }
+        let bits = (0..Self::LANES).fold(0, |bits, lane| bits | u32::from(is_near[lane]) << lane);
+        bits & self.left
     }
 }

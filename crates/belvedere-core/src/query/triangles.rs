@@ -213,12 +213,16 @@ impl BlockingTriangles {
         self.blocks_piece(&ray, &ends)
     }
 
-    /// Which of the lines of sight from `targets`, at most 32 near each other, along the unit vector `towards` without
-    /// end a triangle blocks: a bit each, as [`BlockingTriangles::blocks`] finds them.
-    pub(super) fn block_together(&self, targets: &[[f64; 3]], towards: [f64; 3]) -> u32 {
+    /// Calls `visit` with the numbers of those of the lines of sight from `targets`, neighbours together, along the unit
+    /// vector `towards` without end that a triangle blocks: those that [`BlockingTriangles::blocks`] finds.
+    pub(super) fn each_blocked(&self, targets: &[[f64; 3]], towards: [f64; 3], mut visit: impl FnMut(usize)) {
         self.tree.any_of(targets, towards, |number, row| {
-            self.is_between(row, &LineEnds { target: targets[number], viewer: None })
-        })
+            let blocks = self.is_between(row, &LineEnds { target: targets[number], viewer: None });
+            if blocks {
+                visit(number);
+            }
+            blocks
+        });
     }
 
     /// Whether a triangle blocks the piece `ray` of a line of sight between `ends`.

@@ -8,10 +8,8 @@ use rayon::prelude::*;
 
 /// By how much boxes are widened, metres: more than f32 and f64 err.
 const ROOM: f64 = 0.01;
-/// Most lines of a packet.
-const LANES: usize = 32;
 /// How far the targets of a packet lie from the first of them along an axis, metres.
-const SPREAD: f64 = 2.0;
+const SPREAD: f64 = 8.0;
 
 /// Unsets the bits of lines of sight that triangles block, in rows of `words` for `targets`, (M, 3), neighbours together,
 /// and `directions`, (D, 3).
@@ -60,17 +58,16 @@ struct Packet<'a> {
 }
 
 impl Packet<'_> {
-    /// Whether a target lies near the first of the packet, which has room for it.
+    /// Whether a target lies near the first of the packet.
     fn fits(&self, target: [f64; 3]) -> bool {
-        self.targets.len() < LANES
-            && self.targets.first().is_none_or(|first| (0..3).all(|axis| (first[axis] - target[axis]).abs() < SPREAD))
+        self.targets.first().is_none_or(|first| (0..3).all(|axis| (first[axis] - target[axis]).abs() < SPREAD))
     }
 
     /// Gives `block` the numbers of the lines that are blocked; the packet is empty then.
     fn find(&mut self, mut block: impl FnMut(usize)) {
         if !self.targets.is_empty() {
-            let blocked = self.triangles.block_together(&self.targets, self.direction);
-            self.rows.iter().enumerate().filter(|(lane, _)| blocked >> lane & 1 == 1).for_each(|(_, &row)| block(row));
+            let rows = &self.rows;
+            self.triangles.each_blocked(&self.targets, self.direction, |number| block(rows[number]));
         }
         self.rows.clear();
         self.targets.clear();
