@@ -86,7 +86,7 @@ impl SurfacePatches {
     }
 
     /// The triangles and their kinds.
-    pub fn iter(&self) -> impl Iterator<Item = (&PatchTriangle, PatchKind)> {
+    pub fn iter(&self) -> impl Iterator<Item = (&PatchTriangle, PatchKind)> + Clone {
         self.triangles.iter().zip(self.kinds.iter().copied())
     }
 

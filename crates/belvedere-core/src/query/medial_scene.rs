@@ -229,10 +229,12 @@ impl MedialScene {
     /// the unit vector `towards`. All numbers but the range must be finite.
     #[must_use]
     pub fn answer(&self, target: [f64; 3], towards: [f64; 3], range: f64) -> Answer {
-        if self.tree.blocks(&self.tree.ray(target, towards, range)) {
+        // the triangles first: they are far fewer than balls, and block much of what balls block
+        if self.is_behind_triangles(target, towards, range) || self.tree.blocks(&self.tree.ray(target, towards, range))
+        {
             return Answer::Blocked;
         }
-        self.answer_unblocked(target, towards, range)
+        self.answer_free(target, towards, range)
     }
 
     /// As [`MedialScene::answer`] where the line ends at a viewer; where it ends at a picture plane or a near limit,
@@ -248,7 +250,15 @@ impl MedialScene {
 
     /// The answer for a line of sight of which it is known that no ball blocks it.
     pub(super) fn answer_unblocked(&self, target: [f64; 3], towards: [f64; 3], range: f64) -> Answer {
-        if self.is_behind_others(target, towards, range) {
+        match self.is_behind_triangles(target, towards, range) {
+            true => Answer::Blocked,
+            false => self.answer_free(target, towards, range),
+        }
+    }
+
+    /// The answer for a line of sight of which it is known that neither a ball nor a triangle blocks it.
+    fn answer_free(&self, target: [f64; 3], towards: [f64; 3], range: f64) -> Answer {
+        if self.is_behind_terrain(target, towards, range) {
             return Answer::Blocked;
         }
         if self.is_unproven(target, towards, range) { Answer::Unproven } else { Answer::Visible }
@@ -371,8 +381,17 @@ impl MedialScene {
     /// Whether anything but balls blocks a line of sight: a triangle, or far terrain.
     #[inline]
     pub(super) fn is_behind_others(&self, target: [f64; 3], towards: [f64; 3], range: f64) -> bool {
+        self.is_behind_triangles(target, towards, range) || self.is_behind_terrain(target, towards, range)
+    }
+
+    #[inline]
+    fn is_behind_triangles(&self, target: [f64; 3], towards: [f64; 3], range: f64) -> bool {
         self.triangles().is_some_and(|triangles| triangles.blocks(target, towards, range))
-            || (range == f64::INFINITY && self.far_terrain.hides(target, towards))
+    }
+
+    #[inline]
+    fn is_behind_terrain(&self, target: [f64; 3], towards: [f64; 3], range: f64) -> bool {
+        range == f64::INFINITY && self.far_terrain.hides(target, towards)
     }
 
     /// The ball of a row of the index as what blocks.

@@ -212,8 +212,8 @@ impl MedialScene {
     pub(super) fn answer_on_chords(&self, ends: [[f64; 3]; 2], corners: &[[f64; 3]]) -> Answer {
         let pieces = self.chords(ends, corners);
         let is_blocked = |piece: &LinePiece| {
-            self.tree().index().any(&piece.for_balls, |number| self.blocked_on(number, piece).is_some())
-                || self.triangles().is_some_and(|triangles| triangles.blocks_piece(&piece.ray, &piece.line_ends()))
+            self.triangles().is_some_and(|triangles| triangles.blocks_piece(&piece.ray, &piece.line_ends()))
+                || self.tree().index().any(&piece.for_balls, |number| self.blocked_on(number, piece).is_some())
         };
         if pieces.iter().any(is_blocked) {
             return self.blocked_between(ends);

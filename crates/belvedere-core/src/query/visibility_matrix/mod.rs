@@ -107,10 +107,11 @@ impl MedialScene {
     ) -> Result<VisibilityMatrix> {
         let mut free = FreeLines::new(targets, directions)?;
         let columns: Vec<usize> = (0..directions.len()).collect();
-        free.hide_behind_balls(self, &columns, control)?;
+        // the triangles first: they leave fewer lines to the balls
         if let Some(triangles) = self.triangles() {
             free.hide_behind_triangles(triangles, control)?;
         }
+        free.hide_behind_balls(self, &columns, control)?;
         free.hide_behind_terrain(&self.far_terrain, control)?;
         Ok(free.into_matrix())
     }
