@@ -71,7 +71,10 @@ fn damaged_ball_files_are_refused_or_hold_no_more_than_their_bytes() {
 /// An archive with every array that a ball file can have.
 fn full_archive() -> (ModelParts, Vec<u8>) {
     let count = 5_usize;
+    let mut patches = SurfacePatches::default();
+    patches.push([[1.0, 2.0, 3.0], [4.0, 5.0, 6.0], [7.0, 8.5, 9.0]], PatchKind::Inside);
     let parts = ModelParts {
+        patches,
         frame: Frame { origin: [85_000.0, 447_000.0, 1.0], crs: Crs { epsg: Some(28_992), ..Crs::default() } },
         bounds: Bounds { low: [-5.0; 3], high: [9.0; 3] },
         balls: MedialBalls {
