@@ -103,7 +103,6 @@ pub(crate) fn square_of([x, y, _]: [f32; 3], radius: f32) -> MapArea {
 
 #[cfg(test)]
 mod tests {
-    #![expect(clippy::unwrap_used, reason = "a test that cannot go on fails")]
     #![expect(clippy::cast_possible_truncation, reason = "the numbers are small")]
 
     use super::*;
