@@ -5,8 +5,10 @@ use belvedere_data::Result;
 use belvedere_data::vector::sub;
 use smallvec::SmallVec;
 
-/// By how much boxes are widened before rays are tested exactly, metres: more than f32 errs in the tree.
+/// By how much boxes and edges are widened before rays are tested exactly, metres: more than f32 errs near a packet.
 const ROOM: f64 = 1e-3;
+/// The same as a share of coordinates: f32 rounds products of them by a tenth of this.
+const ROUNDING: f64 = 1e-6;
 
 /// Corners of a triangle, local metres.
 pub type Corners = [[f64; 3]; 3];
@@ -194,28 +196,35 @@ impl RayAxes {
     }
 }
 
+#[expect(clippy::cast_possible_truncation, reason = "what is rounded is far less than the margins")]
+fn to_f32(value: f64) -> f32 {
+    value as f32
+}
+
 /// A triangle as seen along rays, with edges that run counter-clockwise.
 struct Shadow {
-    corners: [[f64; 2]; 3],
+    corners: [[f32; 2]; 3],
     /// How far outside an edge a place is still near, times the length of the edge.
-    margins: [f64; 3],
-    low: [f64; 2],
-    high: [f64; 2],
+    margins: [f32; 3],
+    low: [f32; 2],
+    high: [f32; 2],
 }
 
 impl Shadow {
     fn new([a, b, c]: [[f64; 2]; 3]) -> Self {
         let turn = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
         let corners = if turn < 0.0 { [a, c, b] } else { [a, b, c] };
+        let largest = corners.as_flattened().iter().fold(0.0_f64, |largest, v| largest.max(v.abs()));
+        let room = ROOM + ROUNDING * largest;
         let margin = |i: usize| {
             let (from, to) = (corners[i], corners[(i + 1) % 3]);
-            -ROOM * ((to[0] - from[0]).abs() + (to[1] - from[1]).abs())
+            to_f32(-room * ((to[0] - from[0]).abs() + (to[1] - from[1]).abs()))
         };
         Self {
-            corners,
+            corners: corners.map(|corner| corner.map(to_f32)),
             margins: [0, 1, 2].map(margin),
-            low: std::array::from_fn(|axis| a[axis].min(b[axis]).min(c[axis]) - ROOM),
-            high: std::array::from_fn(|axis| a[axis].max(b[axis]).max(c[axis]) + ROOM),
+            low: std::array::from_fn(|axis| to_f32(a[axis].min(b[axis]).min(c[axis]) - room)),
+            high: std::array::from_fn(|axis| to_f32(a[axis].max(b[axis]).max(c[axis]) + room)),
         }
     }
 }
@@ -223,9 +232,9 @@ impl Shadow {
 /// Rays side by side, as seen along them.
 struct RayGroup {
     /// Where they start, by axis; beyond the last ray a place that no triangle is near.
-    starts: [[f64; Self::LANES]; 2],
-    low: [f64; 2],
-    high: [f64; 2],
+    starts: [[f32; Self::LANES]; 2],
+    low: [f32; 2],
+    high: [f32; 2],
     /// A bit for each ray for which nothing was found yet.
     left: u32,
 }
@@ -235,13 +244,13 @@ impl RayGroup {
 
     fn new(origins: &[[f64; 3]], axes: &RayAxes) -> Self {
         let mut group = Self {
-            starts: [[f64::INFINITY; Self::LANES]; 2],
-            low: [f64::INFINITY; 2],
-            high: [f64::NEG_INFINITY; 2],
+            starts: [[f32::INFINITY; Self::LANES]; 2],
+            low: [f32::INFINITY; 2],
+            high: [f32::NEG_INFINITY; 2],
             left: 0,
         };
         for (lane, &origin) in origins.iter().take(Self::LANES).enumerate() {
-            for (axis, value) in axes.seen(origin).into_iter().enumerate() {
+            for (axis, value) in axes.seen(origin).map(to_f32).into_iter().enumerate() {
                 group.starts[axis][lane] = value;
                 group.low[axis] = group.low[axis].min(value);
                 group.high[axis] = group.high[axis].max(value);

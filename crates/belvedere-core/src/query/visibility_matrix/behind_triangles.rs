@@ -8,8 +8,9 @@ use rayon::prelude::*;
 
 /// By how much boxes are widened, metres: more than f32 and f64 err.
 const ROOM: f64 = 0.01;
-/// How far the targets of a packet lie from the first of them along an axis, metres.
-const SPREAD: f64 = 8.0;
+/// How far the targets of a packet lie from the first of them along an axis, metres. The sky of 60 000 points of a town
+/// with 3000 triangles (145 directions) took 0.92 s with 4 and 8, 0.77 with 16.
+const SPREAD: f64 = 16.0;
 
 /// Unsets the bits of lines of sight that triangles block, in rows of `words` for `targets`, (M, 3), neighbours together,
 /// and `directions`, (D, 3).
@@ -28,21 +29,21 @@ pub(super) fn hide_behind_triangles(
         let meets = |(_, direction): &(usize, &[f64; 3])| may_meet(around, **direction, triangles.bounds());
         let met: Vec<(usize, [f64; 3])> =
             directions.iter().enumerate().filter(meets).map(|(column, direction)| (column, *direction)).collect();
+        let mut packet = Packet { triangles, rows: Vec::new(), targets: Vec::new() };
         for &(column, direction) in &met {
             let (word, bit) = (column / WORD, 1 << (column % WORD));
-            let mut packet = Packet { triangles, direction, rows: Vec::new(), targets: Vec::new() };
             for (row, &target) in targets.iter().enumerate() {
                 let target = target.map(f64::from);
                 if rows[row * width + word] & bit == 0 {
                     continue;
                 }
                 if !packet.fits(target) {
-                    packet.find(|row| rows[row * width + word] &= !bit);
+                    packet.find(direction, |row| rows[row * width + word] &= !bit);
                 }
                 packet.rows.push(row);
                 packet.targets.push(target);
             }
-            packet.find(|row| rows[row * width + word] &= !bit);
+            packet.find(direction, |row| rows[row * width + word] &= !bit);
         }
         Ok(())
     })
@@ -51,7 +52,6 @@ pub(super) fn hide_behind_triangles(
 /// Lines of sight of neighbours in one direction.
 struct Packet<'a> {
     triangles: &'a BlockingTriangles,
-    direction: [f64; 3],
     /// Numbers of the targets.
     rows: Vec<usize>,
     targets: Vec<[f64; 3]>,
@@ -63,11 +63,11 @@ impl Packet<'_> {
         self.targets.first().is_none_or(|first| (0..3).all(|axis| (first[axis] - target[axis]).abs() < SPREAD))
     }
 
-    /// Gives `block` the numbers of the lines that are blocked; the packet is empty then.
-    fn find(&mut self, mut block: impl FnMut(usize)) {
+    /// Gives `block` the numbers of the lines in a direction that are blocked; the packet is empty then.
+    fn find(&mut self, direction: [f64; 3], mut block: impl FnMut(usize)) {
         if !self.targets.is_empty() {
             let rows = &self.rows;
-            self.triangles.each_blocked(&self.targets, self.direction, |number| block(rows[number]));
+            self.triangles.each_blocked(&self.targets, direction, |number| block(rows[number]));
         }
         self.rows.clear();
         self.targets.clear();
