@@ -259,6 +259,58 @@ impl BlockRule {
     }
 }
 
+/// Distance from the plane of a triangle up to which an end of a line of sight lies on the triangle, metres: targets
+/// are f32, which is off by 0.1 mm a kilometre from the origin, and a target on a triangle must not be hidden by it.
+pub const CONTACT: f64 = 1e-3;
+/// How deep behind a patch of a surface of the survey an end of a line of sight still lies on that surface, metres: the
+/// noise of measuring, as points lie on both sides of the plane that was fitted to them.
+pub const PATCH_DEPTH: f64 = 0.15;
+
+/// The plane of a triangle that blocks lines of sight, and how deep behind it ends still lie on it.
+///
+/// The rule: a triangle blocks every line of sight that passes through it, edges included, unless an end of the line
+/// lies on its surface. Both ends are treated alike. An end farther in front of the plane than [`CONTACT`] is never on
+/// it: seen through the triangle it is hidden.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sheet {
+    /// Unit normal, which points to the front.
+    pub normal: [f64; 3],
+    /// A place in the plane.
+    pub corner: [f64; 3],
+    /// How far behind the plane an end lies on the surface, metres, at least [`CONTACT`].
+    pub depth: f64,
+}
+
+impl Sheet {
+    /// Whether an end of a line of sight lies on the surface, so that it does not block the line.
+    #[must_use]
+    #[inline]
+    pub fn gives_way_to(&self, end: [f64; 3]) -> bool {
+        let behind = self.depth_of(end);
+        -CONTACT <= behind && behind <= self.depth
+    }
+
+    /// The least height at or above that of `place` at which the surface gives way to an end straight above it; `None`
+    /// where there is none.
+    #[must_use]
+    pub fn height_of_giving_way(&self, place: [f64; 3]) -> Option<f64> {
+        let behind = self.depth_of(place);
+        if self.gives_way_to(place) {
+            return Some(place[2]);
+        }
+        // upward an end comes nearer to a plane that faces up from behind, and to one that faces down from its front
+        let up = self.normal[2];
+        let rise = (behind - if up > 0.0 { self.depth } else { -CONTACT }) / up;
+        (rise >= 0.0 && rise.is_finite()).then_some(place[2] + rise)
+    }
+
+    /// How far a place lies behind the plane, metres; below zero in front of it.
+    #[inline]
+    fn depth_of(&self, place: [f64; 3]) -> f64 {
+        dot(self.normal, sub(self.corner, place))
+    }
+}
+
 /// A piece of a curved line of sight.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Chord {

@@ -1,8 +1,14 @@
 //! Triangles in a tree of boxes, and where rays cross them, exactly.
 
-use crate::ray_index::{Ray, RayIndex};
+use crate::ray_index::{END, Ray, RayIndex};
 use belvedere_data::Result;
 use belvedere_data::vector::sub;
+use smallvec::SmallVec;
+
+/// By how much boxes and edges are widened before rays are tested exactly, metres: more than f32 errs near a packet.
+const ROOM: f64 = 1e-3;
+/// The same as a share of coordinates: f32 rounds products of them by a tenth of this.
+const ROUNDING: f64 = 1e-6;
 
 /// Corners of a triangle, local metres.
 pub type Corners = [[f64; 3]; 3];
@@ -12,6 +18,7 @@ pub struct TriangleTree {
     /// In the order of the index.
     triangles: Vec<Corners>,
     index: RayIndex,
+    bounds: Option<[[f64; 3]; 2]>,
 }
 
 impl TriangleTree {
@@ -22,8 +29,10 @@ impl TriangleTree {
     pub fn new(triangles: &[Corners]) -> Result<Self> {
         let boxes: Vec<_> = triangles.iter().map(bounding_box).collect();
         let index = RayIndex::new(&boxes)?;
-        let triangles = index.order().iter().filter_map(|&i| triangles.get(i as usize).copied()).collect();
-        Ok(Self { triangles, index })
+        let triangles: Vec<Corners> =
+            index.order().iter().filter_map(|&i| triangles.get(i as usize).copied()).collect();
+        let bounds = bounds(&triangles);
+        Ok(Self { triangles, index, bounds })
     }
 
     /// For each of [`TriangleTree::triangles`] its row among those given.
@@ -41,10 +50,7 @@ impl TriangleTree {
     /// Lowest and highest corner of all triangles, or `None` without any.
     #[must_use]
     pub fn bounds(&self) -> Option<[[f64; 3]; 2]> {
-        let first = *self.triangles.first()?.first()?;
-        Some(self.triangles.as_flattened().iter().fold([first; 2], |[low, high], corner| {
-            [std::array::from_fn(|i| low[i].min(corner[i])), std::array::from_fn(|i| high[i].max(corner[i]))]
-        }))
+        self.bounds
     }
 
     /// Whether `ray` crosses a triangle within its ranges for which `counts` is true: it is given the row of the
@@ -53,6 +59,46 @@ impl TriangleTree {
     pub fn any(&self, ray: &Ray, mut counts: impl FnMut(usize) -> bool) -> bool {
         let crossing = RayAxes::new(ray);
         self.index.any(ray, |row| self.range(&crossing, row, ray).is_some() && counts(row))
+    }
+
+    /// Looks for the rays from `origins`, neighbours together, along a unit vector without end that cross a triangle for
+    /// which `counts` is true: it is given the number of the ray and the row of the triangle, until it was true for the
+    /// ray once. Each ray is found as [`TriangleTree::any`] finds it, but they walk through the tree together.
+    pub(crate) fn any_of(
+        &self,
+        origins: &[[f64; 3]],
+        direction: [f64; 3],
+        mut counts: impl FnMut(usize, usize) -> bool,
+    ) {
+        let bound = |pick: fn(f64, f64) -> f64, start: f64| -> [f64; 3] {
+            std::array::from_fn(|axis| origins.iter().map(|origin| origin[axis]).fold(start, pick))
+        };
+        let (low, high) = (bound(f64::min, f64::INFINITY), bound(f64::max, f64::NEG_INFINITY));
+        let ray = |origin: [f64; 3]| Ray { origin, direction, ranges: [0.0, f64::INFINITY] };
+        let middle = ray(std::array::from_fn(|axis| f64::midpoint(low[axis], high[axis])));
+        let room = std::array::from_fn(|axis| 0.5 * (high[axis] - low[axis]) + ROOM);
+        let axes = RayAxes::new(&middle);
+        let mut groups: SmallVec<[RayGroup; 8]> =
+            origins.chunks(RayGroup::LANES).map(|origins| RayGroup::new(origins, &axes)).collect();
+        self.index.visit_beside(&middle, room, |row: usize| {
+            let Some(triangle) = self.triangles.get(row) else { return f32::INFINITY };
+            let shadow = Shadow::new(triangle.map(|corner| axes.seen(corner)));
+            let mut left = 0;
+            for (group, start) in groups.iter_mut().zip((0..).step_by(RayGroup::LANES)) {
+                let mut near = group.near(&shadow);
+                while near != 0 {
+                    let lane = near.trailing_zeros();
+                    near &= near - 1;
+                    let number = start + lane as usize;
+                    let ray = ray(origins[number]);
+                    if self.range(&RayAxes::new(&ray), row, &ray).is_some() && counts(number, row) {
+                        group.left &= !(1 << lane);
+                    }
+                }
+                left |= group.left;
+            }
+            if left == 0 { END } else { f32::INFINITY }
+        });
     }
 
     /// The triangle for which `counts` is true that `ray` crosses first within its ranges, by its row, and the range;
@@ -86,6 +132,14 @@ impl TriangleTree {
     }
 }
 
+/// Lowest and highest corner of triangles, or `None` without any.
+fn bounds(triangles: &[Corners]) -> Option<[[f64; 3]; 2]> {
+    let first = *triangles.first()?.first()?;
+    Some(triangles.as_flattened().iter().fold([first; 2], |[low, high], corner| {
+        [std::array::from_fn(|i| low[i].min(corner[i])), std::array::from_fn(|i| high[i].max(corner[i]))]
+    }))
+}
+
 /// The box around a triangle, rounded outward.
 #[expect(clippy::cast_possible_truncation, reason = "rounded outward right after")]
 fn bounding_box([a, b, c]: &Corners) -> [[f32; 3]; 2] {
@@ -116,6 +170,13 @@ impl RayAxes {
         Self { origin: ray.origin, axes: [x, y, z], shear: [d[x] / d[z], d[y] / d[z], 1.0 / d[z]] }
     }
 
+    /// Where a place is seen along the rays: its coordinates across the third axis.
+    fn seen(&self, place: [f64; 3]) -> [f64; 2] {
+        let ([x, y, z], [shear_x, shear_y, _]) = (self.axes, self.shear);
+        let p = sub(place, self.origin);
+        [p[x] - shear_x * p[z], p[y] - shear_y * p[z]]
+    }
+
     /// Range at which the line of the ray crosses a triangle, negative behind its origin; `None` where it passes by or
     /// runs within its plane.
     fn range(&self, corners: &Corners) -> Option<f64> {
@@ -132,5 +193,90 @@ impl RayAxes {
         }
         let sum = u + v + w;
         (sum != 0.0).then(|| (u * a[2] + v * b[2] + w * c[2]) * scale_z / sum)
+    }
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "what is rounded is far less than the margins")]
+fn to_f32(value: f64) -> f32 {
+    value as f32
+}
+
+/// A triangle as seen along rays, with edges that run counter-clockwise.
+struct Shadow {
+    corners: [[f32; 2]; 3],
+    /// How far outside an edge a place is still near, times the length of the edge.
+    margins: [f32; 3],
+    low: [f32; 2],
+    high: [f32; 2],
+}
+
+impl Shadow {
+    fn new([a, b, c]: [[f64; 2]; 3]) -> Self {
+        let turn = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+        let corners = if turn < 0.0 { [a, c, b] } else { [a, b, c] };
+        let largest = corners.as_flattened().iter().fold(0.0_f64, |largest, v| largest.max(v.abs()));
+        let room = ROOM + ROUNDING * largest;
+        let margin = |i: usize| {
+            let (from, to) = (corners[i], corners[(i + 1) % 3]);
+            to_f32(-room * ((to[0] - from[0]).abs() + (to[1] - from[1]).abs()))
+        };
+        Self {
+            corners: corners.map(|corner| corner.map(to_f32)),
+            margins: [0, 1, 2].map(margin),
+            low: std::array::from_fn(|axis| to_f32(a[axis].min(b[axis]).min(c[axis]) - room)),
+            high: std::array::from_fn(|axis| to_f32(a[axis].max(b[axis]).max(c[axis]) + room)),
+        }
+    }
+}
+
+/// Rays side by side, as seen along them.
+struct RayGroup {
+    /// Where they start, by axis; beyond the last ray a place that no triangle is near.
+    starts: [[f32; Self::LANES]; 2],
+    low: [f32; 2],
+    high: [f32; 2],
+    /// A bit for each ray for which nothing was found yet.
+    left: u32,
+}
+
+impl RayGroup {
+    const LANES: usize = 32;
+
+    fn new(origins: &[[f64; 3]], axes: &RayAxes) -> Self {
+        let mut group = Self {
+            starts: [[f32::INFINITY; Self::LANES]; 2],
+            low: [f32::INFINITY; 2],
+            high: [f32::NEG_INFINITY; 2],
+            left: 0,
+        };
+        for (lane, &origin) in origins.iter().take(Self::LANES).enumerate() {
+            for (axis, value) in axes.seen(origin).map(to_f32).into_iter().enumerate() {
+                group.starts[axis][lane] = value;
+                group.low[axis] = group.low[axis].min(value);
+                group.high[axis] = group.high[axis].max(value);
+            }
+            group.left |= 1 << lane;
+        }
+        group
+    }
+
+    /// The rays that are left and may cross a triangle, a bit each.
+    #[inline]
+    fn near(&self, shadow: &Shadow) -> u32 {
+        let meets = (0..2).all(|axis| shadow.low[axis] <= self.high[axis] && self.low[axis] <= shadow.high[axis]);
+        if self.left == 0 || !meets {
+            return 0;
+        }
+        let mut is_near = [true; Self::LANES];
+        for (i, margin) in shadow.margins.into_iter().enumerate() {
+            let ([x, y], [next_x, next_y]) = (shadow.corners[i], shadow.corners[(i + 1) % 3]);
+            let (along_x, along_y) = (next_x - x, next_y - y);
+            for (lane, is_near) in is_near.iter_mut().enumerate() {
+                let beside = along_x * (self.starts[1][lane] - y) - along_y * (self.starts[0][lane] - x);
+                *is_near &= beside >= margin;
+            }
+        }
+        let bits = (0..Self::LANES).fold(0, |bits, lane| bits | u32::from(is_near[lane]) << lane);
+        bits & self.left
     }
 }

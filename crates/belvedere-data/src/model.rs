@@ -3,6 +3,7 @@
 use crate::balls::MedialBalls;
 use crate::frame::{Bounds, Frame};
 use crate::free_segments::FreeSegmentColumns;
+use crate::patches::SurfacePatches;
 use crate::{Error, Parameter, Result};
 use std::collections::BTreeMap;
 
@@ -30,6 +31,8 @@ pub struct ModelParts {
     /// Share of the pulses that got through the part of a crown that a ball belongs to, (B), 0 to 1; NaN for a ball
     /// that is no vegetation. Empty where this was not measured.
     pub transmission: Vec<f32>,
+    /// Surfaces that are known better than from single balls, and block beside them.
+    pub patches: SurfacePatches,
     /// The pulses that prove lines of sight free, where they are known.
     pub pulses: Option<FreeSegmentColumns>,
     /// How the model was made, by name: side, method, parameters, program, input.
@@ -67,7 +70,7 @@ impl ModelParts {
     }
 
     /// Checks that all columns are equally long, centres, bounds and origin within [`FARTHEST`], radii too and not
-    /// negative, transmissions between 0 and 1, and the pulses.
+    /// negative, transmissions between 0 and 1, the patches and the pulses.
     ///
     /// # Errors
     /// [`Error::LengthMismatch`] or [`Error::InvalidParameter`] for the first fault.
@@ -100,6 +103,7 @@ impl ModelParts {
         if let Some(t) = self.transmission.iter().find(|t| !(t.is_nan() || (0.0..=1.0).contains(*t))) {
             return invalid(Parameter::Ball, format!("of transmission {t}"), "of transmission 0 to 1, or NaN");
         }
+        self.patches.validate()?;
         self.pulses.as_ref().map_or(Ok(()), FreeSegmentColumns::validate)
     }
 }

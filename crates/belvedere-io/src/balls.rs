@@ -16,13 +16,15 @@ pub(crate) const SUPPORTED: &str = ".npz .ply .laz .las";
 /// which holds reference system, bounds and provenance; where known also `transmission` (B) f32, and the pulses that
 /// prove what is visible: `pulse_starts` (P, 3) f32 metres relative to the origin, `pulse_slopes` (P, 2) i16 in steps
 /// of 0.0001, `pulse_top` (1) f32 metres, `pulse_lengths` (P) f32 metres unless all reach the top, and `pulse_ways` (P)
-/// u8 unless all go up: 16 to 21 bytes each.
+/// u8 unless all go up: 16 to 21 bytes each. Surface patches are `patch_corners` (T, 3, 3) f32 metres relative to the
+/// origin and `patch_kinds` (T) u8 (0 roof, 1 wall, 2 parapet, 3 inside).
 ///
 /// `.ply`, `.las` and `.laz` files are point clouds of the centres in the reference system and unit of the cloud
 /// (doubles in PLY, steps of at most a millimetre in LAS) with the columns `radius`, in the horizontal unit of the
 /// file, `separation_angle` in radians, `source` and `touch`, −1 where a ball never shrank, and `transmission` where
 /// that is known. They are for looking at, with the radius as the size of a point, and answer as the balls alone do:
-/// they hold no pulses.
+/// they hold no pulses. Surface patches are an element `patch` of PLY (corners x1, y1, z1 to z3 and `kind`), and the
+/// record 3 of the user `belvedere` of LAS, which keeps every bit.
 ///
 /// # Errors
 /// [`Error::UnknownFormat`] for other extensions, [`Error::MissingFeature`], those of [`ModelParts::validate`], and

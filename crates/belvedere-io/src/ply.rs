@@ -50,6 +50,8 @@ pub(super) struct PlyFile<'a> {
     name: PathBuf,
     reader: SourceReader<'a>,
     header: Header,
+    /// Elements that were read.
+    read_count: usize,
 }
 
 impl<'a> PlyFile<'a> {
@@ -63,7 +65,7 @@ impl<'a> PlyFile<'a> {
         for element in header.elements.values() {
             check_count(&name, element, header.encoding, body)?;
         }
-        Ok(Self { name, reader, header })
+        Ok(Self { name, reader, header, read_count: 0 })
     }
 
     pub(super) fn name(&self) -> &Path {
@@ -80,14 +82,29 @@ impl<'a> PlyFile<'a> {
 
     /// Hands every vertex to `take`; what follows the vertices is not looked at.
     pub(super) fn for_each_vertex<V: PropertyAccess>(&mut self, take: impl FnMut(V) -> Result<()>) -> Result<()> {
-        let Self { name, reader, header } = self;
-        for (element_name, element) in &header.elements {
-            if element_name == VERTEX {
-                return for_each(&Parser::<V>::new(), name, reader, element, header.encoding, take);
-            }
+        match self.for_each_row(VERTEX, take)? {
+            true => Ok(()),
+            false => Err(Error::malformed(&self.name, "has no vertices")),
+        }
+    }
+
+    /// Hands every row of an element to `take`, and passes over the elements before it; false where no element of this
+    /// name follows those that were read.
+    pub(super) fn for_each_row<V: PropertyAccess>(
+        &mut self,
+        wanted: &str,
+        take: impl FnMut(V) -> Result<()>,
+    ) -> Result<bool> {
+        let Self { name, reader, header, read_count } = self;
+        let mut elements = header.elements.iter().skip(*read_count);
+        let Some(place) = elements.position(|(element_name, _)| element_name == wanted) else { return Ok(false) };
+        for (_, element) in header.elements.iter().skip(*read_count).take(place) {
             for_each(&Parser::<Vertex>::new(), name, reader, element, header.encoding, |_| Ok(()))?;
         }
-        Err(Error::malformed(name, "has no vertices"))
+        *read_count += place + 1;
+        let Some(element) = header.elements.get(wanted) else { return Ok(false) };
+        for_each(&Parser::<V>::new(), name, reader, element, header.encoding, take)?;
+        Ok(true)
     }
 }
 

@@ -40,7 +40,8 @@ pub fn write_cloud<'a>(
     match output.extension().as_str() {
         #[cfg(feature = "las")]
         "las" | "laz" => write_las::write(output, cloud, &columns, &[]),
-        "ply" => write_ply::write(output, cloud, &columns, &[]).map(|report| of_attributes(report, cloud)),
+        "ply" => write_ply::write(output, cloud, &columns, &[], &write_ply::PlyElement::default())
+            .map(|report| of_attributes(report, cloud)),
         "csv" => write_table::write(output, cloud, &columns, ',').map(|report| of_attributes(report, cloud)),
         "xyz" | "txt" => write_table::write(output, cloud, &columns, ' ').map(|report| of_attributes(report, cloud)),
         "npy" if !columns.is_empty() => Err(Error::InvalidParameter {

@@ -11,19 +11,29 @@ use belvedere_data::{Error, PointCloud, Result};
 /// Points encoded at a time; bounds the memory beside the cloud.
 const POINTS_PER_BLOCK: usize = 1 << 18;
 
+/// An element that follows the points; the default is none.
+#[derive(Default)]
+pub(crate) struct PlyElement {
+    /// Its lines in the header.
+    pub(crate) header: String,
+    /// Its rows.
+    pub(crate) bytes: Vec<u8>,
+}
+
 /// Writes `cloud` with its attributes and `extra` columns. Each of `comments` becomes a comment of the header, beside
-/// those about the reference system. Coordinates are f64 in the unit of the cloud's file.
+/// those about the reference system; `element` follows the points. Coordinates are f64 in the unit of the cloud's file.
 pub(crate) fn write(
     output: Output<'_>,
     cloud: &PointCloud,
     extra: &[Column<'_>],
     comments: &[String],
+    element: &PlyElement,
 ) -> Result<WriteReport> {
     let mut columns = attribute_columns(cloud);
     columns.extend(extra.iter().cloned());
     let row_bytes = 24 + columns.iter().map(|c| c.values.width()).sum::<usize>();
     output.write(|path, output| {
-        output.write_all(header(cloud, &columns, comments).as_bytes()).map_err(Error::io(path))?;
+        output.write_all(header(cloud, &columns, comments, element).as_bytes()).map_err(Error::io(path))?;
         let mut block = Vec::new();
         for start in (0..cloud.len()).step_by(POINTS_PER_BLOCK) {
             let count = POINTS_PER_BLOCK.min(cloud.len() - start);
@@ -31,11 +41,12 @@ pub(crate) fn write(
             block.par_chunks_mut(row_bytes).enumerate().for_each(|(i, row)| encode(row, cloud, &columns, start + i));
             output.write_all(&block).map_err(Error::io(path))?;
         }
+        output.write_all(&element.bytes).map_err(Error::io(path))?;
         Ok(WriteReport { point_count: cloud.len(), ..WriteReport::default() })
     })
 }
 
-fn header(cloud: &PointCloud, columns: &[Column<'_>], comments: &[String]) -> String {
+fn header(cloud: &PointCloud, columns: &[Column<'_>], comments: &[String], element: &PlyElement) -> String {
     let mut text = String::from("ply\nformat binary_little_endian 1.0\ncomment written by belvedere\n");
     for line in comment_lines(&cloud.frame.crs).iter().chain(comments) {
         // many readers refuse headers that are not ASCII
@@ -57,6 +68,7 @@ fn header(cloud: &PointCloud, columns: &[Column<'_>], comments: &[String]) -> St
         };
         text.push_str(&format!("property {kind} {}\n", column.name));
     }
+    text.push_str(&element.header);
     text.push_str("end_header\n");
     text
 }

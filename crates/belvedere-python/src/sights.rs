@@ -183,6 +183,9 @@ impl PyScene {
         dict.set_item("block_ball", to_1d::<i64>(py, columns.balls.into_iter().map(ball).collect()))?;
         let source = |row: Option<u32>| row.map_or(-1, i64::from);
         dict.set_item("block_source", to_1d::<i64>(py, columns.sources.into_iter().map(source).collect()))?;
+        if let Some(surfaces) = columns.surfaces {
+            dict.set_item("block_surface", surfaces)?;
+        }
         if let Some(is_terrain) = columns.is_terrain {
             let is_terrain = is_terrain.into_iter().map(Option::unwrap_or_default).collect();
             dict.set_item("block_terrain", to_1d::<bool>(py, is_terrain))?;

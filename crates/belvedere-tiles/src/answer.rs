@@ -25,7 +25,7 @@ use belvedere::control::Control;
 use belvedere::ground::{Ground, MapGrid, SurfaceParams, top_surface};
 use belvedere::io::atomic;
 use belvedere::medial::MedialBalls;
-use belvedere::query::{AddedMeshes, Answer, Coverage, MedialScene};
+use belvedere::query::{Answer, BlockingTriangles, Coverage, MedialScene};
 use belvedere::raster::Raster;
 use belvedere::results::{Pixels, ResultKind, ResultRaster, georeference};
 use belvedere::vector::sub;
@@ -108,7 +108,7 @@ pub(crate) fn answer(
         PreparedQuestion::Viewshed(observers) => {
             let mut sight = PartialSight::new(observers, &targets.positions);
             parts.each_scene(&lines, control, |scene| sight.look(scene, control))?;
-            let planned = MedialScene::new(&MedialBalls::default(), &rule(plan))?.with_added(others.added.clone());
+            let planned = MedialScene::new(&MedialBalls::default(), &rule(plan))?.with_triangles(others.added.clone());
             sight.look(&planned, control)?;
             let balls = parts.into_found();
             (sight.answered(&balls, size)?, balls)
@@ -311,7 +311,7 @@ fn cells(
     plan: &Plan,
     (tile, cell): (TileId, f64),
     cloud: &PointCloud,
-    added: Option<&AddedMeshes>,
+    added: Option<&BlockingTriangles>,
     control: &Control<'_>,
 ) -> Result<Targets> {
     let (kept, _) = clean(cloud, &plan.statistics.cleaning(&plan.model().clean), control)?;

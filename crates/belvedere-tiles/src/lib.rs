@@ -29,6 +29,7 @@ mod make_plan;
 mod merge;
 mod obstacles;
 mod parts;
+mod patches;
 mod plan;
 mod planned;
 mod question;

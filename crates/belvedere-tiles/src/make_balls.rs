@@ -2,6 +2,7 @@
 
 use crate::cleared::{ClassedPoint, classed, clear_balls};
 use crate::grid::{MapArea, TOP_SIDE, TileId, square_at};
+use crate::patches;
 use crate::plan::Plan;
 use crate::record::{Stamp, TileOutcome, TileRecord};
 use crate::stage::Stage;
@@ -52,17 +53,31 @@ fn made(plan: &Plan, run: &Path, tile: TileId, cloud: PointCloud, control: &Cont
     let mut balls = parts.balls.select(&own);
     drop(all);
     clear_balls(plan, &core, &mut balls, &mut transmission, &own_points, control)?;
-    if balls.is_empty() {
-        return Ok(nothing);
+    let patches = patches::of_tile(&parts.patches, &core, &plan.cleared);
+    let parts = ModelParts { balls, transmission, patches, ..parts };
+    written(plan, run, tile, parts, nothing, control)
+}
+
+/// Writes what blocks of a tile, and completes its `record`.
+fn written(
+    plan: &Plan,
+    run: &Path,
+    tile: TileId,
+    parts: ModelParts,
+    record: TileRecord,
+    control: &Control<'_>,
+) -> Result<TileRecord> {
+    if parts.balls.is_empty() && parts.patches.is_empty() {
+        return Ok(record);
     }
-    let tops = tops(&balls);
-    let count = balls.len();
+    let tops = patches::raise(tops(&parts.balls), &parts.patches);
+    let count = parts.balls.len();
     // lines of sight are proven by pulses of the whole; here they are not kept
-    let parts = ModelParts { balls, transmission, bounds: plan.bounds(), pulses: None, ..parts };
+    let parts = ModelParts { bounds: plan.bounds(), pulses: None, ..parts };
     let path = Stage::Balls.result(run, tile);
     control.stage("writing", 0, || write_balls(&path, &parts.with_provenance("tile", tile.name())))?;
     let result = Some(Stamp::of(&path)?);
-    Ok(TileRecord { outcome: TileOutcome::Done, result, points, balls: count, tops, ..TileRecord::default() })
+    Ok(TileRecord { outcome: TileOutcome::Done, result, balls: count, tops, ..record })
 }
 
 /// The highest top of balls over each square of 16 m that any reaches into.
@@ -84,4 +99,102 @@ pub(crate) fn tops(balls: &MedialBalls) -> Vec<([i32; 2], f32)> {
 pub(crate) fn square_of([x, y, _]: [f32; 3], radius: f32) -> MapArea {
     let (middle, radius) = ([x, y].map(f64::from), f64::from(radius));
     MapArea { low: middle.map(|v| v - radius), high: middle.map(|v| v + radius) }
+}
+
+#[cfg(test)]
+mod tests {
+    #![expect(clippy::cast_possible_truncation, reason = "the numbers are small")]
+
+    use super::*;
+    use crate::{PlanParams, RunParams, Shard, Steps, TileQuestion, UnfinishedRun, merge, run};
+    use belvedere::io::{read_balls, read_tif, write_cloud};
+    use belvedere::view::to_sun;
+    use belvedere::{Frame, PatchKind, SurfacePatches};
+
+    /// Level ground of 150 m, and patches of a long building across it: over it no point stands.
+    fn survey() -> (PointCloud, SurfacePatches) {
+        let positions = (0..150 * 150).map(|i| [(i % 150) as f32 + 0.5, (i / 150) as f32 + 0.5, 2.0]).collect();
+        let frame = Frame { origin: [154_624.0, 462_848.0, 0.0], ..Frame::default() };
+        let mut patches = SurfacePatches::default();
+        let [a, b] = [[10.0, 40.0], [140.0, 110.0]];
+        let beside = |[x, y]: [f32; 2]| [x - 5.0, y + 9.0];
+        let at = |[x, y]: [f32; 2], z: f32| [x, y, z];
+        let mut face = |corners: [[f32; 3]; 4], kind| {
+            patches.push([corners[0], corners[1], corners[2]], kind);
+            patches.push([corners[0], corners[2], corners[3]], kind);
+        };
+        face([at(a, 14.0), at(b, 14.0), at(beside(b), 17.0), at(beside(a), 17.0)], PatchKind::Roof);
+        face([at(a, 2.0), at(b, 2.0), at(b, 14.0), at(a, 14.0)], PatchKind::Wall);
+        (PointCloud { frame, positions, ..PointCloud::default() }, patches)
+    }
+
+    /// The answers of a run in tiles of a side whose model has the patches.
+    fn answers(folder: &Path, side: f64, patches: &SurfacePatches) -> [BTreeMap<[i64; 2], u32>; 2] {
+        let control = Control::none();
+        let [cloud, run_folder] = ["ground.laz", &format!("tiles_{side}")].map(|name| folder.join(name));
+        let sun = TileQuestion::Shadow { name: "sun".to_owned(), to_sun: to_sun(2.5, 0.5), season: None };
+        let params = PlanParams { clouds: vec![cloud], tile_size: side, ..PlanParams::default() };
+        let plan = Plan::make(&params, &control).unwrap();
+        // relative to the origin of the plan, whatever that is
+        let origin = plan.frame().unwrap().origin;
+        let by: [f64; 3] = std::array::from_fn(|i| [154_624.0, 462_848.0, 0.0][i] - origin[i]);
+        let eyes =
+            [[75.0, 20.0, 4.0], [30.0, 120.0, 30.0]].map(|eye: [f64; 3]| std::array::from_fn(|i| eye[i] + by[i]));
+        let view = TileQuestion::Viewshed { eyes: eyes.to_vec(), max_distance: None };
+        plan.with_questions(vec![sun.clone(), view.clone()], &control).unwrap().write(&run_folder).unwrap();
+        let plan = Plan::read(&run_folder).unwrap();
+        let moved = |corner: [f32; 3]| std::array::from_fn(|i| (f64::from(corner[i]) + by[i]) as f32);
+        let triangles = patches.triangles.iter().map(|triangle| triangle.map(moved)).collect();
+        let all = SurfacePatches { triangles, kinds: patches.kinds.clone() };
+        let params = |steps| RunParams { shard: Shard::default(), steps, max_balls: Some(3000), seconds: &|| 0.0 };
+        run(&plan, &run_folder, &params(Steps::Balls), &control).unwrap();
+        let mut kept = 0;
+        for &tile in &plan.tiles {
+            // a tile without points has no balls
+            let (path, frame) = (Stage::Balls.result(&run_folder, tile), plan.frame().unwrap());
+            let nothing = ModelParts { frame, ..ModelParts::default() };
+            let parts = if path.exists() { read_balls(&path).unwrap() } else { nothing };
+            let parts = ModelParts { patches: patches::of_tile(&all, &plan.grid().core(tile), &[]), ..parts };
+            kept += parts.patches.len();
+            let record = written(&plan, &run_folder, tile, parts, TileRecord::default(), &control).unwrap();
+            record.write(&plan, &run_folder, Stage::Balls, tile).unwrap();
+        }
+        assert!(kept >= patches.len());
+        let report = run(&plan, &run_folder, &params(Steps::All), &control).unwrap();
+        assert!(report.failed.is_empty() && report.unproven_cells == 0, "{report:?}");
+        let of = |question: &TileQuestion, name: &str| {
+            let path = run_folder.join(name);
+            merge(&plan, &run_folder, question, &path, UnfinishedRun::Refused, &control).unwrap();
+            path
+        };
+        [of(&sun, "sun.tif"), of(&view, "view.tif")].map(|path| cells(&path))
+    }
+
+    /// Values of cells of 1 m by their place.
+    fn cells(path: &Path) -> BTreeMap<[i64; 2], u32> {
+        let raster = read_tif(path).unwrap();
+        let (corner, width) = (raster.place.unwrap().upper_left.map(|v| v.round() as i64), raster.values.width());
+        let cell = |(number, value): (usize, &f32)| {
+            let place = [corner[0] + (number % width) as i64, corner[1] - (number / width) as i64];
+            value.is_finite().then_some((place, value.to_bits()))
+        };
+        raster.values.values().iter().enumerate().filter_map(cell).collect()
+    }
+
+    #[test]
+    fn patches_of_tiles_block_as_those_of_the_whole() {
+        let folder = tempfile::tempdir().unwrap();
+        let (cloud, patches) = survey();
+        write_cloud(&folder.path().join("ground.laz"), &cloud, &[]).unwrap();
+        let bare = answers(folder.path(), 1024.0, &SurfacePatches::default());
+        let whole = answers(folder.path(), 512.0, &patches);
+        for (bare, whole) in bare.iter().zip(&whole) {
+            let hidden = bare.iter().filter(|(place, value)| whole.get(*place) != Some(value)).count();
+            assert!(bare.len() > 20_000 && bare.len() == whole.len() && hidden > 1000, "{hidden} of {}", bare.len());
+        }
+        for side in [64.0, 100.0] {
+            let tiles = answers(folder.path(), side, &patches);
+            assert!(tiles == whole, "{side}");
+        }
+    }
 }

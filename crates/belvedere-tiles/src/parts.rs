@@ -9,16 +9,17 @@
 use crate::grid::{MapArea, TOP_SIDE, TileId, square_area};
 use crate::lines::{AreaLines, MAX_BALL};
 use crate::obstacles::{BallTile, ObstacleSearch, ball_tiles, may_block, push, rule};
+use crate::patches::add_blocking;
 use crate::plan::Plan;
 use crate::planned::Others;
 use crate::strips::Strips;
-use belvedere::Result;
 use belvedere::apps::rows::ObstacleParts;
 use belvedere::apps::tree_light::CrownLight;
 use belvedere::control::Control;
 use belvedere::medial::{MedialBalls, vegetation_of_transmission};
 use belvedere::model::ModelParts;
-use belvedere::query::{FreeLines, MedialScene, VisibilityMatrix};
+use belvedere::query::{BlockingTriangles, FreeLines, MedialScene, VisibilityMatrix};
+use belvedere::{Result, SurfacePatches};
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -75,26 +76,35 @@ impl<'a> TileObstacles<'a> {
         mut look: impl FnMut(&MedialScene) -> Result<()>,
     ) -> Result<()> {
         let mut found = self.found.lock().unwrap_or_else(PoisonError::into_inner);
-        let mut part = MedialBalls::default();
+        let (mut part, mut patches) = (MedialBalls::default(), SurfacePatches::default());
         for of_tile in self.squares.iter().flatten() {
             control.check()?;
             let read = control.stage("reading balls", 0, || found.read(self.plan, self.run, of_tile.tile, control))?;
-            let Some(ModelParts { balls, .. }) = read else { continue };
+            let Some(ModelParts { balls, patches: of_tile, .. }) = read else { continue };
+            add_blocking(&mut patches, &of_tile, lines);
             for row in may_block(&balls, lines) {
                 if part.len() == self.max_balls {
-                    look(&self.scene(std::mem::take(&mut part), &mut found, control)?)?;
+                    let taken = (std::mem::take(&mut part), std::mem::take(&mut patches));
+                    look(&self.scene(taken, &mut found, control)?)?;
                 }
                 push(&mut part, &balls, row);
             }
         }
-        look(&self.scene(part, &mut found, control)?)
+        look(&self.scene((part, patches), &mut found, control)?)
     }
 
-    /// The scene of balls that are tested together.
-    fn scene(&self, balls: MedialBalls, found: &mut ObstacleSearch, control: &Control<'_>) -> Result<MedialScene> {
+    /// The scene of balls and patches that are tested together.
+    fn scene(
+        &self,
+        (balls, patches): (MedialBalls, SurfacePatches),
+        found: &mut ObstacleSearch,
+        control: &Control<'_>,
+    ) -> Result<MedialScene> {
         found.ball_count += balls.len();
         found.max_held = found.max_held.max(balls.len());
-        control.stage("indexing balls", balls.len(), || MedialScene::new(&balls, &rule(self.plan)))
+        let triangles = BlockingTriangles::of_patches(&patches, None)?;
+        let scene = control.stage("indexing balls", balls.len(), || MedialScene::new(&balls, &rule(self.plan)))?;
+        Ok(scene.with_triangles(triangles))
     }
 
     /// What became of the balls.
@@ -117,7 +127,8 @@ impl<'a> TileObstacles<'a> {
                 continue;
             }
             let read = control.stage("reading balls", 0, || found.read(self.plan, self.run, *tile, control))?;
-            let Some(ModelParts { balls, transmission, .. }) = read else { continue };
+            let Some(ModelParts { balls, transmission, patches, .. }) = read else { continue };
+            patches.iter().for_each(|(corners, kind)| part.patches.push(*corners, kind));
             let vegetation = self.plan.trees.map(|_| vegetation_of_transmission(&transmission)).unwrap_or_default();
             let distance = |center: &[f32; 3]| self.cells.distance(&MapArea::at(center.map(f64::from)));
             let distances: Vec<f64> = balls.centers.par_iter().map(distance).collect();
@@ -179,7 +190,7 @@ impl ObstacleParts for TileObstacles<'_> {
         }
         let Free { mut without_trees, mut all, .. } = free;
         if let Some(added) = &self.others.added {
-            without_trees.hide_behind_meshes(added, control)?;
+            without_trees.hide_behind_triangles(added, control)?;
         }
         without_trees.hide_behind_terrain(&self.others.far_terrain, control)?;
         if let Some(all) = &mut all {
@@ -209,6 +220,8 @@ struct BallBatch {
     opaque: MedialBalls,
     /// Where trees let light through.
     vegetation: MedialBalls,
+    /// Tested with the first of the balls.
+    patches: SurfacePatches,
     /// Those of the directions in which any of them may block.
     columns: BTreeSet<usize>,
 }
@@ -226,6 +239,9 @@ impl BallBatch {
         found: &mut ObstacleSearch,
         control: &Control<'_>,
     ) -> Result<()> {
+        if let Some(triangles) = BlockingTriangles::of_patches(&std::mem::take(&mut self.patches), None)? {
+            free.without_trees.hide_behind_triangles(&triangles, control)?;
+        }
         if self.ball_count() == 0 {
             return Ok(());
         }

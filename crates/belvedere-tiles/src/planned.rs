@@ -5,7 +5,7 @@ use belvedere::apps::horizon::convergence;
 use belvedere::crs::Crs;
 use belvedere::io::{Source, read_horizon, read_mesh_in, read_terrain};
 use belvedere::model::check_terrain;
-use belvedere::query::{AddedMeshes, Coverage, FarTerrain};
+use belvedere::query::{BlockingTriangles, Coverage, FarTerrain};
 use belvedere::{Bounds, Error, Frame, Mesh, Result};
 use serde::{Deserialize, Serialize};
 use std::io::Read;
@@ -64,7 +64,7 @@ fn bytes_of(path: &Path) -> Result<Vec<u8>> {
 
 /// What blocks beside what was surveyed.
 pub(crate) struct Others {
-    pub(crate) added: Option<AddedMeshes>,
+    pub(crate) added: Option<BlockingTriangles>,
     pub(crate) far_terrain: FarTerrain,
 }
 
@@ -104,17 +104,17 @@ pub(crate) fn far_terrain(
 /// The triangles of `meshes` in local metres of `frame`; `None` without a mesh. They must meet the space of `coverage`.
 ///
 /// # Errors
-/// Those of [`SideFile::read`], of [`read_mesh_in`] and of [`AddedMeshes::new`].
+/// Those of [`SideFile::read`], of [`read_mesh_in`] and of [`BlockingTriangles::new`].
 pub(crate) fn added_meshes(
     meshes: &[SideFile],
     frame: &Frame,
     coverage: Option<&Coverage>,
-) -> Result<Option<AddedMeshes>> {
+) -> Result<Option<BlockingTriangles>> {
     let mut added = None;
     for file in meshes {
         let mesh = file.mesh(&frame.crs)?;
         let name = file.path.display().to_string();
-        added = Some(AddedMeshes::new(&mesh, &name, frame.origin, coverage, added.as_ref())?);
+        added = Some(BlockingTriangles::new(&mesh, &name, frame.origin, coverage, added.as_ref())?);
     }
     Ok(added)
 }

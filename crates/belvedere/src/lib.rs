@@ -66,11 +66,12 @@ pub use belvedere_core::{
     blocking, clean, depth, ground, medial, model, neighbors, normals, pulses, query, ray_index, summary, triangle_tree,
 };
 pub use belvedere_data::{
-    Attributes, Bounds, ElevationGrid, Error, Frame, GpsTimeKind, Mesh, Parameter, PointCloud, Result, cloud,
+    Attributes, Bounds, ElevationGrid, Error, Frame, GpsTimeKind, Mesh, Parameter, PatchKind, PointCloud, Result,
+    SurfacePatches, cloud,
 };
 pub use belvedere_data::{
-    control, crs, elevation, error, frame, horizon, mesh, polygon, random, raster, report, trajectory, vector, view,
-    weather,
+    control, crs, elevation, error, frame, horizon, mesh, patches, polygon, random, raster, report, trajectory, vector,
+    view, weather,
 };
 #[cfg(feature = "figures")]
 pub use belvedere_figures as figures;

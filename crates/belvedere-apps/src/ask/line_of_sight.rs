@@ -12,7 +12,7 @@ use belvedere_core::query::{
 };
 use belvedere_data::control::Control;
 use belvedere_data::report::rounded;
-use belvedere_data::{Error, Parameter, Result};
+use belvedere_data::{Error, Parameter, PatchKind, Result};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
@@ -82,6 +82,8 @@ pub struct SightColumns<'a> {
     pub sources: Vec<Option<u32>>,
     /// The name of the mesh that blocks first, empty where none does, where meshes were added.
     pub meshes: Option<Vec<&'a str>>,
+    /// What surface of the survey blocks first (roof, wall, parapet, inside), empty where none does, where any is known.
+    pub surfaces: Option<Vec<&'static str>>,
     /// Whether far terrain blocks first, where there is any; `None` where nothing blocks.
     pub is_terrain: Option<Vec<Option<bool>>>,
 }
@@ -101,6 +103,8 @@ pub struct LineSection {
     block_source: Option<u32>,
     #[serde(skip_serializing_if = "Option::is_none")]
     block_mesh: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    block_surface: Option<&'static str>,
     #[serde(skip_serializing_if = "Option::is_none")]
     block_terrain: Option<bool>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -279,6 +283,8 @@ impl SightsResults {
             meshes: model.added().map(|_| {
                 blocks().map(|block| mesh_name(scene, block?.blocker)).map(Option::unwrap_or_default).collect()
             }),
+            surfaces: (!model.patches().is_empty())
+                .then(|| blocks().map(|block| surface_name(block?.blocker)).map(Option::unwrap_or_default).collect()),
             is_terrain: model.far_terrain().grid().map(|_| blocks().map(|block| block.map(is_terrain)).collect()),
         }
     }
@@ -287,6 +293,11 @@ impl SightsResults {
 /// The name of an added mesh that blocks.
 fn mesh_name(scene: &Scene, blocker: Blocker) -> Option<&str> {
     scene.model().added()?.names().get(blocker.mesh()?).map(String::as_str)
+}
+
+/// What a surface of the survey that blocks is a part of.
+fn surface_name(blocker: Blocker) -> Option<&'static str> {
+    blocker.patch().map(PatchKind::name)
 }
 
 /// How many observers, and how many targets, of lines that are inside an obstacle are so themselves.
@@ -335,6 +346,7 @@ impl LineSection {
             block_ball: ball,
             block_source: ball.map(source),
             block_mesh: block.and_then(|block| mesh_name(scene, block.blocker)).map(str::to_owned),
+            block_surface: block.and_then(|block| surface_name(block.blocker)),
             block_terrain: block.filter(|block| block.blocker == Blocker::Terrain).map(|_| true),
             unproven_m: has_unproven.then(|| rounded(sight.unproven_length, 3)),
             fresnel_free_percent,
@@ -343,9 +355,10 @@ impl LineSection {
 
     fn summarise(&self, context: &mut Context) {
         let answer = self.answer.unwrap_or("no line: the ends are one point, or a height is not known");
-        let by = match (&self.block_mesh, self.block_terrain) {
-            (Some(mesh), _) => format!(" by {mesh}"),
-            (None, Some(true)) => " by the terrain".to_owned(),
+        let by = match (&self.block_mesh, self.block_surface, self.block_terrain) {
+            (Some(mesh), _, _) => format!(" by {mesh}"),
+            (_, Some(kind), _) => format!(" by a surface of the survey ({kind})"),
+            (_, _, Some(true)) => " by the terrain".to_owned(),
             _ => String::new(),
         };
         let after = self.first_block_range_m.map_or_else(String::new, |range| format!(", {range} m from the observer"));

@@ -222,6 +222,8 @@ pub struct LinesSection {
     #[serde(flatten)]
     pairs: Option<PairsSection>,
     balls: usize,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    patches: Option<usize>,
     depth_bias_m: f64,
     shell_m: f64,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -238,6 +240,7 @@ impl LinesSection {
         Self {
             pairs: None,
             balls: blockers.ball_count(),
+            patches: Some(blockers.patch_count()).filter(|count| *count > 0),
             depth_bias_m: rounded(rule.bias, 4),
             shell_m: rounded(rule.shell, 4),
             proof_distance_m: proof.map(|proof| rounded(proof.nearness(), 3)),

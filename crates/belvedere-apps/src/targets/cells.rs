@@ -4,7 +4,7 @@ use super::{TargetLayout, Targets};
 use crate::sky_view::SKY_TARGET_HEIGHT;
 use crate::viewshed::cell_targets;
 use belvedere_core::ground::{Ground, GroundParams, MapGrid, SurfaceParams, hidden_ground, top_surface};
-use belvedere_core::query::AddedMeshes;
+use belvedere_core::query::BlockingTriangles;
 use belvedere_data::control::Control;
 use belvedere_data::{Error, Parameter, PointCloud, Result};
 use serde::Serialize;
@@ -114,7 +114,7 @@ impl Targets {
 
     /// Sets cells made with `params` on the meshes that were added: those on a surface on top of what is higher, cloud
     /// or mesh. Cells on the ground inside a mesh are left out; returns how many.
-    pub fn set_on_added(&mut self, added: &AddedMeshes, params: &CellParams) -> usize {
+    pub fn set_on_added(&mut self, added: &BlockingTriangles, params: &CellParams) -> usize {
         let TargetLayout::Cells(ground) = &mut self.layout else { return 0 };
         if params.level == CellLevel::Surface {
             let before = ground.heights.clone();

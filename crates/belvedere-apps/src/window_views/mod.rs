@@ -196,6 +196,7 @@ impl Sums {
                     let kind = match blocker {
                         Blocker::Ball(row) => kinds.balls.get(row).copied().unwrap_or_default(),
                         Blocker::Mesh(number) => kinds.meshes.get(number).copied().unwrap_or(SeenKind::Building),
+                        Blocker::Patch(_) => SeenKind::Building,
                         Blocker::Terrain => SeenKind::Ground,
                     };
                     (kind, range, scene.is_unproven(place, direction, range))

@@ -45,8 +45,9 @@ pub(crate) struct LineOfSightArguments {
     /// Columns: ax,ay,az,bx,by,bz, answer (0 blocked, 1 visible, 2 unproven, 3 no line, 4 outside the cloud, 5 an end
     /// inside an obstacle), first_block_range_m from A, unproven_m (not with --unproven as-visible, which is faster),
     /// fresnel_free_percent (with --frequency-ghz), block_x, block_y, block_z, and block_ball and block_source: the
-    /// rows of the first blocking ball and of the point that it touches. With --terrain: block_terrain, 1 where the
-    /// terrain blocks first.
+    /// rows of the first blocking ball and of the point that it touches. Where the scene has patches
+    /// of surfaces: block_surface, the kind of the patch that blocks first (roof, wall, parapet, inside). With
+    /// --terrain: block_terrain, 1 where the terrain blocks first.
     #[arg(short, long, value_name = "OUT", required_unless_present = "from", help_heading = "Result")]
     pub(crate) output: Option<PathBuf>,
     #[command(flatten)]

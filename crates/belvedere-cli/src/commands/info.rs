@@ -10,7 +10,7 @@ use belvedere::io::{FileReport, is_ball_file, read_balls, read_cloud};
 use belvedere::model::ModelParts;
 use belvedere::pulses::{FoundBy, LocateParams, Means, ScannerReport, locate};
 use belvedere::summary::{CloudSummary, FacadeSummary, SurveyKind, cloud_looks_y_up};
-use belvedere::{Error, PointCloud};
+use belvedere::{Error, PatchKind, PointCloud, SurfacePatches};
 
 pub(crate) fn run(arguments: &Info, global: &Global) -> Result<Summary> {
     let run = CommandContext::new(global);
@@ -105,6 +105,7 @@ fn of_balls(model: &ModelParts) -> Summary {
     });
     summary
         .add("balls", model.balls.len())
+        .add("surface_patches", of_patches(&model.patches))
         .add("pulses", model.pulses.as_ref().map_or(0, |pulses| pulses.starts.len()))
         .add("min_corner", corner(low))
         .add("max_corner", corner(high))
@@ -113,6 +114,18 @@ fn of_balls(model: &ModelParts) -> Summary {
         .add("reference_system", model.frame.crs.describe())
         .add("made", made);
     summary
+}
+
+/// How many patches of each kind there are, and how large.
+fn of_patches(patches: &SurfacePatches) -> Summary {
+    let mut section = Summary::default();
+    section.add("triangles", patches.len()).add("area_m2", rounded(patches.area_m2(), 1));
+    for (kind, count) in PatchKind::ALL.into_iter().zip(patches.counts()).filter(|(_, count)| count.count > 0) {
+        let mut of_kind = Summary::default();
+        of_kind.add("triangles", count.count).add("area_m2", rounded(count.area_m2, 1));
+        section.add(kind.name(), of_kind);
+    }
+    section
 }
 
 fn attributes(cloud: &PointCloud, statistics: &CloudSummary) -> Summary {

@@ -156,7 +156,7 @@ fn write(output: &Path, found: &SightsResults, scene: &Scene, rows: &TextRows) -
     let frame = scene.frame();
     let end = |column: usize| found.pairs.iter().map(move |pair| frame.file_from_local(pair[column / 3])[column % 3]);
     let ends: [Vec<f64>; 6] = std::array::from_fn(|column| end(column).collect());
-    let SightColumns { ranges, unproven, fresnel_free_percent, places, balls, sources, meshes, is_terrain } =
+    let SightColumns { ranges, unproven, fresnel_free_percent, places, balls, sources, meshes, surfaces, is_terrain } =
         found.columns(scene);
     let codes: Vec<Option<u64>> = found.answers.iter().map(|&answer| Some(u64::from(answer as u8))).collect();
     let place: [Vec<f64>; 3] = std::array::from_fn(|axis| places.iter().map(|place| place[axis]).collect());
@@ -173,6 +173,7 @@ fn write(output: &Path, found: &SightsResults, scene: &Scene, rows: &TextRows) -
     columns.push(("block_ball", TableCells::Whole(&balls)));
     columns.push(("block_source", TableCells::Whole(&sources)));
     columns.extend(meshes.as_ref().map(|names| ("block_mesh", TableCells::Words(names))));
+    columns.extend(surfaces.as_ref().map(|names| ("block_surface", TableCells::Words(names))));
     columns.extend(terrain.as_ref().map(|terrain| ("block_terrain", TableCells::Whole(terrain))));
     let read = rows.columns(0..rows.row_count());
     write_table(output, &with_columns_read(&read, &ENDS, &columns))

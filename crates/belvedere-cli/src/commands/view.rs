@@ -13,7 +13,7 @@ use anyhow::{Context, Result, anyhow};
 use belvedere::apps::sun::{Date, Site, Zone};
 use belvedere::io::{atomic, has_point_results, is_ball_file, read_geojson, read_point_results, read_tif};
 use belvedere::model::SceneModel;
-use belvedere::query::{AddedMeshes, Coverage};
+use belvedere::query::{BlockingTriangles, Coverage};
 use belvedere::{Bounds, Error, Frame, PointCloud};
 use belvedere_tiles::{Plan, merged_within};
 use belvedere_viewer::{ExportParams, Loading, PageServer, PointsOf, SceneText, ViewerParams, export, quoted};
@@ -299,7 +299,13 @@ fn show_meshes(
         let mesh = pipeline::mesh_in(path, &frame.crs, run)?;
         // one that is planned is refused with the scene
         let beside = (!planned.contains(path)).then(|| {
-            AddedMeshes::new(&mesh, &path.display().to_string(), frame.origin, Coverage::of(*bounds).as_ref(), None)
+            BlockingTriangles::new(
+                &mesh,
+                &path.display().to_string(),
+                frame.origin,
+                Coverage::of(*bounds).as_ref(),
+                None,
+            )
         });
         if let Some(Err(error)) = beside {
             run.summary.warn("mesh-beside-cloud", error.to_string());

@@ -29,6 +29,7 @@ pub(super) fn clear(scene: &mut LoadedScene, plan: &PlanArguments, run: &mut Com
         sum.balls_cleared += report.balls_cleared;
         sum.balls_cut += report.balls_cut;
         sum.ground_balls_added += report.ground_balls_added;
+        sum.patches_cleared_m2 += report.patches_cleared_m2;
     }
     run.summary.remarks(remark_on_cleared(sum.points_cleared));
     run.summary.add("cleared", Summary::of(&sum));

@@ -38,6 +38,7 @@ mod sights;
 mod simulate;
 mod sky_view;
 mod sun_hours;
+mod surface_patches;
 mod surroundings;
 mod trajectory;
 mod tree_light;

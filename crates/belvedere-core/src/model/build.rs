@@ -106,7 +106,8 @@ fn of_survey(
         }
         _ => None,
     };
-    let parts = ModelParts { frame, bounds: survey.bounds, balls, transmission, pulses: survey.pulses(), provenance };
+    let (bounds, pulses) = (survey.bounds, survey.pulses());
+    let parts = ModelParts { frame, bounds, balls, transmission, pulses, provenance, ..ModelParts::default() };
     Ok((SceneModel { parts, vegetation, tree, ..SceneModel::default() }, report))
 }
 

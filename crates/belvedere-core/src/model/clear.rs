@@ -5,11 +5,11 @@ use super::clearing::{Clearing, class_of};
 use crate::ground::MapGrid;
 use crate::medial::MedialBalls;
 use crate::neighbors::NeighborIndex;
-use crate::query::FreedSpace;
+use crate::query::{BlockingTriangles, FreedSpace};
 use belvedere_data::balls::LIMIT_TOUCH;
 use belvedere_data::control::Control;
 use belvedere_data::polygon::{PolygonIndex, simple_rings};
-use belvedere_data::{Bounds, Error, Parameter, PointCloud, Result};
+use belvedere_data::{Bounds, Error, Parameter, PointCloud, Result, SurfacePatches};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
@@ -39,11 +39,14 @@ pub struct ClearReport {
     pub balls_cut: usize,
     /// Balls that close the ground.
     pub ground_balls_added: usize,
+    /// Area of surface patches that is gone, m².
+    pub patches_cleared_m2: f64,
 }
 
 impl SceneModel {
     /// The model and its cloud, in its frame, without what stands in `area` now: points above the ground, balls at
-    /// them, and meshes that were added, of which triangles go with their middle. Balls beside a polygon that reach
+    /// them, and meshes that were added, of which triangles go with their middle. Surface patches are cut at the edge of
+    /// a polygon, and all go with the class of buildings. Balls beside a polygon that reach
     /// into it are cut to its edge, at the point that they are tangent at. The ground below is closed with balls at the
     /// height interpolated from the ground around. Lines of sight through the space that was freed are proven free.
     ///
@@ -64,10 +67,7 @@ impl SceneModel {
             return Err(Error::LengthMismatch { what: "points of the model", expected, found: cloud.len() });
         }
         let mut report = ClearReport::default();
-        if let (Some(added), ClearedArea::Polygon(rings)) = (&self.added, area) {
-            let index = PolygonIndex::new(rings);
-            self.added = added.without(|[x, y, _]| index.holds([x, y]))?;
-        }
+        self.clear_triangles(area, &mut report)?;
         let Some(grid) = grid_over(area, cloud)? else { return Ok((self, cloud.clone(), report)) };
         let clearing = Clearing::new(area, cloud, grid, control)?;
         let is_cleared: Vec<bool> =
@@ -90,6 +90,28 @@ impl SceneModel {
         let (grid, tops) = clearing.into_columns();
         self.freed.extend(FreedSpace::new(grid, tops));
         Ok((self, kept, report))
+    }
+
+    /// Leaves out the triangles of meshes whose middles lie in a polygon, and cuts patches at its edge. Of classes, that
+    /// of buildings takes all patches with it.
+    fn clear_triangles(&mut self, area: &ClearedArea, report: &mut ClearReport) -> Result<()> {
+        let left = match area {
+            ClearedArea::Polygon(rings) => {
+                if let Some(triangles) = &self.triangles {
+                    let index = PolygonIndex::new(rings);
+                    self.triangles = triangles.without(|[x, y, _]| index.holds([x, y]))?;
+                }
+                self.parts.patches.outside(rings)
+            }
+            ClearedArea::Class(SurfacePatches::CLASS) => SurfacePatches::default(),
+            ClearedArea::Class(_) => return Ok(()),
+        };
+        if left != self.parts.patches {
+            report.patches_cleared_m2 = self.parts.patches.area_m2() - left.area_m2();
+            self.triangles = BlockingTriangles::of_patches(&left, self.triangles.as_ref())?;
+            self.parts.patches = left;
+        }
+        Ok(())
     }
 
     /// Leaves out the balls at points that are cleared, and cuts those that reach into the area of a polygon.

@@ -32,9 +32,9 @@ pub use terrain::{TerrainReport, check_terrain};
 
 use crate::medial::{MedialBalls, PULSE_TOUCH, vegetation_of_transmission};
 use crate::pulses::FreeSegmentColumns;
-use crate::query::{AddedMeshes, Backend, BallTree, FarTerrain, FreedSpace};
+use crate::query::{Backend, BallTree, BlockingTriangles, FarTerrain, FreedSpace};
 use belvedere_data::horizon::HorizonProfile;
-use belvedere_data::{Bounds, ElevationGrid, Error, Frame, Mesh, Parameter, Result};
+use belvedere_data::{Bounds, ElevationGrid, Error, Frame, Mesh, Parameter, Result, SurfacePatches};
 use std::sync::Arc;
 
 /// A scene that answers what is visible: balls that block lines of sight, and the pulses that prove others free.
@@ -50,8 +50,8 @@ pub struct SceneModel {
     normals: Option<Vec<[f32; 3]>>,
     /// The balls in a tree, where something has needed them so already.
     tree: Option<BallTree>,
-    /// Meshes that were added.
-    added: Option<AddedMeshes>,
+    /// What blocks beside the balls: the patches, and meshes that were added.
+    triangles: Option<BlockingTriangles>,
     /// Space that was cleared.
     freed: Vec<FreedSpace>,
     /// What stands beyond the cloud.
@@ -86,7 +86,8 @@ impl SceneModel {
             });
         }
         let vegetation = vegetation_of_transmission(&parts.transmission);
-        Ok(Self { parts, vegetation, ..Self::default() })
+        let triangles = BlockingTriangles::of_patches(&parts.patches, None)?;
+        Ok(Self { parts, vegetation, triangles, ..Self::default() })
     }
 
     /// What was made or found beside [`SceneModel::parts`], for [`SceneModel::from_kept`].
@@ -117,18 +118,41 @@ impl SceneModel {
     /// again, it adds another mesh.
     ///
     /// # Errors
-    /// Those of [`AddedMeshes::new`].
+    /// Those of [`BlockingTriangles::new`].
     pub fn with_added(mut self, mesh: &Mesh, name: &str) -> Result<Self> {
         let coverage = self.coverage();
-        let added = AddedMeshes::new(mesh, name, self.frame().origin, coverage.as_ref(), self.added.as_ref())?;
-        self.added = Some(added);
+        let origin = self.frame().origin;
+        let triangles = BlockingTriangles::new(mesh, name, origin, coverage.as_ref(), self.triangles.as_ref())?;
+        self.triangles = Some(triangles);
         Ok(self)
     }
 
-    /// The meshes that were added, if any were. They are not saved.
+    /// What blocks beside the balls, if any meshes were added. These are not saved.
     #[must_use]
-    pub fn added(&self) -> Option<&AddedMeshes> {
-        self.added.as_ref()
+    pub fn added(&self) -> Option<&BlockingTriangles> {
+        self.triangles.as_ref().filter(|triangles| !triangles.names().is_empty())
+    }
+
+    /// The same model with `patches` of surfaces instead of its own. They block beside the balls, and are saved.
+    ///
+    /// # Errors
+    /// Those of [`SurfacePatches::validate`].
+    pub fn with_patches(mut self, patches: SurfacePatches) -> Result<Self> {
+        self.triangles = BlockingTriangles::of_patches(&patches, self.triangles.as_ref())?;
+        self.parts.patches = patches;
+        Ok(self)
+    }
+
+    /// Patches of surfaces of the survey, which block beside the balls.
+    #[must_use]
+    pub fn patches(&self) -> &SurfacePatches {
+        &self.parts.patches
+    }
+
+    /// All triangles that block beside the balls: of patches, and of meshes that were added.
+    #[must_use]
+    pub fn triangles(&self) -> Option<&BlockingTriangles> {
+        self.triangles.as_ref()
     }
 
     /// The same model before far terrain: directions below `horizon`, azimuths from grid north, are blocked for all

@@ -66,7 +66,7 @@ impl SceneModel {
 
     /// A scene of balls with what else blocks, and where the cloud lies.
     fn completed(&self, scene: MedialScene) -> MedialScene {
-        let scene = scene.with_coverage(self.coverage()).with_added(self.added.clone());
+        let scene = scene.with_coverage(self.coverage()).with_triangles(self.triangles.clone());
         let scene = scene.with_far_terrain(self.far_terrain.clone());
         match &self.backend {
             Some(backend) => scene.with_backend(Arc::clone(backend)),

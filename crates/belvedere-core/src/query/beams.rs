@@ -169,7 +169,7 @@ impl MedialScene {
 
     /// Whether anything but balls hides a target, or it lies outside the cloud.
     fn is_hidden_otherwise(&self, viewer: Viewer<'_>, target: [f32; 3]) -> bool {
-        let is_hidden = (self.added.is_some() || !self.far_terrain.is_empty())
+        let is_hidden = (self.triangles().is_some() || !self.far_terrain.is_empty())
             && viewer
                 .sight(0, target)
                 .is_some_and(|sight| self.is_behind_others(sight.origin, sight.direction, sight.ranges[1]));

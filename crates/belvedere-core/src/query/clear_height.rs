@@ -41,8 +41,10 @@ impl MedialScene {
                 let top = self.top(number, observer, target, earth) - foot[2];
                 clear = Some(clear.map_or(top, |clear| clear.max(top)));
             });
-            self.each_added_blocker(observer, target, earth, |corners| {
-                let top = shadow_top_of_triangle(corners, observer, target, earth) - foot[2];
+            self.each_blocking_triangle(observer, target, earth, |corners, sheet| {
+                let shadow = shadow_top_of_triangle(corners, observer, target, earth);
+                // below the top of its shadow it may give way to the target
+                let top = sheet.height_of_giving_way(target).map_or(shadow, |height| shadow.min(height)) - foot[2];
                 clear = Some(clear.map_or(top, |clear| clear.max(top)));
             });
             let Some(clear) = clear else { return Some(height) };

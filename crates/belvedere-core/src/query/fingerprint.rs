@@ -3,10 +3,10 @@
 
 use crate::blocking::{BlockRule, Profile};
 use crate::medial::MedialBalls;
-use crate::query::{AddedMeshes, FarTerrain};
+use crate::query::{Blocker, BlockingTriangles, FarTerrain};
 use belvedere_data::horizon::HorizonProfile;
 
-/// A number that differs, but for one chance in 10¹⁹, between scenes whose balls, added triangles, far terrain or
+/// A number that differs, but for one chance in 10¹⁹, between scenes whose balls, triangles, far terrain or
 /// parameters differ in any bit; the same on any machine.
 ///
 /// # Source
@@ -14,7 +14,7 @@ use belvedere_data::horizon::HorizonProfile;
 #[must_use]
 pub fn scene_fingerprint(
     balls: &MedialBalls,
-    added: Option<&AddedMeshes>,
+    triangles: Option<&BlockingTriangles>,
     far_terrain: &FarTerrain,
     params: &BlockRule,
 ) -> u64 {
@@ -39,8 +39,12 @@ pub fn scene_fingerprint(
         }
         grid.heights().values().iter().for_each(|height| mix(height.to_bits()));
     }
-    for corner in added.map_or(&[][..], AddedMeshes::triangles).as_flattened().as_flattened() {
-        halves(*corner).into_iter().for_each(&mut mix);
+    for (corners, blocker) in triangles.into_iter().flat_map(BlockingTriangles::triangles) {
+        corners.as_flattened().iter().flat_map(|corner| halves(*corner)).for_each(&mut mix);
+        // meshes of any number block alike
+        if let Blocker::Patch(kind) = blocker {
+            mix(1 + u32::from(kind.code()));
+        }
     }
     hash
 }

@@ -1,7 +1,7 @@
 //! How far one sees from an eye along a direction.
 
-use super::added::LineEnds;
 use super::medial_scene::nearer;
+use super::triangles::LineEnds;
 use super::{Blocker, MedialScene};
 use crate::ray_index::Ray;
 use belvedere_data::vector::{dot, sub};
@@ -9,7 +9,8 @@ use belvedere_data::vector::{dot, sub};
 impl MedialScene {
     /// What an eye at `eye`, local metres, sees along the unit vector `direction` within `reach` metres (may be
     /// infinite), and its range, metres. `None` where nothing blocks. Balls that hold the eye are left out, as for
-    /// every line of sight; none gives way, since there is no target.
+    /// every line of sight; none gives way, since there is no target. A patch of a surface gives way to the eye only: of
+    /// what it hides, the 0.15 m right behind it still count as its surface for [`MedialScene::answer`].
     #[must_use]
     pub fn seen_along(&self, eye: [f64; 3], direction: [f64; 3], reach: f64) -> Option<(Blocker, f64)> {
         let ray = Ray { origin: eye, direction, ranges: [0.0, reach] };
@@ -18,7 +19,7 @@ impl MedialScene {
         });
         let ball = ball.and_then(|(number, range)| Some((self.blocker_of_ball(number)?, range)));
         let ends = LineEnds { target: eye, viewer: None };
-        nearer(ball, self.added().and_then(|added| added.nearest(&ray, &ends)))
+        nearer(ball, self.triangles().and_then(|triangles| triangles.nearest(&ray, &ends)))
     }
 
     /// What a place on a surface, such as a window, has before it along the unit vector `direction`, without end, and
@@ -42,6 +43,6 @@ impl MedialScene {
         let ball = ball.and_then(|(number, range)| Some((self.blocker_of_ball(number)?, range)));
         let line = Ray { ranges: [0.0, f64::INFINITY], ..ray };
         let ends = LineEnds { target: place, viewer: None };
-        nearer(ball, self.added().and_then(|added| added.nearest(&line, &ends)))
+        nearer(ball, self.triangles().and_then(|triangles| triangles.nearest(&line, &ends)))
     }
 }

@@ -1,6 +1,6 @@
 //! Fresnel zones of radio links: the space around a line of sight that must be free too.
 
-use super::added::LineEnds;
+use super::triangles::LineEnds;
 use super::{Answer, EarthParams, LineOfSight, MedialScene};
 use crate::blocking::Ball;
 use crate::triangle_tree::Corners;
@@ -206,8 +206,8 @@ impl MedialScene {
     /// radius that nothing reaches into, 0 where something touches the line itself, and at most `max`. A zone counts as
     /// free from 0.6 on (ITU-R P.530). NaN for points that are not finite, or are the same.
     ///
-    /// Balls that hold an end are left out and balls near an end give way to it, as to a target; so do triangles in
-    /// whose plane an end lies. Whether the line of sight is proven is another question, and far terrain is not
+    /// Balls that hold an end are left out and balls near an end give way to it, as to a target; so do triangles on
+    /// which an end lies. Whether the line of sight is proven is another question, and far terrain is not
     /// considered. On a curved line the sag is that at the middle of each ball.
     #[must_use]
     pub fn fresnel_clearance(&self, ends: [[f64; 3]; 2], wave: RadioWave, earth: &EarthParams, max: f64) -> f64 {
@@ -226,9 +226,9 @@ impl MedialScene {
                 }
             });
         }
-        if let Some(added) = self.added() {
+        if let Some(triangles) = self.triangles() {
             let ends = LineEnds { target: ends[0], viewer: Some(ends[1]) };
-            for corners in added.near(link.boxes(max), &ends) {
+            for corners in triangles.near(link.boxes(max), &ends) {
                 if clearance > 0.0 {
                     clearance = clearance.min(link.share_before(corners, clearance));
                 }
@@ -283,7 +283,7 @@ impl MedialScene {
 mod tests {
     use super::*;
     use crate::blocking::BlockRule;
-    use crate::query::AddedMeshes;
+    use crate::query::BlockingTriangles;
     use belvedere_data::Mesh;
     use belvedere_data::balls::MedialBalls;
     use belvedere_data::random::uniform;
@@ -355,10 +355,10 @@ mod tests {
             triangles: vec![[0, 1, 2], [0, 2, 3]],
             ..Mesh::default()
         };
-        let added = AddedMeshes::new(&mesh, "wall", [0.0; 3], None, None).unwrap();
+        let added = BlockingTriangles::new(&mesh, "wall", [0.0; 3], None, None).unwrap();
         let wave = RadioWave::of_frequency(2.4).unwrap();
         let ends = [[0.0, 0.0, 10.0], [100.0, 0.0, 10.0]];
-        let scene = scene(&[]).with_added(Some(added));
+        let scene = scene(&[]).with_triangles(Some(added));
         let found = scene.fresnel_clearance(ends, wave, &EarthParams::flat(), 9.0);
         let expected = 2.0 / wave.zone_radius([30.0, 70.0]);
         assert!((found - expected).abs() < 1e-6, "{found} {expected}");
@@ -384,8 +384,8 @@ mod tests {
             };
             let corners = [corner(0), corner(1), corner(2)];
             let mesh = Mesh { vertices: corners.to_vec(), triangles: vec![[0, 1, 2]], ..Mesh::default() };
-            let added = AddedMeshes::new(&mesh, "sheet", [0.0; 3], None, None).unwrap();
-            let scene = scene(&[]).with_added(Some(added));
+            let added = BlockingTriangles::new(&mesh, "sheet", [0.0; 3], None, None).unwrap();
+            let scene = scene(&[]).with_triangles(Some(added));
             let found = scene.fresnel_clearance(ends, wave, &EarthParams::flat(), 9.0);
             let mut min = 9.0_f64;
             // a grid of 300 by 300: points lie 10 cm apart or less, a thirtieth of the zone and more near its ends

@@ -1,6 +1,5 @@
 //! A union of medial balls that exact lines of sight are cut with.
 
-use super::added::{AddedMeshes, LineEnds};
 use super::backend::{Backend, PreparedBackend};
 use super::ball_tree::BallTree;
 use super::certified::{LineEnd, LineInView, line_in_view, viewer_of};
@@ -8,6 +7,7 @@ use super::cpu::Cpu;
 use super::far_terrain::FarTerrain;
 use super::freed_space::{FreedSpace, outside};
 use super::lazy::Lazy;
+use super::triangles::{BlockingTriangles, LineEnds};
 use super::{Answer, Blocker, Coverage, Proof, Sight, Viewer, Visibility};
 use crate::blocking::{Ball, BlockRule};
 use crate::medial::MedialBalls;
@@ -32,15 +32,15 @@ const CHUNK: usize = 1024;
 /// With pulses ([`MedialScene::with_pulses`]) a target that nothing blocks is [`Answer::Unproven`] where too much of
 /// its line of sight runs through space that no pulse came near to.
 ///
-/// With meshes ([`MedialScene::with_added`]) their triangles block too, exactly as they are; space inside and around
-/// them stays as proven or unproven as it was.
+/// With triangles ([`MedialScene::with_triangles`]), of meshes that were added and of surface patches, these block too,
+/// exactly as they are; space inside and around them stays as proven or unproven as it was.
 ///
 /// With a coverage ([`MedialScene::with_coverage`]) what lies beside or below the cloud is [`Answer::OutsideCloud`].
 pub struct MedialScene {
     tree: Arc<BallTree>,
     pub(super) proof: Option<Proof>,
     coverage: Option<Coverage>,
-    pub(super) added: Option<AddedMeshes>,
+    triangles: Option<BlockingTriangles>,
     pub(super) freed: Vec<FreedSpace>,
     pub(super) far_terrain: FarTerrain,
     backend: Arc<dyn Backend>,
@@ -64,7 +64,7 @@ impl MedialScene {
             tree,
             proof: None,
             coverage: None,
-            added: None,
+            triangles: None,
             freed: Vec::new(),
             far_terrain: FarTerrain::default(),
             backend: Arc::new(Cpu),
@@ -108,17 +108,17 @@ impl MedialScene {
         self
     }
 
-    /// The same balls, beside which the triangles of `added` block.
+    /// The same balls, beside which `triangles` block.
     #[must_use]
-    pub fn with_added(mut self, added: Option<AddedMeshes>) -> Self {
-        self.added = added;
+    pub fn with_triangles(mut self, triangles: Option<BlockingTriangles>) -> Self {
+        self.triangles = triangles;
         self
     }
 
-    /// The meshes that were added, if any were.
+    /// The triangles that block beside the balls, if there are any.
     #[must_use]
-    pub fn added(&self) -> Option<&AddedMeshes> {
-        self.added.as_ref()
+    pub fn triangles(&self) -> Option<&BlockingTriangles> {
+        self.triangles.as_ref()
     }
 
     /// The same balls, of which it is known that all of `freed` is free whatever pulses say.
@@ -229,10 +229,12 @@ impl MedialScene {
     /// the unit vector `towards`. All numbers but the range must be finite.
     #[must_use]
     pub fn answer(&self, target: [f64; 3], towards: [f64; 3], range: f64) -> Answer {
-        if self.tree.blocks(&self.tree.ray(target, towards, range)) {
+        // the triangles first: they are far fewer than balls, and block much of what balls block
+        if self.is_behind_triangles(target, towards, range) || self.tree.blocks(&self.tree.ray(target, towards, range))
+        {
             return Answer::Blocked;
         }
-        self.answer_unblocked(target, towards, range)
+        self.answer_free(target, towards, range)
     }
 
     /// As [`MedialScene::answer`] where the line ends at a viewer; where it ends at a picture plane or a near limit,
@@ -248,7 +250,15 @@ impl MedialScene {
 
     /// The answer for a line of sight of which it is known that no ball blocks it.
     pub(super) fn answer_unblocked(&self, target: [f64; 3], towards: [f64; 3], range: f64) -> Answer {
-        if self.is_behind_others(target, towards, range) {
+        match self.is_behind_triangles(target, towards, range) {
+            true => Answer::Blocked,
+            false => self.answer_free(target, towards, range),
+        }
+    }
+
+    /// The answer for a line of sight of which it is known that neither a ball nor a triangle blocks it.
+    fn answer_free(&self, target: [f64; 3], towards: [f64; 3], range: f64) -> Answer {
+        if self.is_behind_terrain(target, towards, range) {
             return Answer::Blocked;
         }
         if self.is_unproven(target, towards, range) { Answer::Unproven } else { Answer::Visible }
@@ -265,7 +275,7 @@ impl MedialScene {
         })
     }
 
-    /// Visible, unproven, or blocked by what was added or by far terrain, for a line of sight from `target` along the
+    /// Visible, unproven, or blocked by a triangle or by far terrain, for a line of sight from `target` along the
     /// unit vector `towards` without end of which it is known that no ball blocks it.
     #[must_use]
     pub fn answer_unblocked_towards(&self, target: [f64; 3], towards: [f64; 3]) -> Answer {
@@ -339,6 +349,13 @@ impl MedialScene {
         self.tree.balls().len()
     }
 
+    /// Number of triangles of surface patches.
+    #[must_use]
+    pub fn patch_count(&self) -> usize {
+        let triangles = self.triangles().into_iter().flat_map(BlockingTriangles::triangles);
+        triangles.filter(|(_, blocker)| blocker.patch().is_some()).count()
+    }
+
     /// The ball of a row of the index.
     pub(super) fn ball(&self, number: usize) -> Ball {
         self.tree.ball(number)
@@ -358,14 +375,23 @@ impl MedialScene {
         let ball = ball.and_then(|(number, front)| Some((self.blocker_of_ball(number)?, front)));
         let ends = LineEnds { target, viewer: range.is_finite().then(|| ray.at(range)) };
         let line = Ray { ranges: [0.0, range], ..ray };
-        nearer(ball, self.added.as_ref().and_then(|added| added.nearest(&line, &ends)))
+        nearer(ball, self.triangles().and_then(|triangles| triangles.nearest(&line, &ends)))
     }
 
-    /// Whether anything but balls blocks a line of sight: a mesh that was added, or far terrain.
+    /// Whether anything but balls blocks a line of sight: a triangle, or far terrain.
     #[inline]
     pub(super) fn is_behind_others(&self, target: [f64; 3], towards: [f64; 3], range: f64) -> bool {
-        self.added.as_ref().is_some_and(|added| added.blocks(target, towards, range))
-            || (range == f64::INFINITY && self.far_terrain.hides(target, towards))
+        self.is_behind_triangles(target, towards, range) || self.is_behind_terrain(target, towards, range)
+    }
+
+    #[inline]
+    fn is_behind_triangles(&self, target: [f64; 3], towards: [f64; 3], range: f64) -> bool {
+        self.triangles().is_some_and(|triangles| triangles.blocks(target, towards, range))
+    }
+
+    #[inline]
+    fn is_behind_terrain(&self, target: [f64; 3], towards: [f64; 3], range: f64) -> bool {
+        range == f64::INFINITY && self.far_terrain.hides(target, towards)
     }
 
     /// The ball of a row of the index as what blocks.
@@ -380,12 +406,11 @@ impl MedialScene {
     }
 }
 
-/// The nearer of a ball and a mesh by its number, each with its range; the ball where both are equally near.
-pub(super) fn nearer(ball: Option<(Blocker, f64)>, mesh: Option<(usize, f64)>) -> Option<(Blocker, f64)> {
-    let mesh = mesh.map(|(number, range)| (Blocker::Mesh(number), range));
-    match (ball, mesh) {
-        (Some(ball), Some(mesh)) if mesh.1 < ball.1 => Some(mesh),
-        (None, mesh) => mesh,
+/// The nearer of a ball and a triangle, each with its range; the ball where both are equally near.
+pub(super) fn nearer(ball: Option<(Blocker, f64)>, triangle: Option<(Blocker, f64)>) -> Option<(Blocker, f64)> {
+    match (ball, triangle) {
+        (Some(ball), Some(triangle)) if triangle.1 < ball.1 => Some(triangle),
+        (None, triangle) => triangle,
         (ball, _) => ball,
     }
 }

@@ -12,7 +12,6 @@
 //! [`certified`] hold what these are made of, for repeated queries of the same targets or the same view. A [`Backend`]
 //! settles lines of sight in bulk.
 
-mod added;
 pub mod backend;
 mod ball_tree;
 mod beams;
@@ -39,11 +38,11 @@ pub mod segments;
 pub mod skyline;
 pub mod surface;
 pub mod target_tree;
+mod triangles;
 pub mod visibility;
 pub mod visibility_matrix;
 
 pub use crate::blocking::{Ball, BlockRule, Profile};
-pub use added::AddedMeshes;
 pub use backend::{Backend, DEPTH_MAP_TOLERANCE, Drawable, LineAnswer, PreparedBackend, Settled, Viewers};
 pub use ball_tree::BallTree;
 pub use certified::{CertifiedReport, Scope};
@@ -63,5 +62,6 @@ pub use proof::{Beside, Proof, ProofParams};
 pub use segments::{Blocker, Crossing, Enclosure, LineOfSight, Obstruction, merged_crossings, random_pairs};
 pub use skyline::SkylinePoint;
 pub use surface::{Sides, SurfacePiece, SurfacePieces};
+pub use triangles::BlockingTriangles;
 pub use visibility::{Sight, Viewer, Visibility};
 pub use visibility_matrix::{FreeLines, VisibilityMatrix};

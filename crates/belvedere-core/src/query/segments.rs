@@ -1,15 +1,15 @@
 //! Lines of sight between pairs of points: what blocks them first, and all that lies on them.
 
-use super::added::LineEnds;
 use super::ball_tree::PROBE;
 use super::medial_scene::nearer;
+use super::triangles::LineEnds;
 use super::{Answer, EarthParams, MedialScene};
-use crate::blocking::Chord;
+use crate::blocking::{Chord, Sheet};
 use crate::ray_index::{Ray, in_order};
 use crate::triangle_tree::Corners;
-use belvedere_data::Result;
 use belvedere_data::control::Control;
 use belvedere_data::vector::{length, sub};
+use belvedere_data::{PatchKind, Result};
 use rayon::prelude::*;
 
 /// Pairs handed to a thread at once.
@@ -32,8 +32,10 @@ pub struct LineOfSight {
 pub enum Blocker {
     /// A ball, by its row among those that the scene was made of.
     Ball(usize),
-    /// A mesh that was added, by its number ([`super::AddedMeshes::names`]).
+    /// A mesh that was added, by its number ([`super::BlockingTriangles::names`]).
     Mesh(usize),
+    /// A patch of a surface of the survey, by what it is a part of.
+    Patch(PatchKind),
     /// The raster of far terrain, on lines of sight that leave the cloud.
     Terrain,
 }
@@ -50,6 +52,12 @@ impl Blocker {
     pub fn mesh(self) -> Option<usize> {
         if let Self::Mesh(number) = self { Some(number) } else { None }
     }
+
+    /// What a patch is a part of.
+    #[must_use]
+    pub fn patch(self) -> Option<PatchKind> {
+        if let Self::Patch(kind) = self { Some(kind) } else { None }
+    }
 }
 
 /// What stands before a target.
@@ -64,7 +72,7 @@ pub struct Obstruction {
     pub place: [f64; 3],
 }
 
-/// The piece of a line of sight that lies in one ball, however it blocks, or in one mesh.
+/// The piece of a line of sight that lies in one ball, however it blocks, in one mesh, or in a patch: a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Crossing {
     /// In what it lies.
@@ -204,8 +212,8 @@ impl MedialScene {
     pub(super) fn answer_on_chords(&self, ends: [[f64; 3]; 2], corners: &[[f64; 3]]) -> Answer {
         let pieces = self.chords(ends, corners);
         let is_blocked = |piece: &LinePiece| {
-            self.tree().index().any(&piece.for_balls, |number| self.blocked_on(number, piece).is_some())
-                || self.added().is_some_and(|added| added.blocks_piece(&piece.ray, &piece.line_ends()))
+            self.triangles().is_some_and(|triangles| triangles.blocks_piece(&piece.ray, &piece.line_ends()))
+                || self.tree().index().any(&piece.for_balls, |number| self.blocked_on(number, piece).is_some())
         };
         if pieces.iter().any(is_blocked) {
             return self.blocked_between(ends);
@@ -229,10 +237,10 @@ impl MedialScene {
         }
     }
 
-    /// Every ball and mesh on the line of sight from `observer` to `target`, local metres, by its whole radius, in the
+    /// Every ball, mesh and patch on the line of sight from `observer` to `target`, local metres, by its whole radius, in the
     /// order in which the line enters them. Balls around the ends are among them, and those that give way to the
     /// target. A mesh holds what lies between every two of its surfaces, counted from the target, and from the last one
-    /// to the observer where their number is odd. Empty for a line without length or with coordinates that are not
+    /// to the observer where their number is odd; a patch is a point. Empty for a line without length or with coordinates that are not
     /// finite.
     #[must_use]
     pub fn crossings(&self, observer: [f64; 3], target: [f64; 3], earth: &EarthParams) -> Vec<Crossing> {
@@ -253,14 +261,16 @@ impl MedialScene {
                     crossings.extend(blocker.map(|blocker| Crossing { blocker, ranges }));
                 }
             });
-            let mut passages = self.added().map_or(Vec::new(), |added| added.passages(&ray));
+            let mut passages = self.triangles().map_or(Vec::new(), |triangles| triangles.passages(&ray));
             passages.reverse();
-            for of_mesh in passages.chunk_by(|a, b| a.0 == b.0) {
-                for pair in of_mesh.chunks(2) {
-                    let (mesh, leaves) = pair[0];
-                    let enters = pair.get(1).map_or(0.0, |(_, range)| *range);
+            for of_one in passages.chunk_by(|a, b| a.0 == b.0) {
+                let together = if of_one[0].0.mesh().is_some() { 2 } else { 1 };
+                for pair in of_one.chunks(together) {
+                    let (blocker, leaves) = pair[0];
+                    let alone = if together == 1 { leaves } else { 0.0 };
+                    let enters = pair.get(1).map_or(alone, |(_, range)| *range);
                     let ranges = [enters, leaves].map(|range| passed + range);
-                    crossings.push(Crossing { blocker: Blocker::Mesh(mesh), ranges });
+                    crossings.push(Crossing { blocker, ranges });
                 }
             }
             passed += piece;
@@ -304,18 +314,17 @@ impl MedialScene {
         }
     }
 
-    /// Calls `visit` with the corners of every triangle of an added mesh that blocks the line of sight from `observer`
-    /// to `target`.
-    pub(super) fn each_added_blocker(
+    /// Calls `visit` with every triangle that blocks the line of sight from `observer` to `target`.
+    pub(super) fn each_blocking_triangle(
         &self,
         observer: [f64; 3],
         target: [f64; 3],
         earth: &EarthParams,
-        mut visit: impl FnMut(&Corners),
+        mut visit: impl FnMut(&Corners, &Sheet),
     ) {
-        let Some(added) = self.added() else { return };
+        let Some(triangles) = self.triangles() else { return };
         for piece in self.pieces(observer, target, earth) {
-            added.each_blocking(&piece.ray, &piece.line_ends(), &mut visit);
+            triangles.each_blocking(&piece.ray, &piece.line_ends(), &mut visit);
         }
     }
 
@@ -361,11 +370,11 @@ impl MedialScene {
         });
         let ball = ball.and_then(|(number, range)| Some((self.blocker_of_ball(number)?, range)));
         let ends = piece.line_ends();
-        let mesh = self.added().and_then(|added| match is_from_start {
-            true => added.nearest(&piece.ray, &ends),
-            false => added.farthest(&piece.ray, &ends).map(|(mesh, range)| (mesh, reach - range)),
+        let triangle = self.triangles().and_then(|triangles| match is_from_start {
+            true => triangles.nearest(&piece.ray, &ends),
+            false => triangles.farthest(&piece.ray, &ends).map(|(blocker, range)| (blocker, reach - range)),
         });
-        nearer(ball, mesh)
+        nearer(ball, triangle)
     }
 
     /// The piece of a chord that a ball blocks, as [`BlockRule::blocked_piece`](super::BlockRule::blocked_piece) gives

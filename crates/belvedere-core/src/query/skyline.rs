@@ -45,7 +45,7 @@ impl MedialScene {
     /// The skyline around `eye`, local metres: at `count` azimuths, the first north, clockwise in equal steps. Empty
     /// for an eye that is not finite.
     ///
-    /// Exact for the union of balls and for meshes that were added, by the tangents of every ball in the vertical plane
+    /// Exact for the union of balls, for meshes that were added and for surface patches, by the tangents of every ball in the vertical plane
     /// of each azimuth: nothing that floats above a gap is missed, and there is no step to choose. The eye may be a
     /// place on a surface: balls give way to it by [`crate::blocking::BlockRule::shell`] as to any target. Those that
     /// hold it even so are left out; [`MedialScene::enclosure`] tells of them. Over the earth of `earth` far balls
@@ -102,14 +102,14 @@ impl MedialScene {
             })
             .try_reduce(|| vec![EMPTY; count], |a, b| Ok(a.into_iter().zip(b).map(|(a, b)| a.or(b)).collect()));
         let mut skyline = of_balls?;
-        for (corners, mesh) in self.added().into_iter().flat_map(|added| added.before(eye)) {
+        for (corners, blocker) in self.triangles().into_iter().flat_map(|triangles| triangles.before(eye)) {
             control.check()?;
             let corners = corners.map(|corner| self.offset(eye, corner, earth));
             let middle = std::array::from_fn(|i| corners.iter().map(|corner| corner[i]).sum::<f64>() / 3.0);
             let radius = corners.iter().map(|&corner| length(sub(corner, middle))).fold(0.0, f64::max);
             each_azimuth(middle, radius, [first, step], count, |azimuth| {
                 if let Some((elevation, range)) = top_of_triangle(&corners, directions[azimuth]) {
-                    let blocker = Some(Blocker::Mesh(mesh));
+                    let blocker = Some(blocker);
                     skyline[azimuth] = skyline[azimuth].or(SkylinePoint { elevation, range, blocker });
                 }
             });

@@ -2,9 +2,10 @@
 
 use ::las::Vlr;
 
-use super::{FileBall, as_cloud, index, metadata};
+use super::{FileBall, as_cloud, index, metadata, patches};
 use crate::las::LasFile;
 use crate::las_extra::ExtraField;
+use crate::las_header::RecordSize;
 use crate::laz::LazFields;
 use crate::output::Output;
 use crate::part::narrow;
@@ -16,6 +17,8 @@ use belvedere_data::{Error, Result};
 /// Identity of the record that holds the metadata.
 const RECORD_USER: &str = "belvedere";
 const RECORD_ID: u16 = 1;
+/// Number of the record that holds the surface patches.
+const PATCHES_ID: u16 = 3;
 
 pub(crate) fn write_las(output: Output<'_>, parts: &ModelParts) -> Result<()> {
     let (cloud, columns) = as_cloud(parts);
@@ -25,19 +28,33 @@ pub(crate) fn write_las(output: Output<'_>, parts: &ModelParts) -> Result<()> {
         description: "medial balls".to_owned(),
         data: metadata::to_json(parts, metadata::FILE_UNITS).into_bytes(),
     };
-    write_las::write(output, &cloud, &columns, &[record]).map(|_| ())
+    let mut records = vec![record];
+    if !parts.patches.is_empty() {
+        records.push(Vlr {
+            user_id: RECORD_USER.to_owned(),
+            record_id: PATCHES_ID,
+            description: "surface patches".to_owned(),
+            data: patches::to_bytes(&parts.patches, parts.frame.origin),
+        });
+    }
+    write_las::write(output, &cloud, &columns, &records).map(|_| ())
 }
 
 pub(crate) fn read_las(input: Input<'_>) -> Result<ModelParts> {
     let name = input.name.clone();
     let path = name.as_path();
-    let file = LasFile::open(input)?;
+    let file = LasFile::open_with(input, RecordSize::Any)?;
     let Some(fields) = BallFields::of(&file) else {
         return Err(Error::malformed(path, "holds no balls; it needs the extra bytes radius and touch"));
     };
     let text = file.header.record(RECORD_USER, RECORD_ID).unwrap_or_default();
     let metadata = metadata::from_json(String::from_utf8_lossy(text).trim_end_matches('\0'))
         .map_err(|e| Error::malformed(path, e))?;
+    let check_patches = metadata.patch_check();
+    let kept = match file.header.record(RECORD_USER, PATCHES_ID) {
+        Some(bytes) => Some(patches::from_bytes(bytes).map_err(|e| Error::malformed(path, e))?),
+        None => None,
+    };
     let (announced, present) = (file.header.points, file.points_in_file());
     if present < announced {
         return Err(Error::malformed(path, format!("ends after {present} of {announced} balls")));
@@ -49,7 +66,12 @@ pub(crate) fn read_las(input: Input<'_>) -> Result<ModelParts> {
         let centers = batch.x().zip(batch.y()).zip(batch.z());
         rows.extend(centers.zip(records).map(|(((x, y), z), record)| fields.ball([x, y, z], record)));
     }
-    Ok(metadata.fill(&rows))
+    let mut parts = metadata.fill(&rows);
+    if let Some((patches, origin)) = kept {
+        parts.patches = patches::moved(patches, origin, parts.frame.origin);
+    }
+    check_patches(&parts.patches).map_err(|e| Error::malformed(path, e))?;
+    Ok(parts)
 }
 
 pub(crate) fn las_has_balls(input: Input<'_>) -> bool {

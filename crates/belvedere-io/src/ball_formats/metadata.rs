@@ -10,7 +10,7 @@ use belvedere_data::balls::MedialBalls;
 use belvedere_data::cloud::{centre_rounded, to_local};
 use belvedere_data::crs::{Crs, CrsKind};
 use belvedere_data::model::ModelParts;
-use belvedere_data::{Bounds, Frame};
+use belvedere_data::{Bounds, Frame, SurfacePatches};
 
 /// What the numbers beside the metadata mean in files that hold points.
 pub(super) const FILE_UNITS: &str = "file units, radians; origin in metres, bounds in metres relative to it";
@@ -18,6 +18,9 @@ pub(super) const FILE_UNITS: &str = "file units, radians; origin in metres, boun
 const FORMAT: &str = "belvedere balls 1";
 /// Lengths of units in metres that occur, and many that do not.
 const UNITS: std::ops::RangeInclusive<f64> = 1e-6..=1e6;
+
+/// Number of surface patches: a program that passes over what it does not know would drop them without a word.
+const PATCHES: &str = "surface_patches";
 
 const KINDS: [(CrsKind, &str); 5] = [
     (CrsKind::Unknown, "unknown"),
@@ -47,6 +50,9 @@ pub(super) fn to_json(parts: &ModelParts, units: &str) -> String {
         },
         "provenance": provenance,
     });
+    if !parts.patches.is_empty() {
+        json[PATCHES] = parts.patches.len().into();
+    }
     if let Some(doubt) = &crs.doubt {
         json["crs"]["doubt"] = doubt.as_str().into();
     }
@@ -62,6 +68,8 @@ pub(super) struct Metadata {
     pub(super) origin: Option<[f64; 3]>,
     /// Local metres.
     bounds: Option<Bounds>,
+    /// Number of surface patches; 0 where the file has none.
+    patch_count: u64,
 }
 
 /// What `text`, written by [`to_json`], says; the defaults where a program dropped it and it is empty. What is wrong
@@ -100,6 +108,7 @@ pub(super) fn from_json(text: &str) -> Result<Metadata, String> {
         provenance: provenance.filter_map(|(k, v)| Some((k.clone(), v.as_str()?.to_owned()))).collect(),
         origin: three(&value["origin"]),
         bounds: corner(0).zip(corner(1)).map(|(low, high)| Bounds { low, high }),
+        patch_count: value[PATCHES].as_u64().unwrap_or(0),
     })
 }
 
@@ -117,6 +126,17 @@ fn transmission(rows: &[FileBall]) -> Vec<f32> {
 }
 
 impl Metadata {
+    /// Whether a file holds as many surface patches as it announces: what is wrong otherwise.
+    pub(super) fn patch_check(&self) -> impl FnOnce(&SurfacePatches) -> Result<(), String> + use<> {
+        let announced = self.patch_count;
+        move |patches| match patches.len() as u64 {
+            found if found == announced || announced == 0 => Ok(()),
+            found => Err(format!(
+                "holds {found} of {announced} surface patches: a program dropped the others; make the ball file again"
+            )),
+        }
+    }
+
     /// Balls with these centres, local to `origin`, and no further columns yet. Bounds that the file lacks are those of
     /// the centres.
     pub(super) fn balls(self, origin: [f64; 3], centers: Vec<[f32; 3]>) -> ModelParts {

@@ -11,6 +11,11 @@ mod las;
 mod metadata;
 #[cfg(feature = "npy")]
 mod npz;
+#[cfg_attr(
+    not(all(feature = "las", feature = "ply", feature = "npy")),
+    allow(dead_code, reason = "a build without some formats uses a part of it")
+)]
+mod patches;
 #[cfg(feature = "ply")]
 mod ply;
 mod write_ply;

@@ -5,17 +5,20 @@ use std::path::Path;
 use zip::{ZipArchive, ZipWriter};
 
 use super::metadata;
+use super::patches::{in_corners, kinds_of_codes};
 use crate::npz_arrays::{array, array_names, has, invalid, open, rows, values, write_archive};
 use crate::output::Output;
 use crate::source::Input;
 use belvedere_data::free_segments::FreeSegmentColumns;
 use belvedere_data::model::ModelParts;
-use belvedere_data::{Error, Result};
+use belvedere_data::{Error, Result, SurfacePatches};
 
 const UNITS: &str = "metres relative to origin, radians; coordinates in the crs are \
                      (origin + centers) / metres_per_unit";
 /// Arrays that files with pulses have.
 const PULSE_ARRAYS: [&str; 3] = ["pulse_starts", "pulse_slopes", "pulse_top"];
+/// Arrays that files with surface patches have.
+const PATCH_ARRAYS: [&str; 2] = ["patch_corners", "patch_kinds"];
 /// Arrays that all or some files have beside these.
 const OTHER_ARRAYS: [&str; 10] = [
     "centers",
@@ -47,6 +50,12 @@ pub(super) fn write_arrays<W: Write + Seek>(archive: &mut ZipWriter<W>, parts: &
     array(archive, "separation_angles", &[n], parts.balls.separation_angles.iter().copied())?;
     if !parts.transmission.is_empty() {
         array(archive, "transmission", &[n], parts.transmission.iter().copied())?;
+    }
+    if !parts.patches.is_empty() {
+        let SurfacePatches { triangles, kinds } = &parts.patches;
+        let t = triangles.len() as u64;
+        array(archive, "patch_corners", &[t, 3, 3], triangles.as_flattened().as_flattened().iter().copied())?;
+        array(archive, "patch_kinds", &[t], kinds.iter().map(|kind| kind.code()))?;
     }
     if let Some(FreeSegmentColumns { starts, ways, slopes, lengths, top }) = &parts.pulses {
         let p = starts.len() as u64;
@@ -84,6 +93,7 @@ pub(super) fn read_arrays<R: Read + Seek>(archive: &mut ZipArchive<R>, path: &Pa
         Vec::new()
     };
     let metadata = metadata::from_json(&String::from_utf8_lossy(&text)).map_err(|e| Error::malformed(path, e))?;
+    let check_patches = metadata.patch_check();
     let centers = rows::<f32, 3, _>(archive, "centers").map_err(malformed)?;
     let (origin, _) = values::<f64, _>(archive, "origin", 3).map_err(malformed)?;
     let origin = <[f64; 3]>::try_from(origin.as_slice())
@@ -96,10 +106,24 @@ pub(super) fn read_arrays<R: Read + Seek>(archive: &mut ZipArchive<R>, path: &Pa
     if has(archive, "transmission") {
         parts.transmission = values(archive, "transmission", u64::MAX).map_err(malformed)?.0;
     }
+    if PATCH_ARRAYS.iter().any(|name| has(archive, name)) {
+        parts.patches = patches(archive).map_err(malformed)?;
+    }
+    check_patches(&parts.patches).map_err(|e| Error::malformed(path, e))?;
     if PULSE_ARRAYS.iter().any(|name| has(archive, name)) {
         parts.pulses = Some(pulses(archive).map_err(malformed)?);
     }
     Ok(parts)
+}
+
+fn patches<R: Read + Seek>(archive: &mut ZipArchive<R>) -> io::Result<SurfacePatches> {
+    let (corners, shape) = values::<f32, _>(archive, "patch_corners", u64::MAX)?;
+    let [_, 3, 3] = shape[..] else {
+        return Err(invalid(format!("the array patch_corners has shape {shape:?}, but must be (M, 3, 3)")));
+    };
+    let kinds = values::<u8, _>(archive, "patch_kinds", u64::MAX)?.0;
+    let triangles = corners.as_chunks::<9>().0.iter().map(in_corners).collect();
+    Ok(SurfacePatches { triangles, kinds: kinds_of_codes(&kinds).map_err(invalid)? })
 }
 
 fn pulses<R: Read + Seek>(archive: &mut ZipArchive<R>) -> io::Result<FreeSegmentColumns> {
@@ -118,6 +142,7 @@ fn pulses<R: Read + Seek>(archive: &mut ZipArchive<R>) -> io::Result<FreeSegment
 
 /// An array of another name: a damaged name of one that is not in every file would not be missed.
 fn unknown<R: Read + Seek>(archive: &ZipArchive<R>) -> Option<String> {
-    let is_known = |name: &&str| PULSE_ARRAYS.contains(name) || OTHER_ARRAYS.contains(name);
+    let is_known =
+        |name: &&str| PULSE_ARRAYS.contains(name) || PATCH_ARRAYS.contains(name) || OTHER_ARRAYS.contains(name);
     array_names(archive).find(|name| !is_known(name)).map(str::to_owned)
 }

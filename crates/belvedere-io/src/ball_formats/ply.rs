@@ -2,14 +2,16 @@
 
 use ply_rs_bw::ply::{Property, PropertyAccess, PropertyAccessResult};
 
-use super::write_ply::METADATA_KEY;
+use super::patches::kinds_of_codes;
+use super::write_ply::{METADATA_KEY, PATCH, PATCH_CORNERS, PATCH_KIND};
 use super::{FileBall, index, metadata};
 use crate::part::narrow;
 use crate::ply::{PlyFile, scalar};
 use crate::source::Input;
+use belvedere_data::cloud::to_local;
 use belvedere_data::crs::text::{crs_from_comments, joined};
 use belvedere_data::model::ModelParts;
-use belvedere_data::{Error, Result};
+use belvedere_data::{Error, Result, SurfacePatches};
 
 const NEEDED: [&str; 5] = ["x", "y", "z", "radius", "touch"];
 
@@ -24,12 +26,50 @@ pub(crate) fn read_ply(input: Input<'_>) -> Result<ModelParts> {
     if json.is_empty() {
         metadata.crs = crs_from_comments(file.comments()).unwrap_or_default();
     }
+    let check_patches = metadata.patch_check();
     let mut rows = Vec::new();
     file.for_each_vertex(|ball: FileBall| {
         rows.push(ball);
         Ok(())
     })?;
-    Ok(metadata.fill(&rows))
+    let mut parts = metadata.fill(&rows);
+    let (mut corners, mut codes) = (Vec::new(), Vec::new());
+    let units = parts.frame.crs.metres_per_unit_xyz();
+    file.for_each_row(PATCH, |patch: FilePatch| {
+        let metres = |corner: [f64; 3]| std::array::from_fn(|axis| corner[axis] * units[axis]);
+        corners.push(patch.corners.map(|corner| to_local(metres(corner), parts.frame.origin)));
+        codes.push(patch.kind);
+        Ok(())
+    })?;
+    let malformed = |e: String| Error::malformed(file.name(), e);
+    parts.patches = SurfacePatches { triangles: corners, kinds: kinds_of_codes(&codes).map_err(malformed)? };
+    check_patches(&parts.patches).map_err(malformed)?;
+    Ok(parts)
+}
+
+/// A surface patch as the file gives it.
+struct FilePatch {
+    /// In the system and unit of the file.
+    corners: [[f64; 3]; 3],
+    kind: u8,
+}
+
+impl PropertyAccess for FilePatch {
+    fn new() -> Self {
+        // what lacks a coordinate or a kind is refused
+        Self { corners: [[f64::NAN; 3]; 3], kind: u8::MAX }
+    }
+
+    fn set_property(&mut self, name: &str, property: Property) -> PropertyAccessResult {
+        let Some(value) = scalar(&property) else { return PropertyAccessResult::Ignored };
+        let names = PATCH_CORNERS.as_flattened();
+        match (names.iter().position(|own| *own == name), property) {
+            (Some(place), _) => self.corners[place / 3][place % 3] = value,
+            (None, Property::UChar(code)) if name == PATCH_KIND => self.kind = code,
+            _ => return PropertyAccessResult::Ignored,
+        }
+        PropertyAccessResult::Set
+    }
 }
 
 pub(crate) fn ply_has_balls(input: Input<'_>) -> bool {

@@ -7,7 +7,7 @@ use belvedere_data::balls::MedialBalls;
 use belvedere_data::crs::Crs;
 use belvedere_data::free_segments::FreeSegmentColumns;
 use belvedere_data::model::ModelParts;
-use belvedere_data::{Bounds, Frame};
+use belvedere_data::{Bounds, Frame, PatchKind, SurfacePatches};
 use belvedere_io::{Output, Source, read_balls, read_mesh, write_balls};
 
 /// A small ball file in the format of an extension.
@@ -22,7 +22,10 @@ fn balls(name: &str) -> Vec<u8> {
         separation_angles: vec![0.5; count],
     };
     let frame = Frame { origin: [85_000.0, 447_000.0, 0.0], ..Frame::default() };
-    let balls = ModelParts { frame, balls, ..ModelParts::default() };
+    let mut patches = SurfacePatches::default();
+    patches.push([[1.0, 2.0, 3.0], [4.0, 5.0, 6.0], [7.0, 8.5, 9.0]], PatchKind::Wall);
+    patches.push([[1.5, 2.0, 3.0], [4.0, 5.0, 6.5], [7.0, 8.0, 9.0]], PatchKind::Roof);
+    let balls = ModelParts { frame, balls, patches, ..ModelParts::default() };
     let mut cursor = Cursor::new(Vec::new());
     write_balls(Output::writer(name, &mut cursor), &balls).unwrap();
     cursor.into_inner()
@@ -68,7 +71,10 @@ fn damaged_ball_files_are_refused_or_hold_no_more_than_their_bytes() {
 /// An archive with every array that a ball file can have.
 fn full_archive() -> (ModelParts, Vec<u8>) {
     let count = 5_usize;
+    let mut patches = SurfacePatches::default();
+    patches.push([[1.0, 2.0, 3.0], [4.0, 5.0, 6.0], [7.0, 8.5, 9.0]], PatchKind::Inside);
     let parts = ModelParts {
+        patches,
         frame: Frame { origin: [85_000.0, 447_000.0, 1.0], crs: Crs { epsg: Some(28_992), ..Crs::default() } },
         bounds: Bounds { low: [-5.0; 3], high: [9.0; 3] },
         balls: MedialBalls {

@@ -31,6 +31,8 @@ class Sight(NamedTuple):
         Where the line is blocked first, in the coordinates of the file.
     fresnel_free_percent : float
         How much of the radius of the first Fresnel zone is free; NaN without a frequency.
+    block_surface : str
+        Kind of the surface patch that blocks first: roof, wall, parapet or inside; empty where none does.
     block_terrain : bool
         Whether it is the terrain of `with_terrain` that blocks first.
     remarks : tuple of Remark
@@ -50,6 +52,7 @@ class Sight(NamedTuple):
     fresnel_free_percent: float = float("nan")
     block_terrain: bool = False
     remarks: tuple[Remark, ...] = ()
+    block_surface: str = ""
 
 
 class Sights:
@@ -155,8 +158,8 @@ class Sights:
         Sight or Table
             A `Sight` for one pair. For several a `Table` with ``answer``, ``first_block_range_m``, ``unproven_m``
             (where pulses are known), ``fresnel_free_percent`` (with a frequency), ``block_x``, ``block_y``, ``block_z``
-            (together ``block``, (N, 3)), ``block_ball``, ``block_source`` (-1 where no ball blocks) and
-            ``block_terrain`` (with terrain).
+            (together ``block``, (N, 3)), ``block_ball``, ``block_source`` (-1 where no ball blocks),
+            ``block_surface`` (where the scene has patches of surfaces) and ``block_terrain`` (with terrain).
 
         Raises
         ------
@@ -189,6 +192,8 @@ class Sights:
             observers, targets, ends, unproven, curvature, refraction, frequency_ghz, reporter(progress)
         )
         remarks = warned(given)
+        if "block_surface" in columns:
+            columns["block_surface"] = np.asarray(columns["block_surface"])
         if not is_one:
             table = Table(columns, places=np.where(np.isnan(targets), standing, targets), crs=self._core.crs.text)
             table.remarks = remarks
@@ -203,4 +208,5 @@ class Sights:
             float(columns["fresnel_free_percent"][0]) if "fresnel_free_percent" in columns else nan,
             bool(columns["block_terrain"][0]) if "block_terrain" in columns else False,
             remarks,
+            str(columns["block_surface"][0]) if "block_surface" in columns else "",
         )

@@ -4,6 +4,7 @@ use super::RequestContext;
 use super::places::{local, number, rounded, shown};
 use crate::replies::{QuestionReply, Refusal};
 use crate::scene_text::typed;
+use belvedere::PatchKind;
 use belvedere::apps::ask::{self, LinesOfSightQuestion, Places, ProfileRows, Standing};
 use belvedere::apps::profile::SightProfile;
 use belvedere::query::Answer as Sight;
@@ -37,9 +38,10 @@ pub(super) fn answer(question: &LineRequest, context: &RequestContext<'_>) -> Re
         Some(Sight::InsideObstacle) => "inside an obstacle",
         _ => "outside the cloud",
     };
-    let block = sight.and_then(|sight| sight.first_block).map(
-        |block| json!({ "range_m": rounded(block.range, 3), "place": shown(context, block.place), "ball": block.blocker.ball() }),
-    );
+    let block = sight.and_then(|sight| sight.first_block).map(|block| {
+        json!({ "range_m": rounded(block.range, 3), "place": shown(context, block.place), "ball": block.blocker.ball(),
+            "surface": block.blocker.patch().map(PatchKind::name) })
+    });
     let unproven = sight.filter(|_| found.is_proof_tested).map(|sight| number(sight.unproven_length, 3));
     let typed = format!("--observer {} --target {}", typed(&question.observer), typed(&question.target));
     let length = observer.iter().zip(target).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt();

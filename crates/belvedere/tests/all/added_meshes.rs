@@ -7,7 +7,7 @@ use belvedere::medial::MedialBalls;
 use belvedere::query::Coverage;
 use belvedere::query::target_tree::TargetTree;
 use belvedere::query::{
-    AddedMeshes, Answer, Blocker, Curvature, EarthParams, MedialScene, Scope, Viewer, random_targets,
+    Answer, Blocker, BlockingTriangles, Curvature, EarthParams, MedialScene, Scope, Viewer, random_targets,
 };
 use belvedere::random::uniform;
 use belvedere::vector::{length, sub, unit};
@@ -39,23 +39,24 @@ fn box_at([x, y]: [f64; 2], angle: f64, [along, across]: [f64; 2], [bottom, top]
     scene
 }
 
-fn added(scene: &TriangleScene) -> AddedMeshes {
-    AddedMeshes::new(&mesh_of(scene), "box", [0.0; 3], None, None).unwrap()
+fn added(scene: &TriangleScene) -> BlockingTriangles {
+    BlockingTriangles::new(&mesh_of(scene), "box", [0.0; 3], None, None).unwrap()
 }
 
 /// Balls and two boxes.
 fn town() -> MedialScene {
     let first = added(&box_at([30.0, 30.0], 0.4, [12.0, 7.0], [0.0, 15.0]));
     let second = mesh_of(&box_at([12.0, 20.0], 1.3, [5.0, 9.0], [2.0, 13.0]));
-    let both = AddedMeshes::new(&second, "second", [0.0; 3], None, Some(&first)).unwrap();
-    MedialScene::new(&balls(300, 60.0), &BlockRule::carved()).unwrap().with_added(Some(both))
+    let both = BlockingTriangles::new(&second, "second", [0.0; 3], None, Some(&first)).unwrap();
+    MedialScene::new(&balls(300, 60.0), &BlockRule::carved()).unwrap().with_triangles(Some(both))
 }
 
 #[test]
 fn the_shadow_of_an_added_box_is_its_closed_form() {
     let (low, high) = ([20.0, 30.0, 0.0], [32.0, 37.0, 9.0]);
     let mesh = box_at([26.0, 33.5], 0.0, [12.0, 7.0], [0.0, 9.0]);
-    let scene = MedialScene::new(&MedialBalls::default(), &BlockRule::carved()).unwrap().with_added(Some(added(&mesh)));
+    let scene =
+        MedialScene::new(&MedialBalls::default(), &BlockRule::carved()).unwrap().with_triangles(Some(added(&mesh)));
     for (azimuth, elevation) in [(150.0_f64, 35.0_f64), (270.0, 10.0), (15.0, 60.0), (180.0, 89.0)] {
         let sun = to_sun(azimuth.to_radians(), elevation.to_radians());
         let targets = random_targets([-30.0, -20.0, 0.0], [90.0, 90.0, 0.0], 20_000, 5);
@@ -92,7 +93,7 @@ fn a_thousand_boxes_block_as_exact_rays_do() {
         let scene = box_at(place, 7.0 * random(row, 5), size, [bottom, bottom + 0.5 + 30.0 * random(row, 6)]);
         let truth = Truth::new(&scene);
         let origin = [place[0] - 3.0, place[1] + 4.0, 1.0];
-        let added = AddedMeshes::new(&mesh_of(&scene), "box", origin, None, None).unwrap();
+        let added = BlockingTriangles::new(&mesh_of(&scene), "box", origin, None, None).unwrap();
         for i in 0..40 {
             let end = |k: u64| -> [f64; 3] {
                 let spread = |axis: u64| 60.0 * (uniform(12, row * 512 + 8 * i + k + axis) - 0.5);
@@ -172,7 +173,7 @@ fn all_ways_of_asking_agree_about_added_meshes() {
         if let Some(block) = sight.first_block.filter(|block| block.blocker.mesh().is_some()) {
             let towards = unit(sub(target, eye)).unwrap();
             let at = |range: f64| -> [f64; 3] { std::array::from_fn(|i| eye[i] + range * towards[i]) };
-            let free = |range: f64| !scene.added().unwrap().blocks(at(range), towards.map(|v| -v), range);
+            let free = |range: f64| !scene.triangles().unwrap().blocks(at(range), towards.map(|v| -v), range);
             assert!(length(sub(at(block.range), block.place)) < 1e-9);
             assert!(free(block.range - 0.02) || free(block.range - 0.001), "{block:?}");
         }
@@ -183,7 +184,7 @@ fn all_ways_of_asking_agree_about_added_meshes() {
             scene.line_of_sight(eye, target.map(f64::from), &EarthParams::flat())?.first_block?.blocker.mesh()
         })
         .collect();
-    assert!(meshes.contains(&0) && meshes.contains(&1) && scene.added().unwrap().names() == ["box", "second"]);
+    assert!(meshes.contains(&0) && meshes.contains(&1) && scene.triangles().unwrap().names() == ["box", "second"]);
     // many directions
     let directions: Vec<[f64; 3]> =
         (0..40).map(|i| to_sun(f64::from(i) * 0.7, 0.02 + f64::from(i % 13) * 0.11)).collect();
@@ -197,8 +198,9 @@ fn all_ways_of_asking_agree_about_added_meshes() {
         }
     }
     // without any ball
-    let alone =
-        MedialScene::new(&MedialBalls::default(), &BlockRule::carved()).unwrap().with_added(scene.added().cloned());
+    let alone = MedialScene::new(&MedialBalls::default(), &BlockRule::carved())
+        .unwrap()
+        .with_triangles(scene.triangles().cloned());
     let matrix = alone.visibility_matrix(&targets[..500], &directions, &control).unwrap();
     let is_same = |row: usize, column: usize| {
         let answer = alone.answer(targets[row].map(f64::from), directions[column], f64::INFINITY);
@@ -247,7 +249,7 @@ fn skylines_heights_and_ranges_know_added_meshes() {
 fn a_target_on_a_face_is_not_hidden_by_it_and_inside_sees_nothing_outside() {
     let added = added(&box_at([400.3, 700.7], 0.3, [12.0, 7.0], [0.0, 9.0]));
     let scene =
-        MedialScene::new(&MedialBalls::default(), &BlockRule::carved()).unwrap().with_added(Some(added.clone()));
+        MedialScene::new(&MedialBalls::default(), &BlockRule::carved()).unwrap().with_triangles(Some(added.clone()));
     let place = PlanPlacement { origin: [400.3, 700.7], angle: 0.3 };
     for i in 0..500_u64 {
         let (u, v) = (11.9 * (uniform(1, 2 * i) - 0.5), 6.9 * (uniform(1, 2 * i + 1) - 0.5));
@@ -271,7 +273,7 @@ fn meshes_that_cannot_be_part_of_a_scene_are_refused_by_name() {
     let cloud = Coverage::of(Bounds { low: [0.0; 3], high: [100.0, 100.0, 30.0] });
     let origin = [85_000.0, 446_000.0, 0.0];
     let refused = |mesh: &Mesh, words: &[&str]| {
-        let error = AddedMeshes::new(mesh, "plan.obj", origin, cloud.as_ref(), None).unwrap_err().to_string();
+        let error = BlockingTriangles::new(mesh, "plan.obj", origin, cloud.as_ref(), None).unwrap_err().to_string();
         assert!(words.iter().chain(&["plan.obj"]).all(|word| error.contains(word)), "{error}");
     };
     let moved = |by: [f64; 3]| {
@@ -279,7 +281,9 @@ fn meshes_that_cannot_be_part_of_a_scene_are_refused_by_name() {
         mesh.vertices.iter_mut().for_each(|vertex| *vertex = std::array::from_fn(|i| vertex[i] + by[i]));
         mesh
     };
-    assert!(AddedMeshes::new(&moved([85_050.0, 446_050.0, 3.0]), "plan.obj", origin, cloud.as_ref(), None).is_ok());
+    assert!(
+        BlockingTriangles::new(&moved([85_050.0, 446_050.0, 3.0]), "plan.obj", origin, cloud.as_ref(), None).is_ok()
+    );
     refused(&moved([85_500.0, 446_050.0, 3.0]), &["85502.5", "85100", "cloud"]);
     refused(&moved([85_050.0, 446_050.0, -80.0]), &["cloud"]);
     refused(&moved([4.3, 52.0, 0.0]), &["degrees"]);

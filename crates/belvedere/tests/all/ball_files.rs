@@ -14,7 +14,7 @@ use belvedere::io::{is_ball_file, read_balls, write_balls, write_cloud};
 use belvedere::medial::MedialBalls;
 use belvedere::model::ModelParts;
 use belvedere::pulses::FreeSegmentColumns;
-use belvedere::{Bounds, Error, Frame, PointCloud};
+use belvedere::{Bounds, Error, Frame, PatchKind, PointCloud, SurfacePatches};
 use tempfile::TempDir;
 
 fn dutch() -> Crs {
@@ -34,6 +34,7 @@ fn balls(crs: Crs) -> ModelParts {
             separation_angles: (0..n).map(|i| if i % 10 == 0 { f32::NAN } else { f32::from(i) * 0.006 }).collect(),
         },
         transmission: (0..n).map(|i| f32::from(i) / 499.0).collect(),
+        patches: patches(),
         pulses: Some(FreeSegmentColumns {
             starts: (0..700_u16).map(|i| [f32::from(i) * 0.37, f32::from(i).sqrt(), 1.0 / f32::from(i + 3)]).collect(),
             ways: (0..700_u16).map(|i| u8::try_from(i % 6).unwrap()).collect(),
@@ -43,6 +44,16 @@ fn balls(crs: Crs) -> ModelParts {
         }),
         provenance: BTreeMap::from([("parameters".to_owned(), "first_separation_angle = 32°".to_owned())]),
     }
+}
+
+/// Triangles of all kinds, more than a record of LAS before the points can hold.
+fn patches() -> SurfacePatches {
+    let mut patches = SurfacePatches::default();
+    for i in 0..2000_u16 {
+        let corner = |k: u16| [f32::from(i) * 0.031, f32::from(k) * 1.7 - 30.3, f32::from(i * k).sqrt() / 7.0];
+        patches.push([corner(0), corner(1), corner(3)], PatchKind::ALL[usize::from(i % 4)]);
+    }
+    patches
 }
 
 fn same_bits(a: &[f32], b: &[f32]) -> bool {
@@ -70,6 +81,14 @@ fn balls_come_back() {
             assert!(same_bits(&found.balls.separation_angles, &balls.balls.separation_angles));
             assert_eq!(found.transmission, balls.transmission, "{name}");
             assert_eq!(found.pulses.is_some(), name == "b.npz", "{name}");
+            assert_eq!(found.patches.kinds, balls.patches.kinds, "{name}");
+            let corners = |parts: &ModelParts| parts.patches.triangles.as_flattened().as_flattened().to_vec();
+            if name == "b.ply" {
+                // a step of f32 at 70 m: coordinates of the file are f64 in its unit
+                assert!(corners(&found).iter().zip(corners(&balls)).all(|(a, b)| (a - b).abs() < 1e-5));
+            } else {
+                assert!(same_bits(&corners(&found), &corners(&balls)), "{name}");
+            }
             if name == "b.npz" {
                 assert_eq!(found.frame.origin, balls.frame.origin);
                 assert!(same_bits(found.balls.centers.as_flattened(), balls.balls.centers.as_flattened()));
@@ -98,6 +117,12 @@ fn a_file_written_anew_has_the_same_bytes_and_pulses_take_sixteen_of_them_each()
     let [first, again] = ["a.npz", "b.npz"].map(|name| folder.path().join(name));
     let mut balls = balls(dutch());
     balls.pulses.as_mut().unwrap().ways.clear();
+    for name in ["c.ply", "c.laz", "c.las"] {
+        let [first, again] = ["first", "again"].map(|stem| folder.path().join(format!("{stem}_{name}")));
+        write_balls(&first, &balls).unwrap();
+        write_balls(&again, &read_balls(&first).unwrap()).unwrap();
+        assert!(fs::read(&first).unwrap() == fs::read(&again).unwrap(), "{name}");
+    }
     let size = |path: &Path| fs::metadata(path).unwrap().len();
     write_balls(&first, &balls).unwrap();
     write_balls(&again, &read_balls(&first).unwrap()).unwrap();
@@ -142,6 +167,51 @@ fn pulses_and_transmissions_that_cannot_be_are_errors_that_name_the_file() {
     fs::write(&path, bytes).unwrap();
     let message = read_balls(&path).unwrap_err().to_string();
     assert!(message.contains("odd.npz") && message.contains("slopes"), "{message}");
+}
+
+#[test]
+fn patches_that_were_lost_or_cannot_be_are_errors_that_name_the_file() {
+    let folder = TempDir::new().unwrap();
+    let refused = |change: &dyn Fn(&mut SurfacePatches)| {
+        let mut odd = balls(dutch());
+        change(&mut odd.patches);
+        write_balls(&folder.path().join("odd.npz"), &odd).is_err()
+    };
+    assert!(refused(&|patches| assert!(patches.kinds.pop().is_some())));
+    assert!(refused(&|patches| patches.triangles[7][2][1] = f32::NAN));
+    assert!(refused(&|patches| patches.triangles[7][2][1] = -3e7));
+    // another name for what holds them, as if another program had dropped it
+    for (name, word) in
+        [("b.npz", "patch_kinds"), ("b.ply", "element patch"), ("b.las", "surface patches"), ("b.laz", "patches1")]
+    {
+        let path = folder.path().join(name);
+        write_balls(&path, &balls(dutch())).unwrap();
+        let mut bytes = fs::read(&path).unwrap();
+        let places: Vec<usize> =
+            (0..bytes.len() - word.len()).filter(|&i| bytes[i..].starts_with(word.as_bytes())).collect();
+        assert!(!places.is_empty(), "{name}");
+        for at in places {
+            match name {
+                // the number of the record stands four bytes and the length before its description
+                "b.las" => bytes[at - 10] = 77,
+                "b.ply" => bytes[at + word.len() - 1] = b'q',
+                _ => bytes[at] = b'q',
+            }
+        }
+        fs::write(&path, bytes).unwrap();
+        let message = read_balls(&path).unwrap_err().to_string();
+        assert!(message.contains(name) && message.contains("atch"), "{message}");
+    }
+    // files of earlier versions announce none
+    let mut old = balls(dutch());
+    old.patches = SurfacePatches::default();
+    for name in ["b.npz", "b.ply", "b.laz", "b.las"] {
+        let path = folder.path().join(name);
+        write_balls(&path, &old).unwrap();
+        let bytes = fs::read(&path).unwrap();
+        assert!(!bytes.windows(7).any(|window| window == b"patches"), "{name}");
+        assert!(read_balls(&path).unwrap().patches.is_empty());
+    }
 }
 
 #[test]

@@ -3,9 +3,10 @@
 use crate::common::simulated::cloud_of;
 use belvedere::control::Control;
 use belvedere::model::{ClearedArea, ModelParams, SceneModel};
+use belvedere::query::scene_fingerprint;
 use belvedere::query::{Answer, UnprovenAs, random_targets};
 use belvedere::view::to_sun;
-use belvedere::{Mesh, PointCloud};
+use belvedere::{Mesh, PatchKind, PointCloud, SurfacePatches};
 use belvedere_scenes::{
     AirborneParams, Material, ObjectPart, PlanPlacement, TriangleScene, Truth, extruded, scan_airborne,
 };
@@ -179,4 +180,47 @@ fn areas_that_cannot_be_cleared_are_refused() {
     assert!(same_balls(&same, &model) && left.len() == cloud.len() && report == Default::default());
     let nothing = PointCloud::in_frame(cloud.frame.clone());
     assert!(model.clone().without(&square(&cloud, FIRST, 5.0), &nothing, &Control::none()).is_err());
+}
+
+#[test]
+fn patches_are_cut_at_the_edge_of_a_cleared_area_and_their_answers_are_those_without_them() {
+    let (model, cloud) = surveyed();
+    let control = Control::none();
+    let origin = cloud.frame.origin;
+    let local = |x: f64, y: f64, z: f64| [x - origin[0], y - origin[1], z - origin[2]].map(|v| v as f32);
+    // a roof 12 m up over both buildings, 20 m by 10 m
+    let mut patches = SurfacePatches::default();
+    let [a, b, c, d] =
+        [local(22.0, 25.0, 12.0), local(42.0, 25.0, 12.0), local(42.0, 35.0, 12.0), local(22.0, 35.0, 12.0)];
+    patches.push([a, b, c], PatchKind::Roof);
+    patches.push([a, c, d], PatchKind::Roof);
+    let with = model.clone().with_patches(patches.clone()).unwrap();
+    let number =
+        |model: &SceneModel| scene_fingerprint(model.balls(), model.triangles(), model.far_terrain(), &model.rule());
+    assert_ne!(number(&with), number(&model));
+    let same_triangles = SurfacePatches { kinds: vec![PatchKind::Wall; 2], ..patches.clone() };
+    assert_ne!(number(&with), number(&model.clone().with_patches(same_triangles).unwrap()));
+    assert_eq!(number(&with), number(&model.clone().with_patches(patches.clone()).unwrap()));
+    assert!(SceneModel::from_parts(with.parts().clone()).unwrap().triangles().is_some());
+    // the area ends at x = 29.5
+    let area = square(&cloud, FIRST, 5.5);
+    let (cleared, _, report) = with.clone().without(&area, &cloud, &control).unwrap();
+    assert!((report.patches_cleared_m2 - 75.0).abs() < 0.01, "{report:?}");
+    assert!((cleared.patches().area_m2() - 125.0).abs() < 0.01);
+    let (bare, ..) = model.without(&area, &cloud, &control).unwrap();
+    let [cleared_scene, bare_scene] =
+        [&cleared, &bare].map(|model| model.scene(&model.rule(), UnprovenAs::Visible, &control).unwrap());
+    let up = [0.0, 0.0, 1.0];
+    for place in random_targets([22.5, 25.5, 11.0], [41.5, 34.5, 11.5], 500, 9) {
+        let place: [f64; 3] = std::array::from_fn(|i| f64::from(place[i]) - origin[i]);
+        let is_below = place[0] + origin[0] > 29.5;
+        let expected = if is_below { Answer::Blocked } else { bare_scene.answer(place, up, f64::INFINITY) };
+        assert_eq!(cleared_scene.answer(place, up, f64::INFINITY), expected, "{place:?}");
+    }
+    // a class of other things leaves them, that of buildings takes them all
+    let (left, _, report) = with.clone().without(&ClearedArea::Class(5), &cloud, &control).unwrap();
+    assert!(left.patches() == &patches && report.patches_cleared_m2 == 0.0);
+    let (left, _, report) = with.without(&ClearedArea::Class(6), &cloud, &control).unwrap();
+    assert!(left.patches().is_empty() && (report.patches_cleared_m2 - 200.0).abs() < 0.01);
+    assert!(left.triangles().is_none());
 }

@@ -66,6 +66,7 @@ mod slender;
 mod solar_envelope;
 mod sun;
 mod sun_hours;
+mod surface_patches;
 mod survey_kinds;
 mod tau_balls;
 mod thin_surfaces;

@@ -6,7 +6,7 @@ use belvedere::blocking::BlockRule;
 use belvedere::control::Control;
 use belvedere::ground::{Ground, MapGrid};
 use belvedere::medial::MedialBalls;
-use belvedere::query::{AddedMeshes, Answer, EarthParams, MedialScene, SurfacePieces, Viewer};
+use belvedere::query::{Answer, BlockingTriangles, EarthParams, MedialScene, SurfacePieces, Viewer};
 use belvedere::random::uniform;
 use belvedere::raster::Raster;
 use belvedere::{Error, Mesh};
@@ -98,21 +98,21 @@ fn several_viewpoints_have_the_lowest_of_their_limits_in_any_order_and_on_any_th
 }
 
 /// Upright boxes with middle, size and top, from far below the ground up.
-fn boxes(list: &[([f64; 2], f64, f64)]) -> AddedMeshes {
+fn boxes(list: &[([f64; 2], f64, f64)]) -> BlockingTriangles {
     let mut scene = TriangleScene::default();
     for &(origin, size, top) in list {
         let place = PlanPlacement { origin, angle: 0.0 };
         scene.add_object("box", &[extruded(&place.rectangle(size, size), -50.0, top)]);
     }
     let mesh = Mesh { vertices: scene.vertices, triangles: scene.triangles, ..Mesh::default() };
-    AddedMeshes::new(&mesh, "boxes", [0.0; 3], None, None).unwrap()
+    BlockingTriangles::new(&mesh, "boxes", [0.0; 3], None, None).unwrap()
 }
 
 #[test]
 fn what_is_hidden_today_is_not_protected() {
     let (eye, grid, object) = ([0.0, 0.0, 2.0], grid(), wall(30.0, 40.0));
     // hides the western half
-    let scene = nothing().with_added(Some(boxes(&[([-10.0, 45.0], 20.0, 90.0)])));
+    let scene = nothing().with_triangles(Some(boxes(&[([-10.0, 45.0], 20.0, 90.0)])));
     let found = run(&scene, &object, &[eye], &grid);
     let free = run(&nothing(), &object, &[eye], &grid);
     let report = found.viewpoints[0];
@@ -159,8 +159,8 @@ fn building_up_to_the_limit_everywhere_hides_nothing_and_half_a_metre_more_does(
         boxes(&limited.map(|(place, limit)| (place, grid.cell, f64::from(limit) + more)).collect::<Vec<_>>())
     };
     // limits of rasters are f32: a micrometre, and one more for the sides of boxes
-    let full = nothing().with_added(Some(built(-1e-5)));
-    let more = nothing().with_added(Some(built(0.5)));
+    let full = nothing().with_triangles(Some(built(-1e-5)));
+    let more = nothing().with_triangles(Some(built(0.5)));
     let (mut kept, mut lost) = (0, 0);
     for &eye in &eyes {
         for piece in &object.pieces {

@@ -13,7 +13,7 @@ use belvedere::control::Control;
 use belvedere::horizon::HorizonProfile;
 use belvedere::medial::MedialBalls;
 use belvedere::model::{ModelParams, SceneModel};
-use belvedere::query::{AddedMeshes, Ball, Blocker, FarTerrain, MedialScene, UnprovenAs};
+use belvedere::query::{Ball, Blocker, BlockingTriangles, FarTerrain, MedialScene, UnprovenAs};
 use belvedere::random::uniform;
 use belvedere::vector::{cross, dot, unit};
 use belvedere::{Error, Frame, Mesh};
@@ -70,21 +70,21 @@ fn over_flat_ground_half_of_the_view_is_sky_and_half_ground() {
 }
 
 /// A wall that looks to the south at the distance `y`, endless for a window before it, from far below up to `top`.
-fn endless_wall(y: f64, top: f64) -> AddedMeshes {
+fn endless_wall(y: f64, top: f64) -> BlockingTriangles {
     let far = 50_000.0;
     let mesh = Mesh {
         vertices: vec![[-far, y, -far], [far, y, -far], [far, y, top], [-far, y, top]],
         triangles: vec![[0, 1, 2], [0, 2, 3]],
         ..Mesh::default()
     };
-    AddedMeshes::new(&mesh, "wall", [0.0; 3], None, None).unwrap()
+    BlockingTriangles::new(&mesh, "wall", [0.0; 3], None, None).unwrap()
 }
 
 #[test]
 fn a_window_before_an_endless_wall_sees_what_the_closed_form_leaves() {
     let count = 20_000;
     for (distance, height, top) in [(10.0, 4.0, 15.0), (30.0, 2.0, 12.0), (5.0, 8.0, 9.0), (12.0, 9.0, 6.0)] {
-        let scene = level_ground().with_added(Some(endless_wall(distance + WINDOW_LIFT, top)));
+        let scene = level_ground().with_triangles(Some(endless_wall(distance + WINDOW_LIFT, top)));
         let kinds = Kinds { balls: &[SeenKind::Ground], meshes: &[SeenKind::Building] };
         let [view] = views(&scene, &[window([0.0, 0.0, height], 0.0)], kinds, count)[..] else { panic!() };
         // planes through the window that are level along the wall cut the half space in wedges, each with the share of
@@ -234,15 +234,15 @@ fn in_an_exact_town_shares_are_those_of_exact_rays_and_of_any_number_of_threads(
     let exact = town(&TownParams { extent: 100.0, street_furniture: 1.0, ..TownParams::default() });
     let truth = Truth::new(&exact);
     let origin = [154_990.0, 463_010.0, 2.0];
-    let mut added: Option<AddedMeshes> = None;
+    let mut added: Option<BlockingTriangles> = None;
     let kinds = [SeenKind::Ground, SeenKind::Building, SeenKind::Vegetation, SeenKind::Other];
     for seen in kinds {
         let rows = (0..exact.triangles.len()).filter(|&row| kind(exact.materials[row]) == seen);
         let triangles = rows.map(|row| exact.triangles[row]).collect();
         let mesh = Mesh { vertices: exact.vertices.clone(), triangles, ..Mesh::default() };
-        added = Some(AddedMeshes::new(&mesh, seen.name(), origin, None, added.as_ref()).unwrap());
+        added = Some(BlockingTriangles::new(&mesh, seen.name(), origin, None, added.as_ref()).unwrap());
     }
-    let scene = MedialScene::new(&MedialBalls::default(), &BlockRule::carved()).unwrap().with_added(added);
+    let scene = MedialScene::new(&MedialBalls::default(), &BlockRule::carved()).unwrap().with_triangles(added);
     let windows = facade_windows(&exact, &truth, origin, 24);
     assert!(windows.len() >= 20, "{}", windows.len());
     let all = Kinds { balls: &[], meshes: &kinds };

@@ -3,9 +3,9 @@
 use super::super::backend::{BLOCK, Settled, WORD};
 use super::super::far_terrain::hide_behind_terrain;
 use super::super::target_tree::TargetTree;
-use super::super::{AddedMeshes, FarTerrain, MedialScene};
+use super::super::{BlockingTriangles, FarTerrain, MedialScene};
 use super::VisibilityMatrix;
-use super::behind_added::hide_behind_added;
+use super::behind_triangles::hide_behind_triangles;
 use super::looking::{Sky, headings};
 use belvedere_data::control::Control;
 use belvedere_data::vector::{length, piece_in_box};
@@ -236,15 +236,15 @@ impl<'a> FreeLines<'a> {
         words
     }
 
-    /// Takes away what meshes block.
+    /// Takes away what triangles block.
     ///
     /// # Errors
     /// [`Error::Cancelled`].
-    pub fn hide_behind_meshes(&mut self, added: &AddedMeshes, control: &Control<'_>) -> Result<()> {
+    pub fn hide_behind_triangles(&mut self, triangles: &BlockingTriangles, control: &Control<'_>) -> Result<()> {
         if self.width == 0 {
             return Ok(());
         }
-        hide_behind_added(added, self.tree.positions(), self.directions, &mut self.words, control)
+        hide_behind_triangles(triangles, self.tree.positions(), self.directions, &mut self.words, control)
     }
 
     /// Takes away what far terrain blocks.

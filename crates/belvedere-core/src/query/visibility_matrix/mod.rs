@@ -1,6 +1,6 @@
 //! Which of many directions each of many targets sees free: what sun hours, sky views and irradiance are sums over.
 
-mod behind_added;
+mod behind_triangles;
 mod free_lines;
 mod looking;
 mod packet;
@@ -88,8 +88,8 @@ impl VisibilityMatrix {
 }
 
 impl MedialScene {
-    /// Which of `directions`, (D, 3) unit vectors, each of `targets`, (M, 3) local metres, sees free of balls and of
-    /// what was added: for every pair the same as [`MedialScene::answer`] at infinite range, without a test of pulses.
+    /// Which of `directions`, (D, 3) unit vectors, each of `targets`, (M, 3) local metres, sees free of balls and
+    /// triangles: for every pair the same as [`MedialScene::answer`] at infinite range, without a test of pulses.
     /// A target that is not finite sees nothing. Progress counts targets.
     ///
     /// The backend settles most lines of sight ([`super::backend::PreparedBackend::settle`]). What it leaves open is
@@ -107,10 +107,11 @@ impl MedialScene {
     ) -> Result<VisibilityMatrix> {
         let mut free = FreeLines::new(targets, directions)?;
         let columns: Vec<usize> = (0..directions.len()).collect();
-        free.hide_behind_balls(self, &columns, control)?;
-        if let Some(added) = self.added() {
-            free.hide_behind_meshes(added, control)?;
+        // the triangles first: they leave fewer lines to the balls
+        if let Some(triangles) = self.triangles() {
+            free.hide_behind_triangles(triangles, control)?;
         }
+        free.hide_behind_balls(self, &columns, control)?;
         free.hide_behind_terrain(&self.far_terrain, control)?;
         Ok(free.into_matrix())
     }

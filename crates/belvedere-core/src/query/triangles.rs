@@ -1,47 +1,46 @@
-//! Meshes that were added to a scene, such as planned buildings: their triangles block lines of sight exactly, beside
-//! the balls.
+//! Triangles that block lines of sight beside the balls: of meshes that were added to a scene, such as planned
+//! buildings, and of patches of surfaces that are known from the survey.
 
-use super::Coverage;
+use super::{Blocker, Coverage};
+use crate::blocking::{CONTACT, PATCH_DEPTH, Sheet};
 use crate::ground::MapGrid;
 use crate::ray_index::Ray;
 use crate::triangle_tree::{Corners, TriangleTree};
 use belvedere_data::model::FARTHEST;
 use belvedere_data::raster::Raster;
-use belvedere_data::vector::{cross, dot, sub, unit};
-use belvedere_data::{Error, Mesh, Parameter, Result};
+use belvedere_data::vector::{cross, sub, unit};
+use belvedere_data::{Error, Mesh, Parameter, Result, SurfacePatches};
 use std::sync::Arc;
 
-/// Distance from the plane of a triangle up to which an end of a line of sight lies on the triangle, metres: targets
-/// are f32, which is off by 0.1 mm a kilometre from the origin, and a target on a triangle must not be hidden by it.
-const CONTACT: f64 = 1e-3;
 /// Coordinates up to which a mesh may be in degrees rather than metres.
 const MAX_DEGREES: f64 = 360.0;
 
-/// Triangles of meshes that block lines of sight, from both sides, watertight or not.
+/// Triangles that block lines of sight, from both sides, watertight or not: of added meshes and of surface patches.
 ///
-/// A triangle blocks a line of sight that passes through it, edges included, unless an end of the line lies on it:
-/// within 1 mm of its plane. So a target on a roof or a wall is not hidden by that roof or wall, and an eye inside a
-/// closed mesh sees its inside and nothing beyond it.
+/// A triangle blocks a line of sight that passes through it, edges included, unless an end of the line lies on it
+/// ([`Sheet`]): within 1 mm of the plane of a mesh, and up to 0.15 m behind that of a patch. So a target on a roof or a
+/// wall is not hidden by that roof or wall, and an eye inside a closed mesh sees its inside and nothing beyond it.
 #[derive(Clone)]
-pub struct AddedMeshes {
+pub struct BlockingTriangles {
     tree: Arc<TriangleTree>,
     /// For each triangle of the tree.
-    faces: Arc<[AddedFace]>,
+    faces: Arc<[Face]>,
+    /// Of the meshes.
     names: Arc<[String]>,
 }
 
-impl std::fmt::Debug for AddedMeshes {
+impl std::fmt::Debug for BlockingTriangles {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "AddedMeshes({} triangles of {:?})", self.faces.len(), self.names)
+        write!(f, "BlockingTriangles({} triangles, meshes {:?})", self.faces.len(), self.names)
     }
 }
 
 /// What is known of a triangle beside its corners.
 #[derive(Clone, Copy)]
-struct AddedFace {
-    normal: [f64; 3],
-    corner: [f64; 3],
-    mesh: u32,
+struct Face {
+    sheet: Sheet,
+    /// What it is part of: a mesh or a patch.
+    blocker: Blocker,
 }
 
 /// The ends of a line of sight.
@@ -52,7 +51,7 @@ pub(super) struct LineEnds {
     pub(super) viewer: Option<[f64; 3]>,
 }
 
-impl AddedMeshes {
+impl BlockingTriangles {
     /// The triangles of `mesh`, metres of its reference system, called `name`, beside those of `before`, for local
     /// positions relative to `origin`.
     ///
@@ -101,44 +100,60 @@ impl AddedMeshes {
             };
         }
         let mut names: Vec<String> = before.map_or(Vec::new(), |before| before.names.to_vec());
-        #[expect(clippy::cast_possible_truncation, reason = "meshes are numbered with 32 bits")]
-        let number = names.len() as u32;
+        let blocker = Blocker::Mesh(names.len());
         names.push(name.to_owned());
-        let mut triangles: Vec<(Corners, u32)> = before.map_or(Vec::new(), |before| before.numbered().collect());
-        triangles.extend(added.into_iter().map(|corners| (corners, number)));
+        let mut triangles: Vec<(Corners, Blocker)> = before.map_or(Vec::new(), |before| before.labelled().collect());
+        triangles.extend(added.into_iter().map(|corners| (corners, blocker)));
         Self::of_triangles(&triangles, names)
     }
 
-    fn of_triangles(triangles: &[(Corners, u32)], names: Vec<String>) -> Result<Self> {
+    /// The triangles of `patches` beside the meshes of `before`, whose own patches are left out; `None` without any.
+    ///
+    /// # Errors
+    /// Those of [`SurfacePatches::validate`].
+    pub fn of_patches(patches: &SurfacePatches, before: Option<&Self>) -> Result<Option<Self>> {
+        patches.validate()?;
+        let of_patch = patches.iter().map(|(corners, kind)| (corners.map(|p| p.map(f64::from)), Blocker::Patch(kind)));
+        let mut triangles: Vec<(Corners, Blocker)> =
+            of_patch.filter(|(corners, _)| normal(corners).is_some()).collect();
+        let of_meshes = before.into_iter().flat_map(Self::labelled);
+        triangles.extend(of_meshes.filter(|(_, blocker)| blocker.mesh().is_some()));
+        let names = before.map_or(Vec::new(), |before| before.names.to_vec());
+        if triangles.is_empty() { Ok(None) } else { Self::of_triangles(&triangles, names).map(Some) }
+    }
+
+    fn of_triangles(triangles: &[(Corners, Blocker)], names: Vec<String>) -> Result<Self> {
         let corners: Vec<Corners> = triangles.iter().map(|(corners, _)| *corners).collect();
         let tree = TriangleTree::new(&corners)?;
         let face = |(&row, corners): (&u32, &Corners)| {
-            let mesh = triangles.get(row as usize).map_or(0, |(_, mesh)| *mesh);
-            AddedFace { normal: normal(corners).unwrap_or_default(), corner: corners[0], mesh }
+            let blocker = triangles.get(row as usize).map_or(Blocker::Mesh(0), |(_, blocker)| *blocker);
+            let depth = if blocker.patch().is_some() { PATCH_DEPTH } else { CONTACT };
+            let normal = normal(corners).unwrap_or_default();
+            Face { sheet: Sheet { normal, corner: corners[0], depth }, blocker }
         };
         let faces = tree.order().iter().zip(tree.triangles()).map(face).collect();
         Ok(Self { tree: Arc::new(tree), faces, names: names.into() })
     }
 
-    fn numbered(&self) -> impl Iterator<Item = (Corners, u32)> + '_ {
-        self.tree.triangles().iter().zip(self.faces.iter()).map(|(corners, face)| (*corners, face.mesh))
+    fn labelled(&self) -> impl Iterator<Item = (Corners, Blocker)> + '_ {
+        self.tree.triangles().iter().zip(self.faces.iter()).map(|(corners, face)| (*corners, face.blocker))
     }
 
-    /// Corners of the triangles, local metres, (T, 3, 3).
-    #[must_use]
-    pub fn triangles(&self) -> &[Corners] {
-        self.tree.triangles()
+    /// Corners of the triangles, local metres, and what each is part of.
+    pub fn triangles(&self) -> impl Iterator<Item = (&Corners, Blocker)> {
+        self.tree.triangles().iter().zip(self.faces.iter()).map(|(corners, face)| (corners, face.blocker))
     }
 
-    /// These meshes without the triangles for whose middles, local metres, `is_cleared` is true; `None` where none is
-    /// left.
+    /// Without the triangles of meshes for whose middles, local metres, `is_cleared` is true; `None` where none is
+    /// left. Patches stay.
     ///
     /// # Errors
     /// Those of [`TriangleTree::new`].
     pub fn without(&self, is_cleared: impl Fn([f64; 3]) -> bool) -> Result<Option<Self>> {
         let middle =
             |corners: &Corners| std::array::from_fn(|i| corners.iter().map(|corner| corner[i]).sum::<f64>() / 3.0);
-        let left: Vec<(Corners, u32)> = self.numbered().filter(|(corners, _)| !is_cleared(middle(corners))).collect();
+        let stays = |(corners, blocker): &(Corners, Blocker)| blocker.mesh().is_none() || !is_cleared(middle(corners));
+        let left: Vec<(Corners, Blocker)> = self.labelled().filter(stays).collect();
         if left.is_empty() { Ok(None) } else { Self::of_triangles(&left, self.names.to_vec()).map(Some) }
     }
 
@@ -148,17 +163,17 @@ impl AddedMeshes {
         &self.names
     }
 
-    /// Height of the highest triangle above a place on the map, local metres; `None` where there is none.
+    /// Height of the highest mesh above a place on the map, local metres; `None` where there is none.
     #[must_use]
     pub fn top_at(&self, place: [f64; 2]) -> Option<f64> {
         let [low, high] = self.tree.bounds()?;
         let (start, depth) = (high[2] + 1.0, high[2] - low[2] + 1.0);
         let down = Ray { origin: [place[0], place[1], start], direction: [0.0, 0.0, -1.0], ranges: [0.0, depth] };
-        let (_, range) = self.tree.nearest(&down, |_| true)?;
+        let (_, range) = self.tree.nearest(&down, |row| self.is_of_mesh(row))?;
         Some(start - range)
     }
 
-    /// Raises `heights`, local metres at the cells of `grid`, to the highest triangle above the middle of each cell.
+    /// Raises `heights`, local metres at the cells of `grid`, to the highest mesh above the middle of each cell.
     pub fn raise(&self, heights: &mut Raster<f32>, grid: &MapGrid) {
         for (cell, height) in heights.values_mut().iter_mut().enumerate() {
             let Some(top) = self.top_at(grid.center(cell % grid.width, cell / grid.width)) else { continue };
@@ -177,16 +192,16 @@ impl AddedMeshes {
         if !place.iter().all(|v| v.is_finite()) {
             return false;
         }
-        let is_inside = |mesh: usize| {
+        let is_inside = |mesh: Blocker| {
             [[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]].into_iter().all(|direction| {
                 let ray = Ray { origin: place, direction, ranges: [0.0, f64::INFINITY] };
                 self.passages(&ray).iter().filter(|passage| passage.0 == mesh).count() % 2 == 1
             })
         };
         let up = Ray { origin: place, direction: [0.0, 0.0, 1.0], ranges: [0.0, f64::INFINITY] };
-        let mut above: Vec<usize> = self.passages(&up).into_iter().map(|(mesh, _)| mesh).collect();
+        let mut above: Vec<Blocker> = self.passages(&up).into_iter().map(|(blocker, _)| blocker).collect();
         above.dedup();
-        above.into_iter().any(is_inside)
+        above.into_iter().filter(|blocker| blocker.mesh().is_some()).any(is_inside)
     }
 
     /// Whether a triangle blocks the line of sight from `target` to `range` metres (infinite for a direction) along the
@@ -198,13 +213,25 @@ impl AddedMeshes {
         self.blocks_piece(&ray, &ends)
     }
 
+    /// Calls `visit` with the numbers of those of the lines of sight from `targets`, neighbours together, along the unit
+    /// vector `towards` without end that a triangle blocks: those that [`BlockingTriangles::blocks`] finds.
+    pub(super) fn each_blocked(&self, targets: &[[f64; 3]], towards: [f64; 3], mut visit: impl FnMut(usize)) {
+        self.tree.any_of(targets, towards, |number, row| {
+            let blocks = self.is_between(row, &LineEnds { target: targets[number], viewer: None });
+            if blocks {
+                visit(number);
+            }
+            blocks
+        });
+    }
+
     /// Whether a triangle blocks the piece `ray` of a line of sight between `ends`.
     pub(super) fn blocks_piece(&self, ray: &Ray, ends: &LineEnds) -> bool {
         self.tree.any(ray, |row| self.is_between(row, ends))
     }
 
-    /// The mesh that the piece `ray` of a line of sight between `ends` meets last, by its number, and the range.
-    pub(super) fn farthest(&self, ray: &Ray, ends: &LineEnds) -> Option<(usize, f64)> {
+    /// What the piece `ray` of a line of sight between `ends` meets last, and the range.
+    pub(super) fn farthest(&self, ray: &Ray, ends: &LineEnds) -> Option<(Blocker, f64)> {
         let mut last: Option<(usize, f64)> = None;
         self.tree.each(ray, |row, range| {
             if self.is_between(row, ends) && last.is_none_or(|(_, farthest)| range > farthest) {
@@ -212,22 +239,22 @@ impl AddedMeshes {
             }
         });
         let (row, range) = last?;
-        Some((self.faces.get(row)?.mesh as usize, range))
+        Some((self.faces.get(row)?.blocker, range))
     }
 
-    /// The mesh that the piece `ray` of a line of sight between `ends` meets first, by its number, and the range.
-    pub(super) fn nearest(&self, ray: &Ray, ends: &LineEnds) -> Option<(usize, f64)> {
+    /// What the piece `ray` of a line of sight between `ends` meets first, and the range.
+    pub(super) fn nearest(&self, ray: &Ray, ends: &LineEnds) -> Option<(Blocker, f64)> {
         let (row, range) = self.tree.nearest(ray, |row| self.is_between(row, ends))?;
-        Some((self.faces.get(row)?.mesh as usize, range))
+        Some((self.faces.get(row)?.blocker, range))
     }
 
     /// The triangles that the piece `ray` of a line of sight between `ends` passes through.
-    pub(super) fn each_blocking(&self, ray: &Ray, ends: &LineEnds, mut visit: impl FnMut(&Corners)) {
+    pub(super) fn each_blocking(&self, ray: &Ray, ends: &LineEnds, mut visit: impl FnMut(&Corners, &Sheet)) {
         self.tree.each(ray, |row, _| {
             if self.is_between(row, ends)
-                && let Some(corners) = self.tree.triangles().get(row)
+                && let (Some(corners), Some(face)) = (self.tree.triangles().get(row), self.faces.get(row))
             {
-                visit(corners);
+                visit(corners, &face.sheet);
             }
         });
     }
@@ -247,11 +274,11 @@ impl AddedMeshes {
         rows.into_iter().filter_map(|row| self.tree.triangles().get(row))
     }
 
-    /// Where a line passes through surfaces, by the number of the mesh and the range, in this order.
-    pub(super) fn passages(&self, ray: &Ray) -> Vec<(usize, f64)> {
+    /// Where a line passes through surfaces: of what, and the range, in this order.
+    pub(super) fn passages(&self, ray: &Ray) -> Vec<(Blocker, f64)> {
         let mut passages = Vec::new();
         self.tree.each(ray, |row, range| {
-            passages.extend(self.faces.get(row).map(|face| (face.mesh as usize, range)));
+            passages.extend(self.faces.get(row).map(|face| (face.blocker, range)));
         });
         passages.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
         // on an edge that two triangles share both are met
@@ -259,11 +286,11 @@ impl AddedMeshes {
         passages
     }
 
-    /// The triangles in whose planes `eye` does not lie, with the numbers of their meshes.
-    pub(super) fn before(&self, eye: [f64; 3]) -> impl Iterator<Item = (Corners, usize)> + '_ {
-        let seen = move |(_, face): &(&Corners, &AddedFace)| !face.touches(eye);
+    /// The triangles that do not give way to `eye`, and what they are part of.
+    pub(super) fn before(&self, eye: [f64; 3]) -> impl Iterator<Item = (Corners, Blocker)> + '_ {
+        let seen = move |(_, face): &(&Corners, &Face)| !face.sheet.gives_way_to(eye);
         let faces = self.tree.triangles().iter().zip(self.faces.iter()).filter(seen);
-        faces.map(|(corners, face)| (*corners, face.mesh as usize))
+        faces.map(|(corners, face)| (*corners, face.blocker))
     }
 
     /// Lowest and highest corner of all triangles.
@@ -271,15 +298,13 @@ impl AddedMeshes {
         self.tree.bounds().unwrap_or([[f64::NAN; 3]; 2])
     }
 
-    fn is_between(&self, row: usize, ends: &LineEnds) -> bool {
-        let touches = |end: [f64; 3]| self.faces.get(row).is_none_or(|face| face.touches(end));
-        !touches(ends.target) && !ends.viewer.is_some_and(touches)
+    fn is_of_mesh(&self, row: usize) -> bool {
+        self.faces.get(row).is_some_and(|face| face.blocker.mesh().is_some())
     }
-}
 
-impl AddedFace {
-    fn touches(&self, place: [f64; 3]) -> bool {
-        dot(self.normal, sub(place, self.corner)).abs() <= CONTACT
+    fn is_between(&self, row: usize, ends: &LineEnds) -> bool {
+        let gives_way = |end: [f64; 3]| self.faces.get(row).is_none_or(|face| face.sheet.gives_way_to(end));
+        !gives_way(ends.target) && !ends.viewer.is_some_and(gives_way)
     }
 }
 

@@ -1,0 +1,99 @@
+//! Surface patches of tiles. A tile keeps all triangles that reach into it: some are kept by several tiles, which
+//! changes no answer, and wherever a line of sight meets one, the tile there has it.
+
+use crate::grid::{MapArea, TOP_SIDE, square_at};
+use crate::lines::{AreaLines, ROOM};
+use belvedere::SurfacePatches;
+use belvedere::model::ClearedArea;
+use belvedere::patches::PatchTriangle;
+use std::collections::BTreeMap;
+
+/// The patches that reach into the `core` of a tile, without what is cleared.
+pub(crate) fn of_tile(patches: &SurfacePatches, core: &MapArea, cleared: &[ClearedArea]) -> SurfacePatches {
+    let mut own = chosen(patches, |area, _| area.meets(core));
+    for area in cleared {
+        match area {
+            ClearedArea::Polygon(rings) => own = own.outside(rings),
+            ClearedArea::Class(SurfacePatches::CLASS) => own = SurfacePatches::default(),
+            ClearedArea::Class(_) => {}
+        }
+    }
+    own
+}
+
+/// Adds those of `patches` to `all` that may block one of `lines`.
+pub(crate) fn add_blocking(all: &mut SurfacePatches, patches: &SurfacePatches, lines: &AreaLines<'_>) {
+    chosen(patches, |area, top| lines.may_meet(area, top)).iter().for_each(|(corners, kind)| all.push(*corners, kind));
+}
+
+/// Raises the highest tops over squares of 16 m to the patches that reach into them.
+pub(crate) fn raise(tops: Vec<([i32; 2], f32)>, patches: &SurfacePatches) -> Vec<([i32; 2], f32)> {
+    let mut tops: BTreeMap<[i32; 2], f32> = tops.into_iter().collect();
+    for triangle in &patches.triangles {
+        let bound = |pick: fn(f32, f32) -> f32, axis: usize| {
+            triangle.iter().map(|corner| corner[axis]).fold(triangle[0][axis], pick)
+        };
+        let [first, last] = [f32::min, f32::max].map(|pick| square_at([bound(pick, 0), bound(pick, 1)], TOP_SIDE));
+        for north in first[1]..=last[1] {
+            for east in first[0]..=last[0] {
+                let top = tops.entry([east, north]).or_insert(f32::NEG_INFINITY);
+                *top = top.max(bound(f32::max, 2));
+            }
+        }
+    }
+    tops.into_iter().collect()
+}
+
+/// The patches that `is_chosen` chooses by their area on the map and their top.
+fn chosen(patches: &SurfacePatches, is_chosen: impl Fn(&MapArea, f64) -> bool) -> SurfacePatches {
+    let mut chosen = SurfacePatches::default();
+    for (triangle, kind) in patches.iter() {
+        let (area, top) = area_and_top(triangle);
+        if is_chosen(&area, top) {
+            chosen.push(*triangle, kind);
+        }
+    }
+    chosen
+}
+
+/// The rectangle around a triangle on the map, with room for one that stands upright, and its top, local metres.
+fn area_and_top(triangle: &PatchTriangle) -> (MapArea, f64) {
+    let corners = triangle.map(|corner| corner.map(f64::from));
+    let around = corners.map(MapArea::at).iter().fold(MapArea::at(corners[0]), |all, own| all.joined(own));
+    (around.widened(ROOM), corners.iter().map(|corner| corner[2]).fold(f64::NEG_INFINITY, f64::max))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use belvedere::PatchKind;
+
+    /// A wall of 40 m along the edge between two tiles, and a roof that reaches into both.
+    fn patches() -> SurfacePatches {
+        let mut patches = SurfacePatches::default();
+        patches.push([[64.0, 10.0, 0.0], [64.0, 50.0, 0.0], [64.0, 50.0, 12.0]], PatchKind::Wall);
+        patches.push([[50.0, 10.0, 9.0], [80.0, 10.0, 9.0], [80.0, 30.0, 14.0]], PatchKind::Roof);
+        patches.push([[1.0, 1.0, 4.0], [9.0, 1.0, 4.0], [9.0, 9.0, 4.0]], PatchKind::Roof);
+        patches
+    }
+
+    #[test]
+    fn a_tile_keeps_what_reaches_into_it() {
+        let [west, east] = [0.0, 64.0].map(|x| MapArea { low: [x, 0.0], high: [x + 64.0, 64.0] });
+        let far = MapArea { low: [128.0, 0.0], high: [192.0, 64.0] };
+        assert_eq!(of_tile(&patches(), &west, &[]), patches());
+        assert_eq!(of_tile(&patches(), &east, &[]).len(), 2);
+        assert!(of_tile(&patches(), &far, &[]).is_empty());
+        let square = ClearedArea::Polygon(vec![vec![[0.0, 0.0], [12.0, 0.0], [12.0, 12.0], [0.0, 12.0]]]);
+        assert_eq!(of_tile(&patches(), &west, &[square, ClearedArea::Class(5)]).len(), 2);
+        assert!(of_tile(&patches(), &west, &[ClearedArea::Class(6)]).is_empty());
+    }
+
+    #[test]
+    fn tops_are_raised_to_patches() {
+        let tops = raise(vec![([0, 0], 7.0), ([4, 1], 20.0)], &patches());
+        let of = |square: [i32; 2]| tops.iter().find(|(at, _)| *at == square).map(|(_, top)| *top);
+        assert_eq!((of([0, 0]), of([4, 1]), of([4, 2]), of([3, 0])), (Some(7.0), Some(20.0), Some(12.0), Some(14.0)));
+        assert_eq!((of([5, 1]), of([6, 0])), (Some(14.0), None));
+    }
+}
