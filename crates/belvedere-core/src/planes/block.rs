@@ -33,20 +33,42 @@ pub(super) struct Return {
 pub(super) struct Block {
     /// Corner of the block in local metres, height 0.
     pub(super) corner: [f64; 3],
-    /// Sorted by position.
+    /// Sorted by cell, and by position in each.
     pub(super) returns: Vec<Return>,
-    /// Rows of returns in each cell of the grid.
-    cells: Vec<Vec<u32>>,
-    /// Lowest corner of the grid.
-    low: [f64; 2],
-    /// Columns and rows of the grid.
-    size: [usize; 2],
+    /// First return of each cell of the grid, and the end.
+    cells: Vec<u32>,
+    grid: Grid,
     /// Lowest return.
     pub(super) lowest: f64,
     /// Most lean of a pulse.
     max_lean: f64,
-    /// Number of first returns in each square metre of the grid, in its own order.
+    /// Number of first returns in each cell of the grid.
     counts: Vec<u32>,
+}
+
+/// The cells of a block and what lies about it.
+#[derive(Clone, Copy)]
+struct Grid {
+    /// How far it reaches beyond the block, metres.
+    margin: f64,
+    /// Columns, and rows.
+    side: usize,
+}
+
+impl Grid {
+    fn new(margin: f64) -> Self {
+        Self { margin, side: count_of((BLOCK + 2.0 * margin) / CELL) + 1 }
+    }
+
+    /// Column or row of a coordinate, the nearest one for those beyond.
+    fn cell(&self, v: f64) -> usize {
+        count_of((v + self.margin) / CELL).min(self.side - 1)
+    }
+
+    /// Number of the cell of a place.
+    fn number(&self, p: [f64; 3]) -> usize {
+        self.cell(p[1]) * self.side + self.cell(p[0])
+    }
 }
 
 /// A block and the rows of its points and of those about it.
@@ -68,14 +90,19 @@ pub(super) fn blocks(
     let mut rows_of: BTreeMap<[i64; 2], (bool, Vec<u32>)> = BTreeMap::new();
     #[expect(clippy::cast_possible_truncation, reason = "positions of a cloud are far below 2^63 blocks")]
     let number = |v: f64| (v / BLOCK).floor() as i64;
+    let mut buildings = 0_u32;
     for (row, p) in survey.positions.iter().enumerate() {
         if row % 65_536 == 0 {
             control.check()?;
         }
         let Ok(short) = u32::try_from(row) else { break };
+        let (is_building, is_first) = (is_building(survey, row), is_first(survey, row));
+        if !(is_building || is_first) {
+            continue;
+        }
+        buildings += u32::from(is_building);
         let [x, y] = [0, 1].map(|axis| f64::from(p[axis]) + survey.origin[axis]);
         let own = [number(x), number(y)];
-        let is_building = is_building(survey, row);
         for column in number(x - params.margin)..=number(x + params.margin) {
             for line in number(y - params.margin)..=number(y + params.margin) {
                 let (holds, rows) = rows_of.entry([column, line]).or_default();
@@ -84,8 +111,13 @@ pub(super) fn blocks(
             }
         }
     }
-    let with_buildings = rows_of.into_iter().filter(|(_, (holds, _))| *holds);
+    let with_buildings = rows_of.into_iter().filter(|(_, (holds, _))| *holds && buildings > 0);
     Ok(with_buildings.map(|(number, (_, rows))| BlockRows { number, rows }).collect())
+}
+
+/// Whether a point is the first return of its pulse.
+fn is_first(survey: &SurveyPoints<'_>, row: usize) -> bool {
+    survey.attributes.return_number.as_ref().and_then(|numbers| numbers.get(row)).is_none_or(|&number| number <= 1)
 }
 
 /// Whether a point may lie on a building.
@@ -99,83 +131,75 @@ fn is_building(survey: &SurveyPoints<'_>, row: usize) -> bool {
 
 impl Block {
     /// The points of a block.
-    ///
-    /// # Errors
-    /// None so far.
-    pub(super) fn new(survey: &SurveyPoints<'_>, block: BlockRows) -> Result<Self> {
+    pub(super) fn new(survey: &SurveyPoints<'_>, block: BlockRows, margin: f64) -> Self {
         #[expect(clippy::cast_precision_loss, reason = "numbers of blocks")]
         let [x, y] = [0, 1].map(|axis| block.number[axis] as f64 * BLOCK - survey.origin[axis]);
         let corner = [x, y, 0.0];
-        let number_of = |row: usize| survey.attributes.return_number.as_ref().and_then(|n| n.get(row)).copied();
-        let count_of = |row: usize| survey.attributes.return_count.as_ref().and_then(|n| n.get(row)).copied();
-        let mut returns: Vec<Return> = Vec::with_capacity(block.rows.len());
-        for row in block.rows.into_iter().map(|row| row as usize) {
-            let (is_first, is_building) = (number_of(row).is_none_or(|n| n <= 1), is_building(survey, row));
-            if !(is_first || is_building) {
-                continue;
-            }
+        let grid = Grid::new(margin);
+        let counts = survey.attributes.return_count.as_deref();
+        let read = |row: usize| {
             let (at, from) = (survey.positions[row], survey.scanner[row]);
             let way: [f64; 3] = std::array::from_fn(|i| f64::from(from[i]) - f64::from(at[i]));
             let is_flown = way[2] > MIN_UP * way[0].hypot(way[1]);
-            let lean = if is_flown { [way[0] / way[2], way[1] / way[2]] } else { [f64::NAN; 2] };
-            let p = std::array::from_fn(|i| f64::from(at[i]) - corner[i]);
-            let is_split = count_of(row).is_some_and(|n| n > 1);
-            returns.push(Return { p, lean, is_building, is_first, is_split });
+            Return {
+                p: std::array::from_fn(|i| f64::from(at[i]) - corner[i]),
+                lean: if is_flown { [way[0] / way[2], way[1] / way[2]] } else { [f64::NAN; 2] },
+                is_building: is_building(survey, row),
+                is_first: is_first(survey, row),
+                is_split: counts.and_then(|counts| counts.get(row)).is_some_and(|&count| count > 1),
+            }
+        };
+        // keys are sorted rather than returns, which are longer
+        let mut keys: Vec<(u32, [u32; 3], u32)> = Vec::with_capacity(block.rows.len());
+        for row in block.rows {
+            let at = survey.positions[row as usize];
+            let cell = grid.number(std::array::from_fn(|i| f64::from(at[i]) - corner[i]));
+            keys.push((u32::try_from(cell).unwrap_or(u32::MAX), at.map(ordered), row));
         }
-        returns.sort_unstable_by(|a, b| {
-            let by_place = (0..3).fold(Ordering::Equal, |order, i| order.then(a.p[i].total_cmp(&b.p[i])));
-            let by_lean = (0..2).fold(by_place, |order, i| order.then(a.lean[i].total_cmp(&b.lean[i])));
-            by_lean.then(b.is_first.cmp(&a.is_first)).then(b.is_split.cmp(&a.is_split))
-        });
-        Ok(Self::indexed(corner, returns))
+        keys.sort_unstable_by_key(|key| (key.0, key.1));
+        let mut returns: Vec<Return> = keys.iter().map(|key| read(key.2 as usize)).collect();
+        // what lies in one place has an order of its own
+        let mut first = 0;
+        for group in keys.chunk_by(|a, b| a.1 == b.1) {
+            if group.len() > 1 {
+                returns[first..first + group.len()].sort_unstable_by(|a, b| {
+                    let by_lean = (0..2).fold(Ordering::Equal, |order, i| order.then(a.lean[i].total_cmp(&b.lean[i])));
+                    let flags = |r: &Return| [r.is_building, r.is_first, r.is_split];
+                    by_lean.then(flags(a).cmp(&flags(b)))
+                });
+            }
+            first += group.len();
+        }
+        Self::indexed(corner, grid, returns)
     }
 
     /// A block of sorted returns.
-    fn indexed(corner: [f64; 3], returns: Vec<Return>) -> Self {
-        let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+    fn indexed(corner: [f64; 3], grid: Grid, returns: Vec<Return>) -> Self {
         let (mut lowest, mut max_lean) = (f64::INFINITY, 0.0_f64);
+        let mut counts = vec![0; grid.side * grid.side];
+        let mut cells = vec![0_u32; grid.side * grid.side + 1];
         for found in &returns {
-            for axis in 0..2 {
-                low[axis] = low[axis].min(found.p[axis]);
-                high[axis] = high[axis].max(found.p[axis]);
-            }
             lowest = lowest.min(found.p[2]);
-            max_lean = max_lean.max(found.lean[0].hypot(found.lean[1]));
+            let lean = found.lean[0].powi(2) + found.lean[1].powi(2);
+            max_lean = max_lean.max(lean);
+            let cell = grid.number(found.p);
+            counts[cell] += u32::from(found.is_first);
+            cells[cell + 1] += 1;
         }
-        let size = [0, 1].map(|axis| count_of((high[axis] - low[axis]).max(0.0) / CELL) + 1);
-        let mut block = Self {
-            corner,
-            cells: vec![Vec::new(); size[0] * size[1]],
-            counts: vec![0; size[0] * size[1]],
-            returns,
-            low,
-            size,
-            lowest,
-            max_lean,
-        };
-        for row in 0..block.returns.len() {
-            let [column, line] = block.cell(block.returns[row].p);
-            let cell = line * block.size[0] + column;
-            block.counts[cell] += u32::from(block.returns[row].is_first);
-            block.cells[cell].extend(u32::try_from(row));
+        for cell in 1..cells.len() {
+            cells[cell] += cells[cell - 1];
         }
-        block
-    }
-
-    /// Column and row of the cell of a place, the nearest one for places beyond.
-    fn cell(&self, p: [f64; 3]) -> [usize; 2] {
-        [0, 1].map(|axis| count_of((p[axis] - self.low[axis]) / CELL).min(self.size[axis] - 1))
+        Self { corner, returns, cells, grid, lowest, max_lean: max_lean.sqrt(), counts }
     }
 
     /// Calls `visit` with every return between two corners in plan, and some about them.
     pub(super) fn each_in(&self, low: [f64; 2], high: [f64; 2], mut visit: impl FnMut(usize, &Return)) {
-        let [from, to] = [low, high].map(|p| self.cell([p[0], p[1], 0.0]));
-        for line in from[1]..=to[1] {
-            for column in from[0]..=to[0] {
-                for &row in &self.cells[line * self.size[0] + column] {
-                    let row = row as usize;
-                    visit(row, &self.returns[row]);
-                }
+        let [columns, rows] = [0, 1].map(|axis| [self.grid.cell(low[axis]), self.grid.cell(high[axis])]);
+        for row in rows[0]..=rows[1] {
+            let first = row * self.grid.side;
+            let [from, to] = [first + columns[0], first + columns[1] + 1].map(|cell| self.cells[cell] as usize);
+            for (row, found) in self.returns[from..to].iter().enumerate() {
+                visit(from + row, found);
             }
         }
     }
@@ -187,11 +211,14 @@ impl Block {
 
     /// Mean distance of pulses about a place, metres.
     pub(super) fn spacing(&self, p: [f64; 3]) -> f64 {
-        let [column, line] = self.cell(p);
+        let [columns, rows] = [0, 1].map(|axis| {
+            let cell = self.grid.cell(p[axis]);
+            cell.saturating_sub(1)..=(cell + 1).min(self.grid.side - 1)
+        });
         let (mut count, mut cells) = (0, 0.0);
-        for line in line.saturating_sub(1)..=(line + 1).min(self.size[1] - 1) {
-            for column in column.saturating_sub(1)..=(column + 1).min(self.size[0] - 1) {
-                count += self.counts[line * self.size[0] + column];
+        for row in rows {
+            for column in columns.clone() {
+                count += self.counts[row * self.grid.side + column];
                 cells += 1.0;
             }
         }
@@ -310,6 +337,12 @@ impl Block {
             }
         }
     }
+}
+
+/// A number whose order is that of coordinates, bit by bit.
+fn ordered(v: f32) -> u32 {
+    let bits = v.to_bits();
+    if bits >> 31 == 0 { bits | 1 << 31 } else { !bits }
 }
 
 /// A number of cells, 0 for what is below.

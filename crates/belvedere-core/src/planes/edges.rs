@@ -4,7 +4,7 @@ use super::PlaneParams;
 use super::block::Block;
 use super::line::PlanLine;
 use super::ridges::RidgeLine;
-use super::roof_planes::{NONE, Roof, Roofs};
+use super::roof_planes::{NONE, Roofs};
 use delaunator::{EMPTY, Point, triangulate};
 
 /// How far below the plane a pulse must end to have passed it, metres.
@@ -51,6 +51,18 @@ pub(super) struct Passed {
     pub(super) p: [f64; 2],
     /// How far below the plane it ended, metres.
     pub(super) depth: f64,
+    /// The plane it ended on, [`NONE`] for none.
+    pub(super) on: u32,
+}
+
+/// A return of a building above a plane.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Standing {
+    pub(super) p: [f64; 2],
+    /// How far above the plane, metres.
+    pub(super) above: f64,
+    /// Whether it lies on no plane of its own.
+    pub(super) is_loose: bool,
 }
 
 /// What bounds a plane.
@@ -59,11 +71,15 @@ pub(super) struct Outline {
     pub(super) edges: Vec<EdgeLine>,
     /// Returns within: of the plane, and of what stands on it.
     pub(super) inside: Vec<[f64; 2]>,
+    /// How many of these, the first, are of the plane itself.
+    pub(super) own: usize,
     /// Returns of the plane whose pulse went on beside it. Where a beam is split the edge lies in its middle, wherever
     /// the return is: it is no more within than without.
     pub(super) split: Vec<[f64; 2]>,
     /// Pulses that passed near it.
     pub(super) passed: Vec<Passed>,
+    /// What stands on it.
+    pub(super) standing: Vec<Standing>,
 }
 
 /// A middle of a side between a return and a pulse that passed.
@@ -85,8 +101,8 @@ pub(super) fn find(
     params: &PlaneParams,
 ) -> Outline {
     let roof = &roofs.planes[plane];
-    let (mut outline, own) = samples(block, roofs, ridges, plane);
-    let middles = middles(&outline, own, roof.spacing);
+    let mut outline = samples(block, roofs, ridges, plane);
+    let middles = middles(&outline, roof.spacing);
     outline.edges = lines(&middles, roof.spacing, params);
     meet(&mut outline.edges, ridges, plane, END_SPACINGS * roof.spacing);
     outline
@@ -143,8 +159,8 @@ fn index(length: f64, cell: f64) -> usize {
     index
 }
 
-/// Returns within a plane and pulses that passed it, and how many of the first lie on the plane itself.
-fn samples(block: &Block, roofs: &Roofs, ridges: &[RidgeLine], plane: usize) -> (Outline, usize) {
+/// Returns within a plane and pulses that passed it.
+fn samples(block: &Block, roofs: &Roofs, ridges: &[RidgeLine], plane: usize) -> Outline {
     let roof = &roofs.planes[plane];
     let mut inside: Vec<[f64; 2]> = Vec::with_capacity(roof.rows.len() * 5 / 4);
     let mut split = Vec::new();
@@ -162,7 +178,7 @@ fn samples(block: &Block, roofs: &Roofs, ridges: &[RidgeLine], plane: usize) -> 
         ridges.iter().filter(|ridge| ridge.is_convex && ridge.planes.contains(&plane)).map(|ridge| {
             if ridge.planes[0] == plane { ridge.planes[1] } else { ridge.planes[0] }
         }).collect();
-    let mut passed = Vec::new();
+    let (mut passed, mut standing) = (Vec::new(), Vec::new());
     let (low, high) = (near.low, near.high());
     let corners = [[low[0], low[1]], [low[0], high[1]], [high[0], low[1]], [high[0], high[1]]];
     let top = corners.iter().map(|&p| roof.plane.height(p)).fold(f64::NEG_INFINITY, f64::max);
@@ -177,6 +193,7 @@ fn samples(block: &Block, roofs: &Roofs, ridges: &[RidgeLine], plane: usize) -> 
         if above > 0.0 {
             if found.is_building && above < ABOVE && above > 3.0 * roofs.noise && near.holds(at) {
                 inside.push(at);
+                standing.push(Standing { p: at, above, is_loose: on == NONE });
             }
             return;
         }
@@ -184,14 +201,14 @@ fn samples(block: &Block, roofs: &Roofs, ridges: &[RidgeLine], plane: usize) -> 
             return;
         }
         if let Some(p) = roof.plane.crossing(found.p, found.lean).filter(|&p| near.holds(p)) {
-            passed.push(Passed { p, depth: -above });
+            passed.push(Passed { p, depth: -above, on });
         }
     });
-    (Outline { edges: Vec::new(), inside, split, passed }, own)
+    Outline { edges: Vec::new(), inside, own, split, passed, standing }
 }
 
 /// Middles of the sides between returns and pulses that passed, in the triangulation of both.
-fn middles(outline: &Outline, own: usize, spacing: f64) -> Vec<Middle> {
+fn middles(outline: &Outline, spacing: f64) -> Vec<Middle> {
     let passed: Vec<&Passed> = outline.passed.iter().filter(|passed| passed.depth > PASSED).collect();
     let inside = outline.inside.len();
     if passed.is_empty() {
@@ -221,7 +238,7 @@ fn middles(outline: &Outline, own: usize, spacing: f64) -> Vec<Middle> {
             p: [f64::midpoint(a.x, b.x), f64::midpoint(a.y, b.y)],
             out: [x / length, y / length],
             depth: passed[out - inside].depth,
-            is_own: within < own,
+            is_own: within < outline.own,
         });
     }
     middles.sort_unstable_by(|a, b| a.p[0].total_cmp(&b.p[0]).then(a.p[1].total_cmp(&b.p[1])));
@@ -354,10 +371,4 @@ fn meet(edges: &mut [EdgeLine], ridges: &[RidgeLine], plane: usize, reach: f64) 
             edge.line.ends = lines[number].ends;
         }
     }
-}
-
-/// Length and spacing of a roof, for tests.
-#[allow(dead_code, reason = "read by other files of this module")]
-pub(super) fn spacing_of(roof: &Roof) -> f64 {
-    roof.spacing
 }

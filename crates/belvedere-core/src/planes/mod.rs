@@ -18,6 +18,7 @@ mod patches;
 mod regions;
 mod ridges;
 mod roof_planes;
+mod sheets;
 mod walls;
 
 pub use regions::{Region, SurfaceRegions};
@@ -33,7 +34,8 @@ pub(crate) const BLOCK: f64 = 64.0;
 /// How surfaces of buildings are found.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlaneParams {
-    /// How far beyond a block points are looked at, metres. Default 16.
+    /// How far beyond a block points are looked at, metres. Default 8: with 16 nothing is
+    /// found better.
     pub margin: f64,
     /// Least number of points on a plane of a roof. Default 12.
     pub min_points: usize,
@@ -52,7 +54,7 @@ pub struct PlaneParams {
 impl Default for PlaneParams {
     fn default() -> Self {
         Self {
-            margin: 16.0,
+            margin: 8.0,
             min_points: 12,
             max_edge_sd: 0.05,
             min_wall_share: 0.6,
@@ -160,6 +162,10 @@ pub enum PatchKind {
     Wall,
     /// A sheet on the edge of a roof.
     Parapet,
+    /// A sheet from the edge of a roof down to a roof close below it.
+    Step,
+    /// A side of something that stands on a roof.
+    Box,
     /// An upright sheet within a building, from the roof to the ground.
     Inside,
 }
@@ -206,7 +212,7 @@ impl BuildingSurfaces {
 pub fn find(survey: &SurveyPoints<'_>, params: &PlaneParams, control: &Control<'_>) -> Result<BuildingSurfaces> {
     let blocks = blocks(survey, params, control)?;
     let found: Vec<Result<BuildingSurfaces>> =
-        blocks.into_par_iter().map(|block| of_block(&Block::new(survey, block)?, params, control)).collect();
+        blocks.into_par_iter().map(|block| of_block(&Block::new(survey, block, params.margin), params, control)).collect();
     let mut surfaces = BuildingSurfaces::default();
     for block in found {
         surfaces.append(block?);
@@ -226,7 +232,7 @@ fn of_block(block: &Block, params: &PlaneParams, control: &Control<'_>) -> Resul
     let leaves = patches::roofs(block, &roofs, &ridges, &outlines);
     let mut found = BuildingSurfaces::default();
     patches::give_out(block, &roofs, &leaves, &walls, params, &mut found);
-    patches::within(block, &roofs, &outlines, &walls, &mut found);
+    sheets::give_out(block, &roofs, &outlines, &walls, &mut found);
     found.regions = regions::of_block(block, &roofs, &outlines, &walls, &leaves);
     block.give_out(&roofs, &ridges, &outlines, &walls, &mut found);
     Ok(found)

@@ -5,11 +5,14 @@ use super::edges::Outline;
 use super::line::{PlanLine, area, clip};
 use super::ridges::RidgeLine;
 use super::roof_planes::Roofs;
+use super::sheets::Sheet;
 use super::walls::WallLine;
 use super::{BLOCK, BuildingSurfaces, PatchKind, PlaneParams};
 
 /// Side of the cells in which it is decided whether a surface is there, metres.
 const CELL: f64 = 0.25;
+/// Side of the cells of walls, metres.
+const WALL_CELL: f64 = 0.5;
 /// How far from a return a roof goes on, spacings: elsewhere, and beside an edge.
 const NEAR_SPACINGS: f64 = 1.5;
 const BESIDE_SPACINGS: f64 = 2.2;
@@ -23,12 +26,6 @@ const RIDGE_BEYOND: f64 = 0.6;
 const MIN_SPLIT: f64 = 0.3;
 /// Smallest piece of a surface, m².
 const MIN_AREA: f64 = 0.005;
-/// How far within the edge of a roof the building is solid, metres.
-const WITHIN: f64 = 0.5;
-/// Least height of an edge above what lies below it for that, metres.
-const MIN_DROP: f64 = 2.0;
-/// How far a pulse must pass from both ends of an upright sheet to contradict it, metres.
-const CLEAR: f64 = 0.3;
 
 /// A convex piece of a roof in plan, counter-clockwise.
 #[derive(Clone, Debug)]
@@ -338,7 +335,7 @@ pub(super) fn give_out(
 }
 
 /// Adds a convex polygon, counter-clockwise seen from outside, as triangles about its first corner.
-fn fan(block: &Block, corners: &[[f64; 3]], kind: PatchKind, found: &mut BuildingSurfaces) {
+pub(super) fn fan(block: &Block, corners: &[[f64; 3]], kind: PatchKind, found: &mut BuildingSurfaces) {
     #[expect(clippy::cast_possible_truncation, reason = "local positions are f32")]
     let local = |p: [f64; 3]| block.local(p).map(|v| v as f32);
     let Some((&first, rest)) = corners.split_first() else { return };
@@ -356,7 +353,7 @@ fn close_wall(block: &Block, roofs: &Roofs, wall: &WallLine, reach: f64, found: 
     let [low, high] = [wall.bottom - reach, heights[0].max(heights[1])];
     let count = |length: f64| {
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "cells of a wall, and saturating")]
-        let count = (length / CELL).ceil().max(0.0) as usize;
+        let count = (length / WALL_CELL).ceil().max(0.0) as usize;
         count
     };
     let size = [count(to - from), count(high - low)];
@@ -365,7 +362,7 @@ fn close_wall(block: &Block, roofs: &Roofs, wall: &WallLine, reach: f64, found: 
         let columns = count(t - reach - from).saturating_sub(1)..count(t + reach - from).min(size[0]);
         for column in columns {
             for row in count(z - reach - low).saturating_sub(1)..count(z + reach - low).min(size[1]) {
-                let [x, y] = [from + (column as f64 + 0.5) * CELL - t, low + (row as f64 + 0.5) * CELL - z];
+                let [x, y] = [from + (column as f64 + 0.5) * WALL_CELL - t, low + (row as f64 + 0.5) * WALL_CELL - z];
                 counts[row * size[0] + column] |= x.hypot(y) <= reach;
             }
         }
@@ -383,114 +380,8 @@ fn close_wall(block: &Block, roofs: &Roofs, wall: &WallLine, reach: f64, found: 
     }
     for rectangle in merged(rows) {
         let [[t0, z0], [t1, z1]] = rectangle
-            .map(|[column, row]| [(from + column as f64 * CELL).min(to), low + row as f64 * CELL]);
-        upright(block, roofs, wall.plane, &wall.line, [t0, t1], [z0, z1], PatchKind::Wall, found);
-    }
-}
-
-/// Adds an upright rectangle on a line, between two ranges and two heights, as far as it lies below a plane and in the
-/// block.
-#[expect(clippy::too_many_arguments, reason = "a rectangle in space, and where it goes")]
-fn upright(
-    block: &Block,
-    roofs: &Roofs,
-    plane: usize,
-    line: &PlanLine,
-    [t0, t1]: [f64; 2],
-    [z0, z1]: [f64; 2],
-    kind: PatchKind,
-    found: &mut BuildingSurfaces,
-) {
-    let top = &roofs.planes[plane].plane;
-    let mut polygon = vec![[t0, z0], [t1, z0], [t1, z1], [t0, z1]];
-    polygon = clip(&polygon, |[t, z]| z - top.height(line.at(t, 0.0)));
-    for axis in 0..2 {
-        polygon = clip(&polygon, |[t, _]| -line.at(t, 0.0)[axis]);
-        polygon = clip(&polygon, |[t, _]| line.at(t, 0.0)[axis] - BLOCK);
-    }
-    if area(&polygon) < MIN_AREA {
-        return;
-    }
-    let corners: Vec<[f64; 3]> = polygon
-        .iter()
-        .map(|&[t, z]| {
-            let [x, y] = line.at(t, 0.0);
-            [x, y, z]
-        })
-        .collect();
-    fan(block, &corners, kind, found);
-}
-
-/// Adds upright sheets within the edges of roofs, from the roof to what lies below the edge, where no pulse runs
-/// through them.
-pub(super) fn within(
-    block: &Block,
-    roofs: &Roofs,
-    outlines: &[Outline],
-    walls: &[WallLine],
-    found: &mut BuildingSurfaces,
-) {
-    for (plane, outline) in outlines.iter().enumerate() {
-        for (number, edge) in outline.edges.iter().enumerate() {
-            if !edge.is_sure || edge.drop < MIN_DROP {
-                continue;
-            }
-            let eaves = walls.iter().find(|wall| wall.plane == plane && wall.edge == number).map_or(0.0, |wall| wall.eaves);
-            let right = -WITHIN.max(eaves + CLEAR);
-            let line = PlanLine { point: edge.line.at(0.0, right), ..edge.line };
-            let line = PlanLine { ends: [line.ends[0] + WITHIN, line.ends[1] - WITHIN], ..line };
-            sheet(block, roofs, plane, &line, edge.drop, found);
-        }
-    }
-}
-
-/// Adds the pieces of an upright sheet that no pulse runs through.
-fn sheet(block: &Block, roofs: &Roofs, plane: usize, line: &PlanLine, drop: f64, found: &mut BuildingSurfaces) {
-    let length = line.length();
-    if length < 1.0 {
-        return;
-    }
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "metres of an edge")]
-    let count = length.ceil() as usize;
-    let step = length / count as f64;
-    let top = &roofs.planes[plane].plane;
-    let ends = line.end_points();
-    let heights = ends.map(|p| top.height(p));
-    let shift = block.max_shift(heights[0].max(heights[1]));
-    let low = [0, 1].map(|axis| ends[0][axis].min(ends[1][axis]) - shift);
-    let high = [0, 1].map(|axis| ends[0][axis].max(ends[1][axis]) + shift);
-    let bottom = heights[0].min(heights[1]) - drop;
-    let mut crossed = vec![0_usize; count];
-    block.each_in(low, high, |_, pulse| {
-        let [_, d] = line.of([pulse.p[0], pulse.p[1]]);
-        let per_metre = pulse.lean[0] * line.outward()[0] + pulse.lean[1] * line.outward()[1];
-        let up = -d / per_metre;
-        // it runs through above its return
-        if !(pulse.is_first && up > CLEAR && up.is_finite()) {
-            return;
-        }
-        let at = [pulse.p[0] + up * pulse.lean[0], pulse.p[1] + up * pulse.lean[1]];
-        let z = pulse.p[2] + up;
-        let [t, _] = line.of(at);
-        if (line.ends[0]..line.ends[1]).contains(&t) && z > bottom + CLEAR && z < top.height(at) - CLEAR {
-            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within the edge")]
-            let piece = (((t - line.ends[0]) / step) as usize).min(count - 1);
-            crossed[piece] += 1;
-        }
-    });
-    let is_open = |piece: usize| crossed[piece.saturating_sub(1)..(piece + 2).min(count)].iter().sum::<usize>() > 0;
-    let mut first = None;
-    for piece in 0..=count {
-        let goes_on = piece < count && !is_open(piece);
-        match (first, goes_on) {
-            (None, true) => first = Some(piece),
-            (Some(from), false) => {
-                let range = [from, piece].map(|piece| line.ends[0] + piece as f64 * step);
-                let z = [bottom, heights[0].max(heights[1])];
-                upright(block, roofs, plane, line, range, z, PatchKind::Inside, found);
-                first = None;
-            }
-            _ => {}
-        }
+            .map(|[column, row]| [(from + column as f64 * WALL_CELL).min(to), low + row as f64 * WALL_CELL]);
+        let sheet = Sheet { line: &wall.line, ranges: [t0, t1], heights: [z0, z1], kind: PatchKind::Wall };
+        sheet.give_out(block, |p| top.height(p), |_| z0, found);
     }
 }
