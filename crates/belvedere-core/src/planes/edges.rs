@@ -13,6 +13,8 @@ const PASSED: f64 = 0.3;
 const ABOVE: f64 = 4.0;
 /// Least share of the returns within that lie on the plane itself.
 const MIN_OWN_SHARE: f64 = 0.3;
+/// How far within a line these are counted, spacings.
+const OWN_SPACINGS: f64 = 3.2;
 /// How far from the returns of the plane samples count, spacings.
 const REACH_SPACINGS: f64 = 4.5;
 /// Longest side between a return and a pulse that passed, spacings.
@@ -89,7 +91,6 @@ struct Middle {
     /// Unit vector from the return to the pulse.
     out: [f64; 2],
     depth: f64,
-    is_own: bool,
 }
 
 /// The outline of a plane.
@@ -103,7 +104,7 @@ pub(super) fn find(
     let roof = &roofs.planes[plane];
     let mut outline = samples(block, roofs, ridges, plane);
     let middles = middles(&outline, roof.spacing);
-    outline.edges = lines(&middles, roof.spacing, params);
+    outline.edges = lines(&outline, &middles, roof.spacing, params);
     meet(&mut outline.edges, ridges, plane, END_SPACINGS * roof.spacing);
     outline
 }
@@ -238,7 +239,6 @@ fn middles(outline: &Outline, spacing: f64) -> Vec<Middle> {
             p: [f64::midpoint(a.x, b.x), f64::midpoint(a.y, b.y)],
             out: [x / length, y / length],
             depth: passed[out - inside].depth,
-            is_own: within < outline.own,
         });
     }
     middles.sort_unstable_by(|a, b| a.p[0].total_cmp(&b.p[0]).then(a.p[1].total_cmp(&b.p[1])));
@@ -253,7 +253,7 @@ struct Grown {
 }
 
 /// Straight lines that middles lie on, each grown from where they are straightest.
-fn lines(middles: &[Middle], spacing: f64, params: &PlaneParams) -> Vec<EdgeLine> {
+fn lines(outline: &Outline, middles: &[Middle], spacing: f64, params: &PlaneParams) -> Vec<EdgeLine> {
     let mut seeds: Vec<(f64, usize, PlanLine)> = Vec::new();
     for row in 0..middles.len() {
         if let Some((line, rms)) = about(middles, row, AROUND_SPACINGS * spacing) {
@@ -271,8 +271,7 @@ fn lines(middles: &[Middle], spacing: f64, params: &PlaneParams) -> Vec<EdgeLine
         for &row in &grown.rows {
             is_free[row] = false;
         }
-        let own = grown.rows.iter().filter(|&&row| middles[row].is_own).count();
-        if (own as f64) < MIN_OWN_SHARE * grown.rows.len() as f64 {
+        if own_share(outline, &grown.line, OWN_SPACINGS * spacing) < MIN_OWN_SHARE {
             continue;
         }
         let mut depths: Vec<f64> = grown.rows.iter().map(|&row| middles[row].depth).collect();
@@ -288,6 +287,19 @@ fn lines(middles: &[Middle], spacing: f64, params: &PlaneParams) -> Vec<EdgeLine
         });
     }
     found
+}
+
+/// Share of the returns within a line that lie on the plane itself: the others may stand on something else.
+fn own_share(outline: &Outline, line: &PlanLine, reach: f64) -> f64 {
+    let (mut own, mut all) = (0_usize, 0_usize);
+    for (number, &p) in outline.inside.iter().enumerate() {
+        let [t, d] = line.of(p);
+        if (-reach..=0.0).contains(&d) && (line.ends[0]..=line.ends[1]).contains(&t) {
+            all += 1;
+            own += usize::from(number < outline.own);
+        }
+    }
+    own as f64 / all.max(1) as f64
 }
 
 /// The line through the middles about one, with the roof to its left.

@@ -7,7 +7,7 @@ use super::fit::Plane;
 use super::line::PlanLine;
 use super::patches::Leaf;
 use super::roof_planes::Roofs;
-use super::walls::WallLine;
+use super::walls::{MIN_EAVES, WallLine};
 use belvedere_data::vector::dot;
 
 /// How far before a surface its region begins, metres: balls stand out over points by as much.
@@ -23,8 +23,6 @@ const BEYOND: f64 = 0.4;
 const ABOVE: f64 = 0.5;
 /// How far below a roof balls of its eaves may reach, metres.
 const EAVES_DEPTH: f64 = 0.15;
-/// Least distance of an edge before its wall that makes eaves, metres.
-const MIN_EAVES: f64 = 0.12;
 /// How far beside a piece of a roof points lie whose balls it bounds, metres.
 const BESIDE_ROOF: f64 = 3.0;
 /// Side of the cells in which regions are looked up, metres.

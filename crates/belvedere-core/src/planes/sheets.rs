@@ -39,6 +39,10 @@ const STEP_SPACINGS: f64 = 2.5;
 const BOX_HEIGHT: f64 = 0.25;
 const BOX_POINTS: usize = 3;
 const BOX_SIDE: f64 = 4.0;
+/// Half of its points at least lie so near to the height of its top, metres: those of a wall do not.
+const BOX_LEVEL: f64 = 0.15;
+/// Least share of the pulses over it that it stopped.
+const BOX_DENSITY: f64 = 0.4;
 /// How far its points lie apart at most, spacings.
 const BOX_SPACINGS: f64 = 1.3;
 
@@ -272,6 +276,15 @@ fn boxes(block: &Block, roofs: &Roofs, plane: usize, outline: &Outline, found: &
         if (0..2).any(|axis| high[axis] - low[axis] > BOX_SIDE) {
             continue;
         }
+        let mut heights: Vec<f64> = of_box.iter().map(|&row| loose[row].above).collect();
+        heights.sort_unstable_by(f64::total_cmp);
+        let level = heights[heights.len() * 3 / 4];
+        let on_level = heights.iter().filter(|&height| (height - level).abs() <= BOX_LEVEL).count();
+        let area = (high[0] - low[0]) * (high[1] - low[1]);
+        if 2 * on_level < heights.len() || (of_box.len() as f64) < BOX_DENSITY * area / roof.spacing.powi(2) {
+            continue;
+        }
+        let rise = level / roof.plane.normal[2];
         // as far as the roof beside it leaves room
         for axis in 0..2 {
             let wider = ((high[axis] - low[axis]) / (of_box.len() - 1) as f64).min(roof.spacing / 2.0);
@@ -290,9 +303,6 @@ fn boxes(block: &Block, roofs: &Roofs, plane: usize, outline: &Outline, found: &
             }
             (low[axis], high[axis]) = (low[axis] - room_low, high[axis] + room_high);
         }
-        let mut heights: Vec<f64> = of_box.iter().map(|&row| loose[row].above).collect();
-        heights.sort_unstable_by(f64::total_cmp);
-        let rise = heights[heights.len() / 2] / roof.plane.normal[2];
         let corners = [[low[0], low[1]], [low[0], high[1]], [high[0], high[1]], [high[0], low[1]]];
         for (number, &[t, d]) in corners.iter().enumerate() {
             let [u, e] = corners[(number + 1) % 4];

@@ -17,6 +17,13 @@ const MIN_POINTS: usize = 8;
 const MIN_SHARE: f64 = 0.4;
 const MIN_LENGTH: f64 = 1.5;
 
+/// How far from the end of its edge a wall may cross another one, metres.
+const CORNER: f64 = 1.2;
+/// Least distance of an edge before its wall that makes eaves, metres.
+pub(super) const MIN_EAVES: f64 = 0.12;
+/// How far beyond its points a wall below eaves goes on, metres.
+const BEYOND_POINTS: f64 = 0.2;
+
 /// A wall in plan.
 #[derive(Clone, Debug)]
 pub(super) struct WallLine {
@@ -43,8 +50,34 @@ pub(super) fn find(block: &Block, roofs: &Roofs, outlines: &[Outline]) -> Vec<Wa
         let edges = outline.edges.iter().enumerate().filter(|(_, edge)| edge.is_sure);
         walls.extend(edges.filter_map(|(number, edge)| below(block, roofs, plane, number, &edge.line)));
     }
+    meet(&mut walls);
     walls
 }
+
+/// Moves the ends of walls, which are those of their edges, to where they cross other walls near by. Where none is,
+/// walls below eaves end with their points.
+fn meet(walls: &mut [WallLine]) {
+    let lines: Vec<PlanLine> = walls.iter().map(|wall| wall.line).collect();
+    for (number, wall) in walls.iter_mut().enumerate() {
+        let own = lines[number];
+        for end in 0..2 {
+            let at = own.ends[end];
+            let crossings = lines.iter().enumerate().filter(|&(other, _)| other != number).filter_map(|(_, other)| {
+                let crossing = own.crossing(other).filter(|crossing| (crossing - at).abs() <= CORNER)?;
+                let [on_other, _] = other.of(own.at(crossing, 0.0));
+                (other.ends[0] - CORNER..=other.ends[1] + CORNER).contains(&on_other).then_some(crossing)
+            });
+            let nearest = crossings.min_by(|a, b| (a - at).abs().total_cmp(&(b - at).abs()));
+            let outermost = wall.points.iter().map(|p| p[0]);
+            wall.line.ends[end] = match nearest {
+                Some(crossing) => crossing,
+                None if wall.eaves <= MIN_EAVES => at,
+                None if end == 0 => at.max(outermost.fold(f64::INFINITY, f64::min) - BEYOND_POINTS),
+                None => at.min(outermost.fold(f64::NEG_INFINITY, f64::max) + BEYOND_POINTS),
+            };
+        }
+}
+    }
 
 /// The wall below an edge.
 fn below(block: &Block, roofs: &Roofs, plane: usize, number: usize, edge: &PlanLine) -> Option<WallLine> {
