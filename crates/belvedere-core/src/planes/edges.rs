@@ -1,6 +1,6 @@
 //! Edges of roofs: straight lines between returns on a plane and pulses that passed it.
 
-use super::PlaneParams;
+use super::{PlaneParams, sheets};
 use super::block::Block;
 use super::line::PlanLine;
 use super::ridges::RidgeLine;
@@ -45,6 +45,8 @@ pub(super) struct EdgeLine {
     pub(super) drop: f64,
     /// Whether its standard deviation is small enough for use.
     pub(super) is_sure: bool,
+    /// Height of the parapet on it, metres above the plane; 0 for none.
+    pub(super) parapet: f64,
 }
 
 /// A place in plan where a pulse passed the plane.
@@ -106,6 +108,10 @@ pub(super) fn find(
     let middles = middles(&outline, roof.spacing);
     outline.edges = lines(&outline, &middles, roof.spacing, params);
     meet(&mut outline.edges, ridges, plane, END_SPACINGS * roof.spacing);
+    let parapets: Vec<f64> = outline.edges.iter().map(|edge| sheets::parapet(&outline.standing, &edge.line)).collect();
+    for (edge, parapet) in outline.edges.iter_mut().zip(parapets) {
+        edge.parapet = parapet;
+    }
     outline
 }
 
@@ -284,6 +290,7 @@ fn lines(outline: &Outline, middles: &[Middle], spacing: f64, params: &PlanePara
             count: grown.rows.len(),
             drop: depths[depths.len() / 2],
             is_sure: sd <= params.max_edge_sd,
+            parapet: 0.0,
         });
     }
     found

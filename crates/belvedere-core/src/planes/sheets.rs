@@ -100,7 +100,7 @@ pub(super) fn give_out(
         let all: f64 = outline.edges.iter().filter(high).map(|edge| edge.line.length()).sum();
         let walled: f64 = own.iter().filter(|wall| high(&&outline.edges[wall.edge])).map(|wall| wall.line.length()).sum();
         for (number, edge) in outline.edges.iter().enumerate().filter(|(_, edge)| edge.is_sure) {
-            parapet(block, roofs, plane, outline, edge, found);
+            upstand(block, roofs, plane, edge, found);
             step(block, roofs, plane, outline, edge, found);
             if edge.drop >= MIN_DROP && walled >= MIN_WALLED * all {
                 let eaves = own.iter().find(|wall| wall.edge == number).map_or(0.0, |wall| wall.eaves);
@@ -127,12 +127,11 @@ fn piece_at(range: f64, step: f64, count: usize) -> usize {
     piece
 }
 
-/// Adds a sheet on an edge where points of one height stand along it.
-fn parapet(block: &Block, roofs: &Roofs, plane: usize, outline: &Outline, edge: &EdgeLine, found: &mut BuildingSurfaces) {
-    let line = &edge.line;
+/// Height of the points that stand along an edge at one height, metres above the roof; 0 where there are too few.
+pub(super) fn parapet(standing: &[Standing], line: &PlanLine) -> f64 {
     // height above the roof, range
     let mut on: Vec<[f64; 2]> = Vec::new();
-    for standing in &outline.standing {
+    for standing in standing {
         let [t, d] = line.of(standing.p);
         let is_beside = (-PARAPET_WITHIN..=PARAPET_WITHOUT).contains(&d) && (line.ends[0]..=line.ends[1]).contains(&t);
         if is_beside && (PARAPET[0]..=PARAPET[1]).contains(&standing.above) {
@@ -156,12 +155,13 @@ fn parapet(block: &Block, roofs: &Roofs, plane: usize, outline: &Outline, edge: 
         holds[piece_at(t, step, count)] = true;
     }
     let held = holds.iter().filter(|&&holds| holds).count();
-    if held < 2 || (held as f64) < PARAPET_SHARE * count as f64 {
-        return;
-    }
-    let height = on[on.len() / 2][0];
-    let roof = &roofs.planes[plane].plane;
-    let rise = height / roof.normal[2];
+    if held < 2 || (held as f64) < PARAPET_SHARE * count as f64 { 0.0 } else { on[on.len() / 2][0] }
+}
+
+/// Adds the parapet of an edge.
+fn upstand(block: &Block, roofs: &Roofs, plane: usize, edge: &EdgeLine, found: &mut BuildingSurfaces) {
+    let (line, roof) = (&edge.line, &roofs.planes[plane].plane);
+    let rise = edge.parapet / roof.normal[2];
     let ends = line.end_points().map(|p| roof.height(p));
     let heights = [ends[0].min(ends[1]), ends[0].max(ends[1]) + rise];
     let sheet = Sheet { line, ranges: line.ends, heights, kind: PatchKind::Parapet };
