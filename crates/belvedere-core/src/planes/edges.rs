@@ -45,8 +45,17 @@ pub(super) struct EdgeLine {
     pub(super) drop: f64,
     /// Whether its standard deviation is small enough for use.
     pub(super) is_sure: bool,
-    /// Height of the parapet on it, metres above the plane; 0 for none.
-    pub(super) parapet: f64,
+    /// What stands along it.
+    pub(super) parapet: Parapet,
+}
+
+/// What stands along an edge at one height.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Parapet {
+    /// Metres above the plane; 0 where nothing stands.
+    pub(super) height: f64,
+    /// Mean distance of its points from the edge, to the right, metres.
+    pub(super) right: f64,
 }
 
 /// A place in plan where a pulse passed the plane.
@@ -108,7 +117,7 @@ pub(super) fn find(
     let middles = middles(&outline, roof.spacing);
     outline.edges = lines(&outline, &middles, roof.spacing, params);
     meet(&mut outline.edges, ridges, plane, END_SPACINGS * roof.spacing);
-    let parapets: Vec<f64> = outline.edges.iter().map(|edge| sheets::parapet(&outline.standing, &edge.line)).collect();
+    let parapets: Vec<Parapet> = outline.edges.iter().map(|edge| sheets::parapet(&outline.standing, &edge.line)).collect();
     for (edge, parapet) in outline.edges.iter_mut().zip(parapets) {
         edge.parapet = parapet;
     }
@@ -290,7 +299,7 @@ fn lines(outline: &Outline, middles: &[Middle], spacing: f64, params: &PlanePara
             count: grown.rows.len(),
             drop: depths[depths.len() / 2],
             is_sure: sd <= params.max_edge_sd,
-            parapet: 0.0,
+            parapet: Parapet::default(),
         });
     }
     found

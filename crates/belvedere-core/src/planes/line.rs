@@ -30,6 +30,11 @@ impl PlanLine {
         [self.point[0] + range * a + right * b, self.point[1] + range * b - right * a]
     }
 
+    /// The line so far to the right.
+    pub(super) fn moved(&self, right: f64) -> Self {
+        Self { point: self.at(0.0, right), ..*self }
+    }
+
     /// Length, metres.
     pub(super) fn length(&self) -> f64 {
         self.ends[1] - self.ends[0]

@@ -208,7 +208,7 @@ pub(super) fn of_block(
             let top = roofs.planes[plane].plane;
             let middle = edge.line.at(f64::midpoint(edge.line.ends[0], edge.line.ends[1]), 0.0);
             let foot = top.height(middle) - edge.drop - ABOVE;
-            let above = edge.parapet + ABOVE;
+            let above = edge.parapet.height + ABOVE;
             surfaces.push(Surface::Upright { line: edge.line, top, above, foot, eaves: 0.0 });
         }
     }
@@ -217,7 +217,7 @@ pub(super) fn of_block(
         let top = roofs.planes[wall.plane].plane;
         let middle = edge.line.at(f64::midpoint(edge.line.ends[0], edge.line.ends[1]), 0.0);
         let foot = wall.bottom.min(top.height(middle) - edge.drop) - ABOVE;
-        let above = if wall.eaves > MIN_EAVES { -EAVES_DEPTH } else { edge.parapet + ABOVE };
+        let above = if wall.eaves > MIN_EAVES { -EAVES_DEPTH } else { edge.parapet.height + ABOVE };
         surfaces.push(Surface::Upright { line: wall.line, top, above, foot, eaves: wall.eaves });
     }
     for leaf in leaves.iter().filter(|leaf| leaf.is_whole) {

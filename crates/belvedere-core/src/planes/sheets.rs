@@ -1,12 +1,13 @@
 //! Upright sheets: parapets, steps between roofs, what stands on roofs, and the inside of buildings.
 
 use super::block::Block;
-use super::edges::{EdgeLine, Outline, Standing};
+use super::edges::{EdgeLine, Outline, Parapet, Standing};
 use super::line::{PlanLine, area, clip};
 use super::patches::fan;
 use super::roof_planes::{NONE, Roofs};
 use super::walls::WallLine;
 use super::{BLOCK, BuildingSurfaces, PatchKind};
+use std::cmp::Ordering;
 
 /// Smallest piece of a sheet, m².
 const MIN_AREA: f64 = 0.005;
@@ -30,6 +31,8 @@ const PARAPET_PIECE: f64 = 0.8;
 const PARAPET_SHARE: f64 = 0.55;
 /// Least and most height of a step between roofs, metres: balconies lie farther below each other.
 const STEP: [f64; 2] = [0.25, 1.8];
+/// Most height of a step all round onto one roof, metres: of what stands on it.
+const MAX_BOX_STEP: f64 = 3.5;
 /// Least share of the pulses that pass an edge which end on the roof below, and their least number.
 const STEP_SHARE: f64 = 0.6;
 const STEP_PULSES: usize = 3;
@@ -101,7 +104,6 @@ pub(super) fn give_out(
         let walled: f64 = own.iter().filter(|wall| high(&&outline.edges[wall.edge])).map(|wall| wall.line.length()).sum();
         for (number, edge) in outline.edges.iter().enumerate().filter(|(_, edge)| edge.is_sure) {
             upstand(block, roofs, plane, edge, found);
-            step(block, roofs, plane, outline, edge, found);
             if edge.drop >= MIN_DROP && walled >= MIN_WALLED * all {
                 let eaves = own.iter().find(|wall| wall.edge == number).map_or(0.0, |wall| wall.eaves);
                 let line = PlanLine { point: edge.line.at(0.0, -WITHIN.max(eaves + CLEAR)), ..edge.line };
@@ -109,6 +111,7 @@ pub(super) fn give_out(
                 within(block, roofs, plane, &line, edge.drop, found);
             }
         }
+        steps(block, roofs, plane, outline, found);
         boxes(block, roofs, plane, outline, found);
     }
 }
@@ -127,18 +130,18 @@ fn piece_at(range: f64, step: f64, count: usize) -> usize {
     piece
 }
 
-/// Height of the points that stand along an edge at one height, metres above the roof; 0 where there are too few.
-pub(super) fn parapet(standing: &[Standing], line: &PlanLine) -> f64 {
-    // height above the roof, range
-    let mut on: Vec<[f64; 2]> = Vec::new();
+/// The points that stand along an edge at one height; none where there are too few.
+pub(super) fn parapet(standing: &[Standing], line: &PlanLine) -> Parapet {
+    // height above the roof, range, distance from the edge
+    let mut on: Vec<[f64; 3]> = Vec::new();
     for standing in standing {
         let [t, d] = line.of(standing.p);
         let is_beside = (-PARAPET_WITHIN..=PARAPET_WITHOUT).contains(&d) && (line.ends[0]..=line.ends[1]).contains(&t);
         if is_beside && (PARAPET[0]..=PARAPET[1]).contains(&standing.above) {
-            on.push([standing.above, t - line.ends[0]]);
+            on.push([standing.above, t - line.ends[0], d]);
         }
     }
-    on.sort_unstable_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
+    on.sort_unstable_by(|a, b| (0..3).fold(Ordering::Equal, |order, i| order.then(a[i].total_cmp(&b[i]))));
     let (mut best, mut last) = ((0, 0), 0);
     for first in 0..on.len() {
         while last < on.len() && on[last][0] <= on[first][0] + 2.0 * PARAPET_LEVEL {
@@ -151,29 +154,30 @@ pub(super) fn parapet(standing: &[Standing], line: &PlanLine) -> f64 {
     let on = &on[best.0..best.1];
     let (count, step) = pieces(line.length(), PARAPET_PIECE);
     let mut holds = vec![false; count];
-    for &[_, t] in on {
+    for &[_, t, _] in on {
         holds[piece_at(t, step, count)] = true;
     }
     let held = holds.iter().filter(|&&holds| holds).count();
-    if held < 2 || (held as f64) < PARAPET_SHARE * count as f64 { 0.0 } else { on[on.len() / 2][0] }
+    if held < 2 || (held as f64) < PARAPET_SHARE * count as f64 {
+        return Parapet::default();
+    }
+    let right = on.iter().map(|p| p[2]).sum::<f64>() / on.len() as f64;
+    Parapet { height: on[on.len() / 2][0], right: right.min(0.0) }
 }
 
 /// Adds the parapet of an edge.
 fn upstand(block: &Block, roofs: &Roofs, plane: usize, edge: &EdgeLine, found: &mut BuildingSurfaces) {
-    let (line, roof) = (&edge.line, &roofs.planes[plane].plane);
-    let rise = edge.parapet / roof.normal[2];
+    let (line, roof) = (&edge.line.moved(edge.parapet.right), &roofs.planes[plane].plane);
+    let rise = edge.parapet.height / roof.normal[2];
     let ends = line.end_points().map(|p| roof.height(p));
     let heights = [ends[0].min(ends[1]), ends[0].max(ends[1]) + rise];
     let sheet = Sheet { line, ranges: line.ends, heights, kind: PatchKind::Parapet };
     sheet.give_out(block, |p| roof.height(p) + rise, |p| roof.height(p), found);
 }
 
-/// Adds a sheet from an edge down to a roof close below it.
-fn step(block: &Block, roofs: &Roofs, plane: usize, outline: &Outline, edge: &EdgeLine, found: &mut BuildingSurfaces) {
-    if !(STEP[0]..=STEP[1]).contains(&edge.drop) {
-        return;
-    }
-    let (line, reach) = (&edge.line, STEP_SPACINGS * roofs.planes[plane].spacing);
+/// The plane that most pulses end on which pass an edge close to it.
+fn below(roofs: &Roofs, plane: usize, outline: &Outline, line: &PlanLine) -> Option<usize> {
+    let reach = STEP_SPACINGS * roofs.planes[plane].spacing;
     let mut on: Vec<u32> = Vec::new();
     for passed in &outline.passed {
         let [t, d] = line.of(passed.p);
@@ -182,16 +186,30 @@ fn step(block: &Block, roofs: &Roofs, plane: usize, outline: &Outline, edge: &Ed
         }
     }
     on.sort_unstable();
-    let most = on.chunk_by(|a, b| a == b).filter(|same| same[0] != NONE).max_by_key(|same| (same.len(), same[0]));
-    let Some(same) = most.filter(|same| same.len() >= STEP_PULSES && same.len() as f64 >= STEP_SHARE * on.len() as f64)
-    else {
-        return;
-    };
-    let (roof, below) = (&roofs.planes[plane].plane, &roofs.planes[same[0] as usize].plane);
-    let ends = line.end_points().map(|p| [below.height(p), roof.height(p)]);
-    let heights = [ends[0][0].min(ends[1][0]), ends[0][1].max(ends[1][1])];
-    let sheet = Sheet { line, ranges: line.ends, heights, kind: PatchKind::Step };
-    sheet.give_out(block, |p| roof.height(p), |p| below.height(p), found);
+    let most = on.chunk_by(|a, b| a == b).filter(|same| same[0] != NONE).max_by_key(|same| (same.len(), same[0]))?;
+    (most.len() >= STEP_PULSES && most.len() as f64 >= STEP_SHARE * on.len() as f64).then_some(most[0] as usize)
+}
+
+/// Adds sheets from the edges of a roof down to roofs close below them, and down to the roof that it stands on.
+fn steps(block: &Block, roofs: &Roofs, plane: usize, outline: &Outline, found: &mut BuildingSurfaces) {
+    let steps: Vec<(&EdgeLine, usize)> = outline
+        .edges
+        .iter()
+        .filter(|edge| edge.is_sure && (STEP[0]..=MAX_BOX_STEP).contains(&edge.drop))
+        .filter_map(|edge| Some((edge, below(roofs, plane, outline, &edge.line)?)))
+        .collect();
+    let all: f64 = outline.edges.iter().filter(|edge| edge.is_sure).map(|edge| edge.line.length()).sum();
+    for &(edge, lower) in &steps {
+        let onto: f64 = steps.iter().filter(|step| step.1 == lower).map(|step| step.0.line.length()).sum();
+        if edge.drop > STEP[1] && onto < STEP_SHARE * all {
+            continue;
+        }
+        let (line, roof, below) = (&edge.line, &roofs.planes[plane].plane, &roofs.planes[lower].plane);
+        let ends = line.end_points().map(|p| [below.height(p), roof.height(p)]);
+        let heights = [ends[0][0].min(ends[1][0]), ends[0][1].max(ends[1][1])];
+        let sheet = Sheet { line, ranges: line.ends, heights, kind: PatchKind::Step };
+        sheet.give_out(block, |p| roof.height(p), |p| below.height(p), found);
+    }
 }
 
 /// Adds the pieces of an upright sheet within an edge that no pulse runs through.

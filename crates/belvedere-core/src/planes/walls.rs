@@ -51,6 +51,7 @@ pub(super) fn find(block: &Block, roofs: &Roofs, outlines: &[Outline]) -> Vec<Wa
         walls.extend(edges.filter_map(|(number, edge)| below(block, roofs, plane, number, &edge.line)));
     }
     meet(&mut walls);
+    walls.retain(|wall| wall.line.length() >= MIN_LENGTH / 2.0);
     walls
 }
 
