@@ -3,12 +3,14 @@
 use super::{PlaneParams, sheets};
 use super::block::Block;
 use super::line::PlanLine;
+use super::likelihood::{LikelihoodTable, likeliest};
 use super::ridges::RidgeLine;
 use super::roof_planes::{NONE, Roofs};
 use delaunator::{EMPTY, Point, triangulate};
 
-/// How far below the plane a pulse must end to have passed it, metres.
-const PASSED: f64 = 0.3;
+/// How far below the plane a pulse must end to have passed it, metres. With 0.3 those are left out that meet the wall
+/// close below an edge, and edges lie a centimetre too far out.
+pub(super) const PASSED: f64 = 0.15;
 /// How far above the plane points of buildings may stand and still show that the building goes on, metres.
 const ABOVE: f64 = 4.0;
 /// Least share of the returns within that lie on the plane itself.
@@ -23,6 +25,8 @@ const SIDE_SPACINGS: f64 = 4.0;
 const BAND_SPACINGS: f64 = 0.6;
 /// Longest gap of a line, spacings.
 const GAP_SPACINGS: f64 = 5.0;
+/// How far beside a line middles are no lines of their own, spacings.
+const BESIDE_SPACINGS: f64 = 1.2;
 /// How far about a middle others show its direction, spacings.
 const AROUND_SPACINGS: f64 = 5.0;
 /// Middles on a line at least, and its least length, metres.
@@ -30,8 +34,12 @@ const MIN_MIDDLES: usize = 4;
 const MIN_LENGTH: f64 = 1.0;
 /// How far an end moves to a crossing with another line of the plane, spacings.
 const END_SPACINGS: f64 = 3.5;
-/// Middles of sides that share a return or a pulse are not independent: how many count as one.
-const MIDDLES_AS_ONE: f64 = 2.0;
+/// Middles of sides that share a return or a pulse are not independent: how many count as one; and how well their mean
+/// must be known at least for a line to be an edge, metres.
+const MIDDLES_AS_ONE: f64 = 6.0;
+const MAX_SCATTER: f64 = 0.08;
+/// Standard deviation of what no number of pulses averages out, metres: where a part of a beam is still seen.
+const COMMON_SD: f64 = 0.012;
 
 /// An edge of a plane in plan.
 #[derive(Clone, Debug)]
@@ -111,12 +119,14 @@ pub(super) fn find(
     ridges: &[RidgeLine],
     plane: usize,
     params: &PlaneParams,
+    table: &LikelihoodTable,
 ) -> Outline {
     let roof = &roofs.planes[plane];
     let mut outline = samples(block, roofs, ridges, plane);
     let middles = middles(&outline, roof.spacing);
-    outline.edges = lines(&outline, &middles, roof.spacing, params);
+    outline.edges = lines(&outline, &middles, roof.spacing, params, table);
     meet(&mut outline.edges, ridges, plane, END_SPACINGS * roof.spacing);
+    outline.edges.retain(|edge| edge.line.length() >= MIN_LENGTH / 2.0);
     let parapets: Vec<Parapet> = outline.edges.iter().map(|edge| sheets::parapet(&outline.standing, &edge.line)).collect();
     for (edge, parapet) in outline.edges.iter_mut().zip(parapets) {
         edge.parapet = parapet;
@@ -268,7 +278,7 @@ struct Grown {
 }
 
 /// Straight lines that middles lie on, each grown from where they are straightest.
-fn lines(outline: &Outline, middles: &[Middle], spacing: f64, params: &PlaneParams) -> Vec<EdgeLine> {
+fn lines(outline: &Outline, middles: &[Middle], spacing: f64, params: &PlaneParams, table: &LikelihoodTable) -> Vec<EdgeLine> {
     let mut seeds: Vec<(f64, usize, PlanLine)> = Vec::new();
     for row in 0..middles.len() {
         if let Some((line, rms)) = about(middles, row, AROUND_SPACINGS * spacing) {
@@ -283,22 +293,27 @@ fn lines(outline: &Outline, middles: &[Middle], spacing: f64, params: &PlanePara
             continue;
         }
         let Some(grown) = grown(middles, seed, line, &is_free, spacing) else { continue };
-        for &row in &grown.rows {
-            is_free[row] = false;
+        // what lies beside a line is of it, too
+        for (row, middle) in middles.iter().enumerate() {
+            let [t, d] = grown.line.of(middle.p);
+            let is_beside = d.abs() <= BESIDE_SPACINGS * spacing && faces(middle, grown.line.outward());
+            is_free[row] &= !(is_beside && (grown.line.ends[0]..=grown.line.ends[1]).contains(&t));
         }
         if own_share(outline, &grown.line, OWN_SPACINGS * spacing) < MIN_OWN_SHARE {
             continue;
         }
         let mut depths: Vec<f64> = grown.rows.iter().map(|&row| middles[row].depth).collect();
         depths.sort_unstable_by(f64::total_cmp);
-        let independent = (grown.rows.len() as f64 / MIDDLES_AS_ONE - 2.0).max(1.0);
-        let sd = grown.rms / independent.sqrt();
+        let (line, sd) = likeliest(outline, &grown.line, spacing, table);
+        let sd = sd.hypot(COMMON_SD);
+        let together = (grown.rows.len() as f64 / MIDDLES_AS_ONE).max(1.0);
+        let is_straight = grown.rms / together.sqrt() <= MAX_SCATTER;
         found.push(EdgeLine {
-            line: grown.line,
+            line,
             sd,
             count: grown.rows.len(),
             drop: depths[depths.len() / 2],
-            is_sure: sd <= params.max_edge_sd,
+            is_sure: sd <= params.max_edge_sd && is_straight,
             parapet: Parapet::default(),
         });
     }

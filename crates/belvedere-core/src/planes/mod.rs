@@ -13,12 +13,15 @@
 mod block;
 mod edges;
 mod fit;
+mod likelihood;
 mod line;
 mod patches;
 mod regions;
 mod ridges;
 mod roof_planes;
 mod sheets;
+#[cfg(test)]
+mod tests;
 mod walls;
 
 pub use regions::{Region, SurfaceRegions};
@@ -26,6 +29,7 @@ pub use regions::{Region, SurfaceRegions};
 use belvedere_data::control::Control;
 use belvedere_data::{Attributes, Result};
 use block::{Block, blocks};
+use likelihood::LikelihoodTable;
 use rayon::prelude::*;
 
 /// Side of the blocks in which surfaces are found, metres.
@@ -39,17 +43,16 @@ pub struct PlaneParams {
     pub margin: f64,
     /// Least number of points on a plane of a roof. Default 12.
     pub min_points: usize,
-    /// Most standard deviation of the place of an edge that is used, metres. Default 0.05: half of those between 5 and
-    /// 10 cm are no edges.
+    /// Most standard deviation of the place of an edge that is used, metres. Default 0.08.
     pub max_edge_sd: f64,
     /// Least share of the points below an edge that lie on a wall, for it to be closed between its points. Default
     /// 0.5: fronts of stacked balconies have 0.3 to 0.4.
     pub min_wall_share: f64,
     /// Least number of points on a wall that is closed between them. Default 10.
     pub min_wall_points: usize,
-    /// How far from its points a wall is closed, metres. Default 1.5: at 1 more of what is seen through walls remains,
-    /// at 2 arcades close.
-    pub wall_reach: f64,
+    /// How far from its points a wall is closed, in spacings of pulses. Default 4.7, which is 1.5 m at ten pulses per
+    /// m²: with 1 m more is seen through walls, with 2 m arcades close.
+    pub wall_reach_spacings: f64,
 }
 
 impl Default for PlaneParams {
@@ -57,10 +60,10 @@ impl Default for PlaneParams {
         Self {
             margin: 8.0,
             min_points: 12,
-            max_edge_sd: 0.05,
+            max_edge_sd: 0.08,
             min_wall_share: 0.5,
             min_wall_points: 10,
-            wall_reach: 1.5,
+            wall_reach_spacings: 4.7,
         }
     }
 }
@@ -226,8 +229,9 @@ fn of_block(block: &Block, params: &PlaneParams, control: &Control<'_>) -> Resul
     control.check()?;
     let roofs = roof_planes::find(block, params, control)?;
     let ridges = ridges::find(block, &roofs);
+    let table = LikelihoodTable::new();
     let outlines: Vec<edges::Outline> = (0..roofs.planes.len())
-        .map(|plane| edges::find(block, &roofs, &ridges, plane, params))
+        .map(|plane| edges::find(block, &roofs, &ridges, plane, params, &table))
         .collect();
     let walls = walls::find(block, &roofs, &outlines);
     let leaves = patches::roofs(block, &roofs, &ridges, &outlines);

@@ -329,7 +329,8 @@ pub(super) fn give_out(
     }
     for wall in walls {
         if wall.share >= params.min_wall_share && wall.points.len() >= params.min_wall_points {
-            close_wall(block, roofs, wall, params.wall_reach, found);
+            let reach = params.wall_reach_spacings * roofs.planes[wall.plane].spacing;
+            close_wall(block, roofs, wall, reach, found);
         }
     }
 }

@@ -24,6 +24,9 @@ pub(super) const MIN_EAVES: f64 = 0.12;
 /// How far beyond its points a wall below eaves goes on, metres.
 const BEYOND_POINTS: f64 = 0.2;
 
+/// Standard deviation of what no number of points averages out, metres.
+const COMMON_SD: f64 = 0.008;
+
 /// A wall in plan.
 #[derive(Clone, Debug)]
 pub(super) struct WallLine {
@@ -143,7 +146,7 @@ fn below(block: &Block, roofs: &Roofs, plane: usize, number: usize, edge: &PlanL
         plane,
         edge: number,
         noise,
-        sd: noise / (points.len() as f64).sqrt(),
+        sd: (noise.powi(2) / points.len() as f64 + COMMON_SD.powi(2)).sqrt(),
         share: points.len() as f64 / near.len() as f64,
         bottom: points.iter().map(|p| p[1]).fold(f64::INFINITY, f64::min),
         eaves: -edge.of(middle)[1],
