@@ -23,6 +23,13 @@ const REACH_SPACINGS: f64 = 4.5;
 const SIDE_SPACINGS: f64 = 4.0;
 /// Half width of the band about a line in which middles of sides belong to it, spacings.
 const BAND_SPACINGS: f64 = 0.6;
+/// The same while a line begins to grow, and how often.
+const WIDE_BAND_SPACINGS: f64 = 0.9;
+const WIDE_TURNS: usize = 4;
+/// Cosine of the turn between pieces of one line, 26°, and how much farther from it their middles lie than from lines of
+/// their own, root mean square, spacings: a step of two thirds of a spacing between two halves.
+const JOINED_COSINE: f64 = 0.9;
+const JOINED_SPACINGS: f64 = 0.36;
 /// Longest gap of a line, spacings.
 const GAP_SPACINGS: f64 = 5.0;
 /// How far beside a line middles are no lines of their own, spacings.
@@ -287,7 +294,7 @@ fn lines(outline: &Outline, middles: &[Middle], spacing: f64, params: &PlanePara
     }
     seeds.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
     let mut is_free = vec![true; middles.len()];
-    let mut found = Vec::new();
+    let mut pieces = Vec::new();
     for (_, seed, line) in seeds {
         if !is_free[seed] {
             continue;
@@ -299,25 +306,67 @@ fn lines(outline: &Outline, middles: &[Middle], spacing: f64, params: &PlanePara
             let is_beside = d.abs() <= BESIDE_SPACINGS * spacing && faces(middle, grown.line.outward());
             is_free[row] &= !(is_beside && (grown.line.ends[0]..=grown.line.ends[1]).contains(&t));
         }
-        if own_share(outline, &grown.line, OWN_SPACINGS * spacing) < MIN_OWN_SHARE {
-            continue;
-        }
-        let mut depths: Vec<f64> = grown.rows.iter().map(|&row| middles[row].depth).collect();
-        depths.sort_unstable_by(f64::total_cmp);
-        let (line, sd) = likeliest(outline, &grown.line, spacing, table);
-        let sd = sd.hypot(COMMON_SD);
-        let together = (grown.rows.len() as f64 / MIDDLES_AS_ONE).max(1.0);
-        let is_straight = grown.rms / together.sqrt() <= MAX_SCATTER;
-        found.push(EdgeLine {
-            line,
-            sd,
-            count: grown.rows.len(),
-            drop: depths[depths.len() / 2],
-            is_sure: sd <= params.max_edge_sd && is_straight,
-            parapet: Parapet::default(),
-        });
+        pieces.push(grown);
     }
-    found
+    join(middles, &mut pieces, spacing);
+    pieces.retain(|piece| own_share(outline, &piece.line, OWN_SPACINGS * spacing) >= MIN_OWN_SHARE);
+    pieces.iter().map(|piece| edge(outline, middles, piece, spacing, params, table)).collect()
+}
+
+/// The edge that a line of middles shows.
+fn edge(
+    outline: &Outline,
+    middles: &[Middle],
+    piece: &Grown,
+    spacing: f64,
+    params: &PlaneParams,
+    table: &LikelihoodTable,
+) -> EdgeLine {
+    let mut depths: Vec<f64> = piece.rows.iter().map(|&row| middles[row].depth).collect();
+    depths.sort_unstable_by(f64::total_cmp);
+    let (line, sd) = likeliest(outline, &piece.line, spacing, table);
+    let sd = sd.hypot(COMMON_SD);
+    let together = (piece.rows.len() as f64 / MIDDLES_AS_ONE).max(1.0);
+    EdgeLine {
+        line,
+        sd,
+        count: piece.rows.len(),
+        drop: depths.get(depths.len() / 2).copied().unwrap_or(0.0),
+        is_sure: sd <= params.max_edge_sd && piece.rms / together.sqrt() <= MAX_SCATTER,
+        parapet: Parapet::default(),
+    }
+}
+
+/// Joins pieces that follow each other on one line: those that began as short pieces have directions of their own.
+fn join(middles: &[Middle], pieces: &mut Vec<Grown>, spacing: f64) {
+    let mut first = 0;
+    while first < pieces.len() {
+        let joined = (first + 1..pieces.len()).find_map(|other| {
+            let (a, b) = (&pieces[first], &pieces[other]);
+            let cosine = a.line.along[0] * b.line.along[0] + a.line.along[1] * b.line.along[1];
+            let [s, t] = b.line.end_points().map(|p| a.line.of(p)[0]);
+            let gap = (s - a.line.ends[1]).max(a.line.ends[0] - t);
+            if cosine < JOINED_COSINE || gap > GAP_SPACINGS * spacing {
+                return None;
+            }
+            let mut rows: Vec<usize> = a.rows.iter().chain(&b.rows).copied().collect();
+            rows.sort_unstable();
+            let (line, rms) = PlanLine::fit(rows.iter().map(|&row| middles[row].p), a.line.along)?;
+            let [n, m] = [a.rows.len() as f64, b.rows.len() as f64];
+            let apart = (n * a.rms.powi(2) + m * b.rms.powi(2)) / (n + m);
+            let may_differ = apart + (JOINED_SPACINGS * spacing).powi(2);
+            (rms.powi(2) <= may_differ).then_some((other, Grown { line, rows, rms }))
+        });
+        match joined {
+            Some((other, grown)) => {
+                pieces.swap_remove(other);
+                pieces[first] = grown;
+                // the longer line may reach others
+                first = 0;
+            }
+            None => first += 1,
+        }
+    }
 }
 
 /// Share of the returns within a line that lie on the plane itself: the others may stand on something else.
@@ -356,9 +405,11 @@ fn faces(middle: &Middle, out: [f64; 2]) -> bool {
 
 /// The line that grows from a seed as far as free middles go on in its band.
 fn grown(middles: &[Middle], seed: usize, line: PlanLine, is_free: &[bool], spacing: f64) -> Option<Grown> {
-    let (band, gap) = (BAND_SPACINGS * spacing, GAP_SPACINGS * spacing);
+    let gap = GAP_SPACINGS * spacing;
     let mut grown = Grown { line, rows: Vec::new(), rms: 0.0 };
-    for _ in 0..8 {
+    for turn in 0..10 {
+        // a short piece has another direction than the whole
+        let band = if turn < WIDE_TURNS { WIDE_BAND_SPACINGS } else { BAND_SPACINGS } * spacing;
         let out = grown.line.outward();
         let mut on: Vec<(f64, usize)> = Vec::new();
         for (row, middle) in middles.iter().enumerate() {
@@ -384,7 +435,7 @@ fn grown(middles: &[Middle], seed: usize, line: PlanLine, is_free: &[bool], spac
         let is_same = rows == grown.rows;
         let (line, rms) = PlanLine::fit(rows.iter().map(|&row| middles[row].p), grown.line.along)?;
         grown = Grown { line, rows, rms };
-        if is_same {
+        if is_same && turn >= WIDE_TURNS {
             break;
         }
     }

@@ -164,13 +164,13 @@ fn a_gable_house_has_two_planes_a_ridge_and_its_outline() {
     }
     for way in [[0.0, -1.0], [0.0, 1.0]] {
         let found = facing(&surfaces, way);
-        assert_eq!(found.len(), 1, "{way:?}");
+        assert_eq!(found.len(), 1, "{way:?} {found:?}");
         // three of its own standard deviations
         assert!((found[0].0 - 4.0).abs() < 3.0 * found[0].1.sd && found[0].1.sd < 0.05, "{found:?}");
     }
     for way in [[-1.0, 0.0], [1.0, 0.0]] {
         let found = facing(&surfaces, way);
-        assert_eq!(found.len(), 2, "each plane has a verge {way:?}");
+        assert_eq!(found.len(), 2, "each plane has a verge {way:?}: {:?}", surfaces.edges);
         assert!(found.iter().all(|(at, edge)| (at - 6.0).abs() < 3.0 * edge.sd), "{found:?}");
     }
     // 12 m by 8 m; edges err by 3 cm each
