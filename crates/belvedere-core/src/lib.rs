@@ -11,6 +11,7 @@ pub mod medial;
 pub mod model;
 pub mod neighbors;
 pub mod normals;
+pub mod planes;
 pub mod pulses;
 pub mod query;
 pub mod ray_index;

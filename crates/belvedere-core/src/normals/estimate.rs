@@ -308,7 +308,7 @@ impl Plane {
 ///
 /// Closed form (Smith 1961) with the eigenvector from the longest cross product of two rows of A − λI; where two
 /// eigenvalues nearly coincide those rows say nothing and Jacobi rotations take over.
-fn min_component(m: [f64; 6]) -> ([f64; 3], [f64; 3]) {
+pub(crate) fn min_component(m: [f64; 6]) -> ([f64; 3], [f64; 3]) {
     let [xx, yy, zz, xy, yz, zx] = m;
     let mean = (xx + yy + zz) / 3.0;
     let off = xy * xy + yz * yz + zx * zx;

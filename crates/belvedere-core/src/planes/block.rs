@@ -1,0 +1,353 @@
+//! The points of a block and of what lies about it, in an order that follows from their positions.
+
+use super::edges::Outline;
+use super::ridges::RidgeLine;
+use super::roof_planes::Roofs;
+use super::walls::WallLine;
+use super::{BLOCK, BuildingPoints, BuildingSurfaces, Edge, PlaneParams, Ridge, RoofPlane, SurveyPoints, Wall};
+use belvedere_data::control::Control;
+use belvedere_data::{Error, Result};
+use std::cmp::Ordering;
+use std::collections::BTreeMap;
+
+/// Side of the cells in which points of a block are looked up, metres.
+const CELL: f64 = 2.0;
+/// Least upward part of the way to a scanner that flies, as a share.
+const MIN_UP: f64 = 0.3;
+
+/// A return as surfaces need it, metres from the corner of the block.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Return {
+    pub(super) p: [f64; 3],
+    /// Metres east and north for each metre up, on the way to the scanner; NaN where it is unknown.
+    pub(super) lean: [f64; 2],
+    /// Whether it may lie on a building.
+    pub(super) is_building: bool,
+    /// Whether it is the first of its pulse.
+    pub(super) is_first: bool,
+    /// Whether its pulse has several returns: a part of the beam went on.
+    pub(super) is_split: bool,
+}
+
+/// A block with what lies about it.
+pub(super) struct Block {
+    /// Corner of the block in local metres, height 0.
+    pub(super) corner: [f64; 3],
+    /// Sorted by cell, and by position in each.
+    pub(super) returns: Vec<Return>,
+    /// First return of each cell of the grid, and the end.
+    cells: Vec<u32>,
+    grid: Grid,
+    /// Lowest return.
+    pub(super) lowest: f64,
+    /// Most lean of a pulse.
+    max_lean: f64,
+    /// Number of first returns in each cell of the grid.
+    counts: Vec<u32>,
+}
+
+/// The cells of a block and what lies about it.
+#[derive(Clone, Copy)]
+struct Grid {
+    /// How far it reaches beyond the block, metres.
+    margin: f64,
+    /// Columns, and rows.
+    side: usize,
+}
+
+impl Grid {
+    fn new(margin: f64) -> Self {
+        Self { margin, side: count_of((BLOCK + 2.0 * margin) / CELL) + 1 }
+    }
+
+    /// Column or row of a coordinate, the nearest one for those beyond.
+    fn cell(&self, v: f64) -> usize {
+        count_of((v + self.margin) / CELL).min(self.side - 1)
+    }
+
+    /// Number of the cell of a place.
+    fn number(&self, p: [f64; 3]) -> usize {
+        self.cell(p[1]) * self.side + self.cell(p[0])
+    }
+}
+
+/// A block and the rows of its points and of those about it.
+pub(super) struct BlockRows {
+    number: [i64; 2],
+    rows: Vec<u32>,
+}
+
+/// The blocks that hold building points, with their rows.
+pub(super) fn blocks(
+    survey: &SurveyPoints<'_>,
+    params: &PlaneParams,
+    control: &Control<'_>,
+) -> Result<Vec<BlockRows>> {
+    let expected = survey.positions.len();
+    if survey.scanner.len() != expected {
+        return Err(Error::LengthMismatch { what: "scanner positions", expected, found: survey.scanner.len() });
+    }
+    let mut rows_of: BTreeMap<[i64; 2], (bool, Vec<u32>)> = BTreeMap::new();
+    #[expect(clippy::cast_possible_truncation, reason = "positions of a cloud are far below 2^63 blocks")]
+    let number = |v: f64| (v / BLOCK).floor() as i64;
+    let mut buildings = 0_u32;
+    for (row, p) in survey.positions.iter().enumerate() {
+        if row % 65_536 == 0 {
+            control.check()?;
+        }
+        let Ok(short) = u32::try_from(row) else { break };
+        let (is_building, is_first) = (is_building(survey, row), is_first(survey, row));
+        if !(is_building || is_first) {
+            continue;
+        }
+        buildings += u32::from(is_building);
+        let [x, y] = [0, 1].map(|axis| f64::from(p[axis]) + survey.origin[axis]);
+        let own = [number(x), number(y)];
+        for column in number(x - params.margin)..=number(x + params.margin) {
+            for line in number(y - params.margin)..=number(y + params.margin) {
+                let (holds, rows) = rows_of.entry([column, line]).or_default();
+                *holds |= is_building && own == [column, line];
+                rows.push(short);
+            }
+        }
+    }
+    let with_buildings = rows_of.into_iter().filter(|(_, (holds, _))| *holds && buildings > 0);
+    Ok(with_buildings.map(|(number, (_, rows))| BlockRows { number, rows }).collect())
+}
+
+/// Whether a point is the first return of its pulse.
+fn is_first(survey: &SurveyPoints<'_>, row: usize) -> bool {
+    survey.attributes.return_number.as_ref().and_then(|numbers| numbers.get(row)).is_none_or(|&number| number <= 1)
+}
+
+/// Whether a point may lie on a building.
+fn is_building(survey: &SurveyPoints<'_>, row: usize) -> bool {
+    let class = survey.attributes.classification.as_ref().and_then(|classes| classes.get(row)).copied();
+    match survey.buildings {
+        BuildingPoints::Classified => class == Some(6),
+        BuildingPoints::ByShape => !matches!(class, Some(2..=5 | 7 | 9 | 17 | 18)),
+    }
+}
+
+impl Block {
+    /// The points of a block.
+    pub(super) fn new(survey: &SurveyPoints<'_>, block: BlockRows, margin: f64) -> Self {
+        #[expect(clippy::cast_precision_loss, reason = "numbers of blocks")]
+        let [x, y] = [0, 1].map(|axis| block.number[axis] as f64 * BLOCK - survey.origin[axis]);
+        let corner = [x, y, 0.0];
+        let grid = Grid::new(margin);
+        let counts = survey.attributes.return_count.as_deref();
+        let read = |row: usize| {
+            let (at, from) = (survey.positions[row], survey.scanner[row]);
+            let way: [f64; 3] = std::array::from_fn(|i| f64::from(from[i]) - f64::from(at[i]));
+            let is_flown = way[2] > MIN_UP * way[0].hypot(way[1]);
+            Return {
+                p: std::array::from_fn(|i| f64::from(at[i]) - corner[i]),
+                lean: if is_flown { [way[0] / way[2], way[1] / way[2]] } else { [f64::NAN; 2] },
+                is_building: is_building(survey, row),
+                is_first: is_first(survey, row),
+                is_split: counts.and_then(|counts| counts.get(row)).is_some_and(|&count| count > 1),
+            }
+        };
+        // keys are sorted rather than returns, which are longer
+        let mut keys: Vec<(u32, [u32; 3], u32)> = Vec::with_capacity(block.rows.len());
+        for row in block.rows {
+            let at = survey.positions[row as usize];
+            let cell = grid.number(std::array::from_fn(|i| f64::from(at[i]) - corner[i]));
+            keys.push((u32::try_from(cell).unwrap_or(u32::MAX), at.map(ordered), row));
+        }
+        keys.sort_unstable_by_key(|key| (key.0, key.1));
+        let mut returns: Vec<Return> = keys.iter().map(|key| read(key.2 as usize)).collect();
+        // what lies in one place has an order of its own
+        let mut first = 0;
+        for group in keys.chunk_by(|a, b| a.1 == b.1) {
+            if group.len() > 1 {
+                returns[first..first + group.len()].sort_unstable_by(|a, b| {
+                    let by_lean = (0..2).fold(Ordering::Equal, |order, i| order.then(a.lean[i].total_cmp(&b.lean[i])));
+                    let flags = |r: &Return| [r.is_building, r.is_first, r.is_split];
+                    by_lean.then(flags(a).cmp(&flags(b)))
+                });
+            }
+            first += group.len();
+        }
+        Self::indexed(corner, grid, returns)
+    }
+
+    /// A block of sorted returns.
+    fn indexed(corner: [f64; 3], grid: Grid, returns: Vec<Return>) -> Self {
+        let (mut lowest, mut max_lean) = (f64::INFINITY, 0.0_f64);
+        let mut counts = vec![0; grid.side * grid.side];
+        let mut cells = vec![0_u32; grid.side * grid.side + 1];
+        for found in &returns {
+            lowest = lowest.min(found.p[2]);
+            let lean = found.lean[0].powi(2) + found.lean[1].powi(2);
+            max_lean = max_lean.max(lean);
+            let cell = grid.number(found.p);
+            counts[cell] += u32::from(found.is_first);
+            cells[cell + 1] += 1;
+        }
+        for cell in 1..cells.len() {
+            cells[cell] += cells[cell - 1];
+        }
+        Self { corner, returns, cells, grid, lowest, max_lean: max_lean.sqrt(), counts }
+    }
+
+    /// Calls `visit` with every return between two corners in plan, and some about them.
+    pub(super) fn each_in(&self, low: [f64; 2], high: [f64; 2], mut visit: impl FnMut(usize, &Return)) {
+        let [columns, rows] = [0, 1].map(|axis| [self.grid.cell(low[axis]), self.grid.cell(high[axis])]);
+        for row in rows[0]..=rows[1] {
+            let first = row * self.grid.side;
+            let [from, to] = [first + columns[0], first + columns[1] + 1].map(|cell| self.cells[cell] as usize);
+            for (row, found) in self.returns[from..to].iter().enumerate() {
+                visit(from + row, found);
+            }
+        }
+    }
+
+    /// How far in plan a pulse moves at most from where it crosses a height to its return.
+    pub(super) fn max_shift(&self, height: f64) -> f64 {
+        (height - self.lowest).max(0.0) * self.max_lean
+    }
+
+    /// Mean distance of pulses about a place, metres.
+    pub(super) fn spacing(&self, p: [f64; 3]) -> f64 {
+        let [columns, rows] = [0, 1].map(|axis| {
+            let cell = self.grid.cell(p[axis]);
+            cell.saturating_sub(1)..=(cell + 1).min(self.grid.side - 1)
+        });
+        let (mut count, mut cells) = (0, 0.0);
+        for row in rows {
+            for column in columns.clone() {
+                count += self.counts[row * self.grid.side + column];
+                cells += 1.0;
+            }
+        }
+        (cells * CELL * CELL / f64::from(count.max(1))).sqrt()
+    }
+
+    /// Whether a place in plan lies in the block itself.
+    pub(super) fn holds(&self, p: [f64; 2]) -> bool {
+        p.iter().all(|v| (0.0..BLOCK).contains(v))
+    }
+
+    /// A place of the block in local metres.
+    pub(super) fn local(&self, p: [f64; 3]) -> [f64; 3] {
+        std::array::from_fn(|i| p[i] + self.corner[i])
+    }
+
+    /// The piece of a line in plan within the block, as ranges from 0 to 1 between two points; `None` outside.
+    fn piece(&self, [a, b]: [[f64; 2]; 2]) -> Option<[f64; 2]> {
+        let mut range = [0.0_f64, 1.0_f64];
+        for axis in 0..2 {
+            let step = b[axis] - a[axis];
+            let [to_low, to_high] = [0.0 - a[axis], BLOCK - a[axis]];
+            if step.abs() < 1e-12 {
+                if !(0.0..BLOCK).contains(&a[axis]) {
+                    return None;
+                }
+                continue;
+            }
+            let [s, t] = [to_low / step, to_high / step];
+            range = [range[0].max(s.min(t)), range[1].min(s.max(t))];
+        }
+        (range[0] < range[1]).then_some(range)
+    }
+
+    /// Gives out planes, edges, ridges and walls as far as they lie in the block.
+    pub(super) fn give_out(
+        &self,
+        roofs: &Roofs,
+        ridges: &[RidgeLine],
+        outlines: &[Outline],
+        walls: &[WallLine],
+        found: &mut BuildingSurfaces,
+    ) {
+        let mut row_of = vec![usize::MAX; roofs.planes.len()];
+        for (number, roof) in roofs.planes.iter().enumerate() {
+            let mut bounds = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
+            let mut is_here = false;
+            for &row in &roof.rows {
+                let p = roofs.points[row as usize];
+                is_here |= self.holds([p[0], p[1]]);
+                for axis in 0..3 {
+                    bounds[0][axis] = bounds[0][axis].min(p[axis]);
+                    bounds[1][axis] = bounds[1][axis].max(p[axis]);
+                }
+            }
+            if is_here {
+                row_of[number] = found.planes.len();
+                found.planes.push(RoofPlane {
+                    normal: roof.plane.normal,
+                    center: self.local(roof.center),
+                    bounds: bounds.map(|corner| self.local(corner)),
+                    count: roof.rows.len(),
+                    noise: roof.plane.noise,
+                    sd: roof.sd(),
+                });
+            }
+        }
+        let lifted = |plane: usize, [a, b]: [[f64; 2]; 2], [from, to]: [f64; 2]| {
+            [from, to].map(|share| {
+                let p = [a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1])];
+                self.local([p[0], p[1], roofs.planes[plane].plane.height(p)])
+            })
+        };
+        let mut edge_row: BTreeMap<(usize, usize), usize> = BTreeMap::new();
+        for (plane, outline) in outlines.iter().enumerate() {
+            for (number, edge) in outline.edges.iter().enumerate() {
+                let ends = edge.line.end_points();
+                let Some(range) = self.piece(ends).filter(|_| row_of[plane] != usize::MAX) else { continue };
+                edge_row.insert((plane, number), found.edges.len());
+                found.edges.push(Edge {
+                    ends: lifted(plane, ends, range),
+                    plane: row_of[plane],
+                    sd: edge.sd,
+                    count: edge.count,
+                    drop: edge.drop,
+                });
+            }
+        }
+        for ridge in ridges {
+            let ends = ridge.line.end_points();
+            let planes = ridge.planes.map(|plane| row_of[plane]);
+            if let Some(range) = self.piece(ends).filter(|_| planes.iter().all(|&row| row != usize::MAX)) {
+                found.ridges.push(Ridge {
+                    ends: lifted(ridge.planes[0], ends, range),
+                    planes,
+                    is_convex: ridge.is_convex,
+                });
+            }
+        }
+        for wall in walls {
+            let ends = wall.line.end_points();
+            let edge = edge_row.get(&(wall.plane, wall.edge));
+            if let (Some(range), Some(&edge)) = (self.piece(ends), edge) {
+                let ends = lifted(wall.plane, ends, range);
+                let middle = f64::midpoint(ends[0][2], ends[1][2]);
+                found.walls.push(Wall {
+                    ends: ends.map(|p| [p[0], p[1]]),
+                    heights: [wall.bottom, middle],
+                    edge,
+                    count: wall.points.len(),
+                    noise: wall.noise,
+                    sd: wall.sd,
+                    share: wall.share,
+                    eaves: wall.eaves,
+                });
+            }
+        }
+    }
+}
+
+/// A number whose order is that of coordinates, bit by bit.
+fn ordered(v: f32) -> u32 {
+    let bits = v.to_bits();
+    if bits >> 31 == 0 { bits | 1 << 31 } else { !bits }
+}
+
+/// A number of cells, 0 for what is below.
+fn count_of(cells: f64) -> usize {
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "cells of a block, and saturating")]
+    let count = cells.max(0.0) as usize;
+    count
+}

@@ -1,0 +1,93 @@
+//! Planes through points by least squares.
+
+use crate::normals::estimate::min_component;
+use belvedere_data::vector::dot;
+
+/// Sums of points from which their plane follows; those of two sets add up.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Sums {
+    pub(super) count: f64,
+    sum: [f64; 3],
+    /// xx, yy, zz, xy, yz, zx
+    products: [f64; 6],
+}
+
+/// A plane through points.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Plane {
+    /// Unit vector, upward.
+    pub(super) normal: [f64; 3],
+    /// Product of the normal with any point of the plane, metres.
+    pub(super) offset: f64,
+    /// Root mean square distance of its points, metres.
+    pub(super) noise: f64,
+}
+
+impl Sums {
+    pub(super) fn add(&mut self, p: [f64; 3]) {
+        let [x, y, z] = p;
+        self.count += 1.0;
+        for (sum, v) in self.sum.iter_mut().zip(p) {
+            *sum += v;
+        }
+        for (sum, v) in self.products.iter_mut().zip([x * x, y * y, z * z, x * y, y * z, z * x]) {
+            *sum += v;
+        }
+    }
+
+    pub(super) fn plus(&self, other: &Self) -> Self {
+        Self {
+            count: self.count + other.count,
+            sum: std::array::from_fn(|i| self.sum[i] + other.sum[i]),
+            products: std::array::from_fn(|i| self.products[i] + other.products[i]),
+        }
+    }
+
+    pub(super) fn mean(&self) -> [f64; 3] {
+        self.sum.map(|v| v / self.count)
+    }
+
+    /// The plane, `None` for fewer than three points.
+    pub(super) fn plane(&self) -> Option<Plane> {
+        if self.count < 3.0 {
+            return None;
+        }
+        let mean = self.mean();
+        let of = |i: usize, a: usize, b: usize| self.products[i] / self.count - mean[a] * mean[b];
+        let covariance = [of(0, 0, 0), of(1, 1, 1), of(2, 2, 2), of(3, 0, 1), of(4, 1, 2), of(5, 2, 0)];
+        let (values, normal) = min_component(covariance);
+        let normal = if normal[2] < 0.0 { normal.map(|v| -v) } else { normal };
+        normal.iter().all(|v| v.is_finite()).then(|| Plane {
+            normal,
+            offset: dot(normal, mean),
+            noise: values[0].max(0.0).sqrt(),
+        })
+    }
+}
+
+impl Plane {
+    /// Distance above the plane, metres.
+    pub(super) fn above(&self, p: [f64; 3]) -> f64 {
+        dot(self.normal, p) - self.offset
+    }
+
+    /// Height of the plane over a place in plan.
+    pub(super) fn height(&self, [x, y]: [f64; 2]) -> f64 {
+        (self.offset - self.normal[0] * x - self.normal[1] * y) / self.normal[2]
+    }
+
+    /// The place in plan where a line meets the plane that runs through `p` and moves by `lean` in plan for each metre
+    /// up; `None` for one that hardly comes nearer to it.
+    pub(super) fn crossing(&self, p: [f64; 3], lean: [f64; 2]) -> Option<[f64; 2]> {
+        let nearer = dot(self.normal, [lean[0], lean[1], 1.0]);
+        (nearer > 0.2).then(|| {
+            let up = -self.above(p) / nearer;
+            [p[0] + lean[0] * up, p[1] + lean[1] * up]
+        })
+    }
+
+    /// Cosine of the angle to another plane.
+    pub(super) fn cosine(&self, other: &Self) -> f64 {
+        dot(self.normal, other.normal)
+    }
+}

@@ -1,0 +1,244 @@
+//! Planes, ridges, edges and walls of buildings: surfaces that are known better than the spacing of points.
+//!
+//! A roof is a plane that many points lie on, so that it is known to a few millimetres. Where it ends is known from
+//! pulses as well as from points: a return on the plane lies within its edge, a pulse that passed the plane and ended
+//! below it lies outside. Walls are looked for below edges, where ten points are enough.
+//!
+//! Everything is found in blocks of 64 m of the reference system with what lies about them, in an order that follows
+//! from positions only: a part of a survey finds what the whole finds. Scans from the ground have no planes yet.
+//!
+//! # Source
+//! This project's. Edges as lines between returns and pulses that passed: `docs/methods/planes.md`.
+
+mod block;
+mod edges;
+mod fit;
+mod likelihood;
+mod line;
+mod patches;
+mod regions;
+mod ridges;
+mod roof_planes;
+mod sheets;
+#[cfg(test)]
+mod tests;
+mod walls;
+
+pub use regions::{Region, SurfaceRegions};
+
+use belvedere_data::control::Control;
+use belvedere_data::{Attributes, Result};
+use block::{Block, blocks};
+use likelihood::LikelihoodTable;
+use rayon::prelude::*;
+
+/// Side of the blocks in which surfaces are found, metres.
+pub(crate) const BLOCK: f64 = 64.0;
+
+/// How surfaces of buildings are found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlaneParams {
+    /// How far beyond a block points are looked at, metres. Default 8: with 16 nothing is
+    /// found better.
+    pub margin: f64,
+    /// Least number of points on a plane of a roof. Default 12.
+    pub min_points: usize,
+    /// Most standard deviation of the place of an edge that is used, metres. Default 0.08.
+    pub max_edge_sd: f64,
+    /// Least share of the points below an edge that lie on a wall, for it to be closed between its points. Default
+    /// 0.5: fronts of stacked balconies have 0.3 to 0.4.
+    pub min_wall_share: f64,
+    /// Least number of points on a wall that is closed between them. Default 10.
+    pub min_wall_points: usize,
+    /// How far from its points a wall is closed, in spacings of pulses. Default 4.7, which is 1.5 m at ten pulses per
+    /// m²: with 1 m more is seen through walls, with 2 m arcades close.
+    pub wall_reach_spacings: f64,
+}
+
+impl Default for PlaneParams {
+    fn default() -> Self {
+        Self {
+            margin: 8.0,
+            min_points: 12,
+            max_edge_sd: 0.08,
+            min_wall_share: 0.5,
+            min_wall_points: 10,
+            wall_reach_spacings: 4.7,
+        }
+    }
+}
+
+/// Which points may lie on buildings.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum BuildingPoints {
+    /// Those of class 6.
+    #[default]
+    Classified,
+    /// All but those with a class of ground, vegetation, water, noise or bridges: a cloud without class 6.
+    ByShape,
+}
+
+/// The points that surfaces are found in. Columns have a row for each point.
+#[derive(Clone, Copy)]
+pub struct SurveyPoints<'a> {
+    /// As measured, (N, 3) local metres.
+    pub positions: &'a [[f32; 3]],
+    /// The scanner at each point, (N, 3) local metres, NaN where unknown.
+    pub scanner: &'a [[f32; 3]],
+    /// Class and return number are used where present.
+    pub attributes: &'a Attributes,
+    /// Origin of the local positions in the reference system, metres.
+    pub origin: [f64; 3],
+    /// Which points may lie on buildings.
+    pub buildings: BuildingPoints,
+}
+
+/// A plane of a roof.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RoofPlane {
+    /// Unit vector upward and outward.
+    pub normal: [f64; 3],
+    /// A point of the plane, the middle of its points, local metres.
+    pub center: [f64; 3],
+    /// Lowest and highest corner of the box of its points, local metres.
+    pub bounds: [[f64; 3]; 2],
+    /// Points on it.
+    pub count: usize,
+    /// Root mean square distance of these points, metres.
+    pub noise: f64,
+    /// Standard deviation of its height at the middle, metres.
+    pub sd: f64,
+}
+
+/// A straight line on which a roof ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Edge {
+    /// Both ends, local metres. Seen from the first to the second the roof lies to the left.
+    pub ends: [[f64; 3]; 2],
+    /// Row of its plane among [`BuildingSurfaces::planes`].
+    pub plane: usize,
+    /// Standard deviation of its place across the line, in plan, metres.
+    pub sd: f64,
+    /// Number of sides between a return and a pulse that passed whose middles lie on it.
+    pub count: usize,
+    /// Height of what lies below it, the median along the edge, metres below the roof.
+    pub drop: f64,
+}
+
+/// A line in which two planes of a roof meet.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ridge {
+    /// Both ends, local metres.
+    pub ends: [[f64; 3]; 2],
+    /// Rows of its planes.
+    pub planes: [usize; 2],
+    /// Whether both planes fall from it: a ridge or hip; a valley otherwise.
+    pub is_convex: bool,
+}
+
+/// An upright wall below an edge.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Wall {
+    /// Both ends in plan, local metres. Seen from the first to the second the house lies to the left.
+    pub ends: [[f64; 2]; 2],
+    /// Height of its lowest point, and of the roof above its middle, local metres.
+    pub heights: [f64; 2],
+    /// Row of the edge above it among [`BuildingSurfaces::edges`].
+    pub edge: usize,
+    /// Points on it.
+    pub count: usize,
+    /// Root mean square distance of these points, metres.
+    pub noise: f64,
+    /// Standard deviation of its place across, at its middle, metres.
+    pub sd: f64,
+    /// Share of the points below the edge that lie on it, 0 to 1.
+    pub share: f64,
+    /// How far the edge stands out before it, metres.
+    pub eaves: f64,
+}
+
+/// What a patch closes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum PatchKind {
+    /// A piece of a roof.
+    Roof,
+    /// A piece of a wall near its points.
+    Wall,
+    /// A sheet on the edge of a roof.
+    Parapet,
+    /// A sheet from the edge of a roof down to a roof close below it.
+    Step,
+    /// A side of something that stands on a roof.
+    Box,
+    /// An upright sheet within a building, from the roof to the ground.
+    Inside,
+}
+
+/// Surfaces of buildings.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct BuildingSurfaces {
+    /// Planes of roofs; those that reach over several blocks are in each of them.
+    pub planes: Vec<RoofPlane>,
+    /// Edges of roofs, cut to blocks.
+    pub edges: Vec<Edge>,
+    /// Ridges, hips and valleys, cut to blocks.
+    pub ridges: Vec<Ridge>,
+    /// Walls, cut to blocks.
+    pub walls: Vec<Wall>,
+    /// Triangles that close surfaces, local metres, counter-clockwise seen from outside.
+    pub triangles: Vec<[[f32; 3]; 3]>,
+    /// What each triangle closes.
+    pub kinds: Vec<PatchKind>,
+    /// Space before known surfaces.
+    pub regions: SurfaceRegions,
+}
+
+impl BuildingSurfaces {
+    /// Adds what another block found.
+    fn append(&mut self, other: Self) {
+        let (planes, edges) = (self.planes.len(), self.edges.len());
+        self.planes.extend(other.planes);
+        self.edges.extend(other.edges.into_iter().map(|edge| Edge { plane: edge.plane + planes, ..edge }));
+        let moved = |ridge: Ridge| Ridge { planes: ridge.planes.map(|plane| plane + planes), ..ridge };
+        self.ridges.extend(other.ridges.into_iter().map(moved));
+        self.walls.extend(other.walls.into_iter().map(|wall| Wall { edge: wall.edge + edges, ..wall }));
+        self.triangles.extend(other.triangles);
+        self.kinds.extend(other.kinds);
+        self.regions.append(other.regions);
+    }
+}
+
+/// The surfaces of the buildings in a survey from the air.
+///
+/// # Errors
+/// [`Error::LengthMismatch`](belvedere_data::Error::LengthMismatch) where columns differ in length;
+/// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
+pub fn find(survey: &SurveyPoints<'_>, params: &PlaneParams, control: &Control<'_>) -> Result<BuildingSurfaces> {
+    let blocks = blocks(survey, params, control)?;
+    let found: Vec<Result<BuildingSurfaces>> =
+        blocks.into_par_iter().map(|block| of_block(&Block::new(survey, block, params.margin), params, control)).collect();
+    let mut surfaces = BuildingSurfaces::default();
+    for block in found {
+        surfaces.append(block?);
+    }
+    Ok(surfaces)
+}
+
+/// What lies in one block.
+fn of_block(block: &Block, params: &PlaneParams, control: &Control<'_>) -> Result<BuildingSurfaces> {
+    control.check()?;
+    let roofs = roof_planes::find(block, params, control)?;
+    let ridges = ridges::find(block, &roofs);
+    let table = LikelihoodTable::new();
+    let outlines: Vec<edges::Outline> = (0..roofs.planes.len())
+        .map(|plane| edges::find(block, &roofs, &ridges, plane, params, &table))
+        .collect();
+    let walls = walls::find(block, &roofs, &outlines);
+    let leaves = patches::roofs(block, &roofs, &ridges, &outlines);
+    let mut found = BuildingSurfaces::default();
+    patches::give_out(block, &roofs, &leaves, &walls, params, &mut found);
+    sheets::give_out(block, &roofs, &outlines, &walls, &mut found);
+    found.regions = regions::of_block(block, &roofs, &outlines, &walls, &leaves);
+    block.give_out(&roofs, &ridges, &outlines, &walls, &mut found);
+    Ok(found)
+}

@@ -1,0 +1,310 @@
+//! Planes of roofs: points that go on flat from each other.
+
+use super::PlaneParams;
+use super::block::Block;
+use super::fit::{Plane, Sums};
+use crate::neighbors::NeighborIndex;
+use belvedere_data::Result;
+use belvedere_data::control::Control;
+use belvedere_data::vector::sub;
+use std::collections::BTreeMap;
+
+/// Neighbours that show whether a point lies on something flat, without itself.
+pub(super) const NEIGHBORS: usize = 12;
+/// No plane, or no neighbour.
+pub(super) const NONE: u32 = u32::MAX;
+/// Farthest neighbours that a plane goes on between, metres.
+const MAX_STEP: f64 = 1.5;
+/// Cosine of the angle up to which a point faces the way of the plane it is added to: 10°.
+const SAME_WAY: f64 = 0.985;
+/// Cosine of the angle up to which planes that touch may be one: 6°.
+const ONE_PLANE: f64 = 0.9945;
+/// Least upward part of the normal of a roof: 70° of slope.
+const MIN_UP: f64 = 0.34;
+/// Noise of ranges that is believed, metres, whatever the points say.
+const NOISE: [f64; 2] = [0.004, 0.08];
+/// Share of points whose neighbourhoods are rougher by noise alone, and what their roughness is then as a share of the
+/// noise: the lower quartile of χ with ten degrees of freedom, of thirteen points.
+const SMOOTH: [f64; 2] = [0.25, 0.72];
+/// Passes in which points beside planes are given to them.
+const SWEEPS: usize = 3;
+/// Pairs of neighbours on two planes that touch.
+pub(super) const MIN_PAIRS: usize = 4;
+
+/// A plane and its points.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Roof {
+    pub(super) plane: Plane,
+    /// Middle of its points, metres from the corner of the block.
+    pub(super) center: [f64; 3],
+    /// Rows among [`Roofs::points`].
+    pub(super) rows: Vec<u32>,
+    /// Mean distance of pulses, metres.
+    pub(super) spacing: f64,
+}
+
+impl Roof {
+    /// Standard deviation of the place at the middle, metres.
+    pub(super) fn sd(&self) -> f64 {
+        self.plane.noise / (self.rows.len() as f64).sqrt()
+    }
+}
+
+/// The planes of a block and what lies about it.
+pub(super) struct Roofs {
+    /// First returns that may lie on buildings, metres from the corner of the block.
+    pub(super) points: Vec<[f64; 3]>,
+    /// Rows of the nearest of them about each, [`NONE`] where there are fewer.
+    pub(super) neighbors: Vec<[u32; NEIGHBORS]>,
+    /// Plane of each, [`NONE`] for those on none.
+    pub(super) plane_of: Vec<u32>,
+    /// The planes.
+    pub(super) planes: Vec<Roof>,
+    /// For each return of the block its plane, [`NONE`] for those on none.
+    pub(super) plane_of_return: Vec<u32>,
+    /// For each of the points its row among the returns of the block.
+    pub(super) return_of: Vec<u32>,
+    /// Noise of points along the normals, metres.
+    pub(super) noise: f64,
+}
+
+/// What is known of a point before planes grow.
+struct Patchwork {
+    points: Vec<[f64; 3]>,
+    neighbors: Vec<[u32; NEIGHBORS]>,
+    local: Vec<Plane>,
+    noise: f64,
+}
+
+/// The planes of roofs in a block.
+///
+/// # Errors
+/// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
+pub(super) fn find(block: &Block, params: &PlaneParams, control: &Control<'_>) -> Result<Roofs> {
+    let is_candidate = |row: &usize| block.returns[*row].is_building && block.returns[*row].is_first;
+    let rows: Vec<usize> = (0..block.returns.len()).filter(is_candidate).collect();
+    let work = Patchwork::new(rows.iter().map(|&row| block.returns[row].p).collect(), control)?;
+    let (mut plane_of, mut planes) = work.grow(params.min_points);
+    for _ in 0..SWEEPS {
+        work.sweep(&mut plane_of, &planes);
+        planes = work.fitted(&plane_of, planes.len());
+    }
+    work.merge(&mut plane_of, &mut planes);
+    let Patchwork { points, neighbors, noise, .. } = work;
+    let mut roofs = Roofs {
+        plane_of: vec![NONE; points.len()],
+        plane_of_return: vec![NONE; block.returns.len()],
+        return_of: rows.iter().map(|&row| u32::try_from(row).unwrap_or(NONE)).collect(),
+        planes: Vec::new(),
+        points,
+        neighbors,
+        noise,
+    };
+    roofs.keep(block, &plane_of, &planes, params.min_points);
+    Ok(roofs)
+}
+
+impl Roofs {
+    /// Keeps the planes that are roofs, without points farther than three times the noise.
+    fn keep(&mut self, block: &Block, plane_of: &[u32], planes: &[Plane], min_points: usize) {
+        let mut rows = vec![Vec::new(); planes.len()];
+        for (row, &plane) in plane_of.iter().enumerate() {
+            if let Some(rows) = rows.get_mut(plane as usize) {
+                rows.extend(u32::try_from(row));
+            }
+        }
+        for (plane, mut rows) in planes.iter().zip(rows) {
+            let max = 3.0 * plane.noise.max(self.noise);
+            rows.retain(|&row| plane.above(self.points[row as usize]).abs() <= max);
+            let mut sums = Sums::default();
+            rows.iter().for_each(|&row| sums.add(self.points[row as usize]));
+            let Some(plane) = sums.plane() else { continue };
+            if rows.len() < min_points || plane.normal[2] < MIN_UP {
+                continue;
+            }
+            let number = u32::try_from(self.planes.len()).unwrap_or(NONE);
+            for &row in &rows {
+                self.plane_of[row as usize] = number;
+                self.plane_of_return[self.return_of[row as usize] as usize] = number;
+            }
+            // spacings vary with overlap: their mean over the plane
+            let area: f64 = rows.iter().map(|&row| block.spacing(self.points[row as usize]).powi(2)).sum();
+            let spacing = (area / rows.len() as f64).sqrt();
+            self.planes.push(Roof { plane, center: sums.mean(), rows, spacing });
+        }
+    }
+}
+
+impl Patchwork {
+    fn new(points: Vec<[f64; 3]>, control: &Control<'_>) -> Result<Self> {
+        #[expect(clippy::cast_possible_truncation, reason = "positions of a block")]
+        let places: Vec<[f32; 3]> = points.iter().map(|p| p.map(|v| v as f32)).collect();
+        let index = NeighborIndex::new(&places, control)?;
+        let mut neighbors = vec![[NONE; NEIGHBORS]; points.len()];
+        let mut local = vec![Plane::default(); points.len()];
+        let mut found = Vec::new();
+        for &row in index.tree_order() {
+            let row = row as usize;
+            index.k_nearest(places[row], NEIGHBORS + 1, &mut found);
+            let mut sums = Sums::default();
+            // sums of small numbers keep their digits
+            sums.add([0.0; 3]);
+            let others = found.iter().map(|near| near.index).filter(|&near| near as usize != row);
+            for (place, near) in neighbors[row].iter_mut().zip(others) {
+                *place = near;
+                sums.add(sub(points[near as usize], points[row]));
+            }
+            local[row] = sums.plane().unwrap_or(Plane { noise: f64::INFINITY, ..Plane::default() });
+        }
+        let mut roughness: Vec<f64> = local.iter().map(|plane| plane.noise).filter(|v| v.is_finite()).collect();
+        roughness.sort_unstable_by(f64::total_cmp);
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a share of a length")]
+        let quartile = roughness.get((roughness.len() as f64 * SMOOTH[0]) as usize).copied();
+        let noise = quartile.map_or(NOISE[1], |v| (v / SMOOTH[1]).clamp(NOISE[0], NOISE[1]));
+        Ok(Self { points, neighbors, local, noise })
+    }
+
+    /// Neighbours of a point.
+    fn near(&self, row: usize) -> impl Iterator<Item = usize> + '_ {
+        self.neighbors[row].iter().take_while(|&&near| near != NONE).map(|&near| near as usize)
+    }
+
+    /// Whether a point lies on something flat.
+    fn is_flat(&self, row: usize) -> bool {
+        self.local[row].noise < 1.6 * self.noise + 0.01
+    }
+
+    /// Planes that grow from the flattest points on; the plane of each point, [`NONE`] for those on none.
+    fn grow(&self, min_points: usize) -> (Vec<u32>, Vec<Plane>) {
+        let mut plane_of = vec![NONE; self.points.len()];
+        let mut is_tried = vec![false; self.points.len()];
+        let mut planes = Vec::new();
+        let mut seeds: Vec<usize> = (0..self.points.len()).filter(|&row| self.is_flat(row)).collect();
+        seeds.sort_unstable_by(|&a, &b| self.local[a].noise.total_cmp(&self.local[b].noise).then(a.cmp(&b)));
+        let mut rows = Vec::new();
+        for seed in seeds {
+            if plane_of[seed] != NONE || is_tried[seed] {
+                continue;
+            }
+            let number = u32::try_from(planes.len()).unwrap_or(NONE);
+            let plane = self.grown(seed, number, &mut plane_of, &mut rows);
+            if rows.len() >= min_points {
+                planes.push(plane);
+            } else {
+                for &row in &rows {
+                    plane_of[row] = NONE;
+                    is_tried[row] = true;
+                }
+            }
+        }
+        (plane_of, planes)
+    }
+
+    /// The plane that grows from a seed, whose points are put into `rows`. It is fitted anew as often as its number of
+    /// points has grown by half.
+    fn grown(&self, seed: usize, number: u32, plane_of: &mut [u32], rows: &mut Vec<usize>) -> Plane {
+        let base = self.points[seed];
+        let own = self.local[seed];
+        let mut plane = Plane { offset: 0.0, ..own };
+        let (mut sums, mut next, mut fit_at) = (Sums::default(), 0, 8);
+        rows.clear();
+        rows.push(seed);
+        plane_of[seed] = number;
+        sums.add([0.0; 3]);
+        let reach = 2.5 * self.noise + 0.02;
+        while let Some(&row) = rows.get(next) {
+            next += 1;
+            for near in self.near(row) {
+                if plane_of[near] != NONE || !self.is_flat(near) {
+                    continue;
+                }
+                let (from, at) = (self.points[row], sub(self.points[near], base));
+                let step = sub(self.points[near], from);
+                let is_near = step.iter().map(|v| v * v).sum::<f64>() < MAX_STEP * MAX_STEP;
+                if is_near && plane.cosine(&self.local[near]).abs() > SAME_WAY && plane.above(at).abs() < reach {
+                    plane_of[near] = number;
+                    rows.push(near);
+                    sums.add(at);
+                }
+            }
+            if rows.len() >= fit_at {
+                plane = sums.plane().unwrap_or(plane);
+                fit_at = rows.len() * 3 / 2;
+            }
+        }
+        plane = sums.plane().unwrap_or(plane);
+        let moved: f64 = (0..3).map(|i| plane.normal[i] * base[i]).sum();
+        Plane { offset: plane.offset + moved, ..plane }
+    }
+
+    /// Gives each point to the nearest plane of those that it or its neighbours lie on, if it lies near enough.
+    fn sweep(&self, plane_of: &mut Vec<u32>, planes: &[Plane]) {
+        let reach = 2.5 * self.noise + 0.01;
+        let chosen = |row: usize| {
+            let own = plane_of[row];
+            let far = |plane: u32| planes[plane as usize].above(self.points[row]).abs();
+            let mut best = if own == NONE { (reach, NONE) } else { (far(own), own) };
+            for near in self.near(row) {
+                let other = plane_of[near];
+                let is_new = other != NONE && other != best.1 && planes[other as usize].normal[2] >= MIN_UP;
+                if is_new && far(other) < best.0 {
+                    best = (far(other), other);
+                }
+            }
+            best.1
+        };
+        *plane_of = (0..plane_of.len()).map(chosen).collect();
+    }
+
+    /// The planes through the points of each.
+    fn fitted(&self, plane_of: &[u32], count: usize) -> Vec<Plane> {
+        self.sums(plane_of, count).iter().map(|sums| sums.plane().unwrap_or_default()).collect()
+    }
+
+    fn sums(&self, plane_of: &[u32], count: usize) -> Vec<Sums> {
+        let mut sums = vec![Sums::default(); count];
+        for (point, &plane) in self.points.iter().zip(plane_of) {
+            if let Some(sums) = sums.get_mut(plane as usize) {
+                sums.add(*point);
+            }
+        }
+        sums
+    }
+
+    /// Merges planes that touch and fit one plane as well as each its own.
+    fn merge(&self, plane_of: &mut [u32], planes: &mut [Plane]) {
+        let mut sums = self.sums(plane_of, planes.len());
+        let mut pairs: BTreeMap<(u32, u32), usize> = BTreeMap::new();
+        for row in 0..self.points.len() {
+            for near in self.near(row) {
+                let (a, b) = (plane_of[row], plane_of[near]);
+                if a != b && a != NONE && b != NONE {
+                    *pairs.entry((a.min(b), a.max(b))).or_default() += 1;
+                }
+            }
+        }
+        let mut into: Vec<u32> = (0..).take(planes.len()).collect();
+        for ((a, b), count) in pairs {
+            let [a, b] = [a, b].map(|mut plane| {
+                while into[plane as usize] != plane {
+                    plane = into[plane as usize];
+                }
+                plane as usize
+            });
+            if a == b || count < MIN_PAIRS || planes[a].cosine(&planes[b]) < ONE_PLANE {
+                continue;
+            }
+            let both = sums[a].plus(&sums[b]);
+            let own = (sums[a].count * planes[a].noise.powi(2) + sums[b].count * planes[b].noise.powi(2)) / both.count;
+            if let Some(plane) = both.plane().filter(|plane| plane.noise < 1.2 * own.sqrt() + 0.003) {
+                (planes[a], sums[a]) = (plane, both);
+                into[b] = u32::try_from(a).unwrap_or(NONE);
+            }
+        }
+        for plane in plane_of.iter_mut().filter(|plane| **plane != NONE) {
+            while into[*plane as usize] != *plane {
+                *plane = into[*plane as usize];
+            }
+        }
+    }
+}

@@ -1,0 +1,319 @@
+//! Houses whose surfaces are known in closed form, scanned by pulses that meet flat polygons.
+
+use super::*;
+use belvedere_data::random::uniform;
+use belvedere_data::vector::{cross, dot, length, sub};
+
+/// A flat convex polygon and its class.
+type Face = (Vec<[f64; 3]>, u8);
+
+const SEED: u64 = 7;
+/// Noise of ranges, metres.
+const NOISE: f64 = 0.02;
+
+/// A scan of faces over level ground, with ten pulses per square metre from two lines.
+fn scan(faces: &[Face], low: [f64; 2], high: [f64; 2]) -> Scene {
+    let mut scene = Scene::default();
+    let count = (10.0 * (high[0] - low[0]) * (high[1] - low[1])) as u64;
+    let mut number = 0;
+    let mut draw = || {
+        number += 1;
+        uniform(SEED, number)
+    };
+    for pulse in 0..count {
+        let foot = [0, 1].map(|axis: usize| low[axis] + draw() * (high[axis] - low[axis]));
+        let line = if pulse % 2 == 0 { [-150.0, 40.0] } else { [160.0, -60.0] };
+        let scanner = [foot[0] + line[0], foot[1] + line[1], 450.0];
+        let way = sub([foot[0], foot[1], 0.0], scanner);
+        let ground = (1.0, 2);
+        let met = faces.iter().filter_map(|(corners, class)| Some((meets(corners, scanner, way)?, *class)));
+        let (share, class) = met.fold(ground, |best, other| if other.0 < best.0 { other } else { best });
+        // the sum of uniform numbers is nearly normal: of twelve it has a deviation of 1
+        let error = NOISE * ((0..12).map(|_| draw()).sum::<f64>() - 6.0);
+        let range = share + error / length(way);
+        let p: [f64; 3] = std::array::from_fn(|i| scanner[i] + range * way[i]);
+        scene.positions.push(p.map(|v| v as f32));
+        scene.scanner.push(scanner.map(|v| v as f32));
+        scene.classes.push(class);
+    }
+    scene
+}
+
+/// Where a line meets a convex polygon, as a share of its length.
+fn meets(corners: &[[f64; 3]], from: [f64; 3], way: [f64; 3]) -> Option<f64> {
+    let normal = cross(sub(corners[1], corners[0]), sub(corners[2], corners[0]));
+    let share = dot(normal, sub(corners[0], from)) / dot(normal, way);
+    let p: [f64; 3] = std::array::from_fn(|i| from[i] + share * way[i]);
+    let sides: Vec<f64> = (0..corners.len())
+        .map(|i| {
+            let next = corners[(i + 1) % corners.len()];
+            dot(normal, cross(sub(next, corners[i]), sub(p, corners[i])))
+        })
+        .collect();
+    ((0.0..1.0).contains(&share) && sides.iter().all(|&side| side >= 0.0)).then_some(share)
+}
+
+#[derive(Clone, Default)]
+struct Scene {
+    positions: Vec<[f32; 3]>,
+    scanner: Vec<[f32; 3]>,
+    classes: Vec<u8>,
+}
+
+impl Scene {
+    fn surfaces(&self, buildings: BuildingPoints) -> BuildingSurfaces {
+        let attributes = Attributes { classification: Some(self.classes.clone()), ..Attributes::default() };
+        let (positions, scanner, origin) = (&self.positions[..], &self.scanner[..], [1000.0, 2000.0, 0.0]);
+        let survey = SurveyPoints { positions, scanner, attributes: &attributes, origin, buildings };
+        find(&survey, &PlaneParams::default(), &Control::none()).unwrap()
+    }
+
+    fn select(&self, wanted: impl Fn([f32; 3]) -> bool) -> Self {
+        let mut some = Self::default();
+        for row in (0..self.positions.len()).filter(|&row| wanted(self.positions[row])) {
+            some.positions.push(self.positions[row]);
+            some.scanner.push(self.scanner[row]);
+            some.classes.push(self.classes[row]);
+        }
+        some
+    }
+}
+
+/// The walls below a flat outline, counter-clockwise, from the ground to a height at each corner.
+fn walls_of(outline: &[[f64; 2]], heights: &[f64]) -> Vec<Face> {
+    (0..outline.len())
+        .map(|i| {
+            let j = (i + 1) % outline.len();
+            let ([a, b], [c, d]) = (outline[i], outline[j]);
+            (vec![[a, b, 0.0], [c, d, 0.0], [c, d, heights[j]], [a, b, heights[i]]], 6)
+        })
+        .collect()
+}
+
+/// A box from the ground to a height, flat on top.
+fn block_of(low: [f64; 2], high: [f64; 2], height: f64) -> Vec<Face> {
+    let outline = [low, [high[0], low[1]], high, [low[0], high[1]]];
+    let mut faces = walls_of(&outline, &[height; 4]);
+    faces.push((outline.iter().map(|p| [p[0], p[1], height]).collect(), 6));
+    faces
+}
+
+/// A house of 12 m by 8 m, 6 m to the eaves, whose ridge lies 9 m high; the roof stands out by `eaves` to the south and
+/// north.
+fn gable(eaves: f64) -> Vec<Face> {
+    let outline = [[-6.0, -4.0], [6.0, -4.0], [6.0, 4.0], [-6.0, 4.0]];
+    let mut faces = walls_of(&outline, &[6.0; 4]);
+    let (y, z) = (4.0 + eaves, 6.0 - 0.75 * eaves);
+    faces.push((vec![[-6.0, -y, z], [6.0, -y, z], [6.0, 0.0, 9.0], [-6.0, 0.0, 9.0]], 6));
+    faces.push((vec![[6.0, y, z], [-6.0, y, z], [-6.0, 0.0, 9.0], [6.0, 0.0, 9.0]], 6));
+    for x in [-6.0, 6.0] {
+        faces.push((vec![[x, -4.0 * x / 6.0, 6.0], [x, 4.0 * x / 6.0, 6.0], [x, 0.0, 9.0]], 6));
+    }
+    faces
+}
+
+const AROUND: [[f64; 2]; 2] = [[-20.0, -20.0], [20.0, 20.0]];
+
+/// How often a line straight down meets patches of a kind at each of some places, with their heights.
+fn heights_of(surfaces: &BuildingSurfaces, kind: PatchKind, [x, y]: [f64; 2]) -> Vec<f64> {
+    let of_kind = surfaces.triangles.iter().zip(&surfaces.kinds).filter(|(_, own)| **own == kind);
+    let from = [x, y, 100.0];
+    let down = [0.0, 0.0, -200.0];
+    of_kind.filter_map(|(corners, _)| Some(100.0 - 200.0 * meets(&corners.map(|p| p.map(f64::from)), from, down)?)).collect()
+}
+
+/// Area of the patches of a kind seen from above, m².
+fn area_of(surfaces: &BuildingSurfaces, kind: PatchKind) -> f64 {
+    let of_kind = surfaces.triangles.iter().zip(&surfaces.kinds).filter(|(_, own)| **own == kind);
+    of_kind
+        .map(|(corners, _)| {
+            let [a, b, c] = corners.map(|p| p.map(f64::from));
+            cross(sub(b, a), sub(c, a))[2] / 2.0
+        })
+        .sum()
+}
+
+/// The edge that faces a way, and how far along this way it lies.
+fn facing(surfaces: &BuildingSurfaces, way: [f64; 2]) -> Vec<(f64, Edge)> {
+    let mut found = Vec::new();
+    for edge in &surfaces.edges {
+        let [a, b] = edge.ends;
+        let [x, y] = [b[0] - a[0], b[1] - a[1]];
+        let along = (x * way[1] - y * way[0]).abs();
+        let right = [y, -x];
+        let long = x.hypot(y);
+        if along > 0.99 * long && right[0] * way[0] + right[1] * way[1] > 0.0 && long > 3.0 {
+            found.push((f64::midpoint(a[0] * way[0] + a[1] * way[1], b[0] * way[0] + b[1] * way[1]), *edge));
+        }
+    }
+    found
+}
+
+#[test]
+fn a_gable_house_has_two_planes_a_ridge_and_its_outline() {
+    let surfaces = scan(&gable(0.0), AROUND[0], AROUND[1]).surfaces(BuildingPoints::Classified);
+    assert_eq!(surfaces.planes.len(), 2);
+    for plane in &surfaces.planes {
+        // a slope of 3 in 4; 500 points of 2 cm leave less than a thousandth
+        assert!((plane.normal[2] - 0.8).abs() < 2e-3 && (plane.normal[1].abs() - 0.6).abs() < 2e-3, "{plane:?}");
+    }
+    let [ridge] = surfaces.ridges[..] else { panic!("{:?}", surfaces.ridges) };
+    assert!(ridge.is_convex);
+    for end in ridge.ends {
+        assert!(end[1].abs() < 0.02 && (end[2] - 9.0).abs() < 0.02, "{ridge:?}");
+    }
+    for way in [[0.0, -1.0], [0.0, 1.0]] {
+        let found = facing(&surfaces, way);
+        assert_eq!(found.len(), 1, "{way:?} {found:?}");
+        // three of its own standard deviations
+        assert!((found[0].0 - 4.0).abs() < 3.0 * found[0].1.sd && found[0].1.sd < 0.05, "{found:?}");
+    }
+    for way in [[-1.0, 0.0], [1.0, 0.0]] {
+        let found = facing(&surfaces, way);
+        assert_eq!(found.len(), 2, "each plane has a verge {way:?}: {:?}", surfaces.edges);
+        assert!(found.iter().all(|(at, edge)| (at - 6.0).abs() < 3.0 * edge.sd), "{found:?}");
+    }
+    // 12 m by 8 m; edges err by 3 cm each
+    assert!((area_of(&surfaces, PatchKind::Roof) - 96.0).abs() < 2.0);
+    for (place, height) in [([0.0, -3.5], 6.375), ([3.0, 2.0], 7.5), ([-5.7, -0.1], 8.925)] {
+        let heights = heights_of(&surfaces, PatchKind::Roof, place);
+        assert!(heights.len() == 1 && (heights[0] - height).abs() < 0.02, "{place:?}: {heights:?}");
+    }
+    for place in [[0.0, -4.2], [6.2, 0.0], [-6.2, 3.0]] {
+        assert_eq!(heights_of(&surfaces, PatchKind::Roof, place), []);
+    }
+    assert!(!surfaces.walls.is_empty());
+    for wall in &surfaces.walls {
+        let middle = [0, 1].map(|axis| f64::midpoint(wall.ends[0][axis], wall.ends[1][axis]));
+        let off = (middle[0].abs() - 6.0).abs().min((middle[1].abs() - 4.0).abs());
+        assert!(off < 3.0 * wall.sd, "{wall:?}");
+    }
+}
+
+#[test]
+fn a_hip_roof_has_four_planes_that_meet_in_five_convex_lines() {
+    let (a, b, c, d) = ([-6.0, -4.0, 6.0], [6.0, -4.0, 6.0], [6.0, 4.0, 6.0], [-6.0, 4.0, 6.0]);
+    let (west, east) = ([-2.0, 0.0, 9.0], [2.0, 0.0, 9.0]);
+    let mut faces = walls_of(&[[-6.0, -4.0], [6.0, -4.0], [6.0, 4.0], [-6.0, 4.0]], &[6.0; 4]);
+    faces.extend([(vec![a, b, east, west], 6), (vec![b, c, east], 6), (vec![c, d, west, east], 6), (vec![d, a, west], 6)]);
+    let surfaces = scan(&faces, AROUND[0], AROUND[1]).surfaces(BuildingPoints::Classified);
+    assert_eq!(surfaces.planes.len(), 4);
+    assert_eq!(surfaces.ridges.iter().filter(|ridge| ridge.is_convex).count(), 5, "{:?}", surfaces.ridges);
+    assert!((area_of(&surfaces, PatchKind::Roof) - 96.0).abs() < 2.0);
+    // patches do not reach beyond hips and ridges: one height everywhere
+    for place in [[-4.5, -3.5], [-3.9, 2.3], [0.1, 0.1], [4.0, -2.2], [5.5, 0.2]] {
+        assert_eq!(heights_of(&surfaces, PatchKind::Roof, place).len(), 1, "{place:?}");
+    }
+}
+
+#[test]
+fn a_flat_roof_with_a_parapet_has_a_sheet_along_its_edge() {
+    let mut faces = block_of([-6.0, -5.0], [6.0, 5.0], 8.0);
+    // a wall 0.3 m thick, 0.6 m high along the south edge
+    let outline = [[-6.0, -5.0], [6.0, -5.0], [6.0, -4.7], [-6.0, -4.7]];
+    faces.push((outline.iter().map(|p| [p[0], p[1], 8.6]).collect(), 6));
+    faces.push((vec![[-6.0, -5.0, 8.0], [6.0, -5.0, 8.0], [6.0, -5.0, 8.6], [-6.0, -5.0, 8.6]], 6));
+    let surfaces = scan(&faces, AROUND[0], AROUND[1]).surfaces(BuildingPoints::Classified);
+    let of_kind = surfaces.triangles.iter().zip(&surfaces.kinds).filter(|(_, kind)| **kind == PatchKind::Parapet);
+    let corners: Vec<[f32; 3]> = of_kind.flat_map(|(corners, _)| *corners).collect();
+    assert!(!corners.is_empty());
+    for p in corners {
+        assert!((-5.05..-4.65).contains(&p[1]) && (7.95..8.65).contains(&p[2]), "{p:?}");
+    }
+}
+
+#[test]
+fn an_l_stays_open_in_its_corner() {
+    let outline = [[-8.0, -8.0], [8.0, -8.0], [8.0, 0.0], [0.0, 0.0], [0.0, 8.0], [-8.0, 8.0]];
+    let mut faces = walls_of(&outline, &[7.0; 6]);
+    let top = |low: [f64; 2], high: [f64; 2]| {
+        (vec![[low[0], low[1], 7.0], [high[0], low[1], 7.0], [high[0], high[1], 7.0], [low[0], high[1], 7.0]], 6)
+    };
+    faces.extend([top([-8.0, -8.0], [8.0, 0.0]), top([-8.0, 0.0], [0.0, 8.0])]);
+    let surfaces = scan(&faces, AROUND[0], AROUND[1]).surfaces(BuildingPoints::Classified);
+    assert_eq!(surfaces.planes.len(), 1);
+    assert_eq!(surfaces.edges.iter().filter(|edge| edge.sd < 0.08).count(), 6, "{:?}", surfaces.edges);
+    // 64 m of edges that err by 2 cm
+    assert!((area_of(&surfaces, PatchKind::Roof) - 192.0).abs() < 2.0, "{}", area_of(&surfaces, PatchKind::Roof));
+    assert_eq!(heights_of(&surfaces, PatchKind::Roof, [0.3, 0.3]), []);
+    assert_eq!(heights_of(&surfaces, PatchKind::Roof, [-0.3, 0.3]).len(), 1);
+    // few triangles: what lines bound is not cut into cells
+    let count = surfaces.kinds.iter().filter(|kind| **kind == PatchKind::Roof).count();
+    assert!(count <= 40, "{count}");
+}
+
+#[test]
+fn below_eaves_the_wall_is_a_plane_of_its_own() {
+    let surfaces = scan(&gable(0.5), AROUND[0], AROUND[1]).surfaces(BuildingPoints::Classified);
+    let below: Vec<&Wall> = surfaces.walls.iter().filter(|wall| wall.eaves > 0.3).collect();
+    assert!(!below.is_empty());
+    for wall in below {
+        let edge = &surfaces.edges[wall.edge];
+        assert!((wall.eaves - 0.5).abs() < 3.0 * edge.sd, "{wall:?}");
+        assert!((wall.ends[0][1].abs() - 4.0).abs() < 3.0 * wall.sd, "{wall:?}");
+        let south = wall.ends[0][1].signum();
+        // the ball of a point of this wall may not bulge out of it below the eaves, and nothing hinders it within
+        let y = (4.0 * south) as f32;
+        let regions = surfaces.regions.of_point([0.0, y, 3.0]);
+        let holds = |y: f64| regions.iter().any(|region| region.distance([0.0, y * south, 3.0]) < 0.0);
+        assert!(holds(4.1) && holds(4.4) && !holds(3.9) && !holds(4.0), "{regions:?}");
+    }
+}
+
+#[test]
+fn a_point_before_a_wall_is_not_bound_by_it() {
+    let surfaces = scan(&block_of([-6.0, -5.0], [6.0, 5.0], 8.0), AROUND[0], AROUND[1])
+        .surfaces(BuildingPoints::Classified);
+    assert!(!surfaces.regions.of_point([0.0, -5.0, 4.0]).is_empty());
+    for (place, what) in [([0.0, -6.0, 4.0], "a balcony"), ([0.0, 0.0, 10.0], "a chimney")] {
+        let regions = surfaces.regions.of_point(place);
+        assert!(regions.iter().all(|region| region.distance(place.map(f64::from)) > 0.5), "{what}: {regions:?}");
+    }
+}
+
+#[test]
+fn a_tree_and_a_deck_give_no_walls_and_no_inside() {
+    // leaves of a crown, each facing another way, and a deck on posts that pulses see below
+    let leaf = |number: u64| {
+        let [x, y, z, s, t] = std::array::from_fn(|k| uniform(3, 5 * number + k as u64) - 0.5);
+        let center = [-8.0 + 6.0 * x, 6.0 * y, 8.0 + 5.0 * z];
+        let corner = |a: f64, b: f64| [center[0] + a, center[1] + b, center[2] + 0.8 * s * a + 0.8 * t * b];
+        (vec![corner(-0.2, -0.2), corner(0.2, -0.2), corner(0.2, 0.2), corner(-0.2, 0.2)], 1)
+    };
+    let mut faces: Vec<Face> = (0..800).map(leaf).collect();
+    let tree = scan(&faces, AROUND[0], AROUND[1]).surfaces(BuildingPoints::ByShape);
+    assert_eq!((tree.planes.len(), tree.triangles.len()), (0, 0));
+    faces.push((vec![[4.0, -3.0, 4.0], [12.0, -3.0, 4.0], [12.0, 3.0, 4.0], [4.0, 3.0, 4.0]], 6));
+    let deck = scan(&faces, AROUND[0], AROUND[1]).surfaces(BuildingPoints::Classified);
+    assert_eq!((deck.planes.len(), deck.walls.len()), (1, 0));
+    assert!(deck.kinds.iter().all(|kind| *kind == PatchKind::Roof));
+}
+
+#[test]
+fn a_part_finds_what_the_whole_finds_in_any_order() {
+    // houses over the corner of four blocks of 64 m: the origin of the scene is 1000, 2000
+    let corner = [24.0, -16.0];
+    let mut faces = Vec::new();
+    for [x, y] in [[-12.0, -9.0], [2.0, 3.0], [9.0, -14.0], [-15.0, 8.0]] {
+        let low = [corner[0] + x, corner[1] + y];
+        faces.extend(block_of(low, [low[0] + 11.0, low[1] + 8.0], 6.0 + y / 5.0));
+    }
+    let scene = scan(&faces, [-10.0, -50.0], [60.0, 20.0]);
+    let whole = scene.surfaces(BuildingPoints::Classified);
+    let margin = PlaneParams::default().margin as f32;
+    let is_of = |p: [f64; 3]| p[0] < corner[0] && p[1] < corner[1];
+    let mut part = scene.select(|p| p[0] < corner[0] as f32 + margin + 0.1 && p[1] < corner[1] as f32 + margin + 0.1);
+    part.positions.reverse();
+    part.scanner.reverse();
+    part.classes.reverse();
+    let part = part.surfaces(BuildingPoints::Classified);
+    let middle = |corners: &[[f32; 3]; 3]| std::array::from_fn(|i| corners.iter().map(|p| f64::from(p[i])).sum::<f64>() / 3.0);
+    let of = |surfaces: &BuildingSurfaces| {
+        let triangles: Vec<_> = surfaces.triangles.iter().copied().filter(|t| is_of(middle(t))).collect();
+        let edges: Vec<_> = surfaces.edges.iter().map(|e| (e.ends, e.sd)).filter(|e| is_of(e.0[0]) && is_of(e.0[1])).collect();
+        (triangles, edges)
+    };
+    let (of_whole, of_part) = (of(&whole), of(&part));
+    assert!(of_whole.0.len() > 10 && of_whole.1.len() > 3);
+    assert_eq!(of_whole, of_part);
+}
