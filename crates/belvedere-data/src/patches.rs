@@ -6,7 +6,7 @@ use crate::vector::{cross, length, sub};
 use crate::{Error, Parameter, Result};
 
 /// What a patch is a part of.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum PatchKind {
     /// A roof.
     Roof,
@@ -14,13 +14,17 @@ pub enum PatchKind {
     Wall,
     /// The upright edge of a flat roof.
     Parapet,
-    /// The inside of a building: what is solid under a roof.
+    /// A sheet from the edge of a roof down to a roof close below it.
+    Step,
+    /// A side or top of something that stands on a roof.
+    Box,
+    /// An upright sheet within a building, from the roof to the ground.
     Inside,
 }
 
 impl PatchKind {
     /// All kinds, in the order of their codes.
-    pub const ALL: [Self; 4] = [Self::Roof, Self::Wall, Self::Parapet, Self::Inside];
+    pub const ALL: [Self; 6] = [Self::Roof, Self::Wall, Self::Parapet, Self::Step, Self::Box, Self::Inside];
 
     /// Its number in files.
     #[must_use]
@@ -37,7 +41,7 @@ impl PatchKind {
     /// What it is called in answers and tables.
     #[must_use]
     pub fn name(self) -> &'static str {
-        ["roof", "wall", "parapet", "inside"][self as usize]
+        ["roof", "wall", "parapet", "step", "box", "inside"][self as usize]
     }
 }
 
@@ -111,8 +115,8 @@ impl SurfacePatches {
 
     /// How many triangles of each kind there are, in the order of [`PatchKind::ALL`].
     #[must_use]
-    pub fn counts(&self) -> [PatchCount; 4] {
-        let mut counts = [PatchCount::default(); 4];
+    pub fn counts(&self) -> [PatchCount; 6] {
+        let mut counts = [PatchCount::default(); 6];
         for (triangle, kind) in self.iter() {
             let count = &mut counts[kind as usize];
             count.count += 1;
@@ -222,12 +226,12 @@ mod tests {
     #[test]
     fn patches_are_counted_by_kind() {
         let counts = house().counts();
-        assert_eq!(counts.map(|count| count.count), [2, 2, 0, 0]);
+        assert_eq!(counts.map(|count| count.count), [2, 2, 0, 0, 0, 0]);
         assert!((counts[0].area_m2 - 60.0).abs() < 1e-9 && (counts[1].area_m2 - 50.0).abs() < 1e-9);
         for (code, kind) in (0..).zip(PatchKind::ALL) {
             assert_eq!((kind.code(), PatchKind::of_code(code)), (code, Some(kind)));
         }
-        assert_eq!(PatchKind::of_code(4), None);
+        assert_eq!(PatchKind::of_code(6), None);
     }
 
     #[test]

@@ -8,9 +8,12 @@ use belvedere::model::ClearedArea;
 use belvedere::patches::PatchTriangle;
 use std::collections::BTreeMap;
 
-/// The patches that reach into the `core` of a tile, without what is cleared.
+/// The patches that reach into the `core` of a tile, without what is cleared. Each lies in one block; those of blocks
+/// that the tile has only a part of are left to the tiles that have them.
 pub(crate) fn of_tile(patches: &SurfacePatches, core: &MapArea, cleared: &[ClearedArea]) -> SurfacePatches {
-    let mut own = chosen(patches, |area, _| area.meets(core));
+    let blocks = core.in_blocks();
+    let middle = |area: &MapArea| [0, 1].map(|axis| f64::midpoint(area.low[axis], area.high[axis]));
+    let mut own = chosen(patches, |area, _| area.meets(core) && blocks.holds(middle(area)));
     for area in cleared {
         match area {
             ClearedArea::Polygon(rings) => own = own.outside(rings),

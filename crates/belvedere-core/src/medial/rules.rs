@@ -12,6 +12,7 @@ use super::shrinking_ball::{ShrinkMethod, ShrinkParams};
 use super::slender::SlenderParams;
 use super::thin_surfaces::ThinSurfaceParams;
 use super::vegetation::VegetationParams;
+use crate::planes::PlaneParams;
 
 /// Points are moved onto the surface that they scatter about before balls are made ([`crate::normals::Scatter`]). The
 /// model does that, with the normals; [`super::carved_balls`] takes points as they are.
@@ -19,6 +20,8 @@ use super::vegetation::VegetationParams;
 pub struct SmoothingParams;
 
 impl MarkingRule for SmoothingParams {}
+// the model finds surfaces when the balls are there, because what closes them is no ball
+impl MarkingRule for PlaneParams {}
 impl MarkingRule for VegetationParams {}
 
 macro_rules! rules {
@@ -114,6 +117,8 @@ rules! {
     "relief" Relief relief: ReliefParams,
     /// Leaves out balls that others make superfluous.
     "pruning" Pruning pruning: PruneParams,
+    /// Closes roofs and walls where many points show their planes, and caps balls that reach out of them.
+    "planes" Planes planes: PlaneParams,
 }
 
 impl CarvedParams {

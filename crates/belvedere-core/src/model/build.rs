@@ -4,15 +4,17 @@ use super::blocked_pulses::blocked_pulses;
 use super::params::{BallParams, ModelParams};
 use super::prepare::{OrientedSurvey, prepare};
 use super::report::{BallsReport, BuildReport};
+use super::surfaces::close_surfaces;
 use super::{LOOKS_UP, ModelParts, SceneModel};
 use crate::medial::{
     CarvedBalls, CarvedInput, MedialBalls, ShrinkParams, Side, carved_balls, shrink, vegetation_of_classes,
     vegetation_of_transmission,
 };
-use crate::query::{BallTree, BlockRule};
+use crate::query::{BallTree, BlockRule, BlockingTriangles};
 use crate::summary::looks_y_up;
 use belvedere_data::control::Control;
 use belvedere_data::crs::CrsKind;
+use belvedere_data::patches::SurfacePatches;
 use belvedere_data::{Error, Frame, PointCloud, Result};
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -54,6 +56,7 @@ fn of_survey(
     control: &Control<'_>,
 ) -> Result<(SceneModel, BuildReport)> {
     let (mut balls, transmission);
+    let mut patches = SurfacePatches::default();
     let settled = match params.balls {
         BallParams::CarvedIfPossible(carved, _) if survey.carving.is_some() => BallParams::Carved(carved),
         BallParams::CarvedIfPossible(_, shrunk) => BallParams::Shrunk(shrunk),
@@ -68,6 +71,9 @@ fn of_survey(
             let found;
             CarvedBalls { balls, transmission, report: found } = carved_balls(&input, carved, control)?;
             report.interior_balls = Some(BallsReport::Carved(found));
+            if let Some(params) = &carved.planes {
+                (patches, report.surfaces) = close_surfaces(&mut balls, &survey, &frame, params, control)?;
+            }
         }
         (BallParams::Shrunk(params), _) => {
             let found;
@@ -107,8 +113,9 @@ fn of_survey(
         _ => None,
     };
     let (bounds, pulses) = (survey.bounds, survey.pulses());
-    let parts = ModelParts { frame, bounds, balls, transmission, pulses, provenance, ..ModelParts::default() };
-    Ok((SceneModel { parts, vegetation, tree, ..SceneModel::default() }, report))
+    let triangles = BlockingTriangles::of_patches(&patches, None)?;
+    let parts = ModelParts { frame, bounds, balls, patches, transmission, pulses, provenance };
+    Ok((SceneModel { parts, vegetation, tree, triangles, ..SceneModel::default() }, report))
 }
 
 /// How balls were made, as a saved model says it.

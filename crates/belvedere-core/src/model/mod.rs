@@ -18,6 +18,7 @@ mod prepare;
 mod questions;
 mod report;
 mod statistics;
+mod surfaces;
 mod terrain;
 
 pub use belvedere_data::model::{DerivedParts, ModelParts};
@@ -28,6 +29,7 @@ pub use params::{BallParams, ModelParams, OrientBy};
 pub use prepare::OrientedSurvey;
 pub use report::{BallsReport, BlockedPulses, BuildReport, NormalsReport, PulsesReport};
 pub use statistics::SurveyStatistics;
+pub use surfaces::SurfacesReport;
 pub use terrain::{TerrainReport, check_terrain};
 
 use crate::medial::{MedialBalls, PULSE_TOUCH, vegetation_of_transmission};

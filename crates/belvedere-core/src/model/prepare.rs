@@ -49,6 +49,8 @@ pub(super) struct CarvingInput {
     pub(super) attributes: Attributes,
     /// Whether pulses are only assumed.
     pub(super) is_assumed: bool,
+    /// The scanner at each point, (N, 3) local metres, NaN where unknown.
+    pub(super) scanner: Vec<[f32; 3]>,
     /// Which returns share a pulse, where that can be known.
     pub(super) pulses: Option<Pulses>,
 }
@@ -177,6 +179,9 @@ pub(super) fn prepare(
         index = index.moved_to(&positions)?;
         oriented = oriented.moved_to(positions);
         report.smoothing = Some(SmoothingReport { noise: noise.unwrap_or_default(), moved });
+    }
+    if let Some(input) = &mut carving {
+        input.scanner = scanner.positions;
     }
     let bounds = cloud.bounds().ok_or_else(|| Error::NoPoints { what: "none was read".to_owned() })?;
     Ok((OrientedSurvey { oriented, index, kept, bounds, measured, classification, carving }, report))
@@ -354,5 +359,6 @@ fn carving_input(
     };
     report.between_returns = between_returns.as_ref().map_or(0, FreeSegments::len);
     let is_assumed = scanner.is_assumed;
-    Ok((Some(CarvingInput { free_segments, between_returns, attributes, is_assumed, pulses }), report))
+    let input = CarvingInput { free_segments, between_returns, attributes, is_assumed, scanner: Vec::new(), pulses };
+    Ok((Some(input), report))
 }

@@ -1,5 +1,6 @@
 //! What became of a cloud on the way to a scene model.
 
+use super::surfaces::SurfacesReport;
 use crate::clean::CleanReport;
 use crate::medial::{CarvedReport, ShrinkReport};
 use crate::normals::{OrientReport, Orientation};
@@ -27,6 +28,9 @@ pub struct BuildReport {
     /// The balls, where they were made.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub interior_balls: Option<BallsReport>,
+    /// The surfaces of buildings, where they were looked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub surfaces: Option<SurfacesReport>,
 }
 
 /// How points were moved onto the surface that they scatter about.

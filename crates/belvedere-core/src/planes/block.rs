@@ -78,11 +78,7 @@ pub(super) struct BlockRows {
 }
 
 /// The blocks that hold building points, with their rows.
-pub(super) fn blocks(
-    survey: &SurveyPoints<'_>,
-    params: &PlaneParams,
-    control: &Control<'_>,
-) -> Result<Vec<BlockRows>> {
+pub(super) fn blocks(survey: &SurveyPoints<'_>, params: &PlaneParams, control: &Control<'_>) -> Result<Vec<BlockRows>> {
     let expected = survey.positions.len();
     if survey.scanner.len() != expected {
         return Err(Error::LengthMismatch { what: "scanner positions", expected, found: survey.scanner.len() });

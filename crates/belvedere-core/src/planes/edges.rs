@@ -1,11 +1,11 @@
 //! Edges of roofs: straight lines between returns on a plane and pulses that passed it.
 
-use super::{PlaneParams, sheets};
 use super::block::Block;
-use super::line::PlanLine;
 use super::likelihood::{LikelihoodTable, likeliest};
+use super::line::PlanLine;
 use super::ridges::RidgeLine;
 use super::roof_planes::{NONE, Roofs};
+use super::{PlaneParams, sheets};
 use delaunator::{EMPTY, Point, triangulate};
 
 /// How far below the plane a pulse must end to have passed it, metres. With 0.3 those are left out that meet the wall
@@ -134,7 +134,8 @@ pub(super) fn find(
     outline.edges = lines(&outline, &middles, roof.spacing, params, table);
     meet(&mut outline.edges, ridges, plane, END_SPACINGS * roof.spacing);
     outline.edges.retain(|edge| edge.line.length() >= MIN_LENGTH / 2.0);
-    let parapets: Vec<Parapet> = outline.edges.iter().map(|edge| sheets::parapet(&outline.standing, &edge.line)).collect();
+    let parapets: Vec<Parapet> =
+        outline.edges.iter().map(|edge| sheets::parapet(&outline.standing, &edge.line)).collect();
     for (edge, parapet) in outline.edges.iter_mut().zip(parapets) {
         edge.parapet = parapet;
     }
@@ -207,10 +208,11 @@ fn samples(block: &Block, roofs: &Roofs, ridges: &[RidgeLine], plane: usize) -> 
     let own = inside.len();
     let all: Vec<[f64; 2]> = inside.iter().chain(&split).copied().collect();
     let near = Near::new(&all, REACH_SPACINGS * roof.spacing);
-    let beyond: Vec<usize> =
-        ridges.iter().filter(|ridge| ridge.is_convex && ridge.planes.contains(&plane)).map(|ridge| {
-            if ridge.planes[0] == plane { ridge.planes[1] } else { ridge.planes[0] }
-        }).collect();
+    let beyond: Vec<usize> = ridges
+        .iter()
+        .filter(|ridge| ridge.is_convex && ridge.planes.contains(&plane))
+        .map(|ridge| if ridge.planes[0] == plane { ridge.planes[1] } else { ridge.planes[0] })
+        .collect();
     let (mut passed, mut standing) = (Vec::new(), Vec::new());
     let (low, high) = (near.low, near.high());
     let corners = [[low[0], low[1]], [low[0], high[1]], [high[0], low[1]], [high[0], high[1]]];
@@ -285,7 +287,13 @@ struct Grown {
 }
 
 /// Straight lines that middles lie on, each grown from where they are straightest.
-fn lines(outline: &Outline, middles: &[Middle], spacing: f64, params: &PlaneParams, table: &LikelihoodTable) -> Vec<EdgeLine> {
+fn lines(
+    outline: &Outline,
+    middles: &[Middle],
+    spacing: f64,
+    params: &PlaneParams,
+    table: &LikelihoodTable,
+) -> Vec<EdgeLine> {
     let mut seeds: Vec<(f64, usize, PlanLine)> = Vec::new();
     for row in 0..middles.len() {
         if let Some((line, rms)) = about(middles, row, AROUND_SPACINGS * spacing) {

@@ -24,9 +24,10 @@ mod sheets;
 mod tests;
 mod walls;
 
-pub use regions::{Region, SurfaceRegions};
+pub use regions::{Region, SurfaceRegions, cap};
 
 use belvedere_data::control::Control;
+use belvedere_data::patches::{PatchKind, SurfacePatches};
 use belvedere_data::{Attributes, Result};
 use block::{Block, blocks};
 use likelihood::LikelihoodTable;
@@ -157,23 +158,6 @@ pub struct Wall {
     pub eaves: f64,
 }
 
-/// What a patch closes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum PatchKind {
-    /// A piece of a roof.
-    Roof,
-    /// A piece of a wall near its points.
-    Wall,
-    /// A sheet on the edge of a roof.
-    Parapet,
-    /// A sheet from the edge of a roof down to a roof close below it.
-    Step,
-    /// A side of something that stands on a roof.
-    Box,
-    /// An upright sheet within a building, from the roof to the ground.
-    Inside,
-}
-
 /// Surfaces of buildings.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct BuildingSurfaces {
@@ -185,10 +169,8 @@ pub struct BuildingSurfaces {
     pub ridges: Vec<Ridge>,
     /// Walls, cut to blocks.
     pub walls: Vec<Wall>,
-    /// Triangles that close surfaces, local metres, counter-clockwise seen from outside.
-    pub triangles: Vec<[[f32; 3]; 3]>,
-    /// What each triangle closes.
-    pub kinds: Vec<PatchKind>,
+    /// Triangles that close surfaces.
+    pub patches: SurfacePatches,
     /// Space before known surfaces.
     pub regions: SurfaceRegions,
 }
@@ -202,8 +184,8 @@ impl BuildingSurfaces {
         let moved = |ridge: Ridge| Ridge { planes: ridge.planes.map(|plane| plane + planes), ..ridge };
         self.ridges.extend(other.ridges.into_iter().map(moved));
         self.walls.extend(other.walls.into_iter().map(|wall| Wall { edge: wall.edge + edges, ..wall }));
-        self.triangles.extend(other.triangles);
-        self.kinds.extend(other.kinds);
+        self.patches.triangles.extend(other.patches.triangles);
+        self.patches.kinds.extend(other.patches.kinds);
         self.regions.append(other.regions);
     }
 }
@@ -215,8 +197,10 @@ impl BuildingSurfaces {
 /// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
 pub fn find(survey: &SurveyPoints<'_>, params: &PlaneParams, control: &Control<'_>) -> Result<BuildingSurfaces> {
     let blocks = blocks(survey, params, control)?;
-    let found: Vec<Result<BuildingSurfaces>> =
-        blocks.into_par_iter().map(|block| of_block(&Block::new(survey, block, params.margin), params, control)).collect();
+    let found: Vec<Result<BuildingSurfaces>> = blocks
+        .into_par_iter()
+        .map(|block| of_block(&Block::new(survey, block, params.margin), params, control))
+        .collect();
     let mut surfaces = BuildingSurfaces::default();
     for block in found {
         surfaces.append(block?);
@@ -230,9 +214,8 @@ fn of_block(block: &Block, params: &PlaneParams, control: &Control<'_>) -> Resul
     let roofs = roof_planes::find(block, params, control)?;
     let ridges = ridges::find(block, &roofs);
     let table = LikelihoodTable::new();
-    let outlines: Vec<edges::Outline> = (0..roofs.planes.len())
-        .map(|plane| edges::find(block, &roofs, &ridges, plane, params, &table))
-        .collect();
+    let outlines: Vec<edges::Outline> =
+        (0..roofs.planes.len()).map(|plane| edges::find(block, &roofs, &ridges, plane, params, &table)).collect();
     let walls = walls::find(block, &roofs, &outlines);
     let leaves = patches::roofs(block, &roofs, &ridges, &outlines);
     let mut found = BuildingSurfaces::default();

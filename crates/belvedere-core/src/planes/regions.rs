@@ -8,7 +8,12 @@ use super::line::PlanLine;
 use super::patches::Leaf;
 use super::roof_planes::Roofs;
 use super::walls::{MIN_EAVES, WallLine};
-use belvedere_data::vector::dot;
+use crate::blocking::Ball;
+use belvedere_data::Result;
+use belvedere_data::balls::{LIMIT_TOUCH, MedialBalls, NO_TOUCH};
+use belvedere_data::control::{Control, Stop};
+use belvedere_data::vector::{dot, sub, unit};
+use rayon::prelude::*;
 
 /// How far before a surface its region begins, metres: balls stand out over points by as much.
 const MARGIN: f64 = 0.02;
@@ -107,6 +112,64 @@ impl SurfaceRegions {
         found
     }
 }
+
+/// Caps balls so that none reaches into a region of its point: a ball keeps the place where it touches its surface, and
+/// its middle moves there. `measured` are the points before they were moved onto their surface. Returns how many.
+///
+/// # Errors
+/// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
+pub fn cap(
+    balls: &mut MedialBalls,
+    measured: &[[f32; 3]],
+    regions: &SurfaceRegions,
+    control: &Control<'_>,
+) -> Result<usize> {
+    let stop = Stop::new(control);
+    let capped = |row: usize| -> Option<(usize, Ball)> {
+        if balls.touch[row] == NO_TOUCH || stop.is_set() {
+            return None;
+        }
+        let ball = Ball { center: balls.centers[row], radius: balls.radii[row] };
+        let point = *measured.get(balls.source[row] as usize)?;
+        Some((row, capped(ball, point, &regions.of_point(point))?))
+    };
+    let capped: Vec<(usize, Ball)> = (0..balls.len()).into_par_iter().with_min_len(256).filter_map(capped).collect();
+    stop.check()?;
+    for &(row, Ball { center, radius }) in &capped {
+        balls.centers[row] = center;
+        balls.radii[row] = radius;
+        balls.touch[row] = LIMIT_TOUCH;
+        balls.separation_angles[row] = f32::NAN;
+    }
+    Ok(capped.len())
+}
+
+/// The largest ball that touches the surface where `ball` does and lies outside of all regions; `None` where that is
+/// `ball` itself.
+fn capped(ball: Ball, point: [f32; 3], regions: &[Region]) -> Option<Ball> {
+    let (center, whole) = (ball.center.map(f64::from), f64::from(ball.radius));
+    let inward = unit(sub(center, point.map(f64::from)))?;
+    let touched: [f64; 3] = std::array::from_fn(|i| center[i] - whole * inward[i]);
+    let middle = |radius: f64| -> [f64; 3] { std::array::from_fn(|i| touched[i] + radius * inward[i]) };
+    let mut radius = whole;
+    for region in regions {
+        let fits = |radius: f64| region.distance(middle(radius)) >= radius;
+        if !fits(radius) {
+            let mut range = [0.0, radius];
+            for _ in 0..HALVINGS {
+                let half = f64::midpoint(range[0], range[1]);
+                range[usize::from(!fits(half))] = half;
+            }
+            radius = range[0];
+        }
+    }
+    #[expect(clippy::cast_possible_truncation, reason = "balls are f32")]
+    let capped = Ball { center: middle(radius).map(|v| v as f32), radius: radius as f32 };
+    (radius < whole).then_some(capped)
+}
+
+/// Steps of a search for a radius: to a hundredth of a micrometre.
+const HALVINGS: usize = 30;
 
 const CELLS: usize = 16;
 

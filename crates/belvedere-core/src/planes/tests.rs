@@ -116,15 +116,17 @@ const AROUND: [[f64; 2]; 2] = [[-20.0, -20.0], [20.0, 20.0]];
 
 /// How often a line straight down meets patches of a kind at each of some places, with their heights.
 fn heights_of(surfaces: &BuildingSurfaces, kind: PatchKind, [x, y]: [f64; 2]) -> Vec<f64> {
-    let of_kind = surfaces.triangles.iter().zip(&surfaces.kinds).filter(|(_, own)| **own == kind);
+    let of_kind = surfaces.patches.triangles.iter().zip(&surfaces.patches.kinds).filter(|(_, own)| **own == kind);
     let from = [x, y, 100.0];
     let down = [0.0, 0.0, -200.0];
-    of_kind.filter_map(|(corners, _)| Some(100.0 - 200.0 * meets(&corners.map(|p| p.map(f64::from)), from, down)?)).collect()
+    of_kind
+        .filter_map(|(corners, _)| Some(100.0 - 200.0 * meets(&corners.map(|p| p.map(f64::from)), from, down)?))
+        .collect()
 }
 
 /// Area of the patches of a kind seen from above, m².
 fn area_of(surfaces: &BuildingSurfaces, kind: PatchKind) -> f64 {
-    let of_kind = surfaces.triangles.iter().zip(&surfaces.kinds).filter(|(_, own)| **own == kind);
+    let of_kind = surfaces.patches.triangles.iter().zip(&surfaces.patches.kinds).filter(|(_, own)| **own == kind);
     of_kind
         .map(|(corners, _)| {
             let [a, b, c] = corners.map(|p| p.map(f64::from));
@@ -195,7 +197,12 @@ fn a_hip_roof_has_four_planes_that_meet_in_five_convex_lines() {
     let (a, b, c, d) = ([-6.0, -4.0, 6.0], [6.0, -4.0, 6.0], [6.0, 4.0, 6.0], [-6.0, 4.0, 6.0]);
     let (west, east) = ([-2.0, 0.0, 9.0], [2.0, 0.0, 9.0]);
     let mut faces = walls_of(&[[-6.0, -4.0], [6.0, -4.0], [6.0, 4.0], [-6.0, 4.0]], &[6.0; 4]);
-    faces.extend([(vec![a, b, east, west], 6), (vec![b, c, east], 6), (vec![c, d, west, east], 6), (vec![d, a, west], 6)]);
+    faces.extend([
+        (vec![a, b, east, west], 6),
+        (vec![b, c, east], 6),
+        (vec![c, d, west, east], 6),
+        (vec![d, a, west], 6),
+    ]);
     let surfaces = scan(&faces, AROUND[0], AROUND[1]).surfaces(BuildingPoints::Classified);
     assert_eq!(surfaces.planes.len(), 4);
     assert_eq!(surfaces.ridges.iter().filter(|ridge| ridge.is_convex).count(), 5, "{:?}", surfaces.ridges);
@@ -214,7 +221,8 @@ fn a_flat_roof_with_a_parapet_has_a_sheet_along_its_edge() {
     faces.push((outline.iter().map(|p| [p[0], p[1], 8.6]).collect(), 6));
     faces.push((vec![[-6.0, -5.0, 8.0], [6.0, -5.0, 8.0], [6.0, -5.0, 8.6], [-6.0, -5.0, 8.6]], 6));
     let surfaces = scan(&faces, AROUND[0], AROUND[1]).surfaces(BuildingPoints::Classified);
-    let of_kind = surfaces.triangles.iter().zip(&surfaces.kinds).filter(|(_, kind)| **kind == PatchKind::Parapet);
+    let of_kind =
+        surfaces.patches.triangles.iter().zip(&surfaces.patches.kinds).filter(|(_, kind)| **kind == PatchKind::Parapet);
     let corners: Vec<[f32; 3]> = of_kind.flat_map(|(corners, _)| *corners).collect();
     assert!(!corners.is_empty());
     for p in corners {
@@ -238,7 +246,7 @@ fn an_l_stays_open_in_its_corner() {
     assert_eq!(heights_of(&surfaces, PatchKind::Roof, [0.3, 0.3]), []);
     assert_eq!(heights_of(&surfaces, PatchKind::Roof, [-0.3, 0.3]).len(), 1);
     // few triangles: what lines bound is not cut into cells
-    let count = surfaces.kinds.iter().filter(|kind| **kind == PatchKind::Roof).count();
+    let count = surfaces.patches.kinds.iter().filter(|kind| **kind == PatchKind::Roof).count();
     assert!(count <= 40, "{count}");
 }
 
@@ -262,8 +270,8 @@ fn below_eaves_the_wall_is_a_plane_of_its_own() {
 
 #[test]
 fn a_point_before_a_wall_is_not_bound_by_it() {
-    let surfaces = scan(&block_of([-6.0, -5.0], [6.0, 5.0], 8.0), AROUND[0], AROUND[1])
-        .surfaces(BuildingPoints::Classified);
+    let surfaces =
+        scan(&block_of([-6.0, -5.0], [6.0, 5.0], 8.0), AROUND[0], AROUND[1]).surfaces(BuildingPoints::Classified);
     assert!(!surfaces.regions.of_point([0.0, -5.0, 4.0]).is_empty());
     for (place, what) in [([0.0, -6.0, 4.0], "a balcony"), ([0.0, 0.0, 10.0], "a chimney")] {
         let regions = surfaces.regions.of_point(place);
@@ -282,11 +290,11 @@ fn a_tree_and_a_deck_give_no_walls_and_no_inside() {
     };
     let mut faces: Vec<Face> = (0..800).map(leaf).collect();
     let tree = scan(&faces, AROUND[0], AROUND[1]).surfaces(BuildingPoints::ByShape);
-    assert_eq!((tree.planes.len(), tree.triangles.len()), (0, 0));
+    assert_eq!((tree.planes.len(), tree.patches.len()), (0, 0));
     faces.push((vec![[4.0, -3.0, 4.0], [12.0, -3.0, 4.0], [12.0, 3.0, 4.0], [4.0, 3.0, 4.0]], 6));
     let deck = scan(&faces, AROUND[0], AROUND[1]).surfaces(BuildingPoints::Classified);
     assert_eq!((deck.planes.len(), deck.walls.len()), (1, 0));
-    assert!(deck.kinds.iter().all(|kind| *kind == PatchKind::Roof));
+    assert!(deck.patches.kinds.iter().all(|kind| *kind == PatchKind::Roof));
 }
 
 #[test]
@@ -307,10 +315,12 @@ fn a_part_finds_what_the_whole_finds_in_any_order() {
     part.scanner.reverse();
     part.classes.reverse();
     let part = part.surfaces(BuildingPoints::Classified);
-    let middle = |corners: &[[f32; 3]; 3]| std::array::from_fn(|i| corners.iter().map(|p| f64::from(p[i])).sum::<f64>() / 3.0);
+    let middle =
+        |corners: &[[f32; 3]; 3]| std::array::from_fn(|i| corners.iter().map(|p| f64::from(p[i])).sum::<f64>() / 3.0);
     let of = |surfaces: &BuildingSurfaces| {
-        let triangles: Vec<_> = surfaces.triangles.iter().copied().filter(|t| is_of(middle(t))).collect();
-        let edges: Vec<_> = surfaces.edges.iter().map(|e| (e.ends, e.sd)).filter(|e| is_of(e.0[0]) && is_of(e.0[1])).collect();
+        let triangles: Vec<_> = surfaces.patches.triangles.iter().copied().filter(|t| is_of(middle(t))).collect();
+        let edges: Vec<_> =
+            surfaces.edges.iter().map(|e| (e.ends, e.sd)).filter(|e| is_of(e.0[0]) && is_of(e.0[1])).collect();
         (triangles, edges)
     };
     let (of_whole, of_part) = (of(&whole), of(&part));

@@ -28,7 +28,7 @@ const RESEARCH: [(&str, &[&str]); 5] = [
 ];
 
 /// Level of each module of `belvedere-core`: a module imports from lower levels, or from its own folder.
-const LEVELS: [(&str, u8); 14] = [
+const LEVELS: [(&str, u8); 15] = [
     ("instructions", 0),
     ("neighbors", 1),
     ("ray_index", 1),
@@ -39,10 +39,11 @@ const LEVELS: [(&str, u8); 14] = [
     ("pulses", 2),
     ("ground", 2),
     ("summary", 3),
-    ("medial", 3),
-    ("depth", 4),
-    ("query", 5),
-    ("model", 6),
+    ("planes", 3),
+    ("medial", 4),
+    ("depth", 5),
+    ("query", 6),
+    ("model", 7),
 ];
 
 /// Crates of others that only one file or folder may name.

@@ -1,0 +1,61 @@
+//! Surfaces of buildings that many points show: patches close them, and balls do not reach out of them.
+
+use super::prepare::OrientedSurvey;
+use crate::medial::MedialBalls;
+use crate::planes::{BuildingPoints, PlaneParams, SurveyPoints, cap, find};
+use belvedere_data::control::Control;
+use belvedere_data::patches::SurfacePatches;
+use belvedere_data::{Frame, Result};
+use serde::Serialize;
+
+/// What surfaces of buildings were found.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct SurfacesReport {
+    /// Planes of roofs, in each block of 64 m that they reach into.
+    pub roof_planes: usize,
+    /// Straight edges of roofs, in pieces that end at blocks.
+    pub roof_edges: usize,
+    /// Ridges, hips and valleys.
+    pub ridges: usize,
+    /// Walls below edges.
+    pub walls: usize,
+    /// Triangles that close all these.
+    pub triangles: usize,
+    /// Balls that are smaller because they reached out of a surface.
+    pub balls_capped: usize,
+}
+
+/// Finds the surfaces of buildings in a survey from the air whose scanner is known, and caps the balls, whose sources
+/// are rows of the points kept. Other surveys have none.
+pub(super) fn close_surfaces(
+    balls: &mut MedialBalls,
+    survey: &OrientedSurvey,
+    frame: &Frame,
+    params: &PlaneParams,
+    control: &Control<'_>,
+) -> Result<(SurfacePatches, Option<SurfacesReport>)> {
+    let is_known = |input: &&super::prepare::CarvingInput| {
+        // the place where an upright line passes a roof is not where the pulse did
+        !input.is_assumed && !input.free_segments.are_from_the_ground()
+    };
+    let Some(input) = survey.carving.as_ref().filter(is_known) else { return Ok((SurfacePatches::default(), None)) };
+    let points = SurveyPoints {
+        positions: &survey.measured,
+        scanner: &input.scanner,
+        attributes: &input.attributes,
+        origin: frame.origin,
+        buildings: BuildingPoints::Classified,
+    };
+    let found = control.stage("finding roofs and walls", survey.measured.len(), || find(&points, params, control))?;
+    let balls_capped =
+        control.stage("capping balls", balls.len(), || cap(balls, &survey.measured, &found.regions, control))?;
+    let report = SurfacesReport {
+        roof_planes: found.planes.len(),
+        roof_edges: found.edges.len(),
+        ridges: found.ridges.len(),
+        walls: found.walls.len(),
+        triangles: found.patches.len(),
+        balls_capped,
+    };
+    Ok((found.patches, Some(report)))
+}
