@@ -61,9 +61,9 @@ impl TriangleTree {
         self.index.any(ray, |row| self.range(&crossing, row, ray).is_some() && counts(row))
     }
 
-    /// Looks for the rays from `origins`, neighbours together, along a unit vector without end that cross a triangle for
-    /// which `counts` is true: it is given the number of the ray and the row of the triangle, until it was true for the
-    /// ray once. Each ray is found as [`TriangleTree::any`] finds it, but they walk through the tree together.
+    /// Looks for the rays from `origins`, neighbours together, along a unit vector without end that cross a triangle
+    /// for which `counts` is true: it is given the number of the ray and the row of the triangle, until it was true for
+    /// the ray once. Each ray is found as [`TriangleTree::any`] finds it, but they walk through the tree together.
     pub(crate) fn any_of(
         &self,
         origins: &[[f64; 3]],

@@ -82,7 +82,8 @@ pub struct SightColumns<'a> {
     pub sources: Vec<Option<u32>>,
     /// The name of the mesh that blocks first, empty where none does, where meshes were added.
     pub meshes: Option<Vec<&'a str>>,
-    /// What surface of the survey blocks first (roof, wall, parapet, inside), empty where none does, where any is known.
+    /// What surface of the survey blocks first (roof, wall, parapet, inside), empty where none does, where any is
+    /// known.
     pub surfaces: Option<Vec<&'static str>>,
     /// Whether far terrain blocks first, where there is any; `None` where nothing blocks.
     pub is_terrain: Option<Vec<Option<bool>>>,

@@ -45,10 +45,10 @@ pub struct ClearReport {
 
 impl SceneModel {
     /// The model and its cloud, in its frame, without what stands in `area` now: points above the ground, balls at
-    /// them, and meshes that were added, of which triangles go with their middle. Surface patches are cut at the edge of
-    /// a polygon, and all go with the class of buildings. Balls beside a polygon that reach
-    /// into it are cut to its edge, at the point that they are tangent at. The ground below is closed with balls at the
-    /// height interpolated from the ground around. Lines of sight through the space that was freed are proven free.
+    /// them, and meshes that were added, of which triangles go with their middle. Surface patches are cut at the edge
+    /// of a polygon, and all go with the class of buildings. Balls beside a polygon that reach into it are cut to its
+    /// edge, at the point that they are tangent at. The ground below is closed with balls at the height interpolated
+    /// from the ground around. Lines of sight through the space that was freed are proven free.
     ///
     /// Where nothing stands, nothing changes, bit by bit.
     ///
@@ -92,8 +92,8 @@ impl SceneModel {
         Ok((self, kept, report))
     }
 
-    /// Leaves out the triangles of meshes whose middles lie in a polygon, and cuts patches at its edge. Of classes, that
-    /// of buildings takes all patches with it.
+    /// Leaves out the triangles of meshes whose middles lie in a polygon, and cuts patches at its edge. Of classes,
+    /// that of buildings takes all patches with it.
     fn clear_triangles(&mut self, area: &ClearedArea, report: &mut ClearReport) -> Result<()> {
         let left = match area {
             ClearedArea::Polygon(rings) => {

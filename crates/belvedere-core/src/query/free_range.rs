@@ -9,8 +9,8 @@ use belvedere_data::vector::{dot, sub};
 impl MedialScene {
     /// What an eye at `eye`, local metres, sees along the unit vector `direction` within `reach` metres (may be
     /// infinite), and its range, metres. `None` where nothing blocks. Balls that hold the eye are left out, as for
-    /// every line of sight; none gives way, since there is no target. A patch of a surface gives way to the eye only: of
-    /// what it hides, the 0.15 m right behind it still count as its surface for [`MedialScene::answer`].
+    /// every line of sight; none gives way, since there is no target. A patch of a surface gives way to the eye only:
+    /// of what it hides, the 0.15 m right behind it still count as its surface for [`MedialScene::answer`].
     #[must_use]
     pub fn seen_along(&self, eye: [f64; 3], direction: [f64; 3], reach: f64) -> Option<(Blocker, f64)> {
         let ray = Ray { origin: eye, direction, ranges: [0.0, reach] };

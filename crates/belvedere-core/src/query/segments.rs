@@ -237,11 +237,11 @@ impl MedialScene {
         }
     }
 
-    /// Every ball, mesh and patch on the line of sight from `observer` to `target`, local metres, by its whole radius, in the
-    /// order in which the line enters them. Balls around the ends are among them, and those that give way to the
+    /// Every ball, mesh and patch on the line of sight from `observer` to `target`, local metres, by its whole radius,
+    /// in the order in which the line enters them. Balls around the ends are among them, and those that give way to the
     /// target. A mesh holds what lies between every two of its surfaces, counted from the target, and from the last one
-    /// to the observer where their number is odd; a patch is a point. Empty for a line without length or with coordinates that are not
-    /// finite.
+    /// to the observer where their number is odd; a patch is a point. Empty for a line without length or with
+    /// coordinates that are not finite.
     #[must_use]
     pub fn crossings(&self, observer: [f64; 3], target: [f64; 3], earth: &EarthParams) -> Vec<Crossing> {
         let corners = earth.corners(observer, target);

@@ -45,11 +45,11 @@ impl MedialScene {
     /// The skyline around `eye`, local metres: at `count` azimuths, the first north, clockwise in equal steps. Empty
     /// for an eye that is not finite.
     ///
-    /// Exact for the union of balls, for meshes that were added and for surface patches, by the tangents of every ball in the vertical plane
-    /// of each azimuth: nothing that floats above a gap is missed, and there is no step to choose. The eye may be a
-    /// place on a surface: balls give way to it by [`crate::blocking::BlockRule::shell`] as to any target. Those that
-    /// hold it even so are left out; [`MedialScene::enclosure`] tells of them. Over the earth of `earth` far balls
-    /// sink.
+    /// Exact for the union of balls, for meshes that were added and for surface patches, by the tangents of every ball
+    /// in the vertical plane of each azimuth: nothing that floats above a gap is missed, and there is no step to
+    /// choose. The eye may be a place on a surface: balls give way to it by [`crate::blocking::BlockRule::shell`] as to
+    /// any target. Those that hold it even so are left out; [`MedialScene::enclosure`] tells of them. Over the earth of
+    /// `earth` far balls sink.
     ///
     /// # Errors
     /// [`Error::Cancelled`](belvedere_data::Error::Cancelled).

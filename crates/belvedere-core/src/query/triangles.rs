@@ -213,8 +213,8 @@ impl BlockingTriangles {
         self.blocks_piece(&ray, &ends)
     }
 
-    /// Calls `visit` with the numbers of those of the lines of sight from `targets`, neighbours together, along the unit
-    /// vector `towards` without end that a triangle blocks: those that [`BlockingTriangles::blocks`] finds.
+    /// Calls `visit` with the numbers of those of the lines of sight from `targets`, neighbours together, along the
+    /// unit vector `towards` without end that a triangle blocks: those that [`BlockingTriangles::blocks`] finds.
     pub(super) fn each_blocked(&self, targets: &[[f64; 3]], towards: [f64; 3], mut visit: impl FnMut(usize)) {
         self.tree.any_of(targets, towards, |number, row| {
             let blocks = self.is_between(row, &LineEnds { target: targets[number], viewer: None });

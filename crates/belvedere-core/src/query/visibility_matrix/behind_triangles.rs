@@ -12,8 +12,8 @@ const ROOM: f64 = 0.01;
 /// with 3000 triangles (145 directions) took 0.92 s with 4 and 8, 0.77 with 16.
 const SPREAD: f64 = 16.0;
 
-/// Unsets the bits of lines of sight that triangles block, in rows of `words` for `targets`, (M, 3), neighbours together,
-/// and `directions`, (D, 3).
+/// Unsets the bits of lines of sight that triangles block, in rows of `words` for `targets`, (M, 3), neighbours
+/// together, and `directions`, (D, 3).
 pub(super) fn hide_behind_triangles(
     triangles: &BlockingTriangles,
     targets: &[[f32; 3]],
