@@ -108,10 +108,11 @@ pub struct ObjectPart {
 }
 
 impl ObjectPart {
-    /// Adds a flat convex polygon, corners counter-clockwise seen from outside, as a fan about its first corner.
+    /// Adds a flat convex polygon, corners counter-clockwise seen from outside, as a fan about its first corner. Corners
+    /// may be the same: triangles that would have no area are left out.
     pub(crate) fn add_polygon(&mut self, corners: &[usize], material: Material) {
         if let [first, rest @ ..] = corners {
-            for edge in rest.windows(2) {
+            for edge in rest.windows(2).filter(|edge| edge[0] != edge[1] && !edge.contains(first)) {
                 self.triangles.push([index_u32(*first), index_u32(edge[0]), index_u32(edge[1])]);
                 self.materials.push(material);
             }
