@@ -182,8 +182,6 @@ fn presets_hold_what_they_promise() {
                 "sloped roof",
                 "flat roof",
                 "eaves",
-                "parapet",
-                "roof box",
                 "chimney",
                 "dormer",
                 "balcony",
@@ -225,7 +223,7 @@ fn presets_hold_what_they_promise() {
     }
     // What needs more than four blocks.
     let large = features(&town(&Preset::Town.params(300.0, 1)));
-    for feature in ["gable roof", "hip roof", "l shape", "u shape", "courtyard"] {
+    for feature in ["gable roof", "hip roof", "l shape", "u shape", "courtyard", "parapet", "roof box"] {
         assert!(large.contains(feature), "no {feature} in {large:?}");
     }
     assert!(features(&town(&Preset::Park.params(230.0, 1))).contains("deck"));

@@ -102,9 +102,9 @@ fn targets_at_roofs_lie_above_them_and_those_at_walls_not_in_their_eaves() {
     let material = |hit: Option<Hit>| hit.map(|hit| scene.materials[hit.triangle as usize]);
     let above_roofs = site.targets(QuerySet::Roofs, 3000, 1).positions;
     let under = above_roofs.iter().map(|&p| material(truth.first_hit(p, [0.0, 0.0, -1.0], 0.5)));
-    // 0.1 m off a slope of up to 74 degrees, as that of a spire; a chimney or a parapet may be in between
+    // 0.1 m off a slope of 45 degrees lies up to 7 cm beyond its eaves; slopes are 5 m long
     let over_roof = under.filter(|m| matches!(m, Some(Material::Roof))).count();
-    assert!(over_roof > 2980, "{over_roof}");
+    assert!(over_roof > 2940, "{over_roof}");
     let (mut under_eaves, mut level) = (0, 0);
     for p in site.targets(QuerySet::Facades, 3000, 1).positions {
         assert!(!site.is_inside(p));
