@@ -20,7 +20,7 @@ pub enum QuerySet {
     Ground,
     /// 0.1 m above roofs; not below their eaves or beside them.
     Roofs,
-    /// 0.1 m outside walls; not above parapets and chimneys.
+    /// 0.1 m outside walls; not above chimneys, and not at parapets.
     Facades,
     /// Eyes 1.6 m above the ground that look at each other, as many pairs in each class of length.
     LinesOfSight,

@@ -17,7 +17,7 @@ pub enum Material {
     Trunk,
     /// A single leaf, or a few on a twig, of a porous crown.
     Leaf,
-    /// Slab that carries or covers: balcony, deck, canopy, ceiling of an arcade.
+    /// Slab that carries or covers, or its parapet: balcony, deck, canopy, ceiling of an arcade; parapet of a roof.
     Slab,
     /// Deck of a bridge, with its sides and underside.
     Bridge,

@@ -329,11 +329,12 @@ fn ends_beyond(line: &[[f64; 2]], way: f64) -> [[f64; 3]; 2] {
 }
 
 /// Parapet on the walls over `outline`, (N, 2), counter-clockwise: an upright ring of `thickness` inside it, from a
-/// little below the roof at height `roof` up to `height` above it. A solid of its own, all wall. Metres.
+/// little below the roof at height `roof` up to `height` above it. A solid of its own, all slab as the parapets of
+/// balconies: no part of it is a roof or a wall of rooms. Metres.
 pub(crate) fn parapet(outline: &[[f64; 2]], thickness: f64, roof: f64, height: f64) -> ObjectPart {
     let top = roof + height;
     let profile = RidgedProfile { bottom: roof - JOINT, eaves: top, ridge: top, overhang: Overhang::default() };
-    winged(outline, &inset(outline, thickness), WingCourse::Closed, &profile).with_material(Material::Facade)
+    winged(outline, &inset(outline, thickness), WingCourse::Closed, &profile).with_material(Material::Slab)
 }
 
 /// The corners of `outline`, (N, 2), counter-clockwise, with all its sides moved inwards by `distance` metres.

@@ -180,8 +180,6 @@ impl TriangleScene {
                 _ if up < -LEVEL_SINE && middle < lowest + FLOOR_REACH => "GroundSurface",
                 _ if up < -LEVEL_SINE => "OuterCeilingSurface",
                 Material::Roof => "RoofSurface",
-                // the tops of parapets and chimneys
-                Material::Facade if up > LEVEL_SINE => "RoofSurface",
                 _ if up > LEVEL_SINE => "OuterFloorSurface",
                 _ => "WallSurface",
             };

@@ -194,7 +194,7 @@ pub fn town(params: &TownParams) -> TriangleScene {
     let centre = layout.centre;
     let mut site = TownSite::new(params.terrain(), Random::new(params.seed, 0), centre.origin, layout.extent);
     site.roofs = params.roofs;
-    site.roof_random = Random::new(params.seed, 1);
+    site.seed = params.seed;
     site.crowns = params.crowns;
     site.tree_heights = params.tree_heights;
 

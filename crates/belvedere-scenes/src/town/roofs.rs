@@ -1,5 +1,6 @@
 //! What roofs of real towns have and plain solids do not: eaves, verges, parapets, boxes, chimneys.
 
+use crate::random::Random;
 use crate::scene::ObjectPart;
 use crate::solids::{Overhang, PlanPlacement, extruded, parapet};
 use crate::town::buildings::{RoofShape, chimney};
@@ -7,8 +8,8 @@ use crate::town::site::TownSite;
 
 /// How many of the roofs of a town have what, as chances from 0 to 1 of each building.
 ///
-/// Which buildings they are follows from the seed, by random numbers of their own: walls, streets and what is parked
-/// there stay where they are without, as far as eaves leave room.
+/// Which buildings they are follows from the seed. A greater chance adds to them and changes no other, and walls,
+/// streets and parked cars stay where they are, as far as eaves leave room.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RoofDetails {
     /// Eaves of 0.3 to 0.6 m below sloped roofs, and verges of 0.2 m at gables where no other house stands.
@@ -44,26 +45,43 @@ const BOX_MARGIN: f64 = 1.2;
 /// Least area of a flat roof with boxes, m².
 const MIN_AREA_FOR_BOXES: f64 = 50.0;
 
+/// What has random numbers of its own in each building.
+#[derive(Clone, Copy)]
+enum RoofDetail {
+    Eaves = 1,
+    Parapet,
+    Boxes,
+    Chimney,
+}
+
 impl TownSite {
+    /// Random numbers for a detail of the building that is added next.
+    fn random_of(&self, detail: RoofDetail) -> Random {
+        Random::new(self.seed, ((detail as u64) << 48) | u64::from(self.count("building")))
+    }
+
     /// Eaves and verges of the next house; none, or without verges, where the town or the house has none.
-    pub(crate) fn next_overhang(&mut self, has_free_gables: bool) -> Overhang {
-        let eaves = self.roof_random.between(EAVES[0], EAVES[1]);
+    pub(crate) fn next_overhang(&self, has_free_gables: bool) -> Overhang {
+        let mut random = self.random_of(RoofDetail::Eaves);
         let verge = if has_free_gables { VERGE } else { 0.0 };
-        if self.roof_random.chance(self.roofs.eaves) { Overhang { eaves, verge } } else { Overhang::default() }
+        let has_eaves = random.chance(self.roofs.eaves);
+        if has_eaves { Overhang { eaves: random.between(EAVES[0], EAVES[1]), verge } } else { Overhang::default() }
     }
 
     /// The parapet of the next flat roof at height `top` over walls along `outline`, (N, 2), counter-clockwise.
-    pub(crate) fn next_parapet(&mut self, outline: &[[f64; 2]], top: f64) -> Option<ObjectPart> {
-        let height = self.roof_random.between(PARAPET_HEIGHT[0], PARAPET_HEIGHT[1]);
-        self.roof_random.chance(self.roofs.parapets).then(|| parapet(outline, PARAPET_THICKNESS, top, height))
+    pub(crate) fn next_parapet(&self, outline: &[[f64; 2]], top: f64) -> Option<ObjectPart> {
+        let mut random = self.random_of(RoofDetail::Parapet);
+        random
+            .chance(self.roofs.parapets)
+            .then(|| parapet(outline, PARAPET_THICKNESS, top, random.between(PARAPET_HEIGHT[0], PARAPET_HEIGHT[1])))
     }
 
     /// The boxes on the next flat roof at height `top`, of `size` about `place`.
-    pub(crate) fn next_roof_boxes(&mut self, place: &PlanPlacement, size: [f64; 2], top: f64) -> Vec<ObjectPart> {
-        if size[0] * size[1] < MIN_AREA_FOR_BOXES || !self.roof_random.chance(self.roofs.boxes) {
+    pub(crate) fn next_roof_boxes(&self, place: &PlanPlacement, size: [f64; 2], top: f64) -> Vec<ObjectPart> {
+        let mut random = self.random_of(RoofDetail::Boxes);
+        if size[0] * size[1] < MIN_AREA_FOR_BOXES || !random.chance(self.roofs.boxes) {
             return Vec::new();
         }
-        let random = &mut self.roof_random;
         let mut boxes = Vec::new();
         for chance in [1.0, 0.6, 0.4] {
             let sides = [0, 1].map(|_| random.between(BOX_SIDE[0], BOX_SIDE[1]));
@@ -81,8 +99,8 @@ impl TownSite {
     }
 
     /// The chimney of the next house that is built without one.
-    pub(crate) fn next_chimney(&mut self, house: &PlanPlacement, roof: &RoofShape) -> Option<ObjectPart> {
-        let along = self.roof_random.between(-0.2, 0.2) * roof.length;
-        self.roof_random.chance(self.roofs.chimneys).then(|| chimney(house, roof, along))
+    pub(crate) fn next_chimney(&self, house: &PlanPlacement, roof: &RoofShape) -> Option<ObjectPart> {
+        let mut random = self.random_of(RoofDetail::Chimney);
+        random.chance(self.roofs.chimneys).then(|| chimney(house, roof, random.between(-0.2, 0.2) * roof.length))
     }
 }

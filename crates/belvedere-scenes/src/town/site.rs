@@ -107,8 +107,8 @@ pub(crate) struct TownSite {
     pub(crate) centre: [f64; 2],
     pub(crate) extent: f64,
     pub(crate) roofs: RoofDetails,
-    /// For what roofs carry: the rest of the town is the same without it.
-    pub(crate) roof_random: Random,
+    /// For random numbers that change nothing but what they are drawn for.
+    pub(crate) seed: u64,
     pub(crate) crowns: CrownMaterial,
     pub(crate) tree_heights: [f64; 2],
     taken: TakenGround,
@@ -128,7 +128,7 @@ impl TownSite {
             centre,
             extent,
             roofs: RoofDetails::PLAIN,
-            roof_random: Random::new(0, 1),
+            seed: 0,
             crowns: CrownMaterial::Opaque,
             tree_heights: [7.0, 13.0],
             taken: TakenGround::default(),
@@ -151,6 +151,11 @@ impl TownSite {
         let count = self.counts.entry(kind).or_default();
         *count += 1;
         self.scene.add_object(format!("{kind} {count}"), parts);
+    }
+
+    /// How many objects of a kind there are.
+    pub(crate) fn count(&self, kind: &str) -> u32 {
+        self.counts.get(kind).copied().unwrap_or(0)
     }
 
     /// 0 and 1 by turns: which kind of courtyard comes next.
