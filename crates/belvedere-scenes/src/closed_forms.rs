@@ -14,7 +14,7 @@
 use std::f64::consts::{PI, TAU};
 
 use crate::scene::{Material, ObjectPart, TriangleScene};
-use crate::solids::{PlanPlacement, WingCourse, extruded, prism, swept, winged};
+use crate::solids::{Overhang, PlanPlacement, RidgedProfile, WingCourse, extruded, prism, swept, winged};
 
 /// Half the side of the ground, metres: holds the shadow of 17 m at an elevation of 1°.
 const GROUND_HALF_SIDE: f64 = 1000.0;
@@ -132,7 +132,8 @@ pub fn basin(radius: f64, horizon_elevation: f64) -> TriangleScene {
             })
             .collect()
     };
-    let wall = winged(&ring(radius + 1.0), &ring(radius), WingCourse::Closed, -BURIED, top, top);
+    let profile = RidgedProfile { bottom: -BURIED, eaves: top, ridge: top, overhang: Overhang::default() };
+    let wall = winged(&ring(radius + 1.0), &ring(radius), WingCourse::Closed, &profile);
     on_plane("basin", &[wall])
 }
 

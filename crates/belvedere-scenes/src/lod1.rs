@@ -18,8 +18,8 @@ const DOWNWARD: f64 = 0.5;
 const CELL: f64 = 8.0;
 
 /// The same scene generalised to LoD1: the terrain, and for each part of a building that stands on the ground the prism
-/// over its footprint, from its bottom to the height that 70 % of its roof lies below (by area seen from above;
-/// dormers, chimneys and what else sits on the footprint counts with it, and so does the roof beneath).
+/// over its footprint, from its bottom to the height that 70 % of its roof lies below (by area seen from above, eaves
+/// included; dormers and what else has a roof and sits on the footprint counts with it, and so does the roof beneath).
 ///
 /// A building is what has faces of [`Material::Roof`]. What does not stand in the ground, overhangs the walls or is no
 /// building is left out: balconies, decks, canopies, bridges, trees, cars, fences, masts, wires. Floors over arcades
@@ -145,12 +145,13 @@ struct PartOutline {
 }
 
 impl PartOutline {
-    /// From the faces of a part that look down. Where they meet above each other, as the floor of an arcade and its
+    /// From the faces of a part that look down, but for roofs, whose undersides are eaves. Where they meet above each other, as the floor of an arcade and its
     /// ceiling do, their corners are the same numbers and count as one.
     fn new(scene: &TriangleScene, range: Range<usize>) -> Self {
         let mut numbers: HashMap<[u64; 2], usize> = HashMap::new();
         let mut footprint = Self { points: Vec::new(), triangles: Vec::new() };
-        for corners in range.filter_map(|t| scene.corners(t)) {
+        let not_roof = range.filter(|&t| scene.materials.get(t) != Some(&Material::Roof));
+        for corners in not_roof.filter_map(|t| scene.corners(t)) {
             let normal = cross(sub(corners[1], corners[0]), sub(corners[2], corners[0]));
             if normal[2] < -DOWNWARD * length(normal) {
                 let triangle = corners.map(|[x, y, _]| {

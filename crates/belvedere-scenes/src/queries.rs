@@ -18,9 +18,9 @@ pub enum QuerySet {
     Pedestrians,
     /// 0.1 m above the ground, in free air.
     Ground,
-    /// 0.1 m outside roofs.
+    /// 0.1 m above roofs; not below their eaves or beside them.
     Roofs,
-    /// 0.1 m outside walls.
+    /// 0.1 m outside walls; not above chimneys, and not at parapets.
     Facades,
     /// Eyes 1.6 m above the ground that look at each other, as many pairs in each class of length.
     LinesOfSight,
@@ -55,6 +55,10 @@ const OFF_SURFACE: f64 = 0.1;
 const RETURN_DEVIATION: f64 = 0.3;
 /// Distance outside a surface of the point for which its visibility is computed, metres.
 const OUTSIDE: f64 = 0.03;
+/// A surface is a wall where the upward part of its normal is less than this either way, and a roof where it is more
+/// than this: roofs may be steep, the sides of their eaves are upright.
+const STEEP: f64 = 0.5;
+const LEVEL: f64 = 0.05;
 /// Bounds of the classes of length that lines of sight are drawn in, metres.
 const SIGHT_LENGTHS: [f64; 5] = [5.0, 25.0, 50.0, 100.0, 200.0];
 /// Least distance between two surfaces that a ray crosses for both to count, metres: an edge or a doubled face is one.
@@ -92,8 +96,8 @@ impl QuerySite<'_> {
     #[must_use]
     pub fn targets(&self, set: QuerySet, count: usize, seed: u64) -> TargetsOfKind {
         let surfaces = match set {
-            QuerySet::Roofs => SurfaceSampler::new(self.scene, Material::Roof),
-            QuerySet::Facades => SurfaceSampler::new(self.scene, Material::Facade),
+            QuerySet::Roofs => SurfaceSampler::new(self.scene, Material::Roof, |up| up > LEVEL),
+            QuerySet::Facades => SurfaceSampler::new(self.scene, Material::Facade, |up| up.abs() < STEEP),
             _ => SurfaceSampler::default(),
         };
         let draw = |number: usize| {
@@ -277,7 +281,7 @@ impl TriangleScene {
     }
 }
 
-/// Triangles of one material, drawn in proportion to their area.
+/// Triangles of one material that face a way, drawn in proportion to their area.
 #[derive(Default)]
 struct SurfaceSampler {
     triangles: Vec<usize>,
@@ -286,13 +290,15 @@ struct SurfaceSampler {
 }
 
 impl SurfaceSampler {
-    fn new(scene: &TriangleScene, material: Material) -> Self {
+    /// Of those triangles of `material` whose upward part of the unit normal is `wanted`.
+    fn new(scene: &TriangleScene, material: Material, wanted: impl Fn(f64) -> bool) -> Self {
         let mut sampler = Self::default();
         let mut total = 0.0;
         for triangle in 0..scene.triangles.len() {
             let Some([a, b, c]) = scene.corners(triangle) else { continue };
             let area = length(cross(sub(b, a), sub(c, a))) / 2.0;
-            if scene.materials.get(triangle) == Some(&material) && area > 0.0 && area.is_finite() {
+            let faces = scene.normal(triangle).is_some_and(|normal| wanted(normal[2]));
+            if faces && scene.materials.get(triangle) == Some(&material) && area > 0.0 && area.is_finite() {
                 total += area;
                 sampler.triangles.push(triangle);
                 sampler.areas.push(total);

@@ -17,7 +17,7 @@ pub enum Material {
     Trunk,
     /// A single leaf, or a few on a twig, of a porous crown.
     Leaf,
-    /// Slab that carries or covers: balcony, deck, canopy, ceiling of an arcade.
+    /// Slab that carries or covers, or its parapet: balcony, deck, canopy, ceiling of an arcade; parapet of a roof.
     Slab,
     /// Deck of a bridge, with its sides and underside.
     Bridge,
@@ -108,10 +108,11 @@ pub struct ObjectPart {
 }
 
 impl ObjectPart {
-    /// Adds a flat convex polygon, corners counter-clockwise seen from outside, as a fan about its first corner.
+    /// Adds a flat convex polygon, corners counter-clockwise seen from outside, as a fan about its first corner. Corners
+    /// may be the same: triangles that would have no area are left out.
     pub(crate) fn add_polygon(&mut self, corners: &[usize], material: Material) {
         if let [first, rest @ ..] = corners {
-            for edge in rest.windows(2) {
+            for edge in rest.windows(2).filter(|edge| edge[0] != edge[1] && !edge.contains(first)) {
                 self.triangles.push([index_u32(*first), index_u32(edge[0]), index_u32(edge[1])]);
                 self.materials.push(material);
             }

@@ -1,7 +1,11 @@
 //! Closed solids that buildings are made of.
 
 use crate::scene::{Material, ObjectPart, middle};
-use crate::vector::{add_scaled, sub};
+use crate::vector::{add, add_scaled, length, scale, sub};
+
+/// How far a joint reaches into the solid it belongs to, metres: solids that merely touch would leave a scanner a seam
+/// to look into.
+pub(crate) const JOINT: f64 = 0.1;
 
 /// Where a piece of the plan lies and how it is turned.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -73,21 +77,101 @@ pub fn extruded(footprint: &[[f64; 2]], bottom: f64, top: f64) -> ObjectPart {
 /// (roof); beyond half the length the ridge would cross itself.
 #[must_use]
 pub fn ridged(footprint: &[[f64; 2]; 4], bottom: f64, eaves: f64, ridge: f64, hip: f64) -> ObjectPart {
+    ridged_to(footprint, hip, &RidgedProfile { bottom, eaves, ridge, overhang: Overhang::default() })
+}
+
+/// Heights of a building with a ridge, absolute, and how far its roof reaches beyond its walls. Metres.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct RidgedProfile {
+    pub(crate) bottom: f64,
+    /// Where the plane of the roof meets the plane of the wall.
+    pub(crate) eaves: f64,
+    pub(crate) ridge: f64,
+    pub(crate) overhang: Overhang,
+}
+
+/// How far a sloped roof reaches beyond the walls, level, metres.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Overhang {
+    /// Beyond the walls below the eaves, in the slope of the roof. 0 for none.
+    pub(crate) eaves: f64,
+    /// Beyond gables, where there are eaves. 0 ends the eaves in the plane of the gable.
+    pub(crate) verge: f64,
+}
+
+/// Thickness of a roof that overhangs, measured upright, metres.
+const ROOF_THICKNESS: f64 = 0.2;
+
+/// House as [`ridged`] with the heights and the overhang of `profile`. The sides and the underside of an overhang are
+/// roof.
+pub(crate) fn ridged_to(footprint: &[[f64; 2]; 4], hip: f64, profile: &RidgedProfile) -> ObjectPart {
     let mut part = ObjectPart::default();
-    add_walls(&mut part, footprint, bottom, eaves);
-    let [a, b, c, d] = footprint.map(|[x, y]| [x, y, ridge]);
+    add_walls(&mut part, footprint, profile.bottom, profile.eaves);
+    let [a, b, c, d] = footprint.map(|[x, y]| [x, y, profile.ridge]);
     let (start, end) = (middle(d, a), middle(b, c));
     let along = sub(end, start);
     let inset = hip / (along[0] * along[0] + along[1] * along[1]).sqrt();
     part.vertices.push(add_scaled(start, along, inset));
     part.vertices.push(add_scaled(start, along, 1.0 - inset));
-    let (start, end) = (8, 9);
-    part.add_polygon(&[4, 5, end, start], Material::Roof);
-    part.add_polygon(&[6, 7, start, end], Material::Roof);
-    let end_material = if hip > 0.0 { Material::Roof } else { Material::Facade };
-    part.add_polygon(&[5, 6, end], end_material);
-    part.add_polygon(&[7, 4, start], end_material);
+    let has_eaves = profile.overhang.eaves > 0.0;
+    let share = if has_eaves { profile.overhang.eaves / (length(sub(d, a)) / 2.0) } else { 0.0 };
+    let has_gables = !(hip > 0.0);
+    let verge = if has_gables && has_eaves { profile.overhang.verge / length(along) } else { 0.0 };
+    let beyond = [scale(along, -verge), scale(along, verge)];
+    let [a, b, c, d] = [(4, 0), (5, 1), (6, 1), (7, 0)]
+        .map(|(wall, end)| RoofCorner::eaves(&mut part, wall, 8 + end, share, beyond[end]));
+    let [start, end] = [0, 1].map(|end| RoofCorner::new(&mut part, 8 + end, beyond[end]));
+    part.add_polygon(&[a.upper, b.upper, end.upper, start.upper], Material::Roof);
+    part.add_polygon(&[c.upper, d.upper, start.upper, end.upper], Material::Roof);
+    if has_gables {
+        part.add_polygon(&[b.wall, c.wall, end.wall], Material::Facade);
+        part.add_polygon(&[d.wall, a.wall, start.wall], Material::Facade);
+        add_overhang(&mut part, &[a, b, end, c, d, start]);
+    } else {
+        part.add_polygon(&[b.upper, c.upper, end.upper], Material::Roof);
+        part.add_polygon(&[d.upper, a.upper, start.upper], Material::Roof);
+        add_overhang(&mut part, &[a, b, c, d]);
+    }
     part
+}
+
+/// A corner at the edge of a roof, as vertices: where the wall below ends, and the lower and the upper corner of the
+/// overhang. All three are the same where nothing overhangs.
+#[derive(Clone, Copy)]
+struct RoofCorner {
+    wall: usize,
+    lower: usize,
+    upper: usize,
+}
+
+impl RoofCorner {
+    /// Corner over the vertex `wall`, which lies in the plane of the roof; the roof reaches `outward` beyond it, metres.
+    /// The wall then ends below the roof.
+    fn new(part: &mut ObjectPart, wall: usize, outward: [f64; 3]) -> Self {
+        if length(outward) == 0.0 {
+            return Self { wall, lower: wall, upper: wall };
+        }
+        let below = [0.0, 0.0, -ROOF_THICKNESS];
+        let edge = add(part.vertices[wall], outward);
+        part.vertices[wall] = add(part.vertices[wall], below);
+        part.vertices.extend([add(edge, below), edge]);
+        Self { wall, lower: part.vertices.len() - 2, upper: part.vertices.len() - 1 }
+    }
+
+    /// Corner of eaves over the vertex `wall`: the roof reaches on from the vertex `ridge` by a `share` of the way from
+    /// there to the wall, and `aside` beyond that.
+    fn eaves(part: &mut ObjectPart, wall: usize, ridge: usize, share: f64, aside: [f64; 3]) -> Self {
+        let down = sub(part.vertices[wall], part.vertices[ridge]);
+        Self::new(part, wall, add(scale(down, share), aside))
+    }
+}
+
+/// Adds the underside and the side of an overhang along the closed `edge` of a roof, counter-clockwise seen from above.
+fn add_overhang(part: &mut ObjectPart, edge: &[RoofCorner]) {
+    for (from, to) in edge.iter().zip(edge.iter().cycle().skip(1)) {
+        part.add_polygon(&[from.wall, to.wall, to.lower, from.lower], Material::Roof);
+        part.add_polygon(&[from.lower, to.lower, to.upper, from.upper], Material::Roof);
+    }
 }
 
 /// Closed L-shaped house (see [`PlanPlacement::l_shape`]) with a gable at the end of each wing, a valley over the inner
@@ -167,42 +251,109 @@ pub(crate) enum WingCourse {
 
 /// Closed building of wings along a course, with the outer corners `outer`, (N, 2), on the right and `inner`, (N, 2),
 /// on the left; the opposite walls of a wing are parallel. The ridge runs midway between them; at the height of the
-/// eaves it makes a flat roof. Heights in metres.
+/// eaves it makes a flat roof, which must not overhang.
 pub(crate) fn winged(
     outer: &[[f64; 2]],
     inner: &[[f64; 2]],
     course: WingCourse,
-    bottom: f64,
-    eaves: f64,
-    ridge: f64,
+    profile: &RidgedProfile,
 ) -> ObjectPart {
     let mut part = ObjectPart::default();
     let count = outer.len().min(inner.len());
     if count < 2 {
         return part;
     }
+    let RidgedProfile { bottom, eaves, ridge, overhang } = *profile;
     for (&[ox, oy], &[ix, iy]) in outer.iter().zip(inner) {
         part.vertices.extend([[ox, oy, bottom], [ix, iy, bottom], [ox, oy, eaves], [ix, iy, eaves]]);
         part.vertices.push([(ox + ix) / 2.0, (oy + iy) / 2.0, ridge]);
     }
     let corner = |station: usize| [0, 1, 2, 3, 4].map(|k| 5 * station + k);
-    let wings = if course == WingCourse::Closed { count } else { count - 1 };
+    let is_open = course == WingCourse::Open;
+    let half_width = distance_from_line(outer[0], outer[1], inner[0]) / 2.0;
+    let share = if overhang.eaves > 0.0 { overhang.eaves / half_width } else { 0.0 };
+    let verges = if is_open && share > 0.0 { ends_beyond(&outer[..count], overhang.verge) } else { [[0.0; 3]; 2] };
+    let (mut outer_edge, mut inner_edge, mut ridges) = (Vec::new(), Vec::new(), Vec::new());
+    for station in 0..count {
+        let [_, _, outer_eaves, inner_eaves, ridge] = corner(station);
+        let aside = match station {
+            0 => verges[0],
+            last if last == count - 1 => verges[1],
+            _ => [0.0; 3],
+        };
+        outer_edge.push(RoofCorner::eaves(&mut part, outer_eaves, ridge, share, aside));
+        inner_edge.push(RoofCorner::eaves(&mut part, inner_eaves, ridge, share, aside));
+        ridges.push(RoofCorner::new(&mut part, ridge, aside));
+    }
+    let wings = if is_open { count - 1 } else { count };
     for station in 0..wings {
-        let [outer_a, inner_a, outer_eaves_a, inner_eaves_a, ridge_a] = corner(station);
-        let [outer_b, inner_b, outer_eaves_b, inner_eaves_b, ridge_b] = corner((station + 1) % count);
+        let next = (station + 1) % count;
+        let [outer_a, inner_a, outer_eaves_a, inner_eaves_a, _] = corner(station);
+        let [outer_b, inner_b, outer_eaves_b, inner_eaves_b, _] = corner(next);
+        let (ridge_a, ridge_b) = (ridges[station].upper, ridges[next].upper);
         part.add_polygon(&[outer_a, outer_b, outer_eaves_b, outer_eaves_a], Material::Facade);
         part.add_polygon(&[inner_b, inner_a, inner_eaves_a, inner_eaves_b], Material::Facade);
         part.add_polygon(&[outer_a, inner_a, inner_b, outer_b], Material::Facade);
-        part.add_polygon(&[outer_eaves_a, outer_eaves_b, ridge_b, ridge_a], Material::Roof);
-        part.add_polygon(&[ridge_a, ridge_b, inner_eaves_b, inner_eaves_a], Material::Roof);
+        part.add_polygon(&[outer_edge[station].upper, outer_edge[next].upper, ridge_b, ridge_a], Material::Roof);
+        part.add_polygon(&[ridge_a, ridge_b, inner_edge[next].upper, inner_edge[station].upper], Material::Roof);
     }
-    if course == WingCourse::Open {
+    inner_edge.reverse();
+    if is_open {
+        let around = [outer_edge.as_slice(), &ridges[count - 1..], &inner_edge, &ridges[..1]].concat();
+        add_overhang(&mut part, &around);
         let [outer, inner, outer_eaves, inner_eaves, ridge] = corner(0);
         part.add_polygon(&[outer, outer_eaves, ridge, inner_eaves, inner], Material::Facade);
         let [outer, inner, outer_eaves, inner_eaves, ridge] = corner(count - 1);
         part.add_polygon(&[outer, inner, inner_eaves, ridge, outer_eaves], Material::Facade);
+    } else {
+        add_overhang(&mut part, &outer_edge);
+        add_overhang(&mut part, &inner_edge);
     }
     part
+}
+
+/// Distance of `point` from the line through two points, metres.
+fn distance_from_line(from: [f64; 2], to: [f64; 2], point: [f64; 2]) -> f64 {
+    let (dx, dy) = (to[0] - from[0], to[1] - from[1]);
+    ((point[0] - from[0]) * dy - (point[1] - from[1]) * dx).abs() / dx.hypot(dy)
+}
+
+/// Steps of `way` metres out of both ends of a line, level.
+fn ends_beyond(line: &[[f64; 2]], way: f64) -> [[f64; 3]; 2] {
+    let step = |from: [f64; 2], to: [f64; 2]| {
+        let (dx, dy) = (to[0] - from[0], to[1] - from[1]);
+        let share = way / dx.hypot(dy);
+        [dx * share, dy * share, 0.0]
+    };
+    [step(line[1], line[0]), step(line[line.len() - 2], line[line.len() - 1])]
+}
+
+/// Parapet on the walls over `outline`, (N, 2), counter-clockwise: an upright ring of `thickness` inside it, from a
+/// little below the roof at height `roof` up to `height` above it. A solid of its own, all slab as the parapets of
+/// balconies: no part of it is a roof or a wall of rooms. Metres.
+pub(crate) fn parapet(outline: &[[f64; 2]], thickness: f64, roof: f64, height: f64) -> ObjectPart {
+    let top = roof + height;
+    let profile = RidgedProfile { bottom: roof - JOINT, eaves: top, ridge: top, overhang: Overhang::default() };
+    winged(outline, &inset(outline, thickness), WingCourse::Closed, &profile).with_material(Material::Slab)
+}
+
+/// The corners of `outline`, (N, 2), counter-clockwise, with all its sides moved inwards by `distance` metres.
+fn inset(outline: &[[f64; 2]], distance: f64) -> Vec<[f64; 2]> {
+    let count = outline.len();
+    let inward = |from: [f64; 2], to: [f64; 2]| {
+        let (dx, dy) = (to[0] - from[0], to[1] - from[1]);
+        let length = dx.hypot(dy);
+        [-dy / length, dx / length]
+    };
+    let moved = |i: usize| {
+        let corner = outline[i];
+        let before = inward(outline[(i + count - 1) % count], corner);
+        let after = inward(corner, outline[(i + 1) % count]);
+        // both sides are this far from the corner of the mitre
+        let way = distance / (1.0 + before[0] * after[0] + before[1] * after[1]);
+        [0, 1].map(|axis| corner[axis] + way * (before[axis] + after[axis]))
+    };
+    (0..count).map(moved).collect()
 }
 
 /// Starts `part` with the corners of `footprint` at `bottom`, then at `top`, the walls between them and the floor.
@@ -217,4 +368,81 @@ fn add_walls(part: &mut ObjectPart, footprint: &[[f64; 2]], bottom: f64, top: f6
     }
     let floor: Vec<usize> = std::iter::once(0).chain((1..count).rev()).collect();
     part.add_polygon(&floor, Material::Facade);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::HashMap;
+
+    const PLACE: PlanPlacement = PlanPlacement { origin: [155_000.0, 463_000.0], angle: 0.3 };
+
+    /// Fails unless `part` is closed, has no face without area, and encloses `expected` m³.
+    #[track_caller]
+    fn assert_solid(part: &ObjectPart, expected: f64) {
+        let mut edges: HashMap<(u32, u32), u32> = HashMap::new();
+        for &[a, b, c] in &part.triangles {
+            assert!(a != b && b != c && c != a);
+            for edge in [(a, b), (b, c), (c, a)] {
+                *edges.entry(edge).or_default() += 1;
+            }
+        }
+        assert!(edges.iter().all(|(&(a, b), &count)| count == 1 && edges.get(&(b, a)) == Some(&1)), "open");
+        let volume = part.volume();
+        assert!((volume - expected).abs() < 1e-6 * expected, "{volume} instead of {expected}");
+    }
+
+    fn profile(overhang: Overhang) -> RidgedProfile {
+        RidgedProfile { bottom: -1.0, eaves: 5.0, ridge: 8.0, overhang }
+    }
+
+    #[test]
+    fn an_overhang_adds_its_area_times_the_thickness_of_the_roof() {
+        let footprint = PLACE.rectangle(10.0, 6.0);
+        // the house and half a box of roof; a hip of 2 m takes two thirds of a prism of 6 by 2 by 3 m, halved
+        let (gabled, hipped) = (10.0 * 6.0 * (6.0 + 1.5), 10.0 * 6.0 * (6.0 + 1.5) - 2.0 * 6.0 * 3.0 * 2.0 / 6.0);
+        for (eaves, verge) in [(0.0, 0.0), (0.0, 0.2), (0.4, 0.0), (0.4, 0.2)] {
+            let overhang = Overhang { eaves, verge };
+            // no verge without eaves
+            let plan = |end: f64| if eaves > 0.0 { (10.0 + 2.0 * end) * (6.0 + 2.0 * eaves) - 60.0 } else { 0.0 };
+            assert_solid(&ridged_to(&footprint, 0.0, &profile(overhang)), gabled + ROOF_THICKNESS * plan(verge));
+            // the slope of the hip is that of the sides times 3 / 2: its eaves reach less far out
+            let end = eaves * 2.0 / 3.0;
+            assert_solid(&ridged_to(&footprint, 2.0, &profile(overhang)), hipped + ROOF_THICKNESS * plan(end));
+        }
+    }
+
+    #[test]
+    fn eaves_go_round_the_corners_of_wings() {
+        let corners =
+            |half: f64| [[-half, half], [-half, -half], [half, -half], [half, half]].map(|[u, v]| PLACE.at(u, v));
+        let (outer, inner) = (corners(20.0), corners(12.0));
+        let roof = |plan: f64| plan * (6.0 + 1.5);
+        let square = |half: f64| 4.0 * half * half;
+        let ring = square(20.0) - square(12.0);
+        let overhang = Overhang { eaves: 0.5, verge: 0.2 };
+        let closed = winged(&outer, &inner, WingCourse::Closed, &profile(overhang));
+        let around = square(20.5) - square(20.0) + square(12.0) - square(11.5);
+        assert_solid(&closed, roof(ring) + ROOF_THICKNESS * around);
+        // A court open towards +v: three wings, of which those at the ends run on for the length of the fourth.
+        let mut inner = inner;
+        (inner[0], inner[3]) = (PLACE.at(-12.0, 20.0), PLACE.at(12.0, 20.0));
+        let open = winged(&outer, &inner, WingCourse::Open, &profile(overhang));
+        let court = 24.0 * 32.0;
+        let plan = square(20.0) - court;
+        // outwards to all sides, into the court, and the verges at both ends with the eaves beside them
+        let beyond = 41.0 * 40.7 - 1600.0 + court - 23.0 * 31.5 - 23.0 * 0.2;
+        assert_solid(&open, roof(plan) + ROOF_THICKNESS * beyond);
+    }
+
+    #[test]
+    fn parapets_follow_any_outline() {
+        let upright_ring = (0.8 + JOINT) * 0.25;
+        let rectangle = parapet(&PLACE.rectangle(10.0, 6.0), 0.25, 9.0, 0.8);
+        assert_solid(&rectangle, upright_ring * (2.0 * 16.0 - 4.0 * 0.25));
+        // an L has five corners to the outside and one to the inside
+        let l_shaped = parapet(&PLACE.l_shape(12.0, 9.0, 4.0), 0.25, 9.0, 0.8);
+        assert_solid(&l_shaped, upright_ring * (2.0 * 21.0 - 4.0 * 0.25));
+        assert!(rectangle.vertices.iter().all(|v| v[2] > 8.8 && v[2] < 9.81));
+    }
 }

@@ -1,6 +1,6 @@
 //! Flags of `simulate`, and what towns are given by.
 
-use belvedere_scenes::{EXTENT, Preset};
+use belvedere_scenes::{EXTENT, PointOrder, Preset};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
@@ -19,6 +19,12 @@ pub(crate) struct Simulate {
     /// Type of laser scanner
     #[arg(long, value_enum, default_value_t = ScannerChoice::Airborne)]
     pub(crate) scanner: ScannerChoice,
+    /// Order of the points in the cloud
+    ///
+    /// flight: as they were measured. squares: in squares of 20 m, row by row, as tiles are delivered. shuffled: at
+    /// random.
+    #[arg(long, value_name = "ORDER", default_value = "flight", value_parser = orders())]
+    pub(crate) order: PointOrder,
     #[command(flatten)]
     pub(crate) airborne: AirborneFlags,
     #[command(flatten)]
@@ -109,6 +115,14 @@ fn presets() -> impl TypedValueParser<Value = Preset> {
     PossibleValuesParser::new(Preset::ALL.map(Preset::name)).map(|name| {
         // the parser lets no other name through
         Preset::ALL.into_iter().find(|preset| preset.name() == name).unwrap_or(Preset::Town)
+    })
+}
+
+/// Orders of points by their names.
+fn orders() -> impl TypedValueParser<Value = PointOrder> {
+    PossibleValuesParser::new(PointOrder::ALL.map(PointOrder::name)).map(|name| {
+        // the parser lets no other name through
+        PointOrder::ALL.into_iter().find(|order| order.name() == name).unwrap_or_default()
     })
 }
 

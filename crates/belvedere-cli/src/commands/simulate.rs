@@ -43,6 +43,7 @@ pub(crate) fn run(arguments: &Simulate, global: &Global) -> Result<Summary> {
     if scan.is_empty() {
         bail!("no pulse returned from the town; use a lower --dropout, more --stations or a larger --max-range");
     }
+    let scan = scan.in_order(arguments.order, global.seed);
     atomic::make_folder(folder)?;
     let lit = run.compute("testing shadow", || {
         let truth = Truth::new(&scene);

@@ -157,6 +157,30 @@ fn surveys_have_the_same_bytes_for_any_number_of_threads_and_others_for_another_
 }
 
 #[test]
+fn points_come_in_the_order_that_was_chosen_with_their_light() {
+    let place = Workplace::new();
+    let with = |order: &str| {
+        place.summary(&format!("simulate town -o out --extent 80 --density 1 --order {order}"));
+        let cloud = cloud(&place, "out/cloud.laz");
+        let times = cloud.attributes.gps_time.clone().unwrap();
+        let rows = cloud.positions.iter().zip(&times).zip(light(&place, "out/cloud.laz"));
+        let rows = rows.map(|((p, time), light)| (p.map(f32::to_bits), time.to_bits(), light)).collect::<Vec<_>>();
+        (times, rows, ["trajectory.csv", "mesh.obj"].map(|name| place.bytes(&format!("out/{name}"))))
+    };
+    let (times, flown, others) = with("flight");
+    assert!(times.is_sorted());
+    let sorted = |mut rows: Vec<_>| {
+        rows.sort_unstable();
+        rows
+    };
+    for order in ["shuffled", "squares"] {
+        let (times, rows, beside) = with(order);
+        assert!(!times.is_sorted() && rows != flown && beside == others, "{order}");
+        assert_eq!(sorted(rows), sorted(flown.clone()), "{order}");
+    }
+}
+
+#[test]
 fn wrong_use_is_refused_with_the_way_out() {
     let place = Workplace::new();
     place.refusal(2, "simulate", &["--output"]);
@@ -166,6 +190,7 @@ fn wrong_use_is_refused_with_the_way_out() {
     place.refusal(2, "simulate -o out --extent 20", &["60 to 5000"]);
     place.refusal(2, "simulate -o out --density -1", &["0.1 to 200"]);
     place.refusal(2, "simulate -o out --noise nan", &["0 to 1"]);
+    place.refusal(2, "simulate -o out --order random", &["random", "shuffled"]);
     place.refusal(2, "simulate -o out --extent 5000 --density 200", &["--density", "memory"]);
     place.refusal(
         2,

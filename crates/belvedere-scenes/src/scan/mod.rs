@@ -4,6 +4,7 @@ pub(crate) mod airborne;
 pub(crate) mod beam;
 pub(crate) mod flight;
 pub(crate) mod mobile;
+pub(crate) mod order;
 pub(crate) mod recording;
 pub(crate) mod regimes;
 pub(crate) mod scan_pattern;
@@ -18,7 +19,8 @@ use crate::scene::TriangleScene;
 use crate::truth::Truth;
 use crate::vector::{add_scaled, cross, sub, unit};
 
-/// A simulated laser scan. Columns have one value per return, ordered by strip, time and return number.
+/// A simulated laser scan. Columns have one value per return, ordered by strip, time and return number where
+/// [`Scan::in_order`] has not changed that.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Scan {
     /// East, metres, absolute, with noise.
@@ -27,7 +29,7 @@ pub struct Scan {
     pub y: Vec<f64>,
     /// Height, metres, with noise.
     pub z: Vec<f64>,
-    /// Adjusted standard GPS time (GPS seconds minus 1e9), increasing from pulse to pulse; all returns of a pulse share
+    /// Adjusted standard GPS time (GPS seconds minus 1e9); another one for each pulse, and all returns of a pulse share
     /// it.
     pub gps_time: Vec<f64>,
     /// Which return of its pulse a point is, from 1, by increasing range.
@@ -47,8 +49,13 @@ pub struct Scan {
     /// Truth: index of the triangle of the scene that sent the echo back; for a return from inside a crown (only with
     /// [`crate::BeamParams::foliage_depth`]) the triangle of the crown's hull through which the ray entered.
     pub triangle: Vec<u32>,
-    /// Truth: the point without noise, (N, 3), metres, absolute: on that triangle, or behind it on the ray where leaves
-    /// inside the crown stopped it. In both cases the noise moved it along its ray and, by pointing errors, across.
+    /// Truth: where the surface was met, (N, 3), metres, absolute: on that triangle, or behind it on the ray where leaves
+    /// inside the crown stopped it.
+    ///
+    /// A return lies elsewhere for two reasons. The scanner reports the range of this place along the axis of the
+    /// beam, although it may lie up to half a beam beside the axis: returns of an edge lie on both sides of it. Noise
+    /// then moves the return along the axis and, by pointing errors, across. Class, triangle and light are those of
+    /// this place.
     pub exact_positions: Vec<[f64; 3]>,
     /// Path of the scanner over all strips, or its position on each tripod during the scan there.
     pub sensor_path: SensorPath,

@@ -54,11 +54,12 @@ impl Recorder<'_> {
         }
         scan.report.dropped_echoes += pulse.dropped as u64;
         let pointing = self.boresight.map(|constant| constant + self.pointing_sd * random.normal());
+        let reported = axis.tilted(axis.direction, pointing);
         let return_count = u8::try_from(pulse.echoes.len()).unwrap_or(u8::MAX);
         for (return_number, echo) in (1..=return_count).zip(&pulse.echoes) {
             let range = echo.range + self.range_sd * random.normal();
             scan.push(Return {
-                position: add_scaled(axis.origin, axis.tilted(echo.direction, pointing), range),
+                position: add_scaled(axis.origin, reported, range),
                 gps_time: shot.gps_time,
                 return_number,
                 return_count,

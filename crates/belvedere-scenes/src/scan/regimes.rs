@@ -5,9 +5,11 @@ use crate::scan::Scan;
 use crate::scan::airborne::{AirborneParams, scan_airborne};
 use crate::scan::beam::BeamParams;
 use crate::scan::mobile::{MobileParams, scan_mobile};
+use crate::scan::order::PointOrder;
 use crate::scan::scan_pattern::{MirrorMotion, ScanPattern};
 use crate::scan::terrestrial::{Stations, TerrestrialParams, scan_terrestrial};
 use crate::scene::TriangleScene;
+use crate::town::roofs::RoofDetails;
 use crate::town::trees::CrownMaterial;
 use crate::town::{TownParams, town};
 
@@ -44,6 +46,12 @@ pub enum Regime {
     Leaves,
     /// Over trees without leaves: trunks and branches.
     Bare,
+    /// Over roofs without eaves, parapets and boxes.
+    PlainRoofs,
+    /// Over houses that all have eaves, and flat roofs that all have parapets.
+    Eaves,
+    /// With the points of the file in random order.
+    Shuffled,
     /// Twelve tripods, half a degree from pulse to pulse.
     Tripods,
     /// A car along each street, 20 cm from line to line. Towns below 100 m have no street.
@@ -54,7 +62,7 @@ pub enum Regime {
 
 impl Regime {
     /// Every one.
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 16] = [
         Self::Air,
         Self::NoNoise,
         Self::MuchNoise,
@@ -65,6 +73,9 @@ impl Regime {
         Self::Drone,
         Self::Leaves,
         Self::Bare,
+        Self::PlainRoofs,
+        Self::Eaves,
+        Self::Shuffled,
         Self::Tripods,
         Self::Car,
         Self::Room,
@@ -84,6 +95,9 @@ impl Regime {
             Self::Drone => "drone",
             Self::Leaves => "leaves",
             Self::Bare => "bare",
+            Self::PlainRoofs => "plain-roofs",
+            Self::Eaves => "eaves",
+            Self::Shuffled => "shuffled",
             Self::Tripods => "tripods",
             Self::Car => "car",
             Self::Room => "room",
@@ -102,6 +116,11 @@ impl Regime {
         match self {
             Self::Leaves => TownParams { crowns: CrownMaterial::Porous, ..params },
             Self::Bare => TownParams { crowns: CrownMaterial::Bare, ..params },
+            Self::PlainRoofs => TownParams { roofs: RoofDetails::PLAIN, ..params },
+            Self::Eaves => {
+                let roofs = RoofDetails { eaves: 1.0, parapets: 1.0, ..params.roofs };
+                TownParams { roofs, ..params }
+            }
             _ => params,
         }
     }
@@ -132,7 +151,7 @@ impl Regime {
                 let params = MobileParams { seed, runs: params.lanes(), line_rate, pulses_per_line, ..usual };
                 return scan_mobile(scene, &params);
             }
-            Self::Air | Self::Leaves | Self::Bare => usual,
+            Self::Air | Self::Leaves | Self::Bare | Self::PlainRoofs | Self::Eaves | Self::Shuffled => usual,
             Self::NoNoise => AirborneParams { range_sd: 0.0, pointing_sd: 0.0, boresight_sd: 0.0, ..usual },
             Self::MuchNoise => AirborneParams { range_sd: 0.05, ..usual },
             Self::ThinBeam => AirborneParams { beam: beam(0.0), ..usual },
@@ -146,6 +165,7 @@ impl Regime {
                 AirborneParams { flying_height, speed, half_angle, ..usual }
             }
         };
-        scan_airborne(scene, &flown.spread_over(scene, None, pulses_per_m2))
+        let order = if self == Self::Shuffled { PointOrder::Shuffled } else { PointOrder::Flight };
+        scan_airborne(scene, &flown.spread_over(scene, None, pulses_per_m2)).in_order(order, seed)
     }
 }

@@ -1,11 +1,7 @@
 //! What buildings carry: arcades, dormers, chimneys, balconies; and spires.
 
 use crate::scene::{Material, ObjectPart};
-use crate::solids::{PlanPlacement, extruded, prism, ridged, swept};
-
-/// How far a joint reaches into the solid it belongs to, metres: solids that merely touch would leave a scanner a seam
-/// to look into.
-pub(crate) const JOINT: f64 = 0.1;
+use crate::solids::{JOINT, PlanPlacement, extruded, prism, ridged, swept};
 
 /// Ridge, eaves and size of a house with its ridge along u, on which dormers and chimneys sit. Metres, absolute
 /// heights.

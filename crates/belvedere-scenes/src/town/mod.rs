@@ -5,6 +5,7 @@ pub(crate) mod open_blocks;
 pub(crate) mod plain_blocks;
 pub(crate) mod plan;
 pub(crate) mod preset;
+pub(crate) mod roofs;
 pub(crate) mod row_blocks;
 pub(crate) mod site;
 pub(crate) mod street_furniture;
@@ -17,6 +18,7 @@ use std::f64::consts::FRAC_PI_4;
 use crate::random::Random;
 use crate::scene::TriangleScene;
 use crate::town::plan::{BlockRectangle, TownLayout};
+use crate::town::roofs::RoofDetails;
 use crate::town::site::{Clearance, TownSite};
 use crate::town::terrain::Terrain;
 use crate::town::trees::CrownMaterial;
@@ -95,6 +97,8 @@ pub struct TownParams {
     /// Kinds of blocks and how often each occurs beside the others. The first blocks are one of each, in this order.
     /// Without any, the ground stays open. Default: terraces, L-shapes, tower and hall, detached houses, equally often.
     pub blocks: Vec<(BlockPlan, u32)>,
+    /// How many roofs have eaves, parapets, boxes and chimneys. Default [`RoofDetails::PLAIN`].
+    pub roofs: RoofDetails,
     /// What crowns are made of. Default opaque.
     pub crowns: CrownMaterial,
     /// Lowest and highest tree, metres, 3 to 22. Default 7 to 13.
@@ -126,6 +130,7 @@ impl Default for TownParams {
                 (BlockPlan::TowerAndHall, 1),
                 (BlockPlan::DetachedHouses, 1),
             ],
+            roofs: RoofDetails::PLAIN,
             crowns: CrownMaterial::Opaque,
             tree_heights: [7.0, 13.0],
             area_per_garden_tree: 130.0,
@@ -188,6 +193,8 @@ pub fn town(params: &TownParams) -> TriangleScene {
     let layout = TownLayout::new(params);
     let centre = layout.centre;
     let mut site = TownSite::new(params.terrain(), Random::new(params.seed, 0), centre.origin, layout.extent);
+    site.roofs = params.roofs;
+    site.seed = params.seed;
     site.crowns = params.crowns;
     site.tree_heights = params.tree_heights;
 

@@ -3,8 +3,8 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use crate::scene::Material;
-use crate::solids::{PlanPlacement, extruded, ridged};
-use crate::town::buildings::{JOINT, RoofShape, chimney, dormer, steeple};
+use crate::solids::{JOINT, PlanPlacement, RidgedProfile, extruded, ridged, ridged_to};
+use crate::town::buildings::{RoofShape, chimney, dormer, steeple};
 use crate::town::plan::BlockRectangle;
 use crate::town::row_blocks::{BALCONY_DEPTH, RowStyle, STOREY};
 use crate::town::site::TownSite;
@@ -55,6 +55,8 @@ impl TownSite {
         let top = ground + height;
         let room = extruded(&place.moved(0.12 * size[0], 0.5, 0.0).rectangle(5.0, 4.0), top - 0.5, top + 2.8);
         let mut parts = vec![extruded(&footprint, self.bottom(&footprint), top), room];
+        parts.extend(self.next_parapet(&footprint, top));
+        parts.extend(self.next_roof_boxes(place, size, top));
         let bays = crate::town::street_furniture::pieces(size[0] - 1.0, 4.6);
         let step = (size[0] - 1.0) / f64::from(bays);
         for &face in faces {
@@ -87,11 +89,12 @@ impl TownSite {
         let nave = plan.centre.moved(-half_u + 12.0, -half_v + 6.5, 0.0);
         let (footprint, ground) = (nave.rectangle(19.0, 9.5), self.ground(nave.origin));
         let bottom = self.bottom(&footprint);
-        let mut church = vec![ridged(&footprint, bottom, ground + 8.0, ground + 14.5, 0.0)];
+        let (eaves, ridge, overhang) = (ground + 8.0, ground + 14.5, self.next_overhang(true));
+        let mut church = vec![ridged_to(&footprint, 0.0, &RidgedProfile { bottom, eaves, ridge, overhang })];
         let tower = nave.moved(9.5 + 2.5, 0.3, 0.0);
         let eaves = ground + self.random.between(18.0, 22.0);
         church.extend(steeple(&tower, 6.0, self.bottom(&tower.rectangle(6.0, 6.0)), eaves, eaves + 11.0));
-        self.take(nave, 19.0, 9.5);
+        self.take(nave, 19.0, 9.5 + 2.0 * overhang.eaves);
         self.take(tower, 6.6, 6.6);
         self.add("building", &church);
 
@@ -161,7 +164,8 @@ impl TownSite {
         let ridge = eaves + self.random.between(3.2, 4.4);
         let hip = if self.random.chance(0.35) { size[1] / 2.5 } else { 0.0 };
         let roof = RoofShape { length: size[0], width: size[1], eaves, ridge };
-        let mut parts = vec![ridged(&footprint, self.bottom(&footprint), eaves, ridge, hip)];
+        let (bottom, overhang) = (self.bottom(&footprint), self.next_overhang(true));
+        let mut parts = vec![ridged_to(&footprint, hip, &RidgedProfile { bottom, eaves, ridge, overhang })];
         parts.push(chimney(house, &roof, self.random.between(-0.12, 0.12) * size[0]));
         if hip == 0.0 {
             for share in [-0.26, 0.26] {
@@ -170,7 +174,7 @@ impl TownSite {
                 }
             }
         }
-        self.take(*house, size[0], size[1]);
+        self.take(*house, size[0] + 2.0 * overhang.eaves, size[1] + 2.0 * overhang.eaves);
         self.add("building", &parts);
     }
 

@@ -37,7 +37,9 @@ impl TownSite {
         let footprint = corner.l_shape(lengths[0], lengths[1], width);
         let top = self.ground(corner.at(width, width)) + self.random.between(9.0, 12.0);
         self.take_l_shape(&corner, lengths, width);
-        self.add("building", &[extruded(&footprint, self.bottom(&footprint), top)]);
+        let mut parts = vec![extruded(&footprint, self.bottom(&footprint), top)];
+        parts.extend(self.next_parapet(&footprint, top));
+        self.add("building", &parts);
     }
 
     fn take_l_shape(&mut self, corner: &PlanPlacement, [length_u, length_v]: [f64; 2], width: f64) {

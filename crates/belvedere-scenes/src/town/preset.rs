@@ -1,12 +1,14 @@
 //! Kinds of towns by name.
 
+use crate::town::roofs::RoofDetails;
 use crate::town::trees::CrownMaterial;
 use crate::town::{BlockPlan, StreetTrees, TownParams};
 
 /// Side of a town where none is wanted, metres: a few blocks, and a scan of a few hundred thousand points.
 pub const EXTENT: f64 = 150.0;
 
-/// A kind of town, at any size and seed.
+/// A kind of town, at any size and seed. A third to two thirds of its sloped roofs have eaves, and half or more of the
+/// flat ones parapets ([`TownParams::roofs`]).
 ///
 /// ```
 /// use belvedere_scenes::{CrownMaterial, Preset, TownParams, blocks, town};
@@ -59,6 +61,7 @@ impl Preset {
                 slope: 0.05,
                 hill_height: 3.0,
                 street_width: 7.0,
+                roofs: RoofDetails { eaves: 0.6, parapets: 0.0, boxes: 0.0, chimneys: 0.8 },
                 blocks: vec![(BlockPlan::Gardens, 4), (BlockPlan::DetachedHouses, 1)],
                 crowns: CrownMaterial::Porous,
                 tree_heights: [5.0, 12.0],
@@ -71,6 +74,7 @@ impl Preset {
                 canal_depth: 2.2,
                 street_width: 8.0,
                 block_pitch: 44.0,
+                roofs: RoofDetails { eaves: 0.4, parapets: 0.6, boxes: 0.6, chimneys: 0.8 },
                 blocks: vec![
                     (BlockPlan::RowHouses, 16),
                     (BlockPlan::HighRise, 5),
@@ -90,6 +94,7 @@ impl Preset {
                 canal_depth: 2.2,
                 street_width: 5.0,
                 block_pitch: 46.0,
+                roofs: RoofDetails { eaves: 0.35, parapets: 0.5, boxes: 0.3, chimneys: 0.8 },
                 blocks: vec![(BlockPlan::Perimeter, 6), (BlockPlan::Courtyard, 2), (BlockPlan::Square, 1)],
                 area_per_garden_tree: 200.0,
                 street_trees: StreetTrees::Without,
@@ -101,6 +106,7 @@ impl Preset {
                 hill_height: 0.6,
                 street_width: 11.0,
                 block_pitch: 56.0,
+                roofs: RoofDetails { eaves: 0.35, parapets: 0.8, boxes: 0.8, chimneys: 0.8 },
                 blocks: vec![(BlockPlan::HighRise, 6), (BlockPlan::PetrolStation, 1), (BlockPlan::Square, 1)],
                 area_per_garden_tree: 220.0,
                 street_furniture: 0.8,

@@ -3,8 +3,8 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use crate::scene::ObjectPart;
-use crate::solids::{PlanPlacement, WingCourse, ridged, winged};
-use crate::town::buildings::{JOINT, RoofShape, arcaded, balcony, chimney, dormer};
+use crate::solids::{JOINT, Overhang, PlanPlacement, RidgedProfile, WingCourse, ridged_to, winged};
+use crate::town::buildings::{RoofShape, arcaded, balcony, chimney, dormer};
 use crate::town::plan::BlockRectangle;
 use crate::town::site::{Clearance, TownSite};
 use crate::town::street_furniture::fence;
@@ -123,7 +123,12 @@ impl TownSite {
                 inner[corner] = plan.centre.at(u, b);
             }
         }
-        let mut parts = vec![winged(&outer, &inner, course, bottom, eaves, ridge)];
+        let overhang = if sloped { self.next_overhang(true) } else { Overhang::default() };
+        let mut parts = vec![winged(&outer, &inner, course, &RidgedProfile { bottom, eaves, ridge, overhang })];
+        if !sloped {
+            let outline: Vec<[f64; 2]> = outer.into_iter().chain(inner.into_iter().rev()).collect();
+            parts.extend(self.next_parapet(&outline, ridge));
+        }
         // Details on the wing towards −v, whose back faces the court.
         let wing = plan.centre.moved(0.0, -b + depth / 2.0, 0.0);
         let roof = RoofShape { length: 2.0 * (a - depth), width: depth, eaves, ridge };
@@ -135,7 +140,7 @@ impl TownSite {
             }
             parts.extend(self.balconies(&back.moved(along, 0.0, 0.0), ground, eaves));
         }
-        self.take_wings(plan, [a, b], depth, closed);
+        self.take_wings(plan, [a, b].map(|half| half + overhang.eaves), depth + 2.0 * overhang.eaves, closed);
         self.add("building", &parts);
         if a - depth > 6.0 && b - depth > 6.0 {
             self.canopy(plan.centre.moved(2.0, 0.25 * b, 0.0), [6.0, 3.6], 2.7, 0.15, 5.0);
@@ -184,11 +189,13 @@ impl TownSite {
         let eaves = ground + self.random.between(style.eaves[0], style.eaves[1]);
         let ridge = eaves + depth * self.random.between(0.36, 0.5);
         let roof = RoofShape { length, width: depth, eaves, ridge };
+        let mut overhang = Overhang::default();
         let mut parts = if self.random.chance(style.arcades) {
             let ceiling = ground + self.random.between(3.2, 3.7);
             arcaded(&house, &roof, bottom, ceiling, 2.5)
         } else {
-            vec![ridged(&footprint, bottom, eaves, ridge, 0.0)]
+            overhang = self.next_overhang(false);
+            vec![ridged_to(&footprint, 0.0, &RidgedProfile { bottom, eaves, ridge, overhang })]
         };
         if self.random.chance(0.7) {
             parts.push(chimney(&house, &roof, self.random.between(-0.35, 0.35) * width));
@@ -196,11 +203,11 @@ impl TownSite {
         if self.random.chance(style.dormers) {
             parts.extend(dormer(&house, &roof, self.random.between(-0.2, 0.2) * width));
         }
-        let mut taken = depth;
+        let mut taken = depth + 2.0 * overhang.eaves;
         if self.random.chance(style.balconies) {
             let back = house.moved(0.0, depth / 2.0, PI);
             parts.extend(self.balconies(&back, ground, eaves));
-            taken += 2.0 * (BALCONY_DEPTH + JOINT);
+            taken = depth + 2.0 * (BALCONY_DEPTH + JOINT);
         }
         self.take(house, length, taken);
         self.add("building", &parts);

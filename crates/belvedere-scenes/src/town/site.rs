@@ -4,7 +4,9 @@ use std::collections::HashMap;
 
 use crate::random::Random;
 use crate::scene::{ObjectPart, TriangleScene};
-use crate::solids::{PlanPlacement, extruded, ridged};
+use crate::solids::{PlanPlacement, RidgedProfile, extruded, ridged_to};
+use crate::town::buildings::RoofShape;
+use crate::town::roofs::RoofDetails;
 use crate::town::terrain::Terrain;
 use crate::town::trees::{CrownMaterial, TreeShape, tree};
 
@@ -20,6 +22,9 @@ const CELL: f64 = 16.0;
 const REACH: f64 = 8.0;
 /// How far a crown may bulge beyond its mean radius, as a factor.
 const CROWN_BULGE: f64 = 1.15;
+
+/// Longest short side of a shed, whose flat roof has neither parapet nor boxes, metres.
+const SHED_SIDE: f64 = 4.0;
 
 /// What keeps its distance from taken ground.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -101,6 +106,9 @@ pub(crate) struct TownSite {
     /// Middle and side of the upright square of ground.
     pub(crate) centre: [f64; 2],
     pub(crate) extent: f64,
+    pub(crate) roofs: RoofDetails,
+    /// For random numbers that change nothing but what they are drawn for.
+    pub(crate) seed: u64,
     pub(crate) crowns: CrownMaterial,
     pub(crate) tree_heights: [f64; 2],
     taken: TakenGround,
@@ -119,6 +127,8 @@ impl TownSite {
             random,
             centre,
             extent,
+            roofs: RoofDetails::PLAIN,
+            seed: 0,
             crowns: CrownMaterial::Opaque,
             tree_heights: [7.0, 13.0],
             taken: TakenGround::default(),
@@ -141,6 +151,11 @@ impl TownSite {
         let count = self.counts.entry(kind).or_default();
         *count += 1;
         self.scene.add_object(format!("{kind} {count}"), parts);
+    }
+
+    /// How many objects of a kind there are.
+    pub(crate) fn count(&self, kind: &str) -> u32 {
+        self.counts.get(kind).copied().unwrap_or(0)
     }
 
     /// 0 and 1 by turns: which kind of courtyard comes next.
@@ -178,18 +193,25 @@ impl TownSite {
     /// House of `length` by `width` centred on `placement`, ridge along u.
     pub(crate) fn house(&mut self, placement: PlanPlacement, size: [f64; 2], eaves: f64, roof_height: f64, hip: f64) {
         let footprint = placement.rectangle(size[0], size[1]);
-        let ground = self.ground(placement.origin);
-        let part = ridged(&footprint, self.bottom(&footprint), ground + eaves, ground + eaves + roof_height, hip);
-        self.take(placement, size[0], size[1]);
-        self.add("building", &[part]);
+        let eaves = self.ground(placement.origin) + eaves;
+        let (bottom, ridge, overhang) = (self.bottom(&footprint), eaves + roof_height, self.next_overhang(true));
+        let mut parts = vec![ridged_to(&footprint, hip, &RidgedProfile { bottom, eaves, ridge, overhang })];
+        parts.extend(self.next_chimney(&placement, &RoofShape { length: size[0], width: size[1], eaves, ridge }));
+        self.take(placement, size[0] + 2.0 * overhang.eaves, size[1] + 2.0 * overhang.eaves);
+        self.add("building", &parts);
     }
 
     /// Box of `length` by `width` centred on `placement`.
-    pub(crate) fn flat_block(&mut self, placement: PlanPlacement, [length, width]: [f64; 2], height: f64) {
-        let footprint = placement.rectangle(length, width);
-        let part = extruded(&footprint, self.bottom(&footprint), self.ground(placement.origin) + height);
-        self.take(placement, length, width);
-        self.add("building", &[part]);
+    pub(crate) fn flat_block(&mut self, placement: PlanPlacement, size: [f64; 2], height: f64) {
+        let footprint = placement.rectangle(size[0], size[1]);
+        let top = self.ground(placement.origin) + height;
+        let mut parts = vec![extruded(&footprint, self.bottom(&footprint), top)];
+        if size[0].min(size[1]) > SHED_SIDE {
+            parts.extend(self.next_parapet(&footprint, top));
+            parts.extend(self.next_roof_boxes(&placement, size, top));
+        }
+        self.take(placement, size[0], size[1]);
+        self.add("building", &parts);
     }
 
     /// Plants a tree of a random size where its crown fits.

@@ -1,8 +1,7 @@
 //! What stands about in streets, squares and gardens: cars, fences, masts and wires, canopies, decks, bridges.
 
 use crate::scene::{Material, ObjectPart};
-use crate::solids::{PlanPlacement, prism, swept};
-use crate::town::buildings::JOINT;
+use crate::solids::{JOINT, PlanPlacement, prism, swept};
 use crate::town::terrain::Terrain;
 
 /// Height of the ground as the solids that stand on it need it.

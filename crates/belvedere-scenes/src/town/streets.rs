@@ -3,8 +3,7 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use crate::scene::ObjectPart;
-use crate::solids::PlanPlacement;
-use crate::town::buildings::JOINT;
+use crate::solids::{JOINT, PlanPlacement};
 use crate::town::plan::TownLayout;
 use crate::town::site::{Clearance, TownSite};
 use crate::town::street_furniture::{PostedSlab, bridge, car, mast, posted_slab, wire};

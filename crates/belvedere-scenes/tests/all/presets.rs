@@ -6,7 +6,8 @@ use std::collections::{BTreeSet, HashMap};
 use std::ops::Range;
 
 use belvedere_scenes::{
-    BlockPlan, CrownMaterial, Material, ObjectPart, Preset, StreetTrees, TownParams, TriangleScene, Truth, blocks, town,
+    BlockPlan, CrownMaterial, Material, ObjectPart, Preset, RoofDetails, StreetTrees, TownParams, TriangleScene, Truth,
+    blocks, town,
 };
 
 /// Directed edges that have no opposite partner, or more than one.
@@ -99,18 +100,25 @@ fn features(scene: &TriangleScene) -> BTreeSet<&'static str> {
                 if part.vertices.len() + faces - faces * 3 / 2 == 0 {
                     found.insert("courtyard");
                 }
-                // Two rings of an L-shaped wall with or without a ridge; four stations of a U.
-                let roof_faces = part.materials.iter().filter(|&&m| m == Material::Roof).count();
-                match part.vertices.len() {
-                    12 | 15 => found.insert("l shape"),
-                    20 if faces == 36 => found.insert("u shape"),
-                    // Two slopes of two triangles each; hips are a triangle more at either end.
-                    10 => found.insert(if roof_faces == 6 { "hip roof" } else { "gable roof" }),
-                    _ => false,
-                };
                 let up = |t: &[u32; 3]| {
                     let [a, b, c] = t.map(|v| part.vertices[v as usize]);
                     (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+                };
+                let mut roof = part.triangles.iter().zip(&part.materials).filter(|(_, m)| **m == Material::Roof);
+                let roof_faces = roof.clone().filter(|(t, _)| up(t) > 1e-6).count();
+                if roof.any(|(t, _)| up(t) < -1e-6) {
+                    found.insert("eaves");
+                }
+                // Two rings of an L-shaped wall with or without a ridge; four stations of a U. Eaves are two vertices
+                // more for each corner, verges for each end of the ridge.
+                match part.vertices.len() {
+                    12 | 15 => found.insert("l shape"),
+                    20 if faces == 36 => found.insert("u shape"),
+                    40 => found.insert("u shape"),
+                    // Two slopes of two triangles each; hips are a triangle more at either end.
+                    10 | 18 | 22 => found.insert(if roof_faces == 6 { "hip roof" } else { "gable roof" }),
+                    8 if high[2] - bounds(&part).0[2] < 2.15 => found.insert("roof box"),
+                    _ => false,
                 };
                 let ceiling = |(t, m): (&[u32; 3], &Material)| *m == Material::Slab && up(t) < 0.0;
                 if part.triangles.iter().zip(&part.materials).any(ceiling) {
@@ -132,6 +140,13 @@ fn features(scene: &TriangleScene) -> BTreeSet<&'static str> {
             }
             "building" if has(Material::Slab) && part.triangles.len() == 28 => {
                 found.insert("balcony");
+            }
+            // a ring of slab
+            "building"
+                if part.materials.iter().all(|&m| m == Material::Slab)
+                    && part.vertices.len() + part.triangles.len() == part.triangles.len() * 3 / 2 =>
+            {
+                found.insert("parapet");
             }
             "building" if part.materials.iter().all(|&m| m == Material::Facade) && part.volume() < 10.0 => {
                 found.insert("chimney");
@@ -164,10 +179,13 @@ fn presets_hold_what_they_promise() {
     let street = ["car", "mast", "wire"];
     let promised = |preset: Preset| -> Vec<&str> {
         let own: &[&str] = match preset {
-            Preset::Village => &["gable roof", "hip roof", "flat roof", "chimney", "dormer", "fence", "porous crown"],
+            Preset::Village => {
+                &["gable roof", "hip roof", "flat roof", "eaves", "chimney", "dormer", "fence", "porous crown"]
+            }
             Preset::Town => &[
                 "sloped roof",
                 "flat roof",
+                "eaves",
                 "chimney",
                 "dormer",
                 "balcony",
@@ -181,6 +199,7 @@ fn presets_hold_what_they_promise() {
             ],
             Preset::OldTown => &[
                 "sloped roof",
+                "eaves",
                 "chimney",
                 "dormer",
                 "balcony",
@@ -190,7 +209,9 @@ fn presets_hold_what_they_promise() {
                 "bridge",
                 "opaque crown",
             ],
-            Preset::Towers => &["flat roof", "balcony", "tower", "deck", "canopy", "fence", "opaque crown"],
+            Preset::Towers => {
+                &["flat roof", "parapet", "roof box", "balcony", "tower", "deck", "canopy", "fence", "opaque crown"]
+            }
             Preset::Park => &["canopy", "fence", "bridge", "porous crown"],
         };
         let with_streets: &[&str] = if preset == Preset::Park { &[] } else { &street };
@@ -206,10 +227,49 @@ fn presets_hold_what_they_promise() {
     }
     // What needs more than four blocks.
     let large = features(&town(&Preset::Town.params(300.0, 1)));
-    for feature in ["gable roof", "hip roof", "l shape", "u shape", "courtyard"] {
+    for feature in ["gable roof", "hip roof", "l shape", "u shape", "courtyard", "parapet", "roof box"] {
         assert!(large.contains(feature), "no {feature} in {large:?}");
     }
     assert!(features(&town(&Preset::Park.params(230.0, 1))).contains("deck"));
+}
+
+#[test]
+fn roofs_have_eaves_and_parapets_as_often_as_the_town_says() {
+    let plain = town(&TownParams { roofs: RoofDetails::PLAIN, ..Preset::Town.params(230.0, 1) });
+    let found = features(&plain);
+    assert!(["eaves", "parapet", "roof box"].iter().all(|feature| !found.contains(feature)), "{found:?}");
+    let share = |eaves: f64| {
+        let roofs = RoofDetails { eaves, ..RoofDetails::PLAIN };
+        let scene = town(&TownParams { roofs, ..Preset::Town.params(230.0, 1) });
+        // the same houses in the same places
+        assert_eq!(count(&scene, "building"), count(&plain, "building"));
+        let mut reaches = Vec::new();
+        let mut houses = 0;
+        for range in parts(&scene) {
+            let part = part(&scene, range);
+            let materials: BTreeSet<_> = part.materials.iter().map(|m| m.name()).collect();
+            // houses of two slopes that stand on a floor of their own; dormers are lower
+            let (low, high) = bounds(&part);
+            let is_house = [10, 18, 22].contains(&part.vertices.len()) && high[2] - low[2] > 5.0;
+            if materials != BTreeSet::from(["roof", "facade"]) || !is_house {
+                continue;
+            }
+            houses += 1;
+            if part.vertices.len() > 10 {
+                // from the corner of the wall to that of the roof: the floor is the first vertices, eaves the last
+                let (wall, edge) = (part.vertices[0], part.vertices[11]);
+                reaches.push((wall[0] - edge[0]).hypot(wall[1] - edge[1]));
+            }
+        }
+        assert!(houses > 100, "{houses}");
+        // 0.3 to 0.6 m, and across the corner of a verge or of other eaves
+        assert!(reaches.iter().all(|reach| (0.29..0.85).contains(reach)), "{reaches:?}");
+        reaches.len() as f64 / f64::from(houses)
+    };
+    assert_eq!((share(0.0), share(1.0)), (0.0, 1.0));
+    // of some two hundred houses: three deviations of 0.035; which they are does not depend on the share
+    let half = share(0.5);
+    assert!((half - 0.5).abs() < 0.105, "{half}");
 }
 
 #[test]

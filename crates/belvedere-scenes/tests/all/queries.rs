@@ -1,7 +1,8 @@
 //! Targets lie where their kind says, by means that do not use the sampling code.
 
 use belvedere_scenes::{
-    Material, PlanPlacement, QuerySet, QuerySite, TownParams, TriangleScene, Truth, extruded, town,
+    Hit, Material, PlanPlacement, Preset, QuerySet, QuerySite, RoofDetails, TownParams, TriangleScene, Truth, extruded,
+    town,
 };
 
 fn site<'a>(scene: &'a TriangleScene, truth: &'a Truth) -> QuerySite<'a> {
@@ -90,6 +91,33 @@ fn targets_of_each_kind_lie_where_they_should() {
             }
         }
     }
+}
+
+#[test]
+fn targets_at_roofs_lie_above_them_and_those_at_walls_not_in_their_eaves() {
+    let roofs = RoofDetails { eaves: 1.0, parapets: 1.0, boxes: 1.0, chimneys: 1.0 };
+    let scene = town(&TownParams { roofs, ..Preset::Town.params(125.0, 2) });
+    let truth = Truth::new(&scene);
+    let site = site(&scene, &truth);
+    let material = |hit: Option<Hit>| hit.map(|hit| scene.materials[hit.triangle as usize]);
+    let above_roofs = site.targets(QuerySet::Roofs, 3000, 1).positions;
+    let under = above_roofs.iter().map(|&p| material(truth.first_hit(p, [0.0, 0.0, -1.0], 0.5)));
+    // 0.1 m off a slope of 45 degrees lies up to 7 cm beyond its eaves; slopes are 5 m long
+    let over_roof = under.filter(|m| matches!(m, Some(Material::Roof))).count();
+    assert!(over_roof > 2940, "{over_roof}");
+    let (mut under_eaves, mut level) = (0, 0);
+    for p in site.targets(QuerySet::Facades, 3000, 1).positions {
+        assert!(!site.is_inside(p));
+        under_eaves += usize::from(material(truth.first_hit(p, [0.0, 0.0, 1.0], 30.0)) == Some(Material::Roof));
+        // a wall is 0.1 m away in one of the directions about
+        level += usize::from((0..360).any(|i| {
+            let (sin, cos) = (f64::from(i) * std::f64::consts::TAU / 360.0).sin_cos();
+            truth.first_hit(p, [cos, sin, 0.0], 0.1001).is_some()
+        }));
+    }
+    // most walls have eaves or balconies above them here, those of towers and gables have not
+    assert!((600..2400).contains(&under_eaves), "{under_eaves}");
+    assert_eq!(level, 3000, "upright faces only");
 }
 
 #[test]

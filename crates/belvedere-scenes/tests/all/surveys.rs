@@ -1,8 +1,8 @@
 //! Other surveys than the default one: patterns, strips, crowns that pulses enter.
 
 use belvedere_scenes::{
-    AirborneParams, BeamParams, Material, MirrorMotion, PlanPlacement, Scan, ScanPattern, TownParams, TriangleScene,
-    Truth, extruded, scan_airborne, town,
+    AirborneParams, BeamParams, Material, MirrorMotion, PlanPlacement, PointOrder, Scan, ScanPattern, TownParams,
+    TriangleScene, Truth, extruded, scan_airborne, town,
 };
 
 const PATTERNS: [ScanPattern; 4] = [
@@ -205,6 +205,67 @@ fn every_pattern_has_the_same_bits_for_any_number_of_threads() {
         };
         let (one, three) = (with_threads(1), with_threads(3));
         assert!(one.len() > 10_000 && one == three, "{pattern:?}");
+    }
+}
+
+#[test]
+fn returns_of_an_edge_lie_on_both_sides_of_it_by_up_to_half_a_beam() {
+    let scene = house_on_a_plate();
+    let overshoot = |divergence: f64| {
+        let quiet = AirborneParams { range_sd: 0.0, pointing_sd: 0.0, boresight_sd: 0.0, ..AirborneParams::default() };
+        let beam = BeamParams { divergence, ..BeamParams::in_leaf() };
+        let scan = scan_airborne(&scene, &AirborneParams { pulses_per_m2: 60.0, beam, ..quiet });
+        let is_roof = |i: &usize| scene.materials[scan.triangle[*i] as usize] == Material::Roof;
+        let roof: Vec<usize> = (0..scan.len()).filter(is_roof).collect();
+        assert!(roof.len() > 10_000);
+        for &i in &roof {
+            let [x, y, z] = scan.exact_positions[i];
+            assert!((z - 8.0).abs() < 1e-6 && x.abs().max(y.abs()) < 5.0 + 1e-6, "what was met lies on the roof");
+            assert!((scan.z[i] - 8.0).abs() < 0.05 && scan.classification[i] == 6);
+        }
+        let beyond = roof.iter().map(|&i| scan.x[i].abs().max(scan.y[i].abs()) - 5.0);
+        let (count, farthest) = beyond.filter(|d| *d > 1e-6).fold((0, 0.0_f64), |(n, far), d| (n + 1, far.max(d)));
+        (count as f64 / roof.len() as f64, farthest)
+    };
+    assert_eq!(overshoot(0.0), (0.0, 0.0));
+    // 18 cm at 450 m and up to 24 degrees aside: outer rays 6.4 to 7.2 cm from the axis, of which one is enough.
+    let (share, farthest) = overshoot(4e-4);
+    assert!((0.055..0.073).contains(&farthest), "{farthest}");
+    // A ring of that width about a roof of 100 m², less where no ray of the six points straight outwards.
+    assert!((0.4..1.0).contains(&(share / (40.0 * 0.068 / 100.0))), "{share}");
+}
+
+#[test]
+fn another_order_of_points_is_the_same_scan() {
+    let scene = town(&TownParams::default());
+    let params = AirborneParams { pulses_per_m2: 0.5, ..AirborneParams::default() };
+    let scan = || scan_airborne(&scene, &params);
+    let flown = scan();
+    assert_eq!(scan().in_order(PointOrder::Flight, 1), flown);
+    let row = |scan: &Scan, i: usize| {
+        let exact = scan.exact_positions[i].map(f64::to_bits);
+        let attributes = (scan.return_number[i], scan.return_count[i], scan.classification[i], scan.intensity[i]);
+        let angle = scan.scan_angle_deg[i].to_bits();
+        let place = [scan.x[i], scan.y[i], scan.z[i], scan.gps_time[i]].map(f64::to_bits);
+        (place, attributes, angle, scan.point_source_id[i], scan.triangle[i], exact)
+    };
+    let rows = |scan: &Scan| -> std::collections::HashSet<_> { (0..scan.len()).map(|i| row(scan, i)).collect() };
+    let square = |scan: &Scan, i: usize| [scan.y[i], scan.x[i]].map(|v| (v / 20.0).floor());
+    for order in [PointOrder::Squares, PointOrder::Shuffled] {
+        let other = scan().in_order(order, 1);
+        assert_eq!((other.len(), rows(&other)), (flown.len(), rows(&flown)));
+        assert_eq!((&other.sensor_path, other.report), (&flown.sensor_path, flown.report));
+        assert_ne!(other.gps_time, flown.gps_time);
+        assert_eq!(other, scan().in_order(order, 1));
+        assert_eq!(other == scan().in_order(order, 2), order == PointOrder::Squares);
+        let later = other.gps_time.windows(2).filter(|times| times[1] > times[0]).count() as f64 / other.len() as f64;
+        if order == PointOrder::Shuffled {
+            // half of all, give or take a tenth
+            assert!((0.4..0.6).contains(&later), "{later}");
+        } else {
+            assert!((1..other.len()).all(|i| square(&other, i - 1) <= square(&other, i)), "row by row");
+            assert!(later > 0.9, "as flown within a square: {later}");
+        }
     }
 }
 

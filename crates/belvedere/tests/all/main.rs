@@ -48,6 +48,7 @@ mod orientation;
 mod outlines;
 mod pictures;
 mod pipeline;
+mod point_order;
 mod proof;
 mod protected_views;
 mod pruning;

@@ -179,11 +179,10 @@ fn returns_alone_give_the_simulated_path_to_metres() {
         assert_eq!(report.known_count, pulses.len(), "{:#?}", report.parts);
         let [distances, angles] = errors(&cloud, &pulses, &sensor, &truth);
         let ([distance, far], [angle, wide]) = (spread(distances), spread(angles));
-        // the simulator places each echo where its part of the beam met the scene, up to 0.2 m from the axis, so the
-        // directions are worse than real ones (residuals of 0.6° against 0.01° in Delft) and the scale errs by 1 or 2 %
-        assert!(distance < 0.025 * params.flying_height && far < 0.03 * params.flying_height, "{distance} {far}");
-        // half a degree is 0.26 m on a pulse 30 m above the ground
-        assert!(angle < 0.25_f64.to_radians() && wide < 0.5_f64.to_radians(), "{angle} {wide}");
+        // All returns of a pulse lie on its axis, so that only noise is left. Measured: up to 0.33 m, 0.96 m and 0.009,
+        // 0.065 degrees.
+        assert!(distance < 0.5 && far < 1.5, "{distance} {far}");
+        assert!(angle < 0.02_f64.to_radians() && wide < 0.1_f64.to_radians(), "{angle} {wide}");
         for part in &report.parts {
             let sd = length(part.position_sd);
             assert!(sd < 0.02 * params.flying_height, "{part:?}");

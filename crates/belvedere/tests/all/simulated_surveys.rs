@@ -18,8 +18,8 @@ use belvedere::summary::{CloudSummary, FacadeSummary};
 use belvedere::trajectory::Trajectory;
 use belvedere::{GpsTimeKind, PointCloud};
 use belvedere_scenes::{
-    AirborneParams, Material, MirrorMotion, Preset, Regime, Scan, ScanPattern, TerrestrialParams, TownParams,
-    TriangleScene, Truth, scan_airborne, scan_terrestrial, town,
+    AirborneParams, BeamParams, Material, MirrorMotion, Preset, Regime, Scan, ScanPattern, TerrestrialParams,
+    TownParams, TriangleScene, Truth, scan_airborne, scan_terrestrial, town,
 };
 
 /// Cloud and trajectory as they come back from files: positions of the cloud in file coordinates, and of the scanner at
@@ -114,8 +114,10 @@ fn airborne_returns_of_every_pattern_agree_with_mesh_trajectory_and_angle() {
         (ScanPattern::Oscillating(MirrorMotion::Triangular), "trajectory.csv"),
         (ScanPattern::CONICAL_20, "trajectory.sbet"),
     ] {
-        // Directions without error, so that the ray of a return is the line from the scanner to it.
-        let quiet = AirborneParams { pattern, pointing_sd: 0.0, boresight_sd: 0.0, ..AirborneParams::default() };
+        // Directions without error and a beam without width, so that the line from the scanner to a return is the ray
+        // that met the surface.
+        let beam = BeamParams { divergence: 0.0, ..BeamParams::default() };
+        let quiet = AirborneParams { pattern, beam, pointing_sd: 0.0, boresight_sd: 0.0, ..AirborneParams::default() };
         let params = AirborneParams { cross_strip_count: 1, ..quiet }.spread_over(&scene, None, 4.0);
         let scan = scan_airborne(&scene, &params);
         assert!(scan.len() > 40_000);
@@ -130,8 +132,8 @@ fn airborne_returns_of_every_pattern_agree_with_mesh_trajectory_and_angle() {
             let (sin, cos) = path.headings[record].sin_cos();
             let ray = sub(files.positions[i], files.sensors[i]);
             let geometric = (ray[0] * cos - ray[1] * sin).atan2(-ray[2]);
-            // Half the divergence, half a step of 0.006 degrees, and a millimetre at 450 m.
-            let tolerance = params.beam.divergence / 2.0 + 0.003_f64.to_radians() + 4e-6;
+            // Half a step of 0.006 degrees, and a millimetre at 450 m.
+            let tolerance = 0.003_f64.to_radians() + 4e-6;
             assert!((geometric - f64::from(angle)).abs() < tolerance, "{what}: {geometric} {angle}");
             if let ScanPattern::Conical { half_angle } = pattern {
                 let from_nadir = (-ray[2] / dot(ray, ray).sqrt()).acos();
@@ -147,7 +149,7 @@ fn tripod_returns_agree_with_mesh_trajectory_and_angle() {
     let folder = tempfile::tempdir().unwrap();
     let usual = TerrestrialParams::default();
     let mut beam = usual.beam.clone();
-    beam.foliage_depth = 0.0;
+    (beam.foliage_depth, beam.divergence) = (0.0, 0.0);
     let params =
         TerrestrialParams { beam, pointing_sd: 0.0, angular_step: 0.6_f64.to_radians(), range_sd: 0.01, ..usual };
     let scan = scan_terrestrial(&scene, &params);
@@ -160,7 +162,7 @@ fn tripod_returns_agree_with_mesh_trajectory_and_angle() {
             let ray = sub(files.positions[i], files.sensors[i]);
             let range = dot(ray, ray).sqrt();
             let from_nadir = (-ray[2] / range).acos();
-            let tolerance = params.beam.divergence / 2.0 + 0.003_f64.to_radians() + 2.0 * FILE_STEP / range;
+            let tolerance = 0.003_f64.to_radians() + 2.0 * FILE_STEP / range;
             assert!((from_nadir - f64::from(angle)).abs() < tolerance, "{from_nadir} {angle}");
         }
     }
@@ -179,7 +181,9 @@ fn returns_from_inside_crowns_lie_within_noise_of_their_exact_range() {
         let exact = sub(scan.exact_positions[i], files.sensors[i]);
         let along = dot(ray, unit(exact)) - dot(exact, exact).sqrt();
         let across = dot(ray, ray) - dot(ray, unit(exact)).powi(2);
-        assert!(across.max(0.0).sqrt() < 2.0 * FILE_STEP + 1e-3, "on the ray");
+        // the ray that met the surface is up to half the beam beside the axis, on which the return lies
+        let beam = params.beam.divergence / 2.0 * dot(ray, ray).sqrt();
+        assert!(across.max(0.0).sqrt() < beam + 2.0 * FILE_STEP + 1e-3, "within the beam");
         beyond += usize::from(along.abs() > 4.0 * params.range_sd + FILE_STEP);
     }
     let expected = scan.len() as f64 * 6.3e-5;
