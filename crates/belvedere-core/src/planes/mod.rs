@@ -216,8 +216,10 @@ impl BuildingSurfaces {
 /// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
 pub fn find(survey: &SurveyPoints<'_>, params: &PlaneParams, control: &Control<'_>) -> Result<BuildingSurfaces> {
     let blocks = blocks(survey, params, control)?;
-    let found: Vec<Result<BuildingSurfaces>> =
-        blocks.into_par_iter().map(|block| of_block(&Block::new(survey, block, params.margin), params, control)).collect();
+    let found: Vec<Result<BuildingSurfaces>> = blocks
+        .into_par_iter()
+        .map(|block| of_block(&Block::new(survey, block, params.margin), params, control))
+        .collect();
     let mut surfaces = BuildingSurfaces::default();
     for block in found {
         surfaces.append(block?);
@@ -231,9 +233,8 @@ fn of_block(block: &Block, params: &PlaneParams, control: &Control<'_>) -> Resul
     let roofs = roof_planes::find(block, params, control)?;
     let ridges = ridges::find(block, &roofs);
     let table = LikelihoodTable::new();
-    let outlines: Vec<edges::Outline> = (0..roofs.planes.len())
-        .map(|plane| edges::find(block, &roofs, &ridges, plane, params, &table))
-        .collect();
+    let outlines: Vec<edges::Outline> =
+        (0..roofs.planes.len()).map(|plane| edges::find(block, &roofs, &ridges, plane, params, &table)).collect();
     let walls = walls::find(block, &roofs, &outlines);
     let leaves = patches::roofs(block, &roofs, &ridges, &outlines);
     let mut found = BuildingSurfaces::default();

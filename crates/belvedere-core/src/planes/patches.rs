@@ -65,7 +65,9 @@ impl Cover {
     /// Whether the cell of a place counts.
     fn holds(&self, p: [f64; 2]) -> bool {
         let [columns, rows] = [0, 1].map(|axis| self.range(axis, p[axis] - CELL / 2.0, p[axis] + CELL / 2.0));
-        columns.start < self.size[0] && rows.start < self.size[1] && self.counts[rows.start * self.size[0] + columns.start]
+        columns.start < self.size[0]
+            && rows.start < self.size[1]
+            && self.counts[rows.start * self.size[0] + columns.start]
     }
 
     /// Lessens the squared distances of cells within `reach` of a place to theirs.
@@ -98,7 +100,8 @@ impl Cover {
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "cells of a block")]
         let size = [0, 1].map(|axis| ((high[axis] - low[axis]) / CELL).ceil().max(1.0) as usize);
         let mut cover = Self { low, size, counts: Vec::new() };
-        let (mut to_return, mut to_passed) = (vec![f32::INFINITY; size[0] * size[1]], vec![f32::INFINITY; size[0] * size[1]]);
+        let (mut to_return, mut to_passed) =
+            (vec![f32::INFINITY; size[0] * size[1]], vec![f32::INFINITY; size[0] * size[1]]);
         for &p in outline.inside.iter().chain(&outline.split) {
             cover.stamp(&mut to_return, p, reach);
         }
@@ -115,7 +118,8 @@ impl Cover {
         }
         let ridges: Vec<(&RidgeLine, usize)> = convex(ridges, plane).collect();
         #[expect(clippy::cast_possible_truncation, reason = "lengths in metres")]
-        let [near, beside, open] = [NEAR_SPACINGS, BESIDE_SPACINGS, OPEN_SPACINGS].map(|n| (n * spacing).powi(2) as f32);
+        let [near, beside, open] =
+            [NEAR_SPACINGS, BESIDE_SPACINGS, OPEN_SPACINGS].map(|n| (n * spacing).powi(2) as f32);
         let mut counts = vec![false; size[0] * size[1]];
         for row in 0..size[1] {
             for column in 0..size[0] {
@@ -154,9 +158,10 @@ impl Cover {
 
 /// The convex ridges of a plane, and the planes beyond.
 fn convex(ridges: &[RidgeLine], plane: usize) -> impl Iterator<Item = (&RidgeLine, usize)> {
-    ridges.iter().filter(move |ridge| ridge.is_convex && ridge.planes.contains(&plane)).map(move |ridge| {
-        (ridge, if ridge.planes[0] == plane { ridge.planes[1] } else { ridge.planes[0] })
-    })
+    ridges
+        .iter()
+        .filter(move |ridge| ridge.is_convex && ridge.planes.contains(&plane))
+        .map(move |ridge| (ridge, if ridge.planes[0] == plane { ridge.planes[1] } else { ridge.planes[0] }))
 }
 
 /// The pieces of one roof: what lines split is taken whole where its cells count, and in rows of cells elsewhere.
@@ -380,8 +385,8 @@ fn close_wall(block: &Block, roofs: &Roofs, wall: &WallLine, reach: f64, found: 
         rows.push((row, runs));
     }
     for rectangle in merged(rows) {
-        let [[t0, z0], [t1, z1]] = rectangle
-            .map(|[column, row]| [(from + column as f64 * WALL_CELL).min(to), low + row as f64 * WALL_CELL]);
+        let [[t0, z0], [t1, z1]] =
+            rectangle.map(|[column, row]| [(from + column as f64 * WALL_CELL).min(to), low + row as f64 * WALL_CELL]);
         let sheet = Sheet { line: &wall.line, ranges: [t0, t1], heights: [z0, z1], kind: PatchKind::Wall };
         sheet.give_out(block, |p| top.height(p), |_| z0, found);
     }

@@ -1,14 +1,14 @@
 //! Space before known surfaces: balls of what lies behind them do not reach into it.
 
 use super::BLOCK;
-use super::block::Block;
+use super::block::{Block, block_of};
 use super::edges::Outline;
 use super::fit::Plane;
 use super::line::PlanLine;
 use super::patches::Leaf;
 use super::roof_planes::Roofs;
 use super::walls::{MIN_EAVES, WallLine};
-use belvedere_data::vector::dot;
+use belvedere_data::vector::{dot, sub, unit};
 
 /// How far before a surface its region begins, metres: balls stand out over points by as much.
 const MARGIN: f64 = 0.02;
@@ -76,6 +76,7 @@ enum Surface {
 /// Regions of a block.
 #[derive(Clone, Debug, Default, PartialEq)]
 struct BlockRegions {
+    number: [i64; 2],
     corner: [f64; 3],
     surfaces: Vec<Surface>,
     /// Surfaces that may bound balls of the points in each cell.
@@ -85,47 +86,91 @@ struct BlockRegions {
 /// Space before the surfaces of a survey, by block.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SurfaceRegions {
+    /// Origin of local positions in plan.
+    origin: [f64; 2],
+    /// Sorted by number.
     blocks: Vec<BlockRegions>,
 }
 
 impl SurfaceRegions {
     pub(super) fn append(&mut self, other: Self) {
+        self.origin = other.origin;
         self.blocks.extend(other.blocks);
     }
 
     /// The regions that the ball of a point does not reach into, for a point as measured, local metres.
     #[must_use]
     pub fn of_point(&self, p: [f32; 3]) -> Vec<Region> {
-        let mut found = Vec::new();
-        for block in &self.blocks {
-            let at: [f64; 3] = std::array::from_fn(|i| f64::from(p[i]) - block.corner[i]);
-            if (0..2).all(|axis| (0.0..BLOCK).contains(&at[axis])) {
-                block.add(at, &mut found);
-                break;
-            }
+        self.that(p, |_, _| true)
+    }
+
+    /// The regions of a point before those of its surfaces that `counts`, given the surface and the corner of its
+    /// block, is true for.
+    fn that(&self, p: [f32; 3], counts: impl Fn(&Surface, [f64; 3]) -> bool) -> Vec<Region> {
+        let number = block_of(p, self.origin);
+        let Ok(place) = self.blocks.binary_search_by_key(&number, |block| block.number) else { return Vec::new() };
+        self.blocks[place].regions(p.map(f64::from), counts)
+    }
+
+    /// The greatest radius, at most `radius`, of the ball about `center` that keeps the place where it touches its
+    /// point, and reaches into none of the regions of this point. `point` is as measured; local metres. Below zero and
+    /// 0 mean that no ball is left.
+    ///
+    /// # Source
+    /// This project's. A ball that touches at a with its centre in the direction m lies outside a half-space with
+    /// outward normal n and distance s = n·a − d as long as r ≤ s / (1 − n·m); outside a convex region it lies as long
+    /// as this holds for one of its half-spaces.
+    #[must_use]
+    pub fn radius_of(&self, point: [f32; 3], center: [f32; 3], radius: f32) -> f32 {
+        let (p, c) = (point.map(f64::from), center.map(f64::from));
+        let whole = f64::from(radius);
+        let mut most = whole;
+        let Some(inward) = unit(sub(c, p)) else { return radius };
+        let touch: [f64; 3] = std::array::from_fn(|i| c[i] - most * inward[i]);
+        let reaches_out = |surface: &Surface, corner: [f64; 3]| surface.before(sub(c, corner)) + whole > MARGIN;
+        for region in self.that(point, reaches_out) {
+            let fits = region.half_spaces.iter().map(|&(normal, offset)| {
+                let (apart, away) = (dot(normal, touch) - offset, 1.0 - dot(normal, inward));
+                if apart <= 0.0 { 0.0 } else { apart / away.max(1e-9) }
+            });
+            most = most.min(fits.fold(0.0, f64::max));
         }
-        found
+        #[expect(clippy::cast_possible_truncation, reason = "a radius in metres, no larger than it was")]
+        let most = most as f32;
+        most.min(radius)
     }
 }
 
 const CELLS: usize = 16;
 
 impl BlockRegions {
-    fn add(&self, p: [f64; 3], found: &mut Vec<Region>) {
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within the block")]
-        let [column, row] = [0, 1].map(|axis| (p[axis] / CELL) as usize);
-        let Some(cell) = self.cells.get(row * CELLS + column) else { return };
-        for &number in cell {
-            let Some(mut region) = self.surfaces[number as usize].region_of(p) else { continue };
-            for (normal, offset) in &mut region.half_spaces {
-                *offset += dot(*normal, self.corner);
-            }
-            found.push(region);
+    /// The regions of a point, local metres, before surfaces that count.
+    fn regions(&self, p: [f64; 3], counts: impl Fn(&Surface, [f64; 3]) -> bool) -> Vec<Region> {
+        let p = sub(p, self.corner);
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturating, within the block")]
+        let [column, row] = [0, 1].map(|axis| ((p[axis] / CELL) as usize).min(CELLS - 1));
+        let near = self.cells.get(row * CELLS + column).into_iter().flatten();
+        let surfaces = near.filter_map(|&number| self.surfaces.get(number as usize));
+        let mut found: Vec<Region> = surfaces
+            .filter(|surface| counts(surface, self.corner))
+            .filter_map(|surface| surface.region_of(p))
+            .collect();
+        for (normal, offset) in found.iter_mut().flat_map(|region| &mut region.half_spaces) {
+            *offset += dot(*normal, self.corner);
         }
+        found
     }
 }
 
 impl Surface {
+    /// How far before the surface a place lies, metres.
+    fn before(&self, p: [f64; 3]) -> f64 {
+        match self {
+            Self::Upright { line, .. } => line.of([p[0], p[1]])[1],
+            Self::Roof { plane, .. } => plane.above(p),
+        }
+    }
+
     /// Box in plan of the points whose balls it may bound.
     fn bounds(&self) -> [[f64; 2]; 2] {
         let (points, about): (Vec<[f64; 2]>, f64) = match self {
@@ -235,5 +280,9 @@ pub(super) fn of_block(
             }
         }
     }
-    SurfaceRegions { blocks: vec![BlockRegions { corner: block.corner, surfaces, cells }] }
+    let origin = [0, 1].map(|axis| block.origin[axis]);
+    SurfaceRegions {
+        origin,
+        blocks: vec![BlockRegions { number: block.number, corner: block.corner, surfaces, cells }],
+    }
 }

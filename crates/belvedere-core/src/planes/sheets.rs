@@ -101,7 +101,8 @@ pub(super) fn give_out(
         let own: Vec<&WallLine> = walls.iter().filter(|wall| wall.plane == plane).collect();
         let high = |edge: &&EdgeLine| edge.is_sure && edge.drop >= MIN_DROP;
         let all: f64 = outline.edges.iter().filter(high).map(|edge| edge.line.length()).sum();
-        let walled: f64 = own.iter().filter(|wall| high(&&outline.edges[wall.edge])).map(|wall| wall.line.length()).sum();
+        let walled: f64 =
+            own.iter().filter(|wall| high(&&outline.edges[wall.edge])).map(|wall| wall.line.length()).sum();
         for (number, edge) in outline.edges.iter().enumerate().filter(|(_, edge)| edge.is_sure) {
             upstand(block, roofs, plane, edge, found);
             if edge.drop >= MIN_DROP && walled >= MIN_WALLED * all {
@@ -243,8 +244,8 @@ fn within(block: &Block, roofs: &Roofs, plane: usize, line: &PlanLine, drop: f64
         }
     });
     let mut first = None;
-    for piece in 0..=count {
-        let goes_on = piece < count && !is_open[piece];
+    for (piece, is_open) in is_open.into_iter().chain([true]).enumerate() {
+        let goes_on = !is_open;
         match (first, goes_on) {
             (None, true) => first = Some(piece),
             (Some(from), false) => {
@@ -264,7 +265,8 @@ fn boxes(block: &Block, roofs: &Roofs, plane: usize, outline: &Outline, found: &
     let roof = &roofs.planes[plane];
     let loose: Vec<&Standing> =
         outline.standing.iter().filter(|standing| standing.is_loose && standing.above >= BOX_HEIGHT).collect();
-    let longest = outline.edges.iter().filter(|edge| edge.is_sure).max_by(|a, b| a.line.length().total_cmp(&b.line.length()));
+    let longest =
+        outline.edges.iter().filter(|edge| edge.is_sure).max_by(|a, b| a.line.length().total_cmp(&b.line.length()));
     let along = longest.map_or([1.0, 0.0], |edge| edge.line.along);
     let mut is_used = vec![false; loose.len()];
     for first in 0..loose.len() {

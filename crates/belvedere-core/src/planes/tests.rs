@@ -119,7 +119,9 @@ fn heights_of(surfaces: &BuildingSurfaces, kind: PatchKind, [x, y]: [f64; 2]) ->
     let of_kind = surfaces.triangles.iter().zip(&surfaces.kinds).filter(|(_, own)| **own == kind);
     let from = [x, y, 100.0];
     let down = [0.0, 0.0, -200.0];
-    of_kind.filter_map(|(corners, _)| Some(100.0 - 200.0 * meets(&corners.map(|p| p.map(f64::from)), from, down)?)).collect()
+    of_kind
+        .filter_map(|(corners, _)| Some(100.0 - 200.0 * meets(&corners.map(|p| p.map(f64::from)), from, down)?))
+        .collect()
 }
 
 /// Area of the patches of a kind seen from above, m².
@@ -195,7 +197,12 @@ fn a_hip_roof_has_four_planes_that_meet_in_five_convex_lines() {
     let (a, b, c, d) = ([-6.0, -4.0, 6.0], [6.0, -4.0, 6.0], [6.0, 4.0, 6.0], [-6.0, 4.0, 6.0]);
     let (west, east) = ([-2.0, 0.0, 9.0], [2.0, 0.0, 9.0]);
     let mut faces = walls_of(&[[-6.0, -4.0], [6.0, -4.0], [6.0, 4.0], [-6.0, 4.0]], &[6.0; 4]);
-    faces.extend([(vec![a, b, east, west], 6), (vec![b, c, east], 6), (vec![c, d, west, east], 6), (vec![d, a, west], 6)]);
+    faces.extend([
+        (vec![a, b, east, west], 6),
+        (vec![b, c, east], 6),
+        (vec![c, d, west, east], 6),
+        (vec![d, a, west], 6),
+    ]);
     let surfaces = scan(&faces, AROUND[0], AROUND[1]).surfaces(BuildingPoints::Classified);
     assert_eq!(surfaces.planes.len(), 4);
     assert_eq!(surfaces.ridges.iter().filter(|ridge| ridge.is_convex).count(), 5, "{:?}", surfaces.ridges);
@@ -264,13 +271,32 @@ fn below_eaves_the_wall_is_a_plane_of_its_own() {
 
 #[test]
 fn a_point_before_a_wall_is_not_bound_by_it() {
-    let surfaces = scan(&block_of([-6.0, -5.0], [6.0, 5.0], 8.0), AROUND[0], AROUND[1])
-        .surfaces(BuildingPoints::Classified);
+    let surfaces =
+        scan(&block_of([-6.0, -5.0], [6.0, 5.0], 8.0), AROUND[0], AROUND[1]).surfaces(BuildingPoints::Classified);
     assert!(!surfaces.regions.of_point([0.0, -5.0, 4.0]).is_empty());
     for (place, what) in [([0.0, -6.0, 4.0], "a balcony"), ([0.0, 0.0, 10.0], "a chimney")] {
         let regions = surfaces.regions.of_point(place);
         assert!(regions.iter().all(|region| region.distance(place.map(f64::from)) > 0.5), "{what}: {regions:?}");
     }
+}
+
+#[test]
+fn a_ball_ends_at_the_wall_that_its_point_lies_behind() {
+    let surfaces =
+        scan(&block_of([-6.0, -5.0], [6.0, 5.0], 8.0), AROUND[0], AROUND[1]).surfaces(BuildingPoints::Classified);
+    // a ball of the roof 0.5 m within the south edge, which bulges half a metre out of the wall
+    let (point, center) = ([0.0, -4.5, 8.0], [0.0, -4.5, 7.0]);
+    let radius = surfaces.regions.radius_of(point, center, 1.0);
+    let wall = surfaces.walls.iter().find(|wall| wall.ends[0][1] < -4.0 && wall.ends[1][1] < -4.0).unwrap();
+    // it may stand out by 2 cm, of the wall and of the edge, whichever lies farther out
+    let edge = &surfaces.edges[wall.edge];
+    let farthest = f64::midpoint(wall.ends[0][1], wall.ends[1][1]).min(f64::midpoint(edge.ends[0][1], edge.ends[1][1]));
+    let nearest = f64::midpoint(wall.ends[0][1], wall.ends[1][1]).max(f64::midpoint(edge.ends[0][1], edge.ends[1][1]));
+    let reach = -4.5 - f64::from(radius);
+    assert!((farthest - 0.03..nearest - 0.01).contains(&reach), "{reach} beside {nearest}");
+    // one that stays within keeps its size, and one before the wall as well
+    assert_eq!(surfaces.regions.radius_of([0.0, 0.0, 8.0], [0.0, 0.0, 7.0], 1.0), 1.0);
+    assert_eq!(surfaces.regions.radius_of([0.0, -7.0, 2.0], [0.0, -7.0, 1.0], 1.0), 1.0);
 }
 
 #[test]
@@ -309,10 +335,12 @@ fn a_part_finds_what_the_whole_finds_in_any_order() {
     part.scanner.reverse();
     part.classes.reverse();
     let part = part.surfaces(BuildingPoints::Classified);
-    let middle = |corners: &[[f32; 3]; 3]| std::array::from_fn(|i| corners.iter().map(|p| f64::from(p[i])).sum::<f64>() / 3.0);
+    let middle =
+        |corners: &[[f32; 3]; 3]| std::array::from_fn(|i| corners.iter().map(|p| f64::from(p[i])).sum::<f64>() / 3.0);
     let of = |surfaces: &BuildingSurfaces| {
         let triangles: Vec<_> = surfaces.triangles.iter().copied().filter(|t| is_of(middle(t))).collect();
-        let edges: Vec<_> = surfaces.edges.iter().map(|e| (e.ends, e.sd)).filter(|e| is_of(e.0[0]) && is_of(e.0[1])).collect();
+        let edges: Vec<_> =
+            surfaces.edges.iter().map(|e| (e.ends, e.sd)).filter(|e| is_of(e.0[0]) && is_of(e.0[1])).collect();
         (triangles, edges)
     };
     let (of_whole, of_part) = (of(&whole), of(&part));

@@ -80,8 +80,8 @@ fn meet(walls: &mut [WallLine]) {
                 None => at.min(outermost.fold(f64::NEG_INFINITY, f64::max) + BEYOND_POINTS),
             };
         }
-}
     }
+}
 
 /// The wall below an edge.
 fn below(block: &Block, roofs: &Roofs, plane: usize, number: usize, edge: &EdgeLine) -> Option<WallLine> {

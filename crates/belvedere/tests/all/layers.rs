@@ -28,7 +28,7 @@ const RESEARCH: [(&str, &[&str]); 5] = [
 ];
 
 /// Level of each module of `belvedere-core`: a module imports from lower levels, or from its own folder.
-const LEVELS: [(&str, u8); 14] = [
+const LEVELS: [(&str, u8); 15] = [
     ("instructions", 0),
     ("neighbors", 1),
     ("ray_index", 1),
@@ -38,6 +38,7 @@ const LEVELS: [(&str, u8); 14] = [
     ("normals", 2),
     ("pulses", 2),
     ("ground", 2),
+    ("planes", 3),
     ("summary", 3),
     ("medial", 3),
     ("depth", 4),
