@@ -1,6 +1,5 @@
 //! Space before known surfaces: balls of what lies behind them do not reach into it.
 
-use super::BLOCK;
 use super::block::{Block, block_of};
 use super::edges::Outline;
 use super::fit::Plane;

@@ -1,5 +1,7 @@
 //! Houses whose surfaces are known in closed form, scanned by pulses that meet flat polygons.
 
+#![expect(clippy::cast_possible_truncation, reason = "positions of small scenes")]
+
 use super::*;
 use belvedere_data::random::uniform;
 use belvedere_data::vector::{cross, dot, length, sub};
