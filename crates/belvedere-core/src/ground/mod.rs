@@ -9,6 +9,8 @@ mod returns;
 mod surface;
 mod triangulate;
 
+pub(crate) use triangulate::sides;
+
 pub use find::{FinderParams, find_ground};
 pub use map_grid::MapGrid;
 pub use relief::{hidden_ground, highest_points};

@@ -3,7 +3,7 @@
 use super::MapGrid;
 use belvedere_data::raster::Raster;
 use belvedere_data::{Error, Parameter, Result};
-use delaunator::{Point, triangulate};
+use delaunator::{EMPTY, Point, triangulate};
 
 /// Height at the middle of each cell of `grid` on the triangulated `points`, (N, 3) local metres; NaN outside their
 /// hull, and everywhere with fewer than three points or all in one line.
@@ -27,6 +27,21 @@ pub(super) fn heights(points: &[[f32; 3]], grid: &MapGrid) -> Result<Raster<f32>
         fill(heights.values_mut(), width, grid, [a, b, c].map(|p| p.map(f64::from)));
     }
     Ok(heights)
+}
+
+/// The sides of the Delaunay triangulation of places in plan, (N, 2), each by the rows of its ends. None for fewer than
+/// three places or all in one line.
+pub(crate) fn sides(places: &[[f64; 2]]) -> Vec<[usize; 2]> {
+    let points: Vec<Point> = places.iter().map(|&[x, y]| Point { x, y }).collect();
+    let found = triangulate(&points);
+    let mut sides = Vec::with_capacity(found.triangles.len() / 2 + 1);
+    for (side, (&start, &twin)) in found.triangles.iter().zip(&found.halfedges).enumerate() {
+        let next = if side % 3 == 2 { side - 2 } else { side + 1 };
+        if let Some(&end) = found.triangles.get(next).filter(|_| twin == EMPTY || twin > side) {
+            sides.push([start, end]);
+        }
+    }
+    sides
 }
 
 /// Sets the cells whose middles lie in a triangle or on its edges.

@@ -12,6 +12,7 @@ use crate::medial::{
 };
 use crate::query::{BallTree, BlockRule, BlockingTriangles};
 use crate::summary::looks_y_up;
+use belvedere_data::balls::NO_TOUCH;
 use belvedere_data::control::Control;
 use belvedere_data::crs::CrsKind;
 use belvedere_data::patches::SurfacePatches;
@@ -55,7 +56,7 @@ fn of_survey(
     mut report: BuildReport,
     control: &Control<'_>,
 ) -> Result<(SceneModel, BuildReport)> {
-    let (mut balls, transmission);
+    let (mut balls, mut transmission);
     let mut patches = SurfacePatches::default();
     let settled = match params.balls {
         BallParams::CarvedIfPossible(carved, _) if survey.carving.is_some() => BallParams::Carved(carved),
@@ -73,6 +74,10 @@ fn of_survey(
             report.interior_balls = Some(BallsReport::Carved(found));
             if let Some(params) = &carved.planes {
                 (patches, report.surfaces) = close_surfaces(&mut balls, &survey, &frame, params, control)?;
+                let is_left = |row: &usize| balls.touch[*row] != NO_TOUCH;
+                let left: Vec<usize> = (0..balls.len()).filter(is_left).collect();
+                transmission = left.iter().filter_map(|&row| transmission.get(row).copied()).collect();
+                balls = balls.select(&left);
             }
         }
         (BallParams::Shrunk(params), _) => {

@@ -31,6 +31,10 @@ pub(super) struct Return {
 
 /// A block with what lies about it.
 pub(super) struct Block {
+    /// Its number in the grid of the reference system.
+    pub(super) number: [i64; 2],
+    /// Origin of local positions in the reference system, metres.
+    pub(super) origin: [f64; 3],
     /// Corner of the block in local metres, height 0.
     pub(super) corner: [f64; 3],
     /// Sorted by cell, and by position in each.
@@ -84,8 +88,6 @@ pub(super) fn blocks(survey: &SurveyPoints<'_>, params: &PlaneParams, control: &
         return Err(Error::LengthMismatch { what: "scanner positions", expected, found: survey.scanner.len() });
     }
     let mut rows_of: BTreeMap<[i64; 2], (bool, Vec<u32>)> = BTreeMap::new();
-    #[expect(clippy::cast_possible_truncation, reason = "positions of a cloud are far below 2^63 blocks")]
-    let number = |v: f64| (v / BLOCK).floor() as i64;
     let mut buildings = 0_u32;
     for (row, p) in survey.positions.iter().enumerate() {
         if row % 65_536 == 0 {
@@ -109,6 +111,18 @@ pub(super) fn blocks(survey: &SurveyPoints<'_>, params: &PlaneParams, control: &
     }
     let with_buildings = rows_of.into_iter().filter(|(_, (holds, _))| *holds && buildings > 0);
     Ok(with_buildings.map(|(number, (_, rows))| BlockRows { number, rows }).collect())
+}
+
+/// Number of the block of a coordinate of the reference system.
+fn number(v: f64) -> i64 {
+    #[expect(clippy::cast_possible_truncation, reason = "positions of a cloud are far below 2^63 blocks")]
+    let number = (v / BLOCK).floor() as i64;
+    number
+}
+
+/// Number of the block that a local position lies in.
+pub(super) fn block_of(p: [f32; 3], origin: [f64; 2]) -> [i64; 2] {
+    [0, 1].map(|axis| number(f64::from(p[axis]) + origin[axis]))
 }
 
 /// Whether a point is the first return of its pulse.
@@ -166,7 +180,7 @@ impl Block {
             }
             first += group.len();
         }
-        Self::indexed(corner, grid, returns)
+        Self { number: block.number, origin: survey.origin, ..Self::indexed(corner, grid, returns) }
     }
 
     /// A block of sorted returns.
@@ -185,7 +199,17 @@ impl Block {
         for cell in 1..cells.len() {
             cells[cell] += cells[cell - 1];
         }
-        Self { corner, returns, cells, grid, lowest, max_lean: max_lean.sqrt(), counts }
+        Self {
+            number: [0; 2],
+            origin: [0.0; 3],
+            corner,
+            returns,
+            cells,
+            grid,
+            lowest,
+            max_lean: max_lean.sqrt(),
+            counts,
+        }
     }
 
     /// Calls `visit` with every return between two corners in plan, and some about them.

@@ -6,7 +6,7 @@ use super::line::PlanLine;
 use super::ridges::RidgeLine;
 use super::roof_planes::{NONE, Roofs};
 use super::{PlaneParams, sheets};
-use delaunator::{EMPTY, Point, triangulate};
+use crate::ground::sides;
 
 /// How far below the plane a pulse must end to have passed it, metres. With 0.3 those are left out that meet the wall
 /// close below an edge, and edges lie a centimetre too far out.
@@ -45,8 +45,9 @@ const END_SPACINGS: f64 = 3.5;
 /// must be known at least for a line to be an edge, metres.
 const MIDDLES_AS_ONE: f64 = 6.0;
 const MAX_SCATTER: f64 = 0.08;
-/// Standard deviation of what no number of pulses averages out, metres: where a part of a beam is still seen.
-const COMMON_SD: f64 = 0.012;
+/// Standard deviation of what no number of pulses averages out, metres: how far outside an axis may lie and
+/// a part of its beam still be seen.
+const COMMON_SD: f64 = 0.02;
 
 /// An edge of a plane in plan.
 #[derive(Clone, Debug)]
@@ -249,28 +250,21 @@ fn middles(outline: &Outline, spacing: f64) -> Vec<Middle> {
     if passed.is_empty() {
         return Vec::new();
     }
-    let places = outline.inside.iter().copied().chain(passed.iter().map(|passed| passed.p));
-    let points: Vec<Point> = places.map(|[x, y]| Point { x, y }).collect();
-    let found = triangulate(&points);
+    let points: Vec<[f64; 2]> = outline.inside.iter().copied().chain(passed.iter().map(|passed| passed.p)).collect();
     let mut middles = Vec::new();
-    for (side, &start) in found.triangles.iter().enumerate() {
-        let twin = found.halfedges[side];
-        if twin != EMPTY && twin < side {
-            continue;
-        }
-        let end = found.triangles[if side % 3 == 2 { side - 2 } else { side + 1 }];
+    for [start, end] in sides(&points) {
         let (within, out) = (start.min(end), start.max(end));
         if within >= inside || out < inside {
             continue;
         }
-        let (a, b) = (&points[within], &points[out]);
-        let [x, y] = [b.x - a.x, b.y - a.y];
+        let (a, b) = (points[within], points[out]);
+        let [x, y] = [b[0] - a[0], b[1] - a[1]];
         let length = x.hypot(y);
         if length > SIDE_SPACINGS * spacing || length < 1e-6 {
             continue;
         }
         middles.push(Middle {
-            p: [f64::midpoint(a.x, b.x), f64::midpoint(a.y, b.y)],
+            p: [f64::midpoint(a[0], b[0]), f64::midpoint(a[1], b[1])],
             out: [x / length, y / length],
             depth: passed[out - inside].depth,
         });

@@ -15,9 +15,9 @@ const REACH_SPACINGS: f64 = 3.2;
 /// measures it.
 const WIDTHS_SPACINGS: [f64; 2] = [0.3, 0.12];
 const WIDTH: f64 = 0.03;
-/// How far lines lie apart across at most at first, spacings; and by how much less at each later width.
+/// How far lines lie apart across at most at first, spacings; and later, in standard deviations so far.
 const FIRST_REACH_SPACINGS: f64 = 0.8;
-const NARROWER: f64 = 0.5;
+const REACH_SD: f64 = 2.2;
 /// Lines tried on each side of the first, by place and by turn.
 const STEPS: i32 = 4;
 /// Places of the table for each width, and how many widths it holds on each side.
@@ -89,7 +89,7 @@ pub(super) fn likeliest(outline: &Outline, line: &PlanLine, spacing: f64, table:
         // along the line: that of the place, and a third of that of its ends
         sd = (squares / sum - means[0].powi(2) - means[1].powi(2) / 3.0).max(0.0).sqrt();
         [place, turn] = means;
-        most *= NARROWER;
+        most = (REACH_SD * sd).min(most);
     }
     let angle = (turn / half).atan();
     let [a, b] = line.along;

@@ -44,7 +44,8 @@ pub struct PlaneParams {
     pub margin: f64,
     /// Least number of points on a plane of a roof. Default 12.
     pub min_points: usize,
-    /// Most standard deviation of the place of an edge that is used, metres. Default 0.08.
+    /// Most standard deviation of the place of an edge that is used, metres. Default 0.1: at
+    /// five pulses per m² facades are falsely blocked a tenth more often with 0.08; at ten nothing changes.
     pub max_edge_sd: f64,
     /// Least share of the points below an edge that lie on a wall, for it to be closed between its points. Default
     /// 0.5: fronts of stacked balconies have 0.3 to 0.4.
@@ -61,7 +62,7 @@ impl Default for PlaneParams {
         Self {
             margin: 8.0,
             min_points: 12,
-            max_edge_sd: 0.08,
+            max_edge_sd: 0.1,
             min_wall_share: 0.5,
             min_wall_points: 10,
             wall_reach_spacings: 4.7,

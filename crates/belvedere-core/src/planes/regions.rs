@@ -1,14 +1,12 @@
 //! Space before known surfaces: balls of what lies behind them do not reach into it.
 
-use super::BLOCK;
-use super::block::Block;
+use super::block::{Block, block_of};
 use super::edges::Outline;
 use super::fit::Plane;
 use super::line::PlanLine;
 use super::patches::Leaf;
 use super::roof_planes::Roofs;
 use super::walls::{MIN_EAVES, WallLine};
-use crate::blocking::Ball;
 use belvedere_data::Result;
 use belvedere_data::balls::{LIMIT_TOUCH, MedialBalls, NO_TOUCH};
 use belvedere_data::control::{Control, Stop};
@@ -81,6 +79,7 @@ enum Surface {
 /// Regions of a block.
 #[derive(Clone, Debug, Default, PartialEq)]
 struct BlockRegions {
+    number: [i64; 2],
     corner: [f64; 3],
     surfaces: Vec<Surface>,
     /// Surfaces that may bound balls of the points in each cell.
@@ -90,31 +89,64 @@ struct BlockRegions {
 /// Space before the surfaces of a survey, by block.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SurfaceRegions {
+    /// Origin of local positions in plan.
+    origin: [f64; 2],
+    /// Sorted by number.
     blocks: Vec<BlockRegions>,
 }
 
 impl SurfaceRegions {
     pub(super) fn append(&mut self, other: Self) {
+        self.origin = other.origin;
         self.blocks.extend(other.blocks);
     }
 
     /// The regions that the ball of a point does not reach into, for a point as measured, local metres.
     #[must_use]
     pub fn of_point(&self, p: [f32; 3]) -> Vec<Region> {
-        let mut found = Vec::new();
-        for block in &self.blocks {
-            let at: [f64; 3] = std::array::from_fn(|i| f64::from(p[i]) - block.corner[i]);
-            if (0..2).all(|axis| (0.0..BLOCK).contains(&at[axis])) {
-                block.add(at, &mut found);
-                break;
-            }
+        self.that(p, |_, _| true)
+    }
+
+    /// The regions of a point before those of its surfaces that `counts`, given the surface and the corner of its
+    /// block, is true for.
+    fn that(&self, p: [f32; 3], counts: impl Fn(&Surface, [f64; 3]) -> bool) -> Vec<Region> {
+        let number = block_of(p, self.origin);
+        let Ok(place) = self.blocks.binary_search_by_key(&number, |block| block.number) else { return Vec::new() };
+        self.blocks[place].regions(p.map(f64::from), counts)
+    }
+
+    /// The greatest radius, at most `radius`, of the ball about `center` that keeps the place where it touches its
+    /// point, and reaches into none of the regions of this point. `point` is as measured; local metres. Below zero and
+    /// 0 mean that no ball is left.
+    ///
+    /// # Source
+    /// This project's. A ball that touches at a with its centre in the direction m lies outside a half-space with
+    /// outward normal n and distance s = n·a − d as long as r ≤ s / (1 − n·m); outside a convex region it lies as long
+    /// as this holds for one of its half-spaces.
+    #[must_use]
+    pub fn radius_of(&self, point: [f32; 3], center: [f32; 3], radius: f32) -> f32 {
+        let (p, c) = (point.map(f64::from), center.map(f64::from));
+        let whole = f64::from(radius);
+        let mut most = whole;
+        let Some(inward) = unit(sub(c, p)) else { return radius };
+        let touch: [f64; 3] = std::array::from_fn(|i| c[i] - most * inward[i]);
+        let reaches_out = |surface: &Surface, corner: [f64; 3]| surface.before(sub(c, corner)) + whole > MARGIN;
+        for region in self.that(point, reaches_out) {
+            let fits = region.half_spaces.iter().map(|&(normal, offset)| {
+                let (apart, away) = (dot(normal, touch) - offset, 1.0 - dot(normal, inward));
+                if apart <= 0.0 { 0.0 } else { apart / away.max(1e-9) }
+            });
+            most = most.min(fits.fold(0.0, f64::max));
         }
-        found
+        #[expect(clippy::cast_possible_truncation, reason = "a radius in metres, no larger than it was")]
+        let most = most as f32;
+        most.min(radius)
     }
 }
 
 /// Caps balls so that none reaches into a region of its point: a ball keeps the place where it touches its surface, and
-/// its middle moves there. `measured` are the points before they were moved onto their surface. Returns how many.
+/// its middle moves there. Nothing is left of one that becomes smaller than a centimetre ([`NO_TOUCH`]). `measured` are
+/// the points before they were moved onto their surface. Returns how many were capped.
 ///
 /// # Errors
 /// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
@@ -125,70 +157,65 @@ pub fn cap(
     control: &Control<'_>,
 ) -> Result<usize> {
     let stop = Stop::new(control);
-    let capped = |row: usize| -> Option<(usize, Ball)> {
+    let capped = |row: usize| -> Option<(usize, [f32; 3], f32)> {
         if balls.touch[row] == NO_TOUCH || stop.is_set() {
             return None;
         }
-        let ball = Ball { center: balls.centers[row], radius: balls.radii[row] };
+        let (center, whole) = (balls.centers[row], balls.radii[row]);
         let point = *measured.get(balls.source[row] as usize)?;
-        Some((row, capped(ball, point, &regions.of_point(point))?))
+        let radius = regions.radius_of(point, center, whole);
+        let inward = unit(sub(center.map(f64::from), point.map(f64::from)))?;
+        let by = f64::from(whole - radius);
+        #[expect(clippy::cast_possible_truncation, reason = "balls are f32")]
+        let moved = std::array::from_fn(|i| (f64::from(center[i]) - by * inward[i]) as f32);
+        (radius < whole).then_some((row, moved, radius))
     };
-    let capped: Vec<(usize, Ball)> = (0..balls.len()).into_par_iter().with_min_len(256).filter_map(capped).collect();
+    let capped: Vec<_> = (0..balls.len()).into_par_iter().with_min_len(CHUNK).filter_map(capped).collect();
     stop.check()?;
-    for &(row, Ball { center, radius }) in &capped {
+    for &(row, center, radius) in &capped {
         balls.centers[row] = center;
         balls.radii[row] = radius;
-        balls.touch[row] = LIMIT_TOUCH;
+        balls.touch[row] = if radius < MIN_RADIUS { NO_TOUCH } else { LIMIT_TOUCH };
         balls.separation_angles[row] = f32::NAN;
     }
     Ok(capped.len())
 }
 
-/// The largest ball that touches the surface where `ball` does and lies outside of all regions; `None` where that is
-/// `ball` itself.
-fn capped(ball: Ball, point: [f32; 3], regions: &[Region]) -> Option<Ball> {
-    let (center, whole) = (ball.center.map(f64::from), f64::from(ball.radius));
-    let inward = unit(sub(center, point.map(f64::from)))?;
-    let touched: [f64; 3] = std::array::from_fn(|i| center[i] - whole * inward[i]);
-    let middle = |radius: f64| -> [f64; 3] { std::array::from_fn(|i| touched[i] + radius * inward[i]) };
-    let mut radius = whole;
-    for region in regions {
-        let fits = |radius: f64| region.distance(middle(radius)) >= radius;
-        if !fits(radius) {
-            let mut range = [0.0, radius];
-            for _ in 0..HALVINGS {
-                let half = f64::midpoint(range[0], range[1]);
-                range[usize::from(!fits(half))] = half;
-            }
-            radius = range[0];
-        }
-    }
-    #[expect(clippy::cast_possible_truncation, reason = "balls are f32")]
-    let capped = Ball { center: middle(radius).map(|v| v as f32), radius: radius as f32 };
-    (radius < whole).then_some(capped)
-}
-
-/// Steps of a search for a radius: to a hundredth of a micrometre.
-const HALVINGS: usize = 30;
+/// Least radius of a capped ball, metres: smaller ones block nothing that patches do not.
+const MIN_RADIUS: f32 = 0.01;
+/// Balls that a thread looks at in one go.
+const CHUNK: usize = 256;
 
 const CELLS: usize = 16;
 
 impl BlockRegions {
-    fn add(&self, p: [f64; 3], found: &mut Vec<Region>) {
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within the block")]
-        let [column, row] = [0, 1].map(|axis| (p[axis] / CELL) as usize);
-        let Some(cell) = self.cells.get(row * CELLS + column) else { return };
-        for &number in cell {
-            let Some(mut region) = self.surfaces[number as usize].region_of(p) else { continue };
-            for (normal, offset) in &mut region.half_spaces {
-                *offset += dot(*normal, self.corner);
-            }
-            found.push(region);
+    /// The regions of a point, local metres, before surfaces that count.
+    fn regions(&self, p: [f64; 3], counts: impl Fn(&Surface, [f64; 3]) -> bool) -> Vec<Region> {
+        let p = sub(p, self.corner);
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturating, within the block")]
+        let [column, row] = [0, 1].map(|axis| ((p[axis] / CELL) as usize).min(CELLS - 1));
+        let near = self.cells.get(row * CELLS + column).into_iter().flatten();
+        let surfaces = near.filter_map(|&number| self.surfaces.get(number as usize));
+        let mut found: Vec<Region> = surfaces
+            .filter(|surface| counts(surface, self.corner))
+            .filter_map(|surface| surface.region_of(p))
+            .collect();
+        for (normal, offset) in found.iter_mut().flat_map(|region| &mut region.half_spaces) {
+            *offset += dot(*normal, self.corner);
         }
+        found
     }
 }
 
 impl Surface {
+    /// How far before the surface a place lies, metres.
+    fn before(&self, p: [f64; 3]) -> f64 {
+        match self {
+            Self::Upright { line, .. } => line.of([p[0], p[1]])[1],
+            Self::Roof { plane, .. } => plane.above(p),
+        }
+    }
+
     /// Box in plan of the points whose balls it may bound.
     fn bounds(&self) -> [[f64; 2]; 2] {
         let (points, about): (Vec<[f64; 2]>, f64) = match self {
@@ -298,5 +325,9 @@ pub(super) fn of_block(
             }
         }
     }
-    SurfaceRegions { blocks: vec![BlockRegions { corner: block.corner, surfaces, cells }] }
+    let origin = [0, 1].map(|axis| block.origin[axis]);
+    SurfaceRegions {
+        origin,
+        blocks: vec![BlockRegions { number: block.number, corner: block.corner, surfaces, cells }],
+    }
 }

@@ -244,8 +244,8 @@ fn within(block: &Block, roofs: &Roofs, plane: usize, line: &PlanLine, drop: f64
         }
     });
     let mut first = None;
-    for piece in 0..=count {
-        let goes_on = piece < count && !is_open[piece];
+    for (piece, is_open) in is_open.into_iter().chain([true]).enumerate() {
+        let goes_on = !is_open;
         match (first, goes_on) {
             (None, true) => first = Some(piece),
             (Some(from), false) => {

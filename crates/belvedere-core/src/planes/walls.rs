@@ -1,7 +1,7 @@
 //! Walls below edges of roofs: upright planes of their own, wherever the edge is.
 
 use super::block::Block;
-use super::edges::Outline;
+use super::edges::{EdgeLine, Outline};
 use super::line::PlanLine;
 use super::roof_planes::{NONE, Roofs};
 
@@ -51,7 +51,7 @@ pub(super) fn find(block: &Block, roofs: &Roofs, outlines: &[Outline]) -> Vec<Wa
     let mut walls = Vec::new();
     for (plane, outline) in outlines.iter().enumerate() {
         let edges = outline.edges.iter().enumerate().filter(|(_, edge)| edge.is_sure);
-        walls.extend(edges.filter_map(|(number, edge)| below(block, roofs, plane, number, &edge.line)));
+        walls.extend(edges.filter_map(|(number, edge)| below(block, roofs, plane, number, edge)));
     }
     meet(&mut walls);
     walls.retain(|wall| wall.line.length() >= MIN_LENGTH / 2.0);
@@ -84,7 +84,8 @@ fn meet(walls: &mut [WallLine]) {
 }
 
 /// The wall below an edge.
-fn below(block: &Block, roofs: &Roofs, plane: usize, number: usize, edge: &PlanLine) -> Option<WallLine> {
+fn below(block: &Block, roofs: &Roofs, plane: usize, number: usize, edge: &EdgeLine) -> Option<WallLine> {
+    let (edge, sd) = (&edge.line, edge.sd);
     let corners = [[0, 0], [0, 1], [1, 0], [1, 1]]
         .map(|[end, side]| edge.at(edge.ends[end], if side == 0 { -BEHIND } else { BEFORE }));
     let low = [0, 1].map(|axis| corners.iter().map(|p| p[axis]).fold(f64::INFINITY, f64::min));
@@ -138,6 +139,7 @@ fn below(block: &Block, roofs: &Roofs, plane: usize, number: usize, edge: &PlanL
     if points.len() < MIN_POINTS || (length < MIN_SHARE * edge.length() && length < MIN_LENGTH) {
         return None;
     }
+    line = turned(&line, edge, noise / (points.len() as f64).sqrt() / length, sd / edge.length());
     // as long as its edge
     let ends = edge.end_points().map(|p| line.of(p)[0]);
     line.ends = ends;
@@ -153,4 +155,13 @@ fn below(block: &Block, roofs: &Roofs, plane: usize, number: usize, edge: &PlanL
         points,
         line,
     })
+}
+
+/// A line through its points, turned towards the edge above it as far as that one's direction is known better. Both
+/// errors are those across, metres, over the length.
+fn turned(line: &PlanLine, edge: &PlanLine, own: f64, of_edge: f64) -> PlanLine {
+    let share = of_edge.powi(2) / (own.powi(2) + of_edge.powi(2)).max(1e-12);
+    let along = [0, 1].map(|axis| share * line.along[axis] + (1.0 - share) * edge.along[axis]);
+    let length = along[0].hypot(along[1]);
+    PlanLine { along: along.map(|v| v / length), ..*line }
 }
