@@ -57,6 +57,20 @@ fn balls_in(model: &SceneModel, cloud: &PointCloud, low: [f32; 2], high: [f32; 2
     found
 }
 
+/// The triangles of surfaces whose middles lie in the rectangle, as bits, sorted.
+fn triangles_in(model: &SceneModel, low: [f32; 2], high: [f32; 2]) -> Vec<[[u32; 3]; 3]> {
+    let is_in = |triangle: &&[[f32; 3]; 3]| {
+        (0..2).all(|axis| {
+            let middle = triangle.iter().map(|corner| corner[axis]).sum::<f32>() / 3.0;
+            low[axis] <= middle && middle < high[axis]
+        })
+    };
+    let triangles = model.patches().triangles.iter().filter(is_in);
+    let mut found: Vec<_> = triangles.map(|corners| corners.map(|corner| corner.map(f32::to_bits))).collect();
+    found.sort_unstable();
+    found
+}
+
 fn check(cloud: &PointCloud) {
     let statistics = statistics(cloud);
     // through text and back, as parts elsewhere get them
@@ -78,7 +92,9 @@ fn check(cloud: &PointCloud) {
         let rows: Vec<u32> = (0..).zip(&cloud.positions).filter(|(_, p)| is_near(p)).map(|(row, _)| row).collect();
         assert!(rows.len() < cloud.len());
         let own = cloud.select(&rows);
-        let part = balls_in(&model_of(&own, &params), &own, low, high);
+        let part = model_of(&own, &params);
+        assert!(triangles_in(&part, low, high) == triangles_in(&whole, low, high), "triangles of surfaces differ");
+        let part = balls_in(&part, &own, low, high);
         let whole = balls_in(&whole, cloud, low, high);
         assert!(whole.len() > 500, "{}", whole.len());
         let different = whole.iter().filter(|ball| part.binary_search(ball).is_err()).count();
@@ -87,8 +103,11 @@ fn check(cloud: &PointCloud) {
 }
 
 #[test]
-fn a_part_of_a_survey_has_the_balls_of_the_whole() {
-    check(&survey());
+fn a_part_of_a_survey_has_the_balls_and_surfaces_of_the_whole() {
+    let cloud = survey();
+    check(&cloud);
+    let model = model_of(&cloud, &ModelParams::default());
+    assert!(model.patches().len() > 500, "{}", model.patches().len());
 }
 
 #[test]
