@@ -8,6 +8,7 @@ use belvedere::model::{BallParams, BallsReport, BuildReport, ModelParams, Orient
 use belvedere::neighbors::NeighborIndex;
 use belvedere::normals::estimate::{Neighborhood, estimate, estimate_with_scatter};
 use belvedere::normals::{Orientation, OrientedCloud, orient};
+use belvedere::planes::{self, BuildingPoints, PlaneParams, SurveyPoints};
 use belvedere::pulses::{FreeSegmentParams, FreeSegments, LocateParams, Means, group, locate};
 use belvedere::query::UnprovenAs;
 use belvedere::trajectory::Trajectory;
@@ -62,15 +63,27 @@ fn a_model_is_what_the_stages_make_one_after_the_other() {
         pulses: Some(&pulses),
         statistics: None,
     };
-    let made = carved_balls(&input, &CarvedParams::default(), &none).unwrap();
-    assert_eq!(model.balls().centers, made.balls.centers);
-    assert_eq!(model.balls().radii, made.balls.radii);
+    let mut balls = carved_balls(&input, &CarvedParams::default(), &none).unwrap().balls;
+    let points = SurveyPoints {
+        positions: &clean.positions,
+        scanner: &scanner,
+        attributes,
+        origin: clean.frame.origin,
+        buildings: BuildingPoints::Classified,
+    };
+    let surfaces = planes::find(&points, &PlaneParams::default(), &none).unwrap();
+    let capped = planes::cap(&mut balls, &clean.positions, &surfaces.regions, &none).unwrap();
+    assert!(capped > 100 && report.surfaces.is_some_and(|found| found.balls_capped == capped), "{capped}");
+    let balls = balls.shrunk();
+    assert_eq!(model.balls().centers, balls.centers);
+    assert_eq!(model.balls().radii, balls.radii);
+    assert!(!model.patches().is_empty() && *model.patches() == surfaces.patches);
     let mut columns = free_segments.to_columns();
     columns.append(
         free_segments.between_returns(&clean, &pulses, &FreeSegmentParams::default(), &none).unwrap().to_columns(),
     );
     assert_eq!(model.pulses(), Some(&columns));
-    let sources: Vec<u32> = made.balls.source.iter().map(|&row| kept[row as usize]).collect();
+    let sources: Vec<u32> = balls.source.iter().map(|&row| kept[row as usize]).collect();
     assert_eq!(model.balls().source, sources, "rows of the cloud as given");
     assert!(matches!(report.interior_balls, Some(BallsReport::Carved(_))));
     let normals = model.normals().unwrap();
