@@ -122,4 +122,13 @@ mod tests {
         }
         assert!(heights(&[[f32::NAN; 3]], &grid).is_err());
     }
+
+    #[test]
+    fn a_square_with_a_middle_has_eight_sides_each_once() {
+        let places = [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0], [1.0, 1.1]];
+        let mut found: Vec<[usize; 2]> = sides(&places).into_iter().map(|[a, b]| [a.min(b), a.max(b)]).collect();
+        found.sort_unstable();
+        assert_eq!(found, [[0, 1], [0, 3], [0, 4], [1, 2], [1, 4], [2, 3], [2, 4], [3, 4]]);
+        assert!(sides(&places[..2]).is_empty() && sides(&[[0.0, 0.0], [1.0, 1.0], [2.0, 2.0]]).is_empty());
+    }
 }

@@ -20,6 +20,8 @@ const BESIDE_SPACINGS: f64 = 2.2;
 const OPEN_SPACINGS: f64 = 0.5;
 /// How far beyond an edge what lies outside of it is cut off, spacings.
 const OUTSIDE_SPACINGS: f64 = 4.0;
+/// Smallest piece of a roof made of cells, m²: smaller ones lie beyond edges more often than they close anything.
+const MIN_PIECE: f64 = 0.6;
 /// How far beyond its ends a ridge cuts, metres.
 const RIDGE_BEYOND: f64 = 0.6;
 /// Shortest piece of a line within a piece of a roof that splits it, metres.
@@ -264,7 +266,7 @@ fn pieces_of_part(cover: &Cover, polygon: Vec<[f64; 2]>, plane: usize, leaves: &
         piece = clip(&piece, |p| p[0] - x1);
         piece = clip(&piece, |p| y0 - p[1]);
         piece = clip(&piece, |p| p[1] - y1);
-        if area(&piece) >= MIN_AREA {
+        if area(&piece) >= MIN_PIECE {
             leaves.push(Leaf { plane, polygon: piece, is_whole: false });
         }
     }

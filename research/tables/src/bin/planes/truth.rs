@@ -47,6 +47,12 @@ impl Line {
     }
 }
 
+/// A side of triangles, and the unit normals of these.
+struct Side {
+    line: Line,
+    normals: Vec<[f64; 3]>,
+}
+
 /// A line that was found, with its ends, absolute metres, and its standard deviation across, metres.
 pub(crate) struct FoundLine {
     pub(crate) ends: [[f64; 3]; 2],
@@ -101,7 +107,7 @@ pub(crate) fn lines_of(scene: &TriangleScene, exact: &Truth) -> (Vec<Line>, Vec<
     };
     #[expect(clippy::cast_possible_truncation, reason = "millimetres of a town")]
     let key = |p: [f64; 3]| p.map(|v| (1000.0 * v).round() as i64);
-    let mut sides: BTreeMap<[[i64; 3]; 2], (Line, Vec<[f64; 3]>)> = BTreeMap::new();
+    let mut sides: BTreeMap<[[i64; 3]; 2], Side> = BTreeMap::new();
     for number in (0..scene.triangles.len()).filter(|&number| scene.materials.get(number) == Some(&Material::Roof)) {
         let Some(corners) = scene.corners(number) else { continue };
         let normal = unit(cross(sub(corners[1], corners[0]), sub(corners[2], corners[0]))).unwrap_or_default();
@@ -109,11 +115,12 @@ pub(crate) fn lines_of(scene: &TriangleScene, exact: &Truth) -> (Vec<Line>, Vec<
             let ends = [corners[side], corners[(side + 1) % 3]];
             let mut keys = ends.map(key);
             keys.sort_unstable();
-            sides.entry(keys).or_insert_with(|| (Line { ends }, Vec::new())).1.push(normal);
+            let side = sides.entry(keys).or_insert_with(|| Side { line: Line { ends }, normals: Vec::new() });
+            side.normals.push(normal);
         }
     }
     let (mut edges, mut ridges) = (Vec::new(), Vec::new());
-    for (line, normals) in sides.into_values().filter(|(line, _)| line.length() >= 1.0) {
+    for Side { line, normals } in sides.into_values().filter(|side| side.line.length() >= 1.0) {
         let up = normals.iter().filter(|normal| normal[2] > 0.3).count();
         if let (2, [a, b]) = (up, &normals[..]) {
             let seen = (0..20_u32).filter(|step| {
