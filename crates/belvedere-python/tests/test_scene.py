@@ -350,3 +350,26 @@ def test_a_cloud_is_saved_with_what_its_file_holds(cloud, tile, folder):
     assert [vlr.record_data for vlr in again.header.vlrs if vlr.user_id == "MyCompany"] == [b"flight 12"]
     with pytest.warns(belvedere.BelvedereWarning, match="Amplitude, near infrared, user data"):
         read.save(folder / "again.ply")
+
+
+def test_a_scene_is_found_again_until_a_point_moves(cloud, tmp_path):
+    def origin(of: belvedere.Cloud, **choices) -> str:
+        return belvedere.Scene(of, cache=tmp_path / "kept", **choices).report["scene"]
+
+    assert origin(cloud) == "kept"
+    assert origin(cloud) == "found"
+    assert origin(cloud, trees="opaque") == "kept"
+    xyz = cloud.xyz.copy()
+    xyz[0] += 0.5
+    assert origin(belvedere.Cloud(xyz, crs=cloud.crs, adjusted_gps_time=True, **cloud.attributes)) == "kept"
+    assert belvedere.Scene(cloud, cache=False).report["scene"] == "built"
+    first, second = (belvedere.Scene(cloud, cache=cache) for cache in (False, tmp_path / "kept"))
+    eye = cloud.xyz.max(axis=0) + 5
+    assert (first.visible(eye, cloud.xyz[::50]) == second.visible(eye, cloud.xyz[::50])).all()
+
+
+def test_a_scene_that_cannot_be_kept_is_said(cloud, tmp_path):
+    (tmp_path / "file").write_text("")
+    with pytest.warns(belvedere.BelvedereWarning, match="could not be kept"):
+        scene = belvedere.Scene(cloud, cache=tmp_path / "file")
+    assert scene.report["scene"] == "not kept"
