@@ -5,7 +5,6 @@ use super::{BuiltScene, SceneOrigin};
 use crate::apps::ask::scene::{GroundStore, KnownGround};
 use crate::control::Control;
 use crate::ground::{Ground, GroundParams, GroundReport, MapGrid};
-use crate::io::atomic::make_folder;
 use crate::io::{
     ReadOptions, read_balls, read_kept_model, read_kept_notes, read_kept_rasters, write_balls, write_kept_model,
     write_kept_rasters,
@@ -135,7 +134,7 @@ impl SceneCache {
         report: &Map<String, Value>,
         name: &str,
     ) -> Result<()> {
-        make_folder(&self.folder)?;
+        self.make_folder()?;
         let derived = model.derived();
         let path = self.path(&cloud.of_scene(params, derived.normals.is_some()), SCENE);
         let notes = json!({ "name": name, "report": report }).to_string();
@@ -162,7 +161,7 @@ impl SceneCache {
         let Some(name) = of_files(paths, options).filter(|name| !self.path(name, READING).exists()) else {
             return Ok(());
         };
-        make_folder(&self.folder)?;
+        self.make_folder()?;
         let parts = ModelParts { frame: found.frame.clone(), ..ModelParts::default() };
         let notes = Value::Object(found.notes.clone()).to_string();
         write_balls(
@@ -208,6 +207,10 @@ impl SceneCache {
             }
         }
         Ok(bytes)
+    }
+
+    fn make_folder(&self) -> Result<()> {
+        fs::create_dir_all(&self.folder).map_err(Error::io(&self.folder))
     }
 
     fn path(&self, key: &str, kind: &str) -> PathBuf {
@@ -276,7 +279,7 @@ impl GroundStore for GroundOfCloud {
         let KnownGround { ground: Ground { grid, heights, gaps }, report } = known;
         let notes = GroundNotes { corner: grid.corner, cell: grid.cell, report: *report };
         let path = self.cache.path(&self.cloud.of_ground(grid, params), GROUND);
-        let is_kept = make_folder(&self.cache.folder).is_ok()
+        let is_kept = self.cache.make_folder().is_ok()
             && serde_json::to_string(&notes)
                 .is_ok_and(|notes| write_kept_rasters(&path, &[heights, gaps], &notes).is_ok());
         if is_kept {

@@ -99,7 +99,7 @@ fn with_companions(file: &Path) -> Option<Vec<PathBuf>> {
     let mut files: Vec<PathBuf> =
         folder.read_dir().ok()?.filter_map(|entry| Some(entry.ok()?.path())).filter(is_companion).collect();
     files.sort();
-    Some(files)
+    files.iter().any(|path| path.file_name() == file.file_name()).then_some(files)
 }
 
 /// A sum of everything that is given to it, each with its length, so that none runs into the next.

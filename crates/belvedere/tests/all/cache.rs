@@ -137,7 +137,7 @@ fn two_that_build_the_same_at_once_keep_it_once() {
 #[test]
 fn what_reading_gave_is_known_until_a_file_changes() {
     let folder = tempfile::tempdir().unwrap();
-    let cache = SceneCache::new(folder.path().join("cache"));
+    let cache = SceneCache::new(folder.path().join("made/when/needed"));
     let file = folder.path().join("tile.xyz");
     fs::write(&file, "1 2 3\n").unwrap();
     let (paths, options, cloud) = ([file.clone()], ReadOptions::default(), cloud(8));

@@ -69,7 +69,7 @@ const ONE_HOME: [(&str, &str); 35] = [
     ("delaunator::", "core/src/ground/triangulate.rs"),
     ("nalgebra::", "core/src/pulses/estimate/"),
     ("obvhs::", "core/src/ray_index"),
-    ("smallvec::", "core/src/ray_index/walk.rs"),
+    ("smallvec::", "core/src/"),
     ("proj_core::", "data/src/crs"),
     ("proj_wkt::", "data/src/crs"),
     ("solar_positioning::", "apps/src/sun/position.rs"),

@@ -221,7 +221,8 @@ fn reports_use_keys_with_units_and_rounded_numbers() {
     let report = serde_json::to_value(built(&cloud, &ModelParams::default()).1).unwrap();
     let mut sections: Vec<&String> = report.as_object().unwrap().keys().collect();
     sections.sort();
-    assert_eq!(sections, ["interior_balls", "normals", "pulses", "removed_by_cleaning", "scanner", "smoothing"]);
+    let expected = ["interior_balls", "normals", "pulses", "removed_by_cleaning", "scanner", "smoothing", "surfaces"];
+    assert_eq!(sections, expected);
     let known = report["scanner"]["scanner_known_percent"].as_f64().unwrap();
     assert!(known > 99.0 && (known * 100.0).fract().abs() < 1e-6, "{known}");
     for (section, key) in [
@@ -230,6 +231,7 @@ fn reports_use_keys_with_units_and_rounded_numbers() {
         ("normals", "towards_scanner_percent"),
         ("interior_balls", "balls_cut_by_pulses"),
         ("interior_balls", "points_on_thin_objects"),
+        ("surfaces", "balls_capped"),
     ] {
         assert!(report[section][key].is_number(), "{section} {key}: {report}");
     }
