@@ -132,7 +132,7 @@ impl SceneModel {
     /// What blocks beside the balls, if any meshes were added. These are not saved.
     #[must_use]
     pub fn added(&self) -> Option<&BlockingTriangles> {
-        self.triangles.as_ref().filter(|triangles| !triangles.names().is_empty())
+        self.triangles.as_ref().filter(|triangles| triangles.has_meshes())
     }
 
     /// The same model with `patches` of surfaces instead of its own. They block beside the balls, and are saved.

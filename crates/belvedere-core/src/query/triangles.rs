@@ -157,6 +157,12 @@ impl BlockingTriangles {
         if left.is_empty() { Ok(None) } else { Self::of_triangles(&left, self.names.to_vec()).map(Some) }
     }
 
+    /// Whether any triangle is one of a mesh that was added.
+    #[must_use]
+    pub fn has_meshes(&self) -> bool {
+        self.faces.iter().any(|face| face.blocker.mesh().is_some())
+    }
+
     /// Names of the meshes, in the order in which they were added.
     #[must_use]
     pub fn names(&self) -> &[String] {
