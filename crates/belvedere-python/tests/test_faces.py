@@ -394,7 +394,9 @@ def test_how_open_a_place_is_is_the_same_on_the_page(scene, ask_program, ask_pag
 
 def test_horizons_and_landmarks_are_the_same_in_the_program_and_in_python(scene, ask_program, folder, standing):
     x, y = standing
-    summary = ask_program("horizon", "tile.laz", "--observer", f"{x},{y}", "--angle-step-deg", 5, "-o", "horizon.csv")
+    summary = ask_program(
+        "horizon", "tile.laz", "--observer", f"{x},{y}", "--angle-step-deg", 5, "--below", "keep", "-o", "horizon.csv"
+    )
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         _, of_python = scene.horizon((x, y), angle_step_deg=5)

@@ -145,8 +145,8 @@ struct PartOutline {
 }
 
 impl PartOutline {
-    /// From the faces of a part that look down, but for roofs, whose undersides are eaves. Where they meet above each other, as the floor of an arcade and its
-    /// ceiling do, their corners are the same numbers and count as one.
+    /// From the faces of a part that look down, but for roofs, whose undersides are eaves. Where they meet above each
+    /// other, as the floor of an arcade and its ceiling do, their corners are the same numbers and count as one.
     fn new(scene: &TriangleScene, range: Range<usize>) -> Self {
         let mut numbers: HashMap<[u64; 2], usize> = HashMap::new();
         let mut footprint = Self { points: Vec::new(), triangles: Vec::new() };

@@ -108,8 +108,8 @@ pub struct ObjectPart {
 }
 
 impl ObjectPart {
-    /// Adds a flat convex polygon, corners counter-clockwise seen from outside, as a fan about its first corner. Corners
-    /// may be the same: triangles that would have no area are left out.
+    /// Adds a flat convex polygon, corners counter-clockwise seen from outside, as a fan about its first corner.
+    /// Corners may be the same: triangles that would have no area are left out.
     pub(crate) fn add_polygon(&mut self, corners: &[usize], material: Material) {
         if let [first, rest @ ..] = corners {
             for edge in rest.windows(2).filter(|edge| edge[0] != edge[1] && !edge.contains(first)) {

@@ -145,8 +145,8 @@ struct RoofCorner {
 }
 
 impl RoofCorner {
-    /// Corner over the vertex `wall`, which lies in the plane of the roof; the roof reaches `outward` beyond it, metres.
-    /// The wall then ends below the roof.
+    /// Corner over the vertex `wall`, which lies in the plane of the roof; the roof reaches `outward` beyond it,
+    /// metres. The wall then ends below the roof.
     fn new(part: &mut ObjectPart, wall: usize, outward: [f64; 3]) -> Self {
         if length(outward) == 0.0 {
             return Self { wall, lower: wall, upper: wall };

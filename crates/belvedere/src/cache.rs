@@ -2,8 +2,8 @@
 //!
 //! An entry is named after everything that a scene follows from: the contents of the cloud, the parameters, and the
 //! program. What does not fit is not found, so that nothing in the folder can be out of date. Entries appear whole and
-//! have checksums; one that is damaged is made again. Several programs may use one folder. What was not used for longest
-//! goes where the folder outgrows its bound.
+//! have checksums; one that is damaged is made again. Several programs may use one folder. What was not used for
+//! longest goes where the folder outgrows its bound.
 
 mod folder;
 mod key;
@@ -56,8 +56,8 @@ impl SceneOrigin {
     }
 }
 
-/// The model of `cloud`: found in `cache`, or built and kept there. Of an owned cloud the memory is freed on the way, as
-/// [`SceneModel::build_owned`] does it, and the model has no normals.
+/// The model of `cloud`: found in `cache`, or built and kept there. Of an owned cloud the memory is freed on the way,
+/// as [`SceneModel::build_owned`] does it, and the model has no normals.
 ///
 /// # Errors
 /// Those of [`SceneModel::build`]. A cache that cannot be read or written is none ([`SceneOrigin::NotKept`]).

@@ -57,8 +57,8 @@
 //!
 //! Units are metres and radians. x is east, y north, z up. Positions are local f32 on an f64 origin ([`Frame`]). Every
 //! result is the same, bit by bit, for any number of threads. The crate prints nothing and reads no environment; the
-//! clock only for when a kept scene was used. Parameters are structs with defaults; those that may grow are `#[non_exhaustive]` and have `with_…`
-//! methods.
+//! clock only for when a kept scene was used. Parameters are structs with defaults; those that may grow are
+//! `#[non_exhaustive]` and have `with_…` methods.
 
 #[cfg(feature = "apps")]
 pub use belvedere_apps as apps;

@@ -31,7 +31,7 @@ fn patches_of_a_ball_file_are_counted_and_named_where_they_block() {
         let bare = place.summary(&format!("line-of-sight bare.npz {ends}"));
         assert!(bare["line"]["block_surface"].is_null() && bare["line"]["answer"] != "blocked", "{bare}");
         let run = place.run(&format!("line-of-sight {name} {ends}"));
-        assert!(run.status == 0 && run.stderr.contains("a surface of the survey (wall)"), "{run:?}");
+        assert!(run.status == 0 && run.stdout.contains("a surface of the survey (wall)"), "{run:?}");
         let blocked = place.summary(&format!("line-of-sight {name} {ends} -o lines.csv"));
         assert_eq!(blocked["line"]["block_surface"], "wall", "{blocked}");
         assert_eq!(blocked["lines_of_sight"]["patches"], 2, "{blocked}");

@@ -36,8 +36,9 @@ fn the_path_is_the_one_flown_and_is_read_as_a_trajectory() {
     for row in &found {
         let place = flown(&truth, row[0]);
         let off = (0..3).map(|i| (row[i + 1] - place[i]).powi(2)).sum::<f64>().sqrt();
-        assert!(off < 12.0, "{row:?} {place:?}");
-        assert!(row[4..8].iter().all(|v| *v > 0.0) && (row[8] >= 1.0), "{row:?}");
+        assert!(off < 1.5, "{row:?} {place:?}");
+        // deviations below half a millimetre are printed as 0
+        assert!(row[4..8].iter().all(|v| *v >= 0.0) && (row[8] >= 1.0), "{row:?}");
     }
     // no gap within a line is longer than readers bridge
     assert!(found.windows(2).all(|w| w[0][8] < w[1][8] || w[1][0] - w[0][0] <= 0.2501), "{found:?}");

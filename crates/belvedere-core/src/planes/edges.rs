@@ -26,8 +26,8 @@ const BAND_SPACINGS: f64 = 0.6;
 /// The same while a line begins to grow, and how often.
 const WIDE_BAND_SPACINGS: f64 = 0.9;
 const WIDE_TURNS: usize = 4;
-/// Cosine of the turn between pieces of one line, 26°, and how much farther from it their middles lie than from lines of
-/// their own, root mean square, spacings: a step of two thirds of a spacing between two halves.
+/// Cosine of the turn between pieces of one line, 26°, and how much farther from it their middles lie than from lines
+/// of their own, root mean square, spacings: a step of two thirds of a spacing between two halves.
 const JOINED_COSINE: f64 = 0.9;
 const JOINED_SPACINGS: f64 = 0.36;
 /// Longest gap of a line, spacings.

@@ -175,7 +175,7 @@ class Sights:
         --------
         >>> scene.line_of_sight(eye, targets)
         <belvedere.Table: ... rows of answer, first_block_range_m, unproven_m, block_x, block_y, block_z,
-        block_ball, block_source>
+        block_ball, block_source, block_surface>
         """
         check_finite(refraction=refraction, frequency_ghz=frequency_ghz)
         check_finite(observer_height=observer_height, target_height=target_height)

@@ -80,13 +80,13 @@ impl Axis {
 
 /// An echo of a pulse.
 ///
-/// It stands for the strongest of the rays that make it up, not for their mean: that ray met one surface, or leaves
+/// It represents the strongest of the rays that make it up, not for their mean: that ray met one surface, or leaves
 /// inside one crown. A scanner knows the range of an echo but not which part of the beam met something. It therefore
 /// reports the echo at this range on the axis of the pulse, up to half a beam beside the surface that was met.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Echo {
     pub(crate) range: f64,
-    /// Unit vector of the ray that stands for the echo, which ends on what was met; not the axis of the pulse.
+    /// Unit vector of the ray that represents the echo, which ends on what was met; not the axis of the pulse.
     pub(crate) direction: [f64; 3],
     /// Triangle met; within a crown, where the ray entered it.
     pub(crate) triangle: u32,

@@ -49,8 +49,8 @@ pub struct Scan {
     /// Truth: index of the triangle of the scene that sent the echo back; for a return from inside a crown (only with
     /// [`crate::BeamParams::foliage_depth`]) the triangle of the crown's hull through which the ray entered.
     pub triangle: Vec<u32>,
-    /// Truth: where the surface was met, (N, 3), metres, absolute: on that triangle, or behind it on the ray where leaves
-    /// inside the crown stopped it.
+    /// Truth: where the surface was met, (N, 3), metres, absolute: on that triangle, or behind it on the ray where
+    /// leaves inside the crown stopped it.
     ///
     /// A return lies elsewhere for two reasons. The scanner reports the range of this place along the axis of the
     /// beam, although it may lie up to half a beam beside the axis: returns of an edge lie on both sides of it. Noise

@@ -73,7 +73,8 @@ impl SceneCache {
     }
 
     /// Where a user's cache lies by the habits of the system, by what `variable` says of the environment:
-    /// `XDG_CACHE_HOME`, `LOCALAPPDATA` on Windows, `~/Library/Caches` on a Mac, else `~/.cache`. `None` without a home.
+    /// `XDG_CACHE_HOME`, `LOCALAPPDATA` on Windows, `~/Library/Caches` on a Mac, else `~/.cache`. `None` without a
+    /// home.
     #[must_use]
     pub fn usual_folder(variable: impl Fn(&str) -> Option<OsString>) -> Option<PathBuf> {
         let path = |name: &str| variable(name).map(PathBuf::from).filter(|path| path.is_absolute());
@@ -105,7 +106,7 @@ impl SceneCache {
         needs_normals: bool,
         control: &Control<'_>,
     ) -> Option<BuiltScene> {
-        // a scene with normals serves those who need none
+        // who needs no normals can use a scene with them
         let mut names = [true, false].into_iter().filter(|&has_normals| has_normals || !needs_normals);
         let path = names.find_map(|has_normals| {
             Some(self.path(&cloud.of_scene(params, has_normals), SCENE)).filter(|p| p.is_file())

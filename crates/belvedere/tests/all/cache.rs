@@ -44,7 +44,7 @@ fn a_scene_that_is_found_is_the_one_that_was_built() {
         let bits = |scene: &BuiltScene| format!("{:?}", (scene.model.parts(), scene.model.derived(), &scene.report));
         assert!(bits(&found) == bits(&built), "a part differs");
         assert!(built.model.derived().tree.is_some() && built.model.normals().is_some());
-        // a scene with normals serves those who need none
+        // who needs no normals can use a scene with them
         let given = scene_model(Cow::Owned(cloud.clone()), &params, Some(&cache), &Control::none()).unwrap();
         assert!(matches!(given.origin, SceneOrigin::Found), "{:?}", given.origin);
     }

@@ -1,5 +1,5 @@
-//! The order of the points in a file says nothing: balls and answers stay the same, but where two neighbours are equally
-//! near.
+//! The order of the points in a file says nothing: balls and answers stay the same, but where two neighbours are
+//! equally near.
 #![allow(clippy::unwrap_used, reason = "tests stop at the first surprise")]
 
 use crate::common::simulated::cloud_of;

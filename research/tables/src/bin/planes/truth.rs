@@ -12,7 +12,8 @@ const STEP: f64 = 0.25;
 const BESIDE: f64 = 0.03;
 /// How much lower than an edge the other side must lie, metres.
 const MIN_DROP: f64 = 0.5;
-/// Strips narrower than this are parapets, of which only the outer side is an edge, metres, and how much lower that lies.
+/// Strips narrower than this are parapets, of which only the outer side is an edge, metres, and how much lower that
+/// lies.
 const STRIP: f64 = 0.4;
 const STRIP_DROP: f64 = 1.2;
 /// How far from a true line one that was found may lie, metres, across and in height: a parapet stands on its roof.
