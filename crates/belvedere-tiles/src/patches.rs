@@ -71,7 +71,7 @@ mod tests {
     use super::*;
     use belvedere::PatchKind;
 
-    /// A wall of 40 m along the edge between two tiles, and a roof that reaches into both.
+    /// A wall of 40 m, a roof that reaches into two tiles, and a small one.
     fn patches() -> SurfacePatches {
         let mut patches = SurfacePatches::default();
         patches.push([[64.0, 10.0, 0.0], [64.0, 50.0, 0.0], [64.0, 50.0, 12.0]], PatchKind::Wall);
@@ -82,11 +82,13 @@ mod tests {
 
     #[test]
     fn a_tile_keeps_what_reaches_into_it() {
-        let [west, east] = [0.0, 64.0].map(|x| MapArea { low: [x, 0.0], high: [x + 64.0, 64.0] });
-        let far = MapArea { low: [128.0, 0.0], high: [192.0, 64.0] };
+        let tile = |from: f64, to: f64| MapArea { low: [from, 0.0], high: [to, 64.0] };
+        let (west, east) = (tile(0.0, 70.0), tile(70.0, 140.0));
         assert_eq!(of_tile(&patches(), &west, &[]), patches());
-        assert_eq!(of_tile(&patches(), &east, &[]).len(), 2);
-        assert!(of_tile(&patches(), &far, &[]).is_empty());
+        assert_eq!(of_tile(&patches(), &east, &[]).len(), 1);
+        assert!(of_tile(&patches(), &tile(192.0, 256.0), &[]).is_empty());
+        // the middle of the roof lies in a block of which this tile has a part only
+        assert!(of_tile(&patches(), &tile(40.0, 60.0), &[]).is_empty());
         let square = ClearedArea::Polygon(vec![vec![[0.0, 0.0], [12.0, 0.0], [12.0, 12.0], [0.0, 12.0]]]);
         assert_eq!(of_tile(&patches(), &west, &[square, ClearedArea::Class(5)]).len(), 2);
         assert!(of_tile(&patches(), &west, &[ClearedArea::Class(6)]).is_empty());
