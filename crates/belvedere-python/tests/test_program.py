@@ -409,7 +409,7 @@ def test_cameras(scene, run_program, folder, standing):
     assert ours.coverage_percent < scene.cameras("roofs", **masts).coverage_percent
     assert some.coverage_percent >= 30 and some.least_possible_cameras <= len(some.covered)
     with pytest.warns(belvedere.BelvedereWarning, match=r"targets \(.* %\) are outside the cloud"):
-        more = scene.cameras(posts[2:], count=1, cell=4, density="none", existing=some.cameras, headings=6)
+        more = scene.cameras(posts[2:6], count=1, cell=4, density="none", existing=some.cameras, headings=6)
     assert more.existing_only_percent == pytest.approx(some.coverage_percent, abs=0.2)
     assert more.cameras["is_existing"].tolist() == [True] * len(some.covered) + [False]
 
