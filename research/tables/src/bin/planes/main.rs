@@ -10,8 +10,9 @@
 
 mod truth;
 
+use belvedere::PatchKind;
 use belvedere::control::Control;
-use belvedere::planes::{BuildingPoints, BuildingSurfaces, PatchKind, PlaneParams, SurveyPoints, find};
+use belvedere::planes::{BuildingPoints, BuildingSurfaces, PlaneParams, SurveyPoints, find};
 use belvedere::{Error, Parameter, Result};
 use belvedere_baselines::simulated::flown;
 use belvedere_scenes::{AirborneParams, Preset, Truth, town};
