@@ -136,7 +136,10 @@ impl MedialBaseline {
     /// # Errors
     /// As [`scene_model`].
     pub fn new(survey: &MethodInput<'_>, outward: Outward<'_>, params: &MedialParams) -> Result<Self> {
-        Self::of_balls(survey, scene_model(survey, outward, params)?.into_parts().balls, params)
+        let model = scene_model(survey, outward, params)?;
+        let triangles = model.triangles().cloned();
+        let made = Self::of_balls(survey, model.into_parts().balls, params)?;
+        Ok(Self { scene: made.scene.with_triangles(triangles), ..made })
     }
 
     /// The balls that block.

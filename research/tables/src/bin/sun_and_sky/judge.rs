@@ -7,7 +7,7 @@ use belvedere::Bounds;
 use belvedere::control::Control;
 use belvedere::ground::{Ground, GroundParams, MapGrid, SurfaceParams, highest_points, top_surface};
 use belvedere::medial::MedialBalls;
-use belvedere::query::{Answer, BlockRule, MedialScene, Viewer, Visibility};
+use belvedere::query::{Answer, BlockRule, BlockingTriangles, MedialScene, Viewer, Visibility};
 use belvedere::{PointCloud, Result};
 use belvedere_baselines::MethodInput;
 use belvedere_baselines::medial::{MedialParams, Outward, scene_model};
@@ -52,6 +52,7 @@ pub(crate) struct LightTown {
     pub(crate) cloud: PointCloud,
     pub(crate) scanner: Vec<[f32; 3]>,
     pub(crate) balls: MedialBalls,
+    triangles: Option<BlockingTriangles>,
     ground: Ground,
     /// Cells free of buildings, and the exact height of the ground there.
     bare: Vec<([f64; 2], f64)>,
@@ -63,13 +64,15 @@ impl LightTown {
         let scene = town(&preset.params(extent, seed));
         let (cloud, scanner) = flown(&scene, &AirborneParams { seed, ..AirborneParams::covering(&scene, 8.0) })?;
         let survey = MethodInput { cloud: &cloud, scanner: &scanner, models: &[] };
-        let balls = scene_model(&survey, Outward::Survey, &MedialParams::carved())?.into_parts().balls;
+        let model = scene_model(&survey, Outward::Survey, &MedialParams::carved())?;
+        let triangles = model.triangles().cloned();
+        let balls = model.into_parts().balls;
         let truth = Truth::new(&scene);
         let Bounds { low, high } = cloud.bounds().unwrap_or_default();
         let on_map = |p: [f32; 3]| [f64::from(p[0]), f64::from(p[1])];
         let grid = MapGrid::covering(on_map(low), on_map(high), cell, [cloud.frame.origin[0], cloud.frame.origin[1]])?;
         let (ground, _) = Ground::of_cloud(&cloud, grid, &GroundParams::default(), &Control::none())?;
-        let mut town = Self { scene, truth, cloud, scanner, balls, ground, bare: Vec::new() };
+        let mut town = Self { scene, truth, cloud, scanner, balls, triangles, ground, bare: Vec::new() };
         let site = town.site();
         let bare = (0..grid.len()).filter_map(|i| {
             let [x, y] = grid.center(i % grid.width, i / grid.width);
@@ -219,7 +222,7 @@ impl LightTown {
         lift: f32,
         params: &BlockRule,
     ) -> Result<LightScore> {
-        let scene = MedialScene::new(&self.balls, params)?;
+        let scene = MedialScene::new(&self.balls, params)?.with_triangles(self.triangles.clone());
         let queried: Vec<[f32; 3]> = places.queried.iter().map(|p| [p[0], p[1], p[2] + lift]).collect();
         let found = scene.visibility_matrix(&queried, &light.directions, &Control::none())?;
         Ok(LightScore::new(places, light, &|target, column| found.is_free(target, column)))
@@ -248,7 +251,7 @@ impl LightTown {
         lift: f32,
         params: &BlockRule,
     ) -> Result<Vec<(String, f64)>> {
-        let scene = MedialScene::new(&self.balls, params)?;
+        let scene = MedialScene::new(&self.balls, params)?.with_triangles(self.triangles.clone());
         let mut sums = std::collections::BTreeMap::<String, f64>::new();
         let width = light.directions.len();
         let classes = self.cloud.attributes.classification.as_deref().unwrap_or_default();

@@ -6,10 +6,10 @@ use belvedere::control::Control;
 use belvedere::ground::{Ground, GroundParams, MapGrid};
 use belvedere::medial::MedialBalls;
 use belvedere::pulses::{FreeSegmentParams, FreeSegments};
-use belvedere::query::{Answer, BlockRule, MedialScene, Proof, ProofParams};
+use belvedere::query::{Answer, BlockRule, BlockingTriangles, MedialScene, Proof, ProofParams};
 use belvedere::{PointCloud, Result};
 use belvedere_baselines::MethodInput;
-use belvedere_baselines::medial::{MedialBaseline, MedialParams, Outward};
+use belvedere_baselines::medial::{MedialParams, Outward, scene_model};
 use belvedere_baselines::simulated::flown;
 use belvedere_scenes::{AirborneParams, Preset, QuerySite, Truth, town};
 
@@ -20,6 +20,7 @@ const REACH: f64 = 150.0;
 pub(crate) struct ViewshedTown {
     pub(crate) cloud: PointCloud,
     pub(crate) balls: MedialBalls,
+    triangles: Option<BlockingTriangles>,
     pub(crate) ground: Ground,
     /// Exact height of the ground in each cell, absolute, where it is bare of buildings.
     exact_ground: Vec<Option<f64>>,
@@ -66,7 +67,9 @@ impl ViewshedTown {
         let (cloud, scanner) = flown(&scene, &AirborneParams { seed, ..AirborneParams::covering(&scene, 8.0) })?;
         let origin = cloud.frame.origin;
         let survey = MethodInput { cloud: &cloud, scanner: &scanner, models: &[] };
-        let balls = MedialBaseline::new(&survey, Outward::Survey, &MedialParams::carved())?.balls().clone();
+        let model = scene_model(&survey, Outward::Survey, &MedialParams::carved())?;
+        let triangles = model.triangles().cloned();
+        let balls = model.into_parts().balls;
         let truth = Truth::new(&scene);
         let Bounds { low, high } = cloud.bounds().unwrap_or_default();
         let absolute = |p: [f32; 3]| -> [f64; 3] { std::array::from_fn(|i| f64::from(p[i]) + origin[i]) };
@@ -85,12 +88,17 @@ impl ViewshedTown {
             .into_iter()
             .map(|eye| std::array::from_fn(|i| eye[i] - origin[i]))
             .collect();
-        Ok(Self { cloud, balls, ground, exact_ground, truth, scanner, eyes })
+        Ok(Self { cloud, balls, triangles, ground, exact_ground, truth, scanner, eyes })
+    }
+
+    /// What blocks: the balls, and the surfaces of buildings.
+    pub(crate) fn blockers(&self) -> Result<MedialScene> {
+        Ok(MedialScene::new(&self.balls, &BlockRule::carved())?.with_triangles(self.triangles.clone()))
     }
 
     /// What people in the streets see of targets `height` metres above the ground.
     pub(crate) fn judge(&self, height: f64) -> Result<ViewshedScore> {
-        let scene = MedialScene::new(&self.balls, &BlockRule::carved())?;
+        let scene = self.blockers()?;
         let (free_segments, _) =
             FreeSegments::of_cloud(&self.cloud, &self.scanner, &FreeSegmentParams::default(), &Control::none())?;
         let scene = scene.with_pulses(Proof::new(free_segments, &ProofParams::default())?);

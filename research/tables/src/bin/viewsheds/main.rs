@@ -13,7 +13,7 @@ mod judge;
 use belvedere::Bounds;
 use belvedere::apps::viewshed::{Observer, ViewshedParams, cell_targets, viewshed};
 use belvedere::control::Control;
-use belvedere::query::{BlockRule, EarthParams, MedialScene, random_pairs};
+use belvedere::query::{EarthParams, random_pairs};
 use belvedere_scenes::Preset;
 use judge::ViewshedTown;
 use std::time::Instant;
@@ -39,7 +39,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 100.0 * score.truly_visible as f64 / (score.truly_visible + score.truly_blocked) as f64
             );
         }
-        let scene = MedialScene::new(&town.balls, &BlockRule::carved())?;
+        let scene = town.blockers()?;
         let targets = cell_targets(&town.ground, 0.0);
         let mut seconds = Vec::new();
         for &eye in &town.eyes {
