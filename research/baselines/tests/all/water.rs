@@ -27,8 +27,8 @@ fn canals_hide_few_suns_that_pedestrians_see() {
     };
     let [blocked, seen] = errors(CarvedParams::default());
     let [blocked_without, seen_without] = errors(CarvedParams::default().without(Rule::DataVoids));
-    // 2.2 of 5.2 % when the rule was made; on the towns of its page 4.8 of 8.3 %. Since walls cap the balls that reached
-    // over canals most, 2.6 of 3.3 %
+    // 2.2 of 5.2 % when the rule was made; on the towns of its page 4.8 of 8.3 %. Since walls cap the balls that
+    // reached over canals most, 2.6 of 3.3 %
     assert!(blocked < 0.85 * blocked_without, "{blocked} of {blocked_without} % without the rule");
     // 0.1 % more on both
     assert!(seen < seen_without + 0.2, "{seen} of {seen_without} % without the rule");
