@@ -69,7 +69,7 @@ pub(crate) fn run(arguments: &Demo, global: &Global) -> Result<Summary> {
     let (low, high) = bounds.corners();
     let view = View::parallel(sun.map(|v| -v), low, high, default_pixel_size(low, high))?;
     let map = run.stage("drawing depth map", 0, |control| {
-        depth_map(balls, &view, Profile::Sphere, ItemBuffer::Without, control)
+        model.depth_map(&view, Profile::Sphere, ItemBuffer::Without, control)
     })?;
     let blockers = model.scene(&model.rule(), UnprovenAs::Visible, &run.control())?;
     let answers = run.stage("querying", 0, |_| blockers.visible(Viewer::Direction(sun), &cloud.positions))?;

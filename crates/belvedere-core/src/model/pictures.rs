@@ -1,16 +1,22 @@
-//! Pictures of a scene model: depth maps, drawn by its backend where that is faster.
+//! Pictures of a scene model: depth maps of its balls, drawn by its backend where that is faster, and of the triangles
+//! beside them.
 
 use super::SceneModel;
 use crate::blocking::Profile;
-use crate::depth::{DepthMap, ItemBuffer, Panorama, depth_map, panorama, panorama_of_maps};
+use crate::depth::{DepthMap, ItemBuffer, NO_BALL, Panorama, depth_map, panorama, panorama_of_maps};
+use crate::ray_index::Ray;
 use belvedere_data::Result;
-use belvedere_data::control::Control;
-use belvedere_data::view::View;
+use belvedere_data::control::{Control, Stop};
+use belvedere_data::raster::Raster;
+use belvedere_data::vector::{length, sub};
+use belvedere_data::view::{View, panorama_direction};
+use rayon::prelude::*;
 
 impl SceneModel {
-    /// The depth map of its balls in `view`: [`depth_map()`]. Where the backend of the model draws it, each depth may
-    /// differ by [`DEPTH_MAP_TOLERANCE`](crate::query::DEPTH_MAP_TOLERANCE) of itself; without a backend and with that
-    /// of the CPU none does.
+    /// The depth map of its balls in `view`, [`depth_map()`], and of the triangles that block beside them: surface
+    /// patches and meshes that were added. Where the backend of the model draws the balls, each depth may differ by
+    /// [`DEPTH_MAP_TOLERANCE`](crate::query::DEPTH_MAP_TOLERANCE) of itself; without a backend and with that of the CPU
+    /// none does.
     ///
     /// # Errors
     /// Those of [`depth_map()`].
@@ -24,14 +30,24 @@ impl SceneModel {
         let pixel_count = view.size_px[0].saturating_mul(view.size_px[1]);
         let backend = self.backend.as_ref().filter(|_| profile == Profile::Sphere);
         let drawable = backend.map(|backend| backend.drawable(self.balls(), pixel_count, control)).transpose()?;
-        match drawable.flatten() {
+        let mut map = match drawable.flatten() {
             Some(drawable) => drawable.depth_map(view, items, control),
             None => depth_map(self.balls(), view, profile, items, control),
-        }
+        }?;
+        let [nearest, farthest] = view.limits();
+        let sight = |[column, row]: [usize; 2]| {
+            let place = [column as f64 + 0.5, row as f64 + 0.5];
+            let [start, next] = [0.0, 1.0].map(|depth| view.frame.local_from_view(view.position(place, depth)));
+            let range_per_depth = length(sub(next, start));
+            let ray = Ray::new(start, sub(next, start), [nearest, farthest].map(|depth| depth * range_per_depth))?;
+            Some(PixelSight { ray, range_per_depth })
+        };
+        self.draw_triangles(&mut map.depth, map.balls.as_mut(), sight, control)?;
+        Ok(map)
     }
 
-    /// The panorama of its balls around `eye`: [`panorama()`], whose depth maps the backend of the model may draw, with
-    /// the tolerance of [`SceneModel::depth_map`].
+    /// The panorama around `eye` of its balls, [`panorama()`], and of the triangles beside them. The backend of the
+    /// model may draw the depth maps of the balls, with the tolerance of [`SceneModel::depth_map`].
     ///
     /// # Errors
     /// Those of [`panorama()`].
@@ -41,12 +57,55 @@ impl SceneModel {
         let pixel_count = width.saturating_mul(width).saturating_mul(2);
         let drawable =
             self.backend.as_ref().map(|backend| backend.drawable(balls, pixel_count, control)).transpose()?;
-        match drawable.flatten() {
+        let mut drawn = match drawable.flatten() {
             Some(drawable) => {
                 let draw = |view: &View| drawable.depth_map(view, ItemBuffer::With, control);
                 panorama_of_maps(balls, eye, width, items, draw)
             }
             None => panorama(balls, eye, width, items, control),
-        }
+        }?;
+        let width = drawn.range.width();
+        let sight = |pixel: [usize; 2]| {
+            let ray = Ray::new(eye, panorama_direction(width, pixel), [0.0, f64::INFINITY])?;
+            Some(PixelSight { ray, range_per_depth: 1.0 })
+        };
+        self.draw_triangles(&mut drawn.range, drawn.balls.as_mut(), sight, control)?;
+        Ok(drawn)
     }
+
+    /// Lets pixels show the triangles that are nearer than the balls there.
+    #[expect(clippy::cast_possible_truncation, reason = "a depth in metres")]
+    fn draw_triangles(
+        &self,
+        depth: &mut Raster<f32>,
+        mut balls: Option<&mut Raster<u32>>,
+        sight: impl Fn([usize; 2]) -> Option<PixelSight> + Sync,
+        control: &Control<'_>,
+    ) -> Result<()> {
+        let Some(triangles) = &self.triangles else { return Ok(()) };
+        let stop = Stop::new(control);
+        let width = depth.width().max(1);
+        let nearer = |(at, &drawn): (usize, &f32)| {
+            let PixelSight { mut ray, range_per_depth } = sight([at % width, at / width]).filter(|_| !stop.is_set())?;
+            ray.ranges[1] = ray.ranges[1].min(f64::from(drawn) * range_per_depth);
+            Some((at, (triangles.first_range(&ray)? / range_per_depth) as f32))
+        };
+        let found: Vec<(usize, f32)> =
+            depth.values().par_iter().enumerate().with_min_len(1 << 12).filter_map(nearer).collect();
+        stop.check()?;
+        for (at, found) in found {
+            depth.values_mut()[at] = found;
+            if let Some(balls) = &mut balls {
+                balls.values_mut()[at] = NO_BALL;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The line of sight through the middle of a pixel.
+struct PixelSight {
+    ray: Ray,
+    /// Metres along the line for a metre of depth.
+    range_per_depth: f64,
 }

@@ -236,6 +236,11 @@ impl BlockingTriangles {
         self.tree.any(ray, |row| self.is_between(row, ends))
     }
 
+    /// The range at which a line of sight that begins where `ray` does meets a triangle first.
+    pub(crate) fn first_range(&self, ray: &Ray) -> Option<f64> {
+        self.nearest(ray, &LineEnds { target: ray.origin, viewer: None }).map(|(_, range)| range)
+    }
+
     /// What the piece `ray` of a line of sight between `ends` meets last, and the range.
     pub(super) fn farthest(&self, ray: &Ray, ends: &LineEnds) -> Option<(Blocker, f64)> {
         let mut last: Option<(usize, f64)> = None;

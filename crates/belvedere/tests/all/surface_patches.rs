@@ -1,8 +1,10 @@
 //! Patches of surfaces of the survey: what they block by closed forms, and all ways of looking against single lines.
 
-use belvedere::blocking::{BlockRule, PATCH_DEPTH};
+use belvedere::blocking::{BlockRule, PATCH_DEPTH, Profile};
 use belvedere::control::Control;
+use belvedere::depth::{ItemBuffer, NO_BALL};
 use belvedere::medial::MedialBalls;
+use belvedere::model::{ModelParts, SceneModel};
 use belvedere::query::target_tree::TargetTree;
 use belvedere::query::{
     Answer, Blocker, BlockingTriangles, Curvature, EarthParams, MedialScene, RadioWave, Scope, Viewer, random_targets,
@@ -10,7 +12,7 @@ use belvedere::query::{
 use belvedere::random::uniform;
 use belvedere::vector::{length, sub, unit};
 use belvedere::view::{View, to_sun};
-use belvedere::{PatchKind, SurfacePatches};
+use belvedere::{Bounds, PatchKind, SurfacePatches};
 use belvedere_scenes::{PlanPlacement, TriangleScene, extruded};
 
 fn balls(count: u64, size: f64) -> MedialBalls {
@@ -247,6 +249,42 @@ fn skylines_and_lowest_visible_heights_are_those_of_single_lines() {
     let scene = scene_of(&MedialBalls::default(), &roof);
     let height = scene.min_visible_height([12.0, 10.0, 30.0], [10.0, 10.0, 1.0], 100.0, &flat).unwrap();
     assert!((height - (4.0 - PATCH_DEPTH)).abs() < 2e-3, "{height}");
+}
+
+#[test]
+fn pictures_show_patches_where_they_are_nearer_than_balls() {
+    let mut balls = MedialBalls::default();
+    // before the wall, and behind it
+    for x in [2.0, -6.0] {
+        balls.push(0, [x, 0.0, 5.0], 1.0, 0);
+    }
+    let bounds = Bounds { low: [-10.0, -10.0, 0.0], high: [10.0; 3] };
+    let parts = ModelParts { balls, bounds, ..ModelParts::default() };
+    let model = SceneModel::from_parts(parts).unwrap().with_patches(wall()).unwrap();
+    let (eye, none) = ([8.0, 0.0, 5.0], Control::none());
+    let camera = View::perspective(eye, [0.0, 0.0, 5.0], 1.0, [81, 61], 0.0, f64::INFINITY).unwrap();
+    let map = model.depth_map(&camera, Profile::Sphere, ItemBuffer::With, &none).unwrap();
+    let items = map.balls.as_ref().unwrap();
+    // the middle shows the ball before the wall, its side the wall, though a ball is behind
+    assert!((map.depth.get(40, 30).unwrap() - 5.0).abs() < 0.01 && items.get(40, 30) == Some(0));
+    assert!((map.depth.get(60, 30).unwrap() - 8.0).abs() < 1e-4 && items.get(60, 30) == Some(NO_BALL));
+    let near = View::perspective(eye, [0.0, 0.0, 5.0], 1.0, [81, 61], 0.0, 7.5).unwrap();
+    let cut = model.depth_map(&near, Profile::Sphere, ItemBuffer::Without, &none).unwrap();
+    assert!(cut.depth.get(60, 30).unwrap().is_infinite(), "beyond the far limit nothing is seen");
+    // from the east, level: depth counts from the picture plane
+    let parallel = View::parallel([-1.0, 0.0, 0.0], [-10.0, -10.0, 0.0], [10.0; 3], 0.5).unwrap();
+    let map = model.depth_map(&parallel, Profile::Sphere, ItemBuffer::Without, &none).unwrap();
+    let [x, y, depth] = parallel.project([0.0, 6.0, 5.0]).unwrap();
+    let seen = map.depth.get(x as usize, y as usize).unwrap();
+    assert!((f64::from(seen) - depth).abs() < 1e-4, "{seen} {depth}");
+    // all around: west, a quarter of the width from the left, is the ball; a little farther north is the wall
+    let width = 720;
+    let panorama = model.panorama(eye, width, ItemBuffer::With, &none).unwrap();
+    assert!((panorama.range.get(width / 4, width / 4).unwrap() - 5.0).abs() < 0.01);
+    let column = width / 4 + 40;
+    let wall = 8.0 / ((40.5_f64) / width as f64 * std::f64::consts::TAU).cos();
+    assert!((f64::from(panorama.range.get(column, width / 4).unwrap()) - wall).abs() < 0.01);
+    assert_eq!(panorama.balls.unwrap().get(column, width / 4), Some(NO_BALL));
 }
 
 #[test]
