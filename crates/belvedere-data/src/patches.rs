@@ -132,20 +132,25 @@ impl SurfacePatches {
     }
 
     /// The patches outside `rings`, local metres on the map: an outline and its holes. Triangles that an edge of the
-    /// rings crosses are cut there; all others stay or go as they are.
+    /// rings crosses are cut there; all others stay or go as they are, and so do those that more than a thousand sides
+    /// of the rings come near to.
     #[must_use]
     pub fn outside(&self, rings: &[Vec<[f64; 2]>]) -> Self {
         let index = PolygonIndex::new(rings);
         let holds =
             |piece: &Triangle| index.holds(std::array::from_fn(|i| piece.iter().map(|c| c[i]).sum::<f64>() / 3.0));
-        let edges: Vec<[[f64; 2]; 2]> =
-            rings.iter().flat_map(|ring| ring.iter().zip(ring.iter().cycle().skip(1)).map(|(a, b)| [*a, *b])).collect();
         let mut left = Self::default();
         for (triangle, kind) in self.iter() {
-            let mut pieces = vec![in_f64(triangle)];
-            for edge in &edges {
-                if pieces.iter().any(|piece| may_cross(piece, edge)) {
-                    pieces = pieces.into_iter().flat_map(|piece| cut(piece, edge)).collect();
+            let whole = in_f64(triangle);
+            let bound = |pick: fn(f64, f64) -> f64| {
+                [0, 1].map(|axis| whole.iter().map(|corner| corner[axis]).fold(whole[0][axis], pick))
+            };
+            let mut sides = Vec::new();
+            index.each_side_near(bound(f64::min), bound(f64::max), |side| sides.push(side));
+            let mut pieces = vec![whole];
+            if sides.len() <= MAX_SIDES {
+                for side in &sides {
+                    pieces = pieces.iter().flat_map(|piece| cut(*piece, side)).collect();
                 }
             }
             if !pieces.iter().any(holds) {
@@ -161,6 +166,8 @@ impl SurfacePatches {
     }
 }
 
+/// Sides of an area that a triangle is cut along at most: what more of them cross stays or goes with its middle.
+const MAX_SIDES: usize = 1000;
 /// Pieces that are smaller are left out when triangles are cut, m²: a square millimetre.
 const MIN_AREA: f64 = 1e-6;
 
@@ -245,6 +252,30 @@ mod tests {
             assert!(patches.validate().is_err(), "{wrong}");
         }
         assert!(house().validate().is_ok());
+    }
+
+    #[test]
+    fn a_round_area_is_cut_out_of_many_triangles() {
+        let mut floor = SurfacePatches::default();
+        for i in 0..40_i16 {
+            for j in 0..40_i16 {
+                let [x, y] = [i, j].map(|v| -10.0 + 0.5 * f32::from(v));
+                let [a, b, c, d] = [[x, y, 3.0], [x + 0.5, y, 3.0], [x + 0.5, y + 0.5, 3.0], [x, y + 0.5, 3.0]];
+                floor.push([a, b, c], PatchKind::Roof);
+                floor.push([a, c, d], PatchKind::Roof);
+            }
+        }
+        let circle = |count: i32| -> Vec<[f64; 2]> {
+            let at = |i: i32| 1e-3 + std::f64::consts::TAU * f64::from(i) / f64::from(count);
+            (0..count).map(|i| [4.0 * at(i).cos(), 4.0 * at(i).sin()]).collect()
+        };
+        let area = |count: i32| 8.0 * f64::from(count) * (std::f64::consts::TAU / f64::from(count)).sin();
+        let left = floor.outside(&[circle(2000)]).area_m2();
+        // each side leaves some slivers of less than a square millimetre, which go
+        assert!((left - (400.0 - area(2000))).abs() < 2000.0 * 10.0 * MIN_AREA, "{left}");
+        // where thousands of sides cross each triangle, these go with their middles: off by less than their areas
+        let left = floor.outside(&[circle(1_000_000)]).area_m2();
+        assert!((left - (400.0 - area(1_000_000))).abs() < 4.0, "{left}");
     }
 
     #[test]

@@ -127,6 +127,28 @@ impl PolygonIndex {
         number
     }
 
+    /// Calls `visit` with the sides of the rings whose boxes meet the box between two corners, edges included.
+    pub fn each_side_near(&self, low: [f64; 2], high: [f64; 2], mut visit: impl FnMut([[f64; 2]; 2])) {
+        let meets = |of: [[f64; 2]; 2]| (0..2).all(|axis| of[0][axis] <= high[axis] && low[axis] <= of[1][axis]);
+        let mut pending = self.roots.clone();
+        while let Some(number) = pending.pop() {
+            let node = &self.nodes[number];
+            if !meets([node.low, node.high]) {
+                continue;
+            }
+            if let Some(second) = node.second {
+                pending.extend([number + 1, second]);
+                continue;
+            }
+            for side in node.first..node.last {
+                let [a, b] = [self.corners[side], self.corners[side + 1]];
+                if meets([f64::min, f64::max].map(|pick| [0, 1].map(|axis| pick(a[axis], b[axis])))) {
+                    visit([a, b]);
+                }
+            }
+        }
+    }
+
     /// Whether a place lies within the outline and outside its holes, by the rule of odd crossings as [`is_inside`] has
     /// it.
     #[must_use]
