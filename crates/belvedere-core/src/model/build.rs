@@ -12,7 +12,6 @@ use crate::medial::{
 };
 use crate::query::{BallTree, BlockRule, BlockingTriangles};
 use crate::summary::looks_y_up;
-use belvedere_data::balls::NO_TOUCH;
 use belvedere_data::control::Control;
 use belvedere_data::crs::CrsKind;
 use belvedere_data::patches::SurfacePatches;
@@ -73,11 +72,8 @@ fn of_survey(
             CarvedBalls { balls, transmission, report: found } = carved_balls(&input, carved, control)?;
             report.interior_balls = Some(BallsReport::Carved(found));
             if let Some(params) = &carved.planes {
-                (patches, report.surfaces) = close_surfaces(&mut balls, &survey, &frame, params, control)?;
-                let is_left = |row: &usize| balls.touch[*row] != NO_TOUCH;
-                let left: Vec<usize> = (0..balls.len()).filter(is_left).collect();
-                transmission = left.iter().filter_map(|&row| transmission.get(row).copied()).collect();
-                balls = balls.select(&left);
+                (patches, report.surfaces) =
+                    close_surfaces((&mut balls, &mut transmission), &survey, &frame, params, control)?;
             }
         }
         (BallParams::Shrunk(params), _) => {
@@ -107,18 +103,18 @@ fn of_survey(
     }
     // pulses at the edge of a part lack the balls beyond
     let checked = report.pulses.as_mut().filter(|_| params.statistics.is_none());
+    let triangles = BlockingTriangles::of_patches(&patches, None)?;
     let tree = match (&settled, &survey.carving, checked) {
         (BallParams::Carved(_), Some(input), Some(pulses)) => {
             let tree = control.stage("indexing balls", balls.len(), || BallTree::new(&balls, &BlockRule::carved()))?;
             let free = &input.free_segments;
-            pulses.blocked =
-                Some(control.stage("checking pulses", free.len(), || blocked_pulses(&tree, free, control))?);
+            let check = || blocked_pulses(&tree, triangles.as_ref(), free, control);
+            pulses.blocked = Some(control.stage("checking pulses", free.len(), check)?);
             Some(tree)
         }
         _ => None,
     };
     let (bounds, pulses) = (survey.bounds, survey.pulses());
-    let triangles = BlockingTriangles::of_patches(&patches, None)?;
     let parts = ModelParts { frame, bounds, balls, patches, transmission, pulses, provenance };
     Ok((SceneModel { parts, vegetation, tree, triangles, ..SceneModel::default() }, report))
 }

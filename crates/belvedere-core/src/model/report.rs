@@ -80,6 +80,12 @@ pub struct BlockedPulses {
     /// Their share of the pulses used, percent.
     #[serde(rename = "pulses_blocked_by_balls_percent")]
     pub percent: f64,
+    /// How many more the surfaces of buildings block.
+    #[serde(rename = "pulses_blocked_by_surfaces")]
+    pub by_surfaces: usize,
+    /// Their share of the pulses used, percent.
+    #[serde(rename = "pulses_blocked_by_surfaces_percent")]
+    pub by_surfaces_percent: f64,
 }
 
 /// How normals were turned outward.

@@ -1,8 +1,9 @@
 //! Surfaces of buildings that many points show: patches close them, and balls do not reach out of them.
 
-use super::prepare::OrientedSurvey;
+use super::prepare::{CarvingInput, OrientedSurvey};
 use crate::medial::MedialBalls;
-use crate::planes::{BuildingPoints, PlaneParams, SurveyPoints, cap, find};
+use crate::planes::{PlaneParams, SurveyPoints, cap, find};
+use belvedere_data::balls::NO_TOUCH;
 use belvedere_data::control::Control;
 use belvedere_data::patches::SurfacePatches;
 use belvedere_data::{Frame, Result};
@@ -26,15 +27,15 @@ pub struct SurfacesReport {
 }
 
 /// Finds the surfaces of buildings in a survey from the air whose scanner is known, and caps the balls, whose sources
-/// are rows of the points kept. Other surveys have none.
+/// are rows of the points kept, and of which each may have a transmission. Other surveys have none.
 pub(super) fn close_surfaces(
-    balls: &mut MedialBalls,
+    (balls, transmission): (&mut MedialBalls, &mut Vec<f32>),
     survey: &OrientedSurvey,
     frame: &Frame,
     params: &PlaneParams,
     control: &Control<'_>,
 ) -> Result<(SurfacePatches, Option<SurfacesReport>)> {
-    let is_known = |input: &&super::prepare::CarvingInput| {
+    let is_known = |input: &&CarvingInput| {
         // the place where an upright line passes a roof is not where the pulse did
         !input.is_assumed && !input.free_segments.are_from_the_ground()
     };
@@ -44,11 +45,13 @@ pub(super) fn close_surfaces(
         scanner: &input.scanner,
         attributes: &input.attributes,
         origin: frame.origin,
-        buildings: BuildingPoints::Classified,
     };
     let found = control.stage("finding roofs and walls", survey.measured.len(), || find(&points, params, control))?;
     let balls_capped =
         control.stage("capping balls", balls.len(), || cap(balls, &survey.measured, &found.regions, control))?;
+    let left: Vec<usize> = (0..balls.len()).filter(|&row| balls.touch[row] != NO_TOUCH).collect();
+    *transmission = left.iter().filter_map(|&row| transmission.get(row).copied()).collect();
+    *balls = balls.select(&left);
     let report = SurfacesReport {
         roof_planes: found.planes.len(),
         roof_edges: found.edges.len(),
