@@ -4,8 +4,9 @@ use super::edges::Outline;
 use super::ridges::RidgeLine;
 use super::roof_planes::Roofs;
 use super::walls::WallLine;
-use super::{BLOCK, BuildingPoints, BuildingSurfaces, Edge, PlaneParams, Ridge, RoofPlane, SurveyPoints, Wall};
+use super::{BLOCK, BuildingSurfaces, Edge, PlaneParams, Ridge, RoofPlane, SurveyPoints, Wall};
 use belvedere_data::control::Control;
+use belvedere_data::patches::SurfacePatches;
 use belvedere_data::{Error, Result};
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
@@ -132,11 +133,7 @@ fn is_first(survey: &SurveyPoints<'_>, row: usize) -> bool {
 
 /// Whether a point may lie on a building.
 fn is_building(survey: &SurveyPoints<'_>, row: usize) -> bool {
-    let class = survey.attributes.classification.as_ref().and_then(|classes| classes.get(row)).copied();
-    match survey.buildings {
-        BuildingPoints::Classified => class == Some(6),
-        BuildingPoints::ByShape => !matches!(class, Some(2..=5 | 7 | 9 | 17 | 18)),
-    }
+    survey.attributes.classification.as_ref().and_then(|classes| classes.get(row)) == Some(&SurfacePatches::CLASS)
 }
 
 impl Block {

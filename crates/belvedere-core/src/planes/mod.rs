@@ -24,7 +24,7 @@ mod sheets;
 mod tests;
 mod walls;
 
-pub use regions::{Region, SurfaceRegions, cap};
+pub use regions::{SurfaceRegions, cap};
 
 use belvedere_data::control::Control;
 use belvedere_data::patches::{PatchKind, SurfacePatches};
@@ -70,16 +70,6 @@ impl Default for PlaneParams {
     }
 }
 
-/// Which points may lie on buildings.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum BuildingPoints {
-    /// Those of class 6.
-    #[default]
-    Classified,
-    /// All but those with a class of ground, vegetation, water, noise or bridges: a cloud without class 6.
-    ByShape,
-}
-
 /// The points that surfaces are found in. Columns have a row for each point.
 #[derive(Clone, Copy)]
 pub struct SurveyPoints<'a> {
@@ -87,12 +77,10 @@ pub struct SurveyPoints<'a> {
     pub positions: &'a [[f32; 3]],
     /// The scanner at each point, (N, 3) local metres, NaN where unknown.
     pub scanner: &'a [[f32; 3]],
-    /// Class and return number are used where present.
+    /// Return numbers are used where present. Points of class 6 may lie on buildings: without classes nothing is found.
     pub attributes: &'a Attributes,
     /// Origin of the local positions in the reference system, metres.
     pub origin: [f64; 3],
-    /// Which points may lie on buildings.
-    pub buildings: BuildingPoints,
 }
 
 /// A plane of a roof.

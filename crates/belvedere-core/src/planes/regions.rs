@@ -33,35 +33,16 @@ const CELL: f64 = 4.0;
 
 /// A convex piece of space before a surface.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Region {
+pub(super) struct Region {
     /// Half-spaces that hold it: unit vectors outward, and their products with a point of the bounding plane, local
     /// metres.
-    pub half_spaces: Vec<([f64; 3], f64)>,
+    half_spaces: Vec<([f64; 3], f64)>,
 }
 
+#[cfg(test)]
 impl Region {
-    /// The piece of a line within the region, as ranges from its origin; `None` outside.
-    #[must_use]
-    pub fn interval(&self, origin: [f64; 3], direction: [f64; 3]) -> Option<[f64; 2]> {
-        let mut range = [f64::NEG_INFINITY, f64::INFINITY];
-        for &(normal, offset) in &self.half_spaces {
-            let (at, per) = (dot(normal, origin) - offset, dot(normal, direction));
-            if per.abs() < 1e-12 {
-                if at > 0.0 {
-                    return None;
-                }
-            } else if per > 0.0 {
-                range[1] = range[1].min(-at / per);
-            } else {
-                range[0] = range[0].max(-at / per);
-            }
-        }
-        (range[0] < range[1]).then_some(range)
-    }
-
     /// How far a place lies outside at least, below zero within, metres.
-    #[must_use]
-    pub fn distance(&self, p: [f64; 3]) -> f64 {
+    pub(super) fn distance(&self, p: [f64; 3]) -> f64 {
         self.half_spaces.iter().map(|&(normal, offset)| dot(normal, p) - offset).fold(f64::NEG_INFINITY, f64::max)
     }
 }
@@ -102,8 +83,8 @@ impl SurfaceRegions {
     }
 
     /// The regions that the ball of a point does not reach into, for a point as measured, local metres.
-    #[must_use]
-    pub fn of_point(&self, p: [f32; 3]) -> Vec<Region> {
+    #[cfg(test)]
+    pub(super) fn of_point(&self, p: [f32; 3]) -> Vec<Region> {
         self.that(p, |_, _| true)
     }
 

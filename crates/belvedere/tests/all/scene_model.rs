@@ -8,7 +8,7 @@ use belvedere::model::{BallParams, BallsReport, BuildReport, ModelParams, Orient
 use belvedere::neighbors::NeighborIndex;
 use belvedere::normals::estimate::{Neighborhood, estimate, estimate_with_scatter};
 use belvedere::normals::{Orientation, OrientedCloud, orient};
-use belvedere::planes::{self, BuildingPoints, PlaneParams, SurveyPoints};
+use belvedere::planes::{self, PlaneParams, SurveyPoints};
 use belvedere::pulses::{FreeSegmentParams, FreeSegments, LocateParams, Means, group, locate};
 use belvedere::query::UnprovenAs;
 use belvedere::trajectory::Trajectory;
@@ -64,13 +64,8 @@ fn a_model_is_what_the_stages_make_one_after_the_other() {
         statistics: None,
     };
     let mut balls = carved_balls(&input, &CarvedParams::default(), &none).unwrap().balls;
-    let points = SurveyPoints {
-        positions: &clean.positions,
-        scanner: &scanner,
-        attributes,
-        origin: clean.frame.origin,
-        buildings: BuildingPoints::Classified,
-    };
+    let points =
+        SurveyPoints { positions: &clean.positions, scanner: &scanner, attributes, origin: clean.frame.origin };
     let surfaces = planes::find(&points, &PlaneParams::default(), &none).unwrap();
     let capped = planes::cap(&mut balls, &clean.positions, &surfaces.regions, &none).unwrap();
     assert!(capped > 100 && report.surfaces.is_some_and(|found| found.balls_capped == capped), "{capped}");

@@ -12,7 +12,7 @@ mod truth;
 
 use belvedere::PatchKind;
 use belvedere::control::Control;
-use belvedere::planes::{BuildingPoints, BuildingSurfaces, PlaneParams, SurveyPoints, find};
+use belvedere::planes::{BuildingSurfaces, PlaneParams, SurveyPoints, find};
 use belvedere::{Error, Parameter, Result};
 use belvedere_baselines::simulated::flown;
 use belvedere_scenes::{AirborneParams, Preset, Truth, town};
@@ -53,7 +53,6 @@ fn judge(preset: Preset, density: f64, seed: u64) -> Result<()> {
         scanner: &scanner,
         attributes: &cloud.attributes,
         origin: cloud.frame.origin,
-        buildings: BuildingPoints::Classified,
     };
     let params = PlaneParams::default();
     let start = Instant::now();
