@@ -16,7 +16,7 @@ use crate::summary::Summary;
 use anyhow::{Result, bail};
 use belvedere::apps::ask::scene::GroundStore;
 use belvedere::apps::ask::{self, ViewFrom};
-use belvedere::cache::{BuiltScene, ReadBefore, SceneOrigin, scene_model};
+use belvedere::cache::{BuiltScene, ReadBefore, scene_model};
 use belvedere::crs::CrsKind;
 use belvedere::depth::Profile;
 use belvedere::io::{ReadOptions, ReadReport, UpAxis, is_ball_file, read_balls, read_cloud, web_address};
@@ -248,11 +248,7 @@ fn built_of(
 /// Reports on a model that was built or found.
 fn reported(built: BuiltScene, run: &mut CommandContext) -> SceneModel {
     run.summary.add("scene", built.origin.name());
-    if let SceneOrigin::NotKept(error) = &built.origin {
-        let advice = "free some room, give --cache DIR, or --no-cache to say nothing";
-        let text = format!("the scene could not be kept for the next command: {error}; {advice}");
-        run.summary.warn("scene-not-kept", text);
-    }
+    run.summary.remarks(built.origin.remark());
     run.summary.add_report(&built.report);
     built.model
 }

@@ -9,7 +9,7 @@ use crate::system::System;
 use crate::work::run;
 use belvedere::apps::ask;
 use belvedere::apps::horizon::convergence;
-use belvedere::cache::{SceneCache, SceneOrigin, scene_model};
+use belvedere::cache::{SceneCache, scene_model};
 use belvedere::clean::CleanParams;
 use belvedere::crs::Crs;
 use belvedere::io::{
@@ -202,9 +202,14 @@ impl Choices {
 
 #[pymethods]
 impl PyScene {
-    /// The scene of a cloud, and the report on making it as JSON.
+    /// The scene of a cloud, the report on making it as JSON, and remarks.
     #[staticmethod]
-    fn build(py: Python<'_>, cloud: &Cloud, choices: Choices, progress: Option<Py<PyAny>>) -> PyResult<(Self, String)> {
+    fn build<'py>(
+        py: Python<'py>,
+        cloud: &Cloud,
+        choices: Choices,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<(Self, String, Vec<Bound<'py, PyDict>>)> {
         let cloud = Arc::clone(&cloud.0);
         let params = py.detach(|| choices.params(&cloud.frame))?;
         let (given, cache) = (Arc::clone(&cloud), choices.cache.cache());
@@ -215,10 +220,9 @@ impl PyScene {
         let store = cache.zip(built.cloud).map(|(cache, contents)| cache.ground_of(&contents));
         let mut report = built.report;
         report.insert("scene".to_owned(), built.origin.name().into());
-        if let SceneOrigin::NotKept(error) = &built.origin {
-            report.insert("scene_not_kept".to_owned(), error.to_string().into());
-        }
-        Ok((Self(Arc::new(ask::Scene::new(built.model, cloud).with_ground_store(store))), json(&report)?))
+        let remarks = remarks_of(py, &built.origin.remark())?;
+        let scene = ask::Scene::new(built.model, cloud).with_ground_store(store);
+        Ok((Self(Arc::new(scene)), json(&report)?, remarks))
     }
 
     /// The scene of a ball file, with the cloud that shows its ground if there is one.

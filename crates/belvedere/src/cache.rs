@@ -11,6 +11,7 @@ mod key;
 pub use folder::{CacheEntry, ReadBefore, SceneCache};
 pub use key::CloudKey;
 
+use crate::apps::ask::Remark;
 use crate::control::Control;
 use crate::model::{ModelParams, SceneModel};
 use crate::{Error, PointCloud, Result};
@@ -53,6 +54,15 @@ impl SceneOrigin {
             Self::NotKept(_) => "not kept",
             Self::Built => "built",
         }
+    }
+
+    /// A warning where a scene could not be kept.
+    #[must_use]
+    pub fn remark(&self) -> Option<Remark> {
+        let Self::NotKept(error) = self else { return None };
+        let advice = "free some room, or have it kept in another folder or not at all";
+        let text = format!("the scene could not be kept for the next question: {error}; {advice}");
+        Some(Remark::warning("scene-not-kept", text))
     }
 }
 

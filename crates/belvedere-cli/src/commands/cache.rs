@@ -26,9 +26,9 @@ pub(crate) fn run(arguments: &CacheArguments, global: &Global) -> Result<Summary
     }
     let rows: Vec<Row> = entries.iter().map(Row::of).collect();
     run.summary.add("scenes", entries.len());
-    run.summary.add("megabytes", megabytes(entries.iter().map(|entry| entry.bytes).sum()));
+    run.summary.add("megabytes", megabytes(cache.bytes()?));
     run.summary.add("scene", sections(&rows));
-    run.summary.headline("<scenes> scenes are kept, <megabytes> MB");
+    run.summary.headline("<scenes> scenes are kept, <megabytes> MB with their ground");
     Ok(run.finish())
 }
 

@@ -144,15 +144,13 @@ class Scene(Sights, Outlook, Sunlight, Energy, Planning, Cameras):
             "penetration": penetration,
             "cache": cache if isinstance(cache, bool) else os.fspath(cache),
         }
-        self._core, text = _core.Scene.build(cloud._core, choices, reporter(progress))
+        self._core, text, remarks = _core.Scene.build(cloud._core, choices, reporter(progress))
         self.cloud: Cloud | None = cloud
         self.report: dict[str, Any] = json.loads(text)
         remark = self.report.get("pulses", {}).get("remark")
         if remark:
             warnings.warn(str(remark), BelvedereWarning, stacklevel=2)
-        not_kept = self.report.get("scene_not_kept")
-        if not_kept:
-            warnings.warn(f"the scene could not be kept for next time: {not_kept}", BelvedereWarning, stacklevel=2)
+        warned(remarks)
 
     @classmethod
     def load(

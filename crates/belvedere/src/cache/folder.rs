@@ -195,6 +195,14 @@ impl SceneCache {
         Ok(entries)
     }
 
+    /// Bytes of all that is kept: scenes, their ground, and what reading gave.
+    ///
+    /// # Errors
+    /// Those of [`SceneCache::entries`].
+    pub fn bytes(&self) -> Result<u64> {
+        Ok(self.files()?.iter().map(|file| file.bytes).sum())
+    }
+
     /// Removes all that is kept; returns how many bytes that was. Other files of the folder stay.
     ///
     /// # Errors

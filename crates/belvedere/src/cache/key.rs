@@ -5,6 +5,9 @@ use crate::io::{ReadOptions, cloud_files, web_address};
 use crate::model::ModelParams;
 use crate::{Attributes, PointCloud};
 use sha2::{Digest, Sha256};
+use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
+use std::ffi::OsString;
 use std::fmt::Write as _;
 use std::fs::File;
 use std::path::{Path, PathBuf};
@@ -83,23 +86,38 @@ pub(super) fn of_files(paths: &[PathBuf], options: &ReadOptions) -> Option<Strin
     if paths.iter().any(|path| web_address(path).is_some()) {
         return None;
     }
+    let mut folders = BTreeMap::new();
     for file in cloud_files(paths).ok()? {
-        for file in with_companions(&file)? {
+        let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new(".")).to_owned();
+        let files = match folders.entry(folder) {
+            Entry::Occupied(read) => read.into_mut(),
+            Entry::Vacant(folder) => {
+                let files = by_stem(folder.key())?;
+                folder.insert(files)
+            }
+        };
+        let together = files.get(file.file_stem()?)?;
+        if !together.iter().any(|path| path.file_name() == file.file_name()) {
+            return None;
+        }
+        for file in together {
             key.text(&file.to_string_lossy());
-            key.file(&file)?;
+            key.file(file)?;
         }
     }
     Some(key.finish())
 }
 
-/// A file and those of the same folder that differ from it in the extension alone.
-fn with_companions(file: &Path) -> Option<Vec<PathBuf>> {
-    let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let is_companion = |path: &PathBuf| path.file_stem() == file.file_stem() && path.is_file();
-    let mut files: Vec<PathBuf> =
-        folder.read_dir().ok()?.filter_map(|entry| Some(entry.ok()?.path())).filter(is_companion).collect();
+/// The files of a folder, together where they differ in the extension alone.
+fn by_stem(folder: &Path) -> Option<BTreeMap<OsString, Vec<PathBuf>>> {
+    let mut files: Vec<PathBuf> = folder.read_dir().ok()?.filter_map(|entry| Some(entry.ok()?.path())).collect();
     files.sort();
-    files.iter().any(|path| path.file_name() == file.file_name()).then_some(files)
+    let mut together: BTreeMap<OsString, Vec<PathBuf>> = BTreeMap::new();
+    for file in files.into_iter().filter(|file| file.is_file()) {
+        let Some(stem) = file.file_stem() else { continue };
+        together.entry(stem.to_owned()).or_default().push(file);
+    }
+    Some(together)
 }
 
 /// A sum of everything that is given to it, each with its length, so that none runs into the next.
