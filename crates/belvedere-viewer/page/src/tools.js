@@ -58,7 +58,8 @@ export const TOOLS = [
       const block = answer.first_block;
       page.line(answer);
       const text = { visible: "B is visible from A", blocked: "B is blocked", unproven: "B is unproven", "outside the cloud": "No answer: outside the cloud", "inside an obstacle": "No answer: A or B is inside an obstacle" }[answer.answer];
-      const note = block ? `The line meets an obstacle ${block.range_m.toFixed(1)} m from A.` : answer.answer === "unproven" ? UNPROVEN : "Nothing stands in the line.";
+      const met = block?.surface ? `a surface of the survey (${block.surface})` : "an obstacle";
+      const note = block ? `The line meets ${met} ${block.range_m.toFixed(1)} m from A.` : answer.answer === "unproven" ? UNPROVEN : "Nothing stands in the line.";
       return `<p class="verdict">${text}</p><p class="note">${note}</p>`
         + (answer.profile ? `<figure>${charts.profile(answer.profile, page.scene.unit)}<figcaption>Ground (brown), obstacles (grey) and the line of sight</figcaption></figure>` : "")
         + list([["Length of the line", `${answer.length_m.toFixed(2)} m`], ...(block ? [["Blocked after", `${block.range_m.toFixed(2)} m`], ["Blocked at", block.place.map((v) => v.toFixed(2)).join(", ")]] : []),
