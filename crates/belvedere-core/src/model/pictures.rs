@@ -3,7 +3,8 @@
 
 use super::SceneModel;
 use crate::blocking::Profile;
-use crate::depth::{DepthMap, ItemBuffer, NO_BALL, Panorama, depth_map, panorama, panorama_of_maps};
+use crate::depth::{BallDepth, DepthMap, ItemBuffer, NO_BALL, Panorama, depth_map, panorama, panorama_of_maps};
+use crate::query::{Ball, DEPTH_MAP_TOLERANCE};
 use crate::ray_index::Ray;
 use belvedere_data::Result;
 use belvedere_data::control::{Control, Stop};
@@ -42,8 +43,20 @@ impl SceneModel {
             let ray = Ray::new(start, sub(next, start), [nearest, farthest].map(|depth| depth * range_per_depth))?;
             Some(PixelSight { ray, range_per_depth })
         };
-        self.draw_triangles(&mut map.depth, map.balls.as_mut(), sight, control)?;
+        // of a ball and a triangle the backend may not know which is the nearer
+        let depths = BallDepth::new(view);
+        let ball_depth = |at: [usize; 2], row: u32| {
+            let ball = self.ball(row).filter(|_| profile == Profile::Sphere)?;
+            Some(depths.at(ball, at))
+        };
+        self.draw_triangles(&mut map.depth, map.balls.as_mut(), sight, ball_depth, control)?;
         Ok(map)
+    }
+
+    fn ball(&self, row: u32) -> Option<Ball> {
+        let balls = self.balls();
+        let (center, radius) = (*balls.centers.get(row as usize)?, *balls.radii.get(row as usize)?);
+        Some(Ball { center, radius })
     }
 
     /// The panorama around `eye` of its balls, [`panorama()`], and of the triangles beside them. The backend of the
@@ -69,26 +82,35 @@ impl SceneModel {
             let ray = Ray::new(eye, panorama_direction(width, pixel), [0.0, f64::INFINITY])?;
             Some(PixelSight { ray, range_per_depth: 1.0 })
         };
-        self.draw_triangles(&mut drawn.range, drawn.balls.as_mut(), sight, control)?;
+        // ranges of panoramas are exact
+        self.draw_triangles(&mut drawn.range, drawn.balls.as_mut(), sight, |_, _| None, control)?;
         Ok(drawn)
     }
 
-    /// Lets pixels show the triangles that are nearer than the balls there.
+    /// Lets pixels show the triangles that are nearer than the balls there. Where both are about as near,
+    /// `ball_depth` of the pixel and the ball gives the exact depth of the ball.
     #[expect(clippy::cast_possible_truncation, reason = "a depth in metres")]
     fn draw_triangles(
         &self,
         depth: &mut Raster<f32>,
         mut balls: Option<&mut Raster<u32>>,
         sight: impl Fn([usize; 2]) -> Option<PixelSight> + Sync,
+        ball_depth: impl Fn([usize; 2], u32) -> Option<f32> + Sync,
         control: &Control<'_>,
     ) -> Result<()> {
         let Some(triangles) = &self.triangles else { return Ok(()) };
         let stop = Stop::new(control);
         let width = depth.width().max(1);
+        let shown = balls.as_deref().map(Raster::values);
         let nearer = |(at, &drawn): (usize, &f32)| {
-            let PixelSight { mut ray, range_per_depth } = sight([at % width, at / width]).filter(|_| !stop.is_set())?;
-            ray.ranges[1] = ray.ranges[1].min(f64::from(drawn) * range_per_depth);
-            Some((at, (triangles.first_range(&ray)? / range_per_depth) as f32))
+            let pixel = [at % width, at / width];
+            let PixelSight { mut ray, range_per_depth } = sight(pixel).filter(|_| !stop.is_set())?;
+            let room = 2.0 * DEPTH_MAP_TOLERANCE * drawn.abs();
+            ray.ranges[1] = ray.ranges[1].min(f64::from(drawn + room) * range_per_depth);
+            let found = (triangles.first_range(&ray)? / range_per_depth) as f32;
+            let exact = || ball_depth(pixel, *shown?.get(at)?);
+            let drawn = if (found - drawn).abs() <= room { exact().unwrap_or(drawn) } else { drawn };
+            (found < drawn).then_some((at, found))
         };
         let found: Vec<(usize, f32)> =
             depth.values().par_iter().enumerate().with_min_len(1 << 12).filter_map(nearer).collect();

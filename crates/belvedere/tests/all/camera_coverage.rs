@@ -196,7 +196,6 @@ fn in_a_scanned_town_coverage_agrees_with_the_exact_mesh() {
     let all = f64::from(right + missed + wrong);
     let [missed, wrong] = [missed, wrong].map(|count| 100.0 * f64::from(count) / all);
     assert!(cameras.len() >= 80 && all > 20_000.0, "{} cameras, {all} lines", cameras.len());
-    // What is covered wrongly is the error that matters; what no pulse came near is missed on purpose. Measured: 2.2
-    // and 4.8 %. It was less than 2 % wrong while no return of an edge lay outside it.
-    assert!(wrong < 2.3 && missed < 8.0, "{missed} % missed, {wrong} % wrong of {all}");
+    // what is covered wrongly is the error that matters; what no pulse came near is missed on purpose
+    assert!(wrong < 2.0 && missed < 8.0, "{missed} % missed, {wrong} % wrong of {all}");
 }
