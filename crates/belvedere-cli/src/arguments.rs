@@ -24,7 +24,7 @@ mod window_views;
 
 pub(crate) use balls::{
     BallsArguments, Cleaning, MethodChoice, NeighborChoice, NormalsArguments, OrientChoice, Orienting, Shrinking,
-    SideChoice,
+    SideChoice, SurfacesArguments,
 };
 pub(crate) use cameras::{CameraLensArguments, CameraTargetsArguments, CamerasArguments};
 pub(crate) use city::{CellFor, City, CityMerge, CityPlan, CityRun, CityStatus, CityStep};
@@ -178,6 +178,8 @@ pub(crate) enum Command {
     Trajectory(TrajectoryArguments),
     /// Estimate normals and orient them outward
     Normals(NormalsArguments),
+    /// Find roofs, their edges and ridges, and walls, with how well each is known
+    Surfaces(SurfacesArguments),
     /// Build the medial balls of a scene and save them for other commands
     Balls(BallsArguments),
     /// List the scenes that are kept for the next command, or remove them

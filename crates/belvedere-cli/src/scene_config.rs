@@ -2,7 +2,7 @@
 
 use crate::arguments::{
     BallShape, BallsArguments, Cleaning, NormalsArguments, Orienting, ProfileChoice, SceneBalls, SceneConfig,
-    Shrinking, Usage,
+    Shrinking, SurfacesArguments, Usage,
 };
 use crate::help::BALL_FLAGS;
 use crate::parameter_flags::flags_of;
@@ -51,6 +51,14 @@ impl BallsArguments {
 
 impl NormalsArguments {
     /// How normals are made.
+    pub(crate) fn parameters(&self) -> Result<BallParameters> {
+        let (cleaning, orienting) = (self.cleaning.clone(), self.orienting.clone());
+        BallParameters { cleaning, orienting, ..BallParameters::default() }.completed(&self.config)
+    }
+}
+
+impl SurfacesArguments {
+    /// How the points are prepared.
     pub(crate) fn parameters(&self) -> Result<BallParameters> {
         let (cleaning, orienting) = (self.cleaning.clone(), self.orienting.clone());
         BallParameters { cleaning, orienting, ..BallParameters::default() }.completed(&self.config)

@@ -35,6 +35,15 @@ pub struct Spot {
     pub properties: Map<String, Value>,
 }
 
+/// A line with properties.
+#[derive(Clone, Debug, Default)]
+pub struct PathLine {
+    /// Easting, northing and height of each corner, metres.
+    pub places: Vec<[f64; 3]>,
+    /// What is known of it.
+    pub properties: Map<String, Value>,
+}
+
 /// What the coordinates in a GeoJSON file are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum GeojsonCoordinates {
@@ -58,34 +67,9 @@ pub fn write_geojson_areas<'a>(
     areas: &[PolygonArea],
     crs: &Crs,
 ) -> Result<GeojsonCoordinates> {
-    write_geojson(output, &[], areas, crs)
-}
-
-/// The same with points before the areas. Their heights are in the unit of the heights of `crs`.
-///
-/// # Errors
-/// Those of [`write_geojson_areas`].
-pub fn write_geojson<'a>(
-    output: impl Into<Output<'a>>,
-    spots: &[Spot],
-    areas: &[PolygonArea],
-    crs: &Crs,
-) -> Result<GeojsonCoordinates> {
     let output = output.into();
     let projection = crs.geographic_projection().ok();
-    let coordinates = if projection.is_some() { GeojsonCoordinates::Wgs84 } else { GeojsonCoordinates::OfTheFile };
-    let mut collection = FeatureCollection::default();
-    for spot in spots {
-        let [x, y, z] = spot.place;
-        let on_map = written_ring(&[[x, y]], projection.as_ref(), crs, output.name())?;
-        let height = rounded(z / crs.metres_per_unit_xyz()[2], METRE_DECIMALS);
-        let position: Vec<f64> = on_map.into_iter().flatten().chain([height]).collect();
-        collection.features.push(Feature {
-            geometry: Some(Geometry::new_point(Position::from(position))),
-            properties: Some(spot.properties.clone()),
-            ..Feature::default()
-        });
-    }
+    let mut features = Vec::with_capacity(areas.len());
     for area in areas {
         let mut polygons = Vec::with_capacity(area.polygons.len());
         for polygon in &area.polygons {
@@ -95,12 +79,48 @@ pub fn write_geojson<'a>(
             let positions = |ring: Vec<[f64; 2]>| ring.into_iter().map(Position::from).collect::<Vec<_>>();
             polygons.extend(parts.into_iter().map(|part| part.into_iter().map(positions).collect::<Vec<_>>()));
         }
-        collection.features.push(Feature {
-            geometry: Some(Geometry::new_multi_polygon(polygons)),
-            properties: Some(area.properties.clone()),
-            ..Feature::default()
-        });
+        features.push(feature(Geometry::new_multi_polygon(polygons), &area.properties));
     }
+    write_features(output, features, crs)
+}
+
+/// Writes each of `spots` as a point and each of `lines` as a line, with heights in the unit of the heights of `crs`,
+/// and otherwise as [`write_geojson_areas`] does.
+///
+/// # Errors
+/// Those of [`write_geojson_areas`].
+pub fn write_geojson<'a>(
+    output: impl Into<Output<'a>>,
+    spots: &[Spot],
+    lines: &[PathLine],
+    crs: &Crs,
+) -> Result<GeojsonCoordinates> {
+    let output = output.into();
+    let projection = crs.geographic_projection().ok();
+    let position = |&[x, y, z]: &[f64; 3]| -> Result<Position> {
+        let on_map = written_ring(&[[x, y]], projection.as_ref(), crs, output.name())?;
+        let height = rounded(z / crs.metres_per_unit_xyz()[2], METRE_DECIMALS);
+        Ok(Position::from(on_map.into_iter().flatten().chain([height]).collect::<Vec<_>>()))
+    };
+    let mut features = Vec::with_capacity(spots.len() + lines.len());
+    for spot in spots {
+        features.push(feature(Geometry::new_point(position(&spot.place)?), &spot.properties));
+    }
+    for line in lines {
+        let positions = line.places.iter().map(position).collect::<Result<Vec<_>>>()?;
+        features.push(feature(Geometry::new_line_string(positions), &line.properties));
+    }
+    write_features(output, features, crs)
+}
+
+fn feature(geometry: Geometry, properties: &Map<String, Value>) -> Feature {
+    Feature { geometry: Some(geometry), properties: Some(properties.clone()), ..Feature::default() }
+}
+
+fn write_features(output: Output<'_>, features: Vec<Feature>, crs: &Crs) -> Result<GeojsonCoordinates> {
+    let mut collection = FeatureCollection { features, ..FeatureCollection::default() };
+    let is_global = crs.geographic_projection().is_ok();
+    let coordinates = if is_global { GeojsonCoordinates::Wgs84 } else { GeojsonCoordinates::OfTheFile };
     if coordinates == GeojsonCoordinates::OfTheFile {
         let note = format!("coordinates are not WGS 84 but those of the cloud: {}", crs.describe());
         collection.foreign_members = Some(Map::from_iter([("crs_note".to_owned(), note.into())]));

@@ -25,7 +25,7 @@ const MIN_CELL: f64 = 0.1;
 
 /// Tilt up to which a plane is level and faces nowhere, radians: roofs that are called flat have 2 to 3 % of slope for
 /// the rain, and a few of these degrees are noise.
-const MAX_LEVEL: f64 = 2.0 * std::f64::consts::PI / 180.0;
+pub const MAX_LEVEL: f64 = 2.0 * std::f64::consts::PI / 180.0;
 
 /// How planes are found.
 #[derive(Clone, Copy, Debug, PartialEq)]

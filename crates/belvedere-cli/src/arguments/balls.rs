@@ -1,4 +1,4 @@
-//! Flags of `normals` and `balls`, which are also the keys of `--scene-config`. Other commands have only a few of them.
+//! Flags of `normals`, `surfaces` and `balls`, which are also the keys of `--scene-config`. Other commands have only a few of them.
 
 use super::{CloudInput, Numbers, SceneConfig, above_zero};
 use belvedere::medial::{Rule, Trees};
@@ -15,6 +15,21 @@ pub(crate) struct NormalsArguments {
     #[command(flatten)]
     pub(crate) orienting: Orienting,
     /// Cloud with normals (.laz .las .ply .csv), or a folder for coords.npy and normals.npy
+    #[arg(short, long, value_name = "OUT", help_heading = "Result")]
+    pub(crate) output: PathBuf,
+    #[command(flatten)]
+    pub(crate) input: CloudInput,
+    #[command(flatten)]
+    pub(crate) config: SceneConfig,
+}
+
+#[derive(Args, Clone)]
+pub(crate) struct SurfacesArguments {
+    #[command(flatten)]
+    pub(crate) cleaning: Cleaning,
+    #[command(flatten)]
+    pub(crate) orienting: Orienting,
+    /// Roofs, edges, ridges and walls (.geojson)
     #[arg(short, long, value_name = "OUT", help_heading = "Result")]
     pub(crate) output: PathBuf,
     #[command(flatten)]

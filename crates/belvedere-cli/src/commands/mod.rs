@@ -32,6 +32,7 @@ mod sky_view;
 mod sun;
 mod sun_hours;
 mod sun_position;
+mod surfaces;
 mod surroundings;
 mod targets;
 mod trajectory;
@@ -69,6 +70,7 @@ fn run_command(cli: &Cli) -> Result<Summary> {
         Command::Info(arguments) => info::run(arguments, global),
         Command::Trajectory(arguments) => trajectory::run(arguments, global),
         Command::Normals(arguments) => normals::run(arguments, global),
+        Command::Surfaces(arguments) => surfaces::run(arguments, global),
         Command::Balls(arguments) => balls::run(arguments, global),
         Command::Cache(arguments) => cache::run(arguments, global),
         Command::DepthMap(arguments) => depth_map::run(arguments, global),

@@ -39,6 +39,7 @@ mod simulate;
 mod sky_view;
 mod sun_hours;
 mod surface_patches;
+mod surfaces;
 mod surroundings;
 mod trajectory;
 mod tree_light;

@@ -2,7 +2,7 @@
 
 use super::prepare::{CarvingInput, OrientedSurvey};
 use crate::medial::MedialBalls;
-use crate::planes::{PlaneParams, SurveyPoints, cap, find};
+use crate::planes::{BuildingSurfaces, PlaneParams, SurveyPoints, cap, find};
 use belvedere_data::balls::NO_TOUCH;
 use belvedere_data::control::Control;
 use belvedere_data::patches::SurfacePatches;
@@ -26,8 +26,34 @@ pub struct SurfacesReport {
     pub balls_capped: usize,
 }
 
-/// Finds the surfaces of buildings in a survey from the air whose scanner is known, and caps the balls, whose sources
-/// are rows of the points kept, and of which each may have a transmission. Other surveys have none.
+impl OrientedSurvey {
+    /// The surfaces of the buildings; `None` where the survey is not from the air, or where its scanner is not known.
+    ///
+    /// # Errors
+    /// Those of [`find`].
+    pub fn building_surfaces(
+        &self,
+        frame: &Frame,
+        params: &PlaneParams,
+        control: &Control<'_>,
+    ) -> Result<Option<BuildingSurfaces>> {
+        let is_known = |input: &&CarvingInput| {
+            // the place where an upright line passes a roof is not where the pulse did
+            !input.is_assumed && !input.free_segments.are_from_the_ground()
+        };
+        let Some(input) = self.carving.as_ref().filter(is_known) else { return Ok(None) };
+        let points = SurveyPoints {
+            positions: &self.measured,
+            scanner: &input.scanner,
+            attributes: &input.attributes,
+            origin: frame.origin,
+        };
+        control.stage("finding roofs and walls", self.measured.len(), || find(&points, params, control)).map(Some)
+    }
+}
+
+/// Finds the surfaces of buildings, and caps the balls, whose sources are rows of the points kept, and of which each may
+/// have a transmission.
 pub(super) fn close_surfaces(
     (balls, transmission): (&mut MedialBalls, &mut Vec<f32>),
     survey: &OrientedSurvey,
@@ -35,18 +61,9 @@ pub(super) fn close_surfaces(
     params: &PlaneParams,
     control: &Control<'_>,
 ) -> Result<(SurfacePatches, Option<SurfacesReport>)> {
-    let is_known = |input: &&CarvingInput| {
-        // the place where an upright line passes a roof is not where the pulse did
-        !input.is_assumed && !input.free_segments.are_from_the_ground()
+    let Some(found) = survey.building_surfaces(frame, params, control)? else {
+        return Ok((SurfacePatches::default(), None));
     };
-    let Some(input) = survey.carving.as_ref().filter(is_known) else { return Ok((SurfacePatches::default(), None)) };
-    let points = SurveyPoints {
-        positions: &survey.measured,
-        scanner: &input.scanner,
-        attributes: &input.attributes,
-        origin: frame.origin,
-    };
-    let found = control.stage("finding roofs and walls", survey.measured.len(), || find(&points, params, control))?;
     let balls_capped =
         control.stage("capping balls", balls.len(), || cap(balls, &survey.measured, &found.regions, control))?;
     let left: Vec<usize> = (0..balls.len()).filter(|&row| balls.touch[row] != NO_TOUCH).collect();

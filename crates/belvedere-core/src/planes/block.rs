@@ -13,6 +13,8 @@ use std::collections::BTreeMap;
 
 /// Side of the cells in which points of a block are looked up, metres.
 const CELL: f64 = 2.0;
+/// Class of points on the ground.
+const GROUND: u8 = 2;
 /// Least upward part of the way to a scanner that flies, as a share.
 const MIN_UP: f64 = 0.3;
 
@@ -22,12 +24,32 @@ pub(super) struct Return {
     pub(super) p: [f64; 3],
     /// Metres east and north for each metre up, on the way to the scanner; NaN where it is unknown.
     pub(super) lean: [f64; 2],
-    /// Whether it may lie on a building.
-    pub(super) is_building: bool,
+    /// Whether it lies on a building.
+    pub(super) building: Building,
+    /// Whether it lies on the ground.
+    pub(super) is_ground: bool,
     /// Whether it is the first of its pulse.
     pub(super) is_first: bool,
     /// Whether its pulse has several returns: a part of the beam went on.
     pub(super) is_split: bool,
+}
+
+/// Whether a return lies on a building.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Building {
+    /// Another class says that it does not, or its pulse has several returns, as in trees.
+    No,
+    /// It has class 0 or 1, and no point of the block or about it has class 6. If it lies on a plane that is large, flat
+    /// and high enough, it does.
+    Unknown,
+    /// Class 6.
+    Yes,
+}
+
+impl Return {
+    pub(super) fn may_be_building(&self) -> bool {
+        self.building != Building::No
+    }
 }
 
 /// A block with what lies about it.
@@ -89,28 +111,26 @@ pub(super) fn blocks(survey: &SurveyPoints<'_>, params: &PlaneParams, control: &
         return Err(Error::LengthMismatch { what: "scanner positions", expected, found: survey.scanner.len() });
     }
     let mut rows_of: BTreeMap<[i64; 2], (bool, Vec<u32>)> = BTreeMap::new();
-    let mut buildings = 0_u32;
     for (row, p) in survey.positions.iter().enumerate() {
         if row % 65_536 == 0 {
             control.check()?;
         }
         let Ok(short) = u32::try_from(row) else { break };
-        let (is_building, is_first) = (is_building(survey, row), is_first(survey, row));
-        if !(is_building || is_first) {
+        let may_be_building = building(survey, row) != Building::No;
+        if !(may_be_building || is_first(survey, row)) {
             continue;
         }
-        buildings += u32::from(is_building);
         let [x, y] = [0, 1].map(|axis| f64::from(p[axis]) + survey.origin[axis]);
         let own = [number(x), number(y)];
         for column in number(x - params.margin)..=number(x + params.margin) {
             for line in number(y - params.margin)..=number(y + params.margin) {
                 let (holds, rows) = rows_of.entry([column, line]).or_default();
-                *holds |= is_building && own == [column, line];
+                *holds |= may_be_building && own == [column, line];
                 rows.push(short);
             }
         }
     }
-    let with_buildings = rows_of.into_iter().filter(|(_, (holds, _))| *holds && buildings > 0);
+    let with_buildings = rows_of.into_iter().filter(|(_, (holds, _))| *holds);
     Ok(with_buildings.map(|(number, (_, rows))| BlockRows { number, rows }).collect())
 }
 
@@ -131,9 +151,23 @@ fn is_first(survey: &SurveyPoints<'_>, row: usize) -> bool {
     survey.attributes.return_number.as_ref().and_then(|numbers| numbers.get(row)).is_none_or(|&number| number <= 1)
 }
 
-/// Whether a point may lie on a building.
-fn is_building(survey: &SurveyPoints<'_>, row: usize) -> bool {
-    survey.attributes.classification.as_ref().and_then(|classes| classes.get(row)) == Some(&SurfacePatches::CLASS)
+/// Whether a point lies on a building.
+fn building(survey: &SurveyPoints<'_>, row: usize) -> Building {
+    match class(survey, row) {
+        Some(SurfacePatches::CLASS) => Building::Yes,
+        Some(0 | 1) if returns(survey, row) <= 1 => Building::Unknown,
+        _ => Building::No,
+    }
+}
+
+/// Class of a point.
+fn class(survey: &SurveyPoints, row: usize) -> Option<u8> {
+    survey.attributes.classification.as_ref().and_then(|classes| classes.get(row)).copied()
+}
+
+/// Number of returns of the pulse of a point, 1 where it is unknown.
+fn returns(survey: &SurveyPoints, row: usize) -> u8 {
+    survey.attributes.return_count.as_ref().and_then(|counts| counts.get(row)).map_or(1, |&count| count)
 }
 
 impl Block {
@@ -143,7 +177,6 @@ impl Block {
         let [x, y] = [0, 1].map(|axis| block.number[axis] as f64 * BLOCK - survey.origin[axis]);
         let corner = [x, y, 0.0];
         let grid = Grid::new(margin);
-        let counts = survey.attributes.return_count.as_deref();
         let read = |row: usize| {
             let (at, from) = (survey.positions[row], survey.scanner[row]);
             let way: [f64; 3] = std::array::from_fn(|i| f64::from(from[i]) - f64::from(at[i]));
@@ -151,9 +184,10 @@ impl Block {
             Return {
                 p: std::array::from_fn(|i| f64::from(at[i]) - corner[i]),
                 lean: if is_flown { [way[0] / way[2], way[1] / way[2]] } else { [f64::NAN; 2] },
-                is_building: is_building(survey, row),
+                building: building(survey, row),
+                is_ground: class(survey, row) == Some(GROUND),
                 is_first: is_first(survey, row),
-                is_split: counts.and_then(|counts| counts.get(row)).is_some_and(|&count| count > 1),
+                is_split: returns(survey, row) > 1,
             }
         };
         // keys are sorted rather than returns, which are longer
@@ -165,13 +199,18 @@ impl Block {
         }
         keys.sort_unstable_by_key(|key| (key.0, key.1));
         let mut returns: Vec<Return> = keys.iter().map(|key| read(key.2 as usize)).collect();
+        if returns.iter().any(|found| found.building == Building::Yes) {
+            // who classified buildings here left out what is none
+            let unknown = returns.iter_mut().filter(|found| found.building == Building::Unknown);
+            unknown.for_each(|found| found.building = Building::No);
+        }
         // what lies in one place has an order of its own
         let mut first = 0;
         for group in keys.chunk_by(|a, b| a.1 == b.1) {
             if group.len() > 1 {
                 returns[first..first + group.len()].sort_unstable_by(|a, b| {
                     let by_lean = (0..2).fold(Ordering::Equal, |order, i| order.then(a.lean[i].total_cmp(&b.lean[i])));
-                    let flags = |r: &Return| [r.is_building, r.is_first, r.is_split];
+                    let flags = |r: &Return| (r.building, [r.is_ground, r.is_first, r.is_split]);
                     by_lean.then(flags(a).cmp(&flags(b)))
                 });
             }
@@ -219,6 +258,17 @@ impl Block {
                 visit(from + row, found);
             }
         }
+    }
+
+    /// Highest ground between two corners in plan and about them; `None` without any.
+    pub(super) fn ground(&self, low: [f64; 2], high: [f64; 2]) -> Option<f64> {
+        let mut highest = None;
+        self.each_in(low, high, |_, found| {
+            if found.is_ground {
+                highest = Some(highest.map_or(found.p[2], |z: f64| z.max(found.p[2])));
+            }
+        });
+        highest
     }
 
     /// How far in plan a pulse moves at most from where it crosses a height to its return.

@@ -227,7 +227,7 @@ fn samples(block: &Block, roofs: &Roofs, ridges: &[RidgeLine], plane: usize) -> 
         let above = roof.plane.above(found.p);
         let at = [found.p[0], found.p[1]];
         if above > 0.0 {
-            if found.is_building && above < ABOVE && above > 3.0 * roofs.noise && near.holds(at) {
+            if found.may_be_building() && above < ABOVE && above > 3.0 * roofs.noise && near.holds(at) {
                 inside.push(at);
                 standing.push(Standing { p: at, above, is_loose: on == NONE });
             }

@@ -1,7 +1,7 @@
 //! Planes of roofs: points that go on flat from each other.
 
 use super::PlaneParams;
-use super::block::Block;
+use super::block::{Block, Building};
 use super::fit::{Plane, Sums};
 use crate::neighbors::NeighborIndex;
 use belvedere_data::Result;
@@ -30,6 +30,13 @@ const SMOOTH: [f64; 2] = [0.25, 0.72];
 const SWEEPS: usize = 3;
 /// Pairs of neighbours on two planes that touch.
 pub(super) const MIN_PAIRS: usize = 4;
+
+/// Where points have no class: least area of a roof, m², most noise of its points and least height above the ground,
+/// metres, of its middle, and how far about it ground is looked at, metres.
+const MIN_AREA: f64 = 6.0;
+const MAX_NOISE: f64 = 0.05;
+const MIN_HEIGHT: f64 = 2.0;
+const ABOUT: f64 = 4.0;
 
 /// A plane and its points.
 #[derive(Clone, Debug, Default)]
@@ -81,7 +88,7 @@ struct Patchwork {
 /// # Errors
 /// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
 pub(super) fn find(block: &Block, params: &PlaneParams, control: &Control<'_>) -> Result<Roofs> {
-    let is_candidate = |row: &usize| block.returns[*row].is_building && block.returns[*row].is_first;
+    let is_candidate = |row: &usize| block.returns[*row].may_be_building() && block.returns[*row].is_first;
     let rows: Vec<usize> = (0..block.returns.len()).filter(is_candidate).collect();
     let work = Patchwork::new(rows.iter().map(|&row| block.returns[row].p).collect(), control)?;
     let (mut plane_of, mut planes) = work.grow(params.min_points);
@@ -122,16 +129,36 @@ impl Roofs {
             if rows.len() < min_points || plane.normal[2] < MIN_UP {
                 continue;
             }
+            // spacings vary with overlap: their mean over the plane
+            let area: f64 = rows.iter().map(|&row| block.spacing(self.points[row as usize]).powi(2)).sum();
+            let class = block.returns[self.return_of[rows[0] as usize] as usize].building;
+            if class == Building::Unknown && !self.is_roof(block, &plane, &rows, area) {
+                continue;
+            }
             let number = u32::try_from(self.planes.len()).unwrap_or(NONE);
             for &row in &rows {
                 self.plane_of[row as usize] = number;
                 self.plane_of_return[self.return_of[row as usize] as usize] = number;
             }
-            // spacings vary with overlap: their mean over the plane
-            let area: f64 = rows.iter().map(|&row| block.spacing(self.points[row as usize]).powi(2)).sum();
             let spacing = (area / rows.len() as f64).sqrt();
             self.planes.push(Roof { plane, center: sums.mean(), rows, spacing });
         }
+    }
+}
+
+impl Roofs {
+    /// Whether a plane of points without a class is one of a building: large, flat, and above all ground about it.
+    fn is_roof(&self, block: &Block, plane: &Plane, rows: &[u32], area: f64) -> bool {
+        let (mut low, mut high, mut height) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2], 0.0);
+        for &row in rows {
+            let p = self.points[row as usize];
+            for axis in 0..2 {
+                (low[axis], high[axis]) = (low[axis].min(p[axis] - ABOUT), high[axis].max(p[axis] + ABOUT));
+            }
+            height += p[2] / rows.len() as f64;
+        }
+        let is_above = || block.ground(low, high).is_some_and(|ground| height > ground + MIN_HEIGHT);
+        area >= MIN_AREA && plane.noise <= MAX_NOISE && is_above()
     }
 }
 

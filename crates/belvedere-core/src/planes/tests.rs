@@ -320,6 +320,37 @@ fn a_tree_and_a_deck_give_no_walls_and_no_inside() {
 }
 
 #[test]
+fn without_a_class_of_buildings_a_house_is_known_by_its_shape() {
+    // a house, a car, leaves of a crown and a low wall
+    let mut faces = gable(0.4);
+    faces.extend(block_of([9.0, -2.0], [11.0, 3.0], 1.5));
+    let leaf = |number: u64| {
+        let [x, y, z, s, t] = std::array::from_fn(|k| uniform(3, 5 * number + k as u64) - 0.5);
+        let center = [-14.0 + 6.0 * x, 6.0 * y, 8.0 + 5.0 * z];
+        let corner = |a: f64, b: f64| [center[0] + a, center[1] + b, center[2] + 0.8 * s * a + 0.8 * t * b];
+        (vec![corner(-0.2, -0.2), corner(0.2, -0.2), corner(0.2, 0.2), corner(-0.2, 0.2)], 6)
+    };
+    faces.extend((0..800).map(leaf));
+    faces.extend(block_of([-6.0, -14.0], [8.0, -13.6], 1.2));
+    let mut scene = scan(&faces, AROUND[0], AROUND[1]);
+    let classified = scan(&gable(0.4), AROUND[0], AROUND[1]).surfaces();
+    scene.classes.iter_mut().filter(|class| **class == 6).for_each(|class| *class = 1);
+    let surfaces = scene.surfaces();
+    assert_eq!((surfaces.planes.len(), surfaces.ridges.len()), (2, 1));
+    assert!(surfaces.walls.len() >= 2 && surfaces.patches.len() > classified.patches.len() / 2);
+    let roof = area_of(&surfaces, PatchKind::Roof);
+    assert!((roof - area_of(&classified, PatchKind::Roof)).abs() < 2.0, "{roof} m²");
+    // nothing tells how high it stands
+    scene.classes.iter_mut().for_each(|class| *class = 1);
+    assert_eq!(scene.surfaces().patches.len(), 0);
+    // one point of class 6 says that buildings were classified
+    scene.classes[0] = 2;
+    assert_ne!(scene.surfaces().planes.len(), 0);
+    scene.classes[1] = 6;
+    assert_eq!(scene.surfaces().planes.len(), 0);
+}
+
+#[test]
 fn a_part_finds_what_the_whole_finds_in_any_order() {
     // houses over the corner of four blocks of 64 m: the origin of the scene is 1000, 2000
     let corner = [24.0, -16.0];

@@ -94,7 +94,7 @@ fn below(block: &Block, roofs: &Roofs, plane: usize, number: usize, edge: &EdgeL
     // along the edge, to its right, height
     let mut near: Vec<[f64; 3]> = Vec::new();
     block.each_in(low, high, |row, found| {
-        if !found.is_building || roofs.plane_of_return[row] != NONE || top.above(found.p) > -BELOW {
+        if !found.may_be_building() || roofs.plane_of_return[row] != NONE || top.above(found.p) > -BELOW {
             return;
         }
         let [t, d] = edge.of([found.p[0], found.p[1]]);

@@ -1,0 +1,117 @@
+//! `belvedere surfaces`.
+
+use super::{check_output, warn_of_geojson};
+use crate::arguments::{Global, SurfacesArguments};
+use crate::pipeline::{self, params};
+use crate::run::CommandContext;
+use crate::summary::Summary;
+use anyhow::{Result, bail};
+use belvedere::Frame;
+use belvedere::apps::roof_planes::MAX_LEVEL;
+use belvedere::io::{PathLine, Spot, write_geojson};
+use belvedere::medial::CarvedParams;
+use belvedere::model::{BallParams, OrientedSurvey};
+use belvedere::planes::{BuildingSurfaces, PlaneParams};
+use belvedere::report::rounded;
+use serde_json::{Map, Value};
+
+pub(crate) fn run(arguments: &SurfacesArguments, global: &Global) -> Result<Summary> {
+    check_output("-o", &arguments.output, &["geojson", "json"])?;
+    let parameters = arguments.parameters()?;
+    let mut run = CommandContext::new(global);
+    let cloud = pipeline::read(&arguments.input, &mut run)?;
+    let balls = BallParams::Carved(CarvedParams::default());
+    let params = params::model(&parameters, balls, &cloud.frame.crs, &mut run)?;
+    let prepared = OrientedSurvey::prepare(&cloud, &params, &run.control());
+    let (survey, report) = prepared.map_err(|error| pipeline::advised(&arguments.input, error))?;
+    run.summary.add_report(&report);
+    let found = survey.building_surfaces(&cloud.frame, &PlaneParams::default(), &run.control())?;
+    let Some(found) = found else {
+        bail!(
+            "{}: surfaces are found from pulses that come from the air; give where the scanner was with --orient \
+             trajectory=FILE if this is such a survey",
+            arguments.input.clouds[0].display()
+        )
+    };
+    let (roofs, lines) = features(&found, &cloud.frame);
+    run.stage("writing", 0, |_| write_geojson(&arguments.output, &roofs, &lines, &cloud.frame.crs))?;
+    warn_of_geojson(std::slice::from_ref(&arguments.output), &cloud.frame.crs, &mut run.summary);
+    let counts = [
+        ("roofs", found.planes.len()),
+        ("edges", found.edges.len()),
+        ("ridges_and_valleys", found.ridges.len()),
+        ("walls", found.walls.len()),
+    ];
+    for (name, count) in counts {
+        run.summary.add(name, count);
+    }
+    let deviations = found.edges.iter().map(|edge| edge.sd).collect();
+    run.summary.add("edge_deviation_m", median(deviations).map(|v| rounded(v, 3)));
+    run.summary
+        .headline("<roofs> roofs, <edges> edges, <ridges_and_valleys> ridges and valleys, <walls> walls, cut to blocks of 64 m")
+        .headline("an edge is known to <edge_deviation_m> m (standard deviation, median)");
+    run.summary.add("written", arguments.output.display().to_string());
+    Ok(run.finish())
+}
+
+/// Roofs as points, everything else as lines.
+fn features(found: &BuildingSurfaces, frame: &Frame) -> (Vec<Spot>, Vec<PathLine>) {
+    let placed = |p: [f64; 3]| std::array::from_fn(|axis| p[axis] + frame.origin[axis]);
+    let roofs = found.planes.iter().zip(0_u64..).map(|(plane, number)| {
+        let [east, north, up] = plane.normal;
+        let slope = east.hypot(north).atan2(up);
+        let azimuth = (slope > MAX_LEVEL).then(|| east.atan2(north).to_degrees().rem_euclid(360.0));
+        let properties = properties([
+            ("kind", "roof".into()),
+            ("roof", number.into()),
+            ("slope_deg", rounded(slope.to_degrees(), 2).into()),
+            ("azimuth_deg", azimuth.map(|v| rounded(v, 2)).into()),
+            ("points", plane.count.into()),
+            ("noise_m", rounded(plane.noise, 4).into()),
+            ("sd_m", rounded(plane.sd, 4).into()),
+        ]);
+        Spot { place: placed(plane.center), properties }
+    });
+    let edges = found.edges.iter().map(|edge| PathLine {
+        places: edge.ends.map(placed).to_vec(),
+        properties: properties([
+            ("kind", "edge".into()),
+            ("roof", edge.plane.into()),
+            ("sd_m", rounded(edge.sd, 4).into()),
+            ("drop_m", rounded(edge.drop, 2).into()),
+        ]),
+    });
+    let ridges = found.ridges.iter().map(|ridge| PathLine {
+        places: ridge.ends.map(placed).to_vec(),
+        properties: properties([
+            ("kind", if ridge.is_convex { "ridge" } else { "valley" }.into()),
+            ("roofs", ridge.planes.to_vec().into()),
+        ]),
+    });
+    let walls = found.walls.iter().map(|wall| {
+        let [bottom, top] = wall.heights.map(|z| z + frame.origin[2]);
+        PathLine {
+            places: wall.ends.map(|[x, y]| placed([x, y, wall.heights[1]])).to_vec(),
+            properties: properties([
+                ("kind", "wall".into()),
+                ("sd_m", rounded(wall.sd, 4).into()),
+                ("bottom_m", rounded(bottom, 2).into()),
+                ("top_m", rounded(top, 2).into()),
+                ("eaves_m", rounded(wall.eaves, 2).into()),
+                ("points", wall.count.into()),
+                ("noise_m", rounded(wall.noise, 4).into()),
+            ]),
+        }
+    });
+    (roofs.collect(), edges.chain(ridges).chain(walls).collect())
+}
+
+fn properties<const N: usize>(entries: [(&str, Value); N]) -> Map<String, Value> {
+    entries.into_iter().map(|(name, value)| (name.to_owned(), value)).collect()
+}
+
+/// The middle of some numbers, `None` of none.
+fn median(mut values: Vec<f64>) -> Option<f64> {
+    values.sort_unstable_by(f64::total_cmp);
+    values.get(values.len() / 2).copied()
+}

@@ -1,0 +1,86 @@
+//! `belvedere surfaces`: roofs, edges and walls as features, against the exact mesh of a simulated town.
+
+use crate::common::Workplace;
+use belvedere::control::Control;
+use belvedere::io::{FeatureShape, GeojsonFeature, ReadOptions, read_cloud, read_geojson, read_mesh};
+use belvedere::vector::{cross, dot, length, sub};
+use serde_json::Value;
+
+fn text<'a>(feature: &'a GeojsonFeature, name: &str) -> &'a str {
+    feature.properties.get(name).and_then(Value::as_str).unwrap_or("")
+}
+
+/// The middle of some numbers.
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_unstable_by(f64::total_cmp);
+    values[values.len() / 2]
+}
+
+/// Distance in plan from a place to a line between two corners.
+fn beside([x, y, _]: [f64; 3], [a, b]: [[f64; 3]; 2]) -> f64 {
+    let way = [b[0] - a[0], b[1] - a[1]];
+    let square = way[0] * way[0] + way[1] * way[1];
+    let share = if square > 0.0 { ((x - a[0]) * way[0] + (y - a[1]) * way[1]) / square } else { 0.0 }.clamp(0.0, 1.0);
+    (x - a[0] - share * way[0]).hypot(y - a[1] - share * way[1])
+}
+
+/// Whether a place lies within a triangle in plan.
+fn holds(corners: &[[f64; 3]; 3], [x, y, _]: [f64; 3]) -> bool {
+    let side = |a: [f64; 3], b: [f64; 3]| (b[0] - a[0]) * (y - a[1]) - (b[1] - a[1]) * (x - a[0]);
+    let [a, b, c] = *corners;
+    let sides = [side(a, b), side(b, c), side(c, a)];
+    sides.iter().all(|side| *side >= 0.0) || sides.iter().all(|side| *side <= 0.0)
+}
+
+#[test]
+fn roofs_and_edges_lie_where_those_of_the_mesh_do() {
+    let place = Workplace::new();
+    place.summary("simulate town -o town --extent 80 --density 10");
+    let made = place.summary("surfaces town/cloud.laz -o found.geojson");
+    let (cloud, _) = read_cloud([&place.path("town/cloud.laz")], &ReadOptions::new(), &Control::none()).unwrap();
+    let features = read_geojson(&place.path("found.geojson"), &cloud.frame.crs).unwrap();
+    let of = |kind: &str| features.iter().filter(|feature| text(feature, "kind") == kind).collect::<Vec<_>>();
+    let (roofs, edges, walls) = (of("roof"), of("edge"), of("wall"));
+    let lines = of("ridge").len() + of("valley").len();
+    for (name, count) in
+        [("roofs", roofs.len()), ("edges", edges.len()), ("walls", walls.len()), ("ridges_and_valleys", lines)]
+    {
+        assert!(count > 3 && made[name] == count, "{name}: {count}, {made}");
+    }
+    let (mesh, _) = read_mesh(&place.path("town/mesh.obj")).unwrap();
+    let triangles: Vec<[[f64; 3]; 3]> =
+        mesh.triangles.iter().map(|corners| corners.map(|corner| mesh.vertices[corner as usize])).collect();
+    // how far the nearest face with the slope of the roof lies from its middle
+    let off = roofs.iter().map(|roof| {
+        let FeatureShape::Point(p) = roof.shape else { panic!("{roof:?}") };
+        let slope = roof.properties["slope_deg"].as_f64().unwrap();
+        let far = |corners: &[[f64; 3]; 3]| {
+            let normal = cross(sub(corners[1], corners[0]), sub(corners[2], corners[0]));
+            let up = (normal[2].abs() / length(normal)).min(1.0).acos().to_degrees();
+            let is_face = holds(corners, p) && (up - slope).abs() < 2.0;
+            if is_face { dot(normal, sub(p, corners[0])).abs() / length(normal) } else { f64::INFINITY }
+        };
+        triangles.iter().map(far).fold(f64::INFINITY, f64::min)
+    });
+    let off: Vec<f64> = off.collect();
+    let near = off.iter().filter(|off| **off < 0.05).count();
+    // middles of roofs that enclose a court lie on none of their faces
+    assert!(10 * near >= 9 * off.len(), "{off:?}");
+    // in plan, from the middle of an edge to the nearest side of a face; noise of a simulated range is 2 cm
+    let beside_edges = edges.iter().map(|edge| {
+        let FeatureShape::Line(ends) = &edge.shape else { panic!("{edge:?}") };
+        let middle = std::array::from_fn(|i| f64::midpoint(ends[0][i], ends[1][i]));
+        let sides = triangles.iter().flat_map(|t| [[t[0], t[1]], [t[1], t[2]], [t[2], t[0]]]);
+        sides.map(|side| beside(middle, side)).fold(f64::INFINITY, f64::min)
+    });
+    assert!(median(beside_edges.collect()) < 0.06, "{made}");
+    assert!(made["edge_deviation_m"].as_f64().unwrap() < 0.06, "{made}");
+}
+
+#[test]
+fn surveys_that_show_no_surfaces_are_refused() {
+    let place = Workplace::new();
+    place.write("bare.xyz", "1 1 1\n2 2 2\n3 4 4\n4 4 5\n");
+    place.refusal(1, "surfaces bare.xyz -o found.geojson", &["bare.xyz"]);
+    place.refusal(2, "surfaces bare.xyz -o found.laz", &[".geojson"]);
+}
