@@ -288,8 +288,8 @@ impl Plan {
 
     /// This before far terrain, an elevation raster and a horizon as [`read_terrain`](belvedere::io::read_terrain) and
     /// [`read_horizon`](belvedere::io::read_horizon) take them: directions to the sun and the sky below it are blocked.
-    /// Within the box of the survey, and a cell of the raster around it, terrain blocks nothing. A remark says where the
-    /// heights of the raster are not those of the ground.
+    /// Within the box of the survey, and a cell of the raster around it, terrain blocks nothing. A remark says where
+    /// the heights of the raster are not those of the ground.
     ///
     /// # Errors
     /// Those of reading the files, and [`Error::InvalidParameter`] for terrain that does not reach the survey or lies

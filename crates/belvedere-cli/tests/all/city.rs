@@ -337,19 +337,20 @@ fn a_plan_says_of_weather_and_terrain_what_single_commands_say() {
     let place = Workplace::new();
     town(&place);
     let (mut cloud, _) = read_cloud([place.path("town/cloud.laz")], &ReadOptions::default(), &Control::none()).unwrap();
-    cloud.frame.origin[2] += 100.0;
+    // near the sea, where feet are not far from metres
+    cloud.frame.origin[2] += 10.0;
     place.write_cloud("high.laz", &cloud);
-    // noons of a place a thousand kilometres away, and one without radiation
+    // noons of a place a thousand kilometres away
     let mut weather = "Latitude (decimal degrees): 40\nLongitude (decimal degrees): 4.4\nElevation (m): 0.0\n\
                        Irradiance Time Offset (h): 0\nmonth,year\n1,2015\ntime(UTC),T2m,RH,G(h),Gb(n),Gd(h)\n"
         .to_owned();
     for month in 1..=12 {
         weather += &format!("2015{month:02}15:1200,10.0,80.0,300.0,200.0,150.0\n");
     }
-    place.write("elsewhere.csv", weather + "20151215:1300,10.0,80.0,nan,nan,nan\n");
+    place.write("elsewhere.csv", weather);
     let write_terrain = |name: &str, metres_per_unit: f64| {
         #[expect(clippy::cast_possible_truncation, reason = "a height")]
-        let height = (100.0 / metres_per_unit) as f32;
+        let height = (10.0 / metres_per_unit) as f32;
         let raster = Raster::from_values(40, 40, vec![height; 1600]).unwrap();
         let georeference = Georeference {
             upper_left: [cloud.frame.origin[0] - 1000.0, cloud.frame.origin[1] + 1000.0],

@@ -134,7 +134,7 @@ pub(super) fn shift_of(
     let found = [
         two_levels(&squares, side),
         against_others(&squares, side, above_others),
-        against_others(&squares, side, |squares| below_others(squares)),
+        against_others(&squares, side, below_others),
         strips_apart(&cells, &placed, side, &strip),
     ];
     Ok(found.into_iter().flatten().max_by_key(|shift| shift.point_count))
