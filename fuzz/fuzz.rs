@@ -6,7 +6,7 @@ mod readers;
 
 use std::sync::LazyLock;
 
-static READER: LazyLock<&readers::Reader> = LazyLock::new(|| {
+static READER: LazyLock<&readers::TriedReader> = LazyLock::new(|| {
     let name = std::env::var("BELVEDERE_READER").unwrap_or_default();
     let names: Vec<_> = readers::READERS.iter().map(|reader| reader.file).collect();
     let found = readers::READERS.iter().find(|reader| reader.file == name);

@@ -62,6 +62,17 @@ pub enum Error {
         /// The file.
         path: PathBuf,
     },
+    /// The system has less memory than some work takes.
+    #[error(
+        "{work} takes about {} MB of memory, which the system does not give; use a smaller part, such as one tile, or raise the limit (ulimit -v)",
+        bytes.div_ceil(1_000_000)
+    )]
+    TooLittleMemory {
+        /// The work, such as "making balls of 30000 points".
+        work: String,
+        /// What it takes, bytes.
+        bytes: u64,
+    },
     /// A graphics processor is missing, or fails.
     #[error("{what}")]
     Device {

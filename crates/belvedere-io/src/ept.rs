@@ -13,7 +13,7 @@ use serde_json::Value;
 
 use super::octree::OctreeCube;
 use super::read_options::FileBox;
-use super::source::{Input, Source, SystemBeside, place_in, web_address};
+use super::source::{Input, Source, SystemBeside, folder_and_query, place_beside, web_address};
 use belvedere_data::crs::Crs;
 use belvedere_data::{Error, Result};
 
@@ -43,7 +43,6 @@ fn is_description(path: &Path) -> bool {
 
 /// What `ept.json` says of the points.
 struct EptDescription {
-    folder: PathBuf,
     cube: OctreeCube,
     room: [f64; 3],
     system: Option<SystemBeside>,
@@ -56,11 +55,12 @@ struct EptDescription {
 /// [`Error::Io`]; [`Error::Malformed`] for what is no description or no hierarchy, and for nodes that are not LAZ.
 pub(super) fn files_within(path: &Path, wanted: Option<&FileBox>) -> Result<Vec<Source<'static>>> {
     let description = describe(path)?;
+    let folder = folder_and_query(path);
     let mut pages = vec![String::from("0-0-0-0")];
     let mut seen: HashSet<String> = pages.iter().cloned().collect();
     let mut nodes: BTreeMap<[i32; 4], String> = BTreeMap::new();
     while let Some(page) = pages.pop() {
-        let file = place_in(&description.folder, &format!("ept-hierarchy/{page}.json"));
+        let file = place_beside(&folder, &format!("ept-hierarchy/{page}.json"));
         let damaged = |what: String| Error::malformed(&file, format!("has a damaged EPT hierarchy: {what}"));
         let entries = json(&file)?;
         let entries = entries.as_object().ok_or_else(|| damaged("it is no list of nodes".to_owned()))?;
@@ -82,7 +82,7 @@ pub(super) fn files_within(path: &Path, wanted: Option<&FileBox>) -> Result<Vec<
         }
     }
     let source = |name: &String| {
-        let mut source = Source::path(place_in(&description.folder, &format!("{NODES}/{name}.laz")));
+        let mut source = Source::path(place_beside(&folder, &format!("{NODES}/{name}.laz")));
         source.system = description.system.clone();
         source
     };
@@ -91,8 +91,9 @@ pub(super) fn files_within(path: &Path, wanted: Option<&FileBox>) -> Result<Vec<
 
 /// The system that the description above a node gives, where `path` is that of a node.
 pub(super) fn system_of_node(path: &Path) -> Option<SystemBeside> {
-    let folder = path.parent().filter(|folder| folder.file_name().is_some_and(|name| name == NODES))?;
-    describe(&place_in(folder.parent()?, NAME)).ok()?.system
+    let (folder, query) = folder_and_query(path);
+    let above = folder.parent().filter(|_| folder.file_name().is_some_and(|name| name == NODES))?;
+    describe(&place_beside(&(above.to_owned(), query), NAME)).ok()?.system
 }
 
 fn describe(path: &Path) -> Result<EptDescription> {
@@ -119,10 +120,7 @@ fn describe(path: &Path) -> Result<EptDescription> {
         own.and_then(|column| column.get("scale")?.as_f64()).filter(|step| step.is_finite()).unwrap_or(USUAL_STEP)
     };
     let room = ["X", "Y", "Z"].map(|axis| ROOM_STEPS * step(axis).abs());
-    // an address ends before its query
-    let plain = web_address(path).and_then(|text| text.split(['?', '#']).next()).map_or(path, Path::new);
-    let folder = plain.parent().unwrap_or(Path::new("")).to_owned();
-    Ok(EptDescription { folder, cube, room, system: content.get("srs").and_then(system) })
+    Ok(EptDescription { cube, room, system: content.get("srs").and_then(system) })
 }
 
 /// The system of a description: a code with its authority, or well-known text.

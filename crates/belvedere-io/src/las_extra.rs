@@ -100,24 +100,32 @@ pub(super) fn find_columns<const N: usize>(
     names.map(|name| fields.iter().rev().find(|(n, _)| n.eq_ignore_ascii_case(name)).map(|&(_, field)| field))
 }
 
-/// Finds normals among the extra bytes; the other extra bytes are noted as dropped.
+/// Finds normals among the extra bytes; a note names the other extra bytes.
 pub(super) fn find_extra_normals(part: &mut FilePart, header: &LasHeader, format: &Format) -> Option<ExtraNormals> {
     const NAMES: [&str; 3] = ["NormalX", "NormalY", "NormalZ"];
-    let normals = find_columns(header, format, NAMES);
-    let others: Vec<String> = described(header, format)
-        .into_iter()
-        .map(|(name, _)| name)
-        .filter(|name| !NAMES.iter().any(|normal| normal.eq_ignore_ascii_case(name)))
-        .collect();
-    if let [Some(x), Some(y), Some(z)] = normals {
-        if !others.is_empty() {
-            part.note(format!("extra bytes ignored: {}", others.join(", ")));
-        }
-        return Some([x, y, z]);
+    let normals = match find_columns(header, format, NAMES) {
+        [Some(x), Some(y), Some(z)] => Some([x, y, z]),
+        _ => None,
+    };
+    let is_normal = |name: &str| normals.is_some() && NAMES.iter().any(|normal| normal.eq_ignore_ascii_case(name));
+    let names = described(header, format).into_iter().map(|(name, _)| name);
+    let others: Vec<String> = names.filter(|name| !is_normal(name)).collect();
+    if let Some(note) = note_on_unused(&others, format.extra_bytes, normals.is_some()) {
+        part.note(note);
     }
-    if format.extra_bytes > 0 {
-        let names = if others.is_empty() { "not described".to_owned() } else { others.join(", ") };
-        part.note(format!("{} extra bytes per point ignored: {names}", format.extra_bytes));
-    }
-    None
+    normals
+}
+
+/// What to know of values of points that nothing uses, of these names, in `size` bytes of a point; `None` where there
+/// are none.
+fn note_on_unused(names: &[String], size: u16, has_normals: bool) -> Option<String> {
+    let what = match names {
+        [] if size == 0 || has_normals => return None,
+        [] => format!("{size} bytes of each point that the file does not describe"),
+        names => names.join(", "),
+    };
+    Some(format!(
+        "values that are not used: {what} (\"extra bytes\"); no answer depends on them, and results that are written \
+         as .las or .laz keep them"
+    ))
 }

@@ -244,6 +244,28 @@ pub(crate) fn place_in(folder: &Path, path: &str) -> PathBuf {
     }
 }
 
+/// The folder of a file, and what an address has behind its path, such as the key of `…/ept.json?sig=…`: files below
+/// it need it too.
+pub(crate) fn folder_and_query(file: &Path) -> (PathBuf, &str) {
+    let text = web_address(file).unwrap_or_default();
+    let plain = text.split(['?', '#']).next().unwrap_or_default();
+    let folder = if text.is_empty() { file } else { Path::new(plain) }.parent().unwrap_or(Path::new(""));
+    let query = text.get(plain.len()..).and_then(|rest| rest.split('#').next()).unwrap_or_default();
+    (folder.to_owned(), query)
+}
+
+/// Where a file lies that another one names with `path`, in the `folder` and with the `query` of that one. What names
+/// another server, or has a query itself, gets none.
+pub(crate) fn place_beside((folder, query): &(PathBuf, &str), path: &str) -> PathBuf {
+    let place = place_in(folder, path);
+    match web_address(&place) {
+        Some(address) if web_address(Path::new(path)).is_none() && !address.contains('?') && !query.is_empty() => {
+            format!("{address}{query}").into()
+        }
+        _ => place,
+    }
+}
+
 /// Reader of an open source.
 pub(crate) type SourceReader<'a> = BufReader<Box<dyn ReadSeek + 'a>>;
 

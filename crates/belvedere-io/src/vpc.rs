@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use serde_json::Value;
 
 use super::read_options::FileBox;
-use super::source::{Source, place_in, web_address};
+use super::source::{Source, folder_and_query, place_beside, web_address};
 use belvedere_data::{Error, Result};
 
 /// Largest catalogue that is read, bytes: a million tiles, and far below the memory of any machine.
@@ -31,7 +31,7 @@ pub(super) fn files_within(source: Source<'_>, wanted: Option<&FileBox>) -> Resu
         .map_err(|e| damaged(format!("is no catalogue of tiles (virtual point cloud): {e}")))?;
     let tiles = catalogue.get("features").and_then(Value::as_array);
     let tiles = tiles.ok_or_else(|| damaged("is no catalogue of tiles: it has no `features`".to_owned()))?;
-    let folder = name.parent().unwrap_or(Path::new(""));
+    let folder = folder_and_query(&name);
     let mut files = Vec::new();
     for (number, tile) in tiles.iter().enumerate() {
         let path = tile.pointer("/assets/data/href").and_then(Value::as_str);
@@ -42,7 +42,7 @@ pub(super) fn files_within(source: Source<'_>, wanted: Option<&FileBox>) -> Resu
             )));
         }
         if wanted.is_none_or(|wanted| bounds(tile).is_none_or(|(low, high)| wanted.meets(low, high))) {
-            files.push(place_in(folder, path));
+            files.push(place_beside(&folder, path));
         }
     }
     Ok(files)

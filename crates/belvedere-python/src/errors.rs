@@ -1,18 +1,19 @@
 //! Errors of the library as Python exceptions: one place.
 
 use belvedere::{Error, Parameter};
-use pyo3::exceptions::PyOSError;
+use pyo3::exceptions::{PyMemoryError, PyOSError};
 use pyo3::prelude::*;
 use std::io::ErrorKind;
 
 /// The exception for an error of the library.
 ///
-/// What the operating system refuses becomes `OSError` or its subclass; all else `belvedere.BelvedereError` with what
-/// is wrong, the offending value, and what to do about it.
+/// What the operating system refuses becomes `OSError` or its subclass, or `MemoryError`; all else
+/// `belvedere.BelvedereError` with what is wrong, the offending value, and what to do about it.
 pub(crate) fn exception(error: Error) -> PyErr {
     let message = error.to_string();
     let (what, value, advice) = match error {
         Error::Io { path, source } => return refused(&path.display().to_string(), &source),
+        Error::TooLittleMemory { .. } => return PyMemoryError::new_err(message),
         Error::Malformed { path, what } | Error::UnusableCrs { path, what } => {
             (what.clone(), path.display().to_string(), what)
         }

@@ -46,7 +46,7 @@ pub(crate) fn earth(curvature: Option<&str>, refraction: Option<f64>) -> PyResul
 }
 
 impl PyScene {
-    /// What to know of an eye, local metres, and of targets of which some are outside the cloud.
+    /// What to know of the scene, of an eye, local metres, and of targets of which some are outside the cloud.
     fn remarks_on_viewer<'py>(
         &self,
         py: Python<'py>,
@@ -54,8 +54,10 @@ impl PyScene {
         (outside, count): (usize, usize),
         things: &str,
     ) -> PyResult<Vec<Bound<'py, PyDict>>> {
-        let of_eye = ask::remark_on_eye(self.0.model().coverage().as_ref(), eye);
-        remarks_of(py, of_eye.iter().chain(&ask::remark_on_outside(outside, count, things)))
+        let model = self.0.model();
+        let of_eye = ask::remark_on_eye(model.coverage().as_ref(), eye);
+        let of_axis = ask::remark_on_axis(model.looks_y_up());
+        remarks_of(py, of_axis.iter().chain(&of_eye).chain(&ask::remark_on_outside(outside, count, things)))
     }
 }
 

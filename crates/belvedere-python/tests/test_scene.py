@@ -34,6 +34,20 @@ def wall():
     return belvedere.Scene(wall_on_a_plain(), method="tau", orient="given", keep_isolated=True)
 
 
+def test_a_cloud_with_y_up_is_said_by_all_that_its_scene_answers():
+    upright = wall_on_a_plain()
+    [x, y, z], normals = upright.xyz.T - [[155000], [463000], [5]], upright.normals.T
+    turned = belvedere.Cloud(
+        np.column_stack([x, z, -y]), normals=np.column_stack([normals[0], normals[2], -normals[1]])
+    )
+    scene = belvedere.Scene(turned, method="tau", orient="given", keep_isolated=True)
+    eye, targets = (0, 3, 10), [[5.0, 1.0, 10.0], [0.0, 1.0, -10.0]]
+    for ask in (lambda: scene.visible(eye, targets), lambda: scene.line_of_sight([eye], targets[:1])):
+        with pytest.warns(belvedere.BelvedereWarning) as caught:
+            ask()
+        assert "y-looks-up" in [warning.message.key for warning in caught]
+
+
 # LAS 1.4 has no points without a time
 @pytest.mark.filterwarnings("ignore:.*all GPS times are zero, so the file has none")
 def test_a_system_that_contradicts_the_file_is_refused_unless_it_is_insisted_on(tmp_path):
@@ -339,7 +353,7 @@ def test_a_cloud_is_saved_with_what_its_file_holds(cloud, tile, folder):
     rich.red = np.arange(len(own)) % 60_000
     rich["Amplitude"] = np.arange(len(own)) % 5000
     rich.write(folder / "rich.laz")
-    with pytest.warns(belvedere.BelvedereWarning, match="extra bytes per point ignored: Amplitude") as caught:
+    with pytest.warns(belvedere.BelvedereWarning, match="values that are not used: Amplitude") as caught:
         read = belvedere.read(folder / "rich.laz")
     assert len(caught) == 1
     pickle.loads(pickle.dumps(read)).save(folder / "again.laz")

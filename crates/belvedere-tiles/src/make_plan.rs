@@ -6,6 +6,7 @@ use crate::inputs::{InputFile, NOWHERE, PIECE_ROWS, PointColumns};
 use crate::plan::{LAYOUT, Plan, PlanFrame, without_ground};
 use crate::survey::survey;
 use crate::window;
+use belvedere::apps::ask::Remark;
 use belvedere::control::Control;
 use belvedere::crs::Crs;
 use belvedere::io::{Insistence, LasHead, cloud_files};
@@ -18,6 +19,8 @@ use std::path::{Path, PathBuf};
 const ORIGIN_STEP: f64 = 1024.0;
 /// Farthest that a point may lie from the origin, metres: up to here f32 keeps a millimetre.
 const FARTHEST: f64 = 16_384.0;
+/// Points that show the ground, at most.
+const MAX_SAMPLE: usize = 4000;
 
 /// How a plan is made.
 #[derive(Clone, Debug)]
@@ -72,9 +75,9 @@ impl Plan {
         let columns = PointColumns::common(&heads);
         let of_file = |(file, head): (&InputFile, &LasHead)| {
             let path = file.path.display().to_string();
-            head.notes.iter().map(|note| format!("{path}: {note}")).collect::<Vec<_>>()
+            head.notes.iter().map(|note| Remark::note("file-odd", format!("{path}: {note}"))).collect::<Vec<_>>()
         };
-        let notes: Vec<String> = inputs.iter().zip(&heads).flat_map(of_file).collect();
+        let remarks: Vec<Remark> = inputs.iter().zip(&heads).flat_map(of_file).collect();
         let files: Vec<PathBuf> = inputs.iter().map(|file| file.path.clone()).collect();
         let points = inputs.iter().map(|file| file.points).sum();
         let local = |v: [f64; 3]| [v[0] - frame.origin[0], v[1] - frame.origin[1]];
@@ -116,7 +119,8 @@ impl Plan {
             blocks: found.blocks,
             frame,
             name: String::new(),
-            notes,
+            sample: sample(&found.places.positions),
+            remarks,
         };
         plan.tiles = plan.tiles_with_cells();
         match params.memory {
@@ -148,6 +152,12 @@ impl Plan {
         }
         Ok(self)
     }
+}
+
+/// Some of many points, evenly.
+fn sample(positions: &[[f32; 3]]) -> Vec<[f64; 3]> {
+    let step = positions.len().div_ceil(MAX_SAMPLE).max(1);
+    positions.iter().step_by(step).map(|p| p.map(f64::from)).collect()
 }
 
 /// The frame of a survey whose system is named in the file `named_in`, and the corners of its files, metres.

@@ -9,6 +9,7 @@ use crate::sealed::{is_sound, sealed};
 use crate::stage::Stage;
 use crate::survey::SurveyBlock;
 use crate::window;
+use belvedere::apps::ask::{Context, Remark, remark_on_terrain};
 use belvedere::apps::targets::{grid_around, set_on_ground};
 use belvedere::apps::tree_light::CrownLight;
 use belvedere::control::Control;
@@ -78,9 +79,12 @@ pub struct Plan {
     /// What records name the plan by that they belong to: a fingerprint of its file; empty before it was read from one.
     #[serde(skip)]
     pub(crate) name: String,
-    /// What is odd about the files, while the plan is made.
+    /// Points of places all over the survey, local metres, while the plan is made.
     #[serde(skip)]
-    pub notes: Vec<String>,
+    pub(crate) sample: Vec<[f64; 3]>,
+    /// What to know of the files and the questions, while the plan is made.
+    #[serde(skip)]
+    pub remarks: Vec<Remark>,
 }
 
 /// Where local coordinates lie.
@@ -257,15 +261,19 @@ impl Plan {
             && self.blocks_in(&core.widened(reach)).next().is_some()
     }
 
-    /// This with other questions.
+    /// This with other questions, and with remarks on their radiation.
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] for two questions whose results would lie in one folder and for parameters outside
     /// their range; those of reading weather.
     pub fn with_questions(self, questions: Vec<TileQuestion>, control: &Control<'_>) -> Result<Self> {
         check_names(&questions)?;
-        questions.iter().try_for_each(|question| question.prepare(self.trees, control).map(|_| ()))?;
-        Ok(Self { questions, ..self })
+        let mut context = Context::default();
+        for question in &questions {
+            question.prepare(self.trees, &mut context, control)?;
+        }
+        let remarks = self.remarks.into_iter().chain(context.into_answers().remarks).collect();
+        Ok(Self { questions, remarks, ..self })
     }
 
     /// This with meshes of what is planned, such as buildings: their triangles block exactly, beside what was surveyed,
@@ -280,14 +288,18 @@ impl Plan {
 
     /// This before far terrain, an elevation raster and a horizon as [`read_terrain`](belvedere::io::read_terrain) and
     /// [`read_horizon`](belvedere::io::read_horizon) take them: directions to the sun and the sky below it are blocked.
-    /// Within the box of the survey, and a cell of the raster around it, terrain blocks nothing.
+    /// Within the box of the survey, and a cell of the raster around it, terrain blocks nothing. A remark says where
+    /// the heights of the raster are not those of the ground.
     ///
     /// # Errors
     /// Those of reading the files, and [`Error::InvalidParameter`] for terrain that does not reach the survey or lies
     /// far above or below it.
     pub fn with_far_terrain(self, terrain: Option<SideFile>, horizon: Option<SideFile>) -> Result<Self> {
-        far_terrain(terrain.as_ref(), horizon.as_ref(), &self.frame()?, self.bounds())?;
-        Ok(Self { terrain, horizon, ..self })
+        let frame = self.frame()?;
+        let far = far_terrain(terrain.as_ref(), horizon.as_ref(), &frame, self.bounds())?;
+        let heights = far.grid().and_then(|grid| remark_on_terrain(grid, &self.sample, frame.origin[2]));
+        let remarks = self.remarks.into_iter().chain(heights).collect();
+        Ok(Self { terrain, horizon, remarks, ..self })
     }
 
     /// This with trees that let light through, where questions ask for light.

@@ -125,19 +125,23 @@ impl TileRadiation {
         site: &Site,
         crowns: Option<CrownLight>,
         params: &IrradianceParams,
+        context: &mut Context,
         control: &Control<'_>,
     ) -> Result<Vec<SeasonRadiation>> {
         params.validate()?;
-        let gather = |source: &RadiationSource<'_>| Ok(period_seasons(source, site, crowns, params, control)?.0);
-        match self {
+        let weather;
+        let (source, weather) = match self {
             Self::Weather { file, parts } => {
-                let weather = read_weather(Source::bytes(file.path(), &file.read()?))?;
-                gather(&RadiationSource::Weather { weather: &weather, parts: *parts })
+                weather = read_weather(Source::bytes(file.path(), &file.read()?))?;
+                (RadiationSource::Weather { weather: &weather, parts: *parts }, Some(&weather))
             }
             Self::ClearSky { clear_sky, year } => {
-                gather(&RadiationSource::ClearSky { clear_sky: *clear_sky, year: *year })
+                (RadiationSource::ClearSky { clear_sky: *clear_sky, year: *year }, None)
             }
-        }
+        };
+        let (seasons, report) = period_seasons(&source, site, crowns, params, control)?;
+        ask::remark_on_radiation(weather, site, &report, context);
+        Ok(seasons)
     }
 }
 
@@ -244,12 +248,18 @@ impl TileQuestion {
         [first].into_iter().chain(second).map(str::to_owned).collect()
     }
 
-    /// What follows from its parameters, where crowns of trees let light through or not.
+    /// What follows from its parameters, where crowns of trees let light through or not; remarks on radiation go into
+    /// `context`.
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] for parameters outside their range, a sun that is not above the horizon and eyes
     /// that are nowhere; those of reading weather.
-    pub(crate) fn prepare(&self, crowns: Option<CrownLight>, control: &Control<'_>) -> Result<PreparedQuestion> {
+    pub(crate) fn prepare(
+        &self,
+        crowns: Option<CrownLight>,
+        context: &mut Context,
+        control: &Control<'_>,
+    ) -> Result<PreparedQuestion> {
         let invalid = |parameter, value: String, expected| Err(Error::InvalidParameter { parameter, value, expected });
         match self {
             Self::Shadow { to_sun, season, .. } if to_sun[2] > 0.0 => {
@@ -269,7 +279,7 @@ impl TileQuestion {
                 site: *site,
             })),
             Self::Irradiance { site, radiation, params } => {
-                let seasons = radiation.seasons(&site.validate()?, crowns, params, control)?;
+                let seasons = radiation.seasons(&site.validate()?, crowns, params, context, control)?;
                 let directions = seasons.iter().flat_map(|season| season.radiation.directions()).collect();
                 Ok(PreparedQuestion::Light(LightQuestion::Irradiance { seasons, directions }))
             }

@@ -10,7 +10,7 @@ use crate::planned::Others;
 use crate::record::{TileOutcome, TileRecord};
 use crate::report::write_report;
 use crate::stage::Stage;
-use belvedere::apps::ask::{Remark, remark_on_edge};
+use belvedere::apps::ask::{Context, Remark, remark_on_edge};
 use belvedere::control::Control;
 use belvedere::{Error, Parameter, Result};
 use serde::Serialize;
@@ -132,7 +132,11 @@ pub fn run(plan: &Plan, folder: &Path, params: &RunParams<'_>, control: &Control
     let others = if questions.is_empty() { Others::none() } else { plan.others()? };
     let mut ready = Vec::new();
     for question in questions {
-        ready.push((plan.cells.of(question), question, question.prepare(plan.trees, control)?));
+        ready.push((
+            plan.cells.of(question),
+            question,
+            question.prepare(plan.trees, &mut Context::default(), control)?,
+        ));
     }
     // those on cells of one size follow each other and share the surface of a tile
     ready.sort_by(|a, b| a.0.total_cmp(&b.0));

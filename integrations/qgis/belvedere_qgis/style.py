@@ -24,16 +24,17 @@ class Ramp:
     high: float | None = None
 
 
-# the first band of rasters; the second says what of it is unproven
-ANSWERS = ((0, BLOCKED, "blocked"), (1, VISIBLE, "nothing blocks it"))
+# codes of answers, in the words of the program
 SIGHTS = (
     (0, "#6e6e73", "blocked"),
     (1, VISIBLE, "visible"),
     (2, UNPROVEN, "unproven"),
     (3, OUTSIDE, "no line"),
     (4, OUTSIDE, "outside the cloud"),
-    (5, OUTSIDE, "inside an obstacle"),
+    (5, "#8c5a3c", "inside an obstacle"),
 )
+# of the first band of rasters; the second says what of it is unproven
+ANSWERS = ((0, BLOCKED, "blocked"), (1, VISIBLE, "nothing blocks it"), *SIGHTS[2:])
 AREAS = (("visible", VISIBLE, "visible"), ("unproven", UNPROVEN, "unproven"))
 EDGES = ((0, "#ffffff00", "reliable"), (1, EDGE, "near the edge of the cloud"))
 # Ramps of rasters by command and output.
@@ -70,7 +71,7 @@ def raster(command, key, low, high, is_bytes):
     if key == "EDGE_MASK":
         return _paletted(EDGES)
     if (command, key) == ("viewshed", "OUTPUT") and is_bytes:
-        return _paletted(ANSWERS)
+        return _paletted([answer for answer in ANSWERS if answer[0] <= max(1, high)])
     ramp = RAMPS.get((command, key))
     if ramp is None:
         return None

@@ -17,13 +17,24 @@ def parse(text):
 
 
 def test_answers_have_colours_of_their_own_and_counts_a_ramp():
-    entries = parse(style.raster("viewshed", "OUTPUT", 0, 2, is_bytes=True)).findall(".//paletteEntry")
+    entries = parse(style.raster("viewshed", "OUTPUT", 0, 1, is_bytes=True)).findall(".//paletteEntry")
     assert [(entry.get("value"), entry.get("label")) for entry in entries] == [
         ("0", "blocked"),
         ("1", "nothing blocks it"),
     ]
     counted = parse(style.raster("viewshed", "OUTPUT", 0, 7, is_bytes=False)).find(".//colorrampshader")
     assert (counted.get("minimumValue"), counted.get("maximumValue")) == ("0.0", "7")
+
+
+def test_each_code_of_an_answer_has_the_words_of_the_program():
+    source = Path(__file__).parents[3] / "crates/belvedere-apps/src/ask/line_of_sight.rs"
+    words = re.findall(r'^ +(?:Answer::\w+|_) => "([a-z ]+)",$', source.read_text(encoding="utf-8"), re.MULTILINE)
+    assert "inside an obstacle" in words
+    assert [code for code, _, _ in style.SIGHTS] == list(range(6))
+    assert {label for _, _, label in style.SIGHTS} == set(words)
+    entries = parse(style.raster("viewshed", "OUTPUT", 0, 5, is_bytes=True)).findall(".//paletteEntry")
+    assert [(int(entry.get("value")), entry.get("label")) for entry in entries[2:]] == [(code, label) for code, _, label in style.SIGHTS[2:]]
+    assert len({entry.get("color") for entry in entries if entry.get("value") in "0125"}) == 4
 
 
 @pytest.mark.parametrize(("command", "key"), sorted(style.RAMPS))

@@ -132,7 +132,7 @@ impl ComfortQuestion {
         let count = places().count();
         let Some(grid) = grid_around(places(), scene.frame().origin)? else { return Ok(routes) };
         let known = scene.ground(grid, self.ground, control)?;
-        context.ground(&known);
+        context.ground(scene, &known);
         let height = self.target_height.unwrap_or(WALKER_HEIGHT);
         let all = routes.iter_mut().flat_map(|route| &mut route.places).map(|place| (place, height));
         let unknown = set_on_ground(all, &known.ground).len();

@@ -332,7 +332,7 @@ impl Ask for EnvelopeQuestion {
         let [wide, narrow] = self.grids(&parcel, scene)?;
         let around = scene.ground(wide, self.ground, control)?;
         let below = scene.ground(narrow, self.ground, control)?;
-        context.ground(&below);
+        context.ground(scene, &below);
         let land = self.land(&around.ground, scene, control)?;
         let parts = land.unknown + land.pieces.len();
         let so = "have no known ground, and are not protected";

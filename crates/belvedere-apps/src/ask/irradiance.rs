@@ -5,8 +5,9 @@ use super::sections::{LinesSection, MeasuresSection, PlacesReport, RadiationSect
 use super::sun::SunPlace;
 use super::{Answers, Ask, Context, Places, Remark, Scene, ThroughTrees, spread};
 use crate::irradiance::{
-    CLEAR_SKY_YEAR, ClearSky, IrradianceParams, PARTS, RadiationSource, RoofIrradiation, RoofsReport, SeasonRadiation,
-    Surroundings, irradiation_measures, look_count, period_seasons, roof_irradiation, season_irradiation,
+    CLEAR_SKY_YEAR, ClearSky, IrradianceParams, PARTS, PeriodReport, RadiationSource, RoofIrradiation, RoofsReport,
+    SeasonRadiation, Surroundings, irradiation_measures, look_count, period_seasons, roof_irradiation,
+    season_irradiation,
 };
 use crate::roof_planes::{GROUND_CELL, RoofPlane, RoofPlaneParams, RoofsFrom, roof_planes, roof_points};
 use crate::rows::Obstacles;
@@ -196,24 +197,31 @@ impl IrradianceQuestion {
             section.source = weather.format.to_owned();
             section.weather_rows = Some(weather.steps.len());
             section.weather_hours = Some(rounded(weather.hours(), 2));
-            remark_on(weather, site, context);
         }
         context.report.radiation = Some(section);
-        if report.night_hours > 0.0 {
-            let text = format!(
-                "the weather has radiation in {:.1} hours of the night, with the sun more than 12 degrees below the horizon: are its location and time zone correct?",
-                report.night_hours
-            );
-            context.add(Some(Remark::warning("weather-at-night", text).with("hours", report.night_hours)));
-        }
-        if report.is_doubtful() {
-            let lost = report.dni_without_sun;
-            let text = format!(
-                "{lost:.0} kWh/m² of direct radiation have the sun below the horizon and are ignored: are the location and the time zone of the weather correct?"
-            );
-            context.add(Some(Remark::warning("weather-below-horizon", text).with("kwh_m2", lost)));
-        }
+        remark_on_radiation(self.radiation.weather(), site, &report, context);
         Ok(seasons)
+    }
+}
+
+/// What a user must know of radiation that was gathered for a site, from weather or from a clear sky.
+pub fn remark_on_radiation(weather: Option<&Weather>, site: &Site, report: &PeriodReport, context: &mut Context) {
+    if let Some(weather) = weather {
+        remark_on(weather, site, context);
+    }
+    if report.night_hours > 0.0 {
+        let text = format!(
+            "the weather has radiation in {:.1} hours of the night, with the sun more than 12 degrees below the horizon: are its location and time zone correct?",
+            report.night_hours
+        );
+        context.add(Some(Remark::warning("weather-at-night", text).with("hours", report.night_hours)));
+    }
+    if report.is_doubtful() {
+        let lost = report.dni_without_sun;
+        let text = format!(
+            "{lost:.0} kWh/m² of direct radiation have the sun below the horizon and are ignored: are the location and the time zone of the weather correct?"
+        );
+        context.add(Some(Remark::warning("weather-below-horizon", text).with("kwh_m2", lost)));
     }
 }
 

@@ -259,7 +259,7 @@ impl Ask for LandmarkQuestion {
         let area = section.area_m2;
         context.report.landmark = Some(section);
         let known = scene.ground(self.grid(scene)?, self.ground, control)?;
-        context.ground(&known);
+        context.ground(scene, &known);
         let blockers = scene.blockers(self.unproven(), control)?;
         context.report.lines_of_sight = Some(LinesSection::of(&blockers, None));
         let ground = &known.ground;

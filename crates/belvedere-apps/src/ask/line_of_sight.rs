@@ -156,7 +156,7 @@ impl LinesOfSightQuestion {
             Err(_) => None,
         };
         if let Some(known) = &known {
-            context.ground(known);
+            context.ground(scene, known);
         }
         let ground = known.as_ref().map(|known| &known.ground);
         let made = control

@@ -54,7 +54,7 @@ pub use comfort::{ComfortQuestion, ComfortResults, ExposureSection, RoutesOrWind
 pub use depth_map::{DepthMapQuestion, DepthMapResults, PictureSection, ViewFrom, ViewSection};
 pub use envelope::{EnvelopeQuestion, EnvelopeResults, EnvelopeSection, Protected, ProtectedShape, ProtectedSuns};
 pub use horizon::{BelowLevel, HorizonQuestion, HorizonResults};
-pub use irradiance::{IrradianceQuestion, IrradianceResults, Radiation, Roofs, RoofsResults};
+pub use irradiance::{IrradianceQuestion, IrradianceResults, Radiation, Roofs, RoofsResults, remark_on_radiation};
 pub use isovist::{IsovistColumn, IsovistsQuestion, IsovistsResults};
 pub use landmark::{LandmarkQuestion, LandmarkResults, LandmarkSection, LandmarkShape};
 pub use light::OnTargets;
@@ -72,6 +72,7 @@ pub use sky_view::{SkyParts, SkyViewQuestion};
 pub use sun::{Days, NamedSun, SunPlace, SunRange, Suns, check_sun, remark_on_sun};
 pub use sun_hours::{PreparedSun, SunHoursQuestion, rules};
 pub use sun_position::{SunPositionQuestion, SunStands};
+pub use terrain_heights::remark_on_terrain;
 pub use trees::ThroughTrees;
 pub use viewer::{
     remark_on_axis, remark_on_cleared, remark_on_doubt, remark_on_eye, remark_on_inside, remark_on_outside,
@@ -84,10 +85,10 @@ pub use window_views::{WindowViewsQuestion, WindowViewsResults};
 pub use windows::{GivenWindow, GivenWindows};
 
 use crate::targets::Measure;
-use belvedere_core::ground::GroundReport;
-use belvedere_data::Result;
+use belvedere_core::ground::{GroundReport, GroundShift, ShiftEvidence};
 use belvedere_data::control::Control;
 use belvedere_data::report::rounded;
+use belvedere_data::{Frame, Result};
 use north::AzimuthNorth;
 use scene::KnownGround;
 use sections::GroundSection;
@@ -267,8 +268,8 @@ impl Context {
         Answers::new((), Vec::new()).with(self)
     }
 
-    /// Reports on the ground, and warns of points that say they are ground and are not believed.
-    fn ground(&mut self, known: &KnownGround) {
+    /// Reports on the ground of a scene, and warns of points that say they are ground and contradict others.
+    fn ground(&mut self, scene: &Scene, known: &KnownGround) {
         self.report.ground = Some(GroundSection::of(known));
         let GroundReport { doubted_count, point_count, .. } = known.report;
         let so = "lie metres below or above the ground around, and are not believed";
@@ -277,12 +278,41 @@ impl Context {
         self.add(
             Remark::of_share("ground-not-believed", doubted_count, count, "points of class 2", so).filter(|_| is_new),
         );
+        self.add(known.report.shift.map(|shift| remark_on_shift(&shift, scene.frame())));
     }
 
     fn north(&mut self, north: &AzimuthNorth) {
         self.report.north = Some(north.report());
         self.add(north.remark());
     }
+}
+
+/// A warning of ground points that lie off over an area.
+fn remark_on_shift(shift: &GroundShift, frame: &Frame) -> Remark {
+    let GroundShift { point_count, rise, low, high, against } = *shift;
+    let corner = |[x, y]: [f32; 2]| {
+        let [x, y, _] = frame.file_from_local([f64::from(x), f64::from(y), 0.0]);
+        [x, y].map(|v| rounded(v, 1))
+    };
+    let [[west, south], [east, north]] = [low, high].map(corner);
+    let rise = rounded(f64::from(rise), 2);
+    let lie = format!("lie {:.2} m {}", rise.abs(), if rise < 0.0 { "below" } else { "above" });
+    let which = match against {
+        ShiftEvidence::SecondLevel => format!("{lie} others of class 2 at the same places"),
+        ShiftEvidence::Strips { shifted, other } => {
+            format!("(point source {shifted}) {lie} those of point source {other} where the two meet")
+        }
+        ShiftEvidence::OtherReturns if rise < 0.0 => {
+            format!("{lie} a layer of other returns that continues the ground around")
+        }
+        ShiftEvidence::OtherReturns => format!("{lie} the lowest other returns at the same places"),
+    };
+    let text = format!(
+        "{point_count} points of class 2 {which}, between {west}, {south} and {east}, {north}: heights of the ground \
+         are wrong there; correct the heights or the class of these points"
+    );
+    let remark = Remark::warning("ground-shifted", text).with("count", point_count as f64).with("rise_m", rise);
+    remark.with("west", west).with("south", south).with("east", east).with("north", north)
 }
 
 impl Ask for Question {

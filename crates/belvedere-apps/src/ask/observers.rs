@@ -133,7 +133,7 @@ pub(super) fn stand(
     let is_over = |place: &[f64; 3]| coverage.is_none_or(|coverage| coverage.holds_on_map(*place));
     if let Some(grid) = grid_around(places.iter().copied().filter(is_over), scene.frame().origin)? {
         let known = scene.ground(grid, points, control)?;
-        context.ground(&known);
+        context.ground(scene, &known);
         set_on_ground(places.iter_mut().zip(heights()), &known.ground);
         let feet = places.iter().zip(heights()).zip(is_on_ground);
         let feet = feet.map(

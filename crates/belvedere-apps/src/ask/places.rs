@@ -204,7 +204,7 @@ impl GridCells {
 
     fn targets(&self, scene: &Scene, context: &mut Context, control: &Control<'_>) -> Result<Targets> {
         let known = scene.ground(self.grid(scene)?, self.ground, control)?;
-        context.ground(&known);
+        context.ground(scene, &known);
         let mut params = CellParams::default().with_level(self.level);
         if let Some(height) = self.height {
             params = params.with_height(height);

@@ -150,7 +150,7 @@ impl Ask for ProtectedViewQuestion {
         let unproven = self.unproven.unwrap_or(UnprovenAs::Reported);
         let standing = stand(&self.observers, (self.observer_height, cells.ground), scene, context, control)?;
         let ground = scene.ground(cells.grid(scene)?, cells.ground, control)?;
-        context.ground(&ground);
+        context.ground(scene, &ground);
         let blockers = scene.blockers(unproven, control)?;
         context.report.lines_of_sight = Some(LinesSection::of(&blockers, None));
         let eyes =

@@ -1,6 +1,6 @@
 //! The scene that questions are put to: a model with its cloud, and what takes long to make and several questions need.
 
-use super::terrain_heights;
+use super::terrain_heights::remark_on_terrain;
 use super::viewer::remark_on_doubt;
 use super::{Context, Remark};
 use crate::horizon::convergence;
@@ -279,7 +279,14 @@ impl Scene {
     /// A warning where far terrain and the scene disagree on heights.
     pub(super) fn remark_on_terrain(&self) -> Option<Remark> {
         let grid = self.model.far_terrain().grid()?;
-        terrain_heights::remark(grid, self.model.balls(), self.model.frame().origin[2])
+        let balls = self.model.balls();
+        // the top of a ball in the ground lies in its surface
+        let top = |(center, radius): (&[f32; 3], &f32)| {
+            let [x, y, z] = center.map(f64::from);
+            [x, y, z + f64::from(*radius)]
+        };
+        let tops: Vec<[f64; 3]> = balls.centers.iter().zip(&balls.radii).map(top).collect();
+        remark_on_terrain(grid, &tops, self.model.frame().origin[2])
     }
 
     /// Where it lies.

@@ -2,16 +2,15 @@
 
 use super::Remark;
 use belvedere_data::ElevationGrid;
-use belvedere_data::balls::MedialBalls;
 use belvedere_data::report::rounded;
 
 /// Metres per foot, near enough for a ratio.
 const FOOT: f64 = 0.3048;
-/// Balls that are compared at most: they only have to show the ground.
-const MAX_BALLS: usize = 4000;
+/// Places that are compared at most: they only have to show the ground.
+const MAX_PLACES: usize = 4000;
 /// Fewer show nothing.
-const MIN_BALLS: usize = 20;
-/// Share of the balls that show the ground at least: the others are roofs and trees.
+const MIN_PLACES: usize = 20;
+/// Share of the places that show the ground at least: the others are roofs and trees.
 const GROUND_SHARE: f64 = 0.2;
 /// Ground and terrain that are this near agree, metres: a raster of coarse cells is no better.
 const AGREES: f64 = 1.0;
@@ -21,18 +20,15 @@ const RATIO_ERROR: f64 = 0.02;
 /// between the ellipsoid and the sea is more.
 const DIFFERS: f64 = 12.0;
 
-/// A warning where heights of the terrain are not those of the scene. `base` is the height of local zero.
-pub(super) fn remark(grid: &ElevationGrid, balls: &MedialBalls, base: f64) -> Option<Remark> {
-    let step = balls.len().div_ceil(MAX_BALLS).max(1);
-    let tops = balls.centers.iter().zip(&balls.radii).step_by(step);
-    // the top of a ball in the ground lies in its surface
-    let pairs: Vec<[f64; 2]> = tops
-        .filter_map(|(center, radius)| {
-            let terrain = grid.height_at([f64::from(center[0]), f64::from(center[1])])?;
-            Some([f64::from(center[2]) + f64::from(*radius) + base, terrain + base])
-        })
+/// A warning where heights of the terrain are not those of `places` on surfaces of a scene, (N, 3) local metres, of
+/// which a fifth or more lie on the ground. `base` is the height of local zero.
+#[must_use]
+pub fn remark_on_terrain(grid: &ElevationGrid, places: &[[f64; 3]], base: f64) -> Option<Remark> {
+    let step = places.len().div_ceil(MAX_PLACES).max(1);
+    let pairs: Vec<[f64; 2]> = (places.iter().step_by(step))
+        .filter_map(|&[x, y, z]| Some([z + base, grid.height_at([x, y])? + base]))
         .collect();
-    if pairs.len() < MIN_BALLS {
+    if pairs.len() < MIN_PLACES {
         return None;
     }
     let differs_by = |factor: f64| {
@@ -75,23 +71,21 @@ mod tests {
     use super::*;
     use belvedere_data::raster::Raster;
 
-    /// Terrain that rises by 1 m in 10 m from a level, in units of so many metres; and balls whose tops lie in it, with
-    /// as many on roofs.
+    /// Terrain that rises by 1 m in 10 m from a level, in units of so many metres; and places on it, with as many on
+    /// roofs.
     fn found(level: f64, unit: f64, offset: f64) -> Option<&'static str> {
         let height = |x: f64| level + 0.1 * x;
         #[expect(clippy::cast_possible_truncation, reason = "tests")]
         let node = |i: usize| (height((i % 30) as f64 * 10.0) / unit + offset) as f32;
         let heights = Raster::from_values(30, 30, (0..900).map(node).collect()).unwrap();
         let grid = ElevationGrid::new(heights, [0.0, 290.0], [10.0, 10.0]).unwrap();
-        #[expect(clippy::cast_possible_truncation, reason = "tests")]
-        let center = |i: usize| {
+        let place = |i: usize| {
             let (x, y) = (100.0 + (i % 20) as f64 * 4.0, 100.0 + (i / 20) as f64 * 4.0);
             let roof = if i.is_multiple_of(2) { 9.0 } else { 0.0 };
-            [x as f32, y as f32, (height(x) + roof - 3.0) as f32]
+            [x, y, height(x) + roof]
         };
-        let centers: Vec<[f32; 3]> = (0..400).map(center).collect();
-        let balls = MedialBalls { radii: vec![3.0; centers.len()], centers, ..MedialBalls::default() };
-        remark(&grid, &balls, 0.0).map(|remark| remark.key)
+        let places: Vec<[f64; 3]> = (0..400).map(place).collect();
+        remark_on_terrain(&grid, &places, 0.0).map(|remark| remark.key)
     }
 
     #[test]

@@ -324,7 +324,7 @@ impl Ask for ViewshedQuestion {
         }
         let limits = self.sight_limits(scene, context)?;
         let known = scene.ground(self.grid(scene, &limits)?, self.ground, control)?;
-        context.ground(&known);
+        context.ground(scene, &known);
         let blockers = scene.blockers(self.unproven(), control)?;
         context.report.lines_of_sight = Some(LinesSection::of(&blockers, None));
         let ground = &known.ground;

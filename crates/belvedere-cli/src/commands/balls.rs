@@ -7,6 +7,7 @@ use crate::run::CommandContext;
 use crate::summary::{Summary, percent};
 use anyhow::Result;
 use belvedere::PointCloud;
+use belvedere::apps::ask::remark_on_axis;
 use belvedere::io::{MasbcppFolder, write_balls, write_masbcpp};
 use belvedere::medial::feature_size::{FeatureSizeParams, SimplifyParams, local_feature_size, simplify};
 use belvedere::medial::{MedialBalls, NO_TOUCH, Side};
@@ -87,7 +88,9 @@ fn interior(
     params: &ModelParams,
     run: &mut CommandContext,
 ) -> Result<ModelParts> {
-    Ok(pipeline::model_of(Cow::Owned(cloud), params, input, run)?.into_parts())
+    let model = pipeline::model_of(Cow::Owned(cloud), params, input, run)?;
+    run.summary.remarks(remark_on_axis(model.looks_y_up()));
+    Ok(model.into_parts())
 }
 
 /// Balls in free space, which are for looking at and for other programs: no scene is made of them.
@@ -100,6 +103,7 @@ fn exterior(
     let prepared = OrientedSurvey::prepare(cloud, params, &run.control());
     let (survey, report) = prepared.map_err(|error| pipeline::advised(input, error))?;
     run.summary.add_report(&report);
+    run.summary.remarks(remark_on_axis(survey.looks_y_up(&cloud.frame)));
     let (parts, report) = survey.exterior_parts(cloud.frame.clone(), params, &run.control())?;
     run.summary.add("exterior_balls", Summary::of(&report));
     Ok(parts)
@@ -115,6 +119,7 @@ fn write_folder(
     let prepared = OrientedSurvey::prepare(cloud, params, &run.control());
     let (survey, report) = prepared.map_err(|error| pipeline::advised(&arguments.input, error))?;
     run.summary.add_report(&report);
+    run.summary.remarks(remark_on_axis(survey.looks_y_up(&cloud.frame)));
     let mut made = |name, side| -> Result<MedialBalls> {
         let (balls, report) = survey.shrink(side, params.balls.shrinking(), &run.control())?;
         run.summary.add(name, Summary::of(&report));

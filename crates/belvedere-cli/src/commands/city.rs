@@ -8,7 +8,7 @@ use crate::pipeline::areas;
 use crate::run::CommandContext;
 use crate::summary::{Summary, rounded};
 use anyhow::{Result, bail};
-use belvedere::apps::ask::{Remark, remark_on_cleared};
+use belvedere::apps::ask::remark_on_cleared;
 use belvedere::apps::tree_light::Transmissivity;
 use belvedere::io::Insistence;
 use belvedere::{Error, Parameter};
@@ -55,7 +55,7 @@ fn plan(arguments: &CityPlan, global: &Global) -> Result<Summary> {
     if !arguments.clear.is_empty() && !plan.clears_anything(&run.control())? {
         run.summary.remarks(remark_on_cleared(0));
     }
-    run.summary.remarks(plan.notes.iter().map(|note| Remark::note("file-odd", note)));
+    run.summary.remarks(plan.remarks.clone());
     plan.write(&arguments.output)?;
     let estimate = plan.estimate();
     run.summary

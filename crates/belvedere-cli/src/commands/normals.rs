@@ -7,6 +7,7 @@ use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::Result;
 use belvedere::PointCloud;
+use belvedere::apps::ask::remark_on_axis;
 use belvedere::io::{ExtraColumn, ExtraValues, MasbcppFolder, WriteReport, write_cloud, write_masbcpp};
 use belvedere::medial::ShrinkParams;
 use belvedere::model::{BallParams, OrientedSurvey};
@@ -40,6 +41,7 @@ pub(crate) fn run(arguments: &NormalsArguments, global: &Global) -> Result<Summa
     let prepared = OrientedSurvey::prepare(&cloud, &params, &run.control());
     let (survey, report) = prepared.map_err(|error| pipeline::advised(&arguments.input, error))?;
     run.summary.add_report(&report);
+    run.summary.remarks(remark_on_axis(survey.looks_y_up(&cloud.frame)));
     let oriented = &survey.oriented;
     let report = run.stage("writing", 0, |_| -> Result<WriteReport> {
         if is_folder {

@@ -1,6 +1,9 @@
 //! `belvedere city`: steps, interruptions, damaged tiles.
 
-use crate::common::{Workplace, house};
+use crate::common::{Workplace, house, remarks};
+use belvedere::control::Control;
+use belvedere::io::{Georeference, ReadOptions, read_cloud, write_tif_f32};
+use belvedere::raster::Raster;
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::Stdio;
@@ -327,4 +330,56 @@ fn questions_are_those_of_the_commands_they_are_named_after() {
     place.write_cloud("house.laz", &house());
     let shadow = "shadow house.laz --orient given --scene-config ../tau.json --sun 180,25 --cell 1 -o lit.csv";
     place.refusal(1, &format!("{shadow} --terrain irradiance.tif"), &["irradiance.tif", "energy of the period"]);
+}
+
+#[test]
+fn a_plan_says_of_weather_and_terrain_what_single_commands_say() {
+    let place = Workplace::new();
+    town(&place);
+    let (mut cloud, _) = read_cloud([place.path("town/cloud.laz")], &ReadOptions::default(), &Control::none()).unwrap();
+    // near the sea, where feet are not far from metres
+    cloud.frame.origin[2] += 10.0;
+    place.write_cloud("high.laz", &cloud);
+    // noons of a place a thousand kilometres away
+    let mut weather = "Latitude (decimal degrees): 40\nLongitude (decimal degrees): 4.4\nElevation (m): 0.0\n\
+                       Irradiance Time Offset (h): 0\nmonth,year\n1,2015\ntime(UTC),T2m,RH,G(h),Gb(n),Gd(h)\n"
+        .to_owned();
+    for month in 1..=12 {
+        weather += &format!("2015{month:02}15:1200,10.0,80.0,300.0,200.0,150.0\n");
+    }
+    place.write("elsewhere.csv", weather);
+    let write_terrain = |name: &str, metres_per_unit: f64| {
+        #[expect(clippy::cast_possible_truncation, reason = "a height")]
+        let height = (10.0 / metres_per_unit) as f32;
+        let raster = Raster::from_values(40, 40, vec![height; 1600]).unwrap();
+        let georeference = Georeference {
+            upper_left: [cloud.frame.origin[0] - 1000.0, cloud.frame.origin[1] + 1000.0],
+            column_step: [50.0, 0.0],
+            row_step: [0.0, -50.0],
+            crs: cloud.frame.crs.clone(),
+        };
+        write_tif_f32(place.path(name).as_path(), &raster, Some(&georeference), None, None).unwrap();
+    };
+    write_terrain("metres.tif", 1.0);
+    write_terrain("feet.tif", 0.3048);
+    let about = |summary: &serde_json::Value| -> Vec<String> {
+        let is_about = |remark: &String| remark.contains("weather") || remark.contains("terrain");
+        let mut found: Vec<String> = remarks(summary).into_iter().filter(is_about).collect();
+        found.sort();
+        found
+    };
+    for (terrain, count) in [("metres.tif", 0), ("feet.tif", 1)] {
+        let flags = format!("--weather elsewhere.csv --terrain {terrain} --cell 4");
+        let plan = place.summary(&format!("city plan high.laz --irradiance {flags} -o {terrain}.run"));
+        let single = place.summary(&format!("irradiance high.laz {flags} -o single.tif"));
+        let (said, expected) = (about(&plan), about(&single));
+        assert!(said.iter().any(|remark| remark.contains("km away")), "{said:?}");
+        assert_eq!(said.iter().filter(|remark| remark.contains("look like feet")).count(), count, "{said:?}");
+        // the difference is measured on other points
+        let without = |remarks: &[String]| -> Vec<String> {
+            remarks.iter().filter(|remark| !remark.contains("look like feet")).cloned().collect()
+        };
+        assert_eq!(without(&said), without(&expected));
+        assert_eq!(said.len(), expected.len(), "{said:?} {expected:?}");
+    }
 }

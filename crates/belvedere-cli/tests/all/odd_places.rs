@@ -53,6 +53,38 @@ fn an_eye_does_not_stand_on_points_that_lie_metres_off_the_ground_around() {
 }
 
 #[test]
+fn ground_that_lies_off_over_an_area_is_said_with_its_place() {
+    let place = Workplace::new();
+    let observed = |name: &str| {
+        let flags = "--orient up --observer 155010.4,463010.4 -o v.tif --no-cache";
+        place.summary(&format!("viewshed {name} {flags}"))
+    };
+    // every third point of class 2 of the western half lies 1.5 m too low
+    let mut row = 0;
+    let shifted: Vec<String> = field(&[])
+        .lines()
+        .map(|line| {
+            let cells: Vec<&str> = line.split(',').collect();
+            row += 1;
+            match cells[..] {
+                [x, y, z, "2"] if row % 3 == 0 && x.parse::<f64>().unwrap() < 155_030.0 => {
+                    format!("{x},{y},{},2", z.parse::<f64>().unwrap() - 1.5)
+                }
+                _ => line.to_owned(),
+            }
+        })
+        .collect();
+    place.write("shifted.csv", shifted.join("\n") + "\n");
+    place.write("field.csv", field(&[]));
+    assert_eq!(key_of(&observed("field.csv"), "ground-shifted"), None);
+    let said = key_of(&observed("shifted.csv"), "ground-shifted").unwrap();
+    let number = |name: &str| said["numbers"][name].as_f64().unwrap();
+    assert!((number("rise_m") + 1.5).abs() < 0.02 && number("count") > 1500.0, "{said}");
+    assert!((number("east") - 155_030.0).abs() < 8.0 && number("west") < 155_002.0, "{said}");
+    assert!(said["severity"] == "warning" && said["text"].as_str().unwrap().contains("1.50 m below"), "{said}");
+}
+
+#[test]
 fn a_drone_beside_the_cloud_and_above_it_sees_it() {
     let place = Workplace::new();
     place.write("field.csv", field(&[]));
@@ -158,6 +190,11 @@ fn a_cloud_on_its_side_and_a_file_far_away_are_not_read_without_a_word() {
         "info",
         "query --orient up --random 9 --direction 0,0,-1 -o q.csv",
         "sky-view --orient up --ground found --cell 5 -o s.csv",
+        "balls --orient up -o b.npz",
+        "balls --orient up --side exterior -o b.ply",
+        "balls --orient up -o folder",
+        "normals --orient up -o n.ply",
+        "normals --orient up -o normals",
     ] {
         assert!(looks(&format!("{command} turned.csv")), "{command}");
         assert!(

@@ -34,11 +34,11 @@ struct Level {
 
 /// A point by its cell and height.
 #[derive(Clone, Copy, Debug)]
-struct Placed {
-    row: i32,
-    column: i32,
-    height: f32,
-    number: u32,
+pub(super) struct Placed {
+    pub(super) row: i32,
+    pub(super) column: i32,
+    pub(super) height: f32,
+    pub(super) number: u32,
 }
 
 /// Groups of levels that hang together.
@@ -105,14 +105,15 @@ fn cell_of(points: &[[f32; 3]]) -> f32 {
     cell
 }
 
-fn place(point: &[f32; 3], cell: f32) -> [i32; 2] {
+/// Row and column of a point in cells of a side, metres.
+pub(super) fn place(point: &[f32; 3], cell: f32) -> [i32; 2] {
     #[expect(clippy::cast_possible_truncation, reason = "`as` saturates")]
     let at = |v: f32| (v / cell).floor() as i32;
     [at(point[1]), at(point[0])]
 }
 
 /// The points in the order of their cells, and of their heights in each.
-fn placed(points: &[[f32; 3]], cell: f32) -> Vec<Placed> {
+pub(super) fn placed(points: &[[f32; 3]], cell: f32) -> Vec<Placed> {
     #[expect(clippy::cast_possible_truncation, reason = "points are numbered with 32 bits")]
     let one = |(number, point): (usize, &[f32; 3])| {
         let [row, column] = place(point, cell);

@@ -6,6 +6,7 @@ pub mod map_grid;
 mod morphology;
 mod relief;
 mod returns;
+mod shifted;
 mod surface;
 mod triangulate;
 
@@ -15,6 +16,7 @@ pub use find::{FinderParams, find_ground};
 pub use map_grid::MapGrid;
 pub use relief::{hidden_ground, highest_points};
 pub use returns::{MAX_GAP_FROM_RETURNS, cells_near_returns};
+pub use shifted::{GroundShift, ShiftEvidence};
 pub use surface::{SurfaceParams, top_surface};
 
 use crate::neighbors::NeighborIndex;
@@ -73,7 +75,7 @@ impl Default for GroundParams {
 }
 
 /// Where the ground of a [`Ground`] came from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct GroundReport {
     /// [`GroundPoints::Classed`] or [`GroundPoints::Found`].
     pub from: GroundPoints,
@@ -82,6 +84,9 @@ pub struct GroundReport {
     /// Number of points of class 2 that are not believed: they lie metres below or above the ground around, alone or in
     /// small groups.
     pub doubted_count: usize,
+    /// The points of class 2 that lie off by a metre or more over an area, as other points show. They count as ground
+    /// all the same: nobody can say which of the two is right.
+    pub shift: Option<GroundShift>,
     /// Cells of the grid that have a height.
     pub cell_count: usize,
 }
@@ -184,8 +189,12 @@ impl Ground {
         for (height, _) in ground.heights.values_mut().iter_mut().zip(near).filter(|(_, is_near)| !is_near) {
             *height = f32::NAN;
         }
+        let shift = match from {
+            GroundPoints::Found => None,
+            _ => shifted::shift_of(cloud, &rows, &points, control)?,
+        };
         let cell_count = ground.heights.values().iter().filter(|h| h.is_finite()).count();
-        Ok((ground, GroundReport { from, point_count: points.len(), doubted_count, cell_count }))
+        Ok((ground, GroundReport { from, point_count: points.len(), doubted_count, shift, cell_count }))
     }
 
     /// The ground through `points`, (N, 3) local metres, on `grid`, given as far as `reach` metres from the next of

@@ -11,9 +11,7 @@ use crate::medial::{
     vegetation_of_transmission,
 };
 use crate::query::{BallTree, BlockRule, BlockingTriangles};
-use crate::summary::looks_y_up;
 use belvedere_data::control::Control;
-use belvedere_data::crs::CrsKind;
 use belvedere_data::patches::SurfacePatches;
 use belvedere_data::{Error, Frame, PointCloud, Result};
 use std::borrow::Cow;
@@ -96,9 +94,8 @@ fn of_survey(
     };
     survey.restore_rows(&mut balls);
     let mut provenance = provenance("interior", &settled);
-    // surveys with a reference system have z up, and parts of them are not judged alone
-    let is_unknown = frame.crs.kind == CrsKind::Unknown && params.statistics.is_none();
-    if is_unknown && looks_y_up(survey.oriented.positions(), survey.oriented.normals()) {
+    // parts of surveys are not judged alone
+    if params.statistics.is_none() && survey.looks_y_up(&frame) {
         provenance.insert(LOOKS_UP[0].to_owned(), LOOKS_UP[1].to_owned());
     }
     // pulses at the edge of a part lack the balls beyond

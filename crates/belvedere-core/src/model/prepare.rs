@@ -10,13 +10,18 @@ use crate::normals::{Normals, Orientation, OrientedCloud, Scatter, orient};
 use crate::pulses::{
     FoundBy, FreeSegmentColumns, FreeSegments, MIN_ASSUMED_SHARE, Means, Pulses, ScannerReport, group, locate,
 };
+use crate::summary::looks_y_up;
 use belvedere_data::control::Control;
+use belvedere_data::crs::CrsKind;
 use belvedere_data::vector::{cross, length, sub, unit};
-use belvedere_data::{Attributes, Bounds, Error, PointCloud, Result};
+use belvedere_data::{Attributes, Bounds, Error, Frame, PointCloud, Result};
 use std::borrow::Cow;
 
 /// Points no farther from a line than this lie on it, metres: the step of coordinates in most files.
 const LINE_WIDTH: f64 = 1e-3;
+/// Memory that a model takes for each point at least, beside the cloud, bytes: two thirds of what was measured with
+/// large clouds.
+const MIN_BYTES_OF_POINT: usize = 400;
 /// How far before its return a pulse proves its way at most, in noises of ranges, where nothing else is uncertain: one
 /// return in 30,000 lies so much too far away, and balls begin below the surface.
 const NOISES_BEFORE_RETURNS: f32 = 4.0;
@@ -87,6 +92,13 @@ impl OrientedSurvey {
         normals
     }
 
+    /// Whether its cloud, in `frame`, looks as if y were up and not z ([`looks_y_up`]). Clouds with a reference system
+    /// have z up.
+    #[must_use]
+    pub fn looks_y_up(&self, frame: &Frame) -> bool {
+        frame.crs.kind == CrsKind::Unknown && looks_y_up(self.oriented.positions(), self.oriented.normals())
+    }
+
     /// What pulses prove empty, where carving was wanted and possible and pulses are known rather than assumed.
     #[must_use]
     pub fn pulses(&self) -> Option<FreeSegmentColumns> {
@@ -99,6 +111,14 @@ impl OrientedSurvey {
     }
 }
 
+/// Refuses points for which the system has too little memory, before it is needed: later the process would end at once.
+fn check_memory(count: usize) -> Result<()> {
+    let bytes = count.saturating_mul(MIN_BYTES_OF_POINT);
+    // nothing is written into it, so that this takes no memory
+    let refused = |_| Error::TooLittleMemory { work: format!("making balls of {count} points"), bytes: bytes as u64 };
+    Vec::<u8>::new().try_reserve_exact(bytes).map_err(refused)
+}
+
 /// As [`OrientedSurvey::prepare`]. A cloud that is given away is freed as soon as nothing needs it.
 pub(super) fn prepare(
     cloud: Cow<'_, PointCloud>,
@@ -107,6 +127,7 @@ pub(super) fn prepare(
 ) -> Result<(OrientedSurvey, BuildReport)> {
     let mut report = BuildReport::default();
     let read_count = cloud.len();
+    check_memory(read_count)?;
     let statistics = params.statistics.as_deref();
     let cleaning = statistics.map(|statistics| statistics.cleaning(&params.clean));
     let cleaning = cleaning.as_ref().unwrap_or(&params.clean);
@@ -361,4 +382,19 @@ fn carving_input(
     let is_assumed = scanner.is_assumed;
     let input = CarvingInput { free_segments, between_returns, attributes, is_assumed, scanner: Vec::new(), pulses };
     Ok((Some(input), report))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn points_that_no_computer_can_hold_are_refused_in_a_sentence() {
+        assert!(check_memory(1_000_000).is_ok());
+        for count in [1 << 48, usize::MAX] {
+            let error = check_memory(count).unwrap_err().to_string();
+            assert!(error.starts_with(&format!("making balls of {count} points takes about")), "{error}");
+            assert!(error.contains("use a smaller part") && error.contains("ulimit -v"), "{error}");
+        }
+    }
 }

@@ -8,7 +8,7 @@ use belvedere_data::{PointCloud, Result};
 use belvedere_io::{ReadOptions, ReadReport, Source, SystemBeside, Within, cloud_files, read_cloud, read_las_head};
 
 use crate::sources::{cloud, file};
-use crate::web_server::{Manner, WebServer};
+use crate::web_server::{KEY, Manner, WebServer};
 
 fn read(path: &Path) -> Result<(PointCloud, ReadReport)> {
     read_cloud([path], &ReadOptions::default(), &Control::none())
@@ -200,6 +200,7 @@ fn entwine_point_tiles_are_read_here_and_over_the_web() {
         std::fs::write(path, bytes).unwrap();
     }
     let server = WebServer::start(ept(), Manner::Parts);
+    let keyed = WebServer::start(ept(), Manner::Keyed);
     let expected = sorted(&cloud(900));
     let low = [154_955.0, 462_955.0, -10.0];
     let within = Within::File { low, high: [154_990.0, 462_990.0, 100.0] };
@@ -208,7 +209,13 @@ fn entwine_point_tiles_are_read_here_and_over_the_web() {
         |p: &&[i64; 3]| (154_955_000..=154_990_000).contains(&p[0]) && (462_955_000..=462_990_000).contains(&p[1]);
     let part: Vec<[i64; 3]> = expected.iter().filter(in_window).copied().collect();
     assert!(part.len() > 50 && part.len() < 300, "{}", part.len());
-    let paths = [folder.path().to_owned(), folder.path().join("ept.json"), server.address("ept.json").into()];
+    let paths = [
+        folder.path().to_owned(),
+        folder.path().join("ept.json"),
+        server.address("ept.json").into(),
+        (keyed.address("ept.json") + KEY).into(),
+        (keyed.address("ept.json") + KEY + "#part").into(),
+    ];
     for path in paths {
         let (all, report) = read(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
         assert_eq!((sorted(&all), all.frame.crs.epsg), (expected.clone(), Some(28_992)), "{}", path.display());

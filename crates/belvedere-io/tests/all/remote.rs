@@ -7,7 +7,7 @@ use belvedere_data::{Error, PointCloud};
 use belvedere_io::{ReadOptions, Source, read_cloud, web_address};
 
 use crate::sources::{FORMATS, cloud, file};
-use crate::web_server::{Manner, WebServer};
+use crate::web_server::{KEY, Manner, WebServer};
 use crate::windows::{copc, nodes, places, window};
 
 fn read(address: &str) -> Result<PointCloud, Error> {
@@ -75,6 +75,28 @@ fn tiles_of_a_catalogue_lie_on_the_server_or_where_the_catalogue_says() {
             Manner::Parts,
         );
         assert_eq!(read(&server.address("dir/all.vpc")).unwrap().len(), 70, "{href}");
+    }
+}
+
+#[test]
+fn the_key_of_a_catalogue_is_that_of_its_tiles_on_the_same_server_only() {
+    let tile = |count| file("tile.laz", &cloud(count));
+    let elsewhere = WebServer::start([("tile.laz", tile(40))], Manner::Keyed);
+    let catalogue =
+        |href: &str| format!(r#"{{"features":[{{"assets":{{"data":{{"href":"{href}"}}}}}}]}}"#).into_bytes();
+    let files = [
+        ("dir/all.vpc", catalogue("./tile.laz")),
+        ("dir/tile.laz", tile(70)),
+        ("dir/far.vpc", catalogue(&elsewhere.address("tile.laz"))),
+        ("dir/keyed.vpc", catalogue(&(elsewhere.address("tile.laz") + KEY))),
+    ];
+    let server = WebServer::start(files, Manner::Keyed);
+    assert_eq!(read(&(server.address("dir/all.vpc") + KEY)).unwrap().len(), 70);
+    assert_eq!(read(&(server.address("dir/keyed.vpc") + KEY)).unwrap().len(), 40);
+    // no other server gets the key
+    for address in [server.address("dir/far.vpc") + KEY, server.address("dir/all.vpc")] {
+        let error = read(&address).unwrap_err().to_string();
+        assert!(error.contains("refuses access (status 403)"), "{address}: {error}");
     }
 }
 

@@ -26,9 +26,14 @@ pub(crate) enum Manner {
     FirstStatus(u16),
     /// The first answer to each part ends in the middle.
     FirstCut,
+    /// The requested part, for addresses that end with [`KEY`]; others are refused.
+    Keyed,
     /// Every answer is this status.
     Status(u16),
 }
+
+/// What addresses end with on a server that wants a key.
+pub(crate) const KEY: &str = "?sv=2024&sig=a/b.c%3D";
 
 /// Files by their names, as long as the process runs.
 pub(crate) struct WebServer {
@@ -94,6 +99,7 @@ fn serve(stream: TcpStream, files: &HashMap<String, Vec<u8>>, counts: &RequestCo
         let file = files.get(path.split('?').next().unwrap_or_default());
         let failure = match manner {
             Manner::Status(status) => Some(status),
+            Manner::Keyed if !path.ends_with(KEY) => Some(403),
             Manner::Vanishing if number > 0 => Some(404),
             Manner::FirstStatus(status) if number.is_multiple_of(2) => Some(status),
             _ => None,

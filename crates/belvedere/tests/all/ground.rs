@@ -4,7 +4,7 @@ use crate::common::simulated::cloud_of;
 use belvedere::Bounds;
 use belvedere::control::Control;
 use belvedere::ground::{
-    FinderParams, Ground, GroundParams, GroundPoints, MapGrid, find_ground, ground_points, hidden_ground,
+    FinderParams, Ground, GroundParams, GroundPoints, MapGrid, ShiftEvidence, find_ground, ground_points, hidden_ground,
 };
 use belvedere::io::{ReadOptions, read_cloud};
 use belvedere::{Attributes, PointCloud};
@@ -138,5 +138,57 @@ fn ground_is_hidden_under_buildings_and_not_under_cars() {
         // the next ground point lies a quarter of a metre beyond the wall
         let expected = inside(0.75);
         assert_eq!(is_hidden, expected, "{x} {y}");
+    }
+}
+
+/// How far ground lies off over an area, metres, with what says so.
+fn shift_of(cloud: &PointCloud) -> Option<(f32, ShiftEvidence)> {
+    let (_, report) =
+        Ground::of_cloud(cloud, grid_of(cloud, 20.0), &GroundParams::default(), &Control::none()).unwrap();
+    report.shift.map(|shift| (shift.rise, shift.against))
+}
+
+#[test]
+fn real_ground_is_not_said_to_lie_off_and_a_strip_of_it_is() {
+    let files = [
+        ("delft_ahn3/ahn3_cropped_1.laz", Some(57138)),
+        ("delft_ahn3/ahn3_cropped_2.laz", Some(57138)),
+        ("tudelft_ahn4_small/small.laz", None),
+        ("amsterdam_ahn3/ahn_2386_9702.laz", Some(56030)),
+        ("bresse_lidarhd/870000_6618000.subset.50mx100m.las", None),
+        ("ign_decimated_towns/test_semis_2023_0292_6833_LA93_IGN69.laz", Some(2)),
+        ("terrain/Topography.laz", None),
+        ("exact_town/a/cloud.laz", Some(1)),
+        ("io_cases/autzen_trim.laz", None),
+        ("io_cases/las_with_several_extra_byte_bloc.laz", None),
+        ("io_cases/sample_c.las", Some(56)),
+    ];
+    for (number, (file, strip)) in files.into_iter().enumerate() {
+        let Some(path) = crate::common::data("real_ground", &format!("data/{file}")) else { continue };
+        let (cloud, _) = read_cloud(&[path], &ReadOptions::default(), &Control::none()).unwrap();
+        assert_eq!(shift_of(&cloud), None, "{file}");
+        let raised = |is_raised: &dyn Fn(usize) -> bool, rise: f32| {
+            let mut raised = cloud.clone();
+            let classes = cloud.attributes.classification.as_ref().unwrap();
+            let rows = (0..cloud.len()).filter(|&row| classes[row] == 2 && is_raised(row));
+            rows.for_each(|row| raised.positions[row][2] += rise);
+            raised
+        };
+        let sources = cloud.attributes.point_source_id.as_ref().unwrap();
+        if let Some(strip) = strip {
+            let rise = if number.is_multiple_of(2) { 1.5 } else { -1.5 };
+            let found = shift_of(&raised(&|row| sources[row] == strip, rise));
+            let (found, _) = found.unwrap_or_else(|| panic!("{file}: {rise}"));
+            // of the two, the level with fewer points is said to lie off
+            assert!((found.abs() - 1.5).abs() < 0.2, "{file}: {found}");
+        }
+        // plants, cars and walls of dense surveys begin below ground that is too high
+        if file.starts_with("delft") || file.starts_with("bresse") || file.starts_with("tudelft") {
+            let edge = cloud.bounds().unwrap().low[0] + 30.0;
+            let west = |row: usize| cloud.positions[row][0] < edge;
+            let (found, against) = shift_of(&raised(&west, 1.5)).unwrap();
+            assert_eq!(against, ShiftEvidence::OtherReturns, "{file}");
+            assert!((found - 1.5).abs() < 0.5, "{file}: {found}");
+        }
     }
 }

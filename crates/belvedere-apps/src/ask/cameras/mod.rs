@@ -272,7 +272,7 @@ impl Ask for CamerasQuestion {
             private_places: private.as_ref().map(Targets::target_count),
             ..CamerasReport::default()
         };
-        context.ground(&known);
+        context.ground(scene, &known);
         context.report.lines_of_sight = Some(LinesSection::of(&blockers, None));
         let (existing, candidates) = self.poses(private.as_ref(), &site, &mut report, context, control)?;
         let poses: Vec<CameraPose> = existing.iter().chain(&candidates).copied().collect();

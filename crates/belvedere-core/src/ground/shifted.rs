@@ -1,0 +1,558 @@
+//! Whether a part of the points of class 2 lies off by a metre or more: what they themselves, the strips of the survey
+//! and the other returns say against it.
+//!
+//! A step alone is no evidence: quays, terraces and pits have one. What no terrain does is to lie at two heights in the
+//! same places over an area, to step where one strip ends and the next begins, to lie above most other returns, or to
+//! lie below a layer of them that continues the ground on all sides. Areas are squares of a few cells, so that a wall,
+//! which has two heights along a line, is none.
+
+use super::believed::{Placed, placed};
+use super::{GROUND, WITHHELD};
+use belvedere_data::control::Control;
+use belvedere_data::{PointCloud, Result};
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// How far ground must lie off, metres: more than kerbs, stairs and steep slopes do within a cell.
+const MIN_SHIFT: f32 = 0.7;
+/// Least gap between two levels of a cell, and how far below the ground a return contradicts it, metres: beside noise
+/// and slopes.
+const MIN_GAP: f32 = 0.5;
+/// Most that the quartiles of a shift differ, as a share of it: a strip lies off by the same everywhere.
+const MAX_SPREAD: f32 = 0.4;
+/// The same of a layer of other returns: crowns and crops are rougher.
+const MAX_LAYER_SPREAD: f32 = 0.3;
+/// Least and most side of cells, metres.
+const CELLS: [f32; 2] = [1.0, 8.0];
+/// Ground points that a cell should have.
+const POINTS_OF_CELL: usize = 4;
+/// Cells along a side of a square.
+const SQUARE: i32 = 6;
+/// Cells of a square that must be able to say something.
+const MIN_CELLS: usize = 8;
+/// Squares that must say the same.
+const MIN_SQUARES: usize = 2;
+/// Least share of the cells of a square that have two levels: a wall across it crosses a third.
+const MIN_TWO_LEVELS: f32 = 0.6;
+/// How far the upper level of the cells of a square may lie to one side of the lower one at most, as a share of a cell:
+/// on a slope it lies uphill.
+const MAX_LEAN: f32 = 0.25;
+/// Least share of the cells of a square with a return below its ground.
+const MIN_BELOW: f32 = 0.5;
+/// How many squares away the ground around is looked for, and where it counts whatever its height.
+const SEARCH: [i32; 2] = [8, 6];
+/// Directions that need ground, of eight, and the least share of them whose ground continues a layer of other returns.
+const MIN_AROUND: usize = 5;
+const MIN_CONTINUED: f32 = 0.75;
+/// How far this ground may lie from the layer, metres.
+const MAX_FROM_LAYER: f32 = 0.35;
+/// Places where two strips must meet.
+const MIN_MEETINGS: usize = 15;
+/// Classes that are no evidence: noise, and water and what lies in it, which is below the ground.
+const NO_EVIDENCE: [u8; 7] = [7, 9, 18, 40, 41, 42, 45];
+
+/// Ground points that contradict other points.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct GroundShift {
+    /// Points of class 2 that lie off.
+    pub point_count: usize,
+    /// How far above what contradicts them they lie, metres; below 0 where they lie below it.
+    pub rise: f32,
+    /// South-western corner of the box around them on the map, local metres.
+    pub low: [f32; 2],
+    /// Its north-eastern corner.
+    pub high: [f32; 2],
+    /// What contradicts them.
+    pub against: ShiftEvidence,
+}
+
+/// What contradicts ground points.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum ShiftEvidence {
+    /// More points of class 2 at the same places.
+    SecondLevel,
+    /// Points of class 2 of another strip, where the two meet.
+    Strips {
+        /// Source of the points that lie off: of the two strips the one with fewer points.
+        shifted: u16,
+        /// Source of the others.
+        other: u16,
+    },
+    /// Returns of other classes at the same places.
+    OtherReturns,
+}
+
+/// A cell with ground points.
+#[derive(Clone, Copy, Debug)]
+struct Cell {
+    at: [i32; 2],
+    /// Where its points start in the order of cells and heights, and how many they are.
+    first: usize,
+    count: usize,
+}
+
+/// Some cells together.
+#[derive(Clone, Debug, Default)]
+struct Square {
+    point_count: usize,
+    /// Lowest ground point of each cell.
+    heights: Vec<f32>,
+    /// Cells with points enough for two levels.
+    measured: usize,
+    /// How far apart the levels of those lie that have two, how many points are at either, and the sum of the ways on
+    /// the map from the lower to the upper level, metres.
+    steps: Vec<f32>,
+    level_counts: [usize; 2],
+    lean: [f32; 2],
+    /// How far above the lowest ground point the lowest other return is, of cells with both.
+    gaps: Vec<f32>,
+}
+
+/// Squares by row and column.
+type Squares = BTreeMap<[i32; 2], Square>;
+
+/// Of the ground `points` of a cloud, (N, 3) local metres, which are its `rows`, those that lie off by a metre or more
+/// over an area, with the most telling evidence; `None` where nothing contradicts them.
+///
+/// # Errors
+/// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
+pub(super) fn shift_of(
+    cloud: &PointCloud,
+    rows: &[u32],
+    points: &[[f32; 3]],
+    control: &Control<'_>,
+) -> Result<Option<GroundShift>> {
+    let (side, placed) = placed_in_cells(points);
+    control.check()?;
+    let cells = cells_of(&placed);
+    let lowest = lowest_others(cloud, &cells, side);
+    control.check()?;
+    let squares = squares_of(&cells, &placed, points, &lowest);
+    let strips = cloud.attributes.point_source_id.as_deref().unwrap_or_default();
+    let strip = |point: &Placed| rows.get(point.number as usize).and_then(|&row| strips.get(row as usize).copied());
+    let found = [
+        two_levels(&squares, side),
+        against_others(&squares, side, above_others),
+        against_others(&squares, side, below_others),
+        strips_apart(&cells, &placed, side, &strip),
+    ];
+    Ok(found.into_iter().flatten().max_by_key(|shift| shift.point_count))
+}
+
+/// Cells that hold points enough on average, and the points in their order.
+fn placed_in_cells(points: &[[f32; 3]]) -> (f32, Vec<Placed>) {
+    let mut side = CELLS[0];
+    loop {
+        let placed = placed(points, side);
+        let count = placed.chunk_by(is_in_one_cell).count();
+        if side >= CELLS[1] || placed.len() >= POINTS_OF_CELL * count {
+            return (side, placed);
+        }
+        side *= 2.0;
+    }
+}
+
+fn is_in_one_cell(a: &Placed, b: &Placed) -> bool {
+    (a.row, a.column) == (b.row, b.column)
+}
+
+fn cells_of(placed: &[Placed]) -> Vec<Cell> {
+    let mut first = 0;
+    let of = |points: &[Placed]| {
+        let cell = Cell { at: [points[0].row, points[0].column], first, count: points.len() };
+        first += points.len();
+        cell
+    };
+    placed.chunk_by(is_in_one_cell).map(of).collect()
+}
+
+impl Cell {
+    fn points<'a>(&self, placed: &'a [Placed]) -> &'a [Placed] {
+        placed.get(self.first..self.first + self.count).unwrap_or_default()
+    }
+}
+
+fn find(cells: &[Cell], at: [i32; 2]) -> Option<usize> {
+    cells.binary_search_by_key(&at, |cell| cell.at).ok()
+}
+
+/// For each cell the lowest height of the points that are no ground; infinite where there are none.
+fn lowest_others(cloud: &PointCloud, cells: &[Cell], side: f32) -> Vec<f32> {
+    let classes = cloud.attributes.classification.as_deref().unwrap_or_default();
+    let flags = cloud.attributes.flags.as_deref().unwrap_or_default();
+    let is_evidence = |row: usize| {
+        classes.get(row).is_some_and(|class| *class != GROUND && !NO_EVIDENCE.contains(class))
+            && flags.get(row).is_none_or(|flags| flags & WITHHELD == 0)
+    };
+    let of = |(row, point): (usize, &[f32; 3])| {
+        let cell = is_evidence(row).then(|| find(cells, super::believed::place(point, side))).flatten()?;
+        Some((cell, point[2]))
+    };
+    let found: Vec<(usize, f32)> = cloud.positions.par_iter().enumerate().filter_map(of).collect();
+    let mut lowest = vec![f32::INFINITY; cells.len()];
+    for (cell, height) in found {
+        lowest[cell] = lowest[cell].min(height);
+    }
+    lowest
+}
+
+fn squares_of(cells: &[Cell], placed: &[Placed], points: &[[f32; 3]], lowest: &[f32]) -> Squares {
+    let mut squares = Squares::new();
+    let middle = |level: &[Placed]| {
+        let sum =
+            |axis: usize| level.iter().filter_map(|own| Some(points.get(own.number as usize)?[axis])).sum::<f32>();
+        [sum(0), sum(1)].map(|sum| sum / level.len() as f32)
+    };
+    for (cell, other) in cells.iter().zip(lowest) {
+        let square = squares.entry(cell.at.map(|v| v.div_euclid(SQUARE))).or_default();
+        let heights: Vec<f32> = cell.points(placed).iter().map(|point| point.height).collect();
+        let Some(ground) = heights.first() else { continue };
+        square.point_count += heights.len();
+        square.heights.push(*ground);
+        if heights.len() >= POINTS_OF_CELL {
+            square.measured += 1;
+            if let Some((step, lower)) = step_of(&heights) {
+                square.steps.push(step);
+                let (lower, upper) = cell.points(placed).split_at(lower);
+                square.level_counts[0] += lower.len();
+                square.level_counts[1] += upper.len();
+                let (from, to) = (middle(lower), middle(upper));
+                (0..2).for_each(|axis| square.lean[axis] += to[axis] - from[axis]);
+            }
+        }
+        if other.is_finite() {
+            square.gaps.push(other - ground);
+        }
+    }
+    squares
+}
+
+/// How far apart the two levels of ascending heights lie, and how many are at the lower one; `None` where there is one
+/// level: neither may be thicker than the gap between them, as the parts of a slope are.
+fn step_of(heights: &[f32]) -> Option<(f32, usize)> {
+    let gaps = heights.windows(2).map(|pair| pair[1] - pair[0]).enumerate();
+    let (before, gap) = gaps.max_by(|a, b| a.1.total_cmp(&b.1))?;
+    let (lower, upper) = heights.split_at(before + 1);
+    let thickness = |level: &[f32]| level.last().zip(level.first()).map_or(0.0, |(last, first)| last - first);
+    let mean = |level: &[f32]| level.iter().sum::<f32>() / level.len() as f32;
+    (gap >= MIN_GAP.max(thickness(lower)).max(thickness(upper))).then(|| (mean(upper) - mean(lower), lower.len()))
+}
+
+/// The quartiles of some values; `None` of none.
+fn quartiles(values: &[f32]) -> Option<[f32; 3]> {
+    let mut values = values.to_vec();
+    values.sort_unstable_by(f32::total_cmp);
+    let last = values.len().checked_sub(1)?;
+    Some([last / 4, last / 2, last - last / 4].map(|at| values[at]))
+}
+
+/// The median of values that are much the same, and far from 0.
+fn common(values: &[f32], max_spread: f32) -> Option<f32> {
+    let [low, median, high] = quartiles(values)?;
+    (median.abs() >= MIN_SHIFT && high - low <= max_spread * median.abs()).then_some(median)
+}
+
+/// Ground at two heights in the same places.
+fn two_levels(squares: &Squares, side: f32) -> Option<GroundShift> {
+    let mut found = FoundSquares::default();
+    let mut level_counts = [0; 2];
+    for (at, square) in squares {
+        let count = square.steps.len() as f32;
+        let is_measured = square.measured >= MIN_CELLS && count >= MIN_TWO_LEVELS * square.measured as f32;
+        if !is_measured || square.lean[0].hypot(square.lean[1]) > MAX_LEAN * side * count {
+            continue;
+        }
+        if let Some(step) = common(&square.steps, MAX_SPREAD) {
+            found.add(*at, step);
+            (0..2).for_each(|level| level_counts[level] += square.level_counts[level]);
+        }
+    }
+    let [lower, upper] = level_counts;
+    let (point_count, sign) = if upper < lower { (upper, 1.0) } else { (lower, -1.0) };
+    found.shift(side, point_count, sign, ShiftEvidence::SecondLevel)
+}
+
+/// Ground that lies above, or below, what other returns show.
+fn against_others(
+    squares: &Squares,
+    side: f32,
+    rises: impl Fn(&Squares) -> Vec<([i32; 2], f32)>,
+) -> Option<GroundShift> {
+    let mut found = FoundSquares::default();
+    let mut point_count = 0;
+    for (at, rise) in rises(squares) {
+        found.add(at, rise);
+        point_count += squares.get(&at).map_or(0, |square| square.point_count);
+    }
+    found.shift(side, point_count, 1.0, ShiftEvidence::OtherReturns)
+}
+
+/// Squares whose ground lies above other returns, and how far.
+fn above_others(squares: &Squares) -> Vec<([i32; 2], f32)> {
+    let rise = |square: &Square| {
+        let below: Vec<f32> = square.gaps.iter().copied().filter(|gap| *gap < -MIN_GAP).collect();
+        let is_above = square.gaps.len() >= MIN_CELLS && below.len() as f32 >= MIN_BELOW * square.gaps.len() as f32;
+        let [_, median, _] = quartiles(&below).filter(|_| is_above)?;
+        (-median >= MIN_SHIFT).then_some(-median)
+    };
+    squares.iter().filter_map(|(at, square)| Some((*at, rise(square)?))).collect()
+}
+
+/// Squares whose ground lies below a layer of other returns that continues the ground around, and how far, as numbers
+/// below 0.
+fn below_others(squares: &Squares) -> Vec<([i32; 2], f32)> {
+    let layer = |square: &Square| {
+        let gap = common(&square.gaps, MAX_LAYER_SPREAD).filter(|gap| *gap > 0.0);
+        gap.filter(|_| square.gaps.len() >= MIN_CELLS)
+    };
+    let layers: BTreeMap<[i32; 2], f32> =
+        squares.iter().filter_map(|(at, square)| Some((*at, layer(square)?))).collect();
+    let height = |at: [i32; 2]| {
+        let square = squares.get(&at).filter(|square| square.heights.len() >= POINTS_OF_CELL)?;
+        quartiles(&square.heights).map(|[_, median, _]| median)
+    };
+    let is_continued = |at: [i32; 2], gap: f32| {
+        let Some(own) = height(at) else { return false };
+        let directions = (-1..=1).flat_map(|down| (-1..=1).map(move |right| [down, right]));
+        let around: Vec<f32> = directions
+            .filter(|direction| *direction != [0, 0])
+            .filter_map(|direction| {
+                (1..=SEARCH[0]).find_map(|step| {
+                    let beside = [0, 1].map(|axis| at[axis].saturating_add(step * direction[axis]));
+                    let rise = height(beside).filter(|_| !layers.contains_key(&beside))? - own;
+                    (rise.abs() >= 0.6 * gap || step >= SEARCH[1]).then_some(rise)
+                })
+            })
+            .collect();
+        let room = MAX_FROM_LAYER.max(MAX_LAYER_SPREAD * gap);
+        let continued = around.iter().filter(|rise| (*rise - gap).abs() <= room).count();
+        around.len() >= MIN_AROUND && continued as f32 >= MIN_CONTINUED * around.len() as f32
+    };
+    layers.iter().filter(|(at, gap)| is_continued(**at, **gap)).map(|(at, gap)| (*at, -gap)).collect()
+}
+
+/// Squares that say the same.
+#[derive(Default)]
+struct FoundSquares {
+    rises: Vec<f32>,
+    corners: Option<[[i32; 2]; 2]>,
+}
+
+impl FoundSquares {
+    fn add(&mut self, at: [i32; 2], rise: f32) {
+        self.rises.push(rise);
+        self.corners = Some(widened(self.corners, at));
+    }
+
+    fn shift(self, side: f32, point_count: usize, sign: f32, against: ShiftEvidence) -> Option<GroundShift> {
+        let [low, high] = self.corners.filter(|_| self.rises.len() >= MIN_SQUARES)?;
+        let [_, rise, _] = quartiles(&self.rises)?;
+        let [low, high] = on_map([low, high], side * SQUARE as f32);
+        Some(GroundShift { point_count, rise: sign * rise, low, high, against })
+    }
+}
+
+/// The rows and columns of a box, widened by one more place.
+fn widened(corners: Option<[[i32; 2]; 2]>, at: [i32; 2]) -> [[i32; 2]; 2] {
+    let [low, high] = corners.unwrap_or([at; 2]);
+    [std::array::from_fn(|axis| low[axis].min(at[axis])), std::array::from_fn(|axis| high[axis].max(at[axis]))]
+}
+
+/// The box on the map, local metres, of rows and columns of a side.
+fn on_map([low, high]: [[i32; 2]; 2], side: f32) -> [[f32; 2]; 2] {
+    [[low[1] as f32, low[0] as f32], [(high[1] + 1) as f32, (high[0] + 1) as f32]].map(|v| v.map(|v| v * side))
+}
+
+/// What is known of two strips where they meet.
+#[derive(Default)]
+struct Meeting {
+    /// How far the second strip lies above the first.
+    rises: Vec<f32>,
+    corners: Option<[[i32; 2]; 2]>,
+}
+
+/// Two strips whose ground lies apart where one ends and the other begins.
+fn strips_apart(
+    cells: &[Cell],
+    placed: &[Placed],
+    side: f32,
+    strip: &impl Fn(&Placed) -> Option<u16>,
+) -> Option<GroundShift> {
+    let of_cell = |cell: &Cell| {
+        let points = cell.points(placed);
+        let first = points.first().and_then(strip)?;
+        let mean = points.iter().map(|point| point.height).sum::<f32>() / points.len() as f32;
+        points.iter().all(|point| strip(point) == Some(first)).then_some((first, mean))
+    };
+    let pure: Vec<Option<(u16, f32)>> = cells.iter().map(of_cell).collect();
+    let mut meetings: BTreeMap<[u16; 2], Meeting> = BTreeMap::new();
+    for (cell, own) in cells.iter().zip(&pure) {
+        let Some((from, _)) = own else { continue };
+        for [down, right] in [[0, 1], [1, 0]] {
+            let along = |step: i32| {
+                let at = find(cells, [cell.at[0] + step * down, cell.at[1] + step * right])?;
+                *pure.get(at)?
+            };
+            let Some((to, _)) = along(1).filter(|(to, _)| to != from) else { continue };
+            // beyond the slope of the ground on either side
+            let line = [-1, 0, 1, 2].map(along);
+            let [Some((a, before)), Some((_, last)), Some((_, first)), Some((b, behind))] = line else { continue };
+            if a != *from || b != to {
+                continue;
+            }
+            let rise = (first - last) - 0.5 * ((last - before) + (behind - first));
+            let (pair, rise) = if *from < to { ([*from, to], rise) } else { ([to, *from], -rise) };
+            let meeting = meetings.entry(pair).or_default();
+            meeting.rises.push(rise);
+            meeting.corners = Some(widened(meeting.corners, cell.at));
+        }
+    }
+    let mut counts: BTreeMap<u16, usize> = BTreeMap::new();
+    placed.iter().filter_map(strip).for_each(|strip| *counts.entry(strip).or_default() += 1);
+    let count = |strip: u16| counts.get(&strip).copied().unwrap_or(0);
+    let shift = |([first, second], meeting): ([u16; 2], Meeting)| {
+        let rise = common(&meeting.rises, MAX_SPREAD).filter(|_| meeting.rises.len() >= MIN_MEETINGS)?;
+        let (shifted, other, rise) =
+            if count(first) < count(second) { (first, second, -rise) } else { (second, first, rise) };
+        let [low, high] = on_map(meeting.corners?, side);
+        let against = ShiftEvidence::Strips { shifted, other };
+        Some(GroundShift { point_count: count(shifted), rise, low, high, against })
+    };
+    meetings.into_iter().filter_map(shift).max_by_key(|shift| shift.point_count)
+}
+
+#[cfg(test)]
+#[expect(clippy::cast_possible_truncation, reason = "test places in f32")]
+mod tests {
+    use super::*;
+    use belvedere_data::Attributes;
+    use belvedere_data::random::uniform;
+
+    /// A point of a test: place, class and strip.
+    type Return = ([f32; 3], u8, u16);
+
+    /// Two strips of ground over a square of 60 m, which overlap wholly, at the height of `ground`.
+    fn strips(density: f64, ground: impl Fn(f32, f32) -> f32) -> Vec<Return> {
+        let count = (3600.0 * density) as u64;
+        let one = |i: u64| {
+            let [x, y] = [1, 2].map(|seed| 60.0 * uniform(seed, i) as f32);
+            ([x, y, ground(x, y) + 0.06 * (uniform(3, i) as f32 - 0.5)], GROUND, 1 + (i % 2) as u16)
+        };
+        (0..count).map(one).collect()
+    }
+
+    /// The same with those that `is_off` chooses higher by `rise`.
+    fn shifted(mut returns: Vec<Return>, rise: f32, is_off: impl Fn(&Return) -> bool) -> Vec<Return> {
+        returns.iter_mut().filter(|one| one.1 == GROUND && is_off(one)).for_each(|one| one.0[2] += rise);
+        returns
+    }
+
+    fn found(returns: &[Return]) -> Option<GroundShift> {
+        let positions: Vec<[f32; 3]> = returns.iter().map(|one| one.0).collect();
+        let attributes = Attributes {
+            classification: Some(returns.iter().map(|one| one.1).collect()),
+            point_source_id: Some(returns.iter().map(|one| one.2).collect()),
+            ..Attributes::default()
+        };
+        let cloud = PointCloud { positions, attributes, ..PointCloud::default() };
+        let is_ground = |row: &u32| returns[*row as usize].1 == GROUND;
+        let rows: Vec<u32> = (0..returns.len() as u32).filter(is_ground).collect();
+        let points: Vec<[f32; 3]> = rows.iter().map(|&row| returns[row as usize].0).collect();
+        shift_of(&cloud, &rows, &points, &Control::none()).unwrap()
+    }
+
+    fn is_in_area([x, y, _]: [f32; 3]) -> bool {
+        (15.0..45.0).contains(&x) && (15.0..45.0).contains(&y)
+    }
+
+    #[test]
+    fn a_strip_that_lies_off_where_another_lies_too_is_found() {
+        let grounds: [fn(f32, f32) -> f32; 3] =
+            [|_, _| 10.0, |x, _| 0.3 * x, |x, y| (0.2 * x).sin() + (0.15 * y).cos()];
+        for density in [1.0, 4.0, 12.0] {
+            for (number, ground) in grounds.into_iter().enumerate() {
+                for rise in [-6.0_f32, -1.5, -1.0, 1.0, 2.5] {
+                    let what = format!("ground {number}, {density} a square metre, {rise} m");
+                    // cells of sparse points are wide, and a slope across them is as high as a small step
+                    if density < 4.0 && rise.abs() < 1.5 && number > 0 {
+                        continue;
+                    }
+                    let whole = found(&shifted(strips(density, ground), rise, |one| one.2 == 2)).expect(&what);
+                    assert_eq!(whole.against, ShiftEvidence::SecondLevel, "{what}");
+                    assert!((whole.rise.abs() - rise.abs()).abs() < 0.2 + 0.1 * rise.abs(), "{what}: {whole:?}");
+                    let part = |one: &Return| one.2 == 2 && is_in_area(one.0);
+                    let part = found(&shifted(strips(density, ground), rise, part)).expect(&what);
+                    assert!(part.low.iter().all(|low| *low > 0.0) && part.high.iter().all(|high| *high < 60.0));
+                    assert!(part.point_count < whole.point_count, "{what}: {part:?}");
+                }
+            }
+        }
+        // a third of the points, without the numbers of strips
+        let some = shifted(strips(8.0, |_, _| 0.0), -1.2, |one| (17.0 * one.0[0]).fract() < 0.33);
+        let some: Vec<Return> = some.into_iter().map(|(place, class, _)| (place, class, 0)).collect();
+        let shift = found(&some).unwrap();
+        assert!((shift.rise + 1.2).abs() < 0.05, "{shift:?}");
+        // squares whose cells happen to have one level are left out
+        assert!((shift.point_count as f64 / some.len() as f64 - 0.33).abs() < 0.1, "{shift:?}");
+    }
+
+    #[test]
+    fn strips_that_lie_apart_where_one_ends_are_found() {
+        for (rise, slope) in [(-1.0_f32, 0.0_f32), (3.0, 0.0), (1.5, 0.6)] {
+            let west = |one: &Return| one.0[0] < 25.0;
+            let mut returns = strips(4.0, |x, _| slope * x);
+            returns.iter_mut().for_each(|one| one.2 = if west(one) { 7 } else { 4 });
+            assert_eq!(found(&returns), None, "{rise}");
+            let shift = found(&shifted(returns, rise, west)).unwrap();
+            assert_eq!(shift.against, ShiftEvidence::Strips { shifted: 7, other: 4 });
+            assert!((shift.rise - rise).abs() < 0.1, "{shift:?}");
+            assert!(shift.low[0] > 20.0 && shift.high[0] < 30.0, "{shift:?}");
+        }
+    }
+
+    /// Ground of two strips with low plants on a third of it, none higher than 0.4 m, and a house.
+    fn with_plants() -> Vec<Return> {
+        let plant = |(place, class, strip): Return| {
+            let is_plant = (13.0 * place[0] + 7.0 * place[1]).fract() < 0.3;
+            let height = if is_plant { 0.4 * (11.0 * place[1]).fract() } else { 0.0 };
+            ([place[0], place[1], place[2] + height], if is_plant { 1 } else { class }, strip)
+        };
+        let mut returns: Vec<Return> = strips(8.0, |x, _| 0.02 * x).into_iter().map(plant).collect();
+        let is_house = |place: [f32; 3]| (50.0..58.0).contains(&place[0]) && (5.0..15.0).contains(&place[1]);
+        returns.iter_mut().filter(|one| is_house(one.0)).for_each(|one| (one.0[2], one.1) = (7.0, 6));
+        returns
+    }
+
+    #[test]
+    fn an_area_that_other_returns_contradict_is_found() {
+        assert_eq!(found(&with_plants()), None);
+        for rise in [-3.0_f32, -1.5, 1.5, 3.0] {
+            let shift = found(&shifted(with_plants(), rise, |one| is_in_area(one.0))).unwrap();
+            assert_eq!(shift.against, ShiftEvidence::OtherReturns, "{rise}");
+            // plants stand on the ground
+            assert!((shift.rise - rise).abs() < 0.4, "{rise}: {shift:?}");
+            assert!(shift.low.iter().all(|low| *low > 10.0) && shift.high.iter().all(|high| *high < 50.0), "{shift:?}");
+        }
+    }
+
+    #[test]
+    fn terraces_quays_pits_and_crops_are_believed() {
+        let terraces: fn(f32, f32) -> f32 = |x, _| 1.5 * (x / 4.0).floor();
+        let pit: fn(f32, f32) -> f32 = |x, y| if is_in_area([x, y, 0.0]) { -3.0 } else { 0.0 };
+        let quay: fn(f32, f32) -> f32 = |x, y| if x + 0.3 * y < 40.0 { 0.0 } else { 2.0 };
+        let steep: fn(f32, f32) -> f32 = |x, y| 1.2 * x + 0.5 * y;
+        for density in [0.3, 1.0, 4.0, 12.0] {
+            for (number, ground) in [terraces, pit, quay, steep].into_iter().enumerate() {
+                assert_eq!(found(&strips(density, ground)), None, "ground {number}, {density} a square metre");
+            }
+        }
+        // every second return of a field is the top of its maize, 1.8 m high
+        let mut crops = strips(8.0, |_, _| 0.0);
+        let is_top = |one: &&mut Return| is_in_area(one.0) && one.2 == 2;
+        crops.iter_mut().filter(is_top).for_each(|one| (one.0[2], one.1) = (one.0[2] + 1.8, 3));
+        assert_eq!(found(&crops), None);
+        assert_eq!(found(&[]), None);
+        assert_eq!(found(&[([0.0; 3], GROUND, 1)]), None);
+    }
+}
