@@ -33,6 +33,7 @@ class Crs:
     @property
     def metres_per_unit(self) -> float: ...
 
+_SkyState = tuple[int, float, list[list[float]], list[float], list[float], int, bytes]
 _FilesState = tuple[list[tuple[Any, int, list[str], list[str]]], list[int] | None, bool]
 
 @final
@@ -47,6 +48,7 @@ class Cloud:
         attributes: dict[str, npt.NDArray[Any]],
         adjusted_gps_time: bool,
         scanner_positions: npt.NDArray[np.float32],
+        sky_regions: list[_SkyState],
         crs: Crs,
         files: _FilesState,
     ) -> Cloud: ...
@@ -56,6 +58,8 @@ class Cloud:
     def positions(self) -> npt.NDArray[np.float32]: ...
     @property
     def scanner_positions(self) -> npt.NDArray[np.float32]: ...
+    @property
+    def sky_regions(self) -> list[_SkyState]: ...
     @property
     def xyz(self) -> npt.NDArray[np.float64]: ...
     @property
