@@ -2,7 +2,7 @@
 //!
 //! A structured scan is a grid of pulses, row by column. Its empty cells say which pulses met nothing, but not where
 //! they went: that follows from the angles of the cells beside them. Glass, water and dark paint return nothing either.
-//! So only cells count that hang together up to the top of the grid, well above the horizon.
+//! So only cells above the horizon count that hang together up to the top of the grid.
 
 use super::read_options::UpAxis;
 use belvedere_data::sky_region::SkyRegion;
@@ -22,9 +22,6 @@ const TOLERANCE: f64 = 0.1 * DEGREE;
 const TOLERATED_SHARE: f64 = 0.95;
 /// Margin about cells with a return, radians; at least a row. Beams and angles that are a little off graze no edge.
 const MARGIN: f64 = 0.1 * DEGREE;
-/// Lowest pulse that counts, radians above the horizon. Cars, people and hedges absorb pulses: a van of 2.5 m reaches 5°
-/// at 8 m from a tripod of 1.8 m.
-const MIN_ELEVATION: f64 = 5.0 * DEGREE;
 /// How high the top of a grid must look for its empty cells to be the sky, radians: below, a window may reach it.
 const MIN_TOP: f64 = 45.0 * DEGREE;
 /// Smallest piece of the sky that counts, steradians: 36° across. The lamp and the skylight of a room are smaller.
@@ -130,7 +127,8 @@ impl ScanGrid {
             is_open: Vec::new(),
         };
         let vertical = if up == UpAxis::Y { 1 } else { 2 };
-        let is_high = |cell| region.direction(cell)[vertical] >= MIN_ELEVATION.sin();
+        // water, dark cars and wet ground lie below the horizon of a tripod
+        let is_high = |cell| region.direction(cell)[vertical] > 0.0;
         let has_return = |row: usize, column: usize| self.has_return.get(row * self.blocks[1] + column) != Some(&false);
         let closed: Vec<bool> =
             (0..rows).flat_map(|row| (0..columns).map(move |column| has_return(row, column))).collect();
