@@ -113,6 +113,10 @@ impl ScanGrid {
     /// The cells that see the sky, blocks of them as cells of the region; `None` where these are none.
     fn region(&self, angles: &GridAngles, scanner: u16, axes: [[f64; 3]; 3], up: UpAxis) -> Option<SkyRegion> {
         let [rows, columns] = [0, 1].map(|i| usize::try_from(self.seen[i] / self.block[i]).unwrap_or(0));
+        // of a few cells in the corner of a large grid no block is whole
+        if rows == 0 || columns == 0 {
+            return None;
+        }
         let of_blocks = |angle: [f64; 2], block: u64| {
             let block = block as f64;
             [angle[0] + angle[1] * (block - 1.0) / 2.0, angle[1] * block]
