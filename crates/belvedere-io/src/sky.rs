@@ -100,7 +100,7 @@ impl ScanGrid {
         let [x, y, z] = position;
         let level = x.hypot(y);
         let range = level.hypot(z);
-        if spread % each == 0 && range > 0.0 && range.is_finite() {
+        if spread.is_multiple_of(each) && range > 0.0 && range.is_finite() {
             let cell = cell.map(|index| index as f64);
             self.sample.push(SampledReturn { cell, azimuth: y.atan2(x), elevation: z.atan2(level), range });
         }

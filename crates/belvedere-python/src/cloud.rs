@@ -156,11 +156,11 @@ impl Cloud {
         positions: PyReadonlyArray2<'_, f32>,
         attributes: &Bound<'_, PyDict>,
         adjusted_gps_time: bool,
-        scanner_positions: PyReadonlyArray2<'_, f32>,
-        sky_regions: Vec<SkyState>,
+        scanners: (PyReadonlyArray2<'_, f32>, Vec<SkyState>),
         crs: System,
         files: FilesState,
     ) -> PyResult<Self> {
+        let (scanner_positions, sky_regions) = scanners;
         let cloud = PointCloud {
             frame: Frame { origin, crs: crs.0 },
             positions: fixed_rows(&positions, "positions")?,

@@ -206,8 +206,7 @@ class Cloud:
             core.positions,
             core.attributes,
             core.adjusted_gps_time,
-            core.scanner_positions,
-            core.sky_regions,
+            (core.scanner_positions, core.sky_regions),
             core.crs.state,
             core.files,
         )
@@ -324,8 +323,7 @@ def _column(name: str, values: npt.ArrayLike, count: int) -> npt.NDArray[Any]:
     return converted
 
 
-def _unpickled(state: tuple[Any, Any, Any, bool, Any, Any, Any, Any], report: dict[str, Any]) -> Cloud:
-    origin, positions, attributes, adjusted, scanners, skies, system, files = state
+def _unpickled(state: tuple[Any, Any, Any, bool, Any, Any, Any], report: dict[str, Any]) -> Cloud:
+    origin, positions, attributes, adjusted, scanners, system, files = state
     crs = _core.Crs.from_state(system)
-    cloud = _core.Cloud.from_state(origin, positions, attributes, adjusted, scanners, skies, crs, files)
-    return Cloud._of(cloud, report)
+    return Cloud._of(_core.Cloud.from_state(origin, positions, attributes, adjusted, scanners, crs, files), report)

@@ -47,8 +47,7 @@ class Cloud:
         positions: npt.NDArray[np.float32],
         attributes: dict[str, npt.NDArray[Any]],
         adjusted_gps_time: bool,
-        scanner_positions: npt.NDArray[np.float32],
-        sky_regions: list[_SkyState],
+        scanners: tuple[npt.NDArray[np.float32], list[_SkyState]],
         crs: Crs,
         files: _FilesState,
     ) -> Cloud: ...
