@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use crate::crs::Crs;
 use crate::frame::{Bounds, Frame};
+use crate::sky_region::SkyRegion;
 use crate::{Error, Parameter, Result};
 
 /// A point cloud.
@@ -21,6 +22,8 @@ pub struct PointCloud {
     pub attributes: Attributes,
     /// Local positions of the scanner set-ups that [`Attributes::scanner_index`] refers to, (S, 3), metres.
     pub scanner_positions: Vec<[f32; 3]>,
+    /// Where pulses of these set-ups met nothing up to the sky, as far as the files tell.
+    pub sky_regions: Vec<SkyRegion>,
     /// Places on the map, local metres, that the survey measured and whose points were cleared since, (C, 2): there is
     /// no hole in the survey.
     pub cleared_places: Vec<[f32; 2]>,
@@ -254,6 +257,7 @@ impl PointCloud {
             positions: indices.iter().filter_map(|&i| self.positions.get(i as usize).copied()).collect(),
             attributes: self.attributes.select(indices),
             scanner_positions: self.scanner_positions.clone(),
+            sky_regions: self.sky_regions.clone(),
             cleared_places: self.cleared_places.clone(),
             files: self.files.select(indices),
         }
@@ -262,7 +266,7 @@ impl PointCloud {
     /// This cloud with the local coordinates of another frame, whose reference system it takes over.
     ///
     /// A cloud that says nothing of its coordinates, neither a system nor a unit, is taken to have those of the frame's
-    /// file. Set-ups of scanners are left out.
+    /// file. Set-ups of scanners are left out, with what their pulses saw of the sky.
     #[must_use]
     pub fn moved_to(mut self, frame: &Frame) -> Self {
         let is_silent = self.frame.crs == Crs::default();
@@ -279,6 +283,7 @@ impl PointCloud {
             *place = [x, y];
         }
         self.scanner_positions = Vec::new();
+        self.sky_regions = Vec::new();
         self.frame = frame.clone();
         self
     }

@@ -21,6 +21,7 @@ pub mod random;
 pub mod raster;
 pub mod report;
 mod setters;
+pub mod sky_region;
 pub mod trajectory;
 pub mod vector;
 pub mod view;

@@ -332,6 +332,9 @@ fn join_scanners(cloud: &mut PointCloud, part: &mut FilePart) {
         }
         new_indices.push(index.unwrap_or(u16::MAX));
     }
+    let (regions, notes) = std::mem::take(&mut part.skies).placed(&new_indices, units);
+    cloud.sky_regions.extend(regions);
+    part.report.notes.extend(notes);
     let count = part.coordinates.len();
     let indices = part.attributes.scanner_index.get_or_insert_with(|| vec![u16::MAX; count]);
     for index in indices {

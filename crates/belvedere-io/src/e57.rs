@@ -8,6 +8,7 @@ use ::e57::{E57Reader, PointCloud as Scan, Quaternion, Record, RecordDataType, R
 use super::part::FilePart;
 use super::read_options::Reading;
 use super::rows::{Role, Row, Rows, role_of};
+use super::sky::ScanGrid;
 use super::source::Input;
 use belvedere_data::crs::Crs;
 use belvedere_data::{Error, Result};
@@ -60,7 +61,14 @@ pub(super) fn read(input: Input<'_>, reading: &Reading<'_>) -> Result<FilePart> 
             part.scanners.push(position);
             u16::try_from(part.scanners.len() - 1).unwrap_or(u16::MAX)
         });
-        read_scan(path, &mut reader, scan, plan, index, &mut points, reading)?;
+        let mut grid = plan.grid.and_then(|grid| ScanGrid::new(grid.size()));
+        read_scan(path, &mut reader, scan, (plan, &mut grid), index, &mut points, reading)?;
+        if let Some(mut grid) = grid {
+            if plan.grid.is_some_and(|grid| grid.is_stated) {
+                grid.add_all_cells();
+            }
+            part.skies.add(&grid, index, plan.pose.axes(), reading.options.up);
+        }
         part.single_precision |= plan.single_precision;
     }
     points.rows.finish(&mut part);
@@ -84,6 +92,7 @@ struct ScanLayout {
     single_precision: bool,
     pose: ScanPose,
     scanner: Option<[f64; 3]>,
+    grid: Option<GridBounds>,
 }
 
 #[derive(Clone, Copy, PartialEq)]
@@ -95,6 +104,8 @@ enum Meaning {
     Elevation,
     /// A point with anything but zero here is left out.
     Invalid,
+    Row,
+    Column,
     Nothing,
 }
 
@@ -121,6 +132,7 @@ impl ScanLayout {
             }),
             scanner: (scan.transform.is_some() || grid).then_some(pose.translation),
             pose,
+            grid: GridBounds::of(scan),
         }
     }
 
@@ -194,6 +206,8 @@ fn meaning(record: &Record, scan: &Scan, cartesian: bool) -> Meaning {
         RecordName::SphericalAzimuth if !cartesian => Meaning::Azimuth,
         RecordName::SphericalElevation if !cartesian => Meaning::Elevation,
         RecordName::SphericalInvalidState if !cartesian => Meaning::Invalid,
+        RecordName::RowIndex => Meaning::Row,
+        RecordName::ColumnIndex => Meaning::Column,
         RecordName::Intensity => {
             let found = intensities.map_or((None, None), |l| (l.intensity_min, l.intensity_max));
             scaled(Role::Intensity, limits(found.0, found.1))
@@ -250,7 +264,7 @@ fn read_scan<R: Read + Seek>(
     path: &Path,
     reader: &mut E57Reader<R>,
     scan: &Scan,
-    plan: &ScanLayout,
+    (plan, grid): (&ScanLayout, &mut Option<ScanGrid>),
     index: u16,
     points: &mut ScanPoints,
     reading: &Reading<'_>,
@@ -263,6 +277,7 @@ fn read_scan<R: Read + Seek>(
         let mut row = Row::default();
         let mut valid = true;
         let [mut range, mut azimuth, mut elevation] = [0.0; 3];
+        let mut cell = [0.0; 2];
         for (column, value) in plan.columns.iter().zip(&record) {
             let value = value.to_f64(&column.kind).map_err(damaged)?;
             match column.meaning {
@@ -271,8 +286,14 @@ fn read_scan<R: Read + Seek>(
                 Meaning::Azimuth => azimuth = value,
                 Meaning::Elevation => elevation = value,
                 Meaning::Invalid => valid &= value == 0.0,
+                Meaning::Row => cell[0] = value,
+                Meaning::Column => cell[1] = value,
                 Meaning::Nothing => {}
             }
+        }
+        let cell = plan.grid.and_then(|bounds| bounds.cell(cell));
+        if let (Some(grid), Some(cell)) = (&mut *grid, cell) {
+            grid.add_cell(cell);
         }
         if !valid {
             points.invalid += 1;
@@ -285,11 +306,59 @@ fn read_scan<R: Read + Seek>(
             row.set(Role::Y, flat * azimuth.sin());
             row.set(Role::Z, range * elevation.sin());
         }
+        if let (Some(grid), Some(cell)) = (&mut *grid, cell) {
+            grid.add_return(cell, row.three(super::rows::POSITION));
+        }
         plan.pose.apply(&mut row);
         points.rows.push(&row);
         points.scanner_index.push(index);
     }
     Ok(())
+}
+
+/// Lowest and highest row and column of a scan, where it is a grid.
+#[derive(Clone, Copy)]
+struct GridBounds {
+    rows: [i64; 2],
+    columns: [i64; 2],
+    /// Whether the file states them, rather than the type of its numbers, which may hold more.
+    is_stated: bool,
+}
+
+impl GridBounds {
+    fn of(scan: &Scan) -> Option<Self> {
+        let bounds = scan.index_bounds.as_ref();
+        let limits = |name: RecordName, stated: Option<[Option<i64>; 2]>| {
+            let record = scan.prototype.iter().find(|record| record.name == name)?;
+            let [low, high] = stated.unwrap_or_default();
+            let of_type = match record.data_type {
+                RecordDataType::Integer { min, max } => [Some(min), Some(max)],
+                _ => [None; 2],
+            };
+            Some([low.or(of_type[0])?, high.or(of_type[1])?])
+        };
+        let rows = limits(RecordName::RowIndex, bounds.map(|bounds| [bounds.row_min, bounds.row_max]))?;
+        let columns = limits(RecordName::ColumnIndex, bounds.map(|bounds| [bounds.column_min, bounds.column_max]))?;
+        let is_stated = bounds.is_some_and(|bounds| {
+            [bounds.row_min, bounds.row_max, bounds.column_min, bounds.column_max].iter().all(Option::is_some)
+        });
+        Some(Self { rows, columns, is_stated })
+    }
+
+    /// Rows and columns.
+    fn size(self) -> [u64; 2] {
+        [self.rows, self.columns].map(|[low, high]| high.checked_sub(low).map_or(0, |last| last.unsigned_abs() + 1))
+    }
+
+    /// The cell of a row and a column, counted from the lowest.
+    fn cell(self, [row, column]: [f64; 2]) -> Option<[u64; 2]> {
+        #[expect(clippy::cast_possible_truncation, reason = "`as` saturates")]
+        let from = |value: f64, [low, high]: [i64; 2]| {
+            let index = value as i64;
+            (low..=high).contains(&index).then(|| index.abs_diff(low))
+        };
+        Some([from(row, self.rows)?, from(column, self.columns)?])
+    }
 }
 
 /// Name of a scan for messages.
@@ -326,6 +395,11 @@ impl ScanPose {
         };
         let t = &transform.translation;
         Self { rotation: rotation(&transform.rotation), translation: [t.x, t.y, t.z] }
+    }
+
+    /// The axes of the scan in coordinates of the file.
+    fn axes(&self) -> [[f64; 3]; 3] {
+        std::array::from_fn(|axis| self.rotation.map(|row| row[axis]))
     }
 
     fn turn(&self, v: [f64; 3]) -> [f64; 3] {

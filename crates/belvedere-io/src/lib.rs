@@ -87,6 +87,7 @@ mod rows;
 mod saved_matrix;
 mod scan_pose;
 mod simple_faces;
+mod sky;
 mod source;
 mod stations;
 mod table;

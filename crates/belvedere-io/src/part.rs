@@ -4,6 +4,7 @@ use std::path::Path;
 
 use super::read_options::{PassedOver, Reading};
 use super::read_report::{FileReport, LeftOut};
+use super::sky::Skies;
 use super::source::SystemBeside;
 use belvedere_data::Result;
 use belvedere_data::cloud::Attributes;
@@ -24,6 +25,8 @@ pub(super) struct FilePart {
     pub(super) attributes: Attributes,
     /// Scanner positions that `attributes.scanner_index` refers to.
     pub(super) scanners: Vec<[f64; 3]>,
+    /// Where pulses of these met nothing up to the sky.
+    pub(super) skies: Skies,
     pub(super) crs: Crs,
     /// A position of the file, in its unit, where one is known before its points are read.
     pub(super) somewhere: Option<[f64; 3]>,
@@ -159,12 +162,13 @@ impl FilePart {
         }
     }
 
-    /// Turns a part whose y is up: positions, normals and scanners (x, y, z) become (x, −z, y).
+    /// Turns a part whose y is up: positions, normals, scanners and directions (x, y, z) become (x, −z, y).
     pub(super) fn turn_y_up(&mut self) {
         self.row_count = None;
         self.coordinates = Coordinates::Real(self.coordinates.positions().map(|[x, y, z]| [x, -z, y]).collect());
         self.scanners.iter_mut().for_each(|p| *p = [p[0], -p[2], p[1]]);
         self.attributes.normals.iter_mut().flatten().for_each(|n| *n = [n[0], -n[2], n[1]]);
+        self.skies.turn_y_up();
     }
 
     /// Drops the points that `reading` does not ask for.

@@ -7,6 +7,7 @@ use super::part::FilePart;
 use super::read_options::Reading;
 use super::rows::{POSITION, Role, Row, Rows};
 use super::scan_pose::fault_of_rotation;
+use super::sky::ScanGrid;
 use super::source::Input;
 use belvedere_data::{Error, Result};
 
@@ -16,7 +17,8 @@ const MAX_LINE: u64 = 1 << 12;
 /// Lines of a scan's header: two sizes, scanner position and axes, a 4 x 4 matrix.
 const HEADER_LINES: usize = 10;
 
-/// The points of all scans of the source; grid cells at (0, 0, 0), where nothing came back, are left out.
+/// The points of all scans of the source. Grid cells at (0, 0, 0), where nothing came back, are no points; those that
+/// see the sky say what is empty.
 ///
 /// # Errors
 /// [`Error::Malformed`] for a header that is no scan's, a transformation that is no rotation with a shift, an
@@ -46,7 +48,8 @@ pub(super) fn read(input: Input<'_>, reading: &Reading<'_>) -> Result<FilePart> 
         }
         part.scanners.push(header.scanner);
         let index = u16::try_from(part.scanners.len() - 1).unwrap_or(u16::MAX);
-        for _ in 0..header.cells {
+        let mut grid = ScanGrid::new(header.size);
+        for cell in 0..header.cells {
             let values = lines.next()?.ok_or_else(|| lines.malformed("ends within a scan"))?;
             let (width, rows) = rows.get_or_insert_with(|| {
                 let rows = Rows::new(roles(values.len())).with_numbers(reading.options.row_numbers);
@@ -63,6 +66,15 @@ pub(super) fn read(input: Input<'_>, reading: &Reading<'_>) -> Result<FilePart> 
             }
             rows.push(&row(&header, &values));
             scanner_index.push(index);
+            if let (Some(grid), &[x, y, z, ..]) = (&mut grid, &values[..]) {
+                // column by column
+                grid.add_return([cell % header.size[0], cell / header.size[0]], [x, y, z]);
+            }
+        }
+        if let Some(grid) = &mut grid {
+            grid.add_all_cells();
+            let axes = [0, 1, 2].map(|axis| [0, 1, 2].map(|i| header.matrix[axis][i]));
+            part.skies.add(grid, index, axes, reading.options.up);
         }
     }
     let scans = part.scanners.len();
@@ -78,6 +90,8 @@ pub(super) fn read(input: Input<'_>, reading: &Reading<'_>) -> Result<FilePart> 
 struct PtxHeader {
     /// Its first line, from 1.
     line: usize,
+    /// Rows and columns.
+    size: [u64; 2],
     cells: u64,
     scanner: [f64; 3],
     /// Rows of the matrix that turns scan into file coordinates; points are row vectors multiplied from the left.
@@ -116,10 +130,11 @@ fn read_header<R: BufRead>(lines: &mut PtxLines<'_, R>) -> Result<Option<PtxHead
         return Err(lines.malformed("follows a grid size that is not a whole number"));
     }
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "whole and below 1e18, as just seen")]
-    let cells = (columns * rows) as u64;
+    let [rows, columns] = [rows, columns].map(|count| count as u64);
     Ok(Some(PtxHeader {
         line,
-        cells,
+        size: [rows, columns],
+        cells: rows * columns,
         scanner: std::array::from_fn(|i| value(9, i)),
         matrix: std::array::from_fn(|row| std::array::from_fn(|column| value(6 + row, column))),
     }))

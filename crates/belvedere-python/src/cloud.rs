@@ -8,6 +8,7 @@ use crate::work::run;
 use belvedere::apps::ask::remark_on_left_out;
 use belvedere::cloud::{CloudFile, CloudFiles, FileRows};
 use belvedere::io::{ReadOptions, Source, UpAxis, Within, read_cloud, write_cloud};
+use belvedere::sky_region::SkyRegion;
 use belvedere::{Attributes, Frame, GpsTimeKind, PointCloud};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyOSError;
@@ -155,15 +156,17 @@ impl Cloud {
         positions: PyReadonlyArray2<'_, f32>,
         attributes: &Bound<'_, PyDict>,
         adjusted_gps_time: bool,
-        scanner_positions: PyReadonlyArray2<'_, f32>,
+        scanners: (PyReadonlyArray2<'_, f32>, Vec<SkyState>),
         crs: System,
         files: FilesState,
     ) -> PyResult<Self> {
+        let (scanner_positions, sky_regions) = scanners;
         let cloud = PointCloud {
             frame: Frame { origin, crs: crs.0 },
             positions: fixed_rows(&positions, "positions")?,
             attributes: columns(attributes, adjusted_gps_time)?,
             scanner_positions: fixed_rows(&scanner_positions, "scanner positions")?,
+            sky_regions: sky_regions.into_iter().map(sky_region).collect(),
             // only the cloud of a scene has them
             cleared_places: Vec::new(),
             files: files_of(files),
@@ -193,6 +196,17 @@ impl Cloud {
     #[getter]
     fn scanner_positions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         Ok(to_2d(py, &self.0.scanner_positions)?.into_any())
+    }
+
+    /// What pulses of the scanners saw of the sky.
+    #[getter]
+    fn sky_regions(&self) -> Vec<SkyState> {
+        let state = |region: &SkyRegion| {
+            let SkyRegion { scanner, range, axes, azimuth, elevation, columns, .. } = *region;
+            let is_open = region.is_open.iter().map(|&is_open| u8::from(is_open)).collect();
+            (scanner, range, axes, azimuth, elevation, columns, is_open)
+        };
+        self.0.sky_regions.iter().map(state).collect()
     }
 
     #[getter]
@@ -268,6 +282,14 @@ impl Cloud {
 /// Path, number of points, further attributes and records of each file; the rows of the points, unless these are all of
 /// them; and whether the rows are known.
 type FilesState = (Vec<(PathBuf, u64, Vec<String>, Vec<String>)>, Option<Vec<u64>>, bool);
+
+/// A region of the sky as Python keeps it: scanner, range, axes, azimuth, elevation, columns, open cells.
+type SkyState = (u16, f32, [[f64; 3]; 3], [f64; 2], [f64; 2], usize, Vec<u8>);
+
+fn sky_region((scanner, range, axes, azimuth, elevation, columns, is_open): SkyState) -> SkyRegion {
+    let is_open = is_open.into_iter().map(|is_open| is_open != 0).collect();
+    SkyRegion { scanner, range, axes, azimuth, elevation, columns, is_open }
+}
 
 fn files_of((files, rows, is_known): FilesState) -> CloudFiles {
     let file = |(path, row_count, other_attributes, records)| CloudFile { path, row_count, other_attributes, records };

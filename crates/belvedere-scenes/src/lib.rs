@@ -42,6 +42,7 @@ pub use scan::beam::BeamParams;
 pub use scan::mobile::{MobileParams, scan_mobile};
 pub use scan::order::PointOrder;
 pub use scan::regimes::Regime;
+pub use scan::scan_grid::ScanGrid;
 pub use scan::scan_pattern::{MirrorMotion, ScanPattern};
 pub use scan::terrestrial::{Stations, TerrestrialParams, scan_terrestrial};
 pub use scan::{Scan, ScanReport, SensorPath};

@@ -50,6 +50,8 @@ pub(super) struct CarvingInput {
     pub(super) free_segments: FreeSegments,
     /// What pulses prove empty between their returns; it proves, and does not carve.
     pub(super) between_returns: Option<FreeSegments>,
+    /// What pulses that returned nothing prove empty; it proves, and does not carve.
+    pub(super) into_the_sky: Option<FreeSegments>,
     /// Classes, numbers and counts of returns.
     pub(super) attributes: Attributes,
     /// Whether pulses are only assumed.
@@ -67,6 +69,8 @@ struct ScannerPositions {
     positions: Vec<[f32; 3]>,
     /// Whether pulses are only assumed to fall straight down.
     is_assumed: bool,
+    /// Whether they are the poses of the file.
+    are_poses: bool,
 }
 
 impl OrientedSurvey {
@@ -104,8 +108,8 @@ impl OrientedSurvey {
     pub fn pulses(&self) -> Option<FreeSegmentColumns> {
         let input = self.carving.as_ref().filter(|input| !input.is_assumed)?;
         let mut columns = input.free_segments.to_columns();
-        if let Some(between) = &input.between_returns {
-            columns.append(between.to_columns());
+        for proving in [&input.between_returns, &input.into_the_sky].into_iter().flatten() {
+            columns.append(proving.to_columns());
         }
         Some(columns)
     }
@@ -299,7 +303,8 @@ fn find_scanner(
         let mut report = ScannerReport { point_count: cloud.len(), ..ScannerReport::default() };
         let found_by = if statistics.are_pulses_assumed() { FoundBy::Assumed } else { FoundBy::Trajectory };
         report.found.insert(found_by, known_count);
-        return Ok((ScannerPositions { positions, is_assumed: statistics.are_pulses_assumed() }, report));
+        let is_assumed = statistics.are_pulses_assumed();
+        return Ok((ScannerPositions { positions, is_assumed, ..ScannerPositions::default() }, report));
     }
     let means = match &params.orient {
         OrientBy::ScannerOfEachPoint(given) => {
@@ -311,7 +316,7 @@ fn find_scanner(
             let known_count = positions.iter().filter(|p| p.iter().all(|v| v.is_finite())).count();
             let mut report = ScannerReport { point_count: cloud.len(), ..ScannerReport::default() };
             report.found.insert(FoundBy::Position, known_count);
-            return Ok((ScannerPositions { positions, is_assumed: false }, report));
+            return Ok((ScannerPositions { positions, ..ScannerPositions::default() }, report));
         }
         OrientBy::Trajectory(trajectory) => Means::Trajectory(trajectory),
         OrientBy::ScannerAt(position) => Means::Position(cloud.frame.from_file_coordinates(*position)),
@@ -322,8 +327,8 @@ fn find_scanner(
     };
     let (positions, report) =
         control.stage("estimating scanner positions", 0, || locate(cloud, &means, &params.locate, control))?;
-    let is_assumed = report.is_assumed();
-    Ok((ScannerPositions { positions, is_assumed }, report))
+    let (is_assumed, are_poses) = (report.is_assumed(), report.found.contains_key(&FoundBy::Pose));
+    Ok((ScannerPositions { positions, is_assumed, are_poses }, report))
 }
 
 /// What carving needs of a cloud, and how that was found; `None` where they are only assumed, too few, and need not
@@ -379,8 +384,18 @@ fn carving_input(
         None => None,
     };
     report.between_returns = between_returns.as_ref().map_or(0, FreeSegments::len);
-    let is_assumed = scanner.is_assumed;
-    let input = CarvingInput { free_segments, between_returns, attributes, is_assumed, scanner: Vec::new(), pulses };
+    let sees_sky = scanner.are_poses && params.statistics.is_none() && !cloud.sky_regions.is_empty();
+    let into_the_sky = sees_sky.then(|| free_segments.into_the_sky(cloud, control)).transpose()?;
+    report.into_the_sky = into_the_sky.as_ref().map_or(0, FreeSegments::len);
+    let input = CarvingInput {
+        free_segments,
+        between_returns,
+        into_the_sky,
+        attributes,
+        is_assumed: scanner.is_assumed,
+        scanner: Vec::new(),
+        pulses,
+    };
     Ok((Some(input), report))
 }
 

@@ -2,6 +2,7 @@
 
 mod between_returns;
 mod columns;
+mod into_the_sky;
 mod proximity;
 mod tree;
 

@@ -11,6 +11,7 @@ mod odd_meshes;
 mod odd_tables;
 mod outputs;
 mod remote;
+mod skies;
 mod sources;
 mod web_server;
 mod windows;

@@ -206,7 +206,7 @@ class Cloud:
             core.positions,
             core.attributes,
             core.adjusted_gps_time,
-            core.scanner_positions,
+            (core.scanner_positions, core.sky_regions),
             core.crs.state,
             core.files,
         )

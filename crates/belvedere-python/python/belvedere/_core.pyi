@@ -33,6 +33,7 @@ class Crs:
     @property
     def metres_per_unit(self) -> float: ...
 
+_SkyState = tuple[int, float, list[list[float]], list[float], list[float], int, bytes]
 _FilesState = tuple[list[tuple[Any, int, list[str], list[str]]], list[int] | None, bool]
 
 @final
@@ -46,7 +47,7 @@ class Cloud:
         positions: npt.NDArray[np.float32],
         attributes: dict[str, npt.NDArray[Any]],
         adjusted_gps_time: bool,
-        scanner_positions: npt.NDArray[np.float32],
+        scanners: tuple[npt.NDArray[np.float32], list[_SkyState]],
         crs: Crs,
         files: _FilesState,
     ) -> Cloud: ...
@@ -56,6 +57,8 @@ class Cloud:
     def positions(self) -> npt.NDArray[np.float32]: ...
     @property
     def scanner_positions(self) -> npt.NDArray[np.float32]: ...
+    @property
+    def sky_regions(self) -> list[_SkyState]: ...
     @property
     def xyz(self) -> npt.NDArray[np.float64]: ...
     @property

@@ -7,6 +7,7 @@ pub(crate) mod mobile;
 pub(crate) mod order;
 pub(crate) mod recording;
 pub(crate) mod regimes;
+pub(crate) mod scan_grid;
 pub(crate) mod scan_pattern;
 pub(crate) mod stations;
 pub(crate) mod terrestrial;

@@ -92,9 +92,20 @@ impl TerrestrialParams {
     }
 
     /// Columns and rows of pulses: around, and from below upwards.
-    fn grid(&self) -> [u32; 2] {
+    pub(crate) fn grid(&self) -> [u32; 2] {
         let height = self.highest_elevation.min(FRAC_PI_2) - self.lowest_elevation.max(-FRAC_PI_2);
         [TAU, height].map(|angle| saturating_count(angle / self.angular_step))
+    }
+
+    /// Time that a station takes to turn once, seconds.
+    fn duration(&self) -> f64 {
+        let [columns, rows] = self.grid();
+        f64::from(columns) * f64::from(rows) / self.pulse_rate
+    }
+
+    /// GPS time of the first pulse of a station, counted from 0.
+    pub(crate) fn start_of(&self, station: usize) -> f64 {
+        self.start_time + SETTLED + station as f64 * (self.duration() + self.move_time.max(4.0 * SETTLED))
     }
 
     fn leaves_something_to_scan(&self) -> bool {
@@ -121,9 +132,8 @@ pub fn scan_terrestrial(scene: &TriangleScene, params: &TerrestrialParams) -> Sc
         Stations::At(positions) => positions.clone(),
     };
     let [columns, rows] = params.grid();
-    let duration = f64::from(columns) * f64::from(rows) / params.pulse_rate;
-    let mut start_time = params.start_time + SETTLED;
     for (number, &position) in (1..=u16::MAX).zip(&stations) {
+        let start_time = params.start_of(usize::from(number) - 1);
         let station = Station { number, position, start_time };
         let turned: Vec<Scan> = (0..columns)
             .into_par_iter()
@@ -132,8 +142,7 @@ pub fn scan_terrestrial(scene: &TriangleScene, params: &TerrestrialParams) -> Sc
         for column in turned {
             scan.append(column);
         }
-        scan.append(Scan { sensor_path: station.path(duration), stations: vec![position], ..Scan::default() });
-        start_time += duration + params.move_time.max(4.0 * SETTLED);
+        scan.append(Scan { sensor_path: station.path(params.duration()), stations: vec![position], ..Scan::default() });
     }
     scan
 }

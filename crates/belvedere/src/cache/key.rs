@@ -27,6 +27,10 @@ impl CloudKey {
         key.text(&format!("{:?}", cloud.frame));
         key.column("positions", Some(cloud.positions.as_flattened()));
         key.column("scanners", Some(cloud.scanner_positions.as_flattened()));
+        for region in &cloud.sky_regions {
+            // Debug prints every number so that it is read back as it is
+            key.text(&format!("sky {region:?}"));
+        }
         key.column("cleared", Some(cloud.cleared_places.as_flattened()));
         let Attributes {
             normals,

@@ -63,6 +63,7 @@ mod scanner_location;
 mod scene_model;
 mod scene_parts;
 mod simulated_surveys;
+mod sky;
 mod slender;
 mod solar_envelope;
 mod sun;
