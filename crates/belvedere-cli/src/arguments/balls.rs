@@ -1,4 +1,5 @@
-//! Flags of `normals`, `surfaces` and `balls`, which are also the keys of `--scene-config`. Other commands have only a few of them.
+//! Flags of `normals`, `surfaces` and `balls`, which are also the keys of `--scene-config`. Other commands have only a
+//! few of them.
 
 use super::{CloudInput, Numbers, SceneConfig, above_zero};
 use belvedere::medial::{Rule, Trees};

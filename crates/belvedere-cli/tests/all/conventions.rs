@@ -138,7 +138,7 @@ fn every_parameter_is_described_in_one_short_line_with_its_type() {
     let program = place.summary("describe");
     let commands = program["commands"].as_array().unwrap();
     // four of them are the steps of `city`
-    assert_eq!(commands.len(), 33);
+    assert_eq!(commands.len(), 34);
     for command in commands {
         let name = command["name"].as_str().unwrap();
         assert!(!command["summary"].as_str().unwrap().contains('\n'), "{name}");
@@ -190,7 +190,7 @@ fn flags_of_balls_belong_to_balls_and_a_file_of_them_to_all_commands() {
         let flags: Vec<&str> = of_balls.map(|one| one["name"].as_str().unwrap()).collect();
         match command["name"].as_str().unwrap() {
             "balls" => assert_eq!(flags.len(), 13),
-            "normals" => assert_eq!(flags.len(), 5),
+            "normals" | "surfaces" => assert_eq!(flags.len(), 5),
             "depth-map" | "query" => assert_eq!(flags, ["--ball-profile", "--trees", "--orient"]),
             name => assert!(flags.is_empty() || flags == ["--trees", "--orient"], "{name}: {flags:?}"),
         }

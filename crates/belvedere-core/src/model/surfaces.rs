@@ -52,8 +52,8 @@ impl OrientedSurvey {
     }
 }
 
-/// Finds the surfaces of buildings, and caps the balls, whose sources are rows of the points kept, and of which each may
-/// have a transmission.
+/// Finds the surfaces of buildings, and caps the balls, whose sources are rows of the points kept, and of which each
+/// may have a transmission.
 pub(super) fn close_surfaces(
     (balls, transmission): (&mut MedialBalls, &mut Vec<f32>),
     survey: &OrientedSurvey,

@@ -39,8 +39,8 @@ pub(super) struct Return {
 pub(super) enum Building {
     /// Another class says that it does not, or its pulse has several returns, as in trees.
     No,
-    /// It has class 0 or 1, and no point of the block or about it has class 6. If it lies on a plane that is large, flat
-    /// and high enough, it does.
+    /// It has class 0 or 1, and no point of the block or about it has class 6. If it lies on a plane that is large,
+    /// flat and high enough, it does.
     Unknown,
     /// Class 6.
     Yes,

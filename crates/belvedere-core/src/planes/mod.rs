@@ -77,8 +77,8 @@ pub struct SurveyPoints<'a> {
     pub positions: &'a [[f32; 3]],
     /// The scanner at each point, (N, 3) local metres, NaN where unknown.
     pub scanner: &'a [[f32; 3]],
-    /// Return numbers are used where present. Points of class 6 lie on buildings; where there are none, single returns of
-    /// classes 0 and 1 may, if there are points of class 2 below them. Without classes nothing is found.
+    /// Return numbers are used where present. Points of class 6 lie on buildings; where there are none, single returns
+    /// of classes 0 and 1 may, if there are points of class 2 below them. Without classes nothing is found.
     pub attributes: &'a Attributes,
     /// Origin of the local positions in the reference system, metres.
     pub origin: [f64; 3],
