@@ -38,6 +38,8 @@ const MIN_TWO_LEVELS: f32 = 0.6;
 /// How far the upper level of the cells of a square may lie to one side of the lower one at most, as a share of a cell:
 /// on a slope it lies uphill.
 const MAX_LEAN: f32 = 0.25;
+/// How many squares away the ground around those with two levels is looked for.
+const AROUND: i32 = 2;
 /// Least share of the cells of a square with a return below its ground.
 const MIN_BELOW: f32 = 0.5;
 /// How many squares away the ground around is looked for, and where it counts whatever its height.
@@ -107,6 +109,14 @@ struct Square {
     lean: [f32; 2],
     /// How far above the lowest ground point the lowest other return is, of cells with both.
     gaps: Vec<f32>,
+}
+
+impl Square {
+    /// The height of most of its ground, local metres; `None` where it has too little.
+    fn height(&self) -> Option<f32> {
+        let [_, median, _] = quartiles(&self.heights).filter(|_| self.heights.len() >= POINTS_OF_CELL)?;
+        Some(median)
+    }
 }
 
 /// Squares by row and column.
@@ -255,7 +265,7 @@ fn common(values: &[f32], max_spread: f32) -> Option<f32> {
 
 /// Ground at two heights in the same places.
 fn two_levels(squares: &Squares, side: f32) -> Option<GroundShift> {
-    let mut found = FoundSquares::default();
+    let mut found: BTreeMap<[i32; 2], f32> = BTreeMap::new();
     let mut level_counts = [0; 2];
     for (at, square) in squares {
         let count = square.steps.len() as f32;
@@ -264,13 +274,39 @@ fn two_levels(squares: &Squares, side: f32) -> Option<GroundShift> {
             continue;
         }
         if let Some(step) = common(&square.steps, MAX_SPREAD) {
-            found.add(*at, step);
+            found.insert(*at, step);
             (0..2).for_each(|level| level_counts[level] += square.level_counts[level]);
         }
     }
-    let [lower, upper] = level_counts;
-    let (point_count, sign) = if upper < lower { (upper, 1.0) } else { (lower, -1.0) };
-    found.shift(side, point_count, sign, ShiftEvidence::SecondLevel)
+    let off = match level_around(squares, &found) {
+        Some(level) if level < 1.0 / 3.0 => 1,
+        Some(level) if level > 2.0 / 3.0 => 0,
+        _ => usize::from(level_counts[1] < level_counts[0]),
+    };
+    let mut of_area = FoundSquares::default();
+    found.into_iter().for_each(|(at, step)| of_area.add(at, step));
+    let sign = if off == 1 { 1.0 } else { -1.0 };
+    of_area.shift(side, level_counts[off], sign, ShiftEvidence::SecondLevel)
+}
+
+/// The mean level of the ground around squares with two levels, which lie so far apart: 0 for the lower one and 1 for
+/// the upper one; `None` without such ground. What a slope adds on one side it takes away on the other.
+fn level_around(squares: &Squares, steps: &BTreeMap<[i32; 2], f32>) -> Option<f32> {
+    let (mut sum, mut count) = (0.0, 0.0);
+    for (at, step) in steps {
+        let Some(lower) = squares.get(at).and_then(Square::height) else { continue };
+        let ways = (-AROUND..=AROUND).flat_map(|down| (-AROUND..=AROUND).map(move |right| [down, right]));
+        for way in ways {
+            let beside = [0, 1].map(|axis| at[axis].saturating_add(way[axis]));
+            // squares at the edge have both levels in some of their cells
+            let square = squares.get(&beside).filter(|square| square.steps.len() * 10 <= square.measured);
+            if let Some(height) = square.and_then(Square::height) {
+                sum += (height - lower) / step;
+                count += 1.0;
+            }
+        }
+    }
+    (count > 0.0).then(|| sum / count)
 }
 
 /// Ground that lies above, or below, what other returns show.
@@ -308,10 +344,7 @@ fn below_others(squares: &Squares) -> Vec<([i32; 2], f32)> {
     };
     let layers: BTreeMap<[i32; 2], f32> =
         squares.iter().filter_map(|(at, square)| Some((*at, layer(square)?))).collect();
-    let height = |at: [i32; 2]| {
-        let square = squares.get(&at).filter(|square| square.heights.len() >= POINTS_OF_CELL)?;
-        quartiles(&square.heights).map(|[_, median, _]| median)
-    };
+    let height = |at: [i32; 2]| squares.get(&at).and_then(Square::height);
     let is_continued = |at: [i32; 2], gap: f32| {
         let Some(own) = height(at) else { return false };
         let directions = (-1..=1).flat_map(|down| (-1..=1).map(move |right| [down, right]));
@@ -485,6 +518,8 @@ mod tests {
                     let part = found(&shifted(strips(density, ground), rise, part)).expect(&what);
                     assert!(part.low.iter().all(|low| *low > 0.0) && part.high.iter().all(|high| *high < 60.0));
                     assert!(part.point_count < whole.point_count, "{what}: {part:?}");
+                    // the ground around says which of the two levels is off
+                    assert!((part.rise - rise).abs() < 0.2 + 0.1 * rise.abs(), "{what}: {part:?}");
                 }
             }
         }
