@@ -14,8 +14,8 @@ import pytest
 from belvedere import Answer
 
 
-def wall_on_a_plain():
-    """A level ground of 40 m and a wall of 6 m along y = 0, both with normals."""
+def points_of_a_wall():
+    """A level ground of 40 m and a wall of 6 m along y = 0 around the origin: positions and normals."""
     step = 0.25
     x, y = (axis.ravel() for axis in np.meshgrid(np.arange(-20, 20, step), np.arange(-20, 20, step)))
     ground = np.column_stack([x, y, np.zeros_like(x)])
@@ -24,9 +24,13 @@ def wall_on_a_plain():
     y, x = (axis.ravel() for axis in np.meshgrid(np.arange(-0.5, 0.75, step), np.arange(-20, 20, step)))
     top = np.column_stack([x, y, np.full_like(x, 6.0)])
     parts = [(ground[np.abs(ground[:, 1]) > 0.5], (0, 0, 1)), *sides, (top, (0, 0, 1))]
-    xyz = np.vstack([part for part, _ in parts]) + [155000, 463000, 5]
-    normals = np.vstack([np.broadcast_to(normal, part.shape) for part, normal in parts])
-    return belvedere.Cloud(xyz, normals=normals, crs="EPSG:28992")
+    return np.vstack([part for part, _ in parts]), np.vstack([np.broadcast_to(n, part.shape) for part, n in parts])
+
+
+def wall_on_a_plain():
+    """The points of a wall in the Netherlands."""
+    xyz, normals = points_of_a_wall()
+    return belvedere.Cloud(xyz + [155000, 463000, 5], normals=normals, crs="EPSG:28992")
 
 
 @pytest.fixture(scope="module")
@@ -35,11 +39,8 @@ def wall():
 
 
 def test_a_cloud_with_y_up_is_said_by_all_that_its_scene_answers():
-    upright = wall_on_a_plain()
-    [x, y, z], normals = upright.xyz.T - [[155000], [463000], [5]], upright.normals.T
-    turned = belvedere.Cloud(
-        np.column_stack([x, z, -y]), normals=np.column_stack([normals[0], normals[2], -normals[1]])
-    )
+    xyz, normals = (np.column_stack([x, z, -y]) for x, y, z in (of.T for of in points_of_a_wall()))
+    turned = belvedere.Cloud(xyz, normals=normals)
     scene = belvedere.Scene(turned, method="tau", orient="given", keep_isolated=True)
     eye, targets = (0, 3, 10), [[5.0, 1.0, 10.0], [0.0, 1.0, -10.0]]
     for ask in (lambda: scene.visible(eye, targets), lambda: scene.line_of_sight([eye], targets[:1])):
