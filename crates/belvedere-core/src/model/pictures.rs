@@ -16,8 +16,7 @@ use rayon::prelude::*;
 impl SceneModel {
     /// The depth map of its balls in `view`, [`depth_map()`], and of the triangles that block beside them: surface
     /// patches and meshes that were added. Where the backend of the model draws the balls, each depth may differ by
-    /// [`DEPTH_MAP_TOLERANCE`](crate::query::DEPTH_MAP_TOLERANCE) of itself; without a backend and with that of the CPU
-    /// none does.
+    /// [`DEPTH_MAP_TOLERANCE`] of itself; without a backend and with that of the CPU none does.
     ///
     /// # Errors
     /// Those of [`depth_map()`].
