@@ -29,6 +29,8 @@ const MIN_SOLID_ANGLE: f64 = 0.3;
 /// Share of the returns that come from farther away than pulses prove their way empty. What returns that many pulses is
 /// no single reflector.
 const FARTHER_SHARE: f64 = 0.001;
+/// Most that the columns turn, radians: once around, and what scanners measure twice.
+const MAX_TURN: f64 = 1.05 * TAU;
 /// Above this elevation a direction does not tell its column, radians.
 const NEAR_ZENITH: f64 = 80.0 * DEGREE;
 const DEGREE: f64 = TAU / 360.0;
@@ -250,8 +252,9 @@ fn reaching_the_top(free: &[bool], region: &SkyRegion, rows: usize) -> Vec<bool>
 }
 
 impl GridAngles {
-    /// The angles that the returns show; `None` where these do not lie on a regular grid.
-    fn of(sample: &[SampledReturn]) -> Option<Self> {
+    /// The angles that the returns show; `None` where these do not lie on a regular grid, or go around more than once:
+    /// neighbours in the grid would not be all neighbours in the sky.
+    fn of(sample: &[SampledReturn], columns: u64) -> Option<Self> {
         if sample.len() < MIN_SAMPLE {
             return None;
         }
@@ -262,7 +265,8 @@ impl GridAngles {
         let place = at_share(TOLERATED_SHARE, errors.len())?;
         let error = *errors.select_nth_unstable_by(place, f64::total_cmp).1;
         let has_steps = azimuth[1] != 0.0 && elevation[1] != 0.0;
-        (has_steps && error <= TOLERANCE).then_some(angles)
+        let is_once = azimuth[1].abs() * columns as f64 <= MAX_TURN;
+        (has_steps && is_once && error <= TOLERANCE).then_some(angles)
     }
 
     /// Angle between a return and the middle of its cell.
@@ -327,7 +331,7 @@ impl Skies {
         if grid.empty_count() == 0 || grid.sample.is_empty() {
             return;
         }
-        let Some(angles) = GridAngles::of(&grid.sample) else {
+        let Some(angles) = GridAngles::of(&grid.sample, grid.seen[1]) else {
             self.irregular_count += 1;
             return;
         };
