@@ -23,8 +23,8 @@ mod view_page;
 mod window_views;
 
 pub(crate) use balls::{
-    BallsArguments, Cleaning, MethodChoice, NeighborChoice, NormalsArguments, OrientChoice, Orienting, Shrinking,
-    SideChoice, SurfacesArguments,
+    BallsArguments, Cleaning, MethodChoice, NeighborChoice, NormalsArguments, OrientChoice, OrientedPoints, Orienting,
+    Shrinking, SideChoice, SurfacesArguments,
 };
 pub(crate) use cameras::{CameraLensArguments, CameraTargetsArguments, CamerasArguments};
 pub(crate) use city::{CellFor, City, CityMerge, CityPlan, CityRun, CityStatus, CityStep};

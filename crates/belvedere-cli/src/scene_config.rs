@@ -1,8 +1,8 @@
 //! How balls are made: flags, and the file of `--scene-config` that completes them.
 
 use crate::arguments::{
-    BallShape, BallsArguments, Cleaning, NormalsArguments, Orienting, ProfileChoice, SceneBalls, SceneConfig,
-    Shrinking, SurfacesArguments, Usage,
+    BallShape, BallsArguments, Cleaning, OrientedPoints, Orienting, ProfileChoice, SceneBalls, SceneConfig, Shrinking,
+    Usage,
 };
 use crate::help::BALL_FLAGS;
 use crate::parameter_flags::flags_of;
@@ -49,16 +49,8 @@ impl BallsArguments {
     }
 }
 
-impl NormalsArguments {
-    /// How normals are made.
-    pub(crate) fn parameters(&self) -> Result<BallParameters> {
-        let (cleaning, orienting) = (self.cleaning.clone(), self.orienting.clone());
-        BallParameters { cleaning, orienting, ..BallParameters::default() }.completed(&self.config)
-    }
-}
-
-impl SurfacesArguments {
-    /// How the points are prepared.
+impl OrientedPoints {
+    /// How points are prepared.
     pub(crate) fn parameters(&self) -> Result<BallParameters> {
         let (cleaning, orienting) = (self.cleaning.clone(), self.orienting.clone());
         BallParameters { cleaning, orienting, ..BallParameters::default() }.completed(&self.config)

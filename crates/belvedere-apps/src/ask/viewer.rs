@@ -86,6 +86,14 @@ pub fn remark_on_axis(looks_y_up: bool) -> Option<Remark> {
     looks_y_up.then(|| Remark::warning("y-looks-up", text))
 }
 
+/// A warning that no surface of a building was found, where there are no `roofs`.
+#[must_use]
+pub fn remark_on_roofs(roofs: usize) -> Option<Remark> {
+    let text = "no roof was found: points of class 6 show roofs, or where there are none single returns of classes 0 \
+                and 1 that lie above points of class 2; classify the points first if there are buildings";
+    (roofs == 0).then(|| Remark::warning("no-roofs", text))
+}
+
 /// A warning that nothing was cleared, where `points` of the cloud were.
 #[must_use]
 pub fn remark_on_cleared(points: usize) -> Option<Remark> {

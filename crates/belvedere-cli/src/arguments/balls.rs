@@ -9,15 +9,13 @@ use serde::{Deserialize, Deserializer};
 use std::path::PathBuf;
 use std::str::FromStr;
 
+/// Points that are cleaned and get normals, for commands that make no balls.
 #[derive(Args, Clone)]
-pub(crate) struct NormalsArguments {
+pub(crate) struct OrientedPoints {
     #[command(flatten)]
     pub(crate) cleaning: Cleaning,
     #[command(flatten)]
     pub(crate) orienting: Orienting,
-    /// Cloud with normals (.laz .las .ply .csv), or a folder for coords.npy and normals.npy
-    #[arg(short, long, value_name = "OUT", help_heading = "Result")]
-    pub(crate) output: PathBuf,
     #[command(flatten)]
     pub(crate) input: CloudInput,
     #[command(flatten)]
@@ -25,18 +23,21 @@ pub(crate) struct NormalsArguments {
 }
 
 #[derive(Args, Clone)]
+pub(crate) struct NormalsArguments {
+    /// Cloud with normals (.laz .las .ply .csv), or a folder for coords.npy and normals.npy
+    #[arg(short, long, value_name = "OUT", help_heading = "Result")]
+    pub(crate) output: PathBuf,
+    #[command(flatten)]
+    pub(crate) points: OrientedPoints,
+}
+
+#[derive(Args, Clone)]
 pub(crate) struct SurfacesArguments {
-    #[command(flatten)]
-    pub(crate) cleaning: Cleaning,
-    #[command(flatten)]
-    pub(crate) orienting: Orienting,
     /// Roofs, edges, ridges and walls (.geojson)
     #[arg(short, long, value_name = "OUT", help_heading = "Result")]
     pub(crate) output: PathBuf,
     #[command(flatten)]
-    pub(crate) input: CloudInput,
-    #[command(flatten)]
-    pub(crate) config: SceneConfig,
+    pub(crate) points: OrientedPoints,
 }
 
 #[derive(Args, Clone)]

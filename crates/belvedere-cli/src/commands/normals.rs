@@ -21,12 +21,12 @@ pub(crate) fn run(arguments: &NormalsArguments, global: &Global) -> Result<Summa
     } else {
         check_output("-o", output, &["laz", "las", "ply", "csv", "xyz", "txt"])?;
     }
-    let mut parameters = arguments.parameters()?;
+    let mut parameters = arguments.points.parameters()?;
     let mut run = CommandContext::new(global);
     let mut cloud = if is_folder {
-        pipeline::read_every_row(&arguments.input, &mut run)?
+        pipeline::read_every_row(&arguments.points.input, &mut run)?
     } else {
-        pipeline::read(&arguments.input, &mut run)?
+        pipeline::read(&arguments.points.input, &mut run)?
     };
     if matches!(parameters.orienting.orient, None | Some(OrientChoice::Auto)) {
         // new normals are requested, so those of an earlier run are dropped
@@ -39,13 +39,13 @@ pub(crate) fn run(arguments: &NormalsArguments, global: &Global) -> Result<Summa
     let balls = BallParams::Shrunk(ShrinkParams::tau());
     let params = params::model(&parameters, balls, &cloud.frame.crs, &mut run)?;
     let prepared = OrientedSurvey::prepare(&cloud, &params, &run.control());
-    let (survey, report) = prepared.map_err(|error| pipeline::advised(&arguments.input, error))?;
+    let (survey, report) = prepared.map_err(|error| pipeline::advised(&arguments.points.input, error))?;
     run.summary.add_report(&report);
     run.summary.remarks(remark_on_axis(survey.looks_y_up(&cloud.frame)));
     let oriented = &survey.oriented;
     let report = run.stage("writing", 0, |_| -> Result<WriteReport> {
         if is_folder {
-            let coords = (!is_written_back(&arguments.input.clouds, output))
+            let coords = (!is_written_back(&arguments.points.input.clouds, output))
                 .then(|| pipeline::file_coordinates(&cloud, &cloud.positions));
             let folder = MasbcppFolder {
                 coords: coords.as_deref(),

@@ -7,6 +7,7 @@ use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::{Result, bail};
 use belvedere::Frame;
+use belvedere::apps::ask::{remark_on_axis, remark_on_roofs};
 use belvedere::apps::roof_planes::MAX_LEVEL;
 use belvedere::io::{PathLine, Spot, write_geojson};
 use belvedere::medial::CarvedParams;
@@ -17,22 +18,24 @@ use serde_json::{Map, Value};
 
 pub(crate) fn run(arguments: &SurfacesArguments, global: &Global) -> Result<Summary> {
     check_output("-o", &arguments.output, &["geojson", "json"])?;
-    let parameters = arguments.parameters()?;
+    let parameters = arguments.points.parameters()?;
     let mut run = CommandContext::new(global);
-    let cloud = pipeline::read(&arguments.input, &mut run)?;
+    let cloud = pipeline::read(&arguments.points.input, &mut run)?;
     let balls = BallParams::Carved(CarvedParams::default());
     let params = params::model(&parameters, balls, &cloud.frame.crs, &mut run)?;
     let prepared = OrientedSurvey::prepare(&cloud, &params, &run.control());
-    let (survey, report) = prepared.map_err(|error| pipeline::advised(&arguments.input, error))?;
+    let (survey, report) = prepared.map_err(|error| pipeline::advised(&arguments.points.input, error))?;
     run.summary.add_report(&report);
+    run.summary.remarks(remark_on_axis(survey.looks_y_up(&cloud.frame)));
     let found = survey.building_surfaces(&cloud.frame, &PlaneParams::default(), &run.control())?;
     let Some(found) = found else {
         bail!(
             "{}: surfaces are found from pulses that come from the air; give where the scanner was with --orient \
              trajectory=FILE if this is such a survey",
-            arguments.input.clouds[0].display()
+            arguments.points.input.clouds[0].display()
         )
     };
+    run.summary.remarks(remark_on_roofs(found.planes.len()));
     let (roofs, lines) = features(&found, &cloud.frame);
     run.stage("writing", 0, |_| write_geojson(&arguments.output, &roofs, &lines, &cloud.frame.crs))?;
     warn_of_geojson(std::slice::from_ref(&arguments.output), &cloud.frame.crs, &mut run.summary);
@@ -45,8 +48,9 @@ pub(crate) fn run(arguments: &SurfacesArguments, global: &Global) -> Result<Summ
     for (name, count) in counts {
         run.summary.add(name, count);
     }
-    let deviations = found.edges.iter().map(|edge| edge.sd).collect();
-    run.summary.add("edge_deviation_m", median(deviations).map(|v| rounded(v, 3)));
+    let mut deviations: Vec<f64> = found.edges.iter().map(|edge| edge.sd).collect();
+    deviations.sort_unstable_by(f64::total_cmp);
+    run.summary.add("edge_deviation_m", deviations.get(deviations.len() / 2).map(|&v| rounded(v, 3)));
     run.summary
         .headline("<roofs> roofs, <edges> edges, <ridges_and_valleys> ridges and valleys, <walls> walls, cut to blocks of 64 m")
         .headline("an edge is known to <edge_deviation_m> m (standard deviation, median)");
@@ -108,10 +112,4 @@ fn features(found: &BuildingSurfaces, frame: &Frame) -> (Vec<Spot>, Vec<PathLine
 
 fn properties<const N: usize>(entries: [(&str, Value); N]) -> Map<String, Value> {
     entries.into_iter().map(|(name, value)| (name.to_owned(), value)).collect()
-}
-
-/// The middle of some numbers, `None` of none.
-fn median(mut values: Vec<f64>) -> Option<f64> {
-    values.sort_unstable_by(f64::total_cmp);
-    values.get(values.len() / 2).copied()
 }

@@ -1,6 +1,6 @@
 //! `belvedere surfaces`: roofs, edges and walls as features, against the exact mesh of a simulated town.
 
-use crate::common::Workplace;
+use crate::common::{Workplace, remarks};
 use belvedere::control::Control;
 use belvedere::io::{FeatureShape, GeojsonFeature, ReadOptions, read_cloud, read_geojson, read_mesh};
 use belvedere::vector::{cross, dot, length, sub};
@@ -37,7 +37,7 @@ fn roofs_and_edges_lie_where_those_of_the_mesh_do() {
     let place = Workplace::new();
     place.summary("simulate town -o town --extent 80 --density 10");
     let made = place.summary("surfaces town/cloud.laz -o found.geojson");
-    let (cloud, _) = read_cloud([&place.path("town/cloud.laz")], &ReadOptions::new(), &Control::none()).unwrap();
+    let (mut cloud, _) = read_cloud([&place.path("town/cloud.laz")], &ReadOptions::new(), &Control::none()).unwrap();
     let features = read_geojson(&place.path("found.geojson"), &cloud.frame.crs).unwrap();
     let of = |kind: &str| features.iter().filter(|feature| text(feature, "kind") == kind).collect::<Vec<_>>();
     let (roofs, edges, walls) = (of("roof"), of("edge"), of("wall"));
@@ -75,6 +75,12 @@ fn roofs_and_edges_lie_where_those_of_the_mesh_do() {
     });
     assert!(median(beside_edges.collect()) < 0.06, "{made}");
     assert!(made["edge_deviation_m"].as_f64().unwrap() < 0.06, "{made}");
+    assert!(!remarks(&made).iter().any(|text| text.contains("no roof was found")));
+    // without classes nothing says what stands on the ground
+    cloud.attributes.classification = Some(vec![1; cloud.len()]);
+    place.write_cloud("bare.laz", &cloud);
+    let bare = place.summary("surfaces bare.laz -o none.geojson");
+    assert!(bare["roofs"] == 0 && remarks(&bare).iter().any(|text| text.contains("no roof was found")), "{bare}");
 }
 
 #[test]
