@@ -81,7 +81,7 @@ pub fn write_geojson_areas<'a>(
         }
         features.push(feature(Geometry::new_multi_polygon(polygons), &area.properties));
     }
-    write_features(output, features, crs)
+    write_features(output, features, projection.is_some(), crs)
 }
 
 /// Writes each of `spots` as a point and each of `lines` as a line, with heights in the unit of the heights of `crs`,
@@ -110,17 +110,16 @@ pub fn write_geojson<'a>(
         let positions = line.places.iter().map(position).collect::<Result<Vec<_>>>()?;
         features.push(feature(Geometry::new_line_string(positions), &line.properties));
     }
-    write_features(output, features, crs)
+    write_features(output, features, projection.is_some(), crs)
 }
 
 fn feature(geometry: Geometry, properties: &Map<String, Value>) -> Feature {
     Feature { geometry: Some(geometry), properties: Some(properties.clone()), ..Feature::default() }
 }
 
-fn write_features(output: Output<'_>, features: Vec<Feature>, crs: &Crs) -> Result<GeojsonCoordinates> {
+fn write_features(output: Output<'_>, features: Vec<Feature>, is_wgs84: bool, crs: &Crs) -> Result<GeojsonCoordinates> {
     let mut collection = FeatureCollection { features, ..FeatureCollection::default() };
-    let is_global = crs.geographic_projection().is_ok();
-    let coordinates = if is_global { GeojsonCoordinates::Wgs84 } else { GeojsonCoordinates::OfTheFile };
+    let coordinates = if is_wgs84 { GeojsonCoordinates::Wgs84 } else { GeojsonCoordinates::OfTheFile };
     if coordinates == GeojsonCoordinates::OfTheFile {
         let note = format!("coordinates are not WGS 84 but those of the cloud: {}", crs.describe());
         collection.foreign_members = Some(Map::from_iter([("crs_note".to_owned(), note.into())]));

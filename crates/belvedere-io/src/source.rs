@@ -244,7 +244,7 @@ pub(crate) fn place_in(folder: &Path, path: &str) -> PathBuf {
     }
 }
 
-/// The folder of a file, and what an address has behind its path, such as the key of `…/ept.json?sig=…`: files below
+/// The folder of a file, and what an address has behind its path, such as a key, `ept.json?sig=KEY`: files below
 /// it need it too.
 pub(crate) fn folder_and_query(file: &Path) -> (PathBuf, &str) {
     let text = web_address(file).unwrap_or_default();

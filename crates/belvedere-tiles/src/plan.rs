@@ -297,7 +297,7 @@ impl Plan {
     pub fn with_far_terrain(self, terrain: Option<SideFile>, horizon: Option<SideFile>) -> Result<Self> {
         let frame = self.frame()?;
         let far = far_terrain(terrain.as_ref(), horizon.as_ref(), &frame, self.bounds())?;
-        let heights = far.grid().and_then(|grid| remark_on_terrain(grid, &self.sample, frame.origin[2]));
+        let heights = far.grid().and_then(|grid| remark_on_terrain(grid, self.sample.iter().copied(), frame.origin[2]));
         let remarks = self.remarks.into_iter().chain(heights).collect();
         Ok(Self { terrain, horizon, remarks, ..self })
     }

@@ -285,8 +285,8 @@ impl Scene {
             let [x, y, z] = center.map(f64::from);
             [x, y, z + f64::from(*radius)]
         };
-        let tops: Vec<[f64; 3]> = balls.centers.iter().zip(&balls.radii).map(top).collect();
-        remark_on_terrain(grid, &tops, self.model.frame().origin[2])
+        let tops = balls.centers.iter().zip(&balls.radii).map(top);
+        remark_on_terrain(grid, tops, self.model.frame().origin[2])
     }
 
     /// Where it lies.

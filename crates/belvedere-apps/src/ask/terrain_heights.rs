@@ -20,14 +20,17 @@ const RATIO_ERROR: f64 = 0.02;
 /// between the ellipsoid and the sea is more.
 const DIFFERS: f64 = 12.0;
 
-/// A warning where heights of the terrain are not those of `places` on surfaces of a scene, (N, 3) local metres, of
-/// which a fifth or more lie on the ground. `base` is the height of local zero.
+/// A warning where heights of the terrain are not those of `places` on surfaces of a scene, local metres, of which a
+/// fifth or more lie on the ground. `base` is the height of local zero.
 #[must_use]
-pub fn remark_on_terrain(grid: &ElevationGrid, places: &[[f64; 3]], base: f64) -> Option<Remark> {
+pub fn remark_on_terrain(
+    grid: &ElevationGrid,
+    places: impl ExactSizeIterator<Item = [f64; 3]>,
+    base: f64,
+) -> Option<Remark> {
     let step = places.len().div_ceil(MAX_PLACES).max(1);
-    let pairs: Vec<[f64; 2]> = (places.iter().step_by(step))
-        .filter_map(|&[x, y, z]| Some([z + base, grid.height_at([x, y])? + base]))
-        .collect();
+    let pairs: Vec<[f64; 2]> =
+        places.step_by(step).filter_map(|[x, y, z]| Some([z + base, grid.height_at([x, y])? + base])).collect();
     if pairs.len() < MIN_PLACES {
         return None;
     }
@@ -84,8 +87,7 @@ mod tests {
             let roof = if i.is_multiple_of(2) { 9.0 } else { 0.0 };
             [x, y, height(x) + roof]
         };
-        let places: Vec<[f64; 3]> = (0..400).map(place).collect();
-        remark_on_terrain(&grid, &places, 0.0).map(|remark| remark.key)
+        remark_on_terrain(&grid, (0..400).map(place), 0.0).map(|remark| remark.key)
     }
 
     #[test]

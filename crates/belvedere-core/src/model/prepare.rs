@@ -386,7 +386,7 @@ fn carving_input(
     report.between_returns = between_returns.as_ref().map_or(0, FreeSegments::len);
     let sees_sky = scanner.are_poses && params.statistics.is_none() && !cloud.sky_regions.is_empty();
     let into_the_sky = sees_sky.then(|| free_segments.into_the_sky(cloud, control)).transpose()?;
-    report.into_the_sky = into_the_sky.as_ref().map_or(0, FreeSegments::len);
+    report.into_the_sky = into_the_sky.as_ref().map(FreeSegments::len);
     let input = CarvingInput {
         free_segments,
         between_returns,

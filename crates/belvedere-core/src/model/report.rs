@@ -45,11 +45,6 @@ pub struct SmoothingReport {
 }
 
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands over references")]
-fn is_zero(count: &usize) -> bool {
-    *count == 0
-}
-
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands over references")]
 fn in_tenths_of_millimetres<S: Serializer>(length: &f32, serializer: S) -> Result<S::Ok, S::Error> {
     rounded(f64::from(*length), 4).serialize(serializer)
 }
@@ -65,9 +60,9 @@ pub struct PulsesReport {
     #[serde(rename = "ways_between_returns")]
     pub between_returns: usize,
     /// Pulses of structured scans that returned nothing and see the sky, as many as it takes to prove its space empty;
-    /// they do not carve. Left out where there are none.
-    #[serde(rename = "pulses_into_the_sky", skip_serializing_if = "is_zero")]
-    pub into_the_sky: usize,
+    /// they do not carve. `None` where no scan has any.
+    #[serde(rename = "pulses_into_the_sky", skip_serializing_if = "Option::is_none")]
+    pub into_the_sky: Option<usize>,
     /// Why the crowns of trees could not be measured, if they could not: what is missing to tell pulses apart.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub crowns_not_measured: Option<String>,
