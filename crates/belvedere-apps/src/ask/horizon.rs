@@ -14,6 +14,9 @@ use belvedere_data::control::Control;
 use belvedere_data::report::rounded;
 use serde::{Deserialize, Serialize};
 
+/// Elevation from which on the zenith itself is covered, degrees: what rounding leaves.
+const OVERHEAD_DEG: f64 = 89.999;
+
 /// Above which elevation the sky is free around observers.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
@@ -110,9 +113,22 @@ impl Ask for HorizonQuestion {
         let near_edge = near_edge_percent(scene, &eyes, &skylines, -north.of_grid);
         let section = HorizonsSection::of(&elevations_deg, near_edge);
         context.report.horizons = Some(section);
+        context.add(remark_on_overhead(&elevations_deg));
         section.summarise(eyes.eyes.len(), context);
         Ok(Answers::new(HorizonResults { eyes, azimuth_count, elevations_deg }, Vec::new()))
     }
+}
+
+/// A warning of observers who have something straight above them: their horizon is the zenith, all around.
+fn remark_on_overhead(elevations_deg: &[Vec<f64>]) -> Option<Remark> {
+    let is_covered = |elevations: &&Vec<f64>| !elevations.is_empty() && elevations.iter().all(|v| *v >= OVERHEAD_DEG);
+    let count = elevations_deg.iter().filter(is_covered).count();
+    let who = if elevations_deg.len() == 1 { "the observer".to_owned() } else { format!("{count} observers") };
+    let text = format!(
+        "something stands straight above {who}, such as a tree or eaves: the horizon there is 90 degrees all around; \
+         move a step aside, or give a height above it"
+    );
+    (count > 0).then(|| Remark::warning("covered-overhead", text).with("count", count as f64))
 }
 
 /// The mean share of azimuths at which something beyond the edge of the cloud could be the horizon; `None` where the

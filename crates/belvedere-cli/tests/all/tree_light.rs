@@ -1,7 +1,7 @@
 //! Light through trees on the command line: below a crown, what arrives lies between shade and the open sky by the
 //! share given.
 
-use crate::common::{Workplace, at, column, house};
+use crate::common::{Workplace, at, column, house, remarks};
 use belvedere::PointCloud;
 use std::f64::consts::TAU;
 
@@ -195,4 +195,17 @@ fn what_cannot_be_is_refused_with_advice() {
         place.refusal(2, &format!("{command} {TREES} --unproven report"), &["--unproven"]);
         assert!(place.run(&format!("help {command}")).stdout.contains("--shell"), "{command}");
     }
+}
+
+#[test]
+fn a_horizon_below_a_crown_says_what_it_is() {
+    let place = place();
+    let horizon = |x: f64, y: f64| {
+        let [x, y, _] = at(x, y, 0.0);
+        let made = place.summary(&format!("horizon {TREES} --observer {x},{y} -o horizon.csv"));
+        let is_said = remarks(&made).iter().any(|text| text.contains("straight above the observer"));
+        (column(&place, "horizon.csv", "elevation").iter().all(|v| *v > 89.9), is_said)
+    };
+    assert_eq!(horizon(10.0, 0.0), (true, true));
+    assert_eq!(horizon(10.0, 6.0), (false, false));
 }
