@@ -3,7 +3,7 @@
 use crate::rows::{SkyObstacles, check_normals, fold_rows, normals_of};
 use crate::targets::Targets;
 use crate::tree_light::{Season, through_crowns};
-use belvedere_core::query::{Answer, MedialScene, VisibilityMatrix};
+use belvedere_core::query::{Answer, MedialScene, Viewer, VisibilityMatrix};
 use belvedere_data::control::Control;
 use belvedere_data::vector::{cross, dot, unit};
 use belvedere_data::{Error, Result};
@@ -138,6 +138,31 @@ pub fn unproven_light(
     };
     let chunks = targets.positions.par_chunks(PROOF_CHUNK).zip(lit.par_chunks(PROOF_CHUNK));
     Ok(Some(chunks.map(chunk).collect::<Result<Vec<_>>>()?.concat()))
+}
+
+/// How likely each target is lit by a sun with hard edges, 0 to 1, (M); NaN for one without a position. What is turned
+/// away from the sun is not lit for certain.
+///
+/// # Errors
+/// [`Error::LengthMismatch`] for normals that are not as many as targets, and those of
+/// [`MedialScene::visible_probabilities`].
+pub fn lit_probabilities(
+    scene: &MedialScene,
+    targets: &Targets,
+    sun: ShadowSun,
+    control: &Control<'_>,
+) -> Result<Vec<f32>> {
+    let normals = targets.normals.as_deref();
+    check_normals(normals, targets.len())?;
+    let mut found = scene.visible_probabilities(Viewer::Direction(sun.to_sun), &targets.positions, control)?;
+    for (row, probability) in found.iter_mut().enumerate().filter(|(_, probability)| !probability.is_nan()) {
+        let is_before = normals.is_none_or(|normals| dot(normals[row].map(f64::from), sun.to_sun) > 0.0);
+        if sun.to_sun[2] <= 0.0 || !is_before {
+            *probability = 0.0;
+        }
+    }
+    targets.clear_unasked(&mut found);
+    Ok(found)
 }
 
 /// Directions that represent a sun in the direction of the unit vector `to_sun`: itself, or 64 points of equal shares

@@ -73,6 +73,7 @@ pub(crate) fn flags_of(parameter: Parameter) -> &'static [&'static str] {
         Parameter::Leaves => &["--leaves"],
         Parameter::Ground => &["--ground"],
         Parameter::UnprovenAs => &["--unproven"],
+        Parameter::Certainty => &["--certain"],
         Parameter::Targets => &["--targets", "--self", "--target-class", "--target-polygon"],
         Parameter::LastDay => &["--to"],
         Parameter::ClassMeaning => &["--class"],

@@ -327,6 +327,8 @@ parameters! {
     UnprovenLength => "maximum unproven length",
     /// What unproven answers count as.
     UnprovenAs => "unproven",
+    /// How certain an answer must be.
+    Certainty => "certainty",
     /// Step along unproven space.
     UnprovenStep => "step along unproven space",
     // Other methods, which are compared

@@ -76,6 +76,7 @@ fn keyword(parameter: Parameter) -> &'static str {
         Parameter::Transmissivity | Parameter::ThroughTrees => "through_trees",
         Parameter::Turbidity => "linke",
         Parameter::UnprovenAs => "unproven",
+        Parameter::Certainty => "certain",
         Parameter::WeatherParts => "parts_per_row",
         other => other.name(),
     }

@@ -7,7 +7,7 @@ use crate::mesh::PyMesh;
 use crate::remarks::remarks_of;
 use crate::system::System;
 use crate::work::run;
-use belvedere::apps::ask;
+use belvedere::apps::ask::{self, HowSure};
 use belvedere::apps::horizon::convergence;
 use belvedere::cache::{SceneCache, scene_model};
 use belvedere::clean::CleanParams;
@@ -33,6 +33,20 @@ use std::sync::Arc;
 pub(crate) struct PyScene(pub(crate) Arc<ask::Scene>);
 
 /// What to make of targets that nothing blocks but that are not proven visible.
+/// How sure to say answers are.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub(crate) struct HowSureKeywords {
+    probability: bool,
+    certain: Option<f64>,
+}
+
+impl From<HowSureKeywords> for HowSure {
+    fn from(HowSureKeywords { probability, certain }: HowSureKeywords) -> Self {
+        Self { probability, certain }
+    }
+}
+
 pub(crate) fn unproven_as(text: &str) -> PyResult<UnprovenAs> {
     match text {
         "report" => Ok(UnprovenAs::Reported),

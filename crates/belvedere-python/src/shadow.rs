@@ -1,13 +1,14 @@
 //! Shadow.
 
 use crate::errors::wrong;
-use crate::scene::PyScene;
+use crate::scene::{HowSureKeywords, PyScene};
 use crate::sun::{SiteKeywords, SunChoice};
 use crate::targets::{RequestedTargets, TargetResults};
 use crate::trees::Through;
 use crate::work::run;
 use belvedere::apps::ask;
 use belvedere::apps::shadow::Edges;
+use belvedere::apps::targets::Measure;
 use pyo3::prelude::*;
 use std::sync::Arc;
 
@@ -23,6 +24,7 @@ impl PyScene {
         targets: RequestedTargets<'py>,
         edges: &str,
         trees: Through,
+        how_sure: HowSureKeywords,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Vec<TargetResults<'py>>> {
         let edges = match edges {
@@ -36,22 +38,29 @@ impl PyScene {
             edges,
             trees: trees.chosen()?,
             unproven: None,
+            how_sure: how_sure.into(),
         };
         let scene = Arc::clone(&self.0);
         let chosen = targets.chosen(py, &scene)?;
         let places = chosen.places.clone();
         let answers = run(py, progress, move |control| ask::ask(&scene, &question, &places, control))?;
         let (found, mut measures) = (answers.found, answers.measures);
-        let unproven = measures.split_off(found.suns.len().min(measures.len()));
-        let mut unproven = Some(unproven);
+        let further = measures.split_off(found.suns.len().min(measures.len()));
+        let is_one = found.suns.len() == 1;
         let mut remarks = Some(answers.remarks);
         measures
             .into_iter()
-            .map(|mut lit| {
+            .zip(&found.suns)
+            .map(|(mut lit, sun)| {
                 lit.name = "lit".to_owned();
                 // what is said of all suns is said once
                 let remarks = remarks.take().unwrap_or_default();
-                let of_sun = std::iter::once(lit).chain(unproven.take().unwrap_or_default()).collect();
+                let suffix = if is_one { String::new() } else { format!("_{}", sun.column) };
+                let of_sun = further.iter().filter_map(|measure| {
+                    let name = measure.name.strip_suffix(&suffix)?.to_owned();
+                    Some(Measure { name, ..measure.clone() })
+                });
+                let of_sun = std::iter::once(lit).chain(of_sun).collect();
                 chosen.results(py, &found.on.targets, of_sun, &remarks)
             })
             .collect()

@@ -5,7 +5,7 @@ use crate::errors::{exception, wrong};
 use crate::mesh::{Faces, rows_of};
 use crate::observers::standing;
 use crate::remarks::remarks_of;
-use crate::scene::{PyScene, unproven_as};
+use crate::scene::{HowSureKeywords, PyScene, unproven_as};
 use crate::targets::{RequestedTargets, ground_points};
 use crate::work::run;
 use belvedere::apps::ask::{self, LinesOfSightQuestion};
@@ -145,6 +145,7 @@ impl PyScene {
         targets: PyReadonlyArray2<'py, f64>,
         ends: EndKeywords,
         unproven: &str,
+        how_sure: HowSureKeywords,
         curvature: Option<&str>,
         refraction: Option<f64>,
         frequency: Option<f64>,
@@ -157,6 +158,7 @@ impl PyScene {
             earth: earth(curvature, refraction)?,
             frequency_ghz: frequency,
             unproven: Some(unproven_as(unproven)?).filter(|unproven| *unproven != UnprovenAs::Reported),
+            how_sure: how_sure.into(),
             profile: None,
         };
         let scene = Arc::clone(&self.0);
@@ -176,6 +178,9 @@ impl PyScene {
         dict.set_item("first_block_range_m", to_1d(py, columns.ranges))?;
         if let Some(lengths) = columns.unproven {
             dict.set_item("unproven_m", to_1d(py, lengths))?;
+        }
+        for measure in &found.sure {
+            dict.set_item(&measure.name, to_1d(py, measure.values.clone()))?;
         }
         if let Some(percent) = columns.fresnel_free_percent {
             dict.set_item("fresnel_free_percent", to_1d(py, percent))?;

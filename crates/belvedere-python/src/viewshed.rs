@@ -5,11 +5,12 @@ use crate::errors::{exception, wrong};
 use crate::observers::standing_observers;
 use crate::outlook::LookingKeywords;
 use crate::remarks::remarks_of;
-use crate::scene::{PyScene, unproven_choice};
+use crate::scene::{HowSureKeywords, PyScene, unproven_choice};
 use crate::sun::SiteKeywords;
 use crate::targets::{Grid, grid_at, grid_of, ground_points};
 use crate::work::run;
-use belvedere::apps::ask::{self, Places, Standing, StandingObserver, ViewLimits, ViewshedTargets};
+use belvedere::apps::ask::{self, HowSure, Places, Standing, StandingObserver, ViewLimits, ViewshedTargets};
+use belvedere::raster::Raster;
 use belvedere::results::{Pixels, ResultRaster, terrain_georeference};
 use numpy::PyReadonlyArray2;
 use pyo3::exceptions::PyRuntimeError;
@@ -17,8 +18,8 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::Arc;
 
-/// The bands of cells with their names, what they hold and their value for no data, their grid, and remarks.
-type ViewshedReply<'py> = (Vec<Bound<'py, PyAny>>, Vec<String>, (String, f64), Grid, Vec<Bound<'py, PyDict>>);
+/// The bands of cells with their value for no data, their names, what they hold, their grid, and remarks.
+type ViewshedReply<'py> = (Vec<(Bound<'py, PyAny>, f64)>, Vec<String>, String, Grid, Vec<Bound<'py, PyDict>>);
 
 impl LookingKeywords {
     fn question(
@@ -26,6 +27,7 @@ impl LookingKeywords {
         observers: Vec<Standing>,
         place: &SiteKeywords,
         unproven: &str,
+        how_sure: HowSure,
     ) -> PyResult<ask::ViewshedQuestion> {
         let limits = ViewLimits {
             azimuth_range_deg: self.azimuth_range,
@@ -43,6 +45,7 @@ impl LookingKeywords {
             north: place.north(),
             earth: self.earth()?,
             unproven: unproven_choice(unproven)?,
+            how_sure,
             cell: self.cell,
             ground: ground_points(self.ground.as_deref())?,
             targets: vec![if self.is_far { ViewshedTargets::FarTerrain } else { ViewshedTargets::Cells }],
@@ -54,7 +57,8 @@ impl LookingKeywords {
 
 #[pymethods]
 impl PyScene {
-    /// The bands of cells with their names, what they hold and their value for no data, their grid, and remarks.
+    /// The bands of cells with their value for no data, their names, what they hold, their grid, and remarks.
+    #[expect(clippy::too_many_arguments, reason = "keywords in Python")]
     fn viewshed<'py>(
         &self,
         py: Python<'py>,
@@ -62,9 +66,10 @@ impl PyScene {
         looking: LookingKeywords,
         place: SiteKeywords,
         unproven: &str,
+        how_sure: HowSureKeywords,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<ViewshedReply<'py>> {
-        let question = looking.question(standing_observers(&observers, &self.0)?, &place, unproven)?;
+        let question = looking.question(standing_observers(&observers, &self.0)?, &place, unproven, how_sure.into())?;
         if looking.is_far && self.0.model().far_terrain().grid().is_none() {
             return Err(wrong(
                 "far",
@@ -75,6 +80,7 @@ impl PyScene {
         let scene = Arc::clone(&self.0);
         let answers = run(py, progress, move |control| ask::ask(&scene, &question, &Places::Scene, control))?;
         let (found, frame) = (answers.found, self.0.frame());
+        let is_far = found.far.is_some();
         let (seen, grid) = match (found.far, found.cells) {
             (Some(far), _) => {
                 let heights = far.terrain.heights();
@@ -87,11 +93,23 @@ impl PyScene {
         let remarks = remarks_of(py, &answers.remarks)?;
         let raster = ResultRaster::of_viewshed(&seen, [grid.0, grid.1]).map_err(exception)?;
         let no_data = raster.pixels.kind().in_gdal().1;
-        let bands = match &raster.pixels {
-            Pixels::Answers(bands) => bands.iter().map(|band| to_1d(py, band.values().to_vec()).into_any()).collect(),
-            Pixels::Counts(bands) => bands.iter().map(|band| to_1d(py, band.values().to_vec()).into_any()).collect(),
-            Pixels::Numbers(bands) => bands.iter().map(|band| to_1d(py, band.values().to_vec()).into_any()).collect(),
+        let arrays = match &raster.pixels {
+            Pixels::Answers(bands) => arrays_of(py, bands),
+            Pixels::Counts(bands) => arrays_of(py, bands),
+            Pixels::Numbers(bands) => arrays_of(py, bands),
         };
-        Ok((bands, raster.names, (raster.description, no_data), grid, remarks))
+        let mut bands: Vec<(Bound<'py, PyAny>, f64)> = arrays.into_iter().map(|band| (band, no_data)).collect();
+        let mut names = raster.names;
+        if !is_far {
+            for measure in found.cells_sure {
+                bands.push((to_1d(py, measure.values).into_any(), f64::NAN));
+                names.push(measure.name);
+            }
+        }
+        Ok((bands, names, raster.description, grid, remarks))
     }
+}
+
+fn arrays_of<'py, T: numpy::Element + Copy>(py: Python<'py>, bands: &[Raster<T>]) -> Vec<Bound<'py, PyAny>> {
+    bands.iter().map(|band| to_1d(py, band.values().to_vec()).into_any()).collect()
 }

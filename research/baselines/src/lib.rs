@@ -5,6 +5,7 @@
 
 pub mod agreement;
 pub mod audit;
+pub mod calibration;
 mod curve;
 mod delaunay;
 pub mod dsm;

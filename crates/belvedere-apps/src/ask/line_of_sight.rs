@@ -1,10 +1,12 @@
 //! Lines of sight: whether the observers of pairs see their targets, and what blocks first.
 
+use super::how_sure::HowSure;
 use super::observers::{Standing, check_height, note_beside, note_enclosed, stand};
 use super::scene::Scene;
 use super::sections::{LinesSection, PairsSection};
 use super::{Answers, Ask, Context, GridCells, Places, Remark, remark_on_inside};
 use crate::profile::{SightProfile, sight_profile};
+use crate::targets::Measure;
 use crate::viewshed::{OBSERVER_HEIGHT, TARGET_HEIGHT};
 use belvedere_core::ground::GroundPoints;
 use belvedere_core::query::{
@@ -36,6 +38,8 @@ pub struct LinesOfSightQuestion {
     pub frequency_ghz: Option<f64>,
     /// What unproven answers count as; `None` to report them where pulses are known.
     pub unproven: Option<UnprovenAs>,
+    /// How sure to say answers are.
+    pub how_sure: HowSure,
     /// Also the profile, of a single line.
     pub profile: Option<ProfileRows>,
 }
@@ -61,6 +65,8 @@ pub struct SightsResults {
     pub fresnel: Option<Vec<f64>>,
     /// Whether pulses were tested.
     pub is_proof_tested: bool,
+    /// How sure answers are, where that was wanted: measures of the pairs.
+    pub sure: Vec<Measure>,
     /// The profile that was wanted.
     pub profile: Option<SightProfile>,
 }
@@ -164,6 +170,31 @@ impl LinesOfSightQuestion {
         Ok(Some(made))
     }
 
+    /// How sure `answers` are, where that is wanted.
+    fn sure_of(
+        &self,
+        pairs: &[[[f64; 3]; 2]],
+        answers: &[Answer],
+        scene: &Scene,
+        context: &mut Context,
+        control: &Control<'_>,
+    ) -> Result<Vec<Measure>> {
+        let Some(blockers) = self.how_sure.blockers(scene, control)? else { return Ok(Vec::new()) };
+        let probabilities =
+            control.stage("computing probabilities", pairs.len(), || blockers.pair_probabilities(pairs, control))?;
+        let is_unproven = |row: usize| answers.get(row) == Some(&Answer::Unproven);
+        let uncertain = self.how_sure.uncertain(&probabilities, is_unproven)?;
+        match &probabilities[..] {
+            [one] if one.is_finite() => {
+                let doubt = if uncertain.as_deref() == Some(&[1.0]) { ": uncertain" } else { "" };
+                context.headline(format!("visible with a probability of {one:.2}{doubt}"));
+            }
+            [] | [_] => {}
+            many => self.how_sure.summarise(many, uncertain.as_deref(), ["visible", "blocked"], context),
+        }
+        Ok(self.how_sure.measures(probabilities, uncertain, ""))
+    }
+
     /// Refuses a profile of several lines.
     fn check_count(&self, count: usize) -> Result<()> {
         if self.profile.is_none() || count == 1 {
@@ -181,6 +212,7 @@ impl Ask for LinesOfSightQuestion {
     type Found = SightsResults;
 
     fn check(&self) -> Result<()> {
+        self.how_sure.check()?;
         check_height(self.observer_height)?;
         check_height(self.target_height)?;
         self.earth.validate()?;
@@ -238,7 +270,8 @@ impl Ask for LinesOfSightQuestion {
         }
         let profile = self.profile(&pairs, (scene, &blockers), context, control)?;
         let is_proof_tested = blockers.proof().is_some();
-        let found = SightsResults { pairs, answers, sights, fresnel, is_proof_tested, profile };
+        let sure = self.sure_of(&pairs, &answers, scene, context, control)?;
+        let found = SightsResults { pairs, answers, sights, fresnel, is_proof_tested, sure, profile };
         match &found.pairs[..] {
             [[observer, target]] => {
                 for (end, what) in [(*observer, "observer"), (*target, "target")] {

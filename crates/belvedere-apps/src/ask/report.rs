@@ -5,6 +5,7 @@ use super::comfort::ExposureSection;
 use super::depth_map::{PictureSection, ViewSection};
 use super::envelope::EnvelopeSection;
 use super::horizon::HorizonsSection;
+use super::how_sure::CertaintySection;
 use super::landmark::LandmarkSection;
 use super::line_of_sight::LineSection;
 use super::north::NorthReport;
@@ -68,6 +69,9 @@ pub struct Report {
     /// What blocks.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub lines_of_sight: Option<LinesSection>,
+    /// How sure answers are.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub certainty: Option<CertaintySection>,
     /// A single line of sight.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub line: Option<LineSection>,

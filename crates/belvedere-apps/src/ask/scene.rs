@@ -266,11 +266,16 @@ impl Scene {
 
     /// Refuses scenes whose pulses are unknown, where somebody wants to say what unproven answers count as.
     pub(super) fn check_proof(&self) -> Result<()> {
+        self.check_pulses(Parameter::UnprovenAs)
+    }
+
+    /// Refuses scenes whose pulses are unknown, where a parameter needs them.
+    pub(super) fn check_pulses(&self, parameter: Parameter) -> Result<()> {
         if self.model.pulses().is_some() {
             return Ok(());
         }
         Err(Error::InvalidParameter {
-            parameter: Parameter::UnprovenAs,
+            parameter,
             value: "given".to_owned(),
             expected: "left out: it needs pulses, from a cloud with known scanner positions or an .npz ball file of such a cloud",
         })

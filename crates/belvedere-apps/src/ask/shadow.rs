@@ -1,11 +1,12 @@
 //! Shadow: what of one or more suns reaches places.
 
+use super::how_sure::HowSure;
 use super::light::{Light, OnTargets};
 use super::sections::{MeasuresSection, PlacesReport};
 use super::sun::{MAX_LISTED_SUNS, NamedSun, SunPlace, Suns};
 use super::{Answers, Ask, Context, Places, Remark, Scene, ThroughTrees, spread};
-use crate::shadow::{Edges, LIT, ShadowSun, scene_shadow, sun_directions, unproven_light};
-use crate::targets::{Measure, ResultKind};
+use crate::shadow::{Edges, LIT, ShadowSun, lit_probabilities, scene_shadow, sun_directions, unproven_light};
+use crate::targets::{Measure, ResultKind, Targets};
 use belvedere_core::query::UnprovenAs;
 use belvedere_data::control::Control;
 use belvedere_data::report::percent;
@@ -29,6 +30,9 @@ pub struct ShadowQuestion {
     /// What to make of light that pulses do not prove; `None` to report it where one sun with hard edges allows that.
     #[serde(default)]
     pub unproven: Option<UnprovenAs>,
+    /// How sure to say answers are; for suns with hard edges among opaque trees.
+    #[serde(default)]
+    pub how_sure: HowSure,
 }
 
 /// The suns of an answer.
@@ -61,10 +65,45 @@ impl ShadowQuestion {
     }
 }
 
+/// How likely each target is lit, and whether that is uncertain.
+type Sureness = (Vec<f32>, Option<Vec<f32>>);
+
+impl ShadowQuestion {
+    /// How sure the answers of each sun are; empty where that is not wanted. `doubts` are of a single sun.
+    fn sureness(
+        &self,
+        suns: &[ShadowSun],
+        targets: &Targets,
+        doubts: Option<&[f32]>,
+        scene: &Scene,
+        control: &Control<'_>,
+    ) -> Result<Vec<Sureness>> {
+        let Some(blockers) = self.how_sure.blockers(scene, control)? else { return Ok(Vec::new()) };
+        let is_unproven = |row: usize| doubts.and_then(|doubts| doubts.get(row)).is_some_and(|&doubt| doubt > 0.0);
+        control.stage("computing probabilities", suns.len() * targets.len(), || {
+            let of_sun = |sun: &ShadowSun| {
+                let probabilities = lit_probabilities(&blockers, targets, *sun, control)?;
+                let uncertain = self.how_sure.uncertain(&probabilities, is_unproven)?;
+                Ok((probabilities, uncertain))
+            };
+            suns.iter().map(of_sun).collect()
+        })
+    }
+}
+
 impl Ask for ShadowQuestion {
     type Found = ShadowResults;
 
     fn check(&self) -> Result<()> {
+        self.how_sure.check()?;
+        if self.edges == Edges::Soft {
+            let expected = "left out with soft edges: they are shares of light";
+            self.how_sure.check_without("given with soft edges", expected)?;
+        }
+        if self.trees.is_light() {
+            let expected = "left out where light gets through trees: it is a share";
+            self.how_sure.check_without("given with light through trees", expected)?;
+        }
         self.suns.check(&self.place)
     }
 
@@ -95,6 +134,7 @@ impl Ask for ShadowQuestion {
             }
             _ => None,
         };
+        let sure = self.sureness(&kinds, &light.targets, doubts.as_deref(), scene, control)?;
         let decimals = if self.edges == Edges::Soft { 4 } else { 2 };
         let kind =
             if self.edges == Edges::Hard && light.trees.is_none() { ResultKind::Answer } else { ResultKind::Number };
@@ -110,6 +150,13 @@ impl Ask for ShadowQuestion {
         let listed = &measures[..measures.len().min(MAX_LISTED_SUNS)];
         context.report.measures = Some(MeasuresSection::of(targets, listed));
         summarise(&suns, &measures, &PlacesReport::in_words(targets), context);
+        if let [(probabilities, uncertain)] = &sure[..] {
+            self.how_sure.summarise(probabilities, uncertain.as_deref(), ["lit", "in shadow"], context);
+        }
+        for (sun, (probabilities, uncertain)) in suns.iter().zip(sure) {
+            let suffix = if suns.len() == 1 { String::new() } else { format!("_{}", sun.column) };
+            measures.extend(self.how_sure.measures(probabilities, uncertain, &suffix));
+        }
         let title = suns.first().map(|sun| sun.title.clone()).unwrap_or_default();
         Ok(Answers::new(ShadowResults { on: light.titled(title), suns }, measures))
     }

@@ -6,13 +6,14 @@ mod sights;
 pub use limits::{StandingObserver, ViewLimits};
 pub use sights::{FarSeen, SeenSection};
 
+use super::how_sure::HowSure;
 use super::north::North;
 use super::observers::{Eyes, ObserversSection, Reach, check_height, note_enclosed, remark_on_footing, skip_unfit};
 use super::scene::KnownGround;
 use super::sections::LinesSection;
 use super::{Answers, Ask, Context, Places, Remark, Scene};
 use crate::eyes::{EyesReport, fault_of_target};
-use crate::targets::{Targets, set_on_ground, set_on_terrain};
+use crate::targets::{Measure, Targets, set_on_ground, set_on_terrain};
 use crate::viewshed::{
     OBSERVER_HEIGHT, Observer, SightLimits, TARGET_HEIGHT, Viewshed as Seen, ViewshedParams, box_within_reach,
     cell_for, far_targets, terrain_within_reach,
@@ -51,6 +52,8 @@ pub struct ViewshedQuestion {
     pub earth: EarthParams,
     /// What to make of targets whose view pulses do not prove; `None` to report them where pulses are known.
     pub unproven: Option<UnprovenAs>,
+    /// How sure to say answers for cells and points are.
+    pub how_sure: HowSure,
     /// Side of a cell, metres, above 0; `None` for 0.5, doubled until there are at most 4 million cells.
     pub cell: Option<f64>,
     /// Which points are ground.
@@ -85,8 +88,12 @@ pub struct ViewshedResults {
     pub ground: Arc<KnownGround>,
     /// Of the cells on the ground, where they were wanted.
     pub cells: Option<Seen>,
+    /// How sure these answers are, where that was wanted: measures of the cells.
+    pub cells_sure: Vec<Measure>,
     /// Of the points, where they were wanted.
     pub points: Option<Seen>,
+    /// How sure these answers are, where that was wanted: measures of the points.
+    pub points_sure: Vec<Measure>,
     /// Of far terrain, where it was wanted.
     pub far: Option<FarSeen>,
     /// Lowest visible heights above the ground, metres, where they were wanted
@@ -105,6 +112,7 @@ impl Default for ViewshedQuestion {
             north: North::default(),
             earth: EarthParams::default(),
             unproven: None,
+            how_sure: HowSure::default(),
             cell: None,
             ground: GroundPoints::default(),
             targets: vec![ViewshedTargets::Cells],
@@ -299,6 +307,7 @@ impl Ask for ViewshedQuestion {
                 expected: "left out with a target: it limits the view of one observer, and here there are many",
             });
         }
+        self.how_sure.check()?;
         check_height(self.observer_height)?;
         check_height(self.target_height)?;
         match self.max_height {
@@ -348,9 +357,17 @@ impl Ask for ViewshedQuestion {
             Some(targets) => Some(sights.of_cells((targets, ground.grid.cell), context, control)?),
             None => None,
         };
+        let cells_sure = match (&targets, &cells) {
+            (Some(targets), Some(seen)) => sights.sure_of(seen, &targets.positions, context, control)?,
+            _ => Vec::new(),
+        };
         let points = match self.wants(ViewshedTargets::Points) {
             true => Some(sights.of_points(context, control)?),
             false => None,
+        };
+        let points_sure = match &points {
+            Some(seen) => sights.sure_of(seen, &scene.ground_cloud()?.positions, context, control)?,
+            None => Vec::new(),
         };
         let far = terrain.map(|terrain| sights.of_terrain(terrain, context, control)).transpose()?;
         let open_ground = targets.as_ref().and_then(Targets::open_ground);
@@ -360,7 +377,9 @@ impl Ask for ViewshedQuestion {
         };
         self.headline_of_eyes(&eyes.report, context);
         let (eyes, reverse) = (eyes.eyes, self.reverse);
-        Ok(Answers::new(ViewshedResults { eyes, reverse, ground: known, cells, points, far, heights }, Vec::new()))
+        let (ground, found) = (known, Vec::new());
+        let results = ViewshedResults { eyes, reverse, ground, cells, cells_sure, points, points_sure, far, heights };
+        Ok(Answers::new(results, found))
     }
 }
 

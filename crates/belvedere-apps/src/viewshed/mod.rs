@@ -3,9 +3,11 @@
 
 mod far;
 mod observers;
+mod probabilities;
 
 pub use far::{far_targets, far_viewshed, terrain_within_reach};
 pub use observers::{Observer, SightLimits, places_along};
+pub use probabilities::{SeenProbabilities, seen_probabilities};
 
 use crate::sky_view::SKY_TARGET_HEIGHT;
 use belvedere_core::ground::Ground;

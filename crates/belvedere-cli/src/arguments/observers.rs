@@ -1,6 +1,7 @@
 //! Flags of lines of sight and viewsheds.
 
 use super::{NorthArguments, Numbers, SceneInput, UnprovenChoice, Usage, above_zero, at_most, height, length};
+use belvedere::apps::ask::HowSure;
 use belvedere::ground::GroundPoints;
 use belvedere::query::{Curvature, MAX_RANDOM_PAIRS};
 use clap::{Args, ValueEnum};
@@ -19,6 +20,8 @@ pub(crate) struct LineOfSightArguments {
     pub(crate) radio: Radio,
     #[command(flatten)]
     pub(crate) giving_way: GivingWay,
+    #[command(flatten)]
+    pub(crate) how_sure: HowSureArguments,
     /// With --observer and --target: terrain and obstacles along the line (.csv .png)
     #[arg(long, value_name = "OUT", requires = "from", help_heading = "Result")]
     pub(crate) profile_out: Option<PathBuf>,
@@ -125,6 +128,28 @@ pub(crate) struct GivingWay {
     pub(crate) unproven: Option<UnprovenChoice>,
 }
 
+#[derive(Args)]
+#[command(next_help_heading = "Lines of sight")]
+pub(crate) struct HowSureArguments {
+    /// Also give the probability that a target is visible or lit, 0 to 1
+    ///
+    /// It follows from lines parallel to the line of sight, half a pulse spacing beside it, and from what pulses prove.
+    /// docs/methods/confidence.md says how well it is calibrated. Needs pulses, as --unproven does.
+    #[arg(long)]
+    pub(crate) probability: bool,
+    /// Also tell which answers are less certain than this probability, such as 0.9
+    ///
+    /// Unproven answers are uncertain too.
+    #[arg(long, value_name = "P", allow_negative_numbers = true)]
+    pub(crate) certain: Option<f64>,
+}
+
+impl HowSureArguments {
+    pub(crate) fn choice(&self) -> HowSure {
+        HowSure { probability: self.probability, certain: self.certain }
+    }
+}
+
 /// The surface tolerance, for commands that do not report unproven targets.
 #[derive(Args)]
 #[command(next_help_heading = "Lines of sight")]
@@ -166,6 +191,8 @@ pub(crate) struct ViewshedArguments {
     pub(crate) earth: Earth,
     #[command(flatten)]
     pub(crate) giving_way: GivingWay,
+    #[command(flatten)]
+    pub(crate) how_sure: HowSureArguments,
     /// Source of the ground heights: auto, classed, found or cloud=FILE
     ///
     /// auto: ground points (class 2) if the cloud has them, else found. classed: class 2 only. found: detected from the

@@ -1,8 +1,8 @@
 //! Flags of shadows.
 
 use super::{
-    GivingWay, NorthArguments, Numbers, SceneInput, SkyOutputs, SkyPlaces, SunPeriod, SunPlaceArguments,
-    ThroughTreesArguments, above_zero,
+    GivingWay, HowSureArguments, NorthArguments, Numbers, SceneInput, SkyOutputs, SkyPlaces, SunPeriod,
+    SunPlaceArguments, ThroughTreesArguments, above_zero,
 };
 use clap::Args;
 use std::path::PathBuf;
@@ -19,6 +19,8 @@ pub(crate) struct ShadowArguments {
     pub(crate) places: SkyPlaces,
     #[command(flatten)]
     pub(crate) giving_way: GivingWay,
+    #[command(flatten)]
+    pub(crate) how_sure: HowSureArguments,
     #[command(flatten)]
     pub(crate) trees: ThroughTreesArguments,
     #[command(flatten)]

@@ -61,6 +61,7 @@ fn question(arguments: &LineOfSightArguments) -> Result<LinesOfSightQuestion> {
         earth: arguments.earth.params()?,
         frequency_ghz: arguments.radio.frequency,
         unproven: arguments.giving_way.unproven.map(UnprovenAs::from),
+        how_sure: arguments.how_sure.choice(),
         profile: arguments.profile_out.as_ref().map(|_| ProfileRows { step: arguments.profile_step }),
     })
 }
@@ -163,9 +164,16 @@ fn write(output: &Path, found: &SightsResults, scene: &Scene, rows: &TextRows) -
     let balls: Vec<Option<u64>> = balls.into_iter().map(|ball| ball.map(|ball| ball as u64)).collect();
     let sources: Vec<Option<u64>> = sources.into_iter().map(|source| source.map(u64::from)).collect();
     let terrain: Option<Vec<Option<u64>>> = is_terrain.map(|all| all.into_iter().map(|is| is.map(u64::from)).collect());
-    let mut columns: Vec<(&'static str, TableCells<'_>)> =
+    let mut columns: Vec<(&str, TableCells<'_>)> =
         ENDS.iter().zip(&ends).map(|(&name, values)| (name, TableCells::Real(values, 4))).collect();
     columns.push(("answer", TableCells::Whole(&codes)));
+    let sure: Vec<(Vec<f64>, usize)> = found
+        .sure
+        .iter()
+        .map(|measure| (measure.values.iter().map(|&v| f64::from(v)).collect(), measure.decimals))
+        .collect();
+    let names = found.sure.iter().map(|measure| measure.name.as_str());
+    columns.extend(names.zip(&sure).map(|(name, (values, decimals))| (name, TableCells::Real(values, *decimals))));
     columns.push(("first_block_range_m", TableCells::Real(&ranges, 3)));
     columns.extend(unproven.as_ref().map(|lengths| ("unproven_m", TableCells::Real(lengths, 3))));
     columns.extend(fresnel_free_percent.as_ref().map(|free| ("fresnel_free_percent", TableCells::Real(free, 1))));

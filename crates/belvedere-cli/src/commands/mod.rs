@@ -10,6 +10,7 @@ mod depth_map;
 mod describe;
 mod difference;
 mod envelope;
+mod fading;
 mod far_terrain;
 mod heights;
 mod horizon;

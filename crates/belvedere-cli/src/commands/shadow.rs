@@ -1,5 +1,6 @@
 //! `belvedere shadow`.
 
+use super::fading::{fade, faded};
 use super::targets::{HighestPoints, TargetOutput};
 use super::{check_output, extension};
 use crate::arguments::{Global, ShadowArguments, Usage};
@@ -7,7 +8,7 @@ use crate::pipeline;
 use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::Result;
-use belvedere::apps::ask::{self, Answers, NamedSun, ShadowResults, Suns, UNPROVEN};
+use belvedere::apps::ask::{self, Answers, NamedSun, ShadowResults, Suns, UNCERTAIN, UNPROVEN};
 use belvedere::apps::shadow::Edges;
 use belvedere::apps::targets::Measure;
 use belvedere::figures::{MapLegend, MapPicture, Picture, map_picture, write_apng, write_png};
@@ -56,6 +57,7 @@ fn question(arguments: &ShadowArguments) -> Result<ask::ShadowQuestion> {
         edges: if suns.soft { Edges::Soft } else { Edges::Hard },
         trees: arguments.trees.choice()?,
         unproven: arguments.giving_way.unproven.map(UnprovenAs::from),
+        how_sure: arguments.how_sure.choice(),
     })
 }
 
@@ -81,6 +83,8 @@ struct Maps<'a> {
     measures: &'a [Measure],
     /// Which light of the one sun is unproven.
     doubts: Option<&'a [f32]>,
+    /// Which answers of each sun are uncertain; empty where that was not wanted.
+    uncertain: Vec<&'a [f32]>,
     /// Whether places see parts of the sun: said of all frames alike, so that they are of one size.
     has_parts: bool,
 }
@@ -90,9 +94,11 @@ impl<'a> Maps<'a> {
         let suns = &answers.found.suns[..];
         let (measures, rest) = answers.measures.split_at(suns.len().min(answers.measures.len()));
         let doubts = rest.iter().find(|measure| measure.name == UNPROVEN).map(|measure| &measure.values[..]);
+        let uncertain = rest.iter().filter(|measure| measure.name.starts_with(UNCERTAIN));
+        let uncertain = uncertain.map(|measure| &measure.values[..]).collect();
         let mut shares = measures.iter().flat_map(|measure| &measure.values);
         let has_parts = shares.any(|&share| share > 0.0 && share < 1.0);
-        Self { suns, measures, doubts, has_parts }
+        Self { suns, measures, doubts, uncertain, has_parts }
     }
 
     /// The map of the sun of that number.
@@ -110,13 +116,17 @@ impl<'a> Maps<'a> {
             _ => None,
         };
         let lit = self.measures.get(number).map_or(&[][..], |measure| &measure.values[..]);
-        let colors: Vec<Option<[u8; 3]>> = lit.iter().enumerate().map(color).collect();
+        let mut colors: Vec<Option<[u8; 3]>> = lit.iter().enumerate().map(color).collect();
         let mut meanings = vec![(LIT_COLOR, "lit"), (SHADE_COLOR, "in shadow")];
         if self.has_parts {
             meanings.insert(1, (HALF_COLOR, "in part"));
         }
         if doubts.is_some() {
             meanings.push((UNPROVEN_COLOR, "lit, unproven"));
+        }
+        if let Some(uncertain) = self.uncertain.get(number) {
+            fade(&mut colors, uncertain);
+            meanings.extend([(faded(LIT_COLOR), "lit, uncertain"), (faded(SHADE_COLOR), "in shadow, uncertain")]);
         }
         let title = self.suns.get(number).map_or("", |sun| &sun.title);
         let HighestPoints { heights, cell, place } = relief;

@@ -66,6 +66,7 @@ fn question(arguments: &ViewshedArguments) -> Result<ask::ViewshedQuestion> {
         north: looking.north.choice(),
         earth: arguments.earth.params()?,
         unproven: arguments.giving_way.unproven.map(UnprovenAs::from),
+        how_sure: arguments.how_sure.choice(),
         cell: arguments.cell,
         ground: arguments.ground.points(),
         targets,
@@ -103,7 +104,8 @@ fn write(
     let (ground, cloud, frame) = (&found.ground.ground, scene.ground_cloud()?, scene.frame());
     let (eyes, is_reverse) = (&found.eyes[..], found.reverse);
     if let Some(seen) = &found.cells {
-        let cells = SeenCells { seen, eyes, frame, on: CellSurface::Ground(ground, cloud), is_reverse };
+        let sure = &found.cells_sure;
+        let cells = SeenCells { seen, sure, eyes, frame, on: CellSurface::Ground(ground, cloud), is_reverse };
         for output in arguments.output.iter().filter(|path| !is_of_points(path)) {
             run.stage("writing", 0, |_| cells.write(output))?;
         }
@@ -113,12 +115,13 @@ fn write(
     }
     if let Some(seen) = &found.points {
         for output in arguments.output.iter().filter(|path| is_of_points(path)) {
-            let report = run.stage("writing", 0, |_| on_points(output, seen, cloud))?;
+            let report = run.stage("writing", 0, |_| on_points(output, seen, &found.points_sure, cloud))?;
             run.summary.add_writing(output, &report);
         }
     }
     if let Some(far) = &found.far {
-        let cells = SeenCells { seen: &far.seen, eyes, frame, on: CellSurface::Terrain(&far.terrain), is_reverse };
+        let on = CellSurface::Terrain(&far.terrain);
+        let cells = SeenCells { seen: &far.seen, sure: &[], eyes, frame, on, is_reverse };
         for output in &arguments.far_output {
             run.stage("writing", 0, |_| cells.write(output))?;
         }

@@ -141,6 +141,7 @@ class Scene:
         targets: npt.NDArray[np.float64],
         ends: dict[str, Any],
         unproven: str,
+        how_sure: dict[str, Any],
         curvature: str | None,
         refraction: float | None,
         frequency: float | None,
@@ -153,6 +154,7 @@ class Scene:
         targets: dict[str, Any],
         edges: str,
         trees: dict[str, Any],
+        how_sure: dict[str, Any],
         progress: _Progress,
     ) -> list[_Results]: ...
     def sun_hours(
@@ -178,8 +180,9 @@ class Scene:
         looking: dict[str, Any],
         place: dict[str, Any],
         unproven: str,
+        how_sure: dict[str, Any],
         progress: _Progress,
-    ) -> tuple[list[npt.NDArray[Any]], list[str], tuple[str, float], _Grid, list[dict[str, Any]]]: ...
+    ) -> tuple[list[tuple[npt.NDArray[Any], float]], list[str], str, _Grid, list[dict[str, Any]]]: ...
     def horizon(
         self,
         observers: npt.NDArray[np.float64],

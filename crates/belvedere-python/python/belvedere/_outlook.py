@@ -39,6 +39,8 @@ class Outlook:
         min_distance: float | None = None,
         max_distance: float | None = None,
         unproven: str = "report",
+        probability: bool = False,
+        certain: float | None = None,
         curvature: str | None = None,
         refraction: float | None = None,
         grid_north: bool = False,
@@ -70,6 +72,10 @@ class Outlook:
             How far they look on the map, metres.
         unproven : {'report', 'as-visible', 'as-blocked'}
             What to make of lines that nothing blocks but that cross space that no pulse came near.
+        probability : bool, optional
+            Whether to compute how likely each cell is visible, as `probability` of the Raster. Needs pulses.
+        certain : float, optional
+            Probability, above 0.5 and at most 1, below which an answer is uncertain, as `uncertain` of the Raster says.
         curvature : {'auto', 'on', 'off'}, optional
         refraction : float, optional
             As for `line_of_sight`.
@@ -134,13 +140,22 @@ class Outlook:
             places = map_places(target, "target", "give x and y, or x, y and z")
             if len(places) != 1:
                 raise wrong("target", f"{len(places)} places", "give one")
-        bands, names, (text, nodata), grid, given = self._core.viewshed(
-            places, looking, _place(None, grid_north=grid_north), unproven, reporter(progress)
+        bands, names, text, grid, given = self._core.viewshed(
+            places,
+            looking,
+            _place(None, grid_north=grid_north),
+            unproven,
+            {"probability": probability, "certain": certain},
+            reporter(progress),
         )
-        made = [raster(band, grid, self._core.crs, name=name, nodata=nodata) for band, name in zip(bands, names)]
-        seen = made[0]
+        made = {
+            name: raster(band, grid, self._core.crs, name=name, nodata=no_value)
+            for (band, no_value), name in zip(bands, names)
+        }
+        seen = made[names[0]]
         seen.description = text
-        seen.unproven = made[1] if len(made) > 1 else None
+        seen.unproven, seen.uncertain = made.get("unproven"), made.get("uncertain")
+        seen.probability = made.get("probability", made.get("expected_observers"))
         seen.remarks = warned(given)
         return seen
 

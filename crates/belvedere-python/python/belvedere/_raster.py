@@ -39,6 +39,11 @@ class Raster(np.lib.mixins.NDArrayOperatorsMixin):
     unproven : Raster or None
         Where proof was tested: 1 where nothing blocks but no laser pulse proves it, 0 where it is proven or blocked. Of
         several observers: for how many of those in `values` the view is not proven. It is the second band of files.
+    probability : Raster or None
+        How likely the target is visible or lit, 0 to 1, where that was wanted; of several observers the expected number
+        that see it.
+    uncertain : Raster or None
+        1 where the answer is less certain than wanted, or unproven; of several observers for how many that is so.
     remarks : tuple of Remark
         What to know of the values.
 
@@ -71,6 +76,8 @@ class Raster(np.lib.mixins.NDArrayOperatorsMixin):
         self.name = name
         self.description = description
         self.unproven = unproven
+        self.probability: Raster | None = None
+        self.uncertain: Raster | None = None
         self.remarks: tuple[Remark, ...] = ()
         self._is_answer = is_answer
         self._crs = crs
@@ -114,14 +121,17 @@ class Raster(np.lib.mixins.NDArrayOperatorsMixin):
 
     def to_geotiff(self, path: str | os.PathLike[str]) -> None:
         """Writes a GeoTIFF, as the command line does: -9999 where a float raster has no value, and answers as bytes
-        with 255. `unproven` is the second band.
+        with 255. `unproven`, `probability` and `uncertain` are further bands; with a probability all are float.
 
         Examples
         --------
         >>> scene.shadow(sun=(180, 30)).to_geotiff(folder / "shadow.tif")
         """
-        rasters = [self] if self.unproven is None else [self, self.unproven]
+        further = [self.unproven, self.probability, self.uncertain]
+        rasters = [self, *(raster for raster in further if raster is not None)]
         bands = [raster._pixels() for raster in rasters]
+        if len({band.dtype for band in bands}) > 1:
+            bands = [_numbers(raster) for raster in rasters]
         names = [raster.name for raster in rasters] if self.name else []
         nodata = _core.NO_VALUE if bands[0].dtype == np.float32 else 255.0 if self._is_answer else self.nodata
         text = self.description or None
@@ -312,7 +322,7 @@ class Raster(np.lib.mixins.NDArrayOperatorsMixin):
 
     def __reduce__(self) -> tuple[Any, ...]:
         state = (self.values, self.transform, self._crs.state, self.nodata, self.name, self.description)
-        return _unpickled, (*state, self.unproven, self._is_answer)
+        return _unpickled, (*state, self.unproven, self._is_answer, self.probability, self.uncertain)
 
 
 class Rasters(Mapping[str, Raster]):
@@ -380,6 +390,18 @@ def _unpickled(
     description: str,
     unproven: Raster | None,
     is_answer: bool,
+    probability: Raster | None = None,
+    uncertain: Raster | None = None,
 ) -> Raster:
     named: dict[str, Any] = {"nodata": nodata, "name": name, "description": description}
-    return Raster(values, transform, _core.Crs.from_state(system), **named, unproven=unproven, is_answer=is_answer)
+    made = Raster(values, transform, _core.Crs.from_state(system), **named, unproven=unproven, is_answer=is_answer)
+    made.probability, made.uncertain = probability, uncertain
+    return made
+
+
+def _numbers(raster: Raster) -> npt.NDArray[np.float32]:
+    """The pixels as numbers, `NO_VALUE` where there is none."""
+    values = np.array(raster.values, np.float32)
+    no_value = np.isnan(values) if raster.nodata is None else (raster.values == raster.nodata) | np.isnan(values)
+    values[no_value] = _core.NO_VALUE
+    return values

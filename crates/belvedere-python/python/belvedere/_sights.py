@@ -35,6 +35,10 @@ class Sight(NamedTuple):
         Kind of the surface patch that blocks first: roof, wall, parapet or inside; empty where none does.
     block_terrain : bool
         Whether it is the terrain of `with_terrain` that blocks first.
+    probability : float
+        How likely both ends see each other, 0 to 1; NaN where that was not wanted.
+    uncertain : bool or None
+        Whether the answer is less certain than wanted, or unproven; None where that was not wanted.
     remarks : tuple of Remark
         What to know of the answer.
 
@@ -53,6 +57,8 @@ class Sight(NamedTuple):
     block_terrain: bool = False
     remarks: tuple[Remark, ...] = ()
     block_surface: str = ""
+    probability: float = float("nan")
+    uncertain: bool | None = None
 
 
 class Sights:
@@ -122,6 +128,8 @@ class Sights:
         target_height: float | None = None,
         ground: str | None = None,
         unproven: str = "report",
+        probability: bool = False,
+        certain: float | None = None,
         curvature: str | None = None,
         refraction: float | None = None,
         frequency_ghz: float | None = None,
@@ -144,6 +152,10 @@ class Sights:
             Which points are ground, as for `viewshed`.
         unproven : {'report', 'as-visible', 'as-blocked'}
             What to make of lines that nothing blocks but that cross space that no pulse came near.
+        probability : bool, optional
+            Whether to compute how likely the ends see each other. Needs pulses.
+        certain : float, optional
+            Probability, above 0.5 and at most 1, below which an answer is uncertain.
         curvature : {'auto', 'on', 'off'}, optional
             Whether lines follow the curvature of the earth; those of more than 2 km if not given.
         refraction : float, optional
@@ -157,7 +169,7 @@ class Sights:
         -------
         Sight or Table
             A `Sight` for one pair. For several a `Table` with ``answer``, ``first_block_range_m``, ``unproven_m``
-            (where pulses are known), ``fresnel_free_percent`` (with a frequency), ``block_x``, ``block_y``, ``block_z``
+            (where pulses are known), ``probability``, ``uncertain`` (where wanted), ``fresnel_free_percent`` (with a frequency), ``block_x``, ``block_y``, ``block_z``
             (together ``block``, (N, 3)), ``block_ball``, ``block_source`` (-1 where no ball blocks),
             ``block_surface`` (where the scene has patches of surfaces) and ``block_terrain`` (with terrain).
 
@@ -189,7 +201,15 @@ class Sights:
             targets = np.repeat(targets, len(observers), axis=0)
         ends = {"observer_height": observer_height, "target_height": target_height, "ground": ground}
         columns, standing, given = self._core.lines_of_sight(
-            observers, targets, ends, unproven, curvature, refraction, frequency_ghz, reporter(progress)
+            observers,
+            targets,
+            ends,
+            unproven,
+            {"probability": probability, "certain": certain},
+            curvature,
+            refraction,
+            frequency_ghz,
+            reporter(progress),
         )
         remarks = warned(given)
         if "block_surface" in columns:
@@ -209,4 +229,6 @@ class Sights:
             bool(columns["block_terrain"][0]) if "block_terrain" in columns else False,
             remarks,
             str(columns["block_surface"][0]) if "block_surface" in columns else "",
+            float(columns["probability"][0]) if "probability" in columns else nan,
+            bool(columns["uncertain"][0] > 0) if "uncertain" in columns else None,
         )

@@ -53,6 +53,8 @@ class Sunlight:
         leaves: str | None = None,
         location: npt.ArrayLike | None = None,
         grid_north: bool = False,
+        probability: bool = False,
+        certain: float | None = None,
         progress: Progress = None,
     ) -> Any:
         """The share of the sun that reaches targets: 1 in the sun, 0 in shadow.
@@ -86,11 +88,17 @@ class Sunlight:
             Latitude and longitude, degrees, where the reference system does not say where the scene lies.
         grid_north : bool, optional
             Whether azimuths are counted from grid north.
+        probability : bool, optional
+            Whether to compute how likely each target is lit. Needs pulses, hard edges and opaque trees.
+        certain : float, optional
+            Probability, above 0.5 and at most 1, below which an answer is uncertain.
         progress : bool or callable, optional
 
         Returns
         -------
         Raster, or ndarray of shape (N,), float32; a list of these for several suns
+            With `probability` or `certain` a Raster has these as attributes `probability` and `uncertain`, and places
+            give a Table with ``lit``, ``probability`` and ``uncertain``.
             For a mesh a Table of its faces: ``object``, ``area_m2``, ``lit``. NaN for what is not tested: cells under
             a cover or without ground, and targets outside the cloud. The attribute `unproven` of a Raster of one sun
             with hard edges is a Raster that is 1 where `lit` is 1 but no pulse proves it; `remarks` says what to know.
@@ -125,22 +133,25 @@ class Sunlight:
             chosen,
             "soft" if soft else "hard",
             {"share": through_trees, "leaves": leaves},
+            {"probability": probability, "certain": certain},
             reporter(progress),
         )
-        made = [self._lit(result, targets) for result in results]
+        is_sure = probability or certain is not None
+        made = [self._lit(result, targets, is_sure) for result in results]
         return made[0] if is_one else made
 
-    def _lit(self, results: Results, targets: Targets) -> Any:
+    def _lit(self, results: Results, targets: Targets, is_sure: bool) -> Any:
         """The share of one sun."""
         columns, grid, faces, given = results
-        if grid is None and faces is None:
+        if grid is None and faces is None and not is_sure:
             warned(given)
             return columns[0][2]
         found = measures(results, self._core.crs, targets)
-        if faces is not None:
+        if grid is None:
             return found
         lit: Raster = found["lit"]
         lit.unproven = found.get("unproven")
+        lit.probability, lit.uncertain = found.get("probability"), found.get("uncertain")
         return lit
 
     def sun_hours(

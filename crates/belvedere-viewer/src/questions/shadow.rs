@@ -41,6 +41,7 @@ pub(super) fn answer(question: &ShadowRequest, context: &RequestContext<'_>) -> 
         edges: Edges::Hard,
         trees: question.trees,
         unproven: None,
+        how_sure: ask::HowSure::default(),
     };
     let answers = ask::ask(&scene.inner, &shadow, &Places::Targets(Arc::clone(&points.targets)), control)?;
     let measure = |name: &str| answers.measures.iter().find(|measure| measure.name == name).map(|m| &m.values[..]);

@@ -201,6 +201,24 @@ impl ResultRaster {
         Ok(Self { pixels, names, description: description.to_owned() })
     }
 
+    /// This with a further band for each measure. Bands of different kinds become numbers.
+    ///
+    /// # Errors
+    /// [`Error::LengthMismatch`] unless each measure has a value for each cell.
+    pub fn with_measures(self, measures: &[Measure], size: [usize; 2]) -> Result<Self> {
+        if measures.is_empty() {
+            return Ok(self);
+        }
+        let kind = self.pixels.kind();
+        let own = self.pixels.to_numbers()?;
+        let own =
+            own.iter().zip(&self.names).map(|(band, name)| Measure::new(name, band.values().to_vec()).with_kind(kind));
+        let all: Vec<Measure> = own.chain(measures.iter().cloned()).collect();
+        let pixels = Pixels::of_measures(&all, size)?;
+        let names = all.into_iter().map(|measure| measure.name).collect();
+        Ok(Self { pixels, names, description: self.description })
+    }
+
     /// Writes it as a GeoTIFF.
     ///
     /// # Errors

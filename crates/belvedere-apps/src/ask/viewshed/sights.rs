@@ -3,9 +3,10 @@
 use super::ViewshedQuestion;
 use crate::ask::places::cells_of;
 use crate::ask::{Context, Remark, Scene, remark_on_outside};
-use crate::targets::{CellParams, Targets};
+use crate::targets::{CellParams, Measure, Targets};
 use crate::viewshed::{
-    Masks, Observer, Viewshed as Seen, ViewshedParams, far_viewshed, min_visible_heights, tested_height, viewshed,
+    Masks, Observer, Viewshed as Seen, ViewshedParams, far_viewshed, min_visible_heights, seen_probabilities,
+    tested_height, viewshed,
 };
 use belvedere_core::ground::Ground;
 use belvedere_core::query::{Answer, AnswerCounts, MedialScene, UnprovenAs, Viewer};
@@ -86,6 +87,29 @@ impl Sights<'_> {
         context.report.cells = Some(counts);
         self.remark_on_blind(&seen, &targets.positions, context);
         Ok(seen)
+    }
+
+    /// How sure the answers for `targets` are, where that is wanted.
+    pub(super) fn sure_of(
+        &self,
+        seen: &Seen,
+        targets: &[[f32; 3]],
+        context: &mut Context,
+        control: &Control<'_>,
+    ) -> Result<Vec<Measure>> {
+        let Self { question, scene, observers, .. } = *self;
+        let how_sure = &question.how_sure;
+        let Some(blockers) = how_sure.blockers(scene, control)? else { return Ok(Vec::new()) };
+        let found = control.stage("computing probabilities", observers.len() * targets.len(), || {
+            seen_probabilities(&blockers, observers, targets, how_sure.certainty()?, control)
+        })?;
+        if observers.len() == 1 {
+            let is_unproven = |row: usize| seen.answers.get(row) == Some(&Answer::Unproven);
+            let uncertain = how_sure.uncertain(&found.expected, is_unproven)?;
+            how_sure.summarise(&found.expected, uncertain.as_deref(), ["visible", "blocked"], context);
+            return Ok(how_sure.measures(found.expected, uncertain, ""));
+        }
+        Ok(how_sure.measures_of_many(found))
     }
 
     pub(super) fn of_points(&self, context: &mut Context, control: &Control<'_>) -> Result<Seen> {

@@ -100,7 +100,14 @@ fn of_sun_and_sky(arguments: &CityPlan) -> Result<Vec<ask::Question>> {
     let place = sun_place(arguments)?;
     let shadow = |suns| {
         let (place, edges, trees) = (place.clone(), Edges::Hard, ThroughTrees::Opaque);
-        ask::Question::Shadow(ask::ShadowQuestion { suns, place, edges, trees, unproven: None })
+        ask::Question::Shadow(ask::ShadowQuestion {
+            suns,
+            place,
+            edges,
+            trees,
+            unproven: None,
+            how_sure: ask::HowSure::default(),
+        })
     };
     let mut questions = Vec::new();
     if !arguments.suns.is_empty() {

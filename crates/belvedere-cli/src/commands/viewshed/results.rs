@@ -2,7 +2,10 @@
 
 use crate::arguments::Usage;
 use crate::commands::extension;
+use crate::commands::fading::{fade, faded};
 use anyhow::Result;
+use belvedere::apps::ask::UNCERTAIN;
+use belvedere::apps::targets::Measure;
 use belvedere::apps::viewshed::Viewshed;
 use belvedere::figures::{MapLegend, MapMark, MapPicture, map_picture, ramp, write_png};
 use belvedere::ground::{Ground, highest_points};
@@ -27,6 +30,8 @@ const MAX_PIXELS: f64 = 4e6;
 /// What is seen of cells, and where they lie.
 pub(super) struct SeenCells<'a> {
     pub(super) seen: &'a Viewshed,
+    /// How sure that is.
+    pub(super) sure: &'a [Measure],
     pub(super) eyes: &'a [[f64; 3]],
     pub(super) frame: &'a Frame,
     pub(super) on: CellSurface<'a>,
@@ -66,7 +71,11 @@ impl SeenCells<'_> {
         match extension(output).as_str() {
             "geojson" => self.write_areas(output, &place),
             "png" => self.write_map(output),
-            _ => Ok(ResultRaster::of_viewshed(self.seen, self.on.size())?.write(output, Some(&place))?),
+            _ => {
+                let size = self.on.size();
+                let raster = ResultRaster::of_viewshed(self.seen, size)?.with_measures(self.sure, size)?;
+                Ok(raster.write(output, Some(&place))?)
+            }
         }
     }
 
@@ -110,10 +119,17 @@ impl SeenCells<'_> {
             Answer::OutsideCloud if matches!(self.on, CellSurface::Terrain(_)) => Some(CLOUD_COLOR),
             _ => None,
         };
-        let colors: Vec<Option<[u8; 3]>> = seen.answers.iter().zip(&seen.counts).map(color).collect();
+        let mut colors: Vec<Option<[u8; 3]>> = seen.answers.iter().zip(&seen.counts).map(color).collect();
+        let uncertain = self.sure.iter().find(|measure| measure.name == UNCERTAIN).filter(|_| one);
+        if let Some(uncertain) = uncertain {
+            fade(&mut colors, &uncertain.values);
+        }
         let unproven = seen.answers.contains(&Answer::Unproven).then_some((UNPROVEN_COLOR, "unproven"));
         let mut others = unproven.as_slice().to_vec();
         let mut classes = [&[(SEEN_COLOR, "visible")], &others[..], &[(HIDDEN_COLOR, "blocked")]].concat();
+        if uncertain.is_some() {
+            classes.extend([(faded(SEEN_COLOR), "visible, uncertain"), (faded(HIDDEN_COLOR), "blocked, uncertain")]);
+        }
         let (title, sheet) = match self.on {
             CellSurface::Ground(ground, cloud) => {
                 let title = match (is_reverse, one) {
@@ -205,7 +221,7 @@ pub(super) fn write_masks(output: &Path, seen: &Viewshed, ground: &Ground, cloud
 }
 
 /// Writes the points of the cloud with what is seen of them.
-pub(super) fn on_points(output: &Path, seen: &Viewshed, cloud: &PointCloud) -> Result<WriteReport> {
+pub(super) fn on_points(output: &Path, seen: &Viewshed, sure: &[Measure], cloud: &PointCloud) -> Result<WriteReport> {
     let codes: Vec<u8> = seen.answers.iter().map(|&answer| answer as u8).collect();
     let mut columns = vec![ExtraColumn {
         name: "answer",
@@ -219,5 +235,10 @@ pub(super) fn on_points(output: &Path, seen: &Viewshed, cloud: &PointCloud) -> R
             values: ExtraValues::U32(&seen.counts),
         });
     }
+    columns.extend(sure.iter().map(|measure| ExtraColumn {
+        name: &measure.name,
+        description: &measure.description,
+        values: ExtraValues::F32(&measure.values),
+    }));
     Ok(write_cloud(output, cloud, &columns)?)
 }

@@ -1,0 +1,174 @@
+//! How sure answers are: a probability with each, and which of them are uncertain.
+
+use super::Context;
+use super::scene::Scene;
+use crate::targets::{Measure, ResultKind};
+use crate::viewshed::SeenProbabilities;
+use belvedere_core::query::{Certainty, MedialScene, UnprovenAs};
+use belvedere_data::control::Control;
+use belvedere_data::report::percent;
+use belvedere_data::{Error, Parameter, Result};
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+/// Name of the measure that says how likely a target is visible or lit.
+pub const PROBABILITY: &str = "probability";
+/// Name of the measure that says which answers are uncertain.
+pub const UNCERTAIN: &str = "uncertain";
+
+/// Name of the measure of the expected number of observers.
+pub const EXPECTED: &str = "expected_observers";
+
+/// Whether to say how sure answers are. Needs pulses.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct HowSure {
+    /// Whether to give the probability, 0 to 1, that a target is visible or lit. Default: not.
+    pub probability: bool,
+    /// The least probability, above 0.5 and at most 1, of what is more likely, below which an answer is uncertain; so
+    /// are unproven answers. `None` to leave that out.
+    pub certain: Option<f64>,
+}
+
+/// How sure answers are, for reports.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct CertaintySection {
+    /// Number of answers.
+    answers: usize,
+    /// Mean probability of being visible or lit.
+    mean_probability: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    certain_from: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    certainly_visible_percent: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    certainly_blocked_percent: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    uncertain_percent: Option<f64>,
+}
+
+impl HowSure {
+    /// Whether probabilities are needed.
+    #[must_use]
+    pub fn is_wanted(&self) -> bool {
+        self.probability || self.certain.is_some()
+    }
+
+    /// Refuses a least probability out of range.
+    pub(super) fn check(&self) -> Result<()> {
+        self.certainty().map(|_| ())
+    }
+
+    /// Refuses what has no probabilities: `value`, the reason being `expected`.
+    pub(super) fn check_without(&self, value: &str, expected: &'static str) -> Result<()> {
+        if !self.is_wanted() {
+            return Ok(());
+        }
+        Err(Error::InvalidParameter { parameter: Parameter::Certainty, value: value.to_owned(), expected })
+    }
+
+    /// The certainty below which answers are uncertain.
+    pub(super) fn certainty(&self) -> Result<Option<Certainty>> {
+        self.certain.map(Certainty::new).transpose()
+    }
+
+    /// What blocks, with the pulses that probabilities need; `None` where these are not wanted.
+    pub(super) fn blockers(&self, scene: &Scene, control: &Control<'_>) -> Result<Option<Arc<MedialScene>>> {
+        if !self.is_wanted() {
+            return Ok(None);
+        }
+        scene.check_pulses(Parameter::Certainty)?;
+        scene.blockers(UnprovenAs::Reported, control).map(Some)
+    }
+
+    /// Whether each answer is uncertain, by its probability and by whether it is unproven; NaN without a probability.
+    /// `None` where that is not wanted.
+    pub(super) fn uncertain(
+        &self,
+        probabilities: &[f32],
+        is_unproven: impl Fn(usize) -> bool,
+    ) -> Result<Option<Vec<f32>>> {
+        let Some(certainty) = self.certainty()? else { return Ok(None) };
+        let of_row = |(row, &probability): (usize, &f32)| match probability.is_nan() {
+            true => f32::NAN,
+            false => f32::from(u8::from(certainty.is_missed_by(probability) || is_unproven(row))),
+        };
+        Ok(Some(probabilities.iter().enumerate().map(of_row).collect()))
+    }
+
+    /// Measures of probabilities, and of which answers are `uncertain`; `suffix` ends their names.
+    pub(super) fn measures(&self, probabilities: Vec<f32>, uncertain: Option<Vec<f32>>, suffix: &str) -> Vec<Measure> {
+        let named = |name: &str, values, text: &'static str| {
+            Measure::new(&format!("{name}{suffix}"), values).with_description(text).with_range(Some([0.0, 1.0]))
+        };
+        let likely = self
+            .probability
+            .then(|| named(PROBABILITY, probabilities, "probability of being visible or lit, 0 to 1").with_decimals(3));
+        let uncertain = uncertain.map(|uncertain| {
+            named(UNCERTAIN, uncertain, "1: less certain than wanted, or unproven")
+                .with_decimals(0)
+                .with_kind(ResultKind::Answer)
+        });
+        likely.into_iter().chain(uncertain).collect()
+    }
+
+    /// Measures of what several observers see.
+    pub(super) fn measures_of_many(&self, found: SeenProbabilities) -> Vec<Measure> {
+        let likely = self.probability.then(|| {
+            let text = "expected number of observers that see it";
+            Measure::new(EXPECTED, found.expected).with_description(text).with_decimals(3)
+        });
+        let certain = found.certain.map(|[seen, hidden]| {
+            let uncertain = found.answered.iter().zip(seen.iter().zip(&hidden));
+            let uncertain = uncertain.map(|(&all, (&seen, &hidden))| match all {
+                0 => f32::NAN,
+                _ => (all - seen - hidden) as f32,
+            });
+            let text = "number of observers whose answers are less certain than wanted";
+            let kind = ResultKind::Count;
+            Measure::new(UNCERTAIN, uncertain.collect()).with_description(text).with_decimals(0).with_kind(kind)
+        });
+        likely.into_iter().chain(certain).collect()
+    }
+
+    /// Says how sure the answers of one viewer or sun are: `visible` names what is likely where the probability is high.
+    pub(super) fn summarise(
+        &self,
+        probabilities: &[f32],
+        uncertain: Option<&[f32]>,
+        [visible, blocked]: [&str; 2],
+        context: &mut Context,
+    ) {
+        let known: Vec<(usize, f32)> =
+            probabilities.iter().copied().enumerate().filter(|(_, probability)| !probability.is_nan()).collect();
+        let count = known.len();
+        let mean = known.iter().map(|(_, probability)| f64::from(*probability)).sum::<f64>() / count.max(1) as f64;
+        let mut section = CertaintySection {
+            answers: count,
+            mean_probability: belvedere_data::report::rounded(mean, 4),
+            ..CertaintySection::default()
+        };
+        if let (Some(uncertain), Some(least)) = (uncertain, self.certain) {
+            let is_uncertain = |row: usize| uncertain.get(row).is_some_and(|&value| value > 0.0);
+            let certain = |is_high: bool| {
+                known.iter().filter(|(row, probability)| !is_uncertain(*row) && (*probability > 0.5) == is_high).count()
+            };
+            let (high, low) = (percent(certain(true), count), percent(certain(false), count));
+            let left = percent(known.iter().filter(|(row, _)| is_uncertain(*row)).count(), count);
+            context.headline(format!(
+                "with a certainty of {} % and more: {high} % {visible}, {low} % {blocked}; {left} % uncertain",
+                belvedere_data::report::rounded(100.0 * least, 2)
+            ));
+            section = CertaintySection {
+                certain_from: Some(least),
+                certainly_visible_percent: Some(high),
+                certainly_blocked_percent: Some(low),
+                uncertain_percent: Some(left),
+                ..section
+            };
+        } else {
+            context.headline(format!("expected: {:.1} % {visible}", 100.0 * mean));
+        }
+        context.report.certainty = Some(section);
+    }
+}

@@ -1,0 +1,257 @@
+//! How likely a target is visible: a probability with every answer.
+//!
+//! An answer is wrong mostly where its line of sight passes close to an edge of what the scene holds, or through space
+//! that no pulse saw. So the probability follows from lines parallel to it ([`ParallelLines`]), from the length that no
+//! pulse came near to, and from whether an end is inside an obstacle. Each of these has a score; the sum of scores
+//! is the logarithm of the odds. The scores are fitted to simulated towns with exact answers (`research/`, program
+//! `confidence`; docs/methods/confidence.md has the reliability curves).
+//!
+//! # Source
+//! This project's own. Logistic regression on classes of evidence: a scorecard (Hosmer & Lemeshow 2000, chapter 3).
+
+use super::{Answer, MedialScene, ParallelLines, Proof, Viewer};
+use crate::ray_index::Ray;
+use belvedere_data::control::Control;
+use belvedere_data::{Error, Parameter, Result};
+use rayon::prelude::*;
+use std::sync::LazyLock;
+
+/// Targets handed to a thread at once.
+const CHUNK: usize = 256;
+/// The fitted scores.
+const SCORES: &str = include_str!("confidence_scores.csv");
+/// Upper ends of the classes of length that no pulse came near to, metres; the last class has none.
+const UNPROVEN_CLASSES: [f64; 6] = [0.05, 0.5, 1.0, 2.0, 4.0, 8.0];
+/// From how many lines that end inside obstacles on, of a ring, more make no difference.
+const MAX_HELD: u8 = 4;
+
+/// What speaks for a target being visible, and against it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Evidence {
+    /// The line of sight and those beside it.
+    pub lines: ParallelLines,
+    /// Whether an end lies inside an obstacle.
+    pub is_inside_obstacle: bool,
+    /// Whether the viewer is a place rather than a direction.
+    pub has_eye: bool,
+    /// How much of the line no pulse came near to, metres.
+    pub unproven_length: f64,
+}
+
+/// What a score is given for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Term {
+    /// The answer alone.
+    Constant,
+    /// Free lines of the inner ring, and of the outer.
+    FreeNear,
+    FreeFar,
+    /// Lines of the inner ring that end inside an obstacle, and of the outer.
+    HeldNear,
+    HeldFar,
+    /// Whether an end is inside an obstacle.
+    Inside,
+    /// The class of the length that no pulse came near to, towards the sun or the sky, and between two places.
+    UnprovenSky,
+    UnprovenPair,
+}
+
+impl Term {
+    const ALL: [(Self, &str); 8] = [
+        (Self::Constant, "answer"),
+        (Self::FreeNear, "free_near"),
+        (Self::FreeFar, "free_far"),
+        (Self::HeldNear, "held_near"),
+        (Self::HeldFar, "held_far"),
+        (Self::Inside, "inside_obstacle"),
+        (Self::UnprovenSky, "unproven_sky"),
+        (Self::UnprovenPair, "unproven_pair"),
+    ];
+    /// Most classes of a term.
+    const CLASSES: usize = 9;
+}
+
+/// A class of evidence, which has a score.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct ScoreKey {
+    term: Term,
+    is_free: bool,
+    class: usize,
+}
+
+impl std::fmt::Display for ScoreKey {
+    /// As a line of the file of scores begins.
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let (_, name) = Term::ALL[self.term as usize];
+        write!(f, "{name},{},{}", if self.is_free { "free" } else { "blocked" }, self.class)
+    }
+}
+
+/// Scores by term, answer (blocked, free) and class.
+type Scores = [[[f64; Term::CLASSES]; 2]; Term::ALL.len()];
+
+static FITTED: LazyLock<Scores> = LazyLock::new(|| read_scores(SCORES));
+
+/// Scores from lines of term, answer, class and score.
+fn read_scores(text: &str) -> Scores {
+    let mut scores = Scores::default();
+    for line in text.lines().skip(1) {
+        let mut fields = line.split(',');
+        let (Some(name), Some(answer), Some(class), Some(score)) =
+            (fields.next(), fields.next(), fields.next(), fields.next())
+        else {
+            continue;
+        };
+        let term = Term::ALL.iter().position(|(_, of_term)| *of_term == name);
+        if let (Some(term), Ok(class), Ok(score)) = (term, class.parse::<usize>(), score.parse()) {
+            scores[term][usize::from(answer == "free")][class] = score;
+        }
+    }
+    scores
+}
+
+impl Evidence {
+    /// The classes whose scores are added up.
+    pub fn score_keys(&self) -> impl Iterator<Item = ScoreKey> {
+        let ParallelLines { free, held, .. } = self.lines;
+        let held = held.map(|count| usize::from(count.min(MAX_HELD)));
+        let unproven = UNPROVEN_CLASSES.iter().take_while(|end| self.unproven_length >= **end).count();
+        let terms = [
+            (Term::Constant, usize::from(self.has_eye)),
+            (Term::FreeNear, usize::from(free[0])),
+            (Term::FreeFar, usize::from(free[1])),
+            (Term::HeldNear, held[0]),
+            (Term::HeldFar, held[1]),
+            (Term::Inside, usize::from(self.is_inside_obstacle)),
+            (if self.has_eye { Term::UnprovenPair } else { Term::UnprovenSky }, unproven),
+        ];
+        let is_free = self.lines.is_free;
+        terms.into_iter().map(move |(term, class)| ScoreKey { term, is_free, class })
+    }
+
+    /// How likely the target is visible, 0 to 1.
+    #[must_use]
+    pub fn probability(&self) -> f32 {
+        let scores = &FITTED;
+        let of_key = |key: ScoreKey| scores[key.term as usize][usize::from(key.is_free)][key.class];
+        let sum: f64 = self.score_keys().map(of_key).sum();
+        #[expect(clippy::cast_possible_truncation, reason = "a probability")]
+        let probability = (1.0 / (1.0 + (-sum).exp())) as f32;
+        probability
+    }
+}
+
+impl MedialScene {
+    /// What speaks for the target of a line of sight being visible: the line from `target`, local metres, to `range`
+    /// metres (infinite for a direction) along the unit vector `towards`. All numbers but the range must be finite.
+    /// `None` where pulses are not known.
+    #[must_use]
+    pub fn evidence(&self, target: [f64; 3], towards: [f64; 3], range: f64) -> Option<Evidence> {
+        Some(self.evidence_with(self.proof.as_ref()?, target, towards, range))
+    }
+
+    fn evidence_with(&self, proof: &Proof, target: [f64; 3], towards: [f64; 3], range: f64) -> Evidence {
+        let end = std::array::from_fn(|i| target[i] + range * towards[i]);
+        Evidence {
+            lines: self.parallel_lines(target, towards, range),
+            is_inside_obstacle: self.is_inside_obstacle(target) || (range.is_finite() && self.is_inside_obstacle(end)),
+            has_eye: range.is_finite(),
+            unproven_length: self.unproven_length(proof, target, towards, range),
+        }
+    }
+
+    /// How likely each of `targets`, (M, 3) local metres, is visible for `viewer`, 0 to 1, (M); NaN where
+    /// [`MedialScene::visible_from`] has no answer: a target that is not finite, is the viewer itself, or lies outside
+    /// the cloud. Progress counts targets.
+    ///
+    /// # Errors
+    /// As [`MedialScene::visible_from`], and [`Error::InvalidParameter`] where pulses are not known.
+    pub fn visible_probabilities(
+        &self,
+        viewer: Viewer<'_>,
+        targets: &[[f32; 3]],
+        control: &Control<'_>,
+    ) -> Result<Vec<f32>> {
+        viewer.validate()?;
+        viewer.validate_count(targets)?;
+        let mut outside = vec![Answer::Visible; targets.len()];
+        if let Some(coverage) = self.coverage() {
+            coverage.mark_outside(viewer, targets, &mut outside);
+        }
+        let sight = |number: usize| {
+            let target = targets.get(number).filter(|_| outside.get(number) == Some(&Answer::Visible))?;
+            viewer.sight(number, *target)
+        };
+        self.probabilities(targets.len(), sight, control)
+    }
+
+    /// How likely the two ends of each of `pairs`, local metres, see each other, 0 to 1; NaN where an end is not finite
+    /// or lies outside the cloud, or both are the same. Progress counts pairs.
+    ///
+    /// # Errors
+    /// As [`MedialScene::visible_probabilities`].
+    pub fn pair_probabilities(&self, pairs: &[[[f64; 3]; 2]], control: &Control<'_>) -> Result<Vec<f32>> {
+        let sight = |number: usize| {
+            let [observer, target] = *pairs.get(number)?;
+            let sight = Ray::between(observer, target)?;
+            (![observer, target].into_iter().any(|end| self.is_outside_cloud(end))).then_some(sight)
+        };
+        self.probabilities(pairs.len(), sight, control)
+    }
+
+    fn probabilities(
+        &self,
+        count: usize,
+        sight: impl Fn(usize) -> Option<Ray> + Sync,
+        control: &Control<'_>,
+    ) -> Result<Vec<f32>> {
+        let Some(proof) = &self.proof else {
+            return Err(Error::InvalidParameter {
+                parameter: Parameter::Certainty,
+                value: "given".to_owned(),
+                expected: "left out for scenes whose pulses are not known",
+            });
+        };
+        let mut found = vec![f32::NAN; count];
+        found.par_chunks_mut(CHUNK).enumerate().try_for_each(|(chunk, found)| {
+            control.check()?;
+            for (i, found) in found.iter_mut().enumerate() {
+                if let Some(Ray { origin, direction, ranges: [_, range] }) = sight(chunk * CHUNK + i) {
+                    *found = self.evidence_with(proof, origin, direction, range).probability();
+                }
+            }
+            control.advance(found.len());
+            Ok(())
+        })?;
+        Ok(found)
+    }
+}
+
+/// How certain an answer must be to count: the least probability of what is more likely, visible or not, above 0.5 and
+/// at most 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Certainty(f32);
+
+impl Certainty {
+    /// That of a least probability.
+    ///
+    /// # Errors
+    /// [`Error::InvalidParameter`] for a number that is not above 0.5 and at most 1.
+    pub fn new(least: f64) -> Result<Self> {
+        if least > 0.5 && least <= 1.0 {
+            #[expect(clippy::cast_possible_truncation, reason = "probabilities are f32")]
+            return Ok(Self(least as f32));
+        }
+        Err(Error::InvalidParameter {
+            parameter: Parameter::Certainty,
+            value: least.to_string(),
+            expected: "above 0.5 and at most 1: the least probability of what is more likely",
+        })
+    }
+
+    /// Whether an answer with a probability of being visible is less certain; false for NaN.
+    #[must_use]
+    pub fn is_missed_by(self, probability: f32) -> bool {
+        probability.max(1.0 - probability) < self.0
+    }
+}

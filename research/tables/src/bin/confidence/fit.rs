@@ -1,0 +1,104 @@
+//! Fits the scores: logistic regression on classes of evidence.
+
+use super::AnyResult;
+use super::cases::{Case, TownSurvey};
+use belvedere::query::ScoreKey;
+use belvedere_scenes::{Preset, QuerySet, Regime};
+use std::collections::BTreeMap;
+
+/// Towns of each kind that are fitted.
+const SEEDS: [u64; 2] = [101, 103];
+/// Sum of squares of scores is weighed with this: a class that no case has gets 0.
+const RIDGE: f64 = 1.0;
+const STEPS: usize = 30;
+/// Largest change of a score at which the search ends.
+const ENOUGH: f64 = 1e-6;
+/// How often each line between people counts: there are four suns for each other target.
+const LINES_OF_SIGHT: f64 = 4.0;
+
+/// The surveys that are fitted: kinds of towns, with scanners and densities between which others lie.
+pub(super) fn surveys() -> Vec<TownSurvey> {
+    let flown = [5.0, 10.0, 20.0, 40.0].map(|density| (Regime::Air, density));
+    let others = [Regime::Leaves, Regime::WideBeam].map(|regime| (regime, 10.0));
+    let kinds = [Preset::Village, Preset::Town, Preset::OldTown, Preset::Towers];
+    let mut surveys = Vec::new();
+    for preset in kinds {
+        for seed in SEEDS {
+            let all = flown.iter().chain(&others);
+            surveys.extend(all.map(|&(regime, pulses_per_m2)| TownSurvey { preset, seed, regime, pulses_per_m2 }));
+        }
+    }
+    surveys
+}
+
+/// The scores as the program reads them.
+pub(super) fn scores(cases: &[Case]) -> AnyResult<String> {
+    let mut columns: BTreeMap<ScoreKey, usize> = BTreeMap::new();
+    // what is alike counts once, with its number
+    let mut groups: BTreeMap<Vec<ScoreKey>, [f64; 2]> = BTreeMap::new();
+    for case in cases {
+        let weight = if case.set == QuerySet::LinesOfSight { LINES_OF_SIGHT } else { 1.0 };
+        let keys: Vec<ScoreKey> = case.evidence.score_keys().collect();
+        groups.entry(keys).or_default()[usize::from(case.is_visible)] += weight;
+    }
+    for key in groups.keys().flatten() {
+        let next = columns.len();
+        columns.entry(*key).or_insert(next);
+    }
+    let rows: Vec<(Vec<usize>, [f64; 2])> =
+        groups.iter().map(|(keys, counts)| (keys.iter().map(|key| columns[key]).collect(), *counts)).collect();
+    let found = fitted(&rows, columns.len())?;
+    let mut text = "term,answer,class,score\n".to_owned();
+    for (key, column) in &columns {
+        text += &format!("{key},{:.4}\n", found[*column]);
+    }
+    Ok(text)
+}
+
+/// Newton's method for the likelihood with a ridge; rows name the columns that are 1, and count blocked and visible.
+fn fitted(rows: &[(Vec<usize>, [f64; 2])], count: usize) -> AnyResult<Vec<f64>> {
+    let mut scores = vec![0.0; count];
+    for _ in 0..STEPS {
+        let mut slope: Vec<f64> = scores.iter().map(|score| -RIDGE * score).collect();
+        let mut curve = vec![vec![0.0; count]; count];
+        (0..count).for_each(|i| curve[i][i] = RIDGE);
+        for (columns, [blocked, visible]) in rows {
+            let sum: f64 = columns.iter().map(|&column| scores[column]).sum();
+            let p = 1.0 / (1.0 + (-sum).exp());
+            let (all, error) = (blocked + visible, visible - (blocked + visible) * p);
+            for &i in columns {
+                slope[i] += error;
+                columns.iter().for_each(|&j| curve[i][j] += all * p * (1.0 - p));
+            }
+        }
+        let step = solved(curve, slope).ok_or("no scores fit: too few cases")?;
+        scores.iter_mut().zip(&step).for_each(|(score, step)| *score += step);
+        if step.iter().all(|step| step.abs() < ENOUGH) {
+            return Ok(scores);
+        }
+    }
+    Err("scores do not settle".into())
+}
+
+/// Solves a symmetric positive definite system by Gaussian elimination.
+fn solved(mut matrix: Vec<Vec<f64>>, mut right: Vec<f64>) -> Option<Vec<f64>> {
+    let count = right.len();
+    for pivot in 0..count {
+        let row = matrix[pivot].clone();
+        if row[pivot] <= 0.0 {
+            return None;
+        }
+        for below in pivot + 1..count {
+            let factor = matrix[below][pivot] / row[pivot];
+            if factor != 0.0 {
+                (pivot..count).for_each(|column| matrix[below][column] -= factor * row[column]);
+                right[below] -= factor * right[pivot];
+            }
+        }
+    }
+    for pivot in (0..count).rev() {
+        let rest: f64 = (pivot + 1..count).map(|column| matrix[pivot][column] * right[column]).sum();
+        right[pivot] = (right[pivot] - rest) / matrix[pivot][pivot];
+    }
+    Some(right)
+}

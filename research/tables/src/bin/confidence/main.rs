@@ -1,0 +1,110 @@
+//! How likely answers are right: fits the scores of evidence, and measures what probabilities are worth.
+//!
+//! ```sh
+//! cargo research confidence -- fit crates/belvedere-core/src/query/confidence_scores.csv
+//! cargo research confidence -- judge village,town,old-town,towers 201,202 10 air
+//! ```
+//!
+//! `fit` writes the scores that the program uses. `judge` prints the tables of docs/methods/confidence.md: kinds of
+//! towns, seeds, pulses per m², scanners. No town of the tables was fitted.
+#![allow(clippy::print_stdout, clippy::print_stderr, reason = "a program for tables talks")]
+
+mod cases;
+mod fit;
+
+use belvedere_baselines::calibration::Calibration;
+use belvedere_scenes::{Preset, Regime};
+use cases::{Case, SETS, TownSurvey};
+
+type AnyResult<T> = Result<T, Box<dyn std::error::Error>>;
+
+fn main() -> AnyResult<()> {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    match words[..] {
+        ["fit", file] => {
+            let cases = all_cases(&fit::surveys())?;
+            Ok(std::fs::write(file, fit::scores(&cases)?)?)
+        }
+        ["judge", presets, seeds, densities, regimes] => judge(presets, seeds, densities, regimes),
+        _ => Err("use: fit FILE, or judge PRESETS SEEDS DENSITIES SCANNERS".into()),
+    }
+}
+
+fn all_cases(surveys: &[TownSurvey]) -> AnyResult<Vec<Case>> {
+    let mut cases = Vec::new();
+    for survey in surveys {
+        eprintln!("{survey:?}");
+        cases.extend(survey.cases()?);
+    }
+    Ok(cases)
+}
+
+fn judge(presets: &str, seeds: &str, densities: &str, regimes: &str) -> AnyResult<()> {
+    println!(
+        "| pulses per m² | scanner | set | wrong | Brier: answer | probability | ECE | most certain: answer | probability |"
+    );
+    println!("|---|---|---|---|---|---|---|---|---|");
+    let mut whole: Vec<Case> = Vec::new();
+    for density in densities.split(',') {
+        for regime in regimes.split(',') {
+            let regime = Regime::ALL.into_iter().find(|known| known.name() == regime).ok_or("no such scanner")?;
+            let mut surveys = Vec::new();
+            for preset in presets.split(',') {
+                let preset = Preset::ALL.into_iter().find(|known| known.name() == preset).ok_or("no such town")?;
+                for seed in seeds.split(',') {
+                    surveys.push(TownSurvey { preset, seed: seed.parse()?, regime, pulses_per_m2: density.parse()? });
+                }
+            }
+            let cases = all_cases(&surveys)?;
+            print_rows(&format!("{density} | {}", regime.name()), &cases);
+            whole.extend(cases);
+        }
+    }
+    print_rows("all | all", &whole);
+    println!(
+        "\n| set | {} |",
+        (0..10).map(|tenth| format!("{:.1}", f64::from(tenth) / 10.0)).collect::<Vec<_>>().join(" | ")
+    );
+    for set in SETS {
+        let tenths = calibration(&whole, |case| case.set == set, Case::probability).tenths();
+        let cells = tenths.map(|t| format!("{:.1} → {:.1} ({})", 100.0 * t.expected, 100.0 * t.found, t.count));
+        println!("| {} | {} |", set.name(), cells.join(" | "));
+    }
+    Ok(())
+}
+
+fn print_rows(name: &str, cases: &[Case]) {
+    for set in SETS {
+        let [hard, found] = [Case::hard as fn(&Case) -> f32, Case::probability]
+            .map(|probability| calibration(cases, |case| case.set == set, probability));
+        println!(
+            "| {name} | {} | {:.2} | {:.4} | {:.4} (−{:.0} %) | {:.2} | {:.2} | {:.2} |",
+            set.name(),
+            100.0 * hard.brier(),
+            hard.brier(),
+            found.brier(),
+            100.0 * (1.0 - found.brier() / hard.brier()),
+            100.0 * found.expected_error(),
+            100.0 * hard.error_of_most_certain(),
+            100.0 * found.error_of_most_certain()
+        );
+    }
+}
+
+fn calibration(cases: &[Case], counts: impl Fn(&Case) -> bool, probability: fn(&Case) -> f32) -> Calibration {
+    let mut sums = Calibration::default();
+    cases.iter().filter(|case| counts(case)).for_each(|case| sums.add(probability(case), case.is_visible));
+    sums
+}
+
+impl Case {
+    /// 1 where the answer is visible or unproven, 0 where it is blocked.
+    fn hard(&self) -> f32 {
+        f32::from(u8::from(self.evidence.lines.is_free))
+    }
+
+    fn probability(&self) -> f32 {
+        self.evidence.probability()
+    }
+}
