@@ -137,7 +137,7 @@ pub fn scene_exposure(
 ) -> Result<Exposure> {
     let normals = targets.normals.as_deref();
     check_normals(normals, targets.len())?;
-    let mut seen = SkyView { factors: Vec::new(), openness: Vec::new() };
+    let mut seen = SkyView::default();
     let mut components = Vec::new();
     fold_rows(scene.into(), &targets.positions, &sky.directions, control, |block| {
         let normals = normals_of(normals, &block.rows);

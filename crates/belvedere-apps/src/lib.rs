@@ -17,6 +17,7 @@ pub mod rows;
 pub mod shadow;
 pub mod sky_view;
 pub mod solar_envelope;
+pub mod sum_errors;
 pub mod sun;
 pub mod sun_hours;
 pub mod targets;

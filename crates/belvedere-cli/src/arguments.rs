@@ -34,8 +34,8 @@ pub(crate) use irradiance::{ClearSkyChoice, IrradianceArguments, RadiationModel}
 pub(crate) use numbers::Numbers;
 use numbers::{above_zero, at_least_one, at_most, finite, height, known_crs, length, location};
 pub(crate) use observers::{
-    Earth, GivingWay, GroundChoice, HowSureArguments, LineOfSightArguments, MapPosition, Radio, Shell,
-    ViewshedArguments,
+    Earth, GivingWay, GroundChoice, HowSureArguments, IntervalArgument, LineOfSightArguments, MapPosition, Radio,
+    Shell, ViewshedArguments,
 };
 pub(crate) use query::{DepthMapArguments, Query, UnprovenChoice};
 pub(crate) use scene::{

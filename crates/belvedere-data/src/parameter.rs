@@ -329,6 +329,8 @@ parameters! {
     UnprovenAs => "unproven",
     /// How certain an answer must be.
     Certainty => "certainty",
+    /// Whether to give an interval that holds the truth.
+    Interval => "interval",
     /// Step along unproven space.
     UnprovenStep => "step along unproven space",
     // Other methods, which are compared

@@ -60,6 +60,7 @@ impl PyScene {
         place: SiteKeywords,
         targets: RequestedTargets<'py>,
         trees: Through,
+        interval: bool,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<TargetResults<'py>> {
         let question = ask::SunHoursQuestion {
@@ -68,6 +69,7 @@ impl PyScene {
             place: place.chosen()?,
             sun_tolerance_deg: days.tolerance,
             trees: trees.chosen()?,
+            interval,
         };
         let scene = Arc::clone(&self.0);
         let chosen = targets.chosen(py, &scene)?;
@@ -76,6 +78,7 @@ impl PyScene {
         chosen.results(py, &answers.found.targets, answers.measures, &answers.remarks)
     }
 
+    #[expect(clippy::too_many_arguments, reason = "keywords in Python")]
     fn sky_view<'py>(
         &self,
         py: Python<'py>,
@@ -83,9 +86,10 @@ impl PyScene {
         patches: Option<&str>,
         targets: RequestedTargets<'py>,
         trees: Through,
+        interval: bool,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<TargetResults<'py>> {
-        let question = ask::SkyViewQuestion { sky: sky_parts(directions, patches)?, trees: trees.chosen()? };
+        let question = ask::SkyViewQuestion { sky: sky_parts(directions, patches)?, trees: trees.chosen()?, interval };
         let scene = Arc::clone(&self.0);
         let chosen = targets.chosen(py, &scene)?;
         let places = chosen.places.clone();

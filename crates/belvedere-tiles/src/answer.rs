@@ -180,13 +180,13 @@ fn lit(
             scene_shadow(around, targets, &[*sun], Edges::Hard, control)?.pop().unwrap_or_default()
         }
         LightQuestion::SunRule { plan, site } => {
-            let sums = scene_sun_hours(around, targets, plan, Some(site), control)?;
+            let sums = scene_sun_hours(around, targets, plan, Some(site), None, control)?;
             // the rule comes after the measures of its days
             sums.into_measures(plan, targets).pop().map(|measure| measure.values).unwrap_or_default()
         }
-        LightQuestion::Sky(sky) => first(scene_sky_view(around, targets, sky, control)?.into_measures()),
+        LightQuestion::Sky(sky) => first(scene_sky_view(around, targets, sky, None, control)?.into_measures()),
         LightQuestion::SunHours { plan, site } => {
-            first(scene_sun_hours(around, targets, plan, Some(site), control)?.into_measures(plan, targets))
+            first(scene_sun_hours(around, targets, plan, Some(site), None, control)?.into_measures(plan, targets))
         }
         LightQuestion::Irradiance { seasons, .. } => {
             first(irradiation_measures(&season_irradiation(around, targets, seasons, control)?, 1))

@@ -153,6 +153,19 @@ impl TileQuestion {
     /// [`Error::InvalidParameter`] for what cannot be, and for a question that tiles do not answer.
     pub fn of(question: &ask::Question, whereabouts: &Whereabouts<'_>, context: &mut Context) -> Result<Vec<Self>> {
         ask::Ask::check(question)?;
+        let says_how_sure = match question {
+            ask::Question::Shadow(shadow) => shadow.how_sure.is_wanted(),
+            ask::Question::SunHours(hours) => hours.interval,
+            ask::Question::SkyView(view) => view.interval,
+            _ => false,
+        };
+        if says_how_sure {
+            return Err(Error::InvalidParameter {
+                parameter: Parameter::Questions,
+                value: "with probabilities or intervals".to_owned(),
+                expected: "without: runs in tiles do not give them",
+            });
+        }
         match question {
             ask::Question::Shadow(shadow) => {
                 let suns = shadow.suns.over(&shadow.place, whereabouts, context)?;

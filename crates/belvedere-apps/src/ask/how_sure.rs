@@ -1,7 +1,7 @@
 //! How sure answers are: a probability with each, and which of them are uncertain.
 
-use super::Context;
 use super::scene::Scene;
+use super::{Context, ThroughTrees};
 use crate::targets::{Measure, ResultKind};
 use crate::viewshed::SeenProbabilities;
 use belvedere_core::query::{Certainty, MedialScene, UnprovenAs};
@@ -17,7 +17,7 @@ pub const PROBABILITY: &str = "probability";
 pub const UNCERTAIN: &str = "uncertain";
 
 /// Name of the measure of the expected number of observers.
-pub const EXPECTED: &str = "expected_observers";
+pub const EXPECTED: &str = "expected";
 
 /// Whether to say how sure answers are. Needs pulses.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -101,13 +101,10 @@ impl HowSure {
         let named = |name: &str, values, text: &'static str| {
             Measure::new(&format!("{name}{suffix}"), values).with_description(text).with_range(Some([0.0, 1.0]))
         };
-        let likely = self
-            .probability
-            .then(|| named(PROBABILITY, probabilities, "probability of being visible or lit, 0 to 1").with_decimals(3));
+        let likely =
+            self.probability.then(|| named(PROBABILITY, probabilities, "probability of being free").with_decimals(3));
         let uncertain = uncertain.map(|uncertain| {
-            named(UNCERTAIN, uncertain, "1: less certain than wanted, or unproven")
-                .with_decimals(0)
-                .with_kind(ResultKind::Answer)
+            named(UNCERTAIN, uncertain, "1: less certain than wanted").with_decimals(0).with_kind(ResultKind::Answer)
         });
         likely.into_iter().chain(uncertain).collect()
     }
@@ -115,7 +112,7 @@ impl HowSure {
     /// Measures of what several observers see.
     pub(super) fn measures_of_many(&self, found: SeenProbabilities) -> Vec<Measure> {
         let likely = self.probability.then(|| {
-            let text = "expected number of observers that see it";
+            let text = "expected number of observers";
             Measure::new(EXPECTED, found.expected).with_description(text).with_decimals(3)
         });
         let certain = found.certain.map(|[seen, hidden]| {
@@ -124,7 +121,7 @@ impl HowSure {
                 0 => f32::NAN,
                 _ => (all - seen - hidden) as f32,
             });
-            let text = "number of observers whose answers are less certain than wanted";
+            let text = "observers that are uncertain";
             let kind = ResultKind::Count;
             Measure::new(UNCERTAIN, uncertain.collect()).with_description(text).with_decimals(0).with_kind(kind)
         });
@@ -171,4 +168,16 @@ impl HowSure {
         }
         context.report.certainty = Some(section);
     }
+}
+
+/// Refuses intervals where light gets through trees: they are those of errors among opaque ones.
+pub(super) fn check_interval(is_wanted: bool, trees: &ThroughTrees) -> Result<()> {
+    if !is_wanted || !trees.is_light() {
+        return Ok(());
+    }
+    Err(Error::InvalidParameter {
+        parameter: Parameter::Interval,
+        value: "given with light through trees".to_owned(),
+        expected: "left out: how far such light may be from the truth is not known",
+    })
 }

@@ -1,5 +1,6 @@
 //! Sky view: how much of the sky places see.
 
+use super::how_sure::check_interval;
 use super::light::{Light, OnTargets};
 use super::sections::{MeasuresSection, PlacesReport};
 use super::{Answers, Ask, Context, Places, Scene, ThroughTrees, spread};
@@ -17,6 +18,9 @@ pub struct SkyViewQuestion {
     pub sky: SkyParts,
     /// What gets through trees.
     pub trees: ThroughTrees,
+    /// Whether to say how far values may be from the truth: the expected value and an interval that holds 90 %. Only
+    /// where trees are opaque. Default: not.
+    pub interval: bool,
 }
 
 /// How the sky is parted.
@@ -55,6 +59,7 @@ impl Ask for SkyViewQuestion {
     type Found = OnTargets;
 
     fn check(&self) -> Result<()> {
+        check_interval(self.interval, &self.trees)?;
         self.sky.directions().map(|_| ())
     }
 
@@ -67,8 +72,10 @@ impl Ask for SkyViewQuestion {
     ) -> Result<Answers<OnTargets>> {
         let sky = self.sky.directions()?;
         let light = Light::on(places, &sky.directions, (&self.trees, UnprovenAs::Visible), scene, context, control)?;
-        let seen = control
-            .stage("testing sky", light.steps(), || scene_sky_view(light.obstacles(), &light.targets, &sky, control))?;
+        let certain_of = self.interval.then_some(&*light.blockers);
+        let seen = control.stage("testing sky", light.steps(), || {
+            scene_sky_view(light.obstacles(), &light.targets, &sky, certain_of, control)
+        })?;
         let measures = seen.into_measures();
         context.report.measures = Some(MeasuresSection::of(&light.targets, &measures));
         context.headline(format!("sky seen from {}", PlacesReport::in_words(&light.targets)));

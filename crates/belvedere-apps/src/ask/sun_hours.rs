@@ -1,5 +1,6 @@
 //! Sun hours: how long the sun reaches places on days, and whether rules of daylight are met.
 
+use super::how_sure::check_interval;
 use super::light::{Light, OnTargets};
 use super::sections::{MeasuresSection, NamedValues, PeriodSection, PlacesReport};
 use super::sun::{Days, SunPlace};
@@ -32,6 +33,10 @@ pub struct SunHoursQuestion {
     pub sun_tolerance_deg: Option<f64>,
     /// What gets through trees.
     pub trees: ThroughTrees,
+    /// Whether to say how far hours may be from the truth: the expected value and an interval that holds 90 %. Only
+    /// where trees are opaque. Default: not.
+    #[serde(default)]
+    pub interval: bool,
 }
 
 /// What is known before the sun is tested. [`PreparedSun::answers`] makes answers of what it lit.
@@ -41,6 +46,7 @@ pub struct PreparedSun {
     /// Where on earth the scene lies.
     pub site: Site,
     light: Light,
+    has_interval: bool,
     title: String,
 }
 
@@ -136,7 +142,7 @@ impl SunHoursQuestion {
             None => "Sun hours".to_owned(),
         };
         let title = format!("{what}, {days}{}", scene.far_in_words());
-        Ok(PreparedSun { plan, site, light, title })
+        Ok(PreparedSun { plan, site, light, has_interval: self.interval, title })
     }
 }
 
@@ -167,7 +173,8 @@ impl PreparedSun {
     /// Those of [`scene_sun_hours`].
     pub fn test(&self, control: &Control<'_>) -> Result<SunSums> {
         control.stage("testing sun", self.light.steps(), || {
-            scene_sun_hours(self.obstacles(), self.targets(), &self.plan, Some(&self.site), control)
+            let certain_of = self.has_interval.then_some(&*self.light.blockers);
+            scene_sun_hours(self.obstacles(), self.targets(), &self.plan, Some(&self.site), certain_of, control)
         })
     }
 
@@ -199,6 +206,7 @@ impl Ask for SunHoursQuestion {
         if rules(&self.rules)?.is_empty() && self.days.is_empty() {
             return missing_period();
         }
+        check_interval(self.interval, &self.trees)?;
         self.days.check(&self.place)
     }
 

@@ -5,9 +5,10 @@ mod directions;
 pub use directions::SkyDirections;
 
 use crate::rows::{SkyObstacles, check_normals, fold_rows, normals_of};
+use crate::sum_errors::{Outlines, SumKind, expected_measures};
 use crate::targets::{Measure, Targets};
 use crate::tree_light::through_crowns;
-use belvedere_core::query::VisibilityMatrix;
+use belvedere_core::query::{MedialScene, VisibilityMatrix};
 use belvedere_data::control::Control;
 use belvedere_data::vector::dot;
 use belvedere_data::{Error, Result};
@@ -26,7 +27,7 @@ pub const SKY_VIEW_FACTOR: &str = "sky view factor, cosine";
 const CHUNK: usize = 256;
 
 /// How much of the sky each of many targets sees.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct SkyView {
     /// Cosine-weighted share of the sky, 0 to 1, (M): (1/π) ∫ V cos θ dΩ, θ being the angle to the target's normal. The
     /// share of the radiation of an even sky that arrives, as energy models want it. A free plane has 1, a free wall ½.
@@ -34,6 +35,8 @@ pub struct SkyView {
     /// Share of the hemisphere above the horizon that is seen, 0 to 1, (M): (1/2π) ∫ V dΩ, whatever the normal. A free
     /// plane has 1, and a free wall ½ too.
     pub openness: Vec<f32>,
+    /// How far these may be from the truth, by classes; empty where that was not wanted.
+    pub classes: Vec<u8>,
 }
 
 impl SkyView {
@@ -43,15 +46,22 @@ impl SkyView {
         let measure = |name: &str, description, values| {
             Measure::new(name, values).with_description(description).with_range(Some([0.0, 1.0]))
         };
-        vec![
-            measure("sky_view_factor", SKY_VIEW_FACTOR, self.factors),
-            measure("sky_openness", "sky openness, solid angle", self.openness),
-        ]
+        let factor = measure("sky_view_factor", SKY_VIEW_FACTOR, self.factors);
+        let openness = measure("sky_openness", "sky openness, solid angle", self.openness);
+        let expected = match self.classes.is_empty() {
+            true => Vec::new(),
+            false => {
+                let of = |stem, sums| expected_measures(stem, sums, 1.0, SumKind::Sky, &self.classes);
+                [of("factor", &factor), of("open", &openness)].concat()
+            }
+        };
+        [vec![factor, openness], expected].concat()
     }
 }
 
 /// How much of `sky` each of `targets` sees among `obstacles`; NaN for a target without a position. Where trees
-/// let light through they are in leaf, unless they are said to be bare. Progress counts targets, once or twice each.
+/// let light through they are in leaf, unless they are said to be bare. With `certain_of`, the scene among which targets
+/// stand, the result says how far it may be from the truth. Progress counts targets, once or twice each.
 ///
 /// # Errors
 /// Those of [`fold_rows`] and [`sky_view`].
@@ -59,13 +69,18 @@ pub fn scene_sky_view<'a>(
     obstacles: impl Into<SkyObstacles<'a>>,
     targets: &Targets,
     sky: &SkyDirections,
+    certain_of: Option<&MedialScene>,
     control: &Control<'_>,
 ) -> Result<SkyView> {
     let obstacles = obstacles.into();
     let normals = targets.normals.as_deref();
     check_normals(normals, targets.len())?;
-    let mut seen = SkyView { factors: Vec::with_capacity(targets.len()), openness: Vec::with_capacity(targets.len()) };
+    let mut seen = SkyView::default();
+    let outlines = certain_of.map(|scene| (scene, Outlines::new(&sky.directions, &sky.solid_angles)));
     fold_rows(obstacles, &targets.positions, &sky.directions, control, |block| {
+        if let Some((scene, outlines)) = &outlines {
+            seen.classes.extend(outlines.classes(&block, scene, targets));
+        }
         let normals = normals_of(normals, &block.rows);
         let mut own = sky_view(&block.matrix, sky, normals)?;
         if let (Some(matrix), Some(crowns)) = (&block.without_trees, obstacles.crowns()) {
@@ -115,5 +130,5 @@ pub fn sky_view(matrix: &VisibilityMatrix, sky: &SkyDirections, normals: Option<
         .collect();
     #[expect(clippy::cast_possible_truncation, reason = "shares of one")]
     let column = |i: usize| shares.iter().map(|share| share[i] as f32).collect();
-    Ok(SkyView { factors: column(0), openness: column(1) })
+    Ok(SkyView { factors: column(0), openness: column(1), classes: Vec::new() })
 }

@@ -162,6 +162,18 @@ impl SunSchedule {
         [east.atan2(north).rem_euclid(TAU), up.clamp(-1.0, 1.0).asin()]
     }
 
+    /// Hours that the suns of each direction last together, (D).
+    #[must_use]
+    pub fn hours_of_directions(&self) -> Vec<f64> {
+        let mut hours = vec![0.0; self.directions.len()];
+        for step in self.days.iter().flat_map(|day| &day.steps) {
+            if let Some(sum) = hours.get_mut(step.direction as usize) {
+                *sum += f64::from(step.hours);
+            }
+        }
+        hours
+    }
+
     /// Hours during which the sun is up, over all days.
     #[must_use]
     pub fn possible_hours(&self) -> f64 {

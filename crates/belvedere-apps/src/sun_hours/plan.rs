@@ -2,9 +2,11 @@
 
 use super::{RULE_IS_MET, SUN_HOURS, SunHours, SunHoursParams, SunRule, sun_hours, sun_hours_through_crowns};
 use crate::rows::{RowBlock, SkyObstacles, check_normals, fold_rows, normals_of};
+use crate::sum_errors::{Outlines, SumKind, expected_measures};
 use crate::sun::{Site, SunSchedule};
 use crate::targets::{Measure, ResultKind, Targets};
 use crate::tree_light::{CrownLight, Season};
+use belvedere_core::query::MedialScene;
 use belvedere_data::control::Control;
 use belvedere_data::{Error, Result};
 
@@ -74,6 +76,8 @@ pub struct SunSums {
     pub period: SunHours,
     /// Over the days of each rule.
     pub rules: Vec<SunHours>,
+    /// How far hours of the period may be from the truth, by classes; empty where that was not wanted.
+    pub classes: Vec<u8>,
 }
 
 impl SunSums {
@@ -136,6 +140,10 @@ impl SunSums {
             measures.push(measure("min_sun_hours", "hours of the day with the least sun", hours, self.period.min));
             measures.push(measure("total_hours", "hours of sun in all", None, total));
         }
+        if let (Some(hours), false) = (measures.first(), self.classes.is_empty()) {
+            let possible = plan.period.possible_hours() / day_count.max(1) as f64;
+            measures.extend(expected_measures("hours", &hours.clone(), possible, SumKind::Sun, &self.classes));
+        }
         for (planned, found) in plan.rules.iter().zip(self.rules) {
             let days = planned.schedule.days.len();
             let is_met = found.days.iter().map(|&met| if met as usize == days { 1.0 } else { 0.0 }).collect();
@@ -147,7 +155,8 @@ impl SunSums {
 }
 
 /// The sun of `plan` at each of `targets` among `obstacles`. Where trees let light through, `site` says when they carry
-/// leaves. Progress counts targets, once or twice each.
+/// leaves. With `certain_of`, the scene among which targets stand, the measures say how far hours may be from the truth.
+/// Progress counts targets, once or twice each.
 ///
 /// # Errors
 /// Those of [`fold_rows`] and [`SunSums::add`], and [`Error::MissingAttribute`] for trees without a site.
@@ -156,6 +165,7 @@ pub fn scene_sun_hours<'a>(
     targets: &Targets,
     plan: &SunPlan,
     site: Option<&Site>,
+    certain_of: Option<&MedialScene>,
     control: &Control<'_>,
 ) -> Result<SunSums> {
     let obstacles = obstacles.into();
@@ -173,7 +183,12 @@ pub fn scene_sun_hours<'a>(
     let normals = targets.normals.as_deref();
     check_normals(normals, targets.len())?;
     let mut sums = SunSums::default();
+    let outlines =
+        certain_of.map(|scene| (scene, Outlines::new(&plan.period.directions, &plan.period.hours_of_directions())));
     fold_rows(obstacles, &targets.positions, plan.directions(), control, |block| {
+        if let Some((scene, outlines)) = &outlines {
+            sums.classes.extend(outlines.classes(&block, scene, targets));
+        }
         sums.add(plan, &block, normals, crowns)
     })?;
     Ok(sums)

@@ -150,6 +150,16 @@ impl HowSureArguments {
     }
 }
 
+#[derive(Args)]
+#[command(next_help_heading = "Lines of sight")]
+pub(crate) struct IntervalArgument {
+    /// Also give the expected value, and an interval that holds the truth in 90 % of cases
+    ///
+    /// They follow from the errors found in simulated towns: docs/methods/confidence.md. Only where trees are opaque.
+    #[arg(long)]
+    pub(crate) interval: bool,
+}
+
 /// The surface tolerance, for commands that do not report unproven targets.
 #[derive(Args)]
 #[command(next_help_heading = "Lines of sight")]

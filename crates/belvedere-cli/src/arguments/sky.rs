@@ -1,6 +1,8 @@
 //! Flags of the targets of sun and sky commands, and of the sky view.
 
-use super::{GroundChoice, SceneInput, Shell, ThroughTreesArguments, above_zero, at_least_one, length};
+use super::{
+    GroundChoice, IntervalArgument, SceneInput, Shell, ThroughTreesArguments, above_zero, at_least_one, length,
+};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
@@ -119,6 +121,8 @@ pub(crate) struct SkyViewArguments {
     /// Use the centres of standard sky patches instead: tregenza (145) or reinhart (577)
     #[arg(long, value_enum, value_name = "NAME", help_heading = "Sky")]
     pub(crate) patches: Option<PatchesChoice>,
+    #[command(flatten)]
+    pub(crate) interval: IntervalArgument,
     #[command(flatten)]
     pub(crate) trees: ThroughTreesArguments,
     #[command(flatten)]

@@ -1,7 +1,8 @@
 //! Flags of the location, the time zone, the days and the sun hours.
 
 use super::{
-    CloudInput, Numbers, SceneInput, Shell, SkyOutputs, SkyPlaces, ThroughTreesArguments, above_zero, location,
+    CloudInput, IntervalArgument, Numbers, SceneInput, Shell, SkyOutputs, SkyPlaces, ThroughTreesArguments, above_zero,
+    location,
 };
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
@@ -98,6 +99,8 @@ pub(crate) struct SunHoursArguments {
     pub(crate) places: SkyPlaces,
     #[command(flatten)]
     pub(crate) shell: Shell,
+    #[command(flatten)]
+    pub(crate) interval: IntervalArgument,
     #[command(flatten)]
     pub(crate) trees: ThroughTreesArguments,
     #[command(flatten)]

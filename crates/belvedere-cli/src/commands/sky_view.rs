@@ -11,7 +11,8 @@ use belvedere::apps::ask::{self, Ask, SkyParts};
 pub(crate) fn run(arguments: &SkyViewArguments, global: &Global) -> Result<Summary> {
     arguments.places.check(&arguments.outputs)?;
     let sky = sky_parts(arguments.patches, arguments.directions);
-    let question = ask::SkyViewQuestion { sky, trees: arguments.trees.choice()? };
+    let question =
+        ask::SkyViewQuestion { sky, trees: arguments.trees.choice()?, interval: arguments.interval.interval };
     question.check()?;
     let mut run = CommandContext::new(global);
     let scene = pipeline::scene_of_places(&arguments.scene, &arguments.places, arguments.shell.shell, &mut run)?;

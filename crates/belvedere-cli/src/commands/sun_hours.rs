@@ -23,6 +23,7 @@ pub(crate) fn run(arguments: &SunHoursArguments, global: &Global) -> Result<Summ
         place: arguments.sun.place_from_true_north()?,
         sun_tolerance_deg: arguments.within,
         trees: arguments.trees.choice()?,
+        interval: arguments.interval.interval,
     };
     question.check()?;
     if let Some(keep) = &arguments.keep {
@@ -30,6 +31,10 @@ pub(crate) fn run(arguments: &SunHoursArguments, global: &Global) -> Result<Summ
     }
     if question.trees.is_light() && (arguments.keep.is_some() || arguments.from_matrix.is_some()) {
         let what = "--through-trees does not work with --save-matrix and --load-matrix: a matrix does not separate trees from other obstacles";
+        return Err(Usage(what.to_owned()).into());
+    }
+    if question.interval && (arguments.keep.is_some() || arguments.from_matrix.is_some()) {
+        let what = "--interval does not work with --save-matrix and --load-matrix: run without them";
         return Err(Usage(what.to_owned()).into());
     }
     let mut run = CommandContext::new(global);

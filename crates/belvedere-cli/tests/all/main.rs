@@ -17,6 +17,7 @@ mod far_terrain;
 mod given_rows;
 mod help_examples;
 mod holes;
+mod how_sure;
 mod implausible;
 mod info;
 mod interrupts;

@@ -197,6 +197,15 @@ impl FreeSegments {
         Ok(Self { free_segments, trees, top })
     }
 
+    /// Share of the segments that run more sideways than up, 0 to 1: most of those of scanners on the ground.
+    #[must_use]
+    pub fn sideways_share(&self) -> f64 {
+        let ends = self.trees.iter().skip(1).map(|tree| tree.first).chain([self.free_segments.len()]);
+        let counts = self.trees.iter().zip(ends).filter(|(tree, _)| tree.way != SegmentAxis::UP);
+        let sideways: usize = counts.map(|(tree, end)| end - tree.first).sum();
+        sideways as f64 / self.free_segments.len().max(1) as f64
+    }
+
     /// Where segment `number` begins, local metres; the unit vector along it, towards the scanner; and its length,
     /// metres. `None` from [`FreeSegments::len`] on. Their order is that of the index.
     #[must_use]

@@ -21,7 +21,9 @@ const CHUNK: usize = 256;
 /// The fitted scores.
 const SCORES: &str = include_str!("confidence_scores.csv");
 /// Upper ends of the classes of length that no pulse came near to, metres; the last class has none.
-const UNPROVEN_CLASSES: [f64; 6] = [0.05, 0.5, 1.0, 2.0, 4.0, 8.0];
+const UNPROVEN_CLASSES: [f64; 6] = [0.05, 0.5, 1.0, 2.0, 4.0, MAX_UNPROVEN];
+/// Length from which on more makes no difference, metres.
+const MAX_UNPROVEN: f64 = 8.0;
 /// From how many lines that end inside obstacles on, of a ring, more make no difference.
 const MAX_HELD: u8 = 4;
 
@@ -34,7 +36,9 @@ pub struct Evidence {
     pub is_inside_obstacle: bool,
     /// Whether the viewer is a place rather than a direction.
     pub has_eye: bool,
-    /// How much of the line no pulse came near to, metres.
+    /// Whether scanners stood on the ground.
+    pub is_from_ground: bool,
+    /// How much of the line no pulse came near to, metres; from 8 on more is not told apart.
     pub unproven_length: f64,
 }
 
@@ -54,10 +58,13 @@ enum Term {
     /// The class of the length that no pulse came near to, towards the sun or the sky, and between two places.
     UnprovenSky,
     UnprovenPair,
+    /// The same for surveys from the ground.
+    UnprovenSkyFromGround,
+    UnprovenPairFromGround,
 }
 
 impl Term {
-    const ALL: [(Self, &str); 8] = [
+    const ALL: [(Self, &str); 10] = [
         (Self::Constant, "answer"),
         (Self::FreeNear, "free_near"),
         (Self::FreeFar, "free_far"),
@@ -66,6 +73,8 @@ impl Term {
         (Self::Inside, "inside_obstacle"),
         (Self::UnprovenSky, "unproven_sky"),
         (Self::UnprovenPair, "unproven_pair"),
+        (Self::UnprovenSkyFromGround, "unproven_sky_from_ground"),
+        (Self::UnprovenPairFromGround, "unproven_pair_from_ground"),
     ];
     /// Most classes of a term.
     const CLASSES: usize = 9;
@@ -116,6 +125,12 @@ impl Evidence {
         let ParallelLines { free, held, .. } = self.lines;
         let held = held.map(|count| usize::from(count.min(MAX_HELD)));
         let unproven = UNPROVEN_CLASSES.iter().take_while(|end| self.unproven_length >= **end).count();
+        let of_proof = match (self.has_eye, self.is_from_ground) {
+            (false, false) => Term::UnprovenSky,
+            (true, false) => Term::UnprovenPair,
+            (false, true) => Term::UnprovenSkyFromGround,
+            (true, true) => Term::UnprovenPairFromGround,
+        };
         let terms = [
             (Term::Constant, usize::from(self.has_eye)),
             (Term::FreeNear, usize::from(free[0])),
@@ -123,7 +138,7 @@ impl Evidence {
             (Term::HeldNear, held[0]),
             (Term::HeldFar, held[1]),
             (Term::Inside, usize::from(self.is_inside_obstacle)),
-            (if self.has_eye { Term::UnprovenPair } else { Term::UnprovenSky }, unproven),
+            (of_proof, unproven),
         ];
         let is_free = self.lines.is_free;
         terms.into_iter().map(move |(term, class)| ScoreKey { term, is_free, class })
@@ -156,7 +171,8 @@ impl MedialScene {
             lines: self.parallel_lines(target, towards, range),
             is_inside_obstacle: self.is_inside_obstacle(target) || (range.is_finite() && self.is_inside_obstacle(end)),
             has_eye: range.is_finite(),
-            unproven_length: self.unproven_length(proof, target, towards, range),
+            is_from_ground: proof.is_from_ground(),
+            unproven_length: self.unproven_length_up_to(proof, (target, towards, range), MAX_UNPROVEN),
         }
     }
 
@@ -253,5 +269,47 @@ impl Certainty {
     #[must_use]
     pub fn is_missed_by(self, probability: f32) -> bool {
         probability.max(1.0 - probability) < self.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn evidence(is_free: bool, free: [u8; 2], unproven_length: f64, has_eye: bool) -> Evidence {
+        let lines = ParallelLines { is_free, free, held: [0; 2] };
+        Evidence { lines, is_inside_obstacle: false, has_eye, is_from_ground: false, unproven_length }
+    }
+
+    #[test]
+    fn every_line_of_the_scores_is_read() {
+        let scores = read_scores(SCORES);
+        let known = scores.as_flattened().as_flattened().iter().filter(|score| **score != 0.0).count();
+        let zeros = SCORES.lines().skip(1).filter(|line| line.ends_with(",0.0000")).count();
+        assert_eq!(known + zeros, SCORES.lines().count() - 1);
+        assert!(known > 60, "{known} scores");
+    }
+
+    #[test]
+    fn what_all_lines_and_pulses_agree_on_is_nearly_certain() {
+        for has_eye in [false, true] {
+            let visible = evidence(true, [8; 2], 0.0, has_eye).probability();
+            let blocked = evidence(false, [0; 2], 20.0, has_eye).probability();
+            assert!(visible > 0.97 && blocked < 0.03, "{visible} {blocked}");
+            // half of the lines beside it say otherwise, and pulses prove nothing
+            let doubtful = evidence(true, [4; 2], 3.0, has_eye).probability();
+            assert!((0.02..0.9).contains(&doubtful), "{doubtful}");
+            assert!(evidence(true, [8; 2], 9.0, has_eye).probability() < visible);
+        }
+    }
+
+    #[test]
+    fn certainty_is_above_one_half() {
+        for wrong in [0.5, 0.0, -1.0, 1.01, f64::NAN] {
+            assert!(Certainty::new(wrong).is_err(), "{wrong}");
+        }
+        let certainty = Certainty::new(0.9).unwrap();
+        assert!(certainty.is_missed_by(0.89) && certainty.is_missed_by(0.11));
+        assert!(!certainty.is_missed_by(0.9) && !certainty.is_missed_by(0.05) && !certainty.is_missed_by(f32::NAN));
     }
 }

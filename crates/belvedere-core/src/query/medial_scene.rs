@@ -145,8 +145,18 @@ impl MedialScene {
     /// How much of a line of sight `proof` does not prove, metres: [`Proof::unproven_length`] outside the space that
     /// was freed.
     pub(super) fn unproven_length(&self, proof: &Proof, target: [f64; 3], towards: [f64; 3], range: f64) -> f64 {
+        self.unproven_length_up_to(proof, (target, towards, range), f64::INFINITY)
+    }
+
+    /// As [`MedialScene::unproven_length`], or some length above `enough` as soon as it is known to exceed that.
+    pub(super) fn unproven_length_up_to(
+        &self,
+        proof: &Proof,
+        (target, towards, range): ([f64; 3], [f64; 3], f64),
+        enough: f64,
+    ) -> f64 {
         if self.freed.is_empty() {
-            return proof.unproven_length(target, towards, range);
+            return proof.unproven_length_up_to(target, towards, range, enough);
         }
         let ray = Ray { origin: target, direction: towards, ranges: [0.0, range] };
         let pieces = outside(&self.freed, &ray).into_iter();

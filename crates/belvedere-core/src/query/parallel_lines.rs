@@ -1,9 +1,8 @@
 //! Lines of sight parallel to one, beside it: where they disagree, it passes an edge of what is known of the scene.
 
 use super::MedialScene;
-use crate::blocking::Ball;
 use crate::ray_index::{END, Ray, Visit};
-use belvedere_data::vector::{cross, dot, sub, unit};
+use belvedere_data::vector::{cross, dot, length, sub, unit};
 use std::f64::consts::FRAC_PI_4;
 
 /// How far the two rings of lines run beside the line itself, metres: half a spacing and a spacing at ten pulses per
@@ -13,8 +12,13 @@ const RINGS: [f64; 2] = [0.16, 0.32];
 pub(super) const RING_LINES: usize = 8;
 /// All lines, the line itself first.
 const LINES: usize = 1 + RINGS.len() * RING_LINES;
-/// By how much more than a ring balls may lie beside the line before they are left out, metres.
+/// Slots for lines, a multiple of those that are tested at once.
+const SLOTS: usize = 24;
+/// By how much radii are taken for larger until lines are tested exactly: far more than f32 errs. Metres, a share of
+/// the size of the scene, a share of the radius.
 const MARGIN: f64 = 1e-3;
+const MARGIN_OF_SCENE: f64 = 1e-6;
+const MARGIN_OF_RADIUS: f32 = 1e-5;
 
 /// What blocks a line of sight and those beside it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,7 +48,7 @@ impl MedialScene {
     #[must_use]
     pub fn parallel_lines(&self, target: [f64; 3], towards: [f64; 3], range: f64) -> ParallelLines {
         let lines = self.lines_beside(target, towards, range);
-        let mut left = Left { scene: self, axes: Axes::along(towards), middle: target, lines: &lines, free: ALL };
+        let mut left = Left::new(self, &lines, &Axes::along(towards));
         let room = [RINGS[1] + MARGIN; 3];
         let ray = self.ray(target, towards, range);
         self.tree().index().visit_beside(&ray, room, &mut left);
@@ -96,36 +100,125 @@ impl Axes {
 /// The lines that no ball has blocked yet.
 struct Left<'a> {
     scene: &'a MedialScene,
-    axes: Axes,
-    middle: [f64; 3],
     lines: &'a [Ray; LINES],
+    /// Where places count from, local metres.
+    middle: [f32; 3],
+    /// Across the lines, and across these and the first.
+    axes: [[f32; 3]; 2],
+    /// Where each line runs along the axes, metres; infinitely far away for slots without a line.
+    places: [[f32; SLOTS]; 2],
+    margin: f32,
     free: u32,
 }
 
-impl Left<'_> {
-    /// Whether a ball may come near to any of the lines.
-    fn is_near(&self, ball: Ball) -> bool {
-        let offset = sub(ball.center.map(f64::from), self.middle);
-        let Axes([across, up, _]) = &self.axes;
-        let reach = f64::from(ball.radius) + RINGS[1] + MARGIN;
-        let [x, y] = [across, up].map(|axis| dot(offset, *axis));
-        x * x + y * y < reach * reach
-    }
-}
-
-impl Visit for &mut Left<'_> {
-    fn visit(&mut self, row: usize) -> f32 {
-        if !self.is_near(self.scene.ball(row)) {
-            return f32::INFINITY;
+impl<'a> Left<'a> {
+    fn new(scene: &'a MedialScene, lines: &'a [Ray; LINES], Axes([across, up, _]): &Axes) -> Self {
+        let middle = lines[0].origin.map(to_f32);
+        let axes = [*across, *up].map(|axis| axis.map(to_f32));
+        let mut places = [[f32::INFINITY; SLOTS]; 2];
+        for (slot, line) in lines.iter().enumerate() {
+            let offset = sub(line.origin.map(to_f32), middle);
+            places[0][slot] = dot(offset, axes[0]);
+            places[1][slot] = dot(offset, axes[1]);
         }
+        let margin = to_f32(MARGIN + MARGIN_OF_SCENE * length(scene.tree().index().half_size()));
+        Self { scene, lines, middle, axes, places, margin, free: ALL }
+    }
+
+    /// Tests exactly which of the lines that a ball comes near to it blocks.
+    #[inline(never)]
+    fn test(&mut self, row: usize, is_near: [u32; SLOTS]) {
         let mut open = self.free;
         while open != 0 {
             let number = open.trailing_zeros();
             open &= open - 1;
-            if self.scene.front(row, &self.lines[number as usize]).is_some() {
+            if is_near[number as usize] != 0 && self.scene.front(row, &self.lines[number as usize]).is_some() {
                 self.free &= !(1 << number);
             }
         }
+    }
+}
+
+impl Visit for &mut Left<'_> {
+    #[inline(always)]
+    fn visit(&mut self, row: usize) -> f32 {
+        let ball = self.scene.ball(row);
+        let offset = sub(ball.center, self.middle);
+        let [x, y] = self.axes.map(|axis| dot(offset, axis));
+        let reach = ball.radius * (1.0 + MARGIN_OF_RADIUS) + self.margin;
+        let is_near = std::array::from_fn(|slot| {
+            let [x, y] = [x - self.places[0][slot], y - self.places[1][slot]];
+            u32::from(x * x + y * y < reach * reach)
+        });
+        if is_near != [0; SLOTS] {
+            self.test(row, is_near);
+        }
         if self.free == 0 { END } else { f32::INFINITY }
+    }
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "what is rounded is far less than the margins")]
+fn to_f32(value: f64) -> f32 {
+    value as f32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::blocking::BlockRule;
+    use crate::medial::MedialBalls;
+    use crate::query::Answer;
+    use belvedere_data::random::uniform;
+
+    fn scene(rule: &BlockRule) -> MedialScene {
+        let random = |i: u64, k: u64| to_f32(uniform(5, 8 * i + k));
+        let count = 600;
+        let balls = MedialBalls {
+            centers: (0..count).map(|i| [30.0 * random(i, 0), 30.0 * random(i, 1), 8.0 * random(i, 2)]).collect(),
+            radii: (0..count).map(|i| 0.05 + 1.2 * random(i, 3)).collect(),
+            source: vec![0; 600],
+            touch: vec![0; 600],
+            separation_angles: vec![1.0; 600],
+        };
+        MedialScene::new(&balls, rule).unwrap()
+    }
+
+    #[test]
+    fn each_line_is_free_as_it_is_when_tested_alone() {
+        let random = |i: u64, k: u64| uniform(6, 8 * i + k);
+        let (mut agreeing, mut mixed) = (0, 0);
+        for rule in [BlockRule::carved(), BlockRule::uncarved()] {
+            let scene = scene(&rule);
+            for i in 0..3000 {
+                let place = |k: u64| [32.0 * random(i, k) - 1.0, 32.0 * random(i, k + 1) - 1.0, 9.0 * random(i, k + 2)];
+                let target = place(0);
+                let towards = unit(sub(place(3), target)).unwrap();
+                let range = if i % 2 == 0 { f64::INFINITY } else { 25.0 * random(i, 6) };
+                let found = scene.parallel_lines(target, towards, range);
+                let is_free = |line: &Ray| scene.answer(line.origin, towards, range) == Answer::Visible;
+                let lines = scene.lines_beside(target, towards, range);
+                let count = |ring: usize| {
+                    let of_ring = &lines[1 + ring * RING_LINES..][..RING_LINES];
+                    u8::try_from(of_ring.iter().filter(|line| is_free(line)).count()).unwrap()
+                };
+                assert_eq!((found.is_free, found.free), (is_free(&lines[0]), [0, 1].map(count)), "{i} {rule:?}");
+                for (ring, radius) in RINGS.into_iter().enumerate() {
+                    for line in &lines[1 + ring * RING_LINES..][..RING_LINES] {
+                        let offset = sub(line.origin, target);
+                        assert!((length(offset) - radius).abs() < 1e-9 && dot(offset, towards).abs() < 1e-9);
+                    }
+                    assert!(found.held[ring] + found.free[ring] <= 8);
+                }
+                *(if found.agree() { &mut agreeing } else { &mut mixed }) += 1;
+            }
+        }
+        assert!(agreeing > 1000 && mixed > 1000, "{agreeing} agree, {mixed} do not");
+    }
+
+    #[test]
+    fn a_vertical_line_has_lines_beside_it() {
+        let scene = scene(&BlockRule::carved());
+        let found = scene.parallel_lines([10.0, 10.0, 20.0], [0.0, 0.0, 1.0], f64::INFINITY);
+        assert_eq!(found, ParallelLines { is_free: true, free: [8; 2], held: [0; 2] });
     }
 }

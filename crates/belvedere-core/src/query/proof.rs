@@ -13,6 +13,8 @@ const LOOK_AHEAD: f64 = 4.0;
 /// Nearness where pulses are dense enough, metres: what carves balls of half a metre leaves no room for things that
 /// block.
 const MIN_NEARNESS: f64 = 0.7;
+/// Share of the pulses that run more sideways than up from which on a survey is one from the ground.
+const GROUND_SHARE: f64 = 0.3;
 /// Side of the cells that pulses are counted in, metres.
 const COUNTING_CELL: f32 = 4.0;
 
@@ -172,6 +174,13 @@ impl Proof {
         self.nearness
     }
 
+    /// Whether most pulses are those of scanners on the ground: they run more sideways than up.
+    #[must_use]
+    pub fn is_from_ground(&self) -> bool {
+        let index = self.index.get(|control| self.make_index(control));
+        index.is_some_and(|index| index.free_segments.sideways_share() > GROUND_SHARE)
+    }
+
     /// Length that may be unseen, metres.
     #[must_use]
     pub fn tolerance(&self) -> f64 {
@@ -184,6 +193,13 @@ impl Proof {
     #[must_use]
     pub fn unproven_length(&self, target: [f64; 3], towards: [f64; 3], range: f64) -> f64 {
         self.length(target, towards, range, f64::INFINITY)
+    }
+
+    /// As [`Proof::unproven_length`], or some length above `enough`, metres, as soon as it is known to exceed that:
+    /// quicker.
+    #[must_use]
+    pub fn unproven_length_up_to(&self, target: [f64; 3], towards: [f64; 3], range: f64, enough: f64) -> f64 {
+        self.length(target, towards, range, enough)
     }
 
     /// Whether more than the tolerated length runs through unseen space; quicker than measuring it.

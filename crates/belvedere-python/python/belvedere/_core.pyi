@@ -164,6 +164,7 @@ class Scene:
         place: dict[str, Any],
         targets: dict[str, Any],
         trees: dict[str, Any],
+        interval: bool,
         progress: _Progress,
     ) -> _Results: ...
     def sky_view(
@@ -172,6 +173,7 @@ class Scene:
         patches: str | None,
         targets: dict[str, Any],
         trees: dict[str, Any],
+        interval: bool,
         progress: _Progress,
     ) -> _Results: ...
     def viewshed(

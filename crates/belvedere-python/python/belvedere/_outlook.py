@@ -155,7 +155,7 @@ class Outlook:
         seen = made[names[0]]
         seen.description = text
         seen.unproven, seen.uncertain = made.get("unproven"), made.get("uncertain")
-        seen.probability = made.get("probability", made.get("expected_observers"))
+        seen.probability = made.get("probability", made.get("expected"))
         seen.remarks = warned(given)
         return seen
 

@@ -176,6 +176,7 @@ class Sunlight:
         zone: str | datetime.tzinfo | None = None,
         sun_elevation: str = "apparent",
         air: npt.ArrayLike | None = None,
+        interval: bool = False,
         progress: Progress = None,
     ) -> RastersOrTable:
         """Hours of sun on days, and when.
@@ -205,13 +206,17 @@ class Sunlight:
             Whether the air lifts the sun.
         air : array_like, shape (2,), optional
             Pressure in hPa and temperature in degrees Celsius.
+        interval : bool, optional
+            Whether to add the expected value and an interval that holds the truth in 90 % of cases. Only where trees
+            are opaque.
         progress : bool or callable, optional
 
         Returns
         -------
         Rasters or Table
             ``sun_hours``, ``sun_share``, ``first_light``, ``last_light``, ``longest``, of several days also
-            ``min_sun_hours`` and ``total_hours``, and for each rule whether it is met.
+            ``min_sun_hours`` and ``total_hours``, and for each rule whether it is met; with `interval` also
+            ``hours_expected``, ``hours_low`` and ``hours_high``.
 
         Raises
         ------
@@ -242,6 +247,7 @@ class Sunlight:
             _place(location, zone=zone, sun_elevation=sun_elevation, air=air),
             wanted(targets, normals, _cells(cell, target_height, surface, ground)),
             {"share": through_trees, "leaves": leaves},
+            interval,
             reporter(progress),
         )
         return measures(results, self._core.crs, targets)
@@ -258,6 +264,7 @@ class Sunlight:
         surface: bool = False,
         ground: str | None = None,
         through_trees: str | float | None = None,
+        interval: bool = False,
         progress: Progress = None,
     ) -> RastersOrTable:
         """How much of the sky places see.
@@ -270,12 +277,16 @@ class Sunlight:
             Patches of the sky in place of even directions.
         targets, normals, cell, target_height, surface, ground, through_trees
             As for `shadow`.
+        interval : bool, optional
+            Whether to add the expected value and an interval that holds the truth in 90 % of cases. Only where trees
+            are opaque.
         progress : bool or callable, optional
 
         Returns
         -------
         Rasters or Table
-            ``sky_view_factor`` (cosine-weighted) and ``sky_openness`` (unweighted), 0 to 1.
+            ``sky_view_factor`` (cosine-weighted) and ``sky_openness`` (unweighted), 0 to 1; with `interval` also
+            ``factor_expected``, ``factor_low``, ``factor_high``, ``open_expected``, ``open_low`` and ``open_high``.
 
         References
         ----------
@@ -292,6 +303,7 @@ class Sunlight:
             patches,
             wanted(targets, normals, _cells(cell, target_height, surface, ground)),
             {"share": through_trees, "leaves": None},
+            interval,
             reporter(progress),
         )
         return measures(results, self._core.crs, targets)

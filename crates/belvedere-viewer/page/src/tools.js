@@ -63,10 +63,11 @@ export const TOOLS = [
       return `<p class="verdict">${text}</p><p class="note">${note}</p>`
         + (answer.profile ? `<figure>${charts.profile(answer.profile, page.scene.unit)}<figcaption>Ground (brown), obstacles (grey) and the line of sight</figcaption></figure>` : "")
         + list([["Length of the line", `${answer.length_m.toFixed(2)} m`], ...(block ? [["Blocked after", `${block.range_m.toFixed(2)} m`], ["Blocked at", block.place.map((v) => v.toFixed(2)).join(", ")]] : []),
-          ...(answer.unproven_m !== null && !block ? [["Unproven length", `${answer.unproven_m.toFixed(2)} m`]] : [])]);
+          ...(answer.unproven_m !== null && !block ? [["Unproven length", `${answer.unproven_m.toFixed(2)} m`]] : []),
+          ...(answer.probability != null ? [["Probability that B is visible", `${(100 * answer.probability).toFixed(0)} %`]] : [])]);
     },
     rows: ({ profile }) => profile ? [["distance_m", "ground", "line", "solid"], ...profile.distance_m.map((d, i) => [d, profile.ground[i], profile.line[i], profile.solid[i].map((p) => p.join("..")).join(" ")])] : null,
-    properties: (answer) => ({ answer: answer.answer, length_m: answer.length_m, first_block_range_m: answer.first_block?.range_m ?? null }),
+    properties: (answer) => ({ answer: answer.answer, length_m: answer.length_m, first_block_range_m: answer.first_block?.range_m ?? null, probability: answer.probability }),
     geometry: (places) => ["LineString", places],
   },
   {

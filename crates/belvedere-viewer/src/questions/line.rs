@@ -5,7 +5,7 @@ use super::places::{local, number, rounded, shown};
 use crate::replies::{QuestionReply, Refusal};
 use crate::scene_text::typed;
 use belvedere::PatchKind;
-use belvedere::apps::ask::{self, LinesOfSightQuestion, Places, ProfileRows, Standing};
+use belvedere::apps::ask::{self, HowSure, LinesOfSightQuestion, Places, ProfileRows, Standing};
 use belvedere::apps::profile::SightProfile;
 use belvedere::query::Answer as Sight;
 use serde::Deserialize;
@@ -25,8 +25,9 @@ pub(super) fn answer(question: &LineRequest, context: &RequestContext<'_>) -> Re
         return Err(Refusal("A and B are the same place: click two different ones.".to_owned()));
     }
     let is_vertical = observer[..2] == target[..2];
-    let line =
-        LinesOfSightQuestion { profile: (!is_vertical).then(ProfileRows::default), ..LinesOfSightQuestion::default() };
+    let how_sure = HowSure { probability: context.scene.model().pulses().is_some(), certain: None };
+    let profile = (!is_vertical).then(ProfileRows::default);
+    let line = LinesOfSightQuestion { profile, how_sure, ..LinesOfSightQuestion::default() };
     let pair = ends.map(|place| Standing { place, height: None });
     let answers = ask::ask(&context.scene.inner, &line, &Places::Pairs(vec![pair]), context.control)?;
     let (found, remarks) = (answers.found, answers.remarks);
@@ -43,6 +44,8 @@ pub(super) fn answer(question: &LineRequest, context: &RequestContext<'_>) -> Re
             "surface": block.blocker.patch().map(PatchKind::name) })
     });
     let unproven = sight.filter(|_| found.is_proof_tested).map(|sight| number(sight.unproven_length, 3));
+    let probability = found.sure.first().and_then(|measure| measure.values.first()).filter(|value| value.is_finite());
+    let probability = probability.map(|&value| number(f64::from(value), 3));
     let typed = format!("--observer {} --target {}", typed(&question.observer), typed(&question.target));
     let length = observer.iter().zip(target).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt();
     let head = json!({
@@ -50,6 +53,7 @@ pub(super) fn answer(question: &LineRequest, context: &RequestContext<'_>) -> Re
         "length_m": rounded(length, 3),
         "first_block": block,
         "unproven_m": unproven,
+        "probability": probability,
         "profile": found.profile.as_ref().map(|profile| drawn(profile, context)),
         "remarks": remarks,
         "command": context.text.command_on_ground("line-of-sight", &format!("{typed} -o line.csv --profile-out profile.png")),

@@ -21,6 +21,7 @@ mod close_range;
 mod closed_form_shadows;
 mod closed_form_skies;
 mod common;
+mod confidence;
 mod contradictions;
 mod copied_records;
 mod crowns;

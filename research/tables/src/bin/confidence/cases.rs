@@ -9,7 +9,7 @@ use belvedere::view::to_sun;
 use belvedere_baselines::MethodInput;
 use belvedere_baselines::medial::{MedialParams, Outward, scene_model};
 use belvedere_baselines::simulated::surveyed;
-use belvedere_scenes::{Preset, QuerySet, QuerySite, Regime, Truth};
+use belvedere_scenes::{Preset, QuerySet, QuerySite, Regime, TriangleScene, Truth};
 use rayon::prelude::*;
 
 /// Sides of the towns, metres.
@@ -38,29 +38,48 @@ pub(crate) struct Case {
     pub(crate) is_visible: bool,
 }
 
-impl TownSurvey {
-    /// What the surveyed scene says of lines of sight to suns and between people, and the truth.
-    pub(crate) fn cases(&self) -> Result<Vec<Case>> {
-        let params = self.regime.town(self.preset.params(EXTENT, self.seed));
-        let town = self.regime.scene(&params);
-        let (cloud, scanner) = surveyed(&self.regime.scan(&town, &params, self.pulses_per_m2))?;
+/// The scene that a survey shows, and the truth.
+pub(crate) struct SurveyedTown {
+    town: TriangleScene,
+    pub(crate) scene: MedialScene,
+    pub(crate) truth: Truth,
+    pub(crate) origin: [f64; 3],
+    bounds: [[f64; 3]; 2],
+}
+
+impl SurveyedTown {
+    pub(crate) fn new(survey: &TownSurvey) -> Result<Self> {
+        let params = survey.regime.town(survey.preset.params(EXTENT, survey.seed));
+        let town = survey.regime.scene(&params);
+        let (cloud, scanner) = surveyed(&survey.regime.scan(&town, &params, survey.pulses_per_m2))?;
         let input = MethodInput { cloud: &cloud, scanner: &scanner, models: &[] };
         let model = scene_model(&input, Outward::Survey, &MedialParams::carved())?;
         let scene = model.scene(&BlockRule::carved(), UnprovenAs::Reported, &Control::none())?;
-        let truth = Truth::new(&town);
         let (origin, bounds) = (cloud.frame.origin, cloud.bounds().unwrap_or_default());
         let absolute = |p: [f32; 3]| std::array::from_fn(|i| f64::from(p[i]) + origin[i]);
-        let site = QuerySite { scene: &town, truth: &truth, bounds: [bounds.low, bounds.high].map(absolute) };
+        let bounds = [bounds.low, bounds.high].map(absolute);
+        Ok(Self { truth: Truth::new(&town), town, scene, origin, bounds })
+    }
+
+    pub(crate) fn site(&self) -> QuerySite<'_> {
+        QuerySite { scene: &self.town, truth: &self.truth, bounds: self.bounds }
+    }
+}
+
+impl TownSurvey {
+    /// What the surveyed scene says of lines of sight to suns and between people, and the truth.
+    pub(crate) fn cases(&self) -> Result<Vec<Case>> {
+        let surveyed = SurveyedTown::new(self)?;
+        let SurveyedTown { scene, truth, origin, .. } = &surveyed;
         let mut cases = Vec::new();
         for set in SETS {
-            let found = site.targets(set, TARGETS, self.seed);
-            let local: Vec<[f64; 3]> = found.positions.iter().map(|p| to_local(*p, origin).map(f64::from)).collect();
+            let found = surveyed.site().targets(set, TARGETS, self.seed);
+            let local: Vec<[f64; 3]> = found.positions.iter().map(|p| to_local(*p, *origin).map(f64::from)).collect();
             if set == QuerySet::LinesOfSight {
                 let ends = local.par_iter().zip(&found.eyes).zip(&found.positions);
                 cases.par_extend(ends.filter_map(|((target, eye), position)| {
-                    let sight = Ray::between(*target, to_local(*eye, origin).map(f64::from))?;
-                    let is_visible = !truth.occluded(*position, *eye);
-                    case(&scene, set, &sight, is_visible)
+                    let sight = Ray::between(*target, to_local(*eye, *origin).map(f64::from))?;
+                    case(scene, set, &sight, !truth.occluded(*position, *eye))
                 }));
                 continue;
             }
@@ -69,7 +88,7 @@ impl TownSurvey {
                 let blocked = truth.occluded_towards_each(&found.positions, direction);
                 cases.par_extend(local.par_iter().zip(blocked).filter_map(|(target, is_blocked)| {
                     let sight = Ray { origin: *target, direction, ranges: [0.0, f64::INFINITY] };
-                    case(&scene, set, &sight, !is_blocked)
+                    case(scene, set, &sight, !is_blocked)
                 }));
             }
         }

@@ -16,19 +16,30 @@ const ENOUGH: f64 = 1e-6;
 /// How often each line between people counts: there are four suns for each other target.
 const LINES_OF_SIGHT: f64 = 4.0;
 
-/// The surveys that are fitted: kinds of towns, with scanners and densities between which others lie.
-pub(super) fn surveys() -> Vec<TownSurvey> {
-    let flown = [5.0, 10.0, 20.0, 40.0].map(|density| (Regime::Air, density));
-    let others = [Regime::Leaves, Regime::WideBeam].map(|regime| (regime, 10.0));
-    let kinds = [Preset::Village, Preset::Town, Preset::OldTown, Preset::Towers];
+/// Kinds of towns that are fitted.
+const PRESETS: [Preset; 4] = [Preset::Village, Preset::Town, Preset::OldTown, Preset::Towers];
+
+/// The surveys from the air that are fitted: with scanners and densities between which others lie.
+pub(super) fn flown_surveys() -> Vec<TownSurvey> {
+    let flown = [5.0, 10.0, 40.0].map(|density| (Regime::Air, density));
+    let others = [Regime::Leaves, Regime::Drone].map(|regime| (regime, 10.0));
     let mut surveys = Vec::new();
-    for preset in kinds {
+    for preset in PRESETS {
         for seed in SEEDS {
             let all = flown.iter().chain(&others);
             surveys.extend(all.map(|&(regime, pulses_per_m2)| TownSurvey { preset, seed, regime, pulses_per_m2 }));
         }
     }
     surveys
+}
+
+/// All surveys that are fitted: these, and some from the ground.
+pub(super) fn surveys() -> Vec<TownSurvey> {
+    let from_ground =
+        [(Preset::Town, Regime::Tripods), (Preset::OldTown, Regime::Tripods), (Preset::Town, Regime::Car)];
+    let from_ground =
+        from_ground.map(|(preset, regime)| TownSurvey { preset, seed: SEEDS[0], regime, pulses_per_m2: 10.0 });
+    [flown_surveys(), from_ground.into()].concat()
 }
 
 /// The scores as the program reads them.

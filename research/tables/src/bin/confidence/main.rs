@@ -2,19 +2,24 @@
 //!
 //! ```sh
 //! cargo research confidence -- fit crates/belvedere-core/src/query/confidence_scores.csv
+//! cargo research confidence -- fit-sums crates/belvedere-apps/src/sum_errors.csv
 //! cargo research confidence -- judge village,town,old-town,towers 201,202 10 air
+//! cargo research confidence -- judge-sums village,town,old-town,towers 201 10 air
 //! ```
 //!
-//! `fit` writes the scores that the program uses. `judge` prints the tables of docs/methods/confidence.md: kinds of
-//! towns, seeds, pulses per m², scanners. No town of the tables was fitted.
+//! `fit` and `fit-sums` write the scores and the errors of sums that the program uses. `judge` and `judge-sums` print
+//! the tables of docs/methods/confidence.md: kinds of towns, seeds, pulses per m², scanners. No town of the tables was
+//! fitted.
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "a program for tables talks")]
 
 mod cases;
 mod fit;
+mod sums;
 
 use belvedere_baselines::calibration::Calibration;
 use belvedere_scenes::{Preset, Regime};
 use cases::{Case, SETS, TownSurvey};
+use sums::SumCase;
 
 type AnyResult<T> = Result<T, Box<dyn std::error::Error>>;
 
@@ -26,8 +31,16 @@ fn main() -> AnyResult<()> {
             let cases = all_cases(&fit::surveys())?;
             Ok(std::fs::write(file, fit::scores(&cases)?)?)
         }
+        ["fit-sums", file] => {
+            let cases = all_sums(&fit::flown_surveys())?;
+            Ok(std::fs::write(file, sums::errors(&cases))?)
+        }
+        ["judge-sums", presets, seeds, densities, regimes] => {
+            sums::judge(&all_sums(&surveys(presets, seeds, densities, regimes)?)?);
+            Ok(())
+        }
         ["judge", presets, seeds, densities, regimes] => judge(presets, seeds, densities, regimes),
-        _ => Err("use: fit FILE, or judge PRESETS SEEDS DENSITIES SCANNERS".into()),
+        _ => Err("use: fit FILE, fit-sums FILE, or judge or judge-sums PRESETS SEEDS DENSITIES SCANNERS".into()),
     }
 }
 
@@ -40,6 +53,32 @@ fn all_cases(surveys: &[TownSurvey]) -> AnyResult<Vec<Case>> {
     Ok(cases)
 }
 
+fn all_sums(surveys: &[TownSurvey]) -> AnyResult<Vec<SumCase>> {
+    let mut cases = Vec::new();
+    for survey in surveys {
+        eprintln!("{survey:?}");
+        cases.extend(sums::cases(survey)?);
+    }
+    Ok(cases)
+}
+
+/// Every kind of town with every seed, density and scanner.
+fn surveys(presets: &str, seeds: &str, densities: &str, regimes: &str) -> AnyResult<Vec<TownSurvey>> {
+    let mut surveys = Vec::new();
+    for density in densities.split(',') {
+        for regime in regimes.split(',') {
+            let regime = Regime::ALL.into_iter().find(|known| known.name() == regime).ok_or("no such scanner")?;
+            for preset in presets.split(',') {
+                let preset = Preset::ALL.into_iter().find(|known| known.name() == preset).ok_or("no such town")?;
+                for seed in seeds.split(',') {
+                    surveys.push(TownSurvey { preset, seed: seed.parse()?, regime, pulses_per_m2: density.parse()? });
+                }
+            }
+        }
+    }
+    Ok(surveys)
+}
+
 fn judge(presets: &str, seeds: &str, densities: &str, regimes: &str) -> AnyResult<()> {
     println!(
         "| pulses per m² | scanner | set | wrong | Brier: answer | probability | ECE | most certain: answer | probability |"
@@ -48,16 +87,8 @@ fn judge(presets: &str, seeds: &str, densities: &str, regimes: &str) -> AnyResul
     let mut whole: Vec<Case> = Vec::new();
     for density in densities.split(',') {
         for regime in regimes.split(',') {
-            let regime = Regime::ALL.into_iter().find(|known| known.name() == regime).ok_or("no such scanner")?;
-            let mut surveys = Vec::new();
-            for preset in presets.split(',') {
-                let preset = Preset::ALL.into_iter().find(|known| known.name() == preset).ok_or("no such town")?;
-                for seed in seeds.split(',') {
-                    surveys.push(TownSurvey { preset, seed: seed.parse()?, regime, pulses_per_m2: density.parse()? });
-                }
-            }
-            let cases = all_cases(&surveys)?;
-            print_rows(&format!("{density} | {}", regime.name()), &cases);
+            let cases = all_cases(&surveys(presets, seeds, density, regime)?)?;
+            print_rows(&format!("{density} | {regime}"), &cases);
             whole.extend(cases);
         }
     }

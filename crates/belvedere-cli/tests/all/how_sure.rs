@@ -1,0 +1,116 @@
+//! How sure answers are, on the command line: bands and columns of probabilities, uncertain answers, intervals.
+
+use crate::common::{Workplace, column};
+use belvedere::io::{ReadBands, read_tif_bands};
+
+/// A surveyed village, and what reads it.
+fn village() -> Workplace {
+    let place = Workplace::new();
+    place.summary("simulate village -o town --extent 70 --density 8");
+    place.summary("balls town/cloud.laz -o balls.npz");
+    place
+}
+
+fn numbers(place: &Workplace, name: &str) -> Vec<Vec<f32>> {
+    match read_tif_bands((&*place.path(name)).into()).unwrap() {
+        ReadBands::F32(bands) => bands.iter().map(|band| band.values().to_vec()).collect(),
+        _ => panic!("{name} does not hold numbers"),
+    }
+}
+
+#[test]
+fn shadows_viewsheds_and_lines_say_how_likely_they_are() {
+    let place = village();
+    let shadow = "shadow town/cloud.laz --sun 200,30 --cell 1";
+    let plain = place.summary(&format!("{shadow} -o plain.tif"));
+    let sure = place.summary(&format!("{shadow} --probability --certain 0.9 -o sure.tif -o sure.png -o sure.csv"));
+    // answers stay
+    assert_eq!(plain["measures"]["lit"], sure["measures"]["lit"], "{sure}");
+    assert!(plain["certainty"].is_null());
+    let certainty = &sure["certainty"];
+    let percent = ["certainly_visible_percent", "certainly_blocked_percent", "uncertain_percent"]
+        .map(|name| certainty[name].as_f64().unwrap());
+    // each is rounded to a hundredth
+    assert!((percent.iter().sum::<f64>() - 100.0).abs() < 0.02 && percent.iter().all(|p| *p > 0.1), "{certainty}");
+    let bands = numbers(&place, "sure.tif");
+    let [lit, unproven, likely, uncertain] = &bands[..] else { panic!("{} bands", bands.len()) };
+    let (mut counted, mut doubtful) = (0, 0);
+    for row in 0..lit.len() {
+        if likely[row] < 0.0 {
+            assert!(uncertain[row] < 0.0);
+            continue;
+        }
+        let is_uncertain = likely[row].max(1.0 - likely[row]) < 0.9 || unproven[row] > 0.0;
+        assert_eq!(uncertain[row] > 0.0, is_uncertain, "{} {}", likely[row], unproven[row]);
+        counted += 1;
+        doubtful += usize::from(is_uncertain);
+    }
+    assert!(counted > 2000 && doubtful > 20, "{doubtful} of {counted}");
+    let agrees = (0..lit.len()).filter(|&row| likely[row] >= 0.0 && (likely[row] > 0.5) == (lit[row] > 0.0)).count();
+    assert!(agrees as f64 > 0.95 * f64::from(counted), "{agrees} of {counted}");
+    assert_eq!(column(&place, "sure.csv", "probability").len(), column(&place, "sure.csv", "lit").len());
+    assert!(place.bytes("sure.png").starts_with(b"\x89PNG"));
+
+    let info = place.summary("info town/cloud.laz");
+    let middle = info["bounds"].clone();
+    let corner = |which: &str, axis: usize| middle[which][axis].as_f64().unwrap();
+    let at = |share: f64| [0, 1].map(|axis| corner("min", axis) + share * (corner("max", axis) - corner("min", axis)));
+    let [[ax, ay], [bx, by]] = [at(0.4), at(0.6)];
+    let viewshed = format!("viewshed town/cloud.laz --observer {ax},{ay} --cell 1 --probability --certain 0.95");
+    let seen = place.summary(&format!("{viewshed} -o seen.tif -o seen.png"));
+    assert!(seen["certainty"]["uncertain_percent"].as_f64().unwrap() > 0.0, "{seen}");
+    assert_eq!(numbers(&place, "seen.tif").len(), 4);
+    let both = format!("viewshed town/cloud.laz --observer {ax},{ay} --observer {bx},{by} --cell 1 --probability");
+    place.summary(&format!("{both} -o both.tif"));
+    let [_, _, expected] = &numbers(&place, "both.tif")[..] else { panic!("three bands") };
+    assert!(expected.iter().all(|value| *value <= 2.0) && expected.iter().any(|value| *value > 1.5));
+
+    let line = format!("line-of-sight town/cloud.laz --observer {ax},{ay} --target {bx},{by} --target-height 1.7");
+    let one = place.run(&format!("{line} --probability -o line.csv"));
+    assert!(one.status == 0 && one.stdout.contains("visible with a probability of"), "{one:?}");
+    let likely = column(&place, "line.csv", "probability");
+    assert!(likely.len() == 1 && (0.0..=1.0).contains(&likely[0]), "{likely:?}");
+    // the probability of an answer in Python or on a page is the same: it follows from the same scene
+    let from_balls = line.replace("town/cloud.laz", "balls.npz --ground cloud=town/cloud.laz");
+    place.summary(&format!("{from_balls} --probability -o again.csv"));
+    assert_eq!(column(&place, "again.csv", "probability"), likely);
+}
+
+#[test]
+fn hours_of_sun_and_views_of_the_sky_have_intervals() {
+    let place = village();
+    place
+        .summary("sun-hours town/cloud.laz --date 2026-03-21 --zone Europe/Amsterdam --cell 2 --interval -o hours.csv");
+    let [hours, expected, low, high] =
+        ["sun_hours", "hours_expected", "hours_low", "hours_high"].map(|name| column(&place, "hours.csv", name));
+    let rows = (0..hours.len()).filter(|&row| hours[row].is_finite());
+    let mut widths = Vec::new();
+    for row in rows {
+        assert!(low[row] <= high[row] && low[row] >= 0.0 && high[row] <= 12.5, "{} {}", low[row], high[row]);
+        assert!((0.0..=12.5).contains(&expected[row]));
+        widths.push(high[row] - low[row]);
+    }
+    assert!(widths.len() > 500 && widths.iter().any(|width| *width > 0.2), "{} widths", widths.len());
+    place.summary("sky-view town/cloud.laz --cell 2 --directions 145 --interval -o sky.csv");
+    let [low, high] = ["factor_low", "factor_high"].map(|name| column(&place, "sky.csv", name));
+    assert!(low.iter().zip(&high).filter(|(low, _)| low.is_finite()).all(|(low, high)| low <= high && *high <= 1.0));
+}
+
+#[test]
+fn what_has_no_probability_is_refused() {
+    let place = village();
+    for (flags, what) in [
+        ("shadow town/cloud.laz --sun 200,30 --soft --probability -o lit.tif", "soft edges"),
+        ("shadow town/cloud.laz --sun 200,30 --through-trees 0.3 --certain 0.9 -o lit.tif", "trees"),
+        ("shadow town/cloud.laz --sun 200,30 --certain 0.4 -o lit.tif", "--certain"),
+        ("shadow town/cloud.laz --sun 200,30 --certain 1.2 -o lit.tif", "--certain"),
+        ("sky-view town/cloud.laz --through-trees 0.3 --interval -o sky.tif", "--interval"),
+        ("viewshed balls.laz --ground cloud=town/cloud.laz --observer 84000,447000 --probability -o v.tif", "pulses"),
+    ] {
+        if flags.contains("balls.laz") {
+            place.summary("balls town/cloud.laz -o balls.laz");
+        }
+        let run = place.run(flags);
+        assert!(run.status != 0 && run.stderr.contains(what), "{flags}: {run:?}");
+    }
+}

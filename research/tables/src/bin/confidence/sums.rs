@@ -1,0 +1,145 @@
+//! Sums over directions: how far hours of sun and views of the sky are from the truth.
+
+use super::AnyResult;
+use super::cases::{SurveyedTown, TownSurvey};
+use belvedere::apps::rows::RowBlock;
+use belvedere::apps::sky_view::SkyDirections;
+use belvedere::apps::sum_errors::{CLASSES, Outlines, SumKind, expected_measures};
+use belvedere::apps::targets::{Measure, Targets};
+use belvedere::cloud::to_local;
+use belvedere::control::Control;
+use belvedere::frame::Frame;
+use belvedere_scenes::QuerySet;
+
+/// Targets of each set.
+const TARGETS: usize = 400;
+const SETS: [QuerySet; 3] = [QuerySet::Pedestrians, QuerySet::Roofs, QuerySet::Facades];
+/// Declinations of the sun at the shortest day, an equinox and the longest day, and the latitude, degrees.
+const DECLINATIONS_DEG: [f64; 3] = [-23.4, 0.0, 23.4];
+const LATITUDE_DEG: f64 = 52.0;
+/// Suns of a whole day: one each ten minutes.
+const STEPS: u16 = 144;
+/// Fewer cases than this are no interval.
+const MIN_CASES: usize = 50;
+
+/// A sum of a target as a share of the greatest possible.
+pub(super) struct SumCase {
+    kind: SumKind,
+    set: QuerySet,
+    class: u8,
+    found: f64,
+    truth: f64,
+}
+
+/// Directions of one sum, and their weights.
+struct Sum {
+    kind: SumKind,
+    directions: Vec<[f64; 3]>,
+    weights: Vec<f64>,
+}
+
+fn all_sums() -> AnyResult<Vec<Sum>> {
+    let mut sums: Vec<Sum> = DECLINATIONS_DEG
+        .map(|declination| {
+            let directions = suns(declination);
+            Sum { kind: SumKind::Sun, weights: vec![1.0; directions.len()], directions }
+        })
+        .into();
+    let sky = SkyDirections::even(577)?;
+    let cosines: Vec<f64> = sky.directions.iter().zip(&sky.solid_angles).map(|(d, angle)| d[2] * angle).collect();
+    sums.push(Sum { kind: SumKind::Sky, directions: sky.directions.clone(), weights: cosines });
+    sums.push(Sum { kind: SumKind::Sky, directions: sky.directions, weights: sky.solid_angles });
+    Ok(sums)
+}
+
+/// The suns of a day above the horizon.
+fn suns(declination_deg: f64) -> Vec<[f64; 3]> {
+    let (latitude, declination) = (LATITUDE_DEG.to_radians(), declination_deg.to_radians());
+    let sun = |step: u16| {
+        let hour = ((f64::from(step) + 0.5) / f64::from(STEPS) - 0.5) * std::f64::consts::TAU;
+        let east = -declination.cos() * hour.sin();
+        let north = latitude.cos() * declination.sin() - latitude.sin() * declination.cos() * hour.cos();
+        [east, north, latitude.sin() * declination.sin() + latitude.cos() * declination.cos() * hour.cos()]
+    };
+    (0..STEPS).map(sun).filter(|sun| sun[2] > 0.0).collect()
+}
+
+/// Sums over what targets of a surveyed town see, and the truth.
+pub(super) fn cases(survey: &TownSurvey) -> AnyResult<Vec<SumCase>> {
+    let surveyed = SurveyedTown::new(survey)?;
+    let SurveyedTown { scene, truth, origin, .. } = &surveyed;
+    let mut cases = Vec::new();
+    for set in SETS {
+        let found = surveyed.site().targets(set, TARGETS, survey.seed).positions;
+        let positions: Vec<[f64; 3]> = found.iter().map(|p| to_local(*p, *origin).map(f64::from)).collect();
+        let targets = Targets::of_places(&positions, Frame::default());
+        for Sum { kind, directions, weights } in all_sums()? {
+            let outlines = Outlines::new(&directions, &weights);
+            let matrix = scene.visibility_matrix(&targets.positions, &directions, &Control::none())?;
+            let all: f64 = weights.iter().sum();
+            let mut truths = vec![0.0; found.len()];
+            for (direction, weight) in directions.iter().zip(&weights) {
+                let blocked = truth.occluded_towards_each(&found, *direction);
+                truths.iter_mut().zip(blocked).for_each(|(sum, blocked)| *sum += if blocked { 0.0 } else { *weight });
+            }
+            let block = RowBlock { rows: 0..found.len(), matrix, without_trees: None };
+            let classes = outlines.classes(&block, scene, &targets);
+            cases.extend(truths.iter().zip(classes).enumerate().map(|(row, (truth, class))| SumCase {
+                kind,
+                set,
+                class,
+                found: block.matrix.sum(row, &weights) / all,
+                truth: truth / all,
+            }));
+        }
+    }
+    Ok(cases)
+}
+
+/// The errors as the program reads them.
+pub(super) fn errors(cases: &[SumCase]) -> String {
+    let mut text = "kind,class,mean,low,high,cases\n".to_owned();
+    for (kind, name) in SumKind::ALL {
+        for class in 0..CLASSES {
+            let of_class = cases.iter().filter(|case| case.kind == kind && usize::from(case.class) == class);
+            let mut errors: Vec<f64> = of_class.map(|case| case.truth - case.found).collect();
+            if errors.len() < MIN_CASES {
+                continue;
+            }
+            errors.sort_by(f64::total_cmp);
+            let count = errors.len();
+            let mean = errors.iter().sum::<f64>() / count as f64;
+            let (low, high) = (errors[count / 20], errors[count - 1 - count / 20]);
+            text += &format!("{name},{class},{mean:.4},{low:.4},{high:.4},{count}\n");
+        }
+    }
+    text
+}
+
+/// Prints how often intervals hold the truth, and how wide they are.
+pub(super) fn judge(cases: &[SumCase]) {
+    println!(
+        "\n| sum | set | cases | held by the interval, % | mean width, % of the greatest sum |\n|---|---|---|---|---|"
+    );
+    for (kind, name) in SumKind::ALL {
+        for set in SETS.map(Some).into_iter().chain([None]) {
+            let (mut held, mut width, mut count) = (0, 0.0, 0);
+            for case in cases.iter().filter(|case| case.kind == kind && set.is_none_or(|set| case.set == set)) {
+                #[expect(clippy::cast_possible_truncation, reason = "a share")]
+                let sums = Measure::new("sum", vec![case.found as f32]);
+                let measures = expected_measures("sum", &sums, 1.0, kind, &[case.class]);
+                let [low, high] = [1, 2].map(|number: usize| f64::from(measures[number].values[0]));
+                // f32 rounds the ends
+                held += usize::from(low - 1e-6 <= case.truth && case.truth <= high + 1e-6);
+                width += high - low;
+                count += 1;
+            }
+            let set = set.map_or("all", QuerySet::name);
+            let (held, width) = (
+                100.0 * f64::from(u32::try_from(held).unwrap_or(0)) / f64::from(count),
+                100.0 * width / f64::from(count),
+            );
+            println!("| {name} | {set} | {count} | {held:.1} | {width:.1} |");
+        }
+    }
+}
