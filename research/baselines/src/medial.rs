@@ -8,7 +8,7 @@ use belvedere::depth::{ItemBuffer, Profile, depth_map};
 use belvedere::medial::{CarvedParams, MedialBalls, ShrinkMethod, ShrinkParams};
 use belvedere::model::{BallParams, ModelParams, OrientBy, SceneModel};
 use belvedere::normals::estimate::Neighborhood;
-use belvedere::query::{BlockRule, MedialScene, Sight, Viewer, Visibility, query_points};
+use belvedere::query::{BlockRule, MedialScene, Sight, UnprovenAs, Viewer, Visibility, query_points};
 use belvedere::view::View;
 use belvedere::{Mesh, Result};
 
@@ -108,6 +108,8 @@ pub struct MedialBaseline {
     balls: MedialBalls,
     bounds: [[f64; 3]; 2],
     params: MedialParams,
+    /// The same scene with its pulses, where they are known.
+    proving: Option<MedialScene>,
 }
 
 /// The scene model of a survey.
@@ -138,8 +140,12 @@ impl MedialBaseline {
     pub fn new(survey: &MethodInput<'_>, outward: Outward<'_>, params: &MedialParams) -> Result<Self> {
         let model = scene_model(survey, outward, params)?;
         let triangles = model.triangles().cloned();
+        let proving = match model.pulses() {
+            Some(_) => Some(model.scene(&params.blocking, UnprovenAs::Reported, &Control::none())?),
+            None => None,
+        };
         let made = Self::of_balls(survey, model.into_parts().balls, params)?;
-        Ok(Self { scene: made.scene.with_triangles(triangles), ..made })
+        Ok(Self { scene: made.scene.with_triangles(triangles), proving, ..made })
     }
 
     /// The balls that block.
@@ -163,11 +169,17 @@ impl MedialBaseline {
             return Err(belvedere::Error::NoPoints { what: "a union of balls needs a cloud".to_owned() });
         };
         let scene = MedialScene::new(&balls, &params.blocking)?;
-        Ok(Self { scene, balls, bounds: [low.map(f64::from), high.map(f64::from)], params: *params })
+        let bounds = [low.map(f64::from), high.map(f64::from)];
+        Ok(Self { scene, balls, bounds, params: *params, proving: None })
     }
 }
 
 impl Visibility for MedialBaseline {
+    fn probabilities(&self, viewer: Viewer<'_>, targets: &[[f32; 3]]) -> Result<Option<Vec<f32>>> {
+        let proving = self.proving.as_ref();
+        proving.map(|scene| scene.visible_probabilities(viewer, targets, &Control::none())).transpose()
+    }
+
     fn seen_from<'a>(&'a self, viewer: Viewer<'a>) -> Result<Sight<'a>> {
         let (Viewer::Direction(to_viewer), ParallelViews::DepthMap) = (viewer, self.params.parallel_views) else {
             return self.scene.seen_from(viewer);

@@ -1,7 +1,7 @@
 //! One method on one place: built, queried, scored, timed.
 
 use super::case::{ComparisonCase, STREET, STREET_GROUP, Set};
-use super::results::{AblationRow, AnswerRow, AuditRow, Cost, MethodResult, MethodScore, Rated};
+use super::results::{AblationRow, AnswerRow, AuditRow, CalibrationScore, Cost, MethodResult, MethodScore, Rated};
 use super::scanners::ComparisonScanner;
 use crate::memory::{reset_peak, resident_and_peak_mib};
 use belvedere::control::Control;
@@ -9,6 +9,7 @@ use belvedere::medial::{MedialBalls, NO_TOUCH};
 use belvedere::query::{Answer, UnprovenAs, Visibility};
 use belvedere_baselines::agreement::{Interval, Rate, TruthCounts, count_by_tile, interval, quantile};
 use belvedere_baselines::audit::{BallVerdict, audit};
+use belvedere_baselines::calibration::Calibration;
 use belvedere_baselines::medial::{MedialBaseline, MedialParams, Outward, scene_model};
 use belvedere_baselines::methods::{Method, PerEye};
 use belvedere_scenes::Material;
@@ -81,6 +82,12 @@ pub(super) fn judge(
                 continue;
             }
             let rate = |rate| rated(interval(&views, rate, seed));
+            let of_group = replies
+                .calibrations
+                .iter()
+                .filter(|(name, view, _)| *name == set.name && case.views[*view].group == group);
+            let mut calibration = Calibration::default();
+            of_group.for_each(|(.., of_view)| calibration.extend(of_view));
             result.scores.push(MethodScore {
                 set: set.name.to_owned(),
                 views: group.to_owned(),
@@ -92,6 +99,11 @@ pub(super) fn judge(
                 unanswered: rate(Rate::Unanswered),
                 observers: views.len(),
                 tenth_balanced: quantile(&views, Rate::Balanced, WORST_SHARE),
+                calibration: (calibration.count() > 0).then(|| CalibrationScore {
+                    brier: calibration.brier(),
+                    expected_error: calibration.expected_error(),
+                    error_of_most_certain: calibration.error_of_most_certain(),
+                }),
                 refused,
             });
         }
@@ -113,12 +125,19 @@ struct MethodAnswers {
     view_seconds: Vec<f64>,
     query_count: usize,
     query_seconds: f64,
+    /// By set and view.
+    calibrations: Vec<(&'static str, usize, Calibration)>,
 }
 
 fn ask(case: &ComparisonCase, method: &dyn Visibility, per_eye: PerEye) -> MethodAnswers {
     let mut street_eyes = 0;
-    let mut replies =
-        MethodAnswers { answers: Vec::new(), view_seconds: Vec::new(), query_count: 0, query_seconds: 0.0 };
+    let mut replies = MethodAnswers {
+        answers: Vec::new(),
+        view_seconds: Vec::new(),
+        query_count: 0,
+        query_seconds: 0.0,
+        calibrations: Vec::new(),
+    };
     for view in 0..case.views.len() {
         let sets = || case.sets.iter().filter(|set| set.truth.iter().any(|(number, _)| *number == view));
         let Some(first) = sets().next() else { continue };
@@ -149,11 +168,32 @@ fn ask(case: &ComparisonCase, method: &dyn Visibility, per_eye: PerEye) -> Metho
                 replies.query_seconds += start.elapsed().as_secs_f64();
                 replies.query_count += set.targets.len();
             }
+            if let Ok(answers) = &answers {
+                let likely = method.probabilities(case.viewer(view, set), &set.targets).ok().flatten();
+                replies.calibrations.push((set.name, view, calibrated(set, view, answers, likely.as_deref())));
+            }
             let answers = answers.map_err(|error| error.to_string());
             replies.answers.push(AnswerSet { set: set.name, view, answers });
         }
     }
     replies
+}
+
+/// Probabilities with the truth; answers count as 0 and 1 where `likely` is not known.
+fn calibrated(set: &Set, view: usize, answers: &[Answer], likely: Option<&[f32]>) -> Calibration {
+    let mut calibration = Calibration::default();
+    let Some((_, truth)) = set.truth.iter().find(|(number, _)| *number == view) else { return calibration };
+    for (row, (truth, answer)) in truth.iter().zip(answers).enumerate() {
+        let hard = match answer {
+            Answer::Visible | Answer::Unproven => 1.0,
+            Answer::Blocked | Answer::InsideObstacle => 0.0,
+            _ => f32::NAN,
+        };
+        if let Some(is_visible) = truth {
+            calibration.add(likely.and_then(|likely| likely.get(row)).copied().unwrap_or(hard), *is_visible);
+        }
+    }
+    calibration
 }
 
 fn counts(set: &Set, view: usize, answers: &[Answer]) -> Vec<TruthCounts> {

@@ -2,7 +2,7 @@
 
 use super::case::{STREET, STREET_GROUP};
 use super::pictures::LEGEND;
-use super::results::{AnswerRow, HeldOutResult, MethodResult, MethodScore, PlaceResult, Rated, keep};
+use super::results::{AnswerRow, CalibrationScore, HeldOutResult, MethodResult, MethodScore, PlaceResult, Rated, keep};
 use super::scanners::PICTURE as CURVES;
 use super::table::TextTable;
 use anyhow::{Context, Result, bail};
@@ -130,7 +130,7 @@ impl ComparisonResults {
         let mut tables = Vec::new();
         if !self.methods.is_empty() {
             tables.extend(self.by_scanner());
-            tables.extend([self.balanced(), self.errors()]);
+            tables.extend([self.balanced(), self.errors(), self.probabilities()]);
             tables.extend(self.differences());
             tables.extend([self.street(), self.worth_of_answers(), self.costs()]);
             tables.extend([self.place_table(), self.base_rates()]);
@@ -210,6 +210,33 @@ impl ComparisonResults {
                 match (blocked, visible) {
                     (None, None) => "–".to_owned(),
                     _ => format!("{} / {}", with_interval(blocked), with_interval(visible)),
+                }
+            });
+            table.add(title, cells);
+        }
+        table
+    }
+
+    fn probabilities(&self) -> TextTable {
+        let shown: Vec<_> = COLUMNS.iter().filter(|(set, ..)| !matches!(*set, "VOL" | "GRD")).collect();
+        let mut table = TextTable::new(
+            "Probabilities: Brier score / expected calibration error, % / wrong among the most certain nine tenths, %",
+            "Brier score: mean square of the difference between the probability of being visible and the truth. Answers of methods that give no probability count as 0 and 1. Mean over places.",
+            [vec!["method"], shown.iter().map(|(_, _, heading)| *heading).collect()].concat(),
+        );
+        for (key, title) in self.method_names() {
+            let cells = shown.iter().map(|(set, views, _)| {
+                let scores = self.of(key).flat_map(|r| &r.scores).filter(|s| s.set == *set && s.views == *views);
+                let found: Vec<CalibrationScore> = scores.filter_map(|score| score.calibration).collect();
+                let mean = |of: fn(&CalibrationScore) -> f64| found.iter().map(of).sum::<f64>() / found.len() as f64;
+                match found.is_empty() {
+                    true => "–".to_owned(),
+                    false => format!(
+                        "{:.4} / {:.1} / {:.2}",
+                        mean(|s| s.brier),
+                        100.0 * mean(|s| s.expected_error),
+                        100.0 * mean(|s| s.error_of_most_certain)
+                    ),
                 }
             });
             table.add(title, cells);

@@ -31,8 +31,18 @@ pub(super) struct MethodScore {
     pub(super) observers: usize,
     /// Balanced accuracy that a tenth of the views stay below.
     pub(super) tenth_balanced: Option<f64>,
+    /// What probabilities are worth.
+    pub(super) calibration: Option<CalibrationScore>,
     /// Why there are no answers.
     pub(super) refused: Option<String>,
+}
+
+/// What probabilities of being visible are worth; answers of methods that give none count as 0 and 1.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize, PartialEq)]
+pub(super) struct CalibrationScore {
+    pub(super) brier: f64,
+    pub(super) expected_error: f64,
+    pub(super) error_of_most_certain: f64,
 }
 
 /// What a method cost.

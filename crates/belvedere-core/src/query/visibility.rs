@@ -37,6 +37,15 @@ pub trait Visibility: Sync {
     fn visible(&self, viewer: Viewer<'_>, targets: &[[f32; 3]]) -> Result<Vec<Answer>> {
         self.seen_from(viewer)?(targets)
     }
+
+    /// How likely each of `targets`, (M, 3) local metres, is visible for `viewer`, 0 to 1, NaN where there is no answer;
+    /// `None`, the default, for a method that does not say.
+    ///
+    /// # Errors
+    /// As [`Visibility::visible`].
+    fn probabilities(&self, _viewer: Viewer<'_>, _targets: &[[f32; 3]]) -> Result<Option<Vec<f32>>> {
+        Ok(None)
+    }
 }
 
 impl Viewer<'_> {
