@@ -19,6 +19,7 @@ pub mod sky_view;
 pub mod solar_envelope;
 pub mod sun;
 pub mod sun_hours;
+pub mod survey_plan;
 pub mod targets;
 pub mod tree_light;
 pub mod viewshed;
