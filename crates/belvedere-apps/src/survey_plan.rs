@@ -262,8 +262,8 @@ struct VirtualScan<'a> {
     scene: &'a MedialScene,
     params: &'a ScannerParams,
     eye: [f64; 3],
-    /// Height of the ground below, local metres, where it is known.
-    floor: Option<f64>,
+    /// Height of the ground below, local metres.
+    floor: f64,
     /// Length that a pulse proves along each way, metres: 0 where it does not return, NaN where it is not known yet.
     lengths: Vec<f32>,
 }
@@ -275,7 +275,9 @@ impl<'a> VirtualScan<'a> {
         eye: [f64; 3],
         params: &'a ScannerParams,
     ) -> Option<Self> {
-        let floor = ground.and_then(|ground| ground.height_at([eye[0], eye[1]]));
+        // who looks at what nobody saw may stand on ground that nobody saw
+        let known = ground.and_then(|ground| ground.height_at([eye[0], eye[1]]));
+        let floor = known.unwrap_or(eye[2] - STATION_HEIGHT);
         let lengths = vec![f32::NAN; COLUMNS * COLUMNS / 2];
         eye.iter().all(|v| v.is_finite()).then_some(Self { scene, params, eye, floor, lengths })
     }
@@ -329,7 +331,7 @@ impl<'a> VirtualScan<'a> {
         let seen = self.scene.seen_along(self.eye, direction, max_range).map(|(_, range)| range);
         // where the model has nothing, the ground goes on below the cloud, and nothing returns from above
         let range = seen.or_else(|| {
-            let range = (self.eye[2] - self.floor?) / -direction[2];
+            let range = (self.eye[2] - self.floor) / -direction[2];
             let foot = std::array::from_fn(|i| self.eye[i] + range * direction[i]);
             let is_known = self.scene.coverage().is_none_or(|coverage| coverage.holds_on_map(foot));
             (direction[2] < 0.0 && (0.0..=max_range).contains(&range) && is_known).then_some(range)
