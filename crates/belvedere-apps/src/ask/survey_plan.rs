@@ -33,7 +33,7 @@ pub struct SurveyPlanQuestion {
     /// Height of the scanner above the ground or the roof, metres, 0 or more; `None` for 1.8.
     pub station_height: Option<f64>,
     /// Greatest range at which surfaces return pulses, metres, above 0; `None` for 100.
-    pub max_range: Option<f64>,
+    pub max_distance: Option<f64>,
     /// Angle between pulses, degrees, above 0 to 90; `None` for 0.1.
     pub angle_step_deg: Option<f64>,
     /// Who looks at the places of the question; none where these are pairs.
@@ -53,7 +53,7 @@ impl Default for SurveyPlanQuestion {
             count: 1,
             candidates: Candidates::default(),
             station_height: None,
-            max_range: None,
+            max_distance: None,
             angle_step_deg: None,
             observers: Vec::new(),
             observer_height: None,
@@ -107,6 +107,7 @@ struct StationSection {
     position: [f64; 3],
     settled_alone: usize,
     settled_lines: usize,
+    expected_lines: f64,
     settled_percent: f64,
     proven_m: f64,
 }
@@ -137,7 +138,7 @@ impl SurveyPlanQuestion {
     fn scanner(&self) -> ScannerParams {
         let usual = ScannerParams::default();
         usual
-            .with_max_range(self.max_range.unwrap_or(usual.max_range))
+            .with_max_range(self.max_distance.unwrap_or(usual.max_range))
             .with_angular_step(self.angle_step_deg.map_or(usual.angular_step, f64::to_radians))
     }
 
@@ -192,6 +193,7 @@ impl SurveyPlanQuestion {
                 position: scene.frame().file_from_local(station.eye).map(|v| rounded(v, 2)),
                 settled_alone: station.alone.settled,
                 settled_lines: together.settled,
+                expected_lines: rounded(together.expected, 1),
                 settled_percent: found.share(together),
                 proven_m: rounded(together.proven, 1),
             })
@@ -216,11 +218,11 @@ impl SurveyPlanSection {
     fn headlines(&self) -> Vec<String> {
         let total = self.unproven_lines;
         let station = |(station, number): (&StationSection, usize)| {
-            let StationSection { position: [x, y, z], settled_lines, settled_percent, .. } = station;
+            let StationSection { position: [x, y, z], settled_lines, expected_lines, .. } = station;
             let who = if number == 1 { "it" } else { "it and those before" };
             format!(
-                "station {number} at {x}, {y}, {z}: {who} should settle {settled_lines} of {total} unproven lines \
-                 ({settled_percent} %)"
+                "station {number} at {x}, {y}, {z}: {who} should prove about {expected_lines} of {total} unproven lines, \
+                 {settled_lines} if nothing stands where no pulse was"
             )
         };
         let mut lines: Vec<String> = self.stations.iter().zip(1..).map(station).collect();

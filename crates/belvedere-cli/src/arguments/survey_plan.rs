@@ -46,8 +46,9 @@ pub(crate) struct SurveyPlanArguments {
     /// Candidates with what is expected of them: a table (.csv) or points in WGS 84 (.geojson); repeatable
     ///
     /// Chosen stations come first. station: its number, empty for a candidate that was not chosen. settles_alone and
-    /// settles_alone_percent: unproven lines that it would settle alone. proves_alone_m: unproven length of lines that
-    /// it would prove. settled and settled_percent: lines that it and the stations before it settle together.
+    /// settles_alone_percent: unproven lines that become proven by it alone if nothing stands where no pulse was.
+    /// expected_alone: how many are expected to. proves_alone_m: unproven length that it would prove. settled,
+    /// settled_percent and expected: the same for it and the stations before it together.
     #[arg(short, long, value_name = "OUT", help_heading = "Result")]
     pub(crate) output: Vec<PathBuf>,
     #[command(flatten)]

@@ -65,7 +65,7 @@ fn question(arguments: &SurveyPlanArguments) -> SurveyPlanQuestion {
             (None, None) => usual.candidates,
         },
         station_height: arguments.station_height,
-        max_range: arguments.max_distance,
+        max_distance: arguments.max_distance,
         angle_step_deg: arguments.angle_step_deg,
         observer_height: arguments.heights.observer_height,
         target_height: arguments.heights.target_height,
@@ -102,8 +102,10 @@ fn write(output: &Path, found: &SurveyPlanResults, scene: &Scene) -> Result<()> 
         ("z", TableCells::Real(&z, 3)),
         ("settles_alone", TableCells::Whole(&whole(&|station| Some(station.alone.settled)))),
         ("settles_alone_percent", TableCells::Real(&real(&|station| Some(found.share(station.alone))), 2)),
+        ("expected_alone", TableCells::Real(&real(&|station| Some(station.alone.expected)), 1)),
         ("proves_alone_m", TableCells::Real(&real(&|station| Some(station.alone.proven)), 1)),
         ("settled", TableCells::Whole(&whole(&|station| Some(station.together?.settled)))),
+        ("expected", TableCells::Real(&real(&|station| Some(station.together?.expected)), 1)),
         ("settled_percent", TableCells::Real(&real(&|station| Some(found.share(station.together?))), 2)),
     ];
     Ok(write_table(output, &cells)?)
@@ -115,9 +117,11 @@ fn properties(station: &PlannedStation, found: &SurveyPlanResults) -> Map<String
     add("station", station.order.into());
     add("settles_alone", station.alone.settled.into());
     add("settles_alone_percent", found.share(station.alone).into());
+    add("expected_alone", rounded(station.alone.expected, 1).into());
     add("proves_alone_m", rounded(station.alone.proven, 1).into());
     if let Some(together) = station.together {
         add("settled", together.settled.into());
+        add("expected", rounded(together.expected, 1).into());
         add("settled_percent", found.share(together).into());
     }
     properties

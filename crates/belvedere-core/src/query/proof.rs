@@ -192,6 +192,14 @@ impl Proof {
         self.length(target, towards, range, self.params.tolerance, |_| ()) > self.params.tolerance
     }
 
+    /// Whether a pulse came near to a place, local metres, or it lies above the highest return.
+    #[must_use]
+    pub fn is_seen(&self, place: [f64; 3]) -> bool {
+        self.index.get(|control| self.make_index(control)).is_some_and(|ProofIndex { free_segments, .. }| {
+            free_segments.passes_within(place, self.nearness) || place[2] > f64::from(free_segments.top())
+        })
+    }
+
     /// The pieces that [`Proof::unproven_length`] counts, metres from `target`, each from and to, in the order in which
     /// the line runs; none where there are no pulses at all, and none beside the survey.
     #[must_use]

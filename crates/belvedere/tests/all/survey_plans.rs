@@ -153,7 +153,7 @@ fn scanner(stations: Stations) -> TerrestrialParams {
 }
 
 fn streets() -> Streets {
-    let town = town(&Preset::Town.params(50.0, SEED));
+    let town = town(&Preset::Town.params(100.0, SEED));
     let scan = scan_terrestrial(&town, &scanner(Stations::Chosen(2)));
     let cloud = cloud_of(&scan);
     let params = ModelParams::default()
@@ -164,7 +164,12 @@ fn streets() -> Streets {
     let (truth, origin) = (Truth::new(&town), cloud.frame.origin);
     let Bounds { low, high } = cloud.bounds().unwrap();
     let absolute = |p: [f32; 3]| std::array::from_fn(|i| f64::from(p[i]) + origin[i]);
-    let site = QuerySite { scene: &town, truth: &truth, bounds: [absolute(low), absolute(high)] };
+    // people in the middle: beyond the edge of the town is nothing that pulses could return from
+    let (low, high): ([f64; 3], [f64; 3]) = (absolute(low), absolute(high));
+    let [west, south] = [0, 1].map(|i| low[i] + 0.25 * (high[i] - low[i]));
+    let [east, north] = [0, 1].map(|i| low[i] + 0.75 * (high[i] - low[i]));
+    let bounds = [[west, south, low[2]], [east, north, high[2]]];
+    let site = QuerySite { scene: &town, truth: &truth, bounds };
     let local = |p: [f64; 3]| std::array::from_fn(|i| p[i] - origin[i]);
     let targets = site.targets(QuerySet::Pedestrians, 40, SEED).positions;
     let mut lines = Vec::new();

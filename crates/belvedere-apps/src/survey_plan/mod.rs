@@ -7,29 +7,27 @@
 //!
 //! Stations are chosen by [`place_cameras`]: places and lines are its targets.
 
+mod virtual_scan;
+
 use crate::cameras::{CoverageTable, Goal, Placement, PlacementParams, place_cameras};
 use belvedere_core::ground::Ground;
-use belvedere_core::pulses::FreeSegmentParams;
 use belvedere_core::query::{MedialScene, Proof};
 use belvedere_data::control::Control;
-use belvedere_data::vector::{cross, dot, length, sub, unit};
-use belvedere_data::view::panorama_direction;
+use belvedere_data::vector::{length, sub};
 use belvedere_data::{Error, Parameter, Result};
 use rayon::prelude::*;
 use std::collections::HashMap;
-use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2, PI, TAU};
+use std::f64::consts::FRAC_PI_2;
+use virtual_scan::{LEVELS, ScannedSpace, SeenCells, VirtualScan, ways_around};
 
 /// Height of a scanner on a tripod above the ground, metres.
 pub const STATION_HEIGHT: f64 = 1.8;
 /// Side of the cells in which unproven pieces of lines are one place, as a share of how near a pulse must pass.
 const CELL_PER_NEARNESS: f64 = 0.5;
-/// Columns of the ways of a simulated scan: half a degree. Within 80 m they are nearer to each other than a pulse must
-/// pass.
-const COLUMNS: usize = 720;
-/// Rings of ways that are tried around a place: radius as a share of how near they must pass, and number.
-const RINGS: [(f64, u32); 3] = [(0.0, 1), (0.5, 6), (0.9, 12)];
 /// How much of the worth of a line its proven share is. The rest counts for a station that settles the line alone.
 const WORTH_OF_SHARE: f64 = 0.25;
+/// How likely nothing stands in the unseen space that pulses must pass, for each level of it ([`LEVELS`]).
+const CHANCES: [f64; LEVELS.len()] = [0.75, 0.5, 0.2];
 
 /// What a scanner can do.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -75,8 +73,10 @@ impl ScannerParams {
 /// What stations prove of unproven lines.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SurveyGain {
-    /// Lines that are settled.
+    /// Lines that become proven, if nothing stands in the space that no pulse saw.
     pub settled: usize,
+    /// How many of them are expected to become proven, since things do stand there.
+    pub expected: f64,
     /// Length of unproven pieces that is proven, over all lines, metres.
     pub proven: f64,
 }
@@ -112,10 +112,26 @@ struct OpenLine {
     /// Places on it, and the length that each stands for, metres.
     parts: Vec<(usize, f64)>,
     length: f64,
+    /// Through how much unseen space it runs itself.
+    level: usize,
 }
 
+/// Places that a station proves, each with the level of unseen space before it.
+type ProvenPlaces = Vec<(u32, u8)>;
+
+/// The level of a place that is not proven.
+const NOT_PROVEN: u8 = u8::MAX;
+
 impl OpenLine {
-    fn proven(&self, is_proven: impl Fn(usize) -> bool) -> f64 {
+    fn new(parts: Vec<(usize, f64)>) -> Self {
+        let length = parts.iter().map(|(_, length)| length).sum();
+        let level = LEVELS.iter().position(|most| length <= *most).unwrap_or(LEVELS.len() - 1);
+        Self { parts, length, level }
+    }
+
+    /// How much of it is proven through at most so much unseen space.
+    fn proven(&self, levels: &[u8], most: usize) -> f64 {
+        let is_proven = |place: usize| usize::from(levels[place]) <= most;
         self.parts.iter().filter(|(place, _)| is_proven(*place)).map(|(_, length)| length).sum()
     }
 }
@@ -142,35 +158,65 @@ impl OpenSpace {
                     parts.push((number, size / count));
                 }
             }
-            let length = parts.iter().map(|(_, length)| length).sum();
-            OpenLine { parts, length }
+            OpenLine::new(parts)
         };
         let lines = lines.iter().map(&mut open_line).collect();
         Self { places, lines, tolerance: proof.tolerance() }
     }
 
-    fn is_settled(&self, line: &OpenLine, is_proven: impl Fn(usize) -> bool) -> bool {
-        line.length - line.proven(is_proven) <= self.tolerance
+    /// The lowest level at which a line is settled where places are proven at these levels.
+    fn settled_level(&self, line: &OpenLine, levels: &[u8]) -> Option<usize> {
+        (line.level..LEVELS.len()).find(|&most| line.length - line.proven(levels, most) <= self.tolerance)
     }
 
-    fn gain(&self, is_proven: impl Fn(usize) -> bool) -> SurveyGain {
+    /// The best level of each place for several stations together.
+    fn levels<'a>(&self, stations: impl Iterator<Item = &'a ProvenPlaces>) -> Vec<u8> {
+        let mut levels = vec![NOT_PROVEN; self.places.len()];
+        for &(place, level) in stations.flatten() {
+            let best = &mut levels[place as usize];
+            *best = level.min(*best);
+        }
+        levels
+    }
+
+    fn gain(&self, levels: &[u8]) -> SurveyGain {
         let mut gain = SurveyGain::default();
         for line in &self.lines {
-            gain.settled += usize::from(self.is_settled(line, &is_proven));
-            gain.proven += line.proven(&is_proven);
+            if let Some(level) = self.settled_level(line, levels) {
+                gain.settled += 1;
+                gain.expected += CHANCES[level];
+            }
+            gain.proven += line.proven(levels, LEVELS.len() - 1);
         }
         gain
     }
 
-    /// How much each place counts, and then each line.
+    /// What a station covers: a target for each place and level, then one for each line and level. What is proven
+    /// through little unseen space is so through more as well.
+    fn covered(&self, proven: &ProvenPlaces) -> Vec<usize> {
+        let from = |number: usize, level: usize| (level..LEVELS.len()).map(move |level| number * LEVELS.len() + level);
+        let levels = self.levels(std::iter::once(proven));
+        let settled = |(row, line): (usize, &OpenLine)| {
+            let level = self.settled_level(line, &levels)?;
+            Some(from(self.places.len() + row, level))
+        };
+        let places = proven.iter().flat_map(|&(place, level)| from(place as usize, usize::from(level)));
+        places.chain(self.lines.iter().enumerate().filter_map(settled).flatten()).collect()
+    }
+
+    /// How much each of these targets counts: of a line that is proven at a level, the sum from there on is its chance.
     fn weights(&self) -> Vec<f64> {
-        let mut weights = vec![0.0; self.places.len()];
-        for line in &self.lines {
-            for &(place, length) in &line.parts {
-                weights[place] += WORTH_OF_SHARE * length / line.length;
+        let next = |level: usize| CHANCES.get(level + 1).copied().unwrap_or(0.0);
+        let mut weights = vec![0.0; (self.places.len() + self.lines.len()) * LEVELS.len()];
+        for (row, line) in self.lines.iter().enumerate() {
+            for level in line.level..LEVELS.len() {
+                let worth = CHANCES[level] - next(level);
+                for &(place, length) in &line.parts {
+                    weights[place * LEVELS.len() + level] += WORTH_OF_SHARE * worth * length / line.length;
+                }
+                weights[(self.places.len() + row) * LEVELS.len() + level] = (1.0 - WORTH_OF_SHARE) * worth;
             }
         }
-        weights.extend(self.lines.iter().map(|_| 1.0 - WORTH_OF_SHARE));
         weights
     }
 }
@@ -195,44 +241,31 @@ pub fn plan_survey(
     params.validate()?;
     let proof = scene.proof().ok_or_else(missing_pulses)?;
     let open = OpenSpace::of(lines, proof);
-    let around: Vec<[f64; 2]> = RINGS.iter().flat_map(|&(radius, count)| ring(radius, count)).collect();
+    let seen = SeenCells::around(proof, eyes.iter().chain(&open.places));
+    let (nearness, around) = (proof.nearness(), ways_around());
+    let space = ScannedSpace { scene, ground, seen, params, nearness, around };
     let proven_by = |&eye: &[f64; 3]| {
         control.check()?;
-        let scan = VirtualScan::new((scene, ground), eye, params);
-        let proven = scan.map_or_else(Vec::new, |scan| scan.proven(&open.places, proof.nearness(), &around));
+        let Some(mut scan) = VirtualScan::new(&space, eye) else { return Ok(Vec::new()) };
+        let mut level = |place: &[f64; 3]| u8::try_from(scan.level(*place)?).ok();
+        let proven = (0..).zip(&open.places).filter_map(|(row, place)| Some((row, level(place)?))).collect();
         control.advance(1);
         Ok(proven)
     };
-    let proven: Vec<Vec<usize>> = eyes.par_iter().map(proven_by).collect::<Result<_>>()?;
-    let in_all = |candidates: &[usize]| {
-        let mut is_proven = vec![false; open.places.len()];
-        candidates.iter().flat_map(|&candidate| &proven[candidate]).for_each(|&place| is_proven[place] = true);
-        is_proven
-    };
-    let covered_and_gain = |candidate: usize| {
-        let is_proven = in_all(&[candidate]);
-        let settled =
-            (0..open.lines.len()).filter(|&line| open.is_settled(&open.lines[line], |place| is_proven[place]));
-        let covered = proven[candidate].iter().copied().chain(settled.map(|line| open.places.len() + line)).collect();
-        (covered, open.gain(|place| is_proven[place]))
-    };
-    let (covered, alone): (Vec<Vec<usize>>, Vec<SurveyGain>) =
-        (0..eyes.len()).into_par_iter().map(covered_and_gain).unzip();
-    let table = CoverageTable::of_lists(open.places.len() + open.lines.len(), &covered)?;
+    let proven: Vec<ProvenPlaces> = eyes.par_iter().map(proven_by).collect::<Result<_>>()?;
+    let covered: Vec<Vec<usize>> = proven.par_iter().map(|proven| open.covered(proven)).collect();
+    let weights = open.weights();
+    let table = CoverageTable::of_lists(weights.len(), &covered)?;
     // exchanges find what a search would, and the bound says how much could be missing
     let params = PlacementParams::new(Goal::Count(count)).with_search_limit(Some(0));
     let placed: Option<Placement> =
-        (!lines.is_empty()).then(|| place_cameras(&table, &open.weights(), &params, control)).transpose()?;
+        (!lines.is_empty()).then(|| place_cameras(&table, &weights, &params, control)).transpose()?;
     let chosen = placed.as_ref().map_or_else(Vec::new, |placed| placed.chosen.clone());
-    let of_all = |candidates: &[usize]| {
-        let is_proven = in_all(candidates);
-        open.gain(|place| is_proven[place])
-    };
-    let everything: Vec<usize> = (0..eyes.len()).collect();
+    let together = |first: usize| open.gain(&open.levels(chosen[..first].iter().map(|&row| &proven[row])));
     Ok(SurveyPlan {
-        curve: (0..=chosen.len()).map(|first| of_all(&chosen[..first])).collect(),
-        alone,
-        reachable: of_all(&everything),
+        curve: (0..=chosen.len()).map(together).collect(),
+        alone: proven.par_iter().map(|proven| open.gain(&open.levels(std::iter::once(proven)))).collect(),
+        reachable: open.gain(&open.levels(proven.iter())),
         unproven: open.lines.iter().map(|line| line.length).sum(),
         gap: placed.map_or(0.0, |placed| placed.gap()),
         chosen,
@@ -246,97 +279,5 @@ pub(crate) fn missing_pulses() -> Error {
         needed_for: "a plan of what to scan again",
         advice: "without them no line of sight is unproven: give scanner positions with --orient (trajectory=FILE, stations=FILE or scanner=X,Y,Z), \
                  or an .npz ball file of a cloud that had them",
-    }
-}
-
-/// Places on a circle.
-fn ring(radius: f64, count: u32) -> impl Iterator<Item = [f64; 2]> {
-    (0..count).map(move |number| {
-        let (sin, cos) = (TAU * f64::from(number) / f64::from(count)).sin_cos();
-        [radius * cos, radius * sin]
-    })
-}
-
-/// A scan of the model from one place, whose ways are followed when they are first needed.
-struct VirtualScan<'a> {
-    scene: &'a MedialScene,
-    params: &'a ScannerParams,
-    eye: [f64; 3],
-    /// Height of the ground below, local metres.
-    floor: f64,
-    /// Length that a pulse proves along each way, metres: 0 where it does not return, NaN where it is not known yet.
-    lengths: Vec<f32>,
-}
-
-impl<'a> VirtualScan<'a> {
-    /// `None` for an eye that is not finite.
-    fn new(
-        (scene, ground): (&'a MedialScene, Option<&Ground>),
-        eye: [f64; 3],
-        params: &'a ScannerParams,
-    ) -> Option<Self> {
-        // who looks at what nobody saw may stand on ground that nobody saw
-        let known = ground.and_then(|ground| ground.height_at([eye[0], eye[1]]));
-        let floor = known.unwrap_or(eye[2] - STATION_HEIGHT);
-        let lengths = vec![f32::NAN; COLUMNS * COLUMNS / 2];
-        eye.iter().all(|v| v.is_finite()).then_some(Self { scene, params, eye, floor, lengths })
-    }
-
-    /// The numbers of the places that it proves.
-    fn proven(mut self, places: &[[f64; 3]], nearness: f64, around: &[[f64; 2]]) -> Vec<usize> {
-        (0..places.len()).filter(|&place| self.proves(places[place], nearness, around)).collect()
-    }
-
-    /// Whether a pulse passes near to a place and returns.
-    fn proves(&mut self, place: [f64; 3], nearness: f64, around: &[[f64; 2]]) -> bool {
-        let offset = sub(place, self.eye);
-        let distance = length(offset);
-        // a way stands for the pulse nearest to it, which runs up to half a diagonal of their grid beside it
-        let near = nearness - FRAC_1_SQRT_2 * self.params.angular_step * distance;
-        if !(near > 0.0 && distance <= self.params.max_range) {
-            return false;
-        }
-        let Some(ahead) = unit(offset) else { return false };
-        let right = unit(cross(ahead, [0.0, 0.0, 1.0])).unwrap_or([1.0, 0.0, 0.0]);
-        let up = cross(right, ahead);
-        around.iter().any(|[x, y]| {
-            let towards = std::array::from_fn(|i| offset[i] + near * (x * right[i] + y * up[i]));
-            let (direction, proven) = self.way(towards);
-            let at = dot(offset, direction).clamp(0.0, proven);
-            let beside = sub(offset, direction.map(|v| at * v));
-            proven > 0.0 && dot(beside, beside) <= near * near
-        })
-    }
-
-    /// The way nearest to a direction: its unit vector, and the length that its pulse proves, metres.
-    fn way(&mut self, towards: [f64; 3]) -> ([f64; 3], f64) {
-        let [x, y, z] = towards;
-        let step = TAU / COLUMNS as f64;
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a pixel; `as` saturates")]
-        let cell = |angle: f64, count: usize| ((angle / step) as usize).min(count - 1);
-        let column = cell(x.atan2(y) + PI, COLUMNS);
-        let row = cell(FRAC_PI_2 - z.atan2(x.hypot(y)), COLUMNS / 2);
-        let direction = panorama_direction(COLUMNS, [column, row]);
-        let number = row * COLUMNS + column;
-        if self.lengths[number].is_nan() {
-            #[expect(clippy::cast_possible_truncation, reason = "a range in metres")]
-            let found = self.follow(direction) as f32;
-            self.lengths[number] = found;
-        }
-        (direction, f64::from(self.lengths[number]))
-    }
-
-    fn follow(&self, direction: [f64; 3]) -> f64 {
-        let max_range = self.params.max_range;
-        let seen = self.scene.seen_along(self.eye, direction, max_range).map(|(_, range)| range);
-        // where the model has nothing, the ground goes on below the cloud, and nothing returns from above
-        let range = seen.or_else(|| {
-            let range = (self.eye[2] - self.floor) / -direction[2];
-            let foot = std::array::from_fn(|i| self.eye[i] + range * direction[i]);
-            let is_known = self.scene.coverage().is_none_or(|coverage| coverage.holds_on_map(foot));
-            (direction[2] < 0.0 && (0.0..=max_range).contains(&range) && is_known).then_some(range)
-        });
-        let margin = f64::from(FreeSegmentParams::default().end_margin);
-        range.map_or(0.0, |range| (range - margin).max(0.0))
     }
 }
