@@ -20,6 +20,7 @@ pub mod solar_envelope;
 pub mod sum_errors;
 pub mod sun;
 pub mod sun_hours;
+pub mod survey_plan;
 pub mod targets;
 pub mod tree_light;
 pub mod viewshed;

@@ -15,6 +15,7 @@ mod shadow;
 mod sky;
 mod sun;
 mod surroundings;
+mod survey_plan;
 mod towns;
 mod vegetation;
 mod view;
@@ -34,8 +35,8 @@ pub(crate) use irradiance::{ClearSkyChoice, IrradianceArguments, RadiationModel}
 pub(crate) use numbers::Numbers;
 use numbers::{above_zero, at_least_one, at_most, finite, height, known_crs, length, location};
 pub(crate) use observers::{
-    Earth, GivingWay, GroundChoice, HowSureArguments, IntervalArgument, LineOfSightArguments, MapPosition, Radio,
-    Shell, ViewshedArguments,
+    Earth, GivingWay, GroundChoice, HowSureArguments, IntervalArgument, LineOfSightArguments, LinesArguments,
+    MapPosition, Radio, Shell, ViewshedArguments,
 };
 pub(crate) use query::{DepthMapArguments, Query, UnprovenChoice};
 pub(crate) use scene::{
@@ -48,6 +49,7 @@ pub(crate) use surroundings::{
     BelowChoice, EyesArguments, HorizonArguments, IsovistArguments, LandmarkArguments, LandmarkShapeArguments,
     MeshTargets, ProtectedViewArguments,
 };
+pub(crate) use survey_plan::SurveyPlanArguments;
 pub(crate) use towns::{PatternChoice, ScannerChoice, Simulate};
 pub(crate) use vegetation::{LeavesChoice, ThroughTreesArguments, ThroughTreesChoice};
 pub(crate) use view::{NorthArguments, SizeChoice, ViewChoice};
@@ -202,6 +204,9 @@ pub(crate) enum Command {
     ProtectedView(ProtectedViewArguments),
     /// Choose where to put cameras, so that few of them cover much
     Cameras(CamerasArguments),
+    /// Choose where to scan again, so that unproven lines of sight become proven
+    #[command(name = "survey-plan")]
+    SurveyPlan(SurveyPlanArguments),
     /// Measure the space that is visible from a point: volume, area, openness
     Isovist(IsovistArguments),
     /// Compute the horizon elevation angle in each direction around a point

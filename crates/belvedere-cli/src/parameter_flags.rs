@@ -31,6 +31,7 @@ pub(crate) fn flags_of(parameter: Parameter) -> &'static [&'static str] {
         Parameter::MaxHeight | Parameter::Envelope => &["--max-height"],
         Parameter::Coverage => &["--coverage"],
         Parameter::RequiredCameras => &["--per-target"],
+        Parameter::StationCount => &["--count"],
         Parameter::TargetWeight => &["--targets"],
         Parameter::ExistingCamera => &["--existing"],
         Parameter::CameraPixels => &["--pixels"],

@@ -78,6 +78,8 @@ parameters! {
     Coverage => "coverage",
     /// Cameras that must see each target.
     RequiredCameras => "cameras on each target",
+    /// Stations of a scanner that are to be chosen.
+    StationCount => "number of stations",
     /// Targets that are looked at together, or of a table.
     TargetCount => "number of targets",
     /// Number of a target.

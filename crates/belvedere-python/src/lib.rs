@@ -23,6 +23,7 @@ mod sights;
 mod simulate;
 mod sky;
 mod sun;
+mod survey_plan;
 mod system;
 mod targets;
 mod trees;

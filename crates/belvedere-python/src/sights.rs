@@ -22,9 +22,9 @@ use std::sync::Arc;
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub(crate) struct EndKeywords {
-    observer_height: Option<f64>,
-    target_height: Option<f64>,
-    ground: Option<String>,
+    pub(crate) observer_height: Option<f64>,
+    pub(crate) target_height: Option<f64>,
+    pub(crate) ground: Option<String>,
 }
 
 /// Columns of pairs, where their targets are, and remarks.

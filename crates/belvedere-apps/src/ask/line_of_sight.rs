@@ -126,7 +126,7 @@ impl LinesOfSightQuestion {
     }
 
     /// The ends of lines; those without a height stand on the ground or the terrain.
-    fn ends(
+    pub(super) fn ends(
         &self,
         places: &Places,
         scene: &Scene,

@@ -40,6 +40,7 @@ mod sky_view;
 pub mod sun;
 mod sun_hours;
 mod sun_position;
+mod survey_plan;
 mod terrain_heights;
 mod trees;
 mod viewer;
@@ -74,6 +75,7 @@ pub use sky_view::{SkyParts, SkyViewQuestion};
 pub use sun::{Days, NamedSun, SunPlace, SunRange, Suns, check_sun, remark_on_sun};
 pub use sun_hours::{PreparedSun, SunHoursQuestion, rules};
 pub use sun_position::{SunPositionQuestion, SunStands};
+pub use survey_plan::{PlannedStation, SurveyPlanQuestion, SurveyPlanResults};
 pub use terrain_heights::remark_on_terrain;
 pub use trees::ThroughTrees;
 pub use viewer::{
@@ -127,6 +129,8 @@ pub enum Question {
     ProtectedView(ProtectedViewQuestion),
     /// Which of many possible cameras to put up.
     Cameras(CamerasQuestion),
+    /// Where to scan again.
+    SurveyPlan(SurveyPlanQuestion),
     /// The distance to the first surface for each pixel of a view.
     DepthMap(DepthMapQuestion),
     /// What routes and windows get of sun and sky.
@@ -162,6 +166,8 @@ pub enum QuestionResults {
     ProtectedView(ProtectedViewResults),
     /// Of [`Question::Cameras`].
     Cameras(CamerasResults),
+    /// Of [`Question::SurveyPlan`].
+    SurveyPlan(SurveyPlanResults),
     /// Of [`Question::DepthMap`].
     DepthMap(DepthMapResults),
     /// Of [`Question::Comfort`].
@@ -335,6 +341,7 @@ impl Ask for Question {
             Self::WindowViews(question) => question.check(),
             Self::ProtectedView(question) => question.check(),
             Self::Cameras(question) => question.check(),
+            Self::SurveyPlan(question) => question.check(),
             Self::DepthMap(question) => question.check(),
             Self::Comfort(question) => question.check(),
             Self::Envelope(question) => question.check(),
@@ -374,6 +381,9 @@ impl Ask for Question {
                 question.answer(scene, places, context, control)?.map(QuestionResults::ProtectedView)
             }
             Self::Cameras(question) => question.answer(scene, places, context, control)?.map(QuestionResults::Cameras),
+            Self::SurveyPlan(question) => {
+                question.answer(scene, places, context, control)?.map(QuestionResults::SurveyPlan)
+            }
             Self::DepthMap(question) => {
                 question.answer(scene, places, context, control)?.map(QuestionResults::DepthMap)
             }

@@ -15,6 +15,7 @@ use super::sections::{
     GroundSection, LinesSection, LocationSection, MeasuresSection, NamedValues, PeriodSection, PlacesReport,
     RadiationSection, RoofsSection, SunSection, TreesSection,
 };
+use super::survey_plan::SurveyPlanSection;
 use super::viewshed::SeenSection;
 use super::window_views::{ViewsSection, WindowsSection};
 use crate::eyes::EyesReport;
@@ -102,6 +103,9 @@ pub struct Report {
     /// Which cameras were chosen.
     #[serde(flatten)]
     pub cameras: Option<CamerasReport>,
+    /// Where to scan again.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub survey_plan: Option<SurveyPlanSection>,
     /// The view of a picture.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub view: Option<ViewSection>,

@@ -4,6 +4,7 @@ mod places;
 mod results;
 mod what;
 
+use super::surroundings::ObserverUse;
 use super::{check_output, warn_of_geojson};
 use crate::arguments::{CamerasArguments, Global, Usage};
 use crate::pipeline::{self, KeepPoints};
@@ -12,6 +13,7 @@ use crate::summary::Summary;
 use anyhow::Result;
 use belvedere::apps::ask::{self, Ask, CameraGoal, Candidates};
 use belvedere::query::UnprovenAs;
+pub(super) use places::candidates_on_path;
 use results::CameraOutput;
 use std::path::PathBuf;
 
@@ -31,11 +33,11 @@ pub(crate) fn run(arguments: &CamerasArguments, global: &Global) -> Result<Summa
         question.targets.private = what::private(path, &frame, &mut run)?;
     }
     if let Some(path) = &arguments.existing {
-        question.existing = places::cameras(path, f64::INFINITY, &frame, &mut run)?;
+        question.existing = candidates_on_path(path, Some(f64::INFINITY), ObserverUse::Limits, &frame, &mut run)?;
     }
     if let Some(path) = &arguments.candidates.file {
-        let step = arguments.step.unwrap_or(places::STEP);
-        question.candidates = Candidates::Given(places::cameras(path, step, &frame, &mut run)?);
+        let given = candidates_on_path(path, arguments.step, ObserverUse::Limits, &frame, &mut run)?;
+        question.candidates = Candidates::Given(given);
     }
     let answers = ask::ask(&scene, &question, &places, &run.control())?;
     run.answered(&answers);

@@ -2,7 +2,7 @@
 
 use super::far_terrain::set_terrain;
 use super::{check_output, extension};
-use crate::arguments::{Global, LineOfSightArguments, MapPosition, Usage};
+use crate::arguments::{Global, LineOfSightArguments, LinesArguments, MapPosition, Usage};
 use crate::pipeline::{self, KeepPoints};
 use crate::run::CommandContext;
 use crate::summary::Summary;
@@ -38,7 +38,7 @@ pub(crate) fn run(arguments: &LineOfSightArguments, global: &Global) -> Result<S
         set_terrain(path, &mut scene, &mut run)?;
     }
     let scene = scene.into_question_scene(Some(&arguments.ground), arguments.giving_way.shell, &run)?;
-    let (pairs, rows) = pairs(arguments, &scene, &run)?;
+    let (pairs, rows) = pairs(&arguments.lines, &scene, &run)?;
     let answers = ask::ask(&scene, &question, &Places::Pairs(pairs), &run.control())?;
     run.answered(&answers);
     let found = &answers.found;
@@ -87,12 +87,12 @@ fn standing(place: [f64; 3]) -> Standing {
 }
 
 /// Observer and target of each line, and the rows of the table they are from.
-fn pairs(
-    arguments: &LineOfSightArguments,
+pub(super) fn pairs(
+    lines: &LinesArguments,
     scene: &Scene,
     run: &CommandContext,
 ) -> Result<(Vec<[Standing; 2]>, TextRows)> {
-    let (lines, frame) = (&arguments.lines, scene.frame());
+    let frame = scene.frame();
     if let (Some(from), Some(to)) = (&lines.from, &lines.to) {
         let local =
             |&MapPosition([x, y], z): &MapPosition| standing(frame.local_from_file([x, y, z.unwrap_or(f64::NAN)]));

@@ -35,6 +35,7 @@ mod sun_hours;
 mod sun_position;
 mod surfaces;
 mod surroundings;
+mod survey_plan;
 mod targets;
 mod trajectory;
 mod tree_light;
@@ -81,6 +82,7 @@ fn run_command(cli: &Cli) -> Result<Summary> {
         Command::Landmark(arguments) => landmark::run(arguments, global),
         Command::ProtectedView(arguments) => protected_view::run(arguments, global),
         Command::Cameras(arguments) => cameras::run(arguments, global),
+        Command::SurveyPlan(arguments) => survey_plan::run(arguments, global),
         Command::Isovist(arguments) => isovist::run(arguments, global),
         Command::Horizon(arguments) => horizon::run(arguments, global),
         Command::Shadow(arguments) => shadow::run(arguments, global),

@@ -4,7 +4,7 @@ use crate::common::{Workplace, house};
 use std::collections::BTreeSet;
 use std::path::Path;
 
-const COMMANDS: [&str; 30] = [
+const COMMANDS: [&str; 31] = [
     "demo",
     "simulate",
     "info",
@@ -19,6 +19,7 @@ const COMMANDS: [&str; 30] = [
     "landmark",
     "protected-view",
     "cameras",
+    "survey-plan",
     "isovist",
     "horizon",
     "envelope",

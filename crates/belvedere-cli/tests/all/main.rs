@@ -42,6 +42,7 @@ mod sun_hours;
 mod surface_patches;
 mod surfaces;
 mod surroundings;
+mod survey_plan;
 mod trajectory;
 mod tree_light;
 mod usage;

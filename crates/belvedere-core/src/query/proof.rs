@@ -192,34 +192,64 @@ impl Proof {
     /// Without any pulse all of it is unseen; so is a line that runs down without end.
     #[must_use]
     pub fn unproven_length(&self, target: [f64; 3], towards: [f64; 3], range: f64) -> f64 {
-        self.length(target, towards, range, f64::INFINITY)
+        self.length(target, towards, range, f64::INFINITY, |_| ())
     }
 
     /// As [`Proof::unproven_length`], or some length above `enough`, metres, as soon as it is known to exceed that:
     /// quicker.
     #[must_use]
     pub fn unproven_length_up_to(&self, target: [f64; 3], towards: [f64; 3], range: f64, enough: f64) -> f64 {
-        self.length(target, towards, range, enough)
+        self.length(target, towards, range, enough, |_| ())
     }
 
     /// Whether more than the tolerated length runs through unseen space; quicker than measuring it.
     #[must_use]
     pub fn is_unproven(&self, target: [f64; 3], towards: [f64; 3], range: f64) -> bool {
-        self.length(target, towards, range, self.params.tolerance) > self.params.tolerance
+        self.length(target, towards, range, self.params.tolerance, |_| ()) > self.params.tolerance
     }
 
-    /// The unseen length, or something above `enough` as soon as it is known to exceed that.
-    fn length(&self, target: [f64; 3], towards: [f64; 3], range: f64, enough: f64) -> f64 {
-        // the same steps whichever end is the target: a piece shorter than a step counts or not by where steps begin
-        if range.is_finite() && towards.into_iter().find(|v| *v != 0.0).is_some_and(|v| v < 0.0) {
-            let viewer = std::array::from_fn(|i| target[i] + range * towards[i]);
-            return self.length_from(viewer, towards.map(|v| -v), range, enough);
+    /// Whether a pulse came near to a place, local metres, or it lies above the highest return.
+    #[must_use]
+    pub fn is_seen(&self, place: [f64; 3]) -> bool {
+        self.index.get(|control| self.make_index(control)).is_some_and(|ProofIndex { free_segments, .. }| {
+            free_segments.passes_within(place, self.nearness) || place[2] > f64::from(free_segments.top())
+        })
+    }
+
+    /// The pieces that [`Proof::unproven_length`] counts, metres from `target`, each from and to, in the order in which
+    /// the line runs; none where there are no pulses at all, and none beside the survey.
+    #[must_use]
+    pub fn unproven_pieces(&self, target: [f64; 3], towards: [f64; 3], range: f64) -> Vec<[f64; 2]> {
+        let mut pieces = Vec::new();
+        let is_turned = runs_back(towards, range);
+        self.length(target, towards, range, f64::INFINITY, |piece| pieces.push(piece));
+        if is_turned {
+            pieces.iter_mut().for_each(|[from, to]| [*from, *to] = [range - *to, range - *from]);
+            pieces.reverse();
         }
-        self.length_from(target, towards, range, enough)
+        pieces
+    }
+
+    /// The unseen length, or something above `enough` as soon as it is known to exceed that. `visit` gets the unseen
+    /// pieces that end before, metres from the end at which steps begin ([`runs_back`]).
+    fn length(&self, target: [f64; 3], towards: [f64; 3], range: f64, enough: f64, visit: impl FnMut([f64; 2])) -> f64 {
+        // the same steps whichever end is the target: a piece shorter than a step counts or not by where steps begin
+        if runs_back(towards, range) {
+            let viewer = std::array::from_fn(|i| target[i] + range * towards[i]);
+            return self.length_from(viewer, towards.map(|v| -v), range, enough, visit);
+        }
+        self.length_from(target, towards, range, enough, visit)
     }
 
     /// The same, in steps from `target` on.
-    fn length_from(&self, target: [f64; 3], towards: [f64; 3], range: f64, enough: f64) -> f64 {
+    fn length_from(
+        &self,
+        target: [f64; 3],
+        towards: [f64; 3],
+        range: f64,
+        enough: f64,
+        visit: impl FnMut([f64; 2]),
+    ) -> f64 {
         let Some(index) = self.index.get(|control| self.make_index(control)) else { return range };
         if index.free_segments.is_empty() {
             return range;
@@ -242,7 +272,7 @@ impl Proof {
         if beside > enough || !(span(inside) > 0.0) {
             return beside;
         }
-        beside + self.length_inside(index, (target, towards), inside, enough - beside)
+        beside + self.length_inside(index, (target, towards), inside, enough - beside, visit)
     }
 
     fn length_inside(
@@ -251,6 +281,7 @@ impl Proof {
         (origin, direction): ([f64; 3], [f64; 3]),
         [from, to]: [f64; 2],
         enough: f64,
+        mut visit: impl FnMut([f64; 2]),
     ) -> f64 {
         let ProofIndex { free_segments, seen_space, .. } = index;
         let point = |at: f64| -> [f64; 3] { std::array::from_fn(|i| origin[i] + at * direction[i]) };
@@ -272,6 +303,9 @@ impl Proof {
                         end = -before;
                     }
                     unseen += (end - start).max(0.0);
+                    if end > start {
+                        visit([start, end]);
+                    }
                 }
                 at = seen_to;
                 continue;
@@ -284,8 +318,17 @@ impl Proof {
             }
             at += clear.max(self.params.step);
         }
-        unseen + gap_from.map_or(0.0, |start| to - start)
+        unseen
+            + gap_from.map_or(0.0, |start| {
+                visit([start, to]);
+                to - start
+            })
     }
+}
+
+/// Whether the steps along a line begin at its far end.
+fn runs_back(towards: [f64; 3], range: f64) -> bool {
+    range.is_finite() && towards.into_iter().find(|v| *v != 0.0).is_some_and(|v| v < 0.0)
 }
 
 /// Cuts the piece of a line down to where one of its coordinates lies between two bounds.

@@ -1,6 +1,7 @@
 //! Lines of sight between pairs of points: what blocks them first, and all that lies on them.
 
 use super::ball_tree::PROBE;
+use super::freed_space::outside;
 use super::medial_scene::nearer;
 use super::triangles::LineEnds;
 use super::{Answer, EarthParams, MedialScene};
@@ -163,6 +164,22 @@ impl MedialScene {
         let unproven_length = pieces.iter().map(unseen).sum();
         let answer = if unproven_length > proof.tolerance() { Answer::Unproven } else { Answer::Visible };
         LineOfSight { answer, first_block: None, unproven_length }
+    }
+
+    /// The pieces of the line of sight between two points over the cloud that no pulse came near to, local metres: the
+    /// two ends of each, whatever blocks the line. Together they are as long as [`LineOfSight::unproven_length`]. None
+    /// where pulses are not known.
+    #[must_use]
+    pub fn unproven_pieces(&self, observer: [f64; 3], target: [f64; 3], earth: &EarthParams) -> Vec<[[f64; 3]; 2]> {
+        let mut found = Vec::new();
+        let Some(proof) = &self.proof else { return found };
+        for LinePiece { ray, .. } in self.pieces(observer, target, earth) {
+            for [from, to] in outside(&self.freed, &ray) {
+                let pieces = proof.unproven_pieces(ray.at(from), ray.direction, to - from);
+                found.extend(pieces.into_iter().map(|piece| piece.map(|at| ray.at(from + at))));
+            }
+        }
+        found
     }
 
     /// [`MedialScene::line_of_sight`] for each of `pairs`, (N, observer and target), local metres, in their order.

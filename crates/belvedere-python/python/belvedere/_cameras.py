@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from . import _core
 from ._errors import wrong
-from ._inputs import Progress, check_finite, map_places, reporter
+from ._inputs import Places, Progress, check_finite, map_places, pairs_of, reporter
 from ._mesh import Mesh
 from ._raster import Raster
 from ._remarks import Remark, warned
@@ -251,6 +251,96 @@ class Cameras:
         cameras = Table(columns, places=places, crs=crs.text)
         cameras.remarks = of_targets.remarks = remarks
         return Placement(cameras, of_targets, remarks=remarks, **whole)
+
+    def survey_plan(
+        self,
+        candidates: str | npt.ArrayLike,
+        observer: Places,
+        target: Places,
+        *,
+        count: int = 1,
+        spacing: float = 5.0,
+        station_height: float | None = None,
+        max_distance: float | None = None,
+        angle_step_deg: float | None = None,
+        observer_height: float | None = None,
+        target_height: float | None = None,
+        ground: str | None = None,
+        progress: Progress = None,
+    ) -> Table:
+        """Where to put a scanner next, so that unproven lines of sight become proven.
+
+        Parameters
+        ----------
+        candidates : array_like, shape (N, 2) or (N, 3), or {'ground', 'roofs'}
+            Places for the scanner in the coordinates of the file; without z, `station_height` above the ground. Or a
+            grid of places above the ground or above roofs.
+        observer, target : array_like, shape (3,), (N, 3), (2,) or (N, 2)
+            Ends of the lines of sight that matter, as for `line_of_sight`.
+        count : int, optional
+            Stations to choose.
+        spacing : float, optional
+            Side of the cells of a grid of candidates, metres.
+        station_height : float, optional
+            Height of the scanner above the ground or the roof, metres; 1.8 if not given.
+        max_distance : float, optional
+            Maximum range of the scanner, metres; 100 if not given.
+        angle_step_deg : float, optional
+            Angle between pulses, degrees; 0.1 if not given.
+        observer_height, target_height, ground, progress : optional
+            As for `line_of_sight`.
+
+        Returns
+        -------
+        Table
+            A row for each candidate that can be used, chosen stations first: ``station`` (its number, 0 for one that
+            was not chosen), ``settles_alone`` (unproven lines that become proven if nothing stands where no pulse
+            was), ``expected_alone`` (how many are expected to), ``proves_alone_m``, and the same for it and the
+            stations before it: ``settled`` and ``expected``, NaN where it was not chosen. Its `places` are where the
+            scanner stands.
+
+        Raises
+        ------
+        BelvedereError
+            For a scene without known scanner positions, where no candidate can be used, and for parameters out of
+            range.
+
+        Warns
+        -----
+        BelvedereWarning
+            Where no candidate settles any line, and of given candidates that cannot be used.
+
+        References
+        ----------
+        docs/methods/survey-plan.md
+
+        Examples
+        --------
+        >>> plan = scene.survey_plan("ground", eye, targets, spacing=20, max_distance=60)
+        >>> plan["station"].dtype, (plan["settles_alone"] >= 0).all()
+        (dtype('uint64'), np.True_)
+        """
+        if isinstance(candidates, str) and candidates not in ("ground", "roofs"):
+            raise wrong("candidates", repr(candidates), "give places, 'ground' or 'roofs'")
+        given = None if isinstance(candidates, str) else map_places(candidates, "candidates", _PLACES)
+        check_finite(spacing=spacing, station_height=station_height, max_distance=max_distance)
+        check_finite(observer_height=observer_height, target_height=target_height, angle_step_deg=angle_step_deg)
+        observers, targets = pairs_of(observer, target)
+        stations = {
+            "candidates": None if given is None else given.tolist(),
+            "on_roofs": isinstance(candidates, str) and candidates == "roofs",
+            "spacing": float(spacing),
+            "station_height": station_height,
+            "count": count,
+            "max_distance": max_distance,
+            "angle_step_deg": angle_step_deg,
+        }
+        ends = {"observer_height": observer_height, "target_height": target_height, "ground": ground}
+        columns, remarks = self._core.survey_plan(stations, observers, targets, ends, reporter(progress))
+        places = columns.pop("place")
+        table = Table(columns, places=places, crs=self._core.crs.text)
+        table.remarks = warned(remarks)
+        return table
 
 
 def _existing(given: npt.ArrayLike | Table | None) -> npt.NDArray[np.float64]:

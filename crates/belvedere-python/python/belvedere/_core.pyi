@@ -237,6 +237,14 @@ class Scene:
     ) -> tuple[
         dict[str, npt.NDArray[Any]], dict[str, Any], npt.NDArray[np.uint32], _Grid | None, list[dict[str, Any]]
     ]: ...
+    def survey_plan(
+        self,
+        stations: dict[str, Any],
+        observers: npt.NDArray[np.float64],
+        targets: npt.NDArray[np.float64],
+        ends: dict[str, Any],
+        progress: _Progress,
+    ) -> tuple[dict[str, Any], list[dict[str, Any]]]: ...
     def irradiance(
         self, radiation: dict[str, Any], targets: dict[str, Any], trees: dict[str, Any], progress: _Progress
     ) -> _Results: ...

@@ -126,6 +126,18 @@ def map_places(value: npt.ArrayLike, what: str, advice: str, least: int = 1) -> 
     return np.ascontiguousarray(array)
 
 
+def pairs_of(observer: Places, target: Places) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+    """Rows of x, y, z of both ends of lines; a single observer has all targets, and the other way round."""
+    advice = "give x and y, or x, y and z: shape (2,), (3,), (N, 2) or (N, 3)"
+    observers = map_places(observer, "observer", advice, 0)
+    targets = map_places(target, "target", advice, 0)
+    if len(observers) == 1 and len(targets) > 1:
+        observers = np.repeat(observers, len(targets), axis=0)
+    elif len(targets) == 1 and len(observers) > 1:
+        targets = np.repeat(targets, len(observers), axis=0)
+    return observers, targets
+
+
 def location_pair(location: npt.ArrayLike | None) -> tuple[float, float] | None:
     """Latitude and longitude, degrees."""
     where = "give latitude and longitude in degrees, such as (52.0, 4.4)"

@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from . import _core
 from ._answer import Answer
-from ._inputs import Places, Progress, check_finite, map_places, place, reporter
+from ._inputs import Places, Progress, check_finite, pairs_of, place, reporter
 from ._mesh import Mesh
 from ._remarks import Remark, warned
 from ._table import Table
@@ -192,13 +192,7 @@ class Sights:
         check_finite(refraction=refraction, frequency_ghz=frequency_ghz)
         check_finite(observer_height=observer_height, target_height=target_height)
         is_one = np.ndim(observer) == 1 and np.ndim(target) == 1
-        advice = "give x and y, or x, y and z: shape (2,), (3,), (N, 2) or (N, 3)"
-        observers = map_places(observer, "observer", advice, 0)
-        targets = map_places(target, "target", advice, 0)
-        if len(observers) == 1 and len(targets) > 1:
-            observers = np.repeat(observers, len(targets), axis=0)
-        elif len(targets) == 1 and len(observers) > 1:
-            targets = np.repeat(targets, len(observers), axis=0)
+        observers, targets = pairs_of(observer, target)
         ends = {"observer_height": observer_height, "target_height": target_height, "ground": ground}
         columns, standing, given = self._core.lines_of_sight(
             observers,

@@ -182,6 +182,15 @@ fn a_line_beside_one_pulse_is_seen_along_a_chord_of_its_cylinder() {
         let chord = 2.0 * (0.49 - beside * beside).max(0.0).sqrt();
         // rounding of f32 at the surface of the cylinder
         assert!((found - (20.0 - chord)).abs() < 1e-5, "{beside}: {found}");
+        // the pieces before and behind the cylinder, from whichever end steps begin
+        for (from, towards) in [(-10.0, 1.0), (10.0, -1.0)] {
+            let pieces = proof.unproven_pieces([from, beside, 5.0], [towards, 0.0, 0.0], 20.0);
+            let expected = [[0.0, 10.0 - chord / 2.0], [10.0 + chord / 2.0, 20.0]];
+            let expected = if chord > 0.0 { &expected[..] } else { &[[0.0, 20.0]] };
+            assert_eq!(pieces.len(), expected.len(), "{beside}: {pieces:?}");
+            let ends = pieces.iter().flatten().zip(expected.iter().flatten());
+            assert!(ends.into_iter().all(|(found, expected)| (found - expected).abs() < 1e-5), "{beside}: {pieces:?}");
+        }
     }
     // a slope of one in one below the top at 20 m, of which the last 10 m lie above it
     let up = unit([1.0, 0.0, 1.0]);

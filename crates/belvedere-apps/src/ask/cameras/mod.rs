@@ -120,11 +120,11 @@ pub struct CamerasResults {
 }
 
 /// What cameras stand on and look through.
-struct CameraSite<'a> {
-    scene: &'a Scene,
-    blockers: &'a Arc<MedialScene>,
-    ground: &'a Ground,
-    grid_north: f64,
+pub(super) struct CameraSite<'a> {
+    pub(super) scene: &'a Scene,
+    pub(super) blockers: &'a Arc<MedialScene>,
+    pub(super) ground: &'a Ground,
+    pub(super) grid_north: f64,
 }
 
 impl CamerasResults {

@@ -4,8 +4,9 @@ use super::{CameraSite, CamerasQuestion, CamerasReport};
 use crate::ask::observers::{Reach, skip_unfit};
 use crate::ask::{Context, GridCells};
 use crate::cameras::{CAMERA_HEIGHT, CameraPose, Mount, ROOF_CAMERA_HEIGHT, ground_places, roof_places};
-use crate::eyes::skip_unfit_eyes;
+use crate::eyes::{EyesReport, skip_unfit_eyes};
 use crate::targets::set_on_ground;
+use belvedere_core::ground::{Ground, GroundPoints};
 use belvedere_data::Result;
 use belvedere_data::control::Control;
 use serde::{Deserialize, Serialize};
@@ -80,7 +81,7 @@ impl CamerasQuestion {
         if self.existing.is_empty() {
             return Ok(Vec::new());
         }
-        let eyes = self.eyes(&self.existing, site);
+        let eyes = given_eyes(&self.existing, self.camera_height.unwrap_or(CAMERA_HEIGHT), site.ground);
         let (reach, looking) = (Reach::Cloud, (site.blockers, Some(site.ground)));
         let eyes = skip_unfit(eyes, ("existing camera", reach), looking, (site.scene, context), control)?;
         report.existing_camera_places = Some(eyes.report);
@@ -97,22 +98,15 @@ impl CamerasQuestion {
         context: &mut Context,
         control: &Control<'_>,
     ) -> Result<Vec<CameraPose>> {
+        let usual = if matches!(self.candidates, Candidates::Roofs(_)) { ROOF_CAMERA_HEIGHT } else { CAMERA_HEIGHT };
+        let height = self.camera_height.unwrap_or(usual);
+        let (eyes, fitting) = self.candidates.eyes((height, self.targets.ground), site, context, control)?;
+        report.candidate_places = fitting;
         let mounts: Vec<Mount> = match &self.candidates {
             Candidates::Given(given) => {
-                let eyes = self.eyes(given, site);
-                let (reach, looking) = (Reach::Cloud, (site.blockers, Some(site.ground)));
-                let eyes = skip_unfit(eyes, ("candidate", reach), looking, (site.scene, context), control)?;
-                report.candidate_places = eyes.report;
-                given.iter().zip(eyes.eyes).map(|(given, eye)| given.mount(eye, site.grid_north)).collect()
+                given.iter().zip(eyes).map(|(given, eye)| given.mount(eye, site.grid_north)).collect()
             }
-            Candidates::Ground(cell) | Candidates::Roofs(cell) => {
-                let mut eyes = self.places_in_cells(*cell, site, control)?;
-                // places of a grid are nobody's choice, and nobody is warned of those that do not fit
-                report.candidate_places = control.stage("testing candidates", eyes.len(), || {
-                    skip_unfit_eyes(site.blockers, Some(site.ground), &mut eyes, control)
-                })?;
-                eyes.into_iter().map(|eye| Mount { eye, ..Mount::default() }).collect()
-            }
+            _ => eyes.into_iter().map(|eye| Mount { eye, ..Mount::default() }).collect(),
         };
         let mounting = self.lens.mounting()?;
         let mut poses = Vec::new();
@@ -121,26 +115,47 @@ impl CamerasQuestion {
         }
         Ok(poses)
     }
+}
 
-    fn places_in_cells(&self, cell: f64, site: &CameraSite<'_>, control: &Control<'_>) -> Result<Vec<[f64; 3]>> {
+impl Candidates {
+    /// Where they look from, `height` metres above the ground or the roof where nothing else is said of one, and how
+    /// many cannot look: these are NaN.
+    pub(in crate::ask) fn eyes(
+        &self,
+        (height, points): (f64, GroundPoints),
+        site: &CameraSite<'_>,
+        context: &mut Context,
+        control: &Control<'_>,
+    ) -> Result<(Vec<[f64; 3]>, EyesReport)> {
+        let cell = match self {
+            Self::Given(given) => {
+                let (reach, looking) = (Reach::Cloud, (site.blockers, Some(site.ground)));
+                let eyes = given_eyes(given, height, site.ground);
+                let eyes = skip_unfit(eyes, ("candidate", reach), looking, (site.scene, context), control)?;
+                return Ok((eyes.eyes, eyes.report));
+            }
+            Self::Ground(cell) | Self::Roofs(cell) => *cell,
+        };
         let scene = site.scene;
         let cells = GridCells { cell: Some(cell), ..GridCells::default() };
-        let known = scene.ground(cells.grid(scene)?, self.targets.ground, control)?;
+        let known = scene.ground(cells.grid(scene)?, points, control)?;
         let (cloud, ground) = (scene.ground_cloud()?, known.ground.clone());
-        control.stage("finding places for cameras", 0, || match self.candidates {
-            Candidates::Roofs(_) => {
-                roof_places(cloud, ground, self.camera_height.unwrap_or(ROOF_CAMERA_HEIGHT), control)
-            }
-            _ => ground_places(cloud, ground, self.camera_height.unwrap_or(CAMERA_HEIGHT), control),
-        })
+        let mut eyes = control.stage("finding places for candidates", 0, || match self {
+            Self::Roofs(_) => roof_places(cloud, ground, height, control),
+            _ => ground_places(cloud, ground, height, control),
+        })?;
+        // places of a grid are nobody's choice, and nobody is warned of those that do not fit
+        let report = control.stage("testing candidates", eyes.len(), || {
+            skip_unfit_eyes(site.blockers, Some(site.ground), &mut eyes, control)
+        })?;
+        Ok((eyes, report))
     }
+}
 
-    /// Places as they are given, those without a height on the ground.
-    fn eyes(&self, given: &[GivenCamera], site: &CameraSite<'_>) -> Vec<[f64; 3]> {
-        let usual = self.camera_height.unwrap_or(CAMERA_HEIGHT);
-        let mut eyes: Vec<[f64; 3]> = given.iter().map(|one| one.place).collect();
-        let heights = given.iter().map(|one| one.height.unwrap_or(usual));
-        set_on_ground(eyes.iter_mut().zip(heights), site.ground);
-        eyes
-    }
+/// Places as they are given, those without a height on the ground.
+fn given_eyes(given: &[GivenCamera], usual: f64, ground: &Ground) -> Vec<[f64; 3]> {
+    let mut eyes: Vec<[f64; 3]> = given.iter().map(|one| one.place).collect();
+    let heights = given.iter().map(|one| one.height.unwrap_or(usual));
+    set_on_ground(eyes.iter_mut().zip(heights), ground);
+    eyes
 }

@@ -11,7 +11,7 @@ use belvedere::io::{ObserverRow, RowsAre};
 use std::path::Path;
 
 /// Metres between the candidates on a line of GeoJSON.
-pub(super) const STEP: f64 = 5.0;
+const STEP: f64 = 5.0;
 
 /// How cameras look, as the flags say.
 pub(super) fn lens(flags: &CameraLensArguments) -> ask::CameraLens {
@@ -28,10 +28,17 @@ pub(super) fn lens(flags: &CameraLensArguments) -> ask::CameraLens {
     }
 }
 
-/// The cameras of a file, those on lines `step` metres apart.
-pub(super) fn cameras(path: &Path, step: f64, frame: &Frame, run: &mut CommandContext) -> Result<Vec<GivenCamera>> {
+/// The cameras or stations of a file, those on lines `step` metres apart, or [`STEP`].
+pub(in crate::commands) fn candidates_on_path(
+    path: &Path,
+    step: Option<f64>,
+    needed: ObserverUse,
+    frame: &Frame,
+    run: &mut CommandContext,
+) -> Result<Vec<GivenCamera>> {
+    let step = step.unwrap_or(STEP);
     let mut cameras = Vec::new();
-    for row in observer_rows(path, frame, RowsAre::Places, ObserverUse::Limits, run)? {
+    for row in observer_rows(path, frame, RowsAre::Places, needed, run)? {
         let corners: Vec<[f64; 3]> =
             row.corners.iter().map(|c| std::array::from_fn(|i| c[i] - frame.origin[i])).collect();
         cameras.extend(places_along(&corners, step)?.into_iter().map(|place| camera(place, &row)));

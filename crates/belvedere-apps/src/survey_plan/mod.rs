@@ -1,0 +1,283 @@
+//! Where to scan again, so that lines of sight of a question that are unproven today become proven.
+//!
+//! A line is unproven because no pulse came near to pieces of it. These pieces are cut into *places*. A scan from a
+//! candidate is simulated in the model: along each of its ways runs a pulse up to the first surface. A place is proven
+//! if a pulse passes near to it and returns. A line is *settled* when no more of it is unproven than
+//! [`Proof::tolerance`](belvedere_core::query::Proof::tolerance).
+//!
+//! Stations are chosen by [`place_cameras`]: places and lines are its targets.
+
+mod virtual_scan;
+
+use crate::cameras::{CoverageTable, Goal, Placement, PlacementParams, place_cameras};
+use belvedere_core::ground::Ground;
+use belvedere_core::query::{MedialScene, Proof};
+use belvedere_data::control::Control;
+use belvedere_data::vector::{length, sub};
+use belvedere_data::{Error, Parameter, Result};
+use rayon::prelude::*;
+use std::collections::HashMap;
+use std::f64::consts::FRAC_PI_2;
+use virtual_scan::{LEVELS, ScannedSpace, SeenCells, VirtualScan, ways_around};
+
+/// Height of a scanner on a tripod above the ground, metres.
+pub const STATION_HEIGHT: f64 = 1.8;
+/// Side of the cells in which unproven pieces of lines are one place, as a share of how near a pulse must pass.
+const CELL_PER_NEARNESS: f64 = 0.5;
+/// How much of the worth of a line its proven share is. The rest counts for a station that settles the line alone.
+const WORTH_OF_SHARE: f64 = 0.25;
+/// How likely nothing stands in the unseen space that pulses must pass, for each level of it ([`LEVELS`]).
+const CHANCES: [f64; LEVELS.len()] = [0.75, 0.5, 0.2];
+
+/// What a scanner can do.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct ScannerParams {
+    /// Greatest range at which a surface returns pulses, metres, above 0. Default 100: medium-range scanners on tripods
+    /// reach 100 to 130 m on most surfaces.
+    pub max_range: f64,
+    /// Angle between neighbouring pulses, radians, above 0. Default 0.1°: a coarse scan, of a minute or two.
+    pub angular_step: f64,
+}
+
+belvedere_data::setters!(ScannerParams {
+    with_max_range(max_range: f64),
+    with_angular_step(angular_step: f64),
+});
+
+impl Default for ScannerParams {
+    fn default() -> Self {
+        Self { max_range: 100.0, angular_step: 0.1_f64.to_radians() }
+    }
+}
+
+impl ScannerParams {
+    /// Checks the parameters.
+    ///
+    /// # Errors
+    /// [`Error::InvalidParameter`] for one outside its range.
+    pub fn validate(&self) -> Result<()> {
+        let invalid = |parameter, value: f64, expected| {
+            Err(Error::InvalidParameter { parameter, value: value.to_string(), expected })
+        };
+        if !(self.max_range.is_finite() && self.max_range > 0.0) {
+            return invalid(Parameter::MaxDistance, self.max_range, "finite and above zero metres");
+        }
+        if !(self.angular_step > 0.0 && self.angular_step <= FRAC_PI_2) {
+            return invalid(Parameter::AngleStep, self.angular_step.to_degrees(), "above 0, and at most 90");
+        }
+        Ok(())
+    }
+}
+
+/// What stations prove of unproven lines.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SurveyGain {
+    /// Lines that become proven, if nothing stands in the space that no pulse saw.
+    pub settled: usize,
+    /// How many of them are expected to become proven, since things do stand there.
+    pub expected: f64,
+    /// Length of unproven pieces that is proven, over all lines, metres.
+    pub proven: f64,
+}
+
+/// Stations that were chosen, and what is expected of them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SurveyPlan {
+    /// Candidates that were chosen, those that add most first.
+    pub chosen: Vec<usize>,
+    /// What the first stations prove together, (chosen + 1); that of no station comes first.
+    pub curve: Vec<SurveyGain>,
+    /// What each candidate would prove alone.
+    pub alone: Vec<SurveyGain>,
+    /// What all candidates would prove together.
+    pub reachable: SurveyGain,
+    /// Unproven length of all lines, metres.
+    pub unproven: f64,
+    /// By how much the worth of the choice is at most below the best possible, as a share of that.
+    pub gap: f64,
+}
+
+/// Unproven pieces of lines, cut into places.
+struct OpenSpace {
+    /// Local metres.
+    places: Vec<[f64; 3]>,
+    lines: Vec<OpenLine>,
+    /// Unproven length of a line that is settled even so, metres.
+    tolerance: f64,
+}
+
+/// What is unproven of a line.
+struct OpenLine {
+    /// Places on it, and the length that each stands for, metres.
+    parts: Vec<(usize, f64)>,
+    length: f64,
+    /// Through how much unseen space it runs itself.
+    level: usize,
+}
+
+/// Places that a station proves, each with the level of unseen space before it.
+type ProvenPlaces = Vec<(u32, u8)>;
+
+/// The level of a place that is not proven.
+const NOT_PROVEN: u8 = u8::MAX;
+
+impl OpenLine {
+    fn new(parts: Vec<(usize, f64)>) -> Self {
+        let length = parts.iter().map(|(_, length)| length).sum();
+        let level = LEVELS.iter().position(|most| length <= *most).unwrap_or(LEVELS.len() - 1);
+        Self { parts, length, level }
+    }
+
+    /// How much of it is proven through at most so much unseen space.
+    fn proven(&self, levels: &[u8], most: usize) -> f64 {
+        let is_proven = |place: usize| usize::from(levels[place]) <= most;
+        self.parts.iter().filter(|(place, _)| is_proven(*place)).map(|(_, length)| length).sum()
+    }
+}
+
+impl OpenSpace {
+    fn of(lines: &[Vec<[[f64; 3]; 2]>], proof: &Proof) -> Self {
+        let side = CELL_PER_NEARNESS * proof.nearness();
+        let (mut places, mut by_cell) = (Vec::new(), HashMap::new());
+        let mut open_line = |pieces: &Vec<[[f64; 3]; 2]>| {
+            let mut parts = Vec::new();
+            for &[from, to] in pieces {
+                let along = sub(to, from);
+                let size = length(along);
+                let count = (size / side).ceil().max(1.0);
+                let middles = (0..).map(f64::from).take_while(|number| *number < count);
+                for at in middles.map(|number| (number + 0.5) / count) {
+                    let place: [f64; 3] = std::array::from_fn(|i| from[i] + at * along[i]);
+                    #[expect(clippy::cast_possible_truncation, reason = "`as` saturates")]
+                    let cell = place.map(|v| (v / side).floor() as i64);
+                    let number = *by_cell.entry(cell).or_insert_with(|| {
+                        places.push(place);
+                        places.len() - 1
+                    });
+                    parts.push((number, size / count));
+                }
+            }
+            OpenLine::new(parts)
+        };
+        let lines = lines.iter().map(&mut open_line).collect();
+        Self { places, lines, tolerance: proof.tolerance() }
+    }
+
+    /// The lowest level at which a line is settled where places are proven at these levels.
+    fn settled_level(&self, line: &OpenLine, levels: &[u8]) -> Option<usize> {
+        (line.level..LEVELS.len()).find(|&most| line.length - line.proven(levels, most) <= self.tolerance)
+    }
+
+    /// The best level of each place for several stations together.
+    fn levels<'a>(&self, stations: impl Iterator<Item = &'a ProvenPlaces>) -> Vec<u8> {
+        let mut levels = vec![NOT_PROVEN; self.places.len()];
+        for &(place, level) in stations.flatten() {
+            let best = &mut levels[place as usize];
+            *best = level.min(*best);
+        }
+        levels
+    }
+
+    fn gain(&self, levels: &[u8]) -> SurveyGain {
+        let mut gain = SurveyGain::default();
+        for line in &self.lines {
+            if let Some(level) = self.settled_level(line, levels) {
+                gain.settled += 1;
+                gain.expected += CHANCES[level];
+            }
+            gain.proven += line.proven(levels, LEVELS.len() - 1);
+        }
+        gain
+    }
+
+    /// What a station covers: a target for each place and level, then one for each line and level. What is proven
+    /// through little unseen space is so through more as well.
+    fn covered(&self, proven: &ProvenPlaces) -> Vec<usize> {
+        let from = |number: usize, level: usize| (level..LEVELS.len()).map(move |level| number * LEVELS.len() + level);
+        let levels = self.levels(std::iter::once(proven));
+        let settled = |(row, line): (usize, &OpenLine)| {
+            let level = self.settled_level(line, &levels)?;
+            Some(from(self.places.len() + row, level))
+        };
+        let places = proven.iter().flat_map(|&(place, level)| from(place as usize, usize::from(level)));
+        places.chain(self.lines.iter().enumerate().filter_map(settled).flatten()).collect()
+    }
+
+    /// How much each of these targets counts: of a line that is proven at a level, the sum from there on is its chance.
+    fn weights(&self) -> Vec<f64> {
+        let next = |level: usize| CHANCES.get(level + 1).copied().unwrap_or(0.0);
+        let mut weights = vec![0.0; (self.places.len() + self.lines.len()) * LEVELS.len()];
+        for (row, line) in self.lines.iter().enumerate() {
+            for level in line.level..LEVELS.len() {
+                let worth = CHANCES[level] - next(level);
+                for &(place, length) in &line.parts {
+                    weights[place * LEVELS.len() + level] += WORTH_OF_SHARE * worth * length / line.length;
+                }
+                weights[(self.places.len() + row) * LEVELS.len() + level] = (1.0 - WORTH_OF_SHARE) * worth;
+            }
+        }
+        weights
+    }
+}
+
+/// Chooses `count` of the candidates at `eyes`, (N) local metres, NaN for one that is not to be used. `lines` are the
+/// unproven lines of sight of a question: of each the pieces that no pulse came near to
+/// ([`MedialScene::unproven_pieces`]), which must be longer than what the proof of `scene` tolerates. Where the model
+/// ends, pulses return from the level of `ground` below the station. Control counts candidates. The same for any number
+/// of threads.
+///
+/// # Errors
+/// [`Error::MissingAttribute`] for a scene without pulses, those of [`ScannerParams::validate`] and of
+/// [`place_cameras`], and [`Error::Cancelled`].
+pub fn plan_survey(
+    (scene, ground): (&MedialScene, Option<&Ground>),
+    eyes: &[[f64; 3]],
+    lines: &[Vec<[[f64; 3]; 2]>],
+    count: usize,
+    params: &ScannerParams,
+    control: &Control<'_>,
+) -> Result<SurveyPlan> {
+    params.validate()?;
+    let proof = scene.proof().ok_or_else(missing_pulses)?;
+    let open = OpenSpace::of(lines, proof);
+    let seen = SeenCells::around(proof, eyes.iter().chain(&open.places));
+    let (nearness, around) = (proof.nearness(), ways_around());
+    let space = ScannedSpace { scene, ground, seen, params, nearness, around };
+    let proven_by = |&eye: &[f64; 3]| {
+        control.check()?;
+        let Some(mut scan) = VirtualScan::new(&space, eye) else { return Ok(Vec::new()) };
+        let mut level = |place: &[f64; 3]| u8::try_from(scan.level(*place)?).ok();
+        let proven = (0..).zip(&open.places).filter_map(|(row, place)| Some((row, level(place)?))).collect();
+        control.advance(1);
+        Ok(proven)
+    };
+    let proven: Vec<ProvenPlaces> = eyes.par_iter().map(proven_by).collect::<Result<_>>()?;
+    let covered: Vec<Vec<usize>> = proven.par_iter().map(|proven| open.covered(proven)).collect();
+    let weights = open.weights();
+    let table = CoverageTable::of_lists(weights.len(), &covered)?;
+    // exchanges find what a search would, and the bound says how much could be missing
+    let params = PlacementParams::new(Goal::Count(count)).with_search_limit(Some(0));
+    let placed: Option<Placement> =
+        (!lines.is_empty()).then(|| place_cameras(&table, &weights, &params, control)).transpose()?;
+    let chosen = placed.as_ref().map_or_else(Vec::new, |placed| placed.chosen.clone());
+    let together = |first: usize| open.gain(&open.levels(chosen[..first].iter().map(|&row| &proven[row])));
+    Ok(SurveyPlan {
+        curve: (0..=chosen.len()).map(together).collect(),
+        alone: proven.par_iter().map(|proven| open.gain(&open.levels(std::iter::once(proven)))).collect(),
+        reachable: open.gain(&open.levels(proven.iter())),
+        unproven: open.lines.iter().map(|line| line.length).sum(),
+        gap: placed.map_or(0.0, |placed| placed.gap()),
+        chosen,
+    })
+}
+
+/// A scene that does not know its pulses, as an error.
+pub(crate) fn missing_pulses() -> Error {
+    Error::MissingAttribute {
+        attribute: "pulses with known scanner positions",
+        needed_for: "a plan of what to scan again",
+        advice: "without them no line of sight is unproven: give scanner positions with --orient (trajectory=FILE, stations=FILE or scanner=X,Y,Z), \
+                 or an .npz ball file of a cloud that had them",
+    }
+}

@@ -1,0 +1,128 @@
+//! `belvedere survey-plan`.
+
+use super::cameras::candidates_on_path;
+use super::line_of_sight::pairs;
+use super::surroundings::{ObserverUse, observer_rows};
+use super::{check_output, extension, warn_of_geojson};
+use crate::arguments::{Global, SurveyPlanArguments};
+use crate::pipeline::{self, KeepPoints};
+use crate::run::CommandContext;
+use crate::summary::Summary;
+use anyhow::Result;
+use belvedere::apps::ask::{
+    self, Ask, Candidates, GridCells, Places, PlannedStation, Scene, Standing, SurveyPlanQuestion, SurveyPlanResults,
+};
+use belvedere::io::{RowsAre, Spot, TableCells, write_geojson, write_table};
+use belvedere::report::rounded;
+use serde_json::{Map, Value};
+use std::path::Path;
+
+pub(crate) fn run(arguments: &SurveyPlanArguments, global: &Global) -> Result<Summary> {
+    for output in &arguments.output {
+        check_output("-o", output, &["geojson", "csv"])?;
+    }
+    let mut question = question(arguments);
+    question.check()?;
+    let mut run = CommandContext::new(global);
+    let scene = pipeline::scene(&arguments.scene, KeepPoints::Keep, &mut run)?;
+    let frame = scene.cloud.frame.clone();
+    warn_of_geojson(&arguments.output, &frame.crs, &mut run.summary);
+    let scene = scene.into_question_scene(Some(&arguments.ground), None, &run)?;
+    let places = match &arguments.observers {
+        None => Places::Pairs(pairs(&arguments.lines, &scene, &run)?.0),
+        Some(path) => {
+            for row in observer_rows(path, &frame, RowsAre::Places, ObserverUse::Places, &mut run)? {
+                let place = |corner: &[f64; 3]| std::array::from_fn(|i| corner[i] - frame.origin[i]);
+                let standing = |corner| Standing { place: place(corner), height: row.height };
+                question.observers.extend(row.corners.iter().map(standing));
+            }
+            let (cell, height, ground) = (arguments.cell, arguments.heights.target_height, question.ground);
+            Places::Cells(GridCells { cell, height, ground, ..GridCells::default() })
+        }
+    };
+    if let Some(path) = &arguments.stations.file {
+        let given = candidates_on_path(path, arguments.step, ObserverUse::Places, &frame, &mut run)?;
+        question.candidates = Candidates::Given(given);
+    }
+    let answers = ask::ask(&scene, &question, &places, &run.control())?;
+    run.answered(&answers);
+    for output in &arguments.output {
+        run.stage("writing", 0, |_| write(output, &answers.found, &scene))?;
+    }
+    let written: Vec<String> = arguments.output.iter().map(|path| path.display().to_string()).collect();
+    run.summary.add("written", written);
+    Ok(run.finish())
+}
+
+/// The question, before files are read.
+fn question(arguments: &SurveyPlanArguments) -> SurveyPlanQuestion {
+    let usual = SurveyPlanQuestion::default();
+    SurveyPlanQuestion {
+        count: arguments.count,
+        candidates: match (arguments.stations.on_roofs, arguments.stations.on_ground) {
+            (Some(cell), _) => Candidates::Roofs(cell),
+            (None, Some(cell)) => Candidates::Ground(cell),
+            (None, None) => usual.candidates,
+        },
+        station_height: arguments.station_height,
+        max_distance: arguments.max_distance,
+        angle_step_deg: arguments.angle_step_deg,
+        observer_height: arguments.heights.observer_height,
+        target_height: arguments.heights.target_height,
+        ground: arguments.ground.points(),
+        ..usual
+    }
+}
+
+/// A row or a point for each candidate that can be used.
+fn write(output: &Path, found: &SurveyPlanResults, scene: &Scene) -> Result<()> {
+    let (stations, frame) = (found.stations(), scene.frame());
+    if extension(output) == "geojson" {
+        let spot = |station: &PlannedStation| {
+            let place = std::array::from_fn(|i| station.eye[i] + frame.origin[i]);
+            Spot { place, properties: properties(station, found) }
+        };
+        let spots: Vec<Spot> = stations.iter().map(spot).collect();
+        write_geojson(output, &spots, &[], &frame.crs)?;
+        return Ok(());
+    }
+    let places: Vec<[f64; 3]> = stations.iter().map(|station| frame.file_from_local(station.eye)).collect();
+    let axis = |axis: usize| places.iter().map(|place| place[axis]).collect::<Vec<f64>>();
+    let [x, y, z] = [0, 1, 2].map(axis);
+    let whole = |value: &dyn Fn(&PlannedStation) -> Option<usize>| -> Vec<Option<u64>> {
+        stations.iter().map(|station| value(station).map(|value| value as u64)).collect()
+    };
+    let real = |value: &dyn Fn(&PlannedStation) -> Option<f64>| -> Vec<f64> {
+        stations.iter().map(|station| value(station).unwrap_or(f64::NAN)).collect()
+    };
+    let cells = [
+        ("station", TableCells::Whole(&whole(&|station| station.order))),
+        ("x", TableCells::Real(&x, 3)),
+        ("y", TableCells::Real(&y, 3)),
+        ("z", TableCells::Real(&z, 3)),
+        ("settles_alone", TableCells::Whole(&whole(&|station| Some(station.alone.settled)))),
+        ("settles_alone_percent", TableCells::Real(&real(&|station| Some(found.share(station.alone))), 2)),
+        ("expected_alone", TableCells::Real(&real(&|station| Some(station.alone.expected)), 1)),
+        ("proves_alone_m", TableCells::Real(&real(&|station| Some(station.alone.proven)), 1)),
+        ("settled", TableCells::Whole(&whole(&|station| Some(station.together?.settled)))),
+        ("expected", TableCells::Real(&real(&|station| Some(station.together?.expected)), 1)),
+        ("settled_percent", TableCells::Real(&real(&|station| Some(found.share(station.together?))), 2)),
+    ];
+    Ok(write_table(output, &cells)?)
+}
+
+fn properties(station: &PlannedStation, found: &SurveyPlanResults) -> Map<String, Value> {
+    let mut properties = Map::new();
+    let mut add = |name: &str, value: Value| properties.insert(name.to_owned(), value);
+    add("station", station.order.into());
+    add("settles_alone", station.alone.settled.into());
+    add("settles_alone_percent", found.share(station.alone).into());
+    add("expected_alone", rounded(station.alone.expected, 1).into());
+    add("proves_alone_m", rounded(station.alone.proven, 1).into());
+    if let Some(together) = station.together {
+        add("settled", together.settled.into());
+        add("expected", rounded(together.expected, 1).into());
+        add("settled_percent", found.share(together).into());
+    }
+    properties
+}
