@@ -74,6 +74,7 @@ pub(crate) fn flags_of(parameter: Parameter) -> &'static [&'static str] {
         Parameter::Ground => &["--ground"],
         Parameter::UnprovenAs => &["--unproven"],
         Parameter::Certainty => &["--certain"],
+        Parameter::HeldOutShare => &["--share"],
         Parameter::Targets => &["--targets", "--self", "--target-class", "--target-polygon"],
         Parameter::LastDay => &["--to"],
         Parameter::ClassMeaning => &["--class"],

@@ -329,6 +329,8 @@ parameters! {
     UnprovenAs => "unproven",
     /// How certain an answer must be.
     Certainty => "certainty",
+    /// Share of the pulses that are kept out to measure with.
+    HeldOutShare => "share of the pulses that are kept out",
     /// Step along unproven space.
     UnprovenStep => "step along unproven space",
     // Other methods, which are compared

@@ -77,6 +77,7 @@ fn keyword(parameter: Parameter) -> &'static str {
         Parameter::Turbidity => "linke",
         Parameter::UnprovenAs => "unproven",
         Parameter::Certainty => "certain",
+        Parameter::HeldOutShare => "share",
         Parameter::WeatherParts => "parts_per_row",
         other => other.name(),
     }

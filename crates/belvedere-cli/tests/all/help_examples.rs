@@ -4,13 +4,14 @@ use crate::common::{Workplace, house};
 use std::collections::BTreeSet;
 use std::path::Path;
 
-const COMMANDS: [&str; 30] = [
+const COMMANDS: [&str; 31] = [
     "demo",
     "simulate",
     "info",
     "trajectory",
     "normals",
     "balls",
+    "calibrate",
     "cache",
     "depth-map",
     "query",

@@ -70,6 +70,7 @@ mod sun;
 mod sun_hours;
 mod surface_patches;
 mod survey_kinds;
+mod survey_reliability;
 mod tau_balls;
 mod thin_surfaces;
 mod top_surface;

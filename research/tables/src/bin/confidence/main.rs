@@ -12,7 +12,7 @@
 mod cases;
 mod fit;
 
-use belvedere_baselines::calibration::Calibration;
+use belvedere::apps::calibration::Calibration;
 use belvedere_scenes::{Preset, Regime};
 use cases::{Case, SETS, TownSurvey};
 
