@@ -32,7 +32,7 @@ pub fn calibrate(
     let behind = if has_classes { "ground and buildings" } else { "last returns" };
     context.headline(format!(
         "of {free} free paths of pulses kept out {} are called blocked; of {hidden} hidden places 1 m behind {behind} {} \
-         are called visible",
+         are called visible or unproven",
         in_words(found.free_paths.wrong_percent),
         in_words(found.hidden_places.wrong_percent)
     ));
@@ -125,10 +125,10 @@ pub fn with_reliability(parts: ModelParts, found: &SurveyReliability) -> ModelPa
 pub(super) fn remark_on_reliability(parts: &ModelParts) -> Option<Remark> {
     let number = |name: &str| parts.provenance.get(&format!("{KEPT_UNDER}{name}"))?.parse::<f64>().ok();
     let (blocked, visible) = (number(NUMBERS[0])?, number(NUMBERS[3])?);
-    let certain = number(NUMBERS[6]).map(|wrong| format!("; {wrong} % of the answers at least 90 % certain are wrong"));
+    let certain = number(NUMBERS[6]).map(|wrong| format!("; {wrong} % of the answers that are at least 90 % certain are wrong"));
     let text = format!(
         "measured on this survey, with pulses kept out: {blocked} % of free paths are called blocked, {visible} % of \
-         hidden places visible{}",
+         hidden places visible or unproven{}",
         certain.unwrap_or_default()
     );
     let numbers = NUMBERS.into_iter().filter_map(|name| Some((name, number(name)?))).collect();
