@@ -125,7 +125,8 @@ pub fn with_reliability(parts: ModelParts, found: &SurveyReliability) -> ModelPa
 pub(super) fn remark_on_reliability(parts: &ModelParts) -> Option<Remark> {
     let number = |name: &str| parts.provenance.get(&format!("{KEPT_UNDER}{name}"))?.parse::<f64>().ok();
     let (blocked, visible) = (number(NUMBERS[0])?, number(NUMBERS[3])?);
-    let certain = number(NUMBERS[6]).map(|wrong| format!("; {wrong} % of the answers that are at least 90 % certain are wrong"));
+    let certain =
+        number(NUMBERS[6]).map(|wrong| format!("; {wrong} % of the answers that are at least 90 % certain are wrong"));
     let text = format!(
         "measured on this survey, with pulses kept out: {blocked} % of free paths are called blocked, {visible} % of \
          hidden places visible or unproven{}",

@@ -25,7 +25,10 @@ fn a_survey_is_measured_and_its_scene_quotes_the_figures() {
     let shadow = place.summary("shadow found.npz --targets town/cloud.laz --sun 180,30 -o lit.laz");
     let is_quoted = |remark: &&Value| remark["key"] == "reliability-measured";
     let quoted = shadow["remarks"].as_array().unwrap().iter().find(is_quoted).unwrap();
-    assert_eq!((&quoted["severity"], quoted["numbers"]["false_blocked_percent"].as_f64()), (&"note".into(), Some(blocked)));
+    assert_eq!(
+        (&quoted["severity"], quoted["numbers"]["false_blocked_percent"].as_f64()),
+        (&"note".into(), Some(blocked))
+    );
     let plain = place.summary("shadow all.npz --targets town/cloud.laz --sun 180,30 -o lit.laz");
     assert!(!remarks(&plain).iter().any(|text| text.contains("pulses kept out")));
 

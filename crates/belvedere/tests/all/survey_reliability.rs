@@ -47,7 +47,9 @@ fn lines(cloud: &PointCloud, model: &ModelParams, params: &ReliabilityParams) ->
         if uniform(params.seed, pulse as u64) >= params.share {
             continue;
         }
-        returns.iter().for_each(|row| drop(rows.remove(row)));
+        for row in returns {
+            rows.remove(row);
+        }
         let place = |row: u32| cloud.positions[row as usize].map(f64::from);
         let eye = scanner[returns[0] as usize].map(f64::from);
         let rounded = |from: [f64; 3], by: f64| {
