@@ -40,7 +40,8 @@ pub(crate) use observers::{
 };
 pub(crate) use query::{DepthMapArguments, Query, UnprovenChoice};
 pub(crate) use scene::{
-    AreaChoice, BallShape, CloudInput, PlanArguments, ProfileChoice, SceneBalls, SceneConfig, SceneInput, UpChoice,
+    AreaChoice, BallShape, CalibrateArguments, CloudInput, PlanArguments, ProfileChoice, SceneBalls, SceneConfig,
+    SceneInput, UpChoice,
 };
 pub(crate) use shadow::ShadowArguments;
 pub(crate) use sky::{FacingChoice, FarTerrainArguments, PatchesChoice, SkyOutputs, SkyPlaces, SkyViewArguments};
@@ -185,6 +186,8 @@ pub(crate) enum Command {
     Surfaces(SurfacesArguments),
     /// Build the medial balls of a scene and save them for other commands
     Balls(BallsArguments),
+    /// Measure how reliable answers on a survey are, with pulses kept out
+    Calibrate(CalibrateArguments),
     /// List the scenes that are kept for the next command, or remove them
     Cache(CacheArguments),
     /// Compute a depth map: the distance to the first surface for each pixel of a view

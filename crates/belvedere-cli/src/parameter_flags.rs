@@ -76,6 +76,7 @@ pub(crate) fn flags_of(parameter: Parameter) -> &'static [&'static str] {
         Parameter::UnprovenAs => &["--unproven"],
         Parameter::Certainty => &["--certain"],
         Parameter::Interval => &["--interval"],
+        Parameter::HeldOutShare => &["--share"],
         Parameter::Targets => &["--targets", "--self", "--target-class", "--target-polygon"],
         Parameter::LastDay => &["--to"],
         Parameter::ClassMeaning => &["--class"],

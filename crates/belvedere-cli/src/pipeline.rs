@@ -78,7 +78,7 @@ pub(crate) fn warn_of_files(report: &ReadReport, summary: &mut Summary) {
 /// The error of building a model of these clouds, with their names where they have too few points, and with the flags
 /// that help.
 pub(crate) fn advised(input: &CloudInput, error: Error) -> anyhow::Error {
-    let names = || input.clouds.iter().map(|path| path.display().to_string()).collect::<Vec<_>>().join(", ");
+    let names = || input.names().join(", ");
     match error {
         Error::NoPoints { what } => {
             let what = format!("{what}; see --keep-noise and --keep-isolated of `belvedere balls`, or --scene-config");

@@ -333,6 +333,8 @@ parameters! {
     Certainty => "certainty",
     /// Whether to give an interval that holds the truth.
     Interval => "interval",
+    /// Share of the pulses that are kept out to measure with.
+    HeldOutShare => "share of the pulses that are kept out",
     /// Step along unproven space.
     UnprovenStep => "step along unproven space",
     // Other methods, which are compared

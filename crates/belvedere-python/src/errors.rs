@@ -78,6 +78,7 @@ fn keyword(parameter: Parameter) -> &'static str {
         Parameter::UnprovenAs => "unproven",
         Parameter::Certainty => "certain",
         Parameter::Interval => "interval",
+        Parameter::HeldOutShare => "share",
         Parameter::WeatherParts => "parts_per_row",
         other => other.name(),
     }

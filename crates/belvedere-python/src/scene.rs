@@ -9,6 +9,7 @@ use crate::system::System;
 use crate::work::run;
 use belvedere::apps::ask::{self, HowSure};
 use belvedere::apps::horizon::convergence;
+use belvedere::apps::survey_reliability::ReliabilityParams;
 use belvedere::cache::{SceneCache, scene_model};
 use belvedere::clean::CleanParams;
 use belvedere::crs::Crs;
@@ -237,6 +238,23 @@ impl PyScene {
         let remarks = remarks_of(py, &built.origin.remark())?;
         let scene = ask::Scene::new(built.model, cloud).with_ground_store(store);
         Ok((Self(Arc::new(scene)), json(&report)?, remarks))
+    }
+
+    /// How reliable answers on the survey of a cloud are, as JSON, and remarks.
+    #[staticmethod]
+    fn calibrate<'py>(
+        py: Python<'py>,
+        cloud: &Cloud,
+        choices: Choices,
+        share: f64,
+        seed: u64,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<(String, Vec<Bound<'py, PyDict>>)> {
+        let cloud = Arc::clone(&cloud.0);
+        let params = py.detach(|| choices.params(&cloud.frame))?;
+        let kept_out = ReliabilityParams { share, seed };
+        let answers = run(py, progress, move |control| ask::calibrate(&cloud, &params, &kept_out, control))?;
+        Ok((json(&answers.found)?, remarks_of(py, &answers.remarks)?))
     }
 
     /// The scene of a ball file, with the cloud that shows its ground if there is one.

@@ -1,7 +1,8 @@
 //! How accurate answers are: counts against the truth, rates, and the uncertainty of the rates.
 
+use belvedere::apps::resampling::resampled;
+pub use belvedere::apps::resampling::{Interval, Tiles};
 use belvedere::query::{Answer, UnprovenAs};
-use belvedere::random::uniform;
 
 /// Answers for targets of known truth, counted.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -106,49 +107,6 @@ impl Rate {
     }
 }
 
-/// A rate averaged over views, and where it would lie for other targets of the same kind.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Interval {
-    /// Mean over the views.
-    pub value: f64,
-    /// 2.5 % of resampled means lie below.
-    pub low: f64,
-    /// 2.5 % of resampled means lie above.
-    pub high: f64,
-}
-
-/// Which tile of the plan each target lies in, numbered from 0, and how many tiles there are.
-#[derive(Clone, Debug)]
-pub struct Tiles {
-    /// Tile of each target, (M).
-    pub of_target: Vec<u32>,
-    /// Tiles in all.
-    pub count: usize,
-}
-
-impl Tiles {
-    /// Square tiles of `side` metres under `targets`, (M, 3) local metres. Targets that are not finite share a tile.
-    #[must_use]
-    pub fn new(targets: &[[f32; 3]], side: f32) -> Self {
-        let mut numbers = std::collections::BTreeMap::new();
-        let cells: Vec<[i64; 2]> = targets
-            .iter()
-            .map(|p| {
-                #[expect(clippy::cast_possible_truncation, reason = "`as` saturates, and NaN becomes 0")]
-                [0, 1].map(|axis| (p[axis] / side).floor() as i64)
-            })
-            .collect();
-        for &cell in &cells {
-            numbers.insert(cell, 0_u32);
-        }
-        for (number, tile) in (0..).zip(numbers.values_mut()) {
-            *tile = number;
-        }
-        let of_target = cells.iter().map(|cell| numbers.get(cell).copied().unwrap_or(0)).collect();
-        Self { of_target, count: numbers.len() }
-    }
-}
-
 /// The counts of one view, tile by tile.
 ///
 /// `truth`, (M), is `None` for targets that are not scored.
@@ -177,18 +135,10 @@ pub fn quantile(views: &[Vec<TruthCounts>], rate: Rate, share: f64) -> Option<f6
     rates.get(index.min(rates.len().saturating_sub(1))).copied()
 }
 
-/// Resamples of tiles that an interval rests on.
-const RESAMPLES: u64 = 400;
-
 /// The mean of `rate` over `views`, each given by the counts of the same tiles, with its 95 % interval; `None` where no
 /// view has the rate.
 ///
-/// Whole tiles are drawn with replacement, the same in every view, because errors come in patches: one wrong ball or
-/// one missing tree spoils all targets around it, and targets resampled one by one would look far more certain than
-/// they are.
-///
-/// # Source
-/// Efron & Tibshirani 1993, chapter 13 (percentile intervals); blocks as in Künsch 1989.
+/// Whole tiles are drawn with replacement, the same in every view ([`resampled`]).
 #[must_use]
 pub fn interval(views: &[Vec<TruthCounts>], rate: Rate, seed: u64) -> Option<Interval> {
     let tile_count = views.iter().map(Vec::len).min()?;
@@ -204,20 +154,7 @@ pub fn interval(views: &[Vec<TruthCounts>], rate: Rate, seed: u64) -> Option<Int
         let (sum, count) = rates.fold((0.0, 0_u32), |(sum, count), rate| (sum + rate, count + 1));
         (count > 0).then(|| sum / f64::from(count))
     };
-    let value = mean(None)?;
-    let resampled: Vec<f64> = (0..RESAMPLES)
-        .filter_map(|resample| {
-            let mut weights = vec![0_u32; tile_count];
-            for draw in 0..tile_count as u64 {
-                let chosen = uniform(seed, resample * tile_count as u64 + draw) * tile_count as f64;
-                #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 0 to the tile count")]
-                let chosen = chosen as usize;
-                weights[chosen.min(tile_count - 1)] += 1;
-            }
-            mean(Some(&weights))
-        })
-        .collect();
-    Some(percentiles(value, resampled))
+    resampled(tile_count, seed, mean)
 }
 
 /// The mean of the rates of several places, with its 95 % interval. Places are drawn with replacement: they differ more
@@ -227,32 +164,12 @@ pub fn over_places(places: &[Interval], seed: u64) -> Option<Interval> {
     if let [one] = places {
         return Some(*one);
     }
-    let values: Vec<f64> = places.iter().map(|place| place.value).collect();
-    let mean = |drawn: &mut dyn Iterator<Item = f64>| drawn.sum::<f64>() / values.len() as f64;
-    let resampled = (0..RESAMPLES).map(|resample| {
-        mean(&mut (0..values.len() as u64).map(|draw| {
-            let chosen = uniform(seed, resample * values.len() as u64 + draw) * values.len() as f64;
-            #[expect(
-                clippy::cast_possible_truncation,
-                clippy::cast_sign_loss,
-                reason = "from 0 to the number of places"
-            )]
-            let chosen = chosen as usize;
-            values[chosen.min(values.len() - 1)]
-        }))
-    });
-    (!values.is_empty()).then(|| percentiles(mean(&mut values.iter().copied()), resampled.collect()))
-}
-
-/// The interval that holds 95 % of `resampled`.
-fn percentiles(value: f64, mut resampled: Vec<f64>) -> Interval {
-    resampled.sort_by(f64::total_cmp);
-    let quantile = |share: f64| {
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "an index into the list")]
-        let index = (share * (resampled.len().max(1) - 1) as f64).round() as usize;
-        resampled.get(index).copied().unwrap_or(value)
+    let mean = |weights: Option<&[u32]>| {
+        let weight = |number: usize| weights.map_or(1.0, |weights| f64::from(weights[number]));
+        let sum: f64 = places.iter().enumerate().map(|(number, place)| weight(number) * place.value).sum();
+        (!places.is_empty()).then(|| sum / places.len() as f64)
     };
-    Interval { value, low: quantile(0.025), high: quantile(0.975) }
+    resampled(places.len(), seed, mean)
 }
 
 #[cfg(test)]

@@ -5,7 +5,6 @@
 
 pub mod agreement;
 pub mod audit;
-pub mod calibration;
 mod curve;
 mod delaunay;
 pub mod dsm;

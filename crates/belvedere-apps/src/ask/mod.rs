@@ -30,6 +30,7 @@ pub mod north;
 pub mod observers;
 pub mod places;
 mod protected_view;
+mod reliability;
 pub mod remark;
 pub mod report;
 pub mod scene;
@@ -66,6 +67,7 @@ pub use north::North;
 pub use observers::{Eyes, Standing};
 pub use places::{GridCells, Places, Turned, remark_on_edge};
 pub use protected_view::{ProtectedViewQuestion, ProtectedViewResults};
+pub use reliability::{calibrate, with_reliability};
 pub use remark::{Remark, Severity, remark_on_left_out};
 pub use report::Report;
 pub use scene::Scene;
@@ -235,6 +237,7 @@ pub fn ask<Q: Ask>(scene: &Scene, question: &Q, places: &Places, control: &Contr
     scene.whereabouts().remark(&mut context);
     context.add(scene.remark_on_terrain());
     context.add(remark_on_axis(scene.model().looks_y_up()));
+    context.add(reliability::remark_on_reliability(scene.model().parts()));
     let answers = question.answer(scene, places, &mut context, control)?;
     Ok(answers.with(context))
 }

@@ -20,6 +20,7 @@ use super::viewshed::SeenSection;
 use super::window_views::{ViewsSection, WindowsSection};
 use crate::eyes::EyesReport;
 use crate::landmark::LandmarkReport;
+use crate::survey_reliability::SurveyReliability;
 use serde::Serialize;
 
 /// The sections of all questions.
@@ -73,6 +74,9 @@ pub struct Report {
     /// How sure answers are.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub certainty: Option<CertaintySection>,
+    /// How reliable answers on a survey are.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub reliability: Option<SurveyReliability>,
     /// A single line of sight.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub line: Option<LineSection>,

@@ -38,6 +38,11 @@ pub(crate) struct CloudInput {
 }
 
 impl CloudInput {
+    /// The names of the clouds, as they were typed.
+    pub(crate) fn names(&self) -> Vec<String> {
+        self.clouds.iter().map(|path| path.display().to_string()).collect()
+    }
+
     /// How the clouds are read.
     pub(crate) fn read_options(&self) -> ReadOptions {
         let mut options = ReadOptions::new().with_up(self.up.into());
@@ -83,6 +88,22 @@ pub(crate) struct SceneBalls {
     pub(crate) orient: Option<OrientChoice>,
     #[command(flatten)]
     pub(crate) config: SceneConfig,
+}
+
+#[derive(Args, Clone)]
+pub(crate) struct CalibrateArguments {
+    /// Share of the pulses kept out, above 0 and below 1
+    #[arg(long, value_name = "SHARE", default_value_t = 0.1, help_heading = "Result", allow_negative_numbers = true)]
+    pub(crate) share: f64,
+    /// What was measured (.json), or a ball file of all points that keeps it (.npz); repeatable
+    ///
+    /// Commands that answer from the ball file quote what was measured, and `belvedere info` lists it.
+    #[arg(short, long, value_name = "OUT", help_heading = "Result")]
+    pub(crate) output: Vec<PathBuf>,
+    #[command(flatten)]
+    pub(crate) balls: SceneBalls,
+    #[command(flatten)]
+    pub(crate) input: CloudInput,
 }
 
 /// The shape of balls, for the commands of the paper.

@@ -48,9 +48,7 @@ pub(crate) fn run(arguments: &BallsArguments, global: &Global) -> Result<Summary
                 SideChoice::Exterior => exterior(&arguments.input, &cloud, &params, &mut run)?,
             };
             run.summary.add("balls", model.balls.len());
-            let inputs: Vec<String> = arguments.input.clouds.iter().map(|p| p.display().to_string()).collect();
-            let program = concat!("belvedere ", env!("CARGO_PKG_VERSION"));
-            let model = model.with_provenance("program", program).with_provenance("input", inputs.join(" "));
+            let model = of_program(model, &arguments.input);
             if model.pulses.is_some() && extension(&arguments.output) != "npz" {
                 run.summary.add("not_written", "pulses: only .npz keeps them, which unproven answers need");
             }
@@ -65,6 +63,12 @@ pub(crate) fn run(arguments: &BallsArguments, global: &Global) -> Result<Summary
         .headline("thinning keeps <thinning_kept_percent> % of the points");
     run.summary.add("written", arguments.output.display().to_string());
     Ok(run.finish())
+}
+
+/// The parts of a model with what made them, and of which clouds.
+pub(super) fn of_program(parts: ModelParts, input: &CloudInput) -> ModelParts {
+    let program = concat!("belvedere ", env!("CARGO_PKG_VERSION"));
+    parts.with_provenance("program", program).with_provenance("input", input.names().join(" "))
 }
 
 /// Refuses what cannot be written to the output, before any point is read.

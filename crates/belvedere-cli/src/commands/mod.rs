@@ -2,6 +2,7 @@
 
 mod balls;
 mod cache;
+mod calibrate;
 mod cameras;
 mod city;
 mod comfort;
@@ -74,6 +75,7 @@ fn run_command(cli: &Cli) -> Result<Summary> {
         Command::Normals(arguments) => normals::run(arguments, global),
         Command::Surfaces(arguments) => surfaces::run(arguments, global),
         Command::Balls(arguments) => balls::run(arguments, global),
+        Command::Calibrate(arguments) => calibrate::run(arguments, global),
         Command::Cache(arguments) => cache::run(arguments, global),
         Command::DepthMap(arguments) => depth_map::run(arguments, global),
         Command::Query(arguments) => query::run(arguments, global),

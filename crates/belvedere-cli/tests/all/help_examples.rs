@@ -11,6 +11,7 @@ const COMMANDS: [&str; 31] = [
     "trajectory",
     "normals",
     "balls",
+    "calibrate",
     "cache",
     "depth-map",
     "query",

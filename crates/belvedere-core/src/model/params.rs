@@ -4,9 +4,9 @@ use super::statistics::SurveyStatistics;
 use crate::clean::CleanParams;
 use crate::medial::{CarvedParams, ShrinkMethod, ShrinkParams};
 use crate::normals::estimate::Neighborhood;
-use crate::pulses::{FreeSegmentParams, LocateParams};
+use crate::pulses::{FreeSegmentParams, LocateParams, Means};
 use belvedere_data::trajectory::Trajectory;
-use belvedere_data::{Mesh, Result};
+use belvedere_data::{Frame, Mesh, Result};
 use std::sync::Arc;
 
 /// How a scene model is built. [`ModelParams::default`] is what Belvedere uses where nothing else is requested.
@@ -74,6 +74,21 @@ pub enum OrientBy {
     Pulses,
     /// As the faces of this mesh, in the metres of the cloud's reference system.
     Mesh(Mesh),
+}
+
+impl OrientBy {
+    /// What the scanner of a cloud in `frame` is found by, where it is not given for each point.
+    #[must_use]
+    pub fn means(&self, frame: &Frame) -> Means<'_> {
+        match self {
+            Self::Trajectory(trajectory) => Means::Trajectory(trajectory),
+            Self::ScannerAt(position) => Means::Position(frame.from_file_coordinates(*position)),
+            Self::Stations(stations) => Means::Stations(stations),
+            Self::Scanner => Means::Poses,
+            Self::Pulses => Means::Pulses,
+            _ => Means::Automatic,
+        }
+    }
 }
 
 /// How balls are made.

@@ -8,7 +8,7 @@ use crate::neighbors::{FARTHEST_NEIGHBOR, NeighborIndex};
 use crate::normals::estimate::estimate_within;
 use crate::normals::{Normals, Orientation, OrientedCloud, Scatter, orient};
 use crate::pulses::{
-    FoundBy, FreeSegmentColumns, FreeSegments, MIN_ASSUMED_SHARE, Means, Pulses, ScannerReport, group, locate,
+    FoundBy, FreeSegmentColumns, FreeSegments, MIN_ASSUMED_SHARE, Pulses, ScannerReport, group, locate,
 };
 use crate::summary::looks_y_up;
 use belvedere_data::control::Control;
@@ -318,12 +318,7 @@ fn find_scanner(
             report.found.insert(FoundBy::Position, known_count);
             return Ok((ScannerPositions { positions, ..ScannerPositions::default() }, report));
         }
-        OrientBy::Trajectory(trajectory) => Means::Trajectory(trajectory),
-        OrientBy::ScannerAt(position) => Means::Position(cloud.frame.from_file_coordinates(*position)),
-        OrientBy::Stations(stations) => Means::Stations(stations),
-        OrientBy::Scanner => Means::Poses,
-        OrientBy::Pulses => Means::Pulses,
-        _ => Means::Automatic,
+        orient => orient.means(&cloud.frame),
     };
     let (positions, report) =
         control.stage("estimating scanner positions", 0, || locate(cloud, &means, &params.locate, control))?;

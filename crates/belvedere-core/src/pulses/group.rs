@@ -149,6 +149,21 @@ impl SortKey {
 }
 
 impl Pulses {
+    /// A pulse for each of `count` points, the only return of it: of scanners that measure one return and write no
+    /// times.
+    #[must_use]
+    pub fn of_points(count: u32) -> Self {
+        let each = count as usize;
+        Self {
+            returns: (0..count).collect(),
+            offsets: (0..=count).collect(),
+            times: vec![0.0; each],
+            source_ids: vec![0; each],
+            first_present: vec![true; each],
+            last_present: vec![true; each],
+        }
+    }
+
     /// Adds the pulse of `returns`, at least one, in order of their numbers.
     fn add(&mut self, returns: &[SortKey], report: &mut PulseReport) {
         let (Some(first), Some(last)) = (returns.first(), returns.last()) else { return };

@@ -77,6 +77,13 @@ impl SensorPositions {
         Ok((Self { per_pulse }, SensorReport { pulse_count: pulses.len(), known_count, clock: None, parts }))
     }
 
+    /// Positions of `pulses` from those of their points, (N, 3), local metres; NaN where unknown.
+    #[must_use]
+    pub fn of_points(pulses: &Pulses, per_point: &[[f32; 3]]) -> Self {
+        let of_pulse = |pulse| pulses.returns_of(pulse).first().and_then(|&row| per_point.get(row as usize)).copied();
+        Self { per_pulse: (0..pulses.len()).map(|pulse| of_pulse(pulse).unwrap_or([f32::NAN; 3])).collect() }
+    }
+
     /// Scanner position of each point of the cloud that `pulses` were grouped from, (N, 3), local metres; NaN where
     /// unknown.
     #[must_use]

@@ -94,6 +94,7 @@ class Scene(Sights, Outlook, Sunlight, Energy, Planning, Cameras):
     """
 
     _planned = False
+    _choices: dict[str, Any] | None = None
 
     def __init__(
         self,
@@ -145,6 +146,7 @@ class Scene(Sights, Outlook, Sunlight, Energy, Planning, Cameras):
             "cache": cache if isinstance(cache, bool) else os.fspath(cache),
         }
         self._core, text, remarks = _core.Scene.build(cloud._core, choices, reporter(progress))
+        self._choices = choices
         self.cloud: Cloud | None = cloud
         self.report: dict[str, Any] = json.loads(text)
         remark = self.report.get("pulses", {}).get("remark")
@@ -179,6 +181,45 @@ class Scene(Sights, Outlook, Sunlight, Energy, Planning, Cameras):
             raise wrong("cloud", f"a {type(cloud).__name__}", "give a Cloud: belvedere.read(path)")
         core = _core.Scene.load(native_source(source, name), None if cloud is None else cloud._core, reporter(progress))
         return cls._of(core, {} if cloud is None else cloud.report, {})
+
+    def calibrate(self, *, share: float = 0.1, seed: int = 1, progress: Progress = None) -> dict[str, Any]:
+        """How reliable answers on this survey are, measured with pulses that are kept out of a second scene.
+
+        The way of a pulse to its first return is free: an answer that it is blocked is wrong. A place 1 m behind a last
+        return of ground or a building is hidden from the scanner: an answer that it is visible is wrong. Only
+        directions from the scanner are tested, and the neighbours of the pulses kept out remain.
+
+        Parameters
+        ----------
+        share : float
+            Share of the pulses kept out, above 0 and below 1.
+        seed : int
+            Chooses these pulses.
+        progress : bool or callable, optional
+
+        Returns
+        -------
+        dict
+            ``free_paths`` and ``hidden_places`` with their wrong answers in percent and 95 % intervals, and
+            ``probabilities``: what answers are worth that are 90 % certain, and the shares expected and found by tenths
+            of probability.
+
+        Raises
+        ------
+        BelvedereError
+            For a scene that was not made of a cloud, and for a cloud whose pulses or scanner are not known.
+
+        Examples
+        --------
+        >>> scene.calibrate()["free_paths"]["wrong_percent"]
+        {'value': ..., 'low': ..., 'high': ...}
+        """
+        if self._choices is None or self.cloud is None:
+            raise wrong("scene", "not made of a cloud as it is", "make it of one: Scene(read(path))")
+        text, remarks = _core.Scene.calibrate(self.cloud._core, self._choices, share, seed, reporter(progress))
+        warned(remarks)
+        found: dict[str, Any] = json.loads(text)
+        return found
 
     def with_added(self, *meshes: str | os.PathLike[str] | Mesh) -> Scene:
         """The same scene with planned buildings: meshes (``.obj .ply .json``) in the coordinates of the cloud.
@@ -306,7 +347,7 @@ class Scene(Sights, Outlook, Sunlight, Energy, Planning, Cameras):
         for note in core.device_notes:
             warnings.warn(note, BelvedereWarning, stacklevel=2)
         scene = Scene._of(core, {} if self.cloud is None else self.cloud.report, self.report)
-        scene._planned = self._planned
+        scene._planned, scene._choices = self._planned, self._choices
         return scene
 
     @property

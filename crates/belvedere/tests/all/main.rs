@@ -72,6 +72,7 @@ mod sun_hours;
 mod surface_patches;
 mod survey_kinds;
 mod survey_plans;
+mod survey_reliability;
 mod tau_balls;
 mod thin_surfaces;
 mod top_surface;

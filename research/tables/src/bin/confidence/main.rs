@@ -16,7 +16,7 @@ mod cases;
 mod fit;
 mod sums;
 
-use belvedere_baselines::calibration::Calibration;
+use belvedere::apps::calibration::Calibration;
 use belvedere_scenes::{Preset, Regime};
 use cases::{Case, SETS, TownSurvey};
 use sums::SumCase;
