@@ -1,5 +1,7 @@
 //! Colours of what is uncertain.
 
+/// What is unproven, which is always uncertain and has a colour of its own.
+pub(crate) const UNPROVEN_COLOR: [u8; 3] = [90, 150, 240];
 /// What colours fade to, and by how much.
 const PALE: [f32; 3] = [236.0, 236.0, 236.0];
 const SHARE: f32 = 0.6;
@@ -10,8 +12,8 @@ pub(crate) fn faded(color: [u8; 3]) -> [u8; 3] {
     std::array::from_fn(|i| (f32::from(color[i]) * (1.0 - SHARE) + PALE[i] * SHARE).round() as u8)
 }
 
-/// Fades the colours of what is uncertain.
+/// Fades the colours of what is uncertain, but for what is unproven.
 pub(crate) fn fade(colors: &mut [Option<[u8; 3]>], uncertain: &[f32]) {
     let of_uncertain = colors.iter_mut().zip(uncertain).filter(|(_, uncertain)| **uncertain > 0.0);
-    of_uncertain.for_each(|(color, _)| *color = color.map(faded));
+    of_uncertain.filter(|(color, _)| **color != Some(UNPROVEN_COLOR)).for_each(|(color, _)| *color = color.map(faded));
 }

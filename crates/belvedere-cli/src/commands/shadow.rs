@@ -1,6 +1,6 @@
 //! `belvedere shadow`.
 
-use super::fading::{fade, faded};
+use super::fading::{UNPROVEN_COLOR, fade, faded};
 use super::targets::{HighestPoints, TargetOutput};
 use super::{check_output, extension};
 use crate::arguments::{Global, ShadowArguments, Usage};
@@ -17,7 +17,6 @@ use belvedere::query::UnprovenAs;
 
 const SHADE_COLOR: [u8; 3] = [38, 52, 96];
 const HALF_COLOR: [u8; 3] = [147, 136, 93];
-const UNPROVEN_COLOR: [u8; 3] = [90, 150, 240];
 const LIT_COLOR: [u8; 3] = [255, 220, 90];
 
 pub(crate) fn run(arguments: &ShadowArguments, global: &Global) -> Result<Summary> {

@@ -2,7 +2,7 @@
 
 use crate::arguments::Usage;
 use crate::commands::extension;
-use crate::commands::fading::{fade, faded};
+use crate::commands::fading::{UNPROVEN_COLOR, fade, faded};
 use anyhow::Result;
 use belvedere::apps::ask::UNCERTAIN;
 use belvedere::apps::targets::Measure;
@@ -20,7 +20,6 @@ use belvedere::{ElevationGrid, Frame, PointCloud};
 use std::path::Path;
 
 const SEEN_COLOR: [u8; 3] = [255, 176, 0];
-const UNPROVEN_COLOR: [u8; 3] = [90, 150, 240];
 const HIDDEN_COLOR: [u8; 3] = [38, 52, 96];
 /// Terrain over which the cloud lies, which has cells of its own.
 const CLOUD_COLOR: [u8; 3] = [120, 120, 120];
