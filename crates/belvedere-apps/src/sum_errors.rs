@@ -152,26 +152,21 @@ pub fn class_of(is_inside_obstacle: bool, moved_share: f64) -> u8 {
 /// that holds the truth in 90 % of cases. Each target has its class; `stem` begins their names.
 #[must_use]
 pub fn expected_measures(stem: &str, sums: &Measure, max: f64, kind: SumKind, classes: &[u8]) -> Vec<Measure> {
-    let value = |part: fn(&SumError) -> f64| -> Vec<f32> {
+    let of_each = |suffix: &str, text: &'static str, part: &dyn Fn(&SumError) -> f64| {
         let of_target = |(&sum, &class): (&f32, &u8)| {
             let error = FOUND[kind as usize].get(usize::from(class)).copied().unwrap_or_default();
             #[expect(clippy::cast_possible_truncation, reason = "a sum in f32")]
             let value = (f64::from(sum) + part(&error) * max).clamp(0.0, max) as f32;
             if sum.is_nan() { sum } else { value }
         };
-        sums.values.iter().zip(classes).map(of_target).collect()
+        let values = sums.values.iter().zip(classes).map(of_target).collect();
+        Measure { name: format!("{stem}_{suffix}"), values, ..sums.clone().with_description(text) }
     };
-    let parts: [(&str, &'static str, fn(&SumError) -> f64); 3] = [
-        ("expected", "expected value", |error| error.mean),
-        ("low", "5 % are lower in truth", |error| error.interval[0]),
-        ("high", "5 % are higher in truth", |error| error.interval[1]),
-    ];
-    let named = parts.map(|(suffix, text, part)| Measure {
-        name: format!("{stem}_{suffix}"),
-        values: value(part),
-        ..sums.clone().with_description(text)
-    });
-    named.into()
+    vec![
+        of_each("expected", "expected value", &|error| error.mean),
+        of_each("low", "5 % are lower in truth", &|error| error.interval[0]),
+        of_each("high", "5 % are higher in truth", &|error| error.interval[1]),
+    ]
 }
 
 #[cfg(test)]
