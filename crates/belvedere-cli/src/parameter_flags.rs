@@ -74,7 +74,7 @@ pub(crate) fn flags_of(parameter: Parameter) -> &'static [&'static str] {
         Parameter::Leaves => &["--leaves"],
         Parameter::Ground => &["--ground"],
         Parameter::UnprovenAs => &["--unproven"],
-        Parameter::Certainty => &["--certain"],
+        Parameter::Certainty => &["--certain", "--probability"],
         Parameter::Interval => &["--interval"],
         Parameter::HeldOutShare => &["--share"],
         Parameter::Targets => &["--targets", "--self", "--target-class", "--target-polygon"],
