@@ -128,7 +128,8 @@ impl HowSure {
         likely.into_iter().chain(certain).collect()
     }
 
-    /// Says how sure the answers of one viewer or sun are: `visible` names what is likely where the probability is high.
+    /// Says how sure the answers of one viewer or sun are: `visible` names what is likely where the probability is
+    /// high.
     pub(super) fn summarise(
         &self,
         probabilities: &[f32],

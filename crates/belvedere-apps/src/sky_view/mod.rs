@@ -59,8 +59,8 @@ impl SkyView {
     }
 }
 
-/// How much of `sky` each of `targets` sees among `obstacles`; NaN for a target without a position. Where trees
-/// let light through they are in leaf, unless they are said to be bare. With `certain_of`, the scene among which targets
+/// How much of `sky` each of `targets` sees among `obstacles`; NaN for a target without a position. Where trees let
+/// light through they are in leaf, unless they are said to be bare. With `certain_of`, the scene among which targets
 /// stand, the result says how far it may be from the truth. Progress counts targets, once or twice each.
 ///
 /// # Errors

@@ -155,8 +155,8 @@ impl SunSums {
 }
 
 /// The sun of `plan` at each of `targets` among `obstacles`. Where trees let light through, `site` says when they carry
-/// leaves. With `certain_of`, the scene among which targets stand, the measures say how far hours may be from the truth.
-/// Progress counts targets, once or twice each.
+/// leaves. With `certain_of`, the scene among which targets stand, the measures say how far hours may be from the
+/// truth. Progress counts targets, once or twice each.
 ///
 /// # Errors
 /// Those of [`fold_rows`] and [`SunSums::add`], and [`Error::MissingAttribute`] for trees without a site.

@@ -129,7 +129,7 @@ pub(crate) struct GivingWay {
 }
 
 #[derive(Args)]
-#[command(next_help_heading = "Lines of sight")]
+#[command(next_help_heading = "Result")]
 pub(crate) struct HowSureArguments {
     /// Also give the probability that a target is visible or lit, 0 to 1
     ///
@@ -151,9 +151,9 @@ impl HowSureArguments {
 }
 
 #[derive(Args)]
-#[command(next_help_heading = "Lines of sight")]
+#[command(next_help_heading = "Result")]
 pub(crate) struct IntervalArgument {
-    /// Also give the expected value, and an interval that holds the truth in 90 % of cases
+    /// Also give the expected value, and an interval that holds the truth in 90 %
     ///
     /// They follow from the errors found in simulated towns: docs/methods/confidence.md. Only where trees are opaque.
     #[arg(long)]

@@ -55,10 +55,12 @@ pub(crate) enum ElevationChoice {
 #[derive(Args)]
 #[command(next_help_heading = "Period")]
 pub(crate) struct SunPeriod {
-    /// A day: 2026-06-21, equinox (21 March), shortest-day or longest-day; repeatable
+    /// A day: 2026-06-21, equinox, shortest-day or longest-day; repeatable
+    ///
+    /// The equinox is 21 March.
     #[arg(long, value_name = "DATE", conflicts_with_all = ["from", "to"])]
     pub(crate) date: Vec<String>,
-    /// First day of a period, or its start time: 2026-03-01, 2026-03-01T09:00+01:00
+    /// First day of a period, or its start time: 2026-03-01T09:00+01:00
     #[arg(long, value_name = "TIME", requires = "to")]
     pub(crate) from: Option<String>,
     /// Last day of a period (included), or its end time

@@ -12,7 +12,7 @@ fn village() -> Workplace {
 }
 
 fn numbers(place: &Workplace, name: &str) -> Vec<Vec<f32>> {
-    match read_tif_bands((&*place.path(name)).into()).unwrap() {
+    match read_tif_bands(place.path(name).as_path()).unwrap() {
         ReadBands::F32(bands) => bands.iter().map(|band| band.values().to_vec()).collect(),
         _ => panic!("{name} does not hold numbers"),
     }

@@ -43,8 +43,8 @@ impl ParallelLines {
 
 impl MedialScene {
     /// What blocks the line of sight from `target`, local metres, to `range` metres (infinite for a direction) along
-    /// the unit vector `towards`, and lines parallel to it. All numbers but the range must be finite. The line itself is
-    /// free where [`MedialScene::answer`] is not blocked.
+    /// the unit vector `towards`, and lines parallel to it. All numbers but the range must be finite. The line itself
+    /// is free where [`MedialScene::answer`] is not blocked.
     #[must_use]
     pub fn parallel_lines(&self, target: [f64; 3], towards: [f64; 3], range: f64) -> ParallelLines {
         let lines = self.lines_beside(target, towards, range);

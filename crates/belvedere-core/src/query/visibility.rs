@@ -38,8 +38,8 @@ pub trait Visibility: Sync {
         self.seen_from(viewer)?(targets)
     }
 
-    /// How likely each of `targets`, (M, 3) local metres, is visible for `viewer`, 0 to 1, NaN where there is no answer;
-    /// `None`, the default, for a method that does not say.
+    /// How likely each of `targets`, (M, 3) local metres, is visible for `viewer`, 0 to 1, NaN where there is no
+    /// answer; `None`, the default, for a method that does not say.
     ///
     /// # Errors
     /// As [`Visibility::visible`].

@@ -169,9 +169,10 @@ class Sights:
         -------
         Sight or Table
             A `Sight` for one pair. For several a `Table` with ``answer``, ``first_block_range_m``, ``unproven_m``
-            (where pulses are known), ``probability``, ``uncertain`` (where wanted), ``fresnel_free_percent`` (with a frequency), ``block_x``, ``block_y``, ``block_z``
-            (together ``block``, (N, 3)), ``block_ball``, ``block_source`` (-1 where no ball blocks),
-            ``block_surface`` (where the scene has patches of surfaces) and ``block_terrain`` (with terrain).
+            (where pulses are known), ``probability``, ``uncertain`` (where wanted), ``fresnel_free_percent`` (with a
+            frequency), ``block_x``, ``block_y``, ``block_z`` (together ``block``, (N, 3)), ``block_ball``,
+            ``block_source`` (-1 where no ball blocks), ``block_surface`` (where the scene has patches of surfaces) and
+            ``block_terrain`` (with terrain).
 
         Raises
         ------

@@ -104,13 +104,13 @@ fn what_is_summed_up_block_by_block_is_what_the_whole_matrix_gives() {
         values.into_iter().map(f32::to_bits).collect::<Vec<_>>()
     };
 
-    let seen = scene_sky_view(&scene, &targets, &sky, &none).unwrap();
+    let seen = scene_sky_view(&scene, &targets, &sky, None, &none).unwrap();
     assert_eq!(clear(seen.factors), clear(sky_view(&of_sky, &sky, None).unwrap().factors));
 
     let rule = SunRule::parse("2@12-21").unwrap();
     let plan = SunPlan::new(period.clone(), vec![("rule_1".to_owned(), rule, schedule("2026-12-21"))]);
     assert_eq!(plan.directions().len(), period.directions.len() + plan.rules()[0].schedule.directions.len());
-    let sums = scene_sun_hours(&scene, &targets, &plan, Some(&site), &none).unwrap();
+    let sums = scene_sun_hours(&scene, &targets, &plan, Some(&site), None, &none).unwrap();
     assert_eq!(sums.period.hours, sun_hours(&of_sun, &period, None, &SunHoursParams::default()).unwrap().hours);
     let mut in_blocks = SunSums::default();
     fold_blocks((&scene).into(), &targets.positions, plan.directions(), 64, &none, |block| {

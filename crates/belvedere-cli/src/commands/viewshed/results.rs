@@ -236,7 +236,7 @@ pub(super) fn on_points(output: &Path, seen: &Viewshed, sure: &[Measure], cloud:
     }
     columns.extend(sure.iter().map(|measure| ExtraColumn {
         name: &measure.name,
-        description: &measure.description,
+        description: measure.description,
         values: ExtraValues::F32(&measure.values),
     }));
     Ok(write_cloud(output, cloud, &columns)?)
