@@ -59,6 +59,11 @@ impl HowSure {
         self.certainty().map(|_| ())
     }
 
+    /// Refuses a scene without pulses, where probabilities are wanted.
+    pub(super) fn check_scene(&self, scene: &Scene) -> Result<()> {
+        if self.is_wanted() { scene.check_pulses(Parameter::Certainty) } else { Ok(()) }
+    }
+
     /// Refuses what has no probabilities: `value`, the reason being `expected`.
     pub(super) fn check_without(&self, value: &str, expected: &'static str) -> Result<()> {
         if !self.is_wanted() {
@@ -77,7 +82,7 @@ impl HowSure {
         if !self.is_wanted() {
             return Ok(None);
         }
-        scene.check_pulses(Parameter::Certainty)?;
+        self.check_scene(scene)?;
         scene.blockers(UnprovenAs::Reported, control).map(Some)
     }
 

@@ -236,6 +236,7 @@ impl Ask for LinesOfSightQuestion {
         if self.unproven.is_some() {
             scene.check_proof()?;
         }
+        self.how_sure.check_scene(scene)?;
         self.check_count(places.pairs()?.len())?;
         let pairs = self.ends(places, scene, context, control)?;
         let unproven = self.unproven.unwrap_or(UnprovenAs::Reported);

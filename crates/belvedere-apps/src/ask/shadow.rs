@@ -114,6 +114,7 @@ impl Ask for ShadowQuestion {
         context: &mut Context,
         control: &Control<'_>,
     ) -> Result<Answers<ShadowResults>> {
+        self.how_sure.check_scene(scene)?;
         let suns = self.suns.over(&self.place, &scene.whereabouts(), context)?;
         let kinds: Vec<ShadowSun> = suns.iter().map(|sun| sun.sun).collect();
         let directions: Vec<[f64; 3]> = kinds.iter().flat_map(|sun| sun_directions(sun.to_sun, self.edges)).collect();

@@ -328,6 +328,7 @@ impl Ask for ViewshedQuestion {
         control: &Control<'_>,
     ) -> Result<Answers<ViewshedResults>> {
         self.check_observers()?;
+        self.how_sure.check_scene(scene)?;
         if self.unproven.is_some_and(|unproven| unproven != UnprovenAs::Visible) {
             scene.check_proof()?;
         }

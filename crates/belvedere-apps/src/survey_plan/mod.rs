@@ -109,7 +109,7 @@ struct OpenSpace {
 
 /// What is unproven of a line.
 struct OpenLine {
-    /// Places on it, and the length that each stands for, metres.
+    /// Places on it, and the length of the line that each represents, metres.
     parts: Vec<(usize, f64)>,
     length: f64,
     /// Through how much unseen space it runs itself.

@@ -151,7 +151,7 @@ impl<'a> VirtualScan<'a> {
         let ScannedSpace { params, nearness, around, .. } = self.space;
         let offset = sub(place, self.eye);
         let distance = length(offset);
-        // a way stands for the pulse nearest to it, which runs up to half a diagonal of their grid beside it
+        // a way represents the pulse nearest to it, which runs up to half a diagonal of their grid beside it
         let near = nearness - FRAC_1_SQRT_2 * params.angular_step * distance;
         if !(near > 0.0 && distance <= params.max_range) {
             return None;

@@ -21,7 +21,7 @@ pub(crate) struct SurveyPlanArguments {
     pub(crate) heights: EndHeights,
     #[command(flatten)]
     pub(crate) stations: StationPlaces,
-    /// Distance between candidates on a line of GeoJSON, in metres [default: 5]
+    /// Distance between candidates on a line, in metres [default: 5]
     #[arg(long = "distance-step-m", value_name = "M", requires = "file", value_parser = above_zero::<f64>, allow_negative_numbers = true,
         help_heading = "Candidates (one of)")]
     pub(crate) step: Option<f64>,

@@ -52,9 +52,9 @@ fn shadows_viewsheds_and_lines_say_how_likely_they_are() {
     assert!(place.bytes("sure.png").starts_with(b"\x89PNG"));
 
     let info = place.summary("info town/cloud.laz");
-    let middle = info["bounds"].clone();
-    let corner = |which: &str, axis: usize| middle[which][axis].as_f64().unwrap();
-    let at = |share: f64| [0, 1].map(|axis| corner("min", axis) + share * (corner("max", axis) - corner("min", axis)));
+    let corner = |which: &str, axis: usize| info[which][axis].as_f64().unwrap();
+    let at =
+        |share: f64| [0, 1].map(|axis| (1.0 - share) * corner("min_corner", axis) + share * corner("max_corner", axis));
     let [[ax, ay], [bx, by]] = [at(0.4), at(0.6)];
     let viewshed = format!("viewshed town/cloud.laz --observer {ax},{ay} --cell 1 --probability --certain 0.95");
     let seen = place.summary(&format!("{viewshed} -o seen.tif -o seen.png"));

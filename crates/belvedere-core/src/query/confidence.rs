@@ -38,7 +38,7 @@ pub struct Evidence {
     pub has_eye: bool,
     /// Whether scanners stood on the ground.
     pub is_from_ground: bool,
-    /// How much of the line no pulse came near to, metres; from 8 on more is not told apart.
+    /// How much of the line no pulse came near to, metres; 8 where it is 8 or more.
     pub unproven_length: f64,
 }
 
