@@ -110,12 +110,12 @@ fn print_rows(name: &str, cases: &[Case]) {
         let [hard, found] = [Case::hard as fn(&Case) -> f32, Case::probability]
             .map(|probability| calibration(cases, |case| case.set == set, probability));
         println!(
-            "| {name} | {} | {:.2} | {:.4} | {:.4} (−{:.0} %) | {:.2} | {:.2} | {:.2} |",
+            "| {name} | {} | {:.2} | {:.4} | {:.4} ({:+.0} %) | {:.2} | {:.2} | {:.2} |",
             set.name(),
             100.0 * hard.brier(),
             hard.brier(),
             found.brier(),
-            100.0 * (1.0 - found.brier() / hard.brier()),
+            100.0 * (found.brier() / hard.brier() - 1.0),
             100.0 * found.expected_error(),
             100.0 * hard.error_of_most_certain(),
             100.0 * found.error_of_most_certain()
