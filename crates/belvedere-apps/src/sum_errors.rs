@@ -53,9 +53,9 @@ pub struct SumError {
 
 static FOUND: LazyLock<[[SumError; CLASSES]; SumKind::ALL.len()]> = LazyLock::new(|| read_errors(ERRORS));
 
-/// Errors from lines of kind, class, mean, low and high end.
+/// Errors from lines of kind, class, mean, low and high end. A class without any has those of the next one that has.
 fn read_errors(text: &str) -> [[SumError; CLASSES]; SumKind::ALL.len()] {
-    let mut errors = [[SumError::default(); CLASSES]; SumKind::ALL.len()];
+    let mut errors = [[None; CLASSES]; SumKind::ALL.len()];
     for line in text.lines().skip(1) {
         let fields: Vec<&str> = line.split(',').collect();
         let [name, class, mean, low, high, ..] = fields[..] else { continue };
@@ -64,10 +64,15 @@ fn read_errors(text: &str) -> [[SumError; CLASSES]; SumKind::ALL.len()] {
         if let (Some(kind), Ok(class)) = (kind, class.parse::<usize>())
             && let Some(error) = errors[kind].get_mut(class)
         {
-            *error = SumError { mean: numbers[0], interval: [numbers[1], numbers[2]] };
+            *error = Some(SumError { mean: numbers[0], interval: [numbers[1], numbers[2]] });
         }
     }
-    errors
+    errors.map(|of_kind| {
+        std::array::from_fn(|class| {
+            let from_here = of_kind[class..].iter().chain(of_kind[..class].iter().rev());
+            from_here.flatten().next().copied().unwrap_or_default()
+        })
+    })
 }
 
 /// Directions with their neighbours, of which weighted sums are taken.
@@ -199,6 +204,14 @@ mod tests {
         let found = outlines.moved_share(|number| (20..60).contains(&number));
         // each end moves half a sun a degree
         assert!((found - 2.0 * 0.5 / 90.0).abs() < 1e-9, "{found}");
+    }
+
+    #[test]
+    fn a_class_without_errors_has_those_of_a_class_beside_it() {
+        let errors = read_errors("kind,class,mean,low,high,cases\nsun,3,0.1,-0.2,0.3,60\nsun,1,0,0,0,70\n");
+        assert_eq!(errors[0][1].interval, [0.0, 0.0]);
+        let third = SumError { mean: 0.1, interval: [-0.2, 0.3] };
+        assert_eq!([errors[0][2], errors[0][3], errors[0][9]], [third; 3]);
     }
 
     #[test]

@@ -6,7 +6,7 @@ use crate::resampling::{Interval, Tiles, resampled};
 use belvedere_core::clean::clean;
 use belvedere_core::model::{ModelParams, SceneModel};
 use belvedere_core::pulses::{Pulses, SensorPositions, group, locate};
-use belvedere_core::query::{Answer, Certainty, MedialScene, UnprovenAs, Viewer};
+use belvedere_core::query::{Answer, AnswerCounts, Certainty, MedialScene, UnprovenAs, Viewer};
 use belvedere_data::control::Control;
 use belvedere_data::report::rounded;
 use belvedere_data::{Error, PointCloud, Result};
@@ -67,7 +67,7 @@ pub struct PlacesReliability {
     /// Wrong answers; `None` without any answer.
     pub wrong_percent: Option<Interval>,
     /// The answers.
-    pub answers: AnswerCounts,
+    pub answers: FoundAnswers,
     /// Wrong answers by what the pulse met; `None` where it met nothing of it.
     pub wrong_percent_at: WrongBySurface,
 }
@@ -85,7 +85,7 @@ pub struct WrongBySurface {
 
 /// Numbers of answers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-pub struct AnswerCounts {
+pub struct FoundAnswers {
     /// Visible.
     pub visible: usize,
     /// Unproven: nothing blocks.
@@ -274,7 +274,10 @@ impl KnownCases {
         let tiles = Tiles::new(&self.pairs.targets, TILE_SIDE_M);
         let mut by_tile = vec![ErrorTally::default(); tiles.count];
         let [mut ground, mut building, mut other] = [ErrorTally::default(); 3];
-        let mut answers = AnswerCounts::default();
+        let counts = AnswerCounts::of(&self.answers);
+        let (visible, unproven, blocked) = (counts.visible, counts.unproven, counts.blocked);
+        let none = self.answers.len() - visible - unproven - blocked;
+        let answers = FoundAnswers { visible, unproven, blocked, none };
         let rows = self.answers.iter().zip(&self.pairs.surfaces).zip(&tiles.of_target);
         for ((&answer, surface), &tile) in rows {
             by_tile[tile as usize].count(answer, wrong);
@@ -283,12 +286,6 @@ impl KnownCases {
                 MetSurface::Building => building.count(answer, wrong),
                 MetSurface::Other => other.count(answer, wrong),
             }
-            *match answer {
-                Answer::Visible => &mut answers.visible,
-                Answer::Unproven => &mut answers.unproven,
-                Answer::Blocked => &mut answers.blocked,
-                _ => &mut answers.none,
-            } += 1;
         }
         let of_surface = |tally: ErrorTally| (tally.answered_count > 0).then(|| percent(tally.share()));
         let wrong_percent_at =

@@ -1,10 +1,10 @@
 //! How sure answers are: a probability with each, and which of them are uncertain.
 
 use super::scene::Scene;
-use super::{Context, ThroughTrees};
+use super::{Context, Remark, ThroughTrees};
 use crate::targets::{Measure, ResultKind};
 use crate::viewshed::SeenProbabilities;
-use belvedere_core::query::{Certainty, MedialScene, UnprovenAs};
+use belvedere_core::query::{Certainty, MedialScene, Proof, UnprovenAs};
 use belvedere_data::control::Control;
 use belvedere_data::report::percent;
 use belvedere_data::{Error, Parameter, Result};
@@ -120,17 +120,11 @@ impl HowSure {
             let text = "expected number of observers";
             Measure::new(EXPECTED, found.expected).with_description(text).with_decimals(3)
         });
-        let certain = found.certain.map(|[seen, hidden]| {
-            let uncertain = found.answered.iter().zip(seen.iter().zip(&hidden));
-            let uncertain = uncertain.map(|(&all, (&seen, &hidden))| match all {
-                0 => f32::NAN,
-                _ => (all - seen - hidden) as f32,
-            });
-            let text = "observers that are uncertain";
-            let kind = ResultKind::Count;
-            Measure::new(UNCERTAIN, uncertain.collect()).with_description(text).with_decimals(0).with_kind(kind)
+        let uncertain = found.uncertain.map(|uncertain| {
+            let (text, kind) = ("observers that are uncertain", ResultKind::Count);
+            Measure::new(UNCERTAIN, uncertain).with_description(text).with_decimals(0).with_kind(kind)
         });
-        likely.into_iter().chain(certain).collect()
+        likely.into_iter().chain(uncertain).collect()
     }
 
     /// Says how sure the answers of one viewer or sun are: `visible` names what is likely where the probability is
@@ -186,4 +180,23 @@ pub(super) fn check_interval(is_wanted: bool, trees: &ThroughTrees) -> Result<()
         value: "given with light through trees".to_owned(),
         expected: "left out: how far such light may be from the truth is not known",
     })
+}
+
+/// Refuses intervals of scenes without pulses, and warns where scanners stood on the ground: the errors that intervals
+/// follow from are those of balls that pulses from the air carved.
+pub(super) fn judge_interval(
+    is_wanted: bool,
+    scene: &Scene,
+    context: &mut Context,
+    control: &Control<'_>,
+) -> Result<()> {
+    if !is_wanted {
+        return Ok(());
+    }
+    scene.check_pulses(Parameter::Interval)?;
+    let blockers = scene.blockers(UnprovenAs::Reported, control)?;
+    let is_from_ground = blockers.proof().is_some_and(Proof::is_from_ground);
+    let text = "the scanner stood on the ground: intervals follow from errors of surveys from the air";
+    context.add(is_from_ground.then(|| Remark::warning("interval-from-the-ground", text)));
+    Ok(())
 }

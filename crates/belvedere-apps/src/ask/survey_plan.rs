@@ -225,12 +225,12 @@ impl SurveyPlanSection {
                  {settled_lines} if nothing stands where no pulse was"
             )
         };
-        let mut lines: Vec<String> = self.stations.iter().zip(1..).map(station).collect();
-        if !lines.is_empty() {
-            let all = self.all_candidates_settle_percent;
-            lines.push(format!("all {} candidates together would settle {all} %", self.candidates.count));
+        if self.stations.is_empty() {
+            return vec![format!("no station is chosen, for {total} unproven lines of sight")];
         }
-        lines
+        let all = self.all_candidates_settle_percent;
+        let all = format!("all {} candidates together would settle {all} %", self.candidates.count);
+        self.stations.iter().zip(1..).map(station).chain([all]).collect()
     }
 }
 

@@ -308,6 +308,10 @@ impl Ask for ViewshedQuestion {
             });
         }
         self.how_sure.check()?;
+        if self.wants(ViewshedTargets::FarTerrain) {
+            let expected = "left out for terrain beyond the cloud: no pulse tells how likely it is seen";
+            self.how_sure.check_without("given with far terrain", expected)?;
+        }
         check_height(self.observer_height)?;
         check_height(self.target_height)?;
         match self.max_height {
@@ -401,6 +405,12 @@ mod tests {
             ViewshedQuestion { observer_height: Some(-1.0), ..usual.clone() },
             ViewshedQuestion { target_height: Some(f64::NAN), ..usual.clone() },
             ViewshedQuestion { max_height: Some(-1.0), ..usual.clone() },
+            ViewshedQuestion { how_sure: HowSure { probability: false, certain: Some(0.5) }, ..usual.clone() },
+            ViewshedQuestion {
+                how_sure: HowSure { probability: true, certain: None },
+                targets: vec![ViewshedTargets::FarTerrain],
+                ..usual.clone()
+            },
             ViewshedQuestion { earth: EarthParams { refraction: 1.0, ..EarthParams::default() }, ..usual },
         ] {
             assert!(wrong.check().is_err(), "{wrong:?}");

@@ -4,7 +4,7 @@
 pub(crate) const UNPROVEN_COLOR: [u8; 3] = [90, 150, 240];
 /// What colours fade to, and by how much.
 const PALE: [f32; 3] = [236.0, 236.0, 236.0];
-const SHARE: f32 = 0.6;
+const SHARE: f32 = 0.45;
 
 /// The colour of an answer that is uncertain.
 pub(crate) fn faded(color: [u8; 3]) -> [u8; 3] {

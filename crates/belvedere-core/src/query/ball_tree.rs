@@ -4,6 +4,7 @@ use crate::blocking::{Ball, BlockRule};
 use crate::ray_index::{Ray, RayIndex};
 use belvedere_data::balls::{MedialBalls, NO_TOUCH};
 use belvedere_data::model::TreeParts;
+use belvedere_data::vector::length;
 use belvedere_data::{Error, Parameter, Result};
 use rayon::prelude::*;
 use std::ops::Range;
@@ -20,6 +21,18 @@ pub struct BallTree {
     /// For each ball its row among those given.
     rows: Arc<[u32]>,
     rule: BlockRule,
+}
+
+/// By how much radii are taken for larger until lines are tested exactly: far more than f32 errs. Metres, a share of
+/// the size of the scene, a share of the radius.
+pub(super) const MARGIN: f64 = 1e-3;
+const MARGIN_OF_SCENE: f64 = 1e-6;
+const MARGIN_OF_RADIUS: f32 = 1e-5;
+
+/// Within how much of a line, in f32, the middle of a ball lies that may block it, with [`BallTree::near_margin`].
+#[inline(always)]
+pub(super) fn near_reach(ball: Ball, margin: f32) -> f32 {
+    ball.radius * (1.0 + MARGIN_OF_RADIUS) + margin
 }
 
 /// The balls that can be ordered into a tree, and their rows.
@@ -156,6 +169,14 @@ impl BallTree {
     #[inline]
     fn reach(&self, ray: &Ray) -> f64 {
         ray.ranges[1] + self.rule.bias.min(0.0)
+    }
+
+    /// By how much more than their radius balls may lie beside a line until the line is tested exactly, where it is
+    /// compared with them in f32, metres; [`near_reach`] adds a share of the radius.
+    pub(super) fn near_margin(&self) -> f32 {
+        #[expect(clippy::cast_possible_truncation, reason = "what is rounded is far less than the margin")]
+        let margin = (MARGIN + MARGIN_OF_SCENE * length(self.index.half_size())) as f32;
+        margin
     }
 
     /// Whether any ball blocks a line of sight.

@@ -1,12 +1,13 @@
 //! Lines of sight parallel to one, beside it: where they disagree, it passes an edge of what is known of the scene.
 
 use super::MedialScene;
+use super::ball_tree::{MARGIN, near_reach};
 use crate::ray_index::{END, Ray, Visit};
-use belvedere_data::vector::{cross, dot, length, sub, unit};
+use belvedere_data::vector::{cross, dot, sub, unit};
 use std::f64::consts::FRAC_PI_4;
 
 /// How far the two rings of lines run beside the line itself, metres: half a spacing and a spacing at ten pulses per
-/// m². With other distances (0.08 m, and multiples of the spacing of pulses) probabilities were no better.
+/// m². A third ring at 0.08 m made probabilities no better.
 const RINGS: [f64; 2] = [0.16, 0.32];
 /// Lines of each ring.
 pub(super) const RING_LINES: usize = 8;
@@ -14,11 +15,6 @@ pub(super) const RING_LINES: usize = 8;
 const LINES: usize = 1 + RINGS.len() * RING_LINES;
 /// Slots for lines, a multiple of those that are tested at once.
 const SLOTS: usize = 24;
-/// By how much radii are taken for larger until lines are tested exactly: far more than f32 errs. Metres, a share of
-/// the size of the scene, a share of the radius.
-const MARGIN: f64 = 1e-3;
-const MARGIN_OF_SCENE: f64 = 1e-6;
-const MARGIN_OF_RADIUS: f32 = 1e-5;
 
 /// What blocks a line of sight and those beside it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -121,8 +117,7 @@ impl<'a> Left<'a> {
             places[0][slot] = dot(offset, axes[0]);
             places[1][slot] = dot(offset, axes[1]);
         }
-        let margin = to_f32(MARGIN + MARGIN_OF_SCENE * length(scene.tree().index().half_size()));
-        Self { scene, lines, middle, axes, places, margin, free: ALL }
+        Self { scene, lines, middle, axes, places, margin: scene.tree().near_margin(), free: ALL }
     }
 
     /// Tests exactly which of the lines that a ball comes near to it blocks.
@@ -145,7 +140,7 @@ impl Visit for &mut Left<'_> {
         let ball = self.scene.ball(row);
         let offset = sub(ball.center, self.middle);
         let [x, y] = self.axes.map(|axis| dot(offset, axis));
-        let reach = ball.radius * (1.0 + MARGIN_OF_RADIUS) + self.margin;
+        let reach = near_reach(ball, self.margin);
         let is_near = std::array::from_fn(|slot| {
             let [x, y] = [x - self.places[0][slot], y - self.places[1][slot]];
             u32::from(x * x + y * y < reach * reach)
@@ -169,6 +164,7 @@ mod tests {
     use crate::medial::MedialBalls;
     use crate::query::Answer;
     use belvedere_data::random::uniform;
+    use belvedere_data::vector::length;
 
     fn scene(rule: &BlockRule) -> MedialScene {
         let random = |i: u64, k: u64| to_f32(uniform(5, 8 * i + k));

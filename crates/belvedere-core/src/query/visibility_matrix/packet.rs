@@ -3,21 +3,15 @@
 //! # Source
 //! Wald, Slusallek, Benthin & Wagner 2001: packets of rays.
 
-use super::super::ball_tree::BallTree;
+use super::super::ball_tree::{BallTree, MARGIN, near_reach};
 use crate::ray_index::{END, Ray, Visit};
-use belvedere_data::vector::{cross, dot, length, sub, unit};
+use belvedere_data::vector::{cross, dot, sub, unit};
 
 /// Most lines of a packet.
 pub(super) const LANES: usize = 8;
 /// Farthest that the targets of a packet lie apart along an axis, metres. The sky of the points of a town (10 per m²,
 /// 256 directions) took 20.3 s with 0.5, 16.1 with 1, 15.4 with 2 and 16.3 with 4, in one session.
 const SPREAD: f32 = 2.0;
-/// By how much radii are taken for larger until lines are tested exactly: far more than f32 errs. Metres, a share of
-/// the size of the scene, a share of the radius.
-const MARGIN: f64 = 1e-3;
-const MARGIN_OF_SCENE: f64 = 1e-6;
-const MARGIN_OF_RADIUS: f32 = 1e-5;
-
 /// The ball that blocks each line of a packet, in the order in which they were taken.
 pub(super) type Blockers = [Option<u32>; LANES];
 
@@ -49,7 +43,7 @@ impl<'a> Packet<'a> {
             direction,
             start: start.max(tree.rule().bias),
             axes: [across, cross(direction, across), direction].map(|axis| axis.map(to_f32)),
-            margin: to_f32(MARGIN + MARGIN_OF_SCENE * length(tree.index().half_size())),
+            margin: tree.near_margin(),
             targets: [[0.0; 3]; LANES],
             count: 0,
             low: [f32::INFINITY; 3],
@@ -140,7 +134,7 @@ impl Visit for Search<'_, '_> {
         let ball = self.packet.tree.ball(row);
         let offset = sub(ball.center, self.middle);
         let [x, y, z] = self.packet.axes.map(|axis| dot(offset, axis));
-        let reach = ball.radius * (1.0 + MARGIN_OF_RADIUS) + self.packet.margin;
+        let reach = near_reach(ball, self.packet.margin);
         let is_near = std::array::from_fn(|lane| {
             let [x, y, before] = [x - self.starts[0][lane], y - self.starts[1][lane], self.starts[2][lane] - z];
             let before = if before > 0.0 { before } else { 0.0 };

@@ -10,12 +10,15 @@ use belvedere::cloud::to_local;
 use belvedere::control::Control;
 use belvedere::frame::Frame;
 use belvedere_scenes::QuerySet;
+use std::collections::BTreeSet;
 
 /// Targets of each set.
 const TARGETS: usize = 400;
 const SETS: [QuerySet; 3] = [QuerySet::Pedestrians, QuerySet::Roofs, QuerySet::Facades];
-/// Declinations of the sun at the shortest day, an equinox and the longest day, and the latitude, degrees.
-const DECLINATIONS_DEG: [f64; 3] = [-23.4, 0.0, 23.4];
+/// Declination of the sun at the longest day; days between it and the shortest that represent a year; and the latitude,
+/// degrees.
+const MAX_DECLINATION_DEG: f64 = 23.4;
+const DAYS_OF_YEAR: u16 = 13;
 const LATITUDE_DEG: f64 = 52.0;
 /// Suns of a whole day: one each ten minutes.
 const STEPS: u16 = 144;
@@ -25,6 +28,8 @@ const MIN_CASES: usize = 50;
 /// A sum of a target as a share of the greatest possible.
 pub(super) struct SumCase {
     kind: SumKind,
+    /// What is summed up, for tables.
+    name: &'static str,
     set: QuerySet,
     class: u8,
     found: f64,
@@ -34,21 +39,32 @@ pub(super) struct SumCase {
 /// Directions of one sum, and their weights.
 struct Sum {
     kind: SumKind,
+    name: &'static str,
     directions: Vec<[f64; 3]>,
     weights: Vec<f64>,
 }
 
 fn all_sums() -> AnyResult<Vec<Sum>> {
-    let mut sums: Vec<Sum> = DECLINATIONS_DEG
-        .map(|declination| {
-            let directions = suns(declination);
-            Sum { kind: SumKind::Sun, weights: vec![1.0; directions.len()], directions }
-        })
-        .into();
+    let of_suns = |name, directions: Vec<[f64; 3]>| Sum {
+        kind: SumKind::Sun,
+        name,
+        weights: vec![1.0; directions.len()],
+        directions,
+    };
+    let day = |share: f64| suns(share * MAX_DECLINATION_DEG);
+    // the shortest day, an equinox, the longest day, and a year
+    let mut sums: Vec<Sum> = [-1.0, 0.0, 1.0].map(|share| of_suns("hours of sun of a day", day(share))).into();
+    let days = (0..DAYS_OF_YEAR).map(|number| 2.0 * f64::from(number) / f64::from(DAYS_OF_YEAR - 1) - 1.0);
+    sums.push(of_suns("hours of sun of a year", days.flat_map(day).collect()));
     let sky = SkyDirections::even(577)?;
     let cosines: Vec<f64> = sky.directions.iter().zip(&sky.solid_angles).map(|(d, angle)| d[2] * angle).collect();
-    sums.push(Sum { kind: SumKind::Sky, directions: sky.directions.clone(), weights: cosines });
-    sums.push(Sum { kind: SumKind::Sky, directions: sky.directions, weights: sky.solid_angles });
+    sums.push(Sum {
+        kind: SumKind::Sky,
+        name: "sky view factor",
+        directions: sky.directions.clone(),
+        weights: cosines,
+    });
+    sums.push(Sum { kind: SumKind::Sky, name: "sky openness", directions: sky.directions, weights: sky.solid_angles });
     Ok(sums)
 }
 
@@ -73,7 +89,7 @@ pub(super) fn cases(survey: &TownSurvey) -> AnyResult<Vec<SumCase>> {
         let found = surveyed.site().targets(set, TARGETS, survey.seed).positions;
         let positions: Vec<[f64; 3]> = found.iter().map(|p| to_local(*p, *origin).map(f64::from)).collect();
         let targets = Targets::of_places(&positions, Frame::default());
-        for Sum { kind, directions, weights } in all_sums()? {
+        for Sum { kind, name, directions, weights } in all_sums()? {
             let outlines = Outlines::new(&directions, &weights);
             let matrix = scene.visibility_matrix(&targets.positions, &directions, &Control::none())?;
             let all: f64 = weights.iter().sum();
@@ -86,6 +102,7 @@ pub(super) fn cases(survey: &TownSurvey) -> AnyResult<Vec<SumCase>> {
             let classes = outlines.classes(&block, scene, &targets);
             cases.extend(truths.iter().zip(classes).enumerate().map(|(row, (truth, class))| SumCase {
                 kind,
+                name,
                 set,
                 class,
                 found: block.matrix.sum(row, &weights) / all,
@@ -119,27 +136,25 @@ pub(super) fn errors(cases: &[SumCase]) -> String {
 /// Prints how often intervals hold the truth, and how wide they are.
 pub(super) fn judge(cases: &[SumCase]) {
     println!(
-        "\n| sum | set | cases | held by the interval, % | mean width, % of the greatest sum |\n|---|---|---|---|---|"
+        "\n| sum | targets | cases | held by the interval, % | mean width, % of the greatest sum |\n|---|---|---|---|---|"
     );
-    for (kind, name) in SumKind::ALL {
+    let names: BTreeSet<&str> = cases.iter().map(|case| case.name).collect();
+    for name in names {
         for set in SETS.map(Some).into_iter().chain([None]) {
-            let (mut held, mut width, mut count) = (0, 0.0, 0);
-            for case in cases.iter().filter(|case| case.kind == kind && set.is_none_or(|set| case.set == set)) {
+            let of_set = cases.iter().filter(|case| case.name == name && set.is_none_or(|set| case.set == set));
+            let (mut held, mut width, mut count) = (0.0, 0.0, 0.0);
+            for case in of_set {
                 #[expect(clippy::cast_possible_truncation, reason = "a share")]
                 let sums = Measure::new("sum", vec![case.found as f32]);
-                let measures = expected_measures("sum", &sums, 1.0, kind, &[case.class]);
+                let measures = expected_measures("sum", &sums, 1.0, case.kind, &[case.class]);
                 let [low, high] = [1, 2].map(|number: usize| f64::from(measures[number].values[0]));
                 // f32 rounds the ends
-                held += usize::from(low - 1e-6 <= case.truth && case.truth <= high + 1e-6);
+                held += f64::from(u8::from(low - 1e-6 <= case.truth && case.truth <= high + 1e-6));
                 width += high - low;
-                count += 1;
+                count += 1.0;
             }
             let set = set.map_or("all", QuerySet::name);
-            let (held, width) = (
-                100.0 * f64::from(u32::try_from(held).unwrap_or(0)) / f64::from(count),
-                100.0 * width / f64::from(count),
-            );
-            println!("| {name} | {set} | {count} | {held:.1} | {width:.1} |");
+            println!("| {name} | {set} | {count} | {:.1} | {:.1} |", 100.0 * held / count, 100.0 * width / count);
         }
     }
 }
