@@ -56,6 +56,7 @@ pub(crate) struct CameraKeywords {
     refraction: Option<f64>,
     frequency: Option<f64>,
     fresnel_percent: Option<f64>,
+    certain: Option<f64>,
 }
 
 impl CameraKeywords {
@@ -97,6 +98,7 @@ impl CameraKeywords {
             frequency_ghz: self.frequency,
             fresnel_percent: self.fresnel_percent,
             unproven: (unproven != UnprovenAs::Reported).then_some(unproven),
+            certain: self.certain,
         })
     }
 

@@ -235,6 +235,67 @@ def test_cells_have_the_same_answers_in_the_program_and_in_python(scene, ask_pro
     assert said(summary.get("remarks", [])) == said(raster.remarks)
 
 
+SURE = {
+    "shadow": (
+        ["shadow", "--sun", "200,30", "--cell", 2],
+        lambda scene, place, **sure: scene.shadow(sun=(200, 30), cell=2, **sure),
+    ),
+    "viewshed": (
+        ["viewshed", "--observer", "{place}", "--cell", 2],
+        lambda scene, place, **sure: scene.viewshed(place, cell=2, **sure),
+    ),
+}
+
+
+@pytest.mark.parametrize("name", SURE)
+def test_answers_are_as_sure_in_the_program_and_in_python(scene, ask_program, folder, standing, name):
+    words, of_python = SURE[name]
+    words = [str(word).format(place=f"{standing[0]},{standing[1]}") for word in words]
+    ask_program(words[0], "tile.laz", *words[1:], "--probability", "--certain", 0.9, "-o", "sure.tif")
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", belvedere.BelvedereWarning)
+        raster = of_python(scene, standing, probability=True, certain=0.9)
+        plain = of_python(scene, standing)
+    bands, _ = bands_of(folder / "sure.tif")
+    assert np.array_equal(values_of(plain), values_of(raster), equal_nan=True), "answers stay"
+    for band, of_face in [("probability", raster.probability), ("uncertain", raster.uncertain)]:
+        assert np.array_equal(bands[band], values_of(of_face), equal_nan=True), band
+    likely = bands["probability"][np.isfinite(bands["probability"])]
+    assert likely.size > 300
+    assert ((likely >= 0) & (likely <= 1)).all()
+    assert 0 < np.nansum(bands["uncertain"]) < 0.5 * likely.size
+    assert plain.probability is None
+    assert plain.uncertain is None
+
+
+@pytest.mark.parametrize("question", ["sun-hours", "sky-view"])
+def test_intervals_are_the_same_in_the_program_and_in_python(scene, ask_program, folder, question):
+    flags = {"sun-hours": ["--date", DAY, "--zone", ZONE], "sky-view": ["--directions", 145]}[question]
+    ask_program(question, "tile.laz", *flags, "--interval", "--cell", 4, "-o", "interval.tif")
+    bands, _ = bands_of(folder / "interval.tif")
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", belvedere.BelvedereWarning)
+        if question == "sun-hours":
+            rasters = scene.sun_hours(date=DAY, zone=ZONE, interval=True, cell=4)
+        else:
+            rasters = scene.sky_view(directions=145, interval=True, cell=4)
+    for band in (name for name in bands if name.endswith(("_expected", "_low", "_high"))):
+        assert np.array_equal(bands[band], values_of(rasters[band]), equal_nan=True), band
+    assert sum(name.endswith("_low") for name in bands) == {"sun-hours": 1, "sky-view": 2}[question]
+
+
+def test_certain_cameras_are_the_same_in_the_program_and_in_python(scene, ask_program, folder, standing):
+    x, y = standing
+    (folder / "mast.csv").write_text(f"x,y\n{x},{y}\n")
+    flags = ["--candidates", "mast.csv", "--camera-height", 6, "--fov", 360, "--count", 1, "--cell", 2]
+    ask_program("cameras", "tile.laz", *flags, "--certain", 0.9, "-o", "covered.tif")
+    bands, _ = bands_of(folder / "covered.tif")
+    given = {"camera_height": 6, "fov_deg": 360, "count": 1, "cell": 2}
+    certain, any_answer = (scene.cameras([(x, y)], **given, certain=least).counts for least in (0.9, None))
+    assert np.array_equal(next(iter(bands.values())), values_of(certain), equal_nan=True)
+    assert np.nansum(values_of(certain)) < np.nansum(values_of(any_answer))
+
+
 #: Questions that a city can answer.
 OF_CITY = [row for row in rows() if not isinstance(row.city, str)]
 

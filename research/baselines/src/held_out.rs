@@ -35,8 +35,8 @@ pub struct FalseVisible {
 /// How `method`, built from [`HeldOut::kept`] alone, answers what the pulses held out know.
 ///
 /// # Errors
-/// What the method returns; those that know no [`Viewer::Each`] fail with [`Error::UnsupportedViewer`], those that
-/// answer for points of their own only with [`Error::UnsupportedTargets`].
+/// What the method returns; those that know no [`Viewer::Each`] fail with [`belvedere::Error::UnsupportedViewer`],
+/// those that answer for points of their own only with [`belvedere::Error::UnsupportedTargets`].
 pub fn score(method: &dyn Visibility, held_out: &HeldOut) -> Result<HeldOutScore> {
     let mut score = HeldOutScore::default();
     for (answer, surface) in answers(method, &held_out.free)? {

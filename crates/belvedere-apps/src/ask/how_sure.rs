@@ -78,12 +78,19 @@ impl HowSure {
     }
 
     /// What blocks, with the pulses that probabilities need; `None` where these are not wanted.
-    pub(super) fn blockers(&self, scene: &Scene, control: &Control<'_>) -> Result<Option<Arc<MedialScene>>> {
+    pub(super) fn blockers(
+        &self,
+        scene: &Scene,
+        context: &mut Context,
+        control: &Control<'_>,
+    ) -> Result<Option<Arc<MedialScene>>> {
         if !self.is_wanted() {
             return Ok(None);
         }
         self.check_scene(scene)?;
-        scene.blockers(UnprovenAs::Reported, control).map(Some)
+        let blockers = scene.blockers(UnprovenAs::Reported, control)?;
+        context.add(remark_from_ground(&blockers));
+        Ok(Some(blockers))
     }
 
     /// Whether each answer is uncertain, by its probability and by whether it is unproven; NaN without a probability.
@@ -170,6 +177,14 @@ impl HowSure {
     }
 }
 
+/// A warning of probabilities where scanners stood on the ground: much of such a scene was not seen at all.
+pub(super) fn remark_from_ground(blockers: &MedialScene) -> Option<Remark> {
+    let text = "the scanner stood on the ground: probabilities of what it did not see, such as roofs and walls turned \
+                away, may be wrong by a quarter";
+    let is_from_ground = blockers.proof().is_some_and(Proof::is_from_ground);
+    is_from_ground.then(|| Remark::warning("probability-from-the-ground", text))
+}
+
 /// Refuses intervals where light gets through trees: they are those of errors among opaque ones.
 pub(super) fn check_interval(is_wanted: bool, trees: &ThroughTrees) -> Result<()> {
     if !is_wanted || !trees.is_light() {
@@ -182,21 +197,20 @@ pub(super) fn check_interval(is_wanted: bool, trees: &ThroughTrees) -> Result<()
     })
 }
 
-/// Refuses intervals of scenes without pulses, and warns where scanners stood on the ground: the errors that intervals
-/// follow from are those of balls that pulses from the air carved.
-pub(super) fn judge_interval(
-    is_wanted: bool,
-    scene: &Scene,
-    context: &mut Context,
-    control: &Control<'_>,
-) -> Result<()> {
+/// Refuses intervals of scenes without pulses, and where scanners stood on the ground: the errors that intervals follow
+/// from are those of balls that pulses from the air carved, and three truths in four would lie outside.
+pub(super) fn check_interval_scene(is_wanted: bool, scene: &Scene, control: &Control<'_>) -> Result<()> {
     if !is_wanted {
         return Ok(());
     }
     scene.check_pulses(Parameter::Interval)?;
     let blockers = scene.blockers(UnprovenAs::Reported, control)?;
-    let is_from_ground = blockers.proof().is_some_and(Proof::is_from_ground);
-    let text = "the scanner stood on the ground: intervals follow from errors of surveys from the air";
-    context.add(is_from_ground.then(|| Remark::warning("interval-from-the-ground", text)));
-    Ok(())
+    if !blockers.proof().is_some_and(Proof::is_from_ground) {
+        return Ok(());
+    }
+    Err(Error::InvalidParameter {
+        parameter: Parameter::Interval,
+        value: "given for a scanner on the ground".to_owned(),
+        expected: "left out: only errors of surveys from the air are known",
+    })
 }

@@ -179,7 +179,7 @@ impl LinesOfSightQuestion {
         context: &mut Context,
         control: &Control<'_>,
     ) -> Result<Vec<Measure>> {
-        let Some(blockers) = self.how_sure.blockers(scene, control)? else { return Ok(Vec::new()) };
+        let Some(blockers) = self.how_sure.blockers(scene, context, control)? else { return Ok(Vec::new()) };
         let probabilities =
             control.stage("computing probabilities", pairs.len(), || blockers.pair_probabilities(pairs, control))?;
         let is_unproven = |row: usize| answers.get(row) == Some(&Answer::Unproven);

@@ -75,10 +75,10 @@ impl ShadowQuestion {
         suns: &[ShadowSun],
         targets: &Targets,
         doubts: Option<&[f32]>,
-        scene: &Scene,
+        (scene, context): (&Scene, &mut Context),
         control: &Control<'_>,
     ) -> Result<Vec<Sureness>> {
-        let Some(blockers) = self.how_sure.blockers(scene, control)? else { return Ok(Vec::new()) };
+        let Some(blockers) = self.how_sure.blockers(scene, context, control)? else { return Ok(Vec::new()) };
         let is_unproven = |row: usize| doubts.and_then(|doubts| doubts.get(row)).is_some_and(|&doubt| doubt > 0.0);
         control.stage("computing probabilities", suns.len() * targets.len(), || {
             let of_sun = |sun: &ShadowSun| {
@@ -135,7 +135,7 @@ impl Ask for ShadowQuestion {
             }
             _ => None,
         };
-        let sure = self.sureness(&kinds, &light.targets, doubts.as_deref(), scene, control)?;
+        let sure = self.sureness(&kinds, &light.targets, doubts.as_deref(), (scene, context), control)?;
         let decimals = if self.edges == Edges::Soft { 4 } else { 2 };
         let kind =
             if self.edges == Edges::Hard && light.trees.is_none() { ResultKind::Answer } else { ResultKind::Number };

@@ -1,6 +1,6 @@
 //! Sky view: how much of the sky places see.
 
-use super::how_sure::{check_interval, judge_interval};
+use super::how_sure::{check_interval, check_interval_scene};
 use super::light::{Light, OnTargets};
 use super::sections::{MeasuresSection, PlacesReport};
 use super::{Answers, Ask, Context, Places, Scene, ThroughTrees, spread};
@@ -70,7 +70,7 @@ impl Ask for SkyViewQuestion {
         context: &mut Context,
         control: &Control<'_>,
     ) -> Result<Answers<OnTargets>> {
-        judge_interval(self.interval, scene, context, control)?;
+        check_interval_scene(self.interval, scene, control)?;
         let sky = self.sky.directions()?;
         let light = Light::on(places, &sky.directions, (&self.trees, UnprovenAs::Visible), scene, context, control)?;
         let certain_of = self.interval.then_some(&*light.blockers);

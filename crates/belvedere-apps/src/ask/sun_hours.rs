@@ -1,6 +1,6 @@
 //! Sun hours: how long the sun reaches places on days, and whether rules of daylight are met.
 
-use super::how_sure::{check_interval, judge_interval};
+use super::how_sure::{check_interval, check_interval_scene};
 use super::light::{Light, OnTargets};
 use super::sections::{MeasuresSection, NamedValues, PeriodSection, PlacesReport};
 use super::sun::{Days, SunPlace};
@@ -127,7 +127,7 @@ impl SunHoursQuestion {
         context: &mut Context,
         control: &Control<'_>,
     ) -> Result<PreparedSun> {
-        judge_interval(self.interval, scene, context, control)?;
+        check_interval_scene(self.interval, scene, control)?;
         let site = self.place.site(scene, context, None)?;
         let (plan, zone) = self.plan(&site, among)?;
         context.report.period = Some(section(&plan, &zone, &self.days.params(&self.place)));

@@ -5,7 +5,7 @@ use super::candidates::CameraPose;
 use super::table::{CoverageTable, check_size};
 use crate::targets::Targets;
 use crate::viewshed::{Observer, SightLimits, ViewshedParams, viewshed};
-use belvedere_core::query::{Answer, EarthParams, MedialScene, RadioWave, UnprovenAs};
+use belvedere_core::query::{Answer, Certainty, EarthParams, MedialScene, RadioWave, UnprovenAs, Viewer};
 use belvedere_data::control::Control;
 use belvedere_data::{Error, Parameter, Result};
 use rayon::prelude::*;
@@ -22,6 +22,8 @@ pub struct CoverageParams {
     /// What to make of lines of sight that nothing blocks but that are not proven: they cover if they count as visible.
     /// Default: reported, which covers nothing.
     pub unproven: UnprovenAs,
+    /// How certain it must be that a target is visible. Default: the answer alone counts.
+    pub certainty: Option<Certainty>,
     /// The Fresnel zone that must be free too. Default: none.
     pub zone: Option<FresnelZone>,
 }
@@ -63,12 +65,19 @@ belvedere_data::setters!(CoverageParams {
     with_density(density: f64),
     with_earth(earth: EarthParams),
     with_unproven(unproven: UnprovenAs),
+    with_certainty(certainty: Option<Certainty>),
     with_zone(zone: Option<FresnelZone>),
 });
 
 impl Default for CoverageParams {
     fn default() -> Self {
-        Self { density: 0.0, earth: EarthParams::default(), unproven: UnprovenAs::Reported, zone: None }
+        Self {
+            density: 0.0,
+            earth: EarthParams::default(),
+            unproven: UnprovenAs::Reported,
+            certainty: None,
+            zone: None,
+        }
     }
 }
 
@@ -81,6 +90,9 @@ pub struct CoverageReport {
     pub visible: usize,
     /// Those that nothing blocks, but that are not proven.
     pub unproven: usize,
+    /// Of the visible, those that are less certain than is wanted; `None` where any are good enough.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub uncertain: Option<usize>,
     /// Of the visible, those whose Fresnel zone is not free; `None` where no Fresnel zone is tested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub fresnel_zone_blocked: Option<usize>,
@@ -90,7 +102,8 @@ pub struct CoverageReport {
 /// their lines of sight are tested once.
 ///
 /// # Errors
-/// Those of [`viewshed`], and [`belvedere_data::Error::InvalidParameter`] for a table of more than 8 GiB.
+/// Those of [`viewshed`], and [`belvedere_data::Error::InvalidParameter`] for a table of more than 8 GiB and where
+/// certainty is wanted without pulses.
 pub fn coverage(
     scene: &MedialScene,
     cameras: &[Camera],
@@ -103,10 +116,18 @@ pub fn coverage(
     let groups: Vec<&[Camera]> = cameras.chunk_by(|a, b| a.eye == b.eye).collect();
     let rows: Vec<(Vec<u64>, CoverageReport)> =
         groups.par_iter().map(|group| query.rows(group, control)).collect::<Result<_>>()?;
-    let mut report = CoverageReport { fresnel_zone_blocked: params.zone.map(|_| 0), ..CoverageReport::default() };
+    let mut report = CoverageReport {
+        uncertain: params.certainty.map(|_| 0),
+        fresnel_zone_blocked: params.zone.map(|_| 0),
+        ..CoverageReport::default()
+    };
     for (_, of_group) in &rows {
-        if let (Some(all), Some(blocked)) = (&mut report.fresnel_zone_blocked, of_group.fresnel_zone_blocked) {
-            *all += blocked;
+        let optional = [
+            (&mut report.fresnel_zone_blocked, of_group.fresnel_zone_blocked),
+            (&mut report.uncertain, of_group.uncertain),
+        ];
+        for (all, of_group) in optional {
+            *all = all.map(|all| all + of_group.unwrap_or(0));
         }
         report.lines_of_sight += of_group.lines_of_sight;
         report.visible += of_group.visible;
@@ -210,13 +231,16 @@ impl TargetQuery<'_> {
         let observer = Observer { eye, ..Observer::default() };
         let seen = viewshed(self.scene, &[observer], &positions, &params, &Control::none())?;
         report.lines_of_sight = positions.len();
+        let is_uncertain = self.uncertain(eye, &positions, &seen.answers)?;
+        report.uncertain = self.params.certainty.map(|_| is_uncertain.iter().filter(|is| **is).count());
         let mut blocked_zones = 0;
-        for ((&row, position), answer) in in_picture.iter().zip(&positions).zip(&seen.answers) {
+        for (i, (&row, position)) in in_picture.iter().zip(&positions).enumerate() {
+            let answer = &seen.answers[i];
             report.visible += usize::from(*answer == Answer::Visible);
             report.unproven += usize::from(*answer == Answer::Unproven);
             let is_zone_blocked = *answer == Answer::Visible && self.is_zone_blocked(eye, position.map(f64::from));
             blocked_zones += usize::from(is_zone_blocked);
-            if *answer != Answer::Visible || is_zone_blocked {
+            if *answer != Answer::Visible || is_uncertain[i] || is_zone_blocked {
                 for row_bits in bits.chunks_exact_mut(words) {
                     row_bits[row as usize / 64] &= !(1 << (row % 64));
                 }
@@ -225,6 +249,19 @@ impl TargetQuery<'_> {
         report.fresnel_zone_blocked = self.params.zone.map(|_| blocked_zones);
         control.advance(cameras.len());
         Ok((bits, report))
+    }
+
+    /// Which of the visible targets are less certain than is wanted.
+    fn uncertain(&self, eye: [f64; 3], positions: &[[f32; 3]], answers: &[Answer]) -> Result<Vec<bool>> {
+        let mut is_uncertain = vec![false; positions.len()];
+        let Some(certainty) = self.params.certainty else { return Ok(is_uncertain) };
+        let visible: Vec<usize> = (0..positions.len()).filter(|&i| answers[i] == Answer::Visible).collect();
+        let of_visible: Vec<[f32; 3]> = visible.iter().map(|&i| positions[i]).collect();
+        let probabilities = self.scene.visible_probabilities(Viewer::Eye(eye), &of_visible, &Control::none())?;
+        for (i, probability) in visible.into_iter().zip(probabilities) {
+            is_uncertain[i] = !certainty.is_visible(probability);
+        }
+        Ok(is_uncertain)
     }
 
     /// Whether something reaches into the Fresnel zone that must be free.

@@ -51,6 +51,11 @@ pub(crate) struct CamerasArguments {
     pub(crate) fresnel_percent: Option<f64>,
     #[command(flatten)]
     pub(crate) giving_way: GivingWay,
+    /// Cover only what is visible with at least this probability, such as 0.9
+    ///
+    /// docs/methods/confidence.md says how well probabilities are calibrated. Needs pulses, as --unproven does.
+    #[arg(long, value_name = "P", allow_negative_numbers = true, help_heading = "Lines of sight")]
+    pub(crate) certain: Option<f64>,
     #[command(flatten)]
     pub(crate) north: NorthArguments,
     /// Cameras (.geojson), cameras per cell (.tif), map (.png) or a table of the targets (.csv); repeatable

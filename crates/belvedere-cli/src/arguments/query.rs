@@ -53,6 +53,11 @@ pub(crate) struct Query {
     /// came near. This needs carved balls with their pulses: a cloud, or an .npz file.
     #[arg(long, value_enum, help_heading = "Result")]
     pub(crate) unproven: Option<UnprovenChoice>,
+    /// Also write the probability that a target is visible, 0 to 1, as a column `probability`
+    ///
+    /// docs/methods/confidence.md says how well it is calibrated. Needs pulses, as --unproven does.
+    #[arg(long, help_heading = "Result")]
+    pub(crate) probability: bool,
     /// Targets with a column `answer` (.csv .xyz .txt .laz .las .ply), or the answers only (.npy, u8)
     ///
     /// One row for each target, in the order of the input.

@@ -84,6 +84,7 @@ fn question(arguments: &CamerasArguments) -> Result<ask::CamerasQuestion> {
         frequency_ghz: arguments.radio.frequency,
         fresnel_percent: arguments.fresnel_percent,
         unproven: arguments.giving_way.unproven.map(UnprovenAs::from),
+        certain: arguments.certain,
         ..usual
     })
 }

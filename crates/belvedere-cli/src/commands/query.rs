@@ -28,6 +28,10 @@ pub(crate) fn run(arguments: &Query, global: &Global) -> Result<Summary> {
     mesh_targets::refuse_flags(&arguments.mesh)?;
     let output = &arguments.output;
     check_output("-o", output, &["csv", "txt", "xyz", "laz", "las", "ply", "npy"])?;
+    if arguments.probability && extension(output) == "npy" {
+        let output = output.display();
+        return Err(Usage(format!("{output}: .npy holds answers only; use another format with --probability")).into());
+    }
     let is_central = arguments.view.is_central();
     let profile = arguments.shape.of(&arguments.scene.balls)?;
     if is_central && profile != Profile::Sphere {
@@ -36,9 +40,12 @@ pub(crate) fn run(arguments: &Query, global: &Global) -> Result<Summary> {
     let mut run = CommandContext::new(global);
     let points = if arguments.targets.own { KeepPoints::Keep } else { KeepPoints::LetGo };
     let scene = pipeline::scene(&arguments.scene, points, &mut run)?;
-    if arguments.unproven.is_some() && scene.model.pulses().is_none() {
-        let what = "--unproven needs pulses: a cloud with known scanner positions (see `belvedere info`), or an .npz file from such a cloud";
-        return Err(Usage(what.to_owned()).into());
+    let wants_pulses = [("--unproven", arguments.unproven.is_some()), ("--probability", arguments.probability)];
+    if let Some((flag, _)) = wants_pulses.iter().find(|(_, is_given)| *is_given && scene.model.pulses().is_none()) {
+        let what = format!(
+            "{flag} needs pulses: a cloud with known scanner positions (see `belvedere info`), or an .npz file from such a cloud"
+        );
+        return Err(Usage(what).into());
     }
     if arguments.shell.is_some() && !scene.model.is_carved() {
         return Err(Usage("--shell applies only to carved balls, and these are not carved".to_owned()).into());
@@ -56,8 +63,12 @@ pub(crate) fn run(arguments: &Query, global: &Global) -> Result<Summary> {
         views = views.iter().map(|view| view.moved_before(&targets.positions)).collect();
     }
     let mut section = Summary::default();
+    let mut probabilities = None;
     let answers = if model.is_carved() || is_central {
-        by_lines_of_sight(arguments, &model, &views, &targets.positions, &mut run, &mut section)?
+        let (answers, found) =
+            by_lines_of_sight(arguments, &model, &views, &targets.positions, &mut run, &mut section)?;
+        probabilities = found;
+        answers
     } else {
         let Some(view) = views.first() else { bail!("there is no view") };
         by_depth_map(arguments, &model, view, &targets.positions, &mut run, &mut section)?
@@ -78,10 +89,16 @@ pub(crate) fn run(arguments: &Query, global: &Global) -> Result<Summary> {
             description: "0 no 1 yes 2 ? 3 4 out 5 inside",
             values: ExtraValues::U8(&codes),
         };
+        let likely = probabilities.as_deref().map(|values| ExtraColumn {
+            name: "probability",
+            description: "that it is visible, 0 to 1",
+            values: ExtraValues::F32(values),
+        });
+        let columns: Vec<ExtraColumn<'_>> = [Some(column), likely].into_iter().flatten().collect();
         if let Some(rows) = &rows {
-            return write_text_rows(output, rows, &[column]).map(|()| WriteReport::default());
+            return write_text_rows(output, rows, &columns).map(|()| WriteReport::default());
         }
-        write_cloud(output, &targets, &[column])
+        write_cloud(output, &targets, &columns)
     })?;
     run.summary.add_writing(output, &report);
     run.summary
@@ -135,7 +152,8 @@ pub(super) fn text_rows_for(path: &Path, output: &Path) -> Result<Option<TextRow
     if is_table(path) && is_table(output) { Ok(Some(read_text_rows(path)?)) } else { Ok(None) }
 }
 
-/// Answers by exact lines of sight, separated into proven and unproven by pulses where these are known.
+/// Answers by exact lines of sight, separated into proven and unproven by pulses where these are known; and how likely
+/// targets are visible, where that is wanted.
 fn by_lines_of_sight(
     arguments: &Query,
     model: &SceneModel,
@@ -143,7 +161,7 @@ fn by_lines_of_sight(
     targets: &[[f32; 3]],
     run: &mut CommandContext,
     section: &mut Summary,
-) -> Result<Vec<Answer>> {
+) -> Result<(Vec<Answer>, Option<Vec<f32>>)> {
     let usual = model.rule();
     let depth_bias = arguments.bias.map_or(usual.bias, f64::from);
     let shell = arguments.shell.map_or(usual.shell, f64::from);
@@ -172,7 +190,19 @@ fn by_lines_of_sight(
             .add("method", "certified depth map and lines of sight")
             .add("decided_by_map_percent", percent(settled_count, target_count)),
     };
-    Ok(answers)
+    if !arguments.probability {
+        return Ok((answers, None));
+    }
+    let forward = views.first().map_or([0.0, 0.0, -1.0], |view| view.frame.forward);
+    let viewer = eye.map_or(Viewer::Direction(forward.map(|v| -v)), Viewer::Eye);
+    let mut probabilities = run.stage("computing probabilities", targets.len(), |control| {
+        scene.visible_probabilities(viewer, targets, control)
+    })?;
+    // a target beside the picture has no answer, and no probability
+    for (probability, _) in probabilities.iter_mut().zip(&answers).filter(|(_, of)| **of == Answer::OutsideView) {
+        *probability = f32::NAN;
+    }
+    Ok((answers, Some(probabilities)))
 }
 
 /// How many targets got which answer.

@@ -18,6 +18,13 @@ fn numbers(place: &Workplace, name: &str) -> Vec<Vec<f32>> {
     }
 }
 
+fn counts(place: &Workplace, name: &str) -> Vec<u16> {
+    match read_tif_bands(place.path(name).as_path()).unwrap() {
+        ReadBands::U16(bands) => bands[0].values().to_vec(),
+        _ => panic!("{name} does not hold counts"),
+    }
+}
+
 #[test]
 fn shadows_viewsheds_and_lines_say_how_likely_they_are() {
     let place = village();
@@ -97,6 +104,59 @@ fn hours_of_sun_and_views_of_the_sky_have_intervals() {
 }
 
 #[test]
+fn cameras_cover_what_they_see_with_certainty_only() {
+    let place = village();
+    let info = place.summary("info town/cloud.laz");
+    let corner = |which: &str, axis: usize| info[which][axis].as_f64().unwrap();
+    let [x, y] = [0, 1].map(|axis| 0.5 * (corner("min_corner", axis) + corner("max_corner", axis)));
+    std::fs::write(place.path("mast.csv"), format!("x,y\n{x},{y}\n")).unwrap();
+    let cameras = "cameras town/cloud.laz --candidates mast.csv --camera-height 12 --fov 360 --count 1 --cell 2";
+    let any = place.summary(&format!("{cameras} -o any.tif"));
+    let sure = place.summary(&format!("{cameras} --certain 0.9 -o sure.tif"));
+    let [covered, certain] = ["any.tif", "sure.tif"].map(|name| counts(&place, name));
+    // the same mast looks at the same cells from its height: each is covered if its probability is high enough
+    let flags = "--observer-height 12 --target-height 1.5 --cell 2 --probability";
+    place.summary(&format!("viewshed town/cloud.laz --observer {x},{y} {flags} -o seen.tif"));
+    let [seen, unproven, likely] = &numbers(&place, "seen.tif")[..] else { panic!("three bands") };
+    assert_eq!(seen.len(), covered.len());
+    let mut lost = 0;
+    for row in 0..seen.len() {
+        let is_seen = seen[row] == 1.0 && unproven[row] == 0.0;
+        assert_eq!(covered[row] == 1, is_seen, "{row}");
+        assert_eq!(certain[row] == 1, is_seen && likely[row] >= 0.9, "{row}: {}", likely[row]);
+        lost += usize::from(is_seen && certain[row] == 0);
+    }
+    assert!(lost > 10, "{lost} cells are seen without certainty");
+    assert_eq!(sure["pictures"]["uncertain"].as_u64().unwrap(), lost as u64, "{sure}");
+    assert!(any["pictures"]["uncertain"].is_null());
+}
+
+#[test]
+fn points_of_a_query_have_probabilities() {
+    let place = village();
+    let query = "query town/cloud.laz --self --sun 200,30";
+    place.summary(&format!("{query} --probability -o lit.csv"));
+    let [answers, likely] = ["answer", "probability"].map(|name| column(&place, "lit.csv", name));
+    let known = || (0..answers.len()).filter(|&row| likely[row].is_finite());
+    let agreeing = known().filter(|&row| (likely[row] > 0.5) == [1.0, 2.0].contains(&answers[row])).count();
+    assert!(known().count() == answers.len() && agreeing as f64 > 0.95 * answers.len() as f64, "{agreeing}");
+    place.summary(&format!("{query} --probability -o lit.laz"));
+    let run = place.run(&format!("{query} --probability -o lit.npy"));
+    assert!(run.status == 2 && run.stderr.contains(".npy"), "{run:?}");
+}
+
+#[test]
+fn scanners_on_the_ground_have_doubtful_probabilities_and_no_intervals() {
+    let place = Workplace::new();
+    place.summary("simulate village -o tls --extent 60 --scanner terrestrial");
+    let scans = "tls/cloud.laz --orient stations=tls/stations.csv --cell 6";
+    let lit = place.run(&format!("shadow {scans} --sun 200,30 --probability -o lit.tif"));
+    assert!(lit.status == 0 && lit.stderr.contains("probabilities of what it did not see"), "{lit:?}");
+    let sky = place.run(&format!("sky-view {scans} --directions 145 --interval -o sky.tif"));
+    assert!(sky.status != 0 && sky.stderr.contains("surveys from the air"), "{sky:?}");
+}
+
+#[test]
 fn what_has_no_probability_is_refused() {
     let place = village();
     for (flags, what) in [
@@ -105,6 +165,9 @@ fn what_has_no_probability_is_refused() {
         ("shadow town/cloud.laz --sun 200,30 --certain 0.4 -o lit.tif", "--certain"),
         ("shadow town/cloud.laz --sun 200,30 --certain 1.2 -o lit.tif", "--certain"),
         ("sky-view town/cloud.laz --through-trees 0.3 --interval -o sky.tif", "--interval"),
+        ("cameras balls.laz --ground cloud=town/cloud.laz --on-ground 20 --count 1 --certain 0.9 -o c.csv", "pulses"),
+        ("query balls.laz --random 9 --sun 200,30 --probability -o q.csv", "pulses"),
+        ("cameras town/cloud.laz --on-ground 20 --count 1 --certain 0.4 -o c.csv", "--certain"),
         ("viewshed balls.laz --ground cloud=town/cloud.laz --observer 84000,447000 --probability -o v.tif", "pulses"),
     ] {
         if flags.contains("balls.laz") {

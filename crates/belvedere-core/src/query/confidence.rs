@@ -24,8 +24,6 @@ const SCORES: &str = include_str!("confidence_scores.csv");
 const UNPROVEN_CLASSES: [f64; 6] = [0.05, 0.5, 1.0, 2.0, 4.0, MAX_UNPROVEN];
 /// Length from which on more makes no difference, metres.
 const MAX_UNPROVEN: f64 = 8.0;
-/// From how many lines that end inside obstacles on, of a ring, more make no difference.
-const MAX_HELD: u8 = 4;
 
 /// What speaks for a target being visible, and against it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,11 +32,12 @@ pub struct Evidence {
     pub lines: ParallelLines,
     /// Whether an end lies inside an obstacle.
     pub is_inside_obstacle: bool,
-    /// Whether the viewer is a place rather than a direction.
-    pub has_eye: bool,
+    /// Whether both ends lie below the highest return: a line to an aircraft is like one to the sky.
+    pub is_between_places: bool,
     /// Whether scanners stood on the ground.
     pub is_from_ground: bool,
-    /// How much of the line no pulse came near to, metres; 8 where it is 8 or more.
+    /// About how much of the line no pulse came near to, metres ([`Proof::sampled_unproven_length`]); 8 or more where
+    /// it is 8 or more.
     pub unproven_length: f64,
 }
 
@@ -105,12 +104,8 @@ static FITTED: LazyLock<Scores> = LazyLock::new(|| read_scores(SCORES));
 fn read_scores(text: &str) -> Scores {
     let mut scores = Scores::default();
     for line in text.lines().skip(1) {
-        let mut fields = line.split(',');
-        let (Some(name), Some(answer), Some(class), Some(score)) =
-            (fields.next(), fields.next(), fields.next(), fields.next())
-        else {
-            continue;
-        };
+        let fields: Vec<&str> = line.split(',').collect();
+        let [name, answer, class, score] = fields[..] else { continue };
         let term = Term::ALL.iter().position(|(_, of_term)| *of_term == name);
         if let (Some(term), Ok(class), Ok(score)) = (term, class.parse::<usize>(), score.parse()) {
             scores[term][usize::from(answer == "free")][class] = score;
@@ -123,16 +118,16 @@ impl Evidence {
     /// The classes whose scores are added up.
     pub fn score_keys(&self) -> impl Iterator<Item = ScoreKey> {
         let ParallelLines { free, held, .. } = self.lines;
-        let held = held.map(|count| usize::from(count.min(MAX_HELD)));
+        let held = held.map(usize::from);
         let unproven = UNPROVEN_CLASSES.iter().take_while(|end| self.unproven_length >= **end).count();
-        let of_proof = match (self.has_eye, self.is_from_ground) {
+        let of_proof = match (self.is_between_places, self.is_from_ground) {
             (false, false) => Term::UnprovenSky,
             (true, false) => Term::UnprovenPair,
             (false, true) => Term::UnprovenSkyFromGround,
             (true, true) => Term::UnprovenPairFromGround,
         };
         let terms = [
-            (Term::Constant, usize::from(self.has_eye)),
+            (Term::Constant, usize::from(self.is_between_places)),
             (Term::FreeNear, usize::from(free[0])),
             (Term::FreeFar, usize::from(free[1])),
             (Term::HeldNear, held[0]),
@@ -167,12 +162,13 @@ impl MedialScene {
 
     fn evidence_with(&self, proof: &Proof, target: [f64; 3], towards: [f64; 3], range: f64) -> Evidence {
         let end = std::array::from_fn(|i| target[i] + range * towards[i]);
+        let ends = if range.is_finite() { &[target, end][..] } else { &[target] };
         Evidence {
             lines: self.parallel_lines(target, towards, range),
-            is_inside_obstacle: self.is_inside_obstacle(target) || (range.is_finite() && self.is_inside_obstacle(end)),
-            has_eye: range.is_finite(),
+            is_inside_obstacle: ends.iter().any(|end| self.is_inside_obstacle(*end)),
+            is_between_places: range.is_finite() && !ends.iter().any(|end| proof.is_above_all(*end)),
             is_from_ground: proof.is_from_ground(),
-            unproven_length: self.unproven_length_up_to(proof, (target, towards, range), MAX_UNPROVEN),
+            unproven_length: self.sampled_unproven_length(proof, (target, towards, range), MAX_UNPROVEN),
         }
     }
 
@@ -265,6 +261,12 @@ impl Certainty {
         })
     }
 
+    /// Whether a target with a probability of being visible is certainly visible; false for NaN.
+    #[must_use]
+    pub fn is_visible(self, probability: f32) -> bool {
+        probability >= self.0
+    }
+
     /// Whether an answer with a probability of being visible is less certain; false for NaN.
     #[must_use]
     pub fn is_missed_by(self, probability: f32) -> bool {
@@ -276,9 +278,9 @@ impl Certainty {
 mod tests {
     use super::*;
 
-    fn evidence(is_free: bool, free: [u8; 2], unproven_length: f64, has_eye: bool) -> Evidence {
+    fn evidence(is_free: bool, free: [u8; 2], unproven_length: f64, is_between_places: bool) -> Evidence {
         let lines = ParallelLines { is_free, free, held: [0; 2] };
-        Evidence { lines, is_inside_obstacle: false, has_eye, is_from_ground: false, unproven_length }
+        Evidence { lines, is_inside_obstacle: false, is_between_places, is_from_ground: false, unproven_length }
     }
 
     #[test]
@@ -292,14 +294,14 @@ mod tests {
 
     #[test]
     fn what_all_lines_and_pulses_agree_on_is_nearly_certain() {
-        for has_eye in [false, true] {
-            let visible = evidence(true, [8; 2], 0.0, has_eye).probability();
-            let blocked = evidence(false, [0; 2], 20.0, has_eye).probability();
+        for is_between_places in [false, true] {
+            let visible = evidence(true, [8; 2], 0.0, is_between_places).probability();
+            let blocked = evidence(false, [0; 2], 20.0, is_between_places).probability();
             assert!(visible > 0.97 && blocked < 0.03, "{visible} {blocked}");
             // half of the lines beside it say otherwise, and pulses prove nothing
-            let doubtful = evidence(true, [4; 2], 3.0, has_eye).probability();
+            let doubtful = evidence(true, [4; 2], 3.0, is_between_places).probability();
             assert!((0.02..0.9).contains(&doubtful), "{doubtful}");
-            assert!(evidence(true, [8; 2], 9.0, has_eye).probability() < visible);
+            assert!(evidence(true, [8; 2], 9.0, is_between_places).probability() < visible);
         }
     }
 

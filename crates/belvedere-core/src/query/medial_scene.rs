@@ -145,22 +145,30 @@ impl MedialScene {
     /// How much of a line of sight `proof` does not prove, metres: [`Proof::unproven_length`] outside the space that
     /// was freed.
     pub(super) fn unproven_length(&self, proof: &Proof, target: [f64; 3], towards: [f64; 3], range: f64) -> f64 {
-        self.unproven_length_up_to(proof, (target, towards, range), f64::INFINITY)
+        let pieces = self.pieces_outside_freed(target, towards, range);
+        pieces.map(|(from, piece)| proof.unproven_length(from, towards, piece)).sum()
     }
 
-    /// As [`MedialScene::unproven_length`], or some length above `enough` as soon as it is known to exceed that.
-    pub(super) fn unproven_length_up_to(
+    /// About the same, or `enough` or more: [`Proof::sampled_unproven_length`].
+    pub(super) fn sampled_unproven_length(
         &self,
         proof: &Proof,
         (target, towards, range): ([f64; 3], [f64; 3], f64),
         enough: f64,
     ) -> f64 {
-        if self.freed.is_empty() {
-            return proof.unproven_length_up_to(target, towards, range, enough);
-        }
+        let pieces = self.pieces_outside_freed(target, towards, range);
+        pieces.map(|(from, piece)| proof.sampled_unproven_length(from, towards, piece, enough)).sum()
+    }
+
+    /// Where the pieces of a line of sight outside the space that was freed begin, and how long they are.
+    fn pieces_outside_freed(
+        &self,
+        target: [f64; 3],
+        towards: [f64; 3],
+        range: f64,
+    ) -> impl Iterator<Item = ([f64; 3], f64)> {
         let ray = Ray { origin: target, direction: towards, ranges: [0.0, range] };
-        let pieces = outside(&self.freed, &ray).into_iter();
-        pieces.map(|[from, to]| proof.unproven_length(ray.at(from), towards, to - from)).sum()
+        outside(&self.freed, &ray).into_iter().map(move |[from, to]| (ray.at(from), to - from))
     }
 
     /// Over which space the cloud lies, where that is known.

@@ -181,6 +181,13 @@ impl Proof {
         index.is_some_and(|index| index.free_segments.sideways_share() > GROUND_SHARE)
     }
 
+    /// Whether a place, local metres, lies above the highest return.
+    #[must_use]
+    pub fn is_above_all(&self, place: [f64; 3]) -> bool {
+        let index = self.index.get(|control| self.make_index(control));
+        index.is_some_and(|index| place[2] > f64::from(index.free_segments.top()))
+    }
+
     /// Length that may be unseen, metres.
     #[must_use]
     pub fn tolerance(&self) -> f64 {
@@ -195,11 +202,16 @@ impl Proof {
         self.length(target, towards, range, f64::INFINITY, |_| ())
     }
 
-    /// As [`Proof::unproven_length`], or some length above `enough`, metres, as soon as it is known to exceed that:
-    /// quicker.
+    /// About [`Proof::unproven_length`], or `enough` or more as soon as it is so much: the length through boxes of the
+    /// survey's space whose middles no pulse came near to. Each middle is looked at once, so that many lines
+    /// cost little.
     #[must_use]
-    pub fn unproven_length_up_to(&self, target: [f64; 3], towards: [f64; 3], range: f64, enough: f64) -> f64 {
-        self.length(target, towards, range, enough, |_| ())
+    pub fn sampled_unproven_length(&self, target: [f64; 3], towards: [f64; 3], range: f64, enough: f64) -> f64 {
+        self.length_by((target, towards, range), enough, |index, line, piece, enough| {
+            let ProofIndex { free_segments, seen_space, .. } = index;
+            let sampled = seen_space.unseen_length(free_segments, line, piece, enough);
+            sampled.unwrap_or_else(|| self.length_inside(index, line, piece, enough, |_| ()))
+        })
     }
 
     /// Whether more than the tolerated length runs through unseen space; quicker than measuring it.
@@ -211,9 +223,8 @@ impl Proof {
     /// Whether a pulse came near to a place, local metres, or it lies above the highest return.
     #[must_use]
     pub fn is_seen(&self, place: [f64; 3]) -> bool {
-        self.index.get(|control| self.make_index(control)).is_some_and(|ProofIndex { free_segments, .. }| {
-            free_segments.passes_within(place, self.nearness) || place[2] > f64::from(free_segments.top())
-        })
+        let index = self.index.get(|control| self.make_index(control));
+        self.is_above_all(place) || index.is_some_and(|index| index.free_segments.passes_within(place, self.nearness))
     }
 
     /// The pieces that [`Proof::unproven_length`] counts, metres from `target`, each from and to, in the order in which
@@ -233,23 +244,24 @@ impl Proof {
     /// The unseen length, or something above `enough` as soon as it is known to exceed that. `visit` gets the unseen
     /// pieces that end before, metres from the end at which steps begin ([`runs_back`]).
     fn length(&self, target: [f64; 3], towards: [f64; 3], range: f64, enough: f64, visit: impl FnMut([f64; 2])) -> f64 {
-        // the same steps whichever end is the target: a piece shorter than a step counts or not by where steps begin
-        if runs_back(towards, range) {
-            let viewer = std::array::from_fn(|i| target[i] + range * towards[i]);
-            return self.length_from(viewer, towards.map(|v| -v), range, enough, visit);
-        }
-        self.length_from(target, towards, range, enough, visit)
+        self.length_by((target, towards, range), enough, |index, line, piece, enough| {
+            self.length_inside(index, line, piece, enough, visit)
+        })
     }
 
-    /// The same, in steps from `target` on.
-    fn length_from(
+    /// What `measure` finds unseen of the piece of a line over the survey, and what lies beside. It gets the line, the
+    /// piece of it, and from which length on it may stop.
+    fn length_by(
         &self,
-        target: [f64; 3],
-        towards: [f64; 3],
-        range: f64,
+        (target, towards, range): ([f64; 3], [f64; 3], f64),
         enough: f64,
-        visit: impl FnMut([f64; 2]),
+        measure: impl FnOnce(&ProofIndex, ([f64; 3], [f64; 3]), [f64; 2], f64) -> f64,
     ) -> f64 {
+        // the same steps whichever end is the target: a piece shorter than a step counts or not by where steps begin
+        let (target, towards) = match runs_back(towards, range) {
+            true => (std::array::from_fn(|i| target[i] + range * towards[i]), towards.map(|v| -v)),
+            false => (target, towards),
+        };
         let Some(index) = self.index.get(|control| self.make_index(control)) else { return range };
         if index.free_segments.is_empty() {
             return range;
@@ -272,7 +284,7 @@ impl Proof {
         if beside > enough || !(span(inside) > 0.0) {
             return beside;
         }
-        beside + self.length_inside(index, (target, towards), inside, enough - beside, visit)
+        beside + measure(index, (target, towards), inside, enough - beside)
     }
 
     fn length_inside(

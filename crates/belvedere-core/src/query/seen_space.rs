@@ -6,6 +6,7 @@ use belvedere_data::control::Control;
 use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::OnceLock;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Side of a box as a share of the nearness. A pulse that passes the middle of a box within nearness − side/√2 is near
 /// to all of it. Smaller boxes more often find such a pulse, but there are more of them.
@@ -62,6 +63,17 @@ struct BoxColumns {
     blocks: [u64; BLOCKS * BLOCKS],
     /// The layers on which all columns of the tile are near pulses.
     all: u64,
+    /// What was found at the middles of other boxes, once any was looked at.
+    middles: OnceLock<Box<[Middles; TILE * TILE]>>,
+}
+
+/// The middles of the boxes of a column: bits as in [`BoxColumns`].
+#[derive(Default)]
+struct Middles {
+    /// Those that were looked at.
+    known: AtomicU64,
+    /// Those that a pulse came near to.
+    near: AtomicU64,
 }
 
 /// The bits from one up to another, which is left out and at most 64.
@@ -87,7 +99,8 @@ impl BoxColumns {
         for (index, word) in columns.iter().enumerate() {
             blocks[index / TILE / BLOCK * BLOCKS + index % TILE / BLOCK] &= word;
         }
-        Self { columns, blocks, all: blocks.iter().fold(u64::MAX, |all, word| all & word) }
+        let all = blocks.iter().fold(u64::MAX, |all, word| all & word);
+        Self { columns, blocks, all, middles: OnceLock::new() }
     }
 
     /// The widest group of columns around one that is near pulses on a layer: its side and its word.
@@ -95,6 +108,21 @@ impl BoxColumns {
         let block = self.blocks[row / BLOCK * BLOCKS + column / BLOCK];
         let groups = [(TILE, self.all), (BLOCK, block), (1, self.columns[row * TILE + column])];
         groups.into_iter().find(|(_, word)| word >> layer & 1 == 1)
+    }
+
+    /// Whether a pulse came near to the middle of a box; `look` finds it out the first time.
+    fn is_middle_near(&self, column: usize, layer: usize, look: impl FnOnce() -> bool) -> bool {
+        let middles = self.middles.get_or_init(|| Box::new(std::array::from_fn(|_| Middles::default())));
+        let Middles { known, near } = &middles[column];
+        let bit = 1 << layer;
+        // whoever sees that it is known sees what was found before; two that look at once find the same
+        if known.load(Ordering::Acquire) & bit == 0 {
+            let is_near = look();
+            near.fetch_or(if is_near { bit } else { 0 }, Ordering::Relaxed);
+            known.fetch_or(bit, Ordering::Release);
+            return is_near;
+        }
+        near.load(Ordering::Relaxed) & bit != 0
     }
 }
 
@@ -107,8 +135,6 @@ impl SeenSpace {
         let reach = nearness - half_diagonal(side);
         let floor = free_segments.lower_ends().map(|start| f64::from(start[2])).fold(f64::INFINITY, f64::min);
         let rise = f64::from(free_segments.top()) - floor;
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "`as` saturates; NaN becomes 0")]
-        let whole = |count: f64| count as usize;
         let per_nearness =
             if free_segments.upright_count() < free_segments.len() { HEIGHT_AMONG_FLAT } else { HEIGHT_PER_NEARNESS };
         let layers = (rise / (per_nearness * nearness)).ceil().clamp(1.0, MAX_LAYERS);
@@ -276,48 +302,112 @@ impl SeenSpace {
 
     /// Where a line leaves the boxes around the one that it is in at `at`, if all of these are near `free_segments`,
     /// those that the grid was made for.
-    pub(super) fn near_until(
-        &self,
-        free_segments: &FreeSegments,
-        (origin, direction): ([f64; 3], [f64; 3]),
-        at: f64,
-    ) -> Option<f64> {
-        let sides = [self.side, self.side, self.height];
-        // a little on, so that a line at the edge of a box is taken for in the one it enters
-        let within = at + 1e-9;
-        let mut cell = [0_usize; 3];
-        for axis in 0..3 {
-            let place = (origin[axis] + within * direction[axis] - self.low[axis]) / sides[axis];
-            if !(place >= 0.0) {
-                return None;
-            }
-            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "not negative; saturates")]
-            let index = place as usize;
-            cell[axis] = index;
+    pub(super) fn near_until(&self, free_segments: &FreeSegments, line: ([f64; 3], [f64; 3]), at: f64) -> Option<f64> {
+        let [column, row, layer] = self.places(line, at);
+        if !(column >= 0.0 && row >= 0.0 && layer >= 0.0) {
+            return None;
         }
-        let [column, row, layer] = cell;
+        let [column, row, layer] = [column, row, layer].map(whole);
         if column >= self.size[0] || row >= self.size[1] || layer >= 64 {
             return None;
         }
-        let tile = self.tiles.get(row / TILE * self.width + column / TILE)?;
-        let first = [column, row].map(|index| index / TILE * TILE);
-        let tile = tile.get_or_init(|| self.tile(free_segments, first));
-        let (width, word) = tile.widest([column % TILE, row % TILE], layer)?;
-        // layers above and below that are near as well
-        let up = (word >> layer).trailing_ones() as usize;
-        let down = (word << (63 - layer)).leading_ones() as usize;
-        let group = [column, row].map(|index| index / width * width);
-        let edges = [[group[0], group[0] + width], [group[1], group[1] + width], [layer + 1 - down, layer + up]];
-        let mut exit = f64::INFINITY;
-        for axis in 0..3 {
-            if direction[axis] != 0.0 {
-                let edge = edges[axis][usize::from(direction[axis] > 0.0)] as f64;
-                exit = exit.min((self.low[axis] + edge * sides[axis] - origin[axis]) / direction[axis]);
-            }
-        }
+        let (tile, within) = self.tile_around(free_segments, [column, row])?;
+        let (width, word) = tile.widest(within, layer)?;
+        let edges = boxes_around([column, row, layer], width, word).map(|ends| ends.map(|edge| edge as f64));
+        let exit = self.exit(line, edges);
         // at least a micrometre on, so that a walk ends
         (exit > at + 1e-6).then_some(exit)
     }
+
+    /// About how much of a line between two ranges runs through space that is not near `free_segments`, those that the
+    /// grid was made for: through boxes whose middle is not. The outermost boxes reach out without end. `enough` or
+    /// more as soon as it is so much; `None` if there is no grid. Each middle is looked at once, whatever runs there.
+    pub(super) fn unseen_length(
+        &self,
+        free_segments: &FreeSegments,
+        line: ([f64; 3], [f64; 3]),
+        [from, to]: [f64; 2],
+        enough: f64,
+    ) -> Option<f64> {
+        let last = [self.size[0].checked_sub(1)?, self.size[1].checked_sub(1)?, self.layers - 1];
+        let mut unseen = 0.0;
+        let mut at = from;
+        while at < to && unseen < enough {
+            let places = self.places(line, at);
+            let [column, row, layer] = std::array::from_fn(|axis| whole(places[axis]).min(last[axis]));
+            let (tile, within) = self.tile_around(free_segments, [column, row])?;
+            let (boxes, is_near) = match tile.widest(within, layer) {
+                Some((width, word)) => (boxes_around([column, row, layer], width, word), true),
+                None => {
+                    let look = || free_segments.passes_within(self.middle([column, row, layer]), self.nearness);
+                    let is_near = tile.is_middle_near(within[1] * TILE + within[0], layer, look);
+                    ([[column, column + 1], [row, row + 1], [layer, layer + 1]], is_near)
+                }
+            };
+            let mut edges = boxes.map(|ends| ends.map(|edge| edge as f64));
+            for (axis, [first, end]) in boxes.into_iter().enumerate() {
+                edges[axis][0] = if first == 0 { f64::NEG_INFINITY } else { edges[axis][0] };
+                edges[axis][1] = if end > last[axis] { f64::INFINITY } else { edges[axis][1] };
+            }
+            let exit = self.exit(line, edges).max(at + 1e-6).min(to);
+            unseen += if is_near { 0.0 } else { exit - at };
+            at = exit;
+        }
+        Some(unseen)
+    }
+
+    /// Where a line is at `at`, in boxes from the lowest corner. A little on, so that a line at the edge of a box is
+    /// taken for in the one it enters.
+    fn places(&self, (origin, direction): ([f64; 3], [f64; 3]), at: f64) -> [f64; 3] {
+        let within = at + 1e-9;
+        let sides = self.sides();
+        std::array::from_fn(|axis| (origin[axis] + within * direction[axis] - self.low[axis]) / sides[axis])
+    }
+
+    fn sides(&self) -> [f64; 3] {
+        [self.side, self.side, self.height]
+    }
+
+    fn middle(&self, cell: [usize; 3]) -> [f64; 3] {
+        let sides = self.sides();
+        std::array::from_fn(|axis| self.low[axis] + (cell[axis] as f64 + 0.5) * sides[axis])
+    }
+
+    /// The tile of a column, made if no line has run through it yet, and where in it the column is.
+    fn tile_around(&self, free_segments: &FreeSegments, cell: [usize; 2]) -> Option<(&BoxColumns, [usize; 2])> {
+        let [column, row] = cell;
+        let tile = self.tiles.get(row / TILE * self.width + column / TILE)?;
+        let first = cell.map(|index| index / TILE * TILE);
+        Some((tile.get_or_init(|| self.tile(free_segments, first)), cell.map(|index| index % TILE)))
+    }
+
+    /// Where a line leaves boxes, from one edge to another along each axis.
+    fn exit(&self, (origin, direction): ([f64; 3], [f64; 3]), edges: [[f64; 2]; 3]) -> f64 {
+        let sides = self.sides();
+        let mut exit = f64::INFINITY;
+        for axis in 0..3 {
+            if direction[axis] != 0.0 {
+                let edge = edges[axis][usize::from(direction[axis] > 0.0)];
+                exit = exit.min((self.low[axis] + edge * sides[axis] - origin[axis]) / direction[axis]);
+            }
+        }
+        exit
+    }
+}
+
+/// The edges of the group of columns around a box, `width` of them a side, and of the layers above and below it that
+/// are near as well, by the word of the group.
+fn boxes_around([column, row, layer]: [usize; 3], width: usize, word: u64) -> [[usize; 2]; 3] {
+    let up = (word >> layer).trailing_ones() as usize;
+    let down = (word << (63 - layer)).leading_ones() as usize;
+    let [column, row] = [column, row].map(|index| index / width * width);
+    [[column, column + width], [row, row + width], [layer + 1 - down, layer + up]]
+}
+
+/// The number below; 0 for one below zero and for NaN.
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "`as` saturates")]
+fn whole(number: f64) -> usize {
+    number as usize
 }
 
 /// From the middle of a square to its corners.
@@ -425,5 +515,36 @@ mod tests {
         }
         assert!(near_count > queried / 10 && near_count < queried * 9 / 10, "{near_count} of {queried}");
         assert!(marked_count as f64 > min_share * near_count as f64, "{marked_count} of {near_count}");
+    }
+
+    #[test]
+    fn unseen_length_is_that_through_boxes_whose_middles_are_not_near() {
+        const STEP: f64 = 4e-3;
+        let random = |k: u64, i: u64| uniform(41 + k, i);
+        let point = |i: u64| [0, 1, 2].map(|k| [20.0, 20.0, 8.0][k as usize] * random(k, i));
+        #[expect(clippy::cast_possible_truncation, reason = "places of a test")]
+        let returns: Vec<[f32; 3]> = (0..400).map(|i| point(i).map(|v| v as f32)).collect();
+        let scanner = vec![[10.0, 10.0, 300.0]; returns.len()];
+        let params = FreeSegmentParams::default();
+        let (segments, _) = FreeSegments::new(&returns, &scanner, &params, &Control::none()).unwrap();
+        let space = SeenSpace::new(&segments, [[0.0; 2], [20.0; 2]], 0.7);
+        let mut unseen_lines = 0;
+        for i in 0..60 {
+            let (from, to) = (point(1000 + i), point(2000 + i));
+            let range = length(sub(to, from));
+            let direction = sub(to, from).map(|v| v / range);
+            let mut expected = 0.0;
+            let mut at = STEP / 2.0;
+            while at < range {
+                let places = space.places((from, direction), at);
+                let cell: [usize; 3] = std::array::from_fn(|axis| whole(places[axis]));
+                expected += if segments.passes_within(space.middle(cell), space.nearness) { 0.0 } else { STEP };
+                at += STEP;
+            }
+            let found = space.unseen_length(&segments, (from, direction), [0.0, range], f64::INFINITY).unwrap();
+            assert!((found - expected).abs() < 0.1, "line {i}: {found}, in steps {expected}");
+            unseen_lines += usize::from(found > 1.0);
+        }
+        assert!(unseen_lines > 20, "{unseen_lines} lines run through unseen boxes");
     }
 }

@@ -104,6 +104,7 @@ class Cameras:
         per_target: int = 1,
         search_limit: int | None = None,
         unproven: str = "report",
+        certain: float | None = None,
         curvature: str | None = None,
         refraction: float | None = None,
         frequency_ghz: float | None = None,
@@ -163,6 +164,9 @@ class Cameras:
             Most branches of the search for the proven optimum; 0 for no search.
         unproven : {'report', 'as-visible', 'as-blocked'}
             What is not proven visible covers a target only 'as-visible'.
+        certain : float, optional
+            Least probability, above 0.5 to 1, with which a target must be visible to be covered; any if not given. Needs
+            pulses.
         frequency_ghz : float, optional
             Frequency of radio links, 0.001 to 1000: a target is only covered if the first Fresnel zone is free too.
         fresnel_percent : float, optional
@@ -206,6 +210,7 @@ class Cameras:
             raise wrong("weights", "given", "cells count alike; give targets, or leave this out")
         wanted_targets = wanted(targets, None, {"cell": cell, "target_height": None, "ground": None})
         wanted_targets.update(height=target_height, ground=ground)
+        check_finite(certain=certain)
         check_finite(target_height=target_height, frequency_ghz=frequency_ghz, fresnel_percent=fresnel_percent)
         if fresnel_percent is not None and frequency_ghz is None:
             raise wrong("fresnel_percent", fresnel_percent, "give frequency_ghz too, or leave this out")
@@ -234,6 +239,7 @@ class Cameras:
             "refraction": refraction,
             "frequency": frequency_ghz,
             "fresnel_percent": fresnel_percent,
+            "certain": certain,
         }
         columns, whole, counts, grid, given_remarks = self._core.cameras(
             choice, wanted_targets, _place(None, grid_north=grid_north), unproven, reporter(progress)

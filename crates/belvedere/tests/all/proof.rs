@@ -125,7 +125,7 @@ fn unproven_lengths_are_those_of_dense_samples() {
             ends().fold(f64::INFINITY, f64::min)..=ends().fold(f64::NEG_INFINITY, f64::max)
         });
         let proof = proof(free_segments(&returns, &scanner), nearness, Beside::Unseen);
-        let (mut sum, mut worst): (f64, f64) = (0.0, 0.0);
+        let (mut sum, mut worst, mut sampled_sum): (f64, f64, f64) = (0.0, 0.0, 0.0);
         for i in 0..lines {
             let (from, to) = (random_point(12, i), random_point(13, i));
             let direction = unit(std::array::from_fn(|k| to[k] - from[k]));
@@ -150,8 +150,19 @@ fn unproven_lengths_are_those_of_dense_samples() {
             assert!(found < expected + slack + 0.1 * changes as f64 / 2.0, "line {i}: {found} is more than {expected}");
             assert_eq!(proof.is_unproven(from, direction, range), found > 0.5, "line {i}: {found}");
             (sum, worst) = (sum + expected, worst.max((found - expected).abs()));
+            let sampled = |enough| proof.sampled_unproven_length(from, direction, range, enough);
+            let whole = sampled(f64::INFINITY);
+            sampled_sum += whole;
+            // the same from the other end, but for rounding; and what is found once stays
+            let back = proof.sampled_unproven_length(to, direction.map(|v| -v), range, f64::INFINITY);
+            assert!((whole - back).abs() < 1e-5, "line {i}: {whole} {back}");
+            assert_eq!(sampled(f64::INFINITY), whole);
+            let enough = sampled(2.0);
+            assert!(if whole < 2.0 { enough == whole } else { enough >= 2.0 }, "line {i}: {enough} of {whole}");
         }
         assert!(sum > 5.0, "lines must have gaps: {sum}");
+        // boxes begin and end where middles lie: too early as often as too late
+        assert!((sampled_sum - sum).abs() < 0.1 * sum, "{sampled_sum} sampled, {sum}");
         // most lines miss nothing at all
         assert!(worst < 0.3, "{worst}");
     }

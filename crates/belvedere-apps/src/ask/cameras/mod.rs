@@ -10,6 +10,7 @@ pub(super) use report::CamerasReport;
 pub use standing::{Candidates, GivenCamera};
 pub use targets::{CameraTargets, PrivatePlaces};
 
+use super::how_sure::remark_from_ground;
 use super::sections::LinesSection;
 use super::{Answers, Ask, Context, GridCells, North, Places, Scene};
 use crate::cameras::{
@@ -19,7 +20,7 @@ use crate::cameras::{
 use crate::landmark::observer_cell_for;
 use crate::targets::Targets;
 use belvedere_core::ground::Ground;
-use belvedere_core::query::{EarthParams, MedialScene, RadioWave, UnprovenAs};
+use belvedere_core::query::{Certainty, EarthParams, MedialScene, RadioWave, UnprovenAs};
 use belvedere_data::control::Control;
 use belvedere_data::{Error, Parameter, Result};
 use report::ChoiceSection;
@@ -60,6 +61,9 @@ pub struct CamerasQuestion {
     /// What targets count as that nothing blocks but that are not proven visible; they are covered only where they
     /// count as visible. What is given needs pulses.
     pub unproven: Option<UnprovenAs>,
+    /// The least probability, above 0.5 and at most 1, with which a target must be visible to be covered; `None`, the
+    /// default, where the answer alone counts. What is given needs pulses.
+    pub certain: Option<f64>,
 }
 
 /// What cameras are chosen for.
@@ -88,6 +92,7 @@ impl Default for CamerasQuestion {
             frequency_ghz: None,
             fresnel_percent: None,
             unproven: None,
+            certain: None,
         }
     }
 }
@@ -165,6 +170,7 @@ impl CamerasQuestion {
             .with_density(self.lens.lens()?.required_density(self.lens.density)?)
             .with_earth(self.earth)
             .with_unproven(self.unproven.unwrap_or(UnprovenAs::Reported))
+            .with_certainty(self.certain.map(Certainty::new).transpose()?)
             .with_zone(zone.transpose()?))
     }
 
@@ -258,12 +264,16 @@ impl Ask for CamerasQuestion {
         if self.unproven.is_some() {
             scene.check_proof()?;
         }
+        if self.certain.is_some() {
+            scene.check_pulses(Parameter::Certainty)?;
+        }
         let params = self.coverage_params()?;
         let north = self.north.of_scene(scene);
         context.north(&north);
         let cells = self.cells(scene, places);
         let known = scene.ground(cells.grid(scene)?, cells.ground, control)?;
         let blockers = scene.blockers(params.unproven, control)?;
+        context.add(self.certain.and_then(|_| remark_from_ground(&blockers)));
         let site = CameraSite { scene, blockers: &blockers, ground: &known.ground, grid_north: north.of_grid };
         let targets = self.targets.of((places, &cells), &site, context, control)?;
         let private = self.targets.private_of(&cells, &site, control)?;
@@ -287,7 +297,11 @@ impl Ask for CamerasQuestion {
             place_cameras(&table, &weights, &self.placement_params(existing.len()), control)
         })?;
         report.coverage.fill(&placed, &weights, self.per_target);
-        report.coverage.headlines(existing.len(), &weights).into_iter().for_each(|line| context.headline(line));
+        report
+            .coverage
+            .headlines(existing.len(), &weights, self.certain)
+            .into_iter()
+            .for_each(|line| context.headline(line));
         context.report.cameras = Some(report);
         let found = CamerasResults::new(&poses, existing.len(), &table, placed, targets, north.of_grid);
         Ok(Answers::new(found, Vec::new()))
@@ -307,6 +321,7 @@ mod tests {
             CamerasQuestion { goal: CameraGoal::CoveragePercent(0.0), ..usual() },
             CamerasQuestion { goal: CameraGoal::CoveragePercent(120.0), ..usual() },
             CamerasQuestion { per_target: 0, ..usual() },
+            CamerasQuestion { certain: Some(0.5), ..usual() },
             CamerasQuestion { frequency_ghz: Some(2400.0), ..usual() },
             CamerasQuestion { frequency_ghz: Some(2.4), fresnel_percent: Some(101.0), ..usual() },
             lens(CameraLens { fov_deg: Some(400.0), ..CameraLens::default() }),

@@ -81,9 +81,11 @@ impl CoverageSection {
     }
 
     /// The answer in words.
-    pub(super) fn headlines(&self, existing: usize, weights: &[f64]) -> Vec<String> {
+    pub(super) fn headlines(&self, existing: usize, weights: &[f64], certain: Option<f64>) -> Vec<String> {
         let counting = weights.iter().filter(|weight| **weight > 0.0).count();
         let and_existing = if existing > 0 { format!(" and {existing} existing ones") } else { String::new() };
+        let certainty =
+            certain.map_or(String::new(), |certain| format!(" with a certainty of {} %", rounded(100.0 * certain, 2)));
         let (new, covered, best) = (self.new_cameras, self.coverage_percent, self.best_possible_percent);
         let proof = match (self.is_proven_optimum, self.min_possible_cameras) {
             (true, _) => "no other choice is better".to_owned(),
@@ -91,7 +93,7 @@ impl CoverageSection {
             (false, None) => format!("no choice of as many covers more than {best} %"),
         };
         vec![
-            format!("{new} new cameras{and_existing} cover {covered} % of {counting} targets"),
+            format!("{new} new cameras{and_existing} cover {covered} % of {counting} targets{certainty}"),
             format!("{proof}; all candidates together cover {} %", self.all_candidates_percent),
         ]
     }

@@ -99,7 +99,7 @@ impl Sights<'_> {
     ) -> Result<Vec<Measure>> {
         let Self { question, scene, observers, .. } = *self;
         let how_sure = &question.how_sure;
-        let Some(blockers) = how_sure.blockers(scene, control)? else { return Ok(Vec::new()) };
+        let Some(blockers) = how_sure.blockers(scene, context, control)? else { return Ok(Vec::new()) };
         let found = control.stage("computing probabilities", observers.len() * targets.len(), || {
             seen_probabilities(&blockers, observers, targets, how_sure.certainty()?, control)
         })?;

@@ -9,7 +9,7 @@ use belvedere::view::to_sun;
 use belvedere_baselines::MethodInput;
 use belvedere_baselines::medial::{MedialParams, Outward, scene_model};
 use belvedere_baselines::simulated::surveyed;
-use belvedere_scenes::{Preset, QuerySet, QuerySite, Regime, TriangleScene, Truth};
+use belvedere_scenes::{Preset, QuerySet, QuerySite, Regime, TargetsOfKind, TriangleScene, Truth};
 use rayon::prelude::*;
 
 /// Sides of the towns, metres.
@@ -18,9 +18,19 @@ const EXTENT: f64 = 110.0;
 const TARGETS: usize = 1500;
 /// Azimuths and elevations of the suns.
 const SUNS_DEG: [[f64; 2]; 4] = [[110.0, 20.0], [180.0, 65.0], [240.0, 35.0], [80.0, 10.0]];
+/// How far away an aircraft is, metres.
+const AIRCRAFT_RANGE: f64 = 400.0;
+/// How high above the horizon, degrees.
+const AIRCRAFT_ELEVATION_DEG: f64 = 70.0;
 /// Sets of targets, in the order of the tables.
-pub(crate) const SETS: [QuerySet; 5] =
-    [QuerySet::Air, QuerySet::Pedestrians, QuerySet::Roofs, QuerySet::Facades, QuerySet::LinesOfSight];
+pub(crate) const SETS: [QuerySet; 6] = [
+    QuerySet::Air,
+    QuerySet::Pedestrians,
+    QuerySet::Roofs,
+    QuerySet::Facades,
+    QuerySet::LinesOfSight,
+    QuerySet::Volume,
+];
 
 /// A town and its survey.
 #[derive(Clone, Copy, Debug)]
@@ -67,37 +77,64 @@ impl SurveyedTown {
 }
 
 impl TownSurvey {
-    /// What the surveyed scene says of lines of sight to suns and between people, and the truth.
+    /// What the surveyed scene says of lines of sight to suns and between people, and the truth. Places anywhere, of
+    /// which some are in buildings and in the ground, are looked at by people and from an aircraft too.
     pub(crate) fn cases(&self) -> Result<Vec<Case>> {
         let surveyed = SurveyedTown::new(self)?;
-        let SurveyedTown { scene, truth, origin, .. } = &surveyed;
-        let mut cases = Vec::new();
-        for set in SETS {
-            let found = surveyed.site().targets(set, TARGETS, self.seed);
-            let local: Vec<[f64; 3]> = found.positions.iter().map(|p| to_local(*p, *origin).map(f64::from)).collect();
-            if set == QuerySet::LinesOfSight {
-                let ends = local.par_iter().zip(&found.eyes).zip(&found.positions);
-                cases.par_extend(ends.filter_map(|((target, eye), position)| {
-                    let sight = Ray::between(*target, to_local(*eye, *origin).map(f64::from))?;
-                    case(scene, set, &sight, !truth.occluded(*position, *eye))
-                }));
-                continue;
-            }
-            for [azimuth, elevation] in SUNS_DEG {
-                let direction = to_sun(azimuth.to_radians(), elevation.to_radians());
-                let blocked = truth.occluded_towards_each(&found.positions, direction);
-                cases.par_extend(local.par_iter().zip(blocked).filter_map(|(target, is_blocked)| {
-                    let sight = Ray { origin: *target, direction, ranges: [0.0, f64::INFINITY] };
-                    case(scene, set, &sight, !is_blocked)
-                }));
+        let of_set = |set: QuerySet| surveyed.site().targets(set, TARGETS, self.seed);
+        let TargetsOfKind { positions: people, eyes } = of_set(QuerySet::LinesOfSight);
+        let mut cases = surveyed.between(QuerySet::LinesOfSight, &people, &eyes);
+        for set in SETS.into_iter().filter(|set| *set != QuerySet::LinesOfSight) {
+            let places = of_set(set).positions;
+            cases.extend(surveyed.towards_suns(set, &places));
+            if set == QuerySet::Volume {
+                let aircraft: Vec<[f64; 3]> = places.iter().map(|place| above(*place)).collect();
+                cases.extend(surveyed.between(set, &places, &eyes));
+                cases.extend(surveyed.between(set, &places, &aircraft));
             }
         }
         Ok(cases)
     }
 }
 
-/// `None` where pulses are not known.
-fn case(scene: &MedialScene, set: QuerySet, sight: &Ray, is_visible: bool) -> Option<Case> {
-    let evidence = scene.evidence(sight.origin, sight.direction, sight.ranges[1])?;
-    Some(Case { set, evidence, is_visible })
+/// Where an aircraft flies that is seen from a place in one of the directions of suns, chosen by the place.
+fn above(place: [f64; 3]) -> [f64; 3] {
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "any of them will do")]
+    let number = (place[0].abs() * 1e3) as usize % SUNS_DEG.len();
+    let [azimuth, _] = SUNS_DEG[number];
+    let towards = to_sun(azimuth.to_radians(), AIRCRAFT_ELEVATION_DEG.to_radians());
+    std::array::from_fn(|i| place[i] + AIRCRAFT_RANGE * towards[i])
+}
+
+impl SurveyedTown {
+    fn local(&self, place: [f64; 3]) -> [f64; 3] {
+        to_local(place, self.origin).map(f64::from)
+    }
+
+    fn towards_suns(&self, set: QuerySet, places: &[[f64; 3]]) -> Vec<Case> {
+        let of_sun = |[azimuth, elevation]: [f64; 2]| {
+            let direction = to_sun(azimuth.to_radians(), elevation.to_radians());
+            let blocked = self.truth.occluded_towards_each(places, direction);
+            let lines = places.par_iter().zip(blocked).filter_map(|(place, is_blocked)| {
+                let sight = Ray { origin: self.local(*place), direction, ranges: [0.0, f64::INFINITY] };
+                self.case(set, &sight, !is_blocked)
+            });
+            lines.collect::<Vec<Case>>()
+        };
+        SUNS_DEG.into_iter().flat_map(of_sun).collect()
+    }
+
+    fn between(&self, set: QuerySet, places: &[[f64; 3]], eyes: &[[f64; 3]]) -> Vec<Case> {
+        let line = |(place, eye): (&[f64; 3], &[f64; 3])| {
+            let sight = Ray::between(self.local(*place), self.local(*eye))?;
+            self.case(set, &sight, !self.truth.occluded(*place, *eye))
+        };
+        places.par_iter().zip(eyes).filter_map(line).collect()
+    }
+
+    /// `None` where pulses are not known.
+    fn case(&self, set: QuerySet, sight: &Ray, is_visible: bool) -> Option<Case> {
+        let evidence = self.scene.evidence(sight.origin, sight.direction, sight.ranges[1])?;
+        Some(Case { set, evidence, is_visible })
+    }
 }
