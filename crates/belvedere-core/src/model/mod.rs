@@ -12,6 +12,7 @@ mod clear;
 mod clearing;
 mod close_range_normals;
 mod estimate_statistics;
+mod in_space_order;
 mod params;
 mod pictures;
 mod prepare;

@@ -1,6 +1,7 @@
 //! From a cloud to a cleaned cloud with outward normals, and what its pulses prove empty.
 
 use super::close_range_normals::CloseRange;
+use super::in_space_order::{order_of_mixed, points_at};
 use super::params::{Carving, ModelParams, OrientBy};
 use super::report::{BuildReport, NormalsReport, PulsesReport, SmoothingReport};
 use crate::clean::clean;
@@ -33,7 +34,8 @@ pub struct OrientedSurvey {
     pub oriented: OrientedCloud,
     /// Index of these points.
     pub index: NeighborIndex,
-    /// Their rows in the cloud as it was given, ascending.
+    /// Their rows in the cloud as it was given: ascending, or in the order of space where they are to be carved
+    /// and were mixed.
     pub kept: Vec<u32>,
     /// The smallest box around them: a stray point that was cleaned away does not widen a view.
     pub bounds: Bounds,
@@ -135,7 +137,14 @@ pub(super) fn prepare(
     let statistics = params.statistics.as_deref();
     let cleaning = statistics.map(|statistics| statistics.cleaning(&params.clean));
     let cleaning = cleaning.as_ref().unwrap_or(&params.clean);
-    let (kept, cleaned) = control.stage("cleaning", read_count, || clean(&cloud, cleaning, control))?;
+    // where nothing carves, balls have the rows of their points
+    let carving = params.balls.carving();
+    let order = if carving == Carving::Unwanted { None } else { order_of_mixed(&cloud) };
+    let mut cloud = match &order {
+        Some(rows) => Cow::Owned(points_at(&cloud, rows)),
+        None => cloud,
+    };
+    let (mut kept, cleaned) = control.stage("cleaning", read_count, || clean(&cloud, cleaning, control))?;
     report.removed_by_cleaning = cleaned;
     if kept.is_empty() {
         return Err(Error::NoPoints { what: format!("{read_count} were read, and cleaning removed all of them") });
@@ -144,8 +153,12 @@ pub(super) fn prepare(
     if statistics.is_none() {
         check_surface(kept.iter().filter_map(|&row| cloud.positions.get(row as usize)))?;
     }
-    let mut cloud = if kept.len() == read_count { cloud } else { Cow::Owned(cloud.select(&kept)) };
-    let carving = params.balls.carving();
+    if kept.len() < read_count {
+        cloud = Cow::Owned(cloud.select(&kept));
+    }
+    if let Some(rows) = order {
+        kept.iter_mut().for_each(|row| *row = rows.get(*row as usize).copied().unwrap_or(*row));
+    }
     let wants_scanner = carving != Carving::Unwanted
         || matches!(params.orient, OrientBy::Pulses | OrientBy::ScannerOfEachPoint(_) | OrientBy::Stations(_));
     let scanner = if wants_scanner {
