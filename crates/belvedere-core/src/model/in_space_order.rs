@@ -38,9 +38,7 @@ fn rows_in_space_order(cloud: &PointCloud) -> Vec<u32> {
         #[expect(clippy::cast_possible_truncation, reason = "`as` saturates")]
         let number = ((f64::from(place) + origin) / SIDE).floor() as i64;
         // squares 262 km apart share a number, which costs time and nothing else
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "16 bits")]
-        let bits = (number & 0xFFFF) as u32;
-        bits
+        (number & 0xFFFF) as u32
     };
     let key = |(row, [x, y, _]): (u32, [f32; 3])| {
         let morton = spread(square(x, east)) | spread(square(y, north)) << 1;
@@ -92,10 +90,10 @@ mod tests {
         let mut sorted = rows.clone();
         sorted.sort_unstable();
         assert_eq!(sorted, (0..5000).collect::<Vec<u32>>());
-        let square = |row: u32| [0, 1].map(|axis| (cloud.positions[row as usize][axis] / 4.0).floor() as i32);
+        let square = |row: u32| [0, 1].map(|axis| (cloud.positions[row as usize][axis] / 4.0).floor());
         let runs: Vec<&[u32]> = rows.chunk_by(|a, b| square(*a) == square(*b)).collect();
-        let mut squares: Vec<[i32; 2]> = runs.iter().map(|run| square(run[0])).collect();
-        squares.sort_unstable();
+        let mut squares: Vec<[f32; 2]> = runs.iter().map(|run| square(run[0])).collect();
+        squares.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
         let count = squares.len();
         squares.dedup();
         assert_eq!(squares.len(), count, "a square comes twice");
@@ -103,7 +101,7 @@ mod tests {
         // most squares lie beside the one before
         let beside = runs.windows(2).filter(|pair| {
             let [a, b] = [square(pair[0][0]), square(pair[1][0])];
-            (a[0] - b[0]).abs().max((a[1] - b[1]).abs()) == 1
+            (a[0] - b[0]).abs().max((a[1] - b[1]).abs()) < 1.5
         });
         assert!(beside.count() > 2 * count / 3);
     }

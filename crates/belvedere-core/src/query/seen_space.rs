@@ -520,8 +520,7 @@ mod tests {
     #[test]
     fn unseen_length_is_that_through_boxes_whose_middles_are_not_near() {
         const STEP: f64 = 4e-3;
-        let random = |k: u64, i: u64| uniform(41 + k, i);
-        let point = |i: u64| [0, 1, 2].map(|k| [20.0, 20.0, 8.0][k as usize] * random(k, i));
+        let point = |i: u64| [20.0 * uniform(41, i), 20.0 * uniform(42, i), 8.0 * uniform(43, i)];
         #[expect(clippy::cast_possible_truncation, reason = "places of a test")]
         let returns: Vec<[f32; 3]> = (0..400).map(|i| point(i).map(|v| v as f32)).collect();
         let scanner = vec![[10.0, 10.0, 300.0]; returns.len()];
