@@ -350,6 +350,10 @@ impl SeenSpace {
                 edges[axis][1] = if end > last[axis] { f64::INFINITY } else { edges[axis][1] };
             }
             let exit = self.exit(line, edges).max(at + 1e-6).min(to);
+            // so far away that a step is lost in rounding
+            if exit <= at {
+                break;
+            }
             unseen += if is_near { 0.0 } else { exit - at };
             at = exit;
         }
