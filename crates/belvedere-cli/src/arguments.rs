@@ -59,6 +59,7 @@ pub(crate) use view_page::ViewPage;
 pub(crate) use window_views::WindowViewsArguments;
 
 use clap::{ArgAction, Args, Parser, Subcommand, ValueEnum};
+use std::ffi::OsString;
 use std::path::PathBuf;
 
 /// Wrong usage that only shows once arguments are combined: exit status 2.
@@ -190,6 +191,8 @@ pub(crate) enum Command {
     Calibrate(CalibrateArguments),
     /// List the scenes that are kept for the next command, or remove them
     Cache(CacheArguments),
+    /// Measure how long each stage takes on this machine
+    Bench(BenchArguments),
     /// Compute a depth map: the distance to the first surface for each pixel of a view
     #[command(name = "depth-map")]
     DepthMap(DepthMapArguments),
@@ -267,6 +270,19 @@ pub(crate) struct CacheArguments {
     /// Remove all of them
     #[arg(long)]
     pub(crate) clear: bool,
+}
+
+#[derive(Args)]
+pub(crate) struct BenchArguments {
+    /// Point cloud to measure with [default: a simulated town]
+    #[arg(value_name = "CLOUD")]
+    pub(crate) cloud: Option<PathBuf>,
+    /// Side of the simulated town in metres, 60 to 2000
+    #[arg(long, value_name = "M", default_value_t = 300, value_parser = clap::value_parser!(u32).range(60..=2000), conflicts_with = "cloud")]
+    pub(crate) extent: u32,
+    /// Flags of belvedere shadow that the cloud needs
+    #[arg(last = true, value_name = "FLAGS", requires = "cloud")]
+    pub(crate) flags: Vec<OsString>,
 }
 
 #[derive(Args)]

@@ -43,7 +43,7 @@ const GROUPS: [(&str, &[&str]); 8] = [
     ("scene", &["balls", "calibrate", "normals", "surfaces", "trajectory", "cache"]),
     ("research", &["depth-map", "query"]),
     ("scale", &["city"]),
-    ("other", &["describe", "completions", "man"]),
+    ("other", &["bench", "describe", "completions", "man"]),
 ];
 
 /// Flags that `-h` leaves out, so that it fits a screen; `--help` has all.
@@ -140,6 +140,7 @@ const TEXTS: &[(&str, &str)] = &[
     ("balls", include_str!("help/balls.txt")),
     ("calibrate", include_str!("help/calibrate.txt")),
     ("cache", include_str!("help/cache.txt")),
+    ("bench", include_str!("help/bench.txt")),
     ("depth-map", include_str!("help/depth-map.txt")),
     ("query", include_str!("help/query.txt")),
     ("line-of-sight", include_str!("help/line-of-sight.txt")),

@@ -1,6 +1,7 @@
 //! The table of commands, a file for each; what they share has files of its own.
 
 mod balls;
+mod bench;
 mod cache;
 mod calibrate;
 mod cameras;
@@ -77,6 +78,7 @@ fn run_command(cli: &Cli) -> Result<Summary> {
         Command::Balls(arguments) => balls::run(arguments, global),
         Command::Calibrate(arguments) => calibrate::run(arguments, global),
         Command::Cache(arguments) => cache::run(arguments, global),
+        Command::Bench(arguments) => bench::run(arguments, global),
         Command::DepthMap(arguments) => depth_map::run(arguments, global),
         Command::Query(arguments) => query::run(arguments, global),
         Command::LineOfSight(arguments) => line_of_sight::run(arguments, global),

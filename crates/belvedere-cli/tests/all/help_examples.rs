@@ -4,7 +4,7 @@ use crate::common::{Workplace, house};
 use std::collections::BTreeSet;
 use std::path::Path;
 
-const COMMANDS: [&str; 32] = [
+const COMMANDS: [&str; 33] = [
     "demo",
     "simulate",
     "info",
@@ -13,6 +13,7 @@ const COMMANDS: [&str; 32] = [
     "balls",
     "calibrate",
     "cache",
+    "bench",
     "depth-map",
     "query",
     "line-of-sight",
