@@ -165,8 +165,8 @@ class Cameras:
         unproven : {'report', 'as-visible', 'as-blocked'}
             What is not proven visible covers a target only 'as-visible'.
         certain : float, optional
-            Least probability, above 0.5 to 1, with which a target must be visible to be covered; any if not given. Needs
-            pulses.
+            Least probability, above 0.5 to 1, with which a target must be visible to be covered; any if not given.
+            Needs pulses.
         frequency_ghz : float, optional
             Frequency of radio links, 0.001 to 1000: a target is only covered if the first Fresnel zone is free too.
         fresnel_percent : float, optional
