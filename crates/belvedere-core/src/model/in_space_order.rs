@@ -111,7 +111,7 @@ mod tests {
         #[expect(clippy::cast_precision_loss, reason = "a thousand points")]
         let line = |i: usize| [0.4 * (i % 100) as f32, 0.5 * (i / 100) as f32, 0.0];
         let in_lines = PointCloud { positions: (0..1000).map(line).collect(), ..PointCloud::default() };
-        let mixed = in_lines.select(&(0..1000).map(|i| i * 389 % 1000).collect::<Vec<u32>>());
+        let mixed = in_lines.select(&(0..1000).map(|i| i * 337 % 1000).collect::<Vec<u32>>());
         assert!(!is_mixed(&in_lines) && is_mixed(&mixed) && !is_mixed(&PointCloud::default()));
         assert!(!is_mixed(&mixed.select(&rows_in_space_order(&mixed))));
     }
