@@ -44,13 +44,18 @@ export function setWhen(when) {
 }
 page.setWhen = setWhen;
 
+// Number of the last change: what comes of an earlier one, still on its way, no longer counts.
+let changes = 0;
 // Has the scene with the plan made.
 async function make() {
+  changes += 1;
+  const number = changes;
   if (isEmpty(page.plan)) {
     page.planned = null;
     return;
   }
   const answer = await api.ask("plan", page.plan);
+  if (number !== changes) return;
   const triangles = new Float32Array(answer.body.slice(0, answer.triangle_bytes));
   page.planned = { ...answer, triangles, cleared: answer.points_cleared ? new Uint8Array(answer.body, answer.triangle_bytes) : null };
 }
