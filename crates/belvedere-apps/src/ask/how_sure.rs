@@ -178,7 +178,8 @@ impl HowSure {
 }
 
 /// A warning of probabilities where scanners stood on the ground: much of such a scene was not seen at all.
-pub(super) fn remark_from_ground(blockers: &MedialScene) -> Option<Remark> {
+#[must_use]
+pub fn remark_from_ground(blockers: &MedialScene) -> Option<Remark> {
     let text = "the scanner stood on the ground: probabilities of what it did not see, such as roofs and walls turned \
                 away, may be wrong by a quarter";
     let is_from_ground = blockers.proof().is_some_and(Proof::is_from_ground);

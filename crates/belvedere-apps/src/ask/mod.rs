@@ -57,7 +57,7 @@ pub use comfort::{ComfortQuestion, ComfortResults, ExposureSection, RoutesOrWind
 pub use depth_map::{DepthMapQuestion, DepthMapResults, PictureSection, ViewFrom, ViewSection};
 pub use envelope::{EnvelopeQuestion, EnvelopeResults, EnvelopeSection, Protected, ProtectedShape, ProtectedSuns};
 pub use horizon::{BelowLevel, HorizonQuestion, HorizonResults};
-pub use how_sure::{CertaintySection, EXPECTED, HowSure, PROBABILITY, UNCERTAIN};
+pub use how_sure::{CertaintySection, EXPECTED, HowSure, PROBABILITY, UNCERTAIN, remark_from_ground};
 pub use irradiance::{IrradianceQuestion, IrradianceResults, Radiation, Roofs, RoofsResults, remark_on_radiation};
 pub use isovist::{IsovistColumn, IsovistsQuestion, IsovistsResults};
 pub use landmark::{LandmarkQuestion, LandmarkResults, LandmarkSection, LandmarkShape};

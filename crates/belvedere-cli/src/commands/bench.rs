@@ -6,6 +6,7 @@ use crate::help;
 use crate::memory;
 use crate::run::CommandContext;
 use crate::summary::{Summary, rounded, sections, whole};
+use crate::written_files;
 use anyhow::{Context, Result};
 use belvedere::neighbors::Instructions;
 use clap::FromArgMatches;
@@ -69,8 +70,10 @@ pub(crate) fn run(arguments: &BenchArguments, global: &Global) -> Result<Summary
 /// Runs a command of this program as if it were typed.
 fn measured(words: &[OsString], global: &Global) -> Result<Summary> {
     let typed = std::iter::once(OsString::from("belvedere")).chain(words.iter().cloned());
-    let matches = help::command().try_get_matches_from(typed).map_err(|error| Usage(error.to_string()))?;
+    let program = help::command();
+    let matches = program.clone().try_get_matches_from(typed).map_err(|error| Usage(error.to_string()))?;
     let mut cli = Cli::from_arg_matches(&matches).map_err(|error| Usage(error.to_string()))?;
+    written_files::check(&program, &matches)?;
     (cli.global.progress, cli.global.seed) = (global.progress, global.seed);
     run_command(&cli)
 }

@@ -193,6 +193,7 @@ fn by_lines_of_sight(
     if !arguments.probability {
         return Ok((answers, None));
     }
+    run.summary.remarks(ask::remark_from_ground(&scene));
     let forward = views.first().map_or([0.0, 0.0, -1.0], |view| view.frame.forward);
     let viewer = eye.map_or(Viewer::Direction(forward.map(|v| -v)), Viewer::Eye);
     let mut probabilities = run.stage("computing probabilities", targets.len(), |control| {

@@ -152,6 +152,9 @@ fn scanners_on_the_ground_have_doubtful_probabilities_and_no_intervals() {
     let scans = "tls/cloud.laz --orient stations=tls/stations.csv --cell 6";
     let lit = place.run(&format!("shadow {scans} --sun 200,30 --probability -o lit.tif"));
     assert!(lit.status == 0 && lit.stderr.contains("probabilities of what it did not see"), "{lit:?}");
+    let queried = place
+        .run("query tls/cloud.laz --orient stations=tls/stations.csv --sun 200,30 --random 50 --probability -o q.csv");
+    assert!(queried.status == 0 && queried.stderr.contains("probabilities of what it did not see"), "{queried:?}");
     let sky = place.run(&format!("sky-view {scans} --directions 145 --interval -o sky.tif"));
     assert!(sky.status != 0 && sky.stderr.contains("surveys from the air"), "{sky:?}");
 }
