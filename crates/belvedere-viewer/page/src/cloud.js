@@ -1,63 +1,23 @@
-// Points on the screen: chunks in random order drawn up to a budget, and shading by depth (eye-dome lighting).
+// Points on the screen: chunks in random order drawn up to a budget.
 import {
-  BufferAttribute, BufferGeometry, Color, DataTexture, DoubleSide, Frustum, GLSL3, Matrix4, Mesh, NearestFilter, OrthographicCamera, Points, RawShaderMaterial, RGBAFormat,
-  Scene, Sphere, UnsignedByteType, Vector2, Vector3, WebGLRenderTarget,
+  BufferAttribute, BufferGeometry, Color, DataTexture, DoubleSide, Frustum, GLSL3, Matrix4, Mesh, Points, RawShaderMaterial, RGBAFormat, Scene, Sphere, UnsignedByteType, Vector2, Vector3,
 } from "three";
-
-const PACK = `
-vec4 packed(float d) { float v = clamp(d, 0.0, 0.9999999) * 16777215.0; float h = floor(v / 65536.0); float m = floor((v - h * 65536.0) / 256.0);
-  return vec4(h, m, v - h * 65536.0 - m * 256.0, 255.0) / 255.0; }`;
-
-const VERTEX = `precision highp float; precision highp int;
-in uvec4 place; in uint value;
-#ifdef COLORED
-in uint rgb565;
-#else
-const uint rgb565 = 0u;
-#endif
-uniform mat4 modelViewMatrix, projectionMatrix; uniform vec3 low, step3; uniform vec2 heights; uniform int mode, cleared; uniform float size, pixels, far, most;
-uniform sampler2D table; out vec3 color; out float depth;
-void main() {
-  vec3 local = low + vec3(place.xyz) * step3;
-  vec4 view = modelViewMatrix * vec4(local, 1.0);
-  gl_Position = int(value) == cleared ? vec4(2.0, 2.0, 2.0, 1.0) : projectionMatrix * view;
-  depth = -view.z / far;
-  gl_PointSize = clamp(size * pixels / max(-view.z, 0.01), 1.6, most);
-  float index = 0.0;
-  if (mode == 0) index = float(place.w & 255u); else if (mode == 1) index = float(place.w >> 8u);
-  else if (mode == 2) index = clamp((local.z - heights.x) / max(heights.y - heights.x, 0.001), 0.0, 1.0) * 255.0; else index = float(value);
-  color = mode == 3 ? vec3(float(rgb565 >> 11u) / 31.0, float((rgb565 >> 5u) & 63u) / 63.0, float(rgb565 & 31u) / 31.0)
-    : texture(table, vec2((index + 0.5) / 256.0, 0.5)).rgb;
-}`;
-const FRAGMENT = `precision highp float; in vec3 color; in float depth; layout(location = 0) out vec4 shown; layout(location = 1) out vec4 far24;${PACK}
-void main() { vec2 o = gl_PointCoord - 0.5; if (dot(o, o) > 0.26) discard; shown = vec4(color, 1.0); far24 = packed(depth); }`;
-
-const BALL_VERTEX = `precision highp float; in vec4 ball; uniform mat4 modelViewMatrix, projectionMatrix; uniform float pixels;
-out vec3 middle; out float radius;
-void main() { vec4 view = modelViewMatrix * vec4(ball.xyz, 1.0); middle = view.xyz; radius = ball.w;
-  gl_Position = projectionMatrix * view; gl_PointSize = clamp(2.15 * ball.w * pixels / max(-view.z, 0.01), 1.5, 1000.0); }`;
-const BALL_FRAGMENT = `precision highp float; in vec3 middle; in float radius; uniform mat4 projectionMatrix; uniform float far; uniform vec3 tint;
-layout(location = 0) out vec4 shown; layout(location = 1) out vec4 far24;${PACK}
-void main() { vec2 o = (gl_PointCoord - 0.5) * 2.15; o.y = -o.y; float h = 1.0 - dot(o, o); if (h < 0.0) discard; vec3 n = vec3(o, sqrt(h));
-  vec3 at = middle + radius * n; vec4 clip = projectionMatrix * vec4(at, 1.0); gl_FragDepth = clip.z / clip.w * 0.5 + 0.5;
-  shown = vec4(tint * (0.45 + 0.55 * max(dot(n, normalize(vec3(0.3, 0.6, 0.75))), 0.0)), 1.0); far24 = packed(-at.z / far); }`;
-
-const MESH_VERTEX = `precision highp float; in vec3 corner; uniform mat4 modelViewMatrix, projectionMatrix; out vec3 at;
-void main() { vec4 view = modelViewMatrix * vec4(corner, 1.0); at = view.xyz; gl_Position = projectionMatrix * view; }`;
-const MESH_FRAGMENT = `precision highp float; in vec3 at; uniform float far; uniform vec3 tint; layout(location = 0) out vec4 shown; layout(location = 1) out vec4 far24;${PACK}
-void main() { vec3 n = normalize(cross(dFdx(at), dFdy(at))); shown = vec4(tint * (0.5 + 0.5 * abs(dot(n, normalize(vec3(0.3, 0.6, 0.75))))), 1.0); far24 = packed(-at.z / far); }`;
-
-const SHADE = `precision highp float; uniform sampler2D shown, far24; uniform vec2 texel; uniform vec3 ground; uniform float far, strength, radius; in vec2 uv; out vec4 color;
-float at(vec2 p) { vec4 t = texture(far24, p); return t.a < 0.5 ? -1.0 : log2(max(dot(t.rgb, vec3(65536.0, 256.0, 1.0)) * 255.0 / 16777215.0 * far, 0.01)); }
-void main() { float d = at(uv); vec3 c = texture(shown, uv).rgb; if (d < -0.99 && texture(far24, uv).a < 0.5) { color = vec4(ground, 1.0); return; }
-  float sum = 0.0; for (int i = 0; i < 8; i++) { float a = float(i) * 0.7853982; vec2 p = uv + vec2(cos(a), sin(a)) * radius * texel; vec4 t = texture(far24, p);
-    if (t.a >= 0.5) sum += clamp(d - at(p), 0.0, 1.0); }
-  color = vec4(c * max(exp(-strength * sum / 8.0), 0.3), 1.0); }`;
+import { Screen, target, uniforms } from "./screen.js";
+import { BALL_FRAGMENT, BALL_VERTEX, MESH_FRAGMENT, MESH_VERTEX, POINT_FRAGMENT, POINT_VERTEX } from "./shaders.js";
+import { measure, unknown } from "./surface.js";
 
 // Value of a point that a plan clears: it is not drawn.
 const CLEARED = 254;
 const integers = (array, size) => Object.assign(new BufferAttribute(array, size), { gpuType: 1013 });
-const uniforms = (values) => Object.fromEntries(Object.entries(values).map(([name, value]) => [name, { value }]));
+// A hole of the picture lies so many sizes of a point behind what is around it.
+const GAP = 2;
+// Side of the squares of the map that chunks lie in, metres.
+const SQUARE = 128;
+// Light where no question has a sun: from the south and half up, so that walls differ from each other and from roofs.
+export const DAYLIGHT = new Vector3(0.25, -0.75, 0.75).normalize();
+// How much of the light is seen in each way of colouring: photographs have their own, and answers must be told by their
+// colours.
+const LIGHTS = [1, 0.7, 1, 0.5, 0.8];
 
 // Frames that add points to a picture at rest may take so many times as long as one that moves.
 export const AT_REST = 3;
@@ -71,17 +31,14 @@ export class Cloud {
     // most points that one frame draws
     this.budget = 1e6;
     this.table = new DataTexture(new Uint8Array(1024), 256, 1, RGBAFormat, UnsignedByteType);
-    this.own = uniforms({ table: this.table, mode: 2, heights: new Vector2(), size: 0.3, pixels: 1, far: 1000, most: 40, cleared: CLEARED });
-    this.target = new WebGLRenderTarget(1, 1, { count: 2, magFilter: NearestFilter, minFilter: NearestFilter });
-    this.shade = new RawShaderMaterial({
-      glslVersion: GLSL3, depthTest: false, depthWrite: false, fragmentShader: SHADE,
-      vertexShader: "precision highp float; in vec3 position; out vec2 uv; void main() { uv = position.xy * 0.5 + 0.5; gl_Position = vec4(position.xy, 0.0, 1.0); }",
-      uniforms: uniforms({ shown: this.target.textures[0], far24: this.target.textures[1], texel: new Vector2(), ground: new Color(), far: 1000, strength: 40, radius: 1.6 }),
-    });
-    const screen = new BufferGeometry().setAttribute("position", new BufferAttribute(new Float32Array([-1, -1, 0, 3, -1, 0, -1, 3, 0]), 3));
-    this.screen = new Mesh(screen, this.shade);
-    this.screen.frustumCulled = false;
-    this.flat = new OrthographicCamera();
+    this.own = uniforms({ table: this.table, mode: 2, heights: new Vector2(), size: 0.3, pixels: 1, far: 1000, most: 40, cleared: CLEARED, light: 1, sun: DAYLIGHT.clone() });
+    this.target = target();
+    this.screen = new Screen(renderer);
+    // whether whole pictures take no longer than those that move may
+    this.isQuick = false;
+    this.isRough = false;
+    // whether the sun of the light is one that is seen
+    this.isSunny = false;
     this.frustum = new Frustum();
     // points in view that the picture holds, and that are still to be added to it
     this.drawn = this.left = 0;
@@ -93,13 +50,14 @@ export class Cloud {
     const geometry = new BufferGeometry();
     geometry.setAttribute("place", integers(places, 4));
     geometry.setAttribute("value", integers(values ?? new Uint8Array(places.length / 4), 1));
+    geometry.setAttribute("shape", integers(unknown(places.length / 4), 4));
     // without an attribute called position, three.js does not know how many points there are
     geometry.setDrawRange(0, places.length / 4);
     const high = low.map((v, i) => v + step[i] * 65535);
     const middle = new Vector3(...low.map((v, i) => (v + high[i]) / 2));
     geometry.boundingSphere = new Sphere(middle, middle.distanceTo(new Vector3(...high)));
     const material = new RawShaderMaterial({
-      glslVersion: GLSL3, vertexShader: VERTEX, fragmentShader: FRAGMENT, uniforms: { ...shared, ...uniforms({ low: new Vector3(...low), step3: new Vector3(...step) }) },
+      glslVersion: GLSL3, vertexShader: POINT_VERTEX, fragmentShader: POINT_FRAGMENT, uniforms: { ...shared, ...uniforms({ low: new Vector3(...low), step3: new Vector3(...step) }) },
     });
     const object = new Points(geometry, material);
     scene.add(object);
@@ -110,6 +68,44 @@ export class Cloud {
       this.setChunkValues(chunk);
     }
     return chunk;
+  }
+
+  // Finds out how points lie in surfaces, square by square of the map, and lets the page go on in between.
+  async measure(spacing) {
+    const squares = new Map();
+    for (const chunk of this.chunks) {
+      const key = `${Math.floor(chunk.low[0] / SQUARE)} ${Math.floor(chunk.low[1] / SQUARE)}`;
+      squares.set(key, [...(squares.get(key) ?? []), chunk]);
+    }
+    for (const chunks of squares.values()) {
+      measure(chunks, spacing);
+      await new Promise((go) => setTimeout(go, 0));
+    }
+  }
+
+  // Local heights below which shares of the points lie, to a thousandth of the whole; the first points of a chunk are a
+  // fair sample of it.
+  heights(shares) {
+    const MOST = 20_000, BINS = 2000;
+    const low = Math.min(...this.chunks.map((chunk) => chunk.low[2])), high = Math.max(...this.chunks.map((chunk) => chunk.low[2] + 65535 * chunk.step[2]));
+    const bins = new Float64Array(BINS);
+    let whole = 0;
+    for (const { low: [, , foot], step: [, , step], places, count } of this.chunks) {
+      const taken = Math.min(count, MOST);
+      for (let i = 0; i < taken; i++) bins[Math.min(Math.floor(((foot + places[4 * i + 2] * step - low) / (high - low || 1)) * BINS), BINS - 1)] += count / taken;
+      whole += count;
+    }
+    return shares.map((share) => {
+      let bin = 0;
+      for (let sum = bins[0]; bin < BINS - 1 && sum < share * whole; sum += bins[bin]) bin += 1;
+      return low + ((bin + (share > 0.5 ? 1 : 0)) / BINS) * (high - low);
+    });
+  }
+
+  // The direction to the sun that lights the scene; without any, daylight.
+  setSun(direction) {
+    this.isSunny = direction !== null;
+    this.own.sun.value.set(...(direction ?? DAYLIGHT));
   }
 
   // Answers of the points in their order; without any, only which of them a plan clears (`cleared`).
@@ -131,19 +127,20 @@ export class Cloud {
     object.material.needsUpdate = true;
   }
 
-  paint({ mode, table }, own = this.own) {
+  paint({ mode, table, light = LIGHTS[mode] }, own = this.own) {
     table.forEach((color, i) => own.table.value.image.data.set([...color.map(Math.round), 255], 4 * i));
     own.table.value.needsUpdate = true;
     own.mode.value = mode;
+    own.light.value = light;
   }
 
   // A set of points of its own, such as cells, painted apart.
   layer(low, step, places, values, size, paint, none = -1) {
     this.clearLayer();
     const table = new DataTexture(new Uint8Array(1024), 256, 1, RGBAFormat, UnsignedByteType);
-    const shared = { ...this.own, ...uniforms({ table, mode: 4, size, cleared: none }) };
+    const shared = { ...this.own, ...uniforms({ table, mode: 4, size, cleared: none, light: 0 }) };
     this.add(low, step, places, values, 0, shared, this.extra);
-    this.paint(paint, shared);
+    this.paint({ ...paint, light: 0 }, shared);
     this.layerOwn = shared;
   }
 
@@ -203,17 +200,16 @@ export class Cloud {
 
   resize(width, height) {
     this.target.setSize(width, height);
-    this.shade.uniforms.texel.value.set(1 / width, 1 / height);
+    this.screen.resize(width, height);
   }
 
   // Draws the scene with as many points in view as the budget allows. A picture that is not new keeps what it holds,
-  // and the next points are added to it.
-  render(camera, ground, isNew) {
-    const { own, shade, target, renderer } = this;
-    own.far.value = shade.uniforms.far.value = camera.far;
+  // and the next points are added to it. It stays rough as long as points are missing, and where `isMoving` unless the
+  // graphics card has shown to be quick.
+  render(camera, theme, isNew, isMoving) {
+    const { own, target, renderer } = this;
+    own.far.value = camera.far;
     own.pixels.value = target.height / (2 * Math.tan((camera.fov * Math.PI) / 360));
-    shade.uniforms.ground.value.setStyle(ground, "");
-    shade.uniforms.radius.value = 1.3 * renderer.getPixelRatio();
     if (isNew) this.chunks.forEach((chunk) => { chunk.drawn = 0; });
     this.share(camera, isNew ? this.budget : AT_REST * this.budget);
     renderer.setRenderTarget(target);
@@ -224,8 +220,8 @@ export class Cloud {
     }
     renderer.render(this.scene, camera);
     if (isNew) renderer.render(this.extra, camera);
-    renderer.setRenderTarget(null);
-    renderer.render(this.screen, this.flat);
+    this.isRough = !this.isQuick && (isMoving || this.left > 0);
+    this.screen.show(target, camera, { isRough: this.isRough, theme, gap: GAP * own.size.value, sun: own.sun.value, glow: this.isSunny && own.sun.value.z > 0 ? 1 : 0 });
     renderer.autoClear = true;
   }
 
@@ -271,13 +267,13 @@ export class Cloud {
   // The point nearest to a local place.
   nearest([x, y, z]) {
     let best = null;
-    for (const { low, step, places, count } of this.chunks) {
+    for (const { low, step, places, count, first } of this.chunks) {
       const reach = best ? Math.sqrt(best.away) : 3;
       if ([x, y, z].some((v, i) => v < low[i] - reach || v > low[i] + step[i] * 65535 + reach)) continue;
       for (let i = 0; i < count; i++) {
         const dx = low[0] + places[4 * i] * step[0] - x, dy = low[1] + places[4 * i + 1] * step[1] - y, dz = low[2] + places[4 * i + 2] * step[2] - z;
         const away = dx * dx + dy * dy + dz * dz;
-        if (!best || away < best.away) best = { away, place: [x + dx, y + dy, z + dz], class: places[4 * i + 3] & 255 };
+        if (!best || away < best.away) best = { away, place: [x + dx, y + dy, z + dz], class: places[4 * i + 3] & 255, value: this.values?.[first + i] };
       }
     }
     return best;

@@ -12,8 +12,8 @@ import { cloud, draw, drawNext, renderer, showAll } from "./view.js";
 async function load(shown) {
   const { scene } = page;
   showAll();
-  cloud.own.size.value = Math.min(Math.max(scene.spacing * 1.8, 0.02), 5);
-  cloud.own.most.value = 26 * renderer.getPixelRatio();
+  cloud.own.size.value = Math.min(Math.max(scene.spacing * 1.7, 0.02), 5);
+  cloud.own.most.value = 120 * renderer.getPixelRatio();
   cloud.own.heights.value.set(scene.low[2], scene.high[2]);
   let next = 0;
   const one = async () => {
@@ -27,6 +27,8 @@ async function load(shown) {
     }
   };
   await Promise.all([one(), one(), one()]);
+  await cloud.measure(scene.spacing);
+  draw();
   page.isLoaded = true;
   drawNext();
 }

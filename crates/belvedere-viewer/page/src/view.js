@@ -23,20 +23,23 @@ export function draw() {
 }
 // A new picture if one is due; else, at rest, more points for the one that is there.
 export function drawNext() {
-  if (isDrawing || !cloud || !(isDue || (cloud.left && performance.now() - moved >= REST))) return;
+  if (isDrawing || !cloud || !(isDue || ((cloud.left || cloud.isRough) && performance.now() - moved >= REST))) return;
   isDrawing = true;
   requestAnimationFrame(() => {
     const isNew = isDue;
     isDue = false;
     const start = performance.now();
-    cloud.render(mover.camera, getComputedStyle(root).getPropertyValue("--ground").trim(), isNew);
+    cloud.render(mover.camera, root.dataset.theme, isNew, start - moved < REST);
     overlay();
     page.frames = (page.frames ?? 0) + 1;
     drawn(() => {
       const spent = performance.now() - start;
       const wanted = isNew ? SMOOTH : AT_REST * SMOOTH;
-      if (spent > 1.5 * wanted) cloud.budget = Math.max(1e5, cloud.budget * Math.max(0.5, wanted / spent));
-      else if (spent < 0.7 * wanted && cloud.left) cloud.budget = Math.min(2e7, cloud.budget * 1.3);
+      if (!cloud.isRough) cloud.isQuick = spent < SMOOTH;
+      // what makes a picture fine takes as long with few points: rough ones tell how many there may be
+      const tells = cloud.isRough || cloud.isQuick;
+      if (tells && spent > 1.5 * wanted) cloud.budget = Math.max(1e5, cloud.budget * Math.max(0.5, wanted / spent));
+      else if (tells && spent < 0.7 * wanted && cloud.left) cloud.budget = Math.min(2e7, cloud.budget * 1.3);
       isDrawing = false;
       afterFrame?.();
       afterFrame = null;
@@ -65,7 +68,7 @@ export function whenDrawn(look) {
 export function complete() {
   const start = performance.now();
   return new Promise((done) => {
-    const look = () => ((isDrawing || isDue || cloud.left) && performance.now() - start < 5000 ? setTimeout(look, 20) : done());
+    const look = () => ((isDrawing || isDue || cloud.left || cloud.isRough) && performance.now() - start < 5000 ? setTimeout(look, 20) : done());
     look();
   });
 }
