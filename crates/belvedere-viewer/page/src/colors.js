@@ -1,10 +1,12 @@
 // Tables of 256 colours for the values of points, and their legends.
 
+// Told apart also by those who see no difference of red and green: ground light, plants bluish green and darker the
+// higher, buildings red, water blue.
 export const CLASSES = {
-  0: ["never classified", "#9aa0a8"], 1: ["unclassified", "#a7adb5"], 2: ["ground", "#a98f6c"], 3: ["low vegetation", "#a6c96f"],
-  4: ["medium vegetation", "#74b056"], 5: ["high vegetation", "#3d8c47"], 6: ["building", "#d8705a"], 7: ["low noise", "#c04ad0"],
-  9: ["water", "#4d8fd1"], 10: ["rail", "#7c6f9c"], 11: ["road surface", "#84888f"], 14: ["wire", "#e0b040"], 15: ["pylon", "#b08030"],
-  17: ["bridge", "#b79fd6"], 18: ["high noise", "#c04ad0"], 26: ["civil structure", "#c59a7a"],
+  0: ["never classified", "#a9aeb5"], 1: ["unclassified", "#c3c8ce"], 2: ["ground", "#dcc9a0"], 3: ["low vegetation", "#a9d8a0"],
+  4: ["medium vegetation", "#55ae7f"], 5: ["high vegetation", "#136a52"], 6: ["building", "#d4694a"], 7: ["low noise", "#e04fd0"],
+  9: ["water", "#2f7fd6"], 10: ["rail", "#6f5b9e"], 11: ["road surface", "#7d828b"], 14: ["wire", "#f2c200"], 15: ["pylon", "#9c6b00"],
+  17: ["bridge", "#b592e0"], 18: ["high noise", "#e04fd0"], 26: ["civil structure", "#8a5a3c"],
 };
 
 const rgb = (hex) => [1, 3, 5].map((i) => parseInt(hex.slice(i, i + 2), 16));
@@ -47,8 +49,7 @@ export function coloring(name, scene, answer) {
     case "intensity":
       return { mode: 1, table: ramp(GREY), legend: { title: "Intensity", gradient: gradient(GREY), ends: ["weak", "strong"] } };
     case "height": {
-      const [low, high] = scene.heights;
-      const ends = [low, high].map((z) => `${z.toFixed(1)} ${scene.unit}`);
+      const ends = scene.heights.map((z, i) => `${i ? "≥" : "≤"} ${z.toFixed(1)} ${scene.unit}`);
       return { mode: 2, table: ramp(VIRIDIS), legend: { title: "Height", gradient: gradient(VIRIDIS), ends } };
     }
     case "color":

@@ -2,7 +2,7 @@
 import * as api from "./api.js";
 import { recall } from "./address.js";
 import { report } from "./messages.js";
-import { loadColors, setColor } from "./paint.js";
+import { loadColors, offerColors, scaleHeights, setColor } from "./paint.js";
 import { restore } from "./plan.js";
 import { offer } from "./results.js";
 import { $, page } from "./state.js";
@@ -28,7 +28,7 @@ async function load(shown) {
   };
   await Promise.all([one(), one(), one()]);
   await cloud.measure(scene.spacing);
-  draw();
+  scaleHeights();
   page.isLoaded = true;
   drawNext();
 }
@@ -45,9 +45,10 @@ function begin(state) {
   $("facts").textContent = shown.point_count ? `${shown.point_count.toLocaleString("en")} points` : "ball file";
   $("crs").textContent = shown.crs;
   page.loaded = [];
-  const ways = [["height", "Height"], ...(shown.classes.length > 1 ? [["class", "Class"]] : []), ...(shown.has_intensity ? [["intensity", "Intensity"]] : []), ...(shown.has_color ? [["color", "Own colours"]] : []), ["none", "Plain"]];
+  const ways = [["height", "Height"], ...(shown.classes.length > 1 ? [["class", "Class"]] : []), ...(shown.has_intensity ? [["intensity", "Intensity"]] : []), ["none", "Plain"]];
   $("color").replaceChildren(...ways.map(([value, text]) => new Option(text, value)));
-  setColor(shown.has_color ? "color" : ways.length > 3 && shown.classes.length > 1 ? "class" : "height");
+  setColor(shown.classes.length > 1 ? "class" : "height");
+  page.colorsKnown = offerColors().catch(report);
   return load(shown);
 }
 export async function watch() {
@@ -91,7 +92,8 @@ export async function toggleBalls() {
   } catch (error) {
     return report(error);
   }
-  if (cloud.balls) cloud.balls.visible = on;
+  // it may have been pressed again while the balls were on their way
+  if (cloud.balls) cloud.balls.visible = $("balls").getAttribute("aria-pressed") === "true";
   draw();
 }
 page.watch = watch;

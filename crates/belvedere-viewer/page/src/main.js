@@ -48,7 +48,7 @@ function listen() {
       $("where").textContent = place ? shownPlace(toFile(place)) : "";
     });
   });
-  $("color").onchange = () => setColor($("color").value);
+  $("color").onchange = () => { page.isColorChosen = true; setColor($("color").value); };
   $("when").onchange = () => setWhen($("when").value);
   $("motion").onchange = () => { mover.setKind($("motion").value); showSteps(); };
   for (const button of $("steps").querySelectorAll("button")) {

@@ -42,6 +42,32 @@ export async function loadColors({ chunk, number }) {
   cloud.setColors(chunk, await api.colors(number));
   draw();
 }
+// Offers the own colours of the points where they differ: files may have the fields and nothing in them. Unless another
+// way was chosen meanwhile they are shown.
+export async function offerColors() {
+  const { chunks, has_color: hasColors } = page.scene;
+  for (let number = 0, first; hasColors && number < chunks.length; number++) {
+    const own = await api.colors(number);
+    first ??= own[0];
+    if (!own.some((color) => color !== first)) continue;
+    const plain = $("color").querySelector("[value=none]");
+    $("color").insertBefore(new Option("Own colours", "color"), plain);
+    if (page.isColorChosen) return;
+    // an answer is shown until its question is left
+    if (page.before) page.before = "color";
+    else setColor("color");
+    return;
+  }
+}
+// Heights from the lowest to the highest but for some odd points.
+const ENDS = [0.02, 0.98];
+export function scaleHeights() {
+  if (!cloud.chunks.length) return;
+  const local = cloud.heights(ENDS);
+  cloud.own.heights.value.set(...local);
+  page.scene.heights = local.map((z) => (z + page.scene.origin[2]) / page.scene.metres_per_unit[2]);
+  paint();
+}
 function offerAnswer() {
   const select = $("color");
   if (![...select.options].some((option) => option.value === "answer")) select.add(new Option("Answer", "answer"));
