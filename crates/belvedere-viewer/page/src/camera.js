@@ -25,34 +25,28 @@ export class Mover {
     canvas.addEventListener("pointerup", () => { last = null; });
   }
 
-  // Shows boxes as a whole in the part of the picture, across and upright, that no bar covers.
-  show(boxes, flat = false, [across, upright] = [1, 1]) {
+  // Shows all corners of boxes in a part of the picture: left, right, bottom and top as shares of half of it, from -1 to 1.
+  show(boxes, flat = false, [left, right, bottom, top] = [-1, 1, -1, 1]) {
     const low = [0, 1, 2].map((axis) => boxes.reduce((v, box) => Math.min(v, box[0][axis]), Infinity));
     const high = [0, 1, 2].map((axis) => boxes.reduce((v, box) => Math.max(v, box[1][axis]), -Infinity));
-    const middle = low.map((v, i) => (v + high[i]) / 2);
     const size = Math.hypot(...low.map((v, i) => high[i] - v)) || 10;
     this.size = size;
-    const away = new Vector3(...(flat ? [0, -0.001, 1] : [-0.4, -0.62, 0.56])).normalize();
-    this.camera.position.set(...middle).add(away);
-    this.orbit.target.set(...middle);
-    this.camera.lookAt(this.orbit.target);
+    this.camera.position.set(...(flat ? [0, -0.001, 1] : [-0.4, -0.62, 0.56]));
+    this.camera.lookAt(0, 0, 0);
     const slope = Math.tan((this.camera.fov * Math.PI) / 360);
-    const [right, up, back] = [0, 1, 2].map((axis) => new Vector3().setComponent(axis, 1).applyQuaternion(this.camera.quaternion));
+    const axes = [0, 1, 2].map((axis) => new Vector3().setComponent(axis, 1).applyQuaternion(this.camera.quaternion));
     const corners = boxes.flatMap((box) => [0, 1, 2, 3, 4, 5, 6, 7].map((corner) => new Vector3(...[0, 1, 2].map((axis) => box[(corner >> axis) & 1][axis]))));
-    const target = new Vector3(...middle);
-    let distance = size;
-    // nearer corners look larger: what is shown moves until it lies in the middle of the picture
-    for (let i = 0; i < 5; i++) {
-      const offsets = corners.map((corner) => corner.clone().sub(target)).map((v) => [v.dot(right), v.dot(up), v.dot(back)]);
-      distance = offsets.reduce((d, [x, y, z]) => Math.max(d, Math.abs(x) / (slope * this.camera.aspect * across) + z, Math.abs(y) / (slope * upright) + z), 0.2 * size);
-      for (const [axis, direction] of [right, up].entries()) {
-        const [least, greatest] = offsets.map((v) => v[axis] / (distance - v[2])).reduce(([l, g], v) => [Math.min(l, v), Math.max(g, v)], [Infinity, -Infinity]);
-        const level = direction.clone().setZ(0);
-        target.addScaledVector(level, ((least + greatest) / 2) * distance / level.lengthSq());
-      }
-    }
-    this.camera.position.copy(target).addScaledVector(away, distance);
-    this.orbit.target.copy(target);
+    // along right, up and back of the camera: the part of the picture is a pyramid whose apex, the camera, goes as near
+    // as no corner is outside of one of its four sides
+    const seen = corners.map((corner) => axes.map((axis) => corner.dot(axis)));
+    const sides = [[left * slope * this.camera.aspect, right * slope * this.camera.aspect], [bottom * slope, top * slope]];
+    const bounds = sides.map(([from, to], axis) => [Math.max(...seen.map((v) => v[axis] + to * v[2])), Math.min(...seen.map((v) => v[axis] + from * v[2]))]);
+    const back = Math.max(...sides.map(([from, to], axis) => (bounds[axis][0] - bounds[axis][1]) / (to - from)), Math.max(...seen.map((v) => v[2])) + 0.05 * size);
+    const place = sides.map(([from, to], axis) => (bounds[axis][0] - to * back + bounds[axis][1] - from * back) / 2);
+    this.camera.position.set(0, 0, 0).addScaledVector(axes[0], place[0]).addScaledVector(axes[1], place[1]).addScaledVector(axes[2], back);
+    // turning goes around what the middle of the picture shows
+    const middle = new Vector3(...low.map((v, i) => (v + high[i]) / 2)).dot(axes[2]);
+    this.orbit.target.copy(this.camera.position).addScaledVector(axes[2], middle - back);
     this.camera.near = Math.max(size / 5000, 0.05);
     this.camera.far = size * 8;
     this.camera.updateProjectionMatrix();

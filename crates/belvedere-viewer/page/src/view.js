@@ -75,6 +75,7 @@ export function complete() {
 page.complete = complete;
 export function changed() {
   moved = performance.now();
+  page.isMoved = true;
   draw();
   clearTimeout(rest);
   rest = setTimeout(drawNext, REST + 10);
@@ -89,13 +90,31 @@ export function resize() {
   draw();
 }
 
-// All of the scene, between the bars and beside the questions.
+// The part of the page that no panel covers: of each panel the side is cut that leaves most.
+function free() {
+  let area = [0, $("bar").offsetHeight, canvas.clientWidth, canvas.clientHeight - $("status").offsetHeight];
+  const size = ([left, top, right, bottom]) => Math.max(right - left, 0) * Math.max(bottom - top, 0);
+  for (const name of ["tools", "card", "timebar", "legend"]) {
+    const panel = $(name).getBoundingClientRect();
+    const [left, top, right, bottom] = area;
+    if (!panel.width || panel.right <= left || panel.left >= right || panel.bottom <= top || panel.top >= bottom) continue;
+    const cuts = [[panel.right, top, right, bottom], [left, top, panel.left, bottom], [left, panel.bottom, right, bottom], [left, top, right, panel.top]];
+    area = cuts.reduce((a, b) => (size(b) > size(a) ? b : a));
+  }
+  return area;
+}
+// Air around the scene, share of the picture.
+const AIR = 0.03;
+// All of the scene where no panel covers it.
 export function showAll(flat = false) {
-  const bars = 2 * Math.max($("bar").offsetHeight, $("status").offsetHeight);
-  const shares = [1 - (1.2 * $("tools").offsetWidth) / canvas.clientWidth, 0.97 - bars / canvas.clientHeight];
+  const [width, height] = [canvas.clientWidth, canvas.clientHeight];
+  const [left, top, right, bottom] = free();
+  const across = [left, right].map((x) => (2 * x) / width - 1), upright = [bottom, top].map((y) => 1 - (2 * y) / height);
+  const inner = [across, upright].flatMap(([from, to]) => { const air = Math.min(AIR * 2, (to - from) / 4); return [from + air, to - air]; });
   // a tower fills the box of its own square of the map only
   const squares = (page.scene.chunks ?? []).map(({ low, step }) => [low, low.map((v, i) => v + 65535 * step[i])]);
-  mover.show(squares.length ? squares : [[page.scene.low, page.scene.high]], flat, shares.map((share) => Math.max(share, 0.3)));
+  mover.show(squares.length ? squares : [[page.scene.low, page.scene.high]], flat, inner);
+  page.isMoved = false;
 }
 
 // ---- coordinates ----
