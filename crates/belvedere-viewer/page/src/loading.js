@@ -1,6 +1,7 @@
 // From the server to the scene: points, meshes and balls, and how far it is prepared.
 import * as api from "./api.js";
 import { recall } from "./address.js";
+import { firstAnswer } from "./first.js";
 import { report } from "./messages.js";
 import { loadColors, offerColors, scaleHeights, setColor } from "./paint.js";
 import { restore } from "./plan.js";
@@ -70,7 +71,9 @@ export async function watch() {
       startTime();
       if (!state.shown.point_count) toggleBalls();
       $("trees").hidden = !state.scene.has_vegetation;
-      if (!api.exported) restore().catch(report).then(() => recall());
+      const first = () => recall() || firstAnswer(state.results);
+      if (api.exported) first();
+      else restore().catch(report).then(first);
       if (page.pending) page.ask();
       offer(state.results).catch(report);
     }

@@ -74,6 +74,11 @@ function offerAnswer() {
   page.before ??= select.value;
   setColor("answer");
 }
+// The sun of an answer lights the scene.
+page.light = ({ azimuth_deg: azimuth, elevation_deg: elevation }) => {
+  const [a, e] = [azimuth - (page.scene.grid_north_deg ?? 0), elevation].map((deg) => (deg * Math.PI) / 180);
+  cloud.setSun([Math.sin(a) * Math.cos(e), Math.cos(a) * Math.cos(e), Math.sin(e)]);
+};
 page.values = (bytes) => {
   cloud.clearLayer();
   page.onLayer = false;

@@ -2,6 +2,7 @@
 import * as api from "./api.js";
 import { escape } from "./charts.js";
 import * as colors from "./colors.js";
+import { invited } from "./first.js";
 import { hint, lost } from "./messages.js";
 import { finish, isChange, outline, panel, planInUse } from "./plan.js";
 import { setColor } from "./paint.js";
@@ -12,6 +13,7 @@ import { setPlaying } from "./time.js";
 import { cloud, complete, draw, placeAt, shownPlace, toFile } from "./view.js";
 
 export function choose(tool) {
+  invited();
   page.tool = tool;
   page.places = [];
   page.marks = [];
@@ -24,6 +26,7 @@ export function choose(tool) {
   $("timebar").querySelectorAll(".wide, #clock, #play").forEach((part) => { part.hidden = tool.time !== "hour"; });
   setPlaying(false);
   cloud?.clearLayer();
+  cloud?.setSun(null);
   page.onLayer = false;
   cloud?.setValues(null);
   if (page.before) {
@@ -67,24 +70,33 @@ export const corners = ({ length }) => `${length} ${length === 1 ? "corner" : "c
 
 export function click(x, y) {
   const near = placeAt(x, y);
-  if (!near) return hint(page.tool.places === 0 ? "This question is about all points. It needs no click." : "There is no point of the cloud at this place. Click on a point.");
+  if (!near) return hint("There is no point of the cloud at this place. Click on a point.");
+  invited();
   const found = cloud.nearest(near);
   // what is planned has no points
   const isPoint = found && (!cloud.plan || found.away < (2 * cloud.own.size.value) ** 2);
-  pick(isPoint ? found.place : near, found?.class);
+  pick(isPoint ? found.place : near, isPoint ? found : null);
 }
 page.click = click;
-function pick(clicked, code) {
+// What is known of a clicked place, and what can be asked about it.
+function ofPlace(clicked, point) {
+  const file = toFile(clicked);
+  const code = point?.class;
+  const answer = page.tool.name === "shadow" && page.last ? colors.LIGHT[point?.value] : undefined;
+  const asked = TOOLS.filter(({ places, name }) => places === 1 && name !== "look");
+  if (page.tool.places === 0 && !asked.length) return hint("This question is about all points. It needs no click.");
+  page.marks = [{ at: clicked }];
+  card(`<p class="verdict" style="font-size:17px">${shownPlace(file)}</p><dl><dt>x, y, z</dt><dd>${escape(page.scene.crs)}</dd>`
+    + `${page.scene.classes.length && code !== undefined ? `<dt>Class</dt><dd>${code} ${escape(colors.CLASSES[code]?.[0] ?? "")}</dd>` : ""}`
+    + `${answer ? `<dt>At the time below</dt><dd>${escape(answer[0])}</dd>` : ""}</dl><pre>${file.join(",")}</pre>`
+    + (asked.length ? `<h3>Ask about this place</h3><div class="row">${asked.map(({ name, title }) => `<button data-about="${name}">${escape(title)}</button>`).join("")}</div>` : ""), (box) => {
+    box.querySelectorAll("[data-about]").forEach((button) => { button.onclick = () => { page.choose(button.dataset.about); pick(clicked); }; });
+  });
+  draw();
+}
+function pick(clicked, point = null) {
   const { tool } = page;
-  if (tool.name === "look") {
-    const file = toFile(clicked);
-    page.marks = [{ at: clicked }];
-    card(`<p class="verdict" style="font-size:17px">${shownPlace(file)}</p><dl><dt>x, y, z</dt><dd>${escape(page.scene.crs)}</dd>`
-      + `${page.scene.classes.length && code !== undefined ? `<dt>Class</dt><dd>${code} ${escape(colors.CLASSES[code]?.[0] ?? "")}</dd>` : ""}</dl><pre>${file.join(",")}</pre>`);
-    draw();
-    return;
-  }
-  if (tool.places === 0) return;
+  if (tool.name === "look" || tool.places === 0) return ofPlace(clicked, point);
   if (page.places.length >= tool.places) page.places = [];
   const isFirst = page.places.length === 0;
   page.places.push({ clicked, local: isFirst && tool.height ? lifted(clicked, tool.above ?? tool.height[1]) : clicked });
@@ -191,11 +203,14 @@ function showAnswer(tool, answer, places) {
     ...(tool.properties && !answer.before ? ['<button data-save="geojson">Map (.geojson)</button>'] : []),
     '<button data-save="png">Picture (.png)</button>',
   ].join("");
-  card(`${html}${remarks(answer)}${where}<h3>The same on the command line</h3><pre id="command">${words(shown.command ?? answer.command)}</pre><div class="row"><button data-save="copy">Copy command</button>${buttons}</div>`
+  const time = tool.time ? page.ofTime() : "";
+  card(`${html}${time ? `<p class="note" id="oftime">${escape(time)}</p>` : ""}${remarks(answer)}${where}<h3>The same on the command line</h3><pre id="command">${words(shown.command ?? answer.command)}</pre><div class="row"><button data-save="copy">Copy command</button>${buttons}</div>`
     + `<p class="note" id="took">${api.exported ? "Stored in this file." : `Answered in ${Math.round(answer.took)} ms.`}</p>`, (box) => {
     shown.after?.(box);
     box.querySelectorAll("[data-save]").forEach((button) => { button.onclick = () => saveAs(button, tool, answer, places); });
   });
+  page.whenShown?.();
+  page.whenShown = null;
   draw();
 }
 async function saveAs(button, tool, answer, places) {

@@ -1,6 +1,7 @@
 // Date, time and zone of questions about the sun, and playing a day.
 import * as api from "./api.js";
 import { $, page } from "./state.js";
+import { clockOf, roughSun, zoneOf } from "./zones.js";
 
 let playing = null;
 // Goes to the next time of the slider, and on to its beginning.
@@ -28,9 +29,10 @@ export function setPlaying(on) {
   };
   playing = setTimeout(next, 0);
 }
+export const clockText = (minutes) => `${String(Math.floor(minutes / 60)).padStart(2, "0")}:${String(minutes % 60).padStart(2, "0")}`;
 export function showClock() {
   $("hour").value = page.time.minutes;
-  $("clock").textContent = `${String(Math.floor(page.time.minutes / 60)).padStart(2, "0")}:${String(page.time.minutes % 60).padStart(2, "0")}`;
+  $("clock").textContent = clockText(page.time.minutes);
 }
 export function startTime() {
   if (api.exported) {
@@ -43,17 +45,40 @@ export function startTime() {
     $("date").disabled = $("zone").disabled = true;
     return showClock();
   }
+  const { longitude_deg: longitude, latitude_deg: latitude } = page.scene;
   const own = Intl.DateTimeFormat().resolvedOptions().timeZone;
-  const longitude = page.scene.longitude_deg ?? 0;
-  const ahead = -new Date().getTimezoneOffset() / 60;
-  const sun = Math.round(longitude / 15);
-  // the clocks of this computer, unless the scene lies elsewhere on earth
-  page.time.zone = Math.abs(ahead - sun) <= 2.5 ? own : `${sun < 0 ? "-" : "+"}${String(Math.abs(sun)).padStart(2, "0")}:00`;
-  page.time.date ||= new Date().toISOString().slice(0, 10);
+  const isKnown = longitude !== null && longitude !== undefined;
+  const { zone, why } = isKnown ? zoneOf(longitude, latitude, own) : { zone: own, why: "this computer's" };
+  page.time.zone = zone;
+  page.time.zoneOf = { zone, why };
+  page.time.date ||= clockOf(zone)?.date ?? new Date().toISOString().slice(0, 10);
   $("date").value = page.time.date;
   $("zone").value = page.time.zone;
   $("zones").innerHTML = (Intl.supportedValuesOf?.("timeZone") ?? []).map((zone) => `<option value="${zone}">`).join("");
   showClock();
 }
+// The sun this low sends shadows over all there is: it counts as night.
+const LOW_DEG = 3;
+// Takes the time of now at the place; where it is night there, the time of day at which the sun is highest.
+export function showNow(now = new Date()) {
+  const { scene: { longitude_deg: longitude, latitude_deg: latitude }, time } = page;
+  const clock = clockOf(time.zone, now);
+  if (!clock) return;
+  const sun = roughSun(longitude, latitude, now);
+  const isNight = sun.elevation < LOW_DEG;
+  const noon = (Math.round((sun.noon + clock.ahead) / 10) * 10 + 2880) % 1440;
+  time.date = clock.date;
+  time.minutes = isNight ? noon : Math.floor(clock.minutes / 10) * 10;
+  $("date").value = time.date;
+  showClock();
+  const why = isNight ? `It is ${clockText(clock.minutes)} there now, and the sun is down or near the horizon: this is noon, when it stands highest.` : "This is now, by the clocks of the place.";
+  time.said = { date: time.date, minutes: time.minutes, zone: time.zone, why };
+}
+// What is to be said of the time that is shown: why it is this one, and where its zone is from.
+page.ofTime = () => {
+  const { date, minutes, zone, said, zoneOf: from } = page.time;
+  const isSaid = page.tool.time === "hour" && said && said.date === date && said.minutes === minutes && said.zone === zone;
+  return [...(isSaid ? [said.why] : []), ...(from?.zone === zone ? [`Times are those of ${zone}: ${from.why}.`] : [])].join(" ");
+};
 export const again = () => { if (page.last || page.tool.places === 0) page.ask(); };
 export const isPlaying = () => playing !== null;

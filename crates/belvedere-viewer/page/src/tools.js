@@ -89,6 +89,7 @@ export const TOOLS = [
     change: { title: "What the plan changes", names: ["in shadow before and after", "lit before and after", "lit only after", "lit only before"], gain: "gain the sun", loss: "lose the sun" },
     show(answer, page) {
       page.answer = colors.ofLight(answer);
+      page.light(answer);
       page.values(new Uint8Array(answer.body));
       answer.lit_share = answer.lit / Math.max(answer.points, 1);
       const up = answer.elevation_deg > 0;
