@@ -1,52 +1,83 @@
-// What the page shows stands in its address: a reload, and a bookmark while the program runs, keep view, question,
-// places, date, zone and trees.
+// What the page shows stands in its address, which can be kept and shared while the program runs: question, places, date,
+// time, zone, trees, colour and view. Going back goes to the question before.
+import { setColor } from "./paint.js";
 import { $, page, TOOLS } from "./state.js";
-import { showClock } from "./time.js";
+import { clockText, showClock } from "./time.js";
 import { mover, toFile, toLocal } from "./view.js";
 
 const EVERY = 500;
 const short = (v) => Number(v.toFixed(3));
+const wordsOf = (hash) => new URLSearchParams(hash.slice(1));
 
 function written() {
   const { tool, time, places } = page;
-  const view = [...mover.camera.position.toArray(), ...mover.orbit.target.toArray()].map(short);
-  const words = { q: tool.name, date: time.date, minutes: time.minutes, zone: time.zone, trees: time.trees, view: [mover.kind, ...view].join(",") };
-  if (tool.name !== "plan" && places.length) words.at = places.map(({ clicked }) => toFile(clicked).join(",")).join(";");
-  if (tool.above !== undefined) words.above = tool.above;
-  return `#${new URLSearchParams(words)}`;
+  const words = { q: tool.name, d: time.date, t: clockText(time.minutes), z: time.zone };
+  if (time.trees !== "opaque") words.trees = time.trees;
+  if (tool.name !== "plan" && places.length) words.p = places.map(({ clicked }) => toFile(clicked).join(",")).join(";");
+  if (tool.above !== undefined) words.h = tool.above;
+  words.c = page.before ?? $("color").value;
+  words.v = [mover.kind, ...[...mover.camera.position.toArray(), ...mover.orbit.target.toArray()].map(short)].join(",");
+  // what may stand in an address as it is stays legible
+  const text = (value) => encodeURIComponent(value).replaceAll(/%(2C|2F|3A|3B)/g, decodeURIComponent);
+  return `#${Object.entries(words).map(([name, value]) => `${name}=${text(value)}`).join("&")}`;
 }
-// Keeps the address up to date. What a page forgets when it is closed at once is half a second.
+// Keeps the address up to date: a question that was chosen is a new entry of the history. What a page forgets when it
+// is closed at once is half a second.
 export function remember() {
   setInterval(() => {
-    if (!page.ready || document.hidden) return;
+    if (!page.isRecalled || document.hidden) return;
     const now = written();
-    if (now !== location.hash) history.replaceState(null, "", now);
+    if (now === location.hash) return;
+    const before = wordsOf(location.hash).get("q");
+    if (before && before !== page.tool.name) history.pushState(null, "", now);
+    else history.replaceState(null, "", now);
   }, EVERY);
+  addEventListener("popstate", () => { if (page.isRecalled) recall(); });
 }
-// Shows what the address says.
-export function recall(words = new URLSearchParams(location.hash.slice(1))) {
-  const numbers = (text) => (text ?? "").split(",").map(Number);
-  const minutes = Number(words.get("minutes"));
-  if (/^\d{4}-\d\d-\d\d$/.test(words.get("date") ?? "")) page.time.date = $("date").value = words.get("date");
-  if (words.get("zone")) page.time.zone = $("zone").value = words.get("zone");
-  if (words.has("minutes") && minutes >= 0 && minutes < 1440) page.time.minutes = minutes;
-  if (["opaque", "seasons"].includes(words.get("trees"))) page.time.trees = $("trees").querySelector("select").value = words.get("trees");
+function recallTime(words) {
+  const { time } = page;
+  const clock = /^(\d\d):(\d\d)$/.exec(words.get("t") ?? "");
+  const minutes = clock ? 60 * Number(clock[1]) + Number(clock[2]) : NaN;
+  if (/^\d{4}-\d\d-\d\d$/.test(words.get("d") ?? "")) time.date = $("date").value = words.get("d");
+  if (words.get("z")) time.zone = $("zone").value = words.get("z");
+  if (minutes < 1440) time.minutes = minutes;
+  if (["opaque", "seasons"].includes(words.get("trees"))) time.trees = $("trees").querySelector("select").value = words.get("trees");
   showClock();
-  const [kind, ...view] = (words.get("view") ?? "").split(",");
+}
+function recallColor(name) {
+  const isThere = [...$("color").options].some(({ value }) => value === name);
+  if (!isThere || name === "answer") return;
+  page.isColorChosen = true;
+  if (page.before) page.before = name;
+  else setColor(name);
+}
+function recallView(words) {
+  const [kind, ...view] = (words.get("v") ?? "").split(",");
   const places = view.map(Number);
-  if (["orbit", "walk", "fly"].includes(kind) && places.length === 6 && places.every(Number.isFinite)) {
-    mover.orbit.target.set(...places.slice(3));
-    mover.camera.position.set(...places.slice(0, 3));
-    mover.camera.lookAt(mover.orbit.target);
-    $("motion").value = mover.kind = kind;
-    mover.orbit.enabled = kind === "orbit";
-    if (kind === "orbit") mover.orbit.update();
-    mover.changed();
-  }
+  if (!["orbit", "walk", "fly"].includes(kind) || places.length !== 6 || !places.every(Number.isFinite)) return;
+  mover.orbit.target.set(...places.slice(3));
+  mover.camera.position.set(...places.slice(0, 3));
+  mover.camera.lookAt(mover.orbit.target);
+  $("motion").value = mover.kind = kind;
+  page.showSteps?.();
+  mover.orbit.enabled = kind === "orbit";
+  if (kind === "orbit") mover.orbit.update();
+  mover.changed();
+}
+// Shows what the address says; returns whether it says which question is asked.
+export function recall(words = wordsOf(location.hash)) {
+  page.isRecalled = true;
   const tool = TOOLS.find(({ name }) => name === words.get("q"));
-  if (!tool || tool.name === "look" || tool.name === "plan") return;
-  if (tool.height && Number.isFinite(Number(words.get("above") ?? NaN))) tool.above = Number(words.get("above"));
+  recallTime(words);
+  recallView(words);
+  if (!tool) return false;
+  if (tool.height && Number.isFinite(Number(words.get("h") ?? NaN))) tool.above = Number(words.get("h"));
   page.choose(tool.name);
-  for (const place of (words.get("at") ?? "").split(";").filter(Boolean).map(numbers)) if (place.length === 3 && place.every(Number.isFinite)) page.pick(toLocal(place));
+  const color = words.get("c");
+  recallColor(color);
+  if (color === "color") page.colorsKnown?.then(() => recallColor(color));
+  if (tool.name === "plan") return true;
+  for (const place of (words.get("p") ?? "").split(";").map((text) => text.split(",").map(Number))) if (place.length === 3 && place.every(Number.isFinite)) page.pick(toLocal(place));
   if (tool.places === Infinity && page.places.length >= 3) page.ask();
+  return true;
 }

@@ -24,6 +24,7 @@ function showSteps() {
   $("steps").hidden = mover.kind === "orbit";
   $("steps").querySelectorAll("[data-fly]").forEach((button) => { button.hidden = mover.kind !== "fly"; });
 }
+page.showSteps = showSteps;
 function listen() {
   let down = null;
   canvas.addEventListener("pointerdown", (event) => {
