@@ -45,8 +45,9 @@ export class Mover {
     const place = sides.map(([from, to], axis) => (bounds[axis][0] - to * back + bounds[axis][1] - from * back) / 2);
     this.camera.position.set(0, 0, 0).addScaledVector(axes[0], place[0]).addScaledVector(axes[1], place[1]).addScaledVector(axes[2], back);
     // turning goes around what the middle of the picture shows
-    const middle = new Vector3(...low.map((v, i) => (v + high[i]) / 2)).dot(axes[2]);
-    this.orbit.target.copy(this.camera.position).addScaledVector(axes[2], middle - back);
+    const middle = new Vector3(...low.map((v, i) => (v + high[i]) / 2));
+    this.orbit.target.copy(this.camera.position).addScaledVector(axes[2], middle.dot(axes[2]) - back);
+    this.shown = { middle, from: this.camera.position.clone() };
     this.camera.near = Math.max(size / 5000, 0.05);
     this.camera.far = size * 8;
     this.camera.updateProjectionMatrix();
@@ -65,7 +66,8 @@ export class Mover {
       this.orbit.target.copy(this.camera.position).addScaledVector(forward, Math.max(20, this.camera.position.z));
       this.orbit.update();
     } else if (kind === "walk") {
-      const { x, y } = this.orbit.target;
+      // from the whole scene into its middle, which need not be that of the picture
+      const { x, y } = this.shown?.from.equals(this.camera.position) ? this.shown.middle : this.orbit.target;
       this.camera.position.set(x, y, (this.groundAt(x, y) ?? this.orbit.target.z) + EYE);
       forward.z = 0;
       this.camera.lookAt(this.camera.position.clone().add(forward.lengthSq() > 1e-6 ? forward : new Vector3(0, 1, 0)));

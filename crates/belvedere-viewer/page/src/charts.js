@@ -66,10 +66,10 @@ export function months(answer) {
   }).join(""));
 }
 
-// Energy of each month.
+// Solar energy of each month.
 export function energy(values) {
   const H = 112, base = 94, scale = 76 / Math.max(...values, 1), width = W / 12;
-  return svg(H, "Energy in each month", values.map((value, i) => {
+  return svg(H, "Solar energy received in each month", values.map((value, i) => {
     const x = i * width + 4;
     return `<rect x="${x}" y="${base - value * scale}" width="${width - 8}" height="${value * scale}" fill="#f5a300"/>`
       + `<text x="${x + width / 2 - 4}" y="${H - 5}" text-anchor="middle">${"JFMAMJJASOND"[i]}</text>`

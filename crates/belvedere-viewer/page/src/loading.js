@@ -48,7 +48,7 @@ function begin(state) {
   page.loaded = [];
   const ways = [["height", "Height"], ...(shown.classes.length > 1 ? [["class", "Class"]] : []), ...(shown.has_intensity ? [["intensity", "Intensity"]] : []), ["none", "Plain"]];
   $("color").replaceChildren(...ways.map(([value, text]) => new Option(text, value)));
-  setColor(shown.classes.length > 1 ? "class" : "height");
+  setColor(!shown.point_count ? "none" : shown.classes.length > 1 ? "class" : "height");
   page.colorsKnown = offerColors().catch(report);
   return load(shown);
 }

@@ -118,21 +118,23 @@ export const TOOLS = [
     ask: ([place]) => ["who", { place }],
     show(answer, page) {
       page.cells(answer);
-      return `<p class="verdict">Seen from ${count(Math.round(answer.visible_m2))} m²</p><p class="note">of ground, by eyes 1.7 m above it.</p>${shares(answer, "Cells")}`;
+      const verdict = answer.visible ? `Seen from ${count(Math.round(answer.visible_m2))} m²` : "No ground is known that sees it";
+      const note = answer.visible ? "of ground, by eyes 1.7 m above it." : `${answer.unproven ? `From ${count(answer.unproven)} cells nothing is in the way, but no pulse proves it. ` : ""}Where few points tell of a surface, a place on it may lie just inside it: ask again from higher above the clicked point.`;
+      return `<p class="verdict">${verdict}</p><p class="note">${note}</p>${shares(answer, "Cells")}`;
     },
     rows: (answer) => [["answer", "cells"], ["visible", answer.visible], ["unproven", answer.unproven], ["blocked", answer.blocked]],
     properties: ({ visible_m2, visible, unproven, blocked }) => ({ visible_m2, visible, unproven, blocked }),
   },
   {
-    name: "roof", short: "Roof", title: "Energy of a roof", icon: icon('<path d="M3 19 8 7h13l-5 12z"/><path d="M5.500 13h13M10 19l5-12"/>'), places: 1,
+    name: "roof", short: "Roof", title: "Solar energy of a roof", icon: icon('<path d="M3 19 8 7h13l-5 12z"/><path d="M5.500 13h13M10 19l5-12"/>'), places: 1,
     hint: "Click a roof to see what sun and sky send to its plane in a year of clear sky.",
     ask: ([place]) => ["roof", { place }],
     show(answer, page) {
       page.plane(answer);
-      return `<p class="verdict">${count(Math.round(answer.kwh / 100) * 100)} kWh a year</p><p class="note">of sun and sky on ${answer.panel_area_m2.toFixed(0)} m² of panels under a sky without clouds: an upper bound. With a file of weather, the command below gives less.</p>`
-        + list([["Energy on a square metre", `${count(Math.round(answer.kwh_m2))} kWh`], ["Without any shade", `${count(Math.round(answer.free_kwh_m2))} kWh`], ["Lost by shade, each panel for itself", percent(answer.min_loss, 1)], ["Lost by shade, panels in strings", percent(answer.max_loss, 1)],
+      return `<p class="verdict">${count(Math.round(answer.kwh / 100) * 100)} kWh a year</p><p class="note">is the solar energy received by ${answer.panel_area_m2.toFixed(0)} m² of panels from sun and sky, not electricity: panels turn a part of it into that. It is for a sky without clouds, an upper bound. With a file of weather, the command below gives less.</p>`
+        + list([["Received by a square metre", `${count(Math.round(answer.kwh_m2))} kWh`], ["Without any shade", `${count(Math.round(answer.free_kwh_m2))} kWh`], ["Lost by shade, each panel for itself", percent(answer.min_loss, 1)], ["Lost by shade, panels in strings", percent(answer.max_loss, 1)],
           ["Tilt", `${answer.tilt_deg.toFixed(0)}°`], ["Faces", `${answer.azimuth_deg === null ? "up" : `${answer.azimuth_deg.toFixed(0)}° from north`}`], ["Area of the plane", `${answer.area_m2.toFixed(1)} m²`], ["Plane", `${answer.plane} of ${answer.planes}`]])
-        + `<h3>kWh/m² in each month</h3><figure>${charts.energy(answer.months_kwh_m2)}</figure>`;
+        + `<h3>Solar energy received in each month, kWh/m²</h3><figure>${charts.energy(answer.months_kwh_m2)}</figure>`;
     },
     rows: (answer) => [["month", "kwh_m2"], ...answer.months_kwh_m2.map((v, i) => [i + 1, v])],
     properties: ({ plane, kwh, kwh_m2, free_kwh_m2, min_loss, max_loss, tilt_deg, azimuth_deg, area_m2 }) => ({ plane, kwh, kwh_m2, free_kwh_m2, min_loss, max_loss, tilt_deg, azimuth_deg, area_m2 }),
