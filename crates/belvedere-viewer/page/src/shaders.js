@@ -33,7 +33,7 @@ void main() {
     float facing = max(-dot(seen, normalize(view.xyz)), 0.3);
     // small discs stay round: what is thinner than a pixel has gaps
     slope = seen.xy / facing * smoothstep(2.5, 6.0, gl_PointSize);
-    shine = 0.64 + 0.1 * (1.0 + n.z) + 0.27 * max(dot(n, sun), 0.0);
+    shine = 0.55 + 0.1 * (1.0 + n.z) + 0.38 * max(dot(n, sun), 0.0);
   }
   float index = 0.0;
   if (mode == 0) index = float(place.w & 255u); else if (mode == 1) index = float(place.w >> 8u);
