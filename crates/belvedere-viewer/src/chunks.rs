@@ -127,7 +127,11 @@ impl Chunks {
 
     fn share(&self, chunk: &PointChunk, max: usize) -> &[u32] {
         let whole = self.rows.len().max(1);
-        &self.rows[chunk.points.start..chunk.points.start + chunk.points.len() * max.min(whole) / whole]
+        // the product needs more than 32 bits
+        let share = chunk.points.len() as u128 * max.min(whole) as u128 / whole as u128;
+        #[expect(clippy::cast_possible_truncation, reason = "no more than the points of the chunk")]
+        let share = share as usize;
+        &self.rows[chunk.points.start..chunk.points.start + share]
     }
 
     /// Number of points sent.

@@ -17,8 +17,10 @@
 //! ```
 
 mod chunks;
+#[cfg(feature = "server")]
 mod connections;
 mod export;
+#[cfg(feature = "server")]
 mod guard;
 mod loading;
 mod page;
@@ -27,15 +29,21 @@ mod questions;
 mod replies;
 mod results;
 mod roof_planes;
+#[cfg(feature = "server")]
 mod routes;
 mod scene;
 mod scene_text;
+#[cfg(feature = "server")]
 mod server;
+mod session;
 mod target_points;
 
 pub use export::{ExportParams, ExportReport, export};
 pub use loading::Loading;
 pub use plans::quoted;
+pub use replies::Refusal;
 pub use results::PointsOf;
 pub use scene_text::SceneText;
+#[cfg(feature = "server")]
 pub use server::{PageServer, ViewerParams};
+pub use session::Session;

@@ -14,6 +14,12 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 #[derive(Clone, Default)]
 pub struct Loading(Arc<Mutex<LoadingState>>);
 
+impl std::fmt::Debug for Loading {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("Loading")
+    }
+}
+
 /// What there is so far.
 #[derive(Clone, Default)]
 pub(crate) struct LoadingState {
@@ -93,10 +99,8 @@ impl Loading {
         state.shown = Some(shown);
         state.scene = Some(Arc::clone(&scene));
         drop(state);
-        // what the first questions need is made while people still look; not on a thread of the pool, which must not
-        // wait for locks
-        // where the system refuses a thread, the first question makes it
-        let _ = std::thread::Builder::new().spawn(move || scene.prepare());
+        // what the first questions need is made while people still look
+        scene.prepare_aside();
     }
 
     /// Reports why nothing can be shown and no question can be answered.

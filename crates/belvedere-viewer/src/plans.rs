@@ -79,7 +79,9 @@ impl Plans {
     /// The plan of a number, if it is still kept.
     pub(crate) fn get(&self, number: usize) -> Result<Arc<Planned>, Refusal> {
         let found = self.kept().plans.iter().find(|planned| planned.number == number).cloned();
-        found.ok_or_else(|| Refusal("The plan is not kept any more: change it, or load the page again.".to_owned()))
+        found.ok_or_else(|| {
+            Refusal::Unanswerable("The plan is not kept any more: change it, or load the page again.".to_owned())
+        })
     }
 
     /// Takes a mesh file; returns its number. Reading ends when nobody waits for it any more.
@@ -95,7 +97,9 @@ impl Plans {
         control.check()?;
         let mut kept = self.kept();
         if kept.meshes.len() >= MAX_MESHES {
-            return Err(Refusal(format!("No more than {MAX_MESHES} meshes can be loaded: start the program again.")));
+            return Err(Refusal::Unanswerable(format!(
+                "No more than {MAX_MESHES} meshes can be loaded: start the program again."
+            )));
         }
         kept.meshes.push((name.to_owned(), Arc::new(mesh)));
         Ok(kept.meshes.len() - 1)
@@ -131,7 +135,9 @@ impl Plans {
         }
         for &number in &plan.meshes {
             let mesh = self.kept().meshes.get(number).cloned();
-            meshes.push(mesh.ok_or_else(|| Refusal("The mesh is not kept any more: load it again.".to_owned()))?);
+            meshes.push(
+                mesh.ok_or_else(|| Refusal::Unanswerable("The mesh is not kept any more: load it again.".to_owned()))?,
+            );
         }
         for (name, _) in &meshes {
             input.push_str(&format!(" --add {}", quoted(name)));
@@ -154,9 +160,7 @@ impl Plans {
         }
         kept.plans.push(Arc::clone(&planned));
         drop(kept);
-        // as for the scene without a plan
-        // where the system refuses a thread, the first question makes it
-        let _ = std::thread::Builder::new().spawn(move || scene.prepare());
+        scene.prepare_aside();
         Ok(planned)
     }
 
@@ -174,7 +178,7 @@ fn check_can_clear(scene: &PageScene, text: &SceneText) -> Result<(), Refusal> {
     } else {
         return Ok(());
     };
-    Err(Refusal(reason.to_owned()))
+    Err(Refusal::Unanswerable(reason.to_owned()))
 }
 
 /// Bytes that cannot be read any more once the work is cancelled.
@@ -207,7 +211,7 @@ pub fn quoted(word: &str) -> String {
 
 fn check(corners: &[[f64; 2]]) -> Result<(), Refusal> {
     if corners.len() < 3 || !corners.as_flattened().iter().all(|v| v.is_finite()) {
-        return Err(Refusal("A building or an area needs at least three corners.".to_owned()));
+        return Err(Refusal::Unanswerable("A building or an area needs at least three corners.".to_owned()));
     }
     Ok(())
 }
@@ -242,7 +246,7 @@ fn obj(buildings: &[Building], frame: &Frame) -> Result<String, Refusal> {
     for (number, Building { corners, base, height_m }) in buildings.iter().enumerate() {
         check(corners)?;
         if !(base.is_finite() && height_m.is_finite() && *height_m > 0.0) {
-            return Err(Refusal("A building needs a height above 0 m.".to_owned()));
+            return Err(Refusal::Unanswerable("A building needs a height above 0 m.".to_owned()));
         }
         let count = corners.len();
         let _ = writeln!(text, "o building_{}", number + 1);

@@ -1,23 +1,18 @@
 //! What can be requested below the token: the page, its points, and questions.
 
 use crate::guard::Guard;
-use crate::loading::Loading;
 use crate::page;
-use crate::plans::Plans;
-use crate::questions::{self, RequestContext};
-use crate::replies::{QuestionReply, Refusal, binary, refused};
-use crate::scene::PageScene;
-use crate::scene_text::SceneText;
-use crate::server::ViewerParams;
-use axum::body::Bytes;
+use crate::replies::Refusal;
+use crate::session::Session;
+use axum::Router;
+use axum::body::{Body, Bytes};
 use axum::extract::{DefaultBodyLimit, Path, Request, State};
 use axum::http::{HeaderValue, StatusCode, header};
 use axum::middleware::{Next, from_fn, from_fn_with_state};
 use axum::response::{IntoResponse, Response};
 use axum::routing::{get, post};
-use axum::{Json, Router};
 use belvedere::control::{Control, Watcher};
-use serde_json::{Value, json};
+use serde_json::json;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
@@ -36,35 +31,26 @@ const POLICY: &str = "default-src 'self'; img-src 'self' blob: data:; style-src 
 
 /// What all requests share.
 struct ServerState {
-    loading: Loading,
-    text: SceneText,
-    title: String,
+    session: Session,
     /// One question at a time has all threads.
     turn: Arc<Semaphore>,
     places: Arc<Semaphore>,
-    plans: Arc<Plans>,
 }
 
-pub(crate) fn app(guard: Arc<Guard>, loading: Loading, params: &ViewerParams) -> Router {
-    let shared = ServerState {
-        loading,
-        text: params.scene.clone(),
-        title: params.title.clone(),
-        turn: Arc::new(Semaphore::new(1)),
-        places: Arc::new(Semaphore::new(MAX_QUESTIONS)),
-        plans: Arc::default(),
-    };
+pub(crate) fn app(guard: Arc<Guard>, session: Session) -> Router {
+    let shared =
+        ServerState { session, turn: Arc::new(Semaphore::new(1)), places: Arc::new(Semaphore::new(MAX_QUESTIONS)) };
     Router::new()
         .route("/{token}/", get(|| async { file("index.html") }))
         .route("/{token}/{file}", get(|Path((_, path)): Path<(String, String)>| async move { file(&path) }))
         .route("/{token}/state", get(state))
-        .route("/{token}/points/{chunk}", get(points))
-        .route("/{token}/colors/{chunk}", get(colors))
-        .route("/{token}/balls", get(balls))
-        .route("/{token}/meshes/{mesh}", get(meshes))
+        .route("/{token}/balls", get(part))
+        .route("/{token}/points/{chunk}", get(part))
+        .route("/{token}/colors/{chunk}", get(part))
+        .route("/{token}/meshes/{mesh}", get(part))
         .route("/{token}/results/{file}", get(results))
         .route("/{token}/ask/{question}", post(ask))
-        .route("/{token}/plans/{plan}/ask/{question}", post(ask_of_plan))
+        .route("/{token}/plans/{plan}/ask/{question}", post(ask))
         .route("/{token}/plan-meshes/{name}", post(plan_mesh))
         .fallback(|| async { refused(StatusCode::NOT_FOUND, "there is nothing at this address") })
         .layer(DefaultBodyLimit::max(MAX_BYTES))
@@ -99,46 +85,38 @@ fn file(path: &str) -> Response {
     }
 }
 
-async fn state(State(shared): State<Arc<ServerState>>) -> Json<Value> {
-    let now = shared.loading.read();
-    let stage = now.stages.current();
-    Json(json!({
-        "title": shared.title,
-        "stage": stage.map_or("", |stage| stage.name),
-        "total": stage.map_or(0, |stage| stage.total),
-        "done": stage.map_or(0, |stage| stage.done),
-        "failure": now.failure,
-        "mesh_count": now.meshes.len(),
-        "results": now.results.iter().map(|file| file.describe()).collect::<Vec<_>>(),
-        "shown": now.shown.map(|shown| shown.description.clone()),
-        "scene": now.scene.map(|scene| scene.describe()),
-    }))
+async fn state(State(shared): State<Arc<ServerState>>) -> Response {
+    ([(header::CONTENT_TYPE, "application/json")], shared.session.state()).into_response()
 }
 
-async fn points(State(shared): State<Arc<ServerState>>, Path((_, chunk)): Path<(String, usize)>) -> Response {
-    let shown = shared.loading.now().shown;
-    off_thread(move || shown.and_then(|shown| shown.chunks.points(chunk, &shown.cloud))).await
+/// A part of what is drawn.
+async fn part(State(shared): State<Arc<ServerState>>, request: Request) -> Response {
+    let (session, path) = (shared.session.clone(), below_token(&request));
+    replied(tokio::task::spawn_blocking(move || session.part(&path)).await)
 }
 
-async fn colors(State(shared): State<Arc<ServerState>>, Path((_, chunk)): Path<(String, usize)>) -> Response {
-    let shown = shared.loading.now().shown;
-    off_thread(move || shown.and_then(|shown| shown.chunks.colors(chunk, &shown.cloud))).await
+/// The path of a request below the token.
+fn below_token(request: &Request) -> String {
+    request.uri().path().splitn(3, '/').nth(2).unwrap_or_default().to_owned()
 }
 
-async fn balls(State(shared): State<Arc<ServerState>>) -> Response {
-    let scene = shared.loading.now().scene;
-    off_thread(move || scene.map(|scene| questions::balls(&scene))).await
+/// An error as the page reads it.
+fn refused(status: StatusCode, message: &str) -> Response {
+    (status, [(header::CONTENT_TYPE, "application/json")], json!({ "error": message }).to_string()).into_response()
 }
 
-async fn meshes(State(shared): State<Arc<ServerState>>, Path((_, mesh)): Path<(String, usize)>) -> Response {
-    let meshes = shared.loading.now().meshes;
-    off_thread(move || meshes.get(mesh).map(|mesh| mesh.to_vec())).await
-}
-
-async fn off_thread(work: impl FnOnce() -> Option<Vec<u8>> + Send + 'static) -> Response {
-    match tokio::task::spawn_blocking(work).await {
-        Ok(Some(bytes)) => binary(bytes),
-        Ok(None) => refused(StatusCode::NOT_FOUND, "there is no such part of the cloud"),
+/// What a thread gave for an answer.
+fn replied(reply: Result<Result<Vec<u8>, Refusal>, tokio::task::JoinError>) -> Response {
+    match reply {
+        Ok(Ok(bytes)) => ([(header::CONTENT_TYPE, "application/octet-stream")], Body::from(bytes)).into_response(),
+        Ok(Err(refusal)) => {
+            let status = match refusal {
+                Refusal::Missing(_) => StatusCode::NOT_FOUND,
+                Refusal::NotReady => StatusCode::SERVICE_UNAVAILABLE,
+                Refusal::Unanswerable(_) => StatusCode::UNPROCESSABLE_ENTITY,
+            };
+            refused(status, &refusal.to_string())
+        }
         Err(_) => failed(),
     }
 }
@@ -166,44 +144,18 @@ impl Drop for StopWhenDropped {
     }
 }
 
-async fn ask(state: State<Arc<ServerState>>, Path((_, name)): Path<(String, String)>, request: Request) -> Response {
-    answer(state, None, name, request).await
-}
-
-async fn ask_of_plan(
-    state: State<Arc<ServerState>>,
-    Path((_, plan, name)): Path<(String, usize, String)>,
-    request: Request,
-) -> Response {
-    answer(state, Some(plan), name, request).await
-}
-
 /// Answers a question of the scene as it is, or of that with a plan.
-async fn answer(
-    State(shared): State<Arc<ServerState>>,
-    plan: Option<usize>,
-    name: String,
-    request: Request,
-) -> Response {
-    let body = match body(request, "application/json", MAX_BYTES).await {
-        Ok(body) => body,
-        Err(response) => return response,
-    };
-    let (text, plans) = (shared.text.clone(), Arc::clone(&shared.plans));
-    in_turn(&shared, move |scene, control| {
-        let planned = plan.map(|number| plans.get(number)).transpose()?;
-        let (scene, text) = planned.as_ref().map_or((scene, &text), |planned| (&*planned.scene, &planned.text));
-        questions::answer(&name, &body, &RequestContext { scene, text, plans: &plans, control })
-    })
-    .await
+async fn ask(State(shared): State<Arc<ServerState>>, request: Request) -> Response {
+    let path = below_token(&request);
+    match body(request, "application/json", MAX_BYTES).await {
+        Ok(body) => in_turn(&shared, path, body).await,
+        Err(response) => response,
+    }
 }
 
 /// What is drawn of a file of results.
-async fn results(State(shared): State<Arc<ServerState>>, Path((_, number)): Path<(String, usize)>) -> Response {
-    let Some(file) = shared.loading.now().results.get(number).cloned() else {
-        return refused(StatusCode::NOT_FOUND, "there is no such file of results");
-    };
-    in_turn(&shared, move |scene, control| Ok(file.drawn(scene, control)?)).await
+async fn results(State(shared): State<Arc<ServerState>>, request: Request) -> Response {
+    in_turn(&shared, below_token(&request), Bytes::new()).await
 }
 
 /// Takes a mesh file for plans.
@@ -212,16 +164,10 @@ async fn plan_mesh(
     Path((_, name)): Path<(String, String)>,
     request: Request,
 ) -> Response {
-    let body = match body(request, "application/octet-stream", MAX_MESH_BYTES).await {
-        Ok(body) => body,
-        Err(response) => return response,
-    };
-    let plans = Arc::clone(&shared.plans);
-    in_turn(&shared, move |scene, control| {
-        let number = plans.load(&name, &body, scene.model().frame(), control)?;
-        Ok(QuestionReply::of(json!({ "mesh": number, "name": name })))
-    })
-    .await
+    match body(request, "application/octet-stream", MAX_MESH_BYTES).await {
+        Ok(body) => in_turn(&shared, format!("plan-meshes/{name}"), body).await,
+        Err(response) => response,
+    }
 }
 
 /// The body of a request of one type, which forms of other pages cannot send.
@@ -241,14 +187,8 @@ async fn body(request: Request, kind: &str, max: usize) -> Result<Bytes, Respons
     }
 }
 
-/// Does work on the scene when its turn comes, and stops when nobody waits for it any more.
-async fn in_turn(
-    shared: &ServerState,
-    work: impl FnOnce(&PageScene, &Control<'_>) -> Result<QuestionReply, Refusal> + Send + 'static,
-) -> Response {
-    let Some(scene) = shared.loading.now().scene else {
-        return refused(StatusCode::SERVICE_UNAVAILABLE, "the scene is not ready yet");
-    };
+/// Asks the session when the turn comes, and stops when nobody waits for it any more.
+async fn in_turn(shared: &ServerState, path: String, body: Bytes) -> Response {
     let Ok(_place) = shared.places.try_acquire() else {
         return refused(StatusCode::TOO_MANY_REQUESTS, "too many questions at once; try again");
     };
@@ -256,14 +196,11 @@ async fn in_turn(
     let waiting = Arc::new(Waiting::default());
     let of_work = Arc::clone(&waiting);
     let _stop = StopWhenDropped(waiting);
+    let session = shared.session.clone();
     let work = move || {
-        let answer = work(&scene, &Control::new(&*of_work));
+        let reply = session.ask(&path, &body, &Control::new(&*of_work));
         drop(turn);
-        answer
+        reply
     };
-    match tokio::task::spawn_blocking(work).await {
-        Ok(Ok(answer)) => answer.into_response(),
-        Ok(Err(refusal)) => refusal.into_response(),
-        Err(_) => failed(),
-    }
+    replied(tokio::task::spawn_blocking(work).await)
 }

@@ -169,6 +169,16 @@ impl PageScene {
         }
     }
 
+    /// [`Self::prepare`] on a thread of its own: not on one of the pool, which must not wait for locks. Where the system
+    /// has none, the first question makes what it needs; in a browser, whoever owns the session calls `prepare`.
+    pub(crate) fn prepare_aside(self: &Arc<Self>) {
+        #[cfg(feature = "server")]
+        {
+            let scene = Arc::clone(self);
+            let _ = std::thread::Builder::new().spawn(move || scene.prepare());
+        }
+    }
+
     /// What the page must know before it asks.
     pub(crate) fn describe(&self) -> Value {
         let bounds: Bounds = self.model().bounds();

@@ -5,6 +5,7 @@ use crate::guard::Guard;
 use crate::loading::Loading;
 use crate::routes;
 use crate::scene_text::SceneText;
+use crate::session::Session;
 use hyper::service::{Service, service_fn};
 use hyper_util::rt::{TokioIo, TokioTimer};
 use hyper_util::service::TowerToHyperService;
@@ -41,12 +42,6 @@ pub struct PageServer {
     runtime: Option<Runtime>,
 }
 
-impl std::fmt::Debug for Loading {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str("Loading")
-    }
-}
-
 impl PageServer {
     /// Begins to serve a page without a scene on 127.0.0.1.
     ///
@@ -58,8 +53,9 @@ impl PageServer {
         let address = SocketAddr::from((Ipv4Addr::LOCALHOST, params.port));
         let listener = runtime.block_on(TcpListener::bind(address))?;
         let guard = Arc::new(Guard::new(listener.local_addr()?.port())?);
-        let loading = Loading::default();
-        let app = routes::app(Arc::clone(&guard), loading.clone(), params);
+        let session = Session::new(params.title.clone(), params.scene.clone());
+        let loading = session.loading();
+        let app = routes::app(Arc::clone(&guard), session);
         runtime.spawn(accept(listener, app));
         Ok(Self { guard, loading, runtime: Some(runtime) })
     }

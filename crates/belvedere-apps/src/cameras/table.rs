@@ -3,7 +3,7 @@
 use belvedere_data::{Error, Parameter, Result};
 
 /// Most bits of a table: 8 GiB.
-const MAX_BITS: usize = 1 << 36;
+const MAX_BITS: u64 = 1 << 36;
 
 /// A row of bits for each camera: bit t of word t / 64 says whether it covers target t.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -74,7 +74,7 @@ impl CoverageTable {
 
 /// Refuses tables that no memory holds.
 pub(super) fn check_size(cameras: usize, targets: usize) -> Result<()> {
-    if cameras.saturating_mul(targets) <= MAX_BITS {
+    if (cameras as u64).saturating_mul(targets as u64) <= MAX_BITS {
         return Ok(());
     }
     let value = format!("{cameras} x {targets}");

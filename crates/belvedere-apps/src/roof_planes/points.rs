@@ -33,7 +33,7 @@ pub fn roof_points(cloud: &PointCloud, ground: &Ground) -> Result<(Vec<u32>, Roo
     let classes = cloud.attributes.classification.as_deref().unwrap_or_default();
     let classed: Vec<u32> =
         (0_u32..).zip(classes).filter(|(_, class)| **class == BUILDING).map(|(row, _)| row).collect();
-    if !classed.is_empty() && classed.len() * FEW >= cloud.len() {
+    if !classed.is_empty() && classed.len() >= cloud.len().div_ceil(FEW) {
         return Ok((classed, RoofsFrom::Class));
     }
     let is_high = |row: usize, p: &[f32; 3]| {

@@ -147,7 +147,7 @@ fn tested_points(cloud: &PointCloud, params: &GroundParams, control: &Control<'_
             let what = "no point has class 2 (ground); detect the ground from all points".to_owned();
             return Err(Error::NoPoints { what });
         }
-        GroundPoints::Auto if classed.len() * 1000 < cloud.len() => return found(),
+        GroundPoints::Auto if classed.len() < cloud.len().div_ceil(1000) => return found(),
         _ => {}
     }
     let points: Vec<[f32; 3]> = classed.iter().filter_map(|&row| cloud.positions.get(row as usize).copied()).collect();

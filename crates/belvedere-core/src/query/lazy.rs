@@ -3,6 +3,7 @@
 use belvedere_data::Result;
 use belvedere_data::control::Control;
 use std::sync::{Mutex, OnceLock, PoisonError};
+#[cfg(not(target_family = "wasm"))]
 use std::time::Duration;
 
 /// A value that is made on first use.
@@ -47,11 +48,20 @@ impl<T: Send + Sync> Lazy<T> {
     }
 }
 
+/// Runs `work` where there are no threads to start: in a browser. Whoever asks there first must not be one of a pool.
+#[cfg(target_family = "wasm")]
+fn on_own_threads<T: Send>(work: impl FnOnce() -> T + Send) -> T {
+    work()
+}
+
 /// How long a thread is waited for that the system refuses, and how often it is tried.
+#[cfg(not(target_family = "wasm"))]
 const PAUSE: Duration = Duration::from_millis(50);
+#[cfg(not(target_family = "wasm"))]
 const MAX_TRIES: usize = 100;
 
 /// Runs `work` on as many new threads as the caller may use.
+#[cfg(not(target_family = "wasm"))]
 fn on_own_threads<T: Send>(work: impl FnOnce() -> T + Send) -> T {
     let threads = rayon::current_num_threads();
     let work = Mutex::new(Some(work));

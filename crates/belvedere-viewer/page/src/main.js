@@ -8,6 +8,7 @@ import { setWhen } from "./plan.js";
 import { ask, choose, click, snapshot } from "./questions.js";
 import { save } from "./save.js";
 import { $, canvas, page, root, TOOLS } from "./state.js";
+import { startScreen, stayOffline } from "./start.js";
 import { ofViewpoints } from "./viewpoints.js";
 import { remember } from "./address.js";
 import { again, isPlaying, setPlaying, showClock, step } from "./time.js";
@@ -143,7 +144,10 @@ function start() {
   listen();
   resize();
   choose(TOOLS[0]);
-  watch();
+  if (api.opens) {
+    startScreen(watch);
+    stayOffline();
+  } else watch();
   if (!api.exported) remember();
 }
 start();

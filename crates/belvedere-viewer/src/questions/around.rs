@@ -26,7 +26,7 @@ pub(super) fn answer(question: &AroundRequest, context: &RequestContext<'_>) -> 
     let isovists = ask::ask(scene, &IsovistsQuestion::default(), &eyes, control)?;
     let sky = ask::ask(scene, &SkyViewQuestion::default(), &Places::Targets(Arc::new(at(context, place))), control)?;
     let Some(isovist) = isovists.found.isovists.first().and_then(Option::as_ref) else {
-        return Err(Refusal("Nobody can look from this place.".to_owned()));
+        return Err(Refusal::Unanswerable("Nobody can look from this place.".to_owned()));
     };
     let figures: Map<String, Value> = isovist
         .figures(isovists.found.grid_north)

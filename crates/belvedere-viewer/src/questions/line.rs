@@ -22,7 +22,7 @@ pub(super) fn answer(question: &LineRequest, context: &RequestContext<'_>) -> Re
     let ends = [local(context, question.observer)?, local(context, question.target)?];
     let [observer, target] = ends;
     if observer == target {
-        return Err(Refusal("A and B are the same place: click two different ones.".to_owned()));
+        return Err(Refusal::Unanswerable("A and B are the same place: click two different ones.".to_owned()));
     }
     let is_vertical = observer[..2] == target[..2];
     let how_sure = HowSure { probability: context.scene.model().pulses().is_some(), certain: None };

@@ -40,12 +40,12 @@ pub(crate) fn answer(name: &str, body: &[u8], context: &RequestContext<'_>) -> R
         "roof" => roof::answer(&parsed(body)?, context),
         "plan" => plan::answer(parsed(body)?, context),
         "sun_area" => sun_area::answer(&parsed(body)?, context),
-        _ => Err(Refusal("there is no such question".to_owned())),
+        _ => Err(Refusal::Unanswerable("there is no such question".to_owned())),
     }
 }
 
 fn parsed<T: DeserializeOwned>(body: &[u8]) -> Result<T, Refusal> {
-    serde_json::from_slice(body).map_err(|error| Refusal(format!("the question cannot be read: {error}")))
+    serde_json::from_slice(body).map_err(|error| Refusal::Unanswerable(format!("the question cannot be read: {error}")))
 }
 
 /// Centres and radii of the balls, local metres: four f32 each, little endian.

@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 /// A place, local metres.
 pub(super) fn local(context: &RequestContext<'_>, place: [f64; 3]) -> Result<[f64; 3], Refusal> {
     if !place.iter().all(|v| v.is_finite()) {
-        return Err(Refusal("the place has a coordinate that is not a number".to_owned()));
+        return Err(Refusal::Unanswerable("the place has a coordinate that is not a number".to_owned()));
     }
     Ok(context.scene.model().frame().local_from_file(place))
 }

@@ -21,7 +21,9 @@ pub(super) fn answer(question: &RoofRequest, context: &RequestContext<'_>) -> Re
     let site = scene.site()?;
     let roofs = scene.roofs(control)?;
     let Some((plane_index, plane)) = roofs.at(place) else {
-        return Err(Refusal("There is no plane of a roof here: click a roof of at least 4 m².".to_owned()));
+        return Err(Refusal::Unanswerable(
+            "There is no plane of a roof here: click a roof of at least 4 m².".to_owned(),
+        ));
     };
     let blockers = scene.blockers(UnprovenAs::Visible, control)?;
     let energies = roof_irradiation(&*blockers, std::slice::from_ref(plane), &roofs.seasons, control)?;

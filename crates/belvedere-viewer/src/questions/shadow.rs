@@ -49,7 +49,7 @@ pub(super) fn answer(question: &ShadowRequest, context: &RequestContext<'_>) -> 
     let lit_count = lit.iter().filter(|&&share| share > 0.0).count();
     let unproven_count = unproven.map(|unproven| unproven.iter().filter(|&&is| is > 0.0).count());
     let (Some(sun), Some(stands)) = (answers.found.suns.first(), of_sun.first()) else {
-        return Err(Refusal("There is no sun at this time.".to_owned()));
+        return Err(Refusal::Unanswerable("There is no sun at this time.".to_owned()));
     };
     let head = json!({
         "points": points.targets.len(),

@@ -37,7 +37,7 @@ pub(super) fn answer(question: &SunRequest, context: &RequestContext<'_>) -> Res
     let date = Date::parse(&question.date)?;
     let blockers = scene.blockers(UnprovenAs::Visible, control)?;
     if blockers.is_outside_cloud(place) {
-        return Err(Refusal("This place is outside the cloud, where nothing is known.".to_owned()));
+        return Err(Refusal::Unanswerable("This place is outside the cloud, where nothing is known.".to_owned()));
     }
     let targets = Arc::new(at(context, place));
     let hours_on = |date: Date| {

@@ -23,7 +23,7 @@ pub(super) struct SunAreaRequest {
 pub(super) fn answer(question: &SunAreaRequest, context: &RequestContext<'_>) -> Result<QuestionReply, Refusal> {
     let scene = context.scene;
     if question.corners.len() < 3 {
-        return Err(Refusal("An area needs at least three corners.".to_owned()));
+        return Err(Refusal::Unanswerable("An area needs at least three corners.".to_owned()));
     }
     let corners = question
         .corners
@@ -38,7 +38,7 @@ pub(super) fn answer(question: &SunAreaRequest, context: &RequestContext<'_>) ->
     let targets = &answers.found.targets;
     let known: Vec<usize> = (0..targets.len()).filter(|&row| targets.is_target(row)).collect();
     let (Some(measure), false) = (answers.measures.first(), known.is_empty()) else {
-        return Err(Refusal(
+        return Err(Refusal::Unanswerable(
             "There is no ground in this area: draw it on the ground, and larger than a cell.".to_owned(),
         ));
     };

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 /// The crates of the library, and the crates of ours that each may import.
-const CRATES: [(&str, &[&str]); 12] = [
+const CRATES: [(&str, &[&str]); 13] = [
     ("data", &[]),
     ("io", &["data"]),
     ("figures", &["data", "io"]),
@@ -14,6 +14,7 @@ const CRATES: [(&str, &[&str]); 12] = [
     ("tiles", &[""]),
     ("scenes", &[]),
     ("viewer", &[""]),
+    ("web", &["", "viewer"]),
     ("cli", &["", "tiles", "scenes", "viewer"]),
     ("python", &["", "scenes"]),
 ];

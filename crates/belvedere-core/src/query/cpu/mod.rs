@@ -182,7 +182,7 @@ mod tests {
             let of_target =
                 |target| (0..directions.len()).filter(|&d| settled.line(target, d) != LineAnswer::Open).count();
             let lines: usize = (0..targets.len()).map(of_target).sum();
-            lines as f64 / (targets.len() * directions.len()) as f64
+            lines as f64 / (targets.len() as f64 * directions.len() as f64)
         };
         let targets: Vec<[f32; 3]> = (0..4096).map(|i| place(7, i)).collect();
         assert!(share_settled(&targets) > 0.5);

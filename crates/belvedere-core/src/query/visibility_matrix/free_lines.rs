@@ -12,7 +12,7 @@ use belvedere_data::vector::{length, piece_in_box};
 use belvedere_data::{Error, Parameter, Result};
 use rayon::prelude::*;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Directions that are settled before targets are looked at: two bits of each are kept for every target meanwhile.
 const BATCH: usize = 512;
@@ -147,10 +147,13 @@ impl<'a> FreeLines<'a> {
             return Ok(());
         }
         // a target counts as done when as many lines of sight are
-        let queried = AtomicUsize::new(0);
-        let advance = |lines: usize| {
+        // lines pass 32 bits
+        let queried = AtomicU64::new(0);
+        let advance = |targets: usize, directions: usize| {
+            let lines = targets as u64 * directions as u64;
             let before = queried.fetch_add(lines, Ordering::Relaxed);
-            control.advance((before + lines) / columns.len() - before / columns.len());
+            let done = (before + lines) / columns.len() as u64 - before / columns.len() as u64;
+            control.advance(usize::try_from(done).unwrap_or(usize::MAX));
         };
         let meeting = self.meeting(scene, columns);
         let headings = headings(self.directions, &meeting.columns);
@@ -160,7 +163,9 @@ impl<'a> FreeLines<'a> {
         let of_block = |block: usize| positions.chunks(BLOCK).nth(block).unwrap_or_default();
         let open_count: usize = meeting.blocks.iter().map(|open| of_block(open.block).len()).sum();
         let is_worth_settling = meeting.line_count as f64 > WORTH_SETTLING * open_count as f64 * headings.len() as f64;
-        advance(positions.len() * columns.len() - open_count * headings.len());
+        // these are settled: all lines of targets in blocks that are not open, and of directions that meet nothing
+        advance(positions.len() - open_count, columns.len());
+        advance(open_count, columns.len() - headings.len());
         for open in meeting.blocks.chunks(MAX_TARGETS / BLOCK) {
             let targets = open.iter().map(|open| of_block(open.block)).collect::<Vec<_>>().concat();
             let mut numbers = vec![None; positions.len().div_ceil(BLOCK)];
@@ -178,7 +183,7 @@ impl<'a> FreeLines<'a> {
                     let Some((number, met)) = *number else { return Ok(()) };
                     control.check()?;
                     sky.look(targets, number, met, rows);
-                    advance(targets.len() * headings.len());
+                    advance(targets.len(), headings.len());
                     Ok(())
                 })?;
             }

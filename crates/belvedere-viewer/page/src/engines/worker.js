@@ -1,0 +1,86 @@
+// The same questions, answered inside this browser: a worker holds the scene, and nothing leaves the computer.
+import { Lost, Refused, split } from "./reply.js";
+
+const STOPPED = "The scene is lost: this tab has run out of memory, or Belvedere failed. Open the file again, or a smaller part of it.";
+
+let worker = null;
+let lost = null;
+let state = { title: "", stage: "", total: 0, done: 0, failure: null, mesh_count: 0, results: [], shown: null, scene: null };
+// where the worker counts what is done while it computes
+let counter = null;
+const parts = new Map();
+// questions that wait: one at a time is with the worker, so that one that nobody waits for any more is not asked
+const waiting = [];
+let asked = null;
+
+// A part of what is drawn, which comes when it is ready.
+function partOf(path) {
+  if (!parts.has(path)) {
+    let give;
+    const promise = new Promise((resolve) => { give = resolve; });
+    parts.set(path, { promise, give });
+  }
+  return parts.get(path);
+}
+function next() {
+  if (asked) return;
+  asked = waiting.shift() ?? null;
+  if (!asked) return;
+  if (asked.signal?.aborted) {
+    asked.reject(new DOMException("nobody waits for it", "AbortError"));
+    asked = null;
+    return next();
+  }
+  worker.postMessage({ ask: { path: asked.path, body: asked.body } });
+}
+function send(path, body, signal) {
+  if (lost) return Promise.reject(lost);
+  return new Promise((resolve, reject) => {
+    waiting.push({ path, body, signal, resolve, reject });
+    next();
+  });
+}
+function lose(text) {
+  console.error(text);
+  lost = new Lost(STOPPED);
+  if (!state.scene) state.failure = STOPPED;
+  for (const question of [asked, ...waiting]) question?.reject(lost);
+  waiting.length = 0;
+  asked = null;
+}
+function heard({ data }) {
+  if (data.state) state = { ...data.state, stage: state.stage, total: state.total, done: state.done };
+  if (data.stage !== undefined) Object.assign(state, { stage: data.stage, total: data.total, done: 0 });
+  if (data.done !== undefined) state.done = data.done;
+  if (data.counter) counter = new Uint32Array(data.counter.memory.buffer, data.counter.at, 1);
+  if (data.part) partOf(data.part).give(data.bytes);
+  if (data.tooMany) whenTooMany(data.tooMany);
+  if (data.failure) state.failure = data.failure;
+  if (data.lost) lose(data.lost);
+  if (data.reply && asked) {
+    const { resolve, reject } = asked;
+    asked = null;
+    if (data.refused) reject(new Refused(data.refused));
+    else resolve(data.reply);
+    next();
+  }
+}
+
+// Opens files that were chosen or dropped, or addresses: `{ name, file }` or `{ name, url }` each. Files with more points
+// than fit are not read: `choose` is told how many they are and where they lie.
+let whenTooMany = null;
+export function open(files, options, choose) {
+  worker?.terminate();
+  whenTooMany = choose;
+  worker = new Worker("engine-worker.js");
+  worker.onmessage = heard;
+  worker.onerror = (event) => lose(event.message ?? "the worker ended");
+  worker.postMessage({ open: { files, ...options } });
+}
+
+export const inBrowser = {
+  state: async () => ({ ...state, done: counter ? counter[0] : state.done }),
+  part: async (path) => (path === "balls" ? send(path, "") : partOf(path).promise.then((bytes) => { parts.delete(path); return bytes; })),
+  ask: async (path, values, signal) => split(await send(path, JSON.stringify(values), signal)),
+  loadMesh: async (file) => split(await send(`plan-meshes/${file.name}`, new Uint8Array(await file.arrayBuffer()))),
+};

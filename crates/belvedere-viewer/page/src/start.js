@@ -1,0 +1,153 @@
+// The first screen of a page that opens files itself.
+import { report } from "./messages.js";
+import { $ } from "./state.js";
+import { open } from "./engines/worker.js";
+
+const FORMATS = ".laz .las .copc.laz .e57 .ply .pcd .ptx .xyz .txt .csv .npy";
+const DEMO = "demo.laz";
+
+const fromFragment = () => new URLSearchParams(location.hash.slice(1));
+
+// Asks which part of a cloud to open that does not fit as a whole: a square on its map that can be moved.
+function chooseWindow(files, options, { points, most, low, high }) {
+  const size = [high[0] - low[0], high[1] - low[1]];
+  // a tenth fewer: points do not lie evenly
+  const side = Math.sqrt((size[0] * size[1] * most * 0.9) / points);
+  const sides = size.map((length) => Math.min(side, length));
+  const corner = [0, 1].map((i) => low[i] + (size[i] - sides[i]) / 2);
+  const scale = 260 / Math.max(...size);
+  const box = $("part");
+  $("progress").hidden = true;
+  $("start").hidden = false;
+  $("start").firstElementChild.hidden = true;
+  box.hidden = false;
+  const millions = (count) => (count / 1e6).toFixed(1);
+  box.querySelector("p").textContent = `The files have ${millions(points)} million points, and this browser has room for ${millions(most)} million. Choose the part to open: ${Math.round(sides[0])} by ${Math.round(sides[1])}, in the unit of the file.`;
+  const map = box.querySelector("svg");
+  map.setAttribute("viewBox", `-1 -1 ${size[0] * scale + 2} ${size[1] * scale + 2}`);
+  map.innerHTML = `<rect width="${size[0] * scale}" height="${size[1] * scale}" class="all"/><rect width="${sides[0] * scale}" height="${sides[1] * scale}" class="window"/>`;
+  const move = (to) => {
+    [0, 1].forEach((i) => { corner[i] = Math.min(Math.max(to[i], low[i]), high[i] - sides[i]); });
+    const rect = map.querySelector(".window");
+    rect.setAttribute("x", (corner[0] - low[0]) * scale);
+    rect.setAttribute("y", (high[1] - corner[1] - sides[1]) * scale);
+    box.querySelector("output").textContent = `${corner.map(Math.round).join(", ")} to ${corner.map((v, i) => Math.round(v + sides[i])).join(", ")}`;
+  };
+  const at = (event) => {
+    const inverse = map.getScreenCTM().inverse();
+    const { x, y } = new DOMPoint(event.clientX, event.clientY).matrixTransform(inverse);
+    move([low[0] + x / scale - sides[0] / 2, high[1] - y / scale - sides[1] / 2]);
+  };
+  map.onpointerdown = (event) => { map.setPointerCapture(event.pointerId); at(event); };
+  map.onpointermove = (event) => { if (event.buttons) at(event); };
+  map.onkeydown = (event) => {
+    const by = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
+    if (!by) return;
+    event.preventDefault();
+    move(corner.map((v, i) => v + (by[i] * sides[i]) / 10));
+  };
+  move(corner);
+  box.querySelector("button").onclick = () => {
+    box.hidden = true;
+    $("start").hidden = true;
+    $("progress").hidden = false;
+    open(files, { ...options, window: [...corner, ...corner.map((v, i) => v + sides[i])] }, () => {});
+  };
+}
+
+function begin(files, whenOpen) {
+  const crs = $("crs-typed").value.trim();
+  const corners = $("window-typed").value.split(/[\s,;]+/).filter(Boolean).map(Number);
+  if (corners.length && (corners.length !== 4 || corners.some(Number.isNaN))) {
+    report(new Error("The window needs four numbers: west, south, east, north."));
+    return;
+  }
+  $("start").hidden = true;
+  $("progress").hidden = false;
+  const options = { ...(crs ? { crs } : {}), ...(corners.length ? { window: corners } : {}) };
+  open(files, options, (announced) => chooseWindow(files, options, announced));
+  whenOpen();
+}
+// The end of an address is the name of the file there.
+const ofAddress = (url) => ({ name: decodeURIComponent(new URL(url, location.href).pathname.split("/").pop()), url: new URL(url, location.href).href });
+
+async function showKept() {
+  const size = async (folder) => {
+    let [count, bytes] = [0, 0];
+    for await (const handle of folder.values()) {
+      count += 1;
+      bytes += (await handle.getFile()).size;
+    }
+    return [count, bytes];
+  };
+  try {
+    const root = await navigator.storage.getDirectory();
+    const [count, bytes] = await size(await root.getDirectoryHandle("scenes"));
+    if (!count) return;
+    $("kept").hidden = false;
+    $("kept").querySelector("span").textContent = `${count} ${count === 1 ? "scene is" : "scenes are"} kept in this browser (${Math.ceil(bytes / 1e6)} MB): the same files open in a moment.`;
+    $("kept").querySelector("button").onclick = async () => {
+      await root.removeEntry("scenes", { recursive: true });
+      $("kept").hidden = true;
+    };
+  } catch {
+    // nothing was kept yet
+  }
+}
+
+export function startScreen(whenOpen) {
+  $("start").hidden = false;
+  const take = (list) => {
+    const files = [...list].map((file) => ({ name: file.name, file }));
+    if (files.length) begin(files, whenOpen);
+  };
+  $("choose").accept = FORMATS.split(" ").join(",");
+  $("choose").onchange = () => take($("choose").files);
+  // as a whole, so that it is there without a network too
+  $("demo").onclick = async () => {
+    try {
+      begin([{ name: DEMO, file: await (await fetch(DEMO)).blob() }], whenOpen);
+    } catch (error) {
+      report(error);
+    }
+  };
+  $("address").onsubmit = (event) => {
+    event.preventDefault();
+    const url = $("address-typed").value.trim();
+    history.replaceState(null, "", `#${new URLSearchParams({ open: url })}`);
+    begin([ofAddress(url)], whenOpen);
+  };
+  $("cancel").hidden = false;
+  // only the end of the worker ends what it computes
+  $("cancel").onclick = () => location.replace(location.pathname);
+  addEventListener("dragover", (event) => {
+    event.preventDefault();
+    document.body.classList.add("dropping");
+  });
+  addEventListener("dragleave", (event) => { if (!event.relatedTarget) document.body.classList.remove("dropping"); });
+  addEventListener("drop", (event) => {
+    event.preventDefault();
+    document.body.classList.remove("dropping");
+    if (!$("start").hidden) take(event.dataTransfer.files);
+  });
+  showKept();
+  const address = fromFragment().get("open");
+  if (address) begin([ofAddress(address)], whenOpen);
+}
+// The program's parts are kept for use without a network, and the page may share memory between threads.
+export async function stayOffline() {
+  if (!navigator.serviceWorker) return;
+  try {
+    const registration = await navigator.serviceWorker.register("service-worker.js");
+    // where the server does not send what shared memory needs, the service worker does, from the next load on
+    if (!crossOriginIsolated && !navigator.serviceWorker.controller) {
+      await navigator.serviceWorker.ready;
+      if (registration.active && !sessionStorage.getItem("reloaded")) {
+        sessionStorage.setItem("reloaded", "yes");
+        location.reload();
+      }
+    }
+  } catch {
+    // a private window: the page works, but not without a network
+  }
+}

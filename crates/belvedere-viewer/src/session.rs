@@ -1,0 +1,144 @@
+//! The scene of a page and all that a page asks of it, wherever the page is answered: by the server of this crate, or
+//! by the same code inside the browser (`belvedere-web`).
+
+use crate::loading::Loading;
+use crate::plans::Plans;
+use crate::questions::{self, RequestContext};
+use crate::replies::{QuestionReply, Refusal};
+use crate::scene_text::SceneText;
+use belvedere::control::Control;
+use belvedere::io::{Output, write_balls};
+use serde_json::json;
+use std::io::Cursor;
+use std::sync::Arc;
+
+/// One scene, its plans, and the words for it.
+#[derive(Clone, Default)]
+pub struct Session {
+    loading: Loading,
+    text: SceneText,
+    title: String,
+    plans: Arc<Plans>,
+}
+
+impl Session {
+    /// A session without a scene.
+    #[must_use]
+    pub fn new(title: String, text: SceneText) -> Self {
+        Self { loading: Loading::default(), text, title, plans: Arc::default() }
+    }
+
+    /// What takes the scene.
+    #[must_use]
+    pub fn loading(&self) -> Loading {
+        self.loading.clone()
+    }
+
+    /// Whether what is at this path takes long: one at a time has all threads, and [`Session::ask`] answers it.
+    #[must_use]
+    pub fn is_question(path: &str) -> bool {
+        ["ask/", "plans/", "plan-meshes/", "results/"].iter().any(|first| path.starts_with(first))
+    }
+
+    /// How far the scene is prepared, as JSON.
+    #[must_use]
+    pub fn state(&self) -> Vec<u8> {
+        let now = self.loading.read();
+        let stage = now.stages.current();
+        let state = json!({
+            "title": self.title,
+            "stage": stage.map_or("", |stage| stage.name),
+            "total": stage.map_or(0, |stage| stage.total),
+            "done": stage.map_or(0, |stage| stage.done),
+            "failure": now.failure,
+            "mesh_count": now.meshes.len(),
+            "results": now.results.iter().map(|file| file.describe()).collect::<Vec<_>>(),
+            "shown": now.shown.map(|shown| shown.description.clone()),
+            "scene": now.scene.map(|scene| scene.describe()),
+        });
+        state.to_string().into_bytes()
+    }
+
+    /// A part of what is drawn: `points/N` and `colors/N` of a chunk, `meshes/N`, `balls`.
+    ///
+    /// # Errors
+    /// [`Refusal::Missing`] for what is not there, or not yet.
+    pub fn part(&self, path: &str) -> Result<Vec<u8>, Refusal> {
+        let now = self.loading.now();
+        let (kind, number) = path.split_once('/').unwrap_or((path, ""));
+        let number = number.parse::<usize>().ok();
+        let shown = now.shown.as_ref();
+        let part = match (kind, number) {
+            ("balls", None) => now.scene.map(|scene| questions::balls(&scene)),
+            ("points", Some(chunk)) => shown.and_then(|shown| shown.chunks.points(chunk, &shown.cloud)),
+            ("colors", Some(chunk)) => shown.and_then(|shown| shown.chunks.colors(chunk, &shown.cloud)),
+            ("meshes", Some(mesh)) => now.meshes.get(mesh).map(|mesh| mesh.to_vec()),
+            _ => None,
+        };
+        part.ok_or(Refusal::Missing("there is no such part of the cloud"))
+    }
+
+    /// Answers a question: `ask/NAME` of the scene as it is, `plans/N/ask/NAME` of that with a plan, both with the
+    /// question as JSON; `results/N` for a file of results; `plan-meshes/NAME` takes a mesh file for plans.
+    ///
+    /// The reply is the length of the head in 4 bytes, little endian, the head as JSON filled up with blanks to a
+    /// multiple of 4 bytes, and a value for each of many places.
+    ///
+    /// # Errors
+    /// [`Refusal`], in words for people.
+    pub fn ask(&self, path: &str, body: &[u8], control: &Control<'_>) -> Result<Vec<u8>, Refusal> {
+        let now = self.loading.now();
+        let scene = now.scene.ok_or(Refusal::NotReady)?;
+        let (kind, rest) = path.split_once('/').unwrap_or((path, ""));
+        let reply = match kind {
+            "ask" => {
+                let context = RequestContext { scene: &scene, text: &self.text, plans: &self.plans, control };
+                questions::answer(rest, body, &context)?
+            }
+            "plans" => {
+                let (number, name) = rest.split_once("/ask/").ok_or(NO_SUCH_QUESTION)?;
+                let planned = self.plans.get(number.parse().map_err(|_| NO_SUCH_QUESTION)?)?;
+                let context =
+                    RequestContext { scene: &planned.scene, text: &planned.text, plans: &self.plans, control };
+                questions::answer(name, body, &context)?
+            }
+            "results" => {
+                let file = rest.parse::<usize>().ok().and_then(|number| now.results.get(number));
+                file.ok_or(Refusal::Missing("there is no such file of results"))?.drawn(&scene, control)?
+            }
+            "plan-meshes" => {
+                let number = self.plans.load(rest, body, scene.model().frame(), control)?;
+                QuestionReply::of(json!({ "mesh": number, "name": rest }))
+            }
+            _ => return Err(NO_SUCH_QUESTION),
+        };
+        Ok(reply.into_bytes())
+    }
+
+    /// The scene as a ball file (NPZ), to be kept for the next time.
+    ///
+    /// # Errors
+    /// [`Refusal::NotReady`], and those of [`write_balls`].
+    pub fn scene_file(&self) -> Result<Vec<u8>, Refusal> {
+        let scene = self.loading.now().scene.ok_or(Refusal::NotReady)?;
+        let mut bytes = Cursor::new(Vec::new());
+        write_balls(Output::writer("scene.npz", &mut bytes), scene.model().parts())?;
+        Ok(bytes.into_inner())
+    }
+
+    /// Makes what most questions need, so that the first one does not wait for it. Not on a thread of the pool that
+    /// computes: such a thread must not wait for what others of the pool make.
+    pub fn prepare(&self) {
+        if let Some(scene) = self.loading.now().scene {
+            scene.prepare();
+        }
+    }
+}
+
+impl std::fmt::Debug for Session {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Session").field("title", &self.title).finish_non_exhaustive()
+    }
+}
+
+const NO_SUCH_QUESTION: Refusal = Refusal::Missing("there is nothing at this address");

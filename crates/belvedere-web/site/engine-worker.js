@@ -1,0 +1,344 @@
+// Runs the engine: one worker that owns the scene, and one for each thread of it where the page may share memory.
+// Files are read where they are, part by part; nothing is sent anywhere.
+
+const BLOCK = 1 << 18;
+const WEB_BLOCK = 1 << 16;
+const MAX_BLOCKS = 64;
+// memory of a scene for each point, and the most that a module can have: measured with AHN and towns of 12 points/m²
+const BYTES_A_POINT = 700;
+const MAX_BYTES = 3.8e9;
+// scenes that are kept in the browser, all together
+const MAX_KEPT_BYTES = 1e9;
+const STACK = 1 << 20;
+const MAX_THREADS = 8;
+
+const files = new Map();
+let engine = null;
+let memory = null;
+let reply = null;
+let version = "";
+let isPool = false;
+let told = 0;
+let isPrepared = false;
+let keepAs = null;
+const threads = [];
+
+// ---- what the module needs of its host
+
+const bytesAt = (at, length) => new Uint8Array(memory.buffer, at, length);
+// a copy: what is shared cannot be decoded or sent
+const copy = (at, length) => bytesAt(at, length).slice();
+const textAt = (at, length) => new TextDecoder().decode(copy(at, length));
+
+const host = {
+  read: (id, at, to, length) => {
+    try {
+      const bytes = files.get(id).read(at, length);
+      bytesAt(to, bytes.length).set(bytes);
+      return bytes.length;
+    } catch (error) {
+      console.error(String(error));
+      return -1;
+    }
+  },
+  reply: (at, length) => { reply = copy(at, length); },
+  stage: (at, length, total) => {
+    told = performance.now();
+    postMessage({ stage: textAt(at, length), total });
+  },
+  tick: () => {
+    // the page itself looks at shared memory
+    if (isPool || self.crossOriginIsolated || performance.now() - told < 150) return;
+    told = performance.now();
+    postMessage({ done: new Uint32Array(memory.buffer, engine.progress(), 1)[0] });
+  },
+  failed: (at, length) => { postMessage({ lost: textAt(at, length) }); },
+  spawn: (builder) => { threads.pop().postMessage({ run: builder }); },
+};
+function importsOf(module) {
+  const imports = { host, env: {} };
+  for (const { module: from, name } of WebAssembly.Module.imports(module)) {
+    if (from === "env" && name === "memory") imports.env.memory = memory;
+    // a crate that reads clocks brings these along; nothing calls them
+    else if (from !== "host") (imports[from] ??= {})[name] = () => { throw new Error(`${name} is not there`); };
+  }
+  return imports;
+}
+
+// ---- files
+
+class Blocks {
+  constructor(size, side) {
+    Object.assign(this, { size, side, kept: new Map() });
+  }
+  read(at, length) {
+    const whole = Math.min(length, this.size - at);
+    if (whole >= this.side) return this.part(at, at + whole);
+    const number = Math.floor(at / this.side);
+    let block = this.kept.get(number);
+    if (!block) {
+      block = this.part(number * this.side, Math.min((number + 1) * this.side, this.size));
+      if (this.kept.size >= MAX_BLOCKS) this.kept.delete(this.kept.keys().next().value);
+      this.kept.set(number, block);
+    }
+    const from = at - number * this.side;
+    return block.subarray(from, from + Math.min(whole, this.side - from));
+  }
+}
+class LocalFile extends Blocks {
+  constructor(file) {
+    super(file.size, BLOCK);
+    this.file = file;
+    this.reader = new FileReaderSync();
+  }
+  part(from, to) {
+    return new Uint8Array(this.reader.readAsArrayBuffer(this.file.slice(from, to)));
+  }
+}
+class WebFile extends Blocks {
+  constructor(url) {
+    super(sizeAt(url), WEB_BLOCK);
+    this.url = url;
+  }
+  part(from, to) {
+    const request = requested("GET", this.url, `bytes=${from}-${to - 1}`);
+    if (request.status !== 206) throw new Error(`${this.url} gives no parts of files (HTTP ranges): download the file, and open it from the disk`);
+    return new Uint8Array(request.response);
+  }
+}
+function requested(method, url, range) {
+  const request = new XMLHttpRequest();
+  request.open(method, url, false);
+  request.responseType = "arraybuffer";
+  if (range) request.setRequestHeader("Range", range);
+  try {
+    request.send();
+  } catch {
+    throw new Error(`${url} cannot be read from this page: the server is not there, or it does not allow other pages to read from it (CORS). Download the file, and open it from the disk`);
+  }
+  if (request.status >= 400) throw new Error(`${url}: the server answers with ${request.status}`);
+  return request;
+}
+function sizeAt(url) {
+  const size = Number(requested("HEAD", url).getResponseHeader("Content-Length"));
+  if (!(size > 0)) throw new Error(`${url}: the server does not tell the size of the file`);
+  return size;
+}
+// A file in the browser's own store.
+class KeptFile extends Blocks {
+  constructor(handle) {
+    super(handle.getSize(), BLOCK);
+    this.handle = handle;
+  }
+  part(from, to) {
+    const bytes = new Uint8Array(to - from);
+    this.handle.read(bytes, { at: from });
+    return bytes;
+  }
+}
+
+// ---- scenes that are kept for the next time
+
+async function kept() {
+  try {
+    return await (await navigator.storage.getDirectory()).getDirectoryHandle("scenes", { create: true });
+  } catch {
+    // a private window, or an old browser
+    return null;
+  }
+}
+const hex = (bytes) => [...new Uint8Array(bytes).slice(0, 16)].map((byte) => byte.toString(16).padStart(2, "0")).join("");
+// A name for the scene of these files: what they hold at both ends, how they are read, and which engine.
+async function keyOf(request) {
+  const parts = [new TextEncoder().encode(JSON.stringify([version, request.crs, request.window, [...files.values()].map(({ size }) => size)]))];
+  for (const file of files.values()) {
+    const length = Math.min(1 << 16, file.size);
+    parts.push(file.part(0, length), file.part(file.size - length, file.size));
+  }
+  return `${hex(await crypto.subtle.digest("SHA-256", await new Blob(parts).arrayBuffer()))}.npz`;
+}
+async function makeRoom(folder, bytes) {
+  const all = [];
+  for await (const handle of folder.values()) all.push([handle.name, await handle.getFile()]);
+  all.sort((a, b) => a[1].lastModified - b[1].lastModified);
+  let sum = bytes + all.reduce((total, [, file]) => total + file.size, 0);
+  for (const [name, file] of all) {
+    if (sum <= MAX_KEPT_BYTES) return;
+    await folder.removeEntry(name);
+    sum -= file.size;
+  }
+}
+async function keep(name) {
+  const folder = await kept();
+  if (!folder || engine.scene_file() !== 0) return;
+  const bytes = reply;
+  if (bytes.length > MAX_KEPT_BYTES) return;
+  try {
+    await makeRoom(folder, bytes.length);
+    const handle = await (await folder.getFileHandle(name, { create: true })).createSyncAccessHandle();
+    try {
+      handle.truncate(0);
+      handle.write(bytes, { at: 0 });
+      handle.flush();
+    } finally {
+      handle.close();
+    }
+    postMessage({ kept: bytes.length });
+  } catch (error) {
+    // no room, or another tab writes it: the scene is built again next time
+    await folder.removeEntry(name).catch(() => {});
+    console.warn(`the scene is not kept: ${error}`);
+  }
+}
+// Whether the scene was found and taken.
+async function found(name) {
+  const folder = await kept();
+  let handle;
+  try {
+    handle = await (await folder.getFileHandle(name)).createSyncAccessHandle();
+  } catch {
+    return false;
+  }
+  try {
+    const file = new KeptFile(handle);
+    files.set(-1 >>> 0, file);
+    postMessage({ stage: "opening the scene that was kept", total: 0 });
+    if (call("build_from", JSON.stringify({ name: "scene.npz", id: -1 >>> 0, size: file.size })) === 0) return true;
+  } finally {
+    files.delete(-1 >>> 0);
+    handle.close();
+  }
+  await folder.removeEntry(name).catch(() => {});
+  return false;
+}
+
+// ---- the module
+
+async function start() {
+  const response = await fetch("engine.wasm");
+  if (!response.ok) throw new Error(`engine.wasm cannot be loaded: ${response.status}`);
+  const bytes = await response.arrayBuffer();
+  version = hex(await crypto.subtle.digest("SHA-256", bytes));
+  const module = await WebAssembly.compile(bytes);
+  // shared also where no other thread may see it: there is one module for both
+  memory = new WebAssembly.Memory({ initial: 1024, maximum: 65536, shared: true });
+  engine = (await WebAssembly.instantiate(module, importsOf(module))).exports;
+  engine.start();
+  if (!self.crossOriginIsolated || navigator.hardwareConcurrency < 2) return;
+  postMessage({ counter: { memory, at: engine.progress() } });
+  // one processor is left to draw
+  const count = Math.min(Math.max(navigator.hardwareConcurrency - 1, 2), MAX_THREADS);
+  const up = [];
+  for (let number = 0; number < count; number++) {
+    const thread = new Worker("engine-worker.js", { name: `engine thread ${number}` });
+    threads.push(thread);
+    const stack = engine.take(STACK + 16);
+    const storage = engine.take(engine.__tls_size.value + engine.__tls_align.value);
+    up.push(new Promise((ready, fails) => {
+      thread.onmessage = ({ data }) => (data.lost ? postMessage(data) : ready());
+      thread.onerror = (event) => fails(new Error(event.message));
+    }));
+    thread.postMessage({ thread: { module, memory, stack: (stack + STACK) & ~15, storage: Math.ceil(storage / engine.__tls_align.value) * engine.__tls_align.value } });
+  }
+  // all of them, since this worker starts none while it waits for the pool
+  await Promise.all(up);
+  if (engine.start_threads(count) !== 0) throw new Error("the threads of the engine do not start");
+}
+async function joinPool(thread) {
+  isPool = true;
+  memory = thread.memory;
+  engine = (await WebAssembly.instantiate(thread.module, importsOf(thread.module))).exports;
+  engine.__stack_pointer.value = thread.stack;
+  engine.__wasm_init_tls(thread.storage);
+  postMessage({ up: true });
+}
+// Calls an export with texts or bytes; what it returns.
+function call(name, ...values) {
+  const given = values.map((value) => {
+    const bytes = typeof value === "string" ? new TextEncoder().encode(value) : value;
+    const at = engine.take(bytes.length);
+    bytesAt(at, bytes.length).set(bytes);
+    return [at, bytes.length];
+  });
+  try {
+    return engine[name](...given.flat());
+  } finally {
+    for (const [at, length] of given) engine.give(at, length);
+  }
+}
+const replied = () => new TextDecoder().decode(reply);
+
+function mostPoints() {
+  const isSmall = navigator.userAgentData?.mobile ?? /iPhone|iPad|Android/.test(navigator.userAgent);
+  const bytes = isSmall ? 0.7e9 : Math.min(MAX_BYTES, (navigator.deviceMemory ?? 8) * 0.5e9);
+  return Math.floor(bytes / BYTES_A_POINT);
+}
+async function open({ files: chosen, crs = null, window = null }) {
+  const opened = chosen.map(({ name, file, url }, id) => {
+    const source = file ? new LocalFile(file) : new WebFile(url);
+    files.set(id, source);
+    return { name, id, size: source.size };
+  });
+  const request = { files: opened, crs, window, most_points: mostPoints() };
+  call("announced", JSON.stringify(opened));
+  const announced = JSON.parse(replied());
+  if (!window && announced?.points > request.most_points) {
+    postMessage({ tooMany: { ...announced, most: request.most_points } });
+    return;
+  }
+  if (call("open", JSON.stringify(request)) !== 0) throw new Error(replied());
+  const state = JSON.parse(replied());
+  postMessage({ state });
+  for (let chunk = 0; chunk < state.shown.chunks.length; chunk++) {
+    for (const kind of state.shown.has_color ? ["points", "colors"] : ["points"]) {
+      call("ask", `${kind}/${chunk}`, "");
+      postMessage({ part: `${kind}/${chunk}`, bytes: reply.buffer }, [reply.buffer]);
+    }
+  }
+  const name = await keyOf(request);
+  if (!await found(name)) {
+    if (engine.build() !== 0) throw new Error(replied());
+    keepAs = name;
+  }
+  postMessage({ state: JSON.parse(replied()) });
+  idle = setTimeout(rest, 2000);
+}
+let idle = null;
+// What is done while nobody asks: what most questions need, and keeping the scene.
+async function rest() {
+  prepare();
+  const name = keepAs;
+  keepAs = null;
+  if (name) await keep(name);
+}
+function prepare() {
+  if (!isPrepared) engine.prepare();
+  isPrepared = true;
+}
+function answer({ path, body }) {
+  clearTimeout(idle);
+  // the shadow needs nothing else; whatever needs it is made here, not by a thread of the pool
+  if (path !== "ask/shadow") prepare();
+  const isRefused = call("ask", path, body) !== 0;
+  if (isRefused) postMessage({ reply: true, refused: replied() });
+  else postMessage({ reply: reply.buffer }, [reply.buffer]);
+  idle = setTimeout(rest, 300);
+}
+
+// one message after the other, also where one waits for the browser
+let last = Promise.resolve();
+onmessage = ({ data }) => {
+  last = last.then(async () => {
+    try {
+      if (data.thread) await joinPool(data.thread);
+      else if (data.run !== undefined) engine.run_thread(data.run);
+      else if (data.open) {
+        await start();
+        await open(data.open);
+      } else if (data.ask) answer(data.ask);
+    } catch (error) {
+      if (error instanceof WebAssembly.RuntimeError || error instanceof RangeError || isPool) postMessage({ lost: String(error) });
+      else postMessage({ failure: error.message });
+    }
+  });
+};

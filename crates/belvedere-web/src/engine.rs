@@ -1,0 +1,285 @@
+//! From files to a scene and from questions to replies, for a host that may be a browser.
+
+use belvedere::control::{Control, StageEnd, Watcher};
+use belvedere::io::{ReadOptions, Source, Within, read_balls, read_cloud, read_las_head};
+use belvedere::model::{ModelParams, SceneModel};
+use belvedere::{Error, PointCloud, Result};
+use belvedere_viewer::{Refusal, SceneText, Session, quoted};
+use serde::{Deserialize, Serialize};
+use std::io::{Read, Seek};
+use std::sync::Arc;
+
+/// What an engine needs of whoever runs it.
+pub trait Host: Sync {
+    /// What reads a file.
+    type File: Read + Seek + Send + 'static;
+    /// A file at its first byte.
+    fn open(&self, file: &OpenedFile) -> Self::File;
+    /// A stage has begun, of `total` items or 0.
+    fn begin(&self, stage: &'static str, total: usize);
+    /// More items of it are done.
+    fn advance(&self, count: usize);
+}
+
+/// A file that was chosen.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct OpenedFile {
+    /// Its name, or its address; the extension tells its format.
+    pub name: String,
+    /// What the host knows it by.
+    pub id: u32,
+    /// Bytes.
+    pub size: u64,
+}
+
+/// What to open.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct OpenRequest {
+    /// Clouds, which are read as one.
+    pub files: Vec<OpenedFile>,
+    /// Reference system of files that name none, such as `EPSG:7415`.
+    #[serde(default)]
+    pub crs: Option<String>,
+    /// Only points between these corners of the map are read: west, south, east, north in the coordinates of the file.
+    #[serde(default)]
+    pub window: Option<[f64; 4]>,
+    /// Most points that the memory has room for.
+    pub most_points: u64,
+}
+
+/// A session that is filled from files of a host.
+#[derive(Debug, Default)]
+pub struct Engine {
+    session: Session,
+    /// Points whose balls are not built yet.
+    cloud: Option<Arc<PointCloud>>,
+}
+
+impl Engine {
+    /// Reads the points and shows them; [`Engine::build`] builds the scene.
+    ///
+    /// # Errors
+    /// Those of reading; words where no point is there, or more than fit.
+    pub fn open<H: Host>(request: &OpenRequest, host: &H) -> std::result::Result<Self, Refusal> {
+        let first = request.files.first().ok_or_else(|| Refusal::from("No file was chosen.".to_owned()))?;
+        // of a window the headers do not tell
+        if request.window.is_none() {
+            refuse_too_many(Announced::of(&request.files, host).map(|announced| announced.points), request)?;
+        }
+        let names = request.files.iter().map(|file| quoted(&file.name)).collect::<Vec<_>>().join(" ");
+        let crs = request.crs.as_ref().map(|crs| format!(" --crs {}", quoted(crs))).unwrap_or_default();
+        let text = SceneText { input: names + &crs, cloud_beside: None };
+        let session = Session::new(first.name.clone(), text);
+        let sources = request.files.iter().map(|file| Source::reader(&file.name, host.open(file)));
+        let mut options = ReadOptions::new();
+        options.crs.clone_from(&request.crs);
+        options.within = request.window.map(|[west, south, east, north]| Within::File {
+            low: [west, south, f64::NEG_INFINITY],
+            high: [east, north, f64::INFINITY],
+        });
+        let told = Told(host);
+        let control = Control::new(&told);
+        let (cloud, _) = control.stage("reading", 0, || read_cloud(sources, &options, &control))?;
+        refuse_too_many(Some(cloud.len() as u64), request)?;
+        if cloud.is_empty() {
+            return Err(Error::NoPoints { what: format!("{} has none", first.name) }.into());
+        }
+        let cloud = Arc::new(cloud);
+        session.loading().show(&cloud);
+        Ok(Self { session, cloud: Some(cloud) })
+    }
+
+    /// Builds the scene: questions are answered from now on.
+    ///
+    /// # Errors
+    /// Those of [`SceneModel::build`].
+    pub fn build<H: Host>(&mut self, host: &H) -> Result<()> {
+        let Some(cloud) = self.cloud.take() else { return Ok(()) };
+        let told = Told(host);
+        let (model, _) = SceneModel::build(&cloud, &ModelParams::default(), &Control::new(&told))?;
+        self.session.loading().finish(model);
+        Ok(())
+    }
+
+    /// The same with a scene that was built before ([`Engine::kept`]) from the same points.
+    ///
+    /// # Errors
+    /// Those of [`read_balls`]; of a scene that is not one of these points.
+    pub fn build_from<H: Host>(&mut self, kept: &OpenedFile, host: &H) -> Result<()> {
+        let Some(cloud) = &self.cloud else { return Ok(()) };
+        let model = SceneModel::from_parts(read_balls(Source::reader(&kept.name, host.open(kept)))?)?;
+        if model.frame().origin != cloud.frame.origin {
+            return Err(Error::malformed(kept.name.as_ref(), "is the scene of another cloud"));
+        }
+        self.cloud = None;
+        self.session.loading().finish(model);
+        Ok(())
+    }
+
+    /// The session that answers the page.
+    #[must_use]
+    pub fn session(&self) -> &Session {
+        &self.session
+    }
+}
+
+/// What the headers of files announce together.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Announced {
+    /// Number of points.
+    pub points: u64,
+    /// Lowest and highest corner on the map, in the coordinates of the files.
+    pub low: [f64; 2],
+    /// The highest.
+    pub high: [f64; 2],
+}
+
+impl Announced {
+    /// From the headers, where all files have headers that tell.
+    pub fn of<H: Host>(files: &[OpenedFile], host: &H) -> Option<Self> {
+        let mut all: Option<Self> = None;
+        for file in files {
+            let head = read_las_head(Source::reader(&file.name, host.open(file))).ok()?;
+            let [low, high] = head.bounds.map(|corner| [corner[0], corner[1]]);
+            let before = all.unwrap_or(Self { points: 0, low, high });
+            all = Some(Self {
+                points: before.points + head.points,
+                low: [before.low[0].min(low[0]), before.low[1].min(low[1])],
+                high: [before.high[0].max(high[0]), before.high[1].max(high[1])],
+            });
+        }
+        all
+    }
+}
+
+fn refuse_too_many(points: Option<u64>, request: &OpenRequest) -> std::result::Result<(), Refusal> {
+    match points {
+        Some(points) if points > request.most_points => Err(Refusal::from(format!(
+            "{points} points are more than this browser has memory for ({}). Open a smaller part, or use the program.",
+            request.most_points
+        ))),
+        _ => Ok(()),
+    }
+}
+
+/// Tells a host of progress.
+struct Told<'a, H>(&'a H);
+
+impl<H: Host> Watcher for Told<'_, H> {
+    fn begin(&self, stage: &'static str, total: usize) {
+        self.0.begin(stage, total);
+    }
+    fn advance(&self, count: usize) {
+        self.0.advance(count);
+    }
+    fn end(&self, _stage: &'static str, _end: StageEnd) {}
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::{Value, json};
+    use std::io::Cursor;
+    use std::sync::Mutex;
+
+    /// Text files in memory, and the stages that were told of.
+    #[derive(Default)]
+    struct Memory {
+        files: Vec<Vec<u8>>,
+        stages: Mutex<Vec<&'static str>>,
+    }
+
+    impl Host for Memory {
+        type File = Cursor<Vec<u8>>;
+        fn open(&self, file: &OpenedFile) -> Self::File {
+            Cursor::new(self.files[file.id as usize].clone())
+        }
+        fn begin(&self, stage: &'static str, _total: usize) {
+            self.stages.lock().unwrap().push(stage);
+        }
+        fn advance(&self, _count: usize) {}
+    }
+
+    /// A floor of 12 m with a block of 4 m by 4 m and 3 m, as text.
+    fn block() -> Memory {
+        let mut text = String::from("x y z\n");
+        for i in 0..60 {
+            for j in 0..60 {
+                let (x, y) = (f64::from(i) * 0.2 + 0.01 * f64::from(j % 3), f64::from(j) * 0.2);
+                let is_block = (4.0..8.0).contains(&x) && (4.0..8.0).contains(&y);
+                text.push_str(&format!("{x:.2} {y:.2} {}\n", if is_block { 3.0 } else { 0.0 }));
+            }
+        }
+        Memory { files: vec![text.into_bytes()], ..Memory::default() }
+    }
+
+    fn request(most_points: u64) -> OpenRequest {
+        let file = OpenedFile { name: "block.xyz".to_owned(), id: 0, size: 0 };
+        OpenRequest { files: vec![file], crs: Some("EPSG:7415".to_owned()), window: None, most_points }
+    }
+
+    fn head(reply: &[u8]) -> Value {
+        let length = u32::from_le_bytes(reply[..4].try_into().unwrap()) as usize;
+        serde_json::from_slice(&reply[4..4 + length]).unwrap()
+    }
+
+    #[test]
+    fn files_become_a_scene_that_answers() {
+        let host = block();
+        let mut engine = Engine::open(&request(10_000), &host).unwrap();
+        let state: Value = serde_json::from_slice(&engine.session().state()).unwrap();
+        assert_eq!((&state["title"], &state["shown"]["point_count"]), (&json!("block.xyz"), &json!(3600)));
+        let question = json!({ "observer": [1.0, 6.0, 1.0], "target": [11.0, 6.0, 1.0] }).to_string();
+        let refused = engine.session().ask("ask/line", question.as_bytes(), &Control::none()).unwrap_err();
+        assert_eq!(refused, Refusal::NotReady);
+
+        engine.build(&host).unwrap();
+        engine.session().prepare();
+        let line = |z: f64| {
+            let question = json!({ "observer": [1.0, 6.0, z], "target": [11.0, 6.0, z] }).to_string();
+            let reply = engine.session().ask("ask/line", question.as_bytes(), &Control::none()).unwrap();
+            head(&reply)
+        };
+        // through the block, and above it
+        assert_eq!((&line(1.0)["answer"], &line(4.0)["answer"]), (&json!("blocked"), &json!("visible")));
+        assert!(line(1.0)["command"].as_str().unwrap().contains("block.xyz --crs EPSG:7415"));
+        assert_eq!(host.stages.lock().unwrap()[0], "reading");
+    }
+
+    #[test]
+    fn more_points_than_fit_are_refused_with_both_numbers() {
+        let refusal = Engine::open(&request(3599), &block()).unwrap_err().to_string();
+        assert!(refusal.contains("3600 points") && refusal.contains("(3599)"), "{refusal}");
+    }
+
+    #[test]
+    fn only_the_window_is_read() {
+        let window = Some([0.0, 0.0, 5.95, 12.0]);
+        let engine = Engine::open(&OpenRequest { window, ..request(10_000) }, &block()).unwrap();
+        let state: Value = serde_json::from_slice(&engine.session().state()).unwrap();
+        assert_eq!(state["shown"]["point_count"], 30 * 60);
+    }
+
+    #[test]
+    fn a_kept_scene_answers_as_the_one_that_was_built() {
+        let mut host = block();
+        let mut built = Engine::open(&request(10_000), &host).unwrap();
+        built.build(&host).unwrap();
+        let question = json!({ "places": [[1.0, 6.0, 1.6]] }).to_string();
+        let seen = |engine: &Engine| engine.session().ask("ask/seen", question.as_bytes(), &Control::none()).unwrap();
+        host.files.push(built.session().scene_file().unwrap());
+        let kept = OpenedFile { name: "scene.npz".to_owned(), id: 1, size: 0 };
+        let mut found = Engine::open(&request(10_000), &host).unwrap();
+        found.build_from(&kept, &host).unwrap();
+        assert!(seen(&found) == seen(&built));
+
+        host.files[1] = b"no scene".to_vec();
+        let mut broken = Engine::open(&request(10_000), &host).unwrap();
+        assert!(broken.build_from(&kept, &host).is_err());
+        // and is then built
+        broken.build(&host).unwrap();
+        assert!(seen(&broken) == seen(&built));
+    }
+}

@@ -1,0 +1,209 @@
+// Uses the site as people do, in Chromium: the demo, a file that is chosen, one by its address, wrong files, two tabs,
+// without threads, without a network. Usage: site.mjs FOLDER PROGRAM BROWSER CLOUD
+import assert from "node:assert/strict";
+import { spawn } from "node:child_process";
+import { mkdtempSync, readFileSync, rmSync, statSync, writeFileSync } from "node:fs";
+import { createServer } from "node:http";
+import { createRequire } from "node:module";
+import { tmpdir } from "node:os";
+import { basename, extname, join } from "node:path";
+import { createInterface } from "node:readline";
+
+const { chromium } = createRequire(new URL("../../../belvedere-viewer/page/", import.meta.url))("playwright-core");
+const [site, program, executablePath, cloud] = process.argv.slice(2);
+const folder = mkdtempSync(join(tmpdir(), "belvedere-site-"));
+const TYPES = { ".html": "text/html", ".js": "text/javascript", ".css": "text/css", ".svg": "image/svg+xml", ".wasm": "application/wasm" };
+const done = [];
+const times = [];
+const started = Date.now();
+
+// A server of files with ranges; what it sent of clouds is counted.
+let sent = 0;
+function serve(isolates) {
+  const server = createServer((request, response) => {
+    const name = decodeURIComponent(new URL(request.url, "http://a").pathname).replace(/\/$/, "/index.html");
+    const path = name === "/tile.laz" ? cloud : join(site, name);
+    let bytes;
+    try {
+      bytes = readFileSync(path);
+    } catch {
+      response.writeHead(404).end();
+      return;
+    }
+    const headers = { "Content-Type": TYPES[extname(path)] ?? "application/octet-stream", "Accept-Ranges": "bytes" };
+    if (isolates) Object.assign(headers, { "Cross-Origin-Opener-Policy": "same-origin", "Cross-Origin-Embedder-Policy": "require-corp" });
+    const range = /bytes=(\d+)-(\d+)/.exec(request.headers.range ?? "");
+    if (range) {
+      const [first, last] = [Number(range[1]), Math.min(Number(range[2]), bytes.length - 1)];
+      sent += last - first + 1;
+      response.writeHead(206, { ...headers, "Content-Range": `bytes ${first}-${last}/${bytes.length}`, "Content-Length": last - first + 1 });
+      response.end(bytes.subarray(first, last + 1));
+      return;
+    }
+    response.writeHead(200, { ...headers, "Content-Length": bytes.length });
+    response.end(request.method === "HEAD" ? undefined : bytes);
+  });
+  return new Promise((found) => server.listen(0, "127.0.0.1", () => found([server, `http://127.0.0.1:${server.address().port}/`])));
+}
+const problems = [];
+function watched(page, url) {
+  page.on("pageerror", (error) => problems.push(error.message));
+  page.on("request", (request) => { if (!request.url().startsWith(url) && !/^(blob|data):/.test(request.url())) problems.push(`fetches ${request.url()}`); });
+  page.on("console", (message) => { if (/Content.Security/.test(message.text())) problems.push(message.text()); });
+  return page;
+}
+const isReady = () => window.belvedere?.isLoaded && window.belvedere.ready;
+const ready = (page) => page.waitForFunction(isReady, null, { timeout: 120_000 });
+const message = async (page) => {
+  await page.waitForFunction(() => !document.getElementById("message").hidden && document.getElementById("message").innerText, null, { timeout: 20_000 });
+  return page.evaluate(() => document.getElementById("message").innerText);
+};
+async function step(name, work) {
+  await work();
+  done.push(name);
+}
+// Points that are lit, and a number that tells all answers apart.
+const shadow = async (page) => {
+  await page.evaluate(() => { Object.assign(belvedere.time, { date: "2026-06-21", zone: "Europe/Amsterdam", minutes: 900 }); belvedere.choose("shadow"); });
+  await page.waitForFunction(() => belvedere.last?.body && !belvedere.last.isFirst && document.querySelector("#took"), null, { timeout: 60_000 });
+  return page.evaluate(async () => {
+    const digest = await crypto.subtle.digest("SHA-256", belvedere.last.body);
+    return [belvedere.last.lit, [...new Uint8Array(digest)].join()];
+  });
+};
+async function ofProgram() {
+  const child = spawn(program, ["view", cloud, "--no-browser"], { stdio: ["ignore", "pipe", "ignore"] });
+  const [url] = await new Promise((found) => createInterface({ input: child.stdout }).once("line", (line) => found([line])));
+  while (!(await (await fetch(`${url}state`)).json()).scene) await new Promise((go) => setTimeout(go, 300));
+  const body = JSON.stringify({ time: "2026-06-21T15:00", zone: "Europe/Amsterdam" });
+  const bytes = new Uint8Array(await (await fetch(`${url}ask/shadow`, { method: "POST", headers: { "Content-Type": "application/json" }, body })).arrayBuffer());
+  child.kill();
+  const length = new DataView(bytes.buffer).getUint32(0, true);
+  const digest = await crypto.subtle.digest("SHA-256", bytes.slice(4 + length));
+  return [JSON.parse(new TextDecoder().decode(bytes.subarray(4, 4 + length))).lit, [...new Uint8Array(digest)].join()];
+}
+
+async function main() {
+  const [isolating, url] = await serve(true);
+  const [plain, plainUrl] = await serve(false);
+  const browser = await chromium.launch({ executablePath, args: ["--no-sandbox", "--enable-unsafe-swiftshader", "--use-angle=swiftshader"] });
+  const expected = await ofProgram();
+  const context = await browser.newContext({ viewport: { width: 1280, height: 720 } });
+  const page = watched(await context.newPage(), url);
+  await page.goto(url);
+  const open = async (own, path) => {
+    const from = Date.now();
+    await own.setInputFiles("#choose", path);
+    await ready(own);
+    return (Date.now() - from) / 1000;
+  };
+
+  await step("a file that is chosen answers as the program does, with threads", async () => {
+    assert.ok(await page.evaluate(() => crossOriginIsolated));
+    const seconds = await open(page, cloud);
+    assert.deepEqual(await shadow(page), expected);
+    times.push(`scene with threads ${seconds.toFixed(1)} s`);
+  });
+  await step("the scene is kept, and found the next time", async () => {
+    await page.waitForFunction(async () => {
+      const folder = await (await navigator.storage.getDirectory()).getDirectoryHandle("scenes").catch(() => null);
+      for await (const handle of folder?.values() ?? []) if ((await handle.getFile()).size > 1000) return true;
+      return false;
+    }, null, { timeout: 60_000, polling: 300 });
+    // the file appears before it is whole: no other tab can open it until then
+    await page.waitForTimeout(1500);
+    await page.goto("about:blank");
+    await page.goto(url);
+    await page.waitForFunction(() => !document.getElementById("kept").hidden);
+    assert.match(await page.evaluate(() => document.getElementById("kept").innerText), /1 scene is kept/);
+    const stages = page.waitForFunction(() => document.querySelector("#progress p").textContent.includes("kept"), null, { timeout: 60_000, polling: "raf" }).catch(() => null);
+    const seconds = await open(page, cloud);
+    assert.deepEqual(await shadow(page), expected);
+    await stages;
+    times.push(`the second time ${seconds.toFixed(1)} s`);
+    await page.evaluate(async () => (await navigator.storage.getDirectory()).removeEntry("scenes", { recursive: true }));
+  });
+  await step("a question of one place", async () => {
+    await page.click("#tools [data-tool=seen]");
+    await page.keyboard.press("Escape");
+    await page.click("#tools [data-tool=around]");
+    await page.mouse.click(640, 420);
+    await page.waitForFunction(() => document.querySelector("#took") || document.querySelector("#card .verdict") || !document.getElementById("message").hidden, null, { timeout: 60_000 });
+  });
+  await step("without shared memory there is one thread, and the same answer", async () => {
+    const alone = await browser.newContext({ viewport: { width: 1280, height: 720 }, serviceWorkers: "block" });
+    const own = watched(await alone.newPage(), plainUrl);
+    await own.goto(plainUrl);
+    assert.ok(!await own.evaluate(() => crossOriginIsolated));
+    const seconds = await open(own, cloud);
+    assert.deepEqual(await shadow(own), expected);
+    times.push(`scene without threads ${seconds.toFixed(1)} s`);
+    await alone.close();
+  });
+  await step("files that are none are refused in words", async () => {
+    const own = watched(await context.newPage(), url);
+    for (const [name, content, words] of [["broken.laz", "this is no cloud", /broken\.laz/], ["picture.jpg", "abc", /picture\.jpg/]]) {
+      writeFileSync(join(folder, name), content);
+      await own.goto(url);
+      await own.setInputFiles("#choose", join(folder, name));
+      assert.match(await message(own), words);
+    }
+    await own.close();
+  });
+  await step("an address is read by its parts, and can be shared", async () => {
+    sent = 0;
+    const own = watched(await context.newPage(), url);
+    await own.goto(`${url}#open=${encodeURIComponent(`${url}tile.laz`)}`);
+    await ready(own);
+    assert.deepEqual(await shadow(own), expected);
+    const size = statSync(cloud).size;
+    assert.ok(sent > 0 && sent < 1.2 * size + 300_000, `${sent} bytes were sent of a file of ${size}`);
+    await own.goto("about:blank");
+    await own.goto(`${url}#open=${encodeURIComponent(`${url}missing.laz`)}`);
+    assert.match(await message(own), /404/);
+    await own.close();
+  });
+  await step("two tabs with the same file", async () => {
+    const tabs = await Promise.all([0, 1].map(async () => {
+      const own = watched(await context.newPage(), url);
+      await own.goto(url);
+      await own.setInputFiles("#choose", cloud);
+      return own;
+    }));
+    for (const own of tabs) {
+      await ready(own);
+      assert.deepEqual(await shadow(own), expected);
+      await own.close();
+    }
+  });
+  await step("a server without the headers gives threads too, and no network is needed", async () => {
+    const away = await browser.newContext({ viewport: { width: 1280, height: 720 } });
+    const own = watched(await away.newPage(), plainUrl);
+    await own.goto(plainUrl);
+    await own.waitForFunction(() => crossOriginIsolated && navigator.serviceWorker.controller, null, { timeout: 60_000 });
+    await away.setOffline(true);
+    plain.closeAllConnections();
+    plain.close();
+    await own.reload();
+    await own.click("#demo");
+    await ready(own);
+    await away.close();
+  });
+
+  await browser.close();
+  isolating.close();
+  assert.deepEqual(problems, []);
+  console.log(`the site, ${basename(cloud)}: ${done.length} steps passed in ${((Date.now() - started) / 1000).toFixed(0)} s (${times.join(", ")})`);
+}
+
+try {
+  await main();
+} catch (error) {
+  console.error(`the site: ${done.length} steps passed (${done.at(-1) ?? "none"}), then:`);
+  console.error(error);
+  console.error(problems);
+  process.exitCode = 1;
+} finally {
+  rmSync(folder, { recursive: true, force: true });
+  setTimeout(() => process.exit(), 500);
+}
