@@ -5,6 +5,8 @@
 pub mod blocking;
 pub mod clean;
 pub mod depth;
+#[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+mod eight;
 pub mod ground;
 mod instructions;
 pub mod medial;

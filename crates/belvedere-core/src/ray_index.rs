@@ -4,6 +4,8 @@
 mod avx2;
 mod opened;
 mod search_tree;
+#[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+mod simd128;
 mod walk;
 
 pub(crate) use opened::{OpenNode, PartSides};
@@ -17,7 +19,13 @@ use obvhs::aabb::Aabb;
 use obvhs::cwbvh::CwBvh;
 use obvhs::cwbvh::node::CwBvhNode;
 use search_tree::search_tree;
-use walk::{RayScalar, TreeRay, walk};
+#[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+use simd128::RaySimd128 as RayPlain;
+use walk::{TreeRay, walk};
+
+/// What tests boxes on machines without AVX2.
+#[cfg(not(all(target_arch = "wasm32", target_feature = "simd128")))]
+type RayPlain = walk::RayScalar<false>;
 
 /// Padding of the boxes, as a share of the size of the scene: the tree works in f32 and a ray enters it at the box of
 /// the scene, so that its slab test errs by a few units of 6e-8 of that size.
@@ -214,7 +222,7 @@ impl RayIndex {
     #[inline]
     fn walk(&self, ray: TreeRay, visit: impl Visit) {
         match self.instructions {
-            Instructions::Scalar => walk::<RayScalar<false>>(&self.tree.nodes, ray, visit),
+            Instructions::Scalar => walk::<RayPlain>(&self.tree.nodes, ray, visit),
             #[cfg(target_arch = "x86_64")]
             Instructions::Avx2 => avx2::run(&self.tree.nodes, ray, visit),
         }
@@ -442,6 +450,7 @@ fn tree_reach(range: f64) -> f32 {
 
 #[cfg(test)]
 mod tests {
+    use super::walk::RayScalar;
     use super::*;
     use belvedere_data::random::uniform;
     use belvedere_data::vector::piece_in_box;

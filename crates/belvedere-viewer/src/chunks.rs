@@ -129,7 +129,6 @@ impl Chunks {
         let whole = self.rows.len().max(1);
         // the product needs more than 32 bits
         let share = chunk.points.len() as u128 * max.min(whole) as u128 / whole as u128;
-        #[expect(clippy::cast_possible_truncation, reason = "no more than the points of the chunk")]
         let share = share as usize;
         &self.rows[chunk.points.start..chunk.points.start + share]
     }

@@ -164,6 +164,12 @@ impl PageScene {
             let _ = self.points(PointChoice::Sample, &control);
             let _ = self.points(PointChoice::All, &control);
         }
+        self.index_proof();
+    }
+
+    /// Indexes the pulses that prove lines of sight free. What fails here is said by the question that needs it.
+    pub(crate) fn index_proof(&self) {
+        let control = Control::none();
         if let Ok(proving) = self.blockers(UnprovenAs::Reported, &control) {
             let _ = proving.proof().map(|proof| proof.prepare_all(&control));
         }

@@ -126,8 +126,15 @@ impl Session {
         Ok(bytes.into_inner())
     }
 
-    /// Makes what most questions need, so that the first one does not wait for it. Not on a thread of the pool that
-    /// computes: such a thread must not wait for what others of the pool make.
+    /// Indexes the pulses that prove lines of sight free: what threads of the pool that computes must find made where
+    /// they cannot start threads of their own to make it, as in a browser. Not on a thread of that pool.
+    pub fn index_proof(&self) {
+        if let Some(scene) = self.loading.now().scene {
+            scene.index_proof();
+        }
+    }
+
+    /// Makes what most questions need, so that the first one does not wait for it; not on a thread of the pool either.
     pub fn prepare(&self) {
         if let Some(scene) = self.loading.now().scene {
             scene.prepare();

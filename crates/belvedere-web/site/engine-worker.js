@@ -9,6 +9,8 @@ const BYTES_A_POINT = 700;
 const MAX_BYTES = 3.8e9;
 // scenes that are kept in the browser, all together
 const MAX_KEPT_BYTES = 1e9;
+// what the module knows the file of a kept scene by
+const KEPT = 1 << 20;
 const STACK = 1 << 20;
 const MAX_THREADS = 8;
 
@@ -201,11 +203,12 @@ async function found(name) {
   }
   try {
     const file = new KeptFile(handle);
-    files.set(-1 >>> 0, file);
+    files.set(KEPT, file);
     postMessage({ stage: "opening the scene that was kept", total: 0 });
-    if (call("build_from", JSON.stringify({ name: "scene.npz", id: -1 >>> 0, size: file.size })) === 0) return true;
+    if (call("build_from", JSON.stringify({ name: "scene.npz", id: KEPT, size: file.size })) === 0) return true;
+    console.warn(`the scene that was kept cannot be used, and is built again: ${replied()}`);
   } finally {
-    files.delete(-1 >>> 0);
+    files.delete(KEPT);
     handle.close();
   }
   await folder.removeEntry(name).catch(() => {});
@@ -300,29 +303,27 @@ async function open({ files: chosen, crs = null, window = null }) {
     if (engine.build() !== 0) throw new Error(replied());
     keepAs = name;
   }
-  postMessage({ state: JSON.parse(replied()) });
+  const whole = JSON.parse(replied());
+  postMessage({ stage: "indexing pulses", total: 0 });
+  engine.index_proof();
+  postMessage({ state: whole });
   idle = setTimeout(rest, 2000);
 }
 let idle = null;
 // What is done while nobody asks: what most questions need, and keeping the scene.
 async function rest() {
-  prepare();
+  if (!isPrepared) engine.prepare();
+  isPrepared = true;
   const name = keepAs;
   keepAs = null;
   if (name) await keep(name);
 }
-function prepare() {
-  if (!isPrepared) engine.prepare();
-  isPrepared = true;
-}
 function answer({ path, body }) {
   clearTimeout(idle);
-  // the shadow needs nothing else; whatever needs it is made here, not by a thread of the pool
-  if (path !== "ask/shadow") prepare();
   const isRefused = call("ask", path, body) !== 0;
   if (isRefused) postMessage({ reply: true, refused: replied() });
   else postMessage({ reply: reply.buffer }, [reply.buffer]);
-  idle = setTimeout(rest, 300);
+  if (keepAs || !isPrepared) idle = setTimeout(rest, 2000);
 }
 
 // one message after the other, also where one waits for the browser

@@ -202,6 +202,10 @@ mod tests {
         fn advance(&self, _count: usize) {}
     }
 
+    /// Where the floor begins, in a system of the Netherlands.
+    const WEST: f64 = 155_000.0;
+    const SOUTH: f64 = 463_000.0;
+
     /// A floor of 12 m with a block of 4 m by 4 m and 3 m, as text.
     fn block() -> Memory {
         let mut text = String::from("x y z\n");
@@ -209,7 +213,8 @@ mod tests {
             for j in 0..60 {
                 let (x, y) = (f64::from(i) * 0.2 + 0.01 * f64::from(j % 3), f64::from(j) * 0.2);
                 let is_block = (4.0..8.0).contains(&x) && (4.0..8.0).contains(&y);
-                text.push_str(&format!("{x:.2} {y:.2} {}\n", if is_block { 3.0 } else { 0.0 }));
+                let [east, north] = [WEST + x, SOUTH + y];
+                text.push_str(&format!("{east:.2} {north:.2} {}\n", if is_block { 3.0 } else { 0.0 }));
             }
         }
         Memory { files: vec![text.into_bytes()], ..Memory::default() }
@@ -231,14 +236,16 @@ mod tests {
         let mut engine = Engine::open(&request(10_000), &host).unwrap();
         let state: Value = serde_json::from_slice(&engine.session().state()).unwrap();
         assert_eq!((&state["title"], &state["shown"]["point_count"]), (&json!("block.xyz"), &json!(3600)));
-        let question = json!({ "observer": [1.0, 6.0, 1.0], "target": [11.0, 6.0, 1.0] }).to_string();
+        let question = json!({ "observer": [WEST + 1.0, SOUTH + 6.0, 1.0], "target": [WEST + 11.0, SOUTH + 6.0, 1.0] })
+            .to_string();
         let refused = engine.session().ask("ask/line", question.as_bytes(), &Control::none()).unwrap_err();
         assert_eq!(refused, Refusal::NotReady);
 
         engine.build(&host).unwrap();
         engine.session().prepare();
         let line = |z: f64| {
-            let question = json!({ "observer": [1.0, 6.0, z], "target": [11.0, 6.0, z] }).to_string();
+            let question = json!({ "observer": [WEST + 1.0, SOUTH + 6.0, z], "target": [WEST + 11.0, SOUTH + 6.0, z] })
+                .to_string();
             let reply = engine.session().ask("ask/line", question.as_bytes(), &Control::none()).unwrap();
             head(&reply)
         };
@@ -256,7 +263,7 @@ mod tests {
 
     #[test]
     fn only_the_window_is_read() {
-        let window = Some([0.0, 0.0, 5.95, 12.0]);
+        let window = Some([WEST, SOUTH, WEST + 5.95, SOUTH + 12.0]);
         let engine = Engine::open(&OpenRequest { window, ..request(10_000) }, &block()).unwrap();
         let state: Value = serde_json::from_slice(&engine.session().state()).unwrap();
         assert_eq!(state["shown"]["point_count"], 30 * 60);
@@ -267,7 +274,7 @@ mod tests {
         let mut host = block();
         let mut built = Engine::open(&request(10_000), &host).unwrap();
         built.build(&host).unwrap();
-        let question = json!({ "places": [[1.0, 6.0, 1.6]] }).to_string();
+        let question = json!({ "place": [WEST + 1.0, SOUTH + 6.0, 1.6] }).to_string();
         let seen = |engine: &Engine| engine.session().ask("ask/seen", question.as_bytes(), &Control::none()).unwrap();
         host.files.push(built.session().scene_file().unwrap());
         let kept = OpenedFile { name: "scene.npz".to_owned(), id: 1, size: 0 };

@@ -205,6 +205,15 @@ extern "C" fn scene_file() -> u32 {
     with_engine(|engine| engine.session().scene_file())
 }
 
+/// Makes what must be there before the first question; the reply is empty.
+#[unsafe(no_mangle)]
+extern "C" fn index_proof() -> u32 {
+    with_engine(|engine| {
+        engine.session().index_proof();
+        Ok(Vec::new())
+    })
+}
+
 /// Makes what most questions need; the reply is empty.
 #[unsafe(no_mangle)]
 extern "C" fn prepare() -> u32 {

@@ -75,6 +75,10 @@ pub(super) trait Lanes {
 }
 
 /// One lane after the other.
+#[cfg_attr(
+    all(target_arch = "wasm32", target_feature = "simd128"),
+    expect(dead_code, reason = "simd128.rs takes its place")
+)]
 pub(super) struct NeighborScalar;
 
 #[expect(clippy::needless_range_loop, reason = "reads like the eight lanes of avx2.rs that it must agree with")]

@@ -19,6 +19,8 @@ mod avx2;
 mod build;
 mod lanes;
 mod search;
+#[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+mod simd128;
 mod tangent_ball;
 
 pub use crate::instructions::Instructions;
@@ -26,7 +28,11 @@ pub use tangent_ball::Tangent;
 
 use belvedere_data::control::Control;
 use belvedere_data::{Error, Parameter, Result};
+#[cfg(not(all(target_arch = "wasm32", target_feature = "simd128")))]
+use lanes::NeighborScalar as NeighborPlain;
 use lanes::{LaneBlock, WideNode};
+#[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+use simd128::NeighborSimd128 as NeighborPlain;
 
 /// A point found, by its index in the array the index was built from.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -119,7 +125,7 @@ impl NeighborIndex {
     #[must_use]
     pub fn nearest_within(&self, query: [f32; 3], bound_squared: f32) -> Option<Neighbor> {
         match self.instructions {
-            Instructions::Scalar => search::nearest::<lanes::NeighborScalar>(self, query, bound_squared),
+            Instructions::Scalar => search::nearest::<NeighborPlain>(self, query, bound_squared),
             #[cfg(target_arch = "x86_64")]
             Instructions::Avx2 => avx2::nearest(self, query, bound_squared),
         }
@@ -129,7 +135,7 @@ impl NeighborIndex {
     /// by index.
     pub fn k_nearest(&self, query: [f32; 3], k: usize, found: &mut Vec<Neighbor>) {
         match self.instructions {
-            Instructions::Scalar => search::k_nearest::<lanes::NeighborScalar>(self, query, k, found),
+            Instructions::Scalar => search::k_nearest::<NeighborPlain>(self, query, k, found),
             #[cfg(target_arch = "x86_64")]
             Instructions::Avx2 => avx2::k_nearest(self, query, k, found),
         }
@@ -139,7 +145,7 @@ impl NeighborIndex {
     /// only.
     pub fn within_radius(&self, query: [f32; 3], radius: f32, visit: impl FnMut(Neighbor)) {
         match self.instructions {
-            Instructions::Scalar => search::within_radius::<lanes::NeighborScalar>(self, query, radius, visit),
+            Instructions::Scalar => search::within_radius::<NeighborPlain>(self, query, radius, visit),
             #[cfg(target_arch = "x86_64")]
             Instructions::Avx2 => avx2::within_radius(self, query, radius, visit),
         }
@@ -152,7 +158,7 @@ impl NeighborIndex {
     #[must_use]
     pub fn smallest_tangent_ball(&self, tangent: &Tangent, max_radius: f32) -> Option<(f32, u32)> {
         match self.instructions {
-            Instructions::Scalar => tangent_ball::search::<lanes::NeighborScalar>(self, tangent, max_radius),
+            Instructions::Scalar => tangent_ball::search::<NeighborPlain>(self, tangent, max_radius),
             #[cfg(target_arch = "x86_64")]
             Instructions::Avx2 => avx2::smallest_tangent_ball(self, tangent, max_radius),
         }

@@ -12,6 +12,8 @@ mod avx2;
 mod beam;
 mod blockers;
 mod lanes;
+#[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+mod simd128;
 mod sweep;
 
 use super::backend::{LineAnswer, Settled, Viewers};

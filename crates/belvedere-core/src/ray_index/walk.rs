@@ -61,6 +61,10 @@ pub(super) trait Test {
 
 /// One box after the other: every machine. With `FUSED`, products are added before they are rounded, which is slow on
 /// machines that have no such instruction.
+#[cfg_attr(
+    all(target_arch = "wasm32", target_feature = "simd128"),
+    expect(dead_code, reason = "simd128.rs takes its place")
+)]
 pub(super) struct RayScalar<const FUSED: bool>;
 
 impl<const FUSED: bool> Test for RayScalar<FUSED> {

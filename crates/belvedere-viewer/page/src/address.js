@@ -11,9 +11,9 @@ const wordsOf = (hash) => new URLSearchParams(hash.slice(1));
 
 function written() {
   const { tool, time, places } = page;
-  // a page that opens files itself has the address of its file there
-  const opened = wordsOf(location.hash).get("open");
-  const words = { ...(opened ? { open: opened } : {}), q: tool.name, d: time.date, t: clockText(time.minutes), z: time.zone };
+  // a page that opens files itself has there what it opened
+  const opened = [...wordsOf(location.hash)].filter(([name]) => ["open", "crs", "window"].includes(name));
+  const words = { ...Object.fromEntries(opened), q: tool.name, d: time.date, t: clockText(time.minutes), z: time.zone };
   if (time.trees !== "opaque") words.trees = time.trees;
   if (tool.name !== "plan" && places.length) words.p = places.map(({ clicked }) => toFile(clicked).join(",")).join(";");
   if (tool.above !== undefined) words.h = tool.above;

@@ -2,6 +2,7 @@
 import {
   BufferAttribute, BufferGeometry, Color, DataTexture, DoubleSide, Frustum, GLSL3, Matrix4, Mesh, Points, RawShaderMaterial, RGBAFormat, Scene, Sphere, UnsignedByteType, Vector2, Vector3,
 } from "three";
+import { classTable } from "./colors.js";
 import { Screen, target, uniforms } from "./screen.js";
 import { BALL_FRAGMENT, BALL_VERTEX, MESH_FRAGMENT, MESH_VERTEX, POINT_FRAGMENT, POINT_VERTEX } from "./shaders.js";
 import { measure, unknown } from "./surface.js";
@@ -31,7 +32,9 @@ export class Cloud {
     // most points that one frame draws
     this.budget = 1e6;
     this.table = new DataTexture(new Uint8Array(1024), 256, 1, RGBAFormat, UnsignedByteType);
-    this.own = uniforms({ table: this.table, mode: 2, heights: new Vector2(), size: 0.3, pixels: 1, far: 1000, most: 40, cleared: CLEARED, light: 1, sun: DAYLIGHT.clone() });
+    const classes = new DataTexture(new Uint8Array(classTable().flatMap((color) => [...color, 255])), 256, 1, RGBAFormat, UnsignedByteType);
+    classes.needsUpdate = true;
+    this.own = uniforms({ table: this.table, classes, tint: 0, mode: 2, heights: new Vector2(), size: 0.3, pixels: 1, far: 1000, most: 40, cleared: CLEARED, light: 1, sun: DAYLIGHT.clone() });
     this.target = target();
     this.screen = new Screen(renderer);
     // whether whole pictures take no longer than those that move may
@@ -127,7 +130,8 @@ export class Cloud {
     object.material.needsUpdate = true;
   }
 
-  paint({ mode, table, light = LIGHTS[mode] }, own = this.own) {
+  paint({ mode, table, light = LIGHTS[mode], tint = 0 }, own = this.own) {
+    own.tint.value = tint;
     table.forEach((color, i) => own.table.value.image.data.set([...color.map(Math.round), 255], 4 * i));
     own.table.value.needsUpdate = true;
     own.mode.value = mode;
@@ -138,7 +142,7 @@ export class Cloud {
   layer(low, step, places, values, size, paint, none = -1) {
     this.clearLayer();
     const table = new DataTexture(new Uint8Array(1024), 256, 1, RGBAFormat, UnsignedByteType);
-    const shared = { ...this.own, ...uniforms({ table, mode: 4, size, cleared: none, light: 0 }) };
+    const shared = { ...this.own, ...uniforms({ table, mode: 4, size, cleared: none, light: 0, tint: 0 }) };
     this.add(low, step, places, values, 0, shared, this.extra);
     this.paint({ ...paint, light: 0 }, shared);
     this.layerOwn = shared;

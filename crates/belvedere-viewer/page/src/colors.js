@@ -32,20 +32,21 @@ export const ANSWERS = () => {
     3: ["no answer", "#30343a"], 4: ["outside the cloud", "#30343a"], 5: ["inside an obstacle", "#30343a"], 255: ["no answer", "#30343a"],
   };
 };
-export const LIGHT = { 0: ["in shadow", "#33406f"], 1: ["lit", "#ffd36b"], 2: ["lit, unproven", "#6ea5ff"], 255: ["no answer", "#777777"] };
+export const LIGHT = { 0: ["in shadow", "#33406f"], 1: ["lit", "#ffdf9c"], 2: ["lit, unproven", "#6ea5ff"], 255: ["no answer", "#777777"] };
 
 const named = (names, others) => {
   const table = Array.from({ length: 256 }, () => rgb(others));
   for (const [code, [, color]] of Object.entries(names)) table[code] = rgb(color);
   return table;
 };
+export const classTable = () => named(CLASSES, "#b4b8bd");
 const keys = (names, codes) => codes.map((code) => ({ color: names[code]?.[1] ?? "#b4b8bd", text: names[code]?.[0] ?? `class ${code}` }));
 
 // A way of colouring: `mode` is the number that the shader knows, `table` its 256 colours, `legend` what they mean.
 export function coloring(name, scene, answer) {
   switch (name) {
     case "class":
-      return { mode: 0, table: named(CLASSES, "#b4b8bd"), legend: { title: "Class", keys: keys(CLASSES, scene.classes.map(([code]) => code)) } };
+      return { mode: 0, table: classTable(), legend: { title: "Class", keys: keys(CLASSES, scene.classes.map(([code]) => code)) } };
     case "intensity":
       return { mode: 1, table: ramp(GREY), legend: { title: "Intensity", gradient: gradient(GREY), ends: ["weak", "strong"] } };
     case "height": {
@@ -66,7 +67,7 @@ export const ofAnswers = (counts, title = "From the clicked place") => {
   const codes = [1, ...(counts.tells_unproven ? [2] : []), 0];
   return { mode: 4, table: named(names, "#30343a"), legend: { title, keys: keys(names, codes) } };
 };
-export const ofLight = (answer) => ({ mode: 4, table: named(LIGHT, "#777777"), legend: { title: "Sun", keys: keys(LIGHT, [1, ...(answer?.tells_unproven ? [2] : []), 0]) } });
+export const ofLight = (answer) => ({ mode: 4, table: named(LIGHT, "#777777"), tint: 1, legend: { title: "Sun", keys: keys(LIGHT, [1, ...(answer?.tells_unproven ? [2] : []), 0]) } });
 export const ofHours = (low, high) => ({
   mode: 4, table: ramp(SUN), legend: { title: "Hours of sun on the day", gradient: gradient(SUN), ends: [low, high].map((v) => `${v.toFixed(1)} h`) },
 });

@@ -83,7 +83,8 @@ page.changePlan = change;
 // The plan of this tab before it was loaded again.
 export async function restore() {
   const kept = sessionStorage.getItem(KEPT);
-  if (!kept) return;
+  // a page that opens files itself may have opened another
+  if (!kept || api.opens) return;
   [page.plan, page.loadedMeshes] = JSON.parse(kept);
   await make();
   show();

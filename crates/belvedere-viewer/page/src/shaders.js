@@ -14,7 +14,7 @@ in uint rgb565;
 const uint rgb565 = 0u;
 #endif
 uniform mat4 modelViewMatrix, projectionMatrix; uniform vec3 low, step3, sun; uniform vec2 heights; uniform int mode, cleared; uniform float size, pixels, most, light;
-uniform sampler2D table; flat out vec3 color; flat out vec2 slope; flat out vec2 range;
+uniform sampler2D table, classes; uniform float tint; flat out vec3 color; flat out vec2 slope; flat out vec2 range;
 void main() {
   vec3 local = low + vec3(place.xyz) * step3;
   vec4 view = modelViewMatrix * vec4(local, 1.0);
@@ -40,6 +40,8 @@ void main() {
   else if (mode == 2) index = clamp((local.z - heights.x) / max(heights.y - heights.x, 0.001), 0.0, 1.0) * 255.0; else index = float(value);
   color = mode == 3 ? vec3(float(rgb565 >> 11u) / 31.0, float((rgb565 >> 5u) & 63u) / 63.0, float(rgb565 & 31u) / 31.0)
     : texture(table, vec2((index + 0.5) / 256.0, 0.5)).rgb;
+  // an answer on what is there: roofs, trees and ground stay known
+  color *= mix(vec3(1.0), 0.35 + 0.9 * texture(classes, vec2((float(place.w & 255u) + 0.5) / 256.0, 0.5)).rgb, tint);
   color *= mix(1.0, shine, light);
 }`;
 export const POINT_FRAGMENT = `precision highp float; flat in vec3 color; flat in vec2 slope; flat in vec2 range; uniform mat4 projectionMatrix; uniform float far;

@@ -113,9 +113,11 @@ export function startScreen(whenOpen) {
   };
   $("address").onsubmit = (event) => {
     event.preventDefault();
-    const url = $("address-typed").value.trim();
-    history.replaceState(null, "", `#${new URLSearchParams({ open: url })}`);
-    begin([ofAddress(url)], whenOpen);
+    const words = { open: "address-typed", crs: "crs-typed", window: "window-typed" };
+    const typed = Object.entries(words).map(([name, id]) => [name, $(id).value.trim()]).filter(([, value]) => value);
+    // a link to all of it
+    history.replaceState(null, "", `#${new URLSearchParams(typed)}`);
+    begin([ofAddress($("address-typed").value.trim())], whenOpen);
   };
   $("cancel").hidden = false;
   // only the end of the worker ends what it computes
@@ -131,8 +133,10 @@ export function startScreen(whenOpen) {
     if (!$("start").hidden) take(event.dataTransfer.files);
   });
   showKept();
-  const address = fromFragment().get("open");
-  if (address) begin([ofAddress(address)], whenOpen);
+  const words = fromFragment();
+  $("crs-typed").value = words.get("crs") ?? "";
+  $("window-typed").value = words.get("window") ?? "";
+  if (words.get("open")) begin([ofAddress(words.get("open"))], whenOpen);
 }
 // The program's parts are kept for use without a network, and the page may share memory between threads.
 export async function stayOffline() {

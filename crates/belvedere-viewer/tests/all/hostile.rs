@@ -187,7 +187,7 @@ fn huge_false_and_slow_requests_do_no_harm() {
         assert_eq!(plan("ask/plan", body).0, 422, "{body}");
     }
     assert_eq!(plan("plans/7/ask/seen", "{\"place\":[2,2,1.7]}").0, 422);
-    assert_eq!(plan("plans/x/ask/seen", "{}").0, 400);
+    assert_eq!(plan("plans/x/ask/seen", "{}").0, 404);
     // 8: deep nesting, and a head without end
     assert_eq!(response(&host, &token, &"[".repeat(60_000)).0, 422);
     let long = format!("GET /{token}/state HTTP/1.1\r\n{own}X: {}\r\n\r\n", "a".repeat(2_000_000));

@@ -1,5 +1,5 @@
 // The module answers as the program does: every part and every question, byte for byte. Numbers of heads may differ by
-// 1e-9, since sine and cosine come from the platform. Usage: equal.mjs ENGINE PROGRAM CLOUD...
+// 1e-9, since sine and cosine come from the platform. Usage: equal.mjs ENGINE PROGRAM CLOUD[=CRS]...
 import assert from "node:assert/strict";
 import { spawn } from "node:child_process";
 import { basename } from "node:path";
@@ -23,8 +23,8 @@ function assertNear(a, b, where) {
 }
 const same = (a, b) => Buffer.compare(Buffer.from(a.buffer, a.byteOffset, a.byteLength), Buffer.from(b.buffer, b.byteOffset, b.byteLength)) === 0;
 
-async function served(cloud) {
-  const child = spawn(program, ["view", cloud, "--no-browser"], { stdio: ["ignore", "pipe", "ignore"] });
+async function served(cloud, crs) {
+  const child = spawn(program, ["view", cloud, ...(crs ? ["--crs", crs] : []), "--no-browser"], { stdio: ["ignore", "pipe", "ignore"] });
   process.on("exit", () => child.kill());
   const [url] = await new Promise((found) => createInterface({ input: child.stdout }).once("line", (line) => found([line])));
   let state;
@@ -81,44 +81,54 @@ const foreign = module.imports.filter(({ module: from, name }) => !(from === "ho
 // what a crate that reads clocks brings along is never called: module.mjs would throw
 assert.ok(foreign.every(({ module: from }) => from.startsWith("__wbindgen")), JSON.stringify(foreign));
 
-for (const cloud of clouds) {
+// All that the program says of a cloud, and then nothing more: while the module computes, connections would time out.
+async function ofProgram(cloud, crs) {
+  const { child, url, state } = await served(cloud, crs);
+  const get = async (path) => new Uint8Array(await (await fetch(url + path)).arrayBuffer());
+  const { chunks, has_color: hasColor } = state.shown;
+  const parts = [];
+  for (const path of ["balls", ...chunks.flatMap((_, i) => [`points/${i}`, ...(hasColor ? [`colors/${i}`] : [])])]) parts.push([path, await get(path)]);
+  const answers = [];
+  for (const [path, values] of questions(state, parts.find(([name]) => name === "points/0")[1])) {
+    const body = JSON.stringify(values);
+    const response = await fetch(url + path, { method: "POST", headers: { "Content-Type": "application/json" }, body });
+    answers.push({ path, body, isRefused: !response.ok, bytes: new Uint8Array(await response.arrayBuffer()) });
+  }
+  child.kill();
+  return { state, parts, answers };
+}
+
+for (const named of clouds) {
+  const [cloud, crs] = named.split("=");
+  const native = await ofProgram(cloud, crs);
   const from = performance.now();
   const own = await moduleOf(engine);
-  const opened = own.json("open", JSON.stringify({ files: [own.add(cloud)], most_points: 1e7 }));
+  const opened = own.json("open", JSON.stringify({ files: [own.add(cloud)], crs, most_points: 1e7 }));
   const read = performance.now();
   const state = own.json("build");
   const built = performance.now();
   own.call("prepare");
   const prepared = performance.now();
-  const native = await served(cloud);
-  const get = async (path) => new Uint8Array(await (await fetch(native.url + path)).arrayBuffer());
   assertNear(native.state.shown, state.shown, "state.shown");
   assertNear(native.state.scene, state.scene, "state.scene");
   assert.equal(opened.scene, null);
-  const parts = ["balls", ...state.shown.chunks.flatMap((_, i) => [`points/${i}`, ...(state.shown.has_color ? [`colors/${i}`] : [])])];
-  for (const path of parts) assert.ok(same(await get(path), own.call("ask", path, "").bytes), `${path} differs`);
-  const points = own.call("ask", "points/0", "").bytes;
+  for (const [path, bytes] of native.parts) assert.ok(same(bytes, own.call("ask", path, "").bytes), `${path} differs`);
   let bytes = 0;
   const refusals = [];
-  for (const [path, values] of questions(state, points)) {
-    const body = JSON.stringify(values);
-    const response = await fetch(native.url + path, { method: "POST", headers: { "Content-Type": "application/json" }, body });
-    const reply = new Uint8Array(await response.arrayBuffer());
+  const text = (value) => new TextDecoder().decode(value);
+  for (const { path, body, isRefused, bytes: reply } of native.answers) {
     const answer = own.call("ask", path, body);
-    const text = (bytes) => new TextDecoder().decode(bytes);
-    if (answer.refused || !response.ok) {
+    if (answer.refused || isRefused) {
       refusals.push(path);
-      assert.equal(answer.refused && text(answer.bytes), !response.ok && JSON.parse(text(reply)).error, path);
+      assert.equal(answer.refused && text(answer.bytes), isRefused && JSON.parse(text(reply)).error, path);
       continue;
     }
-    const [[head, values_], [ownHead, ownValues]] = [reply, answer.bytes].map(split);
+    const [[head, values], [ownHead, ownValues]] = [reply, answer.bytes].map(split);
     // the program names the path that was typed
-    const plain = (value) => JSON.parse(JSON.stringify(value).replaceAll(cloud, basename(cloud)));
-    assertNear(plain(head), ownHead, path);
-    assert.ok(same(values_, ownValues), `${path} ${body}: the values differ`);
+    assertNear(JSON.parse(JSON.stringify(head).replaceAll(cloud, basename(cloud))), ownHead, path);
+    assert.ok(same(values, ownValues), `${path} ${body}: the values differ`);
     bytes += ownValues.length;
   }
-  native.child.kill();
   own.close();
   const seconds = (a, b) => ((b - a) / 1000).toFixed(1);
   console.log(`${basename(cloud)}: ${state.shown.point_count} points, ${state.scene.ball_count} balls, ${bytes} bytes of answers are the same, and refusals of ${refusals.join(", ")}; read ${seconds(from, read)} s, built ${seconds(read, built)} s, prepared ${seconds(built, prepared)} s, ${own.megabytes().toFixed(0)} MB`);

@@ -2,7 +2,11 @@
 
 use super::beam::{Apex, Beam};
 use super::blockers::{BallBlock, BeamBlock, Blocks, IndexNode, LANES, NodeBlock};
-use super::lanes::{BeamScalar, HalfLine, Kernels, LaneBits, LaneColumns};
+#[cfg(not(all(target_arch = "wasm32", target_feature = "simd128")))]
+use super::lanes::BeamScalar;
+use super::lanes::{HalfLine, Kernels, LaneBits, LaneColumns};
+#[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+use super::simd128::BeamSimd128 as BeamPlain;
 use crate::blocking::{Ball, Profile};
 use crate::query::target_tree::{LEAF, TargetNode, TargetTree};
 use crate::query::{MedialScene, Viewer};
@@ -11,6 +15,10 @@ use belvedere_data::control::Control;
 use belvedere_data::vector::{dot, sub};
 use belvedere_data::{Error, Result};
 use std::ops::Range;
+
+/// What tests a beam on machines without AVX2.
+#[cfg(not(all(target_arch = "wasm32", target_feature = "simd128")))]
+type BeamPlain = BeamScalar<false>;
 
 /// What f32 may err by in the test of a beam, as a share of the largest coordinate: a dozen roundings of 6e-8, fewer
 /// where products are fused. Sides of boxes are rounded twice more; boxes are padded by at least as much
@@ -87,7 +95,7 @@ impl<'a> TreeSweep<'a> {
         if super::avx2::search(self, node, visit) {
             return;
         }
-        self.search::<BeamScalar<false>>(node, visit);
+        self.search::<BeamPlain>(node, visit);
     }
 
     /// Calls `visit` as [`TreeSweep::run`] does, with the kernels `K`. All that it calls is inlined, so that it can be
