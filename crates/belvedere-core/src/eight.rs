@@ -1,4 +1,4 @@
-//! Eight numbers at once in WebAssembly (128 bits at a time): what indexes test boxes, points and balls with in a browser.
+//! Eight numbers at once in WebAssembly, in two halves: what indexes test boxes, points and balls with in a browser.
 
 use core::arch::wasm32::*;
 

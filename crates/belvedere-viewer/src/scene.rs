@@ -175,8 +175,8 @@ impl PageScene {
         }
     }
 
-    /// [`Self::prepare`] on a thread of its own: not on one of the pool, which must not wait for locks. Where the system
-    /// has none, the first question makes what it needs; in a browser, whoever owns the session calls `prepare`.
+    /// [`Self::prepare`] on a thread of its own: not on one of the pool, which must not wait for locks. Where the
+    /// system has none, the first question makes what it needs; in a browser the owner of the session calls `prepare`.
     pub(crate) fn prepare_aside(self: &Arc<Self>) {
         #[cfg(feature = "server")]
         {

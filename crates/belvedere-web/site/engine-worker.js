@@ -20,7 +20,7 @@ let memory = null;
 let reply = null;
 let version = "";
 let isPool = false;
-let told = 0;
+let reportedAt = 0;
 let isPrepared = false;
 let keepAs = null;
 const threads = [];
@@ -45,13 +45,13 @@ const host = {
   },
   reply: (at, length) => { reply = copy(at, length); },
   stage: (at, length, total) => {
-    told = performance.now();
+    reportedAt = performance.now();
     postMessage({ stage: textAt(at, length), total });
   },
   tick: () => {
     // the page itself looks at shared memory
-    if (isPool || self.crossOriginIsolated || performance.now() - told < 150) return;
-    told = performance.now();
+    if (isPool || self.crossOriginIsolated || performance.now() - reportedAt < 150) return;
+    reportedAt = performance.now();
     postMessage({ done: new Uint32Array(memory.buffer, engine.progress(), 1)[0] });
   },
   failed: (at, length) => { postMessage({ lost: textAt(at, length) }); },
@@ -282,11 +282,11 @@ async function open({ files: chosen, crs = null, window = null }) {
     files.set(id, source);
     return { name, id, size: source.size };
   });
-  const request = { files: opened, crs, window, most_points: mostPoints() };
+  const request = { files: opened, crs, window, max_points: mostPoints() };
   call("announced", JSON.stringify(opened));
   const announced = JSON.parse(replied());
-  if (!window && announced?.points > request.most_points) {
-    postMessage({ tooMany: { ...announced, most: request.most_points } });
+  if (!window && announced?.points > request.max_points) {
+    postMessage({ tooMany: { ...announced, most: request.max_points } });
     return;
   }
   if (call("open", JSON.stringify(request)) !== 0) throw new Error(replied());

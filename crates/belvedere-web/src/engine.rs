@@ -45,8 +45,8 @@ pub struct OpenRequest {
     /// Only points between these corners of the map are read: west, south, east, north in the coordinates of the file.
     #[serde(default)]
     pub window: Option<[f64; 4]>,
-    /// Most points that the memory has room for.
-    pub most_points: u64,
+    /// Maximum number of points that the memory has room for.
+    pub max_points: u64,
 }
 
 /// A session that is filled from files of a host.
@@ -79,8 +79,8 @@ impl Engine {
             low: [west, south, f64::NEG_INFINITY],
             high: [east, north, f64::INFINITY],
         });
-        let told = Told(host);
-        let control = Control::new(&told);
+        let reporting = Reporting(host);
+        let control = Control::new(&reporting);
         let (cloud, _) = control.stage("reading", 0, || read_cloud(sources, &options, &control))?;
         refuse_too_many(Some(cloud.len() as u64), request)?;
         if cloud.is_empty() {
@@ -97,8 +97,8 @@ impl Engine {
     /// Those of [`SceneModel::build`].
     pub fn build<H: Host>(&mut self, host: &H) -> Result<()> {
         let Some(cloud) = self.cloud.take() else { return Ok(()) };
-        let told = Told(host);
-        let (model, _) = SceneModel::build(&cloud, &ModelParams::default(), &Control::new(&told))?;
+        let reporting = Reporting(host);
+        let (model, _) = SceneModel::build(&cloud, &ModelParams::default(), &Control::new(&reporting))?;
         self.session.loading().finish(model);
         Ok(())
     }
@@ -156,18 +156,18 @@ impl Announced {
 
 fn refuse_too_many(points: Option<u64>, request: &OpenRequest) -> std::result::Result<(), Refusal> {
     match points {
-        Some(points) if points > request.most_points => Err(Refusal::from(format!(
+        Some(points) if points > request.max_points => Err(Refusal::from(format!(
             "{points} points are more than this browser has memory for ({}). Open a smaller part, or use the program.",
-            request.most_points
+            request.max_points
         ))),
         _ => Ok(()),
     }
 }
 
-/// Tells a host of progress.
-struct Told<'a, H>(&'a H);
+/// Reports progress to a host.
+struct Reporting<'a, H>(&'a H);
 
-impl<H: Host> Watcher for Told<'_, H> {
+impl<H: Host> Watcher for Reporting<'_, H> {
     fn begin(&self, stage: &'static str, total: usize) {
         self.0.begin(stage, total);
     }
@@ -184,7 +184,7 @@ mod tests {
     use std::io::Cursor;
     use std::sync::Mutex;
 
-    /// Text files in memory, and the stages that were told of.
+    /// Text files in memory, and the stages that were reported.
     #[derive(Default)]
     struct Memory {
         files: Vec<Vec<u8>>,
@@ -220,9 +220,9 @@ mod tests {
         Memory { files: vec![text.into_bytes()], ..Memory::default() }
     }
 
-    fn request(most_points: u64) -> OpenRequest {
+    fn request(max_points: u64) -> OpenRequest {
         let file = OpenedFile { name: "block.xyz".to_owned(), id: 0, size: 0 };
-        OpenRequest { files: vec![file], crs: Some("EPSG:7415".to_owned()), window: None, most_points }
+        OpenRequest { files: vec![file], crs: Some("EPSG:7415".to_owned()), window: None, max_points }
     }
 
     fn head(reply: &[u8]) -> Value {

@@ -133,7 +133,7 @@ unsafe extern "C" fn give(at: *mut u8, length: usize) {
     drop(unsafe { Vec::from_raw_parts(at, 0, length.max(1)) });
 }
 
-/// Called first: what a panic says is then told.
+/// Called first: from then on `failed` gets what a panic says.
 #[unsafe(no_mangle)]
 extern "C" fn start() {
     std::panic::set_hook(Box::new(|info| {

@@ -1,5 +1,5 @@
-// What the page shows stands in its address, which can be kept and shared while the program runs: question, places, date,
-// time, zone, trees, colour and view. Going back goes to the question before.
+// What the page shows stands in its address, which can be kept and shared while the program runs: question, places,
+// date, time, zone, trees, colour and view. Going back goes to the question before.
 import { setColor } from "./paint.js";
 import { $, page, TOOLS } from "./state.js";
 import { clockText, showClock } from "./time.js";
@@ -66,7 +66,7 @@ function recallView(words) {
   if (kind === "orbit") mover.orbit.update();
   mover.changed();
 }
-// Shows what the address says; returns whether it says which question is asked.
+// Shows what the address says; returns whether it names a question.
 export function recall(words = wordsOf(location.hash)) {
   page.isRecalled = true;
   const tool = TOOLS.find(({ name }) => name === words.get("q"));

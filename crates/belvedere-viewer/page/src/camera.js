@@ -25,7 +25,8 @@ export class Mover {
     canvas.addEventListener("pointerup", () => { last = null; });
   }
 
-  // Shows all corners of boxes in a part of the picture: left, right, bottom and top as shares of half of it, from -1 to 1.
+  // Shows all corners of boxes in a part of the picture: left, right, bottom and top as shares of half of it, from -1
+  // to 1.
   show(boxes, flat = false, [left, right, bottom, top] = [-1, 1, -1, 1]) {
     const low = [0, 1, 2].map((axis) => boxes.reduce((v, box) => Math.min(v, box[0][axis]), Infinity));
     const high = [0, 1, 2].map((axis) => boxes.reduce((v, box) => Math.max(v, box[1][axis]), -Infinity));

@@ -16,8 +16,8 @@ const GAP = 2;
 const SQUARE = 128;
 // Light where no question has a sun: from the south and half up, so that walls differ from each other and from roofs.
 export const DAYLIGHT = new Vector3(0.25, -0.75, 0.75).normalize();
-// How much of the light is seen in each way of colouring: photographs have their own, and answers must be told by their
-// colours.
+// How much of the light is seen in each way of colouring: photographs have their own, and answers must be known by
+// their colours.
 const LIGHTS = [1, 0.7, 1, 0.5, 0.8];
 
 // Frames that add points to a picture at rest may take so many times as long as one that moves.

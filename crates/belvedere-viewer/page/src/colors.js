@@ -1,6 +1,6 @@
 // Tables of 256 colours for the values of points, and their legends.
 
-// Told apart also by those who see no difference of red and green: ground light, plants bluish green and darker the
+// Different also for those who see no difference of red and green: ground light, plants bluish green and darker the
 // higher, buildings red, water blue.
 export const CLASSES = {
   0: ["never classified", "#a9aeb5"], 1: ["unclassified", "#c3c8ce"], 2: ["ground", "#dcc9a0"], 3: ["low vegetation", "#a9d8a0"],

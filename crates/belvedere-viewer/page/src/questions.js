@@ -78,18 +78,18 @@ export function click(x, y) {
   pick(isPoint ? found.place : near, isPoint ? found : null);
 }
 page.click = click;
-// What is known of a clicked place, and what can be asked about it.
+// What is known of a clicked place, and the questions about it.
 function ofPlace(clicked, point) {
   const file = toFile(clicked);
   const code = point?.class;
   const answer = page.tool.name === "shadow" && page.last ? colors.LIGHT[point?.value] : undefined;
-  const asked = TOOLS.filter(({ places, name }) => places === 1 && name !== "look");
-  if (page.tool.places === 0 && !asked.length) return hint("This question is about all points. It needs no click.");
+  const offered = TOOLS.filter(({ places, name }) => places === 1 && name !== "look");
+  if (page.tool.places === 0 && !offered.length) return hint("This question is about all points. It needs no click.");
   page.marks = [{ at: clicked }];
   card(`<p class="verdict" style="font-size:17px">${shownPlace(file)}</p><dl><dt>x, y, z</dt><dd>${escape(page.scene.crs)}</dd>`
     + `${page.scene.classes.length && code !== undefined ? `<dt>Class</dt><dd>${code} ${escape(colors.CLASSES[code]?.[0] ?? "")}</dd>` : ""}`
     + `${answer ? `<dt>At the time below</dt><dd>${escape(answer[0])}</dd>` : ""}</dl><pre>${file.join(",")}</pre>`
-    + (asked.length ? `<h3>Ask about this place</h3><div class="row">${asked.map(({ name, title }) => `<button data-about="${name}">${escape(title)}</button>`).join("")}</div>` : ""), (box) => {
+    + (offered.length ? `<h3>Ask about this place</h3><div class="row">${offered.map(({ name, title }) => `<button data-about="${name}">${escape(title)}</button>`).join("")}</div>` : ""), (box) => {
     box.querySelectorAll("[data-about]").forEach((button) => { button.onclick = () => { page.choose(button.dataset.about); pick(clicked); }; });
   });
   draw();

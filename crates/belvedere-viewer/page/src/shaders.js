@@ -5,7 +5,7 @@ vec4 packed(float d) { float v = clamp(d, 0.0, 0.9999999) * 16777215.0; float h 
   return vec4(h, m, v - h * 65536.0 - m * 256.0, 255.0) / 255.0; }`;
 
 // Discs lie in the surface at their point. It faces who sees it, is brighter the more it faces the sky and the sun, and
-// so are walls, roofs and ground told apart.
+// so walls, roofs and ground differ.
 export const POINT_VERTEX = `precision highp float; precision highp int;
 in uvec4 place; in uint value; in uvec4 shape;
 #ifdef COLORED

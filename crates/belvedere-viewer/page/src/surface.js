@@ -1,9 +1,9 @@
-// The surface at each point, told by the points around it: how far apart they lie, and which way it faces. Points are
+// The surface at each point, from the points around it: how far apart they lie, and which way it faces. Points are
 // then drawn as discs that lie in walls, roofs and ground, as large as the gaps between them, in soft light.
 
 // Side of a cell in spacings of the cloud: some nine points of a surface fall into it.
 const SIDE = 3;
-// Cells with fewer points are told together with those around them.
+// Cells with fewer points are taken together with those around them.
 const FEW = 6;
 // A surface is as thin as this share of its width, and no line.
 const THIN = 0.06;

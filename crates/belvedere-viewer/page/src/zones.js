@@ -69,8 +69,8 @@ export function zoneOf(longitude, latitude, own, instant = new Date()) {
   return { zone, why: "by the longitude of the place, without summer time: look whether it is right" };
 }
 
-// Elevation of the sun in degrees, and the minutes of the day in UTC at which it is highest: to a degree and a minute or
-// two, which tell day from night. The answers themselves are computed by the program.
+// Elevation of the sun in degrees, and the minutes of the day in UTC at which it is highest: to a degree and a minute
+// or two, which tell day from night. The answers themselves are computed by the program.
 // Source: Spencer (1971), Fourier series of the position of the sun.
 export function roughSun(longitude, latitude, instant) {
   const start = Date.UTC(instant.getUTCFullYear(), 0, 1);

@@ -23,7 +23,7 @@ function assertNear(a, b, where) {
 }
 const same = (a, b) => Buffer.compare(Buffer.from(a.buffer, a.byteOffset, a.byteLength), Buffer.from(b.buffer, b.byteOffset, b.byteLength)) === 0;
 
-async function served(cloud, crs) {
+async function programOf(cloud, crs) {
   const child = spawn(program, ["view", cloud, ...(crs ? ["--crs", crs] : []), "--no-browser"], { stdio: ["ignore", "pipe", "ignore"] });
   process.on("exit", () => child.kill());
   const [url] = await new Promise((found) => createInterface({ input: child.stdout }).once("line", (line) => found([line])));
@@ -83,7 +83,7 @@ assert.ok(foreign.every(({ module: from }) => from.startsWith("__wbindgen")), JS
 
 // All that the program says of a cloud, and then nothing more: while the module computes, connections would time out.
 async function ofProgram(cloud, crs) {
-  const { child, url, state } = await served(cloud, crs);
+  const { child, url, state } = await programOf(cloud, crs);
   const get = async (path) => new Uint8Array(await (await fetch(url + path)).arrayBuffer());
   const { chunks, has_color: hasColor } = state.shown;
   const parts = [];
@@ -103,7 +103,7 @@ for (const named of clouds) {
   const native = await ofProgram(cloud, crs);
   const from = performance.now();
   const own = await moduleOf(engine);
-  const opened = own.json("open", JSON.stringify({ files: [own.add(cloud)], crs, most_points: 1e7 }));
+  const opened = own.json("open", JSON.stringify({ files: [own.add(cloud)], crs, max_points: 1e7 }));
   const read = performance.now();
   const state = own.json("build");
   const built = performance.now();

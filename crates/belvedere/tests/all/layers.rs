@@ -29,7 +29,8 @@ const RESEARCH: [(&str, &[&str]); 5] = [
 ];
 
 /// Level of each module of `belvedere-core`: a module imports from lower levels, or from its own folder.
-const LEVELS: [(&str, u8); 15] = [
+const LEVELS: [(&str, u8); 16] = [
+    ("eight", 0),
     ("instructions", 0),
     ("neighbors", 1),
     ("ray_index", 1),

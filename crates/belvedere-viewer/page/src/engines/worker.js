@@ -9,9 +9,9 @@ let state = { title: "", stage: "", total: 0, done: 0, failure: null, mesh_count
 // where the worker counts what is done while it computes
 let counter = null;
 const parts = new Map();
-// questions that wait: one at a time is with the worker, so that one that nobody waits for any more is not asked
+// questions that wait: one at a time is with the worker, so that one that nobody waits for any more is not sent
 const waiting = [];
-let asked = null;
+let current = null;
 
 // A part of what is drawn, which comes when it is ready.
 function partOf(path) {
@@ -23,15 +23,15 @@ function partOf(path) {
   return parts.get(path);
 }
 function next() {
-  if (asked) return;
-  asked = waiting.shift() ?? null;
-  if (!asked) return;
-  if (asked.signal?.aborted) {
-    asked.reject(new DOMException("nobody waits for it", "AbortError"));
-    asked = null;
+  if (current) return;
+  current = waiting.shift() ?? null;
+  if (!current) return;
+  if (current.signal?.aborted) {
+    current.reject(new DOMException("nobody waits for it", "AbortError"));
+    current = null;
     return next();
   }
-  worker.postMessage({ ask: { path: asked.path, body: asked.body } });
+  worker.postMessage({ ask: { path: current.path, body: current.body } });
 }
 function send(path, body, signal) {
   if (lost) return Promise.reject(lost);
@@ -44,9 +44,9 @@ function lose(text) {
   console.error(text);
   lost = new Lost(STOPPED);
   if (!state.scene) state.failure = STOPPED;
-  for (const question of [asked, ...waiting]) question?.reject(lost);
+  for (const question of [current, ...waiting]) question?.reject(lost);
   waiting.length = 0;
-  asked = null;
+  current = null;
 }
 function heard({ data }) {
   if (data.state) state = { ...data.state, stage: state.stage, total: state.total, done: state.done };
@@ -57,17 +57,17 @@ function heard({ data }) {
   if (data.tooMany) whenTooMany(data.tooMany);
   if (data.failure) state.failure = data.failure;
   if (data.lost) lose(data.lost);
-  if (data.reply && asked) {
-    const { resolve, reject } = asked;
-    asked = null;
+  if (data.reply && current) {
+    const { resolve, reject } = current;
+    current = null;
     if (data.refused) reject(new Refused(data.refused));
     else resolve(data.reply);
     next();
   }
 }
 
-// Opens files that were chosen or dropped, or addresses: `{ name, file }` or `{ name, url }` each. Files with more points
-// than fit are not read: `choose` is told how many they are and where they lie.
+// Opens files that were chosen or dropped, or addresses: `{ name, file }` or `{ name, url }` each. Files with more
+// points than fit are not read: `choose` gets their number and their corners.
 let whenTooMany = null;
 export function open(files, options, choose) {
   worker?.terminate();
