@@ -189,8 +189,8 @@ export async function ask(quick = false) {
   }
 }
 page.ask = ask;
-// A command of which no word is broken where it fits into a line.
-const words = (command) => command.split(" ").map((word) => `<span>${escape(word)}</span>`).join(" ");
+// Commands of which no word is broken where it fits into a line.
+const words = (commands) => commands.split("\n").map((command) => command.split(" ").map((word) => `<span>${escape(word)}</span>`).join(" ")).join("\n");
 // What must be known beside an answer, in the words of all faces.
 export const remarks = ({ remarks: all = [] }) => all.map(({ key, severity, text }) => `<p class="remark ${severity}" data-key="${escape(key)}">${severity === "warning" ? "⚠ " : ""}${escape(text[0].toUpperCase() + text.slice(1))}.</p>`).join("");
 function showAnswer(tool, answer, places) {
