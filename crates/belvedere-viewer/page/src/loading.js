@@ -60,6 +60,8 @@ export async function watch() {
     if (state.failure) {
       $("progress").hidden = true;
       page.failure = state.failure;
+      // another file may be chosen
+      if (api.opens && !page.scene) $("start").hidden = false;
       throw new api.Refused(state.failure);
     }
     for (page.meshes ??= 0; page.scene && page.meshes < (state.mesh_count ?? 0); page.meshes++) {

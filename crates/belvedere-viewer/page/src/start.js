@@ -1,6 +1,6 @@
 // The first screen of a page that opens files itself.
 import { report } from "./messages.js";
-import { $ } from "./state.js";
+import { $, page } from "./state.js";
 import { open } from "./engines/worker.js";
 
 const FORMATS = ".laz .las .copc.laz .e57 .ply .pcd .ptx .xyz .txt .csv .npy";
@@ -64,6 +64,7 @@ function begin(files, whenOpen) {
   }
   $("start").hidden = true;
   $("progress").hidden = false;
+  page.failure = null;
   const options = { ...(crs ? { crs } : {}), ...(corners.length ? { window: corners } : {}) };
   open(files, options, (announced) => chooseWindow(files, options, announced));
   whenOpen();
@@ -119,9 +120,9 @@ export function startScreen(whenOpen) {
     history.replaceState(null, "", `#${new URLSearchParams(typed)}`);
     begin([ofAddress($("address-typed").value.trim())], whenOpen);
   };
-  $("cancel").hidden = false;
-  // only the end of the worker ends what it computes
-  $("cancel").onclick = () => location.replace(location.pathname);
+  $("cancel").hidden = $("open").hidden = false;
+  // only the end of the worker ends what it computes, and frees its memory
+  $("cancel").onclick = $("open").onclick = () => location.replace(location.pathname);
   addEventListener("dragover", (event) => {
     event.preventDefault();
     document.body.classList.add("dropping");

@@ -159,6 +159,12 @@ async function main() {
       await own.setInputFiles("#choose", join(folder, name));
       assert.match(await message(own), words);
     }
+    // and another can be chosen at once
+    await own.setInputFiles("#choose", cloud);
+    await ready(own);
+    assert.deepEqual(await shadow(own), expected);
+    await own.click("#open");
+    await own.waitForFunction(() => !document.getElementById("start").hidden && !window.belvedere.scene);
     await own.close();
   });
   await step("an address is read by its parts, and can be shared", async () => {

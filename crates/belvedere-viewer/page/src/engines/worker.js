@@ -5,7 +5,8 @@ const STOPPED = "The scene is lost: this tab has run out of memory, or Belvedere
 
 let worker = null;
 let lost = null;
-let state = { title: "", stage: "", total: 0, done: 0, failure: null, mesh_count: 0, results: [], shown: null, scene: null };
+const EMPTY = { title: "", stage: "", total: 0, done: 0, failure: null, mesh_count: 0, results: [], shown: null, scene: null };
+let state = { ...EMPTY };
 // where the worker counts what is done while it computes
 let counter = null;
 const parts = new Map();
@@ -71,6 +72,8 @@ function heard({ data }) {
 let whenTooMany = null;
 export function open(files, options, choose) {
   worker?.terminate();
+  state = { ...EMPTY };
+  lost = null;
   whenTooMany = choose;
   worker = new Worker("engine-worker.js");
   worker.onmessage = heard;
