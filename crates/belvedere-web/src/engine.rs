@@ -103,7 +103,7 @@ impl Engine {
         Ok(())
     }
 
-    /// The same with a scene that was built before ([`Engine::kept`]) from the same points.
+    /// The same with a scene that was built before ([`Session::scene_file`]) from the same points.
     ///
     /// # Errors
     /// Those of [`read_balls`]; of a scene that is not one of these points.
