@@ -13,13 +13,15 @@ pub struct IsovistFigure {
     pub decimals: usize,
 }
 
+/// A drift that tables show as zero, metres: it has no direction but that of what sines are rounded by.
+const NO_DRIFT: f64 = 5e-5;
+
 impl Isovist {
-    /// All numbers that describe it. `grid_north` is the azimuth of grid north from the north that azimuths are counted
-    /// from, radians.
+    /// All numbers that describe it; NaN for what has no value. `grid_north` is the azimuth of grid north from the
+    /// north that azimuths are counted from, radians.
     pub fn figures(&self, grid_north: f64) -> impl Iterator<Item = IsovistFigure> {
         let plan = &self.plan;
         let [east, north, up] = self.drift;
-        let drift_azimuth = (plan.drift[0].atan2(plan.drift[1]) + grid_north).to_degrees().rem_euclid(360.0);
         let figure = |(name, value, decimals)| IsovistFigure { name, value, decimals };
         let space = [
             ("volume_m3", self.volume, 2),
@@ -47,13 +49,34 @@ impl Isovist {
             ("plan_openness", plan.openness, 5),
             ("plan_occlusivity_m", plan.occlusivity, 2),
             ("plan_drift_m", plan.drift_length(), 4),
-            ("plan_drift_azimuth_deg", drift_azimuth, 2),
+            ("plan_drift_azimuth_deg", drift_azimuth(plan.drift, grid_north), 2),
         ];
         space.into_iter().chain(ranges).chain(plan_ranges).chain(others).map(figure)
+    }
+}
+
+/// Azimuth of a horizontal drift in degrees, NaN where it is none.
+fn drift_azimuth([east, north]: [f64; 2], grid_north: f64) -> f64 {
+    if east.hypot(north) < NO_DRIFT {
+        f64::NAN
+    } else {
+        (east.atan2(north) + grid_north).to_degrees().rem_euclid(360.0)
     }
 }
 
 fn statistics(names: [&'static str; 5], ranges: &RadialStatistics) -> [(&'static str, f64, usize); 5] {
     let values = [ranges.min, ranges.mean, ranges.greatest, ranges.variance, ranges.skewness];
     std::array::from_fn(|i| (names[i], values[i], 4))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_a_drift_has_a_direction() {
+        // west, and what sines are rounded by
+        assert_eq!(drift_azimuth([-0.5, 0.0], 0.0), 270.0);
+        assert!(drift_azimuth([1e-16, -3e-16], 0.0).is_nan());
+    }
 }
