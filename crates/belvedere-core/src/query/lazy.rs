@@ -3,8 +3,6 @@
 use belvedere_data::Result;
 use belvedere_data::control::Control;
 use std::sync::{Mutex, OnceLock, PoisonError};
-#[cfg(not(target_family = "wasm"))]
-use std::time::Duration;
 
 /// A value that is made on first use.
 ///
@@ -54,15 +52,12 @@ fn on_own_threads<T: Send>(work: impl FnOnce() -> T + Send) -> T {
     work()
 }
 
-/// How long a thread is waited for that the system refuses, and how often it is tried.
-#[cfg(not(target_family = "wasm"))]
-const PAUSE: Duration = Duration::from_millis(50);
-#[cfg(not(target_family = "wasm"))]
-const MAX_TRIES: usize = 100;
-
 /// Runs `work` on as many new threads as the caller may use.
 #[cfg(not(target_family = "wasm"))]
 fn on_own_threads<T: Send>(work: impl FnOnce() -> T + Send) -> T {
+    /// How long a thread is waited for that the system refuses, and how often it is tried.
+    const PAUSE: std::time::Duration = std::time::Duration::from_millis(50);
+    const MAX_TRIES: usize = 100;
     let threads = rayon::current_num_threads();
     let work = Mutex::new(Some(work));
     let take = || work.lock().unwrap_or_else(PoisonError::into_inner).take();
