@@ -65,14 +65,8 @@ fn read_counted(input: &CloudInput, run: &mut CommandContext) -> Result<(PointCl
 /// Warns of files that hold fewer points than their headers announce, and of what speaks against their reference
 /// system.
 pub(crate) fn warn_of_files(report: &ReadReport, summary: &mut Summary) {
-    summary.remarks(ask::remark_on_doubt(report.doubt.as_deref()));
-    for file in report.files.iter().filter(|file| file.missing_points > 0) {
-        let (path, count) = (file.path.display(), file.missing_points);
-        summary.warn(
-            "file-cut-off",
-            format!("{path}: the file is cut off: {count} points of its header are missing; copy it again"),
-        );
-    }
+    let missing = report.files.iter().map(|file| (file.path.display().to_string(), file.missing_points));
+    summary.remarks(ask::remarks_on_reading(report.doubt.as_deref(), missing));
 }
 
 /// The error of building a model of these clouds, with their names where they have too few points, and with the flags

@@ -139,10 +139,17 @@ impl Summary {
         self
     }
 
+    /// The remarks so far.
+    pub(crate) fn remarks_so_far(&self) -> &[Value] {
+        self.entries.get(REMARKS).and_then(Value::as_array).map_or(&[], Vec::as_slice)
+    }
+
     /// Prints the remarks on standard error.
     pub(crate) fn print_remarks(&self, global: &Global) {
-        let Some(Value::Array(remarks)) = self.entries.get(REMARKS).filter(|_| !global.quiet) else { return };
-        for remark in remarks {
+        if global.quiet {
+            return;
+        }
+        for remark in self.remarks_so_far() {
             note(&format!("{}: {}", plain(&remark["severity"]), plain(&remark["text"])));
         }
     }

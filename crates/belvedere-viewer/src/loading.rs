@@ -7,6 +7,8 @@ use belvedere::control::{Control, OpenStages, StageEnd, Watcher};
 use belvedere::io::{GeojsonFeature, PlacedRaster, PointResults};
 use belvedere::model::SceneModel;
 use belvedere::{Bounds, Frame, Mesh, PointCloud, Result};
+use serde::Serialize;
+use serde_json::Value;
 use std::path::Path;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -30,6 +32,8 @@ pub(crate) struct LoadingState {
     pub(crate) meshes: Vec<Arc<[u8]>>,
     /// Results of other commands.
     pub(crate) results: Vec<Arc<ResultFile>>,
+    /// What must be known of the files and the scene, beside every answer.
+    pub(crate) remarks: Vec<Value>,
     pub(crate) failure: Option<String>,
     /// Whether a page has read it.
     is_failure_read: bool,
@@ -85,6 +89,13 @@ impl Loading {
         let file = ResultFile::of_shapes(path, shapes, frame, bounds)?;
         self.state().results.push(Arc::new(file));
         Ok(())
+    }
+
+    /// Says what must be known of the files and the scene: remarks of the layer of questions.
+    pub fn remark(&self, remarks: &[impl Serialize]) {
+        // remarks are maps of texts and numbers, which JSON holds
+        let values = remarks.iter().filter_map(|remark| serde_json::to_value(remark).ok());
+        self.state().remarks.extend(values);
     }
 
     /// Takes the model of the cloud shown, or of a ball file: questions are answered from now on.

@@ -51,6 +51,7 @@ impl Session {
             "total": stage.map_or(0, |stage| stage.total),
             "done": stage.map_or(0, |stage| stage.done),
             "failure": now.failure,
+            "remarks": now.remarks,
             "mesh_count": now.meshes.len(),
             "results": now.results.iter().map(|file| file.describe()).collect::<Vec<_>>(),
             "shown": now.shown.map(|shown| shown.description.clone()),

@@ -4,9 +4,6 @@
 const BLOCK = 1 << 18;
 const WEB_BLOCK = 1 << 16;
 const MAX_BLOCKS = 64;
-// memory of a scene for each point, and the most that a module can have: measured with AHN and towns of 12 points/m²
-const BYTES_A_POINT = 700;
-const MAX_BYTES = 3.8e9;
 // scenes that are kept in the browser, all together
 const MAX_KEPT_BYTES = 1e9;
 // what the module knows the file of a kept scene by
@@ -18,7 +15,6 @@ const files = new Map();
 let engine = null;
 let memory = null;
 let reply = null;
-let version = "";
 let isPool = false;
 let reportedAt = 0;
 let isPrepared = false;
@@ -149,16 +145,6 @@ async function kept() {
     return null;
   }
 }
-const hex = (bytes) => [...new Uint8Array(bytes).slice(0, 16)].map((byte) => byte.toString(16).padStart(2, "0")).join("");
-// A name for the scene of these files: what they hold at both ends, how they are read, and which engine.
-async function keyOf(request) {
-  const parts = [new TextEncoder().encode(JSON.stringify([version, request.crs, request.window, [...files.values()].map(({ size }) => size)]))];
-  for (const file of files.values()) {
-    const length = Math.min(1 << 16, file.size);
-    parts.push(file.part(0, length), file.part(file.size - length, file.size));
-  }
-  return `${hex(await crypto.subtle.digest("SHA-256", await new Blob(parts).arrayBuffer()))}.npz`;
-}
 async function makeRoom(folder, bytes) {
   const all = [];
   for await (const handle of folder.values()) all.push([handle.name, await handle.getFile()]);
@@ -220,9 +206,7 @@ async function found(name) {
 async function start() {
   const response = await fetch("engine.wasm");
   if (!response.ok) throw new Error(`engine.wasm cannot be loaded: ${response.status}`);
-  const bytes = await response.arrayBuffer();
-  version = hex(await crypto.subtle.digest("SHA-256", bytes));
-  const module = await WebAssembly.compile(bytes);
+  const module = await WebAssembly.compile(await response.arrayBuffer());
   // shared also where no other thread may see it: there is one module for both
   memory = new WebAssembly.Memory({ initial: 1024, maximum: 65536, shared: true });
   engine = (await WebAssembly.instantiate(module, importsOf(module))).exports;
@@ -271,18 +255,13 @@ function call(name, ...values) {
 }
 const replied = () => new TextDecoder().decode(reply);
 
-function mostPoints() {
-  const isSmall = navigator.userAgentData?.mobile ?? /iPhone|iPad|Android/.test(navigator.userAgent);
-  const bytes = isSmall ? 0.7e9 : Math.min(MAX_BYTES, (navigator.deviceMemory ?? 8) * 0.5e9);
-  return Math.floor(bytes / BYTES_A_POINT);
-}
-async function open({ files: chosen, crs = null, window = null }) {
+async function open({ files: chosen, crs = null, window = null, max_points: maxPoints }) {
   const opened = chosen.map(({ name, file, url }, id) => {
     const source = file ? new LocalFile(file) : new WebFile(url);
     files.set(id, source);
     return { name, id, size: source.size };
   });
-  const request = { files: opened, crs, window, max_points: mostPoints() };
+  const request = { files: opened, crs, window, max_points: maxPoints };
   call("announced", JSON.stringify(opened));
   const announced = JSON.parse(replied());
   if (!window && announced?.points > request.max_points) {
@@ -298,7 +277,8 @@ async function open({ files: chosen, crs = null, window = null }) {
       postMessage({ part: `${kind}/${chunk}`, bytes: reply.buffer }, [reply.buffer]);
     }
   }
-  const name = await keyOf(request);
+  engine.scene_name();
+  const name = `${replied()}.npz`;
   if (!await found(name)) {
     if (engine.build() !== 0) throw new Error(replied());
     keepAs = name;

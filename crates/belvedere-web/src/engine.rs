@@ -1,5 +1,7 @@
 //! From files to a scene and from questions to replies, for a host that may be a browser.
 
+use belvedere::apps::ask::remarks_on_reading;
+use belvedere::cache::CloudKey;
 use belvedere::control::{Control, StageEnd, Watcher};
 use belvedere::io::{ReadOptions, Source, Within, read_balls, read_cloud, read_las_head};
 use belvedere::model::{ModelParams, SceneModel};
@@ -81,14 +83,23 @@ impl Engine {
         });
         let reporting = Reporting(host);
         let control = Control::new(&reporting);
-        let (cloud, _) = control.stage("reading", 0, || read_cloud(sources, &options, &control))?;
+        let (cloud, report) = control.stage("reading", 0, || read_cloud(sources, &options, &control))?;
         refuse_too_many(Some(cloud.len() as u64), request)?;
         if cloud.is_empty() {
             return Err(Error::NoPoints { what: format!("{} has none", first.name) }.into());
         }
         let cloud = Arc::new(cloud);
+        let missing = report.files.iter().map(|file| (file.path.display().to_string(), file.missing_points));
+        session.loading().remark(&remarks_on_reading(report.doubt.as_deref(), missing));
         session.loading().show(&cloud);
         Ok(Self { session, cloud: Some(cloud) })
+    }
+
+    /// A name for the scene of what was read, under which it can be kept: of the contents, how scenes are built, and
+    /// the program.
+    #[must_use]
+    pub fn scene_name(&self) -> Option<String> {
+        Some(CloudKey::of(self.cloud.as_deref()?).of_scene(&ModelParams::default(), true))
     }
 
     /// Builds the scene: questions are answered from now on.
@@ -235,6 +246,7 @@ mod tests {
         let host = block();
         let mut engine = Engine::open(&request(10_000), &host).unwrap();
         let state: Value = serde_json::from_slice(&engine.session().state()).unwrap();
+        assert_eq!(state["remarks"], json!([]));
         assert_eq!((&state["title"], &state["shown"]["point_count"]), (&json!("block.xyz"), &json!(3600)));
         let question = json!({ "observer": [WEST + 1.0, SOUTH + 6.0, 1.0], "target": [WEST + 11.0, SOUTH + 6.0, 1.0] })
             .to_string();

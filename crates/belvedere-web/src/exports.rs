@@ -176,6 +176,12 @@ unsafe extern "C" fn open(from: *const u8, length: usize) -> u32 {
     }))
 }
 
+/// The reply is the name under which the scene of what was read can be kept.
+#[unsafe(no_mangle)]
+extern "C" fn scene_name() -> u32 {
+    with_engine(|engine| Ok(engine.scene_name().unwrap_or_default().into_bytes()))
+}
+
 /// Builds the scene; the reply is the state.
 #[unsafe(no_mangle)]
 extern "C" fn build() -> u32 {

@@ -82,7 +82,7 @@ pub use terrain_heights::remark_on_terrain;
 pub use trees::ThroughTrees;
 pub use viewer::{
     remark_on_axis, remark_on_cleared, remark_on_doubt, remark_on_eye, remark_on_inside, remark_on_outside,
-    remark_on_roofs, remark_on_targets_beside, remark_on_targets_inside, remark_on_unused,
+    remark_on_roofs, remark_on_targets_beside, remark_on_targets_inside, remark_on_unused, remarks_on_reading,
 };
 pub use viewshed::{
     FarSeen, SeenSection, StandingObserver, ViewLimits, ViewshedQuestion, ViewshedResults, ViewshedTargets,

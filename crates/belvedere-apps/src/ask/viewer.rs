@@ -44,6 +44,17 @@ pub fn remark_on_doubt(doubt: Option<&str>) -> Option<Remark> {
     doubt.map(|doubt| Remark::warning("reference-system-doubtful", doubt))
 }
 
+/// What is to be known of files that were read: what speaks against the reference system, and files that hold fewer
+/// points than their headers announce, each with its name and the number that is missing.
+#[must_use]
+pub fn remarks_on_reading(doubt: Option<&str>, missing: impl IntoIterator<Item = (String, usize)>) -> Vec<Remark> {
+    let cut_off = |(name, count): (String, usize)| {
+        let text = format!("{name}: the file is cut off: {count} points of its header are missing; copy it again");
+        (count > 0).then(|| Remark::warning("file-cut-off", text))
+    };
+    remark_on_doubt(doubt).into_iter().chain(missing.into_iter().filter_map(cut_off)).collect()
+}
+
 /// A warning that a `file` has columns or properties that are not used: those that look as if they said how observers
 /// look and are not understood, and `limits` that are understood, but of no use to the question.
 #[must_use]
@@ -98,4 +109,19 @@ pub fn remark_on_roofs(roofs: usize) -> Option<Remark> {
 #[must_use]
 pub fn remark_on_cleared(points: usize) -> Option<Remark> {
     (points == 0).then(|| Remark::warning("nothing-cleared", "nothing stands there that could be cleared"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::remarks_on_reading;
+
+    #[test]
+    fn files_that_are_whole_need_no_remark() {
+        let files = [("whole.las".to_owned(), 0), ("cut.las".to_owned(), 5)];
+        let remarks = remarks_on_reading(Some("the system is far away"), files);
+        let keys: Vec<&str> = remarks.iter().map(|remark| remark.key).collect();
+        assert_eq!(keys, ["reference-system-doubtful", "file-cut-off"]);
+        assert!(remarks[1].text.starts_with("cut.las") && remarks[1].text.contains("5 points"), "{}", remarks[1].text);
+        assert!(remarks_on_reading(None, [("whole.las".to_owned(), 0)]).is_empty());
+    }
 }

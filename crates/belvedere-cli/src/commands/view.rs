@@ -55,6 +55,7 @@ pub(crate) fn run(arguments: &ViewPage, global: &Global) -> Result<Summary> {
     match load(&arguments.scene, &files, &loading, &|_, _| Ok(()), &mut run) {
         Ok((_, model)) => {
             run.summary.print_remarks(global);
+            loading.remark(run.summary.remarks_so_far());
             loading.finish(model);
         }
         Err(error) if error.is::<TooManyPoints>() => {

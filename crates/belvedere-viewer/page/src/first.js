@@ -13,11 +13,13 @@ function invite() {
 export const invited = () => $("invite")?.remove();
 
 // Answers unless the file has no points, its place on earth is not known, or something else is shown already.
-export function firstAnswer(results) {
+export async function firstAnswer(results) {
   const isKnown = api.exported || (page.scene.latitude_deg !== null && page.scene.point_count);
   const isFree = page.tool.name === "look" && $("card").hidden && !page.pending && !results?.some((file) => file.is_shown_first);
   if (!isKnown || !isFree || !TOOLS.some(({ name }) => name === "shadow")) return;
-  if (!api.exported) showNow();
+  if (!api.exported) await showNow();
+  // somebody may have been quicker
+  if (page.tool.name !== "look" || !$("card").hidden) return;
   page.choose("shadow");
   // the card of the answer takes a part of the view, as soon as it has its place above the time
   page.whenShown = () => requestAnimationFrame(() => requestAnimationFrame(() => { if (!page.isMoved) showAll(); }));

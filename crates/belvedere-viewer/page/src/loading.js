@@ -70,12 +70,12 @@ export async function watch() {
     if (state.scene && page.scene && !page.ready) {
       Object.assign(page.scene, { ...state.scene, low: page.scene.low, high: page.scene.high });
       page.ready = true;
+      page.remarks = state.remarks;
       startTime();
       if (!state.shown.point_count) toggleBalls();
       $("trees").hidden = !state.scene.has_vegetation;
       const first = () => recall() || firstAnswer(state.results);
-      if (api.exported) first();
-      else restore().catch(report).then(first);
+      (api.exported ? Promise.resolve() : restore().catch(report)).then(first).catch(report);
       if (page.pending) page.ask();
       offer(state.results).catch(report);
     }

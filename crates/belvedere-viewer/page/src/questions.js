@@ -193,6 +193,8 @@ page.ask = ask;
 const words = (commands) => commands.split("\n").map((command) => command.split(" ").map((word) => `<span>${escape(word)}</span>`).join(" ")).join("\n");
 // What must be known beside an answer, in the words of all faces.
 export const remarks = ({ remarks: all = [] }) => all.map(({ key, severity, text }) => `<p class="remark ${severity}" data-key="${escape(key)}">${severity === "warning" ? "⚠ " : ""}${escape(text[0].toUpperCase() + text.slice(1))}.</p>`).join("");
+// Those of an answer and those of its files, each once.
+const together = (answer = [], files = []) => [...answer, ...files.filter(({ text }) => !answer.some((own) => own.text === text))];
 function showAnswer(tool, answer, places) {
   const shown = answer.before ? changed(tool, answer, page) : tool.show(answer, page);
   const html = shown.html ?? shown;
@@ -204,7 +206,7 @@ function showAnswer(tool, answer, places) {
     '<button data-save="png">Picture (.png)</button>',
   ].join("");
   const time = tool.time ? page.ofTime() : "";
-  card(`${html}${time ? `<p class="note" id="oftime">${escape(time)}</p>` : ""}${remarks(answer)}${where}<h3>The same on the command line</h3><pre id="command">${words(shown.command ?? answer.command)}</pre><div class="row"><button data-save="copy">Copy command</button>${buttons}</div>`
+  card(`${html}${time ? `<p class="note" id="oftime">${escape(time)}</p>` : ""}${remarks({ remarks: together(answer.remarks, page.remarks) })}${where}<h3>The same on the command line</h3><pre id="command">${words(shown.command ?? answer.command)}</pre><div class="row"><button data-save="copy">Copy command</button>${buttons}</div>`
     + `<p class="note" id="took">${api.exported ? "Stored in this file." : `Answered in ${Math.round(answer.took)} ms.`}</p>`, (box) => {
     shown.after?.(box);
     box.querySelectorAll("[data-save]").forEach((button) => { button.onclick = () => saveAs(button, tool, answer, places); });

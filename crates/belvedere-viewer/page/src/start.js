@@ -6,6 +6,15 @@ import { open } from "./engines/worker.js";
 const FORMATS = ".laz .las .copc.laz .e57 .ply .pcd .ptx .xyz .txt .csv .npy";
 const DEMO = "demo.laz";
 
+// Memory of a scene for each point, bytes: measured with AHN and towns of 12 points/m². The most that a page can have,
+// and what a phone lets it have.
+const BYTES_A_POINT = 700, MAX_BYTES = 3.8e9, MAX_BYTES_OF_PHONES = 0.7e9;
+// How many points there is room for: in half of the memory that the browser tells of.
+function maxPoints() {
+  const isPhone = navigator.userAgentData?.mobile ?? /iPhone|iPad|Android/.test(navigator.userAgent);
+  const bytes = isPhone ? MAX_BYTES_OF_PHONES : Math.min(MAX_BYTES, (navigator.deviceMemory ?? 8) * 0.5e9);
+  return Math.floor(bytes / BYTES_A_POINT);
+}
 const fromFragment = () => new URLSearchParams(location.hash.slice(1));
 
 // Asks which part of a cloud to open that does not fit as a whole: a square on its map that can be moved.
@@ -65,7 +74,7 @@ function begin(files, whenOpen) {
   $("start").hidden = true;
   $("progress").hidden = false;
   page.failure = null;
-  const options = { ...(crs ? { crs } : {}), ...(corners.length ? { window: corners } : {}) };
+  const options = { max_points: maxPoints(), ...(crs ? { crs } : {}), ...(corners.length ? { window: corners } : {}) };
   open(files, options, (announced) => chooseWindow(files, options, announced));
   whenOpen();
 }

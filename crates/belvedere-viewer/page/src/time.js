@@ -1,7 +1,7 @@
 // Date, time and zone of questions about the sun, and playing a day.
 import * as api from "./api.js";
 import { $, page } from "./state.js";
-import { clockOf, roughSun, zoneOf } from "./zones.js";
+import { clockOf, zoneOf } from "./zones.js";
 
 let playing = null;
 // Goes to the next time of the slider, and on to its beginning.
@@ -60,13 +60,13 @@ export function startTime() {
 // The sun this low sends shadows over all there is: it counts as night.
 const LOW_DEG = 3;
 // Takes the time of now at the place; where it is night there, the time of day at which the sun is highest.
-export function showNow(now = new Date()) {
-  const { scene: { longitude_deg: longitude, latitude_deg: latitude }, time } = page;
+export async function showNow(now = new Date()) {
+  const { time } = page;
   const clock = clockOf(time.zone, now);
   if (!clock) return;
-  const sun = roughSun(longitude, latitude, now);
-  const isNight = sun.elevation < LOW_DEG;
-  const noon = (Math.round((sun.noon + clock.ahead) / 10) * 10 + 2880) % 1440;
+  const sun = await api.ask("daylight", { time: `${clock.date}T${clockText(clock.minutes)}`, zone: time.zone });
+  const isNight = sun.elevation_deg < LOW_DEG;
+  const noon = (Math.round(sun.noon_minutes / 10) * 10) % 1440;
   time.date = clock.date;
   time.minutes = isNight ? noon : Math.floor(clock.minutes / 10) * 10;
   $("date").value = time.date;

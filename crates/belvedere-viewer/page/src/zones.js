@@ -68,19 +68,3 @@ export function zoneOf(longitude, latitude, own, instant = new Date()) {
   const zone = `${whole < 0 ? "-" : "+"}${String(Math.abs(whole)).padStart(2, "0")}:00`;
   return { zone, why: "by the longitude of the place, without summer time: look whether it is right" };
 }
-
-// Elevation of the sun in degrees, and the minutes of the day in UTC at which it is highest: to a degree and a minute
-// or two, which tell day from night. The answers themselves are computed by the program.
-// Source: Spencer (1971), Fourier series of the position of the sun.
-export function roughSun(longitude, latitude, instant) {
-  const start = Date.UTC(instant.getUTCFullYear(), 0, 1);
-  const g = ((instant.getTime() - start) / 86_400_000 / 365) * 2 * Math.PI;
-  const declination = 0.006918 - 0.399912 * Math.cos(g) + 0.070257 * Math.sin(g) - 0.006758 * Math.cos(2 * g) + 0.000907 * Math.sin(2 * g) - 0.002697 * Math.cos(3 * g) + 0.00148 * Math.sin(3 * g);
-  const equation = 229.18 * (0.000075 + 0.001868 * Math.cos(g) - 0.032077 * Math.sin(g) - 0.014615 * Math.cos(2 * g) - 0.040849 * Math.sin(2 * g));
-  const noon = 720 - 4 * longitude - equation;
-  const minutes = instant.getUTCHours() * 60 + instant.getUTCMinutes();
-  const hour = ((minutes - noon) / 720) * Math.PI;
-  const at = (latitude * Math.PI) / 180;
-  const elevation = Math.asin(Math.sin(at) * Math.sin(declination) + Math.cos(at) * Math.cos(declination) * Math.cos(hour));
-  return { elevation: (elevation * 180) / Math.PI, noon };
-}

@@ -1,6 +1,7 @@
 //! One file for each question. Each calls the library as the command line does, and says which command gives the same.
 
 mod around;
+mod daylight;
 mod line;
 mod places;
 mod plan;
@@ -33,6 +34,7 @@ pub(crate) fn answer(name: &str, body: &[u8], context: &RequestContext<'_>) -> R
     match name {
         "seen" => seen::answer(&parsed(body)?, context),
         "line" => line::answer(&parsed(body)?, context),
+        "daylight" => daylight::answer(&parsed(body)?, context),
         "sun" => sun::answer(&parsed(body)?, context),
         "shadow" => shadow::answer(&parsed(body)?, context),
         "around" => around::answer(&parsed(body)?, context),

@@ -63,8 +63,9 @@ impl CloudKey {
         Self(key.finish())
     }
 
-    /// The name of the scene of a cloud.
-    pub(super) fn of_scene(&self, params: &ModelParams, has_normals: bool) -> String {
+    /// The name of the scene of a cloud, which differs where anything does that the scene follows from.
+    #[must_use]
+    pub fn of_scene(&self, params: &ModelParams, has_normals: bool) -> String {
         let mut key = Key::new("scene");
         key.text(&self.0);
         key.text(if has_normals { "with normals" } else { "without" });

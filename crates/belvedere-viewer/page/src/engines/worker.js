@@ -5,7 +5,7 @@ const STOPPED = "The scene is lost: this tab has run out of memory, or Belvedere
 
 let worker = null;
 let lost = null;
-const EMPTY = { title: "", stage: "", total: 0, done: 0, failure: null, mesh_count: 0, results: [], shown: null, scene: null };
+const EMPTY = { title: "", stage: "", total: 0, done: 0, failure: null, remarks: [], mesh_count: 0, results: [], shown: null, scene: null };
 let state = { ...EMPTY };
 // where the worker counts what is done while it computes
 let counter = null;
