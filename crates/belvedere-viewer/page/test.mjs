@@ -266,6 +266,60 @@ async function main() {
     await page.waitForFunction(() => belvedere.time.minutes !== 1230, null, { timeout: 10_000 });
     await page.click("#play");
   });
+  await step("shadow by how sure it is, and one point of it", async () => {
+    const said = await ask("shadow", [], /Show how sure each answer is/);
+    assert.doesNotMatch(said, /90 % sure/);
+    await page.click("#sure");
+    await page.waitForFunction(() => belvedere.last?.certainty && document.querySelector("#took"), null, { timeout: 20_000 });
+    assert.match(await text(page), /90 % sure: lit[\s\S]*Less sure, or unproven[\s\S]*--probability --certain 0\.9/);
+    const { counts, bytes, points, fits } = await page.evaluate(() => {
+      const { certainty, body, probabilities, points } = belvedere.last;
+      const [codes, likely] = [new Uint8Array(body), new Uint8Array(probabilities)];
+      // what is as good as sure is what was answered, unless pulses do not prove it
+      const fits = likely.every((p, i) => p > 200 || codes[i] === 2 || (p < 198 || codes[i] === 1) && (p > 2 || codes[i] === 0));
+      return { counts: certainty, bytes: [codes.length, likely.length], points, fits };
+    });
+    assert.deepEqual([counts.free + counts.blocked + counts.uncertain, ...bytes], [points, points, points]);
+    assert.ok(fits && counts.uncertain > 0 && counts.free > counts.uncertain, JSON.stringify(counts));
+    assert.match(await page.evaluate(() => document.getElementById("legend").innerText), /How likely it is lit[\s\S]*0 %[\s\S]*100 %/);
+    await page.waitForFunction(() => location.hash.includes("sure=yes"), null, { timeout: 5000 });
+    await page.mouse.click(...ground);
+    await page.waitForFunction(() => /lit with a probability of \d+ %/.test(document.getElementById("card").innerText), null, { timeout: 10_000 });
+    await page.evaluate(() => { belvedere.isSure = false; });
+  });
+  await step("lengths, heights and areas are measured", async () => {
+    await page.click("#measure");
+    // a roof of 4 m by 3 m that rises 3 m along its 4 m: 5 m by 3 m in its plane
+    await page.evaluate(() => [[0, 0, 0], [4, 0, 3], [4, 3, 3], [0, 3, 0]].forEach((place) => belvedere.pick(place)));
+    assert.match(await text(page), /Length\s+13\.00 m\s+Length on the map\s+11\.00 m\s+Height of the last above the first\s+0\.00 m\s+Area on the map\s+12\.0 m²\s+Area in its plane\s+15\.0 m²/);
+    assert.equal(await page.evaluate(() => [...document.querySelectorAll("#marks text")].map((label) => label.textContent).filter((label) => label === "5.00 m").length), 2);
+    const [file] = await Promise.all([page.waitForEvent("download"), page.click("#map")]);
+    const { features: [{ geometry, properties }] } = JSON.parse(readFileSync(await file.path(), "utf8"));
+    assert.deepEqual([geometry.type, geometry.coordinates[0].length, properties.plane_area_m2], ["Polygon", 5, 15]);
+    await page.click("#anew");
+    assert.match(await text(page), /Click two places/);
+    await page.keyboard.press("Escape");
+  });
+  await step("a part is shown alone", async () => {
+    const seen = () => page.evaluate(async () => { await belvedere.complete(); return belvedere.placeAt(640, 360)?.[2] ?? null; });
+    await page.evaluate(() => { document.getElementById("top").click(); });
+    const before = await seen();
+    const lower = before - 1;
+    await page.click("#cut");
+    await page.evaluate((z) => { const high = document.getElementById("cut-high"); high.value = belvedere.toFile([0, 0, z])[2]; high.dispatchEvent(new Event("input")); }, lower);
+    const after = await seen();
+    assert.ok(after === null || after < lower + 0.2, `${before} and ${after}`);
+    await page.waitForFunction(() => /cut=-?[\d.]+(,-?[\d.]+){5}/.test(location.hash), null, { timeout: 5000 });
+    // answers are of all points
+    await page.click("#tools [data-tool=shadow]");
+    await answered(page);
+    assert.ok(await page.evaluate(() => belvedere.last.points === belvedere.scene.point_count && document.getElementById("cut").getAttribute("aria-pressed") === "true"));
+    await page.click("#cut");
+    await page.click("#all");
+    assert.ok(Math.abs(await seen() - before) < 0.2);
+    await page.keyboard.press("Escape");
+    await page.click("#home");
+  });
   await step("sky and space here", async () => {
     await ask("around", [ground], /Sky view factor 0\.\d\d/);
     assert.equal(await page.evaluate(() => document.querySelectorAll("#card canvas").length), 1);

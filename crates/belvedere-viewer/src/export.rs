@@ -5,7 +5,7 @@ use crate::chunks::Chunks;
 use crate::page;
 use crate::scene::{PageScene, ShownCloud};
 use crate::scene_text::{SceneText, typed};
-use belvedere::apps::ask::ThroughTrees;
+use belvedere::apps::ask::{HowSure, ThroughTrees};
 use belvedere::apps::eyes::fault_of;
 use belvedere::apps::shadow::{Edges, ShadowSun, scene_shadow};
 use belvedere::apps::sun::{Date, Refraction, SunPosition, Zone, sun_position_with};
@@ -123,7 +123,7 @@ fn suns(
             "time": time,
             "azimuth_deg": rounded(position.azimuth.to_degrees(), 4),
             "elevation_deg": rounded(position.elevation.to_degrees(), 4),
-            "command": text.shadow(&format!("{date}T{hour:02}:00"), zone.name(), ThroughTrees::Opaque),
+            "command": text.shadow(&format!("{date}T{hour:02}:00"), zone.name(), ThroughTrees::Opaque, HowSure::default()),
             "bits": base64(&packed(lit, 1, |&share| u8::from(share > 0.0))),
         })
     };
@@ -164,7 +164,7 @@ fn viewpoints(
             "blocked": counts.blocked,
             "unproven": counts.unproven,
             "tells_unproven": blockers.proof().is_some(),
-            "command": params.scene.seen(place),
+            "command": params.scene.seen(place, HowSure::default()),
             "answers": base64(&packed(&seen.answers, 2, |&answer| (answer as u8).min(Answer::OutsideView as u8))),
         }))
     };

@@ -1,6 +1,6 @@
 //! The command lines that give the same answers as the page.
 
-use belvedere::apps::ask::ThroughTrees;
+use belvedere::apps::ask::{HowSure, ThroughTrees};
 
 /// The scene as it is typed on the command line.
 #[derive(Clone, Debug, Default)]
@@ -26,15 +26,16 @@ impl SceneText {
     }
 
     /// The shadow on the points of the cloud, which a ball file has beside it.
-    pub(crate) fn shadow(&self, time: &str, zone: &str, trees: ThroughTrees) -> String {
-        let trees = in_words(trees);
+    pub(crate) fn shadow(&self, time: &str, zone: &str, trees: ThroughTrees, how_sure: HowSure) -> String {
+        let (trees, sure) = (in_words(trees), sure_in_words(how_sure));
         let points = self.cloud_beside.as_ref().map_or("--self".to_owned(), |cloud| format!("--targets {cloud}"));
-        self.command("shadow", &format!("--time {time} --zone {zone} {points}{trees} -o shadow.laz"))
+        self.command("shadow", &format!("--time {time} --zone {zone} {points}{trees}{sure} -o shadow.laz"))
     }
 
     /// What an eye sees of the points of the cloud.
-    pub(crate) fn seen(&self, eye: &[f64]) -> String {
-        self.command_on_ground("viewshed", &format!("--observer {} -o seen.laz", typed(eye)))
+    pub(crate) fn seen(&self, eye: &[f64], how_sure: HowSure) -> String {
+        let sure = sure_in_words(how_sure);
+        self.command_on_ground("viewshed", &format!("--observer {}{sure} -o seen.laz", typed(eye)))
     }
 }
 
@@ -46,6 +47,13 @@ pub(crate) fn in_words(trees: ThroughTrees) -> String {
         ThroughTrees::Share(share) => format!(" --through-trees {share}"),
         ThroughTrees::Pulses => " --through-trees pulses".to_owned(),
     }
+}
+
+/// How sure answers are wanted, as it is typed.
+fn sure_in_words(how_sure: HowSure) -> String {
+    let probability = if how_sure.probability { " --probability" } else { "" };
+    let certain = how_sure.certain.map_or_else(String::new, |certain| format!(" --certain {certain}"));
+    format!("{probability}{certain}")
 }
 
 /// Coordinates as they are typed.

@@ -36,11 +36,11 @@ fn is_in_the_middle(place: &[f64; 3], points: &[[f64; 3]]) -> bool {
 }
 
 /// The values that the command line wrote for points, in the order in which the page gets points.
-fn as_sent(points: &[[f64; 3]], place: &Workplace, table: &str, name: &str) -> Vec<u8> {
+fn as_sent(points: &[[f64; 3]], place: &Workplace, table: &str, name: &str, byte: fn(f64) -> u8) -> Vec<u8> {
     let [x, y, z] = ["x", "y", "z"].map(|axis| column(place, table, axis));
     let values = column(place, table, name);
     let mut rows: Vec<([i64; 3], u8)> =
-        (0..x.len()).map(|i| (millimetres([x[i], y[i], z[i]]), values[i] as u8)).collect();
+        (0..x.len()).map(|i| (millimetres([x[i], y[i], z[i]]), byte(values[i]))).collect();
     rows.sort_unstable();
     let find = |&point: &[f64; 3]| {
         let key = millimetres(point);
@@ -62,6 +62,11 @@ fn unproven(codes: &[u8]) -> Vec<u8> {
     codes.iter().map(|&code| if code > 2 { code } else { u8::from(code == 2) }).collect()
 }
 
+/// Answers as tables have them.
+fn codes_of(question: &str, codes: &[u8]) -> Vec<u8> {
+    if question == "shadow" { lit(codes) } else { codes.to_vec() }
+}
+
 fn millimetres(point: [f64; 3]) -> [i64; 3] {
     point.map(|v| (v * 1000.0).round() as i64)
 }
@@ -72,7 +77,7 @@ fn each_answer_of_the_page_is_that_of_the_command_it_shows() {
     let (page, ground) = town(&place);
     let eye = [ground[0], ground[1], ground[2] + 1.7];
     let same = |sent: &[u8], table: &str, name: &str| {
-        let written = as_sent(&page.points(), &place, table, name);
+        let written = as_sent(&page.points(), &place, table, name, |code| code as u8);
         assert_eq!(sent.len(), written.len());
         let differing = sent.iter().zip(&written).filter(|(a, b)| a != b).count();
         // points nearer to each other than the steps in which they are sent may be taken for one another
@@ -91,6 +96,25 @@ fn each_answer_of_the_page_is_that_of_the_command_it_shows() {
     run_shown(&place, &as_table(&head, "shadow.laz", "shadow.csv"));
     same(&lit(&answers), "shadow.csv", "lit");
     same(&unproven(&answers), "shadow.csv", "unproven");
+    // probabilities stand behind the answers, in steps of 1/200
+    for (name, question) in [
+        ("seen", json!({ "place": eye, "probability": true })),
+        ("shadow", json!({ "time": "2026-06-21T17:00", "zone": "Europe/Amsterdam", "probability": true })),
+    ] {
+        let [from, to] = ["laz", "csv"].map(|extension| format!("{name}.{extension}"));
+        let (head, body) = page.ask(name, &question);
+        let (codes, probabilities) = body.split_at(body.len() / 2);
+        run_shown(&place, &as_table(&head, &from, &to));
+        same(codes_of(name, codes).as_slice(), &to, if name == "seen" { "answer" } else { "lit" });
+        let in_steps = |v: f64| if v.is_nan() { 255 } else { (v * 200.0).round() as u8 };
+        let written = as_sent(&page.points(), &place, &to, "probability", in_steps);
+        // tables have three decimals
+        let differing = probabilities.iter().zip(&written).filter(|(a, b)| a.abs_diff(**b) > 1).count();
+        assert!(differing * 10_000 <= written.len(), "{name}: {differing} of {}", written.len());
+        assert!(written.iter().filter(|&&byte| (20..180).contains(&byte)).count() > 100, "{name}");
+        let uncertain = column(&place, &to, "uncertain").iter().filter(|&&is| is > 0.0).count();
+        assert_eq!(head["certainty"]["uncertain"].as_u64().unwrap() as usize, uncertain, "{name}");
+    }
     // the first answer: of a sample, which answers for its neighbours
     let (of_sample, first) =
         page.ask("shadow", &json!({ "time": "2026-06-21T17:00", "zone": "Europe/Amsterdam", "points": "sample" }));
@@ -344,7 +368,7 @@ fn answers_with_a_plan_are_those_of_the_command_with_its_files() {
         let left: Vec<usize> = (0..sent.len()).filter(|&i| sent[i] != 254).collect();
         assert_eq!(sent.len() - left.len(), cleared);
         let of_left: Vec<[f64; 3]> = left.iter().map(|&i| points[i]).collect();
-        let written = as_sent(&of_left, &place, table, name);
+        let written = as_sent(&of_left, &place, table, name, |code| code as u8);
         let differing = left.iter().zip(&written).filter(|(i, written)| sent[**i] != **written).count();
         assert!(differing * 10_000 <= sent.len(), "{name}: {differing} of {}", sent.len());
     };

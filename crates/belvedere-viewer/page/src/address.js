@@ -1,7 +1,8 @@
 // What the page shows stands in its address, which can be kept and shared while the program runs: question, places,
 // date, time, zone, trees, colour and view. Going back goes to the question before.
+import { setCut } from "./cut.js";
 import { setColor } from "./paint.js";
-import { $, page, TOOLS } from "./state.js";
+import { $, page, toolOf } from "./state.js";
 import { clockText, showClock } from "./time.js";
 import { mover, toFile, toLocal } from "./view.js";
 
@@ -15,8 +16,10 @@ function written() {
   const opened = [...wordsOf(location.hash)].filter(([name]) => ["open", "crs", "window"].includes(name));
   const words = { ...Object.fromEntries(opened), q: tool.name, d: time.date, t: clockText(time.minutes), z: time.zone };
   if (time.trees !== "opaque") words.trees = time.trees;
+  if (page.isSure) words.sure = "yes";
   if (tool.name !== "plan" && places.length) words.p = places.map(({ clicked }) => toFile(clicked).join(",")).join(";");
   if (tool.above !== undefined) words.h = tool.above;
+  if (page.cut) words.cut = [page.cut.low, page.cut.high].flatMap(toFile).join(",");
   words.c = page.before ?? $("color").value;
   words.v = [mover.kind, ...[...mover.camera.position.toArray(), ...mover.orbit.target.toArray()].map(short)].join(",");
   // what may stand in an address as it is stays legible
@@ -66,12 +69,17 @@ function recallView(words) {
   if (kind === "orbit") mover.orbit.update();
   mover.changed();
 }
+function recallCut(words) {
+  const ends = (words.get("cut") ?? "").split(",").map(Number);
+  setCut(ends.length === 6 && ends.every(Number.isFinite) ? { low: toLocal(ends.slice(0, 3)), high: toLocal(ends.slice(3)) } : null);
+}
 // Shows what the address says; returns whether it names a question.
 export function recall(words = wordsOf(location.hash)) {
   page.isRecalled = true;
-  const tool = TOOLS.find(({ name }) => name === words.get("q"));
+  const tool = toolOf(words.get("q"));
   recallTime(words);
   recallView(words);
+  page.isSure = words.get("sure") === "yes";
   if (!tool) return false;
   if (tool.height && Number.isFinite(Number(words.get("h") ?? NaN))) tool.above = Number(words.get("h"));
   page.choose(tool.name);

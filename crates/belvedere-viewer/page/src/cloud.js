@@ -16,6 +16,8 @@ const GAP = 2;
 const SQUARE = 128;
 // Light where no question has a sun: from the south and half up, so that walls differ from each other and from roofs.
 export const DAYLIGHT = new Vector3(0.25, -0.75, 0.75).normalize();
+// Between these all is shown.
+const ALL = { low: [-1e9, -1e9, -1e9], high: [1e9, 1e9, 1e9] };
 // How much of the light is seen in each way of colouring: photographs have their own, and answers must be known by
 // their colours.
 const LIGHTS = [1, 0.7, 1, 0.5, 0.8];
@@ -34,7 +36,7 @@ export class Cloud {
     this.table = new DataTexture(new Uint8Array(1024), 256, 1, RGBAFormat, UnsignedByteType);
     const classes = new DataTexture(new Uint8Array(classTable().flatMap((color) => [...color, 255])), 256, 1, RGBAFormat, UnsignedByteType);
     classes.needsUpdate = true;
-    this.own = uniforms({ table: this.table, classes, tint: 0, mode: 2, heights: new Vector2(), size: 0.3, pixels: 1, far: 1000, most: 40, cleared: CLEARED, light: 1, sun: DAYLIGHT.clone() });
+    this.own = uniforms({ table: this.table, classes, tint: 0, mode: 2, heights: new Vector2(), size: 0.3, pixels: 1, far: 1000, most: 40, cleared: CLEARED, light: 1, sun: DAYLIGHT.clone(), cutLow: new Vector3(...ALL.low), cutHigh: new Vector3(...ALL.high) });
     this.target = target();
     this.screen = new Screen(renderer);
     // whether whole pictures take no longer than those that move may
@@ -109,6 +111,13 @@ export class Cloud {
   setSun(direction) {
     this.isSunny = direction !== null;
     this.own.sun.value.set(...(direction ?? DAYLIGHT));
+  }
+
+  // Shows only what lies between two corners, local metres; without any, all.
+  setCut(cut) {
+    const { low, high } = cut ?? ALL;
+    this.own.cutLow.value.set(...low);
+    this.own.cutHigh.value.set(...high);
   }
 
   // Answers of the points in their order; without any, only which of them a plan clears (`cleared`).
@@ -271,13 +280,14 @@ export class Cloud {
   // The point nearest to a local place.
   nearest([x, y, z]) {
     let best = null;
+    const [least, most] = [this.own.cutLow, this.own.cutHigh].map(({ value }) => value.toArray());
     for (const { low, step, places, count, first } of this.chunks) {
       const reach = best ? Math.sqrt(best.away) : 3;
       if ([x, y, z].some((v, i) => v < low[i] - reach || v > low[i] + step[i] * 65535 + reach)) continue;
       for (let i = 0; i < count; i++) {
         const dx = low[0] + places[4 * i] * step[0] - x, dy = low[1] + places[4 * i + 1] * step[1] - y, dz = low[2] + places[4 * i + 2] * step[2] - z;
         const away = dx * dx + dy * dy + dz * dz;
-        if (!best || away < best.away) best = { away, place: [x + dx, y + dy, z + dz], class: places[4 * i + 3] & 255, value: this.values?.[first + i] };
+        if ((!best || away < best.away) && [x + dx, y + dy, z + dz].every((v, k) => v >= least[k] && v <= most[k])) best = { away, place: [x + dx, y + dy, z + dz], class: places[4 * i + 3] & 255, value: this.values?.[first + i] };
       }
     }
     return best;

@@ -8,6 +8,7 @@ import { setWhen } from "./plan.js";
 import { ask, choose, click, snapshot } from "./questions.js";
 import { save } from "./save.js";
 import { $, canvas, page, root, TOOLS } from "./state.js";
+import { ASIDES } from "./tools.js";
 import { startScreen, stayOffline } from "./start.js";
 import { ofViewpoints } from "./viewpoints.js";
 import { remember } from "./address.js";
@@ -17,7 +18,7 @@ import { cloud, draw, mover, open, placeAt, resize, showAll, shownPlace, toFile,
 function theme(name) {
   root.dataset.theme = name;
   $("theme").textContent = name === "dark" ? "Light" : "Dark";
-  if (page.last && page.tool.name === "seen") page.answer = colors.ofAnswers(page.last, page.last.viewpoint);
+  if (page.last && page.tool.name === "seen" && !page.last.certainty) page.answer = colors.ofAnswers(page.last, page.last.viewpoint);
   paint();
 }
 // Buttons to go with, for those without keys.
@@ -66,6 +67,7 @@ function listen() {
   $("top").onclick = () => { $("motion").value = "orbit"; showAll(true); showSteps(); };
   $("theme").onclick = () => theme(root.dataset.theme === "dark" ? "light" : "dark");
   $("picture").onclick = async () => save(`${page.scene.title.replace(/\..*$/, "")}.png`, await snapshot());
+  for (const { name } of ASIDES) $(name).onclick = () => page.choose(page.tool.name === name ? TOOLS[0].name : name);
   $("balls").onclick = toggleBalls;
   $("meshes").onclick = () => {
     const on = $("meshes").getAttribute("aria-pressed") !== "true";
@@ -98,7 +100,7 @@ function key(event) {
   const on = event.target.tagName === "BUTTON";
   const turns = { ArrowLeft: [0.08, 0], ArrowRight: [-0.08, 0], ArrowUp: [0, 0.06], ArrowDown: [0, -0.06] };
   const goes = { w: [1, 0, 0], s: [-1, 0, 0], a: [0, -1, 0], d: [0, 1, 0], q: [0, 0, -1], e: [0, 0, 1] };
-  const presses = { h: "home", t: "top", b: "balls", p: "picture", l: "theme", "?": "help" };
+  const presses = { h: "home", t: "top", b: "balls", p: "picture", l: "theme", r: "measure", x: "cut", "?": "help" };
   const name = event.key.length === 1 ? event.key.toLowerCase() : event.key;
   if (on && (name === "Enter" || name === " ")) return;
   if (turns[name]) mover.turn(...turns[name]);

@@ -28,7 +28,7 @@ const KEYS = () => [
   ["+ and −", "Zoom"], ["H", "Whole scene"], ["T", "From above"], ["C", "Next colour"], ["M", "Next way of moving"],
   ...(api.exported ? [] : [["V", "Before, after, change of a plan"], ["B", "Balls"]]),
   ...(TOOLS.some(({ time }) => time === "hour") ? [["Space", "Play the day"], ["< and >", "Earlier or later"]] : []),
-  ["P", "Save a picture"], ["L", "Light or dark"], ["?", "This help"],
+  ["R", "Measure"], ["X", "Show a part"], ["P", "Save a picture"], ["L", "Light or dark"], ["?", "This help"],
 ];
 const HOW = () => (api.exported
   ? "Choose a question on the left. This file holds the answers that were computed when it was made, each with the command that gives the same."

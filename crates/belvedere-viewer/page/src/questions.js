@@ -2,14 +2,17 @@
 import * as api from "./api.js";
 import { escape } from "./charts.js";
 import * as colors from "./colors.js";
+import { cutAt, cutPanel } from "./cut.js";
 import { invited } from "./first.js";
+import { measurePanel } from "./measure.js";
 import { hint, lost } from "./messages.js";
 import { finish, isChange, outline, panel, planInUse } from "./plan.js";
 import { setColor } from "./paint.js";
 import { csv, diagram, geojson, picture, save } from "./save.js";
-import { $, canvas, page, TOOLS } from "./state.js";
+import { $, canvas, page, toolOf, TOOLS } from "./state.js";
 import { changed } from "./change.js";
 import { setPlaying } from "./time.js";
+import { ASIDES } from "./tools.js";
 import { cloud, complete, draw, placeAt, shownPlace, toFile } from "./view.js";
 
 export function choose(tool) {
@@ -36,13 +39,16 @@ export function choose(tool) {
     setColor(before);
   }
   $("card").hidden = true;
+  for (const { name } of ASIDES) $(name).setAttribute("aria-pressed", tool.name === name || (name === "cut" && Boolean(page.cut)));
   if (tool.name === "plan") panel();
+  else if (tool.name === "measure") measurePanel();
+  else if (tool.name === "cut") cutPanel();
   else if (tool.places === 0) ask();
   // where the names of the questions are short, nothing else says what to do
   else if (tool.height || (tool.name !== "look" && !$("tools").querySelector("p").offsetHeight)) card(`<p class="note">${escape(tool.hint)}</p>`);
   draw();
 }
-page.choose = (name) => choose(TOOLS.find((tool) => tool.name === name));
+page.choose = (name) => choose(toolOf(name));
 function field() {
   const { tool } = page;
   if (!tool.height) return "";
@@ -78,17 +84,22 @@ export function click(x, y) {
   pick(isPoint ? found.place : near, isPoint ? found : null);
 }
 page.click = click;
+// What a value of a point says of its light.
+function lightOf(value, { certainty }) {
+  if (!certainty) return colors.LIGHT[value]?.[0];
+  return value <= 200 ? `lit with a probability of ${Math.round(value / 2)} %` : undefined;
+}
 // What is known of a clicked place, and the questions about it.
 function ofPlace(clicked, point) {
   const file = toFile(clicked);
   const code = point?.class;
-  const answer = page.tool.name === "shadow" && page.last ? colors.LIGHT[point?.value] : undefined;
+  const answer = page.tool.name === "shadow" && page.last ? lightOf(point?.value, page.last) : undefined;
   const offered = TOOLS.filter(({ places, name }) => places === 1 && name !== "look");
   if (page.tool.places === 0 && !offered.length) return hint("This question is about all points. It needs no click.");
   page.marks = [{ at: clicked }];
   card(`<p class="verdict" style="font-size:17px">${shownPlace(file)}</p><dl><dt>x, y, z</dt><dd>${escape(page.scene.crs)}</dd>`
     + `${page.scene.classes.length && code !== undefined ? `<dt>Class</dt><dd>${code} ${escape(colors.CLASSES[code]?.[0] ?? "")}</dd>` : ""}`
-    + `${answer ? `<dt>At the time below</dt><dd>${escape(answer[0])}</dd>` : ""}</dl><pre>${file.join(",")}</pre>`
+    + `${answer ? `<dt>At the time below</dt><dd>${escape(answer)}</dd>` : ""}</dl><pre>${file.join(",")}</pre>`
     + (offered.length ? `<h3>Ask about this place</h3><div class="row">${offered.map(({ name, title }) => `<button data-about="${name}">${escape(title)}</button>`).join("")}</div>` : ""), (box) => {
     box.querySelectorAll("[data-about]").forEach((button) => { button.onclick = () => { page.choose(button.dataset.about); pick(clicked); }; });
   });
@@ -100,6 +111,8 @@ function pick(clicked, point = null) {
   if (page.places.length >= tool.places) page.places = [];
   const isFirst = page.places.length === 0;
   page.places.push({ clicked, local: isFirst && tool.height ? lifted(clicked, tool.above ?? tool.height[1]) : clicked });
+  if (tool.name === "measure") return measurePanel();
+  if (tool.name === "cut") return cutAt();
   if (tool.name === "plan") {
     page.marks = outline(page.places);
     panel();
@@ -120,10 +133,20 @@ function pick(clicked, point = null) {
 }
 page.pick = pick;
 
+// Whether answers can be shown by how sure they are: pulses tell, of what is yes or no.
+const offersSure = (tool) => tool.samples && page.scene.tells_unproven && !api.exported && !(tool.time && page.time.trees !== "opaque");
+// Probabilities stand behind the answers, a byte for each.
+function withProbabilities(answer) {
+  if (!answer.certainty) return answer;
+  const half = answer.body.byteLength / 2;
+  return { ...answer, probabilities: answer.body.slice(half), body: answer.body.slice(0, half) };
+}
+
 let asking;
 export async function ask(quick = false) {
   const { tool } = page;
   if (tool.name === "plan") return finish();
+  if (ASIDES.includes(tool)) return;
   asking?.abort();
   const mine = (asking = new AbortController());
   if (page.failure) {
@@ -155,7 +178,8 @@ export async function ask(quick = false) {
   const start = performance.now();
   // with a plan, the change is that from the answer before it
   const answered = async (question, values) => {
-    const after = await api.ask(question, values, mine.signal, planInUse());
+    const sure = page.isSure && offersSure(tool) && !isChange() ? { probability: true } : {};
+    const after = withProbabilities(await api.ask(question, { ...values, ...sure }, mine.signal, planInUse()));
     if (!tool.change || !isChange()) return after;
     return { ...after, before: await api.ask(question, values, mine.signal) };
   };
@@ -206,9 +230,12 @@ function showAnswer(tool, answer, places) {
     '<button data-save="png">Picture (.png)</button>',
   ].join("");
   const time = tool.time ? page.ofTime() : "";
-  card(`${html}${time ? `<p class="note" id="oftime">${escape(time)}</p>` : ""}${remarks({ remarks: together(answer.remarks, page.remarks) })}${where}<h3>The same on the command line</h3><pre id="command">${words(shown.command ?? answer.command)}</pre><div class="row"><button data-save="copy">Copy command</button>${buttons}</div>`
+  const sure = offersSure(tool) && !answer.before ? `<label class="check"><input type="checkbox" id="sure"${page.isSure ? " checked" : ""}> Show how sure each answer is</label>` : "";
+  card(`${html}${sure}${time ? `<p class="note" id="oftime">${escape(time)}</p>` : ""}${remarks({ remarks: together(answer.remarks, page.remarks) })}${where}<h3>The same on the command line</h3><pre id="command">${words(shown.command ?? answer.command)}</pre><div class="row"><button data-save="copy">Copy command</button>${buttons}</div>`
     + `<p class="note" id="took">${api.exported ? "Stored in this file." : `Answered in ${Math.round(answer.took)} ms.`}</p>`, (box) => {
     shown.after?.(box);
+    const isSure = box.querySelector("#sure");
+    if (isSure) isSure.onchange = () => { page.isSure = isSure.checked; ask(); };
     box.querySelectorAll("[data-save]").forEach((button) => { button.onclick = () => saveAs(button, tool, answer, places); });
   });
   page.whenShown?.();

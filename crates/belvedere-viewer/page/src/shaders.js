@@ -13,12 +13,13 @@ in uint rgb565;
 #else
 const uint rgb565 = 0u;
 #endif
-uniform mat4 modelViewMatrix, projectionMatrix; uniform vec3 low, step3, sun; uniform vec2 heights; uniform int mode, cleared; uniform float size, pixels, most, light;
+uniform mat4 modelViewMatrix, projectionMatrix; uniform vec3 low, step3, sun, cutLow, cutHigh; uniform vec2 heights; uniform int mode, cleared; uniform float size, pixels, most, light;
 uniform sampler2D table, classes; uniform float tint; flat out vec3 color; flat out vec2 slope; flat out vec2 range;
 void main() {
   vec3 local = low + vec3(place.xyz) * step3;
   vec4 view = modelViewMatrix * vec4(local, 1.0);
-  gl_Position = int(value) == cleared ? vec4(2.0, 2.0, 2.0, 1.0) : projectionMatrix * view;
+  bool isCut = any(lessThan(local, cutLow)) || any(greaterThan(local, cutHigh));
+  gl_Position = int(value) == cleared || isCut ? vec4(2.0, 2.0, 2.0, 1.0) : projectionMatrix * view;
   float wide = size * float(shape.x) / 64.0 * pixels / max(-view.z, 0.01);
   bool isSurface = shape.y + shape.z + shape.w > 0u;
   // single points would stand before all else as large balls

@@ -25,6 +25,16 @@ function shares(answer, of, page) {
     + list(rows.map(([code, n]) => [`${of} ${names[code][0]}`, answer.isFirst && n ? estimated((n * page.scene.point_count) / answer.points) : count(n)]));
 }
 
+// How many answers are certain, where that is known.
+const certainty = ({ certainty: sure }, [free, blocked]) => {
+  if (!sure) return "";
+  const { free: high, blocked: low, uncertain } = sure;
+  const whole = high + low + uncertain;
+  const name = `${Math.round(100 * sure.certain_from)} % sure`;
+  return list([[`${name}: ${free}`, percent(high, whole)], [`${name}: ${blocked}`, percent(low, whole)], ["Less sure, or unproven", percent(uncertain, whole)]]);
+};
+const certainRows = ({ certainty: sure }) => (sure ? [["certain from", sure.certain_from], ["certainly free", sure.free], ["certainly blocked", sure.blocked], ["uncertain", sure.uncertain]] : []);
+
 const UNPROVEN = "Nothing blocks what is unproven, but part of the line runs through space that no laser pulse has seen.";
 
 // Whether fingers are the way to point.
@@ -42,12 +52,12 @@ export const TOOLS = [
     ask: ([place]) => ["seen", { place }],
     change: { title: "What the plan changes", names: ["not visible before and after", "visible before and after", "visible only after", "visible only before"], gain: "come into view", loss: "are hidden" },
     show(answer, page) {
-      page.answer = colors.ofAnswers(answer, answer.viewpoint);
-      page.values(new Uint8Array(answer.body));
+      page.answer = answer.certainty ? colors.ofProbability("How likely it is visible", ["0 %", "100 %"]) : colors.ofAnswers(answer, answer.viewpoint);
+      page.values(new Uint8Array(answer.probabilities ?? answer.body));
       const whole = answer.visible + answer.blocked + answer.unproven;
-      return `<p class="verdict">${about(answer)}${percent(answer.visible, whole)} is visible</p><p class="note">of the points of the cloud. ${answer.isFirst ? FIRST(answer) : answer.tells_unproven ? UNPROVEN : ""}</p>${shares(answer, "Points", page)}`;
+      return `<p class="verdict">${about(answer)}${percent(answer.visible, whole)} is visible</p><p class="note">of the points of the cloud. ${answer.isFirst ? FIRST(answer) : answer.tells_unproven ? UNPROVEN : ""}</p>${shares(answer, "Points", page)}${certainty(answer, ["visible", "blocked"])}`;
     },
-    rows: (answer) => [["answer", "points"], ["visible", answer.visible], ["unproven", answer.unproven], ["blocked", answer.blocked]],
+    rows: (answer) => [["answer", "points"], ["visible", answer.visible], ["unproven", answer.unproven], ["blocked", answer.blocked], ...certainRows(answer)],
     properties: ({ visible, unproven, blocked }) => ({ visible, unproven, blocked }),
   },
   {
@@ -88,15 +98,16 @@ export const TOOLS = [
     ask: (_, { date, clock, zone, trees }) => ["shadow", { time: `${date}T${clock}`, zone, trees }],
     change: { title: "What the plan changes", names: ["in shadow before and after", "lit before and after", "lit only after", "lit only before"], gain: "gain the sun", loss: "lose the sun" },
     show(answer, page) {
-      page.answer = colors.ofLight(answer);
+      page.answer = answer.certainty ? colors.ofProbability("How likely it is lit", ["0 %", "100 %"]) : colors.ofLight(answer);
       page.light(answer);
-      page.values(new Uint8Array(answer.body));
+      page.values(new Uint8Array(answer.probabilities ?? answer.body));
       answer.lit_share = answer.lit / Math.max(answer.points, 1);
       const up = answer.elevation_deg > 0;
       return `<p class="verdict">${up ? `${about(answer)}${percent(answer.lit, answer.points)} is lit` : "The sun is below the horizon"}</p><p class="note">of the points of the cloud, ${escape(answer.time.replace("T", " "))}. ${answer.isFirst ? FIRST(answer) : ""}</p>`
-        + list([...(answer.tells_unproven && up ? [["Lit, but unproven", percent(answer.unproven, answer.points)]] : []), ["Azimuth of the sun", `${answer.azimuth_deg.toFixed(1)}°`], ["Elevation of the sun", `${answer.elevation_deg.toFixed(1)}°`]]);
+        + list([...(answer.tells_unproven && up ? [["Lit, but unproven", percent(answer.unproven, answer.points)]] : []), ["Azimuth of the sun", `${answer.azimuth_deg.toFixed(1)}°`], ["Elevation of the sun", `${answer.elevation_deg.toFixed(1)}°`]])
+        + certainty(answer, ["lit", "in shadow"]);
     },
-    rows: (answer) => [["time", "azimuth_deg", "elevation_deg", "lit_share"], [answer.time, answer.azimuth_deg, answer.elevation_deg, answer.lit_share]],
+    rows: (answer) => [["time", "azimuth_deg", "elevation_deg", "lit_share"], [answer.time, answer.azimuth_deg, answer.elevation_deg, answer.lit_share], ...certainRows(answer)],
   },
   {
     name: "around", short: "Sky", title: "Sky and space here", icon: icon('<path d="M3 18a9 9 0 0 1 18 0"/><path d="M3 18h4v-5h4v5h3v-8h4v8h3"/>'), height: ["Height above the clicked point", 1.7], places: 1,
@@ -159,4 +170,10 @@ export const TOOLS = [
     name: "plan", short: "Plan", title: "Plan buildings", icon: icon('<path d="M4 20V9l6-4 6 4v11zM8 20v-5h4v5M19 4v6M16 7h6"/>'), places: Infinity,
     hint: "Draw or load what is planned, clear what goes; then ask again.",
   },
+];
+
+// What needs no answer: tools of the bar.
+export const ASIDES = [
+  { name: "measure", title: "Measure", places: Infinity, hint: "Click places to measure between them." },
+  { name: "cut", title: "Show a part", places: 2, hint: "Click two corners, or move the heights." },
 ];

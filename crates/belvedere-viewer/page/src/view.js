@@ -143,9 +143,9 @@ page.onScreen = onScreen;
 // ---- marks, scale, north ----
 function overlay() {
   const parts = [];
-  const dot = ({ at: local, label, color = "#1d4e89", down = -8 }) => {
+  const dot = ({ at: local, label, color = "#1d4e89", down = -8, radius = 6 }) => {
     const at = onScreen(local);
-    if (at) parts.push(`<circle cx="${at[0]}" cy="${at[1]}" r="6" fill="${color}" stroke="#fff" stroke-width="2"/>${label ? `<text x="${at[0] + 10}" y="${at[1] + down}">${escape(label)}</text>` : ""}`);
+    if (at) parts.push(`${radius ? `<circle cx="${at[0]}" cy="${at[1]}" r="${radius}" fill="${color}" stroke="#fff" stroke-width="2"/>` : ""}${label ? `<text x="${at[0] + 10}" y="${at[1] + down}">${escape(label)}</text>` : ""}`);
   };
   const line = (a, b, style) => {
     const [p, q] = [onScreen(a), onScreen(b)];

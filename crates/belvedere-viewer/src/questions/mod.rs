@@ -1,6 +1,7 @@
 //! One file for each question. Each calls the library as the command line does, and says which command gives the same.
 
 mod around;
+mod certainty;
 mod daylight;
 mod line;
 mod places;

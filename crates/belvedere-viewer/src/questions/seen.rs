@@ -1,11 +1,13 @@
-//! What is seen from here: an answer for each point of the cloud.
+//! What is seen from here: an answer for each point of the cloud, and how likely it is seen.
 
 use super::RequestContext;
+use super::certainty::{byte_of, certainty, how_sure};
 use super::places::local;
 use crate::replies::{QuestionReply, Refusal};
 use crate::scene::PointChoice;
-use belvedere::apps::viewshed::{Observer, SightLimits, ViewshedParams, viewshed_among};
-use belvedere::query::{AnswerCounts, UnprovenAs};
+use belvedere::apps::ask::remark_from_ground;
+use belvedere::apps::viewshed::{Observer, SightLimits, ViewshedParams, seen_probabilities, viewshed_among};
+use belvedere::query::{Answer, AnswerCounts, UnprovenAs};
 use serde::Deserialize;
 use serde_json::json;
 
@@ -16,6 +18,9 @@ pub(super) struct SeenRequest {
     place: [f64; 3],
     #[serde(default)]
     points: PointChoice,
+    /// Whether to give the probability that a point is visible too.
+    #[serde(default)]
+    probability: bool,
 }
 
 pub(super) fn answer(question: &SeenRequest, context: &RequestContext<'_>) -> Result<QuestionReply, Refusal> {
@@ -29,13 +34,24 @@ pub(super) fn answer(question: &SeenRequest, context: &RequestContext<'_>) -> Re
     let params = ViewshedParams::default();
     let seen = viewshed_among(&blockers, &[observer], &points.targets.positions, &points.tree, &params, control)?;
     let counts = AnswerCounts::of(&seen.answers);
+    let how_sure = how_sure(question.probability);
+    let probabilities = how_sure
+        .is_wanted()
+        .then(|| seen_probabilities(&blockers, &[observer], &points.targets.positions, None, control))
+        .transpose()?
+        .map(|found| found.expected);
+    let is_unproven = |row: usize| seen.answers[row] == Answer::Unproven;
     let head = json!({
         "points": points.targets.len(),
         "visible": counts.visible,
         "blocked": counts.blocked,
         "unproven": counts.unproven,
         "tells_unproven": blockers.proof().is_some(),
-        "command": context.text.seen(&question.place),
+        "certainty": probabilities.as_deref().map(|values| certainty(values, is_unproven)).transpose()?,
+        "remarks": how_sure.is_wanted().then(|| remark_from_ground(&blockers)).flatten().as_slice(),
+        "command": context.text.seen(&question.place, how_sure),
     });
-    Ok(QuestionReply { head, body: points.in_order(|row| seen.answers[row] as u8) })
+    let mut body = points.in_order(|row| seen.answers[row] as u8);
+    body.extend(probabilities.map(|values| points.in_order(|row| byte_of(values[row]))).unwrap_or_default());
+    Ok(QuestionReply { head, body })
 }

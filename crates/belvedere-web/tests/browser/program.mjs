@@ -43,6 +43,8 @@ function questions(state, points) {
     ...["2026-06-21T09:00", "2026-06-21T18:00", "2026-12-21T12:00"].map((time) => ["ask/shadow", { time, ...on }]),
     ["ask/shadow", { time: "2026-06-21T15:00", ...on, trees: "seasons" }],
     ["ask/shadow", { time: "2026-06-21T01:00", ...on }],
+    ["ask/shadow", { time: "2026-06-21T18:00", ...on, points: "sample", probability: true }],
+    ["ask/seen", { place: file(a.local, 1.7), points: "sample", probability: true }],
     ["ask/seen", { place: file(a.local, 1.7) }],
     ["ask/seen", { place: file(b.local, 1.7), points: "sample" }],
     ["ask/line", { observer: file(a.local, 1.7), target: file(b.local, 1.7) }],
