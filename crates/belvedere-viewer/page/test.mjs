@@ -275,12 +275,12 @@ async function main() {
     const { counts, bytes, points, fits } = await page.evaluate(() => {
       const { certainty, body, probabilities, points } = belvedere.last;
       const [codes, likely] = [new Uint8Array(body), new Uint8Array(probabilities)];
-      // what is as good as sure is what was answered, unless pulses do not prove it
-      const fits = likely.every((p, i) => p > 200 || codes[i] === 2 || (p < 198 || codes[i] === 1) && (p > 2 || codes[i] === 0));
-      return { counts: certainty, bytes: [codes.length, likely.length], points, fits };
+      // what is as good as sure is what was answered, but for single points in a thousand
+      const strange = likely.filter((p, i) => p <= 200 && ((p >= 198 && codes[i] === 0) || (p <= 2 && codes[i] === 1))).length;
+      return { counts: certainty, bytes: [codes.length, likely.length], points, fits: strange * 1000 < points };
     });
     assert.deepEqual([counts.free + counts.blocked + counts.uncertain, ...bytes], [points, points, points]);
-    assert.ok(fits && counts.uncertain > 0 && counts.free > counts.uncertain, JSON.stringify(counts));
+    assert.ok(fits && counts.uncertain > 0 && counts.free > 0 && counts.blocked > 0, JSON.stringify(counts));
     assert.match(await page.evaluate(() => document.getElementById("legend").innerText), /How likely it is lit[\s\S]*0 %[\s\S]*100 %/);
     await page.waitForFunction(() => location.hash.includes("sure=yes"), null, { timeout: 5000 });
     await page.mouse.click(...ground);
@@ -292,7 +292,7 @@ async function main() {
     // a roof of 4 m by 3 m that rises 3 m along its 4 m: 5 m by 3 m in its plane
     await page.evaluate(() => [[0, 0, 0], [4, 0, 3], [4, 3, 3], [0, 3, 0]].forEach((place) => belvedere.pick(place)));
     assert.match(await text(page), /Length\s+13\.00 m\s+Length on the map\s+11\.00 m\s+Height of the last above the first\s+0\.00 m\s+Area on the map\s+12\.0 m²\s+Area in its plane\s+15\.0 m²/);
-    assert.equal(await page.evaluate(() => [...document.querySelectorAll("#marks text")].map((label) => label.textContent).filter((label) => label === "5.00 m").length), 2);
+    await page.waitForFunction(() => [...document.querySelectorAll("#marks text")].filter(({ textContent }) => textContent === "5.00 m").length === 2, null, { timeout: 5000 });
     const [file] = await Promise.all([page.waitForEvent("download"), page.click("#map")]);
     const { features: [{ geometry, properties }] } = JSON.parse(readFileSync(await file.path(), "utf8"));
     assert.deepEqual([geometry.type, geometry.coordinates[0].length, properties.plane_area_m2], ["Polygon", 5, 15]);

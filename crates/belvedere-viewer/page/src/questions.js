@@ -230,12 +230,12 @@ function showAnswer(tool, answer, places) {
     '<button data-save="png">Picture (.png)</button>',
   ].join("");
   const time = tool.time ? page.ofTime() : "";
-  const sure = offersSure(tool) && !answer.before ? `<label class="check"><input type="checkbox" id="sure"${page.isSure ? " checked" : ""}> Show how sure each answer is</label>` : "";
+  const sure = offersSure(tool) && !answer.before ? `<div class="row"><button id="sure" aria-pressed="${page.isSure}">Show how sure each answer is</button></div>` : "";
   card(`${html}${sure}${time ? `<p class="note" id="oftime">${escape(time)}</p>` : ""}${remarks({ remarks: together(answer.remarks, page.remarks) })}${where}<h3>The same on the command line</h3><pre id="command">${words(shown.command ?? answer.command)}</pre><div class="row"><button data-save="copy">Copy command</button>${buttons}</div>`
     + `<p class="note" id="took">${api.exported ? "Stored in this file." : `Answered in ${Math.round(answer.took)} ms.`}</p>`, (box) => {
     shown.after?.(box);
     const isSure = box.querySelector("#sure");
-    if (isSure) isSure.onchange = () => { page.isSure = isSure.checked; ask(); };
+    if (isSure) isSure.onclick = () => { page.isSure = !page.isSure; ask(); };
     box.querySelectorAll("[data-save]").forEach((button) => { button.onclick = () => saveAs(button, tool, answer, places); });
   });
   page.whenShown?.();
