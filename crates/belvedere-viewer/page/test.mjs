@@ -8,7 +8,11 @@ import { dirname, join } from "node:path";
 import { createInterface } from "node:readline";
 import { fileURLToPath } from "node:url";
 import { chromium } from "playwright-core";
+import { de } from "./src/words/de.js";
+import { fr } from "./src/words/fr.js";
+import { nl } from "./src/words/nl.js";
 import { clockOf, zoneOf } from "./src/zones.js";
+import { holes, sourcesOfRust, texts } from "./texts.mjs";
 
 const [program, executablePath] = process.argv.slice(2);
 const here = dirname(fileURLToPath(import.meta.url));
@@ -108,7 +112,25 @@ function zones() {
   assert.equal(clockOf("Mars"), null);
 }
 
+// Every text is in every language, and no other; names of stages and remarks are those of the library.
+function languages() {
+  const [expected, rust] = [texts(), sourcesOfRust()];
+  for (const [name, table] of Object.entries({ de, fr, nl })) {
+    assert.deepEqual(Object.keys(table.texts).sort(), expected, name);
+    for (const [text, own] of Object.entries(table.texts)) assert.equal(holes(own), holes(text), `${name}: ${text}`);
+    for (const part of ["stages", "remarks", "refusals"]) {
+      assert.deepEqual(Object.keys(table[part]).sort(), Object.keys(nl[part]).sort(), `${name}: ${part}`);
+      for (const [key, own] of Object.entries(table[part])) {
+        assert.ok(rust.includes(`"${key}"`), `${key} is no name of the library`);
+        assert.equal(holes(own), holes(nl[part][key]), `${name}: ${key}`);
+      }
+    }
+  }
+}
+
 async function main() {
+  languages();
+  done.push("texts in all languages");
   zones();
   done.push("zones of places, and the clocks there");
   execFileSync(program, ["simulate", "town", "--extent", "60", "-o", "town"], { cwd: folder, stdio: "ignore" });
@@ -382,6 +404,25 @@ async function main() {
     await page.keyboard.press("Escape");
     const nameless = await page.evaluate(() => [...document.querySelectorAll("button, select, input")].filter((one) => !(one.innerText?.trim() || one.ariaLabel || one.title || one.labels?.length)).length);
     assert.equal(nameless, 0, "controls without a name for screen readers");
+  });
+  await step("in the language of the browser, or in one that is chosen", async () => {
+    const dutch = await open(browser, url, { ...DESK, locale: "nl-NL" });
+    await ready(dutch);
+    await answered(dutch);
+    const said = await text(dutch);
+    assert.match(said, new RegExp(`\\d+,\\d % ${nl.texts["{0} is lit"].replace("{0} ", "")}`), said);
+    assert.ok(said.includes(nl.remarks["targets-near-edge"].split("{percent} %) ")[1]), said);
+    assert.equal(await dutch.evaluate(() => document.documentElement.lang), "nl");
+    // all that is seen of the bar and the questions is of the table
+    const seen = await dutch.evaluate(() => [...document.querySelectorAll("#bar button, #bar option:not([value^=result]), #tools button span, #tools h2")].map(({ textContent }) => textContent.trim()));
+    const known = new Set(Object.values(nl.texts));
+    assert.deepEqual(seen.filter((one) => !known.has(one)), []);
+    await dutch.click("#help");
+    await dutch.selectOption("#keys select", "fr");
+    await ready(dutch);
+    await answered(dutch);
+    assert.equal(await dutch.evaluate(() => document.querySelector("#tools h2").textContent), fr.texts.Questions);
+    await dutch.close();
   });
   await step("a tablet: fingers turn, zoom and ask, and controls are large", async () => {
     const tablet = await open(browser, url, { viewport: { width: 1024, height: 768 }, hasTouch: true, isMobile: true });

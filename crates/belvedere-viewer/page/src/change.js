@@ -1,8 +1,8 @@
 // What a plan changes: an answer before and after it.
 import { escape } from "./charts.js";
 import * as colors from "./colors.js";
+import { count, fixed, t } from "./words.js";
 
-const count = (n) => n.toLocaleString("en");
 const list = (rows) => `<dl>${rows.map(([name, value]) => `<dt>${escape(name)}</dt><dd>${escape(value)}</dd>`).join("")}</dl>`;
 const CLEARED = 254;
 
@@ -16,8 +16,9 @@ function ofPoints({ title, names, gain, loss }, answer, page) {
   for (const code of codes) if (code !== CLEARED) counts[code] += 1;
   page.answer = colors.ofChange(title, names);
   page.values(codes);
-  const about = answer.isFirst ? "about " : "";
-  return `<p class="verdict">${about}${count(counts[3])} points ${loss}, ${about}${count(counts[2])} ${gain}</p><p class="note">by the plan, of ${count(codes.length)} points of the cloud.${answer.isFirst ? " A first answer from a sample of them; the exact one follows …" : ""}</p>`;
+  const number = (n) => (answer.isFirst ? t`about ${count(n)}` : count(n));
+  const first = answer.isFirst ? ` ${t`A first answer from a sample of them; the exact one follows …`}` : "";
+  return `<p class="verdict">${loss(number(counts[3]))}, ${gain(number(counts[2]))}</p><p class="note">${t`by the plan, of ${count(codes.length)} points of the cloud.`}${first}</p>`;
 }
 function ofCells(answer, page) {
   const rows = ({ body }) => { const v = new Float32Array(body); return Array.from({ length: v.length / 4 }, (_, i) => v.subarray(4 * i, 4 * i + 4)); };
@@ -28,8 +29,8 @@ function ofCells(answer, page) {
   // a minute of sun
   const LEAST = 1 / 60;
   const mean = found.reduce((sum, row) => sum + row[3], 0) / Math.max(found.length, 1);
-  return `<p class="verdict">${mean < 0 ? "−" : "+"}${Math.abs(mean).toFixed(2)} hours of sun</p><p class="note">on average on ${escape(page.time.date)}, on the ground that is free before and after.</p>`
-    + list([["Loses sun", area((h) => h < -LEAST)], ["Gains sun", area((h) => h > LEAST)], ["Greatest loss", `${Math.max(0, -Math.min(0, ...found.map((row) => row[3]))).toFixed(1)} h`], ["Greatest gain", `${Math.max(0, ...found.map((row) => row[3])).toFixed(1)} h`]]);
+  return `<p class="verdict">${mean < 0 ? "−" : "+"}${t`${fixed(Math.abs(mean), 2)} hours of sun`}</p><p class="note">${t`on average on ${escape(page.time.date)}, on the ground that is free before and after.`}</p>`
+    + list([[t`Loses sun`, area((h) => h < -LEAST)], [t`Gains sun`, area((h) => h > LEAST)], [t`Greatest loss`, `${fixed(Math.max(0, -Math.min(0, ...found.map((row) => row[3]))), 1)} h`], [t`Greatest gain`, `${fixed(Math.max(0, ...found.map((row) => row[3])), 1)} h`]]);
 }
 // The card of a change, and the commands that give the same.
 export function changed(tool, answer, page) {

@@ -1,4 +1,5 @@
 // Diagrams of answers as SVG.
+import { fixed, language, t } from "./words.js";
 
 const W = 356;
 export const escape = (text) => String(text).replace(/[&<>"']/g, (c) => `&#${c.charCodeAt(0)};`);
@@ -6,7 +7,7 @@ const path = (points) => points.map(([x, y], i) => `${i ? "L" : "M"}${x.toFixed(
 const svg = (height, label, content) =>
   `<svg viewBox="0 0 ${W} ${height}" width="${W}" height="${height}" role="img" aria-label="${escape(label)}" xmlns="http://www.w3.org/2000/svg">${content}</svg>`;
 export const hours = (value) => {
-  if (value === null || value === undefined) return "none";
+  if (value === null || value === undefined) return t`none`;
   const minutes = Math.round((((value % 24) + 24) % 24) * 60);
   return `${String(Math.floor(minutes / 60) % 24).padStart(2, "0")}:${String(minutes % 60).padStart(2, "0")}`;
 };
@@ -49,30 +50,31 @@ export function sunPaths(answer, date) {
     last = whole;
     content += `<text x="${x(azimuth).toFixed(1)}" y="${(y(elevation) - 8).toFixed(1)}" text-anchor="middle" style="paint-order:stroke;stroke:#fff;stroke-width:3px;fill:#1c2530">${whole} h</text>`;
   }
-  ["N", "E", "S", "W"].forEach((name, i) => { content += `<text x="${x(i * 90 + 0.01)}" y="${bottom + 15}" text-anchor="middle">${name}</text>`; });
-  return svg(H, `The sun on ${date} over the horizon of the place`, content);
+  [t`N`, t`E`, t`S`, t`W`].forEach((name, i) => { content += `<text x="${x(i * 90 + 0.01)}" y="${bottom + 15}" text-anchor="middle">${name}</text>`; });
+  return svg(H, t`The sun on ${date} over the horizon of the place`, content);
 }
 
+// First letter of a month.
+const initial = (month) => new Date(Date.UTC(2026, month, 15)).toLocaleString(language, { month: "narrow", timeZone: "UTC" });
 // Hours of sun on the 21st of each month: what is possible, and what arrives.
 export function months(answer) {
   const H = 116, base = 96, scale = 84 / 18, width = W / 12;
-  const names = "JFMAMJJASOND";
-  return svg(H, "Hours of sun on the 21st of each month", answer.months.map(({ sun_hours: sun, possible_hours: possible }, i) => {
+  return svg(H, t`Hours of sun on the 21st of each month`, answer.months.map(({ sun_hours: sun, possible_hours: possible }, i) => {
     const x = i * width + 4;
     return `<rect x="${x}" y="${base - possible * scale}" width="${width - 8}" height="${possible * scale}" fill="#8d97a5" opacity=".35"/>`
       + `<rect x="${x}" y="${base - sun * scale}" width="${width - 8}" height="${sun * scale}" fill="#f5a300"/>`
-      + `<text x="${x + width / 2 - 4}" y="${H - 5}" text-anchor="middle">${names[i]}</text>`
-      + `<text x="${x + width / 2 - 4}" y="${base - possible * scale - 3}" text-anchor="middle" style="font-size:10px">${sun.toFixed(1)}</text>`;
+      + `<text x="${x + width / 2 - 4}" y="${H - 5}" text-anchor="middle">${initial(i)}</text>`
+      + `<text x="${x + width / 2 - 4}" y="${base - possible * scale - 3}" text-anchor="middle" style="font-size:10px">${fixed(sun, 1)}</text>`;
   }).join(""));
 }
 
 // Solar energy of each month.
 export function energy(values) {
   const H = 112, base = 94, scale = 76 / Math.max(...values, 1), width = W / 12;
-  return svg(H, "Solar energy received in each month", values.map((value, i) => {
+  return svg(H, t`Solar energy received in each month`, values.map((value, i) => {
     const x = i * width + 4;
     return `<rect x="${x}" y="${base - value * scale}" width="${width - 8}" height="${value * scale}" fill="#f5a300"/>`
-      + `<text x="${x + width / 2 - 4}" y="${H - 5}" text-anchor="middle">${"JFMAMJJASOND"[i]}</text>`
+      + `<text x="${x + width / 2 - 4}" y="${H - 5}" text-anchor="middle">${initial(i)}</text>`
       + `<text x="${x + width / 2 - 4}" y="${base - value * scale - 3}" text-anchor="middle" style="font-size:10px">${value.toFixed(0)}</text>`;
   }).join(""));
 }
@@ -99,8 +101,8 @@ export function profile({ distance_m: distances, ground, line, solid, blocked_at
     content += `<circle cx="${x(blocked)}" cy="${y(at)}" r="4.5" fill="#d1495b" stroke="#fff"/>`;
   }
   [high - 1.5, low + 1.5].forEach((z) => { content += `<text x="${left - 5}" y="${y(z) + 4}" text-anchor="end">${z.toFixed(0)} ${unit}</text>`; });
-  content += `<text x="${left}" y="${H - 8}">A</text><text x="${W - 6}" y="${H - 8}" text-anchor="end">B, ${far.toFixed(1)} m</text>`;
-  return svg(H, "Profile of the line of sight", `<path d="M${left} ${bottom}H${W - 6}" stroke="#8aa" stroke-opacity=".5"/>${content}`);
+  content += `<text x="${left}" y="${H - 8}">A</text><text x="${W - 6}" y="${H - 8}" text-anchor="end">B, ${fixed(far, 1)} m</text>`;
+  return svg(H, t`Profile of the line of sight`, `<path d="M${left} ${bottom}H${W - 6}" stroke="#8aa" stroke-opacity=".5"/>${content}`);
 }
 
 // The visible space in plan, north up.
@@ -115,8 +117,8 @@ export function plan({ plan: corners, isovist }) {
   const rings = [1, 2, 5].map((k) => k * ring).filter((r) => r <= most);
   let content = `<path d="${path(points)}Z" fill="#f5a300" fill-opacity=".35" stroke="#f5a300" stroke-width="1.5"/>`;
   content += rings.map((r) => `<circle cx="${W / 2}" cy="${H / 2}" r="${r * scale}" fill="none" stroke="#8aa" stroke-opacity=".6" stroke-dasharray="2 3"/><text x="${W / 2 + r * scale * 0.71}" y="${H / 2 - r * scale * 0.71}">${r} m</text>`).join("");
-  content += `<circle cx="${W / 2}" cy="${H / 2}" r="3.5" fill="#1d4e89"/><text x="${W / 2}" y="11" text-anchor="middle">N</text>`;
-  return svg(H, `Plan of the visible space, ${isovist.plan_area_m2} square metres`, content);
+  content += `<circle cx="${W / 2}" cy="${H / 2}" r="3.5" fill="#1d4e89"/><text x="${W / 2}" y="11" text-anchor="middle">${t`N`}</text>`;
+  return svg(H, t`Plan of the visible space, ${isovist.plan_area_m2} square metres`, content);
 }
 
 // Ranges all around, sky in blue: a picture of width by height pixels.
@@ -124,7 +126,7 @@ export function panorama(bytes, { width, height }) {
   const canvas = document.createElement("canvas");
   Object.assign(canvas, { width, height: Math.round(height * 0.75) });
   canvas.setAttribute("role", "img");
-  canvas.setAttribute("aria-label", "Panorama of distances around the place, north at both ends");
+  canvas.setAttribute("aria-label", t`Panorama of distances around the place, north at both ends`);
   const context = canvas.getContext("2d");
   const image = context.createImageData(width, height);
   for (let i = 0; i < bytes.length; i++) {

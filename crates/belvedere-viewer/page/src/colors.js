@@ -1,12 +1,13 @@
 // Tables of 256 colours for the values of points, and their legends.
+import { fixed, t } from "./words.js";
 
 // Different also for those who see no difference of red and green: ground light, plants bluish green and darker the
 // higher, buildings red, water blue.
 export const CLASSES = {
-  0: ["never classified", "#a9aeb5"], 1: ["unclassified", "#c3c8ce"], 2: ["ground", "#dcc9a0"], 3: ["low vegetation", "#a9d8a0"],
-  4: ["medium vegetation", "#55ae7f"], 5: ["high vegetation", "#136a52"], 6: ["building", "#d4694a"], 7: ["low noise", "#e04fd0"],
-  9: ["water", "#2f7fd6"], 10: ["rail", "#6f5b9e"], 11: ["road surface", "#7d828b"], 14: ["wire", "#f2c200"], 15: ["pylon", "#9c6b00"],
-  17: ["bridge", "#b592e0"], 18: ["high noise", "#e04fd0"], 26: ["civil structure", "#8a5a3c"],
+  0: [t`never classified`, "#a9aeb5"], 1: [t`unclassified`, "#c3c8ce"], 2: [t`ground`, "#dcc9a0"], 3: [t`low vegetation`, "#a9d8a0"],
+  4: [t`medium vegetation`, "#55ae7f"], 5: [t`high vegetation`, "#136a52"], 6: [t`building`, "#d4694a"], 7: [t`low noise`, "#e04fd0"],
+  9: [t`water`, "#2f7fd6"], 10: [t`rail`, "#6f5b9e"], 11: [t`road surface`, "#7d828b"], 14: [t`wire`, "#f2c200"], 15: [t`pylon`, "#9c6b00"],
+  17: [t`bridge`, "#b592e0"], 18: [t`high noise`, "#e04fd0"], 26: [t`civil structure`, "#8a5a3c"],
 };
 
 const rgb = (hex) => [1, 3, 5].map((i) => parseInt(hex.slice(i, i + 2), 16));
@@ -28,11 +29,11 @@ const gradient = (stops) => `linear-gradient(90deg, ${stops.map(css).join(",")})
 export const ANSWERS = () => {
   const dark = document.documentElement.dataset.theme === "dark";
   return {
-    0: ["blocked", dark ? "#59616d" : "#8f969f"], 1: ["visible", "#ffb000"], 2: ["unproven", dark ? "#6ea5ff" : "#3f7be0"],
-    3: ["no answer", "#30343a"], 4: ["outside the cloud", "#30343a"], 5: ["inside an obstacle", "#30343a"], 255: ["no answer", "#30343a"],
+    0: [t`blocked`, dark ? "#59616d" : "#8f969f"], 1: [t`visible`, "#ffb000"], 2: [t`unproven`, dark ? "#6ea5ff" : "#3f7be0"],
+    3: [t`no answer`, "#30343a"], 4: [t`outside the cloud`, "#30343a"], 5: [t`inside an obstacle`, "#30343a"], 255: [t`no answer`, "#30343a"],
   };
 };
-export const LIGHT = { 0: ["in shadow", "#33406f"], 1: ["lit", "#ffdf9c"], 2: ["lit, unproven", "#6ea5ff"], 255: ["no answer", "#777777"] };
+export const LIGHT = { 0: [t`in shadow`, "#33406f"], 1: [t`lit`, "#ffdf9c"], 2: [t`lit, unproven`, "#6ea5ff"], 255: [t`no answer`, "#777777"] };
 
 const named = (names, others) => {
   const table = Array.from({ length: 256 }, () => rgb(others));
@@ -40,18 +41,18 @@ const named = (names, others) => {
   return table;
 };
 export const classTable = () => named(CLASSES, "#b4b8bd");
-const keys = (names, codes) => codes.map((code) => ({ color: names[code]?.[1] ?? "#b4b8bd", text: names[code]?.[0] ?? `class ${code}` }));
+const keys = (names, codes) => codes.map((code) => ({ color: names[code]?.[1] ?? "#b4b8bd", text: names[code]?.[0] ?? t`class ${code}` }));
 
 // A way of colouring: `mode` is the number that the shader knows, `table` its 256 colours, `legend` what they mean.
 export function coloring(name, scene, answer) {
   switch (name) {
     case "class":
-      return { mode: 0, table: classTable(), legend: { title: "Class", keys: keys(CLASSES, scene.classes.map(([code]) => code)) } };
+      return { mode: 0, table: classTable(), legend: { title: t`Class`, keys: keys(CLASSES, scene.classes.map(([code]) => code)) } };
     case "intensity":
-      return { mode: 1, table: ramp(GREY), legend: { title: "Intensity", gradient: gradient(GREY), ends: ["weak", "strong"] } };
+      return { mode: 1, table: ramp(GREY), legend: { title: t`Intensity`, gradient: gradient(GREY), ends: [t`weak`, t`strong`] } };
     case "height": {
-      const ends = scene.heights.map((z, i) => `${i ? "≥" : "≤"} ${z.toFixed(1)} ${scene.unit}`);
-      return { mode: 2, table: ramp(VIRIDIS), legend: { title: "Height", gradient: gradient(VIRIDIS), ends } };
+      const ends = scene.heights.map((z, i) => `${i ? "≥" : "≤"} ${fixed(z, 1)} ${scene.unit}`);
+      return { mode: 2, table: ramp(VIRIDIS), legend: { title: t`Height`, gradient: gradient(VIRIDIS), ends } };
     }
     case "color":
       return { mode: 3, table: ramp(GREY), legend: null };
@@ -62,12 +63,12 @@ export function coloring(name, scene, answer) {
   }
 }
 
-export const ofAnswers = (counts, title = "From the clicked place") => {
+export const ofAnswers = (counts, title = t`From the clicked place`) => {
   const names = ANSWERS();
   const codes = [1, ...(counts.tells_unproven ? [2] : []), 0];
   return { mode: 4, table: named(names, "#30343a"), legend: { title, keys: keys(names, codes) } };
 };
-export const ofLight = (answer) => ({ mode: 4, table: named(LIGHT, "#777777"), tint: 1, legend: { title: "Sun", keys: keys(LIGHT, [1, ...(answer?.tells_unproven ? [2] : []), 0]) } });
+export const ofLight = (answer) => ({ mode: 4, table: named(LIGHT, "#777777"), tint: 1, legend: { title: t`Sun`, keys: keys(LIGHT, [1, ...(answer?.tells_unproven ? [2] : []), 0]) } });
 const SURE = ["#33406f", "#8d93ad", "#efece4", "#f7cf74", "#ffb000"].map(rgb);
 // Probabilities, of which bytes up to 200 tell: what is not known pales.
 export const ofProbability = (title, ends) => {
@@ -76,7 +77,7 @@ export const ofProbability = (title, ends) => {
   return { mode: 4, table: table.map((_, i) => of(i)), tint: 0.6, legend: { title, gradient: gradient(SURE), ends } };
 };
 export const ofHours = (low, high) => ({
-  mode: 4, table: ramp(SUN), legend: { title: "Hours of sun on the day", gradient: gradient(SUN), ends: [low, high].map((v) => `${v.toFixed(1)} h`) },
+  mode: 4, table: ramp(SUN), legend: { title: t`Hours of sun on the day`, gradient: gradient(SUN), ends: [low, high].map((v) => `${fixed(v, 1)} h`) },
 });
 // Changes: gains orange, losses blue, as in maps of `belvedere difference`.
 export const ofChange = (title, [neither, both, gain, loss]) => {
@@ -85,7 +86,7 @@ export const ofChange = (title, [neither, both, gain, loss]) => {
 };
 const CHANGE = ["#0b3c8c", "#1f5fbf", "#86aee0", "#dde0e4", "#f5b27a", "#e8710a", "#9c4400"].map(rgb);
 export const ofHoursChange = (most) => ({
-  mode: 4, table: ramp(CHANGE), legend: { title: "Change of the hours of sun", gradient: gradient(CHANGE), ends: [`−${most.toFixed(1)} h`, `+${most.toFixed(1)} h`] },
+  mode: 4, table: ramp(CHANGE), legend: { title: t`Change of the hours of sun`, gradient: gradient(CHANGE), ends: [`−${fixed(most, 1)} h`, `+${fixed(most, 1)} h`] },
 });
 // Results of other commands: codes have colours of their own, measures a ramp.
 export const ofCodes = (title, name, greatest) => {

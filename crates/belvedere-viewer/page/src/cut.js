@@ -4,6 +4,7 @@ import { escape } from "./charts.js";
 import { card } from "./questions.js";
 import { $, page } from "./state.js";
 import { cloud, draw, toFile, toLocal } from "./view.js";
+import { fixed, t } from "./words.js";
 
 // Step of the heights, units of the file.
 const STEP = 0.1;
@@ -23,15 +24,15 @@ const whole = () => ({ low: page.scene.low.map((v) => v - MORE), high: page.scen
 export function cutPanel() {
   const [foot, top] = [page.scene.low[2], page.scene.high[2]].map(inFile);
   const { low, high } = page.cut ?? whole();
-  const slider = (name, id, z) => `<div class="field"><label for="${id}">${name}</label><span><output>${inFile(z).toFixed(1)}</output> ${escape(page.scene.unit)}</span></div><input id="${id}" type="range" min="${foot}" max="${top}" step="${STEP}" value="${inFile(z)}">`;
+  const slider = (name, id, z) => `<div class="field"><label for="${id}">${name}</label><span><output>${fixed(inFile(z), 1)}</output> ${escape(page.scene.unit)}</span></div><input id="${id}" type="range" min="${foot}" max="${top}" step="${STEP}" value="${inFile(z)}">`;
   page.marks = page.places.map(({ clicked }) => ({ at: clicked }));
-  card(`<p class="note">${page.places.length === 1 ? "Click the opposite corner." : "Shows a part of the points alone: between two heights, and, after two clicks, between these corners on the map. Answers still count all of them."}</p>`
-    + `${slider("Not above", "cut-high", high[2])}${slider("Not below", "cut-low", low[2])}`
-    + `<div class="row"><button id="all"${page.cut ? "" : " hidden"}>Show all</button></div>`, (box) => {
+  card(`<p class="note">${page.places.length === 1 ? t`Click the opposite corner.` : t`Shows a part of the points alone: between two heights, and, after two clicks, between these corners on the map. Answers still count all of them.`}</p>`
+    + `${slider(t`Not above`, "cut-high", high[2])}${slider(t`Not below`, "cut-low", low[2])}`
+    + `<div class="row"><button id="all"${page.cut ? "" : " hidden"}>${t`Show all`}</button></div>`, (box) => {
     const all = box.querySelector("#all");
     const move = () => {
       const [bottom, up] = ["cut-low", "cut-high"].map((id) => Number(box.querySelector(`#${id}`).value));
-      box.querySelectorAll("output").forEach((output, i) => { output.textContent = [up, bottom][i].toFixed(1); });
+      box.querySelectorAll("output").forEach((output, i) => { output.textContent = fixed([up, bottom][i], 1); });
       const now = page.cut ?? whole();
       // sliders may end a step before the scene does
       const ends = [bottom <= foot ? whole().low[2] : inLocal(bottom), up >= top - STEP ? whole().high[2] : inLocal(up)];

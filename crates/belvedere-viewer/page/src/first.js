@@ -4,10 +4,11 @@ import { $, page, TOOLS } from "./state.js";
 import { IS_TOUCH } from "./tools.js";
 import { showNow } from "./time.js";
 import { showAll } from "./view.js";
+import { t } from "./words.js";
 
 // Says what to do until something is clicked or another question is chosen.
 function invite() {
-  const box = Object.assign(document.createElement("div"), { id: "invite", textContent: `${IS_TOUCH ? "Tap" : "Click"} anywhere to ask` });
+  const box = Object.assign(document.createElement("div"), { id: "invite", textContent: IS_TOUCH ? t`Tap anywhere to ask` : t`Click anywhere to ask` });
   document.body.append(box);
 }
 export const invited = () => $("invite")?.remove();

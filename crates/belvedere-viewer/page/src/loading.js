@@ -9,6 +9,7 @@ import { offer } from "./results.js";
 import { $, page } from "./state.js";
 import { startTime } from "./time.js";
 import { cloud, draw, drawNext, renderer, showAll } from "./view.js";
+import { count, stage, t } from "./words.js";
 
 async function load(shown) {
   const { scene } = page;
@@ -43,10 +44,10 @@ function begin(state) {
   if (!shown.point_count && state.scene) Object.assign(page.scene, { low: state.scene.low, high: state.scene.high, spacing: 0.3 });
   $("title").textContent = document.title = state.title;
   document.title = `${state.title} – Belvedere`;
-  $("facts").textContent = shown.point_count ? `${shown.point_count.toLocaleString("en")} points` : "ball file";
+  $("facts").textContent = shown.point_count ? t`${count(shown.point_count)} points` : t`ball file`;
   $("crs").textContent = shown.crs;
   page.loaded = [];
-  const ways = [["height", "Height"], ...(shown.classes.length > 1 ? [["class", "Class"]] : []), ...(shown.has_intensity ? [["intensity", "Intensity"]] : []), ["none", "Plain"]];
+  const ways = [["height", t`Height`], ...(shown.classes.length > 1 ? [["class", t`Class`]] : []), ...(shown.has_intensity ? [["intensity", t`Intensity`]] : []), ["none", t`Plain`]];
   $("color").replaceChildren(...ways.map(([value, text]) => new Option(text, value)));
   setColor(!shown.point_count ? "none" : shown.classes.length > 1 ? "class" : "height");
   page.colorsKnown = offerColors().catch(report);
@@ -81,7 +82,7 @@ export async function watch() {
     }
     $("progress").hidden = page.ready === true;
     const bar = $("progress").querySelector("progress");
-    $("progress").querySelector("p").textContent = state.stage ? `Preparing: ${state.stage}` : "Preparing";
+    $("progress").querySelector("p").textContent = state.stage ? t`Preparing: ${stage(state.stage)}` : t`Preparing`;
     if (state.total > 0) Object.assign(bar, { max: state.total, value: state.done });
     else bar.removeAttribute("value");
     if (!api.exported || !page.ready) setTimeout(watch, page.ready ? 4000 : 250);

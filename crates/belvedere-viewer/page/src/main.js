@@ -13,11 +13,12 @@ import { startScreen, stayOffline } from "./start.js";
 import { ofViewpoints } from "./viewpoints.js";
 import { remember } from "./address.js";
 import { again, isPlaying, setPlaying, showClock, step } from "./time.js";
+import { t, translate } from "./words.js";
 import { cloud, draw, mover, open, placeAt, resize, showAll, shownPlace, toFile, whenDrawn } from "./view.js";
 
 function theme(name) {
   root.dataset.theme = name;
-  $("theme").textContent = name === "dark" ? "Light" : "Dark";
+  $("theme").textContent = name === "dark" ? t`Light` : t`Dark`;
   if (page.last && page.tool.name === "seen" && !page.last.certainty) page.answer = colors.ofAnswers(page.last, page.last.viewpoint);
   paint();
 }
@@ -129,7 +130,8 @@ function key(event) {
 }
 
 function start() {
-  $("tools").innerHTML = `<h2>Questions</h2>${TOOLS.map((tool, i) => `<button data-tool="${tool.name}" aria-pressed="false" title="${tool.title} (${(i + 1) % 10})">${tool.icon}<span>${tool.title}</span><small aria-hidden="true">${tool.short}</small><kbd aria-hidden="true">${(i + 1) % 10}</kbd></button>`).join("")}<p></p>`;
+  translate(document.body);
+  $("tools").innerHTML = `<h2>${t`Questions`}</h2>${TOOLS.map((tool, i) => `<button data-tool="${tool.name}" aria-pressed="false" title="${tool.title} (${(i + 1) % 10})">${tool.icon}<span>${tool.title}</span><small aria-hidden="true">${tool.short}</small><kbd aria-hidden="true">${(i + 1) % 10}</kbd></button>`).join("")}<p></p>`;
   for (const button of $("tools").querySelectorAll("button")) button.onclick = () => page.choose(button.dataset.tool);
   if (api.exported) {
     $("balls").hidden = true;
@@ -140,7 +142,7 @@ function start() {
   try {
     open();
   } catch {
-    report(new Error("This browser has no WebGL 2, which the page needs. Try another browser, or switch on hardware acceleration."));
+    report(new Error(t`This browser has no WebGL 2, which the page needs. Try another browser, or switch on hardware acceleration.`));
     return;
   }
   listen();

@@ -3,12 +3,13 @@ import { card } from "./questions.js";
 import { csv, geojson, save } from "./save.js";
 import { page } from "./state.js";
 import { draw, toFile } from "./view.js";
+import { fixed, t } from "./words.js";
 
 const LINE = 'stroke="#1d4e89" stroke-width="2.5"';
 const CLOSING = `${LINE} stroke-dasharray="6 5"`;
 const minus = (a, b) => a.map((v, i) => v - b[i]);
-const metres = (v) => `${v.toFixed(2)} m`;
-const squares = (v) => `${v.toFixed(1)} m²`;
+const metres = (v) => `${fixed(v, 2)} m`;
+const squares = (v) => `${fixed(v, 1)} m²`;
 
 // What is between places in metres: along all of them in space and on the map, from the first up to the last; for three
 // and more the area they surround on the map and in their plane (Newell's normal).
@@ -38,11 +39,11 @@ export function measurePanel() {
   });
   page.marks = [...legs.flat(), ...(places.length > 2 ? [{ line: [places.at(-1), places[0]], style: CLOSING }] : []), ...places.map((at) => ({ at }))];
   const row = (name, value) => `<dt>${name}</dt><dd>${value}</dd>`;
-  const between = row("Length", metres(length)) + row("Length on the map", metres(flat)) + row("Height of the last above the first", `${rise < 0 ? "−" : ""}${metres(Math.abs(rise))}`)
-    + (places.length === 2 ? row("Slope", flat > 0 ? `${((Math.atan2(rise, flat) * 180) / Math.PI).toFixed(1)}°` : "upright") : "");
-  const around = places.length < 3 ? "" : row("Area on the map", squares(area)) + row("Area in its plane", squares(inPlane));
-  card(`<p class="note">${places.length < 2 ? "Click two places for a length, more for an area." : "Click more places for a longer line or an area."}</p>`
-    + (places.length < 2 ? "" : `<dl>${between}${around}</dl><div class="row"><button id="anew">Start again</button><button id="table">Table (.csv)</button><button id="map">Map (.geojson)</button></div>`), (box) => {
+  const between = row(t`Length`, metres(length)) + row(t`Length on the map`, metres(flat)) + row(t`Height of the last above the first`, `${rise < 0 ? "−" : ""}${metres(Math.abs(rise))}`)
+    + (places.length === 2 ? row(t`Slope`, flat > 0 ? `${fixed((Math.atan2(rise, flat) * 180) / Math.PI, 1)}°` : t`upright`) : "");
+  const around = places.length < 3 ? "" : row(t`Area on the map`, squares(area)) + row(t`Area in its plane`, squares(inPlane));
+  card(`<p class="note">${places.length < 2 ? t`Click two places for a length, more for an area.` : t`Click more places for a longer line or an area.`}</p>`
+    + (places.length < 2 ? "" : `<dl>${between}${around}</dl><div class="row"><button id="anew">${t`Start again`}</button><button id="table">${t`Table`} (.csv)</button><button id="map">${t`Map`} (.geojson)</button></div>`), (box) => {
     if (places.length < 2) return;
     const values = { length_m: length, map_length_m: flat, rise_m: rise, ...(places.length > 2 ? { map_area_m2: area, plane_area_m2: inPlane } : {}) };
     const file = places.map(toFile);

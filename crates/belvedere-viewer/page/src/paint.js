@@ -6,6 +6,7 @@ import { report } from "./messages.js";
 import { showResult } from "./results.js";
 import { $, page, root } from "./state.js";
 import { cloud, draw, toLocal } from "./view.js";
+import { t } from "./words.js";
 
 export function paint() {
   if (!page.scene || !cloud) return;
@@ -51,7 +52,7 @@ export async function offerColors() {
     first ??= own[0];
     if (!own.some((color) => color !== first)) continue;
     const plain = $("color").querySelector("[value=none]");
-    $("color").insertBefore(new Option("Own colours", "color"), plain);
+    $("color").insertBefore(new Option(t`Own colours`, "color"), plain);
     if (page.isColorChosen) return;
     // an answer is shown until its question is left
     if (page.before) page.before = "color";
@@ -70,7 +71,7 @@ export function scaleHeights() {
 }
 function offerAnswer() {
   const select = $("color");
-  if (![...select.options].some((option) => option.value === "answer")) select.add(new Option("Answer", "answer"));
+  if (![...select.options].some((option) => option.value === "answer")) select.add(new Option(t`Answer`, "answer"));
   page.before ??= select.value;
   setColor("answer");
 }
@@ -111,7 +112,7 @@ page.cells = (answer) => {
     known.push([x + (i % columns) * cell, y - Math.floor(i / columns) * cell, z + 0.12]);
     values.push(answers[i]);
   });
-  onLayer(known, values, cell * 1.25, colors.ofAnswers({ tells_unproven: true }, "From where the place is seen"));
+  onLayer(known, values, cell * 1.25, colors.ofAnswers({ tells_unproven: true }, t`From where the place is seen`));
 };
 page.hourCells = (answer) => {
   const v = new Float32Array(answer.body);
@@ -134,7 +135,7 @@ page.line = (answer) => {
   const at = answer.first_block ? toLocal(answer.first_block.place) : null;
   page.marks = [
     { line: [a, at ?? b], style: `stroke="${answer.answer === "unproven" ? "#4a86e8" : "#f5a300"}" stroke-width="4"` },
-    ...(at ? [{ line: [at, b], style: 'stroke="#2f3d73" stroke-width="3" stroke-dasharray="7 5"' }, { at, label: "blocked here", color: "#d1495b", down: 20 }] : []),
+    ...(at ? [{ line: [at, b], style: 'stroke="#2f3d73" stroke-width="3" stroke-dasharray="7 5"' }, { at, label: t`blocked here`, color: "#d1495b", down: 20 }] : []),
     { at: a, label: "A" }, { at: b, label: "B" },
   ];
 };

@@ -8,11 +8,12 @@ import { card, corners, remarks } from "./questions.js";
 import { save } from "./save.js";
 import { $, page } from "./state.js";
 import { cloud, draw, toFile } from "./view.js";
+import { t } from "./words.js";
 
 const LINE = 'stroke="#1d4e89" stroke-width="2.5"';
 const HINTS = {
-  building: "Click the corners of the building.",
-  area: "Click around what shall go, such as a tree or a house.",
+  building: t`Click the corners of the building.`,
+  area: t`Click around what shall go, such as a tree or a house.`,
 };
 // the address has the token of the program that the plan was made for
 const KEPT = `plan ${location.pathname}`;
@@ -65,7 +66,7 @@ async function change(edit) {
   page.places = [];
   page.marks = [];
   try {
-    if (!isEmpty(page.plan)) panel(`<p class="busy">Changing the scene …</p>`);
+    if (!isEmpty(page.plan)) panel(`<p class="busy">${t`Changing the scene …`}</p>`);
     await make();
     sessionStorage.setItem(KEPT, JSON.stringify([page.plan, page.loadedMeshes]));
     if (page.when === "before") page.when = $("when").value = "after";
@@ -94,7 +95,7 @@ export async function restore() {
 // Takes the corners that were clicked.
 export function finish() {
   const corners = page.places.map(({ clicked }) => toFile(clicked)).filter((corner, i, all) => !i || corner.some((v, k) => v !== all[i - 1][k]));
-  if (corners.length < 3) return panel(`<p class="note">At least three corners are needed.</p>`);
+  if (corners.length < 3) return panel(`<p class="note">${t`At least three corners are needed.`}</p>`);
   const outline = corners.map(([x, y]) => [x, y]);
   return change((plan) => {
     if (drawing === "area") plan.clear.push(outline);
@@ -114,21 +115,21 @@ async function load(file) {
 // The card of the plan; `note` says what happens now.
 export function panel(note = "") {
   const { clear, buildings, meshes } = page.plan;
-  const item = (kind, i, text, more = "") => `<li>${escape(text)}${more}<button data-remove="${kind}" data-i="${i}" aria-label="Remove ${escape(text)}" title="Remove">×</button></li>`;
+  const item = (kind, i, text, more = "") => `<li>${escape(text)}${more}<button data-remove="${kind}" data-i="${i}" aria-label="${t`Remove ${escape(text)}`}" title="${t`Remove`}">×</button></li>`;
   const list = [
-    ...buildings.map(({ height_m: high }, i) => item("buildings", i, `Building ${i + 1}`, `<span><input type="number" min="0.1" step="0.5" value="${high}" data-height="${i}" aria-label="Height of building ${i + 1} in metres"> m high</span>`)),
+    ...buildings.map(({ height_m: high }, i) => item("buildings", i, t`Building ${i + 1}`, `<span><input type="number" min="0.1" step="0.5" value="${high}" data-height="${i}" aria-label="${t`Height of building ${i + 1} in metres`}"> ${t`m high`}</span>`)),
     ...meshes.map((number, i) => item("meshes", i, page.loadedMeshes[number])),
-    ...clear.map((_, i) => item("clear", i, `Cleared area ${i + 1}`)),
+    ...clear.map((_, i) => item("clear", i, t`Cleared area ${i + 1}`)),
   ].join("");
   const files = page.planned?.files ?? [];
-  card(`<div class="row"><button data-draw="building" aria-pressed="${drawing === "building"}">Draw a building</button><button data-draw="area" aria-pressed="${drawing === "area"}">Clear an area</button>`
-    + `<button id="mesh">Load a mesh</button><input id="meshfile" type="file" accept=".obj,.ply,.json,.jsonl,.cityjson" hidden aria-label="Mesh file"></div>`
-    + (drawing === "building" ? `<div class="field"><label for="high">Height of the building</label><span><input id="high" type="number" min="0.1" step="0.5" value="${height}"> m</span></div>` : "")
+  card(`<div class="row"><button data-draw="building" aria-pressed="${drawing === "building"}">${t`Draw a building`}</button><button data-draw="area" aria-pressed="${drawing === "area"}">${t`Clear an area`}</button>`
+    + `<button id="mesh">${t`Load a mesh`}</button><input id="meshfile" type="file" accept=".obj,.ply,.json,.jsonl,.cityjson" hidden aria-label="${t`Mesh file`}"></div>`
+    + (drawing === "building" ? `<div class="field"><label for="high">${t`Height of the building`}</label><span><input id="high" type="number" min="0.1" step="0.5" value="${height}"> m</span></div>` : "")
     + (note || `<p class="note">${page.places.length ? corners(page.places) : HINTS[drawing]}</p>`)
-    + (!note && page.places.length >= 3 ? '<div class="row"><button id="done">Finish (Enter)</button></div>' : "")
-    + (list ? `<ul class="plan">${list}</ul><p class="note">Questions are now answered with the plan. <b>Before</b>, <b>after</b> and <b>change</b> are at the top (V).</p>` : "")
-    + (page.planned ? `<h3>The scene on the command line</h3><pre id="command">${escape(page.planned.command)}</pre>` : "")
-    + (files.length ? `<div class="row">${files.map(({ name }, i) => `<button data-file="${i}">Save ${escape(name)}</button>`).join("")}</div>` : ""), (box) => {
+    + (!note && page.places.length >= 3 ? `<div class="row"><button id="done">${t`Finish`} (Enter)</button></div>` : "")
+    + (list ? `<ul class="plan">${list}</ul><p class="note">${t`Questions are now answered with the plan. Before, after and change are at the top (V).`}</p>` : "")
+    + (page.planned ? `<h3>${t`The scene on the command line`}</h3><pre id="command">${escape(page.planned.command)}</pre>` : "")
+    + (files.length ? `<div class="row">${files.map(({ name }, i) => `<button data-file="${i}">${t`Save ${escape(name)}`}</button>`).join("")}</div>` : ""), (box) => {
     const all = (selector, work) => box.querySelectorAll(selector).forEach(work);
     all("#done", (button) => { button.onclick = finish; });
     all("[data-draw]", (button) => { button.onclick = () => { drawing = button.dataset.draw; page.places = []; page.marks = []; panel(); draw(); }; });

@@ -13,6 +13,7 @@ import { $, canvas, page, toolOf, TOOLS } from "./state.js";
 import { changed } from "./change.js";
 import { setPlaying } from "./time.js";
 import { ASIDES } from "./tools.js";
+import { remarkText, t } from "./words.js";
 import { cloud, complete, draw, placeAt, shownPlace, toFile } from "./view.js";
 
 export function choose(tool) {
@@ -58,7 +59,7 @@ function field() {
 export function card(html, after) {
   const box = $("card");
   box.hidden = false;
-  box.innerHTML = `<header><h2>${escape(page.tool.title)}</h2><button aria-label="Close" title="Close (Esc)">×</button></header>${field()}${html}`;
+  box.innerHTML = `<header><h2>${escape(page.tool.title)}</h2><button aria-label="${t`Close`}" title="${t`Close`} (Esc)">×</button></header>${field()}${html}`;
   box.querySelector("header button").onclick = () => choose(TOOLS[0]);
   const above = box.querySelector("#above");
   if (above) above.onchange = () => {
@@ -72,11 +73,11 @@ export function card(html, after) {
 }
 const lifted = ([x, y, z], above) => [x, y, z + above];
 
-export const corners = ({ length }) => `${length} ${length === 1 ? "corner" : "corners"}. ${length < 3 ? "Click more." : "Click more, or go on with these."}`;
+export const corners = ({ length }) => `${length === 1 ? t`1 corner.` : t`${length} corners.`} ${length < 3 ? t`Click more.` : t`Click more, or go on with these.`}`;
 
 export function click(x, y) {
   const near = placeAt(x, y);
-  if (!near) return hint("There is no point of the cloud at this place. Click on a point.");
+  if (!near) return hint(t`There is no point of the cloud at this place. Click on a point.`);
   invited();
   const found = cloud.nearest(near);
   // what is planned has no points
@@ -87,7 +88,7 @@ page.click = click;
 // What a value of a point says of its light.
 function lightOf(value, { certainty }) {
   if (!certainty) return colors.LIGHT[value]?.[0];
-  return value <= 200 ? `lit with a probability of ${Math.round(value / 2)} %` : undefined;
+  return value <= 200 ? t`lit with a probability of ${Math.round(value / 2)} %` : undefined;
 }
 // What is known of a clicked place, and the questions about it.
 function ofPlace(clicked, point) {
@@ -95,12 +96,12 @@ function ofPlace(clicked, point) {
   const code = point?.class;
   const answer = page.tool.name === "shadow" && page.last ? lightOf(point?.value, page.last) : undefined;
   const offered = TOOLS.filter(({ places, name }) => places === 1 && name !== "look");
-  if (page.tool.places === 0 && !offered.length) return hint("This question is about all points. It needs no click.");
+  if (page.tool.places === 0 && !offered.length) return hint(t`This question is about all points. It needs no click.`);
   page.marks = [{ at: clicked }];
   card(`<p class="verdict" style="font-size:17px">${shownPlace(file)}</p><dl><dt>x, y, z</dt><dd>${escape(page.scene.crs)}</dd>`
-    + `${page.scene.classes.length && code !== undefined ? `<dt>Class</dt><dd>${code} ${escape(colors.CLASSES[code]?.[0] ?? "")}</dd>` : ""}`
-    + `${answer ? `<dt>At the time below</dt><dd>${escape(answer)}</dd>` : ""}</dl><pre>${file.join(",")}</pre>`
-    + (offered.length ? `<h3>Ask about this place</h3><div class="row">${offered.map(({ name, title }) => `<button data-about="${name}">${escape(title)}</button>`).join("")}</div>` : ""), (box) => {
+    + `${page.scene.classes.length && code !== undefined ? `<dt>${t`Class`}</dt><dd>${code} ${escape(colors.CLASSES[code]?.[0] ?? "")}</dd>` : ""}`
+    + `${answer ? `<dt>${t`At the time below`}</dt><dd>${escape(answer)}</dd>` : ""}</dl><pre>${file.join(",")}</pre>`
+    + (offered.length ? `<h3>${t`Ask about this place`}</h3><div class="row">${offered.map(({ name, title }) => `<button data-about="${name}">${escape(title)}</button>`).join("")}</div>` : ""), (box) => {
     box.querySelectorAll("[data-about]").forEach((button) => { button.onclick = () => { page.choose(button.dataset.about); pick(clicked); }; });
   });
   draw();
@@ -123,12 +124,12 @@ function pick(clicked, point = null) {
   page.marks = page.places.map(({ local }, i) => ({ at: local, label: labels[i] }));
   if (tool.places === Infinity) {
     page.places.forEach(({ local }, i) => { if (i) page.marks.push({ line: [page.places[i - 1].local, local], style: 'stroke="#1d4e89" stroke-width="2.5"' }); });
-    card(`<p class="note">${corners(page.places)}</p>${page.places.length < 3 ? "" : '<div class="row"><button id="done">Ask (Enter)</button></div>'}`, (box) => {
+    card(`<p class="note">${corners(page.places)}</p>${page.places.length < 3 ? "" : `<div class="row"><button id="done">${t`Ask`} (Enter)</button></div>`}`, (box) => {
       const done = box.querySelector("#done");
       if (done) done.onclick = () => ask();
     });
   } else if (page.places.length === tool.places) ask();
-  else card(`<p class="note">Now click B.</p>`);
+  else card(`<p class="note">${t`Now click B.`}</p>`);
   draw();
 }
 page.pick = pick;
@@ -150,31 +151,31 @@ export async function ask(quick = false) {
   asking?.abort();
   const mine = (asking = new AbortController());
   if (page.failure) {
-    card(`<p class="verdict">No answer</p><p class="note">${escape(page.failure)}</p>`);
+    card(`<p class="verdict">${t`No answer`}</p><p class="note">${escape(page.failure)}</p>`);
     return;
   }
   if (!page.ready) {
-    card(`<p class="busy">The answer comes as soon as the scene is ready.</p>`);
+    card(`<p class="busy">${t`The answer comes as soon as the scene is ready.`}</p>`);
     page.pending = true;
     return;
   }
   if (tool.time && page.scene.latitude_deg === null) {
-    card(`<p class="verdict">The location is unknown</p><p class="note">The sun needs to know where on earth the cloud lies, but its file names no reference system. Close this page and start Belvedere again with the reference system of the cloud.</p>`);
+    card(`<p class="verdict">${t`The location is unknown`}</p><p class="note">${t`The sun needs to know where on earth the cloud lies, but its file names no reference system. Open it again with the reference system of the cloud.`}</p>`);
     return;
   }
   if (tool.time && !page.time.date) {
-    card(`<p class="verdict">The date is missing</p><p class="note">Choose a day below.</p>`);
+    card(`<p class="verdict">${t`The date is missing`}</p><p class="note">${t`Choose a day below.`}</p>`);
     return;
   }
   if (tool.time && !page.time.zone) {
-    card(`<p class="verdict">The time zone is missing</p><p class="note">Write one below, such as Europe/Amsterdam or +02:00.</p>`);
+    card(`<p class="verdict">${t`The time zone is missing`}</p><p class="note">${t`Write one below, such as Europe/Amsterdam or +02:00.`}</p>`);
     return;
   }
   const places = page.places.map(({ local }) => toFile(local));
   const { date, zone, minutes } = page.time;
   const clock = `${String(Math.floor(minutes / 60)).padStart(2, "0")}:${String(minutes % 60).padStart(2, "0")}`;
   page.last = tool.places === 0 ? page.last : null;
-  const busy = setTimeout(() => { if (!page.last) card(`<p class="busy">Asking …</p>`); }, 150);
+  const busy = setTimeout(() => { if (!page.last) card(`<p class="busy">${t`Asking …`}</p>`); }, 150);
   const start = performance.now();
   // with a plan, the change is that from the answer before it
   const answered = async (question, values) => {
@@ -206,7 +207,7 @@ export async function ask(quick = false) {
   } catch (error) {
     if (error.name === "AbortError") return;
     if (error instanceof api.Lost) return lost(error);
-    card(`<p class="verdict">No answer</p><p class="note">${escape(error.message)}</p>`);
+    card(`<p class="verdict">${t`No answer`}</p><p class="note">${escape(error.message)}</p>`);
   } finally {
     clearTimeout(busy);
     if (asking === mine) asking = null;
@@ -216,23 +217,29 @@ page.ask = ask;
 // Commands of which no word is broken where it fits into a line.
 const words = (commands) => commands.split("\n").map((command) => command.split(" ").map((word) => `<span>${escape(word)}</span>`).join(" ")).join("\n");
 // What must be known beside an answer, in the words of all faces.
-export const remarks = ({ remarks: all = [] }) => all.map(({ key, severity, text }) => `<p class="remark ${severity}" data-key="${escape(key)}">${severity === "warning" ? "⚠ " : ""}${escape(text[0].toUpperCase() + text.slice(1))}.</p>`).join("");
+export const remarks = ({ remarks: all = [] }) => all.map((remark) => {
+  const { key, severity } = remark;
+  const text = remarkText(remark);
+  // names of files stay as they are
+  const sentence = /^\S+\.\w+:/.test(text) ? text : text[0].toUpperCase() + text.slice(1);
+  return `<p class="remark ${severity}" data-key="${escape(key)}">${severity === "warning" ? "⚠ " : ""}${escape(sentence)}.</p>`;
+}).join("");
 // Those of an answer and those of its files, each once.
 const together = (answer = [], files = []) => [...answer, ...files.filter(({ text }) => !answer.some((own) => own.text === text))];
 function showAnswer(tool, answer, places) {
   const shown = answer.before ? changed(tool, answer, page) : tool.show(answer, page);
   const html = shown.html ?? shown;
-  const where = places.length === 1 ? `<dl><dt>Place</dt><dd>${shownPlace(places[0])}</dd></dl>` : "";
+  const where = places.length === 1 ? `<dl><dt>${t`Place`}</dt><dd>${shownPlace(places[0])}</dd></dl>` : "";
   const rows = answer.before ? null : tool.rows?.(answer, page);
   const buttons = [
-    ...(rows ? ['<button data-save="csv">Table (.csv)</button>'] : []),
-    ...(tool.properties && !answer.before ? ['<button data-save="geojson">Map (.geojson)</button>'] : []),
-    '<button data-save="png">Picture (.png)</button>',
+    ...(rows ? [`<button data-save="csv">${t`Table`} (.csv)</button>`] : []),
+    ...(tool.properties && !answer.before ? [`<button data-save="geojson">${t`Map`} (.geojson)</button>`] : []),
+    `<button data-save="png">${t`Picture`} (.png)</button>`,
   ].join("");
   const time = tool.time ? page.ofTime() : "";
-  const sure = offersSure(tool) && !answer.before ? `<div class="row"><button id="sure" aria-pressed="${page.isSure}">Show how sure each answer is</button></div>` : "";
-  card(`${html}${sure}${time ? `<p class="note" id="oftime">${escape(time)}</p>` : ""}${remarks({ remarks: together(answer.remarks, page.remarks) })}${where}<h3>The same on the command line</h3><pre id="command">${words(shown.command ?? answer.command)}</pre><div class="row"><button data-save="copy">Copy command</button>${buttons}</div>`
-    + `<p class="note" id="took">${api.exported ? "Stored in this file." : `Answered in ${Math.round(answer.took)} ms.`}</p>`, (box) => {
+  const sure = offersSure(tool) && !answer.before ? `<div class="row"><button id="sure" aria-pressed="${page.isSure}">${t`Show how sure each answer is`}</button></div>` : "";
+  card(`${html}${sure}${time ? `<p class="note" id="oftime">${escape(time)}</p>` : ""}${remarks({ remarks: together(answer.remarks, page.remarks) })}${where}<h3>${t`The same on the command line`}</h3><pre id="command">${words(shown.command ?? answer.command)}</pre><div class="row"><button data-save="copy">${t`Copy command`}</button>${buttons}</div>`
+    + `<p class="note" id="took">${api.exported ? t`Stored in this file.` : t`Answered in ${Math.round(answer.took)} ms.`}</p>`, (box) => {
     shown.after?.(box);
     const isSure = box.querySelector("#sure");
     if (isSure) isSure.onclick = () => { page.isSure = !page.isSure; ask(); };
@@ -247,7 +254,7 @@ async function saveAs(button, tool, answer, places) {
   const kind = button.dataset.save;
   if (kind === "copy") {
     await navigator.clipboard?.writeText($("command").textContent).catch(() => {});
-    button.textContent = "Copied";
+    button.textContent = t`Copied`;
   } else if (kind === "csv") save(`${name}.csv`, csv(tool.rows(answer, page)), "text/csv");
   else if (kind === "geojson") {
     const [shape, coordinates] = tool.geometry?.(places) ?? ["Point", places[0]];
@@ -261,5 +268,5 @@ export async function snapshot() {
   await complete();
   const keys = page.legend?.keys ?? [];
   const text = [page.scene.title, page.legend?.title].filter(Boolean).join(": ");
-  return picture(canvas, $("marks"), keys, text, `${page.scene.crs}; scale bar ${$("scale").textContent}`);
+  return picture(canvas, $("marks"), keys, text, `${page.scene.crs}; ${t`scale bar`} ${$("scale").textContent}`);
 }

@@ -1,6 +1,7 @@
 // The first screen of a page that opens files itself.
 import { report } from "./messages.js";
 import { $, page } from "./state.js";
+import { fixed, LANGUAGES, language, setLanguage, t } from "./words.js";
 import { open } from "./engines/worker.js";
 
 const FORMATS = ".laz .las .copc.laz .e57 .ply .pcd .ptx .xyz .txt .csv .npy";
@@ -30,8 +31,8 @@ function chooseWindow(files, options, { points, most, low, high }) {
   $("start").hidden = false;
   $("start").firstElementChild.hidden = true;
   box.hidden = false;
-  const millions = (count) => (count / 1e6).toFixed(1);
-  box.querySelector("p").textContent = `The files have ${millions(points)} million points, and this browser has room for ${millions(most)} million. Choose the part to open: ${Math.round(sides[0])} by ${Math.round(sides[1])}, in the unit of the file.`;
+  const millions = (n) => fixed(n / 1e6, 1);
+  box.querySelector("p").textContent = t`The files have ${millions(points)} million points, and this browser has room for ${millions(most)} million. Choose the part to open: ${Math.round(sides[0])} by ${Math.round(sides[1])}, in the unit of the file.`;
   const map = box.querySelector("svg");
   map.setAttribute("viewBox", `-1 -1 ${size[0] * scale + 2} ${size[1] * scale + 2}`);
   map.innerHTML = `<rect width="${size[0] * scale}" height="${size[1] * scale}" class="all"/><rect width="${sides[0] * scale}" height="${sides[1] * scale}" class="window"/>`;
@@ -40,7 +41,7 @@ function chooseWindow(files, options, { points, most, low, high }) {
     const rect = map.querySelector(".window");
     rect.setAttribute("x", (corner[0] - low[0]) * scale);
     rect.setAttribute("y", (high[1] - corner[1] - sides[1]) * scale);
-    box.querySelector("output").textContent = `${corner.map(Math.round).join(", ")} to ${corner.map((v, i) => Math.round(v + sides[i])).join(", ")}`;
+    box.querySelector("output").textContent = t`${corner.map(Math.round).join(", ")} to ${corner.map((v, i) => Math.round(v + sides[i])).join(", ")}`;
   };
   const at = (event) => {
     const inverse = map.getScreenCTM().inverse();
@@ -68,7 +69,7 @@ function begin(files, whenOpen) {
   const crs = $("crs-typed").value.trim();
   const corners = $("window-typed").value.split(/[\s,;]+/).filter(Boolean).map(Number);
   if (corners.length && (corners.length !== 4 || corners.some(Number.isNaN))) {
-    report(new Error("The window needs four numbers: west, south, east, north."));
+    report(new Error(t`The window needs four numbers: west, south, east, north.`));
     return;
   }
   $("start").hidden = true;
@@ -83,19 +84,20 @@ const ofAddress = (url) => ({ name: decodeURIComponent(new URL(url, location.hre
 
 async function showKept() {
   const size = async (folder) => {
-    let [count, bytes] = [0, 0];
+    let [scenes, bytes] = [0, 0];
     for await (const handle of folder.values()) {
-      count += 1;
+      scenes += 1;
       bytes += (await handle.getFile()).size;
     }
-    return [count, bytes];
+    return [scenes, bytes];
   };
   try {
     const root = await navigator.storage.getDirectory();
-    const [count, bytes] = await size(await root.getDirectoryHandle("scenes"));
-    if (!count) return;
+    const [scenes, bytes] = await size(await root.getDirectoryHandle("scenes"));
+    if (!scenes) return;
+    const megabytes = Math.ceil(bytes / 1e6);
     $("kept").hidden = false;
-    $("kept").querySelector("span").textContent = `${count} ${count === 1 ? "scene is" : "scenes are"} kept in this browser (${Math.ceil(bytes / 1e6)} MB): the same files open in a moment.`;
+    $("kept").querySelector("span").textContent = scenes === 1 ? t`1 scene is kept in this browser (${megabytes} MB): the same files open in a moment.` : t`${scenes} scenes are kept in this browser (${megabytes} MB): the same files open in a moment.`;
     $("kept").querySelector("button").onclick = async () => {
       await root.removeEntry("scenes", { recursive: true });
       $("kept").hidden = true;
@@ -107,6 +109,10 @@ async function showKept() {
 
 export function startScreen(whenOpen) {
   $("start").hidden = false;
+  const languages = $("languages");
+  languages.append(...Object.entries(LANGUAGES).map(([name, text]) => new Option(text, name)));
+  languages.value = language;
+  languages.onchange = () => setLanguage(languages.value);
   const take = (list) => {
     const files = [...list].map((file) => ({ name: file.name, file }));
     if (files.length) begin(files, whenOpen);

@@ -1,6 +1,7 @@
 // Date, time and zone of questions about the sun, and playing a day.
 import * as api from "./api.js";
 import { $, page } from "./state.js";
+import { t, word } from "./words.js";
 import { clockOf, zoneOf } from "./zones.js";
 
 let playing = null;
@@ -14,7 +15,7 @@ export function setPlaying(on) {
   clearTimeout(playing);
   playing = null;
   $("play").setAttribute("aria-pressed", on);
-  $("play").textContent = on ? "Pause" : "Play";
+  $("play").textContent = on ? t`Pause` : t`Play`;
   if (!on) {
     if (page.last?.isFirst) page.ask();
     return;
@@ -48,7 +49,7 @@ export function startTime() {
   const { longitude_deg: longitude, latitude_deg: latitude } = page.scene;
   const own = Intl.DateTimeFormat().resolvedOptions().timeZone;
   const isKnown = longitude !== null && longitude !== undefined;
-  const { zone, why } = isKnown ? zoneOf(longitude, latitude, own) : { zone: own, why: "this computer's" };
+  const { zone, why } = isKnown ? zoneOf(longitude, latitude, own) : { zone: own, why: t`this computer's` };
   page.time.zone = zone;
   page.time.zoneOf = { zone, why };
   page.time.date ||= clockOf(zone)?.date ?? new Date().toISOString().slice(0, 10);
@@ -71,14 +72,14 @@ export async function showNow(now = new Date()) {
   time.minutes = isNight ? noon : Math.floor(clock.minutes / 10) * 10;
   $("date").value = time.date;
   showClock();
-  const why = isNight ? `It is ${clockText(clock.minutes)} there now, and the sun is down or near the horizon: this is noon, when it stands highest.` : "This is now, by the clocks of the place.";
+  const why = isNight ? t`It is ${clockText(clock.minutes)} there now, and the sun is down or near the horizon: this is noon, when it stands highest.` : t`This is now, by the clocks of the place.`;
   time.said = { date: time.date, minutes: time.minutes, zone: time.zone, why };
 }
 // What is to be said of the time that is shown: why it is this one, and where its zone is from.
 page.ofTime = () => {
   const { date, minutes, zone, said, zoneOf: from } = page.time;
   const isSaid = page.tool.time === "hour" && said && said.date === date && said.minutes === minutes && said.zone === zone;
-  return [...(isSaid ? [said.why] : []), ...(from?.zone === zone ? [`Times are those of ${zone}: ${from.why}.`] : [])].join(" ");
+  return [...(isSaid ? [said.why] : []), ...(from?.zone === zone ? [t`Times are those of ${zone}: ${word(from.why)}.`] : [])].join(" ");
 };
 export const again = () => { if (page.last || page.tool.places === 0) page.ask(); };
 export const isPlaying = () => playing !== null;

@@ -4,6 +4,7 @@ import { Mover } from "./camera.js";
 import { escape } from "./charts.js";
 import { AT_REST, Cloud } from "./cloud.js";
 import { $, canvas, page, root } from "./state.js";
+import { count, t } from "./words.js";
 
 export let renderer, cloud, mover;
 
@@ -166,7 +167,7 @@ function overlay() {
   const nice = [1, 2, 5].flatMap((k) => [0.01, 0.1, 1, 10, 100, 1000, 10000].map((t) => k * t)).sort((a, b) => a - b).filter((m) => m * metre <= 150).at(-1) ?? 0.01;
   $("scale").firstElementChild.textContent = nice >= 1000 ? `${nice / 1000} km` : nice >= 1 ? `${nice} m` : `${nice * 100} cm`;
   $("scale").lastElementChild.style.width = `${nice * metre}px`;
-  if (page.scene) $("drawn").textContent = `${cloud.drawn.toLocaleString("en")} of ${page.scene.point_count.toLocaleString("en")} points drawn`;
+  if (page.scene) $("drawn").textContent = t`${count(cloud.drawn)} of ${count(page.scene.point_count)} points drawn`;
 }
 
 // Fails where the browser has no WebGL 2.

@@ -52,19 +52,20 @@ export function clockOf(zone, instant = new Date()) {
   return { date: shown.toISOString().slice(0, 10), minutes: shown.getUTCHours() * 60 + shown.getUTCMinutes(), ahead };
 }
 
+// Texts that stay English here: time.js puts them into the language of the page.
+const t = ([text]) => text;
 // The zone of a place, and in words where it is from. `own` is that of this computer.
 export function zoneOf(longitude, latitude, own, instant = new Date()) {
   const found = BOXES.flatMap(([zone, ...boxes]) => boxes.filter((box) => within(box, longitude, latitude)).map((box) => ({ zone, area: area(box) })));
   found.sort((a, b) => a.area - b.area);
   const ahead = ({ zone }) => clockOf(zone, instant)?.ahead;
   const isSure = found.every((one) => ahead(one) === ahead(found[0]));
-  const border = isSure ? "" : "; a border with other clocks is near, so look whether it is right";
-  if (found.some(({ zone }) => zone === own)) return { zone: own, why: `this computer's, which fits the place${border}` };
-  if (found.length) return { zone: found[0].zone, why: `that of the place${border}` };
+  if (found.some(({ zone }) => zone === own)) return { zone: own, why: isSure ? t`this computer's, which fits the place` : t`this computer's, which fits the place; a border with other clocks is near, so look whether it is right` };
+  if (found.length) return { zone: found[0].zone, why: isSure ? t`that of the place` : t`that of the place; a border with other clocks is near, so look whether it is right` };
   const hours = longitude / 15;
   const part = PARTS[own?.split("/")[0]];
-  if (part && within(part, longitude, latitude) && Math.abs(clockOf(own, instant)?.ahead / 60 - hours) <= 2) return { zone: own, why: "this computer's, which may fit the place" };
+  if (part && within(part, longitude, latitude) && Math.abs(clockOf(own, instant)?.ahead / 60 - hours) <= 2) return { zone: own, why: t`this computer's, which may fit the place` };
   const whole = Math.round(hours);
   const zone = `${whole < 0 ? "-" : "+"}${String(Math.abs(whole)).padStart(2, "0")}:00`;
-  return { zone, why: "by the longitude of the place, without summer time: look whether it is right" };
+  return { zone, why: t`by the longitude of the place, without summer time: look whether it is right` };
 }

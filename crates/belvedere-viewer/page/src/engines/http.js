@@ -1,7 +1,8 @@
 // Asks the server that the page came from.
+import { t } from "../words.js";
 import { Lost, Refused, split } from "./reply.js";
 
-const LOST = "The connection to Belvedere is lost. Is the program still running?";
+const LOST = t`The connection to Belvedere is lost. Is the program still running?`;
 
 async function get(path, options) {
   let response;
@@ -13,7 +14,7 @@ async function get(path, options) {
   }
   if (!response.ok) {
     const reply = await response.json().catch(() => ({}));
-    throw new Refused(reply.error ?? `The server answers with ${response.status}.`);
+    throw new Refused(reply.error ?? t`The server answers with ${response.status}.`);
   }
   return response;
 }

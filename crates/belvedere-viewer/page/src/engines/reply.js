@@ -1,7 +1,12 @@
 // What all engines reply with.
+import { refusal } from "../words.js";
 
 // No answer, in words.
-export class Refused extends Error {}
+export class Refused extends Error {
+  constructor(text) {
+    super(refusal(text));
+  }
+}
 // Nobody answers any more.
 export class Lost extends Error {}
 

@@ -1,7 +1,8 @@
 // The same questions, answered inside this browser: a worker holds the scene, and nothing leaves the computer.
+import { t } from "../words.js";
 import { Lost, Refused, split } from "./reply.js";
 
-const STOPPED = "The scene is lost: this tab has run out of memory, or Belvedere failed. Open the file again, or a smaller part of it.";
+const STOPPED = t`The scene is lost: this tab has run out of memory, or Belvedere failed. Open the file again, or a smaller part of it.`;
 
 let worker = null;
 let lost = null;
