@@ -309,6 +309,25 @@ async function main() {
     await page.waitForFunction(() => /lit with a probability of \d+ %/.test(document.getElementById("card").innerText), null, { timeout: 10_000 });
     await page.evaluate(() => { belvedere.isSure = false; });
   });
+  await step("shadows of two times are compared", async () => {
+    await page.evaluate(() => { belvedere.time.minutes = 720; });
+    await ask("shadow", [], /Compare this time with another/);
+    const before = await page.evaluate(() => [...new Uint8Array(belvedere.last.body)]);
+    await page.click("#compare");
+    await page.waitForFunction(() => /^0 points lose the sun, 0 points gain the sun/m.test(document.getElementById("card").innerText), null, { timeout: 20_000 });
+    await page.evaluate(() => { const hour = document.getElementById("hour"); hour.value = 1140; hour.dispatchEvent(new Event("input")); });
+    await page.waitForFunction(() => !belvedere.last?.isFirst && /from 2026-06-21 12:00:00\+02:00 to 2026-06-21 19:00:00\+02:00/.test(document.querySelector("#card .note")?.innerText ?? "") && document.querySelector("#took"), null, { timeout: 20_000 });
+    // counted here from both answers
+    const after = await page.evaluate(() => [...new Uint8Array(belvedere.last.body)]);
+    const isLit = (code) => code === 1 || code === 2;
+    const lost = before.filter((code, i) => isLit(code) && !isLit(after[i])).length;
+    assert.ok(lost > 1000);
+    assert.ok((await text(page)).includes(`${lost.toLocaleString("en")} points lose the sun`));
+    assert.match(await text(page), /-o before\.laz[\s\S]*-o after\.laz/);
+    await page.waitForFunction(() => location.hash.includes("from=2026-06-21T12:00"), null, { timeout: 5000 });
+    await page.click("#compare");
+    await page.waitForFunction(() => /% is lit/.test(document.getElementById("card").innerText), null, { timeout: 20_000 });
+  });
   await step("lengths, heights and areas are measured", async () => {
     await page.click("#measure");
     // a roof of 4 m by 3 m that rises 3 m along its 4 m: 5 m by 3 m in its plane

@@ -17,6 +17,7 @@ function written() {
   const words = { ...Object.fromEntries(opened), q: tool.name, d: time.date, t: clockText(time.minutes), z: time.zone };
   if (time.trees !== "opaque") words.trees = time.trees;
   if (page.isSure) words.sure = "yes";
+  if (page.compared) Object.assign(words, { from: page.compared.time, fromz: page.compared.zone });
   if (tool.name !== "plan" && places.length) words.p = places.map(({ clicked }) => toFile(clicked).join(",")).join(";");
   if (tool.above !== undefined) words.h = tool.above;
   if (page.cut) words.cut = [page.cut.low, page.cut.high].flatMap(toFile).join(",");
@@ -80,6 +81,7 @@ export function recall(words = wordsOf(location.hash)) {
   recallTime(words);
   recallView(words);
   page.isSure = words.get("sure") === "yes";
+  page.compared = words.get("from") && words.get("fromz") ? { time: words.get("from"), zone: words.get("fromz") } : null;
   if (!tool) return false;
   if (tool.height && Number.isFinite(Number(words.get("h") ?? NaN))) tool.above = Number(words.get("h"));
   page.choose(tool.name);

@@ -1,4 +1,4 @@
-// What a plan changes: an answer before and after it.
+// What a plan changes, or another time: an answer before and after.
 import { escape } from "./charts.js";
 import * as colors from "./colors.js";
 import { count, fixed, t } from "./words.js";
@@ -7,7 +7,7 @@ const list = (rows) => `<dl>${rows.map(([name, value]) => `<dt>${escape(name)}</
 const CLEARED = 254;
 
 // Points by what becomes of them: 0 not before and not after, 1 both, 2 gained, 3 lost.
-function ofPoints({ title, names, gain, loss }, answer, page) {
+function ofPoints({ title, names, gain, loss, of }, answer, page) {
   const [before, after] = [answer.before, answer].map(({ body }) => new Uint8Array(body));
   // light that pulses do not prove is light; a view that they do not prove is none
   const is = (code) => code === 1 || (code === 2 && answer.lit !== undefined);
@@ -18,7 +18,7 @@ function ofPoints({ title, names, gain, loss }, answer, page) {
   page.values(codes);
   const number = (n) => (answer.isFirst ? t`about ${count(n)}` : count(n));
   const first = answer.isFirst ? ` ${t`A first answer from a sample of them; the exact one follows …`}` : "";
-  return `<p class="verdict">${loss(number(counts[3]))}, ${gain(number(counts[2]))}</p><p class="note">${t`by the plan, of ${count(codes.length)} points of the cloud.`}${first}</p>`;
+  return `<p class="verdict">${loss(number(counts[3]))}, ${gain(number(counts[2]))}</p><p class="note">${escape(of(count(codes.length), answer))}${first}</p>`;
 }
 function ofCells(answer, page) {
   const rows = ({ body }) => { const v = new Float32Array(body); return Array.from({ length: v.length / 4 }, (_, i) => v.subarray(4 * i, 4 * i + 4)); };
@@ -36,5 +36,5 @@ function ofCells(answer, page) {
 export function changed(tool, answer, page) {
   const named = (command, name) => command.replace(/-o \S+(\.\w+)$/, `-o ${name}$1`);
   const command = [named(answer.before.command, "before"), named(answer.command, "after"), ...(tool.name === "sun_area" ? ["belvedere difference before.tif after.tif -o change.tif -o change.png"] : [])].join("\n");
-  return { html: tool.name === "sun_area" ? ofCells(answer, page) : ofPoints(tool.change, answer, page), command };
+  return { html: tool.name === "sun_area" ? ofCells(answer, page) : ofPoints(answer.isPlanned ? tool.change : tool.between, answer, page), command };
 }

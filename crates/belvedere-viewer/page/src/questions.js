@@ -11,7 +11,7 @@ import { setColor } from "./paint.js";
 import { csv, diagram, geojson, picture, save } from "./save.js";
 import { $, canvas, page, toolOf, TOOLS } from "./state.js";
 import { changed } from "./change.js";
-import { setPlaying } from "./time.js";
+import { clockText, setPlaying } from "./time.js";
 import { ASIDES } from "./tools.js";
 import { remarkText, t } from "./words.js";
 import { cloud, complete, draw, placeAt, shownPlace, toFile } from "./view.js";
@@ -143,6 +143,14 @@ function withProbabilities(answer) {
   return { ...answer, probabilities: answer.body.slice(half), body: answer.body.slice(0, half) };
 }
 
+// Date, time and zone as questions have them, and what gets through trees.
+function timeNow() {
+  const { date, zone, minutes, trees } = page.time;
+  return { date, zone, clock: clockText(minutes), trees: trees === "seasons" ? { seasons: "by_date" } : "opaque" };
+}
+// Whether answers are compared with those of another time.
+const isCompared = (tool) => Boolean(tool.between && page.compared && !isChange() && !api.exported);
+
 let asking;
 export async function ask(quick = false) {
   const { tool } = page;
@@ -172,20 +180,19 @@ export async function ask(quick = false) {
     return;
   }
   const places = page.places.map(({ local }) => toFile(local));
-  const { date, zone, minutes } = page.time;
-  const clock = `${String(Math.floor(minutes / 60)).padStart(2, "0")}:${String(minutes % 60).padStart(2, "0")}`;
   page.last = tool.places === 0 ? page.last : null;
   const busy = setTimeout(() => { if (!page.last) card(`<p class="busy">${t`Asking …`}</p>`); }, 150);
   const start = performance.now();
   // with a plan, the change is that from the answer before it
   const answered = async (question, values) => {
-    const sure = page.isSure && offersSure(tool) && !isChange() ? { probability: true } : {};
+    const sure = page.isSure && offersSure(tool) && !isChange() && !isCompared(tool) ? { probability: true } : {};
     const after = withProbabilities(await api.ask(question, { ...values, ...sure }, mine.signal, planInUse()));
-    if (!tool.change || !isChange()) return after;
-    return { ...after, before: await api.ask(question, values, mine.signal) };
+    if (tool.change && isChange()) return { ...after, isPlanned: true, before: await api.ask(question, values, mine.signal) };
+    if (!isCompared(tool)) return after;
+    return { ...after, before: await api.ask(question, { ...values, ...page.compared }, mine.signal, planInUse()) };
   };
   try {
-    const [question, values] = tool.ask(places, { date, zone, clock, trees: page.time.trees === "seasons" ? { seasons: "by_date" } : "opaque" });
+    const [question, values] = tool.ask(places, timeNow());
     // of many points a sample is answered first
     if (tool.samples && page.scene.samples_first && !api.exported) {
       const answer = await answered(question, { ...values, points: "sample" });
@@ -238,9 +245,17 @@ function showAnswer(tool, answer, places) {
   ].join("");
   const time = tool.time ? page.ofTime() : "";
   const sure = offersSure(tool) && !answer.before ? `<div class="row"><button id="sure" aria-pressed="${page.isSure}">${t`Show how sure each answer is`}</button></div>` : "";
-  card(`${html}${sure}${time ? `<p class="note" id="oftime">${escape(time)}</p>` : ""}${remarks({ remarks: together(answer.remarks, page.remarks) })}${where}<h3>${t`The same on the command line`}</h3><pre id="command">${words(shown.command ?? answer.command)}</pre><div class="row"><button data-save="copy">${t`Copy command`}</button>${buttons}</div>`
+  const compare = tool.between && !api.exported && !answer.isPlanned ? `<div class="row"><button id="compare" aria-pressed="${Boolean(page.compared)}">${page.compared ? t`Compare no longer` : t`Compare this time with another`}</button></div>` : "";
+  card(`${html}${sure}${compare}${time ? `<p class="note" id="oftime">${escape(time)}</p>` : ""}${remarks({ remarks: together(answer.remarks, page.remarks) })}${where}<h3>${t`The same on the command line`}</h3><pre id="command">${words(shown.command ?? answer.command)}</pre><div class="row"><button data-save="copy">${t`Copy command`}</button>${buttons}</div>`
     + `<p class="note" id="took">${api.exported ? t`Stored in this file.` : t`Answered in ${Math.round(answer.took)} ms.`}</p>`, (box) => {
     shown.after?.(box);
+    const comparing = box.querySelector("#compare");
+    if (comparing) comparing.onclick = () => {
+      const [, { time, zone }] = tool.ask(places, timeNow());
+      page.compared = page.compared ? null : { time, zone };
+      if (page.compared) hint(t`Choose another date or time below.`);
+      ask();
+    };
     const isSure = box.querySelector("#sure");
     if (isSure) isSure.onclick = () => { page.isSure = !page.isSure; ask(); };
     box.querySelectorAll("[data-save]").forEach((button) => { button.onclick = () => saveAs(button, tool, answer, places); });

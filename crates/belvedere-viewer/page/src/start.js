@@ -1,7 +1,8 @@
 // The first screen of a page that opens files itself.
+import { extentOf, isCatalogue, meeting, tilesOf } from "./catalogue.js";
 import { report } from "./messages.js";
 import { $, page } from "./state.js";
-import { fixed, LANGUAGES, language, setLanguage, t } from "./words.js";
+import { count, fixed, LANGUAGES, language, setLanguage, t } from "./words.js";
 import { open } from "./engines/worker.js";
 
 const FORMATS = ".laz .las .copc.laz .e57 .ply .pcd .ptx .xyz .txt .csv .npy";
@@ -18,11 +19,13 @@ function maxPoints() {
 }
 const fromFragment = () => new URLSearchParams(location.hash.slice(1));
 
-// Asks which part of a cloud to open that does not fit as a whole: a square on its map that can be moved.
-function chooseWindow(files, options, { points, most, low, high }) {
+// Asks which part of a cloud to open that does not fit as a whole: a square on its map that can be moved. `filesOf` are
+// the files of a part; those of a catalogue have `tiles` on the map.
+function chooseWindow(filesOf, options, { points, most, low, high, side: longest = Infinity, tiles = [] }) {
   const size = [high[0] - low[0], high[1] - low[1]];
   // a tenth fewer: points do not lie evenly
-  const side = Math.sqrt((size[0] * size[1] * most * 0.9) / points);
+  const covered = tiles.length ? tiles.reduce((sum, tile) => sum + (tile.high[0] - tile.low[0]) * (tile.high[1] - tile.low[1]), 0) : size[0] * size[1];
+  const side = Math.min(Math.sqrt((covered * most * 0.9) / points), longest);
   const sides = size.map((length) => Math.min(side, length));
   const corner = [0, 1].map((i) => low[i] + (size[i] - sides[i]) / 2);
   const scale = 260 / Math.max(...size);
@@ -32,10 +35,12 @@ function chooseWindow(files, options, { points, most, low, high }) {
   $("start").firstElementChild.hidden = true;
   box.hidden = false;
   const millions = (n) => fixed(n / 1e6, 1);
-  box.querySelector("p").textContent = t`The files have ${millions(points)} million points, and this browser has room for ${millions(most)} million. Choose the part to open: ${Math.round(sides[0])} by ${Math.round(sides[1])}, in the unit of the file.`;
+  const [wide, deep] = sides.map(Math.round);
+  box.querySelector("p").textContent = tiles.length ? t`The catalogue has ${count(tiles.length)} tiles. Choose the part to open: ${wide} by ${deep}, in the unit of the files.` : t`The files have ${millions(points)} million points, and this browser has room for ${millions(most)} million. Choose the part to open: ${wide} by ${deep}, in the unit of the file.`;
   const map = box.querySelector("svg");
   map.setAttribute("viewBox", `-1 -1 ${size[0] * scale + 2} ${size[1] * scale + 2}`);
-  map.innerHTML = `<rect width="${size[0] * scale}" height="${size[1] * scale}" class="all"/><rect width="${sides[0] * scale}" height="${sides[1] * scale}" class="window"/>`;
+  const outline = ({ low: [west, south], high: [east, north] }) => `<rect x="${(west - low[0]) * scale}" y="${(high[1] - north) * scale}" width="${(east - west) * scale}" height="${(north - south) * scale}" class="all"/>`;
+  map.innerHTML = `${(tiles.length ? tiles : [{ low, high }]).map(outline).join("")}<rect width="${sides[0] * scale}" height="${sides[1] * scale}" class="window"/>`;
   const move = (to) => {
     [0, 1].forEach((i) => { corner[i] = Math.min(Math.max(to[i], low[i]), high[i] - sides[i]); });
     const rect = map.querySelector(".window");
@@ -61,10 +66,17 @@ function chooseWindow(files, options, { points, most, low, high }) {
     box.hidden = true;
     $("start").hidden = true;
     $("progress").hidden = false;
-    open(files, { ...options, window: [...corner, ...corner.map((v, i) => v + sides[i])] }, () => {});
+    const window = [...corner, ...corner.map((v, i) => v + sides[i])];
+    const files = filesOf(window);
+    if (files.length) return open(files, { ...options, window }, () => {});
+    $("progress").hidden = true;
+    box.hidden = false;
+    $("start").hidden = false;
+    report(new Error(t`No tile of the catalogue lies there.`));
   };
 }
 
+// Opens files, or those of a catalogue that a part needs.
 function begin(files, whenOpen) {
   const crs = $("crs-typed").value.trim();
   const corners = $("window-typed").value.split(/[\s,;]+/).filter(Boolean).map(Number);
@@ -76,8 +88,24 @@ function begin(files, whenOpen) {
   $("progress").hidden = false;
   page.failure = null;
   const options = { max_points: maxPoints(), ...(crs ? { crs } : {}), ...(corners.length ? { window: corners } : {}) };
-  open(files, options, (announced) => chooseWindow(files, options, announced));
   whenOpen();
+  if (files.length === 1 && files[0].url && isCatalogue(files[0].url)) return beginCatalogue(files[0].url, options);
+  open(files, options, (announced) => chooseWindow(() => files, options, announced));
+}
+async function beginCatalogue(url, options) {
+  try {
+    const tiles = await tilesOf(url);
+    const filesOf = (window) => meeting(tiles, window).map((tile) => ofAddress(tile.url));
+    const extent = { ...extentOf(tiles), most: options.max_points };
+    if (!options.window) return chooseWindow(filesOf, options, extent);
+    const files = filesOf(options.window);
+    if (!files.length) throw new Error(t`No tile of the catalogue lies there.`);
+    open(files, options, (announced) => chooseWindow(filesOf, options, announced));
+  } catch (error) {
+    $("progress").hidden = true;
+    $("start").hidden = false;
+    report(error);
+  }
 }
 // The end of an address is the name of the file there.
 const ofAddress = (url) => ({ name: decodeURIComponent(new URL(url, location.href).pathname.split("/").pop()), url: new URL(url, location.href).href });
@@ -127,6 +155,15 @@ export function startScreen(whenOpen) {
       report(error);
     }
   };
+  // a cloud that was put beside the page when it was built, under a name that says whose it is
+  const tile = document.querySelector('meta[name="tile"]');
+  if (tile) {
+    Object.assign($("tile"), { hidden: false, textContent: tile.content });
+    $("tile").onclick = () => {
+      $("crs-typed").value = tile.dataset.crs;
+      begin([ofAddress(tile.dataset.file)], whenOpen);
+    };
+  }
   $("address").onsubmit = (event) => {
     event.preventDefault();
     const words = { open: "address-typed", crs: "crs-typed", window: "window-typed" };

@@ -38,6 +38,7 @@ const certainRows = ({ certainty: sure }) => (sure ? [["certain from", sure.cert
 
 const UNPROVEN = t`Nothing blocks what is unproven, but part of the line runs through space that no laser pulse has seen.`;
 
+const BY_PLAN = (n) => t`by the plan, of ${n} points of the cloud.`;
 // What a surface of the survey is a part of.
 const SURFACES = { roof: t`roof`, wall: t`wall`, parapet: t`parapet`, step: t`step of a roof`, box: t`structure on a roof`, inside: t`inside of a building` };
 
@@ -54,7 +55,7 @@ export const TOOLS = [
     hint: t`Click where somebody stands: ground, balcony or roof.`,
     samples: true,
     ask: ([place]) => ["seen", { place }],
-    change: { title: t`What the plan changes`, names: [t`not visible before and after`, t`visible before and after`, t`visible only after`, t`visible only before`], gain: (n) => t`${n} points come into view`, loss: (n) => t`${n} points are hidden` },
+    change: { title: t`What the plan changes`, names: [t`not visible before and after`, t`visible before and after`, t`visible only after`, t`visible only before`], gain: (n) => t`${n} points come into view`, loss: (n) => t`${n} points are hidden`, of: BY_PLAN },
     show(answer, page) {
       page.answer = answer.certainty ? colors.ofProbability(t`How likely it is visible`, ["0 %", "100 %"]) : colors.ofAnswers(answer, answer.viewpoint);
       page.values(new Uint8Array(answer.probabilities ?? answer.body));
@@ -101,7 +102,8 @@ export const TOOLS = [
     hint: t`Move the time, or play the day.`,
     samples: true,
     ask: (_, { date, clock, zone, trees }) => ["shadow", { time: `${date}T${clock}`, zone, trees }],
-    change: { title: t`What the plan changes`, names: [t`in shadow before and after`, t`lit before and after`, t`lit only after`, t`lit only before`], gain: (n) => t`${n} points gain the sun`, loss: (n) => t`${n} points lose the sun` },
+    change: { title: t`What the plan changes`, names: [t`in shadow before and after`, t`lit before and after`, t`lit only after`, t`lit only before`], gain: (n) => t`${n} points gain the sun`, loss: (n) => t`${n} points lose the sun`, of: BY_PLAN },
+    between: { title: t`Between the two times`, names: [t`in shadow at both times`, t`lit at both times`, t`lit only at the second time`, t`lit only at the first time`], gain: (n) => t`${n} points gain the sun`, loss: (n) => t`${n} points lose the sun`, of: (n, { before, time }) => t`from ${before.time.replace("T", " ")} to ${time.replace("T", " ")}, of ${n} points of the cloud.` },
     show(answer, page) {
       page.answer = answer.certainty ? colors.ofProbability(t`How likely it is lit`, ["0 %", "100 %"]) : colors.ofLight(answer);
       page.light(answer);

@@ -24,7 +24,7 @@ function serve(isolates) {
     const path = name === "/tile.laz" ? cloud : join(site, name);
     let bytes;
     try {
-      bytes = readFileSync(path);
+      bytes = name === "/tiles.vpc" ? catalogue : readFileSync(path);
     } catch {
       response.writeHead(404).end();
       return;
@@ -43,6 +43,13 @@ function serve(isolates) {
     response.end(request.method === "HEAD" ? undefined : bytes);
   });
   return new Promise((found) => server.listen(0, "127.0.0.1", () => found([server, `http://127.0.0.1:${server.address().port}/`])));
+}
+// Two tiles of which one is there, a kilometre from each other.
+let catalogue = null;
+function catalogueOf({ shown: { origin, low, high, metres_per_unit: units, point_count: count } }) {
+  const [west, south, , east, north] = [low, high].flatMap((corner) => corner.map((v, i) => (v + origin[i]) / units[i]));
+  const tile = (href, away) => ({ type: "Feature", properties: { "pc:count": count, "proj:bbox": [west + away, south, east + away, north] }, assets: { data: { href } } });
+  return Buffer.from(JSON.stringify({ type: "FeatureCollection", features: [tile("./tile.laz", 0), tile("./missing.laz", 1000)] }));
 }
 const problems = [];
 function watched(page, url) {
@@ -211,6 +218,36 @@ async function main() {
     await own.goto("about:blank");
     await own.goto(`${url}#open=${encodeURIComponent(`${url}missing.laz`)}`);
     assert.match(await message(own), /404/);
+    await own.close();
+  });
+  await step("of a catalogue of tiles a part is chosen on the map, and only its tiles are read", async () => {
+    catalogue = catalogueOf(native.state);
+    const own = watched(await context.newPage(), url);
+    await own.goto(`${url}#open=${encodeURIComponent(`${url}tiles.vpc`)}`);
+    await own.waitForSelector("#part:not([hidden])");
+    assert.match(await own.evaluate(() => document.getElementById("part").innerText), /The catalogue has 2 tiles/);
+    // it begins in the middle, where none lies
+    await own.click("#part button");
+    assert.match(await message(own), /No tile of the catalogue lies there/);
+    await own.focus("#part svg");
+    for (let i = 0; i < 40; i++) await own.keyboard.press("ArrowLeft");
+    await own.click("#part button");
+    await ready(own);
+    assert.deepEqual(await shadow(own), expected);
+    await own.goto("about:blank");
+    await own.goto(`${url}#open=${encodeURIComponent(`${url}none.vpc`)}`);
+    assert.match(await message(own), /The catalogue cannot be read/);
+    await own.close();
+  });
+  const beside = /<meta name="tile"/.test(readFileSync(join(site, "index.html"), "utf8"));
+  // without it test-site has said so
+  if (beside) await step("a real tile is one click away", async () => {
+    const own = watched(await context.newPage(), url);
+    await own.goto(url);
+    assert.equal(await own.evaluate(() => document.getElementById("tile").innerText), 'Delft "AHN3" (CC0)');
+    await own.click("#tile");
+    await ready(own);
+    assert.ok(await own.evaluate(() => belvedere.scene.point_count > 200_000 && /7415/.test(belvedere.scene.crs) && belvedere.scene.latitude_deg > 50));
     await own.close();
   });
   await step("two tabs with the same file", async () => {
