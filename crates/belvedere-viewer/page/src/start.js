@@ -19,9 +19,9 @@ function maxPoints() {
 }
 const fromFragment = () => new URLSearchParams(location.hash.slice(1));
 
-// Asks which part of a cloud to open that does not fit as a whole: a square on its map that can be moved. `filesOf` are
-// the files of a part; those of a catalogue have `tiles` on the map.
-function chooseWindow(filesOf, options, { points, most, low, high, side: longest = Infinity, tiles = [] }) {
+// Asks which part of a cloud to open that does not fit as a whole: a square on its map that can be moved. `openPart`
+// gets it, and says whether anything lies there; a catalogue has `tiles` on the map.
+function chooseWindow(openPart, { points, most, low, high, side: longest = Infinity, tiles = [] }) {
   const size = [high[0] - low[0], high[1] - low[1]];
   // a tenth fewer: points do not lie evenly
   const covered = tiles.length ? tiles.reduce((sum, tile) => sum + (tile.high[0] - tile.low[0]) * (tile.high[1] - tile.low[1]), 0) : size[0] * size[1];
@@ -63,16 +63,10 @@ function chooseWindow(filesOf, options, { points, most, low, high, side: longest
   };
   move(corner);
   box.querySelector("button").onclick = () => {
+    if (!openPart([...corner, ...corner.map((v, i) => v + sides[i])])) return report(new Error(t`No tile of the catalogue lies there.`));
     box.hidden = true;
     $("start").hidden = true;
     $("progress").hidden = false;
-    const window = [...corner, ...corner.map((v, i) => v + sides[i])];
-    const files = filesOf(window);
-    if (files.length) return open(files, { ...options, window }, () => {});
-    $("progress").hidden = true;
-    box.hidden = false;
-    $("start").hidden = false;
-    report(new Error(t`No tile of the catalogue lies there.`));
   };
 }
 
@@ -88,19 +82,26 @@ function begin(files, whenOpen) {
   $("progress").hidden = false;
   page.failure = null;
   const options = { max_points: maxPoints(), ...(crs ? { crs } : {}), ...(corners.length ? { window: corners } : {}) };
+  if (files.length === 1 && files[0].url && isCatalogue(files[0].url)) return beginCatalogue(files[0].url, options, whenOpen);
+  const openPart = (window) => {
+    open(files, { ...options, window }, () => {});
+    return true;
+  };
+  open(files, options, (announced) => chooseWindow(openPart, announced));
   whenOpen();
-  if (files.length === 1 && files[0].url && isCatalogue(files[0].url)) return beginCatalogue(files[0].url, options);
-  open(files, options, (announced) => chooseWindow(() => files, options, announced));
 }
-async function beginCatalogue(url, options) {
+async function beginCatalogue(url, options, whenOpen) {
   try {
     const tiles = await tilesOf(url);
-    const filesOf = (window) => meeting(tiles, window).map((tile) => ofAddress(tile.url));
-    const extent = { ...extentOf(tiles), most: options.max_points };
-    if (!options.window) return chooseWindow(filesOf, options, extent);
-    const files = filesOf(options.window);
-    if (!files.length) throw new Error(t`No tile of the catalogue lies there.`);
-    open(files, options, (announced) => chooseWindow(filesOf, options, announced));
+    const openPart = (window) => {
+      const files = meeting(tiles, window).map((tile) => ofAddress(tile.url));
+      if (!files.length) return false;
+      open(files, { ...options, window }, () => {});
+      whenOpen();
+      return true;
+    };
+    if (!options.window) return chooseWindow(openPart, { ...extentOf(tiles), most: options.max_points });
+    if (!openPart(options.window)) throw new Error(t`No tile of the catalogue lies there.`);
   } catch (error) {
     $("progress").hidden = true;
     $("start").hidden = false;

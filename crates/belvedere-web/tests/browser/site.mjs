@@ -48,7 +48,7 @@ function serve(isolates) {
 let catalogue = null;
 function catalogueOf({ shown: { origin, low, high, metres_per_unit: units, point_count: count } }) {
   const [west, south, , east, north] = [low, high].flatMap((corner) => corner.map((v, i) => (v + origin[i]) / units[i]));
-  const tile = (href, away) => ({ type: "Feature", properties: { "pc:count": count, "proj:bbox": [west + away, south, east + away, north] }, assets: { data: { href } } });
+  const tile = (href, away) => ({ type: "Feature", properties: { "pc:count": count, "proj:bbox": [west + away - 1, south - 1, east + away + 1, north + 1] }, assets: { data: { href } } });
   return Buffer.from(JSON.stringify({ type: "FeatureCollection", features: [tile("./tile.laz", 0), tile("./missing.laz", 1000)] }));
 }
 const problems = [];
