@@ -244,9 +244,10 @@ function showAnswer(tool, answer, places) {
     `<button data-save="png">${t`Picture`} (.png)</button>`,
   ].join("");
   const time = tool.time ? page.ofTime() : "";
-  const sure = offersSure(tool) && !answer.before ? `<div class="row"><button id="sure" aria-pressed="${page.isSure}">${t`Show how sure each answer is`}</button></div>` : "";
-  const compare = tool.between && !api.exported && !answer.isPlanned ? `<div class="row"><button id="compare" aria-pressed="${Boolean(page.compared)}">${page.compared ? t`Compare no longer` : t`Compare this time with another`}</button></div>` : "";
-  card(`${html}${sure}${compare}${time ? `<p class="note" id="oftime">${escape(time)}</p>` : ""}${remarks({ remarks: together(answer.remarks, page.remarks) })}${where}<h3>${t`The same on the command line`}</h3><pre id="command">${words(shown.command ?? answer.command)}</pre><div class="row"><button data-save="copy">${t`Copy command`}</button>${buttons}</div>`
+  const sure = offersSure(tool) && !answer.before ? `<button id="sure" aria-pressed="${page.isSure}">${t`Show how sure each answer is`}</button>` : "";
+  const compare = tool.between && !api.exported && !answer.isPlanned ? `<button id="compare" aria-pressed="${Boolean(page.compared)}">${page.compared ? t`Compare no longer` : t`Compare this time with another`}</button>` : "";
+  const more = sure || compare ? `<div class="row">${sure}${compare}</div>` : "";
+  card(`${html}${more}${time ? `<p class="note" id="oftime">${escape(time)}</p>` : ""}${remarks({ remarks: together(answer.remarks, page.remarks) })}${where}<h3>${t`The same on the command line`}</h3><pre id="command">${words(shown.command ?? answer.command)}</pre><div class="row"><button data-save="copy">${t`Copy command`}</button>${buttons}</div>`
     + `<p class="note" id="took">${api.exported ? t`Stored in this file.` : t`Answered in ${Math.round(answer.took)} ms.`}</p>`, (box) => {
     shown.after?.(box);
     const comparing = box.querySelector("#compare");

@@ -59,7 +59,7 @@ function chooseWindow(openPart, { points, most, low, high, side: longest = Infin
     const by = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
     if (!by) return;
     event.preventDefault();
-    move(corner.map((v, i) => v + (by[i] * sides[i]) / 10));
+    move(corner.map((v, i) => v + by[i] * Math.max(sides[i] / 10, size[i] / 100)));
   };
   move(corner);
   box.querySelector("button").onclick = () => {
