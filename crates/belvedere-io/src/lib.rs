@@ -139,7 +139,7 @@ pub use horizon_profile::read_horizon;
 pub use las::{LasHead, read_las_head};
 #[cfg(feature = "las")]
 pub use las_results::{PointResults, has_point_results, read_point_results};
-pub use mesh::{read_mesh, read_mesh_in};
+pub use mesh::{is_mesh, read_mesh, read_mesh_in};
 pub use observers::{ObserverRow, ObserverRows, RowsAre, property, read_observers};
 pub use outline::{GridPolygon, outlines};
 pub use output::{Output, WriteSeek};

@@ -8,6 +8,7 @@ use super::polygons::MeshReport;
 use super::source::{Source, SystemBeside, unusable};
 use belvedere_data::crs::Crs;
 use belvedere_data::{Error, Mesh, Result};
+use std::io::Read;
 
 /// The mesh of a source (`.obj`, `.ply`, or CityJSON as `.city.json`, `.json`, `.cityjson`, `.jsonl`) and what was left
 /// out of it. CityJSON is read at the highest level of detail of each object. A mesh that names no reference system has
@@ -46,4 +47,25 @@ pub fn read_mesh_in<'a>(source: impl Into<Source<'a>>, crs: &Crs) -> Result<(Mes
         return Err(Error::UnusableCrs { path, what });
     }
     Ok((mesh.scaled_to_metres(crs), report))
+}
+
+/// Start of a file in which the header of a PLY file ends.
+const START_BYTES: u64 = 1 << 16;
+
+/// Whether a source holds a mesh rather than a cloud, by its extension; of `.ply` by its header, which has faces.
+/// `false` also for what cannot be read.
+pub fn is_mesh<'a>(source: impl Into<Source<'a>>) -> bool {
+    let source = source.into();
+    match source.extension().as_str() {
+        "obj" | "json" | "jsonl" | "cityjson" => true,
+        "ply" => {
+            let mut start = Vec::new();
+            let read = source.into_reader().map(|(file, _)| file.take(START_BYTES).read_to_end(&mut start));
+            let text = String::from_utf8_lossy(&start);
+            let header = text.split("end_header").next().unwrap_or_default();
+            let count = header.lines().find_map(|line| line.trim().strip_prefix("element face "));
+            matches!(read, Ok(Ok(_))) && count.is_some_and(|count| count.trim() != "0")
+        }
+        _ => false,
+    }
 }

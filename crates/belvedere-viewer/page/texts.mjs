@@ -19,7 +19,7 @@ function ofPage(html) {
   return [...[...body.matchAll(/>([^<]+)</g)], ...[...body.matchAll(/(?:title|aria-label|placeholder)="([^"]+)"/g)]].map(([, text]) => plain(text)).filter(hasWords);
 }
 // Names and examples that are the same in all languages.
-const NAMES = ["Belvedere", "LAZ, LAS, COPC, E57, PLY, PCD, PTX, text", "EPSG:7415"];
+const NAMES = ["Belvedere", "EPSG:7415"];
 export const texts = () => [...new Set([...sources().flatMap(ofSource), ...ofPage(readFileSync(join(here, "index.html"), "utf8"))])].filter((text) => !NAMES.includes(text)).sort();
 // The number of what is put into a text, each once.
 export const holes = (text) => [...new Set(text.match(/\{\w+\}/g) ?? [])].sort().join();

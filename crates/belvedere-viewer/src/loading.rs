@@ -2,10 +2,12 @@
 
 use crate::results::{PointsOf, ResultFile};
 use crate::scene::{PageScene, ShownCloud};
+use belvedere::apps::ask::Remark;
 use belvedere::cloud::to_local;
 use belvedere::control::{Control, OpenStages, StageEnd, Watcher};
-use belvedere::io::{GeojsonFeature, PlacedRaster, PointResults};
+use belvedere::io::{PlacedRaster, Source, has_point_results, read_geojson, read_point_results, read_tif};
 use belvedere::model::SceneModel;
+use belvedere::query::{BlockingTriangles, Coverage};
 use belvedere::{Bounds, Frame, Mesh, PointCloud, Result};
 use serde::Serialize;
 use serde_json::Value;
@@ -54,18 +56,26 @@ impl Loading {
         self.state().meshes.push(bytes.into());
     }
 
-    /// Shows points with values, which lie over a scene of these bounds.
+    /// Shows results of another command over a scene of these bounds: a raster (`.tif`), shapes (`.geojson`), or points
+    /// with columns of results.
     ///
     /// # Errors
-    /// [`belvedere::Error::Malformed`] for points that all lie beside it.
-    pub fn show_point_results(
+    /// Those of reading; [`belvedere::Error::Malformed`] for a raster without a place and for what lies beside the
+    /// cloud as a whole, [`belvedere::Error::UnusableCrs`] for what is in another reference system.
+    pub fn show_results<'a>(
         &self,
-        path: &Path,
-        results: (PointResults, PointsOf),
+        source: impl Into<Source<'a>>,
+        points_of: PointsOf,
         frame: &Frame,
         bounds: &Bounds,
     ) -> Result<()> {
-        let file = ResultFile::of_points(path, results, frame, bounds)?;
+        let source = source.into();
+        let path = source.name().to_owned();
+        let file = match source.extension().as_str() {
+            "tif" | "tiff" => ResultFile::of_raster(&path, read_tif(source)?, frame, bounds)?,
+            "geojson" => ResultFile::of_shapes(&path, read_geojson(source, &frame.crs)?, frame, bounds)?,
+            _ => ResultFile::of_points(&path, (read_point_results(source)?, points_of), frame, bounds)?,
+        };
         self.state().results.push(Arc::new(file));
         Ok(())
     }
@@ -77,16 +87,6 @@ impl Loading {
     /// for one in another system.
     pub fn show_raster(&self, path: &Path, raster: PlacedRaster, frame: &Frame, bounds: &Bounds) -> Result<()> {
         let file = ResultFile::of_raster(path, raster, frame, bounds)?;
-        self.state().results.push(Arc::new(file));
-        Ok(())
-    }
-
-    /// Shows points, lines and polygons, which lie on the ground unless they have heights.
-    ///
-    /// # Errors
-    /// [`belvedere::Error::Malformed`] for shapes that all lie beside the cloud.
-    pub fn show_shapes(&self, path: &Path, shapes: Vec<GeojsonFeature>, frame: &Frame, bounds: &Bounds) -> Result<()> {
-        let file = ResultFile::of_shapes(path, shapes, frame, bounds)?;
         self.state().results.push(Arc::new(file));
         Ok(())
     }
@@ -139,6 +139,22 @@ impl Loading {
     fn state(&self) -> MutexGuard<'_, LoadingState> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
+}
+
+/// Whether a file that `open` opens holds results of another command rather than a cloud. What cannot be read does not.
+pub fn are_results<'a>(open: impl Fn() -> Source<'a>) -> bool {
+    match open().extension().as_str() {
+        "tif" | "tiff" | "geojson" => true,
+        "las" | "laz" => has_point_results(open()).unwrap_or(false),
+        _ => false,
+    }
+}
+
+/// A warning of a mesh that blocks nothing, since it lies beside the cloud; `None` where it does not.
+#[must_use]
+pub fn remark_on_mesh(mesh: &Mesh, name: &str, frame: &Frame, bounds: &Bounds) -> Option<Remark> {
+    let blocking = BlockingTriangles::new(mesh, name, frame.origin, Coverage::of(*bounds).as_ref(), None);
+    blocking.err().map(|error| Remark::warning("mesh-beside-cloud", error.to_string()))
 }
 
 impl Watcher for Loading {

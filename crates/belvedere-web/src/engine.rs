@@ -3,10 +3,12 @@
 use belvedere::apps::ask::remarks_on_reading;
 use belvedere::cache::CloudKey;
 use belvedere::control::{Control, StageEnd, Watcher};
-use belvedere::io::{ReadOptions, Source, Within, read_balls, read_cloud, read_las_head};
+use belvedere::io::{
+    ReadOptions, Source, Within, has_point_results, is_mesh, read_balls, read_cloud, read_las_head, read_mesh_in,
+};
 use belvedere::model::{ModelParams, SceneModel};
 use belvedere::{Error, PointCloud, Result};
-use belvedere_viewer::{Refusal, SceneText, Session, quoted};
+use belvedere_viewer::{PointsOf, Refusal, SceneText, Session, are_results, quoted, remark_on_mesh};
 use serde::{Deserialize, Serialize};
 use std::io::{Read, Seek};
 use std::sync::Arc;
@@ -39,7 +41,7 @@ pub struct OpenedFile {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct OpenRequest {
-    /// Clouds, which are read as one.
+    /// Clouds, which are read as one, and meshes and results of commands, which are shown beside it.
     pub files: Vec<OpenedFile>,
     /// Reference system of files that name none, such as `EPSG:7415`.
     #[serde(default)]
@@ -65,16 +67,18 @@ impl Engine {
     /// # Errors
     /// Those of reading; words where no point is there, or more than fit.
     pub fn open<H: Host>(request: &OpenRequest, host: &H) -> std::result::Result<Self, Refusal> {
-        let first = request.files.first().ok_or_else(|| Refusal::from("No file was chosen.".to_owned()))?;
+        let chosen = Chosen::of(&request.files, host);
+        let none = || Refusal::from("Meshes, rasters and shapes are shown with a cloud: choose one too.".to_owned());
+        let first = *chosen.clouds.first().ok_or_else(none)?;
         // of a window the headers do not tell
         if request.window.is_none() {
             refuse_too_many(Announced::of(&request.files, host).map(|announced| announced.points), request)?;
         }
-        let names = request.files.iter().map(|file| quoted(&file.name)).collect::<Vec<_>>().join(" ");
+        let names = chosen.clouds.iter().map(|file| quoted(&file.name)).collect::<Vec<_>>().join(" ");
         let crs = request.crs.as_ref().map(|crs| format!(" --crs {}", quoted(crs))).unwrap_or_default();
         let text = SceneText { input: names + &crs, cloud_beside: None };
         let session = Session::new(first.name.clone(), text);
-        let sources = request.files.iter().map(|file| Source::reader(&file.name, host.open(file)));
+        let sources = chosen.clouds.iter().map(|file| source(file, host));
         let mut options = ReadOptions::new();
         options.crs.clone_from(&request.crs);
         options.within = request.window.map(|[west, south, east, north]| Within::File {
@@ -92,6 +96,7 @@ impl Engine {
         let missing = report.files.iter().map(|file| (file.path.display().to_string(), file.missing_points));
         session.loading().remark(&remarks_on_reading(report.doubt.as_deref(), missing));
         session.loading().show(&cloud);
+        chosen.show(&session, &cloud, host, &control)?;
         Ok(Self { session, cloud: Some(cloud) })
     }
 
@@ -120,7 +125,7 @@ impl Engine {
     /// Those of [`read_balls`]; of a scene that is not one of these points.
     pub fn build_from<H: Host>(&mut self, kept: &OpenedFile, host: &H) -> Result<()> {
         let Some(cloud) = &self.cloud else { return Ok(()) };
-        let model = SceneModel::from_parts(read_balls(Source::reader(&kept.name, host.open(kept)))?)?;
+        let model = SceneModel::from_parts(read_balls(source(kept, host))?)?;
         if model.frame().origin != cloud.frame.origin {
             return Err(Error::malformed(kept.name.as_ref(), "is the scene of another cloud"));
         }
@@ -151,8 +156,8 @@ impl Announced {
     /// From the headers, where all files have headers that tell.
     pub fn of<H: Host>(files: &[OpenedFile], host: &H) -> Option<Self> {
         let mut all: Option<Self> = None;
-        for file in files {
-            let head = read_las_head(Source::reader(&file.name, host.open(file))).ok()?;
+        for file in Chosen::of(files, host).clouds {
+            let head = read_las_head(source(file, host)).ok()?;
             let [low, high] = head.bounds.map(|corner| [corner[0], corner[1]]);
             let before = all.unwrap_or(Self { points: 0, low, high });
             all = Some(Self {
@@ -163,6 +168,56 @@ impl Announced {
         }
         all
     }
+}
+
+/// Files that were chosen, by what they hold.
+struct Chosen<'a> {
+    clouds: Vec<&'a OpenedFile>,
+    meshes: Vec<&'a OpenedFile>,
+    results: Vec<&'a OpenedFile>,
+}
+
+impl<'a> Chosen<'a> {
+    /// The first LAS file is the cloud, also where it has columns of results.
+    fn of<H: Host>(files: &'a [OpenedFile], host: &H) -> Self {
+        let mut chosen = Self { clouds: Vec::new(), meshes: Vec::new(), results: Vec::new() };
+        for file in files {
+            let is_cloud = chosen.clouds.is_empty() && is_las(file, host);
+            let kind = match () {
+                () if is_mesh(source(file, host)) => &mut chosen.meshes,
+                () if !is_cloud && are_results(|| source(file, host)) => &mut chosen.results,
+                () => &mut chosen.clouds,
+            };
+            kind.push(file);
+        }
+        chosen
+    }
+
+    /// Shows what is beside the cloud, and columns of results of its own.
+    fn show<H: Host>(&self, session: &Session, cloud: &PointCloud, host: &H, control: &Control<'_>) -> Result<()> {
+        let (loading, frame, bounds) = (session.loading(), &cloud.frame, cloud.bounds().unwrap_or_default());
+        for &file in &self.meshes {
+            let (mesh, _) = control.stage("reading mesh", 0, || read_mesh_in(source(file, host), &frame.crs))?;
+            loading.remark(remark_on_mesh(&mesh, &file.name, frame, &bounds).as_slice());
+            loading.show_mesh(&mesh, frame);
+        }
+        let own = self.clouds.first().filter(|file| is_las(file, host));
+        let own = own.filter(|file| has_point_results(source(file, host)).unwrap_or(false));
+        let beside = self.results.iter().map(|file| (file, PointsOf::Other));
+        for (file, points_of) in beside.chain(own.map(|file| (file, PointsOf::Cloud))) {
+            control
+                .stage("reading results", 0, || loading.show_results(source(file, host), points_of, frame, &bounds))?;
+        }
+        Ok(())
+    }
+}
+
+fn source<'a, H: Host>(file: &'a OpenedFile, host: &H) -> Source<'a> {
+    Source::reader(&file.name, host.open(file))
+}
+
+fn is_las<H: Host>(file: &OpenedFile, host: &H) -> bool {
+    ["las", "laz"].contains(&source(file, host).extension().as_str())
 }
 
 fn refuse_too_many(points: Option<u64>, request: &OpenRequest) -> std::result::Result<(), Refusal> {
@@ -213,6 +268,8 @@ mod tests {
         fn advance(&self, _count: usize) {}
     }
 
+    const MESH: &str = "v 155002 463002 0\nv 155003 463002 0\nv 155002 463003 2\nf 1 2 3\n";
+
     /// Where the floor begins, in a system of the Netherlands.
     const WEST: f64 = 155_000.0;
     const SOUTH: f64 = 463_000.0;
@@ -239,6 +296,30 @@ mod tests {
     fn head(reply: &[u8]) -> Value {
         let length = u32::from_le_bytes(reply[..4].try_into().unwrap()) as usize;
         serde_json::from_slice(&reply[4..4 + length]).unwrap()
+    }
+
+    #[test]
+    fn meshes_and_shapes_are_shown_beside_the_cloud() {
+        let mut host = block();
+        let shapes = r#"{"type":"FeatureCollection","features":[{"type":"Feature","properties":{},"geometry":
+            {"type":"LineString","coordinates":[[155001,463001],[155009,463002]]}}]}"#;
+        host.files.extend([
+            MESH.as_bytes().to_vec(),
+            shapes.as_bytes().to_vec(),
+            MESH.replace("1550", "1650").into_bytes(),
+        ]);
+        let named = |id, name: &str| OpenedFile { name: name.to_owned(), id, size: 0 };
+        let mut wanted = request(10_000);
+        // in any order
+        wanted.files = vec![named(1, "b.obj"), named(0, "block.xyz"), named(2, "walk.geojson"), named(3, "far.obj")];
+        let engine = Engine::open(&wanted, &host).unwrap();
+        let state: Value = serde_json::from_slice(&engine.session().state()).unwrap();
+        assert_eq!((&state["title"], &state["mesh_count"]), (&json!("block.xyz"), &json!(2)));
+        assert_eq!(state["results"].as_array().unwrap().len(), 1);
+        assert_eq!(state["remarks"][0]["key"], "mesh-beside-cloud");
+        assert!(engine.session().part("meshes/0").unwrap().len() == 36);
+        wanted.files = vec![named(1, "b.obj")];
+        assert!(Engine::open(&wanted, &host).unwrap_err().to_string().contains("with a cloud"));
     }
 
     #[test]

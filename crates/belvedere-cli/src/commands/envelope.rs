@@ -2,7 +2,6 @@
 
 use super::check_output;
 use super::heights::write_heights;
-use super::mesh_targets::{is_mesh, start_of};
 use super::shapes::{NamedShape, TypedAre, shapes, wrong_shape};
 use crate::arguments::{CornersArgument, EnvelopeArguments, Global, Usage};
 use crate::pipeline::{self, KeepPoints, LoadedScene, is_file, mesh_in};
@@ -17,9 +16,10 @@ use belvedere::apps::solar_envelope::EnvelopeParams;
 use belvedere::apps::targets::Measure;
 use belvedere::figures::write_png;
 use belvedere::ground::highest_points;
-use belvedere::io::{FeatureShape, ReadReport, is_ball_file, write_mesh};
+use belvedere::io::{FeatureShape, ReadReport, Source, is_ball_file, is_mesh, write_mesh};
 use belvedere::model::{ModelParts, SceneModel};
 use belvedere::results::{georeference, measure_map};
+use std::io::Read;
 use std::path::Path;
 
 pub(crate) fn run(arguments: &EnvelopeArguments, global: &Global) -> Result<Summary> {
@@ -153,9 +153,12 @@ fn protect(arguments: &EnvelopeArguments, frame: &Frame, run: &mut CommandContex
     Ok(all)
 }
 
-/// Whether a .json is GeoJSON rather than CityJSON.
+/// Whether a .json is GeoJSON rather than CityJSON, by its first bytes.
 fn is_geojson(path: &Path) -> bool {
-    super::extension(path) == "json" && start_of(path).is_some_and(|start| !start.contains("CityJSON"))
+    let mut start = Vec::new();
+    let read = Source::path(path).into_reader().map(|(file, _)| file.take(1 << 16).read_to_end(&mut start));
+    let is_read = matches!(read, Ok(Ok(_)));
+    super::extension(path) == "json" && is_read && !String::from_utf8_lossy(&start).contains("CityJSON")
 }
 
 fn write_one(output: &Path, answers: &Answers<EnvelopeResults>, scene: &ask::Scene) -> Result<()> {

@@ -8,36 +8,14 @@ use crate::summary::{Summary, rounded};
 use anyhow::{Result, bail};
 use belvedere::Mesh;
 use belvedere::apps::ask;
-use belvedere::io::{Source, write_mesh_values};
+use belvedere::io::write_mesh_values;
 use belvedere::query::{BackFaces, MeshTargetParams, Scope, SeenArea, SurfacePieces, Viewer, seen_faces, seen_in_all};
 use belvedere::results::FaceRows;
 use belvedere::view::View;
-use std::io::Read;
 use std::path::Path;
 
 /// Longest side of a piece, metres: what points of usual airborne surveys tell of a wall.
 pub(super) const SPACING: f64 = 0.5;
-
-/// Whether a file of targets is a mesh: by its extension, or, for PLY, by its faces.
-pub(crate) fn is_mesh(path: &Path) -> bool {
-    match extension(path).as_str() {
-        "obj" | "json" | "jsonl" | "cityjson" => true,
-        "ply" => {
-            let text = start_of(path).unwrap_or_default();
-            let header = text.split("end_header").next().unwrap_or_default();
-            let count = header.lines().find_map(|line| line.trim().strip_prefix("element face "));
-            count.is_some_and(|count| count.trim() != "0")
-        }
-        _ => false,
-    }
-}
-
-/// The first bytes of a file as text, where it can be read.
-pub(super) fn start_of(path: &Path) -> Option<String> {
-    let mut start = Vec::new();
-    Source::path(path).into_reader().ok()?.0.take(1 << 16).read_to_end(&mut start).ok()?;
-    Some(String::from_utf8_lossy(&start).into_owned())
-}
 
 /// Refuses flags of meshes for targets that are points.
 pub(super) fn refuse_flags(flags: &MeshTargets) -> Result<()> {

@@ -9,8 +9,8 @@ use anyhow::{Result, bail};
 use belvedere::apps::ask;
 use belvedere::depth::{ItemBuffer, Profile, depth_map};
 use belvedere::io::{
-    ExtraColumn, ExtraValues, ReadOptions, TextRows, UpAxis, WriteReport, read_cloud, read_text_rows, write_cloud,
-    write_npy_u8, write_text_rows,
+    ExtraColumn, ExtraValues, ReadOptions, TextRows, UpAxis, WriteReport, is_mesh, read_cloud, read_text_rows,
+    write_cloud, write_npy_u8, write_text_rows,
 };
 use belvedere::model::SceneModel;
 use belvedere::query::{
@@ -22,7 +22,7 @@ use std::path::Path;
 
 pub(crate) fn run(arguments: &Query, global: &Global) -> Result<Summary> {
     arguments.view.check()?;
-    if let Some(path) = arguments.targets.targets.as_deref().filter(|path| mesh_targets::is_mesh(path)) {
+    if let Some(path) = arguments.targets.targets.as_deref().filter(|path| is_mesh(*path)) {
         return mesh_targets::run(arguments, path, global);
     }
     mesh_targets::refuse_flags(&arguments.mesh)?;

@@ -1,6 +1,5 @@
 //! Targets of the sun and the sky: from flags and files to places, and from measures to files.
 
-use super::mesh_targets;
 use super::query::{points_of_file, text_rows_for};
 use super::{check_output, extension};
 use crate::arguments::{FacingChoice, GroundChoice, SkyOutputs, SkyPlaces, Usage};
@@ -12,7 +11,7 @@ use belvedere::apps::ask::{GridCells, OnTargets, Places, Remark, Scene, Turned};
 use belvedere::apps::targets::{CellLevel, Facing, Measure, MeshParams};
 use belvedere::figures::{Picture, write_png};
 use belvedere::ground::{GroundPoints, highest_points};
-use belvedere::io::{Georeference, ReadOptions, atomic, write_tif_u8};
+use belvedere::io::{Georeference, ReadOptions, atomic, is_mesh, write_tif_u8};
 use belvedere::raster::Raster;
 use belvedere::results::{ResultKind, TakenFrom, georeference, measure_map, write_measures, write_raster};
 use belvedere::{Mesh, PointCloud};
@@ -57,7 +56,7 @@ impl GroundChoice {
 impl SkyPlaces {
     /// Refuses flags that do not belong together and outputs that cannot be written, before hours of work go into them.
     pub(crate) fn check(&self, outputs: &SkyOutputs) -> Result<()> {
-        let mesh = self.places.targets.as_deref().is_some_and(mesh_targets::is_mesh);
+        let mesh = self.places.targets.as_deref().is_some_and(is_mesh);
         let points = self.places.own || self.places.targets.is_some() && !mesh;
         let known: &[&str] = match (mesh, points) {
             (true, _) => &["csv", "ply"],
@@ -114,7 +113,7 @@ impl SkyPlaces {
             };
             return Ok((Places::Cells(cells), TargetSource::Cells));
         };
-        if mesh_targets::is_mesh(path) {
+        if is_mesh(path) {
             let mesh = Arc::new(mesh_in(path, &scene.frame().crs, run)?);
             let facing = if self.facing == Some(FacingChoice::Level) { Facing::Level } else { Facing::Normals };
             let usual = MeshParams::default().with_seed(run.seed).with_facing(facing);

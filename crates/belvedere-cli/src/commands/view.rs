@@ -1,7 +1,6 @@
 //! `belvedere view`.
 
 use super::check_output;
-use super::mesh_targets::is_mesh;
 use crate::arguments::{Global, MapPosition, MethodChoice, SceneInput, Usage, ViewPage};
 use crate::interrupt;
 use crate::memory::available_bytes;
@@ -11,12 +10,13 @@ use crate::summary::{Summary, note};
 use crate::written_files::check_input;
 use anyhow::{Context, Result, anyhow};
 use belvedere::apps::sun::{Date, Site, Zone};
-use belvedere::io::{atomic, has_point_results, is_ball_file, read_geojson, read_point_results, read_tif};
+use belvedere::io::{Source, atomic, has_point_results, is_ball_file, is_mesh};
 use belvedere::model::SceneModel;
-use belvedere::query::{BlockingTriangles, Coverage};
 use belvedere::{Bounds, Error, Frame, PointCloud};
 use belvedere_tiles::{Plan, merged_within};
-use belvedere_viewer::{ExportParams, Loading, PageServer, PointsOf, SceneText, ViewerParams, export, quoted};
+use belvedere_viewer::{
+    ExportParams, Loading, PageServer, PointsOf, SceneText, ViewerParams, are_results, export, quoted, remark_on_mesh,
+};
 use std::borrow::Cow;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -197,11 +197,11 @@ impl Files {
         for path in files {
             if Plan::path(path).is_file() {
                 &mut runs
-            } else if is_file(path) && is_mesh(path) {
+            } else if is_file(path) && is_mesh(path.as_path()) {
                 &mut meshes
             } else if is_file(path) && is_ball_file(path)? {
                 &mut balls
-            } else if is_file(path) && !(clouds.is_empty() && is_las(path)) && are_results(path) {
+            } else if is_file(path) && !(clouds.is_empty() && is_las(path)) && are_results(|| Source::path(path)) {
                 &mut results
             } else {
                 &mut clouds
@@ -299,17 +299,8 @@ fn show_meshes(
     for path in files.meshes.iter().chain(planned) {
         let mesh = pipeline::mesh_in(path, &frame.crs, run)?;
         // one that is planned is refused with the scene
-        let beside = (!planned.contains(path)).then(|| {
-            BlockingTriangles::new(
-                &mesh,
-                &path.display().to_string(),
-                frame.origin,
-                Coverage::of(*bounds).as_ref(),
-                None,
-            )
-        });
-        if let Some(Err(error)) = beside {
-            run.summary.warn("mesh-beside-cloud", error.to_string());
+        if !planned.contains(path) {
+            run.summary.remarks(remark_on_mesh(&mesh, &path.display().to_string(), frame, bounds));
         }
         loading.show_mesh(&mesh, frame);
     }
@@ -324,15 +315,7 @@ fn show_results(
     run: &mut CommandContext,
 ) -> Result<()> {
     for path in &files.results {
-        run.stage("reading results", 0, |_| {
-            if has_extension(path, &["tif", "tiff"]) {
-                loading.show_raster(path, read_tif(path)?, frame, bounds)
-            } else if has_extension(path, &["geojson"]) {
-                loading.show_shapes(path, read_geojson(path, &frame.crs)?, frame, bounds)
-            } else {
-                loading.show_point_results(path, (read_point_results(path)?, PointsOf::Other), frame, bounds)
-            }
-        })?;
+        run.stage("reading results", 0, |_| loading.show_results(path, PointsOf::Other, frame, bounds))?;
     }
     let on_map = |corner: [f32; 3]| [0, 1].map(|i| f64::from(corner[i]) + frame.origin[i]);
     for folder in &files.runs {
@@ -348,25 +331,13 @@ fn show_results(
     let own =
         files.clouds.first().filter(|path| is_file(path) && is_las(path) && has_point_results(*path).unwrap_or(false));
     if let Some(path) = own {
-        run.stage("reading results", 0, |_| {
-            loading.show_point_results(path, (read_point_results(path)?, PointsOf::Cloud), frame, bounds)
-        })?;
+        run.stage("reading results", 0, |_| loading.show_results(path, PointsOf::Cloud, frame, bounds))?;
     }
     Ok(())
 }
 
-/// Whether a file holds results of another command.
-fn are_results(path: &Path) -> bool {
-    // what cannot be read is refused as a cloud, on the page too
-    has_extension(path, &["tif", "tiff", "geojson"]) || (is_las(path) && has_point_results(path).unwrap_or(false))
-}
-
 fn is_las(path: &Path) -> bool {
-    has_extension(path, &["las", "laz"])
-}
-
-fn has_extension(path: &Path, extensions: &[&str]) -> bool {
-    path.extension().is_some_and(|own| extensions.iter().any(|extension| own.eq_ignore_ascii_case(extension)))
+    ["las", "laz"].contains(&Source::path(path).extension().as_str())
 }
 
 /// The files and flags of the scene as they were typed, for a shell, without the files named.

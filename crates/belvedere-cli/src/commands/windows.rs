@@ -1,7 +1,6 @@
 //! Windows: from files to places.
 
 use super::landmark::what::objects_of;
-use super::mesh_targets::is_mesh;
 use crate::arguments::Usage;
 use crate::pipeline::mesh_in;
 use crate::run::CommandContext;
@@ -9,7 +8,7 @@ use anyhow::{Result, bail};
 use belvedere::Frame;
 use belvedere::apps::ask::{GivenWindow, GivenWindows, SharedObject};
 use belvedere::apps::targets::Window;
-use belvedere::io::{TextRows, read_table};
+use belvedere::io::{TextRows, is_mesh, read_table};
 use std::path::Path;
 
 /// Name, values and decimals.

@@ -5,7 +5,7 @@ import { $, page } from "./state.js";
 import { count, fixed, LANGUAGES, language, setLanguage, t } from "./words.js";
 import { open } from "./engines/worker.js";
 
-const FORMATS = ".laz .las .copc.laz .e57 .ply .pcd .ptx .xyz .txt .csv .npy";
+const FORMATS = ".laz .las .copc.laz .e57 .ply .pcd .ptx .xyz .txt .csv .npy .obj .json .jsonl .cityjson .tif .tiff .geojson";
 const DEMO = "demo.laz";
 
 // Memory of a scene for each point, bytes: measured with AHN and towns of 12 points/m². The most that a page can have,

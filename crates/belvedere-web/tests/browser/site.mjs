@@ -1,6 +1,7 @@
 // Uses the site as people do, in Chromium: the demo, a file that is chosen, one by its address, wrong files, two tabs,
 // without threads, without a network. Usage: site.mjs FOLDER PROGRAM BROWSER CLOUD
 import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
 import { mkdtempSync, readFileSync, rmSync, statSync, writeFileSync } from "node:fs";
 import { createServer } from "node:http";
 import { createRequire } from "node:module";
@@ -248,6 +249,24 @@ async function main() {
     await own.click("#tile");
     await ready(own);
     assert.ok(await own.evaluate(() => belvedere.scene.point_count > 200_000 && /7415/.test(belvedere.scene.crs) && belvedere.scene.latitude_deg > 50));
+    await own.close();
+  });
+  await step("a model and a map are shown beside the cloud", async () => {
+    const [{ low, high, origin }] = [native.state.shown];
+    const middle = low.map((v, i) => (v + high[i]) / 2 + origin[i]);
+    const corner = (x, y, z) => `v ${middle[0] + x} ${middle[1] + y} ${middle[2] + z}`;
+    writeFileSync(join(folder, "planned.obj"), `${[corner(0, 0, 0), corner(9, 0, 0), corner(0, 9, 9)].join("\n")}\nf 1 2 3\n`);
+    const line = [[0, 0], [9, 9]].map(([x, y]) => [middle[0] + x, middle[1] + y]);
+    writeFileSync(join(folder, "walk.geojson"), JSON.stringify({ type: "FeatureCollection", features: [{ type: "Feature", properties: {}, geometry: { type: "LineString", coordinates: line } }] }));
+    execFileSync(program, ["shadow", cloud, "--sun", "200,40", "--cell", "2", "-o", join(folder, "lit.tif")], { stdio: "ignore" });
+    const own = watched(await context.newPage(), url);
+    await own.goto(url);
+    await own.setInputFiles("#choose", [join(folder, "lit.tif"), join(folder, "planned.obj"), cloud, join(folder, "walk.geojson")]);
+    await ready(own);
+    await own.waitForFunction(() => belvedere.cloud.meshes?.length === 2 && !document.getElementById("meshes").hidden);
+    await own.selectOption("#color", "result 0 0");
+    await own.waitForFunction(() => document.getElementById("legend").innerText.includes("lit.tif"), null, { timeout: 60_000 });
+    assert.match(await own.evaluate(() => document.getElementById("title").innerText), new RegExp(basename(cloud)));
     await own.close();
   });
   await step("two tabs with the same file", async () => {

@@ -2,7 +2,6 @@
 
 use crate::arguments::{CameraTargetsArguments, Usage};
 use crate::commands::extension;
-use crate::commands::mesh_targets::is_mesh;
 use crate::commands::query::points_of_file;
 use crate::commands::surroundings::{ObserverUse, observer_rows};
 use crate::pipeline::mesh_in;
@@ -12,7 +11,7 @@ use belvedere::Frame;
 use belvedere::apps::ask::{self, GridCells, Places, PrivatePlaces, Standing};
 use belvedere::apps::cameras::WeightedArea;
 use belvedere::apps::targets::MeshParams;
-use belvedere::io::{FeatureShape, ReadOptions, RowsAre, property, read_geojson};
+use belvedere::io::{FeatureShape, ReadOptions, RowsAre, is_mesh, property, read_geojson};
 use std::path::Path;
 use std::sync::Arc;
 

@@ -84,7 +84,8 @@ export function open(files, options, choose) {
 
 export const inBrowser = {
   state: async () => ({ ...state, done: counter ? counter[0] : state.done }),
-  part: async (path) => (path === "balls" ? send(path, "") : partOf(path).promise.then((bytes) => { parts.delete(path); return bytes; })),
+  part: async (path) => (path === "balls" || path.startsWith("meshes/") ? send(path, "") : partOf(path).promise.then((bytes) => { parts.delete(path); return bytes; })),
+  result: async (number) => split(await send(`results/${number}`, "")),
   ask: async (path, values, signal) => split(await send(path, JSON.stringify(values), signal)),
   loadMesh: async (file) => split(await send(`plan-meshes/${file.name}`, new Uint8Array(await file.arrayBuffer()))),
 };

@@ -127,6 +127,7 @@ export const de = {
     "Is B seen from A": "Sicht von A nach B",
     "It is {0} there now, and the sun is down or near the horizon: this is noon, when it stands highest.": "Dort ist es jetzt {0} Uhr, und die Sonne steht unter oder nahe dem Horizont: Gezeigt wird der Mittag, wenn sie am höchsten steht.",
     "Keys and help (?)": "Tasten und Hilfe (?)",
+    "LAZ, LAS, COPC, E57, PLY, PCD, PTX, text; with them models and maps: OBJ, CityJSON, GeoTIFF, GeoJSON": "LAZ, LAS, COPC, E57, PLY, PCD, PTX, Text; dazu Modelle und Karten: OBJ, CityJSON, GeoTIFF, GeoJSON",
     "Language": "Sprache",
     "Last light": "Letzte Sonne",
     "Least": "Kleinster Wert",
@@ -451,5 +452,6 @@ export const de = {
     "The plan is not kept any more: change it, or load the page again.": "Der Plan ist nicht mehr vorhanden: Ändern Sie ihn, oder laden Sie die Seite neu.",
     "The mesh is not kept any more: load it again.": "Das 3D-Modell ist nicht mehr vorhanden: Laden Sie es noch einmal.",
     "There is no plane of a roof here: click a roof of at least 4 m².": "Hier ist keine Dachfläche: Klicken Sie auf ein Dach von mindestens 4 m².",
+    "Meshes, rasters and shapes are shown with a cloud: choose one too.": "3D-Modelle, Raster und Formen werden mit einer Punktwolke gezeigt: Wählen Sie auch eine.",
   },
 };

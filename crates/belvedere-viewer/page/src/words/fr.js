@@ -127,6 +127,7 @@ export const fr = {
     "Is B seen from A": "B visible depuis A",
     "It is {0} there now, and the sun is down or near the horizon: this is noon, when it stands highest.": "Il est actuellement {0} sur place, et le soleil est couché ou proche de l’horizon : l’heure affichée est celle du midi solaire, quand il est au plus haut.",
     "Keys and help (?)": "Touches et aide (?)",
+    "LAZ, LAS, COPC, E57, PLY, PCD, PTX, text; with them models and maps: OBJ, CityJSON, GeoTIFF, GeoJSON": "LAZ, LAS, COPC, E57, PLY, PCD, PTX, texte ; avec eux modèles et cartes : OBJ, CityJSON, GeoTIFF, GeoJSON",
     "Language": "Langue",
     "Last light": "Dernier rayon",
     "Least": "Minimum",
@@ -451,5 +452,6 @@ export const fr = {
     "The plan is not kept any more: change it, or load the page again.": "Le projet n’est plus en mémoire : modifiez-le ou rechargez la page.",
     "The mesh is not kept any more: load it again.": "Le modèle 3D n’est plus en mémoire : chargez-le à nouveau.",
     "There is no plane of a roof here: click a roof of at least 4 m².": "Il n’y a pas de pan de toit ici : cliquez sur un toit d’au moins 4 m².",
+    "Meshes, rasters and shapes are shown with a cloud: choose one too.": "Les modèles, rasters et formes s’affichent avec un nuage de points : choisissez-en un aussi.",
   },
 };

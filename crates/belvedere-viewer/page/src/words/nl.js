@@ -127,6 +127,7 @@ export const nl = {
     "Is B seen from A": "Is B te zien vanuit A",
     "It is {0} there now, and the sun is down or near the horizon: this is noon, when it stands highest.": "Het is daar nu {0}, en de zon is onder of staat vlak boven de horizon: dit is midden op de dag, wanneer de zon het hoogst staat.",
     "Keys and help (?)": "Toetsen en help (?)",
+    "LAZ, LAS, COPC, E57, PLY, PCD, PTX, text; with them models and maps: OBJ, CityJSON, GeoTIFF, GeoJSON": "LAZ, LAS, COPC, E57, PLY, PCD, PTX, tekst; daarbij modellen en kaarten: OBJ, CityJSON, GeoTIFF, GeoJSON",
     "Language": "Taal",
     "Last light": "Laatste zonlicht",
     "Least": "Laagste",
@@ -451,5 +452,6 @@ export const nl = {
     "The plan is not kept any more: change it, or load the page again.": "Het plan wordt niet meer bewaard: verander het, of laad de pagina opnieuw.",
     "The mesh is not kept any more: load it again.": "Het 3D-model wordt niet meer bewaard: laad het opnieuw.",
     "There is no plane of a roof here: click a roof of at least 4 m².": "Hier is geen dakvlak: klik op een dak van minstens 4 m².",
+    "Meshes, rasters and shapes are shown with a cloud: choose one too.": "3D-modellen, rasters en vormen worden bij een puntenwolk getoond: kies er ook een.",
   },
 };
