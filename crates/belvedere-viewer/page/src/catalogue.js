@@ -23,7 +23,7 @@ export async function tilesOf(url) {
     return { url: new URL(file, new URL(url, location.href)).href, low, high, points: properties["pc:count"] ?? DENSITY * (high[0] - low[0]) * (high[1] - low[1]) };
   });
 }
-// What is asked about the part to open: all corners and points, and the longest side that is offered.
+// All corners and points, and the longest side of the part that is offered.
 export const extentOf = (tiles) => ({
   points: tiles.reduce((sum, { points }) => sum + points, 0), side: SIDE, tiles,
   low: [0, 1].map((i) => Math.min(...tiles.map(({ low }) => low[i]))), high: [0, 1].map((i) => Math.max(...tiles.map(({ high }) => high[i]))),
