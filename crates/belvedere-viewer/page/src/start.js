@@ -159,8 +159,9 @@ export function startScreen(whenOpen) {
   // a cloud that was put beside the page when it was built, under a name that says whose it is
   const tile = document.querySelector('meta[name="tile"]');
   if (tile) {
-    Object.assign($("tile"), { hidden: false, textContent: tile.content });
-    $("tile").onclick = () => {
+    const button = Object.assign(document.createElement("button"), { id: "tile", textContent: tile.content });
+    $("demo").after(" ", button);
+    button.onclick = () => {
       $("crs-typed").value = tile.dataset.crs;
       begin([ofAddress(tile.dataset.file)], whenOpen);
     };
