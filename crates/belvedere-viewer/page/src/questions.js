@@ -86,7 +86,9 @@ export function click(x, y) {
 }
 page.click = click;
 // What a value of a point says of its light.
-function lightOf(value, { certainty }) {
+function lightOf(value, { certainty, before }) {
+  // those of a change say something else
+  if (before) return undefined;
   if (!certainty) return colors.LIGHT[value]?.[0];
   return value <= 200 ? t`lit with a probability of ${Math.round(value / 2)} %` : undefined;
 }
