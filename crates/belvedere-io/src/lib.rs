@@ -158,6 +158,7 @@ pub use table::{Table, TableCells, read_table, write_table};
 pub use terrain::read_terrain;
 pub use text_rows::{TextRows, with_columns_read, write_text_rows};
 pub use trajectory::{TrajectoryReport, read_trajectory};
+pub use vpc::{CatalogueTile, read_catalogue};
 pub use weather::read_weather;
 pub use write_cloud::write_cloud;
 pub use write_faces::write_mesh;

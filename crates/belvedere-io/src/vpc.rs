@@ -15,13 +15,33 @@ use belvedere_data::{Error, Result};
 /// Largest catalogue that is read, bytes: a million tiles, and far below the memory of any machine.
 const MAX_BYTES: u64 = 1 << 30;
 
-/// The files of the catalogue `source` that may have points in `wanted`, in its order; all of them without a box. Paths
-/// are those of the catalogue, from the folder that it lies in; addresses of the web stay what they are.
+/// A tile of a catalogue.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CatalogueTile {
+    /// Its file, from the folder that the catalogue lies in; addresses of the web stay what they are.
+    pub path: PathBuf,
+    /// Lowest and highest corner in the coordinates of its file, unlimited in height where the catalogue gives none;
+    /// `None` where it gives no bounds.
+    pub bounds: Option<([f64; 3], [f64; 3])>,
+    /// Number of its points, where the catalogue has it (`pc:count`).
+    pub point_count: Option<u64>,
+}
+
+/// The files of the catalogue `source` that may have points in `wanted`, in its order; all of them without a box.
+pub(super) fn files_within(source: Source<'_>, wanted: Option<&FileBox>) -> Result<Vec<PathBuf>> {
+    let meets = |tile: &CatalogueTile| match (wanted, tile.bounds) {
+        (Some(wanted), Some((low, high))) => wanted.meets(low, high),
+        _ => true,
+    };
+    Ok(read_catalogue(source)?.into_iter().filter(meets).map(|tile| tile.path).collect())
+}
+
+/// The tiles of a catalogue, in its order.
 ///
 /// # Errors
 /// [`Error::Io`]; [`Error::Malformed`] for what is no catalogue.
-pub(super) fn files_within(source: Source<'_>, wanted: Option<&FileBox>) -> Result<Vec<PathBuf>> {
-    let input = source.open()?;
+pub fn read_catalogue<'a>(source: impl Into<Source<'a>>) -> Result<Vec<CatalogueTile>> {
+    let input = source.into().open()?;
     let (name, size) = (input.name, input.size);
     let damaged = |what: String| Error::malformed(&name, what);
     if size > MAX_BYTES {
@@ -32,7 +52,7 @@ pub(super) fn files_within(source: Source<'_>, wanted: Option<&FileBox>) -> Resu
     let tiles = catalogue.get("features").and_then(Value::as_array);
     let tiles = tiles.ok_or_else(|| damaged("is no catalogue of tiles: it has no `features`".to_owned()))?;
     let folder = folder_and_query(&name);
-    let mut files = Vec::new();
+    let mut found = Vec::with_capacity(tiles.len());
     for (number, tile) in tiles.iter().enumerate() {
         let path = tile.pointer("/assets/data/href").and_then(Value::as_str);
         let path = path.ok_or_else(|| damaged(format!("has no file for tile {} (assets, data, href)", number + 1)))?;
@@ -41,15 +61,12 @@ pub(super) fn files_within(source: Source<'_>, wanted: Option<&FileBox>) -> Resu
                 "names {path}, which is neither a file nor an address of the web; download it first"
             )));
         }
-        if wanted.is_none_or(|wanted| bounds(tile).is_none_or(|(low, high)| wanted.meets(low, high))) {
-            files.push(place_beside(&folder, path));
-        }
+        let point_count = tile.pointer("/properties/pc:count").and_then(Value::as_u64);
+        found.push(CatalogueTile { path: place_beside(&folder, path), bounds: bounds(tile), point_count });
     }
-    Ok(files)
+    Ok(found)
 }
 
-/// Bounds of a tile in the coordinates of its file, unlimited in height where the catalogue gives none; `None` where it
-/// gives no bounds.
 fn bounds(tile: &Value) -> Option<([f64; 3], [f64; 3])> {
     let numbers = tile.pointer("/properties/proj:bbox")?.as_array()?;
     let numbers: Vec<f64> = numbers.iter().map(Value::as_f64).collect::<Option<_>>()?;

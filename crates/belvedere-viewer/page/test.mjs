@@ -294,15 +294,17 @@ async function main() {
     await page.click("#sure");
     await page.waitForFunction(() => belvedere.last?.certainty && document.querySelector("#took"), null, { timeout: 20_000 });
     assert.match(await text(page), /90 % sure: lit[\s\S]*Less sure, or unproven[\s\S]*--probability --certain 0\.9/);
-    const { counts, bytes, points, fits } = await page.evaluate(() => {
+    const { sure, bytes, points, fits } = await page.evaluate(() => {
       const { certainty, body, probabilities, points } = belvedere.last;
       const [codes, likely] = [new Uint8Array(body), new Uint8Array(probabilities)];
       // what is as good as sure is what was answered, but for single points in a thousand
       const strange = likely.filter((p, i) => p <= 200 && ((p >= 198 && codes[i] === 0) || (p <= 2 && codes[i] === 1))).length;
-      return { counts: certainty, bytes: [codes.length, likely.length], points, fits: strange * 1000 < points };
+      return { sure: certainty, bytes: [codes.length, likely.length], points, fits: strange * 1000 < points };
     });
-    assert.deepEqual([counts.free + counts.blocked + counts.uncertain, ...bytes], [points, points, points]);
-    assert.ok(fits && counts.uncertain > 0 && counts.free > 0 && counts.blocked > 0, JSON.stringify(counts));
+    assert.deepEqual([sure.answers, ...bytes], [points, points, points]);
+    const shares = [sure.certainly_visible_percent, sure.certainly_blocked_percent, sure.uncertain_percent];
+    // each is rounded to a hundredth
+    assert.ok(fits && shares.every((share) => share > 0) && Math.abs(shares.reduce((a, b) => a + b) - 100) < 0.02, JSON.stringify(sure));
     assert.match(await page.evaluate(() => document.getElementById("legend").innerText), /How likely it is lit[\s\S]*0 %[\s\S]*100 %/);
     await page.waitForFunction(() => location.hash.includes("sure=yes"), null, { timeout: 5000 });
     await page.mouse.click(...ground);

@@ -39,7 +39,7 @@ mod session;
 mod target_points;
 
 pub use export::{ExportParams, ExportReport, export};
-pub use loading::{Loading, are_results, remark_on_mesh};
+pub use loading::{Loading, are_results};
 pub use plans::quoted;
 pub use replies::Refusal;
 pub use results::PointsOf;

@@ -2,12 +2,10 @@
 
 use crate::results::{PointsOf, ResultFile};
 use crate::scene::{PageScene, ShownCloud};
-use belvedere::apps::ask::Remark;
 use belvedere::cloud::to_local;
 use belvedere::control::{Control, OpenStages, StageEnd, Watcher};
 use belvedere::io::{PlacedRaster, Source, has_point_results, read_geojson, read_point_results, read_tif};
 use belvedere::model::SceneModel;
-use belvedere::query::{BlockingTriangles, Coverage};
 use belvedere::{Bounds, Frame, Mesh, PointCloud, Result};
 use serde::Serialize;
 use serde_json::Value;
@@ -148,13 +146,6 @@ pub fn are_results<'a>(open: impl Fn() -> Source<'a>) -> bool {
         "las" | "laz" => has_point_results(open()).unwrap_or(false),
         _ => false,
     }
-}
-
-/// A warning of a mesh that blocks nothing, since it lies beside the cloud; `None` where it does not.
-#[must_use]
-pub fn remark_on_mesh(mesh: &Mesh, name: &str, frame: &Frame, bounds: &Bounds) -> Option<Remark> {
-    let blocking = BlockingTriangles::new(mesh, name, frame.origin, Coverage::of(*bounds).as_ref(), None);
-    blocking.err().map(|error| Remark::warning("mesh-beside-cloud", error.to_string()))
 }
 
 impl Watcher for Loading {

@@ -104,6 +104,16 @@ class WebFile extends Blocks {
     return new Uint8Array(request.response);
   }
 }
+// A file of the web that is read as a whole.
+class WholeFile {
+  constructor(url) {
+    this.bytes = new Uint8Array(requested("GET", url).response);
+    this.size = this.bytes.length;
+  }
+  read(at, length) {
+    return this.bytes.subarray(at, at + length);
+  }
+}
 function requested(method, url, range) {
   const request = new XMLHttpRequest();
   request.open(method, url, false);
@@ -255,6 +265,12 @@ function call(name, ...values) {
 }
 const replied = () => new TextDecoder().decode(reply);
 
+function tilesOf(url) {
+  const source = new WholeFile(url);
+  files.set(0, source);
+  if (call("tiles", JSON.stringify({ name: url, id: 0, size: source.size })) !== 0) throw new Error(replied());
+  postMessage({ tiles: JSON.parse(replied()) });
+}
 async function open({ files: chosen, crs = null, window = null, max_points: maxPoints }) {
   const opened = chosen.map(({ name, file, url }, id) => {
     const source = file ? new LocalFile(file) : new WebFile(url);
@@ -316,6 +332,9 @@ onmessage = ({ data }) => {
       else if (data.open) {
         await start();
         await open(data.open);
+      } else if (data.catalogue) {
+        await start();
+        tilesOf(data.catalogue);
       } else if (data.ask) answer(data.ask);
     } catch (error) {
       if (error instanceof WebAssembly.RuntimeError || error instanceof RangeError || isPool) postMessage({ lost: String(error) });

@@ -1,14 +1,15 @@
 //! From files to a scene and from questions to replies, for a host that may be a browser.
 
-use belvedere::apps::ask::remarks_on_reading;
+use belvedere::apps::ask::{remark_on_faces, remark_on_mesh, remarks_on_reading};
 use belvedere::cache::CloudKey;
 use belvedere::control::{Control, StageEnd, Watcher};
 use belvedere::io::{
-    ReadOptions, Source, Within, has_point_results, is_mesh, read_balls, read_cloud, read_las_head, read_mesh_in,
+    CatalogueTile, ReadOptions, Source, Within, has_point_results, is_mesh, read_balls, read_catalogue, read_cloud,
+    read_las_head, read_mesh_in,
 };
 use belvedere::model::{ModelParams, SceneModel};
 use belvedere::{Error, PointCloud, Result};
-use belvedere_viewer::{PointsOf, Refusal, SceneText, Session, are_results, quoted, remark_on_mesh};
+use belvedere_viewer::{PointsOf, Refusal, SceneText, Session, are_results, quoted};
 use serde::{Deserialize, Serialize};
 use std::io::{Read, Seek};
 use std::sync::Arc;
@@ -197,7 +198,8 @@ impl<'a> Chosen<'a> {
     fn show<H: Host>(&self, session: &Session, cloud: &PointCloud, host: &H, control: &Control<'_>) -> Result<()> {
         let (loading, frame, bounds) = (session.loading(), &cloud.frame, cloud.bounds().unwrap_or_default());
         for &file in &self.meshes {
-            let (mesh, _) = control.stage("reading mesh", 0, || read_mesh_in(source(file, host), &frame.crs))?;
+            let (mesh, report) = control.stage("reading mesh", 0, || read_mesh_in(source(file, host), &frame.crs))?;
+            loading.remark(remark_on_faces(&file.name, report.repeated_polygon_count).as_slice());
             loading.remark(remark_on_mesh(&mesh, &file.name, frame, &bounds).as_slice());
             loading.show_mesh(&mesh, frame);
         }
@@ -218,6 +220,37 @@ fn source<'a, H: Host>(file: &'a OpenedFile, host: &H) -> Source<'a> {
 
 fn is_las<H: Host>(file: &OpenedFile, host: &H) -> bool {
     ["las", "laz"].contains(&source(file, host).extension().as_str())
+}
+
+/// A tile of a catalogue, for the page.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Tile {
+    /// Its address.
+    pub address: String,
+    /// Lowest corner on the map, in the coordinates of its file.
+    pub low: [f64; 2],
+    /// The highest.
+    pub high: [f64; 2],
+    /// Number of points, where the catalogue has it.
+    pub points: Option<u64>,
+}
+
+/// The tiles of a catalogue, whose name is its address.
+///
+/// # Errors
+/// Those of [`read_catalogue`]; words for a tile of which it does not say where it lies.
+pub fn tiles_of<H: Host>(file: &OpenedFile, host: &H) -> std::result::Result<Vec<Tile>, Refusal> {
+    let placed = |tile: CatalogueTile| {
+        let address = tile.path.to_string_lossy().into_owned();
+        let on_map = |corner: [f64; 3]| [corner[0], corner[1]];
+        match tile.bounds {
+            Some((low, high)) if [low[0], low[1], high[0], high[1]].iter().all(|v| v.is_finite()) => {
+                Ok(Tile { address, low: on_map(low), high: on_map(high), points: tile.point_count })
+            }
+            _ => Err(Refusal::from(format!("{} does not say where {address} lies (proj:bbox).", file.name))),
+        }
+    };
+    read_catalogue(source(file, host))?.into_iter().map(placed).collect()
 }
 
 fn refuse_too_many(points: Option<u64>, request: &OpenRequest) -> std::result::Result<(), Refusal> {
@@ -320,6 +353,21 @@ mod tests {
         assert!(engine.session().part("meshes/0").unwrap().len() == 36);
         wanted.files = vec![named(1, "b.obj")];
         assert!(Engine::open(&wanted, &host).unwrap_err().to_string().contains("with a cloud"));
+    }
+
+    #[test]
+    fn tiles_of_a_catalogue_are_at_addresses_beside_it() {
+        let tile = r#"{"properties":{"proj:bbox":[1,2,0,3,4,9],"pc:count":7},"assets":{"data":{"href":"./a.laz"}}}"#;
+        let without = r#"{"assets":{"data":{"href":"b.laz"}}}"#;
+        let text = |tiles: &[&str]| format!(r#"{{"features":[{}]}}"#, tiles.join(",")).into_bytes();
+        let host = Memory { files: vec![text(&[tile]), text(&[tile, without]), b"{}".to_vec()], ..Memory::default() };
+        let file = |id| OpenedFile { name: "https://a.example/b/all.vpc?key=1".to_owned(), id, size: 0 };
+        let address = "https://a.example/b/a.laz?key=1".to_owned();
+        let expected = Tile { address, low: [1.0, 2.0], high: [3.0, 4.0], points: Some(7) };
+        assert_eq!(tiles_of(&file(0), &host).unwrap(), [expected]);
+        let refused = |id| tiles_of(&file(id), &host).unwrap_err().to_string();
+        assert!(refused(1).contains("does not say where https://a.example/b/b.laz"), "{}", refused(1));
+        assert!(refused(2).contains("no catalogue"), "{}", refused(2));
     }
 
     #[test]

@@ -5,7 +5,7 @@
 //! reply. One thread calls all of them, and it is none of the pool.
 #![expect(unsafe_code, reason = "the border to JavaScript")]
 
-use crate::engine::{Announced, Engine, Host, OpenRequest, OpenedFile};
+use crate::engine::{Announced, Engine, Host, OpenRequest, OpenedFile, tiles_of};
 use belvedere::control::Control;
 use belvedere_viewer::Refusal;
 use std::io::{Read, Seek, SeekFrom};
@@ -158,6 +158,17 @@ unsafe extern "C" fn announced(from: *const u8, length: usize) -> u32 {
     // SAFETY: as promised
     let files = parsed::<Vec<OpenedFile>>(unsafe { given(from, length) });
     answered(files.map(|files| serde_json::json!(Announced::of(&files, &Browser)).to_string().into_bytes()))
+}
+
+/// The reply is the tiles of a catalogue, an [`OpenedFile`]: an array of [`Tile`](crate::engine::Tile).
+///
+/// # Safety
+/// That of [`given`].
+#[unsafe(no_mangle)]
+unsafe extern "C" fn tiles(from: *const u8, length: usize) -> u32 {
+    // SAFETY: as promised
+    let tiles = parsed::<OpenedFile>(unsafe { given(from, length) }).and_then(|file| tiles_of(&file, &Browser));
+    answered(tiles.map(|tiles| serde_json::json!(tiles).to_string().into_bytes()))
 }
 
 /// Reads the files of an [`OpenRequest`]; the reply is the state.

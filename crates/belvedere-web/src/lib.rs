@@ -9,4 +9,4 @@ mod engine;
 #[cfg(target_family = "wasm")]
 mod exports;
 
-pub use engine::{Announced, Engine, Host, OpenRequest, OpenedFile};
+pub use engine::{Announced, Engine, Host, OpenRequest, OpenedFile, Tile, tiles_of};

@@ -134,6 +134,38 @@ impl HowSure {
         likely.into_iter().chain(uncertain).collect()
     }
 
+    /// How sure answers with these probabilities of being visible or lit are, of which some are unproven.
+    ///
+    /// # Errors
+    /// [`Error::InvalidParameter`] for a least probability out of range.
+    pub fn section(&self, probabilities: &[f32], is_unproven: impl Fn(usize) -> bool) -> Result<CertaintySection> {
+        let uncertain = self.uncertain(probabilities, is_unproven)?;
+        Ok(self.section_of(probabilities, uncertain.as_deref()))
+    }
+
+    fn section_of(&self, probabilities: &[f32], uncertain: Option<&[f32]>) -> CertaintySection {
+        let known: Vec<(usize, f32)> =
+            probabilities.iter().copied().enumerate().filter(|(_, probability)| !probability.is_nan()).collect();
+        let count = known.len();
+        let section = CertaintySection {
+            answers: count,
+            mean_probability: belvedere_data::report::rounded(mean(probabilities), 4),
+            ..CertaintySection::default()
+        };
+        let Some(uncertain) = uncertain else { return section };
+        let is_uncertain = |row: usize| uncertain.get(row).is_some_and(|&value| value > 0.0);
+        let certain = |is_high: bool| {
+            known.iter().filter(|(row, probability)| !is_uncertain(*row) && (*probability > 0.5) == is_high).count()
+        };
+        CertaintySection {
+            certain_from: self.certain,
+            certainly_visible_percent: Some(percent(certain(true), count)),
+            certainly_blocked_percent: Some(percent(certain(false), count)),
+            uncertain_percent: Some(percent(known.iter().filter(|(row, _)| is_uncertain(*row)).count(), count)),
+            ..section
+        }
+    }
+
     /// Says how sure the answers of one viewer or sun are: `visible` names what is likely where the probability is
     /// high.
     pub(super) fn summarise(
@@ -143,38 +175,25 @@ impl HowSure {
         [visible, blocked]: [&str; 2],
         context: &mut Context,
     ) {
-        let known: Vec<(usize, f32)> =
-            probabilities.iter().copied().enumerate().filter(|(_, probability)| !probability.is_nan()).collect();
-        let count = known.len();
-        let mean = known.iter().map(|(_, probability)| f64::from(*probability)).sum::<f64>() / count.max(1) as f64;
-        let mut section = CertaintySection {
-            answers: count,
-            mean_probability: belvedere_data::report::rounded(mean, 4),
-            ..CertaintySection::default()
-        };
-        if let (Some(uncertain), Some(least)) = (uncertain, self.certain) {
-            let is_uncertain = |row: usize| uncertain.get(row).is_some_and(|&value| value > 0.0);
-            let certain = |is_high: bool| {
-                known.iter().filter(|(row, probability)| !is_uncertain(*row) && (*probability > 0.5) == is_high).count()
-            };
-            let (high, low) = (percent(certain(true), count), percent(certain(false), count));
-            let left = percent(known.iter().filter(|(row, _)| is_uncertain(*row)).count(), count);
-            context.headline(format!(
+        let section = self.section_of(probabilities, uncertain);
+        let CertaintySection { certain_from, certainly_visible_percent: high, .. } = section;
+        let (low, left) = (section.certainly_blocked_percent, section.uncertain_percent);
+        context.headline(match (certain_from, high, low, left) {
+            (Some(least), Some(high), Some(low), Some(left)) => format!(
                 "with a certainty of {} % and more: {high} % {visible}, {low} % {blocked}; {left} % uncertain",
                 belvedere_data::report::rounded(100.0 * least, 2)
-            ));
-            section = CertaintySection {
-                certain_from: Some(least),
-                certainly_visible_percent: Some(high),
-                certainly_blocked_percent: Some(low),
-                uncertain_percent: Some(left),
-                ..section
-            };
-        } else {
-            context.headline(format!("expected: {:.1} % {visible}", 100.0 * mean));
-        }
+            ),
+            _ => format!("expected: {:.1} % {visible}", 100.0 * mean(probabilities)),
+        });
         context.report.certainty = Some(section);
     }
+}
+
+/// Mean of what is not NaN, 0 where all is.
+fn mean(probabilities: &[f32]) -> f64 {
+    let known = probabilities.iter().filter(|probability| !probability.is_nan());
+    let count = known.clone().count();
+    known.map(|&probability| f64::from(probability)).sum::<f64>() / count.max(1) as f64
 }
 
 /// A warning of probabilities where scanners stood on the ground: much of such a scene was not seen at all.

@@ -1,7 +1,8 @@
 //! What to know of targets of one viewer, however they are tested.
 
 use super::Remark;
-use belvedere_core::query::{Coverage, MedialScene};
+use belvedere_core::query::{BlockingTriangles, Coverage, MedialScene};
+use belvedere_data::{Bounds, Frame, Mesh};
 
 const OUTSIDE_CLOUD: &str = "are outside the cloud, where nothing is known, and have no answer";
 const BESIDE_CLOUD: &str = "beside the cloud: what stands between the two is unknown, and counts as free";
@@ -53,6 +54,20 @@ pub fn remarks_on_reading(doubt: Option<&str>, missing: impl IntoIterator<Item =
         (count > 0).then(|| Remark::warning("file-cut-off", text))
     };
     remark_on_doubt(doubt).into_iter().chain(missing.into_iter().filter_map(cut_off)).collect()
+}
+
+/// A warning of a mesh that blocks nothing, since it lies beside a cloud of these bounds; `None` where it does not.
+#[must_use]
+pub fn remark_on_mesh(mesh: &Mesh, name: &str, frame: &Frame, bounds: &Bounds) -> Option<Remark> {
+    let blocking = BlockingTriangles::new(mesh, name, frame.origin, Coverage::of(*bounds).as_ref(), None);
+    blocking.err().map(|error| Remark::warning("mesh-beside-cloud", error.to_string()))
+}
+
+/// A note that `count` faces of a mesh turn around in themselves; `None` where none does.
+#[must_use]
+pub fn remark_on_faces(name: &str, count: usize) -> Option<Remark> {
+    let text = || format!("{name}: {count} faces turn around in themselves; each corner was taken once");
+    (count > 0).then(|| Remark::note("faces-turn-around", text()).with("count", count as f64))
 }
 
 /// A warning that a `file` has columns or properties that are not used: those that look as if they said how observers

@@ -9,13 +9,14 @@ use crate::run::CommandContext;
 use crate::summary::{Summary, note};
 use crate::written_files::check_input;
 use anyhow::{Context, Result, anyhow};
+use belvedere::apps::ask;
 use belvedere::apps::sun::{Date, Site, Zone};
 use belvedere::io::{Source, atomic, has_point_results, is_ball_file, is_mesh};
 use belvedere::model::SceneModel;
 use belvedere::{Bounds, Error, Frame, PointCloud};
 use belvedere_tiles::{Plan, merged_within};
 use belvedere_viewer::{
-    ExportParams, Loading, PageServer, PointsOf, SceneText, ViewerParams, are_results, export, quoted, remark_on_mesh,
+    ExportParams, Loading, PageServer, PointsOf, SceneText, ViewerParams, are_results, export, quoted,
 };
 use std::borrow::Cow;
 use std::io::Write;
@@ -300,7 +301,7 @@ fn show_meshes(
         let mesh = pipeline::mesh_in(path, &frame.crs, run)?;
         // one that is planned is refused with the scene
         if !planned.contains(path) {
-            run.summary.remarks(remark_on_mesh(&mesh, &path.display().to_string(), frame, bounds));
+            run.summary.remarks(ask::remark_on_mesh(&mesh, &path.display().to_string(), frame, bounds));
         }
         loading.show_mesh(&mesh, frame);
     }

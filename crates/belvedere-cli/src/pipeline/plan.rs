@@ -5,7 +5,7 @@ use crate::arguments::{AreaChoice, PlanArguments};
 use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::{Result, bail};
-use belvedere::apps::ask::{Remark, remark_on_cleared};
+use belvedere::apps::ask::{remark_on_cleared, remark_on_faces};
 use belvedere::crs::Crs;
 use belvedere::io::{FeatureShape, read_geojson, read_mesh_in};
 use belvedere::model::{ClearReport, ClearedArea, SceneModel};
@@ -90,10 +90,6 @@ pub(crate) fn mesh_in(path: &Path, crs: &Crs, run: &mut CommandContext) -> Resul
         .add("objects", mesh.object_names.len())
         .add("triangles_without_area", report.degenerate_triangle_count);
     run.summary.add("mesh", section);
-    let count = report.repeated_polygon_count;
-    if count > 0 {
-        let text = format!("{}: {count} faces turn around in themselves; each corner was taken once", path.display());
-        run.summary.remarks([Remark::note("faces-turn-around", text).with("count", count as f64)]);
-    }
+    run.summary.remarks(remark_on_faces(&path.display().to_string(), report.repeated_polygon_count));
     Ok(mesh)
 }

@@ -112,8 +112,11 @@ fn each_answer_of_the_page_is_that_of_the_command_it_shows() {
         let differing = probabilities.iter().zip(&written).filter(|(a, b)| a.abs_diff(**b) > 1).count();
         assert!(differing * 10_000 <= written.len(), "{name}: {differing} of {}", written.len());
         assert!(written.iter().filter(|&&byte| (20..180).contains(&byte)).count() > 100, "{name}");
-        let uncertain = column(&place, &to, "uncertain").iter().filter(|&&is| is > 0.0).count();
-        assert_eq!(head["certainty"]["uncertain"].as_u64().unwrap() as usize, uncertain, "{name}");
+        let known: Vec<f64> = column(&place, &to, "uncertain").into_iter().filter(|is| is.is_finite()).collect();
+        let uncertain = 100.0 * known.iter().sum::<f64>() / known.len() as f64;
+        // reports have two decimals
+        let given = head["certainty"]["uncertain_percent"].as_f64().unwrap();
+        assert!((given - uncertain).abs() < 0.006 && uncertain > 0.0, "{name}: {given} and {uncertain}");
     }
     // the first answer: of a sample, which answers for its neighbours
     let (of_sample, first) =

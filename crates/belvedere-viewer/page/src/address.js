@@ -81,7 +81,7 @@ export function recall(words = wordsOf(location.hash)) {
   recallTime(words);
   recallView(words);
   page.isSure = words.get("sure") === "yes";
-  page.compared = words.get("from") && words.get("fromz") ? { time: words.get("from"), zone: words.get("fromz") } : null;
+  page.compared = /^\d{4}-\d\d-\d\dT\d\d:\d\d$/.test(words.get("from") ?? "") && words.get("fromz") ? { time: words.get("from"), zone: words.get("fromz") } : null;
   if (!tool) return false;
   if (tool.height && Number.isFinite(Number(words.get("h") ?? NaN))) tool.above = Number(words.get("h"));
   page.choose(tool.name);

@@ -3,12 +3,11 @@ import { card } from "./questions.js";
 import { csv, geojson, save } from "./save.js";
 import { page } from "./state.js";
 import { draw, toFile } from "./view.js";
-import { fixed, t } from "./words.js";
+import { fixed, metres, t } from "./words.js";
 
 const LINE = 'stroke="#1d4e89" stroke-width="2.5"';
 const CLOSING = `${LINE} stroke-dasharray="6 5"`;
 const minus = (a, b) => a.map((v, i) => v - b[i]);
-const metres = (v) => `${fixed(v, 2)} m`;
 const squares = (v) => `${fixed(v, 1)} m²`;
 
 // What is between places in metres: along all of them in space and on the map, from the first up to the last; for three

@@ -1,9 +1,9 @@
 // The first screen of a page that opens files itself.
-import { extentOf, isCatalogue, meeting, tilesOf } from "./catalogue.js";
+import { extentOf, isCatalogue, meeting } from "./catalogue.js";
 import { report } from "./messages.js";
 import { $, page } from "./state.js";
 import { count, fixed, LANGUAGES, language, setLanguage, t } from "./words.js";
-import { open } from "./engines/worker.js";
+import { open, tilesOf } from "./engines/worker.js";
 
 const FORMATS = ".laz .las .copc.laz .e57 .ply .pcd .ptx .xyz .txt .csv .npy .obj .json .jsonl .cityjson .tif .tiff .geojson";
 const DEMO = "demo.laz";
@@ -94,7 +94,7 @@ async function beginCatalogue(url, options, whenOpen) {
   try {
     const tiles = await tilesOf(url);
     const openPart = (window) => {
-      const files = meeting(tiles, window).map((tile) => ofAddress(tile.url));
+      const files = meeting(tiles, window).map(({ address }) => ofAddress(address));
       if (!files.length) return false;
       open(files, { ...options, window }, () => {});
       whenOpen();

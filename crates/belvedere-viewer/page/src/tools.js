@@ -2,13 +2,12 @@
 import * as charts from "./charts.js";
 import { escape, hours } from "./charts.js";
 import * as colors from "./colors.js";
-import { count, fixed, t } from "./words.js";
+import { count, fixed, metres, t } from "./words.js";
 
 const icon = (d) => `<svg viewBox="0 0 24 24" aria-hidden="true">${d}</svg>`;
 const EYE = '<path d="M2 12s4-7 10-7 10 7 10 7-4 7-10 7S2 12 2 12z"/><circle cx="12" cy="12" r="3"/>';
 const SUN = '<circle cx="12" cy="12" r="4"/><path d="M12 2v3M12 19v3M2 12h3M19 12h3M5 5l2 2M17 17l2 2M19 5l-2 2M7 17l-2 2"/>';
 const percent = (part, whole) => `${fixed((100 * part) / Math.max(whole, 1), 1)} %`;
-const metres = (v, digits = 2) => `${fixed(v, digits)} m`;
 const list = (rows) => `<dl>${rows.map(([name, value]) => `<dt>${escape(name)}</dt><dd>${escape(value)}</dd>`).join("")}</dl>`;
 
 // A first answer is one for a sample: its shares are about right, and its counts are those of the sample times the
@@ -27,14 +26,13 @@ function shares(answer, of, page) {
 }
 
 // How many answers are certain, where that is known.
+const shareOf = (value) => `${fixed(value, 1)} %`;
 const certainty = ({ certainty: sure }, [free, blocked]) => {
   if (!sure) return "";
-  const { free: high, blocked: low, uncertain } = sure;
-  const whole = high + low + uncertain;
   const name = t`${Math.round(100 * sure.certain_from)} % sure`;
-  return list([[`${name}: ${free}`, percent(high, whole)], [`${name}: ${blocked}`, percent(low, whole)], [t`Less sure, or unproven`, percent(uncertain, whole)]]);
+  return list([[`${name}: ${free}`, shareOf(sure.certainly_visible_percent)], [`${name}: ${blocked}`, shareOf(sure.certainly_blocked_percent)], [t`Less sure, or unproven`, shareOf(sure.uncertain_percent)]]);
 };
-const certainRows = ({ certainty: sure }) => (sure ? [["certain from", sure.certain_from], ["certainly free", sure.free], ["certainly blocked", sure.blocked], ["uncertain", sure.uncertain]] : []);
+const certainRows = ({ certainty: sure }) => (sure ? Object.entries(sure) : []);
 
 const UNPROVEN = t`Nothing blocks what is unproven, but part of the line runs through space that no laser pulse has seen.`;
 

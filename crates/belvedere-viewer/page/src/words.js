@@ -44,6 +44,8 @@ export const count = (n) => n.toLocaleString(language);
 // As `toFixed`, with the decimal sign of the language.
 export const fixed = (v, digits) => (v + 0).toLocaleString(language, { minimumFractionDigits: digits, maximumFractionDigits: digits, useGrouping: false });
 
+export const metres = (v, digits = 2) => `${fixed(v, digits)} m`;
+
 const NAMED = ["title", "aria-label", "placeholder"];
 // Puts what stands in the page itself into the language.
 export function translate(root) {

@@ -1,7 +1,7 @@
 //! What is seen from here: an answer for each point of the cloud, and how likely it is seen.
 
 use super::RequestContext;
-use super::certainty::{byte_of, certainty, how_sure};
+use super::certainty::{byte_of, how_sure};
 use super::places::local;
 use crate::replies::{QuestionReply, Refusal};
 use crate::scene::PointChoice;
@@ -47,7 +47,7 @@ pub(super) fn answer(question: &SeenRequest, context: &RequestContext<'_>) -> Re
         "blocked": counts.blocked,
         "unproven": counts.unproven,
         "tells_unproven": blockers.proof().is_some(),
-        "certainty": probabilities.as_deref().map(|values| certainty(values, is_unproven)).transpose()?,
+        "certainty": probabilities.as_deref().map(|values| how_sure.section(values, is_unproven)).transpose()?,
         "remarks": how_sure.is_wanted().then(|| remark_from_ground(&blockers)).flatten().as_slice(),
         "command": context.text.seen(&question.place, how_sure),
     });

@@ -1,7 +1,7 @@
 //! Shadow at this time: for each point of the cloud whether the sun reaches it, and how likely.
 
 use super::RequestContext;
-use super::certainty::{byte_of, certainty, how_sure};
+use super::certainty::{byte_of, how_sure};
 use super::places::rounded;
 use crate::replies::{QuestionReply, Refusal};
 use crate::scene::PointChoice;
@@ -67,7 +67,7 @@ pub(super) fn answer(question: &ShadowRequest, context: &RequestContext<'_>) -> 
         "elevation_deg": rounded(stands.elevation_deg, 4),
         "to_sun": sun.sun.to_sun,
         "time": stands.time,
-        "certainty": probabilities.map(|values| certainty(values, is_unproven)).transpose()?,
+        "certainty": answers.report.certainty,
         "remarks": answers.remarks,
         "command": context.text.shadow(&question.time, &question.zone, question.trees, how_sure),
     });

@@ -82,6 +82,19 @@ export function open(files, options, choose) {
   worker.postMessage({ open: { files, ...options } });
 }
 
+// The tiles of a catalogue on the web.
+export function tilesOf(url) {
+  const reader = new Worker("engine-worker.js");
+  return new Promise((found, refuse) => {
+    reader.onmessage = ({ data }) => {
+      if (data.tiles) found(data.tiles);
+      else if (data.failure || data.lost) refuse(new Refused(data.failure ?? STOPPED));
+    };
+    reader.onerror = () => refuse(new Lost(STOPPED));
+    reader.postMessage({ catalogue: url });
+  }).finally(() => reader.terminate());
+}
+
 export const inBrowser = {
   state: async () => ({ ...state, done: counter ? counter[0] : state.done }),
   part: async (path) => (path === "balls" || path.startsWith("meshes/") ? send(path, "") : partOf(path).promise.then((bytes) => { parts.delete(path); return bytes; })),

@@ -251,8 +251,6 @@ export const de = {
     "Table": "Tabelle",
     "Tap anywhere to ask": "Tippen Sie irgendwohin, um zu fragen",
     "The answer comes as soon as the scene is ready.": "Die Antwort kommt, sobald die Szene bereit ist.",
-    "The catalogue cannot be read: {0}": "Der Katalog kann nicht gelesen werden: {0}",
-    "The catalogue does not say where a tile lies, or which file it is (proj:bbox, assets): {0}": "Der Katalog sagt nicht, wo eine Kachel liegt oder welche Datei es ist (proj:bbox, assets): {0}",
     "The catalogue has {0} tiles. Choose the part to open: {1} by {2}, in the unit of the files.": "Der Katalog hat {0} Kacheln. Wählen Sie den Teil, der geöffnet werden soll: {1} mal {2}, in der Einheit der Dateien.",
     "The connection to Belvedere is lost. Is the program still running?": "Die Verbindung zu Belvedere ist unterbrochen. Läuft das Programm noch?",
     "The date is missing": "Das Datum fehlt",

@@ -251,8 +251,6 @@ export const fr = {
     "Table": "Tableau",
     "Tap anywhere to ask": "Touchez où vous voulez",
     "The answer comes as soon as the scene is ready.": "La réponse viendra dès que la scène sera prête.",
-    "The catalogue cannot be read: {0}": "Le catalogue ne peut pas être lu : {0}",
-    "The catalogue does not say where a tile lies, or which file it is (proj:bbox, assets): {0}": "Le catalogue ne dit pas où se trouve une dalle, ou quel est son fichier (proj:bbox, assets) : {0}",
     "The catalogue has {0} tiles. Choose the part to open: {1} by {2}, in the unit of the files.": "Le catalogue compte {0} dalles. Choisissez la partie à ouvrir : {1} sur {2}, dans l’unité des fichiers.",
     "The connection to Belvedere is lost. Is the program still running?": "La connexion à Belvedere est perdue. Le programme fonctionne-t-il encore ?",
     "The date is missing": "Il manque la date",

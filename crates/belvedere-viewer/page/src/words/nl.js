@@ -251,8 +251,6 @@ export const nl = {
     "Table": "Tabel",
     "Tap anywhere to ask": "Tik ergens om te vragen",
     "The answer comes as soon as the scene is ready.": "Het antwoord komt zodra de scène klaar is.",
-    "The catalogue cannot be read: {0}": "De catalogus kan niet worden gelezen: {0}",
-    "The catalogue does not say where a tile lies, or which file it is (proj:bbox, assets): {0}": "De catalogus zegt niet waar een tegel ligt, of welk bestand het is (proj:bbox, assets): {0}",
     "The catalogue has {0} tiles. Choose the part to open: {1} by {2}, in the unit of the files.": "De catalogus heeft {0} tegels. Kies het deel dat geopend moet worden: {1} bij {2}, in de eenheid van de bestanden.",
     "The connection to Belvedere is lost. Is the program still running?": "De verbinding met Belvedere is verbroken. Draait het programma nog?",
     "The date is missing": "De datum ontbreekt",
