@@ -28,7 +28,7 @@ pub(crate) use balls::{
     Shrinking, SideChoice, SurfacesArguments,
 };
 pub(crate) use cameras::{CameraLensArguments, CameraTargetsArguments, CamerasArguments};
-pub(crate) use city::{CellFor, City, CityMerge, CityPlan, CityRun, CityStatus, CityStep};
+pub(crate) use city::{CellFor, City, CityMerge, CityPlan, CityRun, CityStatus, CityStep, MemoryAmount};
 pub(crate) use difference::DifferenceArguments;
 pub(crate) use envelope::{ComfortArguments, CornersArgument, EnvelopeArguments};
 pub(crate) use irradiance::{ClearSkyChoice, IrradianceArguments, RadiationModel};
@@ -40,8 +40,8 @@ pub(crate) use observers::{
 };
 pub(crate) use query::{DepthMapArguments, Query, UnprovenChoice};
 pub(crate) use scene::{
-    AreaChoice, BallShape, CalibrateArguments, CloudInput, PlanArguments, ProfileChoice, SceneBalls, SceneConfig,
-    SceneInput, UpChoice,
+    AreaChoice, BallShape, CalibrateArguments, CloudInput, MemoryArgument, PlanArguments, ProfileChoice, SceneBalls,
+    SceneConfig, SceneInput, UpChoice,
 };
 pub(crate) use shadow::ShadowArguments;
 pub(crate) use sky::{FacingChoice, FarTerrainArguments, PatchesChoice, SkyOutputs, SkyPlaces, SkyViewArguments};

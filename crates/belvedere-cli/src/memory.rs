@@ -1,5 +1,7 @@
 //! Memory, processor and times of this computer and this process, on systems that report them.
 
+use crate::arguments::MemoryAmount;
+use crate::summary::rounded;
 use std::fs;
 
 /// Memory that this process can still take without others losing theirs, with what can be swapped out; `None` where the
@@ -10,6 +12,17 @@ pub(crate) fn available_bytes() -> Option<u64> {
         computer.lines().find(|line| line.starts_with(name))?.split_whitespace().nth(1)?.parse().ok()
     };
     Some((kib("MemAvailable:")? + kib("SwapFree:")?) * 1024)
+}
+
+/// Memory that a command may use, bytes: as typed, or half of what is free. `None` where that is not known.
+pub(crate) fn limit(typed: Option<MemoryAmount>) -> Option<u64> {
+    typed.map(|memory| memory.0).or_else(|| available_bytes().map(|bytes| bytes / 2))
+}
+
+/// Bytes in gigabytes, as they are printed.
+#[expect(clippy::cast_precision_loss, reason = "printed with one decimal")]
+pub(crate) fn in_gigabytes(bytes: u64) -> serde_json::Value {
+    rounded(bytes as f64 / 1e9, 1)
 }
 
 /// Most memory that this process had at once.

@@ -1,8 +1,10 @@
 //! From arguments to clouds, scene models and views. Calls the library; decides and computes nothing itself.
 
+mod near;
 pub(crate) mod params;
 mod plan;
 
+pub(crate) use near::QuestionReach;
 pub(crate) use plan::{areas, mesh_in, planned};
 
 use crate::arguments::{

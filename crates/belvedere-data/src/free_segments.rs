@@ -45,6 +45,24 @@ impl FreeSegmentColumns {
         self.ways.append(&mut other.ways);
     }
 
+    /// The rows of these numbers, in their order.
+    #[must_use]
+    pub fn select(&self, rows: &[u32]) -> Self {
+        fn of<T: Copy>(column: &[T], rows: &[u32]) -> Vec<T> {
+            if column.is_empty() {
+                return Vec::new();
+            }
+            rows.iter().filter_map(|&row| column.get(row as usize).copied()).collect()
+        }
+        Self {
+            starts: of(&self.starts, rows),
+            ways: of(&self.ways, rows),
+            slopes: of(&self.slopes, rows),
+            lengths: of(&self.lengths, rows),
+            top: self.top,
+        }
+    }
+
     /// Checks that columns are equally long and all positions within [`FARTHEST`], lengths (which may be infinite)
     /// above zero.
     ///

@@ -2,11 +2,13 @@
 
 use crate::cleared::{ClassedPoint, ClearedSurface, classed};
 use crate::grid::TileId;
+use crate::ground_cells::ground_cells;
 use crate::lines::AreaLines;
 use crate::obstacles::{ObstacleSearch, rule};
 use crate::parts::TileObstacles;
 use crate::plan::Plan;
 use crate::planned::Others;
+use crate::proof::{FreeLine, unproven};
 use crate::question::{LightQuestion, PreparedQuestion, TileQuestion};
 use crate::record::{Stamp, TileOutcome, TileRecord};
 use crate::stage::Stage;
@@ -16,7 +18,7 @@ use belvedere::apps::eyes::skip_unfit_eyes;
 use belvedere::apps::irradiance::{irradiation_measures, season_irradiation};
 use belvedere::apps::rows::SkyObstacles;
 use belvedere::apps::shadow::{Edges, scene_shadow};
-use belvedere::apps::sky_view::{SKY_TARGET_HEIGHT, scene_sky_view};
+use belvedere::apps::sky_view::scene_sky_view;
 use belvedere::apps::sun_hours::scene_sun_hours;
 use belvedere::apps::targets::{Measure, TargetLayout, Targets};
 use belvedere::apps::viewshed::{Masks, Observer, Viewshed, ViewshedParams, viewshed};
@@ -28,13 +30,13 @@ use belvedere::medial::MedialBalls;
 use belvedere::query::{Answer, BlockingTriangles, Coverage, MedialScene};
 use belvedere::raster::Raster;
 use belvedere::results::{Pixels, ResultKind, ResultRaster, georeference};
-use belvedere::vector::sub;
+use belvedere::vector::{dot, sub};
 use belvedere::{PointCloud, Result};
 use rayon::prelude::*;
 use std::path::Path;
 
 /// Cells around a tile that the surface of its cells is taken from.
-const EDGE_CELLS: usize = 2;
+pub(crate) const EDGE_CELLS: usize = 2;
 /// Targets handed to a thread at once.
 const CHUNK: usize = 1024;
 
@@ -49,12 +51,14 @@ pub(crate) struct TileTask<'a> {
     pub(crate) max_balls: usize,
 }
 
-/// Cells of a tile on top of what stands there, or will.
+/// Cells of a tile on the ground, or on top of what stands there, or will.
 pub(crate) struct TileSurface {
     /// Side of a cell, metres.
     cell: f64,
     /// Points that were read for it.
     points: usize,
+    /// Cells on the ground under a cover, which are no targets.
+    covered: usize,
     targets: Targets,
 }
 
@@ -64,7 +68,7 @@ fn area_of_cells(plan: &Plan, tile: TileId, cell: f64) -> crate::grid::MapArea {
     plan.grid().core(tile).widened(farthest + (EDGE_CELLS + 1) as f64 * cell)
 }
 
-/// Answers a question for the cells of a tile on top of what stands there, with the balls that are in the folder of the
+/// Answers a question for the cells of a tile, with the balls that are in the folder of the
 /// run, and writes the answer; its record is to be written next. Where balls that can matter are missing, answers are
 /// unproven. `last` is the surface of the last answer for the tile, which may be on the same cells.
 ///
@@ -80,7 +84,7 @@ pub(crate) fn answer(
 ) -> Result<TileRecord> {
     let TileTask { question, prepared, others, max_balls } = task;
     let stage = Stage::Answer(question);
-    atomic::make_folder(&stage.folder(run))?;
+    atomic::make_folder(&stage.folder(plan, run))?;
     let core = plan.grid().core(tile);
     let nothing = |points: usize| Ok(TileRecord { points, ..TileRecord::default() });
     if AreaLines::of(prepared, core, 0.0).is_empty() {
@@ -91,8 +95,8 @@ pub(crate) fn answer(
         Some(surface) => surface,
         None => TileSurface::new(plan, tile, cell, others, control)?,
     };
-    let TileSurface { points, targets, .. } = last.insert(surface);
-    let points = *points;
+    let TileSurface { points, covered, targets, .. } = last.insert(surface);
+    let (points, covered) = (*points, *covered);
     let (cells, TargetLayout::Cells(ground)) = (targets.target_count(), &targets.layout) else {
         return nothing(points);
     };
@@ -110,10 +114,14 @@ pub(crate) fn answer(
             parts.each_scene(&lines, control, |scene| sight.look(scene, control))?;
             let planned = MedialScene::new(&MedialBalls::default(), &rule(plan))?.with_triangles(others.added.clone());
             sight.look(&planned, control)?;
-            let balls = parts.into_found();
-            (sight.answered(&balls, size)?, balls)
+            let mut balls = parts.into_found();
+            let is_without_proof = match plan.proves {
+                true => sight.without_proof((plan, run), targets, &mut balls, control)?,
+                false => Vec::new(),
+            };
+            (sight.answered(&balls, &is_without_proof, size)?, balls)
         }
-        PreparedQuestion::Light(light) => lit(light, parts, targets, size, control)?,
+        PreparedQuestion::Light(light) => lit((plan, run), light, parts, targets, size, control)?,
     };
     let near_edge_cells = match prepared {
         PreparedQuestion::Light(light) => Some(near_edge_count(plan, targets, light.directions(), control)?),
@@ -123,8 +131,8 @@ pub(crate) fn answer(
         return Ok(TileRecord { points, damaged: balls.damaged, ..TileRecord::default() });
     }
     let place = georeference(&ground.grid, &targets.frame);
-    let path = stage.result(run, tile);
-    let names = question.bands(found.values.kind());
+    let path = stage.result(plan, run, tile);
+    let names = question.band_names(found.values.kind());
     let raster = ResultRaster { pixels: found.values, names, description: question.description().to_owned() };
     raster.write(&path, Some(&place))?;
     Ok(TileRecord {
@@ -135,6 +143,7 @@ pub(crate) fn answer(
         balls: balls.ball_count,
         max_balls: balls.max_held,
         cells,
+        covered_cells: covered,
         unproven_cells: found.unproven_cells,
         near_edge_cells,
         skipped_observers: found.skipped_observers,
@@ -144,11 +153,15 @@ pub(crate) fn answer(
 
 impl TileSurface {
     fn new(plan: &Plan, tile: TileId, cell: f64, others: &Others, control: &Control<'_>) -> Result<Self> {
+        if plan.is_on_ground() {
+            let (targets, [covered, points]) = ground_cells(plan, (tile, cell), others.added.as_ref(), control)?;
+            return Ok(Self { cell, points, covered, targets });
+        }
         let cloud = control.stage("reading", 0, || window::read(plan, &area_of_cells(plan, tile, cell), control))?;
         let added = others.added.as_ref();
         let targets =
             control.stage("computing top surface", 0, || cells(plan, (tile, cell), &cloud, added, control))?;
-        Ok(Self { cell, points: cloud.len(), targets })
+        Ok(Self { cell, points: cloud.len(), covered: 0, targets })
     }
 }
 
@@ -168,6 +181,7 @@ struct CellAnswers {
 
 /// What of the light reaches targets, and what became of the balls.
 fn lit(
+    (plan, run): (&Plan, &Path),
     light: &LightQuestion,
     parts: TileObstacles<'_>,
     targets: &Targets,
@@ -197,11 +211,40 @@ fn lit(
         LightQuestion::SunRule { .. } => true,
         LightQuestion::Sky(_) | LightQuestion::SunHours { .. } | LightQuestion::Irradiance { .. } => false,
     };
-    let balls = parts.into_found();
-    let is_unknown = unknown_towards(&balls, targets, light.directions());
-    let answered =
-        if is_yes_or_no { yes_or_no(&numbers, &is_unknown, size)? } else { measured(&numbers, &is_unknown, size)? };
-    Ok((answered, balls))
+    let mut balls = parts.into_found();
+    let is_missing = unknown_towards(&balls, targets, light.directions());
+    if !is_yes_or_no {
+        return Ok((measured(&numbers, &is_missing, size)?, balls));
+    }
+    let is_without_proof = match light {
+        LightQuestion::Shadow(sun) if plan.proves => {
+            let lit = numbers.iter().zip(&is_missing).map(|(&lit, &is_missing)| lit > 0.0 && !is_missing);
+            let line = |target: [f64; 3]| FreeLine { target, towards: sun.to_sun, range: f64::INFINITY };
+            without_proof((plan, run), lit, targets, line, &mut balls, control)?
+        }
+        _ => Vec::new(),
+    };
+    Ok((yes_or_no(&numbers, &is_missing, &is_without_proof, size)?, balls))
+}
+
+/// Of each target, whether its line of sight is one of those that `are_free` but that no pulse proves.
+fn without_proof(
+    of_run: (&Plan, &Path),
+    are_free: impl Iterator<Item = bool>,
+    targets: &Targets,
+    line: impl Fn([f64; 3]) -> FreeLine,
+    balls: &mut ObstacleSearch,
+    control: &Control<'_>,
+) -> Result<Vec<bool>> {
+    let rows: Vec<usize> = are_free.enumerate().filter(|(_, is_free)| *is_free).map(|(row, _)| row).collect();
+    let place = |&row: &usize| targets.positions.get(row).map(|position| line(position.map(f64::from)));
+    let lines: Vec<FreeLine> = rows.iter().filter_map(place).collect();
+    let found = control.stage("testing pulses", 0, || unproven(of_run, &lines, balls, control))?;
+    let mut is_without = vec![false; targets.len()];
+    for (row, is_unproven) in rows.into_iter().zip(found) {
+        is_without[row] = is_unproven;
+    }
+    Ok(is_without)
 }
 
 /// Numbers of targets: those that missing balls may change are not known.
@@ -216,13 +259,15 @@ fn first(measures: Vec<Measure>) -> Vec<f32> {
     measures.into_iter().next().map(|measure| measure.values).unwrap_or_default()
 }
 
-/// Answers for targets that are lit or not, and which of the lit are unproven because missing balls may block them.
-fn yes_or_no(lit: &[f32], is_unknown: &[bool], size: [usize; 2]) -> Result<CellAnswers> {
-    let answer = |lit: &f32| (!lit.is_nan()).then_some(*lit > 0.0);
-    let unproven = |(lit, is_unknown): (&f32, &bool)| answer(lit).map(|is_lit| is_lit && *is_unknown);
-    let answers = lit.iter().map(|lit| ResultKind::answer(answer(lit))).collect();
-    let unproven: Vec<u8> = lit.iter().zip(is_unknown).map(|cell| ResultKind::answer(unproven(cell))).collect();
-    let unproven_cells = unproven.iter().filter(|&&pixel| pixel == 1).count();
+/// Answers for targets that are lit or not, and which of the lit are unproven: missing balls may block them, or no
+/// pulse proves them.
+fn yes_or_no(lit: &[f32], is_missing: &[bool], is_without_proof: &[bool], size: [usize; 2]) -> Result<CellAnswers> {
+    let answer = |row: usize| (!lit[row].is_nan()).then_some(lit[row] > 0.0);
+    let is_unproven = |row: usize| is_missing[row] || is_without_proof.get(row) == Some(&true);
+    let rows = || 0..lit.len();
+    let answers = rows().map(|row| ResultKind::answer(answer(row))).collect();
+    let unproven = rows().map(|row| ResultKind::answer(answer(row).map(|is_lit| is_lit && is_unproven(row)))).collect();
+    let unproven_cells = rows().filter(|&row| is_missing[row] && answer(row) == Some(true)).count();
     Ok(CellAnswers { values: Pixels::answers([answers, unproven], size)?, unproven_cells, skipped_observers: 0 })
 }
 
@@ -268,23 +313,46 @@ impl<'a> PartialSight<'a> {
         Ok(())
     }
 
-    /// What is seen past all parts; unproven where missing `balls` may block it.
-    fn answered(self, balls: &ObstacleSearch, size: [usize; 2]) -> Result<CellAnswers> {
+    /// Of each observer, which targets it sees although no pulse proves it.
+    fn without_proof(
+        &self,
+        of_run: (&Plan, &Path),
+        targets: &Targets,
+        balls: &mut ObstacleSearch,
+        control: &Control<'_>,
+    ) -> Result<Vec<Vec<bool>>> {
+        let Some(seen) = &self.seen else { return Ok(Vec::new()) };
+        let of_observer = |(number, observer): (usize, &Observer)| {
+            let are_seen = (0..self.targets.len()).map(|row| sees(&seen.masks, row, number));
+            let line = |target: [f64; 3]| {
+                let way = sub(observer.eye, target);
+                let range = dot(way, way).sqrt();
+                FreeLine { target, towards: way.map(|v| v / range), range }
+            };
+            without_proof(of_run, are_seen, targets, line, balls, control)
+        };
+        self.observers.iter().enumerate().map(of_observer).collect()
+    }
+
+    /// What is seen past all parts; unproven where missing `balls` may block it, or where it `is_without_proof`, of
+    /// each observer.
+    fn answered(self, balls: &ObstacleSearch, is_without_proof: &[Vec<bool>], size: [usize; 2]) -> Result<CellAnswers> {
         let Self { observers, targets, seen } = self;
         let (answers, masks) = seen.map(|seen| (seen.answers, seen.masks)).unwrap_or_default();
         let is_unknown = |target: [f32; 3], eye: [f64; 3]| {
             let target = target.map(f64::from);
             !balls.missing.is_empty() && balls.is_unknown(target, sub(eye, target), 1.0)
         };
-        let sees =
-            |row: usize, number: usize| masks.get(number / 32).is_some_and(|band| band[row] >> (number % 32) & 1 == 1);
         // how many see a target, and how many of these without proof
         let counts = |row: usize| {
-            let seen_by = || observers.iter().enumerate().filter(|(number, _)| sees(row, *number));
-            let unproven = seen_by().filter(|(_, observer)| is_unknown(targets[row], observer.eye)).count();
-            [seen_by().count(), unproven]
+            let seen_by = || observers.iter().enumerate().filter(|(number, _)| sees(&masks, row, *number));
+            let is_missing = |observer: &Observer| is_unknown(targets[row], observer.eye);
+            let is_bare = |number: usize| is_without_proof.get(number).is_some_and(|rows| rows.get(row) == Some(&true));
+            let missing = seen_by().filter(|(_, observer)| is_missing(observer)).count();
+            let unproven = seen_by().filter(|(number, observer)| is_bare(*number) || is_missing(observer)).count();
+            [seen_by().count(), unproven, missing]
         };
-        let counts: Vec<[usize; 2]> = (0..targets.len()).into_par_iter().with_min_len(CHUNK).map(counts).collect();
+        let counts: Vec<[usize; 3]> = (0..targets.len()).into_par_iter().with_min_len(CHUNK).map(counts).collect();
         let is_target = |answer: Answer| !matches!(answer, Answer::OutsideView | Answer::OutsideCloud);
         let cells = || answers.iter().zip(&counts).map(|(&answer, &counts)| is_target(answer).then_some(counts));
         let values = match observers.len() {
@@ -300,10 +368,15 @@ impl<'a> PartialSight<'a> {
         };
         Ok(CellAnswers {
             values,
-            unproven_cells: counts.iter().filter(|[_, unproven]| *unproven > 0).count(),
+            unproven_cells: counts.iter().filter(|[_, _, missing]| *missing > 0).count(),
             skipped_observers: observers.iter().filter(|observer| !observer.eye.iter().all(|v| v.is_finite())).count(),
         })
     }
+}
+
+/// Whether the observer of that number sees the target in that row.
+fn sees(masks: &[Vec<u32>], row: usize, number: usize) -> bool {
+    masks.get(number / 32).and_then(|band| band.get(row)).is_some_and(|bits| bits >> (number % 32) & 1 == 1)
 }
 
 /// The cells of a tile, of a side in metres, as targets on top of what stands there, or will.
@@ -352,7 +425,7 @@ fn cells(
     }
     let position = |(column, row): (usize, usize)| {
         let [x, y] = grid.center(column, row);
-        let z = f64::from(heights.get(column, row).unwrap_or(f32::NAN)) + SKY_TARGET_HEIGHT;
+        let z = f64::from(heights.get(column, row).unwrap_or(f32::NAN)) + plan.targets.height;
         #[expect(clippy::cast_possible_truncation, reason = "local positions are f32")]
         if z.is_finite() { [x as f32, y as f32, z as f32] } else { [f32::NAN; 3] }
     };
@@ -400,7 +473,7 @@ mod tests {
         let see = |observers: &[Observer], parts: [&MedialScene; 2]| {
             let mut sight = PartialSight::new(observers, &positions);
             parts.into_iter().for_each(|scene| sight.look(scene, &Control::none()).unwrap());
-            sight.answered(&balls, [7, 1]).unwrap()
+            sight.answered(&balls, &[], [7, 1]).unwrap()
         };
         let limits = SightLimits { distance: [0.0, 50.0], ..SightLimits::default() };
         let low = Observer { eye: [0.0, 0.0, 2.0], limits };

@@ -5,10 +5,11 @@
 //! and balls fare alike in all tiles that meet them.
 
 use crate::grid::{CELL, MapArea, TileId, block_area, block_of};
+use crate::ground_cells;
 use crate::plan::Plan;
 use crate::window;
 use belvedere::control::Control;
-use belvedere::ground::{MapGrid, SurfaceParams};
+use belvedere::ground::{MAX_GAP_FROM_RETURNS, MapGrid, SurfaceParams};
 use belvedere::medial::{LIMIT_TOUCH, MedialBalls};
 use belvedere::model::{ClearedArea, Clearing};
 use belvedere::{PointCloud, Result};
@@ -37,6 +38,8 @@ impl Plan {
         let (bounds, origin) = (self.bounds(), self.frame()?.origin);
         areas.iter().try_for_each(|area| area.rectangle_on(&bounds, origin).map(|_| ()))?;
         self.cleared = areas;
+        // what was cleared ended pulses that would prove the space behind it
+        self.proves &= self.cleared.is_empty();
         self.tiles = self.tiles_with_cells();
         Ok(self)
     }
@@ -82,6 +85,7 @@ impl Plan {
     /// closed.
     pub(crate) fn reach(&self, cell: f64) -> f64 {
         let reach = SurfaceParams::reach(cell);
+        let reach = if self.is_on_ground() { reach.max(MAX_GAP_FROM_RETURNS) } else { reach };
         if self.cleared.is_empty() { reach } else { reach.max(Clearing::REACH + cell) }
     }
 
@@ -91,6 +95,7 @@ impl Plan {
         let around = core.widened(self.reach(cell));
         // ground that was closed is interpolated between points of all blocks around
         let around = if self.cleared.is_empty() { around } else { around.joined(&core.in_blocks().widened(CELL)) };
+        let around = if self.is_on_ground() { around.joined(&ground_cells::area_around(&core)) } else { around };
         self.blocks_in(&around).map(|block| f64::from(block.heights[0])).fold(f64::INFINITY, f64::min)
     }
 }

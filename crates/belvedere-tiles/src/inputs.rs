@@ -1,5 +1,6 @@
 //! The files of a survey, and whether they are still what they were when the plan was made.
 
+use belvedere::apps::ask::Remark;
 use belvedere::io::{LasHead, OpenSource, ReadSeek, Source, read_las_head, web_address};
 use belvedere::{Bounds, Error, GpsTimeKind, Result};
 use serde::{Deserialize, Serialize};
@@ -61,6 +62,22 @@ pub(crate) const NOWHERE: PieceCell = [i32::MAX, i32::MAX, i32::MIN, i32::MIN];
 pub(crate) fn hold([west, south, east, north]: &mut PieceCell, [x, y, _]: [f32; 3]) {
     (*west, *south) = ((*west).min(x.floor() as i32), (*south).min(y.floor() as i32));
     (*east, *north) = ((*east).max(x.ceil() as i32), (*north).max(y.ceil() as i32));
+}
+
+/// What to know of a file by its header.
+pub(crate) fn remarks_on_file(file: &InputFile, head: &LasHead) -> Vec<Remark> {
+    let path = file.path.display().to_string();
+    head.notes.iter().map(|note| Remark::note("file-odd", format!("{path}: {note}"))).collect()
+}
+
+/// What to know of the files of a plan that was made before.
+///
+/// # Errors
+/// Those of [`read_las_head`].
+pub(crate) fn remarks_on_files(files: &[InputFile]) -> Result<Vec<Remark>> {
+    let of_file = |file: &InputFile| Ok(remarks_on_file(file, &read_las_head(file.path.as_path())?));
+    let found: Vec<Vec<Remark>> = files.iter().map(of_file).collect::<Result<_>>()?;
+    Ok(found.concat())
 }
 
 impl InputFile {

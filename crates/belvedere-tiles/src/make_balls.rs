@@ -4,6 +4,7 @@ use crate::cleared::{ClassedPoint, classed, clear_balls};
 use crate::grid::{MapArea, TOP_SIDE, TileId, square_at};
 use crate::patches;
 use crate::plan::Plan;
+use crate::proof;
 use crate::record::{Stamp, TileOutcome, TileRecord};
 use crate::stage::Stage;
 use crate::window;
@@ -11,6 +12,7 @@ use belvedere::control::Control;
 use belvedere::io::{atomic, write_balls};
 use belvedere::medial::MedialBalls;
 use belvedere::model::{ModelParts, SceneModel};
+use belvedere::pulses::FreeSegmentColumns;
 use belvedere::{PointCloud, Result};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -22,7 +24,7 @@ use std::path::Path;
 /// Those of reading the files and of [`SceneModel::build`]; [`belvedere::Error::Malformed`] where points that the plan
 /// counted are not found.
 pub fn make_balls(plan: &Plan, run: &Path, tile: TileId, control: &Control<'_>) -> Result<TileRecord> {
-    atomic::make_folder(&Stage::Balls.folder(run))?;
+    atomic::make_folder(&Stage::Balls.folder(plan, run))?;
     let cloud = control.stage("reading", 0, || window::read(plan, &plan.window(tile), control))?;
     window::check_counts(plan, &cloud, &plan.grid().core(tile).in_blocks())?;
     let record = made(plan, run, tile, cloud, control)?;
@@ -36,9 +38,9 @@ fn made(plan: &Plan, run: &Path, tile: TileId, cloud: PointCloud, control: &Cont
     let core = plan.grid().core(tile);
     let is_in = |p: &[f32; 3]| core.holds([p[0].into(), p[1].into()]);
     let all = classed(&cloud, 0..points);
-    // those of other tiles may be cleared within this one
+    // those of other tiles may be cleared within this one, or pass over it
     let mut parts = ModelParts { frame: plan.frame()?, ..ModelParts::default() };
-    if all.iter().any(|point| is_in(&point.0)) {
+    if plan.proves || all.iter().any(|point| is_in(&point.0)) {
         parts = match SceneModel::build_owned(cloud, &plan.model(), control) {
             Ok((model, _)) => model.into_parts(),
             Err(error) if window::is_nothing(&error) => parts,
@@ -54,7 +56,9 @@ fn made(plan: &Plan, run: &Path, tile: TileId, cloud: PointCloud, control: &Cont
     drop(all);
     clear_balls(plan, &core, &mut balls, &mut transmission, &own_points, control)?;
     let patches = patches::of_tile(&parts.patches, &core, &plan.cleared);
-    let parts = ModelParts { balls, transmission, patches, ..parts };
+    let own_pulses = |pulses: &FreeSegmentColumns| proof::of_tile(pulses, &core, plan.nearness);
+    let pulses = parts.pulses.as_ref().filter(|_| plan.proves).map(own_pulses);
+    let parts = ModelParts { balls, transmission, patches, pulses, ..parts };
     written(plan, run, tile, parts, nothing, control)
 }
 
@@ -67,14 +71,23 @@ fn written(
     record: TileRecord,
     control: &Control<'_>,
 ) -> Result<TileRecord> {
+    let pulses = parts.pulses.filter(|pulses| !pulses.starts.is_empty());
+    let parts = ModelParts { bounds: plan.bounds(), pulses: None, ..parts };
+    let record = match pulses {
+        None => record,
+        Some(pulses) => {
+            let path = Stage::Balls.pulses(plan, run, tile);
+            let alone = ModelParts { pulses: Some(pulses), frame: parts.frame.clone(), ..ModelParts::default() };
+            control.stage("writing", 0, || write_balls(&path, &alone.with_provenance("tile", tile.name())))?;
+            TileRecord { pulses: Some(Stamp::of(&path)?), ..record }
+        }
+    };
     if parts.balls.is_empty() && parts.patches.is_empty() {
         return Ok(record);
     }
     let tops = patches::raise(tops(&parts.balls), &parts.patches);
     let count = parts.balls.len();
-    // lines of sight are proven by pulses of the whole; here they are not kept
-    let parts = ModelParts { bounds: plan.bounds(), pulses: None, ..parts };
-    let path = Stage::Balls.result(run, tile);
+    let path = Stage::Balls.result(plan, run, tile);
     control.stage("writing", 0, || write_balls(&path, &parts.with_provenance("tile", tile.name())))?;
     let result = Some(Stamp::of(&path)?);
     Ok(TileRecord { outcome: TileOutcome::Done, result, balls: count, tops, ..record })
@@ -151,7 +164,7 @@ mod tests {
         let mut kept = 0;
         for &tile in &plan.tiles {
             // a tile without points has no balls
-            let (path, frame) = (Stage::Balls.result(&run_folder, tile), plan.frame().unwrap());
+            let (path, frame) = (Stage::Balls.result(&plan, &run_folder, tile), plan.frame().unwrap());
             let nothing = ModelParts { frame, ..ModelParts::default() };
             let parts = if path.exists() { read_balls(&path).unwrap() } else { nothing };
             let parts = ModelParts { patches: patches::of_tile(&all, &plan.grid().core(tile), &[]), ..parts };

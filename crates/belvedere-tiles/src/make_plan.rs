@@ -2,11 +2,11 @@
 
 use crate::cell_sizes::{CellSizes, MIN_TILE};
 use crate::grid::MapArea;
-use crate::inputs::{InputFile, NOWHERE, PIECE_ROWS, PointColumns};
-use crate::plan::{LAYOUT, Plan, PlanFrame, without_ground};
+use crate::inputs::{InputFile, NOWHERE, PIECE_ROWS, PointColumns, remarks_on_file};
+use crate::plan::{LAYOUT, Plan, PlanFrame, on_surface, without_ground};
+use crate::proof;
 use crate::survey::survey;
 use crate::window;
-use belvedere::apps::ask::Remark;
 use belvedere::control::Control;
 use belvedere::crs::Crs;
 use belvedere::io::{Insistence, LasHead, cloud_files};
@@ -73,11 +73,7 @@ impl Plan {
         let crs = system_of(params, &inputs, &heads, with_crs)?;
         let (frame, [low, high]) = frame_of(&crs, params, &inputs, &inputs[with_crs].path)?;
         let columns = PointColumns::common(&heads);
-        let of_file = |(file, head): (&InputFile, &LasHead)| {
-            let path = file.path.display().to_string();
-            head.notes.iter().map(|note| Remark::note("file-odd", format!("{path}: {note}"))).collect::<Vec<_>>()
-        };
-        let remarks: Vec<Remark> = inputs.iter().zip(&heads).flat_map(of_file).collect();
+        let remarks = inputs.iter().zip(&heads).flat_map(|(file, head)| remarks_on_file(file, head)).collect();
         let files: Vec<PathBuf> = inputs.iter().map(|file| file.path.clone()).collect();
         let points = inputs.iter().map(|file| file.points).sum();
         let local = |v: [f64; 3]| [v[0] - frame.origin[0], v[1] - frame.origin[1]];
@@ -104,6 +100,10 @@ impl Plan {
             columns,
             tile_size: params.tile_size,
             cells: params.cells.clone(),
+            targets: on_surface(),
+            ground: found.ground_points(),
+            proves: false,
+            nearness: proof::nearness(&found.places),
             // in steps, so that it does not look more exact than it is
             buffer: statistics.buffer(&model).ceil(),
             questions: Vec::new(),
@@ -119,6 +119,8 @@ impl Plan {
             blocks: found.blocks,
             frame,
             name: String::new(),
+            survey_name: String::new(),
+            shared_balls: None,
             sample: sample(&found.places.positions),
             remarks,
         };
@@ -130,7 +132,7 @@ impl Plan {
     }
 
     /// This with tiles that are quartered until the largest fits into the memory, bytes: their size changes no result.
-    fn fitting(mut self, memory: u64) -> Result<Self> {
+    pub(crate) fn fitting(mut self, memory: u64) -> Result<Self> {
         let (size, needed) = (self.tile_size, self.estimate().memory_bytes);
         while self.estimate().memory_bytes > memory {
             if self.tile_size / 2.0 < MIN_TILE || !self.cells.divide(self.tile_size / 2.0) {

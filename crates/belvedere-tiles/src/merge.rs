@@ -5,11 +5,13 @@ use crate::plan::Plan;
 use crate::question::TileQuestion;
 use crate::record::{TileOutcome, TileRecord};
 use crate::stage::Stage;
+use crate::window;
 use belvedere::apps::ask::Remark;
 use belvedere::control::Control;
 use belvedere::crs::text::wkt_line;
-use belvedere::ground::MapGrid;
+use belvedere::ground::{HighestPoints, MapGrid};
 use belvedere::io::{Georeference, NamedBand, PlacedRaster, Source, atomic};
+use belvedere::raster::Raster;
 use belvedere::results::{Pixels, ResultRaster, georeference};
 use belvedere::{Error, Parameter, Result};
 use std::fmt::Write as _;
@@ -84,7 +86,8 @@ fn area_of(plan: &Plan, tiles: &[TileId]) -> Result<MapArea> {
 fn area_with_cells(plan: &Plan, question: &TileQuestion, tiles: &[TileId]) -> Result<MapArea> {
     let (whole, cell) = (area_of(plan, tiles)?, plan.cells.of(question));
     let (low, high) = plan.bounds().on_map();
-    let near = MapArea { low, high }.widened(plan.reach(cell));
+    // ground beside the points is no part of the survey
+    let near = MapArea { low, high }.widened(if plan.is_on_ground() { 0.0 } else { plan.reach(cell) });
     let edge =
         |axis: usize, v: f64, round: fn(f64) -> f64| whole.low[axis] + round((v - whole.low[axis]) / cell) * cell;
     Ok(MapArea {
@@ -142,7 +145,7 @@ pub fn write_catalogue(plan: &Plan, folder: &Path, question: &TileQuestion) -> R
     // as GDAL calls the description of a TIFF, so that one that is made from the catalogue has it too
     let what = in_xml(question.description());
     let _ = writeln!(text, "  <Metadata>\n    <MDI key=\"TIFFTAG_IMAGEDESCRIPTION\">{what}</MDI>\n  </Metadata>");
-    for (band, name) in (1..).zip(question.bands(plan.kind_of(question))) {
+    for (band, name) in (1..).zip(question.band_names(plan.kind_of(question))) {
         let name = in_xml(&name);
         let _ = writeln!(text, "  <VRTRasterBand dataType=\"{kind}\" band=\"{band}\">");
         let _ = writeln!(text, "    <Description>{name}</Description>\n    <NoDataValue>{no_data}</NoDataValue>");
@@ -196,9 +199,45 @@ pub fn merge(
     }
     let cells = cells_over(plan, question, &area_with_cells(plan, question, &tiles)?);
     let (pixels, place) = gather(plan, folder, question, (&with_result, &cells), control)?;
-    let names = question.bands(pixels.kind());
+    let names = question.band_names(pixels.kind());
     ResultRaster { pixels, names, description: question.description().to_owned() }.write_cog(output, &place)?;
     Ok(merged)
+}
+
+impl Plan {
+    /// The cells of the results of a question that may have a value: as far as points reach.
+    ///
+    /// # Errors
+    /// [`Error::NoPoints`] where the plan has no tile.
+    pub fn cells_of(&self, question: &TileQuestion) -> Result<MapGrid> {
+        Ok(cells_over(self, question, &area_with_cells(self, question, &self.tiles_of(question))?))
+    }
+
+    /// The results of a question that are there, on [`Plan::cells_of`].
+    ///
+    /// # Errors
+    /// [`Error::InvalidParameter`] for more cells than fit into memory; those of reading rasters.
+    pub fn results_of(&self, folder: &Path, question: &TileQuestion, control: &Control<'_>) -> Result<Pixels> {
+        let cells = self.cells_of(question)?;
+        let (tiles, _) = results(self, folder, question, &self.tiles_of(question));
+        Ok(gather(self, folder, question, (&tiles, &cells), control)?.0)
+    }
+
+    /// Height of the highest point in each cell of a grid, for maps; in cells without any the mean of the filled
+    /// neighbours, NaN where there is none. Points are read once, and none is kept.
+    ///
+    /// # Errors
+    /// Those of reading the files.
+    pub fn highest_points(&self, grid: &MapGrid, control: &Control<'_>) -> Result<Raster<f32>> {
+        let mut highest = HighestPoints::new(*grid);
+        window::each_batch(self, &self.bounds_on_map(), control, |cloud| highest.add(&cloud.positions))?;
+        Ok(highest.filled(|_| f32::NAN))
+    }
+
+    fn bounds_on_map(&self) -> MapArea {
+        let (low, high) = self.bounds().on_map();
+        MapArea { low, high }.widened(1.0)
+    }
 }
 
 /// The results of a question that are there, of the tiles that touch the box from `low` to `high` on the map, metres of
@@ -224,7 +263,7 @@ pub fn merged_within(
     let with_result = results(plan, folder, question, &tiles).0;
     let (pixels, place) = gather(plan, folder, question, (&with_result, &cells), control)?;
     let description = Some(question.description().to_owned());
-    let mut bands = question.bands(pixels.kind()).into_iter().zip(pixels.to_numbers()?);
+    let mut bands = question.band_names(pixels.kind()).into_iter().zip(pixels.to_numbers()?);
     let Some((name, values)) = bands.next() else {
         return Err(Error::NoPoints { what: "the result has no band".to_owned() });
     };
@@ -249,12 +288,12 @@ fn gather(
         });
     }
     let kind = plan.kind_of(question);
-    let mut all = Pixels::nothing(kind, question.bands(kind).len(), [width, height]);
+    let mut all = Pixels::nothing(kind, question.band_names(kind).len(), [width, height]);
     for &tile in tiles {
         control.check()?;
         let stage = Stage::Answer(question);
         let Some(record) = TileRecord::read(plan, folder, stage, tile) else { continue };
-        let path = stage.result(folder, tile);
+        let path = stage.result(plan, folder, tile);
         let values = Pixels::read(Source::bytes(&path, &record.read_result(&path)?))?;
         all.put(&values, place_of(plan, cells, tile), side_of(plan, cells))?;
     }

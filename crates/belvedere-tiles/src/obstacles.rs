@@ -11,6 +11,7 @@ use belvedere::control::Control;
 use belvedere::io::{Source, read_balls};
 use belvedere::medial::{MedialBalls, PULSE_TOUCH};
 use belvedere::model::ModelParts;
+use belvedere::pulses::FreeSegmentColumns;
 use belvedere::{Error, Result};
 use std::path::Path;
 
@@ -64,6 +65,35 @@ impl ObstacleSearch {
         }
         Ok(balls)
     }
+
+    /// Reads the pulses that pass over a tile; `None` where none are known. Damaged ones are made again.
+    ///
+    /// # Errors
+    /// Those of writing records, and [`Error::Cancelled`].
+    pub(crate) fn pulses(
+        &mut self,
+        plan: &Plan,
+        run: &Path,
+        tile: TileId,
+        control: &Control<'_>,
+    ) -> Result<Option<FreeSegmentColumns>> {
+        let path = Stage::Balls.pulses(plan, run, tile);
+        let read = |record: TileRecord| match &record.pulses {
+            Some(stamp) => Ok(read_balls(Source::bytes(&path, &stamp.read(&path)?))?.pulses),
+            None => Ok(None),
+        };
+        let Some(record) = TileRecord::read(plan, run, Stage::Balls, tile) else { return Ok(None) };
+        let error = match read(record) {
+            Ok(pulses) => return Ok(pulses),
+            Err(Error::Cancelled) => return Err(Error::Cancelled),
+            Err(error) => error,
+        };
+        self.damaged.push(error.to_string());
+        match make_balls(plan, run, tile, control).and_then(read) {
+            Err(Error::Cancelled) => Err(Error::Cancelled),
+            made => Ok(made.unwrap_or_default()),
+        }
+    }
 }
 
 /// The tiles with balls that may matter for `lines`; those that are missing are noted in `found`.
@@ -108,7 +138,7 @@ fn sound(
     damaged: &mut Vec<String>,
     control: &Control<'_>,
 ) -> Result<Option<ModelParts>> {
-    let path = Stage::Balls.result(run, tile);
+    let path = Stage::Balls.result(plan, run, tile);
     let read = |record: &TileRecord| read_balls(Source::bytes(&path, &record.read_result(&path)?));
     match read(record) {
         Ok(balls) => return Ok(Some(balls)),

@@ -10,11 +10,11 @@ use crate::stage::Stage;
 use crate::survey::SurveyBlock;
 use crate::window;
 use belvedere::apps::ask::{Context, Remark, remark_on_terrain};
-use belvedere::apps::targets::{grid_around, set_on_ground};
+use belvedere::apps::targets::{CellLevel, CellParams, grid_around, set_on_ground};
 use belvedere::apps::tree_light::CrownLight;
 use belvedere::control::Control;
 use belvedere::crs::Crs;
-use belvedere::ground::{Ground, GroundParams};
+use belvedere::ground::{Ground, GroundParams, GroundPoints};
 use belvedere::io::{Insistence, atomic};
 use belvedere::model::{ClearedArea, ModelParams, SurveyStatistics};
 use belvedere::query::Coverage;
@@ -27,7 +27,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// Version of the layout of plans and records.
-pub(crate) const LAYOUT: u32 = 9;
+pub(crate) const LAYOUT: u32 = 10;
 /// Points around a place that its ground is taken from, metres, beside the usual ones.
 const GROUND_AROUND: f64 = 32.0;
 /// A plan: input files, tiles and what is known of the whole survey. It is the same for the same files and parameters.
@@ -49,6 +49,16 @@ pub struct Plan {
     pub tile_size: f64,
     /// Sides of the cells of results.
     pub cells: CellSizes,
+    /// What cells stand on, and how high targets are above it.
+    #[serde(default = "on_surface")]
+    pub(crate) targets: CellParams,
+    /// Which points are ground: those of class 2, or those that are found.
+    pub(crate) ground: GroundPoints,
+    /// Whether the pulses are kept that prove lines of sight free.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub(crate) proves: bool,
+    /// How near a pulse must pass for a place to count as seen, metres.
+    pub(crate) nearness: f64,
     /// How far around a tile points are read, metres.
     #[serde(rename = "halo")]
     pub buffer: f64,
@@ -79,8 +89,14 @@ pub struct Plan {
     /// What records name the plan by that they belong to: a fingerprint of its file; empty before it was read from one.
     #[serde(skip)]
     pub(crate) name: String,
-    /// Points of places all over the survey, local metres, while the plan is made.
+    /// What records name what balls follow from: a fingerprint of the plan without questions; empty as `name`.
     #[serde(skip)]
+    pub(crate) survey_name: String,
+    /// The folder of balls that several plans of a survey share; `None` for that of the run.
+    #[serde(skip)]
+    pub(crate) shared_balls: Option<PathBuf>,
+    /// Points of places all over the survey, local metres.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(crate) sample: Vec<[f64; 3]>,
     /// What to know of the files and the questions, while the plan is made.
     #[serde(skip)]
@@ -150,7 +166,65 @@ impl Plan {
             return refused("is a damaged plan: its numbers cannot be; make it".to_owned());
         }
         plan.name = hash(&bytes);
+        plan.survey_name = plan.survey_fingerprint(&path)?;
         Ok(plan)
+    }
+
+    /// A fingerprint of all that balls follow from.
+    pub(crate) fn survey_fingerprint(&self, path: &Path) -> Result<String> {
+        let bare = Self {
+            cells: CellSizes::default(),
+            targets: on_surface(),
+            ground: GroundPoints::Auto,
+            questions: Vec::new(),
+            meshes: Vec::new(),
+            terrain: None,
+            horizon: None,
+            trees: None,
+            tiles: Vec::new(),
+            ..self.clone()
+        };
+        let text = sealed(&bare).map_err(|e| Error::malformed(path, format!("cannot be read: {e}")))?;
+        Ok(hash(text.as_bytes()))
+    }
+
+    /// Whether pulses are known that prove lines of sight free.
+    pub(crate) fn can_prove(&self) -> bool {
+        self.statistics.carves && !self.statistics.are_pulses_assumed() && self.cleared.is_empty()
+    }
+
+    /// What records of a stage name that they belong to.
+    pub(crate) fn name_for(&self, stage: Stage<'_>) -> &str {
+        match stage {
+            Stage::Balls => &self.survey_name,
+            Stage::Answer(_) => &self.name,
+        }
+    }
+
+    /// This with cells on the ground, or on top of what stands there, and targets `height` metres above that.
+    #[must_use]
+    pub fn with_cells_on(mut self, level: CellLevel, height: Option<f64>) -> Self {
+        let targets = CellParams::default().with_level(level);
+        self.targets = height.map_or(targets, |height| targets.with_height(height));
+        self.tiles = self.tiles_with_cells();
+        self
+    }
+
+    /// This with other points that are ground; [`GroundPoints::Auto`] changes nothing.
+    #[must_use]
+    pub fn with_ground(self, points: GroundPoints) -> Self {
+        if points == GroundPoints::Auto { self } else { Self { ground: points, ..self } }
+    }
+
+    /// This with cells of other sides.
+    ///
+    /// # Errors
+    /// [`Error::InvalidParameter`] for a side out of range, and for a tile that is no whole number of cells.
+    pub fn with_cells(mut self, cells: CellSizes) -> Result<Self> {
+        cells.check_tile(self.tile_size)?;
+        self.cells = cells;
+        self.tiles = self.tiles_with_cells();
+        Ok(self)
     }
 
     /// Writes the plan into the folder of a run, which is made.
@@ -272,8 +346,9 @@ impl Plan {
         for question in &questions {
             question.prepare(self.trees, &mut context, control)?;
         }
+        let proves = self.proves || self.can_prove() && questions.iter().any(TileQuestion::needs_proof);
         let remarks = self.remarks.into_iter().chain(context.into_answers().remarks).collect();
-        Ok(Self { questions, remarks, ..self })
+        Ok(Self { questions, remarks, proves, ..self })
     }
 
     /// This with meshes of what is planned, such as buildings: their triangles block exactly, beside what was surveyed,
@@ -379,6 +454,11 @@ impl PlanFrame {
     }
 }
 
+/// Cells on top of what stands there.
+pub(crate) fn on_surface() -> CellParams {
+    CellParams::default().with_level(CellLevel::Surface)
+}
+
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "the signature that serde calls")]
 fn is_false(value: &bool) -> bool {
     !value
@@ -408,10 +488,15 @@ fn check_names(questions: &[TileQuestion]) -> Result<()> {
 
 /// The numbers of a plan that must not be anything.
 fn check_numbers(plan: &Plan) -> Option<()> {
-    let finite = plan.frame.origin.iter().chain(&plan.frame.metres_per_unit).chain([&plan.buffer, &plan.tile_size]);
+    let own = [&plan.buffer, &plan.tile_size, &plan.nearness];
+    let finite = plan.frame.origin.iter().chain(&plan.frame.metres_per_unit).chain(own);
     let are_whole = plan.inputs.iter().all(InputFile::has_sound_pieces);
     let are_sorted = plan.blocks.windows(2).all(|pair| pair[0].at < pair[1].at);
-    let is_sound =
-        finite.clone().all(|v| v.is_finite()) && plan.buffer > 0.0 && plan.buffer < 1e4 && are_sorted && are_whole;
+    let is_sound = finite.clone().all(|v| v.is_finite())
+        && plan.buffer > 0.0
+        && plan.buffer < 1e4
+        && plan.nearness > 0.0
+        && are_sorted
+        && are_whole;
     (is_sound && plan.has_sound_areas(plan.frame.origin) && plan.cells.check_tile(plan.tile_size).is_ok()).then_some(())
 }

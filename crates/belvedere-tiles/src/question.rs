@@ -248,9 +248,15 @@ impl TileQuestion {
         }
     }
 
+    /// Whether its answers say what pulses prove.
+    pub(crate) fn needs_proof(&self) -> bool {
+        matches!(self, Self::Shadow { .. } | Self::Viewshed { .. })
+    }
+
     /// Names of the bands of a result of a kind: answers and counts have a second one, of what missing tiles may
     /// change.
-    pub(crate) fn bands(&self, kind: ResultKind) -> Vec<String> {
+    #[must_use]
+    pub fn band_names(&self, kind: ResultKind) -> Vec<String> {
         let first = match self {
             Self::Shadow { .. } => "lit",
             Self::Viewshed { eyes, .. } => viewshed_words(eyes.len())[0],

@@ -46,6 +46,28 @@ impl Stamp {
         Ok(Self { bytes: bytes.len() as u64, fingerprint: hash(&bytes), modified })
     }
 
+    /// The bytes of the file, refused unless they are what was written.
+    ///
+    /// # Errors
+    /// [`Error::Io`], and [`Error::Malformed`] for a file that changed since.
+    pub(crate) fn read(&self, path: &Path) -> Result<Vec<u8>> {
+        let bytes = std::fs::read(path).map_err(Error::io(path))?;
+        if self.fingerprint != hash(&bytes) {
+            return Err(Error::malformed(path, "is damaged: compute it again with `belvedere city run`"));
+        }
+        Ok(bytes)
+    }
+
+    /// What became of the file since; `None` where nothing did.
+    fn damage(&self, path: &Path) -> Option<String> {
+        let what = match std::fs::metadata(path) {
+            Err(_) => "is gone",
+            Ok(found) if found.len() != self.bytes || !self.fits(path) => "is damaged",
+            Ok(_) => return None,
+        };
+        Some(format!("{} {what}", path.display()))
+    }
+
     /// Whether the file is what was written. Its content is looked at where it has another time.
     fn fits(&self, path: &Path) -> bool {
         (self.modified.is_some() && modified(path) == self.modified)
@@ -62,13 +84,16 @@ fn modified(path: &Path) -> Option<String> {
 /// The record of a tile.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct TileRecord {
-    /// Name of the plan that it belongs to.
+    /// Name of the plan that it belongs to; of balls, of what they follow from.
     pub(crate) plan: String,
     /// What became of the tile.
     pub outcome: TileOutcome,
     /// The file of its result, where there is one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) result: Option<Stamp>,
+    /// The file of the pulses that pass over it, where there is one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) pulses: Option<Stamp>,
     /// Points that were read.
     pub points: usize,
     /// Balls that were made, or that could matter for the answer.
@@ -79,6 +104,9 @@ pub struct TileRecord {
     /// Cells that are targets.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub cells: usize,
+    /// Cells on the ground under a cover, which are no targets.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub covered_cells: usize,
     /// Cells whose answer is unproven because balls are missing.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub unproven_cells: usize,
@@ -107,13 +135,13 @@ fn is_zero(count: &usize) -> bool {
 impl TileRecord {
     /// The record of a tile in a run; `None` where there is none that belongs to the plan and is what was written.
     pub(crate) fn read(plan: &Plan, run: &Path, stage: Stage<'_>, tile: TileId) -> Option<Self> {
-        let path = stage.record(run, tile);
+        let path = stage.record(plan, run, tile);
         if std::fs::metadata(&path).ok()?.len() > MAX_BYTES {
             return None;
         }
         let bytes = std::fs::read(&path).ok()?;
         let record: Self = is_sound(&bytes).then(|| serde_json::from_slice(&bytes).ok())??;
-        (record.plan == plan.name).then_some(record)
+        (record.plan == plan.name_for(stage)).then_some(record)
     }
 
     /// Whether the tile need not be done again.
@@ -122,33 +150,27 @@ impl TileRecord {
         !matches!(self.outcome, TileOutcome::Failed(_))
     }
 
-    /// What became of the file of its result since; `None` where nothing did.
-    pub(crate) fn damage(&self, run: &Path, stage: Stage<'_>, tile: TileId) -> Option<String> {
-        let stamp = self.result.as_ref()?;
-        let path = stage.result(run, tile);
-        let what = match std::fs::metadata(&path) {
-            Err(_) => "is gone",
-            Ok(found) if found.len() != stamp.bytes || !stamp.fits(&path) => "is damaged",
-            Ok(_) => return None,
-        };
-        Some(format!("{} {what}", path.display()))
+    /// What became of its files since; `None` where nothing did.
+    pub(crate) fn damage(&self, plan: &Plan, run: &Path, stage: Stage<'_>, tile: TileId) -> Option<String> {
+        let of_result = || self.result.as_ref()?.damage(&stage.result(plan, run, tile));
+        let of_pulses = || self.pulses.as_ref()?.damage(&stage.pulses(plan, run, tile));
+        of_result().or_else(of_pulses)
     }
 
     /// The bytes of the file of its result, refused unless they are what was written.
     ///
     /// # Errors
-    /// [`Error::Io`], and [`Error::Malformed`] for a file that changed since.
+    /// Those of [`Stamp::read`].
     pub(crate) fn read_result(&self, path: &Path) -> Result<Vec<u8>> {
-        let bytes = std::fs::read(path).map_err(Error::io(path))?;
-        if self.result.as_ref().is_some_and(|stamp| stamp.fingerprint != hash(&bytes)) {
-            return Err(Error::malformed(path, "is damaged: compute it again with `belvedere city run`"));
+        match &self.result {
+            Some(stamp) => stamp.read(path),
+            None => std::fs::read(path).map_err(Error::io(path)),
         }
-        Ok(bytes)
     }
 
     pub(crate) fn write(&self, plan: &Plan, run: &Path, stage: Stage<'_>, tile: TileId) -> Result<()> {
-        let path = stage.record(run, tile);
-        let record = Self { plan: plan.name.clone(), ..self.clone() };
+        let path = stage.record(plan, run, tile);
+        let record = Self { plan: plan.name_for(stage).to_owned(), ..self.clone() };
         let text = sealed(&record).map_err(|e| Error::malformed(&path, format!("cannot be written: {e}")))?;
         atomic::write(&path, |file| file.write_all(text.as_bytes()).map_err(Error::io(&path)))
     }

@@ -182,7 +182,7 @@ impl RunWork<'_> {
     /// The record of a tile that is done and whose result is still there; what is damaged is named.
     fn settled(&mut self, stage: Stage<'_>, tile: TileId) -> Option<TileRecord> {
         let record = TileRecord::read(self.plan, self.folder, stage, tile).filter(TileRecord::is_settled)?;
-        let Some(damage) = record.damage(self.folder, stage, tile) else { return Some(record) };
+        let Some(damage) = record.damage(self.plan, self.folder, stage, tile) else { return Some(record) };
         self.report.damaged.push(damage);
         None
     }

@@ -1,6 +1,7 @@
 //! The steps of the run of a tile, and where their results lie.
 
 use crate::grid::TileId;
+use crate::plan::Plan;
 use crate::question::TileQuestion;
 use std::path::{Path, PathBuf};
 
@@ -23,17 +24,27 @@ impl Stage<'_> {
         }
     }
 
-    pub(crate) fn folder(&self, run: &Path) -> PathBuf {
-        run.join(self.name())
+    /// Where its results lie: in the folder of the run, but for balls that several plans share.
+    pub(crate) fn folder(&self, plan: &Plan, run: &Path) -> PathBuf {
+        let own = match self {
+            Self::Balls => plan.shared_balls.as_deref().unwrap_or(run),
+            Self::Answer(_) => run,
+        };
+        own.join(self.name())
     }
 
     /// Where the result of a tile lies.
-    pub(crate) fn result(&self, run: &Path, tile: TileId) -> PathBuf {
+    pub(crate) fn result(&self, plan: &Plan, run: &Path, tile: TileId) -> PathBuf {
         let extension = if matches!(self, Self::Balls) { "npz" } else { "tif" };
-        self.folder(run).join(format!("{}.{extension}", tile.name()))
+        self.folder(plan, run).join(format!("{}.{extension}", tile.name()))
     }
 
-    pub(crate) fn record(&self, run: &Path, tile: TileId) -> PathBuf {
-        self.folder(run).join(format!("{}.json", tile.name()))
+    /// Where the pulses lie that pass over a tile.
+    pub(crate) fn pulses(&self, plan: &Plan, run: &Path, tile: TileId) -> PathBuf {
+        self.folder(plan, run).join(format!("{}.pulses.npz", tile.name()))
+    }
+
+    pub(crate) fn record(&self, plan: &Plan, run: &Path, tile: TileId) -> PathBuf {
+        self.folder(plan, run).join(format!("{}.json", tile.name()))
     }
 }

@@ -59,7 +59,7 @@ fn of_stage(plan: &Plan, folder: &Path, stage: Stage<'_>) -> StageStatus {
     };
     for &tile in with_cells.as_ref().unwrap_or(&plan.tiles) {
         let record = TileRecord::read(plan, folder, stage, tile);
-        let Some(record) = record.filter(|record| record.damage(folder, stage, tile).is_none()) else {
+        let Some(record) = record.filter(|record| record.damage(plan, folder, stage, tile).is_none()) else {
             status.left += 1;
             continue;
         };

@@ -4,6 +4,7 @@ use crate::columns::append;
 use crate::grid::{MapArea, block_of};
 use crate::inputs::{NOWHERE, PIECE_ROWS, PieceCell, PointColumns, hold};
 use belvedere::control::Control;
+use belvedere::ground::GroundPoints;
 use belvedere::io::{CloudBatch, ReadOptions, read_batches};
 use belvedere::model::SurveyExtremes;
 use belvedere::{Bounds, PointCloud, Result};
@@ -25,6 +26,8 @@ const AROUND: i32 = 5;
 /// LAS flag of withheld points, and classes of noise: what cleaning leaves out.
 const WITHHELD: u8 = 4;
 const NOISE: [u8; 2] = [7, 18];
+/// ASPRS class of ground.
+const GROUND: u8 = 2;
 
 /// The points of a block of 64 m.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -42,12 +45,22 @@ pub(crate) struct SurveyOverview {
     pub(crate) blocks: Vec<SurveyBlock>,
     pub(crate) bounds: Option<Bounds>,
     pub(crate) extremes: SurveyExtremes,
+    /// Points that count, and those of them of the class of ground.
+    points: [u64; 2],
     /// Whole pulses at random.
     pub(crate) along_lines: PointCloud,
     /// All points of some places.
     pub(crate) places: PointCloud,
     /// The rectangles around the pieces of each file.
     pub(crate) pieces: HashMap<PathBuf, Vec<PieceCell>>,
+}
+
+impl SurveyOverview {
+    /// Which points are ground, by the rule of [`GroundPoints::Auto`] for all of the survey.
+    pub(crate) fn ground_points(&self) -> GroundPoints {
+        let [points, ground] = self.points;
+        if ground < points.div_ceil(1000) { GroundPoints::Found } else { GroundPoints::Classed }
+    }
 }
 
 #[derive(Default)]
@@ -74,6 +87,7 @@ pub(crate) fn survey(
     let mut of_places = PointCloud::in_frame(frame);
     let mut extremes = SurveyExtremes { top: f32::NEG_INFINITY, ..SurveyExtremes::default() };
     let mut bounds: Option<Bounds> = None;
+    let mut points = [0; 2];
     let mut pieces: HashMap<PathBuf, Vec<PieceCell>> = HashMap::new();
     // sources live as long as the work
     for batch in read_batches(files.to_vec(), &options.clone().with_row_numbers(), control)? {
@@ -95,7 +109,8 @@ pub(crate) fn survey(
             if !is_counted(p, class, flags.get(row).copied().unwrap_or(0)) {
                 continue;
             }
-            extremes.has_ground |= class == 2;
+            extremes.has_ground |= class == GROUND;
+            points = [points[0] + 1, points[1] + u64::from(class == GROUND)];
             extremes.has_vegetation |= (3..=5).contains(&class);
             let block = blocks.entry(block_of([p[0], p[1]])).or_default();
             block.points += 1;
@@ -110,7 +125,7 @@ pub(crate) fn survey(
     }
     let blocks: Vec<SurveyBlock> = blocks.into_iter().filter_map(|(at, counted)| counted.into_block(at)).collect();
     add_heights(&mut extremes, &blocks);
-    Ok(SurveyOverview { blocks, bounds, extremes, along_lines, places: of_places, pieces })
+    Ok(SurveyOverview { blocks, bounds, extremes, points, along_lines, places: of_places, pieces })
 }
 
 /// Widens the cells of the pieces that `rows` of a file belong to.

@@ -15,22 +15,33 @@ use std::path::PathBuf;
 /// # Errors
 /// Those of [`read_batches`], and [`Error::Malformed`] for a file that is no longer what it was.
 pub(crate) fn read(plan: &Plan, area: &MapArea, control: &Control<'_>) -> Result<PointCloud> {
+    let mut cloud = PointCloud::in_frame(plan.frame()?);
+    each_batch(plan, area, control, |batch| append(&mut cloud, batch, plan.columns))?;
+    Ok(cloud)
+}
+
+/// Gives `take` the points of [`read`], part by part.
+pub(crate) fn each_batch(
+    plan: &Plan,
+    area: &MapArea,
+    control: &Control<'_>,
+    mut take: impl FnMut(PointCloud),
+) -> Result<()> {
     let column = area.column();
     let mut files = Vec::new();
     for file in plan.files_meeting(area) {
         file.check()?;
         files.push(file.source_within(&column));
     }
-    let mut cloud = PointCloud::in_frame(plan.frame()?);
     if files.is_empty() {
-        return Ok(cloud);
+        return Ok(());
     }
     let options =
         options(plan.crs.as_deref(), plan.insistence(), plan.frame()?).with_points_within(Within::Local(column));
     for batch in read_batches(files, &options, control)? {
-        append(&mut cloud, batch?.cloud, plan.columns);
+        take(batch?.cloud);
     }
-    Ok(cloud)
+    Ok(())
 }
 
 /// Refuses points of a run that are not those that the plan counted in the blocks of `area`, all of which they hold.

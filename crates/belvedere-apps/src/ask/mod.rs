@@ -71,7 +71,7 @@ pub use reliability::{calibrate, with_reliability};
 pub use remark::{Remark, Severity, remark_on_left_out};
 pub use report::Report;
 pub use scene::Scene;
-pub use shadow::{ShadowQuestion, ShadowResults, UNPROVEN};
+pub use shadow::{ShadowQuestion, ShadowResults, UNPROVEN, remark_on_unproven_light};
 pub use shared::SharedObject;
 pub use sky_view::{SkyParts, SkyViewQuestion};
 pub use sun::{Days, NamedSun, SunPlace, SunRange, Suns, check_sun, remark_on_sun};

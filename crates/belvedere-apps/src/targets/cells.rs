@@ -7,10 +7,11 @@ use belvedere_core::ground::{Ground, GroundParams, MapGrid, SurfaceParams, hidde
 use belvedere_core::query::BlockingTriangles;
 use belvedere_data::control::Control;
 use belvedere_data::{Error, Parameter, PointCloud, Result};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// What cells stand on.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum CellLevel {
     /// The ground. Default.
     #[default]
@@ -20,7 +21,7 @@ pub enum CellLevel {
 }
 
 /// How cells become targets.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct CellParams {
     /// What cells stand on.

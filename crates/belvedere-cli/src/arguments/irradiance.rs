@@ -1,7 +1,8 @@
 //! Flags of irradiance and of photovoltaic loss.
 
 use super::{
-    Numbers, SceneInput, Shell, SkyOutputs, SkyPlaces, ThroughTreesArguments, above_zero, at_least_one, location,
+    MemoryArgument, Numbers, SceneInput, Shell, SkyOutputs, SkyPlaces, ThroughTreesArguments, above_zero, at_least_one,
+    location,
 };
 use belvedere::apps::irradiance::{SkyModel, Surroundings};
 use clap::{Args, ValueEnum};
@@ -59,6 +60,8 @@ pub(crate) struct IrradianceArguments {
     pub(crate) months: bool,
     #[command(flatten)]
     pub(crate) outputs: IrradianceOutputs,
+    #[command(flatten)]
+    pub(crate) memory: MemoryArgument,
     #[command(flatten)]
     pub(crate) scene: SceneInput,
 }

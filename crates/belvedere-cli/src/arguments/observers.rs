@@ -1,6 +1,8 @@
 //! Flags of lines of sight and viewsheds.
 
-use super::{NorthArguments, Numbers, SceneInput, UnprovenChoice, Usage, above_zero, at_most, height, length};
+use super::{
+    MemoryArgument, NorthArguments, Numbers, SceneInput, UnprovenChoice, Usage, above_zero, at_most, height, length,
+};
 use belvedere::apps::ask::HowSure;
 use belvedere::ground::GroundPoints;
 use belvedere::query::{Curvature, MAX_RANDOM_PAIRS};
@@ -53,6 +55,8 @@ pub(crate) struct LineOfSightArguments {
     /// --terrain: block_terrain, 1 where the terrain blocks first.
     #[arg(short, long, value_name = "OUT", required_unless_present = "from", help_heading = "Result")]
     pub(crate) output: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) memory: MemoryArgument,
     #[command(flatten)]
     pub(crate) scene: SceneInput,
 }
@@ -247,6 +251,8 @@ pub(crate) struct ViewshedArguments {
     /// .npy: (bands, rows, columns) u32; bit i of band b is observer 32 b + i. .tif: up to 32 observers.
     #[arg(long, value_name = "OUT", help_heading = "Result")]
     pub(crate) masks: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) memory: MemoryArgument,
     #[command(flatten)]
     pub(crate) scene: SceneInput,
 }

@@ -1,12 +1,15 @@
 //! Flags of the scene that a command works on: clouds to build balls from, or a ball file.
 
 use super::balls::trees;
-use super::{OrientChoice, known_crs};
-use belvedere::io::ReadOptions;
+use super::{MemoryAmount, OrientChoice, known_crs};
+use belvedere::io::{ReadOptions, Within};
 use belvedere::medial::Trees;
 use clap::{Args, ValueEnum};
 use serde::Deserialize;
 use std::path::PathBuf;
+
+/// Farther than any height, in any unit.
+const FAR: f64 = 1e9;
 
 #[derive(Args, Clone)]
 pub(crate) struct CloudInput {
@@ -35,6 +38,9 @@ pub(crate) struct CloudInput {
     /// Leave out files whose points all lie more than 1000 km from those of the others, which is an error otherwise
     #[arg(long, help_heading = "Scene", hide_short_help = true)]
     pub(crate) skip_distant: bool,
+    /// South-west and north-east corner of the points that are read, in the coordinates of the file; `None` for all.
+    #[arg(skip)]
+    pub(crate) window: Option<[[f64; 2]; 2]>,
 }
 
 impl CloudInput {
@@ -49,6 +55,10 @@ impl CloudInput {
         options.crs.clone_from(&self.crs);
         if self.crs_override {
             options = options.insisting_on_crs();
+        }
+        if let Some([low, high]) = self.window {
+            let corner = |[x, y]: [f64; 2], z: f64| [x, y, z];
+            options = options.with_points_within(Within::File { low: corner(low, -FAR), high: corner(high, FAR) });
         }
         if self.skip_distant { options.without_distant_files() } else { options }
     }
@@ -119,6 +129,19 @@ pub(crate) struct BallShape {
         help_heading = "Scene"
     )]
     pub(crate) profile: Option<ProfileChoice>,
+}
+
+/// How much memory a survey may take.
+#[derive(Args, Clone)]
+pub(crate) struct MemoryArgument {
+    /// Memory that may be used, such as 3G or 800M [default: half of what is free]
+    ///
+    /// Cells of a survey of LAS or LAZ files that needs more are answered in tiles, one after the other: the same
+    /// question, and a raster (.tif) or a map (.png). What is done is kept (`belvedere cache`): a command that was
+    /// stopped goes on, and the next question finds the balls. `belvedere city` does the same in steps, for many
+    /// computers.
+    #[arg(long, value_name = "SIZE", help_heading = "Scene", hide_short_help = true)]
+    pub(crate) memory: Option<MemoryAmount>,
 }
 
 /// What is planned: the scene as it will be.

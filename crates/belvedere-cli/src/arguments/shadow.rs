@@ -1,7 +1,7 @@
 //! Flags of shadows.
 
 use super::{
-    GivingWay, HowSureArguments, NorthArguments, Numbers, SceneInput, SkyOutputs, SkyPlaces, SunPeriod,
+    GivingWay, HowSureArguments, MemoryArgument, NorthArguments, Numbers, SceneInput, SkyOutputs, SkyPlaces, SunPeriod,
     SunPlaceArguments, ThroughTreesArguments, above_zero,
 };
 use clap::Args;
@@ -37,6 +37,8 @@ pub(crate) struct ShadowArguments {
     #[arg(long = "frame-duration-s", value_name = "S", default_value_t = 0.25, requires = "film", help_heading = "Result",
         value_parser = above_zero::<f64>, allow_negative_numbers = true)]
     pub(crate) seconds: f64,
+    #[command(flatten)]
+    pub(crate) memory: MemoryArgument,
     #[command(flatten)]
     pub(crate) scene: SceneInput,
 }

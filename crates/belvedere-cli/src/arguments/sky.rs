@@ -1,7 +1,8 @@
 //! Flags of the targets of sun and sky commands, and of the sky view.
 
 use super::{
-    GroundChoice, IntervalArgument, SceneInput, Shell, ThroughTreesArguments, above_zero, at_least_one, length,
+    GroundChoice, IntervalArgument, MemoryArgument, SceneInput, Shell, ThroughTreesArguments, above_zero, at_least_one,
+    length,
 };
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
@@ -127,6 +128,8 @@ pub(crate) struct SkyViewArguments {
     pub(crate) trees: ThroughTreesArguments,
     #[command(flatten)]
     pub(crate) outputs: SkyOutputs,
+    #[command(flatten)]
+    pub(crate) memory: MemoryArgument,
     #[command(flatten)]
     pub(crate) scene: SceneInput,
 }

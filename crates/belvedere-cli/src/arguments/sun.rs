@@ -1,8 +1,8 @@
 //! Flags of the location, the time zone, the days and the sun hours.
 
 use super::{
-    CloudInput, IntervalArgument, Numbers, SceneInput, Shell, SkyOutputs, SkyPlaces, ThroughTreesArguments, above_zero,
-    location,
+    CloudInput, IntervalArgument, MemoryArgument, Numbers, SceneInput, Shell, SkyOutputs, SkyPlaces,
+    ThroughTreesArguments, above_zero, location,
 };
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
@@ -117,6 +117,8 @@ pub(crate) struct SunHoursArguments {
     /// Each sun uses the nearest direction of the matrix, at most --sun-tolerance-deg away [default: 1].
     #[arg(long = "load-matrix", value_name = "MATRIX", conflicts_with = "keep", help_heading = "Period")]
     pub(crate) from_matrix: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) memory: MemoryArgument,
     #[command(flatten)]
     pub(crate) scene: SceneInput,
 }

@@ -1,7 +1,8 @@
 //! Flags of mesh targets, landmarks, protected views, isovists and horizons.
 
 use super::{
-    Earth, FarTerrainArguments, GivingWay, GroundChoice, MapPosition, NorthArguments, SceneInput, above_zero, height,
+    Earth, FarTerrainArguments, GivingWay, GroundChoice, MapPosition, MemoryArgument, NorthArguments, SceneInput,
+    above_zero, height,
 };
 use belvedere::query::BackFaces;
 use clap::{Args, ValueEnum};
@@ -186,6 +187,8 @@ pub(crate) struct IsovistArguments {
     /// .json also has the corners of the plan.
     #[arg(short, long, value_name = "OUT", required = true, help_heading = "Result")]
     pub(crate) output: Vec<PathBuf>,
+    #[command(flatten)]
+    pub(crate) memory: MemoryArgument,
     #[command(flatten)]
     pub(crate) scene: SceneInput,
 }

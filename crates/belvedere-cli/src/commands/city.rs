@@ -3,7 +3,10 @@
 mod questions;
 
 use super::{check_folder, check_output};
-use crate::arguments::{City, CityMerge, CityPlan, CityRun, CityStatus, CityStep, Global, Usage};
+use crate::arguments::{
+    City, CityMerge, CityPlan, CityRun, CityStatus, CityStep, FarTerrainArguments, Global, PlanArguments,
+    ThroughTreesArguments, Usage,
+};
 use crate::pipeline::areas;
 use crate::run::CommandContext;
 use crate::summary::{Summary, rounded};
@@ -13,8 +16,8 @@ use belvedere::apps::tree_light::Transmissivity;
 use belvedere::io::Insistence;
 use belvedere::{Error, Parameter};
 use belvedere_tiles::{
-    Plan, PlanParams, RunParams, Shard, SideFile, Steps, TileQuestion, UnfinishedRun, merge, run as run_tiles,
-    status as status_of,
+    Plan, PlanParams, RunParams, RunReport, Shard, SideFile, Steps, TileQuestion, UnfinishedRun, merge,
+    run as run_tiles, status as status_of,
 };
 use std::path::PathBuf;
 use std::time::Instant;
@@ -46,7 +49,8 @@ fn plan(arguments: &CityPlan, global: &Global) -> Result<Summary> {
         program: concat!("belvedere ", env!("CARGO_PKG_VERSION")).to_owned(),
     };
     let plan = Plan::make(&params, &run.control())?;
-    let plan = planned(plan, arguments)?;
+    let changes = PlanArguments { add: arguments.add.clone(), clear: arguments.clear.clone() };
+    let plan = planned(plan, &changes, Some(&arguments.far_terrain), Some(&arguments.trees))?;
     let questions = questions::questions(arguments, &plan, &mut run)?;
     let plan = plan.with_questions(questions, &run.control()).map_err(|error| match error {
         Error::InvalidParameter { parameter: Parameter::Questions, .. } => Usage(error.to_string()).into(),
@@ -76,21 +80,30 @@ fn plan(arguments: &CityPlan, global: &Global) -> Result<Summary> {
     Ok(run.finish())
 }
 
-/// The plan with what will be built, and with light through trees.
-fn planned(plan: Plan, arguments: &CityPlan) -> Result<Plan> {
-    let meshes = arguments.add.iter().map(|path| SideFile::new(path)).collect::<belvedere::Result<Vec<_>>>()?;
+/// The plan with what will be built, before far terrain, and with light through trees.
+pub(super) fn planned(
+    plan: Plan,
+    changes: &PlanArguments,
+    far: Option<&FarTerrainArguments>,
+    trees: Option<&ThroughTreesArguments>,
+) -> Result<Plan> {
+    let meshes = changes.add.iter().map(|path| SideFile::new(path)).collect::<belvedere::Result<Vec<_>>>()?;
     let plan = plan.with_meshes(meshes)?;
     let frame = plan.frame()?;
     let mut cleared = Vec::new();
-    for choice in &arguments.clear {
+    for choice in &changes.clear {
         cleared.extend(areas(choice, &frame)?);
     }
     let plan = plan.with_cleared(cleared)?;
     let side = |path: &Option<PathBuf>| path.as_deref().map(SideFile::new).transpose();
-    let (terrain, horizon) = (side(&arguments.far_terrain.terrain)?, side(&arguments.far_terrain.horizon)?);
+    let (terrain, horizon) = match far {
+        Some(far) => (side(&far.terrain)?, side(&far.horizon)?),
+        None => (None, None),
+    };
     let plan = plan.with_far_terrain(terrain, horizon)?;
     let measured = || Transmissivity::constant(plan.share_of_pulses_through_crowns()).ok();
-    match arguments.trees.choice()?.crowns(measured)? {
+    let Some(trees) = trees else { return Ok(plan) };
+    match trees.choice()?.crowns(measured)? {
         Some(crowns) => Ok(plan.with_light_through_trees(crowns)?),
         None => Ok(plan),
     }
@@ -104,18 +117,7 @@ fn run_plan(arguments: &CityRun, global: &Global) -> Result<Summary> {
     let steps = if arguments.balls_only { Steps::Balls } else { Steps::All };
     let params = RunParams { shard, steps, max_balls: None, seconds: &|| start.elapsed().as_secs_f64() };
     let report = run_tiles(&plan, &arguments.run, &params, &run.control())?;
-    if let Some((first, _)) = report.failed.split_first() {
-        let listed = report.failed.iter().take(MAX_LISTED).map(|why| format!("\n  {why}")).collect::<String>();
-        let more = report.failed.len().saturating_sub(MAX_LISTED);
-        let more = if more > 0 { format!("\n  and {more} more (belvedere city status)") } else { String::new() };
-        if report.failed.len() == 1 {
-            bail!("{first}; all else is done, and the next run tries it again");
-        }
-        bail!(
-            "{} steps failed; all else is done, and the next run tries them again:{listed}{more}",
-            report.failed.len()
-        );
-    }
+    refuse_failed(&report, "the next run tries what failed again")?;
     run.summary.add_report(&report);
     run.summary.remarks(report.remarks());
     run.summary
@@ -123,6 +125,20 @@ fn run_plan(arguments: &CityRun, global: &Global) -> Result<Summary> {
         .headline("balls of <balls_made> tiles made, and <answers_made> tiles of results")
         .headline("done before: <already_done>");
     Ok(run.finish())
+}
+
+/// The error of a run of which something failed, with what to do.
+pub(super) fn refuse_failed(report: &RunReport, advice: &str) -> Result<()> {
+    if let Some((first, _)) = report.failed.split_first() {
+        let listed = report.failed.iter().take(MAX_LISTED).map(|why| format!("\n  {why}")).collect::<String>();
+        let more = report.failed.len().saturating_sub(MAX_LISTED);
+        let more = if more > 0 { format!("\n  and {more} more (belvedere city status)") } else { String::new() };
+        if report.failed.len() == 1 {
+            bail!("{first}; all else is done; {advice}");
+        }
+        bail!("{} steps failed; all else is done; {advice}:{listed}{more}", report.failed.len());
+    }
+    Ok(())
 }
 
 fn status(arguments: &CityStatus) -> Result<Summary> {

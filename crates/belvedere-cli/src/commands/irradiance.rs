@@ -3,15 +3,26 @@
 mod planes;
 pub(super) mod radiation;
 
+use super::in_tiles::{TypedCells, map_of_first};
 use super::targets::TargetOutput;
 use super::warn_of_geojson;
-use crate::arguments::{Global, IrradianceArguments, Usage};
+use crate::arguments::{Global, IrradianceArguments, SkyOutputs, Usage};
 use crate::pipeline::{self, KeepPoints};
 use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::Result;
 use belvedere::apps::ask::{self, Ask, Places, Roofs, SunPlace};
-use belvedere::apps::irradiance::Grouping;
+use belvedere::apps::irradiance::{CLEAR_SKY_YEAR, Grouping};
+
+fn cells<'a>(arguments: &'a IrradianceArguments, outputs: &'a SkyOutputs) -> TypedCells<'a> {
+    let others = [
+        ("--shell", arguments.shell.shell.is_some()),
+        ("--months", arguments.months),
+        ("--planes", !arguments.planes.is_empty()),
+    ];
+    let outputs = (&outputs.output[..], outputs.measures.as_deref());
+    TypedCells::of_sky((&arguments.scene, &arguments.memory), &arguments.places, &arguments.trees, outputs, &others)
+}
 
 pub(crate) fn run(arguments: &IrradianceArguments, global: &Global) -> Result<Summary> {
     let outputs = arguments.outputs.of_places();
@@ -22,6 +33,19 @@ pub(crate) fn run(arguments: &IrradianceArguments, global: &Global) -> Result<Su
     }
     planes::check(arguments)?;
     let mut run = CommandContext::new(global);
+    if let Some(survey) = cells(arguments, &outputs).survey(&mut run)? {
+        let place = SunPlace { location: arguments.location.as_ref().map(|at| at.0), ..SunPlace::default() };
+        let question = survey.with_whereabouts(&mut run, |whereabouts, context| {
+            let radiation = &arguments.radiation;
+            let (weather, year) = (radiation.weather.as_deref(), arguments.year.unwrap_or(CLEAR_SKY_YEAR));
+            radiation::check_linke(radiation.clear_sky, &arguments.model)?;
+            let site = place.site_at(whereabouts, context, None)?;
+            radiation::of_tiles((weather, radiation.clear_sky), &arguments.model, year, site)
+        })?;
+        let results = survey.answer(vec![question], "energy", &mut run)?;
+        results.write(&|measures, relief| map_of_first(measures, relief, "Energy"), &mut run)?;
+        return Ok(run.finish());
+    }
     let grouping = if arguments.months { Grouping::Months } else { Grouping::Whole };
     let params = radiation::params(&arguments.model).with_grouping(grouping);
     let IrradianceArguments { min_area, panel, min_cells, .. } = *arguments;

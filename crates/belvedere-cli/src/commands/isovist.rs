@@ -3,10 +3,12 @@
 use super::surroundings::{min_count, rows_as_given};
 use super::{check_output, extension};
 use crate::arguments::{Global, IsovistArguments, Usage};
+use crate::pipeline::QuestionReach;
 use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::Result;
 use belvedere::apps::ask::{self, Ask, IsovistColumn, IsovistsResults, Places, Scene};
+use belvedere::apps::isovist::IsovistParams;
 use belvedere::figures::{panorama_picture, write_png};
 use belvedere::io::{TableCells, TextRows, atomic, with_columns_read, write_table};
 use serde_json::{Map, Value, json};
@@ -28,7 +30,12 @@ pub(crate) fn run(arguments: &IsovistArguments, global: &Global) -> Result<Summa
     question.check()?;
     check_pictures(arguments, min_count(arguments.eyes.eye.len(), arguments.eyes.eyes.as_deref())?)?;
     let mut run = CommandContext::new(global);
-    let scene = arguments.eyes.scene(&arguments.scene, None, &mut run)?;
+    let usual = IsovistParams::default().max_range;
+    let is_typed = arguments.eyes.eyes.is_none();
+    let distance = is_typed.then(|| arguments.max_distance.unwrap_or(usual));
+    let reach = QuestionReach { places: &arguments.eyes.eye, distance };
+    let input = reach.of_scene(&arguments.scene, &arguments.memory, &mut run)?;
+    let scene = arguments.eyes.scene(&input, None, &mut run)?;
     let standing = arguments.eyes.standing(scene.frame(), &mut run)?;
     check_pictures(arguments, standing.len())?;
     let answers = ask::ask(&scene, &question, &Places::Eyes(standing), &run.control())?;

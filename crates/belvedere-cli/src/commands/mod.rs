@@ -16,6 +16,7 @@ mod fading;
 mod far_terrain;
 mod heights;
 mod horizon;
+mod in_tiles;
 mod info;
 mod irradiance;
 mod isovist;

@@ -1,6 +1,7 @@
 //! `belvedere shadow`.
 
 use super::fading::{UNPROVEN_COLOR, fade, faded};
+use super::in_tiles::{TiledSurvey, TypedCells};
 use super::targets::{HighestPoints, TargetOutput};
 use super::{check_output, extension};
 use crate::arguments::{Global, ShadowArguments, Usage};
@@ -8,7 +9,7 @@ use crate::pipeline;
 use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::Result;
-use belvedere::apps::ask::{self, Answers, NamedSun, ShadowResults, Suns, UNCERTAIN, UNPROVEN};
+use belvedere::apps::ask::{self, Answers, Context, NamedSun, ShadowResults, Suns, UNCERTAIN, UNPROVEN};
 use belvedere::apps::shadow::Edges;
 use belvedere::apps::targets::Measure;
 use belvedere::figures::{MapLegend, MapPicture, Picture, map_picture, write_apng, write_png};
@@ -23,6 +24,10 @@ pub(crate) fn run(arguments: &ShadowArguments, global: &Global) -> Result<Summar
     let question = question(arguments)?;
     check(arguments, &question)?;
     let mut run = CommandContext::new(global);
+    if let Some(survey) = cells(arguments).survey(&mut run)? {
+        answer_in_tiles(survey, question, &mut run)?;
+        return Ok(run.finish());
+    }
     let scene = pipeline::scene_of_places(&arguments.scene, &arguments.places, arguments.giving_way.shell, &mut run)?;
     let (places, source) = arguments.places.places(&scene, &mut run)?;
     let answers = ask::ask(&scene, &question, &places, &run.control())?;
@@ -41,6 +46,29 @@ pub(crate) fn run(arguments: &ShadowArguments, global: &Global) -> Result<Summar
     }
     films(arguments, &shown, &maps, &run)?;
     Ok(run.finish())
+}
+
+fn cells(arguments: &ShadowArguments) -> TypedCells<'_> {
+    let outputs = (&arguments.outputs.output[..], arguments.outputs.measures.as_deref());
+    let others = [
+        ("--shell", arguments.giving_way.shell.is_some()),
+        ("--soft", arguments.suns.soft),
+        ("--probability", arguments.how_sure.probability),
+        ("--certain", arguments.how_sure.certain.is_some()),
+        ("--film", arguments.film.is_some()),
+        ("--frames", arguments.frames.is_some()),
+    ];
+    TypedCells::of_sky((&arguments.scene, &arguments.memory), &arguments.places, &arguments.trees, outputs, &others)
+}
+
+fn answer_in_tiles(survey: TiledSurvey<'_>, question: ask::ShadowQuestion, run: &mut CommandContext) -> Result<()> {
+    let suns = survey.with_whereabouts(run, |whereabouts, _| {
+        Ok(question.suns.over(&question.place, whereabouts, &mut Context::default())?)
+    })?;
+    let questions = survey.questions(&ask::Question::Shadow(question), run)?;
+    let title = suns.first().map(|sun| sun.title.clone()).unwrap_or_default();
+    let results = survey.answer(questions, &title, run)?;
+    results.write(&|measures, relief| Maps::new(&suns, measures).draw(0, relief), run)
 }
 
 fn question(arguments: &ShadowArguments) -> Result<ask::ShadowQuestion> {
@@ -90,8 +118,12 @@ struct Maps<'a> {
 
 impl<'a> Maps<'a> {
     fn of(answers: &'a Answers<ShadowResults>) -> Self {
-        let suns = &answers.found.suns[..];
-        let (measures, rest) = answers.measures.split_at(suns.len().min(answers.measures.len()));
+        Self::new(&answers.found.suns, &answers.measures)
+    }
+
+    /// Of the measures of each sun, and what follows them.
+    fn new(suns: &'a [NamedSun], measures: &'a [Measure]) -> Self {
+        let (measures, rest) = measures.split_at(suns.len().min(measures.len()));
         let doubts = rest.iter().find(|measure| measure.name == UNPROVEN).map(|measure| &measure.values[..]);
         let uncertain = rest.iter().filter(|measure| measure.name.starts_with(UNCERTAIN));
         let uncertain = uncertain.map(|measure| &measure.values[..]).collect();

@@ -1,6 +1,7 @@
 //! `belvedere sun-hours`.
 
 use super::check_output;
+use super::in_tiles::{TypedCells, map_of_first};
 use super::targets::TargetOutput;
 use crate::arguments::{Global, SunHoursArguments, Usage};
 use crate::pipeline;
@@ -38,6 +39,26 @@ pub(crate) fn run(arguments: &SunHoursArguments, global: &Global) -> Result<Summ
         return Err(Usage(what.to_owned()).into());
     }
     let mut run = CommandContext::new(global);
+    let others = [
+        ("--shell", arguments.shell.shell.is_some()),
+        ("--interval", arguments.interval.interval),
+        ("--save-matrix", arguments.keep.is_some()),
+        ("--load-matrix", arguments.from_matrix.is_some()),
+    ];
+    let outputs = (&arguments.outputs.output[..], arguments.outputs.measures.as_deref());
+    let cells = TypedCells::of_sky(
+        (&arguments.scene, &arguments.memory),
+        &arguments.places,
+        &arguments.trees,
+        outputs,
+        &others,
+    );
+    if let Some(survey) = cells.survey(&mut run)? {
+        let questions = survey.questions(&ask::Question::SunHours(question), &mut run)?;
+        let results = survey.answer(questions, "sun hours", &mut run)?;
+        results.write(&|measures, relief| map_of_first(measures, relief, "Sun hours"), &mut run)?;
+        return Ok(run.finish());
+    }
     let head = match &arguments.from_matrix {
         Some(path) => Some((path.as_path(), read_matrix_head(path)?)),
         None => None,

@@ -3,6 +3,7 @@
 #![allow(clippy::cast_possible_truncation, reason = "the numbers of tests are small, or made to be f32")]
 
 mod answers;
+mod any_size;
 mod bench;
 mod calibrate;
 mod cameras;

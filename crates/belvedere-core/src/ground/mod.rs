@@ -14,7 +14,7 @@ pub(crate) use triangulate::sides;
 
 pub use find::{FinderParams, find_ground};
 pub use map_grid::MapGrid;
-pub use relief::{hidden_ground, highest_points};
+pub use relief::{HighestPoints, hidden_ground, highest_points};
 pub use returns::{MAX_GAP_FROM_RETURNS, cells_near_returns};
 pub use shifted::{GroundShift, ShiftEvidence};
 pub use surface::{SurfaceParams, top_surface};

@@ -1,43 +1,68 @@
 //! The highest point of each cell, for maps.
 
-use super::Ground;
+use super::{Ground, MapGrid};
 use belvedere_data::raster::Raster;
+
+/// The highest point of each cell of a grid, of points that come part by part.
+pub struct HighestPoints {
+    grid: MapGrid,
+    heights: Raster<f32>,
+}
+
+impl HighestPoints {
+    /// Without a point so far.
+    #[must_use]
+    pub fn new(grid: MapGrid) -> Self {
+        Self { grid, heights: Raster::filled(grid.width, grid.height, f32::NAN) }
+    }
+
+    /// Adds points, (N, 3) local metres.
+    pub fn add(&mut self, positions: &[[f32; 3]]) {
+        for p in positions {
+            if let Some([column, row]) = self.grid.cell_of([f64::from(p[0]), f64::from(p[1])])
+                && let Some(value) = self.heights.values_mut().get_mut(row * self.grid.width + column)
+                && !(*value >= p[2])
+            {
+                *value = p[2];
+            }
+        }
+    }
+
+    /// The heights, local metres: in cells without a point the mean of the filled neighbours, else what `fallback` says
+    /// of the cell of that number.
+    #[must_use]
+    pub fn filled(self, fallback: impl Fn(usize) -> f32) -> Raster<f32> {
+        let Self { grid, heights: mut highest } = self;
+        let sparse = highest.clone();
+        for row in 0..grid.height {
+            for column in 0..grid.width {
+                let at = row * grid.width + column;
+                if !sparse.values()[at].is_nan() {
+                    continue;
+                }
+                let (mut sum, mut count) = (0.0, 0.0);
+                for r in row.saturating_sub(1)..=row + 1 {
+                    for c in column.saturating_sub(1)..=column + 1 {
+                        if let Some(value) = sparse.get(c, r).filter(|v| !v.is_nan()) {
+                            sum += value;
+                            count += 1.0;
+                        }
+                    }
+                }
+                highest.values_mut()[at] = if count > 0.0 { sum / count } else { fallback(at) };
+            }
+        }
+        highest
+    }
+}
 
 /// Height of the highest of `positions`, (N, 3) local metres, in each cell of `ground`; in cells without any the mean
 /// of the filled neighbours, else the ground, NaN where that is not known.
 #[must_use]
 pub fn highest_points(positions: &[[f32; 3]], ground: &Ground) -> Raster<f32> {
-    let grid = ground.grid;
-    let mut highest = Raster::filled(grid.width, grid.height, f32::NAN);
-    for p in positions {
-        if let Some([column, row]) = grid.cell_of([f64::from(p[0]), f64::from(p[1])])
-            && let Some(value) = highest.values_mut().get_mut(row * grid.width + column)
-            && !(*value >= p[2])
-        {
-            *value = p[2];
-        }
-    }
-    let sparse = highest.clone();
-    for row in 0..grid.height {
-        for column in 0..grid.width {
-            let at = row * grid.width + column;
-            if !sparse.values()[at].is_nan() {
-                continue;
-            }
-            let (mut sum, mut count) = (0.0, 0.0);
-            for r in row.saturating_sub(1)..=row + 1 {
-                for c in column.saturating_sub(1)..=column + 1 {
-                    if let Some(value) = sparse.get(c, r).filter(|v| !v.is_nan()) {
-                        sum += value;
-                        count += 1.0;
-                    }
-                }
-            }
-            let fallback = ground.heights.values().get(at).copied().unwrap_or(f32::NAN);
-            highest.values_mut()[at] = if count > 0.0 { sum / count } else { fallback };
-        }
-    }
-    highest
+    let mut highest = HighestPoints::new(ground.grid);
+    highest.add(positions);
+    highest.filled(|cell| ground.heights.values().get(cell).copied().unwrap_or(f32::NAN))
 }
 
 /// Least distance to the next ground point for a cell to count as hidden, metres: a few spacings of usual airborne

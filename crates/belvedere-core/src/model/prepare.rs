@@ -385,8 +385,9 @@ fn carving_input(
         }
         Err(error) => return Err(error),
     };
-    // scanners on the ground see stems from the side, and runs in tiles ask for no proof
-    let may_prove = !scanner.is_assumed && params.statistics.is_none() && !free_segments.are_from_the_ground();
+    // scanners on the ground see stems from the side; parts of a survey are seen from the air
+    let is_from_air = params.statistics.is_some() || !free_segments.are_from_the_ground();
+    let may_prove = !scanner.is_assumed && is_from_air;
     let between_returns = match pulses.as_ref().filter(|_| may_prove) {
         Some(pulses) => Some(free_segments.between_returns(cloud, pulses, &params.free_segments, control)?),
         None => None,

@@ -7,6 +7,7 @@ mod proximity;
 mod tree;
 
 pub use belvedere_data::free_segments::FreeSegmentColumns;
+pub use columns::ends_of_pulse;
 pub(crate) use columns::lower_ends;
 pub(crate) use proximity::come_from_the_ground;
 

@@ -24,7 +24,7 @@ mod vertical;
 pub use flight_parts::{
     AngleVerdict, HeightOffset, PartVerdict, ScanAngleParams, ScanAnglePart, SensorEstimateParams, SensorPart,
 };
-pub use free_segments::{FreeSegmentColumns, FreeSegmentParams, FreeSegmentReport, FreeSegments};
+pub use free_segments::{FreeSegmentColumns, FreeSegmentParams, FreeSegmentReport, FreeSegments, ends_of_pulse};
 pub(crate) use free_segments::{GAP_M, come_from_the_ground, lower_ends};
 pub use group::{PulseReport, Pulses, group};
 pub(crate) use line_path::positions_on_paths;

@@ -62,7 +62,7 @@ pub use parallel_lines::ParallelLines;
 pub use points::{
     Answer, AnswerCounts, MAX_RANDOM_PAIRS, MAX_RANDOM_TARGETS, UnprovenAs, query_points, random_targets,
 };
-pub use proof::{Beside, Proof, ProofParams};
+pub use proof::{Beside, Proof, ProofParams, nearness_of};
 pub use segments::{Blocker, Crossing, Enclosure, LineOfSight, Obstruction, merged_crossings, random_pairs};
 pub use skyline::SkylinePoint;
 pub use surface::{Sides, SurfacePiece, SurfacePieces};

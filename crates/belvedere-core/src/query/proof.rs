@@ -85,7 +85,9 @@ pub fn nearness(free_segments: &FreeSegments) -> f64 {
     nearness_of(free_segments.lower_ends())
 }
 
-fn nearness_of(lower_ends: impl Iterator<Item = [f32; 3]>) -> f64 {
+/// [`nearness`] of pulses with these lower ends, local metres.
+#[must_use]
+pub fn nearness_of(lower_ends: impl Iterator<Item = [f32; 3]>) -> f64 {
     #[expect(clippy::cast_possible_truncation, reason = "`as` saturates")]
     let cell = |start: [f32; 3]| [0, 1].map(|i| (start[i] / COUNTING_CELL).floor() as i32);
     let mut cells: Vec<[i32; 2]> = lower_ends.map(cell).collect();
@@ -200,6 +202,24 @@ impl Proof {
     #[must_use]
     pub fn unproven_length(&self, target: [f64; 3], towards: [f64; 3], range: f64) -> f64 {
         self.length(target, towards, range, f64::INFINITY, |_| ())
+    }
+
+    /// How much of the piece of a line between two distances from `origin`, metres, runs through space that no pulse
+    /// came near to, or more than `enough` as soon as it is known to exceed that. Nothing is known of what lies beside
+    /// the survey or above its returns: all of the piece counts. For surveys of which a part is in memory at a time.
+    #[must_use]
+    pub fn unseen_length_between(
+        &self,
+        (origin, direction): ([f64; 3], [f64; 3]),
+        [from, to]: [f64; 2],
+        enough: f64,
+    ) -> f64 {
+        match self.index.get(|control| self.make_index(control)) {
+            Some(index) if !index.free_segments.is_empty() => {
+                self.length_inside(index, (origin, direction), [from, to], enough, |_| ())
+            }
+            _ => (to - from).max(0.0),
+        }
     }
 
     /// About [`Proof::unproven_length`], or `enough` or more as soon as it is so much: the length through boxes of the

@@ -26,6 +26,9 @@ const MAX_BYTES: u64 = 10_000_000_000;
 const SCENE: &str = "scene.npz";
 const GROUND: &str = "ground.npz";
 const READING: &str = "reading.npz";
+/// The folder of surveys in tiles, each a folder of its own, and the file that says what such a one is of.
+const TILES: &str = "tiles";
+const PLAN: &str = "plan.json";
 /// Names of the notes of an entry for what reading gave.
 const CLOUD: &str = "cloud";
 const NOTES: &str = "notes";
@@ -171,6 +174,20 @@ impl SceneCache {
         )
     }
 
+    /// The folder in which tiles of a survey of these files are kept, with all that belongs to them; its `plan.json`
+    /// names the files. `None` where these lie on a server or cannot be read. It counts as used now.
+    #[must_use]
+    pub fn survey_folder(&self, paths: &[PathBuf], options: &ReadOptions) -> Option<PathBuf> {
+        let folder = self.folder.join(TILES).join(of_files(paths, options)?);
+        mark_as_used(&folder.join(PLAN));
+        Some(folder)
+    }
+
+    /// Makes room for what was kept in the folder of a survey.
+    pub fn make_room_beside(&self, survey: &Path) {
+        self.make_room(survey);
+    }
+
     /// A store for the ground of a cloud.
     #[must_use]
     pub fn ground_of(&self, cloud: &CloudKey) -> Arc<dyn GroundStore> {
@@ -182,12 +199,10 @@ impl SceneCache {
     /// # Errors
     /// [`Error::Io`] for a folder that cannot be read; one that is not there is empty.
     pub fn entries(&self) -> Result<Vec<CacheEntry>> {
-        let scenes = self.files()?.into_iter().filter(|file| is_named(&file.path, SCENE));
+        let scenes = self.files()?.into_iter().filter(|file| file.path.is_dir() || is_named(&file.path, SCENE));
         let mut entries: Vec<CacheEntry> = scenes
             .map(|file| {
-                let notes = read_kept_notes(&file.path).ok();
-                let notes: Option<Value> = notes.and_then(|notes| serde_json::from_str(&notes).ok());
-                let name = notes.and_then(|notes| Some(notes["name"].as_str()?.to_owned()));
+                let name = if file.path.is_dir() { name_of_survey(&file.path) } else { name_of_scene(&file.path) };
                 CacheEntry { name: name.unwrap_or_else(|| "damaged".to_owned()), bytes: file.bytes, used: file.used }
             })
             .collect();
@@ -210,7 +225,7 @@ impl SceneCache {
     pub fn clear(&self) -> Result<u64> {
         let mut bytes = 0;
         for file in self.files()? {
-            match fs::remove_file(&file.path) {
+            match file.remove() {
                 Err(error) if error.kind() != std::io::ErrorKind::NotFound => return Err(Error::io(&file.path)(error)),
                 _ => bytes += file.bytes,
             }
@@ -239,7 +254,13 @@ impl SceneCache {
                 let metadata = path.metadata().ok()?;
                 Some(KeptFile { bytes: metadata.len(), used: metadata.modified().ok()?, path })
             });
-        Ok(files.collect())
+        let surveys = self.folder.join(TILES).read_dir().into_iter().flatten();
+        let surveys = surveys.filter_map(|row| {
+            let path = row.ok()?.path();
+            let used = path.join(PLAN).metadata().and_then(|plan| plan.modified()).ok()?;
+            Some(KeptFile { bytes: bytes_below(&path), used, path })
+        });
+        Ok(files.chain(surveys).collect())
     }
 
     /// Removes what was not used for longest, until the rest is small enough; never `newest`.
@@ -251,7 +272,7 @@ impl SceneCache {
             if bytes <= self.max_bytes {
                 break;
             }
-            if fs::remove_file(&file.path).is_ok() {
+            if file.remove().is_ok() {
                 bytes -= file.bytes;
             }
         }
@@ -297,11 +318,38 @@ impl GroundStore for GroundOfCloud {
     }
 }
 
-/// A file of the cache.
+/// A file of the cache, or the folder of a survey.
 struct KeptFile {
     path: PathBuf,
     bytes: u64,
     used: SystemTime,
+}
+
+impl KeptFile {
+    fn remove(&self) -> std::io::Result<()> {
+        if self.path.is_dir() { fs::remove_dir_all(&self.path) } else { fs::remove_file(&self.path) }
+    }
+}
+
+/// Bytes of all files below a folder.
+fn bytes_below(folder: &Path) -> u64 {
+    let of_row = |row: fs::DirEntry| match row.metadata() {
+        Ok(found) if found.is_dir() => bytes_below(&row.path()),
+        Ok(found) => found.len(),
+        Err(_) => 0,
+    };
+    folder.read_dir().into_iter().flatten().filter_map(std::result::Result::ok).map(of_row).sum()
+}
+
+fn name_of_scene(path: &Path) -> Option<String> {
+    let notes: Value = serde_json::from_str(&read_kept_notes(path).ok()?).ok()?;
+    Some(notes["name"].as_str()?.to_owned())
+}
+
+fn name_of_survey(folder: &Path) -> Option<String> {
+    let plan: Value = serde_json::from_slice(&fs::read(folder.join(PLAN)).ok()?).ok()?;
+    let names: Vec<&str> = plan["inputs"].as_array()?.iter().filter_map(|file| file["path"].as_str()).collect();
+    Some(format!("{}, in tiles", names.join(", ")))
 }
 
 fn is_named(path: &Path, kind: &str) -> bool {

@@ -7,13 +7,12 @@ use anyhow::Result;
 use belvedere::Error;
 use belvedere::apps::ask::scene::Whereabouts;
 use belvedere::apps::ask::{self, Context, SkyParts, SunPlace, Suns, ThroughTrees};
-use belvedere::apps::irradiance::PARTS;
 use belvedere::apps::shadow::Edges;
 use belvedere::apps::sun::zone_of_instant;
 use belvedere::apps::viewshed::OBSERVER_HEIGHT;
 use belvedere::crs::Crs;
 use belvedere::io::{read_geojson, read_horizon, read_mesh, read_tif, read_weather};
-use belvedere_tiles::{CellSizes, Plan, SideFile, TileQuestion, TileRadiation, Topic};
+use belvedere_tiles::{CellSizes, Plan, TileQuestion, Topic};
 
 /// Refuses questions that cannot be answered, before the survey is read.
 pub(super) fn check(arguments: &CityPlan) -> Result<()> {
@@ -140,17 +139,9 @@ pub(super) fn questions(arguments: &CityPlan, plan: &Plan, run: &mut CommandCont
     }
     if arguments.irradiance {
         let site = sun_place(arguments)?.site_at(&whereabouts, &mut context, None)?;
-        let params = radiation::params(&arguments.model);
-        let radiation = match &arguments.weather {
-            Some(file) => {
-                TileRadiation::Weather { file: SideFile::new(file)?, parts: arguments.model.parts.unwrap_or(PARTS) }
-            }
-            None => TileRadiation::ClearSky {
-                clear_sky: radiation::clear_sky(arguments.clear_sky, &arguments.model, &params),
-                year: arguments.when.year,
-            },
-        };
-        questions.push(TileQuestion::Irradiance { site, radiation, params });
+        let weather = arguments.weather.as_deref();
+        let year = arguments.when.year;
+        questions.push(radiation::of_tiles((weather, arguments.clear_sky), &arguments.model, year, site)?);
     }
     if arguments.sky_view {
         let sky = SkyParts::Even(arguments.direction_count);

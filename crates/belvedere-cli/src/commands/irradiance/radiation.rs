@@ -5,7 +5,10 @@ use crate::run::CommandContext;
 use anyhow::Result;
 use belvedere::apps::ask::Radiation;
 use belvedere::apps::irradiance::{BirdParams, CLEAR_SKY_YEAR, ClearSky, IrradianceParams, PARTS};
+use belvedere::apps::sun::Site;
 use belvedere::io::read_weather;
+use belvedere_tiles::{SideFile, TileQuestion, TileRadiation};
+use std::path::Path;
 use std::sync::Arc;
 
 pub(in crate::commands) fn params(model: &RadiationModel) -> IrradianceParams {
@@ -37,6 +40,21 @@ pub(in crate::commands) fn check_linke(choice: Option<ClearSkyChoice>, model: &R
         return Err(Usage("--linke needs --clear-sky ineichen".to_owned()).into());
     }
     Ok(())
+}
+
+/// The question about tiles of a survey that lies at a site.
+pub(in crate::commands) fn of_tiles(
+    (weather, choice): (Option<&Path>, Option<ClearSkyChoice>),
+    model: &RadiationModel,
+    year: i16,
+    site: Site,
+) -> Result<TileQuestion> {
+    let params = params(model);
+    let radiation = match weather {
+        Some(file) => TileRadiation::Weather { file: SideFile::new(file)?, parts: model.parts.unwrap_or(PARTS) },
+        None => TileRadiation::ClearSky { clear_sky: clear_sky(choice, model, &params), year },
+    };
+    Ok(TileQuestion::Irradiance { site, radiation, params })
 }
 
 /// Where radiation comes from; weather is read.

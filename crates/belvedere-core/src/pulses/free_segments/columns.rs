@@ -21,6 +21,13 @@ pub(crate) fn lower_ends(columns: &FreeSegmentColumns) -> impl Iterator<Item = [
     rows.filter_map(|row| columns.starts.get(row).copied())
 }
 
+/// Both ends of a pulse, local metres; `None` where it has no length.
+#[must_use]
+pub fn ends_of_pulse(columns: &FreeSegmentColumns, row: usize) -> Option<[[f64; 3]; 2]> {
+    let (_, start, direction, length) = piece(columns, row)?;
+    Some([start, std::array::from_fn(|axis| start[axis] + length * direction[axis])])
+}
+
 /// Way, start, unit vector and length of a pulse; `None` without length.
 fn piece(columns: &FreeSegmentColumns, row: usize) -> Option<(SegmentAxis, [f64; 3], [f64; 3], f64)> {
     let way = match columns.ways.get(row) {

@@ -1,0 +1,101 @@
+//! Surveys that do not fit into the memory that may be used: the same commands, in tiles or around the question.
+
+use crate::common::Workplace;
+use belvedere::io::{ReadBands, read_tif_bands};
+use serde_json::Value;
+
+/// A town of 90 m, as a file.
+fn town(place: &Workplace) -> Value {
+    place.summary("simulate town -o town --extent 90 --density 4")
+}
+
+fn bands(place: &Workplace, name: &str) -> Vec<Vec<u8>> {
+    let ReadBands::U8(bands) = read_tif_bands(place.path(name).as_path()).unwrap() else { panic!("{name}") };
+    bands.iter().map(|band| band.values().to_vec()).collect()
+}
+
+fn remarks(summary: &Value) -> Vec<String> {
+    let remarks = summary["remarks"].as_array().cloned().unwrap_or_default();
+    remarks.iter().map(|remark| remark["key"].as_str().unwrap().to_owned()).collect()
+}
+
+#[test]
+fn a_shadow_in_tiles_is_that_of_one_model_and_is_found_again() {
+    let place = Workplace::new();
+    town(&place);
+    let shadow = "shadow town/cloud.laz --sun 150,30 --cell 1 --target-height 1.5";
+    let whole = place.summary(&format!("{shadow} -o whole.tif --cache kept"));
+    assert!(!remarks(&whole).contains(&"in-tiles".to_owned()));
+    let tiled = place.summary(&format!("{shadow} -o tiled.tif -o tiled.png --memory 118M --cache kept"));
+    assert!(remarks(&tiled).contains(&"in-tiles".to_owned()), "{tiled}");
+    let (one, other) = (bands(&place, "whole.tif"), bands(&place, "tiled.tif"));
+    assert_eq!(one.len(), 2);
+    for (one, other) in one.iter().zip(&other) {
+        assert_eq!(one.len(), other.len());
+        let differ = one.iter().zip(other).filter(|(a, b)| a != b).count();
+        assert!(differ * 50 < one.len(), "{differ} of {}", one.len());
+    }
+    let lit = |summary: &Value, key: &str| summary[key]["mean"].as_f64().unwrap();
+    assert!(lit(&tiled, "lit") > 0.05 && lit(&tiled, "lit") < 0.95, "{tiled}");
+    assert!(place.path("tiled.png").is_file());
+    // what is done is taken over, by other questions too
+    let again = place.summary(&format!("{shadow} -o again.tif --memory 118M --cache kept"));
+    assert_eq!((again["balls_made"].as_u64(), again["answers_made"].as_u64()), (Some(0), Some(0)));
+    assert!(place.bytes("again.tif") == place.bytes("tiled.tif"));
+    let sky = place.summary("sky-view town/cloud.laz --directions 49 --cell 2 -o sky.tif --memory 118M --cache kept");
+    assert_eq!(sky["balls_made"].as_u64(), Some(0));
+    assert!(sky["sky_view_factor"]["mean"].as_f64().unwrap() > 0.2, "{sky}");
+    let listed = place.summary("cache --cache kept");
+    assert!(listed["scene"].to_string().contains("in tiles"), "{listed}");
+    place.summary("cache --clear --cache kept");
+    assert_eq!(place.summary("cache --cache kept")["megabytes"].as_f64(), Some(0.0));
+}
+
+#[test]
+fn without_a_cache_tiles_lie_beside_the_result_while_it_is_made() {
+    let place = Workplace::new();
+    town(&place);
+    let hours =
+        "sun-hours town/cloud.laz --date 2026-03-21 --time-step-min 60 --cell 2 --surface --no-cache --memory 118M";
+    let found = place.summary(&format!("{hours} -o hours.tif --zone UTC --location 52,4.4"));
+    assert!(found["sun_hours"]["mean"].as_f64().unwrap() > 1.0, "{found}");
+    assert!(!place.path("hours.tiles").exists());
+    // what is there already is not ours
+    std::fs::create_dir(place.path("hours.tiles")).unwrap();
+    place.refusal(2, &format!("{hours} -o hours.tif --zone UTC --location 52,4.4"), &["hours.tiles", "move it away"]);
+    assert!(place.path("hours.tiles").is_dir());
+}
+
+#[test]
+fn what_tiles_do_not_know_is_named_where_memory_was_typed() {
+    let place = Workplace::new();
+    town(&place);
+    for flag in ["--probability", "--soft", "--edge-mask mask.tif", "--trees opaque", "--shell 0.1", "-o points.laz"] {
+        let line = format!("shadow town/cloud.laz --sun 150,30 -o out.tif {flag} --memory 118M --no-cache");
+        place.refusal(2, &line, &[flag.split(' ').next().unwrap(), "in tiles"]);
+    }
+}
+
+#[test]
+fn a_question_about_a_place_reads_what_is_around_it() {
+    let place = Workplace::new();
+    place.summary("simulate town -o town --extent 420 --density 1");
+    let info = place.summary("info town/cloud.laz");
+    let corner = |key: &str, axis: usize| info[key][axis].as_f64().unwrap();
+    let [x, y] = [0, 1].map(|axis| corner("min_corner", axis) + 60.0);
+    let view = format!("viewshed town/cloud.laz --observer {x},{y},30 --max-distance 40 --cell 1 --no-cache");
+    let whole = place.summary(&format!("{view} -o whole.tif"));
+    let part = place.summary(&format!("{view} -o part.tif --memory 150M"));
+    assert!(remarks(&part).contains(&"part-of-survey".to_owned()), "{part}");
+    assert!(part["points"].as_u64() < whole["points"].as_u64());
+    let (one, other) = (bands(&place, "whole.tif"), bands(&place, "part.tif"));
+    assert_eq!(one[0].len(), other[0].len());
+    let differ = one[0].iter().zip(&other[0]).filter(|(a, b)| a != b).count();
+    assert!(differ * 50 < one[0].len(), "{differ} of {}", one[0].len());
+    let (x2, y2) = (x + 20.0, y + 10.0);
+    let line = format!("line-of-sight town/cloud.laz --observer {x},{y},30 --target {x2},{y2},28 --no-cache");
+    let one = place.summary(&line);
+    let other = place.summary(&format!("{line} --memory 150M"));
+    assert!(remarks(&other).contains(&"part-of-survey".to_owned()), "{other}");
+    assert_eq!(one["answer"], other["answer"]);
+}

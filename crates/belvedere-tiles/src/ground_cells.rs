@@ -1,0 +1,137 @@
+//! Cells on the ground. It is found in squares that are the same for all tiles, so that tiles make no difference.
+
+use crate::answer::EDGE_CELLS;
+use crate::cleared::{ClearedSurface, classed};
+use crate::grid::{MapArea, TileId, square_area, square_at};
+use crate::plan::Plan;
+use crate::window;
+use belvedere::PointCloud;
+use belvedere::Result;
+use belvedere::apps::targets::{CellLevel, TargetLayout, Targets};
+use belvedere::control::Control;
+use belvedere::ground::{Ground, GroundParams, MapGrid};
+use belvedere::query::BlockingTriangles;
+use belvedere::raster::Raster;
+
+/// Side of a square, metres.
+const SQUARE: f64 = 256.0;
+/// How far around a square points show its ground, metres: as far as a height is interpolated, and half as far again,
+/// so that the triangles below large halls are whole.
+const AROUND: f64 = 96.0;
+
+/// The area whose points show the ground of the squares that `area` meets.
+pub(crate) fn area_around(area: &MapArea) -> MapArea {
+    let mut around = squares(area).map(|square| square.widened(AROUND));
+    let first = around.next().unwrap_or(*area);
+    around.fold(first, |all, square| all.joined(&square))
+}
+
+/// The squares that meet an area.
+fn squares(area: &MapArea) -> impl Iterator<Item = MapArea> + use<> {
+    #[expect(clippy::cast_possible_truncation, reason = "local positions are f32")]
+    let number = |place: [f64; 2]| square_at(place.map(|v| v as f32), SQUARE);
+    let (area, [east, north], [last_east, last_north]) = (*area, number(area.low), number(area.high));
+    (north..=last_north)
+        .flat_map(move |north| (east..=last_east).map(move |east| square_area([east, north], SQUARE)))
+        .filter(move |square| square.meets(&area))
+}
+
+/// The cells of a tile, of a side in metres, as targets on the ground, those under a cover or inside what was `added`
+/// left out; how many these are, and how many points were read.
+pub(crate) fn ground_cells(
+    plan: &Plan,
+    (tile, cell): (TileId, f64),
+    added: Option<&BlockingTriangles>,
+    control: &Control<'_>,
+) -> Result<(Targets, [usize; 2])> {
+    let core = plan.grid().core(tile);
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a whole number of cells")]
+    let count = (plan.tile_size / cell).round() as usize;
+    let grid = MapGrid { corner: [core.low[0], core.high[1]], cell, width: count, height: count };
+    let mut positions = vec![[f32::NAN; 3]; count * count];
+    let mut heights = Raster::filled(count, count, f32::NAN);
+    let (mut covered, mut points) = (0, 0);
+    // a cell that has a part in it
+    let (low, high) = plan.bounds().on_map();
+    let survey = MapArea { low, high }.widened(cell / 2.0);
+    for square in squares(&core) {
+        control.check()?;
+        let cloud = control.stage("reading", 0, || window::read(plan, &square.widened(AROUND), control))?;
+        points += cloud.len();
+        let found =
+            control.stage("computing ground", 0, || of_square(plan, (&square, cell), &cloud, added, control))?;
+        let Some(found) = found else { continue };
+        let TargetLayout::Cells(ground) = &found.layout else { continue };
+        let is_cell = |middle: [f64; 2]| square.holds(middle) && survey.holds(middle);
+        for (own, position) in positions.iter_mut().enumerate() {
+            let middle = grid.center(own % count, own / count);
+            let Some([column, row]) = ground.grid.cell_of(middle).filter(|_| is_cell(middle)) else { continue };
+            let at = row * ground.grid.width + column;
+            let height = ground.heights.get(column, row).unwrap_or(f32::NAN);
+            *position = found.positions.get(at).copied().unwrap_or([f32::NAN; 3]);
+            covered += usize::from(height.is_finite() && position[2].is_nan());
+            if let Some(value) = heights.values_mut().get_mut(own) {
+                *value = height;
+            }
+        }
+    }
+    let ground = Ground { grid, heights, gaps: Raster::filled(count, count, f32::NAN) };
+    let layout = TargetLayout::Cells(Box::new(ground));
+    let targets = Targets {
+        frame: plan.frame()?,
+        positions,
+        normals: None,
+        weights: Vec::new(),
+        groups: Vec::new(),
+        layout,
+        on_added: Vec::new(),
+    };
+    Ok((targets, [covered, points]))
+}
+
+/// The cells of a square and of its edge; `None` where no ground is known.
+fn of_square(
+    plan: &Plan,
+    (square, cell): (&MapArea, f64),
+    cloud: &PointCloud,
+    added: Option<&BlockingTriangles>,
+    control: &Control<'_>,
+) -> Result<Option<Targets>> {
+    let points = classed(cloud, 0..cloud.len());
+    let cleared = ClearedSurface::new(plan, (&square.widened(AROUND), square), &points, &[], control)?;
+    let rows = |goes: bool| -> Vec<u32> {
+        (0..).zip(&cleared.is_cleared).filter(|(_, is_cleared)| **is_cleared == goes).map(|(row, _)| row).collect()
+    };
+    let gone = rows(true);
+    let left;
+    let cloud = if gone.is_empty() {
+        cloud
+    } else {
+        let mut rest = cloud.select(&rows(false));
+        let places = gone.iter().filter_map(|&row| cloud.positions.get(row as usize));
+        rest.cleared_places.extend(places.map(|&[x, y, _]| [x, y]));
+        left = rest;
+        &left
+    };
+    let edge = square.widened(EDGE_CELLS as f64 * cell);
+    let [x, y, _] = plan.frame.origin;
+    let grid = MapGrid::covering(edge.low, edge.high, cell, [x, y])?;
+    let params = GroundParams { points: plan.ground, ..GroundParams::default() };
+    let ground = match Ground::of_cloud(cloud, grid, &params, control) {
+        Ok((ground, _)) => ground,
+        Err(error) if window::is_nothing(&error) => return Ok(None),
+        Err(error) => return Err(error),
+    };
+    let (mut targets, _) = Targets::of_cells(cloud, ground, &plan.targets, control)?;
+    if let Some(added) = added {
+        targets.set_on_added(added, &plan.targets);
+    }
+    Ok(Some(targets))
+}
+
+impl Plan {
+    /// Whether cells lie on the ground rather than on top of what stands there.
+    pub(crate) fn is_on_ground(&self) -> bool {
+        self.targets.level == CellLevel::Ground
+    }
+}

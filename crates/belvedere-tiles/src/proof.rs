@@ -1,0 +1,242 @@
+//! What pulses prove of lines of sight that cross tiles: block by block, so that memory does not grow with their length
+//! and tiles make no difference.
+//!
+//! With the balls of a tile the pulses are kept that pass over it. A line of sight is cut at the sides of blocks of
+//! 64 m, and the length of each piece that no pulse of the block came near to is added up in whole numbers, so that no
+//! order of blocks changes the sum.
+
+use crate::grid::{CELL, MapArea, TileId, block_area, square_at};
+use crate::obstacles::ObstacleSearch;
+use crate::plan::Plan;
+use belvedere::control::Control;
+use belvedere::pulses::{FreeSegmentColumns, ends_of_pulse};
+use belvedere::query::{Proof, ProofParams};
+use belvedere::vector::piece_in_box;
+use belvedere::{PointCloud, Result};
+use rayon::prelude::*;
+use std::collections::btree_map::Entry;
+use std::collections::{BTreeMap, HashMap};
+use std::path::Path;
+
+/// How far beside a tile its pulses are kept, metres, beside the nearness: more than positions are rounded by.
+const ROOM: f64 = 0.1;
+/// Parts of a metre that unseen lengths are counted in.
+const STEPS: f64 = 65_536.0;
+/// Tiles whose pulses stay in memory when others are read.
+const MAX_TILES: usize = 4;
+/// Lines of sight and pulses handed to a thread at once, where each takes little and where it takes more.
+const CHUNK: usize = 1024;
+const FEW: usize = 64;
+
+/// A line of sight that nothing blocks.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct FreeLine {
+    /// Local metres.
+    pub(crate) target: [f64; 3],
+    /// Unit vector.
+    pub(crate) towards: [f64; 3],
+    /// Its length, metres; infinite without an end.
+    pub(crate) range: f64,
+}
+
+/// How near a pulse must pass for a place to count as seen, metres: by the pulses of some places all over a survey
+/// ([`belvedere::query::nearness_of`]).
+pub(crate) fn nearness(places: &PointCloud) -> f64 {
+    let numbers = places.attributes.return_number.as_deref();
+    let is_first = |(row, _): &(usize, &[f32; 3])| numbers.is_none_or(|numbers| numbers[*row] <= 1);
+    belvedere::query::nearness_of(places.positions.iter().enumerate().filter(is_first).map(|(_, &p)| p))
+}
+
+/// The pulses that pass over a tile.
+pub(crate) fn of_tile(pulses: &FreeSegmentColumns, core: &MapArea, nearness: f64) -> FreeSegmentColumns {
+    let near = core.widened(nearness + ROOM);
+    #[expect(clippy::cast_possible_truncation, reason = "points are numbered with 32 bits")]
+    let rows = (0..pulses.starts.len() as u32).into_par_iter().with_min_len(CHUNK);
+    let over = rows.filter(|&row| ends_of_pulse(pulses, row as usize).is_some_and(|ends| passes_over(ends, &near)));
+    // in one order, whatever that of the index was
+    in_order(&pulses.select(&over.collect::<Vec<u32>>()))
+}
+
+/// Whether a piece of a line passes over an area.
+fn passes_over([start, end]: [[f64; 3]; 2], area: &MapArea) -> bool {
+    let sides = [0, 1].map(|axis| [area.low[axis] - start[axis], area.high[axis] - start[axis]]);
+    piece_in_box(sides, [end[0] - start[0], end[1] - start[1]], [0.0, 1.0]).is_some()
+}
+
+/// Which of `lines` run through more unseen space than a proof tolerates.
+///
+/// # Errors
+/// Those of reading pulses, and [`belvedere::Error::Cancelled`].
+pub(crate) fn unproven(
+    (plan, run): (&Plan, &Path),
+    lines: &[FreeLine],
+    found: &mut ObstacleSearch,
+    control: &Control<'_>,
+) -> Result<Vec<bool>> {
+    let params = ProofParams { nearness: Some(plan.nearness), ..ProofParams::default() };
+    let (enough, most) = (steps(params.tolerance), params.tolerance + 1.0);
+    let (low, high) = plan.bounds().on_map();
+    let survey = MapArea { low, high };
+    let top = f64::from(plan.statistics.top + plan.model().free_segments.headroom);
+    // below the top and over the survey
+    let piece = |line: &FreeLine| {
+        let [east, north] = sides_of(&survey, line.target);
+        let up = [f64::NEG_INFINITY, top - line.target[2]];
+        piece_in_box([east, north, up], line.towards, [0.0, line.range]).filter(|[from, to]| to > from)
+    };
+    let pieces: Vec<Option<[f64; 2]>> = lines.par_iter().with_min_len(CHUNK).map(piece).collect();
+    let mut unseen = vec![0_u32; lines.len()];
+    let mut of_blocks: Vec<([i32; 2], Vec<u32>)> = lines_of_blocks(lines, &pieces).into_iter().collect();
+    // those of a tile follow each other
+    of_blocks.sort_by_cached_key(|(block, _)| (tiles_over(plan, *block).next(), *block));
+    let mut pulses = TilePulses::default();
+    for (block, rows) in of_blocks {
+        control.check()?;
+        let waiting: Vec<u32> = rows.into_iter().filter(|&row| unseen[row as usize] <= enough).collect();
+        if waiting.is_empty() {
+            continue;
+        }
+        let proof = Proof::from_columns(pulses.over((plan, run), block, found, control)?, &params)?;
+        proof.prepare(control)?;
+        let area = block_area(block);
+        let length = |&row: &u32| {
+            let line = lines.get(row as usize)?;
+            let flat = [line.towards[0], line.towards[1]];
+            let own = piece_in_box(sides_of(&area, line.target), flat, (*pieces.get(row as usize)?)?)?;
+            Some((row, steps(proof.unseen_length_between((line.target, line.towards), own, most))))
+        };
+        let lengths: Vec<(u32, u32)> = waiting.par_iter().with_min_len(FEW).filter_map(length).collect();
+        for (row, length) in lengths {
+            unseen[row as usize] = unseen[row as usize].saturating_add(length);
+        }
+    }
+    Ok(unseen.into_iter().map(|unseen| unseen > enough).collect())
+}
+
+/// A length in whole numbers.
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "`as` saturates")]
+fn steps(metres: f64) -> u32 {
+    (metres * STEPS).round() as u32
+}
+
+/// The sides of an area as seen from a place.
+fn sides_of(area: &MapArea, place: [f64; 3]) -> [[f64; 2]; 2] {
+    [0, 1].map(|axis| [area.low[axis] - place[axis], area.high[axis] - place[axis]])
+}
+
+/// The blocks of 64 m that lines run through, and which these are.
+fn lines_of_blocks(lines: &[FreeLine], pieces: &[Option<[f64; 2]>]) -> BTreeMap<[i32; 2], Vec<u32>> {
+    let mut blocks: BTreeMap<[i32; 2], Vec<u32>> = BTreeMap::new();
+    for (row, (line, piece)) in (0_u32..).zip(lines.iter().zip(pieces)) {
+        let Some([from, to]) = *piece else { continue };
+        let at = |along: f64, axis: usize| line.target[axis] + along * line.towards[axis];
+        #[expect(clippy::cast_possible_truncation, reason = "local positions are f32")]
+        let block = |along: f64| square_at([at(along, 0) as f32, at(along, 1) as f32], CELL);
+        let ends = [block(from), block(to)];
+        let span = |axis: usize| {
+            let [a, b] = ends.map(|block| block[axis]);
+            a.min(b) - 1..=a.max(b) + 1
+        };
+        for north in span(1) {
+            for east in span(0) {
+                let sides = sides_of(&block_area([east, north]), line.target);
+                let own = piece_in_box(sides, [line.towards[0], line.towards[1]], [from, to]);
+                if own.is_some_and(|[from, to]| to > from) {
+                    blocks.entry([east, north]).or_default().push(row);
+                }
+            }
+        }
+    }
+    blocks
+}
+
+/// The tiles that a block reaches into, from the south-west.
+fn tiles_over(plan: &Plan, block: [i32; 2]) -> impl Iterator<Item = TileId> {
+    let (grid, area) = (plan.grid(), block_area(block));
+    let (first, last) = (grid.tile_of(area.low), grid.tile_of(area.high));
+    let tiles = (first.north..=last.north)
+        .flat_map(move |north| (first.east..=last.east).map(move |east| TileId { east, north }));
+    tiles.filter(move |&tile| grid.core(tile).meets(&area))
+}
+
+/// The pulses of the tiles that were read last.
+#[derive(Default)]
+struct TilePulses(BTreeMap<TileId, PulsesOfBlocks>);
+
+/// The pulses of a tile, and the rows of those that pass over each of its blocks.
+struct PulsesOfBlocks {
+    pulses: FreeSegmentColumns,
+    rows: HashMap<[i32; 2], Vec<u32>>,
+}
+
+impl TilePulses {
+    /// The pulses over a block, in an order that does not depend on the tiles.
+    fn over(
+        &mut self,
+        (plan, run): (&Plan, &Path),
+        block: [i32; 2],
+        found: &mut ObstacleSearch,
+        control: &Control<'_>,
+    ) -> Result<FreeSegmentColumns> {
+        let tiles: Vec<TileId> = tiles_over(plan, block).collect();
+        if self.0.len() > MAX_TILES {
+            self.0.retain(|tile, _| tiles.contains(tile));
+        }
+        let mut all = FreeSegmentColumns::default();
+        for &tile in &tiles {
+            let PulsesOfBlocks { pulses, rows } = match self.0.entry(tile) {
+                Entry::Occupied(kept) => kept.into_mut(),
+                Entry::Vacant(place) => {
+                    let read = control.stage("reading pulses", 0, || found.pulses(plan, run, tile, control))?;
+                    place.insert(PulsesOfBlocks::new(read.unwrap_or_default(), plan.nearness))
+                }
+            };
+            let Some(rows) = rows.get(&block) else { continue };
+            let own = pulses.select(rows);
+            all.top = own.top;
+            all.append(own);
+        }
+        Ok(in_order(&all))
+    }
+}
+
+impl PulsesOfBlocks {
+    fn new(pulses: FreeSegmentColumns, nearness: f64) -> Self {
+        let blocks_of = |row: u32| {
+            let ends = ends_of_pulse(&pulses, row as usize);
+            let area = ends.map(|[start, end]| {
+                let low = [0, 1].map(|axis| start[axis].min(end[axis]));
+                let high = [0, 1].map(|axis| start[axis].max(end[axis]));
+                MapArea { low, high }.widened(nearness + ROOM)
+            });
+            let blocks: Vec<[i32; 2]> = area.into_iter().flat_map(|area| area.blocks().collect::<Vec<_>>()).collect();
+            let is_over = move |block: &[i32; 2]| {
+                ends.is_some_and(|ends| passes_over(ends, &block_area(*block).widened(nearness + ROOM)))
+            };
+            blocks.into_iter().filter(is_over).map(move |block| (block, row))
+        };
+        #[expect(clippy::cast_possible_truncation, reason = "points are numbered with 32 bits")]
+        let count = pulses.starts.len() as u32;
+        let mut pairs: Vec<([i32; 2], u32)> =
+            (0..count).into_par_iter().with_min_len(CHUNK).flat_map_iter(blocks_of).collect();
+        pairs.par_sort_unstable();
+        let of_block = |pairs: &[([i32; 2], u32)]| (pairs[0].0, pairs.iter().map(|pair| pair.1).collect());
+        let rows = pairs.chunk_by(|a, b| a.0 == b.0).map(of_block).collect();
+        Self { pulses, rows }
+    }
+}
+
+/// Pulses by their numbers, each once: tiles beside each other both keep those at their common side.
+fn in_order(pulses: &FreeSegmentColumns) -> FreeSegmentColumns {
+    let key = |row: u32| {
+        let row = row as usize;
+        let start = pulses.starts.get(row).map(|start| start.map(f32::to_bits));
+        let length = pulses.lengths.get(row).map(|length| length.to_bits());
+        (start, pulses.slopes.get(row), length, pulses.ways.get(row))
+    };
+    #[expect(clippy::cast_possible_truncation, reason = "points are numbered with 32 bits")]
+    let mut rows: Vec<u32> = (0..pulses.starts.len() as u32).collect();
+    rows.par_sort_unstable_by(|&a, &b| key(a).cmp(&key(b)));
+    rows.dedup_by(|a, b| key(*a) == key(*b));
+    pulses.select(&rows)
+}
