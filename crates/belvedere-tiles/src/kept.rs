@@ -6,7 +6,7 @@ use crate::make_plan::PlanParams;
 use crate::plan::Plan;
 use crate::sealed::sealed;
 use belvedere::control::Control;
-use belvedere::io::{cloud_files, read_las_head};
+use belvedere::io::{cloud_files, read_las_head, web_address};
 use belvedere::{Error, Result};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -15,11 +15,17 @@ use std::path::{Path, PathBuf};
 const BYTES_PER_POINT: u64 = 600;
 const MIN_BYTES: u64 = 100_000_000;
 
+/// Most files on a server whose headers are looked at: each is a request or two.
+const MAX_REMOTE: usize = 64;
+
 /// Memory that one model of all these files takes, bytes: what tiles are for where that is too much. `None` for files
-/// of which tiles cannot be made, such as tables of points.
+/// of which tiles cannot be made, such as tables of points, and for many files on servers.
 #[must_use]
 pub fn memory_of_whole(clouds: &[PathBuf]) -> Option<u64> {
     let files = cloud_files(clouds).ok()?;
+    if files.iter().filter(|file| web_address(file).is_some()).count() > MAX_REMOTE {
+        return None;
+    }
     let points = files.iter().map(|file| Some(read_las_head(file.as_path()).ok()?.points));
     let points: u64 = points.sum::<Option<u64>>()?;
     Some(points.saturating_mul(BYTES_PER_POINT).saturating_add(MIN_BYTES))

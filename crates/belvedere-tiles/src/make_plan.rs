@@ -1,7 +1,7 @@
 //! From the files of a survey to the plan of its tiles.
 
 use crate::cell_sizes::{CellSizes, MIN_TILE};
-use crate::grid::MapArea;
+use crate::grid::{CELL, MapArea};
 use crate::inputs::{InputFile, NOWHERE, PIECE_ROWS, PointColumns, remarks_on_file};
 use crate::plan::{LAYOUT, Plan, PlanFrame, on_surface, without_ground};
 use crate::proof;
@@ -39,7 +39,7 @@ pub struct PlanParams {
     /// Places that the survey must hold, in its coordinates: one outside is refused before points are read. Default
     /// none.
     pub places: Vec<[f64; 2]>,
-    /// Most memory that a tile may take, bytes: tiles are quartered until the largest fits. `None` for any.
+    /// Most memory that a tile may take, bytes: tiles are made smaller until the largest fits. `None` for any.
     pub memory: Option<u64>,
     /// Name and version of the program.
     pub program: String,
@@ -131,11 +131,15 @@ impl Plan {
         }
     }
 
-    /// This with tiles that are quartered until the largest fits into the memory, bytes: their size changes no result.
+    /// This with smaller tiles, until the largest fits into the memory, bytes: their size changes no result.
     pub(crate) fn fitting(mut self, memory: u64) -> Result<Self> {
         let (size, needed) = (self.tile_size, self.estimate().memory_bytes);
         while self.estimate().memory_bytes > memory {
-            if self.tile_size / 2.0 < MIN_TILE || !self.cells.divide(self.tile_size / 2.0) {
+            let mut smaller = next_smaller(self.tile_size);
+            while smaller >= MIN_TILE && !self.cells.divide(smaller) {
+                smaller = next_smaller(smaller);
+            }
+            if smaller < MIN_TILE {
                 let megabytes = |bytes: u64| bytes as f64 / 1e6;
                 return Err(Error::InvalidParameter {
                     parameter: Parameter::TileMemory,
@@ -149,11 +153,17 @@ impl Plan {
                     expected: "enough for a small tile with what is around it",
                 });
             }
-            self.tile_size /= 2.0;
+            self.tile_size = smaller;
             self.tiles = self.tiles_with_cells();
         }
         Ok(self)
     }
+}
+
+/// The next smaller side of a tile, metres: whole blocks, which read the fewest points, and halves of one.
+fn next_smaller(size: f64) -> f64 {
+    let blocks = (size / CELL).ceil() - 1.0;
+    if blocks >= 1.0 { blocks * CELL } else { size / 2.0 }
 }
 
 /// Some of many points, evenly.

@@ -145,7 +145,7 @@ pub(crate) struct CityPlan {
     pub(crate) tile_size: f64,
     /// Memory that a tile may use, such as 3G or 800M [default: no limit]
     ///
-    /// If the largest tile is estimated to need more, the side of all tiles is halved until it fits.
+    /// If the largest tile is estimated to need more, all tiles are made smaller until it fits.
     #[arg(long, value_name = "SIZE", help_heading = "Tiles")]
     pub(crate) memory: Option<MemoryAmount>,
     /// Folder for the plan and the results; created if it does not exist

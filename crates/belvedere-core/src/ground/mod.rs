@@ -182,17 +182,21 @@ impl Ground {
         }
         let GroundRows { rows, from, doubted_count } = tested_points(cloud, params, control)?;
         let points: Vec<[f32; 3]> = rows.iter().filter_map(|&row| cloud.positions.get(row as usize).copied()).collect();
-        let mut ground = Self::of_points(&points, grid, params.reach, control)?;
         let left = cloud.positions.iter().map(|p| [f64::from(p[0]), f64::from(p[1])]);
         let returns = left.chain(cloud.cleared_places.iter().map(|place| place.map(f64::from)));
-        let near = cells_near_returns(returns, &grid, params.max_gap_from_returns);
+        let shift = || match from {
+            GroundPoints::Found => Ok(None),
+            _ => shifted::shift_of(cloud, &rows, &points, control),
+        };
+        // most of each is one thread's work
+        let (ground, (near, shift)) = rayon::join(
+            || Self::of_points(&points, grid, params.reach, control),
+            || rayon::join(|| cells_near_returns(returns, &grid, params.max_gap_from_returns), shift),
+        );
+        let (mut ground, shift) = (ground?, shift?);
         for (height, _) in ground.heights.values_mut().iter_mut().zip(near).filter(|(_, is_near)| !is_near) {
             *height = f32::NAN;
         }
-        let shift = match from {
-            GroundPoints::Found => None,
-            _ => shifted::shift_of(cloud, &rows, &points, control)?,
-        };
         let cell_count = ground.heights.values().iter().filter(|h| h.is_finite()).count();
         Ok((ground, GroundReport { from, point_count: points.len(), doubted_count, shift, cell_count }))
     }
@@ -203,11 +207,12 @@ impl Ground {
     /// # Errors
     /// [`Error::InvalidParameter`] for a point that is not finite, [`Error::Cancelled`].
     pub fn of_points(points: &[[f32; 3]], grid: MapGrid, reach: f64, control: &Control<'_>) -> Result<Self> {
-        let mut heights = triangulate::heights(points, &grid)?;
-        control.check()?;
         // the plane: distances and neighbours on the map
         let flat: Vec<[f32; 3]> = points.iter().map(|p| [p[0], p[1], 0.0]).collect();
-        let index = NeighborIndex::new(&flat, control)?;
+        let (heights, index) =
+            rayon::join(|| triangulate::heights(points, &grid), || NeighborIndex::new(&flat, control));
+        let (mut heights, index) = (heights?, index?);
+        control.check()?;
         let mut gaps = Raster::filled(grid.width, grid.height, f32::INFINITY);
         #[expect(clippy::cast_possible_truncation, reason = "a length in metres")]
         let reach = reach.min(1e6) as f32;

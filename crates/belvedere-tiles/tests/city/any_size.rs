@@ -95,11 +95,6 @@ fn a_kept_survey_is_looked_at_once_and_its_balls_serve_all_questions() {
     assert!(again == first && made == 0, "{made}");
     let (_, other, made) = shadow(&folder, &params(&clouds, 64.0), [220.0, 40.0]);
     assert!(other != first && made == 0, "{made}");
-    // less memory has smaller tiles, and the same answer
-    let memory = plan.estimate().memory_bytes - 1;
-    let less = PlanParams { memory: Some(memory), ..params(&clouds, 64.0) };
-    let (smaller, cut, _) = shadow(&folder, &less, [140.0, 25.0]);
-    assert!(smaller.tile_size < plan.tile_size && cut == first, "{}", smaller.tile_size);
     // pulses that were damaged are made again
     let balls = walk(&folder).into_iter().filter(|path| path.to_string_lossy().contains(".pulses."));
     for path in balls {
@@ -111,6 +106,20 @@ fn a_kept_survey_is_looked_at_once_and_its_balls_serve_all_questions() {
     let (_, mended, made) = shadow(&folder, &params(&clouds, 64.0), [60.0, 15.0]);
     let (_, expected, _) = shadow(&place.path().join("new"), &params(&clouds, 64.0), [60.0, 15.0]);
     assert!(mended == expected && made == plan.tiles.len(), "{made}");
+}
+
+#[test]
+fn less_memory_has_smaller_tiles_of_the_survey_that_is_kept() {
+    let place = tempfile::tempdir().unwrap();
+    let clouds = write_town(place.path(), 200.0, 1.0);
+    let folder = place.path().join("kept");
+    let kept = |memory: Option<u64>| {
+        Plan::kept_in(&folder, &PlanParams { memory, ..params(&clouds, 512.0) }, &Control::none()).unwrap()
+    };
+    let first = kept(None);
+    let less = kept(Some(first.estimate().memory_bytes - 1_000_000));
+    assert!(less.tile_size < first.tile_size && less.tiles.len() > first.tiles.len(), "{}", less.tile_size);
+    assert_eq!(kept(None), first);
 }
 
 /// All files below a folder.

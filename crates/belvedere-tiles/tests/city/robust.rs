@@ -329,7 +329,7 @@ fn points_that_the_plan_counted_and_the_run_does_not_find_are_an_error() {
 }
 
 #[test]
-fn tiles_are_quartered_until_they_fit_into_the_memory_and_sizes_out_of_range_are_refused() {
+fn tiles_are_made_smaller_until_they_fit_into_the_memory_and_sizes_out_of_range_are_refused() {
     let place = tempfile::tempdir().unwrap();
     let params = PlanParams { clouds: write_town(place.path(), 200.0, 1.0), ..PlanParams::default() };
     let make = |params: &PlanParams| Plan::make(params, &Control::none());
@@ -338,7 +338,8 @@ fn tiles_are_quartered_until_they_fit_into_the_memory_and_sizes_out_of_range_are
     let fitting = make(&PlanParams { memory: Some(memory), ..params.clone() }).unwrap();
     assert!(fitting.tile_size < whole.tile_size && fitting.estimate().memory_bytes <= memory);
     // no smaller than needed, and otherwise the plan of that size
-    let larger = make(&PlanParams { tile_size: fitting.tile_size * 2.0, ..params.clone() }).unwrap();
+    assert!(fitting.tile_size % 64.0 == 0.0, "{}", fitting.tile_size);
+    let larger = make(&PlanParams { tile_size: fitting.tile_size + 64.0, ..params.clone() }).unwrap();
     assert!(larger.estimate().memory_bytes > memory);
     assert_eq!(fitting, make(&PlanParams { tile_size: fitting.tile_size, ..params.clone() }).unwrap());
     let error = make(&PlanParams { memory: Some(1_000_000), ..params.clone() }).unwrap_err().to_string();
