@@ -2,7 +2,7 @@
 
 use crate::cleared::{ClassedPoint, ClearedSurface, classed};
 use crate::grid::TileId;
-use crate::ground_cells::ground_cells;
+use crate::ground_cells::{GroundSquares, ground_cells};
 use crate::lines::AreaLines;
 use crate::obstacles::{ObstacleSearch, rule};
 use crate::parts::TileObstacles;
@@ -51,6 +51,21 @@ pub(crate) struct TileTask<'a> {
     pub(crate) max_balls: usize,
 }
 
+/// What answers share: those for one tile, and those for tiles beside each other.
+#[derive(Default)]
+pub(crate) struct SharedSurfaces {
+    /// That of the last answer for the tile, which may be on the same cells.
+    last: Option<TileSurface>,
+    ground: GroundSquares,
+}
+
+impl SharedSurfaces {
+    /// Forgets the cells of the last tile.
+    pub(crate) fn next_tile(&mut self) {
+        self.last = None;
+    }
+}
+
 /// Cells of a tile on the ground, or on top of what stands there, or will.
 pub(crate) struct TileSurface {
     /// Side of a cell, metres.
@@ -70,7 +85,7 @@ fn area_of_cells(plan: &Plan, tile: TileId, cell: f64) -> crate::grid::MapArea {
 
 /// Answers a question for the cells of a tile, with the balls that are in the folder of the
 /// run, and writes the answer; its record is to be written next. Where balls that can matter are missing, answers are
-/// unproven. `last` is the surface of the last answer for the tile, which may be on the same cells.
+/// unproven. `surfaces` are those of answers before.
 ///
 /// # Errors
 /// Those of reading the files and the balls, and of writing.
@@ -79,7 +94,7 @@ pub(crate) fn answer(
     run: &Path,
     task: TileTask<'_>,
     tile: TileId,
-    last: &mut Option<TileSurface>,
+    surfaces: &mut SharedSurfaces,
     control: &Control<'_>,
 ) -> Result<TileRecord> {
     let TileTask { question, prepared, others, max_balls } = task;
@@ -91,11 +106,11 @@ pub(crate) fn answer(
         return nothing(0);
     }
     let cell = plan.cells.of(question);
-    let surface = match last.take().filter(|last| last.cell == cell) {
+    let surface = match surfaces.last.take().filter(|last| last.cell == cell) {
         Some(surface) => surface,
-        None => TileSurface::new(plan, tile, cell, others, control)?,
+        None => TileSurface::new(plan, (tile, cell), &mut surfaces.ground, others, control)?,
     };
-    let TileSurface { points, covered, targets, .. } = last.insert(surface);
+    let TileSurface { points, covered, targets, .. } = surfaces.last.insert(surface);
     let (points, covered) = (*points, *covered);
     let (cells, TargetLayout::Cells(ground)) = (targets.target_count(), &targets.layout) else {
         return nothing(points);
@@ -152,9 +167,16 @@ pub(crate) fn answer(
 }
 
 impl TileSurface {
-    fn new(plan: &Plan, tile: TileId, cell: f64, others: &Others, control: &Control<'_>) -> Result<Self> {
+    fn new(
+        plan: &Plan,
+        (tile, cell): (TileId, f64),
+        ground: &mut GroundSquares,
+        others: &Others,
+        control: &Control<'_>,
+    ) -> Result<Self> {
         if plan.is_on_ground() {
-            let (targets, [covered, points]) = ground_cells(plan, (tile, cell), others.added.as_ref(), control)?;
+            let (targets, [covered, points]) =
+                ground_cells(plan, (tile, cell), ground, others.added.as_ref(), control)?;
             return Ok(Self { cell, points, covered, targets });
         }
         let cloud = control.stage("reading", 0, || window::read(plan, &area_of_cells(plan, tile, cell), control))?;

@@ -12,12 +12,66 @@ use belvedere::control::Control;
 use belvedere::ground::{Ground, GroundParams, MapGrid};
 use belvedere::query::BlockingTriangles;
 use belvedere::raster::Raster;
+use std::collections::VecDeque;
+use std::sync::Arc;
 
 /// Side of a square, metres.
 const SQUARE: f64 = 256.0;
 /// How far around a square points show its ground, metres: as far as a height is interpolated, and half as far again,
 /// so that the triangles below large halls are whole.
 const AROUND: f64 = 96.0;
+
+/// Cells of squares that are kept for the next tiles: about 80 MB.
+const MAX_KEPT: usize = 4_000_000;
+
+/// The ground of the squares that were needed last: tiles beside each other share them.
+#[derive(Default)]
+pub(crate) struct GroundSquares(VecDeque<KeptSquare>);
+
+/// The ground of a square.
+struct KeptSquare {
+    square: MapArea,
+    /// Side of the cells, metres.
+    cell: f64,
+    /// `None` where no ground is known.
+    found: Option<Arc<Targets>>,
+    /// Points that were read for it.
+    points: usize,
+}
+
+impl KeptSquare {
+    fn cell_count(&self) -> usize {
+        self.found.as_ref().map_or(0, |found| found.len())
+    }
+}
+
+impl GroundSquares {
+    /// The ground of a square for cells of a side, metres, and how many points show it.
+    fn of_square(
+        &mut self,
+        plan: &Plan,
+        (square, cell): (&MapArea, f64),
+        added: Option<&BlockingTriangles>,
+        control: &Control<'_>,
+    ) -> Result<(Option<Arc<Targets>>, usize)> {
+        let is_it = |kept: &KeptSquare| kept.square == *square && kept.cell == cell;
+        let kept = match self.0.iter().position(is_it).and_then(|at| self.0.remove(at)) {
+            Some(kept) => kept,
+            None => {
+                let cloud = control.stage("reading", 0, || window::read(plan, &square.widened(AROUND), control))?;
+                let find = || of_square(plan, (square, cell), &cloud, added, control);
+                let found = control.stage("computing ground", 0, find)?.map(Arc::new);
+                KeptSquare { square: *square, cell, found, points: cloud.len() }
+            }
+        };
+        let found = (kept.found.clone(), kept.points);
+        self.0.push_back(kept);
+        while self.0.len() > 1 && self.0.iter().map(KeptSquare::cell_count).sum::<usize>() > MAX_KEPT {
+            self.0.pop_front();
+        }
+        Ok(found)
+    }
+}
 
 /// The area whose points show the ground of the squares that `area` meets.
 pub(crate) fn area_around(area: &MapArea) -> MapArea {
@@ -41,6 +95,7 @@ fn squares(area: &MapArea) -> impl Iterator<Item = MapArea> + use<> {
 pub(crate) fn ground_cells(
     plan: &Plan,
     (tile, cell): (TileId, f64),
+    known: &mut GroundSquares,
     added: Option<&BlockingTriangles>,
     control: &Control<'_>,
 ) -> Result<(Targets, [usize; 2])> {
@@ -56,10 +111,8 @@ pub(crate) fn ground_cells(
     let survey = MapArea { low, high }.widened(cell / 2.0);
     for square in squares(&core) {
         control.check()?;
-        let cloud = control.stage("reading", 0, || window::read(plan, &square.widened(AROUND), control))?;
-        points += cloud.len();
-        let found =
-            control.stage("computing ground", 0, || of_square(plan, (&square, cell), &cloud, added, control))?;
+        let (found, read) = known.of_square(plan, (&square, cell), added, control)?;
+        points += read;
         let Some(found) = found else { continue };
         let TargetLayout::Cells(ground) = &found.layout else { continue };
         let is_cell = |middle: [f64; 2]| square.holds(middle) && survey.holds(middle);

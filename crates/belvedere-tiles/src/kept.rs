@@ -38,8 +38,14 @@ impl Plan {
     /// # Errors
     /// Those of [`Plan::make`] and [`Plan::write`].
     pub fn kept_in(folder: &Path, params: &PlanParams, control: &Control<'_>) -> Result<Self> {
-        let of_program = |plan: &Self| plan.program == params.program;
-        let plan = match Self::read(folder).ok().filter(of_program) {
+        let files = cloud_files(&params.clouds)?;
+        let is_of_these = |plan: &Self| {
+            plan.program == params.program
+                && plan.crs == params.crs
+                && plan.insistence() == params.crs_against_files
+                && plan.inputs.iter().map(|input| &input.path).eq(&files)
+        };
+        let plan = match Self::read(folder).ok().filter(is_of_these) {
             Some(plan) => Self { remarks: remarks_on_files(&plan.inputs)?, ..plan },
             None => {
                 let whole = PlanParams { cells: CellSizes::default(), memory: None, ..params.clone() };

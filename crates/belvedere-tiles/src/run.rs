@@ -1,6 +1,6 @@
 //! A run: all tiles that are not done yet, one after the other.
 
-use crate::answer::{TileSurface, TileTask, answer};
+use crate::answer::{SharedSurfaces, TileTask, answer};
 use crate::grid::TileId;
 use crate::lines::{AreaLines, tiles};
 use crate::make_balls::make_balls;
@@ -140,8 +140,9 @@ pub fn run(plan: &Plan, folder: &Path, params: &RunParams<'_>, control: &Control
     }
     // those on cells of one size follow each other and share the surface of a tile
     ready.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut surfaces = SharedSurfaces::default();
     for tile in own() {
-        let mut last = None;
+        surfaces.next_tile();
         for (cell, question, prepared) in &ready {
             if !plan.has_cells(tile, *cell) {
                 continue;
@@ -160,7 +161,7 @@ pub fn run(plan: &Plan, folder: &Path, params: &RunParams<'_>, control: &Control
                 work.missing_balls(other)?;
             }
             let task = TileTask { question, prepared, others: &others, max_balls };
-            work.answer(task, tile, &mut last)?;
+            work.answer(task, tile, &mut surfaces)?;
         }
     }
     for question in questions {
@@ -207,9 +208,10 @@ impl RunWork<'_> {
         Ok(())
     }
 
-    fn answer(&mut self, task: TileTask<'_>, tile: TileId, last: &mut Option<TileSurface>) -> Result<()> {
+    fn answer(&mut self, task: TileTask<'_>, tile: TileId, surfaces: &mut SharedSurfaces) -> Result<()> {
         let stage = Stage::Answer(task.question);
-        let record = self.attempt(stage, tile, || answer(self.plan, self.folder, task, tile, last, self.control))?;
+        let record =
+            self.attempt(stage, tile, || answer(self.plan, self.folder, task, tile, surfaces, self.control))?;
         self.report.answers_made += 1;
         self.report.unproven_cells += record.unproven_cells;
         self.report.count_edge(&record);

@@ -51,6 +51,8 @@ pub(crate) struct TiledSurvey<'a> {
     folder: PathBuf,
     /// Whether the folder goes when the answer is written.
     is_temporary: bool,
+    /// Memory that may be used, bytes.
+    limit: u64,
 }
 
 /// What was found, one measure after the other.
@@ -147,7 +149,7 @@ impl<'a> TypedCells<'a> {
             ),
         )
         .with("tile_size_m", plan.tile_size)]);
-        Ok(Some(TiledSurvey { typed: self, plan, folder, is_temporary }))
+        Ok(Some(TiledSurvey { typed: self, plan, folder, is_temporary, limit }))
     }
 
     /// A flag that was typed and that tiles do not know.
@@ -195,7 +197,8 @@ impl<'a> TiledSurvey<'a> {
         title: &str,
         run: &mut CommandContext,
     ) -> Result<TiledResults<'a>> {
-        let Self { typed, plan, folder, is_temporary } = self;
+        let Self { typed, plan, folder, is_temporary, limit } = self;
+        check_size(&plan, &questions, limit)?;
         let plan = plan.with_questions(questions.clone(), &run.control())?;
         run.summary.remarks(plan.remarks.clone());
         let (plan, results) = plan.ready_in(&folder)?;
@@ -241,7 +244,7 @@ impl<'a> TiledSurvey<'a> {
                 _ => format!("{name}: mean {}, {} to {}", found.mean, found.min, found.max),
             });
         }
-        Ok(TiledResults { survey: Self { typed, plan, folder, is_temporary }, questions, measures, grid })
+        Ok(TiledResults { survey: Self { typed, plan, folder, is_temporary, limit }, questions, measures, grid })
     }
 }
 
@@ -277,6 +280,28 @@ impl TiledResults<'_> {
         run.summary.add("written", written);
         Ok(())
     }
+}
+
+/// Bytes of each value of the raster of all results while it is put together.
+const BYTES_PER_VALUE: u64 = 10;
+
+/// Refuses results that would not fit into memory together, before hours of work go into them.
+fn check_size(plan: &Plan, questions: &[TileQuestion], limit: u64) -> Result<()> {
+    let mut values = 0;
+    for question in questions {
+        let grid = plan.cells_of(question)?;
+        values += grid.len() as u64;
+    }
+    if values.saturating_mul(BYTES_PER_VALUE) <= limit {
+        return Ok(());
+    }
+    let [needed, limit] = [values * BYTES_PER_VALUE, limit].map(in_gigabytes);
+    Err(Usage(format!(
+        "--memory: {values} values of {} results take about {needed} GB, more than the {limit} GB that may be used; \
+         give larger cells (--cell), fewer suns, or more memory, or use `belvedere city`, which writes each result on its own",
+        questions.len()
+    ))
+    .into())
 }
 
 /// Cells whose value is above zero.

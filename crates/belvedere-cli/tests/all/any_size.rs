@@ -74,6 +74,9 @@ fn what_tiles_do_not_know_is_named_where_memory_was_typed() {
         let line = format!("shadow town/cloud.laz --sun 150,30 -o out.tif {flag} --memory 118M --no-cache");
         place.refusal(2, &line, &[flag.split(' ').next().unwrap(), "in tiles"]);
     }
+    let suns: String = (0..6).map(|number| format!(" --sun {},30", 100 + 20 * number)).collect();
+    let fine = format!("shadow town/cloud.laz{suns} --cell 0.0625 -o out.tif --memory 118M");
+    place.refusal(2, &fine, &["--memory", "larger cells"]);
 }
 
 #[test]

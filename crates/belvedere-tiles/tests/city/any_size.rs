@@ -120,6 +120,9 @@ fn less_memory_has_smaller_tiles_of_the_survey_that_is_kept() {
     let less = kept(Some(first.estimate().memory_bytes - 1_000_000));
     assert!(less.tile_size < first.tile_size && less.tiles.len() > first.tiles.len(), "{}", less.tile_size);
     assert_eq!(kept(None), first);
+    // another survey in the same folder is another plan
+    let one = Plan::kept_in(&folder, &params(&clouds[..1], 512.0), &Control::none()).unwrap();
+    assert!(one.inputs.len() == 1 && first.inputs.len() == 2);
 }
 
 /// All files below a folder.
