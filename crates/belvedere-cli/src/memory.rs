@@ -1,7 +1,6 @@
 //! Memory, processor and times of this computer and this process, on systems that report them.
 
-use crate::arguments::MemoryAmount;
-use crate::summary::rounded;
+use crate::arguments::MemoryArgument;
 use std::fs;
 
 /// Memory that this process can still take without others losing theirs, with what can be swapped out; `None` where the
@@ -15,14 +14,8 @@ pub(crate) fn available_bytes() -> Option<u64> {
 }
 
 /// Memory that a command may use, bytes: as typed, or half of what is free. `None` where that is not known.
-pub(crate) fn limit(typed: Option<MemoryAmount>) -> Option<u64> {
-    typed.map(|memory| memory.0).or_else(|| available_bytes().map(|bytes| bytes / 2))
-}
-
-/// Bytes in gigabytes, as they are printed.
-#[expect(clippy::cast_precision_loss, reason = "printed with one decimal")]
-pub(crate) fn in_gigabytes(bytes: u64) -> serde_json::Value {
-    rounded(bytes as f64 / 1e9, 1)
+pub(crate) fn limit(typed: &MemoryArgument) -> Option<u64> {
+    typed.memory.map(|memory| memory.0).or_else(|| available_bytes().map(|bytes| bytes / 2))
 }
 
 /// Most memory that this process had at once.

@@ -4,7 +4,7 @@ mod near;
 pub(crate) mod params;
 mod plan;
 
-pub(crate) use near::QuestionReach;
+pub(crate) use near::scene_in_reach;
 pub(crate) use plan::{areas, mesh_in, planned};
 
 use crate::arguments::{

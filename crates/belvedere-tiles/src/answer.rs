@@ -83,9 +83,9 @@ fn area_of_cells(plan: &Plan, tile: TileId, cell: f64) -> crate::grid::MapArea {
     plan.grid().core(tile).widened(farthest + (EDGE_CELLS + 1) as f64 * cell)
 }
 
-/// Answers a question for the cells of a tile, with the balls that are in the folder of the
-/// run, and writes the answer; its record is to be written next. Where balls that can matter are missing, answers are
-/// unproven. `surfaces` are those of answers before.
+/// Answers a question for the cells of a tile, with the balls that are in the folder of the run, and writes the answer;
+/// its record is to be written next. Where balls that can matter are missing, answers are unproven. `surfaces` are
+/// those of answers before.
 ///
 /// # Errors
 /// Those of reading the files and the balls, and of writing.
@@ -143,7 +143,7 @@ pub(crate) fn answer(
         PreparedQuestion::Viewshed(_) => None,
     };
     if found.values.are_nothing() && found.unproven_cells == 0 {
-        return Ok(TileRecord { points, damaged: balls.damaged, ..TileRecord::default() });
+        return Ok(TileRecord { points, covered_cells: covered, damaged: balls.damaged, ..TileRecord::default() });
     }
     let place = georeference(&ground.grid, &targets.frame);
     let path = stage.result(plan, run, tile);
@@ -454,16 +454,7 @@ fn cells(
     let positions = places.map(position).collect();
     let gaps = Raster::filled(count, count, f32::NAN);
     let layout = TargetLayout::Cells(Box::new(Ground { grid, heights, gaps }));
-    let frame = cloud.frame.clone();
-    Ok(Targets {
-        frame,
-        positions,
-        normals: None,
-        weights: Vec::new(),
-        groups: Vec::new(),
-        layout,
-        on_added: Vec::new(),
-    })
+    Ok(Targets::at(cloud.frame.clone(), positions, None, layout))
 }
 
 #[cfg(test)]

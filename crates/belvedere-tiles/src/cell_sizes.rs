@@ -114,7 +114,7 @@ impl CellSizes {
 
     /// # Errors
     /// [`Error::InvalidParameter`] for a side out of range.
-    fn check(&self) -> Result<()> {
+    pub(crate) fn check(&self) -> Result<()> {
         let check = |parameter, side: f64| {
             let steps = side / CELL_STEP;
             if steps >= 1.0 && steps == steps.floor() && side <= LARGEST {

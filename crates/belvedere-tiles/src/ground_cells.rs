@@ -115,31 +115,23 @@ pub(crate) fn ground_cells(
         points += read;
         let Some(found) = found else { continue };
         let TargetLayout::Cells(ground) = &found.layout else { continue };
-        let is_cell = |middle: [f64; 2]| square.holds(middle) && survey.holds(middle);
-        for (own, position) in positions.iter_mut().enumerate() {
-            let middle = grid.center(own % count, own / count);
-            let Some([column, row]) = ground.grid.cell_of(middle).filter(|_| is_cell(middle)) else { continue };
-            let at = row * ground.grid.width + column;
+        for (at, &position) in found.positions.iter().enumerate() {
+            let (column, row) = (at % ground.grid.width, at / ground.grid.width);
+            let middle = ground.grid.center(column, row);
+            let Some(own) = grid.cell_of(middle).filter(|_| square.holds(middle) && survey.holds(middle)) else {
+                continue;
+            };
+            let own = own[1] * count + own[0];
             let height = ground.heights.get(column, row).unwrap_or(f32::NAN);
-            *position = found.positions.get(at).copied().unwrap_or([f32::NAN; 3]);
             covered += usize::from(height.is_finite() && position[2].is_nan());
-            if let Some(value) = heights.values_mut().get_mut(own) {
-                *value = height;
+            if let (Some(place), Some(value)) = (positions.get_mut(own), heights.values_mut().get_mut(own)) {
+                (*place, *value) = (position, height);
             }
         }
     }
     let ground = Ground { grid, heights, gaps: Raster::filled(count, count, f32::NAN) };
     let layout = TargetLayout::Cells(Box::new(ground));
-    let targets = Targets {
-        frame: plan.frame()?,
-        positions,
-        normals: None,
-        weights: Vec::new(),
-        groups: Vec::new(),
-        layout,
-        on_added: Vec::new(),
-    };
-    Ok((targets, [covered, points]))
+    Ok((Targets::at(plan.frame()?, positions, None, layout), [covered, points]))
 }
 
 /// The cells of a square and of its edge; `None` where no ground is known.

@@ -17,6 +17,7 @@
 //! farther away than the margin.
 
 mod answer;
+mod any_size;
 mod cell_sizes;
 mod cleared;
 mod columns;
@@ -46,11 +47,11 @@ mod strips;
 mod survey;
 mod window;
 
+pub use any_size::{SurveyCells, SurveyPart, SurveyQuestion, TooLarge};
 pub use cell_sizes::{CellSizes, Topic};
 pub use estimate::RunEstimate;
 pub use grid::{TileGrid, TileId};
 pub use inputs::InputFile;
-pub use kept::memory_of_whole;
 pub use make_balls::make_balls;
 pub use make_plan::PlanParams;
 pub use merge::{Merged, UnfinishedRun, merge, merged_within, write_catalogue};

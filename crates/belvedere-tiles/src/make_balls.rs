@@ -38,9 +38,11 @@ fn made(plan: &Plan, run: &Path, tile: TileId, cloud: PointCloud, control: &Cont
     let core = plan.grid().core(tile);
     let is_in = |p: &[f32; 3]| core.holds([p[0].into(), p[1].into()]);
     let all = classed(&cloud, 0..points);
-    // those of other tiles may be cleared within this one, or pass over it
+    // those of other tiles may be cleared within this one
     let mut parts = ModelParts { frame: plan.frame()?, ..ModelParts::default() };
-    if plan.proves || all.iter().any(|point| is_in(&point.0)) {
+    // a pulse begins a hand's breadth from its return, which may lie beside the tile
+    let near = if plan.proves { core.widened(1.0) } else { core };
+    if all.iter().any(|point| near.holds([point.0[0].into(), point.0[1].into()])) {
         parts = match SceneModel::build_owned(cloud, &plan.model(), control) {
             Ok((model, _)) => model.into_parts(),
             Err(error) if window::is_nothing(&error) => parts,
@@ -56,7 +58,7 @@ fn made(plan: &Plan, run: &Path, tile: TileId, cloud: PointCloud, control: &Cont
     drop(all);
     clear_balls(plan, &core, &mut balls, &mut transmission, &own_points, control)?;
     let patches = patches::of_tile(&parts.patches, &core, &plan.cleared);
-    let own_pulses = |pulses: &FreeSegmentColumns| proof::of_tile(pulses, &core, plan.nearness);
+    let own_pulses = |pulses: &FreeSegmentColumns| proof::of_tile(pulses, &core);
     let pulses = parts.pulses.as_ref().filter(|_| plan.proves).map(own_pulses);
     let parts = ModelParts { balls, transmission, patches, pulses, ..parts };
     written(plan, run, tile, parts, nothing, control)

@@ -131,10 +131,14 @@ impl Plan {
         }
     }
 
-    /// This with smaller tiles, until the largest fits into the memory, bytes: their size changes no result.
-    pub(crate) fn fitting(mut self, memory: u64) -> Result<Self> {
+    /// This with smaller tiles, until the largest fits into the memory, bytes, and is a whole number of cells: their
+    /// size changes no result.
+    ///
+    /// # Errors
+    /// [`Error::InvalidParameter`] for memory into which no tile fits.
+    pub fn fitting(mut self, memory: u64) -> Result<Self> {
         let (size, needed) = (self.tile_size, self.estimate().memory_bytes);
-        while self.estimate().memory_bytes > memory {
+        while self.estimate().memory_bytes > memory || !self.cells.divide(self.tile_size) {
             let mut smaller = next_smaller(self.tile_size);
             while smaller >= MIN_TILE && !self.cells.divide(smaller) {
                 smaller = next_smaller(smaller);

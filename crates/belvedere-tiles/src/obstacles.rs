@@ -66,7 +66,8 @@ impl ObstacleSearch {
         Ok(balls)
     }
 
-    /// Reads the pulses that pass over a tile; `None` where none are known. Damaged ones are made again.
+    /// Reads the pulses that end in a tile; `None` where none are known. Those that are not there yet, or damaged, are
+    /// made.
     ///
     /// # Errors
     /// Those of writing records, and [`Error::Cancelled`].
@@ -82,17 +83,14 @@ impl ObstacleSearch {
             Some(stamp) => Ok(read_balls(Source::bytes(&path, &stamp.read(&path)?))?.pulses),
             None => Ok(None),
         };
-        let Some(record) = TileRecord::read(plan, run, Stage::Balls, tile) else { return Ok(None) };
-        let error = match read(record) {
-            Ok(pulses) => return Ok(pulses),
-            Err(Error::Cancelled) => return Err(Error::Cancelled),
-            Err(error) => error,
-        };
-        self.damaged.push(error.to_string());
-        match make_balls(plan, run, tile, control).and_then(read) {
-            Err(Error::Cancelled) => Err(Error::Cancelled),
-            made => Ok(made.unwrap_or_default()),
+        if let Some(record) = TileRecord::read(plan, run, Stage::Balls, tile) {
+            match read(record) {
+                Ok(pulses) => return Ok(pulses),
+                Err(Error::Cancelled) => return Err(Error::Cancelled),
+                Err(error) => self.damaged.push(error.to_string()),
+            }
         }
+        made_again((plan, run, tile), read, control).map(Option::flatten)
     }
 }
 
@@ -145,8 +143,17 @@ fn sound(
         Err(Error::Cancelled) => return Err(Error::Cancelled),
         Err(_) => damaged.push(format!("{} is damaged", path.display())),
     }
-    match make_balls(plan, run, tile, control).and_then(|record| read(&record)) {
-        Ok(balls) => Ok(Some(balls)),
+    made_again((plan, run, tile), |record| read(&record), control)
+}
+
+/// What `read` finds of the balls of a tile that are made now; `None`, and a record that says why, where that fails.
+fn made_again<T>(
+    (plan, run, tile): (&Plan, &Path, TileId),
+    read: impl FnOnce(TileRecord) -> Result<T>,
+    control: &Control<'_>,
+) -> Result<Option<T>> {
+    match make_balls(plan, run, tile, control).and_then(read) {
+        Ok(found) => Ok(Some(found)),
         Err(Error::Cancelled) => Err(Error::Cancelled),
         Err(error) => {
             let record = TileRecord { outcome: TileOutcome::Failed(error.to_string()), ..TileRecord::default() };

@@ -9,9 +9,11 @@ use crate::sealed::{is_sound, sealed};
 use crate::stage::Stage;
 use crate::survey::SurveyBlock;
 use crate::window;
-use belvedere::apps::ask::{Context, Remark, remark_on_terrain};
+use belvedere::apps::ask::scene::Whereabouts;
+use belvedere::apps::ask::{Context, GridCells, Remark, remark_on_terrain};
 use belvedere::apps::targets::{CellLevel, CellParams, grid_around, set_on_ground};
 use belvedere::apps::tree_light::CrownLight;
+use belvedere::apps::viewshed::cell_for;
 use belvedere::control::Control;
 use belvedere::crs::Crs;
 use belvedere::ground::{Ground, GroundParams, GroundPoints};
@@ -27,7 +29,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// Version of the layout of plans and records.
-pub(crate) const LAYOUT: u32 = 10;
+pub(crate) const LAYOUT: u32 = 11;
 /// Points around a place that its ground is taken from, metres, beside the usual ones.
 const GROUND_AROUND: f64 = 32.0;
 /// A plan: input files, tiles and what is known of the whole survey. It is the same for the same files and parameters.
@@ -201,30 +203,29 @@ impl Plan {
         }
     }
 
-    /// This with cells on the ground, or on top of what stands there, and targets `height` metres above that.
-    #[must_use]
-    pub fn with_cells_on(mut self, level: CellLevel, height: Option<f64>) -> Self {
-        let targets = CellParams::default().with_level(level);
-        self.targets = height.map_or(targets, |height| targets.with_height(height));
-        self.tiles = self.tiles_with_cells();
-        self
-    }
-
-    /// This with other points that are ground; [`GroundPoints::Auto`] changes nothing.
-    #[must_use]
-    pub fn with_ground(self, points: GroundPoints) -> Self {
-        if points == GroundPoints::Auto { self } else { Self { ground: points, ..self } }
-    }
-
-    /// This with cells of other sides.
+    /// This with other cells for all results: their side, what they stand on, which points are ground, and how high
+    /// targets are. [`GroundPoints::Auto`] keeps those that the plan took.
     ///
     /// # Errors
-    /// [`Error::InvalidParameter`] for a side out of range, and for a tile that is no whole number of cells.
-    pub fn with_cells(mut self, cells: CellSizes) -> Result<Self> {
-        cells.check_tile(self.tile_size)?;
-        self.cells = cells;
+    /// [`Error::InvalidParameter`] for a side or a height out of range.
+    pub fn with_grid_cells(mut self, cells: &GridCells) -> Result<Self> {
+        let (low, high) = self.bounds().on_map();
+        self.cells = CellSizes::all(cells.cell.unwrap_or_else(|| cell_for(low, high)));
+        self.cells.check()?;
+        let targets = CellParams::default().with_level(cells.level);
+        self.targets = cells.height.map_or(targets, |height| targets.with_height(height));
+        if cells.ground != GroundPoints::Auto {
+            self.ground = cells.ground;
+        }
         self.tiles = self.tiles_with_cells();
         Ok(self)
+    }
+
+    /// Where the survey lies as far as suns are concerned.
+    #[must_use]
+    pub fn whereabouts<'a>(&self, frame: &'a Frame) -> Whereabouts<'a> {
+        let has_far_terrain = self.terrain.is_some() || self.horizon.is_some();
+        Whereabouts { frame, bounds: self.bounds(), has_far_terrain }
     }
 
     /// Writes the plan into the folder of a run, which is made.

@@ -1,8 +1,8 @@
 //! What pulses prove of lines of sight that cross tiles: block by block, so that memory does not grow with their length
 //! and tiles make no difference.
 //!
-//! With the balls of a tile the pulses are kept that pass over it. A line of sight is cut at the sides of blocks of
-//! 64 m, and the length of each piece that no pulse of the block came near to is added up in whole numbers, so that no
+//! With the balls of a tile the pulses are kept that end in it. A line of sight is cut at the sides of blocks of 64 m,
+//! and the length of each piece that no pulse over the block came near to is added up in whole numbers, so that no
 //! order of blocks changes the sum.
 
 use crate::grid::{CELL, MapArea, TileId, block_area, square_at};
@@ -10,7 +10,7 @@ use crate::obstacles::ObstacleSearch;
 use crate::plan::Plan;
 use belvedere::control::Control;
 use belvedere::pulses::{FreeSegmentColumns, ends_of_pulse};
-use belvedere::query::{Proof, ProofParams};
+use belvedere::query::{Proof, ProofParams, nearness_of};
 use belvedere::vector::piece_in_box;
 use belvedere::{PointCloud, Result};
 use rayon::prelude::*;
@@ -18,11 +18,12 @@ use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
 
-/// How far beside a tile its pulses are kept, metres, beside the nearness: more than positions are rounded by.
+/// How far beside a block a pulse is still taken for one over it, metres, beside the nearness: more than positions are
+/// rounded by.
 const ROOM: f64 = 0.1;
 /// Parts of a metre that unseen lengths are counted in.
 const STEPS: f64 = 65_536.0;
-/// Tiles whose pulses stay in memory when others are read.
+/// Tiles whose pulses may stay in memory when others are read.
 const MAX_TILES: usize = 4;
 /// Lines of sight and pulses handed to a thread at once, where each takes little and where it takes more.
 const CHUNK: usize = 1024;
@@ -39,22 +40,19 @@ pub(crate) struct FreeLine {
     pub(crate) range: f64,
 }
 
-/// How near a pulse must pass for a place to count as seen, metres: by the pulses of some places all over a survey
-/// ([`belvedere::query::nearness_of`]).
+/// How near a pulse must pass for a place to count as seen, metres: by the first returns of some places all over a
+/// survey.
 pub(crate) fn nearness(places: &PointCloud) -> f64 {
     let numbers = places.attributes.return_number.as_deref();
     let is_first = |(row, _): &(usize, &[f32; 3])| numbers.is_none_or(|numbers| numbers[*row] <= 1);
-    belvedere::query::nearness_of(places.positions.iter().enumerate().filter(is_first).map(|(_, &p)| p))
+    nearness_of(places.positions.iter().enumerate().filter(is_first).map(|(_, &p)| p))
 }
 
-/// The pulses that pass over a tile.
-pub(crate) fn of_tile(pulses: &FreeSegmentColumns, core: &MapArea, nearness: f64) -> FreeSegmentColumns {
-    let near = core.widened(nearness + ROOM);
-    #[expect(clippy::cast_possible_truncation, reason = "points are numbered with 32 bits")]
-    let rows = (0..pulses.starts.len() as u32).into_par_iter().with_min_len(CHUNK);
-    let over = rows.filter(|&row| ends_of_pulse(pulses, row as usize).is_some_and(|ends| passes_over(ends, &near)));
-    // in one order, whatever that of the index was
-    in_order(&pulses.select(&over.collect::<Vec<u32>>()))
+/// The pulses that end in a tile, in an order that does not depend on how they were indexed.
+pub(crate) fn of_tile(pulses: &FreeSegmentColumns, core: &MapArea) -> FreeSegmentColumns {
+    let is_own = |(_, start): &(u32, &[f32; 3])| core.holds([start[0].into(), start[1].into()]);
+    let rows: Vec<u32> = (0..).zip(&pulses.starts).filter(is_own).map(|(row, _)| row).collect();
+    in_order(&pulses.select(&rows))
 }
 
 /// Whether a piece of a line passes over an area.
@@ -88,8 +86,10 @@ pub(crate) fn unproven(
     let mut unseen = vec![0_u32; lines.len()];
     let mut of_blocks: Vec<([i32; 2], Vec<u32>)> = lines_of_blocks(lines, &pieces).into_iter().collect();
     // those of a tile follow each other
-    of_blocks.sort_by_cached_key(|(block, _)| (tiles_over(plan, *block).next(), *block));
-    let mut pulses = TilePulses::default();
+    of_blocks.sort_by_cached_key(|(block, _)| (plan.grid().tile_of(block_area(*block).low), *block));
+    // how far a pulse leans away from its return
+    let reach = plan.statistics.max_lean * (top - f64::from(plan.low[2])).max(0.0) + plan.nearness + ROOM;
+    let mut pulses = TilePulses { reach, tiles: BTreeMap::new() };
     for (block, rows) in of_blocks {
         control.check()?;
         let waiting: Vec<u32> = rows.into_iter().filter(|&row| unseen[row as usize] <= enough).collect();
@@ -150,18 +150,12 @@ fn lines_of_blocks(lines: &[FreeLine], pieces: &[Option<[f64; 2]>]) -> BTreeMap<
     blocks
 }
 
-/// The tiles that a block reaches into, from the south-west.
-fn tiles_over(plan: &Plan, block: [i32; 2]) -> impl Iterator<Item = TileId> {
-    let (grid, area) = (plan.grid(), block_area(block));
-    let (first, last) = (grid.tile_of(area.low), grid.tile_of(area.high));
-    let tiles = (first.north..=last.north)
-        .flat_map(move |north| (first.east..=last.east).map(move |east| TileId { east, north }));
-    tiles.filter(move |&tile| grid.core(tile).meets(&area))
-}
-
 /// The pulses of the tiles that were read last.
-#[derive(Default)]
-struct TilePulses(BTreeMap<TileId, PulsesOfBlocks>);
+struct TilePulses {
+    /// How far from a block a pulse over it may end, metres.
+    reach: f64,
+    tiles: BTreeMap<TileId, PulsesOfBlocks>,
+}
 
 /// The pulses of a tile, and the rows of those that pass over each of its blocks.
 struct PulsesOfBlocks {
@@ -178,13 +172,17 @@ impl TilePulses {
         found: &mut ObstacleSearch,
         control: &Control<'_>,
     ) -> Result<FreeSegmentColumns> {
-        let tiles: Vec<TileId> = tiles_over(plan, block).collect();
-        if self.0.len() > MAX_TILES {
-            self.0.retain(|tile, _| tiles.contains(tile));
+        let around = block_area(block).widened(self.reach);
+        let (first, last) = (plan.grid().tile_of(around.low), plan.grid().tile_of(around.high));
+        let is_near = |tile: TileId| {
+            (first.north..=last.north).contains(&tile.north) && (first.east..=last.east).contains(&tile.east)
+        };
+        if self.tiles.len() > MAX_TILES {
+            self.tiles.retain(|&tile, _| is_near(tile));
         }
         let mut all = FreeSegmentColumns::default();
-        for &tile in &tiles {
-            let PulsesOfBlocks { pulses, rows } = match self.0.entry(tile) {
+        for &tile in plan.tiles.iter().filter(|&&tile| is_near(tile)) {
+            let PulsesOfBlocks { pulses, rows } = match self.tiles.entry(tile) {
                 Entry::Occupied(kept) => kept.into_mut(),
                 Entry::Vacant(place) => {
                     let read = control.stage("reading pulses", 0, || found.pulses(plan, run, tile, control))?;
@@ -226,7 +224,7 @@ impl PulsesOfBlocks {
     }
 }
 
-/// Pulses by their numbers, each once: tiles beside each other both keep those at their common side.
+/// Pulses by their numbers.
 fn in_order(pulses: &FreeSegmentColumns) -> FreeSegmentColumns {
     let key = |row: u32| {
         let row = row as usize;
@@ -237,6 +235,5 @@ fn in_order(pulses: &FreeSegmentColumns) -> FreeSegmentColumns {
     #[expect(clippy::cast_possible_truncation, reason = "points are numbered with 32 bits")]
     let mut rows: Vec<u32> = (0..pulses.starts.len() as u32).collect();
     rows.par_sort_unstable_by(|&a, &b| key(a).cmp(&key(b)));
-    rows.dedup_by(|a, b| key(*a) == key(*b));
     pulses.select(&rows)
 }

@@ -4,8 +4,10 @@ use crate::cell_sizes::Topic;
 use crate::planned::SideFile;
 use belvedere::apps::ask::scene::Whereabouts;
 use belvedere::apps::ask::{self, Context, SkyParts, SunHoursQuestion};
-use belvedere::apps::irradiance::{self, ClearSky, IrradianceParams, RadiationSource, SeasonRadiation, period_seasons};
-use belvedere::apps::shadow::{self, ShadowSun};
+use belvedere::apps::irradiance::{
+    self, ClearSky, Grouping, IrradianceParams, RadiationSource, SeasonRadiation, period_seasons,
+};
+use belvedere::apps::shadow::{self, Edges, ShadowSun};
 use belvedere::apps::sky_view::{self, SkyDirections};
 use belvedere::apps::sun::Site;
 use belvedere::apps::sun_hours::{self, SunPlan};
@@ -13,9 +15,11 @@ use belvedere::apps::tree_light::{CrownLight, Season};
 use belvedere::apps::viewshed::{Observer, SightLimits};
 use belvedere::control::Control;
 use belvedere::io::{Source, read_weather};
+use belvedere::query::UnprovenAs;
 use belvedere::results::{ResultKind, UNPROVEN_BAND, viewshed_words};
 use belvedere::{Error, Parameter, Result};
 use serde::{Deserialize, Serialize};
+use std::path::Path;
 
 /// A question that has an answer for each cell on top of what stands there.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -153,28 +157,17 @@ impl TileQuestion {
     /// [`Error::InvalidParameter`] for what cannot be, and for a question that tiles do not answer.
     pub fn of(question: &ask::Question, whereabouts: &Whereabouts<'_>, context: &mut Context) -> Result<Vec<Self>> {
         ask::Ask::check(question)?;
-        let says_how_sure = match question {
-            ask::Question::Shadow(shadow) => shadow.how_sure.is_wanted(),
-            ask::Question::SunHours(hours) => hours.interval,
-            ask::Question::SkyView(view) => view.interval,
-            _ => false,
-        };
-        if says_how_sure {
+        if let Some(what) = Self::not_in_tiles(question) {
             return Err(Error::InvalidParameter {
                 parameter: Parameter::Questions,
-                value: "with probabilities or intervals".to_owned(),
+                value: format!("with {what}"),
                 expected: "without: runs in tiles do not give them",
             });
         }
         match question {
             ask::Question::Shadow(shadow) => {
                 let suns = shadow.suns.over(&shadow.place, whereabouts, context)?;
-                let question = |sun: ask::NamedSun| Self::Shadow {
-                    name: format!("shadow_{}", sun.label),
-                    to_sun: sun.sun.to_sun,
-                    season: sun.sun.season,
-                };
-                Ok(suns.into_iter().map(question).collect())
+                Ok(Self::of_suns(&suns))
             }
             ask::Question::SunHours(hours) => {
                 let site = hours.place.site_at(whereabouts, context, None)?;
@@ -191,12 +184,57 @@ impl TileQuestion {
                 Ok(questions)
             }
             ask::Question::SkyView(view) => Ok(vec![Self::SkyView { sky: view.sky }]),
+            ask::Question::Irradiance(energy) => {
+                let station = energy.radiation.weather().map(|weather| [weather.latitude, weather.longitude]);
+                let site = energy.place.site_at(whereabouts, context, station)?;
+                let radiation = match &energy.radiation {
+                    ask::Radiation::Weather { file, parts, .. } => {
+                        TileRadiation::Weather { file: SideFile::new(Path::new(file))?, parts: *parts }
+                    }
+                    ask::Radiation::ClearSky { clear_sky, year } => {
+                        TileRadiation::ClearSky { clear_sky: *clear_sky, year: *year }
+                    }
+                };
+                Ok(vec![Self::Irradiance { site, radiation, params: energy.params }])
+            }
             _ => Err(Error::InvalidParameter {
                 parameter: Parameter::Questions,
                 value: "another".to_owned(),
                 expected: "shadow, sun hours, rules of sunlight, sky view, irradiance or viewsheds",
             }),
         }
+    }
+
+    /// The questions about shadows of suns.
+    pub(crate) fn of_suns<'a>(suns: impl IntoIterator<Item = &'a ask::NamedSun>) -> Vec<Self> {
+        let question = |sun: &ask::NamedSun| Self::Shadow {
+            name: format!("shadow_{}", sun.label),
+            to_sun: sun.sun.to_sun,
+            season: sun.sun.season,
+        };
+        suns.into_iter().map(question).collect()
+    }
+
+    /// What of a question is not found in tiles.
+    #[must_use]
+    pub fn not_in_tiles(question: &ask::Question) -> Option<&'static str> {
+        let parts: &[(&str, bool)] = match question {
+            ask::Question::Shadow(shadow) => &[
+                ("probabilities", shadow.how_sure.is_wanted()),
+                ("soft edges", shadow.edges == Edges::Soft),
+                (
+                    "unproven light that counts as lit or as blocked",
+                    shadow.unproven.is_some_and(|u| u != UnprovenAs::Reported),
+                ),
+            ],
+            ask::Question::SunHours(hours) => &[("intervals", hours.interval)],
+            ask::Question::SkyView(view) => &[("intervals", view.interval)],
+            ask::Question::Irradiance(energy) => {
+                &[("roof planes", energy.roofs.is_some()), ("months", energy.params.grouping != Grouping::Whole)]
+            }
+            _ => &[],
+        };
+        parts.iter().find(|(_, is_wanted)| *is_wanted).map(|(what, _)| *what)
     }
 
     /// Name of the folder of its results.

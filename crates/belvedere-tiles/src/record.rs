@@ -91,7 +91,7 @@ pub struct TileRecord {
     /// The file of its result, where there is one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) result: Option<Stamp>,
-    /// The file of the pulses that pass over it, where there is one.
+    /// The file of the pulses that end in it, where there is one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) pulses: Option<Stamp>,
     /// Points that were read.

@@ -69,6 +69,9 @@ pub struct RunReport {
     pub cells_of_light: usize,
     /// Of these, cells near the edge of the survey.
     pub cells_near_edge: usize,
+    /// Cells on the ground under a cover, which have no answer to the first question; `None` where cells lie on top.
+    #[serde(rename = "cells_under_cover_left_out", skip_serializing_if = "Option::is_none")]
+    pub cells_under_cover: Option<usize>,
     /// Most balls that were held at a time for an answer.
     #[serde(rename = "most_balls")]
     pub max_balls: usize,
@@ -100,7 +103,10 @@ impl RunReport {
         damaged.chain(unproven).chain(skipped).chain(edge).collect()
     }
 
-    fn count_edge(&mut self, record: &TileRecord) {
+    fn count(&mut self, record: &TileRecord, is_first: bool) {
+        if let (Some(covered), true) = (&mut self.cells_under_cover, is_first) {
+            *covered += record.covered_cells;
+        }
         if let Some(near) = record.near_edge_cells {
             self.cells_near_edge += near;
             self.cells_of_light += record.cells;
@@ -123,6 +129,7 @@ pub fn run(plan: &Plan, folder: &Path, params: &RunParams<'_>, control: &Control
         return Err(Error::InvalidParameter { parameter: Parameter::Shard, value, expected: "1/N to N/N" });
     }
     let mut work = RunWork { plan, folder, params, control, report: RunReport::default() };
+    work.report.cells_under_cover = plan.is_on_ground().then_some(0);
     let own = || plan.tiles.iter().copied().skip(number - 1).step_by(of);
     for tile in own() {
         work.balls(tile)?;
@@ -151,7 +158,7 @@ pub fn run(plan: &Plan, folder: &Path, params: &RunParams<'_>, control: &Control
             let record = work.settled(Stage::Answer(question), tile);
             if let Some(record) = record.filter(|record| record.unproven_cells == 0) {
                 work.report.already_done += 1;
-                work.report.count_edge(&record);
+                work.report.count(&record, plan.questions.first() == Some(*question));
                 continue;
             }
             // other shares may not have come to them
@@ -214,7 +221,7 @@ impl RunWork<'_> {
             self.attempt(stage, tile, || answer(self.plan, self.folder, task, tile, surfaces, self.control))?;
         self.report.answers_made += 1;
         self.report.unproven_cells += record.unproven_cells;
-        self.report.count_edge(&record);
+        self.report.count(&record, self.plan.questions.first() == Some(task.question));
         self.report.damaged.extend(record.damaged);
         self.report.max_balls = self.report.max_balls.max(record.max_balls);
         self.report.skipped_observers = self.report.skipped_observers.max(record.skipped_observers);

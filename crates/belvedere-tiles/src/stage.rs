@@ -39,7 +39,7 @@ impl Stage<'_> {
         self.folder(plan, run).join(format!("{}.{extension}", tile.name()))
     }
 
-    /// Where the pulses lie that pass over a tile.
+    /// Where the pulses lie that end in a tile.
     pub(crate) fn pulses(&self, plan: &Plan, run: &Path, tile: TileId) -> PathBuf {
         self.folder(plan, run).join(format!("{}.pulses.npz", tile.name()))
     }

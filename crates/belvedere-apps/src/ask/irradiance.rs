@@ -1,6 +1,7 @@
 //! Irradiance: the energy that sun and sky send to places, and to the planes of roofs.
 
 use super::light::{Light, OnTargets};
+use super::scene::Whereabouts;
 use super::sections::{LinesSection, MeasuresSection, PlacesReport, RadiationSection, RoofsSection};
 use super::sun::SunPlace;
 use super::{Answers, Ask, Context, Places, Remark, Scene, ThroughTrees, spread};
@@ -12,6 +13,7 @@ use crate::irradiance::{
 use crate::roof_planes::{GROUND_CELL, RoofPlane, RoofPlaneParams, RoofsFrom, roof_planes, roof_points};
 use crate::rows::Obstacles;
 use crate::sun::Site;
+use crate::targets::Measure;
 use crate::tree_light::{CrownLight, TreeLight};
 use belvedere_core::ground::{GroundPoints, MapGrid};
 use belvedere_core::query::{MedialScene, UnprovenAs};
@@ -154,7 +156,9 @@ impl Radiation {
         }
     }
 
-    fn weather(&self) -> Option<&Weather> {
+    /// The rows of weather, once they were read.
+    #[must_use]
+    pub fn weather(&self) -> Option<&Weather> {
         match self {
             Self::Weather { weather, .. } => weather.as_deref(),
             Self::ClearSky { .. } => None,
@@ -326,11 +330,8 @@ impl Ask for IrradianceQuestion {
                 measures = irradiation_measures(&sums, seasons.first().map_or(1, |s| s.radiation.group_count()));
                 measures.iter_mut().for_each(|measure| light.targets.clear_unasked(&mut measure.values));
                 context.report.measures = Some(MeasuresSection::of(&light.targets, &measures));
-                if let Some(first) = measures.first() {
-                    let spread = spread(&first.values, 0, "kWh/m²");
-                    context.headline(format!("energy on {}: {spread}", PlacesReport::in_words(&light.targets)));
-                }
-                Some(light.titled(format!("Energy of sun and sky, kWh/m²{}", scene.far_in_words())))
+                summarise(&measures, &PlacesReport::in_words(&light.targets), context);
+                Some(light.titled(title(&scene.whereabouts())))
             }
         };
         let roofs = match planes {
@@ -338,6 +339,17 @@ impl Ask for IrradianceQuestion {
             None => None,
         };
         Ok(Answers::new(IrradianceResults { on, roofs, site, blockers }, measures))
+    }
+}
+
+pub(super) fn title(whereabouts: &Whereabouts<'_>) -> String {
+    format!("Energy of sun and sky, kWh/m²{}", whereabouts.far_in_words())
+}
+
+/// Says what was found of places.
+pub(super) fn summarise(measures: &[Measure], places: &str, context: &mut Context) {
+    if let Some(first) = measures.first() {
+        context.headline(format!("energy on {places}: {}", spread(&first.values, 0, "kWh/m²")));
     }
 }
 

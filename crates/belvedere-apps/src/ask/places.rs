@@ -256,11 +256,15 @@ pub fn remark_on_edge(near: usize, count: usize) -> Option<Remark> {
 }
 
 impl PlacesReport {
+    pub(super) fn cells_in_words(count: usize, cell: f64) -> String {
+        format!("{count} cells of {cell} m")
+    }
+
     /// Targets in words, such as "14400 cells of 1 m".
     pub(super) fn in_words(targets: &Targets) -> String {
         let count = targets.target_count();
         match &targets.layout {
-            TargetLayout::Cells(ground) => format!("{count} cells of {} m", ground.grid.cell),
+            TargetLayout::Cells(ground) => Self::cells_in_words(count, ground.grid.cell),
             TargetLayout::Points => format!("{count} points"),
             TargetLayout::Surface(_) => format!("{} faces", targets.groups.len()),
         }

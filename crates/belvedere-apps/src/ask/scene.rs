@@ -301,11 +301,6 @@ impl Scene {
         Whereabouts { frame: self.frame(), bounds: self.model.bounds(), has_far_terrain }
     }
 
-    /// What titles say where far terrain counts.
-    pub(super) fn far_in_words(&self) -> &'static str {
-        self.whereabouts().far_in_words()
-    }
-
     /// The middle of the scene on the map, local metres.
     #[must_use]
     pub fn middle(&self) -> [f64; 2] {

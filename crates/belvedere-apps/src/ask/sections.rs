@@ -292,8 +292,13 @@ pub struct MeasuresSection {
 
 impl MeasuresSection {
     pub(super) fn of<'a>(targets: &Targets, measures: impl IntoIterator<Item = &'a Measure>) -> Self {
+        Self::of_count(targets.target_count(), measures)
+    }
+
+    /// Of so many targets.
+    pub(super) fn of_count<'a>(targets: usize, measures: impl IntoIterator<Item = &'a Measure>) -> Self {
         let spread = measures.into_iter().map(|measure| (measure.name.clone(), measure.rounded_statistics()));
-        Self { targets: targets.target_count(), spread: NamedValues(spread.collect()) }
+        Self { targets, spread: NamedValues(spread.collect()) }
     }
 }
 

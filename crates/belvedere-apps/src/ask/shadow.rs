@@ -182,14 +182,8 @@ fn settled(lit: &mut [f32], doubts: Option<Vec<f32>>, unproven: UnprovenAs) -> O
     }
 }
 
-/// A note on the light that no pulse proves, of so many lit targets.
-#[must_use]
-pub fn remark_on_unproven_light(unproven: usize, lit: usize) -> Option<Remark> {
-    let so = "are lit as far as the points show, but no pulse proves their way to the sun free";
-    Remark::of_share("light-unproven", unproven, lit, "lit targets", so).map(Remark::into_note)
-}
-
-fn summarise(suns: &[NamedSun], measures: &[Measure], places: &str, context: &mut Context) {
+/// Says what was found of suns; where there is one, what of its light is unproven may follow its measure.
+pub(super) fn summarise(suns: &[NamedSun], measures: &[Measure], places: &str, context: &mut Context) {
     let share = |measure: &Measure| measure.statistics().map_or(f64::NAN, |found| 100.0 * found.mean);
     match (suns, measures) {
         ([sun], [lit, rest @ ..]) => {
@@ -198,7 +192,9 @@ fn summarise(suns: &[NamedSun], measures: &[Measure], places: &str, context: &mu
                 let count = |measure: &Measure| measure.values.iter().filter(|&&value| value > 0.0).count();
                 let (unproven, lit) = (count(doubts), count(lit));
                 context.headline(format!("unproven: {} % of what is lit", percent(unproven, lit)));
-                context.add(remark_on_unproven_light(unproven, lit));
+                let so = "are lit as far as the points show, but no pulse proves their way to the sun free";
+                context
+                    .add(Remark::of_share("light-unproven", unproven, lit, "lit targets", so).map(Remark::into_note));
             }
         }
         _ => {

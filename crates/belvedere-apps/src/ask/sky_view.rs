@@ -2,9 +2,11 @@
 
 use super::how_sure::{check_interval, check_interval_scene};
 use super::light::{Light, OnTargets};
+use super::scene::Whereabouts;
 use super::sections::{MeasuresSection, PlacesReport};
 use super::{Answers, Ask, Context, Places, Scene, ThroughTrees, spread};
 use crate::sky_view::{SKY_DIRECTIONS, SkyDirections, scene_sky_view};
+use crate::targets::Measure;
 use belvedere_core::query::UnprovenAs;
 use belvedere_data::Result;
 use belvedere_data::control::Control;
@@ -79,10 +81,19 @@ impl Ask for SkyViewQuestion {
         })?;
         let measures = seen.into_measures();
         context.report.measures = Some(MeasuresSection::of(&light.targets, &measures));
-        context.headline(format!("sky seen from {}", PlacesReport::in_words(&light.targets)));
-        for measure in &measures {
-            context.headline(format!("{}: {}", measure.name.replace('_', " "), spread(&measure.values, 2, "")));
-        }
-        Ok(Answers::new(light.titled(format!("Sky view{}", scene.far_in_words())), measures))
+        summarise(&measures, &PlacesReport::in_words(&light.targets), context);
+        Ok(Answers::new(light.titled(title(&scene.whereabouts())), measures))
+    }
+}
+
+pub(super) fn title(whereabouts: &Whereabouts<'_>) -> String {
+    format!("Sky view{}", whereabouts.far_in_words())
+}
+
+/// Says what was found.
+pub(super) fn summarise(measures: &[Measure], places: &str, context: &mut Context) {
+    context.headline(format!("sky seen from {places}"));
+    for measure in measures {
+        context.headline(format!("{}: {}", measure.name.replace('_', " "), spread(&measure.values, 2, "")));
     }
 }

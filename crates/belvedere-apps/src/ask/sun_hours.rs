@@ -2,13 +2,14 @@
 
 use super::how_sure::{check_interval, check_interval_scene};
 use super::light::{Light, OnTargets};
+use super::scene::Whereabouts;
 use super::sections::{MeasuresSection, NamedValues, PeriodSection, PlacesReport};
 use super::sun::{Days, SunPlace};
 use super::{Answers, Ask, Context, Places, Scene, ThroughTrees, spread};
 use crate::rows::Obstacles;
 use crate::sun::{Binning, DayParams, Period, Site, SunSchedule, Zone, sun_days};
 use crate::sun_hours::{SunPlan, SunRule, SunSums, scene_sun_hours};
-use crate::targets::Targets;
+use crate::targets::{Measure, ResultKind, Targets};
 use belvedere_core::query::UnprovenAs;
 use belvedere_data::control::Control;
 use belvedere_data::{Error, Parameter, Result};
@@ -136,14 +137,18 @@ impl SunHoursQuestion {
             // what was kept is not tested again
             context.report.lines_of_sight = None;
         }
-        let days = days_in_words(plan.period(), &zone);
+        let title = self.title(&plan, &zone, &scene.whereabouts());
+        Ok(PreparedSun { plan, site, light, has_interval: self.interval, title })
+    }
+
+    pub(super) fn title(&self, plan: &SunPlan, zone: &Zone, whereabouts: &Whereabouts<'_>) -> String {
+        let days = days_in_words(plan.period(), zone);
         let of_rule = plan.rules().first().filter(|_| self.days.is_empty());
         let what = match of_rule {
             Some(first) => format!("Sun hours on the days of the rule {}", first.rule.name),
             None => "Sun hours".to_owned(),
         };
-        let title = format!("{what}, {days}{}", scene.far_in_words());
-        Ok(PreparedSun { plan, site, light, has_interval: self.interval, title })
+        format!("{what}, {days}{}", whereabouts.far_in_words())
     }
 }
 
@@ -185,17 +190,7 @@ impl PreparedSun {
         let targets = &self.light.targets;
         let measures = sums.into_measures(&self.plan, targets);
         context.report.measures = Some(MeasuresSection::of(targets, &measures));
-        context.headline(format!("{}: {}", self.title, PlacesReport::in_words(targets)));
-        let schedule = self.plan.period();
-        let possible = schedule.possible_hours() / schedule.days.len().max(1) as f64;
-        if let Some(hours) = measures.first() {
-            let spread = spread(&hours.values, 2, "hours a day");
-            context.headline(format!("sun hours: {spread}, of {possible:.2} possible"));
-        }
-        for (planned, measure) in self.plan.rules().iter().zip(&measures[measures.len() - self.plan.rules().len()..]) {
-            let share = measure.statistics().map_or(f64::NAN, |found| 100.0 * found.mean);
-            context.headline(format!("rule {}: met by {share:.1} %", planned.rule.name));
-        }
+        summarise(&self.plan, &self.title, &measures, &PlacesReport::in_words(targets), context);
         Answers::new(self.light.titled(self.title), measures)
     }
 }
@@ -221,6 +216,23 @@ impl Ask for SunHoursQuestion {
         let prepared = self.prepare(scene, places, None, context, control)?;
         let sums = prepared.test(control)?;
         Ok(prepared.answers(sums, context))
+    }
+}
+
+/// Says what was found: hours where they are the first measure, and whether each rule is met, of which measures are the
+/// last.
+pub(super) fn summarise(plan: &SunPlan, title: &str, measures: &[Measure], places: &str, context: &mut Context) {
+    context.headline(format!("{title}: {places}"));
+    let schedule = plan.period();
+    let possible = schedule.possible_hours() / schedule.days.len().max(1) as f64;
+    if let Some(hours) = measures.first().filter(|first| first.kind == ResultKind::Number) {
+        let spread = spread(&hours.values, 2, "hours a day");
+        context.headline(format!("sun hours: {spread}, of {possible:.2} possible"));
+    }
+    let of_rules = measures.len().saturating_sub(plan.rules().len());
+    for (planned, measure) in plan.rules().iter().zip(&measures[of_rules..]) {
+        let share = measure.statistics().map_or(f64::NAN, |found| 100.0 * found.mean);
+        context.headline(format!("rule {}: met by {share:.1} %", planned.rule.name));
     }
 }
 

@@ -82,7 +82,9 @@ impl Targets {
         Self::at(frame, places.iter().map(|&place| to_f32(place)).collect(), None, TargetLayout::Points)
     }
 
-    fn at(frame: Frame, positions: Vec<[f32; 3]>, normals: Option<Vec<[f32; 3]>>, layout: TargetLayout) -> Self {
+    /// Targets at positions, (M, 3) local metres, NaN where one is left out, with normals or level.
+    #[must_use]
+    pub fn at(frame: Frame, positions: Vec<[f32; 3]>, normals: Option<Vec<[f32; 3]>>, layout: TargetLayout) -> Self {
         Self { frame, positions, normals, weights: Vec::new(), groups: Vec::new(), layout, on_added: Vec::new() }
     }
 

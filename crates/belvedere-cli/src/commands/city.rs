@@ -22,6 +22,8 @@ use belvedere_tiles::{
 use std::path::PathBuf;
 use std::time::Instant;
 
+/// Name and version of the program, as plans say them.
+pub(super) const PROGRAM: &str = concat!("belvedere ", env!("CARGO_PKG_VERSION"));
 /// Most failures that are listed one by one.
 const MAX_LISTED: usize = 10;
 
@@ -46,11 +48,11 @@ fn plan(arguments: &CityPlan, global: &Global) -> Result<Summary> {
         cells: questions::cells(arguments)?,
         places: arguments.observers.iter().filter(|place| place.1.is_none()).map(|place| place.0).collect(),
         memory: arguments.memory.map(|memory| memory.0),
-        program: concat!("belvedere ", env!("CARGO_PKG_VERSION")).to_owned(),
+        program: PROGRAM.to_owned(),
     };
     let plan = Plan::make(&params, &run.control())?;
     let changes = PlanArguments { add: arguments.add.clone(), clear: arguments.clear.clone() };
-    let plan = planned(plan, &changes, Some(&arguments.far_terrain), Some(&arguments.trees))?;
+    let plan = planned(plan, &changes, &arguments.far_terrain, &arguments.trees)?;
     let questions = questions::questions(arguments, &plan, &mut run)?;
     let plan = plan.with_questions(questions, &run.control()).map_err(|error| match error {
         Error::InvalidParameter { parameter: Parameter::Questions, .. } => Usage(error.to_string()).into(),
@@ -84,8 +86,8 @@ fn plan(arguments: &CityPlan, global: &Global) -> Result<Summary> {
 pub(super) fn planned(
     plan: Plan,
     changes: &PlanArguments,
-    far: Option<&FarTerrainArguments>,
-    trees: Option<&ThroughTreesArguments>,
+    far: &FarTerrainArguments,
+    trees: &ThroughTreesArguments,
 ) -> Result<Plan> {
     let meshes = changes.add.iter().map(|path| SideFile::new(path)).collect::<belvedere::Result<Vec<_>>>()?;
     let plan = plan.with_meshes(meshes)?;
@@ -96,13 +98,9 @@ pub(super) fn planned(
     }
     let plan = plan.with_cleared(cleared)?;
     let side = |path: &Option<PathBuf>| path.as_deref().map(SideFile::new).transpose();
-    let (terrain, horizon) = match far {
-        Some(far) => (side(&far.terrain)?, side(&far.horizon)?),
-        None => (None, None),
-    };
+    let (terrain, horizon) = (side(&far.terrain)?, side(&far.horizon)?);
     let plan = plan.with_far_terrain(terrain, horizon)?;
     let measured = || Transmissivity::constant(plan.share_of_pulses_through_crowns()).ok();
-    let Some(trees) = trees else { return Ok(plan) };
     match trees.choice()?.crowns(measured)? {
         Some(crowns) => Ok(plan.with_light_through_trees(crowns)?),
         None => Ok(plan),

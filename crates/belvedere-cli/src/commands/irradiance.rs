@@ -3,26 +3,16 @@
 mod planes;
 pub(super) mod radiation;
 
-use super::in_tiles::{TypedCells, map_of_first};
+use super::in_tiles::TypedCells;
 use super::targets::TargetOutput;
 use super::warn_of_geojson;
-use crate::arguments::{Global, IrradianceArguments, SkyOutputs, Usage};
+use crate::arguments::{Global, IrradianceArguments, Usage};
 use crate::pipeline::{self, KeepPoints};
 use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::Result;
 use belvedere::apps::ask::{self, Ask, Places, Roofs, SunPlace};
 use belvedere::apps::irradiance::{CLEAR_SKY_YEAR, Grouping};
-
-fn cells<'a>(arguments: &'a IrradianceArguments, outputs: &'a SkyOutputs) -> TypedCells<'a> {
-    let others = [
-        ("--shell", arguments.shell.shell.is_some()),
-        ("--months", arguments.months),
-        ("--planes", !arguments.planes.is_empty()),
-    ];
-    let outputs = (&outputs.output[..], outputs.measures.as_deref());
-    TypedCells::of_sky((&arguments.scene, &arguments.memory), &arguments.places, &arguments.trees, outputs, &others)
-}
 
 pub(crate) fn run(arguments: &IrradianceArguments, global: &Global) -> Result<Summary> {
     let outputs = arguments.outputs.of_places();
@@ -33,32 +23,32 @@ pub(crate) fn run(arguments: &IrradianceArguments, global: &Global) -> Result<Su
     }
     planes::check(arguments)?;
     let mut run = CommandContext::new(global);
-    if let Some(survey) = cells(arguments, &outputs).survey(&mut run)? {
-        let place = SunPlace { location: arguments.location.as_ref().map(|at| at.0), ..SunPlace::default() };
-        let question = survey.with_whereabouts(&mut run, |whereabouts, context| {
-            let radiation = &arguments.radiation;
-            let (weather, year) = (radiation.weather.as_deref(), arguments.year.unwrap_or(CLEAR_SKY_YEAR));
-            radiation::check_linke(radiation.clear_sky, &arguments.model)?;
-            let site = place.site_at(whereabouts, context, None)?;
-            radiation::of_tiles((weather, radiation.clear_sky), &arguments.model, year, site)
-        })?;
-        let results = survey.answer(vec![question], "energy", &mut run)?;
-        results.write(&|measures, relief| map_of_first(measures, relief, "Energy"), &mut run)?;
-        return Ok(run.finish());
-    }
     let grouping = if arguments.months { Grouping::Months } else { Grouping::Whole };
     let params = radiation::params(&arguments.model).with_grouping(grouping);
     let IrradianceArguments { min_area, panel, min_cells, .. } = *arguments;
     let roofs = Roofs { min_area, panel, min_cells, ground: arguments.places.ground.points() };
+    let (weather, clear_sky) = (arguments.radiation.weather.as_deref(), arguments.radiation.clear_sky);
+    let year = arguments.year.unwrap_or(CLEAR_SKY_YEAR);
     let question = ask::IrradianceQuestion {
         // a mistyped weather file must not be found out after the balls were made
-        radiation: radiation::of(arguments, &params, &run)?,
+        radiation: radiation::of((weather, clear_sky), &arguments.model, year, &run)?,
         params,
         place: SunPlace { location: arguments.location.as_ref().map(|location| location.0), ..SunPlace::default() },
         trees: arguments.trees.choice()?,
         roofs: (!arguments.planes.is_empty()).then_some(roofs),
     };
     question.check()?;
+    let cells = TypedCells {
+        scene: &arguments.scene,
+        memory: &arguments.memory,
+        places: &arguments.places,
+        trees: &arguments.trees,
+        outputs: &outputs,
+        others: &[("--shell", arguments.shell.shell.is_some())],
+    };
+    if wants_places && cells.answered(ask::Question::Irradiance(question.clone()), None, &mut run)?.is_some() {
+        return Ok(run.finish());
+    }
     let needs_points = question.roofs.is_some() || arguments.places.needs_points();
     let points = if needs_points { KeepPoints::Keep } else { KeepPoints::LetGo };
     let mut scene = pipeline::scene(&arguments.scene, points, &mut run)?;

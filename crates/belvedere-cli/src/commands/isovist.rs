@@ -3,7 +3,7 @@
 use super::surroundings::{min_count, rows_as_given};
 use super::{check_output, extension};
 use crate::arguments::{Global, IsovistArguments, Usage};
-use crate::pipeline::QuestionReach;
+use crate::pipeline::scene_in_reach;
 use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::Result;
@@ -33,8 +33,8 @@ pub(crate) fn run(arguments: &IsovistArguments, global: &Global) -> Result<Summa
     let usual = IsovistParams::default().max_range;
     let is_typed = arguments.eyes.eyes.is_none();
     let distance = is_typed.then(|| arguments.max_distance.unwrap_or(usual));
-    let reach = QuestionReach { places: &arguments.eyes.eye, distance };
-    let input = reach.of_scene(&arguments.scene, &arguments.memory, &mut run)?;
+    let typed = (&arguments.scene, &arguments.memory);
+    let input = scene_in_reach(typed, &arguments.eyes.eye, distance, &mut run)?;
     let scene = arguments.eyes.scene(&input, None, &mut run)?;
     let standing = arguments.eyes.standing(scene.frame(), &mut run)?;
     check_pictures(arguments, standing.len())?;

@@ -3,7 +3,7 @@
 use super::far_terrain::set_terrain;
 use super::{check_output, extension};
 use crate::arguments::{Global, LineOfSightArguments, LinesArguments, MapPosition, Usage};
-use crate::pipeline::{self, KeepPoints, QuestionReach};
+use crate::pipeline::{self, KeepPoints};
 use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::{Result, bail};
@@ -34,8 +34,8 @@ pub(crate) fn run(arguments: &LineOfSightArguments, global: &Global) -> Result<S
     // ends may need the ground
     let points = if arguments.lines.random.is_some() { KeepPoints::LetGo } else { KeepPoints::Keep };
     let ends: Vec<MapPosition> = arguments.lines.from.iter().chain(&arguments.lines.to).copied().collect();
-    let reach = QuestionReach { places: &ends, distance: arguments.terrain.is_none().then_some(0.0) };
-    let input = reach.of_scene(&arguments.scene, &arguments.memory, &mut run)?;
+    let distance = arguments.terrain.is_none().then_some(0.0);
+    let input = pipeline::scene_in_reach((&arguments.scene, &arguments.memory), &ends, distance, &mut run)?;
     let mut scene = pipeline::scene(&input, points, &mut run)?;
     if let Some(path) = &arguments.terrain {
         set_terrain(path, &mut scene, &mut run)?;

@@ -1,7 +1,7 @@
 //! `belvedere shadow`.
 
 use super::fading::{UNPROVEN_COLOR, fade, faded};
-use super::in_tiles::{TiledSurvey, TypedCells};
+use super::in_tiles::TypedCells;
 use super::targets::{HighestPoints, TargetOutput};
 use super::{check_output, extension};
 use crate::arguments::{Global, ShadowArguments, Usage};
@@ -9,12 +9,13 @@ use crate::pipeline;
 use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::Result;
-use belvedere::apps::ask::{self, Answers, Context, NamedSun, ShadowResults, Suns, UNCERTAIN, UNPROVEN};
+use belvedere::apps::ask::{self, Answers, NamedSun, ShadowResults, Suns, UNCERTAIN, UNPROVEN};
 use belvedere::apps::shadow::Edges;
 use belvedere::apps::targets::Measure;
 use belvedere::figures::{MapLegend, MapPicture, Picture, map_picture, write_apng, write_png};
 use belvedere::io::atomic;
 use belvedere::query::UnprovenAs;
+use belvedere_tiles::SurveyCells;
 
 const SHADE_COLOR: [u8; 3] = [38, 52, 96];
 const HALF_COLOR: [u8; 3] = [147, 136, 93];
@@ -24,8 +25,23 @@ pub(crate) fn run(arguments: &ShadowArguments, global: &Global) -> Result<Summar
     let question = question(arguments)?;
     check(arguments, &question)?;
     let mut run = CommandContext::new(global);
-    if let Some(survey) = cells(arguments).survey(&mut run)? {
-        answer_in_tiles(survey, question, &mut run)?;
+    let cells = TypedCells {
+        scene: &arguments.scene,
+        memory: &arguments.memory,
+        places: &arguments.places,
+        trees: &arguments.trees,
+        outputs: &arguments.outputs,
+        others: &[
+            ("--shell", arguments.giving_way.shell.is_some()),
+            ("--film", arguments.film.is_some()),
+            ("--frames", arguments.frames.is_some()),
+        ],
+    };
+    let map = |answers: &Answers<SurveyCells>, relief: &HighestPoints| {
+        Maps::new(&answers.found.suns, &answers.measures).draw(0, relief)
+    };
+    if let Some(answers) = cells.answered(ask::Question::Shadow(question.clone()), Some(&map), &mut run)? {
+        warn_of_other_suns(arguments, answers.found.suns.len(), &mut run);
         return Ok(run.finish());
     }
     let scene = pipeline::scene_of_places(&arguments.scene, &arguments.places, arguments.giving_way.shell, &mut run)?;
@@ -36,39 +52,23 @@ pub(crate) fn run(arguments: &ShadowArguments, global: &Global) -> Result<Summar
     let maps = Maps::of(&answers);
     shown.write_with(&arguments.outputs, &answers.measures, &|relief| maps.draw(0, relief), &mut run)?;
     shown.write_edge_mask(arguments.places.edge_mask.as_deref(), &mut run)?;
-    let map = arguments.outputs.output.iter().find(|output| extension(output) == "png" && shown.relief().is_some());
-    if let (Some(map), 2.., None, None) = (map, maps.suns.len(), &arguments.film, &arguments.frames) {
-        let (map, count) = (map.display(), maps.suns.len());
-        run.summary.warn(
-            "map-of-first-sun",
-            format!("{map}: the map shows only the first of {count} suns; --film OUT shows them all"),
-        );
+    if shown.relief().is_some() {
+        warn_of_other_suns(arguments, maps.suns.len(), &mut run);
     }
     films(arguments, &shown, &maps, &run)?;
     Ok(run.finish())
 }
 
-fn cells(arguments: &ShadowArguments) -> TypedCells<'_> {
-    let outputs = (&arguments.outputs.output[..], arguments.outputs.measures.as_deref());
-    let others = [
-        ("--shell", arguments.giving_way.shell.is_some()),
-        ("--soft", arguments.suns.soft),
-        ("--probability", arguments.how_sure.probability),
-        ("--certain", arguments.how_sure.certain.is_some()),
-        ("--film", arguments.film.is_some()),
-        ("--frames", arguments.frames.is_some()),
-    ];
-    TypedCells::of_sky((&arguments.scene, &arguments.memory), &arguments.places, &arguments.trees, outputs, &others)
-}
-
-fn answer_in_tiles(survey: TiledSurvey<'_>, question: ask::ShadowQuestion, run: &mut CommandContext) -> Result<()> {
-    let suns = survey.with_whereabouts(run, |whereabouts, _| {
-        Ok(question.suns.over(&question.place, whereabouts, &mut Context::default())?)
-    })?;
-    let questions = survey.questions(&ask::Question::Shadow(question), run)?;
-    let title = suns.first().map(|sun| sun.title.clone()).unwrap_or_default();
-    let results = survey.answer(questions, &title, run)?;
-    results.write(&|measures, relief| Maps::new(&suns, measures).draw(0, relief), run)
+/// Warns of a map that shows one of several suns.
+fn warn_of_other_suns(arguments: &ShadowArguments, count: usize, run: &mut CommandContext) {
+    let map = arguments.outputs.output.iter().find(|output| extension(output) == "png");
+    if let (Some(map), 2.., None, None) = (map, count, &arguments.film, &arguments.frames) {
+        let map = map.display();
+        run.summary.warn(
+            "map-of-first-sun",
+            format!("{map}: the map shows only the first of {count} suns; --film OUT shows them all"),
+        );
+    }
 }
 
 fn question(arguments: &ShadowArguments) -> Result<ask::ShadowQuestion> {

@@ -1,6 +1,6 @@
 //! `belvedere sky-view`.
 
-use super::in_tiles::{TypedCells, map_of_first};
+use super::in_tiles::TypedCells;
 use super::targets::TargetOutput;
 use crate::arguments::{Global, PatchesChoice, SkyViewArguments};
 use crate::pipeline;
@@ -16,19 +16,15 @@ pub(crate) fn run(arguments: &SkyViewArguments, global: &Global) -> Result<Summa
         ask::SkyViewQuestion { sky, trees: arguments.trees.choice()?, interval: arguments.interval.interval };
     question.check()?;
     let mut run = CommandContext::new(global);
-    let others = [("--shell", arguments.shell.shell.is_some()), ("--interval", arguments.interval.interval)];
-    let outputs = (&arguments.outputs.output[..], arguments.outputs.measures.as_deref());
-    let cells = TypedCells::of_sky(
-        (&arguments.scene, &arguments.memory),
-        &arguments.places,
-        &arguments.trees,
-        outputs,
-        &others,
-    );
-    if let Some(survey) = cells.survey(&mut run)? {
-        let questions = survey.questions(&ask::Question::SkyView(question), &mut run)?;
-        let results = survey.answer(questions, "sky", &mut run)?;
-        results.write(&|measures, relief| map_of_first(measures, relief, "Sky view"), &mut run)?;
+    let cells = TypedCells {
+        scene: &arguments.scene,
+        memory: &arguments.memory,
+        places: &arguments.places,
+        trees: &arguments.trees,
+        outputs: &arguments.outputs,
+        others: &[("--shell", arguments.shell.shell.is_some())],
+    };
+    if cells.answered(ask::Question::SkyView(question.clone()), None, &mut run)?.is_some() {
         return Ok(run.finish());
     }
     let scene = pipeline::scene_of_places(&arguments.scene, &arguments.places, arguments.shell.shell, &mut run)?;

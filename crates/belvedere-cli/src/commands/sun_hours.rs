@@ -1,7 +1,7 @@
 //! `belvedere sun-hours`.
 
 use super::check_output;
-use super::in_tiles::{TypedCells, map_of_first};
+use super::in_tiles::TypedCells;
 use super::targets::TargetOutput;
 use crate::arguments::{Global, SunHoursArguments, Usage};
 use crate::pipeline;
@@ -39,24 +39,19 @@ pub(crate) fn run(arguments: &SunHoursArguments, global: &Global) -> Result<Summ
         return Err(Usage(what.to_owned()).into());
     }
     let mut run = CommandContext::new(global);
-    let others = [
-        ("--shell", arguments.shell.shell.is_some()),
-        ("--interval", arguments.interval.interval),
-        ("--save-matrix", arguments.keep.is_some()),
-        ("--load-matrix", arguments.from_matrix.is_some()),
-    ];
-    let outputs = (&arguments.outputs.output[..], arguments.outputs.measures.as_deref());
-    let cells = TypedCells::of_sky(
-        (&arguments.scene, &arguments.memory),
-        &arguments.places,
-        &arguments.trees,
-        outputs,
-        &others,
-    );
-    if let Some(survey) = cells.survey(&mut run)? {
-        let questions = survey.questions(&ask::Question::SunHours(question), &mut run)?;
-        let results = survey.answer(questions, "sun hours", &mut run)?;
-        results.write(&|measures, relief| map_of_first(measures, relief, "Sun hours"), &mut run)?;
+    let cells = TypedCells {
+        scene: &arguments.scene,
+        memory: &arguments.memory,
+        places: &arguments.places,
+        trees: &arguments.trees,
+        outputs: &arguments.outputs,
+        others: &[
+            ("--shell", arguments.shell.shell.is_some()),
+            ("--save-matrix", arguments.keep.is_some()),
+            ("--load-matrix", arguments.from_matrix.is_some()),
+        ],
+    };
+    if cells.answered(ask::Question::SunHours(question.clone()), None, &mut run)?.is_some() {
         return Ok(run.finish());
     }
     let head = match &arguments.from_matrix {

@@ -97,6 +97,17 @@ impl SkyPlaces {
         self.places.targets.is_none()
     }
 
+    /// The cells that were typed.
+    pub(crate) fn cells(&self) -> GridCells {
+        GridCells {
+            cell: self.cell,
+            level: if self.places.surface { CellLevel::Surface } else { CellLevel::Ground },
+            height: self.height.map(f64::from),
+            ground: self.ground.points(),
+            ..GridCells::default()
+        }
+    }
+
     /// The places that were typed, and what they are taken from.
     pub(crate) fn places(&self, scene: &Scene, run: &mut CommandContext) -> Result<(Places, TargetSource)> {
         let Some(path) = &self.places.targets else {
@@ -104,14 +115,7 @@ impl SkyPlaces {
                 let is_turned = self.facing == Some(FacingChoice::Normals);
                 return Ok((Places::Own(if is_turned { Turned::Normals } else { Turned::Level }), TargetSource::Own));
             }
-            let cells = GridCells {
-                cell: self.cell,
-                level: if self.places.surface { CellLevel::Surface } else { CellLevel::Ground },
-                height: self.height.map(f64::from),
-                ground: self.ground.points(),
-                ..GridCells::default()
-            };
-            return Ok((Places::Cells(cells), TargetSource::Cells));
+            return Ok((Places::Cells(self.cells()), TargetSource::Cells));
         };
         if is_mesh(path) {
             let mesh = Arc::new(mesh_in(path, &scene.frame().crs, run)?);
@@ -233,7 +237,7 @@ impl<'a> TargetOutput<'a> {
 }
 
 /// What a user must know of a file that has room for one of several measures.
-fn remark_on_first(output: &Path, measures: &[Measure]) -> Option<Remark> {
+pub(super) fn remark_on_first(output: &Path, measures: &[Measure]) -> Option<Remark> {
     let (output, count, name) = (output.display(), measures.len(), &measures.first()?.name);
     let text = || format!("{output}: shows {name}, the first of {count} results; .tif and .csv hold all of them");
     (count > 1).then(|| Remark::note("one-result-of-several", text()).with("count", count as f64))

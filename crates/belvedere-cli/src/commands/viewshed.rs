@@ -7,7 +7,7 @@ use super::far_terrain::set_terrain;
 use super::heights::write_heights;
 use super::{check_output, warn_of_geojson};
 use crate::arguments::{Global, MapPosition, ViewshedArguments};
-use crate::pipeline::{self, KeepPoints, QuestionReach};
+use crate::pipeline::{self, KeepPoints};
 use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::Result;
@@ -31,8 +31,7 @@ pub(crate) fn run(arguments: &ViewshedArguments, global: &Global) -> Result<Summ
     // others are known only with the scene
     let is_bounded = arguments.who.observers.is_none() && arguments.terrain.is_none();
     let distance = arguments.looking.max_distance.filter(|_| is_bounded);
-    let reach = QuestionReach { places: &places, distance };
-    let input = reach.of_scene(&arguments.scene, &arguments.memory, &mut run)?;
+    let input = pipeline::scene_in_reach((&arguments.scene, &arguments.memory), &places, distance, &mut run)?;
     let mut scene = pipeline::scene(&input, KeepPoints::Keep, &mut run)?;
     if let Some(path) = &arguments.terrain {
         set_terrain(path, &mut scene, &mut run)?;

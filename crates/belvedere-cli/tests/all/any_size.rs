@@ -35,7 +35,7 @@ fn a_shadow_in_tiles_is_that_of_one_model_and_is_found_again() {
         let differ = one.iter().zip(other).filter(|(a, b)| a != b).count();
         assert!(differ * 50 < one.len(), "{differ} of {}", one.len());
     }
-    let lit = |summary: &Value, key: &str| summary[key]["mean"].as_f64().unwrap();
+    let lit = |summary: &Value, key: &str| summary["measures"][key]["mean"].as_f64().unwrap();
     assert!(lit(&tiled, "lit") > 0.05 && lit(&tiled, "lit") < 0.95, "{tiled}");
     assert!(place.path("tiled.png").is_file());
     // what is done is taken over, by other questions too
@@ -44,7 +44,7 @@ fn a_shadow_in_tiles_is_that_of_one_model_and_is_found_again() {
     assert!(place.bytes("again.tif") == place.bytes("tiled.tif"));
     let sky = place.summary("sky-view town/cloud.laz --directions 49 --cell 2 -o sky.tif --memory 118M --cache kept");
     assert_eq!(sky["balls_made"].as_u64(), Some(0));
-    assert!(sky["sky_view_factor"]["mean"].as_f64().unwrap() > 0.2, "{sky}");
+    assert!(sky["measures"]["sky_view_factor"]["mean"].as_f64().unwrap() > 0.2, "{sky}");
     let listed = place.summary("cache --cache kept");
     assert!(listed["scene"].to_string().contains("in tiles"), "{listed}");
     place.summary("cache --clear --cache kept");
@@ -58,7 +58,7 @@ fn without_a_cache_tiles_lie_beside_the_result_while_it_is_made() {
     let hours =
         "sun-hours town/cloud.laz --date 2026-03-21 --time-step-min 60 --cell 2 --surface --no-cache --memory 118M";
     let found = place.summary(&format!("{hours} -o hours.tif --zone UTC --location 52,4.4"));
-    assert!(found["sun_hours"]["mean"].as_f64().unwrap() > 1.0, "{found}");
+    assert!(found["measures"]["sun_hours"]["mean"].as_f64().unwrap() > 1.0, "{found}");
     assert!(!place.path("hours.tiles").exists());
     // what is there already is not ours
     std::fs::create_dir(place.path("hours.tiles")).unwrap();
@@ -70,9 +70,17 @@ fn without_a_cache_tiles_lie_beside_the_result_while_it_is_made() {
 fn what_tiles_do_not_know_is_named_where_memory_was_typed() {
     let place = Workplace::new();
     town(&place);
-    for flag in ["--probability", "--soft", "--edge-mask mask.tif", "--trees opaque", "--shell 0.1", "-o points.laz"] {
+    for (flag, word) in [
+        ("--probability", "probabilities"),
+        ("--soft", "soft edges"),
+        ("--edge-mask mask.tif", "--edge-mask"),
+        ("--trees opaque", "--trees"),
+        ("--shell 0.1", "--shell"),
+        ("-o points.laz", "points.laz"),
+        ("--unproven as-blocked", "unproven light"),
+    ] {
         let line = format!("shadow town/cloud.laz --sun 150,30 -o out.tif {flag} --memory 118M --no-cache");
-        place.refusal(2, &line, &[flag.split(' ').next().unwrap(), "in tiles"]);
+        place.refusal(2, &line, &[word, "in tiles"]);
     }
     let suns: String = (0..6).map(|number| format!(" --sun {},30", 100 + 20 * number)).collect();
     let fine = format!("shadow town/cloud.laz{suns} --cell 0.0625 -o out.tif --memory 118M");
@@ -101,4 +109,8 @@ fn a_question_about_a_place_reads_what_is_around_it() {
     let other = place.summary(&format!("{line} --memory 150M"));
     assert!(remarks(&other).contains(&"part-of-survey".to_owned()), "{other}");
     assert_eq!(one["answer"], other["answer"]);
+    // what reaches all of the survey is not done without the memory for it
+    let far = format!("viewshed town/cloud.laz --observer {x},{y},30 --no-cache -o far.tif --memory 150M");
+    place.refusal(2, &far, &["150 MB", "reaches all of it", "a distance"]);
+    assert!(!place.path("far.tif").exists());
 }

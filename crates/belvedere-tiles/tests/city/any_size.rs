@@ -1,17 +1,16 @@
 //! A survey that is kept: cells on the ground, what pulses prove, and balls that all questions share.
 
-use crate::common::{run_all, write_town};
-use belvedere::apps::ask::scene::Whereabouts;
+use crate::common::write_town;
 use belvedere::apps::ask::{
-    Context, GridCells, HowSure, Places, Question, Scene, ShadowQuestion, SunPlace, Suns, ThroughTrees, ask,
+    Answers, GridCells, HowSure, Places, Question, Remark, Report, Scene, ShadowQuestion, SunPlace, Suns, ThroughTrees,
+    ask,
 };
 use belvedere::apps::shadow::Edges;
-use belvedere::apps::targets::CellLevel;
+use belvedere::apps::targets::Measure;
 use belvedere::control::Control;
 use belvedere::io::{ReadOptions, read_cloud};
 use belvedere::model::{ModelParams, SceneModel};
-use belvedere::results::Pixels;
-use belvedere_tiles::{CellSizes, Plan, PlanParams, TileQuestion, memory_of_whole};
+use belvedere_tiles::{Plan, PlanParams, SurveyCells, SurveyQuestion, TooLarge};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -24,19 +23,14 @@ fn params(clouds: &[PathBuf], tile_size: f64) -> PlanParams {
 
 /// The shadow of suns, in degrees, on cells of 1 m on the ground, of the survey kept in a folder, and how many tiles
 /// got their balls.
-fn shadow(folder: &Path, params: &PlanParams, sun: [f64; 2]) -> (Plan, Pixels, usize) {
+fn shadow(folder: &Path, params: &PlanParams, sun: [f64; 2]) -> (Plan, Answers<SurveyCells>, usize) {
     let control = Control::none();
-    let plan = Plan::kept_in(folder, params, &control).unwrap();
-    let plan = plan.with_cells(CellSizes::all(1.0)).unwrap().with_cells_on(CellLevel::Ground, Some(1.5));
-    let frame = plan.frame().unwrap();
-    let whereabouts = Whereabouts { frame: &frame, bounds: plan.bounds(), has_far_terrain: false };
-    let question = Question::Shadow(question(sun));
-    let questions = TileQuestion::of(&question, &whereabouts, &mut Context::default()).unwrap();
-    let (plan, run) = plan.with_questions(questions, &control).unwrap().ready_in(folder).unwrap();
-    let report = run_all(&plan, &run);
+    let plan = Plan::kept_in(folder, params, &control).unwrap().with_grid_cells(&cells()).unwrap();
+    let survey =
+        SurveyQuestion::new(plan.clone(), folder, Question::Shadow(question(sun)), u64::MAX, &control).unwrap();
+    let report = survey.run(&|| 0.0, &control).unwrap();
     assert!(report.failed.is_empty() && report.unproven_cells == 0, "{report:?}");
-    let pixels = plan.results_of(&run, &plan.questions[0], &control).unwrap();
-    (plan, pixels, report.balls_made)
+    (plan, survey.answers(&report, &control).unwrap(), report.balls_made)
 }
 
 fn question(sun: [f64; 2]) -> ShadowQuestion {
@@ -50,8 +44,14 @@ fn question(sun: [f64; 2]) -> ShadowQuestion {
     }
 }
 
-fn bands(pixels: &Pixels) -> Vec<Vec<f32>> {
-    pixels.to_numbers().unwrap().iter().map(|band| band.values().to_vec()).collect()
+fn cells() -> GridCells {
+    GridCells { cell: Some(1.0), height: Some(1.5), ..GridCells::default() }
+}
+
+/// All values as bits.
+fn bits(answers: &Answers<SurveyCells>) -> Vec<Vec<u32>> {
+    let of_measure = |measure: &Measure| measure.values.iter().map(|value| value.to_bits()).collect();
+    answers.measures.iter().map(of_measure).collect()
 }
 
 #[test]
@@ -59,28 +59,36 @@ fn cells_on_the_ground_and_proof_are_those_of_any_tiles_and_of_one_model() {
     let place = tempfile::tempdir().unwrap();
     let clouds = write_town(place.path(), 150.0, 1.0);
     let sun = [140.0, 25.0];
-    let (plan, whole, _) = shadow(&place.path().join("whole"), &params(&clouds, 512.0), sun);
+    let (_, whole, _) = shadow(&place.path().join("whole"), &params(&clouds, 512.0), sun);
     for tile_size in [64.0, 100.0] {
         let (_, tiled, _) = shadow(&place.path().join(tile_size.to_string()), &params(&clouds, tile_size), sun);
-        assert!(tiled == whole, "{tile_size}");
+        assert!(bits(&tiled) == bits(&whole), "{tile_size}");
     }
     let control = Control::none();
     let (cloud, _) = read_cloud(&clouds, &ReadOptions::new(), &control).unwrap();
     let (model, _) = SceneModel::build(&cloud, &ModelParams::default(), &control).unwrap();
     let scene = Scene::new(model, Arc::new(cloud));
-    let cells = GridCells { cell: Some(1.0), height: Some(1.5), ..GridCells::default() };
-    let answers = ask(&scene, &question(sun), &Places::Cells(cells), &control).unwrap();
-    let tiled = bands(&whole);
-    assert_eq!(tiled[0].len(), answers.measures[0].values.len(), "{:?}", plan.cells_of(&plan.questions[0]));
-    for (measure, tiled) in answers.measures.iter().zip(&tiled) {
+    let answers = ask(&scene, &question(sun), &Places::Cells(cells()), &control).unwrap();
+    assert_eq!(answers.measures.len(), 2);
+    for (measure, tiled) in answers.measures.iter().zip(&whole.measures) {
+        assert_eq!((&measure.name, measure.values.len()), (&tiled.name, tiled.values.len()));
         let is_other = |(a, b): &(&f32, &f32)| a.is_nan() != b.is_nan() || !a.is_nan() && a.to_bits() != b.to_bits();
-        let others = measure.values.iter().zip(tiled).filter(is_other).count() as f64;
-        let share = others / tiled.len() as f64;
+        let others = measure.values.iter().zip(&tiled.values).filter(is_other).count() as f64;
+        let share = others / tiled.values.len() as f64;
         assert!(share < MAX_DIFFERENCE, "{}: {share}", measure.name);
         let known = measure.values.iter().filter(|value| **value > 0.0).count();
         // all of one kind would compare nothing
-        assert!(known > tiled.len() / 50, "{}: {known}", measure.name);
+        assert!(known > tiled.values.len() / 50, "{}: {known}", measure.name);
     }
+    // the same words, figures of their own
+    let without_digits = |lines: &[String]| lines.concat().replace(|c: char| c.is_ascii_digit() || c == '.', "");
+    assert_eq!(without_digits(&answers.headline), without_digits(&whole.headline));
+    assert_eq!(answers.found.on.title, whole.found.title);
+    let keys = |remarks: &[Remark]| remarks.iter().map(|remark| remark.key).collect::<Vec<_>>();
+    assert_eq!(keys(&answers.remarks), keys(&whole.remarks));
+    let covered = |report: &Report| report.places.cells_under_cover_left_out.unwrap() as f64;
+    let [one, other] = [covered(&answers.report), covered(&whole.report)];
+    assert!(one > 100.0 && (one - other).abs() < MAX_DIFFERENCE * one, "{one} {other}");
 }
 
 #[test]
@@ -92,9 +100,9 @@ fn a_kept_survey_is_looked_at_once_and_its_balls_serve_all_questions() {
     assert_eq!(made, plan.tiles.len());
     // the same question is answered already; another has its balls
     let (_, again, made) = shadow(&folder, &params(&clouds, 64.0), [140.0, 25.0]);
-    assert!(again == first && made == 0, "{made}");
+    assert!(bits(&again) == bits(&first) && made == 0, "{made}");
     let (_, other, made) = shadow(&folder, &params(&clouds, 64.0), [220.0, 40.0]);
-    assert!(other != first && made == 0, "{made}");
+    assert!(bits(&other) != bits(&first) && made == 0, "{made}");
     // pulses that were damaged are made again
     let balls = walk(&folder).into_iter().filter(|path| path.to_string_lossy().contains(".pulses."));
     for path in balls {
@@ -105,7 +113,7 @@ fn a_kept_survey_is_looked_at_once_and_its_balls_serve_all_questions() {
     }
     let (_, mended, made) = shadow(&folder, &params(&clouds, 64.0), [60.0, 15.0]);
     let (_, expected, _) = shadow(&place.path().join("new"), &params(&clouds, 64.0), [60.0, 15.0]);
-    assert!(mended == expected && made == plan.tiles.len(), "{made}");
+    assert!(bits(&mended) == bits(&expected) && made == plan.tiles.len(), "{made}");
 }
 
 #[test]
@@ -113,13 +121,16 @@ fn less_memory_has_smaller_tiles_of_the_survey_that_is_kept() {
     let place = tempfile::tempdir().unwrap();
     let clouds = write_town(place.path(), 200.0, 1.0);
     let folder = place.path().join("kept");
-    let kept = |memory: Option<u64>| {
-        Plan::kept_in(&folder, &PlanParams { memory, ..params(&clouds, 512.0) }, &Control::none()).unwrap()
-    };
-    let first = kept(None);
-    let less = kept(Some(first.estimate().memory_bytes - 1_000_000));
+    let kept = || Plan::kept_in(&folder, &params(&clouds, 512.0), &Control::none()).unwrap();
+    let first = kept();
+    let less = kept().fitting(first.estimate().memory_bytes - 1_000_000).unwrap();
     assert!(less.tile_size < first.tile_size && less.tiles.len() > first.tiles.len(), "{}", less.tile_size);
-    assert_eq!(kept(None), first);
+    assert_eq!(kept(), first);
+    // a tile is a whole number of cells
+    let wide = kept().with_grid_cells(&GridCells { cell: Some(5.0), ..GridCells::default() }).unwrap();
+    assert_eq!(wide.fitting(u64::MAX).unwrap().tile_size, 320.0);
+    let odd = kept().with_grid_cells(&GridCells { cell: Some(0.3), ..GridCells::default() }).unwrap_err().to_string();
+    assert!(odd.contains("0.3 m") && odd.contains("such as 0.25, 0.5"), "{odd}");
     // another survey in the same folder is another plan
     let one = Plan::kept_in(&folder, &params(&clouds[..1], 512.0), &Control::none()).unwrap();
     assert!(one.inputs.len() == 1 && first.inputs.len() == 2);
@@ -132,13 +143,44 @@ fn walk(folder: &Path) -> Vec<PathBuf> {
 }
 
 #[test]
-fn memory_of_a_whole_survey_follows_its_points_and_tables_have_none() {
+fn suns_below_the_horizon_light_nothing_and_results_that_are_too_large_together_are_refused() {
+    let place = tempfile::tempdir().unwrap();
+    let clouds = write_town(place.path(), 60.0, 1.0);
+    let folder = place.path().join("kept");
+    let control = Control::none();
+    let plan = Plan::kept_in(&folder, &params(&clouds, 512.0), &control).unwrap().with_grid_cells(&cells()).unwrap();
+    let suns = Suns::Directions(vec![[140.0, -5.0], [140.0, 40.0]]);
+    let both = Question::Shadow(ShadowQuestion { suns, ..question([0.0, 0.0]) });
+    let new = |limit: u64| SurveyQuestion::new(plan.clone(), &folder, both.clone(), limit, &control);
+    let error = new(1000).err().unwrap().to_string();
+    assert!(error.contains("0 MB") && error.contains("larger cells"), "{error}");
+    let survey = new(u64::MAX).unwrap();
+    let report = survey.run(&|| 0.0, &control).unwrap();
+    let answers = survey.answers(&report, &control).unwrap();
+    let lit = |number: usize| answers.measures[number].values.iter().filter(|value| **value > 0.0).count();
+    let known = |number: usize| answers.measures[number].values.iter().filter(|value| value.is_finite()).count();
+    assert_eq!((answers.measures.len(), lit(0), known(0)), (2, 0, known(1)));
+    assert!(lit(1) > known(1) / 4, "{} of {}", lit(1), known(1));
+    assert!(answers.remarks.iter().any(|remark| remark.key == "suns-below-horizon"));
+    let soft = Question::Shadow(ShadowQuestion { edges: Edges::Soft, ..question([140.0, 40.0]) });
+    let error = SurveyQuestion::new(plan, &folder, soft, u64::MAX, &control).err().unwrap().to_string();
+    assert!(error.contains("soft edges"), "{error}");
+}
+
+#[test]
+fn memory_of_one_model_follows_the_points_and_tables_have_none() {
     let place = tempfile::tempdir().unwrap();
     let clouds = write_town(place.path(), 100.0, 1.0);
-    let [one, both] = [&clouds[..1], &clouds[..]].map(|clouds| memory_of_whole(clouds).unwrap());
-    assert!(both > one && one > 100_000_000, "{one} {both}");
+    let [one, both] = [&clouds[..1], &clouds[..]].map(|clouds| TooLarge::of(clouds, 1_000_000).unwrap());
+    assert!(both.whole > one.whole && one.whole > 100_000_000, "{one:?} {both:?}");
+    assert_eq!(TooLarge::of(&clouds, both.whole), None);
     let table = place.path().join("points.xyz");
     std::fs::write(&table, "1 2 3\n").unwrap();
-    assert_eq!(memory_of_whole(&[table]), None);
-    assert_eq!(memory_of_whole(&[place.path().join("gone.laz")]), None);
+    assert_eq!(TooLarge::of(&[table], 0), None);
+    assert_eq!(TooLarge::of(&[place.path().join("gone.laz")], 0), None);
+    // metres around places, in the unit of the files
+    let part = both.part_around((&clouds, None), &[[5.0, 7.0], [1.0, 9.0]], 100.0).unwrap().unwrap().0;
+    assert_eq!(part, [[1.0 - 228.0, 7.0 - 228.0], [5.0 + 228.0, 9.0 + 228.0]]);
+    let feet = both.part_around((&clouds, Some("EPSG:2263")), &[[0.0, 0.0]], 0.0).unwrap().unwrap().0;
+    assert!((feet[1][0] - 128.0 / 0.304_800_6).abs() < 0.01, "{feet:?}");
 }

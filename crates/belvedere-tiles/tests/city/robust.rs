@@ -100,6 +100,14 @@ fn shares_of_the_tiles_give_the_whole_together() {
     let answers = [2, 1, 3].map(|number| run_share(number, Steps::All));
     assert!(answers.iter().all(|made| made.0 == 0 && made.1 > 0), "{answers:?}");
     assert!(results(&straight) == results(&shared));
+    // answers before the balls of other shares: what they need is made
+    std::fs::remove_dir_all(shared.join("balls")).unwrap();
+    for sun in suns() {
+        std::fs::remove_dir_all(shared.join(sun.name())).unwrap();
+    }
+    let mixed = [3, 1, 2].map(|number| run_share(number, Steps::All));
+    assert!(mixed.iter().all(|made| made.1 > 0), "{mixed:?}");
+    assert!(results(&straight) == results(&shared));
     let params = RunParams { shard: Shard { number: 4, of: 3 }, steps: Steps::All, max_balls: None, seconds: &|| 0.0 };
     assert!(run(&plan, &shared, &params, &Control::none()).is_err());
 }

@@ -5,7 +5,6 @@ use crate::commands::irradiance::radiation;
 use crate::run::CommandContext;
 use anyhow::Result;
 use belvedere::Error;
-use belvedere::apps::ask::scene::Whereabouts;
 use belvedere::apps::ask::{self, Context, SkyParts, SunPlace, Suns, ThroughTrees};
 use belvedere::apps::shadow::Edges;
 use belvedere::apps::sun::zone_of_instant;
@@ -130,7 +129,7 @@ fn of_sun_and_sky(arguments: &CityPlan) -> Result<Vec<ask::Question>> {
 /// What was typed as questions. Azimuths count from the north, and the sun is that, at the middle of the survey.
 pub(super) fn questions(arguments: &CityPlan, plan: &Plan, run: &mut CommandContext) -> Result<Vec<TileQuestion>> {
     let frame = plan.frame()?;
-    let whereabouts = Whereabouts { frame: &frame, bounds: plan.bounds(), has_far_terrain: false };
+    let whereabouts = plan.whereabouts(&frame);
     let mut context = Context::default();
     whereabouts.remark(&mut context);
     let mut questions = Vec::new();
@@ -138,10 +137,15 @@ pub(super) fn questions(arguments: &CityPlan, plan: &Plan, run: &mut CommandCont
         questions.extend(TileQuestion::of(&question, &whereabouts, &mut context)?);
     }
     if arguments.irradiance {
-        let site = sun_place(arguments)?.site_at(&whereabouts, &mut context, None)?;
-        let weather = arguments.weather.as_deref();
-        let year = arguments.when.year;
-        questions.push(radiation::of_tiles((weather, arguments.clear_sky), &arguments.model, year, site)?);
+        let from = (arguments.weather.as_deref(), arguments.clear_sky);
+        let question = ask::Question::Irradiance(ask::IrradianceQuestion {
+            radiation: radiation::of(from, &arguments.model, arguments.when.year, run)?,
+            params: radiation::params(&arguments.model),
+            place: sun_place(arguments)?,
+            trees: ThroughTrees::Opaque,
+            roofs: None,
+        });
+        questions.extend(TileQuestion::of(&question, &whereabouts, &mut context)?);
     }
     if arguments.sky_view {
         let sky = SkyParts::Even(arguments.direction_count);

@@ -1,13 +1,11 @@
 //! From flags and weather files to where radiation comes from.
 
-use crate::arguments::{ClearSkyChoice, IrradianceArguments, RadiationModel, Usage};
+use crate::arguments::{ClearSkyChoice, RadiationModel, Usage};
 use crate::run::CommandContext;
 use anyhow::Result;
 use belvedere::apps::ask::Radiation;
-use belvedere::apps::irradiance::{BirdParams, CLEAR_SKY_YEAR, ClearSky, IrradianceParams, PARTS};
-use belvedere::apps::sun::Site;
+use belvedere::apps::irradiance::{BirdParams, ClearSky, IrradianceParams, PARTS};
 use belvedere::io::read_weather;
-use belvedere_tiles::{SideFile, TileQuestion, TileRadiation};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -22,11 +20,7 @@ pub(in crate::commands) fn params(model: &RadiationModel) -> IrradianceParams {
 }
 
 /// The model of a sky without clouds.
-pub(in crate::commands) fn clear_sky(
-    choice: Option<ClearSkyChoice>,
-    model: &RadiationModel,
-    params: &IrradianceParams,
-) -> ClearSky {
+fn clear_sky(choice: Option<ClearSkyChoice>, model: &RadiationModel, params: &IrradianceParams) -> ClearSky {
     match choice {
         Some(ClearSkyChoice::Haurwitz) => ClearSky::Haurwitz,
         Some(ClearSkyChoice::Bird) => ClearSky::Bird(BirdParams { albedo: params.albedo, ..BirdParams::default() }),
@@ -42,32 +36,16 @@ pub(in crate::commands) fn check_linke(choice: Option<ClearSkyChoice>, model: &R
     Ok(())
 }
 
-/// The question about tiles of a survey that lies at a site.
-pub(in crate::commands) fn of_tiles(
+/// Where radiation comes from; weather is read.
+pub(in crate::commands) fn of(
     (weather, choice): (Option<&Path>, Option<ClearSkyChoice>),
     model: &RadiationModel,
     year: i16,
-    site: Site,
-) -> Result<TileQuestion> {
-    let params = params(model);
-    let radiation = match weather {
-        Some(file) => TileRadiation::Weather { file: SideFile::new(file)?, parts: model.parts.unwrap_or(PARTS) },
-        None => TileRadiation::ClearSky { clear_sky: clear_sky(choice, model, &params), year },
-    };
-    Ok(TileQuestion::Irradiance { site, radiation, params })
-}
-
-/// Where radiation comes from; weather is read.
-pub(super) fn of(
-    arguments: &IrradianceArguments,
-    params: &IrradianceParams,
     run: &CommandContext,
 ) -> Result<Radiation> {
-    let (choice, model) = (arguments.radiation.clear_sky, &arguments.model);
     check_linke(choice, model)?;
-    let Some(path) = &arguments.radiation.weather else {
-        let year = arguments.year.unwrap_or(CLEAR_SKY_YEAR);
-        return Ok(Radiation::ClearSky { clear_sky: clear_sky(choice, model, params), year });
+    let Some(path) = weather else {
+        return Ok(Radiation::ClearSky { clear_sky: clear_sky(choice, model, &params(model)), year });
     };
     let weather = run.stage("reading weather", 0, |_| read_weather(path))?;
     let parts = model.parts.unwrap_or(PARTS);

@@ -1,0 +1,55 @@
+//! What was found of cells in parts, such as tile by tile, in the words and figures of one answer.
+
+use super::scene::Whereabouts;
+use super::sections::{MeasuresSection, PlacesReport};
+use super::sun::MAX_LISTED_SUNS;
+use super::{Context, Question, irradiance, shadow, sky_view, sun_hours};
+use crate::targets::Measure;
+use belvedere_data::{Error, Parameter, Result};
+
+/// Says in `context` what the measures of cells of a side, metres, answer to a question, as [`ask`](super::ask) says it
+/// of a scene; returns the title of a map.
+///
+/// # Errors
+/// [`Error::InvalidParameter`] for a question that is not about light on cells, and for a site that is not known.
+pub fn summarise_parts(
+    question: &Question,
+    (measures, cell): (&[Measure], f64),
+    whereabouts: &Whereabouts<'_>,
+    context: &mut Context,
+) -> Result<String> {
+    let count = measures.first().map_or(0, |first| first.values.iter().filter(|value| value.is_finite()).count());
+    let places = PlacesReport::cells_in_words(count, cell);
+    // the figures of the place are there already
+    let mut aside = Context::default();
+    let mut listed = measures;
+    let title = match question {
+        Question::Shadow(about) => {
+            let suns = about.suns.over(&about.place, whereabouts, &mut aside)?;
+            shadow::summarise(&suns, measures, &places, context);
+            listed = &measures[..measures.len().min(MAX_LISTED_SUNS)];
+            suns.first().map(|sun| sun.title.clone()).unwrap_or_default()
+        }
+        Question::SunHours(about) => {
+            let site = about.place.site_at(whereabouts, &mut aside, None)?;
+            let (plan, zone) = about.plan(&site, None)?;
+            let title = about.title(&plan, &zone, whereabouts);
+            sun_hours::summarise(&plan, &title, measures, &places, context);
+            title
+        }
+        Question::SkyView(_) => {
+            sky_view::summarise(measures, &places, context);
+            sky_view::title(whereabouts)
+        }
+        Question::Irradiance(_) => {
+            irradiance::summarise(measures, &places, context);
+            irradiance::title(whereabouts)
+        }
+        _ => {
+            let (value, expected) = ("another".to_owned(), "about shadow, sun hours, sky view or irradiance");
+            return Err(Error::InvalidParameter { parameter: Parameter::Questions, value, expected });
+        }
+    };
+    context.report.measures = Some(MeasuresSection::of_count(count, listed));
+    Ok(title)
+}

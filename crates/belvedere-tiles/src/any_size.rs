@@ -1,0 +1,264 @@
+//! The same question for a survey of any size: tile by tile where one model does not fit into memory, with the answer
+//! of one model.
+
+use crate::plan::Plan;
+use crate::question::TileQuestion;
+use crate::run::{RunParams, RunReport, Shard, Steps, run};
+use belvedere::Frame;
+use belvedere::apps::ask::{self, Answers, Context, NamedSun, Remark, summarise_parts};
+use belvedere::apps::targets::Measure;
+use belvedere::control::Control;
+use belvedere::crs::Crs;
+use belvedere::ground::MapGrid;
+use belvedere::io::{cloud_files, read_las_head, web_address};
+use belvedere::raster::Raster;
+use belvedere::results::{Pixels, ResultKind, ResultRaster, UNPROVEN_BAND, georeference};
+use belvedere::{Error, Parameter, Result};
+use std::path::{Path, PathBuf};
+
+/// Memory that a model of a whole cloud takes for each point, and without any, bytes. As measured in docs/costs.md.
+const BYTES_PER_POINT: u64 = 600;
+const MIN_BYTES: u64 = 100_000_000;
+/// Bytes of each value while the results of all tiles are put together.
+const BYTES_PER_VALUE: u64 = 10;
+/// Most files on a server whose headers are looked at: each is a request or two.
+const MAX_REMOTE: usize = 64;
+/// How far around a question about places points are read, metres: as far as balls follow from points in usual surveys.
+const AROUND: f64 = 128.0;
+
+/// A survey of which one model takes more memory than may be used.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TooLarge {
+    /// Memory that one model takes, bytes.
+    pub whole: u64,
+    /// Memory that may be used, bytes.
+    pub limit: u64,
+}
+
+/// South-west and north-east corner of the part of a survey that is read, in the coordinates of its files.
+pub type SurveyPart = [[f64; 2]; 2];
+
+impl TooLarge {
+    /// Whether one model of these files takes more than `limit` bytes: `None` where it does not, for files of which
+    /// tiles cannot be made, such as tables of points, and for many files on servers.
+    #[must_use]
+    pub fn of(clouds: &[PathBuf], limit: u64) -> Option<Self> {
+        let files = cloud_files(clouds).ok()?;
+        if files.iter().filter(|file| web_address(file).is_some()).count() > MAX_REMOTE {
+            return None;
+        }
+        let points = files.iter().map(|file| Some(read_las_head(file.as_path()).ok()?.points));
+        let points: u64 = points.sum::<Option<u64>>()?;
+        let whole = points.saturating_mul(BYTES_PER_POINT).saturating_add(MIN_BYTES);
+        (whole > limit).then_some(Self { whole, limit })
+    }
+
+    /// What takes how much, in words.
+    #[must_use]
+    pub fn in_words(&self) -> String {
+        let [whole, limit] = [self.whole, self.limit].map(size_in_words);
+        format!("one model of this survey takes about {whole} of memory, and {limit} may be used")
+    }
+
+    /// A note that it is answered in tiles.
+    #[must_use]
+    pub fn remark_on_tiles(&self, tile_size: f64) -> Remark {
+        let text = format!("{}: answered in tiles of {tile_size} m", self.in_words());
+        Remark::note("in-tiles", text).with("tile_size_m", tile_size)
+    }
+
+    /// The part of the survey that a question reaches about `places` in the coordinates of its files, as far as
+    /// `distance` metres from them on the map, and a note that no more is read. `None` without places.
+    ///
+    /// # Errors
+    /// Those of the reference system that is given and of reading the header of a file.
+    pub fn part_around(
+        &self,
+        (clouds, crs): (&[PathBuf], Option<&str>),
+        places: &[[f64; 2]],
+        distance: f64,
+    ) -> Result<Option<(SurveyPart, Remark)>> {
+        let Some(&first) = places.first() else { return Ok(None) };
+        let metres_per_unit = match (crs, cloud_files(clouds)?.first()) {
+            (Some(crs), _) => Crs::parse(crs)?.metres_per_unit,
+            (None, Some(file)) => read_las_head(file.as_path())?.crs.metres_per_unit,
+            (None, None) => 1.0,
+        };
+        let around = distance + AROUND;
+        let join = |[low, high]: SurveyPart, place: &[f64; 2]| {
+            [[0, 1].map(|axis| low[axis].min(place[axis])), [0, 1].map(|axis| high[axis].max(place[axis]))]
+        };
+        let [low, high] = places.iter().fold([first, first], join);
+        let by = around / metres_per_unit;
+        let text = format!("{}: only points within {around:.0} m of the question were read", self.in_words());
+        let remark = Remark::note("part-of-survey", text).with("around_m", around);
+        Ok(Some(([low.map(|v| v - by), high.map(|v| v + by)], remark)))
+    }
+}
+
+/// A question about the cells of a survey, ready to be run tile by tile.
+pub struct SurveyQuestion {
+    plan: Plan,
+    /// Where its results lie.
+    folder: PathBuf,
+    question: ask::Question,
+    /// Those of shadows.
+    suns: Vec<NamedSun>,
+    context: Context,
+}
+
+/// Cells of a survey of which something was found.
+pub struct SurveyCells {
+    plan: Plan,
+    /// Where they lie, local metres.
+    pub grid: MapGrid,
+    /// Where local coordinates lie.
+    pub frame: Frame,
+    /// What the answer is, for the title of a map.
+    pub title: String,
+    /// The suns of shadows; the first measures are theirs, one each.
+    pub suns: Vec<NamedSun>,
+    description: &'static str,
+}
+
+impl SurveyQuestion {
+    /// A question about a survey with cells, whose plan is kept in `folder`; its results together take no more than
+    /// `limit` bytes of memory.
+    ///
+    /// # Errors
+    /// [`Error::InvalidParameter`] for a question that tiles do not answer, and for results that take more; those of
+    /// [`Plan::with_questions`] and [`Plan::write`].
+    pub fn new(plan: Plan, folder: &Path, question: ask::Question, limit: u64, control: &Control<'_>) -> Result<Self> {
+        let frame = plan.frame()?;
+        let whereabouts = plan.whereabouts(&frame);
+        let mut context = Context::default();
+        whereabouts.remark(&mut context);
+        let suns = match &question {
+            ask::Question::Shadow(about) => about.suns.over(&about.place, &whereabouts, &mut Context::default())?,
+            _ => Vec::new(),
+        };
+        let is_up = |sun: &NamedSun| sun.sun.to_sun[2] > 0.0;
+        let questions = match suns.iter().any(is_up) {
+            // at night nothing is lit, which no tile needs to find out
+            true => TileQuestion::of_suns(suns.iter().filter(|&sun| is_up(sun))),
+            false => TileQuestion::of(&question, &whereabouts, &mut Context::default())?,
+        };
+        TileQuestion::of(&question, &whereabouts, &mut context)?;
+        let mut values = 0_u64;
+        for own in &questions {
+            values += plan.cells_of(own)?.len() as u64;
+        }
+        let needed = values.saturating_mul(BYTES_PER_VALUE);
+        if needed > limit {
+            let [needed, limit] = [needed, limit].map(size_in_words);
+            return Err(Error::InvalidParameter {
+                parameter: Parameter::TileMemory,
+                value: format!(
+                    "{limit}, but the {values} values of {} results take {needed} together",
+                    questions.len()
+                ),
+                expected: "enough for the answer: give larger cells, fewer suns or more memory, or plan a run in tiles, which writes each result on its own",
+            });
+        }
+        let plan = plan.with_questions(questions, control)?;
+        plan.remarks.iter().for_each(|remark| context.add(Some(remark.clone())));
+        let (plan, folder) = plan.ready_in(folder)?;
+        Ok(Self { plan, folder, question, suns, context })
+    }
+
+    /// Computes what is not done yet; `seconds` is a clock of the program.
+    ///
+    /// # Errors
+    /// Those of [`run`].
+    pub fn run(&self, seconds: &dyn Fn() -> f64, control: &Control<'_>) -> Result<RunReport> {
+        let params = RunParams { shard: Shard::default(), steps: Steps::All, max_balls: None, seconds };
+        run(&self.plan, &self.folder, &params, control)
+    }
+
+    /// The answers of a run that did all.
+    ///
+    /// # Errors
+    /// Those of reading the results.
+    pub fn answers(mut self, report: &RunReport, control: &Control<'_>) -> Result<Answers<SurveyCells>> {
+        let frame = self.plan.frame()?;
+        let measures = self.measures(control)?;
+        let first = self.plan.questions.first();
+        let (Some(first), false) = (first, measures.is_empty()) else {
+            return Err(Error::NoPoints { what: "the question has no result".to_owned() });
+        };
+        let (grid, description) = (self.plan.cells_of(first)?, first.description());
+        report.remarks().into_iter().for_each(|remark| self.context.add(Some(remark)));
+        self.context.report.places.cells_under_cover_left_out = report.cells_under_cover;
+        let title = {
+            let whereabouts = self.plan.whereabouts(&frame);
+            summarise_parts(&self.question, (&measures, grid.cell), &whereabouts, &mut self.context)?
+        };
+        let Self { plan, suns, context, .. } = self;
+        let Answers { headline, remarks, report, .. } = context.into_answers();
+        let found = SurveyCells { plan, grid, frame, title, suns, description };
+        Ok(Answers { found, measures, headline, remarks, report })
+    }
+
+    /// A measure for each sun or result, and of a single one what of it is unproven.
+    fn measures(&self, control: &Control<'_>) -> Result<Vec<Measure>> {
+        let mut results = Vec::new();
+        let is_single = self.suns.len().max(self.plan.questions.len()) == 1;
+        for question in &self.plan.questions {
+            let pixels = self.plan.results_of(&self.folder, question, control)?;
+            let (kind, description) = (pixels.kind(), question.description());
+            let range = (kind == ResultKind::Answer).then_some([0.0, 1.0]);
+            let of_band = |(name, band): (String, Raster<f32>)| {
+                let description = if name == UNPROVEN_BAND { "1: lit, but unproven" } else { description };
+                Measure::new(&name, band.values().to_vec())
+                    .with_description(description)
+                    .with_kind(kind)
+                    .with_range(range)
+            };
+            let bands = question.band_names(kind).into_iter().zip(pixels.to_numbers()?).map(of_band);
+            results.extend(bands.take(if is_single { 2 } else { 1 }));
+        }
+        if self.suns.is_empty() {
+            return Ok(results);
+        }
+        let Some(cells) = results.first().map(|first: &Measure| first.values.clone()) else { return Ok(results) };
+        let mut results = results.into_iter();
+        let of_sun = |sun: &NamedSun| {
+            let lit = (sun.sun.to_sun[2] > 0.0).then(|| results.next()).flatten();
+            let night = || {
+                let values = cells.iter().map(|value| if value.is_nan() { f32::NAN } else { 0.0 }).collect();
+                Measure::new("", values).with_kind(ResultKind::Answer).with_range(Some([0.0, 1.0]))
+            };
+            Measure { name: sun.column.clone(), ..lit.unwrap_or_else(night) }
+        };
+        let of_suns: Vec<Measure> = self.suns.iter().map(of_sun).collect();
+        Ok(of_suns.into_iter().chain(results).collect())
+    }
+}
+
+impl SurveyCells {
+    /// Writes measures as one cloud-optimised GeoTIFF, a band each.
+    ///
+    /// # Errors
+    /// Those of writing.
+    pub fn write_cog(&self, path: &Path, measures: &[Measure]) -> Result<()> {
+        let pixels = Pixels::of_measures(measures, [self.grid.width, self.grid.height])?;
+        let names = measures.iter().map(|measure| measure.name.clone()).collect();
+        let raster = ResultRaster { pixels, names, description: self.description.to_owned() };
+        raster.write_cog(path, &georeference(&self.grid, &self.frame))
+    }
+
+    /// Height of the highest point in each cell, for maps.
+    ///
+    /// # Errors
+    /// Those of [`Plan::highest_points`].
+    pub fn relief(&self, control: &Control<'_>) -> Result<Raster<f32>> {
+        self.plan.highest_points(&self.grid, control)
+    }
+}
+
+fn size_in_words(bytes: u64) -> String {
+    match bytes {
+        0..1_000_000_000 => format!("{:.0} MB", bytes as f64 / 1e6),
+        _ => format!("{:.1} GB", bytes as f64 / 1e9),
+    }
+}
