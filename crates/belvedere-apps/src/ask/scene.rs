@@ -4,7 +4,7 @@ use super::terrain_heights::remark_on_terrain;
 use super::viewer::remark_on_doubt;
 use super::{Context, Remark};
 use crate::horizon::convergence;
-use belvedere_core::ground::{Ground, GroundParams, GroundPoints, GroundReport, MapGrid};
+use belvedere_core::ground::{Ground, GroundBySquares, GroundParams, GroundPoints, GroundReport, MapGrid};
 use belvedere_core::model::SceneModel;
 use belvedere_core::query::{BlockRule, MedialScene, Proof, UnprovenAs};
 use belvedere_data::control::Control;
@@ -28,7 +28,7 @@ pub struct Scene {
     proving: OnceResult<MedialScene>,
     plain: OnceResult<MedialScene>,
     without_vegetation: OnceResult<MedialScene>,
-    ground: Mutex<Option<(MapGrid, GroundPoints, Arc<KnownGround>)>>,
+    ground: Mutex<MadeGround>,
     ground_store: Option<Arc<dyn GroundStore>>,
 }
 
@@ -94,6 +94,18 @@ pub struct KnownGround {
     pub report: GroundReport,
 }
 
+/// Most cells of a ground that is not made from the whole cloud once more: 25 times what one place needs.
+const FEW_CELLS: usize = 40_000;
+
+/// The ground that was made so far.
+#[derive(Default)]
+struct MadeGround {
+    last: Option<(MapGrid, GroundPoints, Arc<KnownGround>)>,
+    /// Whether a ground of few cells was made: the next one finds all that shows it sorted.
+    has_few: bool,
+    by_squares: Option<GroundBySquares>,
+}
+
 /// Keeps ground for later scenes of the same cloud.
 pub trait GroundStore: Send + Sync {
     /// The ground on a grid, if it was kept.
@@ -142,7 +154,7 @@ impl Scene {
             proving: OnceResult::default(),
             plain: OnceResult::default(),
             without_vegetation: OnceResult::default(),
-            ground: Mutex::new(None),
+            ground: Mutex::default(),
             ground_store: None,
         }
     }
@@ -150,7 +162,7 @@ impl Scene {
     /// This, with the ground of another cloud in the same frame.
     #[must_use]
     pub fn with_ground_of(self, ground_cloud: Arc<PointCloud>) -> Self {
-        Self { ground_cloud, ground: Mutex::new(None), ground_store: None, ..self }
+        Self { ground_cloud, ground: Mutex::default(), ground_store: None, ..self }
     }
 
     /// This, with a store for the ground of its cloud.
@@ -237,17 +249,26 @@ impl Scene {
         self.without_vegetation.get(|| self.model.scene_without_vegetation(&self.rule, control))
     }
 
-    /// The ground on a grid; the last one is kept.
+    /// The ground on a grid; the last one is kept, and from the second of few cells on what shows it, by squares.
     ///
     /// # Errors
     /// Those of [`Scene::ground_cloud`] and [`Ground::of_cloud`].
     pub fn ground(&self, grid: MapGrid, points: GroundPoints, control: &Control<'_>) -> Result<Arc<KnownGround>> {
-        let mut kept = locked(&self.ground);
-        if let Some((_, _, known)) = kept.as_ref().filter(|(of, from, _)| *of == grid && *from == points) {
+        let mut made = locked(&self.ground);
+        if let Some((_, _, known)) = made.last.as_ref().filter(|(of, from, _)| *of == grid && *from == points) {
             return Ok(Arc::clone(known));
         }
         let cloud = self.ground_cloud()?;
         let params = GroundParams { points, ..GroundParams::default() };
+        let has_few = grid.len() <= FEW_CELLS;
+        if has_few && made.has_few {
+            let by_squares = match made.by_squares.take().filter(|kept| *kept.params() == params) {
+                Some(kept) => kept,
+                None => control.stage("computing ground", 0, || GroundBySquares::new(cloud, &params, control))?,
+            };
+            let (ground, report) = made.by_squares.insert(by_squares).on(grid, control)?;
+            return Ok(Arc::new(KnownGround { ground, report }));
+        }
         let store = self.ground_store.as_deref();
         let known = match store.and_then(|store| store.find(&grid, &params)) {
             Some(known) => known,
@@ -260,7 +281,8 @@ impl Scene {
             }
         };
         let known = Arc::new(known);
-        *kept = Some((grid, points, Arc::clone(&known)));
+        made.has_few |= has_few;
+        made.last = Some((grid, points, Arc::clone(&known)));
         Ok(known)
     }
 

@@ -1,6 +1,7 @@
 //! The ground below a cloud: heights on a grid, from points classed as ground or from points found to be.
 
 mod believed;
+mod by_squares;
 pub mod find;
 pub mod map_grid;
 mod morphology;
@@ -12,6 +13,7 @@ mod triangulate;
 
 pub(crate) use triangulate::sides;
 
+pub use by_squares::GroundBySquares;
 pub use find::{FinderParams, find_ground};
 pub use map_grid::MapGrid;
 pub use relief::{HighestPoints, hidden_ground, highest_points};
@@ -61,6 +63,19 @@ pub enum GroundPoints {
     Classed,
     /// Those that [`find_ground`] finds, whatever their class.
     Found,
+}
+
+impl GroundParams {
+    fn check(&self) -> Result<()> {
+        match [self.reach, self.max_gap_from_returns].into_iter().find(|reach| !(*reach > 0.0)) {
+            None => Ok(()),
+            Some(value) => Err(Error::InvalidParameter {
+                parameter: Parameter::GroundReach,
+                value: value.to_string(),
+                expected: "above zero metres",
+            }),
+        }
+    }
 }
 
 impl Default for GroundParams {
@@ -125,6 +140,26 @@ struct GroundRows {
     doubted_count: usize,
 }
 
+impl GroundRows {
+    fn positions(&self, cloud: &PointCloud) -> Vec<[f32; 3]> {
+        self.rows.iter().filter_map(|&row| cloud.positions.get(row as usize).copied()).collect()
+    }
+
+    /// The points of class 2 that lie off, as those that are not show; `points` are the ground.
+    fn shift(&self, cloud: &PointCloud, points: &[[f32; 3]], control: &Control<'_>) -> Result<Option<GroundShift>> {
+        match self.from {
+            GroundPoints::Found => Ok(None),
+            _ => shifted::shift_of(cloud, &self.rows, points, control),
+        }
+    }
+
+    /// Without cells.
+    fn report(&self, point_count: usize, shift: Option<GroundShift>) -> GroundReport {
+        let Self { from, doubted_count, .. } = *self;
+        GroundReport { from, point_count, doubted_count, shift, cell_count: 0 }
+    }
+}
+
 fn tested_points(cloud: &PointCloud, params: &GroundParams, control: &Control<'_>) -> Result<GroundRows> {
     if cloud.is_empty() {
         return Err(Error::NoPoints { what: "the ground needs a cloud".to_owned() });
@@ -159,6 +194,11 @@ fn tested_points(cloud: &PointCloud, params: &GroundParams, control: &Control<'_
     Ok(GroundRows { rows, from: GroundPoints::Classed, doubted_count })
 }
 
+/// Points in the plane, for distances and neighbours on the map.
+fn on_map(points: &[[f32; 3]]) -> Vec<[f32; 3]> {
+    points.iter().map(|p| [p[0], p[1], 0.0]).collect()
+}
+
 impl Ground {
     /// The ground of `cloud` on `grid`: heights of the triangulated ground points at the middles of the cells, and the
     /// nearest ground point's within 5 m beyond the outermost. A hole of the survey has none
@@ -173,32 +213,32 @@ impl Ground {
         params: &GroundParams,
         control: &Control<'_>,
     ) -> Result<(Self, GroundReport)> {
-        if let Some(value) = [params.reach, params.max_gap_from_returns].into_iter().find(|reach| !(*reach > 0.0)) {
-            return Err(Error::InvalidParameter {
-                parameter: Parameter::GroundReach,
-                value: value.to_string(),
-                expected: "above zero metres",
-            });
-        }
-        let GroundRows { rows, from, doubted_count } = tested_points(cloud, params, control)?;
-        let points: Vec<[f32; 3]> = rows.iter().filter_map(|&row| cloud.positions.get(row as usize).copied()).collect();
+        params.check()?;
+        let found = tested_points(cloud, params, control)?;
+        let points = found.positions(cloud);
         let left = cloud.positions.iter().map(|p| [f64::from(p[0]), f64::from(p[1])]);
         let returns = left.chain(cloud.cleared_places.iter().map(|place| place.map(f64::from)));
-        let shift = || match from {
-            GroundPoints::Found => Ok(None),
-            _ => shifted::shift_of(cloud, &rows, &points, control),
-        };
         // most of each is one thread's work
         let (ground, (near, shift)) = rayon::join(
             || Self::of_points(&points, grid, params.reach, control),
-            || rayon::join(|| cells_near_returns(returns, &grid, params.max_gap_from_returns), shift),
+            || {
+                rayon::join(
+                    || cells_near_returns(returns, &grid, params.max_gap_from_returns),
+                    || found.shift(cloud, &points, control),
+                )
+            },
         );
-        let (mut ground, shift) = (ground?, shift?);
-        for (height, _) in ground.heights.values_mut().iter_mut().zip(near).filter(|(_, is_near)| !is_near) {
+        let ground = ground?;
+        Ok(ground.known_near_returns(&near, found.report(points.len(), shift?)))
+    }
+
+    /// This, without the heights of cells that lie near no return.
+    fn known_near_returns(mut self, near: &[bool], report: GroundReport) -> (Self, GroundReport) {
+        for (height, _) in self.heights.values_mut().iter_mut().zip(near).filter(|(_, is_near)| !**is_near) {
             *height = f32::NAN;
         }
-        let cell_count = ground.heights.values().iter().filter(|h| h.is_finite()).count();
-        Ok((ground, GroundReport { from, point_count: points.len(), doubted_count, shift, cell_count }))
+        let cell_count = self.heights.values().iter().filter(|h| h.is_finite()).count();
+        (self, GroundReport { cell_count, ..report })
     }
 
     /// The ground through `points`, (N, 3) local metres, on `grid`, given as far as `reach` metres from the next of
@@ -207,12 +247,23 @@ impl Ground {
     /// # Errors
     /// [`Error::InvalidParameter`] for a point that is not finite, [`Error::Cancelled`].
     pub fn of_points(points: &[[f32; 3]], grid: MapGrid, reach: f64, control: &Control<'_>) -> Result<Self> {
-        // the plane: distances and neighbours on the map
-        let flat: Vec<[f32; 3]> = points.iter().map(|p| [p[0], p[1], 0.0]).collect();
-        let (heights, index) =
+        let flat = on_map(points);
+        let (heights, nearest) =
             rayon::join(|| triangulate::heights(points, &grid), || NeighborIndex::new(&flat, control));
-        let (mut heights, index) = (heights?, index?);
+        let (heights, nearest) = (heights?, nearest?);
         control.check()?;
+        Self::near_points(points, &nearest, (grid, heights), reach, control)
+    }
+
+    /// The ground with these heights of the triangulated `points`, as far as `reach` metres from the next of them;
+    /// `nearest` finds those on the map.
+    fn near_points(
+        points: &[[f32; 3]],
+        nearest: &NeighborIndex,
+        (grid, mut heights): (MapGrid, Raster<f32>),
+        reach: f64,
+        control: &Control<'_>,
+    ) -> Result<Self> {
         let mut gaps = Raster::filled(grid.width, grid.height, f32::INFINITY);
         #[expect(clippy::cast_possible_truncation, reason = "a length in metres")]
         let reach = reach.min(1e6) as f32;
@@ -227,7 +278,7 @@ impl Ground {
                 for (column, (height, gap)) in heights.iter_mut().zip(gaps).enumerate() {
                     let [x, y] = grid.center(column, row);
                     #[expect(clippy::cast_possible_truncation, reason = "local positions are f32")]
-                    let near = index.nearest_within([x as f32, y as f32, 0.0], f32::INFINITY);
+                    let near = nearest.nearest_within([x as f32, y as f32, 0.0], f32::INFINITY);
                     let Some(near) = near else { continue };
                     *gap = near.distance_squared.sqrt();
                     if *gap > reach {

@@ -11,6 +11,15 @@ use delaunator::{EMPTY, Point, triangulate};
 /// # Errors
 /// [`Error::InvalidParameter`] for a point that is not finite.
 pub(super) fn heights(points: &[[f32; 3]], grid: &MapGrid) -> Result<Raster<f32>> {
+    Ok(heights_of(triangles(points)?.as_chunks::<3>().0.iter().copied(), points, grid))
+}
+
+/// The Delaunay triangles of `points`, (N, 3) local metres, in plan: the rows of their corners, three each. None for
+/// fewer than three points or all in one line.
+///
+/// # Errors
+/// [`Error::InvalidParameter`] for a point that is not finite.
+pub(super) fn triangles(points: &[[f32; 3]]) -> Result<Vec<usize>> {
     if let Some(p) = points.iter().find(|p| !p.iter().all(|v| v.is_finite())) {
         return Err(Error::InvalidParameter {
             parameter: Parameter::Position,
@@ -18,15 +27,23 @@ pub(super) fn heights(points: &[[f32; 3]], grid: &MapGrid) -> Result<Raster<f32>
             expected: "finite",
         });
     }
-    let mut heights = Raster::filled(grid.width, grid.height, f32::NAN);
     let on_map: Vec<Point> = points.iter().map(|p| Point { x: f64::from(p[0]), y: f64::from(p[1]) }).collect();
-    let triangles = triangulate(&on_map).triangles;
-    let width = grid.width;
-    for &[a, b, c] in triangles.as_chunks::<3>().0 {
+    Ok(triangulate(&on_map).triangles)
+}
+
+/// Height at the middle of each cell of `grid` on some `triangles` of `points`, given by the rows of their corners; of
+/// several at one place the last counts.
+pub(super) fn heights_of(
+    triangles: impl IntoIterator<Item = [usize; 3]>,
+    points: &[[f32; 3]],
+    grid: &MapGrid,
+) -> Raster<f32> {
+    let mut heights = Raster::filled(grid.width, grid.height, f32::NAN);
+    for [a, b, c] in triangles {
         let (Some(&a), Some(&b), Some(&c)) = (points.get(a), points.get(b), points.get(c)) else { continue };
-        fill(heights.values_mut(), width, grid, [a, b, c].map(|p| p.map(f64::from)));
+        fill(heights.values_mut(), grid.width, grid, [a, b, c].map(|p| p.map(f64::from)));
     }
-    Ok(heights)
+    heights
 }
 
 /// The sides of the Delaunay triangulation of places in plan, (N, 2), each by the rows of its ends. None for fewer than

@@ -2,13 +2,18 @@
 
 use crate::common::simulated::cloud_of;
 use belvedere::Bounds;
+use belvedere::apps::ask::Scene;
+use belvedere::apps::targets::grid_around;
 use belvedere::control::Control;
 use belvedere::ground::{
     FinderParams, Ground, GroundParams, GroundPoints, MapGrid, ShiftEvidence, find_ground, ground_points, hidden_ground,
 };
 use belvedere::io::{ReadOptions, read_cloud};
+use belvedere::model::{ModelParts, SceneModel};
+use belvedere::raster::Raster;
 use belvedere::{Attributes, PointCloud};
 use belvedere_scenes::{AirborneParams, Preset, QuerySite, Truth, scan_airborne, town};
+use std::sync::Arc;
 
 fn grid_of(cloud: &PointCloud, cell: f64) -> MapGrid {
     let Bounds { low, high } = cloud.bounds().unwrap();
@@ -190,5 +195,29 @@ fn real_ground_is_not_said_to_lie_off_and_a_strip_of_it_is() {
             assert_eq!(against, ShiftEvidence::OtherReturns, "{file}");
             assert!((found - 1.5).abs() < 0.5, "{file}: {found}");
         }
+    }
+}
+
+#[test]
+fn places_one_after_the_other_stand_on_the_ground_of_the_whole_cloud() {
+    let scene = town(&Preset::Village.params(80.0, 5));
+    let scan = scan_airborne(&scene, &AirborneParams { seed: 5, ..AirborneParams::covering(&scene, 8.0) });
+    let cloud = Arc::new(cloud_of(&scan));
+    let fresh = || {
+        let parts = ModelParts { frame: cloud.frame.clone(), ..ModelParts::default() };
+        Scene::new(SceneModel::from_parts(parts).unwrap(), Arc::clone(&cloud))
+    };
+    let kept = fresh();
+    let ([west, south, _], [east, north, _]) = cloud.bounds().unwrap().corners();
+    for share in [0.5, 0.1, 0.9, 0.3, 0.7] {
+        let place = [west + share * (east - west), south + share * share * (north - south), f64::NAN];
+        let grid = grid_around([place], cloud.frame.origin).unwrap().unwrap();
+        let [known, expected] =
+            [&kept, &fresh()].map(|scene| scene.ground(grid, GroundPoints::Auto, &Control::none()).unwrap());
+        let bits = |raster: &Raster<f32>| raster.values().iter().map(|value| value.to_bits()).collect::<Vec<u32>>();
+        assert_eq!(bits(&known.ground.heights), bits(&expected.ground.heights));
+        assert_eq!(bits(&known.ground.gaps), bits(&expected.ground.gaps));
+        assert_eq!(known.report, expected.report);
+        assert!(known.report.cell_count > 1000);
     }
 }

@@ -1,0 +1,222 @@
+//! The ground of a few cells at a time: what shows it is sorted by squares on the map once.
+
+use super::{Ground, GroundParams, GroundReport, MapGrid, cells_near_returns, tested_points, triangulate};
+use crate::neighbors::NeighborIndex;
+use belvedere_data::control::Control;
+use belvedere_data::{PointCloud, Result};
+use rayon::prelude::*;
+use std::ops::RangeInclusive;
+
+/// Ground points in a square, about.
+const POINTS_OF_SQUARE: f64 = 32.0;
+/// Triangles that lie in more squares than this are kept beside the others.
+const MAX_SQUARES: usize = 64;
+
+/// What shows the ground of a cloud, ready for grids of few cells anywhere: each takes a moment then, where
+/// [`Ground::of_cloud`] looks at the whole cloud again. The results are the same bits.
+pub struct GroundBySquares {
+    params: GroundParams,
+    /// Without cells.
+    report: GroundReport,
+    points: Vec<[f32; 3]>,
+    nearest: NeighborIndex,
+    squares: Squares,
+    /// Rows of the corners of the Delaunay triangles.
+    triangles: Vec<[u32; 3]>,
+    /// Numbers of triangles, by squares that they reach into.
+    of_squares: Vec<(u32, u32)>,
+    /// Numbers of triangles that reach into many squares.
+    large: Vec<u32>,
+    /// Returns on the map, by their squares.
+    returns: Vec<(u32, [f32; 2])>,
+}
+
+impl GroundBySquares {
+    /// Finds what shows the ground of a cloud.
+    ///
+    /// # Errors
+    /// Those of [`Ground::of_cloud`].
+    pub fn new(cloud: &PointCloud, params: &GroundParams, control: &Control<'_>) -> Result<Self> {
+        params.check()?;
+        let found = tested_points(cloud, params, control)?;
+        let points = found.positions(cloud);
+        let flat = super::on_map(&points);
+        let ((triangles, nearest), shift) = rayon::join(
+            || rayon::join(|| triangulate::triangles(&points), || NeighborIndex::new(&flat, control)),
+            || found.shift(cloud, &points, control),
+        );
+        let (triangles, nearest) = (triangles?, nearest?);
+        #[expect(clippy::cast_possible_truncation, reason = "points are numbered with 32 bits")]
+        let corners = |corners: &[usize; 3]| corners.map(|row| row as u32);
+        let triangles: Vec<[u32; 3]> = triangles.as_chunks::<3>().0.iter().map(corners).collect();
+        control.check()?;
+        let squares = Squares::over(&points);
+        let (mut of_squares, mut large) = (Vec::new(), Vec::new());
+        for (number, corners) in (0..).zip(&triangles) {
+            let corners = corners.map(|row| points[row as usize]);
+            let low = [0, 1].map(|axis| corners.iter().map(|p| f64::from(p[axis])).fold(f64::INFINITY, f64::min));
+            let high = [0, 1].map(|axis| corners.iter().map(|p| f64::from(p[axis])).fold(f64::NEG_INFINITY, f64::max));
+            let [columns, rows] = squares.between(low, high);
+            if columns.clone().count().saturating_mul(rows.clone().count()) > MAX_SQUARES {
+                large.push(number);
+            } else {
+                let numbers = rows.flat_map(|row| columns.clone().map(move |column| [column, row]));
+                of_squares.extend(numbers.map(|square| (squares.number(square), number)));
+            }
+        }
+        of_squares.par_sort_unstable();
+        let places = cloud.positions.iter().map(|p| [p[0], p[1]]).chain(cloud.cleared_places.iter().copied());
+        let mut returns: Vec<(u32, [f32; 2])> = places.map(|place| (squares.of(place.map(f64::from)), place)).collect();
+        returns.par_sort_unstable_by_key(|(square, _)| *square);
+        let report = found.report(points.len(), shift?);
+        Ok(Self { params: *params, report, points, nearest, squares, triangles, of_squares, large, returns })
+    }
+
+    /// Which points are ground.
+    #[must_use]
+    pub fn params(&self) -> &GroundParams {
+        &self.params
+    }
+
+    /// [`Ground::of_cloud`] on `grid`.
+    ///
+    /// # Errors
+    /// [`belvedere_data::Error::Cancelled`].
+    pub fn on(&self, grid: MapGrid, control: &Control<'_>) -> Result<(Ground, GroundReport)> {
+        let (low, high) = (grid.corner_at([0, grid.height]), grid.corner_at([grid.width, 0]));
+        let mut numbers = self.large.clone();
+        numbers.extend(self.squares.held(&self.of_squares, low, high).map(|(_, number)| number));
+        // in the order of the whole: a cell on a side takes the height of the last
+        numbers.sort_unstable();
+        numbers.dedup();
+        let triangles = numbers.iter().map(|&number| self.triangles[number as usize].map(|row| row as usize));
+        let heights = triangulate::heights_of(triangles, &self.points, &grid);
+        let ground = Ground::near_points(&self.points, &self.nearest, (grid, heights), self.params.reach, control)?;
+        let gap = self.params.max_gap_from_returns;
+        let near = self.squares.held(&self.returns, low.map(|v| v - gap), high.map(|v| v + gap));
+        let near = cells_near_returns(near.map(|(_, place)| place.map(f64::from)), &grid, gap);
+        Ok(ground.known_near_returns(&near, self.report))
+    }
+}
+
+/// Squares over ground points, rows from the south; what lies beside them belongs to the outermost.
+struct Squares {
+    low: [f64; 2],
+    side: f64,
+    /// Columns and rows less one.
+    last: [f64; 2],
+}
+
+impl Squares {
+    fn over(points: &[[f32; 3]]) -> Self {
+        let [mut low, mut high] = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
+        for axis in 0..2 {
+            for p in points {
+                low[axis] = low[axis].min(p[axis].into());
+                high[axis] = high[axis].max(p[axis].into());
+            }
+        }
+        let size = [0, 1].map(|axis| (high[axis] - low[axis]).max(0.0));
+        let share = POINTS_OF_SQUARE / points.len().max(1) as f64;
+        // no more squares than points, even in one line
+        let side = (size[0] * size[1] * share).sqrt().max(size[0].max(size[1]) * share).max(f64::MIN_POSITIVE);
+        Self { low, side, last: size.map(|size| (size / side).floor()) }
+    }
+
+    fn at(&self, place: f64, axis: usize) -> u32 {
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "fewer squares than points")]
+        let square = ((place - self.low[axis]) / self.side).clamp(0.0, self.last[axis]) as u32;
+        square
+    }
+
+    fn number(&self, [column, row]: [u32; 2]) -> u32 {
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "fewer squares than points")]
+        let columns = self.last[0] as u32 + 1;
+        row * columns + column
+    }
+
+    fn of(&self, place: [f64; 2]) -> u32 {
+        self.number([0, 1].map(|axis| self.at(place[axis], axis)))
+    }
+
+    /// The columns and rows that a box reaches into.
+    fn between(&self, low: [f64; 2], high: [f64; 2]) -> [RangeInclusive<u32>; 2] {
+        [0, 1].map(|axis| self.at(low[axis], axis)..=self.at(high[axis], axis))
+    }
+
+    /// What is kept of the squares that a box reaches into, of `kept` in the order of squares.
+    fn held<'a, T: Copy>(
+        &self,
+        kept: &'a [(u32, T)],
+        low: [f64; 2],
+        high: [f64; 2],
+    ) -> impl Iterator<Item = (u32, T)> + Clone + use<'a, T> {
+        let [columns, rows] = self.between(low, high);
+        let parts: Vec<&[(u32, T)]> = rows
+            .map(|row| {
+                let [first, last] = [*columns.start(), *columns.end()].map(|column| self.number([column, row]));
+                let from = kept.partition_point(|(square, _)| *square < first);
+                let to = kept.partition_point(|(square, _)| *square <= last);
+                kept.get(from..to).unwrap_or_default()
+            })
+            .collect();
+        parts.into_iter().flatten().copied()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use belvedere_data::random::uniform;
+
+    /// Ground with a hole and a block on it, a cleared place, and a point far away.
+    #[expect(clippy::cast_possible_truncation, reason = "test places in f32")]
+    fn cloud() -> PointCloud {
+        let place = |i: u64| [0, 1].map(|axis| (120.0 * uniform(7, 2 * i + axis)) as f32);
+        let places = (0..20_000).map(place).filter(|[x, y]| (x - 80.0).hypot(y - 80.0) > 15.0);
+        let is_block = |[x, y]: [f32; 2]| (20.0..40.0).contains(&x) && (30.0..50.0).contains(&y);
+        let point = |[x, y]: [f32; 2]| [x, y, if is_block([x, y]) { 9.0 } else { 0.05 * x + (0.3 * y).sin() }];
+        let mut positions: Vec<[f32; 3]> = places.map(point).collect();
+        positions.push([900.0, -300.0, 4.0]);
+        let classes = positions.iter().map(|p| if is_block([p[0], p[1]]) { 6 } else { 2 }).collect();
+        let mut cloud = PointCloud { positions, ..PointCloud::default() };
+        cloud.attributes.classification = Some(classes);
+        cloud.cleared_places.push([80.0, 80.0]);
+        cloud
+    }
+
+    fn bits(raster: &belvedere_data::raster::Raster<f32>) -> Vec<u32> {
+        raster.values().iter().map(|value| value.to_bits()).collect()
+    }
+
+    #[test]
+    fn a_few_cells_are_those_of_the_whole_bit_by_bit() {
+        let cloud = cloud();
+        for points in [super::super::GroundPoints::Classed, super::super::GroundPoints::Found] {
+            let params = GroundParams { points, ..GroundParams::default() };
+            let kept = GroundBySquares::new(&cloud, &params, &Control::none()).unwrap();
+            let mut known = 0;
+            for (number, cell) in (0..40).zip([0.25, 0.5, 1.7, 6.0].into_iter().cycle()) {
+                let middle = [0, 1].map(|axis| 170.0 * uniform(8, 2 * number + axis) - 25.0);
+                let (low, high) = (middle.map(|v| v - 4.0), middle.map(|v| v + 6.0));
+                let grid = MapGrid::covering(low, high, cell, [0.3, 0.2]).unwrap();
+                let expected = Ground::of_cloud(&cloud, grid, &params, &Control::none()).unwrap();
+                let found = kept.on(grid, &Control::none()).unwrap();
+                assert_eq!(bits(&found.0.heights), bits(&expected.0.heights), "{grid:?}");
+                assert_eq!(bits(&found.0.gaps), bits(&expected.0.gaps), "{grid:?}");
+                assert_eq!(found.1, expected.1);
+                known += found.1.cell_count;
+            }
+            assert!(known > 1000);
+        }
+    }
+
+    #[test]
+    fn points_in_one_line_and_a_single_one_have_few_squares() {
+        let line: Vec<[f32; 3]> = (0_u8..200).map(|i| [f32::from(i), 0.0, 0.0]).collect();
+        for points in [&line[..], &line[..1]] {
+            let squares = Squares::over(points);
+            assert!((squares.last[0] + 1.0) * (squares.last[1] + 1.0) <= points.len() as f64);
+        }
+    }
+}
