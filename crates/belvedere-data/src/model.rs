@@ -48,6 +48,9 @@ pub struct DerivedParts {
     pub normals: Option<Vec<[f32; 3]>>,
     /// The tree of boxes around the balls; `None` where it was not made.
     pub tree: Option<TreeParts>,
+    /// Columns of boxes of the space over the survey, each a word of bits: which are known to be near pulses. Empty
+    /// where they were not made.
+    pub seen_space: Vec<u64>,
 }
 
 /// A tree of boxes, as numbers.

@@ -128,6 +128,8 @@ impl PageScene {
         meshes: &[(String, Arc<Mesh>)],
         control: &Control<'_>,
     ) -> Result<(Self, ClearReport)> {
+        // the pulses are indexed once for all plans
+        self.blockers(UnprovenAs::Reported, control)?;
         let (mut model, mut report) = (self.model().clone(), ClearReport::default());
         let own = self.inner.cloud();
         let mut cloud = Arc::clone(own);
@@ -141,9 +143,7 @@ impl PageScene {
         }
         model.index(control)?;
         let rows_there = (cloud.len() < own.len()).then(|| rows_there(own, &cloud));
-        // the pulses are indexed once for all plans
-        let proof = self.blockers(UnprovenAs::Reported, control)?.proof().cloned();
-        let inner = ask::Scene::new(model, cloud).with_proof(proof);
+        let inner = ask::Scene::new(model, cloud);
         Ok((Self { rows_there, ..Self::of(inner, Arc::clone(&self.shown)) }, report))
     }
 

@@ -7,7 +7,8 @@ use crate::questions::{self, RequestContext};
 use crate::replies::{QuestionReply, Refusal};
 use crate::scene_text::SceneText;
 use belvedere::control::Control;
-use belvedere::io::{Output, write_balls};
+use belvedere::io::{Output, write_kept_model};
+use belvedere::model::DerivedParts;
 use serde_json::json;
 use std::io::Cursor;
 use std::sync::Arc;
@@ -116,14 +117,17 @@ impl Session {
         Ok(reply.into_bytes())
     }
 
-    /// The scene as a ball file (NPZ), to be kept for the next time.
+    /// The scene with what was made with it, to be kept for the next time (`read_kept_model`).
     ///
     /// # Errors
-    /// [`Refusal::NotReady`], and those of [`write_balls`].
+    /// [`Refusal::NotReady`], and those of [`write_kept_model`].
     pub fn scene_file(&self) -> Result<Vec<u8>, Refusal> {
         let scene = self.loading.now().scene.ok_or(Refusal::NotReady)?;
         let mut bytes = Cursor::new(Vec::new());
-        write_balls(Output::writer("scene.npz", &mut bytes), scene.model().parts())?;
+        let model = scene.model();
+        // no question of a page needs normals
+        let derived = DerivedParts { normals: None, ..model.derived() };
+        write_kept_model(Output::writer("scene.npz", &mut bytes), model.parts(), &derived, "")?;
         Ok(bytes.into_inner())
     }
 

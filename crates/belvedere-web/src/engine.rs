@@ -4,8 +4,8 @@ use belvedere::apps::ask::{remark_on_faces, remark_on_mesh, remarks_on_reading};
 use belvedere::cache::CloudKey;
 use belvedere::control::{Control, StageEnd, Watcher};
 use belvedere::io::{
-    CatalogueTile, ReadOptions, Source, Within, has_point_results, is_mesh, read_balls, read_catalogue, read_cloud,
-    read_las_head, read_mesh_in,
+    CatalogueTile, ReadOptions, Source, Within, has_point_results, is_mesh, read_catalogue, read_cloud,
+    read_kept_model, read_las_head, read_mesh_in,
 };
 use belvedere::model::{ModelParams, SceneModel};
 use belvedere::{Error, PointCloud, Result};
@@ -123,10 +123,11 @@ impl Engine {
     /// The same with a scene that was built before ([`Session::scene_file`]) from the same points.
     ///
     /// # Errors
-    /// Those of [`read_balls`]; of a scene that is not one of these points.
+    /// Those of [`read_kept_model`]; of a scene that is not one of these points.
     pub fn build_from<H: Host>(&mut self, kept: &OpenedFile, host: &H) -> Result<()> {
         let Some(cloud) = &self.cloud else { return Ok(()) };
-        let model = SceneModel::from_parts(read_balls(source(kept, host))?)?;
+        let (parts, derived, _) = read_kept_model(source(kept, host))?;
+        let model = SceneModel::from_kept(parts, derived)?;
         if model.frame().origin != cloud.frame.origin {
             return Err(Error::malformed(kept.name.as_ref(), "is the scene of another cloud"));
         }

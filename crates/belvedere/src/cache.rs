@@ -97,8 +97,9 @@ pub fn scene_model(
     let (Some(cache), Some(key)) = (cache, key) else {
         return Ok(BuiltScene { model, report, origin: SceneOrigin::Built, cloud: None });
     };
-    // every question needs the tree
+    // every question needs the tree, and most of them what the pulses prove
     model.index(control)?;
+    model.index_proof(control)?;
     let kept = control.stage("keeping scene", 0, || cache.keep(&key, params, &model, &report, &name));
     let origin = kept.map_or_else(SceneOrigin::NotKept, |()| SceneOrigin::Kept);
     Ok(BuiltScene { model, report, origin, cloud: Some(key) })

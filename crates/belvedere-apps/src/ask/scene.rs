@@ -6,7 +6,7 @@ use super::{Context, Remark};
 use crate::horizon::convergence;
 use belvedere_core::ground::{Ground, GroundBySquares, GroundParams, GroundPoints, GroundReport, MapGrid};
 use belvedere_core::model::SceneModel;
-use belvedere_core::query::{BlockRule, MedialScene, Proof, UnprovenAs};
+use belvedere_core::query::{BlockRule, MedialScene, UnprovenAs};
 use belvedere_data::control::Control;
 use belvedere_data::crs::CrsKind;
 use belvedere_data::crs::evidence::{CONTRADICTION_DISTANCE, distance_in_words};
@@ -23,8 +23,6 @@ pub struct Scene {
     /// The points that show the ground.
     ground_cloud: Arc<PointCloud>,
     rule: BlockRule,
-    /// Pulses of another scene, indexed already.
-    proof: Option<Proof>,
     proving: OnceResult<MedialScene>,
     plain: OnceResult<MedialScene>,
     without_vegetation: OnceResult<MedialScene>,
@@ -150,7 +148,6 @@ impl Scene {
             ground_cloud: Arc::clone(&cloud),
             model,
             cloud,
-            proof: None,
             proving: OnceResult::default(),
             plain: OnceResult::default(),
             without_vegetation: OnceResult::default(),
@@ -177,12 +174,6 @@ impl Scene {
         let (proving, plain, without_vegetation) =
             (OnceResult::default(), OnceResult::default(), OnceResult::default());
         Self { rule, proving, plain, without_vegetation, ..self }
-    }
-
-    /// This, with pulses that another scene has indexed already.
-    #[must_use]
-    pub fn with_proof(self, proof: Option<Proof>) -> Self {
-        Self { proof, proving: OnceResult::default(), ..self }
     }
 
     /// The model.
@@ -231,14 +222,8 @@ impl Scene {
     /// # Errors
     /// Those of [`SceneModel::scene`].
     pub fn blockers(&self, unproven: UnprovenAs, control: &Control<'_>) -> Result<Arc<MedialScene>> {
-        let proves = unproven != UnprovenAs::Visible;
-        let kept = if proves { &self.proving } else { &self.plain };
-        kept.get(|| match &self.proof {
-            Some(proof) if proves => {
-                Ok(self.model.scene(&self.rule, UnprovenAs::Visible, control)?.with_pulses(proof.clone()))
-            }
-            _ => self.model.scene(&self.rule, unproven, control),
-        })
+        let kept = if unproven == UnprovenAs::Visible { &self.plain } else { &self.proving };
+        kept.get(|| self.model.scene(&self.rule, unproven, control))
     }
 
     /// What blocks lines of sight beside vegetation.

@@ -35,10 +35,10 @@ pub use terrain::{TerrainReport, check_terrain};
 
 use crate::medial::{MedialBalls, PULSE_TOUCH, vegetation_of_transmission};
 use crate::pulses::FreeSegmentColumns;
-use crate::query::{Backend, BallTree, BlockingTriangles, FarTerrain, FreedSpace};
+use crate::query::{Backend, BallTree, BlockingTriangles, FarTerrain, FreedSpace, Proof};
 use belvedere_data::horizon::HorizonProfile;
 use belvedere_data::{Bounds, ElevationGrid, Error, Frame, Mesh, Parameter, Result, SurfacePatches};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// A scene that answers what is visible: balls that block lines of sight, and the pulses that prove others free.
 ///
@@ -53,6 +53,8 @@ pub struct SceneModel {
     normals: Option<Vec<[f32; 3]>>,
     /// The balls in a tree, where something has needed them so already.
     tree: Option<BallTree>,
+    /// What its pulses prove, where something has needed it so already.
+    proof: OnceLock<Proof>,
     /// What blocks beside the balls: the patches, and meshes that were added.
     triangles: Option<BlockingTriangles>,
     /// Space that was cleared.
@@ -97,7 +99,8 @@ impl SceneModel {
     #[must_use]
     pub fn derived(&self) -> DerivedParts {
         let tree = self.tree.as_ref().map(BallTree::to_parts);
-        DerivedParts { vegetation: self.vegetation.clone(), normals: self.normals.clone(), tree }
+        let seen_space = self.proof.get().map(Proof::seen_space).unwrap_or_default();
+        DerivedParts { vegetation: self.vegetation.clone(), normals: self.normals.clone(), tree, seen_space }
     }
 
     /// The model of the parts of another one and what was derived with them: nothing is made again.
@@ -113,6 +116,9 @@ impl SceneModel {
         }
         let tree = derived.tree.map(|tree| BallTree::from_parts(tree, model.balls(), &model.rule()));
         (model.vegetation, model.normals, model.tree) = (derived.vegetation, derived.normals, tree.transpose()?);
+        if let Some(proof) = model.new_proof()?.filter(|_| !derived.seen_space.is_empty()) {
+            model.proof = OnceLock::from(proof.with_seen_space(derived.seen_space));
+        }
         Ok(model)
     }
 
@@ -223,7 +229,7 @@ impl SceneModel {
     /// The same model without its pulses: nothing is then unproven, and saving it takes less room.
     #[must_use]
     pub fn without_pulses(mut self) -> Self {
-        self.parts.pulses = None;
+        (self.parts.pulses, self.proof) = (None, OnceLock::new());
         self
     }
 

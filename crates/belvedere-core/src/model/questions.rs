@@ -2,6 +2,7 @@
 
 use super::SceneModel;
 use crate::medial::without_vegetation;
+use crate::pulses::FreeSegmentColumns;
 use crate::query::{BallTree, BlockRule, Coverage, MedialScene, Proof, ProofParams, UnprovenAs};
 use belvedere_data::Result;
 use belvedere_data::control::Control;
@@ -48,8 +49,38 @@ impl SceneModel {
             None => control.stage("indexing balls", balls.len(), || BallTree::new(balls, rule))?,
         };
         let scene = self.completed(MedialScene::of_tree(tree)).with_freed(&self.freed);
-        let Some(pulses) = self.pulses().filter(|_| unproven != UnprovenAs::Visible) else { return Ok(scene) };
-        Ok(scene.with_pulses(Proof::from_columns(pulses.clone(), &ProofParams::default())?))
+        let proof = if unproven == UnprovenAs::Visible { None } else { self.proof()? };
+        Ok(match proof {
+            Some(proof) => scene.with_pulses(proof),
+            None => scene,
+        })
+    }
+
+    /// Indexes its pulses, which all its scenes and copies then share. Of a survey from the air also the space that
+    /// they saw is found, as most questions need it and [`SceneModel::derived`] keeps it.
+    ///
+    /// # Errors
+    /// Those of [`Proof::from_columns`]; [`Error::Cancelled`](belvedere_data::Error::Cancelled).
+    pub fn index_proof(&self, control: &Control<'_>) -> Result<()> {
+        let Some(proof) = self.proof()? else { return Ok(()) };
+        control.stage("indexing pulses", 0, || {
+            proof.prepare(control)?;
+            if proof.is_from_ground() { Ok(()) } else { proof.prepare_all(control) }
+        })
+    }
+
+    /// What its pulses prove; `None` without any.
+    fn proof(&self) -> Result<Option<Proof>> {
+        if let Some(proof) = self.proof.get() {
+            return Ok(Some(proof.clone()));
+        }
+        let made = self.new_proof()?;
+        Ok(made.map(|made| self.proof.get_or_init(|| made).clone()))
+    }
+
+    pub(super) fn new_proof(&self) -> Result<Option<Proof>> {
+        let proof = |pulses: &FreeSegmentColumns| Proof::from_columns(pulses.clone(), &ProofParams::default());
+        self.pulses().map(proof).transpose()
     }
 
     /// The scene of [`SceneModel::scene`] without the balls that are vegetation, and without pulses: what blocks where

@@ -6,7 +6,8 @@ use crate::pulses::{FreeSegmentColumns, FreeSegments, lower_ends};
 use belvedere_data::control::Control;
 use belvedere_data::{Error, Parameter, Result};
 use rayon::prelude::*;
-use std::sync::Arc;
+use std::fmt;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// How far ahead the next pulse is looked for where none is near, metres: half a street.
 const LOOK_AHEAD: f64 = 4.0;
@@ -56,7 +57,15 @@ pub struct Proof {
     nearness: f64,
     params: ProofParams,
     pulses: ProofSource,
+    /// Columns of boxes that were kept, until the index takes them.
+    kept: Arc<Mutex<Vec<u64>>>,
     index: Arc<Lazy<ProofIndex>>,
+}
+
+impl fmt::Debug for Proof {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Proof").field("nearness", &self.nearness).field("params", &self.params).finish_non_exhaustive()
+    }
 }
 
 /// What a proof is made of.
@@ -132,7 +141,26 @@ impl Proof {
         if !(params.step.is_finite() && params.step > 0.0) {
             return invalid(Parameter::UnprovenStep, params.step, "finite and above zero metres");
         }
-        Ok(Self { nearness, params: *params, pulses, index: Arc::new(Lazy::new()) })
+        Ok(Self { nearness, params: *params, pulses, kept: Arc::default(), index: Arc::new(Lazy::new()) })
+    }
+
+    /// This, with the columns that [`Proof::seen_space`] gave for the same pulses: they are not made again.
+    #[must_use]
+    pub(crate) fn with_seen_space(self, columns: Vec<u64>) -> Self {
+        Self { kept: Arc::new(Mutex::new(columns)), index: Arc::new(Lazy::new()), ..self }
+    }
+
+    /// The columns of boxes that are known to be near pulses, to be kept; none as long as not all are made.
+    pub(crate) fn seen_space(&self) -> Vec<u64> {
+        if !self.index.is_made() {
+            return self.kept().clone();
+        }
+        let index = self.index.get(|control| self.make_index(control));
+        index.and_then(|index| index.seen_space.to_words()).unwrap_or_default()
+    }
+
+    fn kept(&self) -> MutexGuard<'_, Vec<u64>> {
+        self.kept.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Indexes the pulses, if no line of sight needed that before. All else does it by itself, but cannot be cancelled
@@ -167,6 +195,7 @@ impl Proof {
             }
         }
         let seen_space = SeenSpace::new(&free_segments, extent, self.nearness);
+        seen_space.take(&std::mem::take(&mut *self.kept()));
         Ok(ProofIndex { free_segments, seen_space, extent })
     }
 

@@ -168,6 +168,25 @@ impl SeenSpace {
         })
     }
 
+    /// The columns of all tiles; `None` as long as one is not made.
+    pub(super) fn to_words(&self) -> Option<Vec<u64>> {
+        let mut words = Vec::with_capacity(self.tiles.len() * TILE * TILE);
+        for tile in &self.tiles {
+            words.extend(tile.get()?.columns);
+        }
+        Some(words)
+    }
+
+    /// Takes the columns of [`SeenSpace::to_words`] for the same pulses; other numbers of them are left.
+    pub(super) fn take(&self, words: &[u64]) {
+        let (tiles, rest) = words.as_chunks::<{ TILE * TILE }>();
+        if tiles.len() == self.tiles.len() && rest.is_empty() {
+            for (tile, columns) in self.tiles.iter().zip(tiles) {
+                tile.get_or_init(|| Box::new(BoxColumns::new(*columns)));
+            }
+        }
+    }
+
     /// The boxes of the tile whose lowest column and row are `first`.
     fn tile(&self, free_segments: &FreeSegments, first: [usize; 2]) -> Box<BoxColumns> {
         let mut boxes = [0; TILE * TILE];

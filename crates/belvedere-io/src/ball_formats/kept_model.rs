@@ -32,7 +32,7 @@ pub fn write_kept_model<'a>(
 }
 
 fn write_derived<W: Write + Seek>(archive: &mut ZipWriter<W>, derived: &DerivedParts) -> io::Result<()> {
-    let DerivedParts { vegetation, normals, tree } = derived;
+    let DerivedParts { vegetation, normals, tree, seen_space } = derived;
     array(archive, "vegetation", &[vegetation.len() as u64], vegetation.iter().map(|&is_one| u8::from(is_one)))?;
     if let Some(normals) = normals {
         array(archive, "normals", &[normals.len() as u64, 3], normals.as_flattened().iter().copied())?;
@@ -41,6 +41,9 @@ fn write_derived<W: Write + Seek>(archive: &mut ZipWriter<W>, derived: &DerivedP
         array(archive, "tree_nodes", &[nodes.len() as u64, 20], nodes.as_flattened().iter().copied())?;
         array(archive, "tree_order", &[order.len() as u64], order.iter().copied())?;
         array(archive, "tree_around", &[2, 3], around.as_flattened().iter().copied())?;
+    }
+    if !seen_space.is_empty() {
+        array(archive, "seen_space", &[seen_space.len() as u64], seen_space.iter().copied())?;
     }
     Ok(())
 }
@@ -125,5 +128,6 @@ fn read_derived<R: Read + Seek>(archive: &mut ZipArchive<R>) -> io::Result<Deriv
             around: around.map_err(|_| invalid("tree_around has not two rows".to_owned()))?,
         });
     }
-    Ok(DerivedParts { vegetation, normals, tree })
+    let seen_space = if has(archive, "seen_space") { values(archive, "seen_space", u64::MAX)?.0 } else { Vec::new() };
+    Ok(DerivedParts { vegetation, normals, tree, seen_space })
 }

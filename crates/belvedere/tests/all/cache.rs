@@ -7,6 +7,7 @@ use belvedere::control::Control;
 use belvedere::io::ReadOptions;
 use belvedere::medial::ShrinkParams;
 use belvedere::model::{BallParams, ModelParams, OrientBy};
+use belvedere::query::{Answer, UnprovenAs};
 use belvedere_scenes::{AirborneParams, TownParams, scan_airborne, town};
 use std::borrow::Cow;
 use std::fs;
@@ -43,7 +44,17 @@ fn a_scene_that_is_found_is_the_one_that_was_built() {
         // angles that are not known are NaN, which equals nothing
         let bits = |scene: &BuiltScene| format!("{:?}", (scene.model.parts(), scene.model.derived(), &scene.report));
         assert!(bits(&found) == bits(&built), "a part differs");
-        assert!(built.model.derived().tree.is_some() && built.model.normals().is_some());
+        let derived = built.model.derived();
+        assert!(derived.tree.is_some() && derived.normals.is_some());
+        assert_eq!(derived.seen_space.is_empty(), built.model.pulses().is_none());
+        // also once lines of sight have used what was kept
+        let [answers, again] = [&built, &found].map(|scene| {
+            let blockers = scene.model.scene(&scene.model.rule(), UnprovenAs::Reported, &Control::none()).unwrap();
+            let line = |step: u8| blockers.answer([f64::from(step) - 20.0, 0.0, 1.5], [0.6, 0.0, 0.8], f64::INFINITY);
+            (0..40).map(line).collect::<Vec<Answer>>()
+        });
+        assert_eq!(answers, again);
+        assert!(found.model.derived() == derived);
         // who needs no normals can use a scene with them
         let given = scene_model(Cow::Owned(cloud.clone()), &params, Some(&cache), &Control::none()).unwrap();
         assert!(matches!(given.origin, SceneOrigin::Found), "{:?}", given.origin);
