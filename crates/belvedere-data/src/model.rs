@@ -48,8 +48,18 @@ pub struct DerivedParts {
     pub normals: Option<Vec<[f32; 3]>>,
     /// The tree of boxes around the balls; `None` where it was not made.
     pub tree: Option<TreeParts>,
-    /// Columns of boxes of the space over the survey, each a word of bits: which are known to be near pulses. Empty
-    /// where they were not made.
+    /// What was made of the pulses; `None` where it was not.
+    pub proof: Option<ProofParts>,
+}
+
+/// Pulses in the order of their index, and the space that they saw, as numbers.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ProofParts {
+    /// Rows of the pulses in the order of the index, (P).
+    pub order: Vec<u32>,
+    /// Boxes around the pulses of each node of the index, at two planes, and these, (K, 10), local metres.
+    pub boxes: Vec<[f32; 10]>,
+    /// Columns of boxes over the survey, each a word of bits: which boxes are known to be near pulses.
     pub seen_space: Vec<u64>,
 }
 

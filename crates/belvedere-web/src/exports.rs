@@ -202,7 +202,7 @@ extern "C" fn build() -> u32 {
     })
 }
 
-/// Takes the scene from a ball file, an [`OpenedFile`]; the reply is the state.
+/// Takes the scene that was kept, an [`OpenedFile`]; the reply is the state.
 ///
 /// # Safety
 /// That of [`given`].
@@ -216,7 +216,7 @@ unsafe extern "C" fn build_from(from: *const u8, length: usize) -> u32 {
     })
 }
 
-/// The reply is the scene as a ball file.
+/// The reply is the scene, to be kept.
 #[unsafe(no_mangle)]
 extern "C" fn scene_file() -> u32 {
     with_engine(|engine| engine.session().scene_file())

@@ -99,8 +99,8 @@ impl SceneModel {
     #[must_use]
     pub fn derived(&self) -> DerivedParts {
         let tree = self.tree.as_ref().map(BallTree::to_parts);
-        let seen_space = self.proof.get().map(Proof::seen_space).unwrap_or_default();
-        DerivedParts { vegetation: self.vegetation.clone(), normals: self.normals.clone(), tree, seen_space }
+        let proof = self.proof.get().and_then(Proof::to_parts);
+        DerivedParts { vegetation: self.vegetation.clone(), normals: self.normals.clone(), tree, proof }
     }
 
     /// The model of the parts of another one and what was derived with them: nothing is made again.
@@ -116,8 +116,8 @@ impl SceneModel {
         }
         let tree = derived.tree.map(|tree| BallTree::from_parts(tree, model.balls(), &model.rule()));
         (model.vegetation, model.normals, model.tree) = (derived.vegetation, derived.normals, tree.transpose()?);
-        if let Some(proof) = model.new_proof()?.filter(|_| !derived.seen_space.is_empty()) {
-            model.proof = OnceLock::from(proof.with_seen_space(derived.seen_space));
+        if let (Some(proof), Some(parts)) = (model.new_proof()?, derived.proof) {
+            model.proof = OnceLock::from(proof.with_parts(parts));
         }
         Ok(model)
     }

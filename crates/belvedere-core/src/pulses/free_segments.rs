@@ -17,7 +17,7 @@ use belvedere_data::vector::{dot, sub};
 use belvedere_data::{Error, PointCloud, Result};
 use serde::Serialize;
 use std::ops::ControlFlow;
-use tree::{SegmentAxis, SegmentTree};
+use tree::{SegmentAxis, SegmentTree, node_count};
 
 /// How far balls stay clear of pulses, metres: the step of coordinates in most files, and more than f32 rounds.
 pub(crate) const GAP_M: f32 = 1e-3;
@@ -48,6 +48,8 @@ struct FreeSegment {
     /// Unit vector towards the scanner.
     direction: [f32; 3],
     length: f32,
+    /// Row of its pulse among the columns that it was read from.
+    row: u32,
 }
 
 /// The free segments of a survey, in all directions.
@@ -188,10 +190,22 @@ impl FreeSegments {
 
     /// The index of the free segments of each direction, none of which rises above `top`.
     fn index(by_way: SegmentsByAxis, top: f32, control: &Control<'_>) -> Result<Self> {
+        Self::index_with((by_way, None), top, control)
+    }
+
+    /// The same, or of segments in the order of an index, with the boxes of its nodes.
+    fn index_with(
+        (by_way, mut boxes): (SegmentsByAxis, Option<&[[f32; 10]]>),
+        top: f32,
+        control: &Control<'_>,
+    ) -> Result<Self> {
         let stop = Stop::new(control);
         let (mut free_segments, mut trees) = (Vec::with_capacity(by_way.iter().map(Vec::len).sum()), Vec::new());
         for (way, mut own) in SegmentAxis::ALL.into_iter().zip(by_way).filter(|(_, own)| !own.is_empty()) {
-            trees.push(SegmentTree::new(way, &mut own, free_segments.len(), &stop, control));
+            let of_tree = boxes.and_then(|boxes| boxes.split_at_checked(node_count(own.len())));
+            boxes = of_tree.map(|(_, rest)| rest);
+            let of_tree = (way, of_tree.map(|(own, _)| own));
+            trees.push(SegmentTree::new(of_tree, &mut own, free_segments.len(), &stop, control));
             free_segments.append(&mut own);
             stop.check()?;
         }
@@ -255,7 +269,7 @@ type SegmentsByAxis = [Vec<FreeSegment>; 6];
 impl FreeSegment {
     #[expect(clippy::cast_possible_truncation, reason = "local coordinates")]
     fn new(start: [f64; 3], direction: [f64; 3], length: f64) -> Self {
-        Self { start: start.map(|v| v as f32), direction: direction.map(|v| v as f32), length: length as f32 }
+        Self { start: start.map(|v| v as f32), direction: direction.map(|v| v as f32), length: length as f32, row: 0 }
     }
 
     /// Radius of the ball of the pencil through `touching` along `inward` that this segment touches, or `None` where it

@@ -4,6 +4,7 @@ use super::lazy::Lazy;
 use super::seen_space::SeenSpace;
 use crate::pulses::{FreeSegmentColumns, FreeSegments, lower_ends};
 use belvedere_data::control::Control;
+use belvedere_data::model::ProofParts;
 use belvedere_data::{Error, Parameter, Result};
 use rayon::prelude::*;
 use std::fmt;
@@ -57,8 +58,8 @@ pub struct Proof {
     nearness: f64,
     params: ProofParams,
     pulses: ProofSource,
-    /// Columns of boxes that were kept, until the index takes them.
-    kept: Arc<Mutex<Vec<u64>>>,
+    /// What was kept of an index, until it is made of that.
+    kept: Arc<Mutex<Option<ProofParts>>>,
     index: Arc<Lazy<ProofIndex>>,
 }
 
@@ -144,22 +145,24 @@ impl Proof {
         Ok(Self { nearness, params: *params, pulses, kept: Arc::default(), index: Arc::new(Lazy::new()) })
     }
 
-    /// This, with the columns that [`Proof::seen_space`] gave for the same pulses: they are not made again.
+    /// This, with what [`Proof::to_parts`] gave for the same pulses: it is not made again.
     #[must_use]
-    pub(crate) fn with_seen_space(self, columns: Vec<u64>) -> Self {
-        Self { kept: Arc::new(Mutex::new(columns)), index: Arc::new(Lazy::new()), ..self }
+    pub(crate) fn with_parts(self, parts: ProofParts) -> Self {
+        Self { kept: Arc::new(Mutex::new(Some(parts))), index: Arc::new(Lazy::new()), ..self }
     }
 
-    /// The columns of boxes that are known to be near pulses, to be kept; none as long as not all are made.
-    pub(crate) fn seen_space(&self) -> Vec<u64> {
+    /// Its index, to be kept; `None` as long as not all is made.
+    pub(crate) fn to_parts(&self) -> Option<ProofParts> {
         if !self.index.is_made() {
             return self.kept().clone();
         }
-        let index = self.index.get(|control| self.make_index(control));
-        index.and_then(|index| index.seen_space.to_words()).unwrap_or_default()
+        let index = self.index.get(|control| self.make_index(control))?;
+        let seen_space = index.seen_space.to_words()?;
+        let (order, boxes) = index.free_segments.order_and_boxes();
+        Some(ProofParts { order, boxes, seen_space })
     }
 
-    fn kept(&self) -> MutexGuard<'_, Vec<u64>> {
+    fn kept(&self) -> MutexGuard<'_, Option<ProofParts>> {
         self.kept.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
@@ -182,9 +185,13 @@ impl Proof {
     }
 
     fn make_index(&self, control: &Control<'_>) -> Result<ProofIndex> {
-        let free_segments = match &self.pulses {
-            ProofSource::Indexed(free_segments) => Arc::clone(free_segments),
-            ProofSource::Columns(columns) => Arc::new(FreeSegments::from_columns(columns, control)?),
+        let kept = self.kept().take();
+        let free_segments = match (&self.pulses, &kept) {
+            (ProofSource::Indexed(free_segments), _) => Arc::clone(free_segments),
+            (ProofSource::Columns(columns), None) => Arc::new(FreeSegments::from_columns(columns, control)?),
+            (ProofSource::Columns(columns), Some(ProofParts { order, boxes, .. })) => {
+                Arc::new(FreeSegments::from_index(columns, (order, boxes), control)?)
+            }
         };
         control.check()?;
         let mut extent = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
@@ -195,7 +202,9 @@ impl Proof {
             }
         }
         let seen_space = SeenSpace::new(&free_segments, extent, self.nearness);
-        seen_space.take(&std::mem::take(&mut *self.kept()));
+        if let Some(kept) = &kept {
+            seen_space.take(&kept.seen_space);
+        }
         Ok(ProofIndex { free_segments, seen_space, extent })
     }
 

@@ -5,7 +5,7 @@ use super::npz::{read_arrays, write_arrays};
 use crate::npz_arrays::{array, has, invalid, open, rows, values, write_archive};
 use crate::output::Output;
 use crate::source::{Input, Source};
-use belvedere_data::model::{DerivedParts, ModelParts, TreeParts};
+use belvedere_data::model::{DerivedParts, ModelParts, ProofParts, TreeParts};
 use belvedere_data::raster::Raster;
 use belvedere_data::{Error, Result};
 use std::io::{self, Read, Seek, Write};
@@ -32,7 +32,7 @@ pub fn write_kept_model<'a>(
 }
 
 fn write_derived<W: Write + Seek>(archive: &mut ZipWriter<W>, derived: &DerivedParts) -> io::Result<()> {
-    let DerivedParts { vegetation, normals, tree, seen_space } = derived;
+    let DerivedParts { vegetation, normals, tree, proof } = derived;
     array(archive, "vegetation", &[vegetation.len() as u64], vegetation.iter().map(|&is_one| u8::from(is_one)))?;
     if let Some(normals) = normals {
         array(archive, "normals", &[normals.len() as u64, 3], normals.as_flattened().iter().copied())?;
@@ -42,7 +42,9 @@ fn write_derived<W: Write + Seek>(archive: &mut ZipWriter<W>, derived: &DerivedP
         array(archive, "tree_order", &[order.len() as u64], order.iter().copied())?;
         array(archive, "tree_around", &[2, 3], around.as_flattened().iter().copied())?;
     }
-    if !seen_space.is_empty() {
+    if let Some(ProofParts { order, boxes, seen_space }) = proof {
+        array(archive, "pulse_order", &[order.len() as u64], order.iter().copied())?;
+        array(archive, "pulse_boxes", &[boxes.len() as u64, 10], boxes.as_flattened().iter().copied())?;
         array(archive, "seen_space", &[seen_space.len() as u64], seen_space.iter().copied())?;
     }
     Ok(())
@@ -128,6 +130,13 @@ fn read_derived<R: Read + Seek>(archive: &mut ZipArchive<R>) -> io::Result<Deriv
             around: around.map_err(|_| invalid("tree_around has not two rows".to_owned()))?,
         });
     }
-    let seen_space = if has(archive, "seen_space") { values(archive, "seen_space", u64::MAX)?.0 } else { Vec::new() };
-    Ok(DerivedParts { vegetation, normals, tree, seen_space })
+    let mut proof = None;
+    if has(archive, "pulse_order") {
+        proof = Some(ProofParts {
+            order: values(archive, "pulse_order", u64::MAX)?.0,
+            boxes: rows(archive, "pulse_boxes")?,
+            seen_space: values(archive, "seen_space", u64::MAX)?.0,
+        });
+    }
+    Ok(DerivedParts { vegetation, normals, tree, proof })
 }

@@ -46,7 +46,7 @@ fn a_scene_that_is_found_is_the_one_that_was_built() {
         assert!(bits(&found) == bits(&built), "a part differs");
         let derived = built.model.derived();
         assert!(derived.tree.is_some() && derived.normals.is_some());
-        assert_eq!(derived.seen_space.is_empty(), built.model.pulses().is_none());
+        assert_eq!(derived.proof.is_none(), built.model.pulses().is_none());
         // also once lines of sight have used what was kept
         let [answers, again] = [&built, &found].map(|scene| {
             let blockers = scene.model.scene(&scene.model.rule(), UnprovenAs::Reported, &Control::none()).unwrap();

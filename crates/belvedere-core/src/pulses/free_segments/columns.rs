@@ -1,6 +1,6 @@
 //! Free segments as columns of numbers, with as few digits as the required accuracy allows.
 
-use super::tree::SegmentAxis;
+use super::tree::{SegmentAxis, SegmentTree, node_count};
 use super::{FreeSegment, FreeSegments, SegmentsByAxis};
 use belvedere_data::Result;
 use belvedere_data::control::Control;
@@ -99,19 +99,48 @@ impl FreeSegments {
     /// Those of [`FreeSegmentColumns::validate`], and [`Error::Cancelled`](belvedere_data::Error::Cancelled).
     pub fn from_columns(columns: &FreeSegmentColumns, control: &Control<'_>) -> Result<Self> {
         columns.validate()?;
-        let mut by_way = SegmentsByAxis::default();
-        for (way, free_segments) in SegmentAxis::ALL.into_iter().zip(&mut by_way) {
-            if columns.ways.is_empty() && way != SegmentAxis::UP {
-                continue;
-            }
-            let free_segment = |row| {
-                let (own, start, direction, length) = piece(columns, row)?;
-                (own == way).then(|| FreeSegment::new(start, direction, length))
-            };
-            *free_segments =
-                (0..columns.starts.len()).into_par_iter().with_min_len(CHUNK).filter_map(free_segment).collect();
-            control.check()?;
-        }
-        Self::index(by_way, columns.top, control)
+        #[expect(clippy::cast_possible_truncation, reason = "points are numbered with 32 bits")]
+        let rows: Vec<u32> = (0..columns.starts.len() as u32).collect();
+        Self::index(by_way(columns, &rows, control)?, columns.top, control)
     }
+
+    /// The same with the order and the boxes of an index of these columns ([`FreeSegments::order_and_boxes`]): nothing
+    /// is sorted again. What does not belong together is indexed anew.
+    pub(crate) fn from_index(
+        columns: &FreeSegmentColumns,
+        (order, boxes): (&[u32], &[[f32; 10]]),
+        control: &Control<'_>,
+    ) -> Result<Self> {
+        columns.validate()?;
+        let by_way = by_way(columns, order, control)?;
+        let count: usize = by_way.iter().map(Vec::len).sum();
+        let nodes: usize = by_way.iter().filter(|own| !own.is_empty()).map(|own| node_count(own.len())).sum();
+        if count != order.len() || nodes != boxes.len() {
+            return Self::from_columns(columns, control);
+        }
+        Self::index_with((by_way, Some(boxes)), columns.top, control)
+    }
+
+    /// The order of the index, as rows of the columns that it was made of, and the boxes of its nodes.
+    pub(crate) fn order_and_boxes(&self) -> (Vec<u32>, Vec<[f32; 10]>) {
+        let order = self.free_segments.iter().map(|free_segment| free_segment.row).collect();
+        (order, self.trees.iter().flat_map(SegmentTree::boxes).collect())
+    }
+}
+
+/// The free segments of some rows, in their order, by direction.
+fn by_way(columns: &FreeSegmentColumns, rows: &[u32], control: &Control<'_>) -> Result<SegmentsByAxis> {
+    let mut by_way = SegmentsByAxis::default();
+    for (way, free_segments) in SegmentAxis::ALL.into_iter().zip(&mut by_way) {
+        if columns.ways.is_empty() && way != SegmentAxis::UP {
+            continue;
+        }
+        let free_segment = |&row: &u32| {
+            let (own, start, direction, length) = piece(columns, row as usize)?;
+            (own == way).then(|| FreeSegment { row, ..FreeSegment::new(start, direction, length) })
+        };
+        *free_segments = rows.par_iter().with_min_len(CHUNK).filter_map(free_segment).collect();
+        control.check()?;
+    }
+    Ok(by_way)
 }

@@ -84,18 +84,28 @@ pub(super) struct SegmentTree {
 }
 
 impl SegmentTree {
-    /// The tree over `free_segments`, which it puts in order; the first of them becomes segment number `first`. What is
-    /// left when the work is cancelled is no tree.
+    /// The tree over `free_segments`, which it puts in order; the first of them becomes segment number `first`. They
+    /// are in the order of a tree already where its [`SegmentTree::boxes`] are given. What is left when the work is
+    /// cancelled is no tree.
     pub(super) fn new(
-        way: SegmentAxis,
+        (way, boxes): (SegmentAxis, Option<&[[f32; 10]]>),
         free_segments: &mut [FreeSegment],
         first: usize,
         stop: &Stop<'_>,
         control: &Control<'_>,
     ) -> Self {
         let mut nodes = vec![SegmentNode::EMPTY; node_count(free_segments.len())];
-        TreeBuild { way, stop, control }.node(free_segments, first, &mut nodes, 0);
+        TreeBuild { way, boxes, stop, control }.node(free_segments, first, &mut nodes, 0);
         Self { way, first, nodes }
+    }
+
+    /// The boxes of its nodes at both planes, and these.
+    pub(super) fn boxes(&self) -> impl Iterator<Item = [f32; 10]> + '_ {
+        self.nodes.iter().map(
+            |SegmentNode { below: [a, b, c, d], above: [e, f, g, h], planes: [low, high], .. }| {
+                [*a, *b, *c, *d, *e, *f, *g, *h, *low, *high]
+            },
+        )
     }
 
     /// Calls `visit` with the numbers of the segments of every leaf that `may_hold` does not rule out, nor a node above
@@ -165,6 +175,11 @@ impl SegmentNode {
         count: 0,
     };
 
+    /// A node of [`SegmentTree::boxes`].
+    fn of_box([a, b, c, d, e, f, g, h, low, high]: [f32; 10]) -> Self {
+        Self { below: [a, b, c, d], above: [e, f, g, h], planes: [low, high], ..Self::EMPTY }
+    }
+
     /// The box around `free_segments`.
     fn around(free_segments: &[FreeSegment], way: SegmentAxis) -> Self {
         let mut node = Self::EMPTY;
@@ -221,7 +236,7 @@ impl SegmentKey {
 }
 
 /// Nodes of the tree over `count` segments.
-fn node_count(count: usize) -> usize {
+pub(super) fn node_count(count: usize) -> usize {
     if count <= LEAF { 1 } else { 1 + node_count(cut(count)) + node_count(count - cut(count)) }
 }
 
@@ -233,6 +248,8 @@ fn cut(count: usize) -> usize {
 #[derive(Clone, Copy)]
 struct TreeBuild<'a> {
     way: SegmentAxis,
+    /// Those of the nodes, where segments are in order already.
+    boxes: Option<&'a [[f32; 10]]>,
     stop: &'a Stop<'a>,
     control: &'a Control<'a>,
 }
@@ -262,7 +279,8 @@ impl TreeBuild<'_> {
         if items.len() > PARALLEL && self.stop.is_set() {
             return;
         }
-        let mut node = SegmentNode::around(items, self.way);
+        let kept = self.boxes.and_then(|boxes| boxes.get(index));
+        let mut node = kept.map_or_else(|| SegmentNode::around(items, self.way), |kept| SegmentNode::of_box(*kept));
         let Some((own, below)) = nodes.split_first_mut() else { return };
         #[expect(clippy::cast_possible_truncation, reason = "segments and nodes are numbered with 32 bits")]
         let number = |value: usize| value as u32;
@@ -271,9 +289,11 @@ impl TreeBuild<'_> {
             *own = node;
             return;
         }
-        let key = self.best_key(items);
         let middle = cut(items.len());
-        items.select_nth_unstable_by(middle, |a, b| key.of(a).total_cmp(&key.of(b)));
+        if self.boxes.is_none() {
+            let key = self.best_key(items);
+            items.select_nth_unstable_by(middle, |a, b| key.of(a).total_cmp(&key.of(b)));
+        }
         let (left, right) = items.split_at_mut(middle);
         let left_nodes = node_count(left.len());
         node.next = number(index + 1 + left_nodes);
