@@ -24,11 +24,11 @@ pub struct GroundBySquares {
     /// Rows of the corners of the Delaunay triangles.
     triangles: Vec<[u32; 3]>,
     /// Numbers of triangles, by squares that they reach into.
-    of_squares: Vec<(u32, u32)>,
+    of_squares: BySquare<u32>,
     /// Numbers of triangles that reach into many squares.
     large: Vec<u32>,
     /// Returns on the map, by their squares.
-    returns: Vec<(u32, [f32; 2])>,
+    returns: BySquare<[f32; 2]>,
 }
 
 impl GroundBySquares {
@@ -64,10 +64,9 @@ impl GroundBySquares {
                 of_squares.extend(numbers.map(|square| (squares.number(square), number)));
             }
         }
-        of_squares.par_sort_unstable();
         let places = cloud.positions.iter().map(|p| [p[0], p[1]]).chain(cloud.cleared_places.iter().copied());
-        let mut returns: Vec<(u32, [f32; 2])> = places.map(|place| (squares.of(place.map(f64::from)), place)).collect();
-        returns.par_sort_unstable_by_key(|(square, _)| *square);
+        let returns = places.map(|place| (squares.of(place.map(f64::from)), place)).collect();
+        let (of_squares, returns) = (BySquare::new(&squares, of_squares), BySquare::new(&squares, returns));
         let report = found.report(points.len(), shift?);
         Ok(Self { params: *params, report, points, nearest, squares, triangles, of_squares, large, returns })
     }
@@ -85,7 +84,7 @@ impl GroundBySquares {
     pub fn on(&self, grid: MapGrid, control: &Control<'_>) -> Result<(Ground, GroundReport)> {
         let (low, high) = (grid.corner_at([0, grid.height]), grid.corner_at([grid.width, 0]));
         let mut numbers = self.large.clone();
-        numbers.extend(self.squares.held(&self.of_squares, low, high).map(|(_, number)| number));
+        numbers.extend(self.of_squares.held(&self.squares, low, high));
         // in the order of the whole: a cell on a side takes the height of the last
         numbers.sort_unstable();
         numbers.dedup();
@@ -93,8 +92,8 @@ impl GroundBySquares {
         let heights = triangulate::heights_of(triangles, &self.points, &grid);
         let ground = Ground::near_points(&self.points, &self.nearest, (grid, heights), self.params.reach, control)?;
         let gap = self.params.max_gap_from_returns;
-        let near = self.squares.held(&self.returns, low.map(|v| v - gap), high.map(|v| v + gap));
-        let near = cells_near_returns(near.map(|(_, place)| place.map(f64::from)), &grid, gap);
+        let near = self.returns.held(&self.squares, low.map(|v| v - gap), high.map(|v| v + gap));
+        let near = cells_near_returns(near.map(|place| place.map(f64::from)), &grid, gap);
         Ok(ground.known_near_returns(&near, self.report))
     }
 }
@@ -144,23 +143,42 @@ impl Squares {
         [0, 1].map(|axis| self.at(low[axis], axis)..=self.at(high[axis], axis))
     }
 
-    /// What is kept of the squares that a box reaches into, of `kept` in the order of squares.
-    fn held<'a, T: Copy>(
-        &self,
-        kept: &'a [(u32, T)],
-        low: [f64; 2],
-        high: [f64; 2],
-    ) -> impl Iterator<Item = (u32, T)> + Clone + use<'a, T> {
-        let [columns, rows] = self.between(low, high);
-        let parts: Vec<&[(u32, T)]> = rows
-            .map(|row| {
-                let [first, last] = [*columns.start(), *columns.end()].map(|column| self.number([column, row]));
-                let from = kept.partition_point(|(square, _)| *square < first);
-                let to = kept.partition_point(|(square, _)| *square <= last);
-                kept.get(from..to).unwrap_or_default()
-            })
-            .collect();
-        parts.into_iter().flatten().copied()
+    fn count(&self) -> usize {
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "fewer squares than points")]
+        let [columns, rows] = self.last.map(|last| last as usize + 1);
+        columns * rows
+    }
+}
+
+/// What lies in each square.
+struct BySquare<T> {
+    /// Where those of a square begin, and after the last square their number.
+    starts: Vec<usize>,
+    items: Vec<T>,
+}
+
+impl<T: Copy + Send> BySquare<T> {
+    /// Of items, each with its square.
+    fn new(squares: &Squares, mut items: Vec<(u32, T)>) -> Self {
+        items.par_sort_unstable_by_key(|(square, _)| *square);
+        let mut starts = vec![0; squares.count() + 1];
+        for (square, _) in &items {
+            starts[*square as usize + 1] += 1;
+        }
+        for square in 1..starts.len() {
+            starts[square] += starts[square - 1];
+        }
+        Self { starts, items: items.into_iter().map(|(_, item)| item).collect() }
+    }
+
+    /// What lies in the squares that a box reaches into.
+    fn held(&self, squares: &Squares, low: [f64; 2], high: [f64; 2]) -> impl Iterator<Item = T> + Clone {
+        let [columns, rows] = squares.between(low, high);
+        let of_row = |row| {
+            let [first, last] = [*columns.start(), *columns.end()].map(|column| squares.number([column, row]) as usize);
+            self.items.get(self.starts[first]..self.starts[last + 1]).unwrap_or_default()
+        };
+        rows.map(of_row).collect::<Vec<&[T]>>().into_iter().flatten().copied()
     }
 }
 

@@ -74,7 +74,8 @@ impl fmt::Debug for Proof {
 enum ProofSource {
     /// Indexed already.
     Indexed(Arc<FreeSegments>),
-    Columns(Arc<FreeSegmentColumns>),
+    /// To be indexed, and then let go.
+    Columns(Arc<Mutex<FreeSegmentColumns>>),
 }
 
 /// Pulses, made ready for lines of sight.
@@ -126,7 +127,7 @@ impl Proof {
     pub fn from_columns(columns: FreeSegmentColumns, params: &ProofParams) -> Result<Self> {
         columns.validate()?;
         let nearness = params.nearness.unwrap_or_else(|| nearness_of(lower_ends(&columns)));
-        Self::of_pulses(ProofSource::Columns(Arc::new(columns)), nearness, params)
+        Self::of_pulses(ProofSource::Columns(Arc::new(Mutex::new(columns))), nearness, params)
     }
 
     fn of_pulses(pulses: ProofSource, nearness: f64, params: &ProofParams) -> Result<Self> {
@@ -188,9 +189,14 @@ impl Proof {
         let kept = self.kept().take();
         let free_segments = match (&self.pulses, &kept) {
             (ProofSource::Indexed(free_segments), _) => Arc::clone(free_segments),
-            (ProofSource::Columns(columns), None) => Arc::new(FreeSegments::from_columns(columns, control)?),
-            (ProofSource::Columns(columns), Some(ProofParts { order, boxes, .. })) => {
-                Arc::new(FreeSegments::from_index(columns, (order, boxes), control)?)
+            (ProofSource::Columns(columns), kept) => {
+                let columns = columns.lock().unwrap_or_else(PoisonError::into_inner);
+                Arc::new(match kept {
+                    None => FreeSegments::from_columns(&columns, control)?,
+                    Some(ProofParts { order, boxes, .. }) => {
+                        FreeSegments::from_index(&columns, (order, boxes), control)?
+                    }
+                })
             }
         };
         control.check()?;
@@ -204,6 +210,10 @@ impl Proof {
         let seen_space = SeenSpace::new(&free_segments, extent, self.nearness);
         if let Some(kept) = &kept {
             seen_space.take(&kept.seen_space);
+        }
+        // nothing can fail any more
+        if let ProofSource::Columns(columns) = &self.pulses {
+            *columns.lock().unwrap_or_else(PoisonError::into_inner) = FreeSegmentColumns::default();
         }
         Ok(ProofIndex { free_segments, seen_space, extent })
     }
