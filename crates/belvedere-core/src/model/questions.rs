@@ -56,8 +56,9 @@ impl SceneModel {
         })
     }
 
-    /// Indexes its pulses, which all its scenes and copies then share. Of a survey from the air also the space that
-    /// they saw is found, as most questions need it and [`SceneModel::derived`] keeps it.
+    /// Indexes its pulses, which all its scenes and copies then share. Where all are upright, as those from the air
+    /// are, also the space that they saw is found: most questions need it, and [`SceneModel::derived`] keeps it. Of
+    /// others that takes long, so that it is found only where lines of sight run.
     ///
     /// # Errors
     /// Those of [`Proof::from_columns`]; [`Error::Cancelled`](belvedere_data::Error::Cancelled).
@@ -65,7 +66,7 @@ impl SceneModel {
         let Some(proof) = self.proof()? else { return Ok(()) };
         control.stage("indexing pulses", 0, || {
             proof.prepare(control)?;
-            if proof.is_from_ground() { Ok(()) } else { proof.prepare_all(control) }
+            if proof.is_upright() { proof.prepare_all(control) } else { Ok(()) }
         })
     }
 

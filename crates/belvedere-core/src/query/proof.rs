@@ -231,6 +231,12 @@ impl Proof {
         index.is_some_and(|index| index.free_segments.sideways_share() > GROUND_SHARE)
     }
 
+    /// Whether all pulses are upright ([`FreeSegments::upright_count`]).
+    pub(crate) fn is_upright(&self) -> bool {
+        let index = self.index.get(|control| self.make_index(control));
+        index.is_some_and(|index| index.free_segments.upright_count() == index.free_segments.len())
+    }
+
     /// Whether a place, local metres, lies above the highest return.
     #[must_use]
     pub fn is_above_all(&self, place: [f64; 3]) -> bool {

@@ -144,3 +144,38 @@ fn by_way(columns: &FreeSegmentColumns, rows: &[u32], control: &Control<'_>) -> 
     }
     Ok(by_way)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::pulses::FreeSegmentParams;
+    use belvedere_data::random::uniform;
+
+    #[test]
+    #[expect(clippy::cast_possible_truncation, reason = "test places in f32")]
+    fn an_index_that_is_kept_is_the_one_that_was_made() {
+        let random = |i: u64, k: u64| uniform(9, 4 * i + k) as f32;
+        let returns: Vec<[f32; 3]> =
+            (0..3000).map(|i| [40.0 * random(i, 0), 40.0 * random(i, 1), 9.0 * random(i, 2)]).collect();
+        // from the air and from the ground
+        let scanner: Vec<[f32; 3]> =
+            (0..3000).map(|i| [60.0 * random(i, 3), 20.0, if i % 2 == 0 { 300.0 } else { 1.6 }]).collect();
+        let control = Control::none();
+        let (first, _) = FreeSegments::new(&returns, &scanner, &FreeSegmentParams::default(), &control).unwrap();
+        let columns = first.to_columns();
+        let made = FreeSegments::from_columns(&columns, &control).unwrap();
+        assert!(made.trees.len() > 3, "{}", made.trees.len());
+        let (order, boxes) = made.order_and_boxes();
+        let kept = FreeSegments::from_index(&columns, (&order, &boxes), &control).unwrap();
+        assert!(kept.order_and_boxes() == (order.clone(), boxes.clone()));
+        assert_eq!(kept.len(), made.len());
+        assert!((0..made.len()).all(|number| kept.segment(number) == made.segment(number)));
+        for i in 0..500 {
+            let place = [0, 1, 2].map(|k| [40.0, 40.0, 12.0][k as usize] * uniform(10, 3 * i + k));
+            assert_eq!(kept.passes_within(place, 0.4), made.passes_within(place, 0.4));
+        }
+        // what does not belong together is indexed anew
+        let short = FreeSegments::from_index(&columns, (&order, &boxes[1..]), &control).unwrap();
+        assert!(short.order_and_boxes() == (order, boxes));
+    }
+}
