@@ -59,7 +59,8 @@ pub struct ProofParts {
     pub order: Vec<u32>,
     /// Boxes around the pulses of each node of the index, at two planes, and these, (K, 10), local metres.
     pub boxes: Vec<[f32; 10]>,
-    /// Columns of boxes over the survey, each a word of bits: which boxes are known to be near pulses.
+    /// Columns of boxes over the survey, each a word of bits: which boxes are known to be near pulses. Empty where not
+    /// all were made.
     pub seen_space: Vec<u64>,
 }
 

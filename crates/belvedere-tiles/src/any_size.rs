@@ -138,12 +138,11 @@ impl SurveyQuestion {
             _ => Vec::new(),
         };
         let is_up = |sun: &NamedSun| sun.sun.to_sun[2] > 0.0;
-        let questions = match suns.iter().any(is_up) {
+        let mut questions = TileQuestion::of(&question, &whereabouts, &mut context)?;
+        if suns.iter().any(is_up) {
             // at night nothing is lit, which no tile needs to find out
-            true => TileQuestion::of_suns(suns.iter().filter(|&sun| is_up(sun))),
-            false => TileQuestion::of(&question, &whereabouts, &mut Context::default())?,
-        };
-        TileQuestion::of(&question, &whereabouts, &mut context)?;
+            questions = TileQuestion::of_suns(suns.iter().filter(|&sun| is_up(sun)));
+        }
         let mut values = 0_u64;
         for own in &questions {
             values += plan.cells_of(own)?.len() as u64;

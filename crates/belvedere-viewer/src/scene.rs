@@ -170,9 +170,8 @@ impl PageScene {
     /// Indexes the pulses that prove lines of sight free. What fails here is said by the question that needs it.
     pub(crate) fn index_proof(&self) {
         let control = Control::none();
-        if let Ok(proving) = self.blockers(UnprovenAs::Reported, &control) {
-            let _ = proving.proof().map(|proof| proof.prepare_all(&control));
-        }
+        let _ = self.blockers(UnprovenAs::Reported, &control);
+        let _ = self.model().index_proof(&control);
     }
 
     /// [`Self::prepare`] on a thread of its own: not on one of the pool, which must not wait for locks. Where the

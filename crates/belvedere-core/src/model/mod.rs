@@ -116,7 +116,9 @@ impl SceneModel {
         }
         let tree = derived.tree.map(|tree| BallTree::from_parts(tree, model.balls(), &model.rule()));
         (model.vegetation, model.normals, model.tree) = (derived.vegetation, derived.normals, tree.transpose()?);
-        if let (Some(proof), Some(parts)) = (model.new_proof()?, derived.proof) {
+        if let Some(parts) = derived.proof
+            && let Some(proof) = model.new_proof()?
+        {
             model.proof = OnceLock::from(proof.with_parts(parts));
         }
         Ok(model)

@@ -64,10 +64,7 @@ impl SceneModel {
     /// Those of [`Proof::from_columns`]; [`Error::Cancelled`](belvedere_data::Error::Cancelled).
     pub fn index_proof(&self, control: &Control<'_>) -> Result<()> {
         let Some(proof) = self.proof()? else { return Ok(()) };
-        control.stage("indexing pulses", 0, || {
-            proof.prepare(control)?;
-            if proof.is_upright() { proof.prepare_all(control) } else { Ok(()) }
-        })
+        control.stage("indexing pulses", 0, || proof.prepare_all(control))
     }
 
     /// What its pulses prove; `None` without any.

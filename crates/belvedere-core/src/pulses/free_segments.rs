@@ -170,7 +170,7 @@ impl FreeSegments {
             }
         }
         report.used = by_way.iter().map(Vec::len).sum();
-        Ok((Self::index(by_way, top, control)?, report))
+        Ok((Self::index(by_way, None, top, control)?, report))
     }
 
     /// These free segments, each extended so that it begins `by` metres nearer to its return.
@@ -185,20 +185,12 @@ impl FreeSegments {
                 by_way[way.number()].push(FreeSegment { start, length: free_segment.length + by, ..*free_segment });
             }
         }
-        Self::index(by_way, self.top, control)
+        Self::index(by_way, None, self.top, control)
     }
 
-    /// The index of the free segments of each direction, none of which rises above `top`.
-    fn index(by_way: SegmentsByAxis, top: f32, control: &Control<'_>) -> Result<Self> {
-        Self::index_with((by_way, None), top, control)
-    }
-
-    /// The same, or of segments in the order of an index, with the boxes of its nodes.
-    fn index_with(
-        (by_way, mut boxes): (SegmentsByAxis, Option<&[[f32; 10]]>),
-        top: f32,
-        control: &Control<'_>,
-    ) -> Result<Self> {
+    /// The index of the free segments of each direction, none of which rises above `top`. They are in the order of an
+    /// index already where the boxes of its nodes are given.
+    fn index(by_way: SegmentsByAxis, mut boxes: Option<&[[f32; 10]]>, top: f32, control: &Control<'_>) -> Result<Self> {
         let stop = Stop::new(control);
         let (mut free_segments, mut trees) = (Vec::with_capacity(by_way.iter().map(Vec::len).sum()), Vec::new());
         for (way, mut own) in SegmentAxis::ALL.into_iter().zip(by_way).filter(|(_, own)| !own.is_empty()) {

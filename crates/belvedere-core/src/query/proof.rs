@@ -152,13 +152,13 @@ impl Proof {
         Self { kept: Arc::new(Mutex::new(Some(parts))), index: Arc::new(Lazy::new()), ..self }
     }
 
-    /// Its index, to be kept; `None` as long as not all is made.
+    /// Its index, to be kept; `None` as long as it is not made.
     pub(crate) fn to_parts(&self) -> Option<ProofParts> {
         if !self.index.is_made() {
             return self.kept().clone();
         }
         let index = self.index.get(|control| self.make_index(control))?;
-        let seen_space = index.seen_space.to_words()?;
+        let seen_space = index.seen_space.to_words().unwrap_or_default();
         let (order, boxes) = index.free_segments.order_and_boxes();
         Some(ProofParts { order, boxes, seen_space })
     }
@@ -176,13 +176,17 @@ impl Proof {
         self.index.get_or_make(|| self.make_index(control)).map(|_| ())
     }
 
-    /// Indexes the pulses and prepares everything else that lines of sight anywhere need, so that none of them waits.
+    /// Indexes the pulses, and where all of them are upright finds the space that they saw, so that no line of sight
+    /// anywhere waits for it.
     ///
     /// # Errors
     /// [`Error::Cancelled`].
-    pub fn prepare_all(&self, control: &Control<'_>) -> Result<()> {
+    pub(crate) fn prepare_all(&self, control: &Control<'_>) -> Result<()> {
         let ProofIndex { free_segments, seen_space, .. } = self.index.get_or_make(|| self.make_index(control))?;
-        seen_space.make_all(free_segments, control)
+        match free_segments.upright_count() == free_segments.len() {
+            true => seen_space.make_all(free_segments, control),
+            false => Ok(()),
+        }
     }
 
     fn make_index(&self, control: &Control<'_>) -> Result<ProofIndex> {
@@ -229,12 +233,6 @@ impl Proof {
     pub fn is_from_ground(&self) -> bool {
         let index = self.index.get(|control| self.make_index(control));
         index.is_some_and(|index| index.free_segments.sideways_share() > GROUND_SHARE)
-    }
-
-    /// Whether all pulses are upright ([`FreeSegments::upright_count`]).
-    pub(crate) fn is_upright(&self) -> bool {
-        let index = self.index.get(|control| self.make_index(control));
-        index.is_some_and(|index| index.free_segments.upright_count() == index.free_segments.len())
     }
 
     /// Whether a place, local metres, lies above the highest return.

@@ -101,7 +101,7 @@ impl FreeSegments {
         columns.validate()?;
         #[expect(clippy::cast_possible_truncation, reason = "points are numbered with 32 bits")]
         let rows: Vec<u32> = (0..columns.starts.len() as u32).collect();
-        Self::index(by_way(columns, &rows, control)?, columns.top, control)
+        Self::index(by_way(columns, &rows, control)?, None, columns.top, control)
     }
 
     /// The same with the order and the boxes of an index of these columns ([`FreeSegments::order_and_boxes`]): nothing
@@ -118,7 +118,7 @@ impl FreeSegments {
         if count != order.len() || nodes != boxes.len() {
             return Self::from_columns(columns, control);
         }
-        Self::index_with((by_way, Some(boxes)), columns.top, control)
+        Self::index(by_way, Some(boxes), columns.top, control)
     }
 
     /// The order of the index, as rows of the columns that it was made of, and the boxes of its nodes.

@@ -37,7 +37,7 @@ impl FreeSegments {
                 self.add_region(region, scanner.map(f64::from), &mut by_way);
             }
         }
-        Self::index(by_way, self.top, control)
+        Self::index(by_way, None, self.top, control)
     }
 
     fn add_region(&self, region: &SkyRegion, scanner: [f64; 3], by_way: &mut SegmentsByAxis) {
