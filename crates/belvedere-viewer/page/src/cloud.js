@@ -12,6 +12,8 @@ const CLEARED = 254;
 const integers = (array, size) => Object.assign(new BufferAttribute(array, size), { gpuType: 1013 });
 // A hole of the picture lies so many sizes of a point behind what is around it.
 const GAP = 2;
+// How far answers of points reach in a layer of them, in sizes of a point.
+const SPREAD = 1.3;
 // Side of the squares of the map that chunks lie in, metres.
 const SQUARE = 128;
 // Light where no question has a sun: from the south and half up, so that walls differ from each other and from roofs.
@@ -36,7 +38,7 @@ export class Cloud {
     this.table = new DataTexture(new Uint8Array(1024), 256, 1, RGBAFormat, UnsignedByteType);
     const classes = new DataTexture(new Uint8Array(classTable().flatMap((color) => [...color, 255])), 256, 1, RGBAFormat, UnsignedByteType);
     classes.needsUpdate = true;
-    this.own = uniforms({ table: this.table, classes, tint: 0, mode: 2, heights: new Vector2(), size: 0.3, pixels: 1, far: 1000, most: 40, cleared: CLEARED, light: 1, sun: DAYLIGHT.clone(), cutLow: new Vector3(...ALL.low), cutHigh: new Vector3(...ALL.high) });
+    this.own = uniforms({ table: this.table, classes, tint: 0, mode: 2, layered: 0, heights: new Vector2(), size: 0.3, pixels: 1, far: 1000, most: 40, cleared: CLEARED, light: 1, sun: DAYLIGHT.clone(), cutLow: new Vector3(...ALL.low), cutHigh: new Vector3(...ALL.high) });
     this.target = target();
     this.screen = new Screen(renderer);
     // whether whole pictures take no longer than those that move may
@@ -139,7 +141,10 @@ export class Cloud {
     object.material.needsUpdate = true;
   }
 
-  paint({ mode, table, light = LIGHTS[mode], tint = 0 }, own = this.own) {
+  // Answers of points are drawn as layers, those of cells are some.
+  paint({ mode, table, legend, light = LIGHTS[mode], tint = 0 }, own = this.own) {
+    own.layered.value = mode === 4 && legend && own === this.own ? 1 : 0;
+    if (own === this.own) this.isOfKinds = Boolean(legend?.keys);
     own.tint.value = tint;
     table.forEach((color, i) => own.table.value.image.data.set([...color.map(Math.round), 255], 4 * i));
     own.table.value.needsUpdate = true;
@@ -151,7 +156,7 @@ export class Cloud {
   layer(low, step, places, values, size, paint, none = -1) {
     this.clearLayer();
     const table = new DataTexture(new Uint8Array(1024), 256, 1, RGBAFormat, UnsignedByteType);
-    const shared = { ...this.own, ...uniforms({ table, mode: 4, size, cleared: none, light: 0, tint: 0 }) };
+    const shared = { ...this.own, ...uniforms({ table, mode: 4, layered: 0, size, cleared: none, light: 0, tint: 0 }) };
     this.add(low, step, places, values, 0, shared, this.extra);
     this.paint({ ...paint, light: 0 }, shared);
     this.layerOwn = shared;
@@ -234,7 +239,8 @@ export class Cloud {
     renderer.render(this.scene, camera);
     if (isNew) renderer.render(this.extra, camera);
     this.isRough = !this.isQuick && (isMoving || this.left > 0);
-    this.screen.show(target, camera, { isRough: this.isRough, theme, gap: GAP * own.size.value, sun: own.sun.value, glow: this.isSunny && own.sun.value.z > 0 ? 1 : 0 });
+    const layer = own.layered.value ? { table: this.table, reach: SPREAD * own.size.value, pixels: own.pixels.value, kinds: this.isOfKinds } : null;
+    this.screen.show(target, camera, { layer, isRough: this.isRough, theme, gap: GAP * own.size.value, sun: own.sun.value, glow: this.isSunny && own.sun.value.z > 0 ? 1 : 0 });
     renderer.autoClear = true;
   }
 

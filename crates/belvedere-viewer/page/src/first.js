@@ -23,6 +23,10 @@ export async function firstAnswer(results) {
   if (page.tool.name !== "look" || !$("card").hidden) return;
   page.choose("shadow");
   // the card of the answer takes a part of the view, as soon as it has its place above the time
-  page.whenShown = () => requestAnimationFrame(() => requestAnimationFrame(() => { if (!page.isMoved) showAll(); }));
+  page.whenShown = () => requestAnimationFrame(async () => {
+    page.placePanels();
+    await Promise.allSettled($("card").getAnimations().map(({ finished }) => finished));
+    if (!page.isMoved) showAll();
+  });
   if (!api.exported) invite();
 }

@@ -28,6 +28,11 @@ function showSteps() {
   $("steps").querySelectorAll("[data-fly]").forEach((button) => { button.hidden = mover.kind !== "fly"; });
 }
 page.showSteps = showSteps;
+// Panels stand below the bar and above the time, however many lines these take.
+page.placePanels = () => {
+  root.style.setProperty("--bar", `${$("bar").offsetHeight}px`);
+  root.style.setProperty("--time", `${$("timebar").offsetHeight}px`);
+};
 function listen() {
   let down = null;
   canvas.addEventListener("pointerdown", (event) => {
@@ -83,11 +88,7 @@ function listen() {
   $("trees").querySelector("select").onchange = (event) => { page.time.trees = event.target.value; again(); };
   $("zone").onchange = () => { page.time.zone = $("zone").value.trim(); again(); };
   addEventListener("resize", resize);
-  // panels stand below the bar and above the time, however many lines these take
-  const heights = new ResizeObserver(() => {
-    root.style.setProperty("--bar", `${$("bar").offsetHeight}px`);
-    root.style.setProperty("--time", `${$("timebar").offsetHeight}px`);
-  });
+  const heights = new ResizeObserver(page.placePanels);
   heights.observe($("bar"));
   heights.observe($("timebar"));
   addEventListener("keydown", key);

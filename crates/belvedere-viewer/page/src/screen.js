@@ -1,9 +1,11 @@
-// From colours and depths of points to the picture: holes between points are closed, edges shaded, the sky painted.
+// From colours and depths of points to the picture: answers become layers, holes between points are closed, edges shaded, the sky painted.
 import { BufferAttribute, BufferGeometry, Color, GLSL3, Matrix4, Mesh, NearestFilter, OrthographicCamera, RawShaderMaterial, Vector2, Vector3, WebGLRenderTarget } from "three";
-import { FILL, SCREEN_VERTEX, SHADE } from "./shaders.js";
+import { FILL, LAYER, SCREEN_VERTEX, SHADE } from "./shaders.js";
 
 // Distances to the pixels around one from which holes are closed, wide ones first.
 const REACHES = [3, 2, 1];
+// Places of a picture whose answers make that of one, and how many pixels they lie around it at least.
+const [TAPS, LEAST] = [28, 3];
 const SKIES = {
   light: { zenith: "#9fc3e6", horizon: "#eaf1f7", below: "#dfe4e8" },
   dark: { zenith: "#0a1018", horizon: "#2b3644", below: "#151a20" },
@@ -19,6 +21,7 @@ export class Screen {
       const own = { glslVersion: GLSL3, depthTest: false, depthWrite: false, vertexShader: SCREEN_VERTEX, fragmentShader, uniforms: uniforms({ shown: null, far24: null, far: 1000, ...values }) };
       return new RawShaderMaterial(own);
     };
+    this.layer = pass(LAYER, { table: null, reach: 1, pixels: 1, least: 1, kinds: false, taps: 0 });
     this.fill = pass(FILL, { gap: 1, reach: 1 });
     this.shade = pass(SHADE, {
       texel: new Vector2(), slopes: new Vector2(), zenith: new Color(), horizon: new Color(), below: new Color(), sun: new Vector3(), turned: new Matrix4(), strength: 8, ratio: 1, glow: 0, rings: 2,
@@ -42,14 +45,18 @@ export class Screen {
     return to;
   }
 
-  // Shows what a target holds under the sky of a theme. What lies `gap` metres behind its surroundings is a hole; a
+  // Shows what a target holds under the sky of a theme, answers as a layer if there are any. What lies `gap` metres behind its surroundings is a hole; a
   // rough picture keeps its holes.
-  show(from, camera, { theme, gap, sun, glow, isRough }) {
+  show(from, camera, { theme, gap, sun, glow, isRough, layer }) {
     const { shade, fill } = this;
     const ratio = this.renderer.getPixelRatio();
     fill.uniforms.gap.value = gap;
     fill.uniforms.far.value = shade.uniforms.far.value = camera.far;
     let last = from;
+    if (layer) {
+      for (const [name, value] of Object.entries({ ...layer, far: camera.far, least: LEAST * ratio, taps: isRough ? 0 : TAPS })) this.layer.uniforms[name].value = value;
+      last = this.pass(this.layer, last, this.filled[1]);
+    }
     (isRough ? [] : REACHES).forEach((reach, i) => {
       fill.uniforms.reach.value = Math.max(Math.round(reach * ratio), 1);
       last = this.pass(fill, last, this.filled[i % 2]);

@@ -13,8 +13,8 @@ in uint rgb565;
 #else
 const uint rgb565 = 0u;
 #endif
-uniform mat4 modelViewMatrix, projectionMatrix; uniform vec3 low, step3, sun, cutLow, cutHigh; uniform vec2 heights; uniform int mode, cleared; uniform float size, pixels, most, light;
-uniform sampler2D table, classes; uniform float tint; flat out vec3 color; flat out vec2 slope; flat out vec2 range;
+uniform mat4 modelViewMatrix, projectionMatrix; uniform vec3 low, step3, sun, cutLow, cutHigh; uniform vec2 heights; uniform int mode, cleared, layered; uniform float size, pixels, most, light;
+uniform sampler2D table, classes; uniform float tint; flat out vec4 color; flat out vec2 slope; flat out vec2 range;
 void main() {
   vec3 local = low + vec3(place.xyz) * step3;
   vec4 view = modelViewMatrix * vec4(local, 1.0);
@@ -39,16 +39,18 @@ void main() {
   float index = 0.0;
   if (mode == 0) index = float(place.w & 255u); else if (mode == 1) index = float(place.w >> 8u);
   else if (mode == 2) index = clamp((local.z - heights.x) / max(heights.y - heights.x, 0.001), 0.0, 1.0) * 255.0; else index = float(value);
-  color = mode == 3 ? vec3(float(rgb565 >> 11u) / 31.0, float((rgb565 >> 5u) & 63u) / 63.0, float(rgb565 & 31u) / 31.0)
-    : texture(table, vec2((index + 0.5) / 256.0, 0.5)).rgb;
   // an answer on what is there: roofs, trees and ground stay known
-  color *= mix(vec3(1.0), 0.35 + 0.9 * texture(classes, vec2((float(place.w & 255u) + 0.5) / 256.0, 0.5)).rgb, tint);
-  color *= mix(1.0, shine, light);
+  vec3 own = mix(vec3(1.0), 0.35 + 0.9 * texture(classes, vec2((float(place.w & 255u) + 0.5) / 256.0, 0.5)).rgb, tint) * mix(1.0, shine, light);
+  vec3 said = mode == 3 ? vec3(float(rgb565 >> 11u) / 31.0, float((rgb565 >> 5u) & 63u) / 63.0, float(rgb565 & 31u) / 31.0)
+    : texture(table, vec2((index + 0.5) / 256.0, 0.5)).rgb;
+  // answers become layers, for which what is there and the answer stay apart: half of one, the place of the other in
+  // the table
+  color = layered == 1 && value < 255u ? vec4(0.5 * own, index / 255.0) : vec4(said * own, 1.0);
 }`;
-export const POINT_FRAGMENT = `precision highp float; flat in vec3 color; flat in vec2 slope; flat in vec2 range; uniform mat4 projectionMatrix; uniform float far;
+export const POINT_FRAGMENT = `precision highp float; flat in vec4 color; flat in vec2 slope; flat in vec2 range; uniform mat4 projectionMatrix; uniform float far;
 layout(location = 0) out vec4 shown; layout(location = 1) out vec4 far24;${PACK}
 void main() { vec2 o = gl_PointCoord * 2.0 - 1.0; o.y = -o.y; float rise = dot(slope, o); float q = dot(o, o) + rise * rise; if (q > 1.05) discard;
-  float d = range.x + range.y * rise; shown = vec4(color, 1.0); far24 = packed(d / far);
+  float d = range.x + range.y * rise; shown = color; far24 = packed(d / far);
   // discs that touch part their surface between them
   gl_FragDepth = clamp(0.5 - 0.5 * projectionMatrix[2][2] + 0.5 * projectionMatrix[3][2] / max(d + 0.3 * range.y * q, 1e-4), 0.0, 1.0); }`;
 
@@ -68,6 +70,28 @@ export const MESH_FRAGMENT = `precision highp float; in vec3 at; uniform float f
 void main() { vec3 n = normalize(cross(dFdx(at), dFdy(at))); shown = vec4(tint * (0.5 + 0.5 * abs(dot(n, normalize(vec3(0.3, 0.6, 0.75))))), 1.0); far24 = packed(-at.z / far); }`;
 
 export const SCREEN_VERTEX = "precision highp float; in vec3 position; out vec2 uv; void main() { uv = position.xy * 0.5 + 0.5; gl_Position = vec4(position.xy, 0.0, 1.0); }";
+
+// Makes layers of answers: of kinds, that of most of what lies within `reach` metres or `least` pixels, nearer places
+// counting more; of measures, the mean. Points alone are steps and spots as wide as they lie apart.
+export const LAYER = `precision highp float; precision highp int; uniform sampler2D shown, far24, table; uniform float far, reach, pixels, least; uniform bool kinds; uniform int taps;
+layout(location = 0) out vec4 color; layout(location = 1) out vec4 depth;
+float at(vec4 t) { return dot(t.rgb, vec3(65536.0, 256.0, 1.0)) * 255.0 / 16777215.0 * far; }
+vec3 said(float index) { return texture(table, vec2((index * 255.0 + 0.5) / 256.0, 0.5)).rgb; }
+void main() { ivec2 p = ivec2(gl_FragCoord.xy), most = textureSize(far24, 0) - 1; vec4 own = texelFetch(shown, p, 0); depth = texelFetch(far24, p, 0);
+  color = own; if (own.a > 0.998 || depth.a < 0.5) return;
+  float d = at(depth), span = max(reach, least * d / pixels), wide = min(span * pixels / max(d, 0.01), 60.0);
+  vec2 from = vec2(p) - 0.5 * vec2(most); float kind[8] = float[8](0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0); kind[min(int(own.a * 255.0 + 0.5), 7)] = 1.0; vec3 sum = said(own.a); float whole = 1.0;
+  for (int i = 0; i < taps; i++) {
+    float a = float(i) * 2.3999632, r = sqrt((float(i) + 0.5) / float(taps)) * wide; ivec2 q = clamp(p + ivec2(round(r * vec2(cos(a), sin(a)))), ivec2(0), most);
+    vec4 other = texelFetch(shown, q, 0), z = texelFetch(far24, q, 0); if (other.a > 0.998 || z.a < 0.5) continue;
+    float e = at(z); vec3 to = vec3(((vec2(q) - 0.5 * vec2(most)) * e - from * d) / pixels, e - d) / span; float w = exp(-2.0 * dot(to, to));
+    kind[min(int(other.a * 255.0 + 0.5), 7)] += w; sum += w * said(other.a); whole += w; }
+  vec3 answer = sum / whole;
+  if (kinds) { int first = 0, second = -1; for (int k = 1; k < 8; k++) if (kind[k] > kind[first]) first = k;
+    for (int k = 0; k < 8; k++) if (k != first && (second < 0 || kind[k] > kind[second])) second = k;
+    // a line of a pixel or two between both
+    answer = mix(said(float(second) / 255.0), said(float(first) / 255.0), 0.5 + 0.5 * smoothstep(0.0, 0.2, (kind[first] - kind[second]) / whole)); }
+  color = vec4(2.0 * own.rgb * answer, 1.0); }`;
 
 // Closes holes: where most pixels around one are nearer than it by `gap` metres or more, it takes their mean.
 export const FILL = `precision highp float; precision highp int; uniform sampler2D shown, far24; uniform float far, gap; uniform int reach;

@@ -65,11 +65,11 @@ export function whenDrawn(look) {
   if (isDrawing) afterFrame = look;
   else look();
 }
-// The picture with all points; where things keep moving, that after some seconds.
-export function complete() {
+// The picture with all points; where things keep moving, that after some time.
+export function complete(patience_ms = 5000) {
   const start = performance.now();
   return new Promise((done) => {
-    const look = () => ((isDrawing || isDue || cloud.left || cloud.isRough) && performance.now() - start < 5000 ? setTimeout(look, 20) : done());
+    const look = () => ((isDrawing || isDue || cloud.left || cloud.isRough) && performance.now() - start < patience_ms ? setTimeout(look, 20) : done());
     look();
   });
 }
