@@ -124,8 +124,8 @@ pub(crate) fn answer(
     let size = [ground.grid.width, ground.grid.height];
     let parts = TileObstacles::around((plan, run, tile), &lines, others, max_balls, control)?;
     let (found, balls) = match prepared {
-        PreparedQuestion::Viewshed(observers) => {
-            let mut sight = PartialSight::new(observers, &targets.positions);
+        PreparedQuestion::Viewshed { observers, is_reverse } => {
+            let mut sight = PartialSight::new(observers, *is_reverse, &targets.positions);
             parts.each_scene(&lines, control, |scene| sight.look(scene, control))?;
             let planned = MedialScene::new(&MedialBalls::default(), &rule(plan))?.with_triangles(others.added.clone());
             sight.look(&planned, control)?;
@@ -140,7 +140,7 @@ pub(crate) fn answer(
     };
     let near_edge_cells = match prepared {
         PreparedQuestion::Light(light) => Some(near_edge_count(plan, targets, light.directions(), control)?),
-        PreparedQuestion::Viewshed(_) => None,
+        PreparedQuestion::Viewshed { .. } => None,
     };
     if found.values.are_nothing() && found.unproven_cells == 0 {
         return Ok(TileRecord { points, covered_cells: covered, damaged: balls.damaged, ..TileRecord::default() });
@@ -306,23 +306,26 @@ fn unknown_towards(balls: &ObstacleSearch, targets: &Targets, directions: &[[f64
 
 /// What observers see of targets past one part of the obstacles after the other.
 struct PartialSight<'a> {
-    /// Those inside an obstacle have an eye that is not finite.
+    /// Those inside an obstacle have an eye that is not finite, unless they are looked at.
     observers: Vec<Observer>,
+    is_reverse: bool,
     targets: &'a [[f32; 3]],
     /// Past all parts so far; `None` before the first.
     seen: Option<Viewshed>,
 }
 
 impl<'a> PartialSight<'a> {
-    fn new(observers: &[Observer], targets: &'a [[f32; 3]]) -> Self {
-        Self { observers: observers.to_vec(), targets, seen: None }
+    fn new(observers: &[Observer], is_reverse: bool, targets: &'a [[f32; 3]]) -> Self {
+        Self { observers: observers.to_vec(), is_reverse, targets, seen: None }
     }
 
     /// Takes away what `scene` hides.
     fn look(&mut self, scene: &MedialScene, control: &Control<'_>) -> Result<()> {
-        let mut eyes: Vec<[f64; 3]> = self.observers.iter().map(|observer| observer.eye).collect();
-        skip_unfit_eyes(scene, None, &mut eyes, control)?;
-        self.observers.iter_mut().zip(eyes).for_each(|(observer, eye)| observer.eye = eye);
+        if !self.is_reverse {
+            let mut eyes: Vec<[f64; 3]> = self.observers.iter().map(|observer| observer.eye).collect();
+            skip_unfit_eyes(scene, None, &mut eyes, control)?;
+            self.observers.iter_mut().zip(eyes).for_each(|(observer, eye)| observer.eye = eye);
+        }
         let params = ViewshedParams::default().with_masks(Masks::Kept);
         let look = || viewshed(scene, &self.observers, self.targets, &params, control);
         let mut seen = control.stage("testing lines of sight", self.observers.len(), look)?;
@@ -359,7 +362,7 @@ impl<'a> PartialSight<'a> {
     /// What is seen past all parts; unproven where missing `balls` may block it, or where it `is_without_proof`, of
     /// each observer.
     fn answered(self, balls: &ObstacleSearch, is_without_proof: &[Vec<bool>], size: [usize; 2]) -> Result<CellAnswers> {
-        let Self { observers, targets, seen } = self;
+        let Self { observers, targets, seen, .. } = self;
         let (answers, masks) = seen.map(|seen| (seen.answers, seen.masks)).unwrap_or_default();
         let is_unknown = |target: [f32; 3], eye: [f64; 3]| {
             let target = target.map(f64::from);
@@ -484,7 +487,7 @@ mod tests {
         ];
         // the parts of the obstacles in any order
         let see = |observers: &[Observer], parts: [&MedialScene; 2]| {
-            let mut sight = PartialSight::new(observers, &positions);
+            let mut sight = PartialSight::new(observers, false, &positions);
             parts.into_iter().for_each(|scene| sight.look(scene, &Control::none()).unwrap());
             sight.answered(&balls, &[], [7, 1]).unwrap()
         };

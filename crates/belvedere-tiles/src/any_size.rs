@@ -118,6 +118,8 @@ pub struct SurveyCells {
     pub title: String,
     /// The suns of shadows; the first measures are theirs, one each.
     pub suns: Vec<NamedSun>,
+    /// The eyes of viewsheds, local metres.
+    pub eyes: Vec<[f64; 3]>,
     description: &'static str,
 }
 
@@ -138,7 +140,7 @@ impl SurveyQuestion {
             _ => Vec::new(),
         };
         let is_up = |sun: &NamedSun| sun.sun.to_sun[2] > 0.0;
-        let mut questions = TileQuestion::of(&question, &whereabouts, &mut context)?;
+        let mut questions = TileQuestion::of(&question, (&plan, &whereabouts), &mut context, control)?;
         if suns.iter().any(is_up) {
             // at night nothing is lit, which no tile needs to find out
             questions = TileQuestion::of_suns(suns.iter().filter(|&sun| is_up(sun)));
@@ -158,6 +160,11 @@ impl SurveyQuestion {
                 ),
                 expected: "enough for the answer: give larger cells, fewer suns or more memory, or plan a run in tiles, which writes each result on its own",
             });
+        }
+        if let (ask::Question::Viewshed(view), Some(TileQuestion::Viewshed { eyes, .. })) =
+            (&question, questions.first())
+        {
+            view.report_eyes_of_parts(eyes, &frame, &mut context);
         }
         let plan = plan.with_questions(questions, control)?;
         plan.remarks.iter().for_each(|remark| context.add(Some(remark.clone())));
@@ -186,15 +193,19 @@ impl SurveyQuestion {
             return Err(Error::NoPoints { what: "the question has no result".to_owned() });
         };
         let (grid, description) = (self.plan.cells_of(first)?, first.description());
+        let eyes = if let TileQuestion::Viewshed { eyes, .. } = first { eyes.clone() } else { Vec::new() };
         report.remarks().into_iter().for_each(|remark| self.context.add(Some(remark)));
         self.context.report.places.cells_under_cover_left_out = report.cells_under_cover;
+        if let Some(section) = &mut self.context.report.observers {
+            section.eyes.skipped = report.skipped_observers;
+        }
         let title = {
             let whereabouts = self.plan.whereabouts(&frame);
             summarise_parts(&self.question, (&measures, grid.cell), &whereabouts, &mut self.context)?
         };
         let Self { plan, suns, context, .. } = self;
         let Answers { headline, remarks, report, .. } = context.into_answers();
-        let found = SurveyCells { plan, grid, frame, title, suns, description };
+        let found = SurveyCells { plan, grid, frame, title, suns, eyes, description };
         Ok(Answers { found, measures, headline, remarks, report })
     }
 
@@ -207,7 +218,11 @@ impl SurveyQuestion {
             let (kind, description) = (pixels.kind(), question.description());
             let range = (kind == ResultKind::Answer).then_some([0.0, 1.0]);
             let of_band = |(name, band): (String, Raster<f32>)| {
-                let description = if name == UNPROVEN_BAND { "1: lit, but unproven" } else { description };
+                let description = match (name == UNPROVEN_BAND, self.suns.is_empty()) {
+                    (false, _) => description,
+                    (true, false) => "1: lit, but unproven",
+                    (true, true) => "from how many nothing blocks it, but no pulse proves it",
+                };
                 Measure::new(&name, band.values().to_vec())
                     .with_description(description)
                     .with_kind(kind)

@@ -155,7 +155,7 @@ mod tests {
         let by: [f64; 3] = std::array::from_fn(|i| [154_624.0, 462_848.0, 0.0][i] - origin[i]);
         let eyes =
             [[75.0, 20.0, 4.0], [30.0, 120.0, 30.0]].map(|eye: [f64; 3]| std::array::from_fn(|i| eye[i] + by[i]));
-        let view = TileQuestion::Viewshed { eyes: eyes.to_vec(), max_distance: None };
+        let view = TileQuestion::Viewshed { eyes: eyes.to_vec(), max_distance: None, is_reverse: false };
         plan.with_questions(vec![sun.clone(), view.clone()], &control).unwrap().write(&run_folder).unwrap();
         let plan = Plan::read(&run_folder).unwrap();
         let moved = |corner: [f32; 3]| std::array::from_fn(|i| (f64::from(corner[i]) + by[i]) as f32);

@@ -1,6 +1,7 @@
 //! Questions about a city.
 
 use crate::cell_sizes::Topic;
+use crate::plan::Plan;
 use crate::planned::SideFile;
 use belvedere::apps::ask::scene::Whereabouts;
 use belvedere::apps::ask::{self, Context, SkyParts, SunHoursQuestion};
@@ -15,7 +16,7 @@ use belvedere::apps::tree_light::{CrownLight, Season};
 use belvedere::apps::viewshed::{Observer, SightLimits};
 use belvedere::control::Control;
 use belvedere::io::{Source, read_weather};
-use belvedere::query::UnprovenAs;
+use belvedere::query::{EarthParams, UnprovenAs};
 use belvedere::results::{ResultKind, UNPROVEN_BAND, viewshed_words};
 use belvedere::{Error, Parameter, Result};
 use serde::{Deserialize, Serialize};
@@ -72,6 +73,9 @@ pub enum TileQuestion {
         eyes: Vec<[f64; 3]>,
         /// How far they look on the map, metres; `None` for any distance.
         max_distance: Option<f64>,
+        /// Whether they are what is looked at, from cells: such a target may lie inside an obstacle.
+        #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+        is_reverse: bool,
     },
 }
 
@@ -99,7 +103,7 @@ pub enum TileRadiation {
 /// A question with all that follows from its parameters.
 pub(crate) enum PreparedQuestion {
     Light(LightQuestion),
-    Viewshed(Vec<Observer>),
+    Viewshed { observers: Vec<Observer>, is_reverse: bool },
 }
 
 /// A question about light from given directions.
@@ -150,12 +154,18 @@ impl TileRadiation {
 }
 
 impl TileQuestion {
-    /// The questions about tiles that a question about a survey comes to, one for each result; figures and remarks go
-    /// into `context`.
+    /// The questions about tiles that a question about the survey of `plan` comes to, one for each result; figures and
+    /// remarks go into `context`.
     ///
     /// # Errors
-    /// [`Error::InvalidParameter`] for what cannot be, and for a question that tiles do not answer.
-    pub fn of(question: &ask::Question, whereabouts: &Whereabouts<'_>, context: &mut Context) -> Result<Vec<Self>> {
+    /// [`Error::InvalidParameter`] for what cannot be, and for a question that tiles do not answer; those of
+    /// [`Plan::set_on_ground`].
+    pub fn of(
+        question: &ask::Question,
+        (plan, whereabouts): (&Plan, &Whereabouts<'_>),
+        context: &mut Context,
+        control: &Control<'_>,
+    ) -> Result<Vec<Self>> {
         ask::Ask::check(question)?;
         if let Some(what) = Self::not_in_tiles(question) {
             return Err(Error::InvalidParameter {
@@ -197,6 +207,14 @@ impl TileQuestion {
                 };
                 Ok(vec![Self::Irradiance { site, radiation, params: energy.params }])
             }
+            ask::Question::Viewshed(view) => {
+                let mut eyes = Vec::new();
+                for (mut eye, height) in view.standing() {
+                    plan.set_on_ground(std::slice::from_mut(&mut eye), height, control)?;
+                    eyes.push(eye);
+                }
+                Ok(vec![Self::Viewshed { eyes, max_distance: view.limits.max_distance, is_reverse: view.reverse }])
+            }
             _ => Err(Error::InvalidParameter {
                 parameter: Parameter::Questions,
                 value: "another".to_owned(),
@@ -218,17 +236,30 @@ impl TileQuestion {
     /// What of a question is not found in tiles.
     #[must_use]
     pub fn not_in_tiles(question: &ask::Question) -> Option<&'static str> {
+        let counts = |unproven: Option<UnprovenAs>| unproven.is_some_and(|choice| choice != UnprovenAs::Reported);
         let parts: &[(&str, bool)] = match question {
             ask::Question::Shadow(shadow) => &[
                 ("probabilities", shadow.how_sure.is_wanted()),
                 ("soft edges", shadow.edges == Edges::Soft),
-                (
-                    "unproven light that counts as lit or as blocked",
-                    shadow.unproven.is_some_and(|u| u != UnprovenAs::Reported),
-                ),
+                ("unproven light that counts as lit or as blocked", counts(shadow.unproven)),
             ],
             ask::Question::SunHours(hours) => &[("intervals", hours.interval)],
             ask::Question::SkyView(view) => &[("intervals", view.interval)],
+            ask::Question::Viewshed(view) => {
+                let limits = &view.limits;
+                let is_turned = [limits.azimuth_range_deg, limits.elevation_range_deg].iter().any(Option::is_some);
+                let has_own = view.observers.iter().any(|one| one.limits != ask::ViewLimits::default());
+                &[
+                    ("ranges of azimuth or elevation, or a least distance", is_turned || limits.min_distance.is_some()),
+                    ("limits of single observers", has_own),
+                    ("another curvature or refraction", view.earth != EarthParams::default()),
+                    ("unproven views that count as visible or as blocked", counts(view.unproven)),
+                    ("probabilities", view.how_sure.is_wanted()),
+                    ("targets other than cells", view.targets != [ask::ViewshedTargets::Cells]),
+                    ("masks of observers", view.masks),
+                    ("heights that are seen", view.max_height.is_some()),
+                ]
+            }
             ask::Question::Irradiance(energy) => {
                 &[("roof planes", energy.roofs.is_some()), ("months", energy.params.grouping != Grouping::Whole)]
             }
@@ -343,11 +374,12 @@ impl TileQuestion {
             Self::Viewshed { eyes, .. } if eyes.is_empty() || !eyes.iter().flatten().all(|v| v.is_finite()) => {
                 invalid(Parameter::Observer, format!("{eyes:?}"), "one or more places with a height")
             }
-            Self::Viewshed { eyes, max_distance } => {
+            Self::Viewshed { eyes, max_distance, is_reverse } => {
                 let limits =
                     SightLimits { distance: [0.0, max_distance.unwrap_or(f64::INFINITY)], ..SightLimits::default() };
                 limits.validate()?;
-                Ok(PreparedQuestion::Viewshed(eyes.iter().map(|&eye| Observer { eye, limits }).collect()))
+                let observers = eyes.iter().map(|&eye| Observer { eye, limits }).collect();
+                Ok(PreparedQuestion::Viewshed { observers, is_reverse: *is_reverse })
             }
         }
     }

@@ -52,7 +52,7 @@ async function open(browser, url, device = DESK, now = NOW) {
   return page;
 }
 const ready = (page) => page.waitForFunction(() => window.belvedere?.isLoaded && window.belvedere.ready && window.belvedere.frames > 0 && !window.belvedere.cloud.left);
-// Panels have their places, and what was asked last is drawn with all points.
+// Panels have their places, and the picture has all points.
 const settled = (page) => page.evaluate(async () => {
   const frame = () => new Promise((go) => requestAnimationFrame(go));
   await frame();

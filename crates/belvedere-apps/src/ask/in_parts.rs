@@ -5,13 +5,14 @@ use super::sections::{MeasuresSection, PlacesReport};
 use super::sun::MAX_LISTED_SUNS;
 use super::{Context, Question, irradiance, shadow, sky_view, sun_hours};
 use crate::targets::Measure;
+use crate::viewshed::title_of_cells;
 use belvedere_data::{Error, Parameter, Result};
 
 /// Says in `context` what the measures of cells of a side, metres, answer to a question, as [`ask`](super::ask) says it
 /// of a scene; returns the title of a map.
 ///
 /// # Errors
-/// [`Error::InvalidParameter`] for a question that is not about light on cells, and for a site that is not known.
+/// [`Error::InvalidParameter`] for a question that has no answers of cells in parts, and for a site that is not known.
 pub fn summarise_parts(
     question: &Question,
     (measures, cell): (&[Measure], f64),
@@ -45,8 +46,13 @@ pub fn summarise_parts(
             irradiance::summarise(measures, &places, context);
             irradiance::title(whereabouts)
         }
+        Question::Viewshed(about) => {
+            about.summarise_parts(measures, cell, context);
+            return Ok(title_of_cells(about.observers.len() == 1, about.reverse).to_owned());
+        }
         _ => {
-            let (value, expected) = ("another".to_owned(), "about shadow, sun hours, sky view or irradiance");
+            let (value, expected) =
+                ("another".to_owned(), "about shadow, sun hours, sky view, irradiance or viewsheds");
             return Err(Error::InvalidParameter { parameter: Parameter::Questions, value, expected });
         }
     };

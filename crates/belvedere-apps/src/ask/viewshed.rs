@@ -11,21 +11,21 @@ use super::north::North;
 use super::observers::{Eyes, ObserversSection, Reach, check_height, note_enclosed, remark_on_footing, skip_unfit};
 use super::scene::KnownGround;
 use super::sections::LinesSection;
-use super::{Answers, Ask, Context, Places, Remark, Scene};
+use super::{Answers, Ask, Context, GridCells, Places, Remark, Scene};
 use crate::eyes::{EyesReport, fault_of_target};
 use crate::targets::{Measure, Targets, set_on_ground, set_on_terrain};
 use crate::viewshed::{
-    OBSERVER_HEIGHT, Observer, SightLimits, TARGET_HEIGHT, Viewshed as Seen, ViewshedParams, box_within_reach,
-    cell_for, far_targets, terrain_within_reach,
+    OBSERVER_HEIGHT, Observer, SightLimits, TARGET_HEIGHT, Viewshed as Seen, ViewshedParams, answers_of_bands,
+    box_within_reach, cell_for, far_targets, terrain_within_reach, tested_height,
 };
 use belvedere_core::ground::{Ground, GroundPoints, MapGrid};
-use belvedere_core::query::{EarthParams, MedialScene, UnprovenAs};
+use belvedere_core::query::{Answer, EarthParams, MedialScene, UnprovenAs};
 use belvedere_data::control::Control;
 use belvedere_data::raster::Raster;
 use belvedere_data::report::rounded;
-use belvedere_data::{ElevationGrid, Error, Parameter, Result};
+use belvedere_data::{ElevationGrid, Error, Frame, Parameter, Result};
 use serde::{Deserialize, Serialize};
-use sights::Sights;
+use sights::{Sights, Things};
 use std::sync::Arc;
 
 /// Most eyes below the ground that are named one by one.
@@ -140,6 +140,51 @@ impl ViewshedQuestion {
         let [observer, target] =
             [self.observer_height.unwrap_or(OBSERVER_HEIGHT), self.target_height.unwrap_or(TARGET_HEIGHT)];
         if self.reverse { [target, observer] } else { [observer, target] }
+    }
+
+    /// The cells that it looks at, on the ground.
+    #[must_use]
+    pub fn grid_cells(&self) -> GridCells {
+        let [_, height] = self.heights();
+        GridCells { cell: self.cell, height: Some(tested_height(height)), ground: self.ground, ..GridCells::default() }
+    }
+
+    /// Where the eyes of its observers are, and how high they stand where the ground is to give their heights, metres.
+    pub fn standing(&self) -> impl Iterator<Item = ([f64; 3], f64)> {
+        let [usual, _] = self.heights();
+        self.observers.iter().map(move |one| (one.standing.place, one.standing.height.unwrap_or(usual)))
+    }
+
+    /// Says in `context` where the eyes of a survey in parts are, local metres.
+    pub fn report_eyes_of_parts(&self, eyes: &[[f64; 3]], frame: &Frame, context: &mut Context) {
+        let report = EyesReport::none_skipped(eyes.len());
+        let mut section = ObserversSection { eyes: report.clone(), ..ObserversSection::default() };
+        if let ([eye], Some((place, height))) = (eyes, self.standing().next()) {
+            section.eye = Some(frame.file_from_local(*eye).map(|v| rounded(v, 3)));
+            section.above_ground_m = place[2].is_nan().then(|| rounded(height, 3));
+        }
+        match self.reverse {
+            true => context.report.target = Some(section),
+            false => context.report.observers = Some(section),
+        }
+    }
+
+    /// Says in `context` what is seen of cells of a side, metres, from measures of what nothing blocks and of what of
+    /// that is unproven.
+    pub(super) fn summarise_parts(&self, measures: &[Measure], cell: f64, context: &mut Context) {
+        let answers = answers_of_bands(measures);
+        let is_tested = measures.len() > 1;
+        let section = SeenSection::of(&answers, is_tested, &Things::cells(cell), context);
+        if !answers.iter().any(|answer| matches!(answer, Answer::Visible | Answer::Unproven)) {
+            let text = match self.reverse {
+                true => "no cell sees the target; give a greater height above its surface",
+                false => "nothing is seen; does the observer stand below a tree or between obstacles?",
+            };
+            context.add(Some(Remark::warning("nothing-seen", text.to_owned())));
+        }
+        context.report.cells = Some(section);
+        let report = context.report.observers.as_ref().map(|section| section.eyes.clone());
+        self.headline_of_eyes(&report.unwrap_or_default(), context);
     }
 
     fn check_observers(&self) -> Result<()> {

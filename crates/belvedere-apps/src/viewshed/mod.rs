@@ -10,6 +10,7 @@ pub use observers::{Observer, SightLimits, places_along};
 pub use probabilities::{SeenProbabilities, seen_probabilities};
 
 use crate::sky_view::SKY_TARGET_HEIGHT;
+use crate::targets::Measure;
 use belvedere_core::ground::Ground;
 use belvedere_core::query::target_tree::TargetTree;
 use belvedere_core::query::{Answer, EarthParams, MedialScene, UnprovenAs, Viewer};
@@ -94,6 +95,34 @@ pub fn tested_height(height: f64) -> f64 {
 pub const SEEN: &str = "1 nothing blocks it, 0 blocked, 255 nodata";
 /// What a raster of several observers says of itself.
 pub const SEEN_BY: &str = "number of observers from which nothing blocks the cell, 65535 nodata";
+
+/// Title of a map of what one or several observers see of cells, or of cells from which a target is seen.
+#[must_use]
+pub fn title_of_cells(is_of_one: bool, is_reverse: bool) -> &'static str {
+    match (is_reverse, is_of_one) {
+        (true, _) => "Cells from which the target is visible",
+        (false, true) => "Visible from the observer",
+        (false, false) => "Number of observers that see the cell",
+    }
+}
+
+/// The best answers of observers, from bands of how many see each cell past all that blocks, NaN for no target, and of
+/// how many of these no pulse proves.
+#[must_use]
+pub fn answers_of_bands(bands: &[Measure]) -> Vec<Answer> {
+    let Some((free, rest)) = bands.split_first() else { return Vec::new() };
+    let unproven = rest.first();
+    let answer = |(cell, &free): (usize, &f32)| {
+        let unproven = unproven.and_then(|band| band.values.get(cell)).copied().unwrap_or(0.0);
+        match free {
+            free if free.is_nan() => Answer::OutsideView,
+            0.0 => Answer::Blocked,
+            free if free > unproven => Answer::Visible,
+            _ => Answer::Unproven,
+        }
+    };
+    free.values.iter().enumerate().map(answer).collect()
+}
 
 /// Default side of a cell, metres: what points of usual airborne surveys (0.3 to 0.5 m apart) can tell.
 pub const CELL: f64 = 0.5;

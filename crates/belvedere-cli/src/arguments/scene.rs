@@ -136,10 +136,11 @@ pub(crate) struct BallShape {
 pub(crate) struct MemoryArgument {
     /// Memory that may be used, such as 3G or 800M [default: half of what is free]
     ///
-    /// What needs more is done in parts, where the survey is LAS or LAZ files. Shadow, sun hours, sky view and
-    /// irradiance on cells are answered in tiles: a raster (.tif) or a map (.png). Tiles are kept (`belvedere cache`):
-    /// a command that was stopped goes on, and the next question finds the balls. Questions about places read only the
-    /// points that they reach. `belvedere city` works in tiles in steps, for many computers.
+    /// What needs more is done in parts, where the survey is LAS or LAZ files. Shadow, sun hours, sky view, irradiance
+    /// and viewsheds on cells are answered in tiles: a raster (.tif) or a map (.png). Tiles are kept
+    /// (`belvedere cache`): a command that was stopped goes on, and the next question finds the balls. Questions about
+    /// places within a distance read only the points that they reach. `belvedere city` works in tiles in steps, for
+    /// many computers.
     #[arg(long, value_name = "SIZE", help_heading = "Scene", hide_short_help = true)]
     pub(crate) memory: Option<MemoryAmount>,
 }

@@ -52,7 +52,7 @@ fn plan(arguments: &CityPlan, global: &Global) -> Result<Summary> {
     };
     let plan = Plan::make(&params, &run.control())?;
     let changes = PlanArguments { add: arguments.add.clone(), clear: arguments.clear.clone() };
-    let plan = planned(plan, &changes, &arguments.far_terrain, &arguments.trees)?;
+    let plan = planned(plan, &changes, Some(&arguments.far_terrain), Some(&arguments.trees))?;
     let questions = questions::questions(arguments, &plan, &mut run)?;
     let plan = plan.with_questions(questions, &run.control()).map_err(|error| match error {
         Error::InvalidParameter { parameter: Parameter::Questions, .. } => Usage(error.to_string()).into(),
@@ -86,8 +86,8 @@ fn plan(arguments: &CityPlan, global: &Global) -> Result<Summary> {
 pub(super) fn planned(
     plan: Plan,
     changes: &PlanArguments,
-    far: &FarTerrainArguments,
-    trees: &ThroughTreesArguments,
+    far: Option<&FarTerrainArguments>,
+    trees: Option<&ThroughTreesArguments>,
 ) -> Result<Plan> {
     let meshes = changes.add.iter().map(|path| SideFile::new(path)).collect::<belvedere::Result<Vec<_>>>()?;
     let plan = plan.with_meshes(meshes)?;
@@ -98,8 +98,11 @@ pub(super) fn planned(
     }
     let plan = plan.with_cleared(cleared)?;
     let side = |path: &Option<PathBuf>| path.as_deref().map(SideFile::new).transpose();
-    let (terrain, horizon) = (side(&far.terrain)?, side(&far.horizon)?);
-    let plan = plan.with_far_terrain(terrain, horizon)?;
+    let plan = match far {
+        Some(far) => plan.with_far_terrain(side(&far.terrain)?, side(&far.horizon)?)?,
+        None => plan,
+    };
+    let Some(trees) = trees else { return Ok(plan) };
     let measured = || Transmissivity::constant(plan.share_of_pulses_through_crowns()).ok();
     match trees.choice()?.crowns(measured)? {
         Some(crowns) => Ok(plan.with_light_through_trees(crowns)?),

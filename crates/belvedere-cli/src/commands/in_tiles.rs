@@ -4,12 +4,13 @@
 use super::targets::{HighestPoints, remark_on_first};
 use super::{city, extension};
 use crate::arguments::{
-    GroundChoice, MemoryArgument, SceneInput, SkyOutputs, SkyPlaces, ThroughTreesArguments, UpChoice, Usage,
+    FarTerrainArguments, GroundChoice, MemoryArgument, SceneInput, SkyOutputs, SkyPlaces, ThroughTreesArguments,
+    UpChoice, Usage,
 };
 use crate::memory;
 use crate::run::CommandContext;
 use anyhow::Result;
-use belvedere::apps::ask::{Answers, Question};
+use belvedere::apps::ask::{Answers, GridCells, Question};
 use belvedere::figures::{Picture, write_png};
 use belvedere::io::Insistence;
 use belvedere::results::{georeference, measure_map};
@@ -18,21 +19,59 @@ use std::fs;
 use std::path::PathBuf;
 use std::time::Instant;
 
-/// What was typed of a question about sun and sky.
+/// What was typed of a question about cells.
 pub(crate) struct TypedCells<'a> {
     pub(crate) scene: &'a SceneInput,
     pub(crate) memory: &'a MemoryArgument,
-    pub(crate) places: &'a SkyPlaces,
-    pub(crate) trees: &'a ThroughTreesArguments,
-    pub(crate) outputs: &'a SkyOutputs,
+    pub(crate) cells: GridCells,
+    /// What stands beyond the survey.
+    pub(crate) far: Option<&'a FarTerrainArguments>,
+    pub(crate) trees: Option<&'a ThroughTreesArguments>,
+    pub(crate) output: &'a [PathBuf],
     /// Flags of the command that tiles do not know, and whether each was typed.
-    pub(crate) others: &'a [(&'static str, bool)],
+    pub(crate) others: Vec<(&'static str, bool)>,
+}
+
+/// A survey that is answered in tiles.
+pub(crate) struct PlannedSurvey {
+    pub(crate) plan: Plan,
+    folder: PathBuf,
+    /// Whether nobody keeps the tiles.
+    is_temporary: bool,
+    /// Memory that may be used, bytes.
+    limit: u64,
 }
 
 /// Draws answers over shaded relief.
 pub(crate) type DrawnMap<'a> = &'a dyn Fn(&Answers<SurveyCells>, &HighestPoints) -> belvedere::Result<Picture>;
 
-impl TypedCells<'_> {
+impl<'a> TypedCells<'a> {
+    /// Those of a question about sun and sky.
+    pub(crate) fn of_sky(
+        (scene, memory): (&'a SceneInput, &'a MemoryArgument),
+        places: &'a SkyPlaces,
+        trees: &'a ThroughTreesArguments,
+        outputs: &'a SkyOutputs,
+        others: &[(&'static str, bool)],
+    ) -> Self {
+        let of_places = [
+            ("--ground cloud=FILE", matches!(places.ground, GroundChoice::Cloud(_))),
+            ("--self", places.places.own),
+            ("--targets", places.places.targets.is_some()),
+            ("--edge-mask", places.edge_mask.is_some()),
+            ("--measures", outputs.measures.is_some()),
+        ];
+        Self {
+            scene,
+            memory,
+            cells: places.cells(),
+            far: Some(&places.far),
+            trees: Some(trees),
+            output: &outputs.output,
+            others: of_places.into_iter().chain(others.iter().copied()).collect(),
+        }
+    }
+
     /// Answers in tiles what one model has no memory for, and writes it, with `map` or maps of the first measure;
     /// `None` where one model is to be made.
     pub(crate) fn answered(
@@ -41,10 +80,16 @@ impl TypedCells<'_> {
         map: Option<DrawnMap<'_>>,
         run: &mut CommandContext,
     ) -> Result<Option<Answers<SurveyCells>>> {
+        let Some(survey) = self.survey(&question, run)? else { return Ok(None) };
+        self.answer(survey, question, map, run).map(Some)
+    }
+
+    /// The plan of a survey that one model has no memory for; `None` where one model is to be made.
+    pub(crate) fn survey(&self, question: &Question, run: &mut CommandContext) -> Result<Option<PlannedSurvey>> {
         let input = &self.scene.input;
         let Some(limit) = memory::limit(self.memory) else { return Ok(None) };
         let Some(large) = TooLarge::of(&input.clouds, limit) else { return Ok(None) };
-        if let Some(what) = self.unknown(&question) {
+        if let Some(what) = self.unknown(question) {
             return match self.memory.memory {
                 // one model is tried, as if there were no tiles
                 None => Ok(None),
@@ -57,7 +102,7 @@ impl TypedCells<'_> {
         }
         let options = input.read_options();
         let kept = run.cache.as_ref().and_then(|cache| cache.survey_folder(&input.clouds, &options));
-        let beside = self.outputs.output.first().map(|output| output.with_extension("tiles"));
+        let beside = self.output.first().map(|output| output.with_extension("tiles"));
         let is_temporary = kept.is_none();
         let Some(folder) = kept.or(beside) else { return Ok(None) };
         if is_temporary && folder.exists() && !Plan::path(&folder).is_file() {
@@ -73,9 +118,21 @@ impl TypedCells<'_> {
             ..PlanParams::default()
         };
         let plan = Plan::kept_in(&folder, &params, &run.control())?;
-        let plan = plan.with_grid_cells(&self.places.cells())?.fitting(limit)?;
+        let plan = plan.with_grid_cells(&self.cells)?.fitting(limit)?;
         run.summary.remarks([large.remark_on_tiles(plan.tile_size)]);
-        let plan = city::planned(plan, &self.scene.plan, &self.places.far, self.trees)?;
+        let plan = city::planned(plan, &self.scene.plan, self.far, self.trees)?;
+        Ok(Some(PlannedSurvey { plan, folder, is_temporary, limit }))
+    }
+
+    /// Answers a question tile by tile, and writes it.
+    pub(crate) fn answer(
+        &self,
+        survey: PlannedSurvey,
+        question: Question,
+        map: Option<DrawnMap<'_>>,
+        run: &mut CommandContext,
+    ) -> Result<Answers<SurveyCells>> {
+        let PlannedSurvey { plan, folder, is_temporary, limit } = survey;
         let survey = SurveyQuestion::new(plan, &folder, question, limit, &run.control())?;
         let start = Instant::now();
         let report = survey.run(&|| start.elapsed().as_secs_f64(), &run.control())?;
@@ -89,35 +146,29 @@ impl TypedCells<'_> {
             // what cannot be removed does no harm
             _ => drop(fs::remove_dir_all(&folder)),
         }
-        Ok(Some(answers))
+        Ok(answers)
     }
 
     /// What was typed that tiles do not know.
     fn unknown(&self, question: &Question) -> Option<String> {
         let SceneInput { input, balls, .. } = self.scene;
-        let places = &self.places.places;
         let flags = [
             ("--up", !matches!(input.up, UpChoice::Z)),
             ("--skip-distant", input.skip_distant),
             ("--trees", balls.trees.is_some()),
             ("--orient", balls.orient.is_some()),
             ("--scene-config", balls.config.scene_config.is_some()),
-            ("--ground cloud=FILE", matches!(self.places.ground, GroundChoice::Cloud(_))),
-            ("--self", places.own),
-            ("--targets", places.targets.is_some()),
-            ("--edge-mask", self.places.edge_mask.is_some()),
-            ("--measures", self.outputs.measures.is_some()),
         ];
-        let flag = flags.iter().chain(self.others).find(|(_, is_given)| *is_given).map(|(flag, _)| (*flag).to_owned());
+        let flag = flags.iter().chain(&self.others).find(|(_, is_given)| *is_given).map(|(flag, _)| (*flag).to_owned());
         let is_unknown = |output: &&PathBuf| !["tif", "tiff", "png"].contains(&extension(output).as_str());
-        let output = || Some(format!("-o {}", self.outputs.output.iter().find(is_unknown)?.display()));
+        let output = || Some(format!("-o {}", self.output.iter().find(is_unknown)?.display()));
         let part = || TileQuestion::not_in_tiles(question).map(|what| format!("what was typed ({what})"));
         flag.or_else(output).or_else(part)
     }
 
     fn write(&self, answers: &Answers<SurveyCells>, map: Option<DrawnMap<'_>>, run: &mut CommandContext) -> Result<()> {
         let mut written = Vec::new();
-        for output in &self.outputs.output {
+        for output in self.output {
             if extension(output) == "png" {
                 let cells = &answers.found;
                 let heights = run.stage("reading relief", 0, |control| cells.relief(control))?;

@@ -38,14 +38,13 @@ pub(crate) fn run(arguments: &IrradianceArguments, global: &Global) -> Result<Su
         roofs: (!arguments.planes.is_empty()).then_some(roofs),
     };
     question.check()?;
-    let cells = TypedCells {
-        scene: &arguments.scene,
-        memory: &arguments.memory,
-        places: &arguments.places,
-        trees: &arguments.trees,
-        outputs: &outputs,
-        others: &[("--shell", arguments.shell.shell.is_some())],
-    };
+    let cells = TypedCells::of_sky(
+        (&arguments.scene, &arguments.memory),
+        &arguments.places,
+        &arguments.trees,
+        &outputs,
+        &[("--shell", arguments.shell.shell.is_some())],
+    );
     if wants_places && cells.answered(ask::Question::Irradiance(question.clone()), None, &mut run)?.is_some() {
         return Ok(run.finish());
     }

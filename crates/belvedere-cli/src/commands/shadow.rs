@@ -25,18 +25,17 @@ pub(crate) fn run(arguments: &ShadowArguments, global: &Global) -> Result<Summar
     let question = question(arguments)?;
     check(arguments, &question)?;
     let mut run = CommandContext::new(global);
-    let cells = TypedCells {
-        scene: &arguments.scene,
-        memory: &arguments.memory,
-        places: &arguments.places,
-        trees: &arguments.trees,
-        outputs: &arguments.outputs,
-        others: &[
+    let cells = TypedCells::of_sky(
+        (&arguments.scene, &arguments.memory),
+        &arguments.places,
+        &arguments.trees,
+        &arguments.outputs,
+        &[
             ("--shell", arguments.giving_way.shell.is_some()),
             ("--film", arguments.film.is_some()),
             ("--frames", arguments.frames.is_some()),
         ],
-    };
+    );
     let map = |answers: &Answers<SurveyCells>, relief: &HighestPoints| {
         Maps::new(&answers.found.suns, &answers.measures).draw(0, relief)
     };

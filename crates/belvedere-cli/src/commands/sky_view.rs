@@ -16,14 +16,13 @@ pub(crate) fn run(arguments: &SkyViewArguments, global: &Global) -> Result<Summa
         ask::SkyViewQuestion { sky, trees: arguments.trees.choice()?, interval: arguments.interval.interval };
     question.check()?;
     let mut run = CommandContext::new(global);
-    let cells = TypedCells {
-        scene: &arguments.scene,
-        memory: &arguments.memory,
-        places: &arguments.places,
-        trees: &arguments.trees,
-        outputs: &arguments.outputs,
-        others: &[("--shell", arguments.shell.shell.is_some())],
-    };
+    let cells = TypedCells::of_sky(
+        (&arguments.scene, &arguments.memory),
+        &arguments.places,
+        &arguments.trees,
+        &arguments.outputs,
+        &[("--shell", arguments.shell.shell.is_some())],
+    );
     if cells.answered(ask::Question::SkyView(question.clone()), None, &mut run)?.is_some() {
         return Ok(run.finish());
     }

@@ -39,18 +39,17 @@ pub(crate) fn run(arguments: &SunHoursArguments, global: &Global) -> Result<Summ
         return Err(Usage(what.to_owned()).into());
     }
     let mut run = CommandContext::new(global);
-    let cells = TypedCells {
-        scene: &arguments.scene,
-        memory: &arguments.memory,
-        places: &arguments.places,
-        trees: &arguments.trees,
-        outputs: &arguments.outputs,
-        others: &[
+    let cells = TypedCells::of_sky(
+        (&arguments.scene, &arguments.memory),
+        &arguments.places,
+        &arguments.trees,
+        &arguments.outputs,
+        &[
             ("--shell", arguments.shell.shell.is_some()),
             ("--save-matrix", arguments.keep.is_some()),
             ("--load-matrix", arguments.from_matrix.is_some()),
         ],
-    };
+    );
     if cells.answered(ask::Question::SunHours(question.clone()), None, &mut run)?.is_some() {
         return Ok(run.finish());
     }

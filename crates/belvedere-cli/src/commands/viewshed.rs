@@ -5,15 +5,20 @@ mod who;
 
 use super::far_terrain::set_terrain;
 use super::heights::write_heights;
+use super::in_tiles::TypedCells;
+use super::targets::HighestPoints;
 use super::{check_output, warn_of_geojson};
-use crate::arguments::{Global, MapPosition, ViewshedArguments};
+use crate::arguments::{Global, GroundChoice, MapPosition, ViewshedArguments};
 use crate::pipeline::{self, KeepPoints};
 use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::Result;
-use belvedere::apps::ask::{self, Ask, Places, Scene, ViewshedResults, ViewshedTargets};
+use belvedere::apps::ask::{self, Answers, Ask, Places, Scene, ViewshedResults, ViewshedTargets};
+use belvedere::apps::viewshed::answers_of_bands;
+use belvedere::figures::Picture;
 use belvedere::query::UnprovenAs;
-use results::{CellSurface, SeenCells, on_points, write_masks};
+use belvedere_tiles::SurveyCells;
+use results::{CellSurface, SeenCells, SeenMap, on_points, write_masks};
 use std::path::{Path, PathBuf};
 
 /// Outputs that hold points rather than cells.
@@ -27,10 +32,11 @@ pub(crate) fn run(arguments: &ViewshedArguments, global: &Global) -> Result<Summ
     let mut question = question(arguments)?;
     question.check()?;
     let mut run = CommandContext::new(global);
+    if in_tiles(arguments, &question, &mut run)? {
+        return Ok(run.finish());
+    }
     let places: Vec<MapPosition> = arguments.who.observer.iter().chain(&arguments.who.target).copied().collect();
-    // others are known only with the scene
-    let is_bounded = arguments.who.observers.is_none() && arguments.terrain.is_none();
-    let distance = arguments.looking.max_distance.filter(|_| is_bounded);
+    let distance = reach(arguments);
     let input = pipeline::scene_in_reach((&arguments.scene, &arguments.memory), &places, distance, &mut run)?;
     let mut scene = pipeline::scene(&input, KeepPoints::Keep, &mut run)?;
     if let Some(path) = &arguments.terrain {
@@ -78,6 +84,61 @@ fn question(arguments: &ViewshedArguments) -> Result<ask::ViewshedQuestion> {
         masks: arguments.masks.is_some(),
         max_height: arguments.heights.as_ref().map(|_| arguments.ceiling),
     })
+}
+
+/// How far typed observers look at most; `None` where that is any distance, or known only with the scene.
+fn reach(arguments: &ViewshedArguments) -> Option<f64> {
+    let is_bounded = arguments.who.observers.is_none() && arguments.terrain.is_none();
+    arguments.looking.max_distance.filter(|_| is_bounded)
+}
+
+/// Answers in tiles what one model has no memory for, unless a part of the survey is enough; `false` where it was not.
+fn in_tiles(arguments: &ViewshedArguments, question: &ask::ViewshedQuestion, run: &mut CommandContext) -> Result<bool> {
+    if reach(arguments).is_some() {
+        return Ok(false);
+    }
+    let cells = TypedCells {
+        scene: &arguments.scene,
+        memory: &arguments.memory,
+        cells: question.grid_cells(),
+        far: None,
+        trees: None,
+        output: &arguments.output,
+        others: vec![
+            ("--terrain", arguments.terrain.is_some()),
+            ("--ground cloud=FILE", matches!(arguments.ground, GroundChoice::Cloud(_))),
+            ("--shell", arguments.giving_way.shell.is_some()),
+        ],
+    };
+    let Some(survey) = cells.survey(&ask::Question::Viewshed(question.clone()), run)? else { return Ok(false) };
+    let observers = who::observers(arguments, &survey.plan.frame()?, run)?;
+    let question = ask::Question::Viewshed(ask::ViewshedQuestion { observers, ..question.clone() });
+    let is_reverse = arguments.who.target.is_some();
+    let map = |answers: &Answers<SurveyCells>, relief: &HighestPoints| map_of_survey(answers, relief, is_reverse);
+    cells.answer(survey, question, Some(&map), run)?;
+    Ok(true)
+}
+
+/// A map of what is seen of the cells of a survey.
+fn map_of_survey(
+    answers: &Answers<SurveyCells>,
+    relief: &HighestPoints,
+    is_reverse: bool,
+) -> belvedere::Result<Picture> {
+    let SurveyCells { grid, eyes, .. } = &answers.found;
+    let unproven = answers.measures.get(1).map_or(&[][..], |band| &band.values);
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most as many as observers")]
+    let count = |(cell, &free): (usize, &f32)| (free - unproven.get(cell).unwrap_or(&0.0)) as u32;
+    let counts: Vec<u32> = answers.measures[0].values.iter().enumerate().map(count).collect();
+    let map = SeenMap {
+        answers: &answers_of_bands(&answers.measures),
+        counts: &counts,
+        uncertain: None,
+        eyes,
+        is_of_one: eyes.len() == 1,
+        is_reverse,
+    };
+    map.draw(&relief.heights, grid, &relief.place)
 }
 
 fn is_of_points(path: &Path) -> bool {

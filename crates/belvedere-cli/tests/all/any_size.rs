@@ -109,8 +109,51 @@ fn a_question_about_a_place_reads_what_is_around_it() {
     let other = place.summary(&format!("{line} --memory 150M"));
     assert!(remarks(&other).contains(&"part-of-survey".to_owned()), "{other}");
     assert_eq!(one["answer"], other["answer"]);
-    // what reaches all of the survey is not done without the memory for it
-    let far = format!("viewshed town/cloud.laz --observer {x},{y},30 --no-cache -o far.tif --memory 150M");
-    place.refusal(2, &far, &["150 MB", "reaches all of it", "a distance"]);
-    assert!(!place.path("far.tif").exists());
+    // places of a file may be anywhere: that is not done without the memory for it
+    place.write("eyes.csv", format!("x,y,z\n{x},{y},30\n"));
+    let far = "isovist town/cloud.laz --observers eyes.csv --no-cache --memory 150M -o far.csv";
+    place.refusal(2, far, &["150 MB", "reaches all of it", "a distance"]);
+    assert!(!place.path("far.csv").exists());
+}
+
+#[test]
+fn a_viewshed_in_tiles_is_that_of_one_model() {
+    let place = Workplace::new();
+    town(&place);
+    let info = place.summary("info town/cloud.laz");
+    let [x, y] = [0, 1].map(|axis| info["min_corner"][axis].as_f64().unwrap() + 45.0);
+    place.write("observers.csv", format!("x,y,z\n{x},{y},30\n{},{y},28\n", x + 20.0));
+    let look = "viewshed town/cloud.laz --cell 1 --cache kept";
+    for (who, section) in [
+        (format!("--observer {x},{y},30"), "observers"),
+        (format!("--target {x},{y} --target-height 20 --observer-height 1.7"), "target"),
+        ("--observers observers.csv --max-distance 40".to_owned(), "observers"),
+    ] {
+        let whole = place.summary(&format!("{look} {who} -o whole.tif"));
+        let tiled = place.summary(&format!("{look} {who} -o tiled.tif -o tiled.png --memory 118M"));
+        assert!(remarks(&tiled).contains(&"in-tiles".to_owned()), "{tiled}");
+        assert_eq!(tiled[section]["count"], whole[section]["count"], "{tiled}");
+        let counts = |summary: &Value, key: &str| summary["cells"][key].as_f64().unwrap();
+        let cells = counts(&whole, "targets");
+        assert!(counts(&whole, "visible") > 0.02 * cells, "{who}: {whole}");
+        for key in ["targets", "visible", "unproven"] {
+            let away = (counts(&tiled, key) - counts(&whole, key)).abs();
+            assert!(away * 50.0 < cells, "{who}, {key}: {tiled} {whole}");
+        }
+        if !who.contains("observers.csv") {
+            for (one, other) in bands(&place, "whole.tif").iter().zip(&bands(&place, "tiled.tif")) {
+                assert_eq!(one.len(), other.len());
+                let differ = one.iter().zip(other).filter(|(a, b)| a != b).count();
+                assert!(differ * 50 < one.len(), "{who}: {differ} of {}", one.len());
+            }
+        }
+        assert!(place.path("tiled.png").is_file());
+    }
+    for (flag, word) in
+        [("--masks masks.npy", "masks"), ("-o areas.geojson", "areas.geojson"), ("--shell 0.1", "--shell")]
+    {
+        let line = format!("{look} --observer {x},{y},30 -o out.tif {flag} --memory 118M");
+        place.refusal(2, &line, &[word, "in tiles"]);
+        assert!(!place.path("out.tif").exists());
+    }
 }

@@ -58,7 +58,7 @@ fn all_questions(eyes: [[f64; 3]; 2]) -> Vec<TileQuestion> {
         TileQuestion::SkyView { sky: SkyParts::Even(49) },
         TileQuestion::SunHours { site: site(), days: SunHoursQuestion { days, ..SunHoursQuestion::default() } },
         TileQuestion::Irradiance { site: site(), radiation, params: coarse },
-        TileQuestion::Viewshed { eyes: eyes.to_vec(), max_distance: Some(120.0) },
+        TileQuestion::Viewshed { eyes: eyes.to_vec(), max_distance: Some(120.0), is_reverse: false },
     ]);
     questions
 }

@@ -1,4 +1,5 @@
-// From colours and depths of points to the picture: answers become layers, holes between points are closed, edges shaded, the sky painted.
+// From colours and depths of points to the picture: answers become layers, holes between points are closed, edges
+// shaded, the sky painted.
 import { BufferAttribute, BufferGeometry, Color, GLSL3, Matrix4, Mesh, NearestFilter, OrthographicCamera, RawShaderMaterial, Vector2, Vector3, WebGLRenderTarget } from "three";
 import { FILL, LAYER, SCREEN_VERTEX, SHADE } from "./shaders.js";
 

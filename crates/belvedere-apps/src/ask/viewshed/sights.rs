@@ -37,8 +37,9 @@ pub struct SeenSection {
     #[serde(skip_serializing_if = "Option::is_none")]
     unproven_percent: Option<f64>,
     blocked: usize,
-    /// Of those blocked, what lies inside an obstacle itself.
-    inside_obstacle: usize,
+    /// Of those blocked, what lies inside an obstacle itself; `None` where that was not looked at.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    inside_obstacle: Option<usize>,
     outside_view: usize,
     outside_cloud: usize,
     visible_percent: f64,
@@ -47,11 +48,49 @@ pub struct SeenSection {
 }
 
 /// What is counted.
-struct Things {
-    where_to: &'static str,
-    name: &'static str,
+pub(super) struct Things {
+    pub(super) where_to: &'static str,
+    pub(super) name: &'static str,
     /// Of each, square metres, where it has one.
-    area: Option<f64>,
+    pub(super) area: Option<f64>,
+}
+
+impl Things {
+    /// Cells of a side, metres.
+    pub(super) fn cells(side: f64) -> Self {
+        Self { where_to: "", name: "cells", area: Some(side * side) }
+    }
+}
+
+impl SeenSection {
+    /// How many targets are seen, of which pulses prove the views or do not; says so in `context`.
+    pub(super) fn of(answers: &[Answer], is_tested: bool, things: &Things, context: &mut Context) -> Self {
+        let counts = AnswerCounts::of(answers);
+        let targets = answers.len() - counts.outside_view - counts.outside_cloud;
+        let unproven = is_tested.then_some(counts.unproven);
+        let section = Self {
+            targets,
+            visible: counts.visible,
+            unproven,
+            unproven_percent: unproven.map(|count| percent(count, targets)),
+            blocked: counts.blocked,
+            inside_obstacle: None,
+            outside_view: counts.outside_view,
+            outside_cloud: counts.outside_cloud,
+            visible_percent: percent(counts.visible, targets),
+            visible_m2: things.area.map(|area| rounded(counts.visible as f64 * area, 1)),
+        };
+        let (where_to, name) = (things.where_to, things.name);
+        let mut line = format!("{where_to}visible {} % of {targets} {name}", section.visible_percent);
+        if let Some(area) = section.visible_m2 {
+            line.push_str(&format!(" ({area} m²)"));
+        }
+        if let Some(unproven) = section.unproven_percent {
+            line.push_str(&format!(", unproven {unproven} %"));
+        }
+        context.headline(line);
+        section
+    }
 }
 
 /// Observers before what blocks.
@@ -82,7 +121,7 @@ impl Sights<'_> {
         let seen = control.stage("testing cells", observers.len(), || {
             viewshed(blockers, observers, &targets.positions, &params, control)
         })?;
-        let things = Things { where_to: "", name: "cells", area: Some(cell * cell) };
+        let things = Things::cells(cell);
         let counts = self.counted(&seen.answers, &targets.positions, &things, context, control)?;
         context.report.cells = Some(counts);
         self.remark_on_blind(&seen, &targets.positions, context);
@@ -219,39 +258,14 @@ impl Sights<'_> {
         let anywhere = Viewer::Direction([0.0, 0.0, 1.0]);
         self.blockers.mark_inside_obstacles(anywhere, targets, &mut marked, control)?;
         let inside_obstacle = AnswerCounts::of(&marked).inside_obstacle;
-        let section = SeenSection { inside_obstacle, ..self.section(answers, things, context) };
+        let section = SeenSection { inside_obstacle: Some(inside_obstacle), ..self.section(answers, things, context) };
         let so = "lie inside an obstacle, and count as blocked";
         let remark = Remark::of_share("targets-inside-obstacle", inside_obstacle, section.targets, things.name, so);
         context.add(remark.map(Remark::into_note));
         Ok(section)
     }
 
-    /// How many targets are seen.
     fn section(&self, answers: &[Answer], things: &Things, context: &mut Context) -> SeenSection {
-        let counts = AnswerCounts::of(answers);
-        let targets = answers.len() - counts.outside_view - counts.outside_cloud;
-        let unproven = (self.params.unproven == UnprovenAs::Reported).then_some(counts.unproven);
-        let section = SeenSection {
-            targets,
-            visible: counts.visible,
-            unproven,
-            unproven_percent: unproven.map(|count| percent(count, targets)),
-            blocked: counts.blocked,
-            inside_obstacle: 0,
-            outside_view: counts.outside_view,
-            outside_cloud: counts.outside_cloud,
-            visible_percent: percent(counts.visible, targets),
-            visible_m2: things.area.map(|area| rounded(counts.visible as f64 * area, 1)),
-        };
-        let (where_to, name) = (things.where_to, things.name);
-        let mut line = format!("{where_to}visible {} % of {targets} {name}", section.visible_percent);
-        if let Some(area) = section.visible_m2 {
-            line.push_str(&format!(" ({area} m²)"));
-        }
-        if let Some(unproven) = section.unproven_percent {
-            line.push_str(&format!(", unproven {unproven} %"));
-        }
-        context.headline(line);
-        section
+        SeenSection::of(answers, self.params.unproven == UnprovenAs::Reported, things, context)
     }
 }

@@ -8,7 +8,6 @@ use belvedere::Error;
 use belvedere::apps::ask::{self, Context, SkyParts, SunPlace, Suns, ThroughTrees};
 use belvedere::apps::shadow::Edges;
 use belvedere::apps::sun::zone_of_instant;
-use belvedere::apps::viewshed::OBSERVER_HEIGHT;
 use belvedere::crs::Crs;
 use belvedere::io::{read_geojson, read_horizon, read_mesh, read_tif, read_weather};
 use belvedere_tiles::{CellSizes, Plan, TileQuestion, Topic};
@@ -134,7 +133,7 @@ pub(super) fn questions(arguments: &CityPlan, plan: &Plan, run: &mut CommandCont
     whereabouts.remark(&mut context);
     let mut questions = Vec::new();
     for question in of_sun_and_sky(arguments)? {
-        questions.extend(TileQuestion::of(&question, &whereabouts, &mut context)?);
+        questions.extend(TileQuestion::of(&question, (plan, &whereabouts), &mut context, &run.control())?);
     }
     if arguments.irradiance {
         let from = (arguments.weather.as_deref(), arguments.clear_sky);
@@ -145,19 +144,27 @@ pub(super) fn questions(arguments: &CityPlan, plan: &Plan, run: &mut CommandCont
             trees: ThroughTrees::Opaque,
             roofs: None,
         });
-        questions.extend(TileQuestion::of(&question, &whereabouts, &mut context)?);
+        questions.extend(TileQuestion::of(&question, (plan, &whereabouts), &mut context, &run.control())?);
     }
     if arguments.sky_view {
         let sky = SkyParts::Even(arguments.direction_count);
         let question = ask::Question::SkyView(ask::SkyViewQuestion { sky, ..ask::SkyViewQuestion::default() });
-        questions.extend(TileQuestion::of(&question, &whereabouts, &mut context)?);
+        questions.extend(TileQuestion::of(&question, (plan, &whereabouts), &mut context, &run.control())?);
     }
     if !arguments.observers.is_empty() {
-        let place = |&MapPosition([x, y], z): &MapPosition| frame.local_from_file([x, y, z.unwrap_or(f64::NAN)]);
-        let mut eyes: Vec<[f64; 3]> = arguments.observers.iter().map(place).collect();
-        let height = arguments.observer_height.unwrap_or(OBSERVER_HEIGHT);
-        plan.set_on_ground(&mut eyes, height, &run.control())?;
-        questions.push(TileQuestion::Viewshed { eyes, max_distance: arguments.max_distance });
+        let observer = |&MapPosition([x, y], z): &MapPosition| ask::StandingObserver {
+            standing: ask::Standing {
+                place: frame.local_from_file([x, y, z.unwrap_or(f64::NAN)]),
+                height: arguments.observer_height,
+            },
+            limits: ask::ViewLimits::default(),
+        };
+        let question = ask::Question::Viewshed(ask::ViewshedQuestion {
+            observers: arguments.observers.iter().map(observer).collect(),
+            limits: ask::ViewLimits { max_distance: arguments.max_distance, ..ask::ViewLimits::default() },
+            ..ask::ViewshedQuestion::default()
+        });
+        questions.extend(TileQuestion::of(&question, (plan, &whereabouts), &mut context, &run.control())?);
     }
     run.answered(&context.into_answers());
     Ok(questions)

@@ -6,9 +6,9 @@ use crate::commands::fading::{UNPROVEN_COLOR, fade, faded};
 use anyhow::Result;
 use belvedere::apps::ask::UNCERTAIN;
 use belvedere::apps::targets::Measure;
-use belvedere::apps::viewshed::Viewshed;
-use belvedere::figures::{MapLegend, MapMark, MapPicture, map_picture, ramp, write_png};
-use belvedere::ground::{Ground, highest_points};
+use belvedere::apps::viewshed::{Viewshed, title_of_cells};
+use belvedere::figures::{MapLegend, MapMark, MapPicture, Picture, map_picture, ramp, write_png};
+use belvedere::ground::{Ground, MapGrid, highest_points};
 use belvedere::io::{
     ExtraColumn, ExtraValues, Georeference, PolygonArea, WriteReport, outlines, write_cloud, write_geojson_areas,
     write_npy_u32_bands, write_tif_u32,
@@ -78,10 +78,6 @@ impl SeenCells<'_> {
         }
     }
 
-    fn is_of_one(&self) -> bool {
-        self.seen.seen_counts.len() == 1
-    }
-
     fn write_areas(&self, output: &Path, place: &Georeference) -> Result<()> {
         let [width, height] = self.on.size();
         let unit = self.frame.crs.metres_per_unit;
@@ -106,51 +102,110 @@ impl SeenCells<'_> {
     }
 
     fn write_map(&self, output: &Path) -> Result<()> {
-        let Self { seen, is_reverse, .. } = *self;
-        // two at least: the legend of a range of two or more has whole numbers
-        let max = f64::from(seen.counts.iter().copied().max().unwrap_or(0).max(2));
-        let one = self.is_of_one();
+        let Self { seen, eyes, is_reverse, .. } = *self;
+        let is_of_one = seen.seen_counts.len() == 1;
+        let uncertain = self.sure.iter().find(|measure| measure.name == UNCERTAIN).filter(|_| is_of_one);
+        let map = SeenMap {
+            answers: &seen.answers,
+            counts: &seen.counts,
+            uncertain: uncertain.map(|measure| &measure.values[..]),
+            eyes,
+            is_of_one,
+            is_reverse,
+        };
+        let picture = match self.on {
+            CellSurface::Ground(ground, cloud) => {
+                let place = georeference(&ground.grid, self.frame);
+                let relief = highest_points(&cloud.positions, ground);
+                map.draw(&relief, &ground.grid, &place)?
+            }
+            CellSurface::Terrain(terrain) => map.draw_terrain(terrain, self.frame)?,
+        };
+        Ok(write_png(output, &picture)?)
+    }
+}
+
+/// What a map of a viewshed shows.
+pub(super) struct SeenMap<'a> {
+    /// The best answer for each cell.
+    pub(super) answers: &'a [Answer],
+    /// How many observers see each.
+    pub(super) counts: &'a [u32],
+    /// Which answers of the one observer are uncertain, if that is known.
+    pub(super) uncertain: Option<&'a [f32]>,
+    /// Local metres.
+    pub(super) eyes: &'a [[f64; 3]],
+    pub(super) is_of_one: bool,
+    /// Whether it is the eye that is seen from the cells.
+    pub(super) is_reverse: bool,
+}
+
+impl SeenMap<'_> {
+    /// Over the relief of the cells of `grid`.
+    pub(super) fn draw(
+        &self,
+        relief: &Raster<f32>,
+        grid: &MapGrid,
+        place: &Georeference,
+    ) -> belvedere::Result<Picture> {
+        let title = title_of_cells(self.is_of_one, self.is_reverse);
+        self.on_sheet(
+            &Sheet { relief, colors: self.colors(None), cell: grid.cell, corner: grid.corner, place },
+            title,
+            None,
+        )
+    }
+
+    /// Over terrain beyond the cloud.
+    fn draw_terrain(&self, terrain: &ElevationGrid, frame: &Frame) -> belvedere::Result<Picture> {
+        let title = match (self.is_reverse, self.is_of_one) {
+            (true, _) => "Terrain from which the target is visible",
+            (false, true) => "Terrain visible from the observer",
+            (false, false) => "Number of observers that see the terrain",
+        };
+        let nodes = TerrainPixels::of(terrain, &self.colors(Some(CLOUD_COLOR)), frame)?;
+        let TerrainPixels { relief, colors, cell, corner, place } = &nodes;
+        let sheet = Sheet { relief, colors: colors.clone(), cell: *cell, corner: *corner, place };
+        self.on_sheet(&sheet, title, Some((CLOUD_COLOR, "point cloud")))
+    }
+
+    /// Two at least: the legend of a range of two or more has whole numbers.
+    fn greatest(&self) -> f64 {
+        f64::from(self.counts.iter().copied().max().unwrap_or(0).max(2))
+    }
+
+    /// A colour for each cell; where the cloud is, `of_cloud`.
+    fn colors(&self, of_cloud: Option<[u8; 3]>) -> Vec<Option<[u8; 3]>> {
+        let (one, max) = (self.is_of_one, self.greatest());
         let color = |(answer, &count): (&Answer, &u32)| match answer {
             Answer::Visible if one => Some(SEEN_COLOR),
             Answer::Blocked if one => Some(HIDDEN_COLOR),
             Answer::Visible | Answer::Blocked => Some(ramp(f64::from(count) / max)),
             Answer::Unproven => Some(UNPROVEN_COLOR),
-            Answer::OutsideCloud if matches!(self.on, CellSurface::Terrain(_)) => Some(CLOUD_COLOR),
+            Answer::OutsideCloud => of_cloud,
             _ => None,
         };
-        let mut colors: Vec<Option<[u8; 3]>> = seen.answers.iter().zip(&seen.counts).map(color).collect();
-        let uncertain = self.sure.iter().find(|measure| measure.name == UNCERTAIN).filter(|_| one);
-        if let Some(uncertain) = uncertain {
-            fade(&mut colors, &uncertain.values);
+        let mut colors: Vec<Option<[u8; 3]>> = self.answers.iter().zip(self.counts).map(color).collect();
+        if let Some(uncertain) = self.uncertain {
+            fade(&mut colors, uncertain);
         }
-        let unproven = seen.answers.contains(&Answer::Unproven).then_some((UNPROVEN_COLOR, "unproven"));
+        colors
+    }
+
+    fn on_sheet(
+        &self,
+        sheet: &Sheet<'_>,
+        title: &str,
+        cloud: Option<([u8; 3], &'static str)>,
+    ) -> belvedere::Result<Picture> {
+        let unproven = self.answers.contains(&Answer::Unproven).then_some((UNPROVEN_COLOR, "unproven"));
         let mut others = unproven.as_slice().to_vec();
         let mut classes = [&[(SEEN_COLOR, "visible")], &others[..], &[(HIDDEN_COLOR, "blocked")]].concat();
-        if uncertain.is_some() {
+        if self.uncertain.is_some() {
             classes.extend([(faded(SEEN_COLOR), "visible, uncertain"), (faded(HIDDEN_COLOR), "blocked, uncertain")]);
         }
-        let (title, sheet) = match self.on {
-            CellSurface::Ground(ground, cloud) => {
-                let title = match (is_reverse, one) {
-                    (true, _) => "Cells from which the target is visible",
-                    (false, true) => "Visible from the observer",
-                    (false, false) => "Number of observers that see the cell",
-                };
-                let place = georeference(&ground.grid, self.frame);
-                let relief = highest_points(&cloud.positions, ground);
-                (title, Sheet { relief, colors, cell: ground.grid.cell, corner: ground.grid.corner, place })
-            }
-            CellSurface::Terrain(terrain) => {
-                let title = match (is_reverse, one) {
-                    (true, _) => "Terrain from which the target is visible",
-                    (false, true) => "Terrain visible from the observer",
-                    (false, false) => "Number of observers that see the terrain",
-                };
-                others.push((CLOUD_COLOR, "point cloud"));
-                classes.push((CLOUD_COLOR, "point cloud"));
-                (title, Sheet::of_terrain(terrain, &colors, self.frame)?)
-            }
-        };
+        others.extend(cloud);
+        classes.extend(cloud);
         let mark = |eye: &[f64; 3]| {
             let place = [(eye[0] - sheet.corner[0]) / sheet.cell, (sheet.corner[1] - eye[1]) / sheet.cell];
             let size = [sheet.relief.width() as f64, sheet.relief.height() as f64];
@@ -158,27 +213,41 @@ impl SeenCells<'_> {
             is_inside.then(|| MapMark { place, ..MapMark::default() })
         };
         let marks: Vec<MapMark> = self.eyes.iter().filter_map(mark).collect();
-        let legend = if one { MapLegend::Colors(&classes) } else { MapLegend::Ramp("observers", [0.0, max], &others) };
-        let mark_name = if is_reverse { "target" } else { "observer" };
-        let (relief, place, colors, marks) = (&sheet.relief, Some(&sheet.place), &sheet.colors[..], &marks[..]);
-        let map = MapPicture { relief, cell: sheet.cell, place, colors, marks, mark_name, title, legend };
-        Ok(write_png(output, &map_picture(&map)?)?)
+        let max = self.greatest();
+        let legend = match self.is_of_one {
+            true => MapLegend::Colors(&classes),
+            false => MapLegend::Ramp("observers", [0.0, max], &others),
+        };
+        let mark_name = if self.is_reverse { "target" } else { "observer" };
+        let Sheet { relief, colors, cell, place, .. } = sheet;
+        let map =
+            MapPicture { relief, cell: *cell, place: Some(place), colors, marks: &marks, mark_name, title, legend };
+        map_picture(&map)
     }
 }
 
 /// Square pixels of a map.
-struct Sheet {
-    relief: Raster<f32>,
+struct Sheet<'a> {
+    relief: &'a Raster<f32>,
     colors: Vec<Option<[u8; 3]>>,
     /// Side of a pixel, metres, and the upper left corner, local metres.
+    cell: f64,
+    corner: [f64; 2],
+    place: &'a Georeference,
+}
+
+/// Terrain in square pixels.
+struct TerrainPixels {
+    relief: Raster<f32>,
+    colors: Vec<Option<[u8; 3]>>,
     cell: f64,
     corner: [f64; 2],
     place: Georeference,
 }
 
-impl Sheet {
-    /// Terrain with a colour for each node that has a height, of which a large map shows some.
-    fn of_terrain(terrain: &ElevationGrid, colors: &[Option<[u8; 3]>], frame: &Frame) -> Result<Self> {
+impl TerrainPixels {
+    /// A colour for each node that has a height, of which a large map shows some.
+    fn of(terrain: &ElevationGrid, colors: &[Option<[u8; 3]>], frame: &Frame) -> belvedere::Result<Self> {
         let ([west, north], sides) = (terrain.north_west(), terrain.cell());
         let size = [terrain.heights().width(), terrain.heights().height()];
         let extent = [0, 1].map(|i| size[i] as f64 * sides[i]);
