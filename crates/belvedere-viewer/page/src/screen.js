@@ -46,8 +46,8 @@ export class Screen {
     return to;
   }
 
-  // Shows what a target holds under the sky of a theme, answers as a layer if there are any. What lies `gap` metres behind its surroundings is a hole; a
-  // rough picture keeps its holes.
+  // Shows what a target holds under the sky of a theme, answers as a layer if there are any. What lies `gap` metres
+  // behind its surroundings is a hole; a rough picture keeps its holes.
   show(from, camera, { theme, gap, sun, glow, isRough, layer }) {
     const { shade, fill } = this;
     const ratio = this.renderer.getPixelRatio();
