@@ -68,3 +68,23 @@ def test_flags_and_errors_are_those_of_the_program(folder, tile):
         belvedere.city.run(folder / "nowhere")
     with pytest.raises(belvedere.BelvedereError, match="--result"):
         belvedere.city.merge(folder / "flags", folder / "flags.tif")
+
+
+def test_one_question_of_a_survey_of_any_size(folder):
+    cloud = folder / "any-size.laz"
+    belvedere.simulate("town", extent=90, density=4, seed=5).save(cloud)
+    scene = belvedere.Scene(belvedere.read(cloud))
+    output = folder / "any-size.tif"
+    found = belvedere.city.answer(
+        "shadow", cloud, [output, folder / "any-size.png"], sun=[(150, 30)], cell=1, memory="118M"
+    )
+    assert "in-tiles" in [remark["key"] for remark in found["remarks"]]
+    assert found["measures"]["lit"]["mean"] == pytest.approx(scene.shadow(sun=(150, 30), cell=1).mean(), abs=0.02)
+    assert output.is_file() and (folder / "any-size.png").is_file()
+    x, y, _ = scene.bounds[0] + 45
+    found = belvedere.city.answer("viewshed", cloud, output, observer=[(x, y, 30)], cell=1, memory="118M")
+    assert found["cells"]["targets"] > 1000 and 5 < found["cells"]["visible_percent"] < 100
+    with pytest.raises(belvedere.BelvedereError, match="use 'shadow'"):
+        belvedere.city.answer("balls", cloud, output)
+    with pytest.raises(belvedere.BelvedereError, match="soft edges"):
+        belvedere.city.answer("shadow", cloud, output, sun=[(150, 30)], soft=True, memory="118M")

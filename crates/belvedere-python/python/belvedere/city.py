@@ -1,7 +1,8 @@
-"""Surveys larger than memory, tile by tile: `belvedere city` on one computer, or on a Dask cluster.
+"""Surveys larger than memory, tile by tile.
 
-A plan and all results lie in one folder, which all computers of a cluster must reach. What is done is kept there, so
-that a run that was interrupted, or that lost a worker, continues where it stopped.
+`answer` asks one question of a survey of any size. `plan`, `run` and `merge` are `belvedere city` on one computer, or
+on a Dask cluster: a plan and all results lie in one folder, which all computers of a cluster must reach. What is done
+is kept there, so that a run that was interrupted, or that lost a worker, continues where it stopped.
 
 Examples
 --------
@@ -23,12 +24,50 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
-from ._errors import BelvedereError
+from ._errors import BelvedereError, wrong
 
-__all__ = ["merge", "plan", "run", "status"]
+__all__ = ["answer", "merge", "plan", "run", "status"]
 
+#: Questions about cells that are answered in tiles where one model does not fit into memory.
+QUESTIONS = ("shadow", "sun_hours", "sky_view", "irradiance", "viewshed")
 #: Shares of the tiles for each thread of a cluster: enough that all have work until the end.
 SHARES_PER_THREAD = 4
+
+
+def answer(
+    question: str,
+    clouds: str | Path | Iterable[str | Path],
+    output: str | Path | Iterable[str | Path],
+    **flags: object,
+) -> dict[str, Any]:
+    """Answers a question about the cells of a survey of any size. Returns the figures and remarks of the answer.
+
+    Where one model of the survey does not fit into memory, tiles are answered one after the other. They are kept with
+    scenes: a call that was interrupted goes on, and the next question finds the balls.
+
+    Parameters
+    ----------
+    question : {'shadow', 'sun_hours', 'sky_view', 'irradiance', 'viewshed'}
+        What is asked.
+    clouds
+        Files, folders and catalogues (.vpc) of the survey.
+    output
+        Raster (.tif), map (.png), or both.
+    **flags
+        The flags of the command with underscores, as for `plan`: ``sun=[(150, 20)]``, ``date="2026-03-21"``,
+        ``observer=[(155000, 463000)]``, ``cell=1``, ``memory="2G"`` [default: half of what is free].
+
+    Examples
+    --------
+    >>> found = belvedere.city.answer("shadow", tile, folder / "lit.tif", sun=[(150, 20)], cell=2)
+    >>> 0 < found["measures"]["lit"]["mean"] < 1
+    True
+    """
+    if question not in QUESTIONS:
+        raise wrong("question", repr(question), f"use {', '.join(map(repr, QUESTIONS))}")
+    command = question.replace("_", "-")
+    outputs = [word for path in _paths(output) for word in ("-o", path)]
+    return _program(command, *_paths(clouds), *_words(flags), *outputs)
 
 
 def plan(clouds: str | Path | Iterable[str | Path], folder: str | Path, **flags: object) -> dict[str, Any]:
@@ -51,9 +90,7 @@ def plan(clouds: str | Path | Iterable[str | Path], folder: str | Path, **flags:
     >>> belvedere.city.plan(tile, folder / "plan", sky_view=True, directions=49, tile_size=64)["results"]
     ['sky_view_factor']
     """
-    files = [clouds] if isinstance(clouds, (str, Path)) else list(clouds)
-    words = [word for name, value in flags.items() for word in _typed(name, value)]
-    return _program("plan", *files, *words, "-o", folder)
+    return _program("city", "plan", *_paths(clouds), *_words(flags), "-o", folder)
 
 
 def run(folder: str | Path, client: Any = None, *, threads: int | None = None, retries: int = 3) -> dict[str, Any]:
@@ -94,7 +131,7 @@ def run(folder: str | Path, client: Any = None, *, threads: int | None = None, r
             )
             client.gather(jobs)
     # what is left, and the list of all tiles
-    _program("run", folder, threads=threads)
+    _program("city", "run", folder, threads=threads)
     return status(folder)
 
 
@@ -107,7 +144,7 @@ def status(folder: str | Path) -> dict[str, Any]:
     >>> belvedere.city.status(folder / "new")["is_complete"]
     False
     """
-    return _program("status", folder)
+    return _program("city", "status", folder)
 
 
 def merge(
@@ -132,7 +169,15 @@ def merge(
         an error].
     """
     words = [*(["--result", result] if result else []), *(["--unfinished"] if unfinished else [])]
-    return _program("merge", folder, "-o", output, *words)
+    return _program("city", "merge", folder, "-o", output, *words)
+
+
+def _paths(paths: str | Path | Iterable[str | Path]) -> list[str | Path]:
+    return [paths] if isinstance(paths, (str, Path)) else list(paths)
+
+
+def _words(flags: Mapping[str, object]) -> list[str]:
+    return [word for name, value in flags.items() for word in _typed(name, value)]
 
 
 def _typed(name: str, value: object) -> list[str]:
@@ -152,20 +197,20 @@ def _typed(name: str, value: object) -> list[str]:
 
 def _share(number: int, *, folder: str, of: int, more: list[str], threads: int) -> Mapping[str, Any]:
     """A share of the tiles, on a worker. What is done already is not done again."""
-    return _program("run", folder, "--shard", f"{number}/{of}", *more, threads=threads)
+    return _program("city", "run", folder, "--shard", f"{number}/{of}", *more, threads=threads)
 
 
-def _program(step: str, *words: object, threads: int | None = None) -> dict[str, Any]:
-    """The summary of ``belvedere city STEP``, by the program of this package."""
+def _program(*words: object, threads: int | None = None) -> dict[str, Any]:
+    """The summary of a command, by the program of this package."""
     name = "belvedere.exe" if os.name == "nt" else "belvedere"
     beside = Path(sysconfig.get_path("scripts"), name)
     found = str(beside) if beside.exists() else shutil.which(name)
     if found is None:
         raise BelvedereError("the program belvedere is not installed beside this package; install the package again")
     limit = [] if threads is None else ["--threads", str(threads)]
-    command = [found, "--json", "--progress", "none", *limit, "city", step, *(str(word) for word in words)]
+    command = [found, "--json", "--progress", "none", *limit, *(str(word) for word in words)]
     ended = subprocess.run(command, capture_output=True, text=True, encoding="utf-8", check=False)
     if ended.returncode != 0:
-        raise BelvedereError(ended.stderr.strip().removeprefix("error: ") or f"belvedere city {step} was stopped")
+        raise BelvedereError(ended.stderr.strip().removeprefix("error: ") or f"belvedere {words[0]} was stopped")
     summary: dict[str, Any] = json.loads(ended.stdout)
     return summary
