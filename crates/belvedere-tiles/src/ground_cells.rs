@@ -1,18 +1,23 @@
-//! Cells on the ground. It is found in squares that are the same for all tiles, so that tiles make no difference.
+//! Cells on the ground. It is found in squares that are the same for all tiles, so that tiles make no difference, and
+//! kept with the balls of a survey that is kept.
 
 use crate::answer::EDGE_CELLS;
 use crate::cleared::{ClearedSurface, classed};
 use crate::grid::{MapArea, TileId, square_area, square_at};
+use crate::inputs::hash;
 use crate::plan::Plan;
 use crate::window;
 use belvedere::PointCloud;
 use belvedere::Result;
 use belvedere::apps::targets::{CellLevel, TargetLayout, Targets};
+use belvedere::apps::viewshed::cell_targets;
 use belvedere::control::Control;
 use belvedere::ground::{Ground, GroundParams, MapGrid};
+use belvedere::io::{atomic, read_kept_rasters, write_kept_rasters};
 use belvedere::query::BlockingTriangles;
 use belvedere::raster::Raster;
 use std::collections::VecDeque;
+use std::path::PathBuf;
 use std::sync::Arc;
 
 /// Side of a square, metres.
@@ -58,10 +63,19 @@ impl GroundSquares {
         let kept = match self.0.iter().position(is_it).and_then(|at| self.0.remove(at)) {
             Some(kept) => kept,
             None => {
-                let cloud = control.stage("reading", 0, || window::read(plan, &square.widened(AROUND), control))?;
-                let find = || of_square(plan, (square, cell), &cloud, added, control);
-                let found = control.stage("computing ground", 0, find)?.map(Arc::new);
-                KeptSquare { square: *square, cell, found, points: cloud.len() }
+                let file = SquareFile::of(plan, (square, cell));
+                let (found, points) = match file.as_ref().and_then(|file| file.read(plan)) {
+                    Some(kept) => kept,
+                    None => {
+                        let cloud =
+                            control.stage("reading", 0, || window::read(plan, &square.widened(AROUND), control))?;
+                        let find = || of_square(plan, (square, cell), &cloud, added, control);
+                        let found = control.stage("computing ground", 0, find)?;
+                        file.iter().zip(&found).for_each(|(file, found)| file.write(found, cloud.len()));
+                        (found, cloud.len())
+                    }
+                };
+                KeptSquare { square: *square, cell, found: found.map(Arc::new), points }
             }
         };
         let found = (kept.found.clone(), kept.points);
@@ -70,6 +84,52 @@ impl GroundSquares {
             self.0.pop_front();
         }
         Ok(found)
+    }
+}
+
+/// Where the ground of a square of a survey that is kept lies, so that the next question finds it.
+struct SquareFile {
+    path: PathBuf,
+    grid: MapGrid,
+}
+
+impl SquareFile {
+    /// `None` for a survey that nobody keeps.
+    fn of(plan: &Plan, (square, cell): (&MapArea, f64)) -> Option<Self> {
+        let folder = plan.shared_balls.as_ref()?.join("ground");
+        let what = (square.low, cell, &plan.targets, plan.ground, &plan.meshes);
+        let name = hash(serde_json::to_string(&what).ok()?.as_bytes());
+        Some(Self { path: folder.join(format!("{name}.npz")), grid: grid_of(plan, (square, cell)).ok()? })
+    }
+
+    /// The cells, and how many points showed them; `None` for a file that is not there or damaged.
+    fn read(&self, plan: &Plan) -> Option<(Option<Targets>, usize)> {
+        let (rasters, points) = read_kept_rasters(&self.path).ok()?;
+        let [heights, levels]: [Raster<f32>; 2] = rasters.try_into().ok()?;
+        let size = (self.grid.width, self.grid.height);
+        let is_sound = [&heights, &levels].iter().all(|raster| (raster.width(), raster.height()) == size);
+        let points = points.parse().ok().filter(|_| is_sound)?;
+        let ground = Ground { grid: self.grid, heights, gaps: Raster::filled(size.0, size.1, f32::NAN) };
+        let mut positions = cell_targets(&ground, plan.targets.height);
+        for (position, level) in positions.iter_mut().zip(levels.values()) {
+            if level.is_nan() {
+                *position = [f32::NAN; 3];
+            }
+        }
+        let layout = TargetLayout::Cells(Box::new(ground));
+        Some((Some(Targets::at(plan.frame().ok()?, positions, None, layout)), points))
+    }
+
+    /// What cannot be kept is found again.
+    fn write(&self, found: &Targets, points: usize) {
+        let TargetLayout::Cells(ground) = &found.layout else { return };
+        let levels = found.positions.iter().map(|position| position[2]).collect();
+        let levels = Raster::from_values(self.grid.width, self.grid.height, levels);
+        if let (Ok(levels), Some(folder)) = (levels, self.path.parent())
+            && atomic::make_folder(folder).is_ok()
+        {
+            drop(write_kept_rasters(&self.path, &[&ground.heights, &levels], &points.to_string()));
+        }
     }
 }
 
@@ -134,6 +194,13 @@ pub(crate) fn ground_cells(
     Ok((Targets::at(plan.frame()?, positions, None, layout), [covered, points]))
 }
 
+/// The grid of a square and of its edge.
+fn grid_of(plan: &Plan, (square, cell): (&MapArea, f64)) -> Result<MapGrid> {
+    let edge = square.widened(EDGE_CELLS as f64 * cell);
+    let [x, y, _] = plan.frame.origin;
+    MapGrid::covering(edge.low, edge.high, cell, [x, y])
+}
+
 /// The cells of a square and of its edge; `None` where no ground is known.
 fn of_square(
     plan: &Plan,
@@ -158,9 +225,7 @@ fn of_square(
         left = rest;
         &left
     };
-    let edge = square.widened(EDGE_CELLS as f64 * cell);
-    let [x, y, _] = plan.frame.origin;
-    let grid = MapGrid::covering(edge.low, edge.high, cell, [x, y])?;
+    let grid = grid_of(plan, (square, cell))?;
     let params = GroundParams { points: plan.ground, ..GroundParams::default() };
     let ground = match Ground::of_cloud(cloud, grid, &params, control) {
         Ok((ground, _)) => ground,

@@ -52,7 +52,7 @@ pub(crate) fn nearness(places: &PointCloud) -> f64 {
 pub(crate) fn of_tile(pulses: &FreeSegmentColumns, core: &MapArea) -> FreeSegmentColumns {
     let is_own = |(_, start): &(u32, &[f32; 3])| core.holds([start[0].into(), start[1].into()]);
     let rows: Vec<u32> = (0..).zip(&pulses.starts).filter(is_own).map(|(row, _)| row).collect();
-    in_order(&pulses.select(&rows))
+    in_order(pulses.select(&rows))
 }
 
 /// Whether a piece of a line passes over an area.
@@ -194,7 +194,7 @@ impl TilePulses {
             all.top = own.top;
             all.append(own);
         }
-        Ok(in_order(&all))
+        Ok(in_order(all))
     }
 }
 
@@ -225,7 +225,7 @@ impl PulsesOfBlocks {
 }
 
 /// Pulses by their numbers.
-fn in_order(pulses: &FreeSegmentColumns) -> FreeSegmentColumns {
+fn in_order(pulses: FreeSegmentColumns) -> FreeSegmentColumns {
     let key = |row: u32| {
         let row = row as usize;
         let start = pulses.starts.get(row).map(|start| start.map(f32::to_bits));
@@ -234,6 +234,11 @@ fn in_order(pulses: &FreeSegmentColumns) -> FreeSegmentColumns {
     };
     #[expect(clippy::cast_possible_truncation, reason = "points are numbered with 32 bits")]
     let mut rows: Vec<u32> = (0..pulses.starts.len() as u32).collect();
-    rows.par_sort_unstable_by(|&a, &b| key(a).cmp(&key(b)));
+    // those of one tile are
+    if rows.is_sorted_by(|&a, &b| key(a) <= key(b)) {
+        return pulses;
+    }
+    // of several tiles there are as many runs
+    rows.par_sort_by(|&a, &b| key(a).cmp(&key(b)));
     pulses.select(&rows)
 }

@@ -103,9 +103,14 @@ fn a_kept_survey_is_looked_at_once_and_its_balls_serve_all_questions() {
     assert!(bits(&again) == bits(&first) && made == 0, "{made}");
     let (_, other, made) = shadow(&folder, &params(&clouds, 64.0), [220.0, 40.0]);
     assert!(bits(&other) != bits(&first) && made == 0, "{made}");
-    // pulses that were damaged are made again
-    let balls = walk(&folder).into_iter().filter(|path| path.to_string_lossy().contains(".pulses."));
-    for path in balls {
+    // it found the ground of its cells, too
+    let (_, anew, _) = shadow(&place.path().join("anew"), &params(&clouds, 64.0), [220.0, 40.0]);
+    assert!(bits(&other) == bits(&anew));
+    let files = |what: &str| walk(&folder).into_iter().filter(|path| path.to_string_lossy().contains(what)).collect();
+    let (pulses, ground): (Vec<PathBuf>, Vec<PathBuf>) = (files(".pulses."), files("ground"));
+    assert!(!pulses.is_empty() && !ground.is_empty());
+    // what was damaged is made again
+    for path in pulses.into_iter().chain(ground) {
         let mut bytes = std::fs::read(&path).unwrap();
         let middle = bytes.len() / 2;
         bytes[middle] ^= 4;
