@@ -32,8 +32,8 @@ pub(crate) use city::{CellFor, City, CityMerge, CityPlan, CityRun, CityStatus, C
 pub(crate) use difference::DifferenceArguments;
 pub(crate) use envelope::{ComfortArguments, CornersArgument, EnvelopeArguments};
 pub(crate) use irradiance::{ClearSkyChoice, IrradianceArguments, RadiationModel};
-pub(crate) use numbers::Numbers;
-use numbers::{above_zero, at_least_one, at_most, finite, height, known_crs, length, location};
+pub(crate) use numbers::{Numbers, Rectangle};
+use numbers::{above_zero, at_least_one, at_most, finite, height, known_crs, length, location, rectangle};
 pub(crate) use observers::{
     Earth, GivingWay, GroundChoice, HowSureArguments, IntervalArgument, LineOfSightArguments, LinesArguments,
     MapPosition, Radio, Shell, ViewshedArguments,

@@ -38,8 +38,21 @@ pub(crate) fn read(input: &CloudInput, run: &mut CommandContext) -> Result<Point
 /// Reads the cloud for results whose rows belong to the rows of the file, which a point left out would shift.
 pub(crate) fn read_every_row(input: &CloudInput, run: &mut CommandContext) -> Result<PointCloud> {
     let (cloud, report) = read_counted(input, run)?;
+    refuse_part(input)?;
     check_every_row(&report)?;
     Ok(cloud)
+}
+
+/// Refuses a part of a cloud.
+pub(crate) fn refuse_part(input: &CloudInput) -> Result<()> {
+    match input.bounds {
+        None => Ok(()),
+        Some(_) => {
+            let what = "--bounds: this result has a row for each row of the file, of which only a part is read; \
+                        leave it out, or give a format with coordinates";
+            Err(Usage(what.to_owned()).into())
+        }
+    }
 }
 
 /// Refuses a cloud of which points were left out.
@@ -269,6 +282,7 @@ fn refuse_flags_of_clouds(arguments: &SceneInput, parameters: &BallParameters, p
     let given = [
         ("--crs", arguments.input.crs.is_some()),
         ("--up", arguments.input.up != UpChoice::Z),
+        ("--bounds", arguments.input.bounds.is_some()),
         ("--orient", arguments.balls.orient.is_some()),
         ("--trees", arguments.balls.trees.is_some()),
     ];

@@ -52,6 +52,18 @@ pub(super) fn above_zero<T: FromStr + Copy + Into<f64>>(text: &str) -> Result<T,
         .ok_or_else(|| "must be a number above zero".to_owned())
 }
 
+/// A part of the map: its south-west and north-east corner.
+#[derive(Clone, Copy)]
+pub(crate) struct Rectangle(pub(crate) [[f64; 2]; 2]);
+
+pub(super) fn rectangle(text: &str) -> Result<Rectangle, String> {
+    let Numbers([west, south, east, north]) = text.parse()?;
+    match west < east && south < north {
+        true => Ok(Rectangle([[west, south], [east, north]])),
+        false => Err("must be the west, south, east and north side, in this order".to_owned()),
+    }
+}
+
 /// Numbers separated by commas.
 #[derive(Clone, Copy)]
 pub(crate) struct Numbers<const N: usize>(pub(crate) [f64; N]);

@@ -1,7 +1,7 @@
 //! Flags of the scene that a command works on: clouds to build balls from, or a ball file.
 
 use super::balls::trees;
-use super::{MemoryAmount, OrientChoice, known_crs};
+use super::{MemoryAmount, OrientChoice, Rectangle, known_crs, rectangle};
 use belvedere::io::{ReadOptions, Within};
 use belvedere::medial::Trees;
 use clap::{Args, ValueEnum};
@@ -38,9 +38,12 @@ pub(crate) struct CloudInput {
     /// Leave out files whose points all lie more than 1000 km from those of the others, which is an error otherwise
     #[arg(long, help_heading = "Scene", hide_short_help = true)]
     pub(crate) skip_distant: bool,
-    /// South-west and north-east corner of the points that are read, in the coordinates of the file; `None` for all.
-    #[arg(skip)]
-    pub(crate) window: Option<[[f64; 2]; 2]>,
+    /// Read only the points of a rectangle: its west, south, east and north side, in file coordinates
+    ///
+    /// For a part of a large survey. What lies outside blocks nothing: leave room for all that may block.
+    #[arg(long, value_name = "W,S,E,N", value_parser = rectangle, allow_hyphen_values = true, help_heading = "Scene",
+        hide_short_help = true)]
+    pub(crate) bounds: Option<Rectangle>,
 }
 
 impl CloudInput {
@@ -56,7 +59,7 @@ impl CloudInput {
         if self.crs_override {
             options = options.insisting_on_crs();
         }
-        if let Some([low, high]) = self.window {
+        if let Some(Rectangle([low, high])) = self.bounds {
             let corner = |[x, y]: [f64; 2], z: f64| [x, y, z];
             options = options.with_points_within(Within::File { low: corner(low, -FAR), high: corner(high, FAR) });
         }

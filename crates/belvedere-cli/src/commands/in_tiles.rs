@@ -87,7 +87,8 @@ impl<'a> TypedCells<'a> {
     /// The plan of a survey that one model has no memory for; `None` where one model is to be made.
     pub(crate) fn survey(&self, question: &Question, run: &mut CommandContext) -> Result<Option<PlannedSurvey>> {
         let input = &self.scene.input;
-        let Some(limit) = memory::limit(self.memory) else { return Ok(None) };
+        // a part that was typed is one model
+        let Some(limit) = memory::limit(self.memory).filter(|_| input.bounds.is_none()) else { return Ok(None) };
         let Some(large) = TooLarge::of(&input.clouds, limit) else { return Ok(None) };
         if let Some(what) = self.unknown(question) {
             return match self.memory.memory {

@@ -1,7 +1,7 @@
 //! `belvedere query`.
 
 use super::{check_output, extension, mesh_targets, sights};
-use crate::arguments::{Global, Query, Usage};
+use crate::arguments::{CloudInput, Global, Query, Usage};
 use crate::pipeline::{self, KeepPoints, LoadedScene};
 use crate::run::CommandContext;
 use crate::summary::{Summary, percent, rounded};
@@ -53,6 +53,7 @@ pub(crate) fn run(arguments: &Query, global: &Global) -> Result<Summary> {
     run.summary.remarks(ask::remark_on_axis(scene.model.looks_y_up()));
     let mut views = arguments.view.views(&scene, &mut run.summary)?;
     if arguments.targets.own && extension(output) == "npy" {
+        pipeline::refuse_part(&arguments.scene.input)?;
         pipeline::check_every_row(&scene.left_out)?;
     }
     let rows = rows_as_given(arguments, &scene)?;
@@ -241,7 +242,8 @@ fn targets(
         return Ok(frame(run.compute("choosing random targets", || random_targets(low, high, count, run.seed))));
     }
     if let Some(path) = &arguments.targets.targets {
-        return points_of_file(path, &arguments.scene.input.read_options().with_up(UpAxis::Z), &scene.frame, run);
+        let whole = CloudInput { bounds: None, ..arguments.scene.input.clone() };
+        return points_of_file(path, &whole.read_options().with_up(UpAxis::Z), &scene.frame, run);
     }
     if scene.is_empty() {
         return Err(Usage("--self needs a cloud; a ball file has no points".to_owned()).into());

@@ -1,6 +1,6 @@
 //! Of a survey that does not fit into memory, the part that a question about a few places can reach.
 
-use crate::arguments::{MapPosition, MemoryArgument, SceneInput, Usage};
+use crate::arguments::{MapPosition, MemoryArgument, Rectangle, SceneInput, Usage};
 use crate::memory;
 use crate::run::CommandContext;
 use anyhow::Result;
@@ -16,14 +16,14 @@ pub(crate) fn scene_in_reach(
     run: &mut CommandContext,
 ) -> Result<SceneInput> {
     let mut part = scene.clone();
-    let Some(limit) = memory::limit(memory) else { return Ok(part) };
+    let Some(limit) = memory::limit(memory).filter(|_| part.input.bounds.is_none()) else { return Ok(part) };
     let clouds = (&scene.input.clouds[..], scene.input.crs.as_deref());
     let Some(large) = TooLarge::of(clouds.0, limit) else { return Ok(part) };
     let places: Vec<[f64; 2]> = places.iter().map(|place| place.0).collect();
     match distance.map(|distance| large.part_around(clouds, &places, distance)).transpose()?.flatten() {
         Some((window, remark)) => {
             run.summary.remarks([remark]);
-            part.input.window = Some(window);
+            part.input.bounds = Some(Rectangle(window));
         }
         None if memory.memory.is_some() => {
             let way_out = "allow more memory, or limit the question to typed places and a distance from them";

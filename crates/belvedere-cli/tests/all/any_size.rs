@@ -157,3 +157,37 @@ fn a_viewshed_in_tiles_is_that_of_one_model() {
         assert!(!place.path("out.tif").exists());
     }
 }
+
+#[test]
+fn a_part_of_a_survey_is_read_where_its_sides_are_typed() {
+    let place = Workplace::new();
+    town(&place);
+    let info = place.summary("info town/cloud.laz");
+    let [west, south] = [0, 1].map(|axis| info["min_corner"][axis].as_f64().unwrap() + 20.0);
+    let bounds = format!("--bounds {west},{south},{},{}", west + 40.0, south + 30.0);
+    let part = place.summary(&format!("info town/cloud.laz {bounds}"));
+    let share = part["points"].as_f64().unwrap() / info["points"].as_f64().unwrap();
+    // 1200 of 8100 square metres
+    assert!((0.1..0.25).contains(&share), "{share}");
+    let inside = |summary: &Value, key: &str, axis: usize| summary[key][axis].as_f64().unwrap();
+    assert!(inside(&part, "min_corner", 0) >= west && inside(&part, "max_corner", 1) <= south + 30.0, "{part}");
+    let sky =
+        place.summary(&format!("sky-view town/cloud.laz {bounds} --directions 49 --cell 2 -o sky.tif --no-cache"));
+    assert!(sky["points"].as_u64() == part["points"].as_u64(), "{sky}");
+    // a part is one model, whatever the memory
+    let seen = format!("viewshed town/cloud.laz {bounds} --observer {},{},30", west + 20.0, south + 15.0);
+    let seen = place.summary(&format!("{seen} --cell 1 -o seen.tif --no-cache --memory 118M"));
+    assert!(!remarks(&seen).contains(&"in-tiles".to_owned()), "{seen}");
+    // rows of the file would not be those of the result
+    place.refusal(2, &format!("normals town/cloud.laz {bounds} -o folder"), &["--bounds", "row"]);
+    let balls = format!("balls town/cloud.laz {bounds} -o balls.npz");
+    place.summary(&balls);
+    place.refusal(
+        2,
+        &format!("sky-view balls.npz {bounds} --targets town/cloud.laz -o s.csv"),
+        &["--bounds", "ball file"],
+    );
+    place.refusal(2, &format!("info balls.npz {bounds}"), &["--bounds", "ball file"]);
+    place.refusal(2, "info town/cloud.laz --bounds 5,5,1,9", &["--bounds", "west, south, east"]);
+    place.refusal(1, "info town/cloud.laz --bounds 0,0,1,1", &["cloud.laz"]);
+}

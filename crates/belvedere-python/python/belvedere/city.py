@@ -48,7 +48,7 @@ def answer(
     Parameters
     ----------
     question : {'shadow', 'sun_hours', 'sky_view', 'irradiance', 'viewshed'}
-        What is asked.
+        Which one.
     clouds
         Files, folders and catalogues (.vpc) of the survey.
     output
