@@ -97,7 +97,9 @@ impl SquareFile {
     /// `None` for a survey that nobody keeps.
     fn of(plan: &Plan, (square, cell): (&MapArea, f64)) -> Option<Self> {
         let folder = plan.shared_balls.as_ref()?.join("ground");
-        let what = (square.low, cell, &plan.targets, plan.ground, &plan.meshes);
+        // without meshes it is the same for targets of any height
+        let targets = if plan.meshes.is_empty() { plan.targets.with_height(0.0) } else { plan.targets };
+        let what = (square.low, cell, targets, plan.ground, &plan.meshes);
         let name = hash(serde_json::to_string(&what).ok()?.as_bytes());
         Some(Self { path: folder.join(format!("{name}.npz")), grid: grid_of(plan, (square, cell)).ok()? })
     }

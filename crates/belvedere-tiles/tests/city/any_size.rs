@@ -24,8 +24,17 @@ fn params(clouds: &[PathBuf], tile_size: f64) -> PlanParams {
 /// The shadow of suns, in degrees, on cells of 1 m on the ground, of the survey kept in a folder, and how many tiles
 /// got their balls.
 fn shadow(folder: &Path, params: &PlanParams, sun: [f64; 2]) -> (Plan, Answers<SurveyCells>, usize) {
+    shadow_of(folder, params, sun, &cells())
+}
+
+fn shadow_of(
+    folder: &Path,
+    params: &PlanParams,
+    sun: [f64; 2],
+    cells: &GridCells,
+) -> (Plan, Answers<SurveyCells>, usize) {
     let control = Control::none();
-    let plan = Plan::kept_in(folder, params, &control).unwrap().with_grid_cells(&cells()).unwrap();
+    let plan = Plan::kept_in(folder, params, &control).unwrap().with_grid_cells(cells).unwrap();
     let survey =
         SurveyQuestion::new(plan.clone(), folder, Question::Shadow(question(sun)), u64::MAX, &control).unwrap();
     let report = survey.run(&|| 0.0, &control).unwrap();
@@ -106,6 +115,11 @@ fn a_kept_survey_is_looked_at_once_and_its_balls_serve_all_questions() {
     // it found the ground of its cells, too
     let (_, anew, _) = shadow(&place.path().join("anew"), &params(&clouds, 64.0), [220.0, 40.0]);
     assert!(bits(&other) == bits(&anew));
+    // also for targets of another height
+    let low = GridCells { height: Some(0.1), ..cells() };
+    let (_, lower, _) = shadow_of(&folder, &params(&clouds, 64.0), [220.0, 40.0], &low);
+    let (_, anew, _) = shadow_of(&place.path().join("low"), &params(&clouds, 64.0), [220.0, 40.0], &low);
+    assert!(bits(&lower) == bits(&anew) && bits(&lower) != bits(&other));
     let files = |what: &str| walk(&folder).into_iter().filter(|path| path.to_string_lossy().contains(what)).collect();
     let (pulses, ground): (Vec<PathBuf>, Vec<PathBuf>) = (files(".pulses."), files("ground"));
     assert!(!pulses.is_empty() && !ground.is_empty());
