@@ -59,9 +59,13 @@ impl CloudInput {
         if self.crs_override {
             options = options.insisting_on_crs();
         }
-        if let Some(Rectangle([low, high])) = self.bounds {
-            let corner = |[x, y]: [f64; 2], z: f64| [x, y, z];
-            options = options.with_points_within(Within::File { low: corner(low, -FAR), high: corner(high, FAR) });
+        if let Some(Rectangle([[west, south], [east, north]])) = self.bounds {
+            // of the axes that files have
+            let (low, high) = match self.up {
+                UpChoice::Z => ([west, south, -FAR], [east, north, FAR]),
+                UpChoice::Y => ([west, -FAR, -north], [east, FAR, -south]),
+            };
+            options = options.with_points_within(Within::File { low, high });
         }
         if self.skip_distant { options.without_distant_files() } else { options }
     }
