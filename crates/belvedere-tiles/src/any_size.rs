@@ -164,7 +164,15 @@ impl SurveyQuestion {
         if let (ask::Question::Viewshed(view), Some(TileQuestion::Viewshed { eyes, .. })) =
             (&question, questions.first())
         {
-            view.report_eyes_of_parts(eyes, &frame, &mut context);
+            let above_ground = match eyes[..] {
+                [[x, y, z]] => {
+                    let mut feet = [[x, y, f64::NAN]];
+                    let is_known = plan.set_on_ground(&mut feet, 0.0, control).is_ok();
+                    is_known.then_some(z - feet[0][2])
+                }
+                _ => None,
+            };
+            view.report_eyes_of_parts(eyes, above_ground, &frame, &mut context);
         }
         let plan = plan.with_questions(questions, control)?;
         plan.remarks.iter().for_each(|remark| context.add(Some(remark.clone())));

@@ -127,6 +127,18 @@ impl ViewshedQuestion {
         if self.reverse { "target" } else { "observer" }
     }
 
+    fn who_is_blind(&self) -> &'static str {
+        if self.reverse { "no cell sees the target" } else { "the observer sees no cell" }
+    }
+
+    /// What to do where nothing is seen.
+    fn way_to_see(&self) -> &'static str {
+        match self.reverse {
+            true => "give a greater height above its surface",
+            false => "does it stand below a tree or between obstacles?",
+        }
+    }
+
     fn wants(&self, targets: ViewshedTargets) -> bool {
         self.targets.contains(&targets)
     }
@@ -155,13 +167,20 @@ impl ViewshedQuestion {
         self.observers.iter().map(move |one| (one.standing.place, one.standing.height.unwrap_or(usual)))
     }
 
-    /// Says in `context` where the eyes of a survey in parts are, local metres.
-    pub fn report_eyes_of_parts(&self, eyes: &[[f64; 3]], frame: &Frame, context: &mut Context) {
-        let report = EyesReport::none_skipped(eyes.len());
-        let mut section = ObserversSection { eyes: report.clone(), ..ObserversSection::default() };
-        if let ([eye], Some((place, height))) = (eyes, self.standing().next()) {
+    /// Says in `context` where the eyes of a survey in parts are, local metres, and how high above the ground the only
+    /// one is, if that is known.
+    pub fn report_eyes_of_parts(
+        &self,
+        eyes: &[[f64; 3]],
+        above_ground: Option<f64>,
+        frame: &Frame,
+        context: &mut Context,
+    ) {
+        let mut section =
+            ObserversSection { eyes: EyesReport::none_skipped(eyes.len()), ..ObserversSection::default() };
+        if let [eye] = eyes {
             section.eye = Some(frame.file_from_local(*eye).map(|v| rounded(v, 3)));
-            section.above_ground_m = place[2].is_nan().then(|| rounded(height, 3));
+            section.above_ground_m = above_ground.map(|height| rounded(height, 3));
         }
         match self.reverse {
             true => context.report.target = Some(section),
@@ -175,12 +194,10 @@ impl ViewshedQuestion {
         let answers = answers_of_bands(measures);
         let is_tested = measures.len() > 1;
         let section = SeenSection::of(&answers, is_tested, &Things::cells(cell), context);
-        if !answers.iter().any(|answer| matches!(answer, Answer::Visible | Answer::Unproven)) {
-            let text = match self.reverse {
-                true => "no cell sees the target; give a greater height above its surface",
-                false => "nothing is seen; does the observer stand below a tree or between obstacles?",
-            };
-            context.add(Some(Remark::warning("nothing-seen", text.to_owned())));
+        let is_seen = |answer: &Answer| matches!(answer, Answer::Visible | Answer::Unproven);
+        if self.observers.len() == 1 && !answers.iter().any(is_seen) {
+            let text = format!("{}; {}", self.who_is_blind(), self.way_to_see());
+            context.add(Some(Remark::warning("nothing-seen", text)));
         }
         context.report.cells = Some(section);
         let report = context.report.observers.as_ref().map(|section| section.eyes.clone());

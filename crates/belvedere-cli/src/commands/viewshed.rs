@@ -138,7 +138,7 @@ fn map_of_survey(
         is_of_one: eyes.len() == 1,
         is_reverse,
     };
-    map.draw(&relief.heights, grid, &relief.place)
+    map.draw(relief.heights.clone(), grid, relief.place.clone())
 }
 
 fn is_of_points(path: &Path) -> bool {

@@ -196,10 +196,7 @@ impl Sights<'_> {
         if let [observer] = observers
             && !seen.answers.iter().any(is_seen)
         {
-            let who = match self.question.reverse {
-                true => "no cell sees the target",
-                false => "the observer sees no cell",
-            };
+            let who = self.question.who_is_blind();
             let (why, range) = self.why_blind(observer.eye, seen, targets);
             let remark = Remark::warning("nothing-seen", format!("{who}: {why}"));
             context.add(Some(match range {
@@ -237,11 +234,8 @@ impl Sights<'_> {
         let some = blocked.iter().step_by(blocked.len().div_ceil(SAMPLE));
         let first = |target: &[f64; 3]| Some(blockers.line_of_sight(eye, *target, &params.earth)?.first_block?.range);
         let farthest = some.filter_map(first).fold(0.0, f64::max);
-        let give = match question.reverse {
-            true => "; give a greater height above its surface",
-            false => "; does it stand below a tree or between obstacles?",
-        };
-        (format!("all lines of sight end within {farthest:.2} m of it{give}"), Some(rounded(farthest, 3)))
+        let give = question.way_to_see();
+        (format!("all lines of sight end within {farthest:.2} m of it; {give}"), Some(rounded(farthest, 3)))
     }
 
     /// How many of `targets` are seen, with those that lie inside an obstacle.

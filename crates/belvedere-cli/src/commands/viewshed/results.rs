@@ -117,7 +117,7 @@ impl SeenCells<'_> {
             CellSurface::Ground(ground, cloud) => {
                 let place = georeference(&ground.grid, self.frame);
                 let relief = highest_points(&cloud.positions, ground);
-                map.draw(&relief, &ground.grid, &place)?
+                map.draw(relief, &ground.grid, place)?
             }
             CellSurface::Terrain(terrain) => map.draw_terrain(terrain, self.frame)?,
         };
@@ -142,18 +142,9 @@ pub(super) struct SeenMap<'a> {
 
 impl SeenMap<'_> {
     /// Over the relief of the cells of `grid`.
-    pub(super) fn draw(
-        &self,
-        relief: &Raster<f32>,
-        grid: &MapGrid,
-        place: &Georeference,
-    ) -> belvedere::Result<Picture> {
-        let title = title_of_cells(self.is_of_one, self.is_reverse);
-        self.on_sheet(
-            &Sheet { relief, colors: self.colors(None), cell: grid.cell, corner: grid.corner, place },
-            title,
-            None,
-        )
+    pub(super) fn draw(&self, relief: Raster<f32>, grid: &MapGrid, place: Georeference) -> belvedere::Result<Picture> {
+        let sheet = Sheet { relief, colors: self.colors(None), cell: grid.cell, corner: grid.corner, place };
+        self.on_sheet(&sheet, title_of_cells(self.is_of_one, self.is_reverse), None)
     }
 
     /// Over terrain beyond the cloud.
@@ -163,9 +154,7 @@ impl SeenMap<'_> {
             (false, true) => "Terrain visible from the observer",
             (false, false) => "Number of observers that see the terrain",
         };
-        let nodes = TerrainPixels::of(terrain, &self.colors(Some(CLOUD_COLOR)), frame)?;
-        let TerrainPixels { relief, colors, cell, corner, place } = &nodes;
-        let sheet = Sheet { relief, colors: colors.clone(), cell: *cell, corner: *corner, place };
+        let sheet = Sheet::of_terrain(terrain, &self.colors(Some(CLOUD_COLOR)), frame)?;
         self.on_sheet(&sheet, title, Some((CLOUD_COLOR, "point cloud")))
     }
 
@@ -194,7 +183,7 @@ impl SeenMap<'_> {
 
     fn on_sheet(
         &self,
-        sheet: &Sheet<'_>,
+        sheet: &Sheet,
         title: &str,
         cloud: Option<([u8; 3], &'static str)>,
     ) -> belvedere::Result<Picture> {
@@ -227,27 +216,18 @@ impl SeenMap<'_> {
 }
 
 /// Square pixels of a map.
-struct Sheet<'a> {
-    relief: &'a Raster<f32>,
-    colors: Vec<Option<[u8; 3]>>,
-    /// Side of a pixel, metres, and the upper left corner, local metres.
-    cell: f64,
-    corner: [f64; 2],
-    place: &'a Georeference,
-}
-
-/// Terrain in square pixels.
-struct TerrainPixels {
+struct Sheet {
     relief: Raster<f32>,
     colors: Vec<Option<[u8; 3]>>,
+    /// Side of a pixel, metres, and the upper left corner, local metres.
     cell: f64,
     corner: [f64; 2],
     place: Georeference,
 }
 
-impl TerrainPixels {
-    /// A colour for each node that has a height, of which a large map shows some.
-    fn of(terrain: &ElevationGrid, colors: &[Option<[u8; 3]>], frame: &Frame) -> belvedere::Result<Self> {
+impl Sheet {
+    /// Terrain with a colour for each node that has a height, of which a large map shows some.
+    fn of_terrain(terrain: &ElevationGrid, colors: &[Option<[u8; 3]>], frame: &Frame) -> belvedere::Result<Self> {
         let ([west, north], sides) = (terrain.north_west(), terrain.cell());
         let size = [terrain.heights().width(), terrain.heights().height()];
         let extent = [0, 1].map(|i| size[i] as f64 * sides[i]);
