@@ -43,6 +43,14 @@ pub(crate) fn read_every_row(input: &CloudInput, run: &mut CommandContext) -> Re
     Ok(cloud)
 }
 
+/// The error of reading these clouds, with the flag that left no point of them.
+pub(crate) fn named_for_part(input: &CloudInput, error: Error) -> anyhow::Error {
+    match error {
+        Error::NoPoints { .. } if input.bounds.is_some() => anyhow::Error::new(error).context("--bounds"),
+        _ => error.into(),
+    }
+}
+
 /// Refuses a part of a cloud.
 pub(crate) fn refuse_part(input: &CloudInput) -> Result<()> {
     match input.bounds {
@@ -70,7 +78,8 @@ pub(crate) fn check_every_row(report: &ReadReport) -> Result<()> {
 
 fn read_counted(input: &CloudInput, run: &mut CommandContext) -> Result<(PointCloud, ReadReport)> {
     let options = input.read_options();
-    let (cloud, report) = run.stage("reading", 0, |control| read_cloud(&input.clouds, &options, control))?;
+    let read = run.stage("reading", 0, |control| read_cloud(&input.clouds, &options, control));
+    let (cloud, report) = read.map_err(|error| named_for_part(input, error))?;
     run.summary.add("points", cloud.len());
     run.summary.add("reading", Summary::of(&report));
     warn_of_files(&report, &mut run.summary);

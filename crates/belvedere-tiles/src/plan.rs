@@ -434,7 +434,7 @@ impl Plan {
             };
             let unknown = ground.map(|(ground, _)| set_on_ground([(&mut *place, height)], &ground));
             if unknown.is_none_or(|unknown| !unknown.is_empty()) {
-                return Err(without_ground(format!("{}, {}", place[0] + origin[0], place[1] + origin[1])));
+                return Err(without_ground(format!("{:.2}, {:.2}", place[0] + origin[0], place[1] + origin[1])));
             }
         }
         Ok(())

@@ -26,7 +26,8 @@ pub(crate) fn run(arguments: &Info, global: &Global) -> Result<Summary> {
     let mut summary = Summary::default();
     summary.is_report();
     let options = arguments.input.read_options();
-    let (cloud, report) = run.stage("reading", 0, |control| read_cloud(&arguments.input.clouds, &options, control))?;
+    let read = run.stage("reading", 0, |control| read_cloud(&arguments.input.clouds, &options, control));
+    let (cloud, report) = read.map_err(|error| pipeline::named_for_part(&arguments.input, error))?;
     pipeline::warn_of_files(&report, &mut summary);
     summary.add("file", report.files.iter().map(of_file).collect::<Vec<_>>());
     summary.add("points", cloud.len());

@@ -198,7 +198,9 @@ fn a_part_of_a_survey_is_read_where_its_sides_are_typed() {
     );
     place.refusal(2, &format!("info balls.npz {bounds}"), &["--bounds", "ball file"]);
     place.refusal(2, "info town/cloud.laz --bounds 5,5,1,9", &["--bounds", "west, south, east"]);
-    place.refusal(1, "info town/cloud.laz --bounds 0,0,1,1", &["cloud.laz"]);
+    for command in ["info", "sky-view -o none.tif"] {
+        place.refusal(1, &format!("{command} town/cloud.laz --bounds 0,0,1,1 --no-cache"), &["--bounds", "cloud.laz"]);
+    }
     // with y up the sides are those of the coordinates of results
     let rows: String = (0..400).map(|i| format!("{} {} {}\n", i % 20, 5, -(i / 20))).collect();
     place.write("up.xyz", rows);
