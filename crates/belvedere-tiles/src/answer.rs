@@ -3,12 +3,13 @@
 use crate::cleared::{ClassedPoint, ClearedSurface, classed};
 use crate::grid::TileId;
 use crate::ground_cells::{GroundSquares, ground_cells};
+use crate::how_sure::PartialEvidence;
 use crate::lines::AreaLines;
 use crate::obstacles::{ObstacleSearch, rule};
 use crate::parts::TileObstacles;
 use crate::plan::Plan;
 use crate::planned::Others;
-use crate::proof::{FreeLine, unproven};
+use crate::proof::{Line, unproven};
 use crate::question::{LightQuestion, PreparedQuestion, TileQuestion};
 use crate::record::{Stamp, TileOutcome, TileRecord};
 use crate::stage::Stage;
@@ -137,10 +138,19 @@ pub(crate) fn answer(
             (sight.answered(&balls, &is_without_proof, size)?, balls)
         }
         PreparedQuestion::Light(light) => lit((plan, run), light, parts, targets, size, control)?,
+        PreparedQuestion::Probability { of, certainty } => {
+            let mut evidence = PartialEvidence::new(of, &targets.positions)?;
+            evidence.gather(plan, (&parts, others), &lines, control)?;
+            let mut balls = parts.into_found();
+            let (mut bands, unproven_cells) = evidence.bands((plan, run), *certainty, &mut balls, control)?;
+            bands.iter_mut().for_each(|band| targets.clear_unasked(band));
+            let values = Pixels::numbers(bands, size)?;
+            (CellAnswers { values, unproven_cells, skipped_observers: 0 }, balls)
+        }
     };
     let near_edge_cells = match prepared {
         PreparedQuestion::Light(light) => Some(near_edge_count(plan, targets, light.directions(), control)?),
-        PreparedQuestion::Viewshed { .. } => None,
+        PreparedQuestion::Viewshed { .. } | PreparedQuestion::Probability { .. } => None,
     };
     if found.values.are_nothing() && found.unproven_cells == 0 {
         return Ok(TileRecord { points, covered_cells: covered, damaged: balls.damaged, ..TileRecord::default() });
@@ -241,7 +251,7 @@ fn lit(
     let is_without_proof = match light {
         LightQuestion::Shadow(sun) if plan.proves => {
             let lit = numbers.iter().zip(&is_missing).map(|(&lit, &is_missing)| lit > 0.0 && !is_missing);
-            let line = |target: [f64; 3]| FreeLine { target, towards: sun.to_sun, range: f64::INFINITY };
+            let line = |target: [f64; 3]| Line { target, towards: sun.to_sun, range: f64::INFINITY };
             without_proof((plan, run), lit, targets, line, &mut balls, control)?
         }
         _ => Vec::new(),
@@ -254,13 +264,13 @@ fn without_proof(
     of_run: (&Plan, &Path),
     are_free: impl Iterator<Item = bool>,
     targets: &Targets,
-    line: impl Fn([f64; 3]) -> FreeLine,
+    line: impl Fn([f64; 3]) -> Line,
     balls: &mut ObstacleSearch,
     control: &Control<'_>,
 ) -> Result<Vec<bool>> {
     let rows: Vec<usize> = are_free.enumerate().filter(|(_, is_free)| *is_free).map(|(row, _)| row).collect();
     let place = |&row: &usize| targets.positions.get(row).map(|position| line(position.map(f64::from)));
-    let lines: Vec<FreeLine> = rows.iter().filter_map(place).collect();
+    let lines: Vec<Line> = rows.iter().filter_map(place).collect();
     let found = control.stage("testing pulses", 0, || unproven(of_run, &lines, balls, control))?;
     let mut is_without = vec![false; targets.len()];
     for (row, is_unproven) in rows.into_iter().zip(found) {
@@ -352,7 +362,7 @@ impl<'a> PartialSight<'a> {
             let line = |target: [f64; 3]| {
                 let way = sub(observer.eye, target);
                 let range = dot(way, way).sqrt();
-                FreeLine { target, towards: way.map(|v| v / range), range }
+                Line { target, towards: way.map(|v| v / range), range }
             };
             without_proof(of_run, are_seen, targets, line, balls, control)
         };

@@ -5,8 +5,9 @@ use crate::plan::Plan;
 use crate::question::TileQuestion;
 use crate::run::{RunParams, RunReport, Shard, Steps, run};
 use belvedere::Frame;
-use belvedere::apps::ask::{self, Answers, Context, NamedSun, Remark, summarise_parts};
+use belvedere::apps::ask::{self, Answers, Context, HowSure, NamedSun, Remark, summarise_parts};
 use belvedere::apps::targets::Measure;
+use belvedere::apps::viewshed::SeenProbabilities;
 use belvedere::control::Control;
 use belvedere::crs::Crs;
 use belvedere::ground::MapGrid;
@@ -135,15 +136,17 @@ impl SurveyQuestion {
         let whereabouts = plan.whereabouts(&frame);
         let mut context = Context::default();
         whereabouts.remark(&mut context);
-        let suns = match &question {
-            ask::Question::Shadow(about) => about.suns.over(&about.place, &whereabouts, &mut Context::default())?,
-            _ => Vec::new(),
+        let (suns, how_sure) = match &question {
+            ask::Question::Shadow(about) => {
+                (about.suns.over(&about.place, &whereabouts, &mut Context::default())?, about.how_sure)
+            }
+            _ => (Vec::new(), HowSure::default()),
         };
         let is_up = |sun: &NamedSun| sun.sun.to_sun[2] > 0.0;
         let mut questions = TileQuestion::of(&question, (&plan, &whereabouts), &mut context, control)?;
         if suns.iter().any(is_up) {
             // at night nothing is lit, which no tile needs to find out
-            questions = TileQuestion::of_suns(suns.iter().filter(|&sun| is_up(sun)));
+            questions = TileQuestion::of_suns(suns.iter().filter(|&sun| is_up(sun)), &how_sure);
         }
         let mut values = 0_u64;
         for own in &questions {
@@ -195,7 +198,7 @@ impl SurveyQuestion {
     /// Those of reading the results.
     pub fn answers(mut self, report: &RunReport, control: &Control<'_>) -> Result<Answers<SurveyCells>> {
         let frame = self.plan.frame()?;
-        let measures = self.measures(control)?;
+        let mut measures = self.measures(control)?;
         let first = self.plan.questions.first();
         let (Some(first), false) = (first, measures.is_empty()) else {
             return Err(Error::NoPoints { what: "the question has no result".to_owned() });
@@ -211,19 +214,32 @@ impl SurveyQuestion {
             let whereabouts = self.plan.whereabouts(&frame);
             summarise_parts(&self.question, (&measures, grid.cell), &whereabouts, &mut self.context)?
         };
+        if !self.wanted_sureness().probability {
+            let is_likelihood = |name: &str| [ask::PROBABILITY, ask::EXPECTED].iter().any(|one| name.starts_with(one));
+            measures.retain(|measure| !is_likelihood(&measure.name));
+        }
         let Self { plan, suns, context, .. } = self;
         let Answers { headline, remarks, report, .. } = context.into_answers();
         let found = SurveyCells { plan, grid, frame, title, suns, eyes, description };
         Ok(Answers { found, measures, headline, remarks, report })
     }
 
-    /// A measure for each sun or result, and of a single one what of it is unproven.
+    /// A measure for each sun or result, of a single one what of it is unproven, and how sure all are where that was
+    /// wanted.
     fn measures(&self, control: &Control<'_>) -> Result<Vec<Measure>> {
-        let mut results = Vec::new();
-        let is_single = self.suns.len().max(self.plan.questions.len()) == 1;
+        let (mut results, mut likely) = (Vec::new(), Vec::new());
+        let is_likely = |question: &&TileQuestion| matches!(question, TileQuestion::Probability { .. });
+        let answers = self.plan.questions.iter().filter(|question| !is_likely(question)).count();
+        let is_single = self.suns.len().max(answers) == 1;
         for question in &self.plan.questions {
             let pixels = self.plan.results_of(&self.folder, question, control)?;
-            let (kind, description) = (pixels.kind(), question.description());
+            let kind = pixels.kind();
+            let bands = question.band_names(kind).into_iter().zip(pixels.to_numbers()?);
+            if is_likely(&question) {
+                likely.push(bands.map(|(_, band)| band.values().to_vec()).collect());
+                continue;
+            }
+            let description = question.description();
             let range = (kind == ResultKind::Answer).then_some([0.0, 1.0]);
             let of_band = |(name, band): (String, Raster<f32>)| {
                 let description = match (name == UNPROVEN_BAND, self.suns.is_empty()) {
@@ -236,24 +252,59 @@ impl SurveyQuestion {
                     .with_kind(kind)
                     .with_range(range)
             };
-            let bands = question.band_names(kind).into_iter().zip(pixels.to_numbers()?).map(of_band);
-            results.extend(bands.take(if is_single { 2 } else { 1 }));
+            results.extend(bands.map(of_band).take(if is_single { 2 } else { 1 }));
         }
         if self.suns.is_empty() {
-            return Ok(results);
+            let sure = likely.into_iter().next().map(|bands| self.how_sure(bands, &results, "")).transpose()?;
+            return Ok(results.into_iter().chain(sure.into_iter().flatten()).collect());
         }
         let Some(cells) = results.first().map(|first: &Measure| first.values.clone()) else { return Ok(results) };
-        let mut results = results.into_iter();
-        let of_sun = |sun: &NamedSun| {
-            let lit = (sun.sun.to_sun[2] > 0.0).then(|| results.next()).flatten();
-            let night = || {
-                let values = cells.iter().map(|value| if value.is_nan() { f32::NAN } else { 0.0 }).collect();
-                Measure::new("", values).with_kind(ResultKind::Answer).with_range(Some([0.0, 1.0]))
-            };
-            Measure { name: sun.column.clone(), ..lit.unwrap_or_else(night) }
-        };
-        let of_suns: Vec<Measure> = self.suns.iter().map(of_sun).collect();
-        Ok(of_suns.into_iter().chain(results).collect())
+        let night = || cells.iter().map(|value| if value.is_nan() { f32::NAN } else { 0.0 }).collect();
+        let (mut results, mut likely) = (results.into_iter(), likely.into_iter());
+        let (mut of_suns, mut sure) = (Vec::new(), Vec::new());
+        for sun in &self.suns {
+            let is_up = sun.sun.to_sun[2] > 0.0;
+            let lit = if is_up { results.next() } else { None };
+            let lit = lit.unwrap_or_else(|| {
+                Measure::new("", night()).with_kind(ResultKind::Answer).with_range(Some([0.0, 1.0]))
+            });
+            of_suns.push(Measure { name: sun.column.clone(), ..lit });
+            let bands = if is_up { likely.next() } else { Some(vec![night()]) };
+            let suffix = if self.suns.len() == 1 { String::new() } else { format!("_{}", sun.column) };
+            sure.push((bands, suffix));
+        }
+        of_suns.extend(results);
+        for (bands, suffix) in sure {
+            let measures = bands.map(|bands| self.how_sure(bands, &of_suns, &suffix)).transpose()?;
+            of_suns.extend(measures.into_iter().flatten());
+        }
+        Ok(of_suns)
+    }
+
+    fn wanted_sureness(&self) -> HowSure {
+        match &self.question {
+            ask::Question::Shadow(about) => about.how_sure,
+            ask::Question::Viewshed(about) => about.how_sure,
+            _ => HowSure::default(),
+        }
+    }
+
+    /// Measures of how sure answers are, of which `bands` were found; `answers` may say what of a single one is
+    /// unproven.
+    fn how_sure(&self, bands: Vec<Vec<f32>>, answers: &[Measure], suffix: &str) -> Result<Vec<Measure>> {
+        // the summary needs probabilities, whatever is written
+        let how_sure = HowSure { probability: true, ..self.wanted_sureness() };
+        let is_of_many = matches!(&self.question, ask::Question::Viewshed(about) if about.observers.len() > 1);
+        let mut bands = bands.into_iter();
+        let Some(expected) = bands.next() else { return Ok(Vec::new()) };
+        if is_of_many {
+            return Ok(how_sure.measures_of_many(SeenProbabilities { expected, uncertain: bands.next() }));
+        }
+        let doubts = answers.iter().find(|measure| measure.name == UNPROVEN_BAND);
+        let is_unproven =
+            |row: usize| doubts.and_then(|doubts| doubts.values.get(row)).is_some_and(|&doubt| doubt > 0.0);
+        let uncertain = how_sure.uncertain(&expected, is_unproven)?;
+        Ok(how_sure.measures(expected, uncertain, suffix))
     }
 }
 

@@ -24,6 +24,7 @@ mod columns;
 mod estimate;
 mod grid;
 mod ground_cells;
+mod how_sure;
 mod inputs;
 mod kept;
 mod lines;

@@ -37,6 +37,7 @@ impl<'a> AreaLines<'a> {
     pub(crate) fn of(prepared: &'a PreparedQuestion, targets: MapArea, lowest: f64) -> Self {
         let to = match prepared {
             PreparedQuestion::Light(light) => To::Directions(light.directions()),
+            PreparedQuestion::Probability { of, .. } => return Self::of(of, targets, lowest),
             PreparedQuestion::Viewshed { observers, .. } => {
                 let is_near = |eye: &[f64; 3], reach: f64| targets.distance(&MapArea::at(*eye)) <= reach;
                 let near = observers.iter().filter(|observer| is_near(&observer.eye, observer.limits.distance[1]));

@@ -347,6 +347,7 @@ impl Plan {
         for question in &questions {
             question.prepare(self.trees, &mut context, control)?;
         }
+        questions.iter().try_for_each(|question| question.check_pulses(self.can_prove()))?;
         let proves = self.proves || self.can_prove() && questions.iter().any(TileQuestion::needs_proof);
         let remarks = self.remarks.into_iter().chain(context.into_answers().remarks).collect();
         Ok(Self { questions, remarks, proves, ..self })

@@ -10,7 +10,7 @@ use crate::obstacles::ObstacleSearch;
 use crate::plan::Plan;
 use belvedere::control::Control;
 use belvedere::pulses::{FreeSegmentColumns, ends_of_pulse};
-use belvedere::query::{Proof, ProofParams, nearness_of};
+use belvedere::query::{Evidence, Proof, ProofParams, nearness_of};
 use belvedere::vector::piece_in_box;
 use belvedere::{PointCloud, Result};
 use rayon::prelude::*;
@@ -29,15 +29,20 @@ const MAX_TILES: usize = 4;
 const CHUNK: usize = 1024;
 const FEW: usize = 64;
 
-/// A line of sight that nothing blocks.
+/// A line of sight.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct FreeLine {
+pub(crate) struct Line {
     /// Local metres.
     pub(crate) target: [f64; 3],
     /// Unit vector.
     pub(crate) towards: [f64; 3],
     /// Its length, metres; infinite without an end.
     pub(crate) range: f64,
+}
+
+/// Up to where pulses prove anything, local metres.
+pub(crate) fn top(plan: &Plan) -> f64 {
+    f64::from(plan.statistics.top + plan.model().free_segments.headroom)
 }
 
 /// How near a pulse must pass for a place to count as seen, metres: by the first returns of some places all over a
@@ -66,18 +71,51 @@ fn passes_over([start, end]: [[f64; 3]; 2], area: &MapArea) -> bool {
 /// # Errors
 /// Those of reading pulses, and [`belvedere::Error::Cancelled`].
 pub(crate) fn unproven(
-    (plan, run): (&Plan, &Path),
-    lines: &[FreeLine],
+    of_run: (&Plan, &Path),
+    lines: &[Line],
     found: &mut ObstacleSearch,
     control: &Control<'_>,
 ) -> Result<Vec<bool>> {
+    let ProofParams { tolerance, .. } = ProofParams::default();
+    let measure = |proof: &Proof, line, piece| proof.unseen_length_between(line, piece, tolerance + 1.0);
+    let unseen = unseen_steps(of_run, lines, (&measure, steps(tolerance)), found, control)?;
+    Ok(unseen.into_iter().map(|unseen| unseen > steps(tolerance)).collect())
+}
+
+/// About how much of each of `lines` runs through unseen space, metres, as evidence of a probability: no more than
+/// makes a difference there.
+///
+/// # Errors
+/// Those of [`unproven`].
+pub(crate) fn sampled_lengths(
+    of_run: (&Plan, &Path),
+    lines: &[Line],
+    found: &mut ObstacleSearch,
+    control: &Control<'_>,
+) -> Result<Vec<f64>> {
+    let most = Evidence::MAX_UNPROVEN;
+    let measure = |proof: &Proof, line, piece| proof.sampled_unseen_length_between(line, piece, most);
+    let unseen = unseen_steps(of_run, lines, (&measure, steps(most)), found, control)?;
+    Ok(unseen.into_iter().map(|unseen| f64::from(unseen) / STEPS).collect())
+}
+
+/// How a proof measures what is unseen of a piece of a line.
+type Measure<'a> = &'a (dyn Fn(&Proof, ([f64; 3], [f64; 3]), [f64; 2]) -> f64 + Sync);
+
+/// The unseen length of each of `lines` as `measure` has it, in steps, until it is more than `enough`.
+fn unseen_steps(
+    (plan, run): (&Plan, &Path),
+    lines: &[Line],
+    (measure, enough): (Measure<'_>, u32),
+    found: &mut ObstacleSearch,
+    control: &Control<'_>,
+) -> Result<Vec<u32>> {
     let params = ProofParams { nearness: Some(plan.nearness), ..ProofParams::default() };
-    let (enough, most) = (steps(params.tolerance), params.tolerance + 1.0);
     let (low, high) = plan.bounds().on_map();
     let survey = MapArea { low, high };
-    let top = f64::from(plan.statistics.top + plan.model().free_segments.headroom);
+    let top = top(plan);
     // below the top and over the survey
-    let piece = |line: &FreeLine| {
+    let piece = |line: &Line| {
         let [east, north] = sides_of(&survey, line.target);
         let up = [f64::NEG_INFINITY, top - line.target[2]];
         piece_in_box([east, north, up], line.towards, [0.0, line.range]).filter(|[from, to]| to > from)
@@ -103,14 +141,14 @@ pub(crate) fn unproven(
             let line = lines.get(row as usize)?;
             let flat = [line.towards[0], line.towards[1]];
             let own = piece_in_box(sides_of(&area, line.target), flat, (*pieces.get(row as usize)?)?)?;
-            Some((row, steps(proof.unseen_length_between((line.target, line.towards), own, most))))
+            Some((row, steps(measure(&proof, (line.target, line.towards), own))))
         };
         let lengths: Vec<(u32, u32)> = waiting.par_iter().with_min_len(FEW).filter_map(length).collect();
         for (row, length) in lengths {
             unseen[row as usize] = unseen[row as usize].saturating_add(length);
         }
     }
-    Ok(unseen.into_iter().map(|unseen| unseen > enough).collect())
+    Ok(unseen)
 }
 
 /// A length in whole numbers.
@@ -125,7 +163,7 @@ fn sides_of(area: &MapArea, place: [f64; 3]) -> [[f64; 2]; 2] {
 }
 
 /// The blocks of 64 m that lines run through, and which these are.
-fn lines_of_blocks(lines: &[FreeLine], pieces: &[Option<[f64; 2]>]) -> BTreeMap<[i32; 2], Vec<u32>> {
+fn lines_of_blocks(lines: &[Line], pieces: &[Option<[f64; 2]>]) -> BTreeMap<[i32; 2], Vec<u32>> {
     let mut blocks: BTreeMap<[i32; 2], Vec<u32>> = BTreeMap::new();
     for (row, (line, piece)) in (0_u32..).zip(lines.iter().zip(pieces)) {
         let Some([from, to]) = *piece else { continue };

@@ -16,7 +16,7 @@ use belvedere::apps::tree_light::{CrownLight, Season};
 use belvedere::apps::viewshed::{Observer, SightLimits};
 use belvedere::control::Control;
 use belvedere::io::{Source, read_weather};
-use belvedere::query::{EarthParams, UnprovenAs};
+use belvedere::query::{Certainty, EarthParams, UnprovenAs};
 use belvedere::results::{ResultKind, UNPROVEN_BAND, viewshed_words};
 use belvedere::{Error, Parameter, Result};
 use serde::{Deserialize, Serialize};
@@ -77,6 +77,16 @@ pub enum TileQuestion {
         #[serde(default, skip_serializing_if = "std::ops::Not::not")]
         is_reverse: bool,
     },
+    /// How likely a sun lights cells, or observers see them: of several observers the expected number of those that do.
+    Probability {
+        /// Name of the folder of its results.
+        name: String,
+        /// The answers that it is about: shadow of a sun, or what observers see.
+        of: Box<Self>,
+        /// Of several observers, the certainty below which their answers are counted as uncertain.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        certain: Option<f64>,
+    },
 }
 
 /// Where radiation comes from.
@@ -104,6 +114,7 @@ pub enum TileRadiation {
 pub(crate) enum PreparedQuestion {
     Light(LightQuestion),
     Viewshed { observers: Vec<Observer>, is_reverse: bool },
+    Probability { of: Box<Self>, certainty: Option<Certainty> },
 }
 
 /// A question about light from given directions.
@@ -177,7 +188,7 @@ impl TileQuestion {
         match question {
             ask::Question::Shadow(shadow) => {
                 let suns = shadow.suns.over(&shadow.place, whereabouts, context)?;
-                Ok(Self::of_suns(&suns))
+                Ok(Self::of_suns(&suns, &shadow.how_sure))
             }
             ask::Question::SunHours(hours) => {
                 let site = hours.place.site_at(whereabouts, context, None)?;
@@ -213,7 +224,8 @@ impl TileQuestion {
                     plan.set_on_ground(std::slice::from_mut(&mut eye), height, control)?;
                     eyes.push(eye);
                 }
-                Ok(vec![Self::Viewshed { eyes, max_distance: view.limits.max_distance, is_reverse: view.reverse }])
+                let seen = Self::Viewshed { eyes, max_distance: view.limits.max_distance, is_reverse: view.reverse };
+                Ok(seen.with_probability(&view.how_sure))
             }
             _ => Err(Error::InvalidParameter {
                 parameter: Parameter::Questions,
@@ -223,14 +235,25 @@ impl TileQuestion {
         }
     }
 
+    /// This, and where it is wanted how likely its answers are.
+    fn with_probability(self, how_sure: &ask::HowSure) -> Vec<Self> {
+        let is_of_several = self.is_of_several();
+        let likely = how_sure.is_wanted().then(|| Self::Probability {
+            name: format!("{}_probability", self.name()),
+            of: Box::new(self.clone()),
+            certain: how_sure.certain.filter(|_| is_of_several),
+        });
+        [self].into_iter().chain(likely).collect()
+    }
+
     /// The questions about shadows of suns.
-    pub(crate) fn of_suns<'a>(suns: impl IntoIterator<Item = &'a ask::NamedSun>) -> Vec<Self> {
+    pub(crate) fn of_suns<'a>(suns: impl IntoIterator<Item = &'a ask::NamedSun>, how_sure: &ask::HowSure) -> Vec<Self> {
         let question = |sun: &ask::NamedSun| Self::Shadow {
             name: format!("shadow_{}", sun.label),
             to_sun: sun.sun.to_sun,
             season: sun.sun.season,
         };
-        suns.into_iter().map(question).collect()
+        suns.into_iter().map(question).flat_map(|sun| sun.with_probability(how_sure)).collect()
     }
 
     /// What of a question is not found in tiles.
@@ -239,7 +262,6 @@ impl TileQuestion {
         let counts = |unproven: Option<UnprovenAs>| unproven.is_some_and(|choice| choice != UnprovenAs::Reported);
         let parts: &[(&str, bool)] = match question {
             ask::Question::Shadow(shadow) => &[
-                ("probabilities", shadow.how_sure.is_wanted()),
                 ("soft edges", shadow.edges == Edges::Soft),
                 ("unproven light that counts as lit or as blocked", counts(shadow.unproven)),
             ],
@@ -254,7 +276,6 @@ impl TileQuestion {
                     ("limits of single observers", has_own),
                     ("another curvature or refraction", view.earth != EarthParams::default()),
                     ("unproven views that count as visible or as blocked", counts(view.unproven)),
-                    ("probabilities", view.how_sure.is_wanted()),
                     ("targets other than cells", view.targets != [ask::ViewshedTargets::Cells]),
                     ("masks of observers", view.masks),
                     ("heights that are seen", view.max_height.is_some()),
@@ -272,7 +293,7 @@ impl TileQuestion {
     #[must_use]
     pub fn name(&self) -> &str {
         match self {
-            Self::Shadow { name, .. } | Self::SunRule { name, .. } => name,
+            Self::Shadow { name, .. } | Self::SunRule { name, .. } | Self::Probability { name, .. } => name,
             Self::SkyView { .. } => "sky_view_factor",
             Self::SunHours { .. } => "sun_hours",
             Self::Irradiance { .. } => "irradiance",
@@ -290,6 +311,7 @@ impl TileQuestion {
             Self::SunRule { .. } => Topic::Rule,
             Self::Irradiance { .. } => Topic::Irradiance,
             Self::Viewshed { .. } => Topic::Viewshed,
+            Self::Probability { of, .. } => of.topic(),
         }
     }
 
@@ -303,7 +325,14 @@ impl TileQuestion {
             Self::SunRule { .. } => sun_hours::RULE_IS_MET,
             Self::Irradiance { .. } => irradiance::ENERGY,
             Self::Viewshed { eyes, .. } => viewshed_words(eyes.len())[1],
+            Self::Probability { of, .. } if of.is_of_several() => ask::EXPECTED_OBSERVERS,
+            Self::Probability { .. } => ask::BEING_FREE,
         }
+    }
+
+    /// Whether it is about several observers.
+    fn is_of_several(&self) -> bool {
+        matches!(self, Self::Viewshed { eyes, .. } if eyes.len() > 1)
     }
 
     /// What its values are, where trees are `opaque` or let light through.
@@ -313,19 +342,41 @@ impl TileQuestion {
             Self::Shadow { .. } | Self::SunRule { .. } => ResultKind::Answer,
             Self::Viewshed { eyes, .. } if eyes.len() == 1 => ResultKind::Answer,
             Self::Viewshed { .. } => ResultKind::Count,
-            Self::SkyView { .. } | Self::SunHours { .. } | Self::Irradiance { .. } => ResultKind::Number,
+            Self::SkyView { .. } | Self::SunHours { .. } | Self::Irradiance { .. } | Self::Probability { .. } => {
+                ResultKind::Number
+            }
         }
     }
 
     /// Whether its answers say what pulses prove.
     pub(crate) fn needs_proof(&self) -> bool {
-        matches!(self, Self::Shadow { .. } | Self::Viewshed { .. })
+        matches!(self, Self::Shadow { .. } | Self::Viewshed { .. } | Self::Probability { .. })
+    }
+
+    /// Refuses what needs pulses, where these are not known.
+    ///
+    /// # Errors
+    /// [`Error::InvalidParameter`].
+    pub(crate) fn check_pulses(&self, are_known: bool) -> Result<()> {
+        if are_known || !matches!(self, Self::Probability { .. }) {
+            return Ok(());
+        }
+        Err(Error::InvalidParameter {
+            parameter: Parameter::Certainty,
+            value: "given".to_owned(),
+            expected: "left out for surveys whose pulses are not known, or of which something is cleared",
+        })
     }
 
     /// Names of the bands of a result of a kind: answers and counts have a second one, of what missing tiles may
     /// change.
     #[must_use]
     pub fn band_names(&self, kind: ResultKind) -> Vec<String> {
+        if let Self::Probability { of, certain, .. } = self {
+            let first = if of.is_of_several() { ask::EXPECTED } else { ask::PROBABILITY };
+            let second = certain.map(|_| ask::UNCERTAIN);
+            return [first].into_iter().chain(second).map(str::to_owned).collect();
+        }
         let first = match self {
             Self::Shadow { .. } => "lit",
             Self::Viewshed { eyes, .. } => viewshed_words(eyes.len())[0],
@@ -381,6 +432,19 @@ impl TileQuestion {
                 let observers = eyes.iter().map(|&eye| Observer { eye, limits }).collect();
                 Ok(PreparedQuestion::Viewshed { observers, is_reverse: *is_reverse })
             }
+            Self::Probability { of, certain, .. } => match of.prepare(crowns, context, control)? {
+                PreparedQuestion::Light(light) if !matches!(light, LightQuestion::Shadow(_)) || crowns.is_some() => {
+                    let expected = "that of a sun with opaque trees, or of observers";
+                    invalid(Parameter::Certainty, of.name().to_owned(), expected)
+                }
+                PreparedQuestion::Probability { .. } => {
+                    invalid(Parameter::Certainty, of.name().to_owned(), "that of answers")
+                }
+                of => Ok(PreparedQuestion::Probability {
+                    of: Box::new(of),
+                    certainty: certain.map(Certainty::new).transpose()?,
+                }),
+            },
         }
     }
 }

@@ -19,6 +19,11 @@ pub const UNCERTAIN: &str = "uncertain";
 /// Name of the measure of the expected number of observers.
 pub const EXPECTED: &str = "expected";
 
+/// What [`PROBABILITY`] is.
+pub const BEING_FREE: &str = "probability of being free";
+/// What [`EXPECTED`] is.
+pub const EXPECTED_OBSERVERS: &str = "expected number of observers";
+
 /// Whether to say how sure answers are. Needs pulses.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
@@ -95,11 +100,10 @@ impl HowSure {
 
     /// Whether each answer is uncertain, by its probability and by whether it is unproven; NaN without a probability.
     /// `None` where that is not wanted.
-    pub(super) fn uncertain(
-        &self,
-        probabilities: &[f32],
-        is_unproven: impl Fn(usize) -> bool,
-    ) -> Result<Option<Vec<f32>>> {
+    ///
+    /// # Errors
+    /// [`Error::InvalidParameter`] for a least probability out of range.
+    pub fn uncertain(&self, probabilities: &[f32], is_unproven: impl Fn(usize) -> bool) -> Result<Option<Vec<f32>>> {
         let Some(certainty) = self.certainty()? else { return Ok(None) };
         let of_row = |(row, &probability): (usize, &f32)| match probability.is_nan() {
             true => f32::NAN,
@@ -109,12 +113,12 @@ impl HowSure {
     }
 
     /// Measures of probabilities, and of which answers are `uncertain`; `suffix` ends their names.
-    pub(super) fn measures(&self, probabilities: Vec<f32>, uncertain: Option<Vec<f32>>, suffix: &str) -> Vec<Measure> {
+    #[must_use]
+    pub fn measures(&self, probabilities: Vec<f32>, uncertain: Option<Vec<f32>>, suffix: &str) -> Vec<Measure> {
         let named = |name: &str, values, text: &'static str| {
             Measure::new(&format!("{name}{suffix}"), values).with_description(text).with_range(Some([0.0, 1.0]))
         };
-        let likely =
-            self.probability.then(|| named(PROBABILITY, probabilities, "probability of being free").with_decimals(3));
+        let likely = self.probability.then(|| named(PROBABILITY, probabilities, BEING_FREE).with_decimals(3));
         let uncertain = uncertain.map(|uncertain| {
             named(UNCERTAIN, uncertain, "1: less certain than wanted").with_decimals(0).with_kind(ResultKind::Answer)
         });
@@ -122,11 +126,11 @@ impl HowSure {
     }
 
     /// Measures of what several observers see.
-    pub(super) fn measures_of_many(&self, found: SeenProbabilities) -> Vec<Measure> {
-        let likely = self.probability.then(|| {
-            let text = "expected number of observers";
-            Measure::new(EXPECTED, found.expected).with_description(text).with_decimals(3)
-        });
+    #[must_use]
+    pub fn measures_of_many(&self, found: SeenProbabilities) -> Vec<Measure> {
+        let likely = self
+            .probability
+            .then(|| Measure::new(EXPECTED, found.expected).with_description(EXPECTED_OBSERVERS).with_decimals(3));
         let uncertain = found.uncertain.map(|uncertain| {
             let (text, kind) = ("observers that are uncertain", ResultKind::Count);
             Measure::new(UNCERTAIN, uncertain).with_description(text).with_decimals(0).with_kind(kind)
@@ -163,6 +167,15 @@ impl HowSure {
             certainly_blocked_percent: Some(percent(certain(false), count)),
             uncertain_percent: Some(percent(known.iter().filter(|(row, _)| is_uncertain(*row)).count(), count)),
             ..section
+        }
+    }
+
+    /// Says the same of measures of one viewer or sun, where some say it.
+    pub(super) fn summarise_measures(&self, measures: &[Measure], words: [&str; 2], context: &mut Context) {
+        let of_name = |name: &str| measures.iter().find(|measure| measure.name == name).map(|measure| &measure.values);
+        let (probabilities, uncertain) = (of_name(PROBABILITY), of_name(UNCERTAIN));
+        if let Some(probabilities) = probabilities {
+            self.summarise(probabilities, uncertain.map(Vec::as_slice), words, context);
         }
     }
 

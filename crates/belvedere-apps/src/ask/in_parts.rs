@@ -3,7 +3,7 @@
 use super::scene::Whereabouts;
 use super::sections::{MeasuresSection, PlacesReport};
 use super::sun::MAX_LISTED_SUNS;
-use super::{Context, Question, irradiance, shadow, sky_view, sun_hours};
+use super::{Context, EXPECTED, PROBABILITY, Question, UNCERTAIN, irradiance, shadow, sky_view, sun_hours};
 use crate::targets::Measure;
 use crate::viewshed::title_of_cells;
 use belvedere_data::{Error, Parameter, Result};
@@ -27,8 +27,10 @@ pub fn summarise_parts(
     let title = match question {
         Question::Shadow(about) => {
             let suns = about.suns.over(&about.place, whereabouts, &mut aside)?;
-            shadow::summarise(&suns, measures, &places, context);
-            listed = &measures[..measures.len().min(MAX_LISTED_SUNS)];
+            let answers = &measures[..measures.iter().position(says_how_sure).unwrap_or(measures.len())];
+            shadow::summarise(&suns, answers, &places, context);
+            about.how_sure.summarise_measures(measures, ["lit", "in shadow"], context);
+            listed = &answers[..answers.len().min(MAX_LISTED_SUNS)];
             suns.first().map(|sun| sun.title.clone()).unwrap_or_default()
         }
         Question::SunHours(about) => {
@@ -47,7 +49,8 @@ pub fn summarise_parts(
             irradiance::title(whereabouts)
         }
         Question::Viewshed(about) => {
-            about.summarise_parts(measures, cell, context);
+            let answers = &measures[..measures.iter().position(says_how_sure).unwrap_or(measures.len())];
+            about.summarise_parts(answers, (measures, cell), context);
             return Ok(title_of_cells(about.observers.len() == 1, about.reverse).to_owned());
         }
         _ => {
@@ -58,4 +61,9 @@ pub fn summarise_parts(
     };
     context.report.measures = Some(MeasuresSection::of_count(count, listed));
     Ok(title)
+}
+
+/// Whether a measure says how sure others are; it comes after these.
+fn says_how_sure(measure: &Measure) -> bool {
+    [PROBABILITY, UNCERTAIN, EXPECTED].iter().any(|name| measure.name.starts_with(name))
 }

@@ -58,7 +58,9 @@ pub use comfort::{ComfortQuestion, ComfortResults, ExposureSection, RoutesOrWind
 pub use depth_map::{DepthMapQuestion, DepthMapResults, PictureSection, ViewFrom, ViewSection};
 pub use envelope::{EnvelopeQuestion, EnvelopeResults, EnvelopeSection, Protected, ProtectedShape, ProtectedSuns};
 pub use horizon::{BelowLevel, HorizonQuestion, HorizonResults};
-pub use how_sure::{CertaintySection, EXPECTED, HowSure, PROBABILITY, UNCERTAIN, remark_from_ground};
+pub use how_sure::{
+    BEING_FREE, CertaintySection, EXPECTED, EXPECTED_OBSERVERS, HowSure, PROBABILITY, UNCERTAIN, remark_from_ground,
+};
 pub use in_parts::summarise_parts;
 pub use irradiance::{IrradianceQuestion, IrradianceResults, Radiation, Roofs, RoofsResults, remark_on_radiation};
 pub use isovist::{IsovistColumn, IsovistsQuestion, IsovistsResults};

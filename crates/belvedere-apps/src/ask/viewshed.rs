@@ -189,8 +189,8 @@ impl ViewshedQuestion {
     }
 
     /// Says in `context` what is seen of cells of a side, metres, from measures of what nothing blocks and of what of
-    /// that is unproven.
-    pub(super) fn summarise_parts(&self, measures: &[Measure], cell: f64, context: &mut Context) {
+    /// that is unproven; how sure the answers are may be among `all`.
+    pub(super) fn summarise_parts(&self, measures: &[Measure], (all, cell): (&[Measure], f64), context: &mut Context) {
         let answers = answers_of_bands(measures);
         let is_tested = measures.len() > 1;
         let section = SeenSection::of(&answers, is_tested, &Things::cells(cell), context);
@@ -200,6 +200,7 @@ impl ViewshedQuestion {
             context.add(Some(Remark::warning("nothing-seen", text)));
         }
         context.report.cells = Some(section);
+        self.how_sure.summarise_measures(all, ["visible", "blocked"], context);
         let report = context.report.observers.as_ref().map(|section| section.eyes.clone());
         self.headline_of_eyes(&report.unwrap_or_default(), context);
     }

@@ -7,7 +7,7 @@ mod probabilities;
 
 pub use far::{far_targets, far_viewshed, terrain_within_reach};
 pub use observers::{Observer, SightLimits, places_along};
-pub use probabilities::{SeenProbabilities, seen_probabilities};
+pub use probabilities::{SeenProbabilities, add_known, seen_probabilities};
 
 use crate::sky_view::SKY_TARGET_HEIGHT;
 use crate::targets::Measure;

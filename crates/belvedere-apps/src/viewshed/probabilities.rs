@@ -36,9 +36,9 @@ pub fn seen_probabilities(
             if probability.is_nan() || !observer.limits.allow(observer.eye, target.map(f64::from)) {
                 continue;
             }
-            add(&mut found.expected[row], probability);
+            add_known(&mut found.expected[row], probability);
             if let (Some(uncertain), Some(certainty)) = (&mut found.uncertain, certainty) {
-                add(&mut uncertain[row], f32::from(u8::from(certainty.is_missed_by(probability))));
+                add_known(&mut uncertain[row], f32::from(u8::from(certainty.is_missed_by(probability))));
             }
         }
     }
@@ -46,6 +46,6 @@ pub fn seen_probabilities(
 }
 
 /// Adds to a sum that is NaN as long as nothing was added.
-fn add(sum: &mut f32, value: f32) {
+pub fn add_known(sum: &mut f32, value: f32) {
     *sum = if sum.is_nan() { value } else { *sum + value };
 }

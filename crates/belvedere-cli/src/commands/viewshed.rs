@@ -13,10 +13,11 @@ use crate::pipeline::{self, KeepPoints};
 use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::Result;
-use belvedere::apps::ask::{self, Answers, Ask, Places, Scene, ViewshedResults, ViewshedTargets};
+use belvedere::apps::ask::{self, Answers, Ask, Places, Scene, UNCERTAIN, ViewshedResults, ViewshedTargets};
 use belvedere::apps::viewshed::answers_of_bands;
 use belvedere::figures::Picture;
 use belvedere::query::UnprovenAs;
+use belvedere::results::UNPROVEN_BAND;
 use belvedere_tiles::SurveyCells;
 use results::{CellSurface, SeenCells, SeenMap, on_points, write_masks};
 use std::path::{Path, PathBuf};
@@ -126,14 +127,15 @@ fn map_of_survey(
     is_reverse: bool,
 ) -> belvedere::Result<Picture> {
     let SurveyCells { grid, eyes, .. } = &answers.found;
-    let unproven = answers.measures.get(1).map_or(&[][..], |band| &band.values);
+    let band = |name: &str| answers.measures.iter().find(|band| band.name == name).map(|band| &band.values[..]);
+    let unproven = band(UNPROVEN_BAND).unwrap_or_default();
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most as many as observers")]
     let count = |(cell, &free): (usize, &f32)| (free - unproven.get(cell).unwrap_or(&0.0)) as u32;
     let counts: Vec<u32> = answers.measures[0].values.iter().enumerate().map(count).collect();
     let map = SeenMap {
-        answers: &answers_of_bands(&answers.measures),
+        answers: &answers_of_bands(&answers.measures[..answers.measures.len().min(2)]),
         counts: &counts,
-        uncertain: None,
+        uncertain: band(UNCERTAIN).filter(|_| eyes.len() == 1),
         eyes,
         is_of_one: eyes.len() == 1,
         is_reverse,

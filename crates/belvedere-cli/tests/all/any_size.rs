@@ -1,7 +1,7 @@
 //! Surveys that do not fit into the memory that may be used: the same commands, in tiles or around the question.
 
 use crate::common::Workplace;
-use belvedere::io::{ReadBands, read_tif_bands};
+use belvedere::io::{ReadBands, read_tif, read_tif_bands};
 use serde_json::Value;
 
 /// A town of 90 m, as a file.
@@ -77,7 +77,6 @@ fn what_tiles_do_not_know_is_named_where_memory_was_typed() {
     let place = Workplace::new();
     town(&place);
     for (flag, word) in [
-        ("--probability", "probabilities"),
         ("--soft", "soft edges"),
         ("--edge-mask mask.tif", "--edge-mask"),
         ("--trees opaque", "--trees"),
@@ -206,4 +205,65 @@ fn a_part_of_a_survey_is_read_where_its_sides_are_typed() {
     place.write("up.xyz", rows);
     let up = place.summary("info up.xyz --up y --bounds=-0.5,-0.5,9.5,4.5");
     assert_eq!((up["points"].as_u64(), inside(&up, "max_corner", 1)), (Some(50), 4.0), "{up}");
+}
+
+/// Names and values of the bands of a raster of numbers; NaN where there is none.
+fn numbers(place: &Workplace, name: &str) -> Vec<(String, Vec<f32>)> {
+    let raster = read_tif(place.path(name).as_path()).unwrap();
+    let first = (raster.name, raster.values.values().to_vec());
+    let further = raster.further_bands.into_iter().map(|band| (band.name, band.values.values().to_vec()));
+    [first].into_iter().chain(further).collect()
+}
+
+#[test]
+fn how_sure_answers_are_is_the_same_in_tiles() {
+    let place = Workplace::new();
+    town(&place);
+    let info = place.summary("info town/cloud.laz");
+    let [x, y] = [0, 1].map(|axis| info["min_corner"][axis].as_f64().unwrap() + 45.0);
+    place.write("observers.csv", format!("x,y,z\n{x},{y},30\n{},{y},28\n", x + 20.0));
+    let sure = "--cell 1 --probability --certain 0.9 --cache kept";
+    for (question, names) in [
+        ("shadow town/cloud.laz --sun 150,30".to_owned(), vec!["lit", "unproven", "probability", "uncertain"]),
+        (
+            "shadow town/cloud.laz --sun 150,30 --sun 200,40".to_owned(),
+            vec!["lit_1", "lit_2", "probability_lit_1", "uncertain_lit_1", "probability_lit_2", "uncertain_lit_2"],
+        ),
+        (
+            format!("viewshed town/cloud.laz --observer {x},{y},30"),
+            vec!["visible", "unproven", "probability", "uncertain"],
+        ),
+        (
+            "viewshed town/cloud.laz --observers observers.csv".to_owned(),
+            vec!["observers", "unproven", "expected", "uncertain"],
+        ),
+    ] {
+        let whole = place.summary(&format!("{question} {sure} -o whole.tif"));
+        let tiled = place.summary(&format!("{question} {sure} -o tiled.tif -o tiled.png --memory 118M"));
+        assert!(remarks(&tiled).contains(&"in-tiles".to_owned()), "{tiled}");
+        let [of_whole, of_tiles] = ["whole.tif", "tiled.tif"].map(|name| numbers(&place, name));
+        let found: Vec<&str> = of_tiles.iter().map(|(name, _)| name.as_str()).collect();
+        assert_eq!(found, names);
+        for ((name, expected), (_, found)) in of_whole.iter().zip(&of_tiles) {
+            assert_eq!(expected.len(), found.len(), "{name}");
+            // boxes in which what pulses saw is sampled begin at a block of 64 m here, and at the first pulse there
+            let differ = |(a, b): &(&f32, &f32)| a.is_nan() != b.is_nan() || (**a - **b).abs() > 0.1;
+            let count = expected.iter().zip(found).filter(differ).count();
+            assert!(count * 50 < found.len(), "{name}: {count} of {}", found.len());
+            let known = found.iter().filter(|value| value.is_finite());
+            assert!(known.clone().any(|value| *value > 0.0) && known.clone().any(|value| *value < 1.0), "{name}");
+        }
+        for key in ["mean_probability", "certainly_visible_percent", "uncertain_percent"] {
+            let [of_whole, of_tiles] = [&whole, &tiled].map(|summary| summary["certainty"][key].as_f64());
+            assert_eq!(of_whole.is_some(), of_tiles.is_some(), "{key}: {whole} {tiled}");
+            let near = 0.02 * if key.ends_with("percent") { 100.0 } else { 1.0 };
+            assert!((of_whole.unwrap_or(0.0) - of_tiles.unwrap_or(0.0)).abs() < near, "{key}: {whole} {tiled}");
+        }
+    }
+    // another certainty needs no tile again
+    let again =
+        place.summary("shadow town/cloud.laz --sun 150,30 --cell 1 --certain 0.8 --cache kept -o 8.tif --memory 118M");
+    assert_eq!(again["answers_made"].as_u64(), Some(0), "{again}");
+    let names: Vec<String> = numbers(&place, "8.tif").into_iter().map(|(name, _)| name).collect();
+    assert_eq!(names, ["lit", "unproven", "uncertain"]);
 }

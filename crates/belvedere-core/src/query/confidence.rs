@@ -9,7 +9,7 @@
 //! # Source
 //! This project's own. Logistic regression on classes of evidence: a scorecard (Hosmer & Lemeshow 2000, chapter 3).
 
-use super::{Answer, MedialScene, ParallelLines, Proof, Viewer};
+use super::{Answer, BlockedLines, MedialScene, ParallelLines, Proof, Viewer};
 use crate::ray_index::Ray;
 use belvedere_data::control::Control;
 use belvedere_data::{Error, Parameter, Result};
@@ -115,6 +115,21 @@ fn read_scores(text: &str) -> Scores {
 }
 
 impl Evidence {
+    /// Length that no pulse came near to from which on more makes no difference, metres.
+    pub const MAX_UNPROVEN: f64 = MAX_UNPROVEN;
+
+    /// That of a line of sight, of which all parts of a scene block so much, where scanners were in the air.
+    #[must_use]
+    pub fn from_the_air(blocked: BlockedLines, is_between_places: bool, unproven_length: f64) -> Self {
+        Self {
+            lines: blocked.lines(),
+            is_inside_obstacle: blocked.is_inside_obstacle(),
+            is_between_places,
+            is_from_ground: false,
+            unproven_length,
+        }
+    }
+
     /// The classes whose scores are added up.
     pub fn score_keys(&self) -> impl Iterator<Item = ScoreKey> {
         let ParallelLines { free, held, .. } = self.lines;
@@ -162,14 +177,11 @@ impl MedialScene {
 
     fn evidence_with(&self, proof: &Proof, target: [f64; 3], towards: [f64; 3], range: f64) -> Evidence {
         let end = std::array::from_fn(|i| target[i] + range * towards[i]);
-        let ends = if range.is_finite() { &[target, end][..] } else { &[target] };
-        Evidence {
-            lines: self.parallel_lines(target, towards, range),
-            is_inside_obstacle: ends.iter().any(|end| self.is_inside_obstacle(*end)),
-            is_between_places: range.is_finite() && !ends.iter().any(|end| proof.is_above_all(*end)),
-            is_from_ground: proof.is_from_ground(),
-            unproven_length: self.sampled_unproven_length(proof, (target, towards, range), MAX_UNPROVEN),
-        }
+        let is_between_places = range.is_finite() && ![target, end].into_iter().any(|end| proof.is_above_all(end));
+        let blocked = self.blocked_lines(BlockedLines::NONE, target, towards, range);
+        let unproven_length = self.sampled_unproven_length(proof, (target, towards, range), MAX_UNPROVEN);
+        let is_from_ground = proof.is_from_ground();
+        Evidence { is_from_ground, ..Evidence::from_the_air(blocked, is_between_places, unproven_length) }
     }
 
     /// How likely each of `targets`, (M, 3) local metres, is visible for `viewer`, 0 to 1, (M); NaN where

@@ -58,7 +58,7 @@ pub use freed_space::FreedSpace;
 pub use fresnel::RadioWave;
 pub use medial_scene::MedialScene;
 pub use mesh::{BackFaces, MeshTargetParams, SeenArea, facing, seen_faces, seen_in_all, seen_objects};
-pub use parallel_lines::ParallelLines;
+pub use parallel_lines::{BlockedLines, ParallelLines};
 pub use points::{
     Answer, AnswerCounts, MAX_RANDOM_PAIRS, MAX_RANDOM_TARGETS, UnprovenAs, query_points, random_targets,
 };

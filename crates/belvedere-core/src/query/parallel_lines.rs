@@ -37,35 +37,77 @@ impl ParallelLines {
     }
 }
 
+/// What one part of a scene blocks of a line of sight and of those beside it. Parts are added up.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BlockedLines {
+    /// A bit for each line that is free, the line itself first.
+    free: u32,
+    /// The same for those of which an end is inside an obstacle.
+    held: u32,
+}
+
+impl BlockedLines {
+    /// What nothing blocks.
+    pub const NONE: Self = Self { free: ALL, held: 0 };
+
+    /// Whether an end of the line itself is inside an obstacle.
+    #[must_use]
+    pub fn is_inside_obstacle(self) -> bool {
+        self.held & 1 == 1
+    }
+
+    /// How many lines of each ring are free.
+    #[must_use]
+    pub fn lines(self) -> ParallelLines {
+        let in_ring = |bits: u32, ring: usize| (bits >> (1 + ring * RING_LINES) & 0xFF).count_ones();
+        #[expect(clippy::cast_possible_truncation, reason = "eight at most")]
+        let counts = |bits: u32| [0, 1].map(|ring| in_ring(bits, ring) as u8);
+        let found = ParallelLines { is_free: self.free & 1 == 1, free: counts(self.free), held: [0; 2] };
+        let held = if found.agree() { [0; 2] } else { counts(self.held) };
+        ParallelLines { held, ..found }
+    }
+}
+
 impl MedialScene {
     /// What blocks the line of sight from `target`, local metres, to `range` metres (infinite for a direction) along
     /// the unit vector `towards`, and lines parallel to it. All numbers but the range must be finite. The line itself
     /// is free where [`MedialScene::answer`] is not blocked.
     #[must_use]
     pub fn parallel_lines(&self, target: [f64; 3], towards: [f64; 3], range: f64) -> ParallelLines {
+        self.blocked_lines(BlockedLines::NONE, target, towards, range).lines()
+    }
+
+    /// What this part of a scene blocks of the lines of [`MedialScene::parallel_lines`], beside what others have
+    /// `blocked`. Of lines that are all blocked only the first is looked at for ends inside an obstacle: of the others
+    /// it makes no difference.
+    #[must_use]
+    pub fn blocked_lines(
+        &self,
+        blocked: BlockedLines,
+        target: [f64; 3],
+        towards: [f64; 3],
+        range: f64,
+    ) -> BlockedLines {
         let lines = self.lines_beside(target, towards, range);
-        let mut left = Left::new(self, &lines, &Axes::along(towards));
-        let room = [RINGS[1] + MARGIN; 3];
-        let ray = self.ray(target, towards, range);
-        self.tree().index().visit_beside(&ray, room, &mut left);
-        let mut free = left.free;
+        let mut free = blocked.free;
+        if free != 0 {
+            let mut left = Left::new(self, &lines, &Axes::along(towards), free);
+            let room = [RINGS[1] + MARGIN; 3];
+            let ray = self.ray(target, towards, range);
+            self.tree().index().visit_beside(&ray, room, &mut left);
+            free = left.free;
+        }
         for (number, line) in lines.iter().enumerate() {
             if free >> number & 1 == 1 && self.is_behind_others(line.origin, towards, range) {
                 free &= !(1 << number);
             }
         }
-        let in_ring = |bits: u32, ring: usize| (bits >> (1 + ring * RING_LINES) & 0xFF).count_ones();
-        #[expect(clippy::cast_possible_truncation, reason = "eight at most")]
-        let counts = |bits: u32| [0, 1].map(|ring| in_ring(bits, ring) as u8);
-        let mut found = ParallelLines { is_free: free & 1 == 1, free: counts(free), held: [0; 2] };
-        if !found.agree() {
-            let is_held = |line: &Ray| {
-                self.is_inside_obstacle(line.origin) || (range.is_finite() && self.is_inside_obstacle(line.at(range)))
-            };
-            let held = (0..).zip(&lines).filter(|(number, line)| free >> number & 1 == 0 && is_held(line));
-            found.held = counts(held.fold(0, |bits, (number, _)| bits | 1_u32 << number));
-        }
-        found
+        let is_held = |line: &Ray| {
+            self.is_inside_obstacle(line.origin) || (range.is_finite() && self.is_inside_obstacle(line.at(range)))
+        };
+        let looked_at = if free == 0 { 1 } else { ALL & !free };
+        let held = (0..).zip(&lines).filter(|(number, line)| looked_at >> number & 1 == 1 && is_held(line));
+        BlockedLines { free, held: held.fold(blocked.held, |bits, (number, _)| bits | 1_u32 << number) }
     }
 
     /// The line itself, and those around it.
@@ -108,7 +150,7 @@ struct Left<'a> {
 }
 
 impl<'a> Left<'a> {
-    fn new(scene: &'a MedialScene, lines: &'a [Ray; LINES], Axes([across, up, _]): &Axes) -> Self {
+    fn new(scene: &'a MedialScene, lines: &'a [Ray; LINES], Axes([across, up, _]): &Axes, free: u32) -> Self {
         let middle = lines[0].origin.map(to_f32);
         let axes = [*across, *up].map(|axis| axis.map(to_f32));
         let mut places = [[f32::INFINITY; SLOTS]; 2];
@@ -117,7 +159,7 @@ impl<'a> Left<'a> {
             places[0][slot] = dot(offset, axes[0]);
             places[1][slot] = dot(offset, axes[1]);
         }
-        Self { scene, lines, middle, axes, places, margin: scene.tree().near_margin(), free: ALL }
+        Self { scene, lines, middle, axes, places, margin: scene.tree().near_margin(), free }
     }
 
     /// Tests exactly which of the lines that a ball comes near to it blocks.
@@ -209,6 +251,40 @@ mod tests {
             }
         }
         assert!(agreeing > 1000 && mixed > 1000, "{agreeing} agree, {mixed} do not");
+    }
+
+    #[test]
+    fn parts_of_a_scene_block_together_what_the_whole_does() {
+        let rule = BlockRule::carved();
+        let random = |i: u64, k: u64| to_f32(uniform(5, 8 * i + k));
+        let balls = |rows: std::ops::Range<u64>| {
+            let mut balls = MedialBalls::default();
+            for i in rows {
+                let center = [30.0 * random(i, 0), 30.0 * random(i, 1), 8.0 * random(i, 2)];
+                balls.push(0, center, 0.05 + 1.2 * random(i, 3), 0);
+            }
+            balls
+        };
+        let [whole, first, second] =
+            [0..600, 0..350, 350..600].map(|rows| MedialScene::new(&balls(rows), &rule).unwrap());
+        let mut held = 0;
+        for i in 600..3600 {
+            let target = [0, 1, 2].map(|k| f64::from(random(i, k) * if k == 2 { 9.0 } else { 32.0 }));
+            let towards = unit(sub([15.0, 15.0, 30.0], target)).unwrap();
+            let range = if i % 2 == 0 { f64::INFINITY } else { 20.0 };
+            let of = |scene: &MedialScene, blocked| scene.blocked_lines(blocked, target, towards, range);
+            let expected = of(&whole, BlockedLines::NONE);
+            for parts in [[&first, &second], [&second, &first]] {
+                let found = parts.into_iter().fold(BlockedLines::NONE, |blocked, part| of(part, blocked));
+                assert_eq!(
+                    (found.lines(), found.is_inside_obstacle()),
+                    (expected.lines(), expected.is_inside_obstacle()),
+                    "{i}"
+                );
+            }
+            held += u32::from(expected.lines().held != [0; 2]);
+        }
+        assert!(held > 100, "{held} with ends inside obstacles");
     }
 
     #[test]

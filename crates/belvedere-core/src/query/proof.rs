@@ -274,15 +274,25 @@ impl Proof {
         }
     }
 
+    /// About [`Proof::unseen_length_between`], or `enough` or more as soon as it is so much, measured as
+    /// [`Proof::sampled_unproven_length`] does.
+    #[must_use]
+    pub fn sampled_unseen_length_between(&self, line: ([f64; 3], [f64; 3]), [from, to]: [f64; 2], enough: f64) -> f64 {
+        match self.index.get(|control| self.make_index(control)) {
+            Some(index) if !index.free_segments.is_empty() => sampled_length(index, line, [from, to], enough)
+                .unwrap_or_else(|| self.length_inside(index, line, [from, to], enough, |_| ())),
+            _ => (to - from).max(0.0),
+        }
+    }
+
     /// About [`Proof::unproven_length`], or `enough` or more as soon as it is so much: the length through boxes of the
     /// survey's space whose middles no pulse came near to. Each middle is looked at once, so that many lines
     /// cost little.
     #[must_use]
     pub fn sampled_unproven_length(&self, target: [f64; 3], towards: [f64; 3], range: f64, enough: f64) -> f64 {
         self.length_by((target, towards, range), enough, |index, line, piece, enough| {
-            let ProofIndex { free_segments, seen_space, .. } = index;
-            let sampled = seen_space.unseen_length(free_segments, line, piece, enough);
-            sampled.unwrap_or_else(|| self.length_inside(index, line, piece, enough, |_| ()))
+            sampled_length(index, line, piece, enough)
+                .unwrap_or_else(|| self.length_inside(index, line, piece, enough, |_| ()))
         })
     }
 
@@ -408,6 +418,16 @@ impl Proof {
                 to - start
             })
     }
+}
+
+/// The length through boxes whose middles no pulse came near to; `None` where there are no boxes.
+fn sampled_length(
+    ProofIndex { free_segments, seen_space, .. }: &ProofIndex,
+    line: ([f64; 3], [f64; 3]),
+    piece: [f64; 2],
+    enough: f64,
+) -> Option<f64> {
+    seen_space.unseen_length(free_segments, line, piece, enough)
 }
 
 /// Whether the steps along a line begin at its far end.

@@ -1,0 +1,160 @@
+//! How likely the cells of a tile are lit, or seen: evidence that is gathered part by part of what blocks, and block by
+//! block of what pulses proved.
+
+use crate::lines::AreaLines;
+use crate::obstacles::{ObstacleSearch, rule};
+use crate::parts::TileObstacles;
+use crate::plan::Plan;
+use crate::planned::Others;
+use crate::proof::{self, Line, sampled_lengths};
+use crate::question::{LightQuestion, PreparedQuestion};
+use belvedere::apps::eyes::skip_unfit_eyes;
+use belvedere::apps::viewshed::{Observer, add_known};
+use belvedere::control::Control;
+use belvedere::medial::MedialBalls;
+use belvedere::query::{BlockedLines, Certainty, Evidence, MedialScene};
+use belvedere::vector::{dot, sub};
+use belvedere::{Error, Parameter, Result};
+use rayon::prelude::*;
+use std::path::Path;
+
+/// Targets handed to a thread at once.
+const CHUNK: usize = 256;
+
+/// Suns or observers, whose lines of sight to targets are looked at past one part of what blocks after the other.
+pub(crate) struct PartialEvidence<'a> {
+    viewers: Viewers,
+    targets: &'a [[f32; 3]],
+    /// What all parts so far block, of each viewer.
+    blocked: Vec<Vec<BlockedLines>>,
+}
+
+enum Viewers {
+    /// The unit vector to it.
+    Sun([f64; 3]),
+    /// Those inside an obstacle have an eye that is not finite, unless they are looked at.
+    Observers { observers: Vec<Observer>, is_reverse: bool },
+}
+
+impl Viewers {
+    fn count(&self) -> usize {
+        match self {
+            Self::Sun(_) => 1,
+            Self::Observers { observers, .. } => observers.len(),
+        }
+    }
+
+    /// The line of sight from a target, local metres, to the viewer of that number; `None` where there is no answer.
+    fn line(&self, number: usize, target: [f32; 3]) -> Option<Line> {
+        let target = target.map(f64::from);
+        if !target.iter().all(|v| v.is_finite()) {
+            return None;
+        }
+        match self {
+            Self::Sun(to_sun) => Some(Line { target, towards: *to_sun, range: f64::INFINITY }),
+            Self::Observers { observers, .. } => {
+                let Observer { eye, limits } = observers.get(number)?;
+                let way = sub(*eye, target);
+                let range = dot(way, way).sqrt();
+                let is_allowed = range > 0.0 && range.is_finite() && limits.allow(*eye, target);
+                is_allowed.then(|| Line { target, towards: way.map(|v| v / range), range })
+            }
+        }
+    }
+}
+
+impl<'a> PartialEvidence<'a> {
+    /// Of the answers that `prepared` is about.
+    ///
+    /// # Errors
+    /// [`Error::InvalidParameter`] for others than those of a sun and of observers.
+    pub(crate) fn new(prepared: &PreparedQuestion, targets: &'a [[f32; 3]]) -> Result<Self> {
+        let viewers = match prepared {
+            PreparedQuestion::Light(LightQuestion::Shadow(sun)) => Viewers::Sun(sun.to_sun),
+            PreparedQuestion::Viewshed { observers, is_reverse } => {
+                Viewers::Observers { observers: observers.clone(), is_reverse: *is_reverse }
+            }
+            PreparedQuestion::Light(_) | PreparedQuestion::Probability { .. } => {
+                return Err(Error::InvalidParameter {
+                    parameter: Parameter::Certainty,
+                    value: "given".to_owned(),
+                    expected: "left out but for a sun and for observers",
+                });
+            }
+        };
+        let blocked = vec![vec![BlockedLines::NONE; targets.len()]; viewers.count()];
+        Ok(Self { viewers, targets, blocked })
+    }
+
+    /// Looks past all `parts`, and what blocks beside them.
+    pub(crate) fn gather(
+        &mut self,
+        plan: &Plan,
+        (parts, others): (&TileObstacles<'_>, &Others),
+        lines: &AreaLines<'_>,
+        control: &Control<'_>,
+    ) -> Result<()> {
+        parts.each_scene(lines, control, |scene| self.look(scene, control))?;
+        let beside = MedialScene::new(&MedialBalls::default(), &rule(plan))?
+            .with_triangles(others.added.clone())
+            .with_far_terrain(others.far_terrain.clone());
+        self.look(&beside, control)
+    }
+
+    fn look(&mut self, scene: &MedialScene, control: &Control<'_>) -> Result<()> {
+        if let Viewers::Observers { observers, is_reverse: false } = &mut self.viewers {
+            let mut eyes: Vec<[f64; 3]> = observers.iter().map(|observer| observer.eye).collect();
+            skip_unfit_eyes(scene, None, &mut eyes, control)?;
+            observers.iter_mut().zip(eyes).for_each(|(observer, eye)| observer.eye = eye);
+        }
+        let Self { viewers, targets, blocked } = self;
+        for (number, blocked) in blocked.iter_mut().enumerate() {
+            control.stage("computing probabilities", 0, || {
+                blocked.par_iter_mut().zip(targets.par_iter()).with_min_len(CHUNK).try_for_each(|(blocked, target)| {
+                    control.check()?;
+                    if let Some(Line { target, towards, range }) = viewers.line(number, *target) {
+                        *blocked = scene.blocked_lines(*blocked, target, towards, range);
+                    }
+                    Ok(())
+                })
+            })?;
+        }
+        Ok(())
+    }
+
+    /// How likely each target is free for the viewer, or the expected number of viewers for which it is; and how many
+    /// of their answers are less certain than wanted; NaN where there is no answer. Also for how many targets balls that
+    /// may block are missing: such answers count for nothing.
+    pub(crate) fn bands(
+        &self,
+        (plan, run): (&Plan, &Path),
+        certainty: Option<Certainty>,
+        balls: &mut ObstacleSearch,
+        control: &Control<'_>,
+    ) -> Result<(Vec<Vec<f32>>, usize)> {
+        let mut is_missing = vec![false; self.targets.len()];
+        let mut expected = vec![f32::NAN; self.targets.len()];
+        let mut uncertain = expected.clone();
+        let top = proof::top(plan);
+        for (number, blocked) in self.blocked.iter().enumerate() {
+            let of_row = |row: usize| Some((row, self.viewers.line(number, self.targets[row])?));
+            let (rows, lines): (Vec<usize>, Vec<Line>) = (0..self.targets.len()).filter_map(of_row).unzip();
+            let unseen = control.stage("testing pulses", 0, || sampled_lengths((plan, run), &lines, balls, control))?;
+            for ((row, line), unseen) in rows.into_iter().zip(&lines).zip(unseen) {
+                let &Line { target, towards, range } = line;
+                if !balls.missing.is_empty() && balls.is_unknown(target, towards, range) {
+                    is_missing[row] = true;
+                    continue;
+                }
+                let end_height = target[2] + range * towards[2];
+                let is_between_places = range.is_finite() && target[2] <= top && end_height <= top;
+                let probability = Evidence::from_the_air(blocked[row], is_between_places, unseen).probability();
+                add_known(&mut expected[row], probability);
+                let is_uncertain = certainty.is_some_and(|certainty| certainty.is_missed_by(probability));
+                add_known(&mut uncertain[row], f32::from(u8::from(is_uncertain)));
+            }
+        }
+        let bands = [expected].into_iter().chain(certainty.map(|_| uncertain)).collect();
+        Ok((bands, is_missing.into_iter().filter(|is_missing| *is_missing).count()))
+    }
+}
