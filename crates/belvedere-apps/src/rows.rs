@@ -9,10 +9,13 @@ use crate::tree_light::{CrownLight, TreeLight};
 use belvedere_core::query::{MedialScene, VisibilityMatrix};
 use belvedere_data::control::Control;
 use belvedere_data::{Error, Parameter, Result};
+use rayon::prelude::*;
 use std::ops::Range;
 
 /// Bits of all rows that are held at a time: 64 MiB. Fewer would sweep the scene more often, more would not be faster.
 pub const BLOCK_BITS: usize = 1 << 29;
+/// Targets handed to a thread at once.
+const CHUNK: usize = 256;
 
 /// What light meets on its way to a target.
 #[derive(Clone, Copy)]
@@ -54,6 +57,12 @@ pub trait ObstacleParts: Sync {
         directions: &[[f64; 3]],
         control: &Control<'_>,
     ) -> Result<(VisibilityMatrix, Option<VisibilityMatrix>)>;
+
+    /// Whether each of `targets`, (M, 3) local metres, lies inside an obstacle.
+    ///
+    /// # Errors
+    /// Those of reading the parts.
+    fn are_inside_obstacles(&self, targets: &[[f32; 3]], control: &Control<'_>) -> Result<Vec<bool>>;
 }
 
 /// All that may stand between targets and the sky.
@@ -91,6 +100,20 @@ impl SkyObstacles<'_> {
     #[must_use]
     pub fn matrix_count(&self) -> usize {
         1 + usize::from(self.crowns().is_some())
+    }
+
+    /// Whether each of `targets`, (M, 3) local metres, lies inside an obstacle.
+    ///
+    /// # Errors
+    /// Those of [`ObstacleParts::are_inside_obstacles`].
+    pub(crate) fn are_inside_obstacles(&self, targets: &[[f32; 3]], control: &Control<'_>) -> Result<Vec<bool>> {
+        match self {
+            Self::Whole(obstacles) => {
+                let is_inside = |target: &[f32; 3]| obstacles.scene.is_inside_obstacle(target.map(f64::from));
+                Ok(targets.par_iter().with_min_len(CHUNK).map(is_inside).collect())
+            }
+            Self::InParts(parts) => parts.are_inside_obstacles(targets, control),
+        }
     }
 
     fn look(

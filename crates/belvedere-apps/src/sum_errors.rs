@@ -9,9 +9,10 @@
 //! # Source
 //! This project's own; prediction intervals by classes of a measure of difficulty (Vovk et al. 2005, chapter 4).
 
-use crate::rows::{RowBlock, normals_of};
+use crate::rows::{RowBlock, SkyObstacles, normals_of};
 use crate::targets::{Measure, Targets};
-use belvedere_core::query::MedialScene;
+use belvedere_data::Result;
+use belvedere_data::control::Control;
 use belvedere_data::vector::dot;
 use rayon::prelude::*;
 use std::f64::consts::FRAC_PI_2;
@@ -28,6 +29,41 @@ pub const CLASSES: usize = 2 + MOVED_CLASSES.len();
 /// The errors that were found.
 const ERRORS: &str = include_str!("sum_errors.csv");
 
+/// Ends of the names of the measures that say how far a sum may be from the truth, and what these are.
+pub const INTERVAL_MEASURES: [(&str, &str); 3] =
+    [("expected", "expected value"), ("low", "5 % are lower in truth"), ("high", "5 % are higher in truth")];
+
+/// Whether sums come with how far they may be from the truth.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Intervals {
+    /// They do not.
+    #[default]
+    Without,
+    /// They do.
+    With,
+}
+
+impl Intervals {
+    /// With them if they are wanted.
+    #[must_use]
+    pub fn wanted(are_wanted: bool) -> Self {
+        if are_wanted { Self::With } else { Self::Without }
+    }
+
+    /// Which of `targets` among `obstacles` are inside one, where that is needed.
+    pub(crate) fn are_inside(
+        self,
+        obstacles: SkyObstacles<'_>,
+        targets: &Targets,
+        control: &Control<'_>,
+    ) -> Result<Option<Vec<bool>>> {
+        match self {
+            Self::Without => Ok(None),
+            Self::With => obstacles.are_inside_obstacles(&targets.positions, control).map(Some),
+        }
+    }
+}
+
 /// What is summed up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum SumKind {
@@ -35,11 +71,16 @@ pub enum SumKind {
     Sun,
     /// Views of the sky.
     Sky,
+    /// Energy of sun and sky at a place.
+    Energy,
+    /// Energy of sun and sky, the mean of the cells of a plane.
+    Plane,
 }
 
 impl SumKind {
     /// All, with their names in the file of errors.
-    pub const ALL: [(Self, &str); 2] = [(Self::Sun, "sun"), (Self::Sky, "sky")];
+    pub const ALL: [(Self, &str); 4] =
+        [(Self::Sun, "sun"), (Self::Sky, "sky"), (Self::Energy, "energy"), (Self::Plane, "plane")];
 }
 
 /// By how much the truth is more than the sum, as a share of the greatest possible sum.
@@ -49,6 +90,21 @@ pub struct SumError {
     pub mean: f64,
     /// Ends of the interval that holds 90 %: as many are below as above.
     pub interval: [f64; 2],
+}
+
+impl SumError {
+    /// That of sums of a kind and class.
+    #[must_use]
+    pub fn of(kind: SumKind, class: u8) -> Self {
+        FOUND[kind as usize].get(usize::from(class)).copied().unwrap_or_default()
+    }
+
+    /// The expected value of a sum of at most `max`, and the ends of its interval.
+    #[must_use]
+    pub fn around(&self, sum: f64, max: f64) -> [f64; 3] {
+        let Self { mean, interval: [low, high] } = *self;
+        [mean, low, high].map(|error| (sum + error * max).clamp(0.0, max.max(0.0)))
+    }
 }
 
 static FOUND: LazyLock<[[SumError; CLASSES]; SumKind::ALL.len()]> = LazyLock::new(|| read_errors(ERRORS));
@@ -115,28 +171,32 @@ impl Outlines {
     #[must_use]
     pub fn moved_share(&self, is_free: impl Fn(usize) -> bool) -> f64 {
         let all: f64 = self.weights.iter().sum();
-        let is_at_outline = |number: usize| {
-            let own = is_free(number);
-            self.neighbors[number].iter().any(|&other| is_free(other as usize) != own)
-        };
-        let weights = self.weights.iter().enumerate().filter(|(number, _)| is_at_outline(*number));
-        let at_outlines: f64 = weights.map(|(_, weight)| weight).sum();
-        // directions on both sides of an outline are counted
-        if all > 0.0 { at_outlines / all / (2.0 * self.spacing) } else { 0.0 }
+        if all > 0.0 { self.moved(is_free, |number| self.weights[number]) / all } else { 0.0 }
     }
 
-    /// The class of each target of a block, whose columns from `first` on are these directions. A target that is turned
-    /// away from a direction by its normal does not see it.
+    /// The sum of weights that would move with outlines by a degree, where directions have other weights.
     #[must_use]
-    pub fn classes(&self, block: &RowBlock, scene: &MedialScene, targets: &Targets) -> Vec<u8> {
-        let normals = normals_of(targets.normals.as_deref(), &block.rows);
+    pub fn moved(&self, is_free: impl Fn(usize) -> bool, weight: impl Fn(usize) -> f64) -> f64 {
+        let is_at_outline = |number: &usize| {
+            let own = is_free(*number);
+            self.neighbors[*number].iter().any(|&other| is_free(other as usize) != own)
+        };
+        // directions on both sides of an outline are counted
+        (0..self.directions.len()).filter(is_at_outline).map(weight).sum::<f64>() / (2.0 * self.spacing)
+    }
+
+    /// The class of each target of a block, whose first columns are these directions, by which of the targets are inside
+    /// obstacles. A target that is turned away from a direction by its normal does not see it.
+    #[must_use]
+    pub fn classes(&self, block: &RowBlock, are_inside: &[bool], normals: Option<&[[f32; 3]]>) -> Vec<u8> {
+        let normals = normals_of(normals, &block.rows);
         let class = |row: usize| {
-            let position = targets.positions.get(block.rows.start + row).copied().unwrap_or([f32::NAN; 3]);
             let normal = normals.and_then(|normals| normals.get(row)).map(|normal| normal.map(f64::from));
             let is_free = |number: usize| {
                 block.matrix.is_free(row, number) && normal.is_none_or(|n| dot(n, self.directions[number]) > 0.0)
             };
-            class_of(scene.is_inside_obstacle(position.map(f64::from)), self.moved_share(is_free))
+            let is_inside = are_inside.get(block.rows.start + row) == Some(&true);
+            class_of(is_inside, self.moved_share(is_free))
         };
         (0..block.matrix.target_count()).into_par_iter().with_min_len(CHUNK).map(class).collect()
     }
@@ -153,25 +213,27 @@ pub fn class_of(is_inside_obstacle: bool, moved_share: f64) -> u8 {
     class
 }
 
-/// Measures of what `sums` of a kind may be in truth, up to `max` each: the expected value and the ends of the interval
-/// that holds the truth in 90 % of cases. Each target has its class; `stem` begins their names.
+/// Measures of what `sums` of a kind may be in truth, of which each is `max` at most: the expected value and the ends of
+/// the interval that holds the truth in 90 % of cases. Each target has its class; `stem` begins their names.
 #[must_use]
-pub fn expected_measures(stem: &str, sums: &Measure, max: f64, kind: SumKind, classes: &[u8]) -> Vec<Measure> {
-    let of_each = |suffix: &str, text: &'static str, part: &dyn Fn(&SumError) -> f64| {
-        let of_target = |(&sum, &class): (&f32, &u8)| {
-            let error = FOUND[kind as usize].get(usize::from(class)).copied().unwrap_or_default();
-            #[expect(clippy::cast_possible_truncation, reason = "a sum in f32")]
-            let value = (f64::from(sum) + part(&error) * max).clamp(0.0, max) as f32;
-            if sum.is_nan() { sum } else { value }
-        };
-        let values = sums.values.iter().zip(classes).map(of_target).collect();
+pub fn expected_measures(
+    stem: &str,
+    sums: &Measure,
+    max: impl Fn(usize) -> f64,
+    kind: SumKind,
+    classes: &[u8],
+) -> Vec<Measure> {
+    let of_row = |(row, (&sum, &class)): (usize, (&f32, &u8))| match sum.is_nan() {
+        true => [f64::NAN; 3],
+        false => SumError::of(kind, class).around(f64::from(sum), max(row)),
+    };
+    let found: Vec<[f64; 3]> = sums.values.iter().zip(classes).enumerate().map(of_row).collect();
+    let measure = |(number, (suffix, text)): (usize, &(&str, &'static str))| {
+        #[expect(clippy::cast_possible_truncation, reason = "sums are f32")]
+        let values = found.iter().map(|ends| ends[number] as f32).collect();
         Measure { name: format!("{stem}_{suffix}"), values, ..sums.clone().with_description(text) }
     };
-    vec![
-        of_each("expected", "expected value", &|error| error.mean),
-        of_each("low", "5 % are lower in truth", &|error| error.interval[0]),
-        of_each("high", "5 % are higher in truth", &|error| error.interval[1]),
-    ]
+    INTERVAL_MEASURES.iter().enumerate().map(measure).collect()
 }
 
 #[cfg(test)]
@@ -219,7 +281,7 @@ mod tests {
         let sums = Measure::new("sun_hours", vec![0.0, 4.0, 10.0, f32::NAN]);
         for class in 0..u8::try_from(CLASSES).unwrap() {
             for kind in SumKind::ALL.map(|(kind, _)| kind) {
-                let found = expected_measures("hours", &sums, 10.0, kind, &[class; 4]);
+                let found = expected_measures("hours", &sums, |_| 10.0, kind, &[class; 4]);
                 let names: Vec<&str> = found.iter().map(|measure| measure.name.as_str()).collect();
                 assert_eq!(names, ["hours_expected", "hours_low", "hours_high"]);
                 for row in 0..3 {

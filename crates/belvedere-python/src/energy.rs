@@ -34,6 +34,7 @@ pub(crate) struct RadiationKeywords {
     sun_cell: Option<f64>,
     months: bool,
     location: Option<[f64; 2]>,
+    interval: bool,
 }
 
 impl RadiationKeywords {
@@ -74,7 +75,7 @@ impl RadiationKeywords {
         let params = self.params()?;
         let radiation = self.source(&params)?;
         let place = SunPlace { location: self.location, ..SunPlace::default() };
-        Ok(ask::IrradianceQuestion { radiation, params, place, trees: trees.chosen()?, roofs })
+        Ok(ask::IrradianceQuestion { radiation, params, place, trees: trees.chosen()?, roofs, interval: self.interval })
     }
 
     fn source(&self, params: &IrradianceParams) -> PyResult<ask::Radiation> {

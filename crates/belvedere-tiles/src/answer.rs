@@ -16,10 +16,11 @@ use crate::stage::Stage;
 use crate::window;
 use belvedere::apps::edge::near_edge;
 use belvedere::apps::eyes::skip_unfit_eyes;
-use belvedere::apps::irradiance::{irradiation_measures, season_irradiation};
+use belvedere::apps::irradiance::season_irradiation;
 use belvedere::apps::rows::SkyObstacles;
 use belvedere::apps::shadow::{Edges, scene_shadow};
 use belvedere::apps::sky_view::scene_sky_view;
+use belvedere::apps::sum_errors::Intervals;
 use belvedere::apps::sun_hours::scene_sun_hours;
 use belvedere::apps::targets::{Measure, TargetLayout, Targets};
 use belvedere::apps::viewshed::{Masks, Observer, Viewshed, ViewshedParams, viewshed};
@@ -137,7 +138,10 @@ pub(crate) fn answer(
             };
             (sight.answered(&balls, &is_without_proof, size)?, balls)
         }
-        PreparedQuestion::Light(light) => lit((plan, run), light, parts, targets, size, control)?,
+        PreparedQuestion::Light(light) => {
+            let names = question.band_names(plan.kind_of(question));
+            lit((plan, run), (light, &names), parts, targets, size, control)?
+        }
         PreparedQuestion::Probability { of, certainty } => {
             let mut evidence = PartialEvidence::new(of, &targets.positions)?;
             evidence.gather(plan, (&parts, others), &lines, control)?;
@@ -214,40 +218,42 @@ struct CellAnswers {
 /// What of the light reaches targets, and what became of the balls.
 fn lit(
     (plan, run): (&Plan, &Path),
-    light: &LightQuestion,
+    (light, names): (&LightQuestion, &[String]),
     parts: TileObstacles<'_>,
     targets: &Targets,
     size: [usize; 2],
     control: &Control<'_>,
 ) -> Result<(CellAnswers, ObstacleSearch)> {
     let around = SkyObstacles::InParts(&parts);
-    let numbers = match light {
-        LightQuestion::Shadow(sun) => {
-            scene_shadow(around, targets, &[*sun], Edges::Hard, control)?.pop().unwrap_or_default()
-        }
+    let bands = match light {
+        LightQuestion::Shadow(sun) => scene_shadow(around, targets, &[*sun], Edges::Hard, control)?,
         LightQuestion::SunRule { plan, site } => {
-            let sums = scene_sun_hours(around, targets, plan, Some(site), None, control)?;
+            let sums = scene_sun_hours(around, targets, plan, Some(site), Intervals::Without, control)?;
             // the rule comes after the measures of its days
-            sums.into_measures(plan, targets).pop().map(|measure| measure.values).unwrap_or_default()
+            sums.into_measures(plan, targets).pop().map(|measure| measure.values).into_iter().collect()
         }
-        LightQuestion::Sky(sky) => first(scene_sky_view(around, targets, sky, None, control)?.into_measures()),
-        LightQuestion::SunHours { plan, site } => {
-            first(scene_sun_hours(around, targets, plan, Some(site), None, control)?.into_measures(plan, targets))
+        LightQuestion::Sky(sky, intervals) => {
+            wanted(scene_sky_view(around, targets, sky, *intervals, control)?.into_measures(), names)
         }
-        LightQuestion::Irradiance { seasons, .. } => {
-            first(irradiation_measures(&season_irradiation(around, targets, seasons, control)?, 1))
+        LightQuestion::SunHours { plan, site, intervals } => {
+            let sums = scene_sun_hours(around, targets, plan, Some(site), *intervals, control)?;
+            wanted(sums.into_measures(plan, targets), names)
+        }
+        LightQuestion::Irradiance { seasons, intervals, .. } => {
+            wanted(season_irradiation(around, targets, seasons, *intervals, control)?.into_measures(), names)
         }
     };
     let is_yes_or_no = match light {
         LightQuestion::Shadow(_) => around.crowns().is_none(),
         LightQuestion::SunRule { .. } => true,
-        LightQuestion::Sky(_) | LightQuestion::SunHours { .. } | LightQuestion::Irradiance { .. } => false,
+        LightQuestion::Sky(..) | LightQuestion::SunHours { .. } | LightQuestion::Irradiance { .. } => false,
     };
     let mut balls = parts.into_found();
     let is_missing = unknown_towards(&balls, targets, light.directions());
     if !is_yes_or_no {
-        return Ok((measured(&numbers, &is_missing, size)?, balls));
+        return Ok((measured(bands, &is_missing, size)?, balls));
     }
+    let numbers = bands.into_iter().next().unwrap_or_default();
     let is_without_proof = match light {
         LightQuestion::Shadow(sun) if plan.proves => {
             let lit = numbers.iter().zip(&is_missing).map(|(&lit, &is_missing)| lit > 0.0 && !is_missing);
@@ -279,16 +285,20 @@ fn without_proof(
     Ok(is_without)
 }
 
-/// Numbers of targets: those that missing balls may change are not known.
-fn measured(numbers: &[f32], is_unknown: &[bool], size: [usize; 2]) -> Result<CellAnswers> {
-    let unproven_cells = numbers.iter().zip(is_unknown).filter(|(v, is_unknown)| v.is_finite() && **is_unknown).count();
-    let known = numbers.iter().zip(is_unknown).map(|(&v, &is_unknown)| if is_unknown { f32::NAN } else { v });
-    Ok(CellAnswers { values: Pixels::numbers([known.collect()], size)?, unproven_cells, skipped_observers: 0 })
+/// Numbers of targets, a band each: those that missing balls may change are not known.
+fn measured(mut bands: Vec<Vec<f32>>, is_unknown: &[bool], size: [usize; 2]) -> Result<CellAnswers> {
+    let values = bands.first().into_iter().flatten().zip(is_unknown);
+    let unproven_cells = values.filter(|(value, is_unknown)| value.is_finite() && **is_unknown).count();
+    for band in &mut bands {
+        band.iter_mut().zip(is_unknown).filter(|(_, unknown)| **unknown).for_each(|(value, _)| *value = f32::NAN);
+    }
+    Ok(CellAnswers { values: Pixels::numbers(bands, size)?, unproven_cells, skipped_observers: 0 })
 }
 
-/// The first measure is what a question is named after.
-fn first(measures: Vec<Measure>) -> Vec<f32> {
-    measures.into_iter().next().map(|measure| measure.values).unwrap_or_default()
+/// The values of the measures that bands of these names hold.
+fn wanted(measures: Vec<Measure>, names: &[String]) -> Vec<Vec<f32>> {
+    let is_wanted = |measure: &Measure| names.contains(&measure.name);
+    measures.into_iter().filter(is_wanted).map(|measure| measure.values).collect()
 }
 
 /// Answers for targets that are lit or not, and which of the lit are unproven: missing balls may block them, or no

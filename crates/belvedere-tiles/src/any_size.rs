@@ -6,6 +6,7 @@ use crate::question::TileQuestion;
 use crate::run::{RunParams, RunReport, Shard, Steps, run};
 use belvedere::Frame;
 use belvedere::apps::ask::{self, Answers, Context, HowSure, NamedSun, Remark, summarise_parts};
+use belvedere::apps::sum_errors::INTERVAL_MEASURES;
 use belvedere::apps::targets::Measure;
 use belvedere::apps::viewshed::SeenProbabilities;
 use belvedere::control::Control;
@@ -242,8 +243,9 @@ impl SurveyQuestion {
             let description = question.description();
             let range = (kind == ResultKind::Answer).then_some([0.0, 1.0]);
             let of_band = |(name, band): (String, Raster<f32>)| {
+                let of_interval = INTERVAL_MEASURES.iter().find(|(end, _)| name.ends_with(&format!("_{end}")));
                 let description = match (name == UNPROVEN_BAND, self.suns.is_empty()) {
-                    (false, _) => description,
+                    (false, _) => of_interval.map_or(description, |(_, text)| *text),
                     (true, false) => "1: lit, but unproven",
                     (true, true) => "from how many nothing blocks it, but no pulse proves it",
                 };
@@ -252,7 +254,8 @@ impl SurveyQuestion {
                     .with_kind(kind)
                     .with_range(range)
             };
-            results.extend(bands.map(of_band).take(if is_single { 2 } else { 1 }));
+            let has_all = is_single || kind == ResultKind::Number;
+            results.extend(bands.map(of_band).take(if has_all { usize::MAX } else { 1 }));
         }
         if self.suns.is_empty() {
             let sure = likely.into_iter().next().map(|bands| self.how_sure(bands, &results, "")).transpose()?;

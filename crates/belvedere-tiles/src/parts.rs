@@ -28,6 +28,8 @@ use std::sync::{Mutex, PoisonError};
 /// Distances from the cells up to which the balls of a tile are tested before the others, metres: after the first, few
 /// lines of sight are left.
 const BANDS: [f64; 4] = [64.0, 192.0, 448.0, f64::INFINITY];
+/// Targets handed to a thread at once.
+const CHUNK: usize = 256;
 /// Number of balls from which those found so far are tested before more are looked up.
 const MIN_TEST_BATCH: usize = 100_000;
 
@@ -200,6 +202,30 @@ impl ObstacleParts for TileObstacles<'_> {
             Some(all) => (all.into_matrix(), Some(without_trees.into_matrix())),
             None => (without_trees.into_matrix(), None),
         })
+    }
+
+    fn are_inside_obstacles(&self, targets: &[[f32; 3]], control: &Control<'_>) -> Result<Vec<bool>> {
+        let mut are_inside = vec![false; targets.len()];
+        let mut found = self.found.lock().unwrap_or_else(PoisonError::into_inner);
+        for BallTile { tile, tops, .. } in self.squares.iter().flatten() {
+            control.check()?;
+            if !tops.iter().any(|(number, _)| square_area(*number, TOP_SIDE).distance(&self.cells) <= 0.0) {
+                continue;
+            }
+            let read = control.stage("reading balls", 0, || found.read(self.plan, self.run, *tile, control))?;
+            let Some(ModelParts { balls, .. }) = read else { continue };
+            let mut near = MedialBalls::default();
+            let places = balls.centers.iter().zip(&balls.radii).enumerate();
+            let rows = places.filter(|(_, (center, radius))| {
+                self.cells.distance(&MapArea::at(center.map(f64::from))) <= f64::from(**radius)
+            });
+            rows.for_each(|(row, _)| push(&mut near, &balls, row));
+            let scene = MedialScene::new(&near, &rule(self.plan))?;
+            are_inside.par_iter_mut().zip(targets).with_min_len(CHUNK).for_each(|(is_inside, target)| {
+                *is_inside |= scene.is_inside_obstacle(target.map(f64::from));
+            });
+        }
+        Ok(are_inside)
     }
 }
 

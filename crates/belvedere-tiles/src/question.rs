@@ -10,6 +10,7 @@ use belvedere::apps::irradiance::{
 };
 use belvedere::apps::shadow::{self, Edges, ShadowSun};
 use belvedere::apps::sky_view::{self, SkyDirections};
+use belvedere::apps::sum_errors::{INTERVAL_MEASURES, Intervals};
 use belvedere::apps::sun::Site;
 use belvedere::apps::sun_hours::{self, SunPlan};
 use belvedere::apps::tree_light::{CrownLight, Season};
@@ -41,6 +42,9 @@ pub enum TileQuestion {
     SkyView {
         /// How the sky is parted.
         sky: SkyParts,
+        /// Whether to say how far it may be from the truth.
+        #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+        interval: bool,
     },
     /// Hours of sun a day, the mean over some days.
     SunHours {
@@ -66,6 +70,9 @@ pub enum TileQuestion {
         radiation: TileRadiation,
         /// How it is gathered.
         params: IrradianceParams,
+        /// Whether to say how far it may be from the truth.
+        #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+        interval: bool,
     },
     /// What observers see: of one 1 where nothing blocks it, 0 blocked; of several from how many nothing blocks a cell.
     Viewshed {
@@ -120,10 +127,10 @@ pub(crate) enum PreparedQuestion {
 /// A question about light from given directions.
 pub(crate) enum LightQuestion {
     Shadow(ShadowSun),
-    Sky(SkyDirections),
-    SunHours { plan: Box<SunPlan>, site: Site },
+    Sky(SkyDirections, Intervals),
+    SunHours { plan: Box<SunPlan>, site: Site, intervals: Intervals },
     SunRule { plan: Box<SunPlan>, site: Site },
-    Irradiance { seasons: Vec<SeasonRadiation>, directions: Vec<[f64; 3]> },
+    Irradiance { seasons: Vec<SeasonRadiation>, directions: Vec<[f64; 3]>, intervals: Intervals },
 }
 
 impl LightQuestion {
@@ -131,7 +138,7 @@ impl LightQuestion {
     pub(crate) fn directions(&self) -> &[[f64; 3]] {
         match self {
             Self::Shadow(sun) => std::slice::from_ref(&sun.to_sun),
-            Self::Sky(sky) => &sky.directions,
+            Self::Sky(sky, _) => &sky.directions,
             Self::SunHours { plan, .. } | Self::SunRule { plan, .. } => plan.directions(),
             Self::Irradiance { directions, .. } => directions,
         }
@@ -199,12 +206,12 @@ impl TileQuestion {
                 }
                 for (text, (column, _)) in hours.rules.iter().zip(ask::rules(&hours.rules)?) {
                     let days = ask::Days { dates: Vec::new(), between: None, ..hours.days.clone() };
-                    let days = SunHoursQuestion { days, rules: vec![text.clone()], ..hours.clone() };
+                    let days = SunHoursQuestion { days, rules: vec![text.clone()], interval: false, ..hours.clone() };
                     questions.push(Self::SunRule { name: column.to_owned(), site, days });
                 }
                 Ok(questions)
             }
-            ask::Question::SkyView(view) => Ok(vec![Self::SkyView { sky: view.sky }]),
+            ask::Question::SkyView(view) => Ok(vec![Self::SkyView { sky: view.sky, interval: view.interval }]),
             ask::Question::Irradiance(energy) => {
                 let station = energy.radiation.weather().map(|weather| [weather.latitude, weather.longitude]);
                 let site = energy.place.site_at(whereabouts, context, station)?;
@@ -216,7 +223,7 @@ impl TileQuestion {
                         TileRadiation::ClearSky { clear_sky: *clear_sky, year: *year }
                     }
                 };
-                Ok(vec![Self::Irradiance { site, radiation, params: energy.params }])
+                Ok(vec![Self::Irradiance { site, radiation, params: energy.params, interval: energy.interval }])
             }
             ask::Question::Viewshed(view) => {
                 let mut eyes = Vec::new();
@@ -265,8 +272,6 @@ impl TileQuestion {
                 ("soft edges", shadow.edges == Edges::Soft),
                 ("unproven light that counts as lit or as blocked", counts(shadow.unproven)),
             ],
-            ask::Question::SunHours(hours) => &[("intervals", hours.interval)],
-            ask::Question::SkyView(view) => &[("intervals", view.interval)],
             ask::Question::Viewshed(view) => {
                 let limits = &view.limits;
                 let is_turned = [limits.azimuth_range_deg, limits.elevation_range_deg].iter().any(Option::is_some);
@@ -353,19 +358,28 @@ impl TileQuestion {
         matches!(self, Self::Shadow { .. } | Self::Viewshed { .. } | Self::Probability { .. })
     }
 
-    /// Refuses what needs pulses, where these are not known.
+    /// Refuses what says how sure answers are, where pulses are not known.
     ///
     /// # Errors
     /// [`Error::InvalidParameter`].
     pub(crate) fn check_pulses(&self, are_known: bool) -> Result<()> {
-        if are_known || !matches!(self, Self::Probability { .. }) {
-            return Ok(());
+        let parameter = match self {
+            Self::Probability { .. } => Parameter::Certainty,
+            others if others.has_interval() => Parameter::Interval,
+            _ => return Ok(()),
+        };
+        let expected = "left out for surveys whose pulses are not known, or of which something is cleared";
+        let refused = || Err(Error::InvalidParameter { parameter, value: "given".to_owned(), expected });
+        if are_known { Ok(()) } else { refused() }
+    }
+
+    /// Whether its values come with how far they may be from the truth.
+    fn has_interval(&self) -> bool {
+        match self {
+            Self::SkyView { interval, .. } | Self::Irradiance { interval, .. } => *interval,
+            Self::SunHours { days, .. } => days.interval,
+            _ => false,
         }
-        Err(Error::InvalidParameter {
-            parameter: Parameter::Certainty,
-            value: "given".to_owned(),
-            expected: "left out for surveys whose pulses are not known, or of which something is cleared",
-        })
     }
 
     /// Names of the bands of a result of a kind: answers and counts have a second one, of what missing tiles may
@@ -383,8 +397,14 @@ impl TileQuestion {
             Self::Irradiance { .. } => irradiance::ENERGY_NAME,
             others => others.name(),
         };
-        let second = (kind != ResultKind::Number).then_some(UNPROVEN_BAND);
-        [first].into_iter().chain(second).map(str::to_owned).collect()
+        let second = (kind != ResultKind::Number).then(|| UNPROVEN_BAND.to_owned());
+        let stem = match self {
+            Self::SkyView { .. } => "factor",
+            Self::Irradiance { .. } => irradiance::ENERGY_NAME,
+            _ => "hours",
+        };
+        let ends = INTERVAL_MEASURES.iter().filter(|_| self.has_interval()).map(|(end, _)| format!("{stem}_{end}"));
+        [first.to_owned()].into_iter().chain(second).chain(ends).collect()
     }
 
     /// What follows from its parameters, where crowns of trees let light through or not; remarks on radiation go into
@@ -408,19 +428,24 @@ impl TileQuestion {
                 let elevation = to_sun[2].clamp(-1.0, 1.0).asin().to_degrees();
                 invalid(Parameter::SunElevation, format!("{elevation:.3} degrees"), "above the horizon")
             }
-            Self::SkyView { sky } => Ok(PreparedQuestion::Light(LightQuestion::Sky(sky.directions()?))),
+            Self::SkyView { sky, interval } => {
+                let (sky, intervals) = (sky.directions()?, Intervals::wanted(*interval));
+                Ok(PreparedQuestion::Light(LightQuestion::Sky(sky, intervals)))
+            }
             Self::SunHours { site, days } => Ok(PreparedQuestion::Light(LightQuestion::SunHours {
                 plan: Box::new(days.plan(site, None)?.0),
                 site: *site,
+                intervals: Intervals::wanted(days.interval),
             })),
             Self::SunRule { site, days, .. } => Ok(PreparedQuestion::Light(LightQuestion::SunRule {
                 plan: Box::new(days.plan(site, None)?.0),
                 site: *site,
             })),
-            Self::Irradiance { site, radiation, params } => {
+            Self::Irradiance { site, radiation, params, interval } => {
                 let seasons = radiation.seasons(&site.validate()?, crowns, params, context, control)?;
                 let directions = seasons.iter().flat_map(|season| season.radiation.directions()).collect();
-                Ok(PreparedQuestion::Light(LightQuestion::Irradiance { seasons, directions }))
+                let intervals = Intervals::wanted(*interval);
+                Ok(PreparedQuestion::Light(LightQuestion::Irradiance { seasons, directions, intervals }))
             }
             Self::Viewshed { eyes, .. } if eyes.is_empty() || !eyes.iter().flatten().all(|v| v.is_finite()) => {
                 invalid(Parameter::Observer, format!("{eyes:?}"), "one or more places with a height")

@@ -1,5 +1,6 @@
 //! Irradiance: the energy that sun and sky send to places, and to the planes of roofs.
 
+use super::how_sure::{check_interval, check_interval_scene};
 use super::light::{Light, OnTargets};
 use super::scene::Whereabouts;
 use super::sections::{LinesSection, MeasuresSection, PlacesReport, RadiationSection, RoofsSection};
@@ -7,11 +8,11 @@ use super::sun::SunPlace;
 use super::{Answers, Ask, Context, Places, Remark, Scene, ThroughTrees, spread};
 use crate::irradiance::{
     CLEAR_SKY_YEAR, ClearSky, IrradianceParams, PARTS, PeriodReport, RadiationSource, RoofIrradiation, RoofsReport,
-    SeasonRadiation, Surroundings, irradiation_measures, look_count, period_seasons, roof_irradiation,
-    season_irradiation,
+    SeasonRadiation, Surroundings, look_count, period_seasons, roof_irradiation, season_irradiation,
 };
 use crate::roof_planes::{GROUND_CELL, RoofPlane, RoofPlaneParams, RoofsFrom, roof_planes, roof_points};
 use crate::rows::Obstacles;
+use crate::sum_errors::Intervals;
 use crate::sun::Site;
 use crate::targets::Measure;
 use crate::tree_light::{CrownLight, TreeLight};
@@ -46,6 +47,10 @@ pub struct IrradianceQuestion {
     /// The planes of roofs that are wanted beside places.
     #[serde(default)]
     pub roofs: Option<Roofs>,
+    /// Whether to say how far energies may be from the truth: the expected value and an interval that holds 90 %. Only
+    /// where trees are opaque. Default: not.
+    #[serde(default)]
+    pub interval: bool,
 }
 
 /// Where radiation comes from.
@@ -294,6 +299,7 @@ impl Ask for IrradianceQuestion {
 
     fn check(&self) -> Result<()> {
         self.params.validate()?;
+        check_interval(self.interval, &self.trees)?;
         self.place.check().map(|_| ())
     }
 
@@ -304,6 +310,8 @@ impl Ask for IrradianceQuestion {
         context: &mut Context,
         control: &Control<'_>,
     ) -> Result<Answers<IrradianceResults>> {
+        check_interval_scene(self.interval, scene, control)?;
+        let intervals = Intervals::wanted(self.interval);
         let station = self.radiation.weather().map(|weather| [weather.latitude, weather.longitude]);
         let site = self.place.site(scene, context, station)?;
         let trees = self.trees.of(scene, context, control)?;
@@ -324,10 +332,10 @@ impl Ask for IrradianceQuestion {
                 let light =
                     Light::on(places, &directions, (&self.trees, UnprovenAs::Visible), scene, context, control)?;
                 let looks = light.targets.len() * look_count(&light.obstacles(), &seasons);
-                let sums = control.stage("testing sun and sky", looks, || {
-                    season_irradiation(light.obstacles(), &light.targets, &seasons, control)
+                let energies = control.stage("testing sun and sky", looks, || {
+                    season_irradiation(light.obstacles(), &light.targets, &seasons, intervals, control)
                 })?;
-                measures = irradiation_measures(&sums, seasons.first().map_or(1, |s| s.radiation.group_count()));
+                measures = energies.into_measures();
                 measures.iter_mut().for_each(|measure| light.targets.clear_unasked(&mut measure.values));
                 context.report.measures = Some(MeasuresSection::of(&light.targets, &measures));
                 summarise(&measures, &PlacesReport::in_words(&light.targets), context);
@@ -335,7 +343,9 @@ impl Ask for IrradianceQuestion {
             }
         };
         let roofs = match planes {
-            Some(planes) => Some(roofs_found(planes, (&blockers, trees.as_ref()), &seasons, context, control)?),
+            Some(planes) => {
+                Some(roofs_found((planes, intervals), (&blockers, trees.as_ref()), &seasons, context, control)?)
+            }
             None => None,
         };
         Ok(Answers::new(IrradianceResults { on, roofs, site, blockers }, measures))
@@ -354,15 +364,16 @@ pub(super) fn summarise(measures: &[Measure], places: &str, context: &mut Contex
 }
 
 fn roofs_found(
-    planes: Vec<RoofPlane>,
+    (planes, intervals): (Vec<RoofPlane>, Intervals),
     (scene, trees): (&MedialScene, Option<&TreeLight>),
     seasons: &[SeasonRadiation],
     context: &mut Context,
     control: &Control<'_>,
 ) -> Result<RoofsResults> {
     let obstacles = Obstacles { scene, trees };
-    let energies = control
-        .stage("testing sun and sky", planes.len(), || roof_irradiation(obstacles, &planes, seasons, control))?;
+    let energies = control.stage("testing sun and sky", planes.len(), || {
+        roof_irradiation(obstacles, &planes, seasons, intervals, control)
+    })?;
     let report = RoofsReport::new(&planes, &energies);
     let area: f64 = planes.iter().map(|plane| plane.area).sum();
     context.headline(format!("{} roof planes, {area:.0} m²", planes.len()));

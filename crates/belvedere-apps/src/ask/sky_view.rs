@@ -6,6 +6,7 @@ use super::scene::Whereabouts;
 use super::sections::{MeasuresSection, PlacesReport};
 use super::{Answers, Ask, Context, Places, Scene, ThroughTrees, spread};
 use crate::sky_view::{SKY_DIRECTIONS, SkyDirections, scene_sky_view};
+use crate::sum_errors::Intervals;
 use crate::targets::Measure;
 use belvedere_core::query::UnprovenAs;
 use belvedere_data::Result;
@@ -75,9 +76,8 @@ impl Ask for SkyViewQuestion {
         check_interval_scene(self.interval, scene, control)?;
         let sky = self.sky.directions()?;
         let light = Light::on(places, &sky.directions, (&self.trees, UnprovenAs::Visible), scene, context, control)?;
-        let certain_of = self.interval.then_some(&*light.blockers);
         let seen = control.stage("testing sky", light.steps(), || {
-            scene_sky_view(light.obstacles(), &light.targets, &sky, certain_of, control)
+            scene_sky_view(light.obstacles(), &light.targets, &sky, Intervals::wanted(self.interval), control)
         })?;
         let measures = seen.into_measures();
         context.report.measures = Some(MeasuresSection::of(&light.targets, &measures));

@@ -7,6 +7,7 @@ use super::sections::{MeasuresSection, NamedValues, PeriodSection, PlacesReport}
 use super::sun::{Days, SunPlace};
 use super::{Answers, Ask, Context, Places, Scene, ThroughTrees, spread};
 use crate::rows::Obstacles;
+use crate::sum_errors::Intervals;
 use crate::sun::{Binning, DayParams, Period, Site, SunSchedule, Zone, sun_days};
 use crate::sun_hours::{SunPlan, SunRule, SunSums, scene_sun_hours};
 use crate::targets::{Measure, ResultKind, Targets};
@@ -179,8 +180,8 @@ impl PreparedSun {
     /// Those of [`scene_sun_hours`].
     pub fn test(&self, control: &Control<'_>) -> Result<SunSums> {
         control.stage("testing sun", self.light.steps(), || {
-            let certain_of = self.has_interval.then_some(&*self.light.blockers);
-            scene_sun_hours(self.obstacles(), self.targets(), &self.plan, Some(&self.site), certain_of, control)
+            let intervals = Intervals::wanted(self.has_interval);
+            scene_sun_hours(self.obstacles(), self.targets(), &self.plan, Some(&self.site), intervals, control)
         })
     }
 

@@ -17,6 +17,7 @@ mod clear_sky;
 mod diffuse;
 mod erbs;
 mod instants;
+mod intervals;
 mod irradiation;
 mod measures;
 mod patch_sky;
@@ -37,5 +38,7 @@ pub use patch_sky::patch_radiation;
 pub use period::{Grouping, Instant, IrradianceParams, PeriodRadiation, PeriodReport, Surroundings};
 pub use roof_columns::{RoofColumn, roof_columns};
 pub use roofs::{PANEL_HEIGHT, RoofIrradiation, RoofsReport, above_roof, horizon_places, roof_irradiation};
-pub use seasons::{CLEAR_SKY_YEAR, RadiationSource, SeasonRadiation, look_count, period_seasons, season_irradiation};
+pub use seasons::{
+    CLEAR_SKY_YEAR, RadiationSource, SeasonRadiation, TargetEnergies, look_count, period_seasons, season_irradiation,
+};
 pub use strings::{PlaneIrradiation, plane_irradiation};

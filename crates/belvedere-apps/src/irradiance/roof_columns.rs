@@ -50,6 +50,20 @@ pub fn roof_columns(planes: &[RoofPlane], rows: &[RoofIrradiation], frame: &Fram
         column("max_loss", of_rows(&RoofIrradiation::greatest_loss), 4),
         column("kwh", of_both(&|plane, row| row.panel_area(plane) * row.mean.total()), 0),
     ];
+    if rows.iter().any(|row| row.error.is_some()) {
+        let end = |number: usize| of_rows(&|row| row.expected()[number]);
+        // much energy is little loss
+        let loss =
+            |number: usize| of_rows(&|row| 1.0 - row.expected()[number] / row.mean.unshaded.max(f64::MIN_POSITIVE));
+        columns.extend([
+            column("kwh_m2_expected", end(0), 1),
+            column("kwh_m2_low", end(1), 1),
+            column("kwh_m2_high", end(2), 1),
+            column("loss_expected", loss(0), 4),
+            column("loss_low", loss(2), 4),
+            column("loss_high", loss(1), 4),
+        ]);
+    }
     if rows.iter().all(|row| row.groups.len() > 1) {
         columns.extend(
             MONTH_COLUMNS.into_iter().enumerate().map(|(month, name)| {

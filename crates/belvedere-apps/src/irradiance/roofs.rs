@@ -1,10 +1,12 @@
 //! The energy of planes of roofs, cell by cell.
 
+use super::intervals::EnergyOutlines;
 use super::irradiation::Irradiation;
 use super::seasons::{SeasonRadiation, add, group_count, mix};
 use super::strings::{PlaneIrradiation, plane_irradiation};
 use crate::roof_planes::RoofPlane;
 use crate::rows::{BLOCK_BITS, Obstacles, RowBlock, fold_blocks};
+use crate::sum_errors::{Intervals, SumError, SumKind, class_of};
 use belvedere_core::query::MedialScene;
 use belvedere_data::Result;
 use belvedere_data::control::Control;
@@ -26,9 +28,19 @@ pub struct RoofIrradiation {
     pub groups: Vec<f64>,
     /// Cells that count: those of the plane that see anything of the sky.
     pub cell_count: usize,
+    /// How far the mean may be from the truth, as a share of what arrives without obstacles; `None` where that was not
+    /// wanted.
+    pub error: Option<SumError>,
 }
 
 impl RoofIrradiation {
+    /// The expected mean of the cells, and the ends of the interval that holds 90 %, kWh/m²; NaN where that was not
+    /// wanted.
+    #[must_use]
+    pub fn expected(&self) -> [f64; 3] {
+        self.error.map_or([f64::NAN; 3], |error| error.around(self.mean.total(), self.mean.unshaded))
+    }
+
     /// Area of the cells of `plane` that count, m².
     #[must_use]
     pub fn panel_area(&self, plane: &RoofPlane) -> f64 {
@@ -112,6 +124,7 @@ pub fn roof_irradiation<'a>(
     obstacles: impl Into<Obstacles<'a>>,
     planes: &[RoofPlane],
     seasons: &[SeasonRadiation],
+    intervals: Intervals,
     control: &Control<'_>,
 ) -> Result<Vec<RoofIrradiation>> {
     let obstacles = obstacles.into();
@@ -122,7 +135,7 @@ pub fn roof_irradiation<'a>(
     let mut rest = planes;
     while !rest.is_empty() {
         let (some, others) = rest.split_at(planes_at_once(rest, max_cells));
-        found.extend(of_planes(obstacles, some, seasons, control)?);
+        found.extend(of_planes(obstacles, some, seasons, intervals, control)?);
         control.advance(some.len());
         rest = others;
     }
@@ -143,8 +156,10 @@ fn of_planes(
     obstacles: Obstacles<'_>,
     planes: &[RoofPlane],
     seasons: &[SeasonRadiation],
+    intervals: Intervals,
     control: &Control<'_>,
 ) -> Result<Vec<RoofIrradiation>> {
+    let mut moved = vec![0.0_f64; planes.len()];
     let mut places = Vec::new();
     let mut strings: Vec<Vec<usize>> = Vec::new();
     for plane in planes {
@@ -157,8 +172,16 @@ fn of_planes(
     let quiet = Quiet(control);
     for season in seasons {
         let directions = season.radiation.directions();
+        let outlines = (intervals == Intervals::With).then(|| EnergyOutlines::new(&season.radiation));
         fold_blocks(obstacles.into(), &places, &directions, places.len().max(1), &Control::new(&quiet), |block| {
             let own = of_season(&block, planes, &strings, season)?;
+            let mut first = 0;
+            for ((plane, strings), moved) in planes.iter().zip(&strings).zip(&mut moved) {
+                let cells = first..first + strings.len();
+                first = cells.end;
+                let share = outlines.as_ref().map(|o| o.moved_share_of_plane(&block.matrix, cells, plane.normal));
+                *moved = moved.max(share.unwrap_or(0.0));
+            }
             if sums.is_empty() {
                 sums = own;
             } else {
@@ -172,7 +195,9 @@ fn of_planes(
     }
     Ok(sums
         .iter()
-        .map(|sum| RoofIrradiation {
+        .zip(moved)
+        .map(|(sum, moved)| RoofIrradiation {
+            error: (intervals == Intervals::With).then(|| SumError::of(SumKind::Plane, class_of(false, moved))),
             mean: Irradiation::sum(&sum.mean),
             string_limited: Irradiation::sum(&sum.string_limited),
             groups: sum.mean.iter().map(Irradiation::total).collect(),

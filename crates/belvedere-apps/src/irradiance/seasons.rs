@@ -2,11 +2,14 @@
 
 use super::ClearSky;
 use super::instants::{clear_instants, weather_instants};
+use super::intervals::EnergyOutlines;
 use super::irradiation::{Irradiation, irradiation};
+use super::measures::{ENERGY_NAME, irradiation_measures};
 use super::period::{Instant, IrradianceParams, PeriodRadiation, PeriodReport};
 use crate::rows::{Obstacles, SkyObstacles, check_normals, fold_rows, normals_of};
+use crate::sum_errors::{Intervals, SumKind, expected_measures};
 use crate::sun::{Date, Site, Zone};
-use crate::targets::Targets;
+use crate::targets::{Measure, Targets};
 use crate::tree_light::{CrownLight, Season};
 use belvedere_data::control::Control;
 use belvedere_data::weather::Weather;
@@ -124,8 +127,34 @@ fn split_year(year: i16, zone: &Zone, share: impl Fn(Date) -> f64) -> Result<Vec
     Ok(spans)
 }
 
-/// The energy of `targets` over all of `seasons` among `obstacles`: (M) rows of as many sums as the seasons have
-/// groups, NaN for a target without a position. Progress counts targets, [`look_count`] times each.
+/// Energies of targets.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TargetEnergies {
+    /// (M) rows of `group_count` sums each; NaN for a target without a position.
+    pub sums: Vec<Irradiation>,
+    /// Groups of the period, such as months: 1 or more.
+    pub group_count: usize,
+    /// How far they may be from the truth, by classes; empty where that was not wanted.
+    pub classes: Vec<u8>,
+}
+
+impl TargetEnergies {
+    /// All as measures: those of [`irradiation_measures`], and how far the energy may be from the truth.
+    #[must_use]
+    pub fn into_measures(self) -> Vec<Measure> {
+        let mut measures = irradiation_measures(&self.sums, self.group_count);
+        if let (Some(energy), false) = (measures.first().cloned(), self.classes.is_empty()) {
+            let unshaded = |row: usize| {
+                let groups = self.sums.chunks(self.group_count.max(1)).nth(row).unwrap_or_default();
+                groups.iter().map(|group| group.unshaded).sum::<f64>()
+            };
+            measures.extend(expected_measures(ENERGY_NAME, &energy, unshaded, SumKind::Energy, &self.classes));
+        }
+        measures
+    }
+}
+
+/// The energy of `targets` over all of `seasons` among `obstacles`. Progress counts targets, [`look_count`] times each.
 ///
 /// # Errors
 /// Those of [`fold_rows`] and [`irradiation`]; [`Error::NoPoints`] without any season.
@@ -133,15 +162,24 @@ pub fn season_irradiation<'a>(
     obstacles: impl Into<SkyObstacles<'a>>,
     targets: &Targets,
     seasons: &[SeasonRadiation],
+    intervals: Intervals,
     control: &Control<'_>,
-) -> Result<Vec<Irradiation>> {
+) -> Result<TargetEnergies> {
     let obstacles = obstacles.into();
     let normals = targets.normals.as_deref();
     check_normals(normals, targets.len())?;
     let group_count = group_count(seasons)?;
     let mut sums = vec![Irradiation::default(); targets.len() * group_count];
+    let are_inside = intervals.are_inside(obstacles, targets, control)?;
+    let mut classes = vec![0; if are_inside.is_some() { targets.len() } else { 0 }];
     for season in seasons {
+        let outlines = are_inside.as_ref().map(|inside| (inside, EnergyOutlines::new(&season.radiation)));
         fold_rows(obstacles, &targets.positions, &season.radiation.directions(), control, |block| {
+            if let Some((are_inside, outlines)) = &outlines {
+                let of_block = classes.get_mut(block.rows.clone()).unwrap_or_default();
+                let own = outlines.classes(&block, are_inside, normals);
+                of_block.iter_mut().zip(own).for_each(|(class, own)| *class = own.max(*class));
+            }
             let mut own = irradiation(&block.matrix, normals_of(normals, &block.rows), &season.radiation)?;
             if let Some(opaque) = &block.without_trees {
                 let without = irradiation(opaque, normals_of(normals, &block.rows), &season.radiation)?;
@@ -155,7 +193,7 @@ pub fn season_irradiation<'a>(
     for (_, sums) in sums.chunks_mut(group_count).enumerate().filter(|(row, _)| !targets.is_target(*row)) {
         sums.fill(Irradiation::unknown());
     }
-    Ok(sums)
+    Ok(TargetEnergies { sums, group_count, classes })
 }
 
 /// How often each target is tested: once for each of `seasons`, or twice where trees let light through.

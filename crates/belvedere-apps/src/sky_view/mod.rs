@@ -5,10 +5,10 @@ mod directions;
 pub use directions::SkyDirections;
 
 use crate::rows::{SkyObstacles, check_normals, fold_rows, normals_of};
-use crate::sum_errors::{Outlines, SumKind, expected_measures};
+use crate::sum_errors::{Intervals, Outlines, SumKind, expected_measures};
 use crate::targets::{Measure, Targets};
 use crate::tree_light::through_crowns;
-use belvedere_core::query::{MedialScene, VisibilityMatrix};
+use belvedere_core::query::VisibilityMatrix;
 use belvedere_data::control::Control;
 use belvedere_data::vector::dot;
 use belvedere_data::{Error, Result};
@@ -51,7 +51,7 @@ impl SkyView {
         let expected = match self.classes.is_empty() {
             true => Vec::new(),
             false => {
-                let of = |stem, sums| expected_measures(stem, sums, 1.0, SumKind::Sky, &self.classes);
+                let of = |stem, sums| expected_measures(stem, sums, |_| 1.0, SumKind::Sky, &self.classes);
                 [of("factor", &factor), of("open", &openness)].concat()
             }
         };
@@ -60,8 +60,7 @@ impl SkyView {
 }
 
 /// How much of `sky` each of `targets` sees among `obstacles`; NaN for a target without a position. Where trees let
-/// light through they are in leaf, unless they are said to be bare. With `certain_of`, the scene among which targets
-/// stand, the result says how far it may be from the truth. Progress counts targets, once or twice each.
+/// light through they are in leaf, unless they are said to be bare. Progress counts targets, once or twice each.
 ///
 /// # Errors
 /// Those of [`fold_rows`] and [`sky_view`].
@@ -69,17 +68,18 @@ pub fn scene_sky_view<'a>(
     obstacles: impl Into<SkyObstacles<'a>>,
     targets: &Targets,
     sky: &SkyDirections,
-    certain_of: Option<&MedialScene>,
+    intervals: Intervals,
     control: &Control<'_>,
 ) -> Result<SkyView> {
     let obstacles = obstacles.into();
     let normals = targets.normals.as_deref();
     check_normals(normals, targets.len())?;
     let mut seen = SkyView::default();
-    let outlines = certain_of.map(|scene| (scene, Outlines::new(&sky.directions, &sky.solid_angles)));
+    let are_inside = intervals.are_inside(obstacles, targets, control)?;
+    let outlines = are_inside.map(|are_inside| (are_inside, Outlines::new(&sky.directions, &sky.solid_angles)));
     fold_rows(obstacles, &targets.positions, &sky.directions, control, |block| {
-        if let Some((scene, outlines)) = &outlines {
-            seen.classes.extend(outlines.classes(&block, scene, targets));
+        if let Some((are_inside, outlines)) = &outlines {
+            seen.classes.extend(outlines.classes(&block, are_inside, normals));
         }
         let normals = normals_of(normals, &block.rows);
         let mut own = sky_view(&block.matrix, sky, normals)?;

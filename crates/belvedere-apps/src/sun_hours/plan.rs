@@ -2,11 +2,10 @@
 
 use super::{RULE_IS_MET, SUN_HOURS, SunHours, SunHoursParams, SunRule, sun_hours, sun_hours_through_crowns};
 use crate::rows::{RowBlock, SkyObstacles, check_normals, fold_rows, normals_of};
-use crate::sum_errors::{Outlines, SumKind, expected_measures};
+use crate::sum_errors::{Intervals, Outlines, SumKind, expected_measures};
 use crate::sun::{Site, SunSchedule};
 use crate::targets::{Measure, ResultKind, Targets};
 use crate::tree_light::{CrownLight, Season};
-use belvedere_core::query::MedialScene;
 use belvedere_data::control::Control;
 use belvedere_data::{Error, Result};
 
@@ -142,7 +141,7 @@ impl SunSums {
         }
         if let (Some(hours), false) = (measures.first(), self.classes.is_empty()) {
             let possible = plan.period.possible_hours() / day_count.max(1) as f64;
-            measures.extend(expected_measures("hours", &hours.clone(), possible, SumKind::Sun, &self.classes));
+            measures.extend(expected_measures("hours", &hours.clone(), |_| possible, SumKind::Sun, &self.classes));
         }
         for (planned, found) in plan.rules.iter().zip(self.rules) {
             let days = planned.schedule.days.len();
@@ -155,8 +154,7 @@ impl SunSums {
 }
 
 /// The sun of `plan` at each of `targets` among `obstacles`. Where trees let light through, `site` says when they carry
-/// leaves. With `certain_of`, the scene among which targets stand, the measures say how far hours may be from the
-/// truth. Progress counts targets, once or twice each.
+/// leaves. Progress counts targets, once or twice each.
 ///
 /// # Errors
 /// Those of [`fold_rows`] and [`SunSums::add`], and [`Error::MissingAttribute`] for trees without a site.
@@ -165,7 +163,7 @@ pub fn scene_sun_hours<'a>(
     targets: &Targets,
     plan: &SunPlan,
     site: Option<&Site>,
-    certain_of: Option<&MedialScene>,
+    intervals: Intervals,
     control: &Control<'_>,
 ) -> Result<SunSums> {
     let obstacles = obstacles.into();
@@ -183,11 +181,12 @@ pub fn scene_sun_hours<'a>(
     let normals = targets.normals.as_deref();
     check_normals(normals, targets.len())?;
     let mut sums = SunSums::default();
-    let outlines =
-        certain_of.map(|scene| (scene, Outlines::new(&plan.period.directions, &plan.period.hours_of_directions())));
+    let are_inside = intervals.are_inside(obstacles, targets, control)?;
+    let outlines = are_inside
+        .map(|are_inside| (are_inside, Outlines::new(&plan.period.directions, &plan.period.hours_of_directions())));
     fold_rows(obstacles, &targets.positions, plan.directions(), control, |block| {
-        if let Some((scene, outlines)) = &outlines {
-            sums.classes.extend(outlines.classes(&block, scene, targets));
+        if let Some((are_inside, outlines)) = &outlines {
+            sums.classes.extend(outlines.classes(&block, are_inside, normals));
         }
         sums.add(plan, &block, normals, crowns)
     })?;

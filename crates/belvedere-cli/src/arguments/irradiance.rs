@@ -1,8 +1,8 @@
 //! Flags of irradiance and of photovoltaic loss.
 
 use super::{
-    MemoryArgument, Numbers, SceneInput, Shell, SkyOutputs, SkyPlaces, ThroughTreesArguments, above_zero, at_least_one,
-    location,
+    IntervalArgument, MemoryArgument, Numbers, SceneInput, Shell, SkyOutputs, SkyPlaces, ThroughTreesArguments,
+    above_zero, at_least_one, location,
 };
 use belvedere::apps::irradiance::{SkyModel, Surroundings};
 use clap::{Args, ValueEnum};
@@ -58,6 +58,8 @@ pub(crate) struct IrradianceArguments {
     /// Also report the energy of each month
     #[arg(long, help_heading = "Result")]
     pub(crate) months: bool,
+    #[command(flatten)]
+    pub(crate) interval: IntervalArgument,
     #[command(flatten)]
     pub(crate) outputs: IrradianceOutputs,
     #[command(flatten)]

@@ -36,6 +36,7 @@ pub(crate) fn run(arguments: &IrradianceArguments, global: &Global) -> Result<Su
         place: SunPlace { location: arguments.location.as_ref().map(|location| location.0), ..SunPlace::default() },
         trees: arguments.trees.choice()?,
         roofs: (!arguments.planes.is_empty()).then_some(roofs),
+        interval: arguments.interval.interval,
     };
     question.check()?;
     let cells = TypedCells::of_sky(

@@ -44,6 +44,7 @@ class Energy:
         through_trees: str | float | None = None,
         leaves: str | None = None,
         location: npt.ArrayLike | None = None,
+        interval: bool = False,
         progress: Progress = None,
     ) -> RastersOrTable:
         """The energy that sun and sky send to places in a year, or in the period of a weather file.
@@ -74,13 +75,16 @@ class Energy:
             Side of the cells that sun directions are grouped in; 3 if not given.
         targets, normals, cell, target_height, surface, ground, through_trees, leaves, location
             As for `shadow`. The place of a weather file counts where the reference system says nothing.
+        interval : bool, optional
+            Whether to add the expected value and an interval that holds the truth in 90 % of cases. Only where trees
+            are opaque.
         progress : bool or callable, optional
 
         Returns
         -------
         Rasters or Table
             ``kwh_m2`` (all), the share that obstacles take, and direct, diffuse and reflected parts, kWh per square
-            metre.
+            metre; with `interval` also ``kwh_m2_expected``, ``kwh_m2_low`` and ``kwh_m2_high``.
 
         Raises
         ------
@@ -115,6 +119,7 @@ class Energy:
             sun_cell=sun_cell_deg,
             months=months,
             location=location,
+            interval=interval,
         )
         results = self._core.irradiance(
             radiation,
@@ -145,6 +150,7 @@ class Energy:
         through_trees: str | float | None = None,
         leaves: str | None = None,
         location: npt.ArrayLike | None = None,
+        interval: bool = False,
         progress: Progress = None,
     ) -> Table:
         """The planes of roofs, and the energy that each receives.
@@ -153,7 +159,7 @@ class Energy:
         ----------
         weather, clear_sky, linke, year, months, sky_model, patch_division, parts_per_row, albedo, surroundings
             As for `irradiance`.
-        sun_cell_deg, ground, through_trees, leaves, location
+        sun_cell_deg, ground, through_trees, leaves, location, interval
             As for `irradiance`.
         min_area : float, optional
             Smallest area of a plane, square metres; that of the command line if not given.
@@ -168,7 +174,8 @@ class Energy:
         Table
             A row for each plane: ``cells``, ``area_m2``, ``tilt_deg``, ``azimuth_deg`` from true north (NaN for a level
             plane), ``kwh_m2`` and its parts, ``min_loss`` where each panel works alone, ``max_loss`` where the worst
-            panel limits its row, and ``kwh``. `places` has the middle of each plane.
+            panel limits its row, and ``kwh``; with `interval` also ``kwh_m2_expected``, ``kwh_m2_low``,
+            ``kwh_m2_high``, ``loss_expected``, ``loss_low`` and ``loss_high``. `places` has the middle of each plane.
 
         Raises
         ------
@@ -199,6 +206,7 @@ class Energy:
             sun_cell=sun_cell_deg,
             months=months,
             location=location,
+            interval=interval,
         )
         trees = {"share": through_trees, "leaves": leaves}
         columns, cells, given = self._core.roof_planes(

@@ -24,7 +24,7 @@ fn questions() -> Vec<TileQuestion> {
     vec![
         TileQuestion::Shadow { name: "shadow".to_owned(), to_sun, season: None },
         TileQuestion::SunHours { site, days: SunHoursQuestion { days, ..SunHoursQuestion::default() } },
-        TileQuestion::SkyView { sky: SkyParts::Even(25) },
+        TileQuestion::SkyView { sky: SkyParts::Even(25), interval: false },
     ]
 }
 

@@ -77,7 +77,7 @@ fn values(plan: &Plan, folder: &Path, question: &TileQuestion) -> BTreeMap<[i64;
 fn cleared_areas_are_the_same_for_tiles_of_any_size_and_those_of_one_scene() {
     let place = tempfile::tempdir().unwrap();
     let clouds = write_town(place.path(), 140.0, 1.0);
-    let questions = [suns()[1].clone(), TileQuestion::SkyView { sky: SkyParts::Even(25) }];
+    let questions = [suns()[1].clone(), TileQuestion::SkyView { sky: SkyParts::Even(25), interval: false }];
     let plain_folder = place.path().join("plain");
     let plain = plan(&clouds, &plain_folder, 512.0, questions.to_vec());
     run_all(&plain, &plain_folder);

@@ -100,7 +100,7 @@ fn a_planned_building_blocks_exactly_whatever_the_tiles() {
     let place = tempfile::tempdir().unwrap();
     let clouds = write_town(place.path(), 100.0, 1.0);
     let mesh = block(place.path());
-    let questions = [suns()[1].clone(), TileQuestion::SkyView { sky: SkyParts::Even(25) }, rule()];
+    let questions = [suns()[1].clone(), TileQuestion::SkyView { sky: SkyParts::Even(25), interval: false }, rule()];
     let folders = ["plain", "whole", "tiles"].map(|name| place.path().join(name));
     let add = |plan: Plan| plan.with_meshes(vec![SideFile::new(&mesh).unwrap()]).unwrap();
     let plain = done(&clouds, &folders[0], 512.0, &questions, |plan| plan);
@@ -165,8 +165,8 @@ fn light_through_trees_lies_between_opaque_trees_and_none_whatever_the_tiles() {
     let radiation = TileRadiation::ClearSky { clear_sky: ClearSky::Haurwitz, year: 2026 };
     let params = IrradianceParams::default().with_patch_division(1).with_sun_cell(0.6);
     let site = site();
-    let energy = TileQuestion::Irradiance { site, radiation, params };
-    let questions = [suns()[1].clone(), TileQuestion::SkyView { sky: SkyParts::Even(25) }, energy];
+    let energy = TileQuestion::Irradiance { site, radiation, params, interval: false };
+    let questions = [suns()[1].clone(), TileQuestion::SkyView { sky: SkyParts::Even(25), interval: false }, energy];
     let through = |share: f64| {
         move |plan: Plan| {
             let transmissivity = Transmissivity::constant(share).unwrap();
@@ -242,7 +242,7 @@ fn mountains_beyond_a_survey_take_the_light_of_all_tiles() {
     };
     let suns = [sun(0.0, 39.0), sun(0.0, 60.0), sun(180.0, 29.0), sun(180.0, 31.0)];
     let questions: Vec<TileQuestion> =
-        suns.iter().cloned().chain([TileQuestion::SkyView { sky: SkyParts::Even(25) }]).collect();
+        suns.iter().cloned().chain([TileQuestion::SkyView { sky: SkyParts::Even(25), interval: false }]).collect();
     let folders = ["without", "whole", "tiles"].map(|name| place.path().join(name));
     let far = |plan: Plan| {
         let [terrain, horizon] = [&terrain, &horizon].map(|path| Some(SideFile::new(path).unwrap()));

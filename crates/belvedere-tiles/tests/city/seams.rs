@@ -55,9 +55,9 @@ fn all_questions(eyes: [[f64; 3]; 2]) -> Vec<TileQuestion> {
     let coarse = IrradianceParams::default().with_patch_division(1).with_sun_cell(0.3);
     let mut questions = suns();
     questions.extend([
-        TileQuestion::SkyView { sky: SkyParts::Even(49) },
+        TileQuestion::SkyView { sky: SkyParts::Even(49), interval: false },
         TileQuestion::SunHours { site: site(), days: SunHoursQuestion { days, ..SunHoursQuestion::default() } },
-        TileQuestion::Irradiance { site: site(), radiation, params: coarse },
+        TileQuestion::Irradiance { site: site(), radiation, params: coarse, interval: false },
         TileQuestion::Viewshed { eyes: eyes.to_vec(), max_distance: Some(120.0), is_reverse: false },
     ]);
     questions

@@ -5,6 +5,7 @@ use super::places::{local, number, rounded};
 use crate::replies::{QuestionReply, Refusal};
 use belvedere::Error;
 use belvedere::apps::irradiance::{CLEAR_SKY_YEAR, roof_irradiation};
+use belvedere::apps::sum_errors::Intervals;
 use belvedere::query::UnprovenAs;
 use serde::Deserialize;
 use serde_json::{Value, json};
@@ -26,7 +27,8 @@ pub(super) fn answer(question: &RoofRequest, context: &RequestContext<'_>) -> Re
         ));
     };
     let blockers = scene.blockers(UnprovenAs::Visible, control)?;
-    let energies = roof_irradiation(&*blockers, std::slice::from_ref(plane), &roofs.seasons, control)?;
+    let energies =
+        roof_irradiation(&*blockers, std::slice::from_ref(plane), &roofs.seasons, Intervals::Without, control)?;
     let Some(energy) = energies.first() else {
         return Err(Error::NoPoints { what: "the plane has no cells".to_owned() }.into());
     };

@@ -6,6 +6,7 @@ use belvedere::apps::irradiance::{
     plane_irradiation, roof_irradiation,
 };
 use belvedere::apps::roof_planes::{RoofPlane, RoofPlaneParams, roof_planes, roof_points};
+use belvedere::apps::sum_errors::Intervals;
 use belvedere::apps::sun::{Site, Zone};
 use belvedere::control::Control;
 use belvedere::ground::{Ground, GroundParams, MapGrid};
@@ -67,7 +68,7 @@ fn losses_of_the_planes_of_an_exact_town_are_within_a_point_on_the_mean() {
         let planes = roof_planes(&points, &RoofPlaneParams::default(), &none).unwrap();
         let planes: Vec<RoofPlane> = planes.into_iter().take(20).collect();
         let seasons = [SeasonRadiation { radiation: radiation.clone(), share: 0.0 }];
-        let found = roof_irradiation(&blockers, &planes, &seasons, &none).unwrap();
+        let found = roof_irradiation(&blockers, &planes, &seasons, Intervals::Without, &none).unwrap();
         let truth = Truth::new(&scene);
         let (mut error, mut expected, mut mean) = (0.0, 0.0, 0.0);
         for (plane, found) in planes.iter().zip(&found) {

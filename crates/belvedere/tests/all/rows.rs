@@ -4,6 +4,7 @@ use belvedere::apps::exposure::{ShadeAtEachSun, scene_exposure, shaded_shares};
 use belvedere::apps::rows::{Obstacles, fold_blocks, fold_rows};
 use belvedere::apps::shadow::{Edges, ShadowSun, scene_shadow};
 use belvedere::apps::sky_view::{SkyDirections, scene_sky_view, sky_view};
+use belvedere::apps::sum_errors::Intervals;
 use belvedere::apps::sun::{Binning, Date, DayParams, Period, Site, SunSchedule, Zone, sun_days};
 use belvedere::apps::sun_hours::{SunHoursParams, SunPlan, SunRule, SunSums, scene_sun_hours, sun_hours};
 use belvedere::apps::targets::Targets;
@@ -104,13 +105,13 @@ fn what_is_summed_up_block_by_block_is_what_the_whole_matrix_gives() {
         values.into_iter().map(f32::to_bits).collect::<Vec<_>>()
     };
 
-    let seen = scene_sky_view(&scene, &targets, &sky, None, &none).unwrap();
+    let seen = scene_sky_view(&scene, &targets, &sky, Intervals::Without, &none).unwrap();
     assert_eq!(clear(seen.factors), clear(sky_view(&of_sky, &sky, None).unwrap().factors));
 
     let rule = SunRule::parse("2@12-21").unwrap();
     let plan = SunPlan::new(period.clone(), vec![("rule_1".to_owned(), rule, schedule("2026-12-21"))]);
     assert_eq!(plan.directions().len(), period.directions.len() + plan.rules()[0].schedule.directions.len());
-    let sums = scene_sun_hours(&scene, &targets, &plan, Some(&site), None, &none).unwrap();
+    let sums = scene_sun_hours(&scene, &targets, &plan, Some(&site), Intervals::Without, &none).unwrap();
     assert_eq!(sums.period.hours, sun_hours(&of_sun, &period, None, &SunHoursParams::default()).unwrap().hours);
     let mut in_blocks = SunSums::default();
     fold_blocks((&scene).into(), &targets.positions, plan.directions(), 64, &none, |block| {

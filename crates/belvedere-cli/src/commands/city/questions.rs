@@ -143,6 +143,7 @@ pub(super) fn questions(arguments: &CityPlan, plan: &Plan, run: &mut CommandCont
             place: sun_place(arguments)?,
             trees: ThroughTrees::Opaque,
             roofs: None,
+            interval: false,
         });
         questions.extend(TileQuestion::of(&question, (plan, &whereabouts), &mut context, &run.control())?);
     }
