@@ -1,11 +1,17 @@
 //! Horizon profiles: above which elevation the sky is free around a place, as photovoltaic tools read it.
 
+use crate::certain_bounds::{LIKELY, UNLIKELY, first_certain};
 use belvedere_core::query::{EarthParams, MedialScene, SkylinePoint};
 use belvedere_data::control::Control;
 use belvedere_data::crs::evidence::{CONTRADICTION_DISTANCE, distance_in_words};
 use belvedere_data::crs::{Crs, GeographicProjection};
+use belvedere_data::view::to_sun;
 use belvedere_data::{Error, Parameter, Result};
-use std::f64::consts::{PI, TAU};
+use rayon::prelude::*;
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
+/// First step from a skyline to where the sky is certainly free or hidden, radians: an eighth of a degree.
+const FIRST_STEP: f64 = PI / 1440.0;
 
 /// How horizons are made.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -66,6 +72,38 @@ pub fn horizons(
             Ok(skyline)
         })
         .collect()
+}
+
+/// Between which elevations, radians, the sky begins at each azimuth of `skylines`, of those around `eyes`: nine times in
+/// ten. Where no pulse is known both are those of the skyline. Progress counts eyes.
+///
+/// # Errors
+/// [`Error::Cancelled`].
+pub fn horizon_intervals(
+    scene: &MedialScene,
+    eyes: &[[f64; 3]],
+    skylines: &[Vec<SkylinePoint>],
+    params: &HorizonParams,
+    control: &Control<'_>,
+) -> Result<Vec<Vec<[f64; 2]>>> {
+    let of_eye = |(&eye, skyline): (&[f64; 3], &Vec<SkylinePoint>)| {
+        let interval = |(number, point): (usize, &SkylinePoint)| {
+            control.check()?;
+            let azimuth = TAU * number as f64 / skyline.len() as f64 - params.turn;
+            let likely_free = |elevation: f64| {
+                let evidence = scene.evidence(eye, to_sun(azimuth, elevation), f64::INFINITY);
+                evidence.map(|evidence| evidence.probability())
+            };
+            let is_free = |elevation| likely_free(elevation).is_none_or(|probability| probability >= LIKELY);
+            let is_hidden = |elevation| likely_free(elevation).is_none_or(|probability| probability <= UNLIKELY);
+            let low = first_certain(point.elevation, FIRST_STEP, -FRAC_PI_2, is_hidden);
+            Ok([low, first_certain(point.elevation, FIRST_STEP, FRAC_PI_2, is_free)])
+        };
+        let found = skyline.par_iter().enumerate().map(interval).collect();
+        control.advance(1);
+        found
+    };
+    eyes.iter().zip(skylines).map(of_eye).collect()
 }
 
 /// Number of azimuths for a step, radians, above 0: steps of a full circle are made equal.

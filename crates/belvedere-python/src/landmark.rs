@@ -62,6 +62,7 @@ impl PyScene {
         observers: Option<PyReadonlyArray2<'py, f64>>,
         looking: LookingKeywords,
         unproven: &str,
+        probability: bool,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<LandmarkReply<'py>> {
         let (unproven, earth) = (unproven_choice(unproven)?, looking.earth()?);
@@ -80,6 +81,7 @@ impl PyScene {
                 back_faces: BackFaces::default(),
                 earth,
                 unproven,
+                probability,
             };
             ask::ask(&scene, &question, &ask::Places::Scene, control)
         })?;

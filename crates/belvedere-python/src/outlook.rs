@@ -50,7 +50,7 @@ type Described<'py> = (Bound<'py, PyDict>, Vec<Bound<'py, PyAny>>, Vec<Bound<'py
 #[pymethods]
 impl PyScene {
     /// Elevations of the horizon, degrees, a row for each observer and a column for each azimuth, NaN for those
-    /// skipped; the number of azimuths; and remarks.
+    /// skipped, each with the ends of its interval behind it where these are wanted; the number of azimuths; and remarks.
     fn horizon<'py>(
         &self,
         py: Python<'py>,
@@ -58,6 +58,7 @@ impl PyScene {
         angle_step: Option<f64>,
         looking: LookingKeywords,
         place: SiteKeywords,
+        interval: bool,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Horizons<'py>> {
         let question = ask::HorizonQuestion {
@@ -67,18 +68,22 @@ impl PyScene {
             earth: looking.earth()?,
             north: place.north(),
             below: BelowLevel::Keep,
+            interval,
         };
         let scene = Arc::clone(&self.0);
         let eyes = ask::Places::Eyes(standing_observers(&observers, &scene)?);
         let answers = run(py, progress, move |control| ask::ask(&scene, &question, &eyes, control))?;
         let found = answers.found;
         let count = found.azimuth_count;
-        let elevation = |row: &Vec<f64>, azimuth: usize| row.get(azimuth).copied().unwrap_or(f64::NAN);
-        let all: Vec<f64> = found
-            .elevations_deg
-            .iter()
-            .flat_map(|row| (0..count).map(move |azimuth| elevation(row, azimuth)))
-            .collect();
+        let mut all = Vec::new();
+        for (eye, elevations) in found.elevations_deg.iter().enumerate() {
+            let ends = found.intervals_deg.as_ref().map(|intervals| intervals.get(eye));
+            for azimuth in 0..count {
+                all.push(elevations.get(azimuth).copied().unwrap_or(f64::NAN));
+                let ends = ends.map(|ends| ends.and_then(|ends| ends.get(azimuth)).copied());
+                all.extend(ends.map(|ends| ends.unwrap_or([f64::NAN; 2])).into_iter().flatten());
+            }
+        }
         Ok((to_1d(py, all).into_any(), count, remarks_of(py, &answers.remarks)?))
     }
 
@@ -92,6 +97,7 @@ impl PyScene {
         min_jump: Option<f64>,
         looking: LookingKeywords,
         place: SiteKeywords,
+        interval: bool,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Described<'py>> {
         let question = ask::IsovistsQuestion {
@@ -101,6 +107,7 @@ impl PyScene {
             max_distance: looking.max_distance,
             angle_step_deg: angle_step,
             min_jump,
+            interval,
         };
         let scene = Arc::clone(&self.0);
         let eyes = ask::Places::Eyes(standing_observers(&observers, &scene)?);

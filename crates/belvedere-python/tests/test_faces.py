@@ -268,20 +268,52 @@ def test_answers_are_as_sure_in_the_program_and_in_python(scene, ask_program, fo
     assert plain.uncertain is None
 
 
-@pytest.mark.parametrize("question", ["sun-hours", "sky-view"])
+@pytest.mark.parametrize("question", ["sun-hours", "sky-view", "irradiance"])
 def test_intervals_are_the_same_in_the_program_and_in_python(scene, ask_program, folder, question):
-    flags = {"sun-hours": ["--date", DAY, "--zone", ZONE], "sky-view": ["--directions", 145]}[question]
+    flags = {
+        "sun-hours": ["--date", DAY, "--zone", ZONE],
+        "sky-view": ["--directions", 145],
+        "irradiance": ["--clear-sky", "ineichen", "--patch-division", 1, "--sun-cell-deg", 9],
+    }[question]
     ask_program(question, "tile.laz", *flags, "--interval", "--cell", 4, "-o", "interval.tif")
     bands, _ = bands_of(folder / "interval.tif")
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", belvedere.BelvedereWarning)
         if question == "sun-hours":
             rasters = scene.sun_hours(date=DAY, zone=ZONE, interval=True, cell=4)
+        elif question == "irradiance":
+            rasters = scene.irradiance(
+                clear_sky="ineichen", patch_division=1, sun_cell_deg=9, interval=True, cell=4
+            )
         else:
             rasters = scene.sky_view(directions=145, interval=True, cell=4)
     for band in (name for name in bands if name.endswith(("_expected", "_low", "_high"))):
         assert np.array_equal(bands[band], values_of(rasters[band]), equal_nan=True), band
-    assert sum(name.endswith("_low") for name in bands) == {"sun-hours": 1, "sky-view": 2}[question]
+    assert sum(name.endswith("_low") for name in bands) == {"sun-hours": 1, "sky-view": 2, "irradiance": 1}[question]
+
+
+def test_horizons_isovists_and_landmarks_are_as_sure_in_the_program_as_in_python(scene, ask_program, folder, standing):
+    x, y = standing
+    place = ["--observer", f"{x},{y}"]
+    ask_program("horizon", "tile.laz", *place, "--angle-step-deg", 5, "--below", "keep", "--interval", "-o", "h.csv")
+    ask_program("isovist", "tile.laz", *place, "--angle-step-deg", 5, "--interval", "-o", "i.csv")
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", belvedere.BelvedereWarning)
+        _, elevations = scene.horizon((x, y), angle_step_deg=5, interval=True)
+        space = scene.isovist((x, y), angle_step_deg=5, interval=True)
+        views = scene.landmark(target_class=6, observers=[(x, y)], probability=True)
+    table = np.genfromtxt(folder / "h.csv", delimiter=",", names=True)
+    assert elevations.shape == (72, 3)
+    for column, name in enumerate(["elevation", "low", "high"]):
+        # tables have four decimals
+        assert np.allclose(elevations[:, column], table[name], atol=6e-5), name
+    table = np.genfromtxt(folder / "i.csv", delimiter=",", names=True)
+    for name in ["plan_area_low_m2", "plan_area_high_m2", "volume_low_m3", "volume_high_m3"]:
+        assert np.isclose(space[name][0], table[name], atol=6e-3), name
+    (folder / "who.csv").write_text(f"x,y\n{x},{y}\n")
+    ask_program("landmark", "tile.laz", "--target-class", 6, "--observers", "who.csv", "--probability", "-o", "l.csv")
+    table = np.genfromtxt(folder / "l.csv", delimiter=",", names=True)
+    assert np.isclose(views["expected_share"][0], table["expected_share"], atol=6e-6)
 
 
 def test_certain_cameras_are_the_same_in_the_program_and_in_python(scene, ask_program, folder, standing):

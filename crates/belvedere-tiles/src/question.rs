@@ -420,6 +420,9 @@ impl TileQuestion {
         control: &Control<'_>,
     ) -> Result<PreparedQuestion> {
         let invalid = |parameter, value: String, expected| Err(Error::InvalidParameter { parameter, value, expected });
+        if self.has_interval() && crowns.is_some() {
+            return invalid(Parameter::Interval, self.name().to_owned(), "left out where light gets through trees");
+        }
         match self {
             Self::Shadow { to_sun, season, .. } if to_sun[2] > 0.0 => {
                 Ok(PreparedQuestion::Light(LightQuestion::Shadow(ShadowSun { to_sun: *to_sun, season: *season })))

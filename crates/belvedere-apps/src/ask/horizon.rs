@@ -1,14 +1,15 @@
 //! Horizon: above which elevation the sky is free around observers.
 
+use super::how_sure::check_interval_scene;
 use super::observers::{Eyes, Observers, check_height};
 use super::places::EDGE_WARNING_PERCENT;
 use super::scene::Scene;
 use super::sections::LinesSection;
 use super::{Answers, Ask, Context, North, Places, Remark};
 use crate::edge::horizon_share_near_edge;
-use crate::horizon::{HorizonParams, azimuth_count, horizons};
+use crate::horizon::{HorizonParams, azimuth_count, horizon_intervals, horizons};
 use belvedere_core::ground::GroundPoints;
-use belvedere_core::query::{EarthParams, SkylinePoint};
+use belvedere_core::query::{EarthParams, SkylinePoint, UnprovenAs};
 use belvedere_data::Result;
 use belvedere_data::control::Control;
 use belvedere_data::report::rounded;
@@ -33,6 +34,8 @@ pub struct HorizonQuestion {
     pub north: North,
     /// What elevations below the horizontal plane through the observer become.
     pub below: BelowLevel,
+    /// Whether to say between which elevations the sky begins nine times in ten; needs pulses. Default: not.
+    pub interval: bool,
 }
 
 /// What elevations below the horizontal plane through the observer become.
@@ -55,6 +58,8 @@ pub struct HorizonResults {
     pub azimuth_count: usize,
     /// Elevation at each azimuth, degrees; none for an eye that cannot look.
     pub elevations_deg: Vec<Vec<f64>>,
+    /// Between which elevations the sky begins nine times in ten, degrees; `None` where that was not wanted.
+    pub intervals_deg: Option<Vec<Vec<[f64; 2]>>>,
 }
 
 /// How high horizons are.
@@ -63,6 +68,9 @@ pub struct HorizonsSection {
     azimuths: usize,
     mean_elevation_deg: f64,
     max_elevation_deg: f64,
+    /// Mean width of the intervals.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    mean_interval_deg: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     azimuths_near_edge_percent: Option<f64>,
 }
@@ -92,6 +100,7 @@ impl Ask for HorizonQuestion {
         context: &mut Context,
         control: &Control<'_>,
     ) -> Result<Answers<HorizonResults>> {
+        check_interval_scene(self.interval, scene, control)?;
         let azimuth_count = self.azimuth_count()?;
         let Observers { eyes, blockers } =
             Observers::of(places, (self.observer_height, self.ground), scene, context, control)?;
@@ -110,12 +119,21 @@ impl Ask for HorizonQuestion {
             .iter()
             .map(|skyline| skyline.iter().map(|point| point.elevation.to_degrees().max(min)).collect())
             .collect();
+        let within = self.interval.then(|| {
+            control.stage("computing probabilities", eyes.eyes.len(), || {
+                let blockers = scene.blockers(UnprovenAs::Reported, control)?;
+                horizon_intervals(&blockers, &eyes.eyes, &skylines, &params, control)
+            })
+        });
+        let in_degrees = |ends: &[f64; 2]| ends.map(|v| v.to_degrees().max(min));
+        let intervals_deg: Option<Vec<Vec<[f64; 2]>>> =
+            within.transpose()?.map(|all| all.iter().map(|of_eye| of_eye.iter().map(in_degrees).collect()).collect());
         let near_edge = near_edge_percent(scene, &eyes, &skylines, -north.of_grid);
-        let section = HorizonsSection::of(&elevations_deg, near_edge);
+        let section = HorizonsSection::of(&elevations_deg, intervals_deg.as_deref(), near_edge);
         context.report.horizons = Some(section);
         context.add(remark_on_overhead(&elevations_deg));
         section.summarise(eyes.eyes.len(), context);
-        Ok(Answers::new(HorizonResults { eyes, azimuth_count, elevations_deg }, Vec::new()))
+        Ok(Answers::new(HorizonResults { eyes, azimuth_count, elevations_deg, intervals_deg }, Vec::new()))
     }
 }
 
@@ -141,13 +159,19 @@ fn near_edge_percent(scene: &Scene, eyes: &Eyes, skylines: &[Vec<SkylinePoint>],
 }
 
 impl HorizonsSection {
-    fn of(elevations: &[Vec<f64>], azimuths_near_edge_percent: Option<f64>) -> Self {
+    fn of(
+        elevations: &[Vec<f64>],
+        intervals: Option<&[Vec<[f64; 2]>]>,
+        azimuths_near_edge_percent: Option<f64>,
+    ) -> Self {
+        let widths = |all: &[Vec<[f64; 2]>]| all.iter().flatten().map(|[low, high]| high - low).sum::<f64>();
         let all = || elevations.iter().flatten().copied();
         let count = elevations.iter().map(Vec::len).sum::<usize>().max(1);
         Self {
             azimuths: elevations.iter().map(Vec::len).max().unwrap_or(0),
             mean_elevation_deg: rounded(all().sum::<f64>() / count as f64, 3),
             max_elevation_deg: rounded(all().fold(-90.0, f64::max), 3),
+            mean_interval_deg: intervals.map(|all| rounded(widths(all) / count as f64, 3)),
             azimuths_near_edge_percent,
         }
     }
@@ -157,6 +181,9 @@ impl HorizonsSection {
         let who = if observers == 1 { "1 observer".to_owned() } else { format!("{observers} observers") };
         context.headline(format!("horizon of {who} at {azimuths} azimuths"));
         context.headline(format!("elevation: mean {mean_elevation_deg} degrees, at most {max_elevation_deg}"));
+        if let Some(width) = self.mean_interval_deg {
+            context.headline(format!("nine times in ten within an interval: {width} degrees wide on average"));
+        }
         if let Some(share) = self.azimuths_near_edge_percent.filter(|share| *share >= EDGE_WARNING_PERCENT) {
             let text = format!(
                 "{share} % of the azimuths are near the edge of the cloud: objects beyond it, as high as its highest point, could stand above the horizon"

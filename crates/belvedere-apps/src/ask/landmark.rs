@@ -1,12 +1,13 @@
 //! Landmark: from where one thing is seen, and how much of it.
 
+use super::how_sure::remark_from_ground;
 use super::observers::{Reach, Standing, check_height, skip_unfit};
 use super::places::cells_of;
 use super::scene::KnownGround;
 use super::sections::LinesSection;
 use super::{Answers, Ask, Context, Places, Scene};
 use crate::landmark::{
-    LandmarkParams, LandmarkPoints, LandmarkReport, LandmarkView, MEASURES, landmark_points, landmark_views,
+    LandmarkParams, LandmarkPoints, LandmarkReport, LandmarkView, landmark_points, landmark_views, measures,
     observer_cell_for, spacing_for,
 };
 use crate::targets::{CellParams, Measure, set_on_ground};
@@ -48,6 +49,10 @@ pub struct LandmarkQuestion {
     /// What to make of parts whose view pulses do not prove; `None` to report them where pulses are known.
     #[serde(default)]
     pub unproven: Option<UnprovenAs>,
+    /// Whether to tell which share of it is expected to be seen, by how likely each part is visible; needs pulses.
+    /// Default: not.
+    #[serde(default)]
+    pub probability: bool,
 }
 
 /// What a landmark is.
@@ -181,6 +186,7 @@ impl LandmarkQuestion {
             .with_unproven(self.unproven())
             .with_earth(self.earth)
             .with_max_range(self.max_distance.unwrap_or(usual.max_range))
+            .with_expected(self.probability)
     }
 
     fn unproven(&self) -> UnprovenAs {
@@ -255,12 +261,16 @@ impl Ask for LandmarkQuestion {
         if self.unproven.is_some_and(|unproven| unproven != UnprovenAs::Visible) {
             scene.check_proof()?;
         }
+        if self.probability {
+            scene.check_pulses(Parameter::Certainty)?;
+        }
         let (surface, section) = self.shape.surface(scene.cloud(), scene.frame().origin, control)?;
         let area = section.area_m2;
         context.report.landmark = Some(section);
         let known = scene.ground(self.grid(scene)?, self.ground, control)?;
         context.ground(scene, &known);
         let blockers = scene.blockers(self.unproven(), control)?;
+        context.add(remark_from_ground(&blockers).filter(|_| self.probability));
         context.report.lines_of_sight = Some(LinesSection::of(&blockers, None));
         let ground = &known.ground;
         let Lookers { places, eyes, inside } = match &self.observers {
@@ -294,5 +304,5 @@ fn measures_of(views: &[LandmarkView]) -> Vec<Measure> {
         let values = views.iter().map(|view| of.of(view) as f32).collect();
         Measure::new(of.name, values).with_description(of.description).with_decimals(of.decimals)
     };
-    MEASURES.iter().map(measure).collect()
+    measures(views).iter().map(measure).collect()
 }

@@ -50,7 +50,7 @@ pub fn roof_columns(planes: &[RoofPlane], rows: &[RoofIrradiation], frame: &Fram
         column("max_loss", of_rows(&RoofIrradiation::greatest_loss), 4),
         column("kwh", of_both(&|plane, row| row.panel_area(plane) * row.mean.total()), 0),
     ];
-    if rows.iter().any(|row| row.error.is_some()) {
+    if rows.iter().any(|row| row.class.is_some()) {
         let end = |number: usize| of_rows(&|row| row.expected()[number]);
         // much energy is little loss
         let loss =

@@ -28,9 +28,8 @@ pub struct RoofIrradiation {
     pub groups: Vec<f64>,
     /// Cells that count: those of the plane that see anything of the sky.
     pub cell_count: usize,
-    /// How far the mean may be from the truth, as a share of what arrives without obstacles; `None` where that was not
-    /// wanted.
-    pub error: Option<SumError>,
+    /// How far the mean may be from the truth, by a class ([`SumKind::Plane`]); `None` where that was not wanted.
+    pub class: Option<u8>,
 }
 
 impl RoofIrradiation {
@@ -38,7 +37,8 @@ impl RoofIrradiation {
     /// wanted.
     #[must_use]
     pub fn expected(&self) -> [f64; 3] {
-        self.error.map_or([f64::NAN; 3], |error| error.around(self.mean.total(), self.mean.unshaded))
+        let error = self.class.map(|class| SumError::of(SumKind::Plane, class));
+        error.map_or([f64::NAN; 3], |error| error.around(self.mean.total(), self.mean.unshaded))
     }
 
     /// Area of the cells of `plane` that count, m².
@@ -197,7 +197,7 @@ fn of_planes(
         .iter()
         .zip(moved)
         .map(|(sum, moved)| RoofIrradiation {
-            error: (intervals == Intervals::With).then(|| SumError::of(SumKind::Plane, class_of(false, moved))),
+            class: (intervals == Intervals::With).then(|| class_of(false, moved)),
             mean: Irradiation::sum(&sum.mean),
             string_limited: Irradiation::sum(&sum.string_limited),
             groups: sum.mean.iter().map(Irradiation::total).collect(),

@@ -1,6 +1,6 @@
 //! Isovists as named numbers.
 
-use super::{Isovist, RadialStatistics};
+use super::{Isovist, IsovistIntervals, RadialStatistics};
 
 /// A number that describes an isovist.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,7 +51,16 @@ impl Isovist {
             ("plan_drift_m", plan.drift_length(), 4),
             ("plan_drift_azimuth_deg", drift_azimuth(plan.drift, grid_north), 2),
         ];
-        space.into_iter().chain(ranges).chain(plan_ranges).chain(others).map(figure)
+        let intervals = self.intervals.map(|IsovistIntervals { plan_area, volume }| {
+            [
+                ("plan_area_low_m2", plan_area[0], 2),
+                ("plan_area_high_m2", plan_area[1], 2),
+                ("volume_low_m3", volume[0], 2),
+                ("volume_high_m3", volume[1], 2),
+            ]
+        });
+        let of_all = space.into_iter().chain(ranges).chain(plan_ranges).chain(others);
+        of_all.chain(intervals.into_iter().flatten()).map(figure)
     }
 }
 

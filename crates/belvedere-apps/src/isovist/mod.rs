@@ -1,9 +1,11 @@
 //! Isovists: the space that an eye sees, measured.
 
 mod figures;
+mod intervals;
 mod plan;
 
 pub use figures::IsovistFigure;
+pub use intervals::{IsovistIntervals, isovist_intervals};
 pub use plan::PlanIsovist;
 
 use belvedere_core::query::MedialScene;
@@ -87,6 +89,8 @@ pub struct Isovist {
     pub drift: [f64; 3],
     /// What is seen in the level plane through the eye.
     pub plan: PlanIsovist,
+    /// How large what is seen may be in truth; `None` where that was not wanted, and without pulses.
+    pub intervals: Option<IsovistIntervals>,
 }
 
 /// Statistics of ranges, metres.
@@ -213,6 +217,7 @@ pub fn isovist_of(
         sky_openness: open(0, height / 2),
         drift: drift.map(|v| if volume > 0.0 { v / volume } else { 0.0 }),
         plan: plan::plan(&within, width, params),
+        intervals: None,
     })
 }
 

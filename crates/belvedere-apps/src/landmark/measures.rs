@@ -22,8 +22,14 @@ impl LandmarkMeasure {
     }
 }
 
-/// All numbers, the share first.
-pub const MEASURES: [LandmarkMeasure; 9] = [
+/// All numbers of some views, the share first: the last, what is expected, only where a view has it.
+#[must_use]
+pub fn measures(views: &[LandmarkView]) -> &'static [LandmarkMeasure] {
+    let has_expected = views.iter().any(|view| view.expected_area.is_some());
+    &MEASURES[..MEASURES.len() - usize::from(!has_expected)]
+}
+
+const MEASURES: [LandmarkMeasure; 10] = [
     LandmarkMeasure {
         name: "visible_share",
         description: "visible share of the surface of the landmark, 0 to 1",
@@ -77,5 +83,11 @@ pub const MEASURES: [LandmarkMeasure; 9] = [
         description: "range of the farthest visible part, metres",
         decimals: 3,
         value: |view| view.ranges.map_or(f64::NAN, |ranges| ranges[1]),
+    },
+    LandmarkMeasure {
+        name: "expected_share",
+        description: "expected visible share of the surface, 0 to 1",
+        decimals: 5,
+        value: |view| view.expected_area.map_or(f64::NAN, |area| area / view.area),
     },
 ];

@@ -1,17 +1,19 @@
 //! Landmark visibility: how much of one thing is seen from many places.
 
+mod expected;
 mod extent;
 mod measures;
 mod points;
 mod report;
 
-pub use measures::{LandmarkMeasure, MEASURES};
+pub use measures::{LandmarkMeasure, measures};
 pub use points::{LandmarkPoints, landmark_points};
 pub use report::{BestView, LandmarkReport};
 
 use belvedere_core::query::target_tree::TargetTree;
 use belvedere_core::query::{
-    Answer, BackFaces, EarthParams, MedialScene, MeshTargetParams, Sides, SurfacePieces, UnprovenAs, Viewer,
+    Answer, BackFaces, EarthParams, MedialScene, MeshTargetParams, Sides, SurfacePiece, SurfacePieces, UnprovenAs,
+    Viewer,
 };
 use belvedere_data::control::Control;
 use belvedere_data::vector::{cross, dot, length, sub, unit};
@@ -41,6 +43,8 @@ pub struct LandmarkParams {
     pub earth: EarthParams,
     /// Greatest range of what counts, metres, above 0. Default: infinite.
     pub max_range: f64,
+    /// Whether to tell what area is expected to be seen; needs pulses. Default: not.
+    pub has_expected: bool,
 }
 
 belvedere_data::setters!(LandmarkParams {
@@ -48,6 +52,7 @@ belvedere_data::setters!(LandmarkParams {
     with_unproven(unproven: UnprovenAs),
     with_earth(earth: EarthParams),
     with_max_range(max_range: f64),
+    with_expected(has_expected: bool),
 });
 
 impl LandmarkParams {
@@ -69,6 +74,14 @@ impl LandmarkParams {
     }
 }
 
+impl LandmarkParams {
+    /// Whether a piece is turned to an eye, or both of its sides count.
+    fn can_be_seen(&self, landmark: &SurfacePieces, piece: &SurfacePiece, eye: [f64; 3]) -> bool {
+        let backs_count = self.faces.back_faces == BackFaces::BothSides || landmark.sides == Sides::Both;
+        backs_count || dot(piece.normal.map(f64::from), sub(piece.corners[0].map(f64::from), eye)) < 0.0
+    }
+}
+
 impl Default for LandmarkParams {
     fn default() -> Self {
         Self {
@@ -76,6 +89,7 @@ impl Default for LandmarkParams {
             unproven: UnprovenAs::Reported,
             earth: EarthParams::default(),
             max_range: f64::INFINITY,
+            has_expected: false,
         }
     }
 }
@@ -99,6 +113,8 @@ pub struct LandmarkView {
     pub vertical_extent: f64,
     /// Range of the nearest and of the farthest part seen, metres; `None` where nothing is seen.
     pub ranges: Option<[f64; 2]>,
+    /// Expected area seen, m², by how likely each part is visible; `None` where that was not wanted.
+    pub expected_area: Option<f64>,
 }
 
 impl LandmarkView {
@@ -165,8 +181,7 @@ fn measured(
     for (row, piece) in landmark.pieces.iter().enumerate() {
         let corners = piece.corners.map(|corner| sub(corner.map(f64::from), eye));
         let area = f64::from(piece.area);
-        let backs_count = params.faces.back_faces == BackFaces::BothSides || landmark.sides == Sides::Both;
-        if !backs_count && !(dot(piece.normal.map(f64::from), corners[0]) < 0.0) {
+        if !params.can_be_seen(landmark, piece, eye) {
             if params.faces.back_faces == BackFaces::NotVisible {
                 view.area += area;
             }
@@ -222,7 +237,7 @@ pub fn landmark_views(
     let places = LandmarkPieces::new(landmark, params);
     let look = |&eye: &[f64; 3]| {
         control.check()?;
-        let view = if !eye.iter().all(|v| v.is_finite()) {
+        let mut view = if !eye.iter().all(|v| v.is_finite()) {
             LandmarkView::default()
         } else if places.bend(eye, &params.earth) {
             landmark_view(scene, landmark, eye, params)
@@ -234,6 +249,9 @@ pub fn landmark_views(
                 (true, _) => scene.answer_unblocked_from(eye, place),
             })
         };
+        if params.has_expected && view.area > 0.0 {
+            view.expected_area = expected::area(scene, landmark, eye, params, &view);
+        }
         control.advance(1);
         Ok(view)
     };

@@ -85,6 +85,16 @@ pub(crate) struct CityPlan {
     #[arg(long = "directions", value_name = "N", default_value_t = 577, requires = "sky_view", help_heading = "Questions",
         value_parser = at_least_one)]
     pub(crate) direction_count: usize,
+    /// Also map how likely each cell is lit or visible, for --sun, --time and --observer
+    ///
+    /// A result of its own for each of them. It needs pulses: docs/methods/confidence.md.
+    #[arg(long, help_heading = "Questions")]
+    pub(crate) probability: bool,
+    /// Also map between which values sums lie nine times in ten: --sun-hours, --sky-view, --irradiance
+    ///
+    /// Further bands of their results. It needs pulses, and opaque trees.
+    #[arg(long, help_heading = "Questions")]
+    pub(crate) interval: bool,
     #[command(flatten)]
     pub(crate) when: SunPeriod,
     #[command(flatten)]

@@ -1,8 +1,8 @@
 //! Flags of mesh targets, landmarks, protected views, isovists and horizons.
 
 use super::{
-    Earth, FarTerrainArguments, GivingWay, GroundChoice, MapPosition, MemoryArgument, NorthArguments, SceneInput,
-    above_zero, height,
+    Earth, FarTerrainArguments, GivingWay, GroundChoice, IntervalArgument, MapPosition, MemoryArgument, NorthArguments,
+    SceneInput, above_zero, height,
 };
 use belvedere::query::BackFaces;
 use clap::{Args, ValueEnum};
@@ -81,6 +81,11 @@ pub(crate) struct LandmarkArguments {
     /// The visible share of the landmark's surface is 0 to 1; nodata is -9999. .png is a map with a legend.
     #[arg(short, long, value_name = "OUT", required = true, help_heading = "Result")]
     pub(crate) output: Vec<PathBuf>,
+    /// Also give the visible share that is expected, by how likely each part is visible
+    ///
+    /// docs/methods/confidence.md says where probabilities come from. Needs pulses, as --unproven does.
+    #[arg(long, help_heading = "Result")]
+    pub(crate) probability: bool,
     /// Also write a raster of each measure of a grid into this folder; created if it does not exist
     #[arg(long, value_name = "DIR", conflicts_with = "observers", help_heading = "Result")]
     pub(crate) measures: Option<PathBuf>,
@@ -188,6 +193,8 @@ pub(crate) struct IsovistArguments {
     #[arg(short, long, value_name = "OUT", required = true, help_heading = "Result")]
     pub(crate) output: Vec<PathBuf>,
     #[command(flatten)]
+    pub(crate) interval: IntervalArgument,
+    #[command(flatten)]
     pub(crate) memory: MemoryArgument,
     #[command(flatten)]
     pub(crate) scene: SceneInput,
@@ -215,6 +222,8 @@ pub(crate) struct HorizonArguments {
     /// observer, one on each line, clockwise from north. .png: one observer.
     #[arg(short, long, value_name = "OUT", required = true, help_heading = "Result")]
     pub(crate) output: Vec<PathBuf>,
+    #[command(flatten)]
+    pub(crate) interval: IntervalArgument,
     #[command(flatten)]
     pub(crate) scene: SceneInput,
 }

@@ -23,6 +23,7 @@ pub(crate) fn run(arguments: &HorizonArguments, global: &Global) -> Result<Summa
         earth: arguments.earth.params()?,
         north: arguments.north.choice(),
         below: if arguments.below == BelowChoice::Zero { BelowLevel::Zero } else { BelowLevel::Keep },
+        interval: arguments.interval.interval,
     };
     question.check()?;
     check_formats(arguments, min_count(arguments.eyes.eye.len(), arguments.eyes.eyes.as_deref())?)?;
@@ -32,12 +33,12 @@ pub(crate) fn run(arguments: &HorizonArguments, global: &Global) -> Result<Summa
     check_formats(arguments, standing.len())?;
     let answers = ask::ask(&scene, &question, &Places::Eyes(standing), &run.control())?;
     run.answered(&answers);
-    let HorizonResults { azimuth_count, elevations_deg: elevations, .. } = &answers.found;
+    let elevations = &answers.found.elevations_deg;
     for output in &arguments.output {
         run.stage("writing", 0, |_| match (extension(output).as_str(), elevations.first()) {
             ("png", Some(one)) => write_png(output, &horizon_picture(one, "Horizon elevation, degrees")),
             ("txt", Some(one)) => write_lines(output, one.iter().map(|v| format!("{v:.2}"))),
-            _ => write_columns(output, elevations, *azimuth_count),
+            _ => write_columns(output, &answers.found),
         })?;
     }
     run.summary.add("written", arguments.output.iter().map(|path| path.display().to_string()).collect::<Vec<_>>());
@@ -56,21 +57,28 @@ fn check_formats(arguments: &HorizonArguments, count: usize) -> Result<()> {
     }
 }
 
-/// Azimuths, and a column of elevations for each eye.
-fn write_columns(output: &Path, elevations: &[Vec<f64>], count: usize) -> belvedere::Result<()> {
-    let header = match elevations.len() {
-        1 => "azimuth,elevation".to_owned(),
-        eyes => (1..=eyes).fold("azimuth".to_owned(), |header, eye| format!("{header},elevation_{eye}")),
-    };
+/// Azimuths, and for each eye a column of elevations, and two of the ends of intervals where they are known.
+fn write_columns(output: &Path, found: &HorizonResults) -> belvedere::Result<()> {
+    let HorizonResults { azimuth_count: count, elevations_deg: elevations, intervals_deg: intervals, .. } = found;
+    let names: &[&str] = if intervals.is_some() { &["elevation", "low", "high"] } else { &["elevation"] };
+    let header = (1..=elevations.len()).fold("azimuth".to_owned(), |header, eye| {
+        let end = if elevations.len() == 1 { String::new() } else { format!("_{eye}") };
+        names.iter().fold(header, |header, name| format!("{header},{name}{end}"))
+    });
     let row = |i: usize| {
         // six decimals for steps that are no whole numbers, without the zeros of those that are
-        let azimuth = format!("{:.6}", 360.0 * i as f64 / count as f64);
+        let azimuth = format!("{:.6}", 360.0 * i as f64 / *count as f64);
         let azimuth = azimuth.trim_end_matches('0').trim_end_matches('.').to_owned();
         // a skipped observer has empty cells
-        let cell = |eye: &Vec<f64>| eye.get(i).map(|elevation| format!("{elevation:.4}")).unwrap_or_default();
-        elevations.iter().fold(azimuth, |row, eye| format!("{row},{}", cell(eye)))
+        let cell = |value: Option<f64>| value.map(|elevation| format!("{elevation:.4}")).unwrap_or_default();
+        elevations.iter().enumerate().fold(azimuth, |row, (eye, of_eye)| {
+            let ends = intervals.as_ref().map(|all| all.get(eye).and_then(|ends| ends.get(i)).copied());
+            let ends = ends.map(|ends| [0, 1].map(|end| cell(ends.map(|ends| ends[end]))));
+            let row = format!("{row},{}", cell(of_eye.get(i).copied()));
+            ends.map_or(row.clone(), |[low, high]| format!("{row},{low},{high}"))
+        })
     };
-    write_lines(output, std::iter::once(header).chain((0..count).map(row)))
+    write_lines(output, std::iter::once(header).chain((0..*count).map(row)))
 }
 
 pub(super) fn write_lines(output: &Path, lines: impl Iterator<Item = String>) -> belvedere::Result<()> {

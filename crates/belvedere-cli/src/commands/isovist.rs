@@ -26,6 +26,7 @@ pub(crate) fn run(arguments: &IsovistArguments, global: &Global) -> Result<Summa
         max_distance: arguments.max_distance,
         angle_step_deg: arguments.step,
         min_jump: arguments.jump,
+        interval: arguments.interval.interval,
     };
     question.check()?;
     check_pictures(arguments, min_count(arguments.eyes.eye.len(), arguments.eyes.eyes.as_deref())?)?;

@@ -60,6 +60,7 @@ fn question(
         back_faces: arguments.back_faces.map_or_else(BackFaces::default, BackFaces::from),
         earth: arguments.earth.params()?,
         unproven: arguments.giving_way.unproven.map(UnprovenAs::from),
+        probability: arguments.probability,
     })
 }
 

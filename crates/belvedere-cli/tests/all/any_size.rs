@@ -267,3 +267,37 @@ fn how_sure_answers_are_is_the_same_in_tiles() {
     let names: Vec<String> = numbers(&place, "8.tif").into_iter().map(|(name, _)| name).collect();
     assert_eq!(names, ["lit", "unproven", "uncertain"]);
 }
+
+#[test]
+fn intervals_of_sums_are_the_same_in_tiles() {
+    let place = Workplace::new();
+    town(&place);
+    let sure = "--cell 3 --surface --interval --cache kept";
+    for (question, names) in [
+        ("sky-view town/cloud.laz --directions 145", ["factor_expected", "factor_low", "factor_high"]),
+        (
+            "sun-hours town/cloud.laz --date 2026-03-21 --time-step-min 20 --zone UTC --location 52,4.4",
+            ["hours_expected", "hours_low", "hours_high"],
+        ),
+        (
+            "irradiance town/cloud.laz --clear-sky ineichen --location 52,4.4 --patch-division 1 --sun-cell-deg 8",
+            ["kwh_m2_expected", "kwh_m2_low", "kwh_m2_high"],
+        ),
+    ] {
+        place.summary(&format!("{question} {sure} -o whole.csv -o whole.tif"));
+        let tiled = place.summary(&format!("{question} {sure} -o tiled.tif --memory 118M"));
+        assert!(remarks(&tiled).contains(&"in-tiles".to_owned()), "{tiled}");
+        let of_tiles = numbers(&place, "tiled.tif");
+        let of_whole = numbers(&place, "whole.tif");
+        for name in names {
+            let of = |bands: &[(String, Vec<f32>)]| bands.iter().find(|(own, _)| own == name).unwrap().1.clone();
+            let (expected, found) = (of(&of_whole), of(&of_tiles));
+            assert_eq!(expected.len(), found.len());
+            let greatest = expected.iter().copied().filter(|value| value.is_finite()).fold(0.0, f32::max);
+            let differ = |(a, b): &(&f32, &f32)| a.is_nan() != b.is_nan() || (**a - **b).abs() > 0.05 * greatest;
+            let count = expected.iter().zip(&found).filter(differ).count();
+            // tops of roofs differ where noise does, and with them the class of a cell
+            assert!(count * 20 < found.len(), "{name}: {count} of {}", found.len());
+        }
+    }
+}

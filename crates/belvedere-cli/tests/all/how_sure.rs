@@ -103,6 +103,85 @@ fn hours_of_sun_and_views_of_the_sky_have_intervals() {
     assert!(low.iter().zip(&high).filter(|(low, _)| low.is_finite()).all(|(low, high)| low <= high && *high <= 1.0));
 }
 
+/// That `sums` lie about the ends of their intervals, which are ordered and of which some are wide.
+fn assert_intervals([sums, low, high]: [&[f64]; 3], wide: f64) {
+    let rows = (0..sums.len()).filter(|&row| sums[row].is_finite());
+    let mut widest = 0.0_f64;
+    for row in rows {
+        assert!(low[row] <= high[row], "{} {}", low[row], high[row]);
+        widest = widest.max(high[row] - low[row]);
+    }
+    assert!(widest > wide, "{widest}");
+}
+
+#[test]
+fn energies_of_places_and_of_roofs_have_intervals() {
+    let place = village();
+    let energy = "irradiance town/cloud.laz --clear-sky ineichen --location 52,5 --patch-division 1 --interval";
+    place.summary(&format!("{energy} --cell 4 --months -o energy.csv --planes roofs.csv"));
+    let of_places = |name: &str| column(&place, "energy.csv", name);
+    let [energy_there, low, high, free] = ["kwh_m2", "kwh_m2_low", "kwh_m2_high", "free_kwh_m2"].map(of_places);
+    assert!(energy_there.len() > 200);
+    assert_intervals([&energy_there, &low, &high], 30.0);
+    // tables round to a hundredth
+    assert!(high.iter().zip(&free).filter(|(high, _)| high.is_finite()).all(|(high, free)| *high <= free + 0.011));
+    let of_roofs = |name: &str| column(&place, "roofs.csv", name);
+    let [found, low, high, loss, loss_high] =
+        ["kwh_m2", "kwh_m2_low", "kwh_m2_high", "min_loss", "loss_high"].map(of_roofs);
+    assert!(found.len() >= 2, "{} planes", found.len());
+    assert_intervals([&found, &low, &high], 1.0);
+    assert!(
+        loss.iter().zip(&loss_high).all(|(loss, high)| (-1e-3..=1.0).contains(&(high - loss))),
+        "{loss:?} {loss_high:?}"
+    );
+    let through = format!("{energy} --through-trees auto -o no.csv");
+    place.refusal(2, &through, &["--interval", "trees"]);
+}
+
+#[test]
+fn horizons_and_isovists_have_intervals_and_landmarks_an_expected_share() {
+    let place = village();
+    let info = place.summary("info town/cloud.laz");
+    let corner = |which: &str, axis: usize| info[which][axis].as_f64().unwrap();
+    let [x, y] = [0, 1].map(|axis| 0.5 * (corner("min_corner", axis) + corner("max_corner", axis)));
+    let horizon = format!("horizon town/cloud.laz --observer {x},{y} --angle-step-deg 4");
+    place.summary(&format!("{horizon} -o plain.csv"));
+    let sure = place.summary(&format!("{horizon} --interval -o sure.csv"));
+    let [plain, elevation] = ["plain.csv", "sure.csv"].map(|name| column(&place, name, "elevation"));
+    assert_eq!(plain, elevation);
+    let [low, high] = ["low", "high"].map(|name| column(&place, "sure.csv", name));
+    assert_intervals([&elevation, &low, &high], 0.3);
+    assert!((0..low.len()).all(|row| low[row] <= elevation[row] && elevation[row] <= high[row]));
+    assert!(sure["horizons"]["mean_interval_deg"].as_f64().unwrap() > 0.01, "{sure}");
+
+    let isovist = format!("isovist town/cloud.laz --observer {x},{y} --max-distance 40 --angle-step-deg 4");
+    place.summary(&format!("{isovist} --interval -o space.csv"));
+    for (name, ends) in [
+        ("plan_area_m2", ["plan_area_low_m2", "plan_area_high_m2"]),
+        ("volume_m3", ["volume_low_m3", "volume_high_m3"]),
+    ] {
+        let value = column(&place, "space.csv", name)[0];
+        let [low, high] = ends.map(|name| column(&place, "space.csv", name)[0]);
+        assert!(low < value && value < high && high < 3.0 * value, "{name}: {low} {value} {high}");
+    }
+
+    let landmark = "landmark town/cloud.laz --target-class 6 --cell 8";
+    place.summary(&format!("{landmark} --probability -o views.csv"));
+    let of_views = |name: &str| column(&place, "views.csv", name);
+    let [seen, unproven, expected] = ["visible_area_m2", "unproven_area_m2", "expected_share"].map(of_views);
+    let shares = of_views("visible_share");
+    let rows: Vec<usize> = (0..seen.len()).filter(|&row| seen[row] > 1.0).collect();
+    assert!(rows.len() > 20, "{} observers see it", rows.len());
+    // what is expected is near to what nothing blocks
+    let mean = |of: &dyn Fn(usize) -> f64| rows.iter().map(|&row| of(row)).sum::<f64>() / rows.len() as f64;
+    let free = mean(&|row| shares[row] * (1.0 + unproven[row] / seen[row]));
+    let found = mean(&|row| expected[row]);
+    assert!((found - free).abs() < 0.3 * free, "{found} {free}");
+    assert!(rows.iter().any(|&row| (expected[row] - shares[row]).abs() > 1e-4));
+    place.summary(&format!("{landmark} -o plain.csv"));
+    assert!(!place.text("plain.csv").contains("expected_share"));
+}
+
 #[test]
 fn cameras_cover_what_they_see_with_certainty_only() {
     let place = village();

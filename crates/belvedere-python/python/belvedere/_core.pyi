@@ -195,6 +195,7 @@ class Scene:
         angle_step: float | None,
         looking: dict[str, Any],
         place: dict[str, Any],
+        interval: bool,
         progress: _Progress,
     ) -> tuple[npt.NDArray[np.float64], int, list[dict[str, Any]]]: ...
     def isovist(
@@ -204,6 +205,7 @@ class Scene:
         min_jump: float | None,
         looking: dict[str, Any],
         place: dict[str, Any],
+        interval: bool,
         progress: _Progress,
     ) -> tuple[dict[str, npt.NDArray[Any]], list[npt.NDArray[np.float32]], list[dict[str, Any]]]: ...
     def landmark(
@@ -212,6 +214,7 @@ class Scene:
         observers: npt.NDArray[np.float64] | None,
         looking: dict[str, Any],
         unproven: str,
+        probability: bool,
         progress: _Progress,
     ) -> tuple[_Columns, _Grid | None, list[dict[str, Any]]]: ...
     def protected_view(

@@ -243,6 +243,7 @@ class Outlook:
         curvature: str | None = None,
         refraction: float | None = None,
         grid_north: bool = False,
+        interval: bool = False,
         progress: Progress = None,
     ) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
         """Above which elevation the sky is free around observers.
@@ -255,6 +256,8 @@ class Outlook:
             Metres; 1.7 if not given.
         angle_step_deg : float, optional
             Degrees between azimuths; 1 if not given.
+        interval : bool, optional
+            Whether to say between which elevations the sky begins nine times in ten; needs pulses.
         ground, curvature, refraction, grid_north, progress : optional
             As for `viewshed`.
 
@@ -263,7 +266,8 @@ class Outlook:
         azimuths_deg : ndarray, shape (A,)
             Clockwise from true north.
         elevations_deg : ndarray, shape (A,) for one observer, (N, A) for several
-            -90 where nothing stands; NaN for observers that are skipped.
+            -90 where nothing stands; NaN for observers that are skipped. With `interval` there is one more axis of
+            three: the elevation, and the lower and the upper end of its interval.
 
         Raises
         ------
@@ -284,12 +288,13 @@ class Outlook:
         looking = _looking(observer_height=observer_height, ground=ground, curvature=curvature, refraction=refraction)
         check_finite(angle_step_deg=angle_step_deg)
         places = map_places(observers, "observers", _OBSERVERS)
+        place = _place(None, grid_north=grid_north)
         found, count, given = self._core.horizon(
-            places, angle_step_deg, looking, _place(None, grid_north=grid_north), reporter(progress)
+            places, angle_step_deg, looking, place, interval, reporter(progress)
         )
         warned(given)
         azimuths = 360.0 * np.arange(count) / count
-        elevations = found.reshape(len(places), count)
+        elevations = found.reshape((len(places), count, 3) if interval else (len(places), count))
         return azimuths, elevations[0] if np.ndim(observers) == 1 else elevations
 
     def isovist(
@@ -302,6 +307,7 @@ class Outlook:
         min_jump: float | None = None,
         ground: str | None = None,
         grid_north: bool = False,
+        interval: bool = False,
         progress: Progress = None,
     ) -> Table:
         """The space that observers see, in numbers: its volume, how open it is, and its plan.
@@ -318,6 +324,8 @@ class Outlook:
             Degrees between rays; 1 if not given.
         min_jump : float, optional
             Smallest jump of range that is an edge of the plan, metres; 0.25 if not given.
+        interval : bool, optional
+            Whether to say between which areas and volumes what is seen lies nine times in ten; needs pulses.
         ground, grid_north, progress : optional
             As for `viewshed`.
 
@@ -326,7 +334,8 @@ class Outlook:
         Table
             ``volume_m3``, ``blocked_volume_m3`` of the directions in which something blocks, ``openness``,
             ``sky_openness``, ranges, drift, area and perimeter of the plan; a row for each observer, NaN for one that
-            is skipped. The attribute `panoramas` has the ranges in all directions.
+            is skipped; with `interval` also ``plan_area_low_m2``, ``plan_area_high_m2``, ``volume_low_m3`` and
+            ``volume_high_m3``. The attribute `panoramas` has the ranges in all directions.
 
         Raises
         ------
@@ -356,6 +365,7 @@ class Outlook:
             min_jump,
             looking,
             _place(None, grid_north=grid_north),
+            interval,
             reporter(progress),
         )
         places = columns.pop("place")

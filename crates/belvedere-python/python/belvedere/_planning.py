@@ -55,6 +55,7 @@ class Planning:
         unproven: str = "report",
         curvature: str | None = None,
         refraction: float | None = None,
+        probability: bool = False,
         progress: Progress = None,
     ) -> RastersOrTable:
         """From where a landmark is seen, and how much of it.
@@ -79,13 +80,16 @@ class Planning:
             Distance of samples on the mesh, metres, and the seed of their places.
         max_distance : float, optional
             How far observers look, metres.
+        probability : bool, optional
+            Whether to add the visible share that is expected, by how likely each part is visible.
         ground, unproven, curvature, refraction, progress : optional
             As for `viewshed`.
 
         Returns
         -------
         Rasters or Table
-            ``visible_share``, ``visible_area_m2``, ``solid_angle_sr``, angles and ranges. `remarks` says what to know.
+            ``visible_share``, ``visible_area_m2``, ``solid_angle_sr``, angles and ranges; with `probability` also
+            ``expected_share``. `remarks` says what to know.
 
         Raises
         ------
@@ -119,7 +123,7 @@ class Planning:
         if observers is not None and cell is not None:
             raise wrong("cell", cell, "it applies only to a grid; leave out observers, or leave this out")
         places = None if observers is None else map_places(observers, "observers", _OBSERVERS)
-        columns, grid, given = self._core.landmark(what, places, looking, unproven, reporter(progress))
+        columns, grid, given = self._core.landmark(what, places, looking, unproven, probability, reporter(progress))
         if places is None:
             return measures(([(*column, False) for column in columns], grid, None, given), self._core.crs, None)
         table = Table({name: values for name, _, values in columns}, places=places, crs=self._core.crs.text)

@@ -28,6 +28,15 @@ pub(super) fn check(arguments: &CityPlan) -> Result<()> {
         _ => {}
     }
     of_sun_and_sky(arguments)?.iter().try_for_each(ask::Ask::check)?;
+    if arguments.probability && !has_suns && arguments.observers.is_empty() {
+        return usage("--probability needs --sun, --time or --observer");
+    }
+    if arguments.interval && !(arguments.sun_hours || arguments.sky_view || arguments.irradiance) {
+        return usage("--interval needs --sun-hours, --sky-view or --irradiance");
+    }
+    if (arguments.probability || arguments.interval) && arguments.trees.choice()?.is_light() {
+        return usage("--probability and --interval are of opaque trees; leave out --through-trees");
+    }
     let has_radiation = arguments.weather.is_some() || arguments.clear_sky.is_some();
     if arguments.irradiance && !has_radiation {
         return usage("--irradiance needs --weather FILE or --clear-sky MODEL");
@@ -92,6 +101,10 @@ fn sun_place(arguments: &CityPlan) -> Result<SunPlace> {
     Ok(SunPlace { zone, ..place })
 }
 
+fn how_sure(arguments: &CityPlan) -> ask::HowSure {
+    ask::HowSure { probability: arguments.probability, certain: None }
+}
+
 /// The questions that were typed about sun and sky, as one would put them to a scene.
 fn of_sun_and_sky(arguments: &CityPlan) -> Result<Vec<ask::Question>> {
     let place = sun_place(arguments)?;
@@ -103,7 +116,7 @@ fn of_sun_and_sky(arguments: &CityPlan) -> Result<Vec<ask::Question>> {
             edges,
             trees,
             unproven: None,
-            how_sure: ask::HowSure::default(),
+            how_sure: how_sure(arguments),
         })
     };
     let mut questions = Vec::new();
@@ -119,6 +132,7 @@ fn of_sun_and_sky(arguments: &CityPlan) -> Result<Vec<ask::Question>> {
             days,
             rules,
             place,
+            interval: arguments.interval,
             ..ask::SunHoursQuestion::default()
         }));
     }
@@ -143,13 +157,17 @@ pub(super) fn questions(arguments: &CityPlan, plan: &Plan, run: &mut CommandCont
             place: sun_place(arguments)?,
             trees: ThroughTrees::Opaque,
             roofs: None,
-            interval: false,
+            interval: arguments.interval,
         });
         questions.extend(TileQuestion::of(&question, (plan, &whereabouts), &mut context, &run.control())?);
     }
     if arguments.sky_view {
         let sky = SkyParts::Even(arguments.direction_count);
-        let question = ask::Question::SkyView(ask::SkyViewQuestion { sky, ..ask::SkyViewQuestion::default() });
+        let question = ask::Question::SkyView(ask::SkyViewQuestion {
+            sky,
+            interval: arguments.interval,
+            ..ask::SkyViewQuestion::default()
+        });
         questions.extend(TileQuestion::of(&question, (plan, &whereabouts), &mut context, &run.control())?);
     }
     if !arguments.observers.is_empty() {
@@ -163,6 +181,7 @@ pub(super) fn questions(arguments: &CityPlan, plan: &Plan, run: &mut CommandCont
         let question = ask::Question::Viewshed(ask::ViewshedQuestion {
             observers: arguments.observers.iter().map(observer).collect(),
             limits: ask::ViewLimits { max_distance: arguments.max_distance, ..ask::ViewLimits::default() },
+            how_sure: how_sure(arguments),
             ..ask::ViewshedQuestion::default()
         });
         questions.extend(TileQuestion::of(&question, (plan, &whereabouts), &mut context, &run.control())?);

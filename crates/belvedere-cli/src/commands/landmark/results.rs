@@ -2,7 +2,7 @@
 
 use anyhow::Result;
 use belvedere::PointCloud;
-use belvedere::apps::landmark::{LandmarkMeasure, LandmarkView, MEASURES};
+use belvedere::apps::landmark::{LandmarkMeasure, LandmarkView, measures};
 use belvedere::figures::{MapLegend, MapMark, MapPicture, map_picture, ramp, write_png};
 use belvedere::ground::{Ground, highest_points};
 use belvedere::io::{TableCells, TextRows, atomic, with_columns_read, write_table, write_tif_f32};
@@ -27,7 +27,7 @@ pub(super) fn write_rows(
     for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
         columns.push((name, rows.iter().map(|&row| cloud.frame.file_from_local(places[row])[axis]).collect(), 3));
     }
-    for measure in &MEASURES {
+    for measure in measures(views) {
         columns.push((measure.name, rows.iter().map(|&row| measure.of(&views[row])).collect(), measure.decimals));
     }
     let named: Vec<(&'static str, TableCells<'_>)> =
@@ -38,7 +38,7 @@ pub(super) fn write_rows(
 
 /// The share seen as a raster.
 pub(super) fn write_share(output: &Path, views: &[LandmarkView], ground: &Ground, cloud: &PointCloud) -> Result<()> {
-    write_measure(output, &MEASURES[0], views, ground, cloud)
+    write_measure(output, &measures(views)[0], views, ground, cloud)
 }
 
 /// Every measure as a raster of its own in `folder`; the files written.
@@ -50,7 +50,7 @@ pub(super) fn write_measures(
 ) -> Result<Vec<String>> {
     atomic::make_folder(folder)?;
     let mut written = Vec::new();
-    for measure in &MEASURES {
+    for measure in measures(views) {
         let path = folder.join(format!("{}.tif", measure.name));
         write_measure(&path, measure, views, ground, cloud)?;
         written.push(path.display().to_string());

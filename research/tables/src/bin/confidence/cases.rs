@@ -12,6 +12,8 @@ use belvedere_baselines::simulated::surveyed;
 use belvedere_scenes::{Preset, QuerySet, QuerySite, Regime, TargetsOfKind, TriangleScene, Truth};
 use rayon::prelude::*;
 
+/// Class of points of buildings.
+const BUILDING: u8 = 6;
 /// Sides of the towns, metres.
 const EXTENT: f64 = 110.0;
 /// Targets of each set.
@@ -54,6 +56,8 @@ pub(crate) struct SurveyedTown {
     pub(crate) scene: MedialScene,
     pub(crate) truth: Truth,
     pub(crate) origin: [f64; 3],
+    /// Points of buildings, local metres.
+    pub(crate) roof_points: Vec<[f32; 3]>,
     bounds: [[f64; 3]; 2],
 }
 
@@ -68,7 +72,10 @@ impl SurveyedTown {
         let (origin, bounds) = (cloud.frame.origin, cloud.bounds().unwrap_or_default());
         let absolute = |p: [f32; 3]| std::array::from_fn(|i| f64::from(p[i]) + origin[i]);
         let bounds = [bounds.low, bounds.high].map(absolute);
-        Ok(Self { truth: Truth::new(&town), town, scene, origin, bounds })
+        let classes = cloud.attributes.classification.as_deref().unwrap_or_default();
+        let of_buildings = cloud.positions.iter().zip(classes).filter(|(_, class)| **class == BUILDING);
+        let roof_points = of_buildings.map(|(place, _)| *place).collect();
+        Ok(Self { truth: Truth::new(&town), town, scene, origin, roof_points, bounds })
     }
 
     pub(crate) fn site(&self) -> QuerySite<'_> {

@@ -5,21 +5,25 @@
 //! cargo research confidence -- fit-sums crates/belvedere-apps/src/sum_errors.csv
 //! cargo research confidence -- judge village,town,old-town,towers 201,202 10 air
 //! cargo research confidence -- judge-sums village,town,old-town,towers 201 10 air
+//! cargo research confidence -- judge-ways village,town,old-town,towers 201 10 air
 //! ```
 //!
-//! `fit` and `fit-sums` write the scores and the errors of sums that the program uses. `judge` and `judge-sums` print
-//! the tables of docs/methods/confidence.md: kinds of towns, seeds, pulses per m², scanners. No town of the tables was
-//! fitted.
+//! `fit` and `fit-sums` write the scores and the errors of sums that the program uses. `judge`, `judge-sums` and
+//! `judge-ways` (horizons and isovists) print the tables of docs/methods/confidence.md: kinds of towns, seeds, pulses
+//! per m², scanners. No town of the tables was fitted.
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "a program for tables talks")]
 
 mod cases;
+mod energies;
 mod fit;
 mod sums;
+mod ways;
 
 use belvedere::apps::calibration::Calibration;
 use belvedere_scenes::{Preset, Regime};
 use cases::{Case, SETS, TownSurvey};
 use sums::SumCase;
+use ways::WayCase;
 
 type AnyResult<T> = Result<T, Box<dyn std::error::Error>>;
 
@@ -39,8 +43,20 @@ fn main() -> AnyResult<()> {
             sums::judge(&all_sums(&surveys(presets, seeds, densities, regimes)?)?);
             Ok(())
         }
+        ["judge-ways", presets, seeds, densities, regimes] => {
+            let mut cases: Vec<WayCase> = Vec::new();
+            for survey in surveys(presets, seeds, densities, regimes)? {
+                eprintln!("{survey:?}");
+                cases.extend(ways::cases(&survey)?);
+            }
+            ways::judge(&cases);
+            Ok(())
+        }
         ["judge", presets, seeds, densities, regimes] => judge(presets, seeds, densities, regimes),
-        _ => Err("use: fit FILE, fit-sums FILE, or judge or judge-sums PRESETS SEEDS DENSITIES SCANNERS".into()),
+        _ => {
+            Err("use: fit FILE, fit-sums FILE, or judge, judge-sums or judge-ways PRESETS SEEDS DENSITIES SCANNERS"
+                .into())
+        }
     }
 }
 

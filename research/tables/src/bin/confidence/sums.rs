@@ -1,7 +1,7 @@
 //! Sums over directions: how far hours of sun and views of the sky are from the truth.
 
-use super::AnyResult;
 use super::cases::{SurveyedTown, TownSurvey};
+use super::{AnyResult, energies};
 use belvedere::apps::rows::RowBlock;
 use belvedere::apps::sky_view::SkyDirections;
 use belvedere::apps::sum_errors::{CLASSES, Outlines, SumKind, expected_measures};
@@ -13,8 +13,8 @@ use belvedere_scenes::QuerySet;
 use std::collections::BTreeSet;
 
 /// Targets of each set.
-const TARGETS: usize = 400;
-const SETS: [QuerySet; 3] = [QuerySet::Pedestrians, QuerySet::Roofs, QuerySet::Facades];
+pub(super) const TARGETS: usize = 400;
+pub(super) const SETS: [QuerySet; 3] = [QuerySet::Pedestrians, QuerySet::Roofs, QuerySet::Facades];
 /// Declination of the sun at the longest day; days between it and the shortest that represent a year; and the latitude,
 /// degrees.
 const MAX_DECLINATION_DEG: f64 = 23.4;
@@ -27,13 +27,14 @@ const MIN_CASES: usize = 50;
 
 /// A sum of a target as a share of the greatest possible.
 pub(super) struct SumCase {
-    kind: SumKind,
+    pub(super) kind: SumKind,
     /// What is summed up, for tables.
-    name: &'static str,
-    set: QuerySet,
-    class: u8,
-    found: f64,
-    truth: f64,
+    pub(super) name: &'static str,
+    /// `None` for planes of roofs.
+    pub(super) set: Option<QuerySet>,
+    pub(super) class: u8,
+    pub(super) found: f64,
+    pub(super) truth: f64,
 }
 
 /// Directions of one sum, and their weights.
@@ -84,7 +85,7 @@ fn suns(declination_deg: f64) -> Vec<[f64; 3]> {
 pub(super) fn cases(survey: &TownSurvey) -> AnyResult<Vec<SumCase>> {
     let surveyed = SurveyedTown::new(survey)?;
     let SurveyedTown { scene, truth, origin, .. } = &surveyed;
-    let mut cases = Vec::new();
+    let mut cases = energies::cases(survey, &surveyed)?;
     for set in SETS {
         let found = surveyed.site().targets(set, TARGETS, survey.seed).positions;
         let positions: Vec<[f64; 3]> = found.iter().map(|p| to_local(*p, *origin).map(f64::from)).collect();
@@ -104,7 +105,7 @@ pub(super) fn cases(survey: &TownSurvey) -> AnyResult<Vec<SumCase>> {
             cases.extend(truths.iter().zip(classes).enumerate().map(|(row, (truth, class))| SumCase {
                 kind,
                 name,
-                set,
+                set: Some(set),
                 class,
                 found: block.matrix.sum(row, &weights) / all,
                 truth: truth / all,
@@ -141,7 +142,7 @@ pub(super) fn judge(cases: &[SumCase]) {
     );
     let names: BTreeSet<&str> = cases.iter().map(|case| case.name).collect();
     for name in names {
-        for set in SETS.map(Some).into_iter().chain([None]) {
+        for set in SETS.map(|set| Some(Some(set))).into_iter().chain([Some(None), None]) {
             let of_set = cases.iter().filter(|case| case.name == name && set.is_none_or(|set| case.set == set));
             let (mut held, mut width, mut count) = (0.0, 0.0, 0.0);
             for case in of_set {
@@ -154,7 +155,10 @@ pub(super) fn judge(cases: &[SumCase]) {
                 width += high - low;
                 count += 1.0;
             }
-            let set = set.map_or("all", QuerySet::name);
+            if count == 0.0 {
+                continue;
+            }
+            let set = set.map_or("all", |set| set.map_or("planes of roofs", QuerySet::name));
             println!("| {name} | {set} | {count} | {:.1} | {:.1} |", 100.0 * held / count, 100.0 * width / count);
         }
     }
