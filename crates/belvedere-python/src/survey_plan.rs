@@ -8,7 +8,7 @@ use crate::scene::PyScene;
 use crate::sights::EndKeywords;
 use crate::targets::ground_points;
 use crate::work::run;
-use belvedere::apps::ask::{self, Candidates, GivenCamera, PlannedStation, SurveyPlanQuestion};
+use belvedere::apps::ask::{self, Candidates, GivenCamera, GridCells, PlannedStation, Suns, SurveyPlanQuestion};
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -20,12 +20,17 @@ use std::sync::Arc;
 pub(crate) struct StationKeywords {
     /// x, y and z in the coordinates of the file, z NaN where it follows from the ground; `None` for a grid.
     candidates: Option<Vec<[f64; 3]>>,
+    /// The number of the line that each of them is a place on, where lines are candidates.
+    lines: Option<Vec<usize>>,
     on_roofs: bool,
     spacing: f64,
     station_height: Option<f64>,
     count: usize,
     max_distance: Option<f64>,
     angle_step_deg: Option<f64>,
+    /// Azimuths and elevations of suns whose light on cells of a side, metres, is to be proven; none for pairs.
+    suns: Vec<[f64; 2]>,
+    cell: Option<f64>,
 }
 
 #[pymethods]
@@ -41,12 +46,16 @@ impl PyScene {
         progress: Option<Py<PyAny>>,
     ) -> PyResult<(Bound<'py, PyDict>, Vec<Bound<'py, PyDict>>)> {
         let scene = Arc::clone(&self.0);
-        let given =
-            |&place: &[f64; 3]| GivenCamera { place: scene.frame().local_from_file(place), ..GivenCamera::default() };
+        let line = |row: usize| stations.lines.as_ref().and_then(|lines| lines.get(row).copied());
+        let given = |(row, &place): (usize, &[f64; 3])| GivenCamera {
+            place: scene.frame().local_from_file(place),
+            line: line(row),
+            ..GivenCamera::default()
+        };
         let question = SurveyPlanQuestion {
             count: stations.count,
             candidates: match &stations.candidates {
-                Some(places) => Candidates::Given(places.iter().map(given).collect()),
+                Some(places) => Candidates::Given(places.iter().enumerate().map(given).collect()),
                 None if stations.on_roofs => Candidates::Roofs(stations.spacing),
                 None => Candidates::Ground(stations.spacing),
             },
@@ -56,6 +65,8 @@ impl PyScene {
             observer_height: ends.observer_height,
             target_height: ends.target_height,
             ground: ground_points(ends.ground.as_deref())?,
+            suns: (!stations.suns.is_empty()).then(|| Suns::Directions(stations.suns.clone())),
+            whole_lines: stations.lines.is_some(),
             ..SurveyPlanQuestion::default()
         };
         let [observers, targets] = [standing(&observers, "observers", &scene)?, standing(&targets, "targets", &scene)?];
@@ -63,7 +74,13 @@ impl PyScene {
             let value = format!("an array of {} rows", targets.len());
             return Err(wrong("targets", &value, &format!("give a row for each of the {} observers", observers.len())));
         }
-        let pairs = ask::Places::Pairs(observers.into_iter().zip(targets).map(<[_; 2]>::from).collect());
+        let pairs = match question.suns.is_some() {
+            true => {
+                let (cell, height, ground) = (stations.cell, ends.target_height, question.ground);
+                ask::Places::Cells(GridCells { cell, height, ground, ..GridCells::default() })
+            }
+            false => ask::Places::Pairs(observers.into_iter().zip(targets).map(<[_; 2]>::from).collect()),
+        };
         let answers = run(py, progress, move |control| ask::ask(&scene, &question, &pairs, control))?;
         let found = &answers.found;
         let rows = found.stations();

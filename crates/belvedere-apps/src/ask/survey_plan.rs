@@ -3,6 +3,7 @@
 use super::cameras::{CameraSite, Candidates};
 use super::observers::{Reach, Standing, check_height, skip_unfit, stand};
 use super::sections::{LinesSection, PairsSection};
+use super::sun::{SunPlace, Suns};
 use super::{Answers, Ask, Context, GridCells, LinesOfSightQuestion, Places, Remark, Scene};
 use crate::eyes::EyesReport;
 use crate::survey_plan::{STATION_HEIGHT, ScannerParams, SurveyGain, SurveyPlan, missing_pulses, plan_survey};
@@ -18,6 +19,10 @@ use std::sync::Arc;
 
 /// Most lines of sight that are tested; of more, as many are taken at even steps.
 const MAX_LINES: usize = 20_000;
+/// Sine of the elevation of suns below which no line is followed: half a degree.
+const LOWEST_SUN: f64 = 0.0087;
+/// How far above all that stands a line to a sun ends, metres.
+const ABOVE_ALL: f64 = 1.0;
 /// Side of the cells in which the ground below stations is known, metres.
 const GROUND_CELL: f64 = 1.0;
 
@@ -36,9 +41,15 @@ pub struct SurveyPlanQuestion {
     pub max_distance: Option<f64>,
     /// Angle between pulses, degrees, above 0 to 90; `None` for 0.1.
     pub angle_step_deg: Option<f64>,
-    /// Who looks at the places of the question; none where these are pairs.
+    /// Who looks at the places of the question; none where these are pairs, and where suns are given.
     #[serde(skip)]
     pub observers: Vec<Standing>,
+    /// Suns whose light is to be proven at the places of the question.
+    pub suns: Option<Suns>,
+    /// Where on earth, and how clocks run.
+    pub place: SunPlace,
+    /// Whether all places of a line of candidates are one candidate, such as a flight line. Default: each is one.
+    pub whole_lines: bool,
     /// Height above the ground of observers without one, metres, 0 or more; `None` for 1.7.
     pub observer_height: Option<f64>,
     /// Height above the ground of targets of pairs without one, metres, 0 or more; `None` for 0.1.
@@ -56,6 +67,9 @@ impl Default for SurveyPlanQuestion {
             max_distance: None,
             angle_step_deg: None,
             observers: Vec::new(),
+            suns: None,
+            place: SunPlace::default(),
+            whole_lines: false,
             observer_height: None,
             target_height: None,
             ground: GroundPoints::default(),
@@ -66,7 +80,7 @@ impl Default for SurveyPlanQuestion {
 /// Stations that were chosen, among those that could be.
 #[derive(Clone, Debug)]
 pub struct SurveyPlanResults {
-    /// Where each candidate looks from, local metres; NaN for one that cannot be used.
+    /// Where each candidate looks from, local metres, of a line its first place; NaN for one that cannot be used.
     pub eyes: Vec<[f64; 3]>,
     /// What is expected of them.
     pub plan: SurveyPlan,
@@ -160,6 +174,9 @@ impl SurveyPlanQuestion {
             let pairs = lines.ends(places, scene, context, control)?;
             return Ok(some_of(pairs.len(), |row| pairs[row], context));
         }
+        if let Some(suns) = &self.suns {
+            return self.lines_to_suns(suns, places, scene, context, control);
+        }
         let usual = (self.observer_height.unwrap_or(OBSERVER_HEIGHT), self.ground);
         let eyes = stand(&self.observers, usual, scene, context, control)?;
         let eyes = skip_unfit(eyes, ("observer", Reach::Cloud), (blockers, None), (scene, context), control)?.eyes;
@@ -171,6 +188,41 @@ impl SurveyPlanQuestion {
             [eyes[number % eyes.len()], target.map(f64::from)]
         };
         Ok(some_of(rows.len() * eyes.len(), line, context))
+    }
+
+    /// From above all that stands in the scene towards each sun down to the places.
+    fn lines_to_suns(
+        &self,
+        suns: &Suns,
+        places: &Places,
+        scene: &Scene,
+        context: &mut Context,
+        control: &Control<'_>,
+    ) -> Result<Vec<[[f64; 3]; 2]>> {
+        let suns = suns.over(&self.place, &scene.whereabouts(), context)?;
+        let towards: Vec<[f64; 3]> =
+            suns.iter().map(|sun| sun.sun.to_sun).filter(|to_sun| to_sun[2] > LOWEST_SUN).collect();
+        let targets = places.targets(scene, context, control)?;
+        let rows: Vec<usize> = (0..targets.len()).filter(|&row| targets.is_target(row)).collect();
+        let top = f64::from(scene.model().bounds().high[2]) + ABOVE_ALL;
+        let line = |number: usize| {
+            let target = targets.positions[rows[number / towards.len()]].map(f64::from);
+            let to_sun = towards[number % towards.len()];
+            let range = (top - target[2]).max(ABOVE_ALL) / to_sun[2];
+            [std::array::from_fn(|axis| target[axis] + range * to_sun[axis]), target]
+        };
+        Ok(some_of(rows.len() * towards.len(), line, context))
+    }
+
+    /// The places that each candidate is scanned from.
+    fn stations(&self, eyes: &[[f64; 3]]) -> Vec<Vec<[f64; 3]>> {
+        let lines: Vec<Option<usize>> = match &self.candidates {
+            Candidates::Given(given) if self.whole_lines => given.iter().map(|one| one.line).collect(),
+            _ => vec![None; eyes.len()],
+        };
+        let numbered: Vec<(Option<usize>, [f64; 3])> = lines.into_iter().zip(eyes.iter().copied()).collect();
+        let is_one = |a: &(Option<usize>, [f64; 3]), b: &(Option<usize>, [f64; 3])| a.0.is_some() && a.0 == b.0;
+        numbered.chunk_by(is_one).map(|places| places.iter().map(|(_, eye)| *eye).collect()).collect()
     }
 
     fn remark(found: &SurveyPlanResults, context: &mut Context) {
@@ -241,6 +293,7 @@ impl Ask for SurveyPlanQuestion {
         check_height(self.station_height)?;
         check_height(self.observer_height)?;
         check_height(self.target_height)?;
+        self.suns.as_ref().map_or(Ok(()), |suns| suns.check(&self.place))?;
         if self.count == 0 {
             return Err(Error::InvalidParameter {
                 parameter: Parameter::StationCount,
@@ -289,9 +342,13 @@ impl Ask for SurveyPlanQuestion {
             let what = "all lie inside obstacles, below the ground or outside the cloud".to_owned();
             return Err(Error::NoObserver { who: "candidate", what });
         }
-        let plan = control.stage("testing candidates", eyes.len(), || {
-            plan_survey((&blockers, Some(&known.ground)), &eyes, &unproven, self.count, &self.scanner(), control)
+        let stations = self.stations(&eyes);
+        let plan = control.stage("testing candidates", stations.len(), || {
+            plan_survey((&blockers, Some(&known.ground)), &stations, &unproven, self.count, &self.scanner(), control)
         })?;
+        let is_usable = |eye: &&[f64; 3]| eye[0].is_finite();
+        let eyes = stations.iter().map(|places| places.iter().find(is_usable).copied().unwrap_or([f64::NAN; 3]));
+        let eyes: Vec<[f64; 3]> = eyes.collect();
         let found = SurveyPlanResults { eyes, plan, unproven: unproven.len() };
         Self::remark(&found, context);
         let section = self.section(&found, candidates, scene);

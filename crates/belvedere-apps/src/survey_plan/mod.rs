@@ -221,7 +221,8 @@ impl OpenSpace {
     }
 }
 
-/// Chooses `count` of the candidates at `eyes`, (N) local metres, NaN for one that is not to be used. `lines` are the
+/// Chooses `count` of `candidates`: of each the places that it is scanned from, local metres, one of a tripod and several
+/// of a flight line; a place that is not finite is not used. `lines` are the
 /// unproven lines of sight of a question: of each the pieces that no pulse came near to
 /// ([`MedialScene::unproven_pieces`]), which must be longer than what the proof of `scene` tolerates. Where the model
 /// ends, pulses return from the level of `ground` below the station. Control counts candidates. The same for any number
@@ -232,7 +233,7 @@ impl OpenSpace {
 /// [`place_cameras`], and [`Error::Cancelled`].
 pub fn plan_survey(
     (scene, ground): (&MedialScene, Option<&Ground>),
-    eyes: &[[f64; 3]],
+    candidates: &[Vec<[f64; 3]>],
     lines: &[Vec<[[f64; 3]; 2]>],
     count: usize,
     params: &ScannerParams,
@@ -241,18 +242,22 @@ pub fn plan_survey(
     params.validate()?;
     let proof = scene.proof().ok_or_else(missing_pulses)?;
     let open = OpenSpace::of(lines, proof);
-    let seen = SeenCells::around(proof, eyes.iter().chain(&open.places));
+    let seen = SeenCells::around(proof, candidates.iter().flatten().chain(&open.places));
     let (nearness, around) = (proof.nearness(), ways_around());
     let space = ScannedSpace { scene, ground, seen, params, nearness, around };
-    let proven_by = |&eye: &[f64; 3]| {
+    let proven_from = |&eye: &[f64; 3]| {
         control.check()?;
         let Some(mut scan) = VirtualScan::new(&space, eye) else { return Ok(Vec::new()) };
         let mut level = |place: &[f64; 3]| u8::try_from(scan.level(*place)?).ok();
-        let proven = (0..).zip(&open.places).filter_map(|(row, place)| Some((row, level(place)?))).collect();
-        control.advance(1);
-        Ok(proven)
+        Ok((0..).zip(&open.places).filter_map(|(row, place)| Some((row, level(place)?))).collect())
     };
-    let proven: Vec<ProvenPlaces> = eyes.par_iter().map(proven_by).collect::<Result<_>>()?;
+    let proven_by = |places: &Vec<[f64; 3]>| {
+        let of_places: Vec<ProvenPlaces> = places.par_iter().map(proven_from).collect::<Result<_>>()?;
+        control.advance(1);
+        let levels = open.levels(of_places.iter());
+        Ok((0..).zip(levels).filter(|(_, level)| *level != NOT_PROVEN).collect())
+    };
+    let proven: Vec<ProvenPlaces> = candidates.par_iter().map(proven_by).collect::<Result<_>>()?;
     let covered: Vec<Vec<usize>> = proven.par_iter().map(|proven| open.covered(proven)).collect();
     let weights = open.weights();
     let table = CoverageTable::of_lists(weights.len(), &covered)?;

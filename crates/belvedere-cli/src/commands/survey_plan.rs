@@ -10,7 +10,8 @@ use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::Result;
 use belvedere::apps::ask::{
-    self, Ask, Candidates, GridCells, Places, PlannedStation, Scene, Standing, SurveyPlanQuestion, SurveyPlanResults,
+    self, Ask, Candidates, GridCells, Places, PlannedStation, Scene, Standing, Suns, SurveyPlanQuestion,
+    SurveyPlanResults,
 };
 use belvedere::io::{RowsAre, Spot, TableCells, write_geojson, write_table};
 use belvedere::report::rounded;
@@ -21,14 +22,17 @@ pub(crate) fn run(arguments: &SurveyPlanArguments, global: &Global) -> Result<Su
     for output in &arguments.output {
         check_output("-o", output, &["geojson", "csv"])?;
     }
-    let mut question = question(arguments);
+    let mut question = question(arguments)?;
     question.check()?;
     let mut run = CommandContext::new(global);
     let scene = pipeline::scene(&arguments.scene, KeepPoints::Keep, &mut run)?;
     let frame = scene.cloud.frame.clone();
     warn_of_geojson(&arguments.output, &frame.crs, &mut run.summary);
     let scene = scene.into_question_scene(Some(&arguments.ground), None, &run)?;
+    let (cell, height, ground) = (arguments.cell, arguments.heights.target_height, question.ground);
+    let cells = GridCells { cell, height, ground, ..GridCells::default() };
     let places = match &arguments.observers {
+        None if question.suns.is_some() => Places::Cells(cells),
         None => Places::Pairs(pairs(&arguments.lines, &scene, &run)?.0),
         Some(path) => {
             for row in observer_rows(path, &frame, RowsAre::Places, ObserverUse::Places, &mut run)? {
@@ -36,8 +40,7 @@ pub(crate) fn run(arguments: &SurveyPlanArguments, global: &Global) -> Result<Su
                 let standing = |corner| Standing { place: place(corner), height: row.height };
                 question.observers.extend(row.corners.iter().map(standing));
             }
-            let (cell, height, ground) = (arguments.cell, arguments.heights.target_height, question.ground);
-            Places::Cells(GridCells { cell, height, ground, ..GridCells::default() })
+            Places::Cells(cells)
         }
     };
     if let Some(path) = &arguments.stations.file {
@@ -55,9 +58,17 @@ pub(crate) fn run(arguments: &SurveyPlanArguments, global: &Global) -> Result<Su
 }
 
 /// The question, before files are read.
-fn question(arguments: &SurveyPlanArguments) -> SurveyPlanQuestion {
+fn question(arguments: &SurveyPlanArguments) -> Result<SurveyPlanQuestion> {
     let usual = SurveyPlanQuestion::default();
-    SurveyPlanQuestion {
+    let suns = match (&arguments.suns[..], &arguments.times[..]) {
+        ([], []) => None,
+        ([], times) => Some(Suns::Times(times.to_vec())),
+        (directions, _) => Some(Suns::Directions(directions.iter().map(|direction| direction.0).collect())),
+    };
+    Ok(SurveyPlanQuestion {
+        suns,
+        place: arguments.sun.place(&arguments.north)?,
+        whole_lines: arguments.whole_lines,
         count: arguments.count,
         candidates: match (arguments.stations.on_roofs, arguments.stations.on_ground) {
             (Some(cell), _) => Candidates::Roofs(cell),
@@ -71,7 +82,7 @@ fn question(arguments: &SurveyPlanArguments) -> SurveyPlanQuestion {
         target_height: arguments.heights.target_height,
         ground: arguments.ground.points(),
         ..usual
-    }
+    })
 }
 
 /// A row or a point for each candidate that can be used.

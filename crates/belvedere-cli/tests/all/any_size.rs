@@ -272,7 +272,7 @@ fn how_sure_answers_are_is_the_same_in_tiles() {
 fn intervals_of_sums_are_the_same_in_tiles() {
     let place = Workplace::new();
     town(&place);
-    let sure = "--cell 3 --surface --interval --cache kept";
+    let sure = "--cell 2 --interval --cache kept";
     for (question, names) in [
         ("sky-view town/cloud.laz --directions 145", ["factor_expected", "factor_low", "factor_high"]),
         (

@@ -58,6 +58,52 @@ fn the_station_within_reach_of_the_lines_is_chosen() {
     assert_eq!((&first["station"], first["settled"].as_f64().unwrap()), (&1.into(), settled[0]), "{points}");
 }
 
+/// Two flight lines of a scanner 12 m above the field: far in the west, and behind the house.
+fn flight_lines(place: &Workplace) {
+    let corners = |ends: [[f64; 2]; 2]| {
+        let corner = |[x, y]: [f64; 2]| at(x, y, 12.0).map(|v| v.to_string()).join(",");
+        format!("[[{}],[{}]]", corner(ends[0]), corner(ends[1]))
+    };
+    let line = |ends| {
+        let geometry = format!(r#"{{"type":"LineString","coordinates":{}}}"#, corners(ends));
+        format!(r#"{{"type":"Feature","properties":{{}},"geometry":{geometry}}}"#)
+    };
+    let lines = [line([[-40.0, -20.0], [-40.0, 20.0]]), line([[14.0, -10.0], [14.0, 10.0]])].join(",");
+    place.write("flights.geojson", format!(r#"{{"type":"FeatureCollection","features":[{lines}]}}"#));
+}
+
+#[test]
+fn light_of_a_sun_is_proven_from_the_air_behind_the_house() {
+    let place = place();
+    place.write("west.json", from_the_west());
+    flight_lines(&place);
+    let plan =
+        "survey-plan house.laz --scene-config west.json --candidates flights.geojson --whole-lines --max-distance 30";
+    let run = place.summary(&format!("{plan} --sun 90,40 --grid-north --cell 1 -o plan.csv"));
+    assert!(run["survey_plan"]["unproven_lines"].as_u64().unwrap() > 100, "{run}");
+    let [station, x, settled] = ["station", "x", "settles_alone"].map(|name| column(&place, "plan.csv", name));
+    let [east, ..] = at(14.0, 0.0, 12.0);
+    assert!((x[0] - east).abs() < 1e-3 && station[0] == 1.0 && settled[0] > 20.0, "{x:?} {settled:?} {run}");
+    // a sun below the horizon lights nothing
+    let night = place.summary(&format!("{plan} --sun 90,-5 --cell 1"));
+    assert_eq!(night["survey_plan"]["unproven_lines"].as_u64(), Some(0), "{night}");
+    place.refusal(2, &format!("{plan} --sun 90,20 --pairs lines.csv"), &["--sun", "--pairs"]);
+}
+
+#[test]
+fn a_line_of_candidates_is_one_candidate_that_proves_what_its_places_do_together() {
+    let place = place();
+    place.write("west.json", from_the_west());
+    flight_lines(&place);
+    let plan = "survey-plan house.laz --scene-config west.json --pairs lines.csv --candidates flights.geojson --max-distance 30";
+    let whole = place.summary(&format!("{plan} --whole-lines -o whole.csv"));
+    place.summary(&format!("{plan} -o places.csv"));
+    let [of_lines, of_places] = ["whole.csv", "places.csv"].map(|name| column(&place, name, "settles_alone"));
+    assert!(of_lines.len() == 2 && of_places.len() > 10, "{of_lines:?} {of_places:?}");
+    let best = of_places.iter().copied().fold(0.0, f64::max);
+    assert!(of_lines[0] >= best && best > 0.0 && of_lines[1] == 0.0, "{of_lines:?} {of_places:?} {whole}");
+}
+
 #[test]
 fn scenes_without_known_pulses_are_refused_with_what_to_do() {
     let place = place();

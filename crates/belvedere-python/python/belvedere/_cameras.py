@@ -14,7 +14,7 @@ from ._inputs import Places, Progress, check_finite, map_places, pairs_of, repor
 from ._mesh import Mesh
 from ._raster import Raster
 from ._remarks import Remark, warned
-from ._sunlight import _place
+from ._sunlight import _place, _suns
 from ._table import Table
 from ._targets import Targets, coordinates, raster, wanted
 
@@ -201,7 +201,10 @@ class Cameras:
         """
         if isinstance(candidates, str) and candidates not in ("ground", "roofs"):
             raise wrong("candidates", repr(candidates), "give places, 'ground' or 'roofs'")
-        given = None if isinstance(candidates, str) else map_places(candidates, "candidates", _PLACES)
+        given, lines = _stations(candidates)
+        if (sun is None) == (observer is None and target is None):
+            raise wrong("observer and target", "missing" if sun is None else "given", "give both of them, or only sun")
+        suns = [] if sun is None else [list(direction) for direction in _suns(sun, None)[0]]
         check_finite(spacing=spacing, camera_height=camera_height, fov_deg=fov_deg, vertical_fov_deg=vertical_fov_deg)
         check_finite(pixels=pixels, min_distance=min_distance, coverage_percent=coverage_percent, refraction=refraction)
         if isinstance(targets, Mesh) and weights is not None:
@@ -260,10 +263,12 @@ class Cameras:
 
     def survey_plan(
         self,
-        candidates: str | npt.ArrayLike,
-        observer: Places,
-        target: Places,
+        candidates: str | npt.ArrayLike | list[npt.ArrayLike],
+        observer: Places | None = None,
+        target: Places | None = None,
         *,
+        sun: npt.ArrayLike | None = None,
+        cell: float | None = None,
         count: int = 1,
         spacing: float = 5.0,
         station_height: float | None = None,
@@ -280,9 +285,14 @@ class Cameras:
         ----------
         candidates : array_like, shape (N, 2) or (N, 3), or {'ground', 'roofs'}
             Places for the scanner in the coordinates of the file; without z, `station_height` above the ground. Or a
-            grid of places above the ground or above roofs.
-        observer, target : array_like, shape (3,), (N, 3), (2,) or (N, 2)
+            grid of places above the ground or above roofs. A list of such arrays has a candidate for each of them that
+            is scanned from all of its places, such as a flight line.
+        observer, target : array_like, shape (3,), (N, 3), (2,) or (N, 2), optional
             Ends of the lines of sight that matter, as for `line_of_sight`.
+        sun : array_like, shape (2,) or (K, 2), optional
+            In place of these: azimuths and elevations, degrees, of suns whose light on the ground matters.
+        cell : float, optional
+            With `sun`: side of the cells of the ground, metres; 2 if not given, more for large scenes.
         count : int, optional
             Stations to choose.
         spacing : float, optional
@@ -331,9 +341,18 @@ class Cameras:
         given = None if isinstance(candidates, str) else map_places(candidates, "candidates", _PLACES)
         check_finite(spacing=spacing, station_height=station_height, max_distance=max_distance)
         check_finite(observer_height=observer_height, target_height=target_height, angle_step_deg=angle_step_deg)
-        observers, targets = pairs_of(observer, target)
+        nobody = np.empty((0, 3))
+        if sun is not None:
+            observers, targets = nobody, nobody
+        elif observer is None or target is None:
+            raise wrong("observer and target", "one of them", "give both of them, or only sun")
+        else:
+            observers, targets = pairs_of(observer, target)
         stations = {
             "candidates": None if given is None else given.tolist(),
+            "lines": lines,
+            "suns": suns,
+            "cell": cell,
             "on_roofs": isinstance(candidates, str) and candidates == "roofs",
             "spacing": float(spacing),
             "station_height": station_height,
@@ -347,6 +366,17 @@ class Cameras:
         table = Table(columns, places=places, crs=self._core.crs.text)
         table.remarks = warned(remarks)
         return table
+
+
+def _stations(candidates: Any) -> tuple[npt.NDArray[np.float64] | None, list[int] | None]:
+    """Places for the scanner, and the number of the line of each where lines are candidates."""
+    if isinstance(candidates, str):
+        return None, None
+    if isinstance(candidates, (list, tuple)) and candidates and all(np.ndim(line) == 2 for line in candidates):
+        places = [map_places(line, "candidates", _PLACES) for line in candidates]
+        lines = [number for number, line in enumerate(places) for _ in line]
+        return np.concatenate(places), lines
+    return map_places(candidates, "candidates", _PLACES), None
 
 
 def _existing(given: npt.ArrayLike | Table | None) -> npt.NDArray[np.float64]:

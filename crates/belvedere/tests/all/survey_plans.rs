@@ -64,8 +64,14 @@ fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
     (0..3).map(|i| (a[i] - b[i]).powi(2)).sum::<f64>().sqrt()
 }
 
+/// Candidates of one place each.
+fn tripods(eyes: &[[f64; 3]]) -> Vec<Vec<[f64; 3]>> {
+    eyes.iter().map(|&eye| vec![eye]).collect()
+}
+
 fn plan(scene: &MedialScene, eyes: &[[f64; 3]], lines: &[Pieces], count: usize) -> SurveyPlan {
-    plan_survey((scene, None), eyes, lines, count, &ScannerParams::default(), &Control::none()).unwrap()
+    let (tripods, params) = (tripods(eyes), ScannerParams::default());
+    plan_survey((scene, None), &tripods, lines, count, &params, &Control::none()).unwrap()
 }
 
 #[test]
@@ -81,11 +87,11 @@ fn the_station_behind_the_wall_is_chosen_and_the_one_before_it_is_not() {
     assert!((found.curve[1].proven - found.unproven).abs() < 0.5 && found.gap < 1e-9, "{found:?}");
     // beyond its range a scanner proves nothing
     let short = ScannerParams::default().with_max_range(4.0);
-    let found = plan_survey((&scene, None), &[east], &lines, 1, &short, &Control::none()).unwrap();
+    let found = plan_survey((&scene, None), &[vec![east]], &lines, 1, &short, &Control::none()).unwrap();
     assert_eq!((found.chosen.len(), found.reachable), (0, SurveyGain::default()));
     // nor does one whose pulses are farther apart than the proof needs: a pulse each 10 degrees is 1 m off
     let coarse = ScannerParams::default().with_angular_step(0.3);
-    let found = plan_survey((&scene, None), &[east], &lines, 1, &coarse, &Control::none()).unwrap();
+    let found = plan_survey((&scene, None), &[vec![east]], &lines, 1, &coarse, &Control::none()).unwrap();
     assert_eq!(found.reachable.settled, 0);
 }
 
@@ -130,7 +136,7 @@ fn a_plan_depends_neither_on_threads_nor_needs_lines_and_needs_pulses() {
     let nothing = plan(&scene, &eyes, &[], 2);
     assert_eq!((nothing.chosen.len(), nothing.unproven), (0, 0.0));
     let blind = MedialScene::new(&walls(), &BlockRule::carved()).unwrap();
-    let refused = plan_survey((&blind, None), &eyes, &lines, 1, &ScannerParams::default(), &Control::none());
+    let refused = plan_survey((&blind, None), &tripods(&eyes), &lines, 1, &ScannerParams::default(), &Control::none());
     assert!(matches!(refused, Err(Error::MissingAttribute { .. })));
 }
 
@@ -208,7 +214,8 @@ fn in_streets_the_chosen_third_station_proves_nearly_what_the_best_one_proves() 
     let eyes: Vec<[f64; 3]> =
         streets.candidates.iter().map(|place| std::array::from_fn(|i| place[i] - streets.origin[i])).collect();
     let params = ScannerParams::default().with_max_range(120.0).with_angular_step(STEP_DEG.to_radians());
-    let plan = plan_survey((&streets.scene, None), &eyes, &streets.lines, 1, &params, &Control::none()).unwrap();
+    let plan =
+        plan_survey((&streets.scene, None), &tripods(&eyes), &streets.lines, 1, &params, &Control::none()).unwrap();
     let settled: Vec<usize> = streets.candidates.iter().map(|&place| truly_settled(&streets, place)).collect();
     let (best, sum) = (settled.iter().copied().max().unwrap(), settled.iter().sum::<usize>());
     let chosen = settled[plan.chosen[0]];

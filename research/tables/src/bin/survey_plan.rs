@@ -178,13 +178,14 @@ impl<'a> Streets<'a> {
 
     fn report(&self, name: &str, count: usize) -> AnyResult<()> {
         let candidates = self.candidates(count);
-        let eyes: Vec<[f64; 3]> = candidates.iter().map(|&place| sub(place, self.cloud.frame.origin)).collect();
+        let station = |&place: &[f64; 3]| vec![sub(place, self.cloud.frame.origin)];
+        let stations: Vec<Vec<[f64; 3]>> = candidates.iter().map(station).collect();
         let params = ScannerParams::default().with_max_range(120.0).with_angular_step(STEP_DEG.to_radians());
         let start = Instant::now();
         let (low, high) = self.cloud.bounds().unwrap_or_default().on_map();
         let grid = MapGrid::covering(low, high, 1.0, [0.0; 2])?;
         let (ground, _) = Ground::of_cloud(&self.cloud, grid, &GroundParams::default(), &Control::none())?;
-        let plan = plan_survey((&self.medial, Some(&ground)), &eyes, &self.open, 1, &params, &Control::none())?;
+        let plan = plan_survey((&self.medial, Some(&ground)), &stations, &self.open, 1, &params, &Control::none())?;
         let seconds = start.elapsed().as_secs_f64();
         let found: Vec<SurveyGain> = candidates.iter().map(|&place| self.settled_by(place)).collect::<Result<_>>()?;
         let settled = |row: usize| found[row].settled;

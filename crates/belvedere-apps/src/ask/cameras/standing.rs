@@ -52,6 +52,8 @@ pub struct GivenCamera {
     pub azimuth_deg: Option<[f64; 2]>,
     /// Elevations that it can be tilted to, degrees.
     pub elevation_deg: Option<[f64; 2]>,
+    /// The number of the line that it is a place on, where there are lines.
+    pub line: Option<usize>,
 }
 
 impl GivenCamera {

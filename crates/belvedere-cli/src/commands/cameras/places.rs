@@ -38,10 +38,12 @@ pub(in crate::commands) fn candidates_on_path(
 ) -> Result<Vec<GivenCamera>> {
     let step = step.unwrap_or(STEP);
     let mut cameras = Vec::new();
-    for row in observer_rows(path, frame, RowsAre::Places, needed, run)? {
+    for (number, row) in observer_rows(path, frame, RowsAre::Places, needed, run)?.into_iter().enumerate() {
         let corners: Vec<[f64; 3]> =
             row.corners.iter().map(|c| std::array::from_fn(|i| c[i] - frame.origin[i])).collect();
-        cameras.extend(places_along(&corners, step)?.into_iter().map(|place| camera(place, &row)));
+        let line = (corners.len() > 1).then_some(number);
+        let on_line = |place| GivenCamera { line, ..camera(place, &row) };
+        cameras.extend(places_along(&corners, step)?.into_iter().map(on_line));
     }
     Ok(cameras)
 }
@@ -57,5 +59,6 @@ fn camera(place: [f64; 3], row: &ObserverRow) -> GivenCamera {
         distance: row.distance,
         azimuth_deg: pair(row.azimuth_deg),
         elevation_deg: pair(row.elevation_deg),
+        line: None,
     }
 }
