@@ -70,6 +70,16 @@ assert cloud.header.parse_crs() is not None
 assert len(cloud) == laspy.read(town).header.point_count
 assert set(numpy.unique(cloud["answer"])) <= {0, 1, 2, 3} and (cloud["answer"] == 1).any()
 
+# points on roofs and walls, whose numbers are those of the lines and places in the GeoJSON
+lines, points = folder / "surfaces.geojson", folder / "surfaces.laz"
+run("surfaces", town, "-o", lines, "-o", points)
+cloud, found = laspy.read(points), geopandas.read_file(lines)
+assert cloud.header.parse_crs() is not None and set(numpy.unique(cloud["kind"])) == {1, 2}
+assert abs(cloud["distance"]).max() < 0.3
+for code, kind in enumerate(("roof", "wall"), 1):
+    numbers = found[found.kind == kind][kind].astype(int)
+    assert set(numpy.unique(cloud["number"][cloud["kind"] == code])) <= set(numbers), kind
+
 # a walk as GeoJSON in WGS 84, written by geopandas
 line = geopandas.GeoSeries.from_wkt([f"LINESTRING ({x} {y}, {x} {y + 20})"], crs=28992).to_crs(4326)
 line.to_file(folder / "walk.geojson", driver="GeoJSON")

@@ -33,9 +33,9 @@ pub(crate) struct NormalsArguments {
 
 #[derive(Args, Clone)]
 pub(crate) struct SurfacesArguments {
-    /// Roofs, edges, ridges and walls (.geojson)
-    #[arg(short, long, value_name = "OUT", help_heading = "Result")]
-    pub(crate) output: PathBuf,
+    /// Roofs, edges, ridges and walls (.geojson) or the points on roofs and walls (.laz .las .ply .csv); repeatable
+    #[arg(short, long, value_name = "OUT", required = true, help_heading = "Result")]
+    pub(crate) output: Vec<PathBuf>,
     #[command(flatten)]
     pub(crate) points: OrientedPoints,
 }

@@ -1,23 +1,26 @@
 //! `belvedere surfaces`.
 
-use super::{check_output, warn_of_geojson};
+use super::{check_output, extension, warn_of_geojson};
 use crate::arguments::{Global, SurfacesArguments};
 use crate::pipeline::{self, params};
 use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::{Result, bail};
-use belvedere::Frame;
 use belvedere::apps::ask::{remark_on_axis, remark_on_roofs};
 use belvedere::apps::roof_planes::MAX_LEVEL;
-use belvedere::io::{PathLine, Spot, write_geojson};
+use belvedere::io::{ExtraColumn, ExtraValues, PathLine, Spot, WriteReport, write_cloud, write_geojson};
 use belvedere::medial::CarvedParams;
 use belvedere::model::{BallParams, OrientedSurvey};
-use belvedere::planes::{BuildingSurfaces, PlaneParams};
+use belvedere::planes::{BuildingSurfaces, PlaneParams, PointOnSurface, Surface};
 use belvedere::report::rounded;
+use belvedere::{Frame, PointCloud};
 use serde_json::{Map, Value};
+use std::path::Path;
 
 pub(crate) fn run(arguments: &SurfacesArguments, global: &Global) -> Result<Summary> {
-    check_output("-o", &arguments.output, &["geojson", "json"])?;
+    for output in &arguments.output {
+        check_output("-o", output, &["geojson", "json", "laz", "las", "ply", "csv"])?;
+    }
     let parameters = arguments.points.parameters()?;
     let mut run = CommandContext::new(global);
     let cloud = pipeline::read(&arguments.points.input, &mut run)?;
@@ -36,9 +39,11 @@ pub(crate) fn run(arguments: &SurfacesArguments, global: &Global) -> Result<Summ
         )
     };
     run.summary.remarks(remark_on_roofs(found.planes.len()));
-    let (roofs, lines) = features(&found, &cloud.frame);
-    run.stage("writing", 0, |_| write_geojson(&arguments.output, &roofs, &lines, &cloud.frame.crs))?;
-    warn_of_geojson(std::slice::from_ref(&arguments.output), &cloud.frame.crs, &mut run.summary);
+    for output in &arguments.output {
+        let report = run.stage("writing", 0, |_| write(output, &found, &cloud))?;
+        run.summary.add_writing(output, &report);
+    }
+    warn_of_geojson(&arguments.output, &cloud.frame.crs, &mut run.summary);
     let counts = [
         ("roofs", found.planes.len()),
         ("edges", found.edges.len()),
@@ -54,8 +59,46 @@ pub(crate) fn run(arguments: &SurfacesArguments, global: &Global) -> Result<Summ
     run.summary
         .headline("<roofs> roofs, <edges> edges, <ridges_and_valleys> ridges and valleys, <walls> walls, cut to blocks of 64 m")
         .headline("an edge is known to <edge_deviation_m> m (standard deviation, median)");
-    run.summary.add("written", arguments.output.display().to_string());
+    let written = arguments.output.iter().map(|path| path.display().to_string());
+    run.summary.add("written", written.collect::<Vec<_>>());
     Ok(run.finish())
+}
+
+fn write(output: &Path, found: &BuildingSurfaces, cloud: &PointCloud) -> Result<WriteReport> {
+    if matches!(extension(output).as_str(), "geojson" | "json") {
+        let (roofs, lines) = features(found, &cloud.frame);
+        write_geojson(output, &roofs, &lines, &cloud.frame.crs)?;
+        return Ok(WriteReport::default());
+    }
+    write_points(output, found, cloud)
+}
+
+/// The points that lie on roofs and walls, in the order of the cloud, with the numbers of these and how far outside they
+/// lie. One on two walls is of the nearer.
+fn write_points(output: &Path, found: &BuildingSurfaces, cloud: &PointCloud) -> Result<WriteReport> {
+    let distance = |point: &PointOnSurface| {
+        let place = cloud.positions.get(point.row as usize).map_or([f64::NAN; 3], |p| p.map(f64::from));
+        found.distance(point.surface, place)
+    };
+    let mut points: Vec<(PointOnSurface, f64)> = found.points.iter().map(|point| (*point, distance(point))).collect();
+    points.sort_by(|(a, far), (b, off)| a.row.cmp(&b.row).then(far.abs().total_cmp(&off.abs())));
+    points.dedup_by_key(|(point, _)| point.row);
+    let kinds: Vec<u8> =
+        points.iter().map(|(on, _)| if matches!(on.surface, Surface::Roof(_)) { 1 } else { 2 }).collect();
+    let number = |(on, _): &(PointOnSurface, f64)| match on.surface {
+        Surface::Roof(number) | Surface::Wall(number) => u32::try_from(number).unwrap_or(u32::MAX),
+    };
+    let numbers: Vec<u32> = points.iter().map(number).collect();
+    #[expect(clippy::cast_possible_truncation, reason = "decimetres")]
+    let distances: Vec<f32> = points.iter().map(|(_, distance)| *distance as f32).collect();
+    let column = |name, description, values| ExtraColumn { name, description, values };
+    let columns = [
+        column("kind", "1 roof 2 wall", ExtraValues::U8(&kinds)),
+        column("number", "of the roof or wall", ExtraValues::U32(&numbers)),
+        column("distance", "outside of its plane, metres", ExtraValues::F32(&distances)),
+    ];
+    let rows: Vec<u32> = points.iter().map(|(point, _)| point.row).collect();
+    Ok(write_cloud(output, &cloud.select(&rows), &columns)?)
 }
 
 /// Roofs as points, everything else as lines.
@@ -92,12 +135,13 @@ fn features(found: &BuildingSurfaces, frame: &Frame) -> (Vec<Spot>, Vec<PathLine
             ("roofs", ridge.planes.to_vec().into()),
         ]),
     });
-    let walls = found.walls.iter().map(|wall| {
+    let walls = found.walls.iter().zip(0_u64..).map(|(wall, number)| {
         let [bottom, top] = wall.heights.map(|z| z + frame.origin[2]);
         PathLine {
             places: wall.ends.map(|[x, y]| placed([x, y, wall.heights[1]])).to_vec(),
             properties: properties([
                 ("kind", "wall".into()),
+                ("wall", number.into()),
                 ("sd_m", rounded(wall.sd, 4).into()),
                 ("bottom_m", rounded(bottom, 2).into()),
                 ("top_m", rounded(top, 2).into()),

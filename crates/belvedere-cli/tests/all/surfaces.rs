@@ -2,7 +2,9 @@
 
 use crate::common::{Workplace, remarks};
 use belvedere::control::Control;
-use belvedere::io::{FeatureShape, GeojsonFeature, ReadOptions, read_cloud, read_geojson, read_mesh};
+use belvedere::io::{
+    FeatureShape, GeojsonFeature, PointResults, ReadOptions, read_cloud, read_geojson, read_mesh, read_point_results,
+};
 use belvedere::vector::{cross, dot, length, sub};
 use serde_json::Value;
 
@@ -36,7 +38,7 @@ fn holds(corners: &[[f64; 3]; 3], [x, y, _]: [f64; 3]) -> bool {
 fn roofs_and_edges_lie_where_those_of_the_mesh_do() {
     let place = Workplace::new();
     place.summary("simulate town -o town --extent 80 --density 10");
-    let made = place.summary("surfaces town/cloud.laz -o found.geojson");
+    let made = place.summary("surfaces town/cloud.laz -o found.geojson -o found.laz");
     let (mut cloud, _) = read_cloud([&place.path("town/cloud.laz")], &ReadOptions::new(), &Control::none()).unwrap();
     let features = read_geojson(&place.path("found.geojson"), &cloud.frame.crs).unwrap();
     let of = |kind: &str| features.iter().filter(|feature| text(feature, "kind") == kind).collect::<Vec<_>>();
@@ -76,11 +78,51 @@ fn roofs_and_edges_lie_where_those_of_the_mesh_do() {
     assert!(median(beside_edges.collect()) < 0.06, "{made}");
     assert!(made["edge_deviation_m"].as_f64().unwrap() < 0.06, "{made}");
     assert!(!remarks(&made).iter().any(|text| text.contains("no roof was found")));
+    points_lie_on_their_surfaces(&place, &triangles, &features);
     // without classes nothing says what stands on the ground
     cloud.attributes.classification = Some(vec![1; cloud.len()]);
     place.write_cloud("bare.laz", &cloud);
-    let bare = place.summary("surfaces bare.laz -o none.geojson");
+    let bare = place.summary("surfaces bare.laz -o none.geojson -o none.laz");
     assert!(bare["roofs"] == 0 && remarks(&bare).iter().any(|text| text.contains("no roof was found")), "{bare}");
+}
+
+/// Points of roofs and walls lie on faces of the mesh that face the same way, and scatter about their planes as these
+/// say.
+fn points_lie_on_their_surfaces(place: &Workplace, triangles: &[[[f64; 3]; 3]], features: &[GeojsonFeature]) {
+    let PointResults { places, columns } = read_point_results(&place.path("found.laz")).unwrap();
+    let column = |name: &str| columns.iter().find(|(own, _)| own == name).unwrap().1.clone();
+    let [kinds, numbers, distances] = ["kind", "number", "distance"].map(column);
+    for (kind, name) in [(1.0_f32, "roof"), (2.0, "wall")] {
+        let rows: Vec<usize> = (0..places.len()).filter(|&row| kinds[row] == kind).collect();
+        // three deviations of a range, of 2 cm; walls are met aslant, so that their points scatter by 3 cm
+        let most = if kind == 1.0 { 0.06 } else { 0.1 };
+        let is_on = |row: usize| {
+            triangles.iter().any(|corners| {
+                let normal = cross(sub(corners[1], corners[0]), sub(corners[2], corners[0]));
+                let (p, up) = (places[row], normal[2].abs() / length(normal));
+                let is_near = (dot(normal, sub(p, corners[0])) / length(normal)).abs() < most;
+                let is_beside = || (0..3).any(|i| beside(p, [corners[i], corners[(i + 1) % 3]]) < most);
+                is_near && if kind == 1.0 { up > 0.3 && holds(corners, p) } else { up < 0.01 && is_beside() }
+            })
+        };
+        let on = rows.iter().filter(|&&row| is_on(row)).count();
+        assert!(rows.len() > 300 && 100 * on >= 97 * rows.len(), "{on} of {} lie on a {name}", rows.len());
+        let mut whole = 0;
+        for feature in features.iter().filter(|feature| text(feature, "kind") == name) {
+            let [number, count, noise] = [name, "points", "noise_m"].map(|of| feature.properties[of].as_f64().unwrap());
+            let of_it = rows.iter().filter(|&&row| f64::from(numbers[row]) == number);
+            let own: Vec<f64> = of_it.map(|&row| f64::from(distances[row])).collect();
+            // surfaces that reach into other blocks have some of their points there
+            if own.len() as f64 == count {
+                whole += 1;
+                let root_mean_square = (own.iter().map(|v| v * v).sum::<f64>() / count).sqrt();
+                // the direction of a wall is in part that of its edge
+                let most = if kind == 1.0 { 0.0002 } else { 0.01 };
+                assert!((root_mean_square - noise).abs() < most, "{name} {number}: {root_mean_square}, {noise}");
+            }
+        }
+        assert!(whole > 3, "{name}");
+    }
 }
 
 #[test]
@@ -88,5 +130,5 @@ fn surveys_that_show_no_surfaces_are_refused() {
     let place = Workplace::new();
     place.write("bare.xyz", "1 1 1\n2 2 2\n3 4 4\n4 4 5\n");
     place.refusal(1, "surfaces bare.xyz -o found.geojson", &["bare.xyz"]);
-    place.refusal(2, "surfaces bare.xyz -o found.laz", &[".geojson"]);
+    place.refusal(2, "surfaces bare.xyz -o found.tif", &[".geojson", ".laz"]);
 }

@@ -27,7 +27,7 @@ pub struct SurfacesReport {
 }
 
 impl OrientedSurvey {
-    /// The surfaces of the buildings; `None` where the survey is not from the air, or where its scanner is not known.
+    /// The surfaces of the buildings, with rows of points as in the cloud as it was given; `None` where the survey is not from the air, or where its scanner is not known.
     ///
     /// # Errors
     /// Those of [`find`].
@@ -48,7 +48,12 @@ impl OrientedSurvey {
             attributes: &input.attributes,
             origin: frame.origin,
         };
-        control.stage("finding roofs and walls", self.measured.len(), || find(&points, params, control)).map(Some)
+        let find = || find(&points, params, control);
+        let mut found = control.stage("finding roofs and walls", self.measured.len(), find)?;
+        for point in &mut found.points {
+            point.row = self.kept.get(point.row as usize).copied().unwrap_or(point.row);
+        }
+        Ok(Some(found))
     }
 }
 

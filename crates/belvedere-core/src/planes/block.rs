@@ -4,7 +4,9 @@ use super::edges::Outline;
 use super::ridges::RidgeLine;
 use super::roof_planes::Roofs;
 use super::walls::WallLine;
-use super::{BLOCK, BuildingSurfaces, Edge, PlaneParams, Ridge, RoofPlane, SurveyPoints, Wall};
+use super::{
+    BLOCK, BuildingSurfaces, Edge, PlaneParams, PointOnSurface, Ridge, RoofPlane, Surface, SurveyPoints, Wall,
+};
 use belvedere_data::control::Control;
 use belvedere_data::patches::SurfacePatches;
 use belvedere_data::{Error, Result};
@@ -21,6 +23,8 @@ const MIN_UP: f64 = 0.3;
 /// A return as surfaces need it, metres from the corner of the block.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Return {
+    /// Its row in the survey.
+    pub(super) row: u32,
     pub(super) p: [f64; 3],
     /// Metres east and north for each metre up, on the way to the scanner; NaN where it is unknown.
     pub(super) lean: [f64; 2],
@@ -177,11 +181,13 @@ impl Block {
         let [x, y] = [0, 1].map(|axis| block.number[axis] as f64 * BLOCK - survey.origin[axis]);
         let corner = [x, y, 0.0];
         let grid = Grid::new(margin);
-        let read = |row: usize| {
+        let read = |short: u32| {
+            let row = short as usize;
             let (at, from) = (survey.positions[row], survey.scanner[row]);
             let way: [f64; 3] = std::array::from_fn(|i| f64::from(from[i]) - f64::from(at[i]));
             let is_flown = way[2] > MIN_UP * way[0].hypot(way[1]);
             Return {
+                row: short,
                 p: std::array::from_fn(|i| f64::from(at[i]) - corner[i]),
                 lean: if is_flown { [way[0] / way[2], way[1] / way[2]] } else { [f64::NAN; 2] },
                 building: building(survey, row),
@@ -198,7 +204,7 @@ impl Block {
             keys.push((u32::try_from(cell).unwrap_or(u32::MAX), at.map(ordered), row));
         }
         keys.sort_unstable_by_key(|key| (key.0, key.1));
-        let mut returns: Vec<Return> = keys.iter().map(|key| read(key.2 as usize)).collect();
+        let mut returns: Vec<Return> = keys.iter().map(|key| read(key.2)).collect();
         if returns.iter().any(|found| found.building == Building::Yes) {
             // who classified buildings here left out what is none
             let unknown = returns.iter_mut().filter(|found| found.building == Building::Unknown);
@@ -343,6 +349,8 @@ impl Block {
             }
             if is_here {
                 row_of[number] = found.planes.len();
+                let returns = roof.rows.iter().map(|&row| roofs.return_of[row as usize] as usize);
+                self.give_points(returns, Surface::Roof(found.planes.len()), found);
                 found.planes.push(RoofPlane {
                     normal: roof.plane.normal,
                     center: self.local(roof.center),
@@ -391,6 +399,7 @@ impl Block {
             if let (Some(range), Some(&edge)) = (self.piece(ends), edge) {
                 let ends = lifted(wall.plane, ends, range);
                 let middle = f64::midpoint(ends[0][2], ends[1][2]);
+                self.give_points(wall.rows.iter().copied(), Surface::Wall(found.walls.len()), found);
                 found.walls.push(Wall {
                     ends: ends.map(|p| [p[0], p[1]]),
                     heights: [wall.bottom, middle],
@@ -403,6 +412,12 @@ impl Block {
                 });
             }
         }
+    }
+
+    /// Gives out the returns of the block that lie on a surface.
+    fn give_points(&self, returns: impl Iterator<Item = usize>, surface: Surface, found: &mut BuildingSurfaces) {
+        let here = returns.map(|row| &self.returns[row]).filter(|found| self.holds([found.p[0], found.p[1]]));
+        found.points.extend(here.map(|found| PointOnSurface { row: found.row, surface }));
     }
 }
 

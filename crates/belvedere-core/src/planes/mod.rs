@@ -28,6 +28,7 @@ pub use regions::{SurfaceRegions, cap};
 
 use belvedere_data::control::Control;
 use belvedere_data::patches::{PatchKind, SurfacePatches};
+use belvedere_data::vector::{dot, sub};
 use belvedere_data::{Attributes, Result};
 use block::{Block, blocks};
 use likelihood::LikelihoodTable;
@@ -148,6 +149,24 @@ pub struct Wall {
     pub eaves: f64,
 }
 
+/// A plane that points lie on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Surface {
+    /// Row among [`BuildingSurfaces::planes`].
+    Roof(usize),
+    /// Row among [`BuildingSurfaces::walls`].
+    Wall(usize),
+}
+
+/// A point that a plane of a roof or a wall was fitted to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PointOnSurface {
+    /// Its row in the survey.
+    pub row: u32,
+    /// What it lies on.
+    pub surface: Surface,
+}
+
 /// Surfaces of buildings.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct BuildingSurfaces {
@@ -159,6 +178,9 @@ pub struct BuildingSurfaces {
     pub ridges: Vec<Ridge>,
     /// Walls, cut to blocks.
     pub walls: Vec<Wall>,
+    /// Points on planes of roofs and on walls, each in the block that it lies in. Where two walls meet, a point may lie
+    /// on both.
+    pub points: Vec<PointOnSurface>,
     /// Triangles that close surfaces.
     pub patches: SurfacePatches,
     /// Space before known surfaces.
@@ -166,9 +188,31 @@ pub struct BuildingSurfaces {
 }
 
 impl BuildingSurfaces {
+    /// How far outside a surface a place lies, local metres; negative within the building, NaN for a surface that is
+    /// not one of these.
+    #[must_use]
+    pub fn distance(&self, surface: Surface, place: [f64; 3]) -> f64 {
+        match surface {
+            Surface::Roof(row) => {
+                self.planes.get(row).map_or(f64::NAN, |plane| dot(plane.normal, sub(place, plane.center)))
+            }
+            Surface::Wall(row) => self.walls.get(row).map_or(f64::NAN, |Wall { ends: [a, b], .. }| {
+                let along = [b[0] - a[0], b[1] - a[1]];
+                // the house lies to the left
+                (along[1] * (place[0] - a[0]) - along[0] * (place[1] - a[1])) / along[0].hypot(along[1])
+            }),
+        }
+    }
+
     /// Adds what another block found.
     fn append(&mut self, other: Self) {
-        let (planes, edges) = (self.planes.len(), self.edges.len());
+        let (planes, edges, walls) = (self.planes.len(), self.edges.len(), self.walls.len());
+        let moved = |surface| match surface {
+            Surface::Roof(row) => Surface::Roof(row + planes),
+            Surface::Wall(row) => Surface::Wall(row + walls),
+        };
+        let points = other.points.into_iter();
+        self.points.extend(points.map(|point| PointOnSurface { surface: moved(point.surface), ..point }));
         self.planes.extend(other.planes);
         self.edges.extend(other.edges.into_iter().map(|edge| Edge { plane: edge.plane + planes, ..edge }));
         let moved = |ridge: Ridge| Ridge { planes: ridge.planes.map(|plane| plane + planes), ..ridge };

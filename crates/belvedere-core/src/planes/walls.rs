@@ -37,6 +37,8 @@ pub(super) struct WallLine {
     pub(super) edge: usize,
     /// Points on it: range along the line and height, metres.
     pub(super) points: Vec<[f64; 2]>,
+    /// Their rows among the returns of the block, in another order.
+    pub(super) rows: Vec<usize>,
     pub(super) noise: f64,
     pub(super) sd: f64,
     pub(super) share: f64,
@@ -91,49 +93,49 @@ fn below(block: &Block, roofs: &Roofs, plane: usize, number: usize, edge: &EdgeL
     let low = [0, 1].map(|axis| corners.iter().map(|p| p[axis]).fold(f64::INFINITY, f64::min));
     let high = [0, 1].map(|axis| corners.iter().map(|p| p[axis]).fold(f64::NEG_INFINITY, f64::max));
     let top = &roofs.planes[plane].plane;
-    // along the edge, to its right, height
-    let mut near: Vec<[f64; 3]> = Vec::new();
+    // along the edge, to its right, height; and the row of the return
+    let mut near: Vec<([f64; 3], usize)> = Vec::new();
     block.each_in(low, high, |row, found| {
         if !found.may_be_building() || roofs.plane_of_return[row] != NONE || top.above(found.p) > -BELOW {
             return;
         }
         let [t, d] = edge.of([found.p[0], found.p[1]]);
         if (edge.ends[0]..=edge.ends[1]).contains(&t) && (-BEHIND..=BEFORE).contains(&d) {
-            near.push([t, d, found.p[2]]);
+            near.push(([t, d, found.p[2]], row));
         }
     });
     if near.len() < MIN_POINTS {
         return None;
     }
-    near.sort_unstable_by(|a, b| (0..3).fold(a[1].total_cmp(&b[1]), |o, i| o.then(a[i].total_cmp(&b[i]))));
+    near.sort_unstable_by(|(a, _), (b, _)| (0..3).fold(a[1].total_cmp(&b[1]), |o, i| o.then(a[i].total_cmp(&b[i]))));
     let width = 3.0 * roofs.noise + 0.02;
     let (mut best, mut last) = ((0, 0), 0);
     for first in 0..near.len() {
-        while last < near.len() && near[last][1] <= near[first][1] + width {
+        while last < near.len() && near[last].0[1] <= near[first].0[1] + width {
             last += 1;
         }
         if last - first > best.1 - best.0 {
             best = (first, last);
         }
     }
-    let mut on: Vec<[f64; 3]> = near[best.0..best.1].to_vec();
+    let mut on: Vec<([f64; 3], usize)> = near[best.0..best.1].to_vec();
     let (mut line, mut noise) = (PlanLine::default(), 0.0);
     for _ in 0..4 {
         if on.len() < MIN_POINTS {
             return None;
         }
-        (line, noise) = PlanLine::fit(on.iter().map(|p| edge.at(p[0], p[1])), edge.along)?;
+        (line, noise) = PlanLine::fit(on.iter().map(|(p, _)| edge.at(p[0], p[1])), edge.along)?;
         let turn = line.along[0] * edge.along[1] - line.along[1] * edge.along[0];
         if turn.abs() > MAX_TURN {
             // too short to have a direction of its own
-            let mean = on.iter().map(|p| p[1]).sum::<f64>() / on.len() as f64;
+            let mean = on.iter().map(|(p, _)| p[1]).sum::<f64>() / on.len() as f64;
             line = PlanLine { point: edge.at(0.0, mean), ..*edge };
-            noise = (on.iter().map(|p| (p[1] - mean).powi(2)).sum::<f64>() / on.len() as f64).sqrt();
+            noise = (on.iter().map(|(p, _)| (p[1] - mean).powi(2)).sum::<f64>() / on.len() as f64).sqrt();
         }
         let reach = 2.7 * roofs.noise.max(noise.min(2.0 * roofs.noise));
-        on = near.iter().copied().filter(|p| line.of(edge.at(p[0], p[1]))[1].abs() <= reach).collect();
+        on = near.iter().copied().filter(|(p, _)| line.of(edge.at(p[0], p[1]))[1].abs() <= reach).collect();
     }
-    let mut points: Vec<[f64; 2]> = on.iter().map(|p| [line.of(edge.at(p[0], p[1]))[0], p[2]]).collect();
+    let mut points: Vec<[f64; 2]> = on.iter().map(|(p, _)| [line.of(edge.at(p[0], p[1]))[0], p[2]]).collect();
     points.sort_unstable_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
     let length = points.last()?[0] - points.first()?[0];
     if points.len() < MIN_POINTS || (length < MIN_SHARE * edge.length() && length < MIN_LENGTH) {
@@ -153,6 +155,7 @@ fn below(block: &Block, roofs: &Roofs, plane: usize, number: usize, edge: &EdgeL
         bottom: points.iter().map(|p| p[1]).fold(f64::INFINITY, f64::min),
         eaves: -edge.of(middle)[1],
         points,
+        rows: on.iter().map(|(_, row)| *row).collect(),
         line,
     })
 }
