@@ -4,6 +4,7 @@
 //! Users add the crate `belvedere`, which holds everything here under the same names.
 
 pub mod balls;
+pub mod building_outlines;
 pub mod cloud;
 pub mod control;
 pub mod crs;

@@ -1,6 +1,7 @@
 //! The numbers that a scene consists of: what a ball file holds.
 
 use crate::balls::MedialBalls;
+use crate::building_outlines::BuildingOutlines;
 use crate::frame::{Bounds, Frame};
 use crate::free_segments::FreeSegmentColumns;
 use crate::patches::SurfacePatches;
@@ -14,6 +15,11 @@ pub const FARTHEST: f32 = 1e7;
 /// Whether a local position is one that a scene can hold.
 pub(crate) fn is_near(position: [f32; 3]) -> bool {
     position.iter().all(|v| v.abs() <= FARTHEST)
+}
+
+/// [`is_near`] of what is kept in double precision.
+pub(crate) fn is_near_f64(position: [f64; 3]) -> bool {
+    position.iter().all(|v| v.abs() <= f64::from(FARTHEST))
 }
 
 /// The plain data of a scene model: what is saved in a ball file and read from it.
@@ -33,6 +39,8 @@ pub struct ModelParts {
     pub transmission: Vec<f32>,
     /// Surfaces that are known better than from single balls, and block beside them.
     pub patches: SurfacePatches,
+    /// What is known of surfaces of buildings; it blocks nothing. Only `.npz` files keep it.
+    pub outlines: BuildingOutlines,
     /// The pulses that prove lines of sight free, where they are known.
     pub pulses: Option<FreeSegmentColumns>,
     /// How the model was made, by name: side, method, parameters, program, input.
@@ -84,7 +92,7 @@ impl ModelParts {
     }
 
     /// Checks that all columns are equally long, centres, bounds and origin within [`FARTHEST`], radii too and not
-    /// negative, transmissions between 0 and 1, the patches and the pulses.
+    /// negative, transmissions between 0 and 1, the patches, the outlines of buildings and the pulses.
     ///
     /// # Errors
     /// [`Error::LengthMismatch`] or [`Error::InvalidParameter`] for the first fault.
@@ -118,6 +126,7 @@ impl ModelParts {
             return invalid(Parameter::Ball, format!("of transmission {t}"), "of transmission 0 to 1, or NaN");
         }
         self.patches.validate()?;
+        self.outlines.validate()?;
         self.pulses.as_ref().map_or(Ok(()), FreeSegmentColumns::validate)
     }
 }

@@ -18,6 +18,10 @@ pub(crate) const SUPPORTED: &str = ".npz .ply .laz .las";
 /// of 0.0001, `pulse_top` (1) f32 metres, `pulse_lengths` (P) f32 metres unless all reach the top, and `pulse_ways` (P)
 /// u8 unless all go up: 16 to 21 bytes each. Surface patches are `patch_corners` (T, 3, 3) f32 metres relative to the
 /// origin and `patch_kinds` (T) u8 (0 roof, 1 wall, 2 parapet, 3 inside).
+/// What is known of buildings are `roof_planes` (R, 15): normal, middle, lowest and highest corner, points, noise,
+/// standard deviation; `roof_edges` (E, 10): both ends, plane, standard deviation, sides, drop; `roof_ridges` (K, 9):
+/// both ends, both planes, 1 if both fall from it; and `walls` (W, 12): both ends in plan, lowest and highest height,
+/// edge, points, noise, standard deviation, share, eaves; all f64, metres relative to the origin.
 ///
 /// `.ply`, `.las` and `.laz` files are point clouds of the centres in the reference system and unit of the cloud
 /// (doubles in PLY, steps of at most a millimetre in LAS) with the columns `radius`, in the horizontal unit of the

@@ -12,6 +12,7 @@ use belvedere::control::Control;
 use belvedere::io::{atomic, write_balls};
 use belvedere::medial::MedialBalls;
 use belvedere::model::{ModelParts, SceneModel};
+use belvedere::planes::BuildingOutlines;
 use belvedere::pulses::FreeSegmentColumns;
 use belvedere::{PointCloud, Result};
 use std::collections::BTreeMap;
@@ -60,7 +61,9 @@ fn made(plan: &Plan, run: &Path, tile: TileId, cloud: PointCloud, control: &Cont
     let patches = patches::of_tile(&parts.patches, &core, &plan.cleared);
     let own_pulses = |pulses: &FreeSegmentColumns| proof::of_tile(pulses, &core);
     let pulses = parts.pulses.as_ref().filter(|_| plan.proves).map(own_pulses);
-    let parts = ModelParts { balls, transmission, patches, pulses, ..parts };
+    // those of the margin are other tiles'
+    let outlines = BuildingOutlines::default();
+    let parts = ModelParts { balls, transmission, patches, outlines, pulses, ..parts };
     written(plan, run, tile, parts, nothing, control)
 }
 

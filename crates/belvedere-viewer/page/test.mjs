@@ -403,6 +403,37 @@ async function main() {
     assert.ok(await page.evaluate(() => belvedere.cloud.extra.children.length) === 1);
   });
   await step("energy of a roof", () => ask("roof", [roof], /[\d,]+ kWh a year[\s\S]*solar energy received[\s\S]*not electricity[\s\S]*Faces/));
+  await step("edges of roofs, and the plane of a point", async () => {
+    // what is darker and redder than all points
+    const edges = () => page.evaluate(async () => {
+      await belvedere.complete(60_000);
+      const from = document.getElementById("view");
+      const context = Object.assign(document.createElement("canvas"), { width: from.width, height: from.height }).getContext("2d");
+      context.drawImage(from, 0, 0);
+      const { data } = context.getImageData(0, 0, from.width, from.height);
+      let count = 0;
+      for (let i = 0; i < data.length; i += 4) if (data[i] > 80 && data[i + 1] < 15 && data[i + 2] > 30) count += 1;
+      return count;
+    });
+    await page.evaluate(() => belvedere.choose("look"));
+    const before = await edges();
+    await page.keyboard.press("o");
+    await page.waitForFunction(() => belvedere.cloud.outlines?.length === 3 && location.hash.includes("edges=yes"));
+    await settled(page);
+    const shown = await edges();
+    assert.ok(shown > before + 500, `${before}, ${shown}`);
+    assert.match(await page.textContent("#legend"), /edge of a roof/);
+    await page.mouse.click(...roof);
+    await page.waitForFunction(() => /Plane of the roof/.test(document.querySelector("#card").innerText));
+    // the same as the command finds
+    execFileSync(program, ["surfaces", "town/cloud.laz", "-o", "found.geojson"], { cwd: folder, stdio: "ignore" });
+    const slopes = JSON.parse(readFileSync(join(folder, "found.geojson"))).features.map(({ properties }) => properties.slope_deg?.toFixed(1));
+    const [, slope] = /slope ([\d.]+)°/.exec(await text(page));
+    assert.ok(slopes.includes(slope), `${slope} of ${slopes}`);
+    await page.click("#outlines");
+    await settled(page);
+    assert.ok((await edges()) < before + 100, "they go again");
+  });
   await step("sun hours of an area", async () => {
     const [x, y] = ground;
     await page.click("#tools [data-tool=sun_area]");

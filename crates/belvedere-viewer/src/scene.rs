@@ -193,6 +193,7 @@ impl PageScene {
             "low": bounds.low,
             "high": bounds.high,
             "tells_unproven": self.model().pulses().is_some(),
+            "roof_count": self.model().outlines().planes.len(),
             "has_vegetation": self.model().vegetation().contains(&true),
             "latitude_deg": site.map(|site| site.latitude.to_degrees()),
             "longitude_deg": site.map(|site| site.longitude.to_degrees()),

@@ -8,6 +8,7 @@ use anyhow::Result;
 use belvedere::apps::ask;
 use belvedere::io::{FileReport, is_ball_file, read_balls, read_cloud};
 use belvedere::model::ModelParts;
+use belvedere::planes::{BuildingOutlines, median_sd};
 use belvedere::pulses::{FoundBy, LocateParams, Means, ScannerReport, locate};
 use belvedere::summary::{CloudSummary, FacadeSummary, SurveyKind, cloud_looks_y_up};
 use belvedere::{Error, PatchKind, PointCloud, SurfacePatches};
@@ -110,6 +111,7 @@ fn of_balls(model: &ModelParts) -> Summary {
     summary
         .add("balls", model.balls.len())
         .add("surface_patches", of_patches(&model.patches))
+        .add("building_surfaces", of_outlines(&model.outlines))
         .add("pulses", model.pulses.as_ref().map_or(0, |pulses| pulses.starts.len()))
         .add("min_corner", corner(low))
         .add("max_corner", corner(high))
@@ -118,6 +120,18 @@ fn of_balls(model: &ModelParts) -> Summary {
         .add("reference_system", model.frame.crs.describe())
         .add("made", made);
     summary
+}
+
+/// What is known of buildings, and how well the median edge is.
+fn of_outlines(outlines: &BuildingOutlines) -> Summary {
+    let mut section = Summary::default();
+    section
+        .add("roofs", outlines.planes.len())
+        .add("edges", outlines.edges.len())
+        .add("ridges_and_valleys", outlines.ridges.len())
+        .add("walls", outlines.walls.len())
+        .add("edge_deviation_m", median_sd(&outlines.edges).map(|v| rounded(v, 3)));
+    section
 }
 
 /// How many patches of each kind there are, and how large.

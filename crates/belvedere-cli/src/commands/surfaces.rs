@@ -11,7 +11,7 @@ use belvedere::apps::roof_planes::MAX_LEVEL;
 use belvedere::io::{ExtraColumn, ExtraValues, PathLine, Spot, WriteReport, write_cloud, write_geojson};
 use belvedere::medial::CarvedParams;
 use belvedere::model::{BallParams, OrientedSurvey};
-use belvedere::planes::{BuildingSurfaces, PlaneParams, PointOnSurface, Surface};
+use belvedere::planes::{BuildingSurfaces, PlaneParams, PointOnSurface, Surface, median_sd};
 use belvedere::report::rounded;
 use belvedere::{Frame, PointCloud};
 use serde_json::{Map, Value};
@@ -53,9 +53,7 @@ pub(crate) fn run(arguments: &SurfacesArguments, global: &Global) -> Result<Summ
     for (name, count) in counts {
         run.summary.add(name, count);
     }
-    let mut deviations: Vec<f64> = found.edges.iter().map(|edge| edge.sd).collect();
-    deviations.sort_unstable_by(f64::total_cmp);
-    run.summary.add("edge_deviation_m", deviations.get(deviations.len() / 2).map(|&v| rounded(v, 3)));
+    run.summary.add("edge_deviation_m", median_sd(&found.edges).map(|v| rounded(v, 3)));
     run.summary
         .headline("<roofs> roofs, <edges> edges, <ridges_and_valleys> ridges and valleys, <walls> walls, cut to blocks of 64 m")
         .headline("an edge is known to <edge_deviation_m> m (standard deviation, median)");
@@ -73,8 +71,8 @@ fn write(output: &Path, found: &BuildingSurfaces, cloud: &PointCloud) -> Result<
     write_points(output, found, cloud)
 }
 
-/// The points that lie on roofs and walls, in the order of the cloud, with the numbers of these and how far outside they
-/// lie. One on two walls is of the nearer.
+/// The points that lie on roofs and walls, in the order of the cloud, with the numbers of these and how far outside
+/// they lie. One on two walls is of the nearer.
 fn write_points(output: &Path, found: &BuildingSurfaces, cloud: &PointCloud) -> Result<WriteReport> {
     let distance = |point: &PointOnSurface| {
         let place = cloud.positions.get(point.row as usize).map_or([f64::NAN; 3], |p| p.map(f64::from));

@@ -79,6 +79,12 @@ fn roofs_and_edges_lie_where_those_of_the_mesh_do() {
     assert!(made["edge_deviation_m"].as_f64().unwrap() < 0.06, "{made}");
     assert!(!remarks(&made).iter().any(|text| text.contains("no roof was found")));
     points_lie_on_their_surfaces(&place, &triangles, &features);
+    // a ball file keeps what was found
+    place.summary("balls town/cloud.laz -o town.npz");
+    let kept = &place.summary("info town.npz")["building_surfaces"];
+    for name in ["roofs", "edges", "ridges_and_valleys", "walls", "edge_deviation_m"] {
+        assert_eq!(kept[name], made[name], "{name}");
+    }
     // without classes nothing says what stands on the ground
     cloud.attributes.classification = Some(vec![1; cloud.len()]);
     place.write_cloud("bare.laz", &cloud);

@@ -10,6 +10,7 @@ use crate::medial::{
     CarvedBalls, CarvedInput, MedialBalls, ShrinkParams, Side, carved_balls, shrink, vegetation_of_classes,
     vegetation_of_transmission,
 };
+use crate::planes::BuildingOutlines;
 use crate::query::{BallTree, BlockRule, BlockingTriangles};
 use belvedere_data::control::Control;
 use belvedere_data::patches::SurfacePatches;
@@ -54,7 +55,7 @@ fn of_survey(
     control: &Control<'_>,
 ) -> Result<(SceneModel, BuildReport)> {
     let (mut balls, mut transmission);
-    let mut patches = SurfacePatches::default();
+    let (mut patches, mut outlines) = (SurfacePatches::default(), BuildingOutlines::default());
     let settled = match params.balls {
         BallParams::CarvedIfPossible(carved, _) if survey.carving.is_some() => BallParams::Carved(carved),
         BallParams::CarvedIfPossible(_, shrunk) => BallParams::Shrunk(shrunk),
@@ -70,7 +71,7 @@ fn of_survey(
             CarvedBalls { balls, transmission, report: found } = carved_balls(&input, carved, control)?;
             report.interior_balls = Some(BallsReport::Carved(found));
             if let Some(params) = &carved.planes {
-                (patches, report.surfaces) =
+                (patches, outlines, report.surfaces) =
                     close_surfaces((&mut balls, &mut transmission), &survey, &frame, params, control)?;
             }
         }
@@ -112,7 +113,7 @@ fn of_survey(
         _ => None,
     };
     let (bounds, pulses) = (survey.bounds, survey.pulses());
-    let parts = ModelParts { frame, bounds, balls, patches, transmission, pulses, provenance };
+    let parts = ModelParts { frame, bounds, balls, patches, outlines, transmission, pulses, provenance };
     Ok((SceneModel { parts, vegetation, tree, triangles, ..SceneModel::default() }, report))
 }
 

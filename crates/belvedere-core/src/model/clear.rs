@@ -5,6 +5,7 @@ use super::clearing::{Clearing, class_of};
 use crate::ground::MapGrid;
 use crate::medial::MedialBalls;
 use crate::neighbors::NeighborIndex;
+use crate::planes::BuildingOutlines;
 use crate::query::{BlockingTriangles, FreedSpace};
 use belvedere_data::balls::LIMIT_TOUCH;
 use belvedere_data::control::Control;
@@ -101,9 +102,13 @@ impl SceneModel {
                     let index = PolygonIndex::new(rings);
                     self.triangles = triangles.without(|[x, y, _]| index.holds([x, y]))?;
                 }
+                self.parts.outlines = std::mem::take(&mut self.parts.outlines).outside(rings);
                 self.parts.patches.outside(rings)
             }
-            ClearedArea::Class(SurfacePatches::CLASS) => SurfacePatches::default(),
+            ClearedArea::Class(SurfacePatches::CLASS) => {
+                self.parts.outlines = BuildingOutlines::default();
+                SurfacePatches::default()
+            }
             ClearedArea::Class(_) => return Ok(()),
         };
         if left != self.parts.patches {

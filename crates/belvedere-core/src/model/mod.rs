@@ -34,6 +34,7 @@ pub use surfaces::SurfacesReport;
 pub use terrain::{TerrainReport, check_terrain};
 
 use crate::medial::{MedialBalls, PULSE_TOUCH, vegetation_of_transmission};
+use crate::planes::BuildingOutlines;
 use crate::pulses::FreeSegmentColumns;
 use crate::query::{Backend, BallTree, BlockingTriangles, FarTerrain, FreedSpace, Proof};
 use belvedere_data::horizon::HorizonProfile;
@@ -158,6 +159,12 @@ impl SceneModel {
     #[must_use]
     pub fn patches(&self) -> &SurfacePatches {
         &self.parts.patches
+    }
+
+    /// Planes, edges, ridges and walls of buildings, as far as they are known.
+    #[must_use]
+    pub fn outlines(&self) -> &BuildingOutlines {
+        &self.parts.outlines
     }
 
     /// All triangles that block beside the balls: of patches, and of meshes that were added.

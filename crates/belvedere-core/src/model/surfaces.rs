@@ -2,7 +2,7 @@
 
 use super::prepare::{CarvingInput, OrientedSurvey};
 use crate::medial::MedialBalls;
-use crate::planes::{BuildingSurfaces, PlaneParams, SurveyPoints, cap, find};
+use crate::planes::{BuildingOutlines, BuildingSurfaces, PlaneParams, SurveyPoints, cap, find};
 use belvedere_data::balls::NO_TOUCH;
 use belvedere_data::control::Control;
 use belvedere_data::patches::SurfacePatches;
@@ -27,7 +27,8 @@ pub struct SurfacesReport {
 }
 
 impl OrientedSurvey {
-    /// The surfaces of the buildings, with rows of points as in the cloud as it was given; `None` where the survey is not from the air, or where its scanner is not known.
+    /// The surfaces of the buildings, with rows of points as in the cloud as it was given; `None` where the survey is not
+    /// from the air, or where its scanner is not known.
     ///
     /// # Errors
     /// Those of [`find`].
@@ -65,9 +66,9 @@ pub(super) fn close_surfaces(
     frame: &Frame,
     params: &PlaneParams,
     control: &Control<'_>,
-) -> Result<(SurfacePatches, Option<SurfacesReport>)> {
-    let Some(found) = survey.building_surfaces(frame, params, control)? else {
-        return Ok((SurfacePatches::default(), None));
+) -> Result<(SurfacePatches, BuildingOutlines, Option<SurfacesReport>)> {
+    let Some(mut found) = survey.building_surfaces(frame, params, control)? else {
+        return Ok((SurfacePatches::default(), BuildingOutlines::default(), None));
     };
     let balls_capped =
         control.stage("capping balls", balls.len(), || cap(balls, &survey.measured, &found.regions, control))?;
@@ -82,5 +83,6 @@ pub(super) fn close_surfaces(
         triangles: found.patches.len(),
         balls_capped,
     };
-    Ok((found.patches, Some(report)))
+    let patches = std::mem::take(&mut found.patches);
+    Ok((patches, found.into_outlines(), Some(report)))
 }

@@ -24,6 +24,7 @@ mod sheets;
 mod tests;
 mod walls;
 
+pub use belvedere_data::building_outlines::{BuildingOutlines, Edge, Ridge, RoofPlane, Wall, median_sd};
 pub use regions::{SurfaceRegions, cap};
 
 use belvedere_data::control::Control;
@@ -85,70 +86,6 @@ pub struct SurveyPoints<'a> {
     pub origin: [f64; 3],
 }
 
-/// A plane of a roof.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RoofPlane {
-    /// Unit vector upward and outward.
-    pub normal: [f64; 3],
-    /// A point of the plane, the middle of its points, local metres.
-    pub center: [f64; 3],
-    /// Lowest and highest corner of the box of its points, local metres.
-    pub bounds: [[f64; 3]; 2],
-    /// Points on it.
-    pub count: usize,
-    /// Root mean square distance of these points, metres.
-    pub noise: f64,
-    /// Standard deviation of its height at the middle, metres.
-    pub sd: f64,
-}
-
-/// A straight line on which a roof ends.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Edge {
-    /// Both ends, local metres. Seen from the first to the second the roof lies to the left.
-    pub ends: [[f64; 3]; 2],
-    /// Row of its plane among [`BuildingSurfaces::planes`].
-    pub plane: usize,
-    /// Standard deviation of its place across the line, in plan, metres.
-    pub sd: f64,
-    /// Number of sides between a return and a pulse that passed whose middles lie on it.
-    pub count: usize,
-    /// Height of what lies below it, the median along the edge, metres below the roof.
-    pub drop: f64,
-}
-
-/// A line in which two planes of a roof meet.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Ridge {
-    /// Both ends, local metres.
-    pub ends: [[f64; 3]; 2],
-    /// Rows of its planes.
-    pub planes: [usize; 2],
-    /// Whether both planes fall from it: a ridge or hip; a valley otherwise.
-    pub is_convex: bool,
-}
-
-/// An upright wall below an edge.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Wall {
-    /// Both ends in plan, local metres. Seen from the first to the second the house lies to the left.
-    pub ends: [[f64; 2]; 2],
-    /// Height of its lowest point, and of the roof above its middle, local metres.
-    pub heights: [f64; 2],
-    /// Row of the edge above it among [`BuildingSurfaces::edges`].
-    pub edge: usize,
-    /// Points on it.
-    pub count: usize,
-    /// Root mean square distance of these points, metres.
-    pub noise: f64,
-    /// Standard deviation of its place across, at its middle, metres.
-    pub sd: f64,
-    /// Share of the points below the edge that lie on it, 0 to 1.
-    pub share: f64,
-    /// How far the edge stands out before it, metres.
-    pub eaves: f64,
-}
-
 /// A plane that points lie on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Surface {
@@ -202,6 +139,13 @@ impl BuildingSurfaces {
                 (along[1] * (place[0] - a[0]) - along[0] * (place[1] - a[1])) / along[0].hypot(along[1])
             }),
         }
+    }
+
+    /// The planes and lines alone.
+    #[must_use]
+    pub fn into_outlines(self) -> BuildingOutlines {
+        let Self { planes, edges, ridges, walls, .. } = self;
+        BuildingOutlines { planes, edges, ridges, walls }
     }
 
     /// Adds what another block found.

@@ -11,6 +11,8 @@ mod las;
 mod metadata;
 #[cfg(feature = "npy")]
 mod npz;
+#[cfg(feature = "npy")]
+mod outlines;
 #[cfg_attr(
     not(all(feature = "las", feature = "ply", feature = "npy")),
     allow(dead_code, reason = "a build without some formats uses a part of it")

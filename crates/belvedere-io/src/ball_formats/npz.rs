@@ -5,6 +5,7 @@ use std::path::Path;
 use zip::{ZipArchive, ZipWriter};
 
 use super::metadata;
+use super::outlines::{OUTLINE_ARRAYS, read_outlines, write_outlines};
 use super::patches::{in_corners, kinds_of_codes};
 use crate::npz_arrays::{array, array_names, has, invalid, open, rows, values, write_archive};
 use crate::output::Output;
@@ -56,6 +57,9 @@ pub(super) fn write_arrays<W: Write + Seek>(archive: &mut ZipWriter<W>, parts: &
         let t = triangles.len() as u64;
         array(archive, "patch_corners", &[t, 3, 3], triangles.as_flattened().as_flattened().iter().copied())?;
         array(archive, "patch_kinds", &[t], kinds.iter().map(|kind| kind.code()))?;
+    }
+    if !parts.outlines.is_empty() {
+        write_outlines(archive, &parts.outlines)?;
     }
     if let Some(FreeSegmentColumns { starts, ways, slopes, lengths, top }) = &parts.pulses {
         let p = starts.len() as u64;
@@ -110,6 +114,7 @@ pub(super) fn read_arrays<R: Read + Seek>(archive: &mut ZipArchive<R>, path: &Pa
         parts.patches = patches(archive).map_err(malformed)?;
     }
     check_patches(&parts.patches).map_err(|e| Error::malformed(path, e))?;
+    parts.outlines = read_outlines(archive).map_err(malformed)?;
     if PULSE_ARRAYS.iter().any(|name| has(archive, name)) {
         parts.pulses = Some(pulses(archive).map_err(malformed)?);
     }
@@ -142,7 +147,7 @@ fn pulses<R: Read + Seek>(archive: &mut ZipArchive<R>) -> io::Result<FreeSegment
 
 /// An array of another name: a damaged name of one that is not in every file would not be missed.
 fn unknown<R: Read + Seek>(archive: &ZipArchive<R>) -> Option<String> {
-    let is_known =
-        |name: &&str| PULSE_ARRAYS.contains(name) || PATCH_ARRAYS.contains(name) || OTHER_ARRAYS.contains(name);
+    let known = [&PULSE_ARRAYS[..], &PATCH_ARRAYS, &OUTLINE_ARRAYS, &OTHER_ARRAYS].concat();
+    let is_known = |name: &&str| known.contains(name);
     array_names(archive).find(|name| !is_known(name)).map(str::to_owned)
 }

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::io::{Cursor, Write};
 
 use belvedere_data::balls::MedialBalls;
+use belvedere_data::building_outlines::{BuildingOutlines, Edge, Ridge, RoofPlane, Wall};
 use belvedere_data::crs::Crs;
 use belvedere_data::free_segments::FreeSegmentColumns;
 use belvedere_data::model::ModelParts;
@@ -73,8 +74,34 @@ fn full_archive() -> (ModelParts, Vec<u8>) {
     let count = 5_usize;
     let mut patches = SurfacePatches::default();
     patches.push([[1.0, 2.0, 3.0], [4.0, 5.0, 6.0], [7.0, 8.5, 9.0]], PatchKind::Inside);
+    let roof = RoofPlane {
+        normal: [0.0, 0.6, 0.8],
+        center: [1.0, 2.0, 3.0],
+        bounds: [[0.0; 3], [5.0; 3]],
+        count: 30,
+        noise: 0.02,
+        sd: 0.004,
+    };
+    let ends = [[1.0, 2.0, 3.0], [4.0, 5.5, 6.0]];
+    let wall = Wall {
+        ends: [[1.0, 2.0], [4.0, 5.5]],
+        heights: [0.5, 3.0],
+        edge: 0,
+        count: 9,
+        noise: 0.03,
+        sd: 0.01,
+        share: 0.75,
+        eaves: 0.2,
+    };
+    let outlines = BuildingOutlines {
+        planes: vec![roof; 2],
+        edges: vec![Edge { ends, plane: 1, sd: 0.05, count: 12, drop: 3.0 }],
+        ridges: vec![Ridge { ends, planes: [0, 1], is_convex: true }],
+        walls: vec![wall],
+    };
     let parts = ModelParts {
         patches,
+        outlines,
         frame: Frame { origin: [85_000.0, 447_000.0, 1.0], crs: Crs { epsg: Some(28_992), ..Crs::default() } },
         bounds: Bounds { low: [-5.0; 3], high: [9.0; 3] },
         balls: MedialBalls {

@@ -16,6 +16,7 @@ function written() {
   const opened = [...wordsOf(location.hash)].filter(([name]) => ["open", "crs", "window"].includes(name));
   const words = { ...Object.fromEntries(opened), q: tool.name, d: time.date, t: clockText(time.minutes), z: time.zone };
   if (time.trees !== "opaque") words.trees = time.trees;
+  if ($("outlines").getAttribute("aria-pressed") === "true") words.edges = "yes";
   if (page.isSure) words.sure = "yes";
   if (page.compared) Object.assign(words, { from: page.compared.time, fromz: page.compared.zone });
   if (tool.name !== "plan" && places.length) words.p = places.map(({ clicked }) => toFile(clicked).join(",")).join(";");
@@ -81,6 +82,7 @@ export function recall(words = wordsOf(location.hash)) {
   recallTime(words);
   recallView(words);
   page.isSure = words.get("sure") === "yes";
+  if ((words.get("edges") === "yes") !== ($("outlines").getAttribute("aria-pressed") === "true") && !$("outlines").hidden) $("outlines").click();
   page.compared = /^\d{4}-\d\d-\d\dT\d\d:\d\d$/.test(words.get("from") ?? "") && words.get("fromz") ? { time: words.get("from"), zone: words.get("fromz") } : null;
   if (!tool) return false;
   if (tool.height && Number.isFinite(Number(words.get("h") ?? NaN))) tool.above = Number(words.get("h"));

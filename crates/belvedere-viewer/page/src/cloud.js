@@ -4,7 +4,7 @@ import {
 } from "three";
 import { classTable } from "./colors.js";
 import { Screen, target, uniforms } from "./screen.js";
-import { BALL_FRAGMENT, BALL_VERTEX, MESH_FRAGMENT, MESH_VERTEX, POINT_FRAGMENT, POINT_VERTEX } from "./shaders.js";
+import { BALL_FRAGMENT, BALL_VERTEX, LINE_FRAGMENT, LINE_VERTEX, MESH_FRAGMENT, MESH_VERTEX, POINT_FRAGMENT, POINT_VERTEX } from "./shaders.js";
 import { measure, unknown } from "./surface.js";
 
 // Value of a point that a plan clears: it is not drawn.
@@ -18,6 +18,8 @@ const SPREAD = 1.3;
 const SQUARE = 128;
 // Light where no question has a sun: from the south and half up, so that walls differ from each other and from roofs.
 export const DAYLIGHT = new Vector3(0.25, -0.75, 0.75).normalize();
+// Width of outlines, pixels.
+const LINE = 2.5;
 // Between these all is shown.
 const ALL = { low: [-1e9, -1e9, -1e9], high: [1e9, 1e9, 1e9] };
 // How much of the light is seen in each way of colouring: photographs have their own, and answers must be known by
@@ -39,6 +41,8 @@ export class Cloud {
     const classes = new DataTexture(new Uint8Array(classTable().flatMap((color) => [...color, 255])), 256, 1, RGBAFormat, UnsignedByteType);
     classes.needsUpdate = true;
     this.own = uniforms({ table: this.table, classes, tint: 0, mode: 2, layered: 0, heights: new Vector2(), size: 0.3, pixels: 1, far: 1000, most: 40, cleared: CLEARED, light: 1, sun: DAYLIGHT.clone(), cutLow: new Vector3(...ALL.low), cutHigh: new Vector3(...ALL.high) });
+    // what lines need to be as wide on every screen
+    Object.assign(this, { lineScreen: { value: new Vector2(1, 1) }, lineWidth: { value: LINE } });
     this.target = target();
     this.screen = new Screen(renderer);
     // whether whole pictures take no longer than those that move may
@@ -199,6 +203,30 @@ export class Cloud {
     (this.meshes ??= []).push(this.mesh(new Float32Array(corners), new Color(0.85, 0.05, 0.4)));
   }
 
+  // Lines of one colour, six numbers each, that stay as wide on the screen.
+  addOutlines(values, [red, green, blue]) {
+    const count = values.length / 6;
+    const [corner, other] = [new Float32Array(count * 12), new Float32Array(count * 12)];
+    const side = new Float32Array(count * 4), index = new Uint32Array(count * 6);
+    for (let i = 0; i < count; i++) {
+      for (let k = 0; k < 4; k++) {
+        const [own, far] = k < 2 ? [0, 3] : [3, 0];
+        corner.set(values.subarray(6 * i + own, 6 * i + own + 3), 12 * i + 3 * k);
+        other.set(values.subarray(6 * i + far, 6 * i + far + 3), 12 * i + 3 * k);
+        // seen from the other end, left is right
+        side[4 * i + k] = (k % 2 ? 1 : -1) * (k < 2 ? 1 : -1);
+      }
+      index.set([0, 1, 2, 1, 3, 2].map((k) => 4 * i + k), 6 * i);
+    }
+    const geometry = new BufferGeometry().setIndex(new BufferAttribute(index, 1));
+    for (const [name, array, size] of [["corner", corner, 3], ["other", other, 3], ["side", side, 1]]) geometry.setAttribute(name, new BufferAttribute(array, size));
+    const own = { far: this.own.far, pixels: this.own.pixels, lift: this.own.size, screen: this.lineScreen, wide: this.lineWidth, ...uniforms({ tint: new Color(red / 255, green / 255, blue / 255) }) };
+    const lines = new Mesh(geometry, new RawShaderMaterial({ glslVersion: GLSL3, side: DoubleSide, vertexShader: LINE_VERTEX, fragmentShader: LINE_FRAGMENT, uniforms: own }));
+    lines.frustumCulled = false;
+    this.extra.add(lines);
+    (this.outlines ??= []).push(lines);
+  }
+
   // Triangles of a plan, instead of those before.
   setPlan(values) {
     this.plan?.geometry.dispose();
@@ -219,6 +247,8 @@ export class Cloud {
   resize(width, height) {
     this.target.setSize(width, height);
     this.screen.resize(width, height);
+    this.lineScreen.value.set(width, height);
+    this.lineWidth.value = LINE * this.renderer.getPixelRatio();
   }
 
   // Draws the scene with as many points in view as the budget allows. A picture that is not new keeps what it holds,

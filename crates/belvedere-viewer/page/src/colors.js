@@ -10,6 +10,10 @@ export const CLASSES = {
   17: [t`bridge`, "#b592e0"], 18: [t`high noise`, "#e04fd0"], 26: [t`civil structure`, "#8a5a3c"],
 };
 
+// Lines on which surfaces of buildings end: edges of roofs, ridges and valleys, walls. Known from each other and from
+// the colours of classes also without red and green.
+export const OUTLINES = [[[150, 0, 70], t`edge of a roof`], [[250, 200, 0], t`ridge or valley`], [[0, 70, 190], t`wall`]];
+
 const rgb = (hex) => [1, 3, 5].map((i) => parseInt(hex.slice(i, i + 2), 16));
 const VIRIDIS = ["#440154", "#482878", "#3e4a89", "#31688e", "#26828e", "#1f9e89", "#35b779", "#6ece58", "#b5de2b", "#fde725"].map(rgb);
 const SUN = ["#1b2a5a", "#3a3f86", "#6a4c93", "#a4508b", "#d95f69", "#f28e4b", "#f9bf45", "#fdf3a0"].map(rgb);

@@ -1,9 +1,10 @@
 // From the server to the scene: points, meshes and balls, and how far it is prepared.
 import * as api from "./api.js";
 import { recall } from "./address.js";
+import * as colors from "./colors.js";
 import { firstAnswer } from "./first.js";
 import { report } from "./messages.js";
-import { loadColors, offerColors, scaleHeights, setColor } from "./paint.js";
+import { loadColors, offerColors, paint, scaleHeights, setColor } from "./paint.js";
 import { restore } from "./plan.js";
 import { offer } from "./results.js";
 import { $, page } from "./state.js";
@@ -75,6 +76,7 @@ export async function watch() {
       startTime();
       if (!state.shown.point_count) toggleBalls();
       $("trees").hidden = !state.scene.has_vegetation;
+      $("outlines").hidden = api.exported || !state.scene.roof_count;
       const first = () => recall() || firstAnswer(state.results);
       (api.exported ? Promise.resolve() : restore().catch(report)).then(first).catch(report);
       if (page.pending) page.ask();
@@ -101,5 +103,28 @@ export async function toggleBalls() {
   // it may have been pressed again while the balls were on their way
   if (cloud.balls) cloud.balls.visible = $("balls").getAttribute("aria-pressed") === "true";
   draw();
+}
+// Lines on which surfaces of buildings end, as they were found.
+export async function toggleOutlines() {
+  const on = $("outlines").getAttribute("aria-pressed") !== "true";
+  $("outlines").setAttribute("aria-pressed", on);
+  try {
+    if (on && !page.outlines) {
+      page.outlines = api.ask("surfaces", {});
+      const { edges, ridges, walls, body } = await page.outlines;
+      const numbers = new Float32Array(body);
+      let first = 0;
+      [edges, ridges, walls].forEach((count, i) => {
+        cloud.addOutlines(numbers.subarray(6 * first, 6 * (first += count)), colors.OUTLINES[i][0]);
+      });
+    }
+  } catch (error) {
+    page.outlines = null;
+    $("outlines").setAttribute("aria-pressed", false);
+    return report(error);
+  }
+  const isShown = $("outlines").getAttribute("aria-pressed") === "true";
+  cloud.outlines?.forEach((lines) => { lines.visible = isShown; });
+  paint();
 }
 page.watch = watch;

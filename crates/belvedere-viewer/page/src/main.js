@@ -1,7 +1,7 @@
 // The page: mouse, keys and buttons, and its start.
 import * as api from "./api.js";
 import * as colors from "./colors.js";
-import { toggleBalls, watch } from "./loading.js";
+import { toggleBalls, toggleOutlines, watch } from "./loading.js";
 import { help, report } from "./messages.js";
 import { paint, setColor } from "./paint.js";
 import { setWhen } from "./plan.js";
@@ -75,6 +75,7 @@ function listen() {
   $("picture").onclick = async () => save(`${page.scene.title.replace(/\..*$/, "")}.png`, await snapshot());
   for (const { name } of ASIDES) $(name).onclick = () => page.choose(page.tool.name === name ? TOOLS[0].name : name);
   $("balls").onclick = toggleBalls;
+  $("outlines").onclick = toggleOutlines;
   $("meshes").onclick = () => {
     const on = $("meshes").getAttribute("aria-pressed") !== "true";
     $("meshes").setAttribute("aria-pressed", on);
@@ -102,7 +103,7 @@ function key(event) {
   const on = event.target.tagName === "BUTTON";
   const turns = { ArrowLeft: [0.08, 0], ArrowRight: [-0.08, 0], ArrowUp: [0, 0.06], ArrowDown: [0, -0.06] };
   const goes = { w: [1, 0, 0], s: [-1, 0, 0], a: [0, -1, 0], d: [0, 1, 0], q: [0, 0, -1], e: [0, 0, 1] };
-  const presses = { h: "home", t: "top", b: "balls", p: "picture", l: "theme", r: "measure", x: "cut", "?": "help" };
+  const presses = { h: "home", t: "top", b: "balls", o: "outlines", p: "picture", l: "theme", r: "measure", x: "cut", "?": "help" };
   const name = event.key.length === 1 ? event.key.toLowerCase() : event.key;
   if (on && (name === "Enter" || name === " ")) return;
   if (turns[name]) mover.turn(...turns[name]);

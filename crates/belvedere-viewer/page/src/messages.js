@@ -27,7 +27,7 @@ export function hint(text) {
 const KEYS = () => [
   [`1–${Math.min(TOOLS.length, 9)}${TOOLS.length > 9 ? ", 0" : ""}`, t`Choose a question`], ["Enter", t`Ask at the centre of the view`], ["Esc", t`Close the answer`], ["← → ↑ ↓", t`Turn`], ["W A S D, Q E", t`Move; down and up`],
   ["+ −", t`Zoom`], ["H", t`Whole scene`], ["T", t`From above`], ["C", t`Next colour`], ["M", t`Next way of moving`],
-  ...(api.exported ? [] : [["V", t`Before, after, change of a plan`], ["B", t`Balls`]]),
+  ...(api.exported ? [] : [["V", t`Before, after, change of a plan`], ["B", t`Balls`], ["O", t`Edges`]]),
   ...(TOOLS.some(({ time }) => time === "hour") ? [[t`Space`, t`Play the day`], ["< >", t`Earlier or later`]] : []),
   ["R", t`Measure`], ["X", t`Show a part`], ["P", t`Save a picture`], ["L", t`Light or dark`], ["?", t`This help`],
 ];

@@ -19,6 +19,8 @@ export function paint() {
   $("legend").innerHTML = !legend ? "" : `<b>${escape(legend.title)}</b>` + (legend.keys
     ? legend.keys.map(({ color, text }) => `<div><i class="swatch" style="background:${color}"></i>${escape(text)}</div>`).join("")
     : `<div class="ramp" style="background:${legend.gradient}"></div><div class="ends"><span>${escape(legend.ends[0])}</span><span>${escape(legend.ends[1])}</span></div>`);
+  const isOutlined = $("outlines").getAttribute("aria-pressed") === "true";
+  if (isOutlined) $("legend").innerHTML += `<div class="lines">${colors.OUTLINES.map(([color, text]) => `<div><i class="swatch" style="background:rgb(${color})"></i>${text}</div>`).join("")}</div>`;
   draw();
 }
 export function setColor(name) {

@@ -5,7 +5,7 @@ import * as colors from "./colors.js";
 import { cutAt, cutPanel } from "./cut.js";
 import { invited } from "./first.js";
 import { measurePanel } from "./measure.js";
-import { hint, lost } from "./messages.js";
+import { hint, lost, report } from "./messages.js";
 import { finish, isChange, outline, panel, planInUse } from "./plan.js";
 import { setColor } from "./paint.js";
 import { csv, diagram, geojson, picture, save } from "./save.js";
@@ -13,7 +13,7 @@ import { $, canvas, page, toolOf, TOOLS } from "./state.js";
 import { changed } from "./change.js";
 import { clockText, setPlaying } from "./time.js";
 import { ASIDES } from "./tools.js";
-import { remarkText, t } from "./words.js";
+import { count, fixed, remarkText, t } from "./words.js";
 import { cloud, complete, draw, placeAt, shownPlace, toFile } from "./view.js";
 
 export function choose(tool) {
@@ -92,6 +92,17 @@ function lightOf(value, { certainty, before }) {
   if (!certainty) return colors.LIGHT[value]?.[0];
   return value <= 200 ? t`lit with a probability of ${Math.round(value / 2)} %` : undefined;
 }
+// Classes of points that may lie on buildings: buildings, and where nobody classified, all.
+const BUILDINGS = [0, 1, 6];
+// Adds the plane of the roof that a point lies on to what is said of the point.
+async function roofAt(file, list) {
+  const { roof } = await api.ask("surfaces", { place: file });
+  if (!roof) return;
+  const way = roof.azimuth_deg === null ? "" : `, ${t`azimuth`} ${fixed(roof.azimuth_deg, 1)}°`;
+  list.insertAdjacentHTML("beforeend", `<dt>${t`Plane of the roof`}</dt><dd>${t`slope`} ${fixed(roof.slope_deg, 1)}°${way}</dd>`
+    + `<dt>${t`Its points`}</dt><dd>${t`${count(roof.points)}, which scatter by ${fixed(100 * roof.noise_m, 1)} cm`}</dd>`
+    + `<dt>${t`Its height`}</dt><dd>${t`known to ${fixed(100 * roof.sd_m, 2)} cm (standard deviation)`}</dd>`);
+}
 // What is known of a clicked place, and the questions about it.
 function ofPlace(clicked, point) {
   const file = toFile(clicked);
@@ -105,6 +116,7 @@ function ofPlace(clicked, point) {
     + `${answer ? `<dt>${t`At the time below`}</dt><dd>${escape(answer)}</dd>` : ""}</dl><pre>${file.join(",")}</pre>`
     + (offered.length ? `<h3>${t`Ask about this place`}</h3><div class="row">${offered.map(({ name, title }) => `<button data-about="${name}">${escape(title)}</button>`).join("")}</div>` : ""), (box) => {
     box.querySelectorAll("[data-about]").forEach((button) => { button.onclick = () => { page.choose(button.dataset.about); pick(clicked); }; });
+    if (BUILDINGS.includes(code) && page.scene.roof_count && !api.exported) roofAt(file, box.querySelector("dl")).catch(report);
   });
   draw();
 }

@@ -69,6 +69,18 @@ void main() { vec4 view = modelViewMatrix * vec4(corner, 1.0); at = view.xyz; gl
 export const MESH_FRAGMENT = `precision highp float; in vec3 at; uniform float far; uniform vec3 tint; layout(location = 0) out vec4 shown; layout(location = 1) out vec4 far24;${PACK}
 void main() { vec3 n = normalize(cross(dFdx(at), dFdy(at))); shown = vec4(tint * (0.5 + 0.5 * abs(dot(n, normalize(vec3(0.3, 0.6, 0.75))))), 1.0); far24 = packed(-at.z / far); }`;
 
+// Lines so many pixels wide, and half a metre from far away, where they would hide what is between them. They are moved
+// towards the eye by the size of points, which would hide a part of them.
+export const LINE_VERTEX = `precision highp float; in vec3 corner, other; in float side; uniform mat4 modelViewMatrix, projectionMatrix; uniform vec2 screen; uniform float wide, lift, pixels; out vec3 at;
+vec4 lifted(vec3 place) { vec4 view = modelViewMatrix * vec4(place, 1.0); float range = length(view.xyz); view.xyz *= max(1.0 - lift / range, 0.5); return view; }
+void main() { vec4 view = lifted(corner), p = projectionMatrix * view, q = projectionMatrix * lifted(other); at = view.xyz;
+  // an end behind the eye has no place on the screen
+  if (q.w < 0.1 && p.w > 0.1) q = mix(p, q, (p.w - 0.1) / (p.w - q.w));
+  vec2 way = (q.xy / q.w - p.xy / p.w) * screen; way /= max(length(way), 1e-6);
+  float own = clamp(0.5 * pixels / max(p.w, 0.1), 0.4 * wide, wide); gl_Position = p + vec4(side * own * vec2(-way.y, way.x) / screen * p.w, 0.0, 0.0); }`;
+export const LINE_FRAGMENT = `precision highp float; in vec3 at; uniform float far; uniform vec3 tint; layout(location = 0) out vec4 shown; layout(location = 1) out vec4 far24;${PACK}
+void main() { shown = vec4(tint, 1.0); far24 = packed(-at.z / far); }`;
+
 export const SCREEN_VERTEX = "precision highp float; in vec3 position; out vec2 uv; void main() { uv = position.xy * 0.5 + 0.5; gl_Position = vec4(position.xy, 0.0, 1.0); }";
 
 // Makes layers of answers: of kinds, that of most of what lies within `reach` metres or `least` pixels, nearer places

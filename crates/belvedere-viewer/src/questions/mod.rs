@@ -11,6 +11,7 @@ mod seen;
 mod shadow;
 mod sun;
 mod sun_area;
+mod surfaces;
 mod who;
 
 use crate::plans::Plans;
@@ -43,6 +44,7 @@ pub(crate) fn answer(name: &str, body: &[u8], context: &RequestContext<'_>) -> R
         "roof" => roof::answer(&parsed(body)?, context),
         "plan" => plan::answer(parsed(body)?, context),
         "sun_area" => sun_area::answer(&parsed(body)?, context),
+        "surfaces" => surfaces::answer(&parsed(body)?, context),
         _ => Err(Refusal::Unanswerable("there is no such question".to_owned())),
     }
 }
