@@ -71,6 +71,11 @@ pub(crate) struct TerrestrialFlags {
     /// Maximum range in metres, 1 to 5000 [default: 120]
     #[arg(long, value_name = "M", value_parser = within::<1, 5000>, allow_negative_numbers = true)]
     pub(crate) max_range: Option<f64>,
+    /// Write scans.ptx too: a grid for each scanner position, with the pulses that returned nothing
+    ///
+    /// A cell for each pulse holds its first return, or zeros. Only such a file tells which pulses met nothing.
+    #[arg(long)]
+    pub(crate) ptx: bool,
 }
 
 #[derive(Args)]

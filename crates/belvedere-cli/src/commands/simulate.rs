@@ -10,9 +10,10 @@ use belvedere::io::{ExtraColumn, ExtraValues, VehicleHeading, atomic, write_clou
 use belvedere::trajectory::Trajectory;
 use belvedere::view::to_sun;
 use belvedere_scenes::{
-    AirborneParams, BeamParams, DENSITY, MirrorMotion, Scan, ScanPattern, Stations, TerrestrialParams, TriangleScene,
-    Truth, blocks, scan_airborne, scan_terrestrial, town,
+    AirborneParams, BeamParams, DENSITY, MirrorMotion, Scan, ScanGrid, ScanPattern, Stations, TerrestrialParams,
+    TriangleScene, Truth, blocks, scan_airborne, scan_terrestrial, town,
 };
+use std::io::Write;
 use std::path::Path;
 
 /// Most pulses: a scan of more would fill the memory of most machines, so that a slipped digit is an error and no
@@ -55,6 +56,11 @@ pub(crate) fn run(arguments: &Simulate, global: &Global) -> Result<Summary> {
     });
     run.stage("writing cloud", 0, |_| write_lit_cloud(&folder.join("cloud.laz"), &scan, &lit))?;
     let mut files = vec!["cloud.laz"];
+    if arguments.terrestrial.ptx {
+        let grids = terrestrial(arguments, global.seed).grids(&scan);
+        run.stage("writing scans", 0, |_| write_grids(&folder.join("scans.ptx"), &grids))?;
+        files.push("scans.ptx");
+    }
     files.extend(run.stage("writing trajectory", 0, |_| write_paths(folder, &scan))?);
     files.extend(run.stage("writing meshes", 0, |_| write_meshes(folder, &scene))?);
 
@@ -89,6 +95,7 @@ fn check_flags(arguments: &Simulate) -> Result<()> {
         ("--stations", ground.stations.is_some()),
         ("--angle-step-deg", ground.angular_step.is_some()),
         ("--max-range", ground.max_range.is_some()),
+        ("--ptx", ground.ptx),
     ];
     let (unused, scanner): (&[(&str, bool)], &str) = match arguments.scanner {
         ScannerChoice::Airborne => (&of_terrestrial, "terrestrial"),
@@ -221,6 +228,15 @@ fn write_lit_cloud(path: &Path, scan: &Scan, lit: &[Vec<u8>; 3]) -> Result<()> {
         values: ExtraValues::U8(&lit[i]),
     });
     write_cloud(path, &cloud_of(scan)?, &columns)?;
+    Ok(())
+}
+
+/// Writes the pulses of each place of a tripod, one place after the other.
+fn write_grids(path: &Path, grids: &[ScanGrid]) -> Result<()> {
+    atomic::write(path, |file| {
+        let mut write = |grid: &ScanGrid| file.write_all(grid.to_ptx().as_bytes());
+        grids.iter().try_for_each(&mut write).map_err(belvedere::Error::io(path))
+    })?;
     Ok(())
 }
 

@@ -143,6 +143,27 @@ fn a_terrestrial_survey_names_its_stations() {
 }
 
 #[test]
+fn a_structured_scan_has_a_cell_for_each_pulse_and_shows_the_sky() {
+    let place = Workplace::new();
+    let flags = "--scanner terrestrial --stations 2 --angle-step-deg 1 --ptx";
+    let summary = place.summary(&format!("simulate old-town -o out --extent 100 {flags}"));
+    let pulses = summary["survey"]["pulses_per_station"].as_u64().unwrap();
+    // a grid begins with ten lines
+    assert_eq!(place.text("out/scans.ptx").lines().count() as u64, 2 * (10 + pulses));
+    let [structured, plain] = ["out/scans.ptx", "out/cloud.laz"].map(|name| cloud(&place, name));
+    let firsts = plain.attributes.return_number.as_ref().unwrap().iter().filter(|&&number| number == 1).count();
+    assert_eq!(structured.len(), firsts);
+    assert_eq!(structured.scanner_positions.len(), 2);
+    // each place has a sky above the roofs
+    assert!(structured.sky_regions.len() >= 2, "{}", structured.sky_regions.len());
+    let proven =
+        |name: &str| place.summary(&format!("balls out/{name} --crs EPSG:7415 -o balls.npz"))["pulses"].clone();
+    let (with, without) = (proven("scans.ptx"), proven("cloud.laz"));
+    assert!(with["pulses_into_the_sky"].as_u64().is_some_and(|count| count > 0), "{with}");
+    assert!(without["pulses_into_the_sky"].as_u64().unwrap_or(0) == 0, "{without}");
+}
+
+#[test]
 fn surveys_have_the_same_bytes_for_any_number_of_threads_and_others_for_another_seed() {
     let place = Workplace::new();
     let files = ["cloud.laz", "trajectory.csv", "trajectory.sbet", "mesh.obj", "mesh.city.json", "blocks.obj"];
@@ -186,6 +207,7 @@ fn wrong_use_is_refused_with_the_way_out() {
     place.refusal(2, "simulate", &["--output"]);
     place.refusal(2, "simulate city -o out", &["city", "old-town"]);
     place.refusal(2, "simulate -o out --stations 2", &["--stations", "--scanner terrestrial"]);
+    place.refusal(2, "simulate -o out --ptx", &["--ptx", "--scanner terrestrial"]);
     place.refusal(2, "simulate -o out --scanner terrestrial --density 2", &["--density", "--scanner airborne"]);
     place.refusal(2, "simulate -o out --extent 20", &["60 to 5000"]);
     place.refusal(2, "simulate -o out --density -1", &["0.1 to 200"]);
