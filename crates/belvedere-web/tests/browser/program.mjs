@@ -53,6 +53,8 @@ function questions(state, points) {
     ["ask/around", { place: file(b.local, 1.7) }],
     ["ask/who", { place: file(byHeight.at(-1).local, 0.5) }],
     ...[0, 1, 2].map((part) => roofs[Math.floor((part * roofs.length) / 3)]).filter(Boolean).map(({ local }) => ["ask/roof", { place: file(local) }]),
+    ["ask/surfaces", {}],
+    ...roofs.slice(0, 1).map(({ local }) => ["ask/surfaces", { place: file(local) }]),
     ["ask/sun_area", { corners: square(12), date: "2026-06-21", ...on }],
     ["ask/plan", { clear: [], buildings: [{ corners: square(10), base: file(a.local)[2], height_m: 9 }], meshes: [] }],
     ["plans/1/ask/shadow", { time: "2026-06-21T15:00", ...on }],

@@ -13,6 +13,7 @@ use belvedere::crs::Crs;
 use belvedere::io::{is_ball_file, read_balls, write_balls, write_cloud};
 use belvedere::medial::MedialBalls;
 use belvedere::model::ModelParts;
+use belvedere::planes::BuildingOutlines;
 use belvedere::pulses::FreeSegmentColumns;
 use belvedere::{Bounds, Error, Frame, PatchKind, PointCloud, SurfacePatches};
 use tempfile::TempDir;
@@ -35,6 +36,7 @@ fn balls(crs: Crs) -> ModelParts {
         },
         transmission: (0..n).map(|i| f32::from(i) / 499.0).collect(),
         patches: patches(),
+        outlines: BuildingOutlines::default(),
         pulses: Some(FreeSegmentColumns {
             starts: (0..700_u16).map(|i| [f32::from(i) * 0.37, f32::from(i).sqrt(), 1.0 / f32::from(i + 3)]).collect(),
             ways: (0..700_u16).map(|i| u8::try_from(i % 6).unwrap()).collect(),
