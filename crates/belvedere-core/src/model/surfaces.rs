@@ -27,8 +27,8 @@ pub struct SurfacesReport {
 }
 
 impl OrientedSurvey {
-    /// The surfaces of the buildings, with rows of points as in the cloud as it was given; `None` where the survey is not
-    /// from the air, or where its scanner is not known.
+    /// The surfaces of the buildings, with rows of points as in the cloud as it was given; `None` where the survey is
+    /// not from the air, or where its scanner is not known.
     ///
     /// # Errors
     /// Those of [`find`].
