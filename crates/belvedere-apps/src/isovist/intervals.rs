@@ -20,7 +20,7 @@ const PLAN_RAYS: usize = 360;
 /// Rays around the horizon; half as many from the zenith to the nadir.
 const SPACE_RAYS: usize = 72;
 /// Sectors of a circle within which errors are the same.
-const SECTORS: usize = 24;
+const SECTORS: usize = 12;
 /// Standard deviations from the mean to the end of an interval that holds 90 % of a normal distribution.
 const DEVIATIONS: f64 = 1.645;
 
