@@ -30,10 +30,23 @@ impl SortedGrid {
         &self,
         position: [f32; 3],
         radius: f64,
+        visit: impl FnMut(u32) -> ControlFlow<()>,
+    ) -> ControlFlow<()> {
+        self.visit_within(position, [radius; 3], visit)
+    }
+
+    /// Calls `visit` with every point that may lie in the box of these half sides about `position`, as
+    /// [`Self::visit_near`] does. A high box costs no more than the points in it.
+    pub(super) fn visit_within(
+        &self,
+        position: [f32; 3],
+        half_sides: [f64; 3],
         mut visit: impl FnMut(u32) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
-        let low = position.map(|v| cell(f64::from(v) - radius, self.cell_size));
-        let high = position.map(|v| cell(f64::from(v) + radius, self.cell_size));
+        let bound = |sign: f64| -> [i64; 3] {
+            std::array::from_fn(|axis| cell(f64::from(position[axis]) + sign * half_sides[axis], self.cell_size))
+        };
+        let (low, high) = (bound(-1.0), bound(1.0));
         for x in low[0]..=high[0] {
             for y in low[1]..=high[1] {
                 let mut z = low[2];

@@ -16,7 +16,13 @@ const SPACING_SAMPLE_COUNT: usize = 2000;
 /// The nearest neighbour is looked for at up to 2 to this power times the first guess.
 const SPACING_DOUBLINGS: i32 = 5;
 
-/// When a point is alone.
+/// How far above and below a point others may lie between which it stands, metres: no house but a tower is higher, and
+/// a tower has more points.
+const COLUMN: f64 = 100.0;
+
+/// When a point is alone: few others lie about it, and it does not lie below some and above others. A stray echo hangs
+/// in the air or lies below the ground. A point of a wall has the edge of the roof above it and the ground below, how
+/// few pulses the wall may have met.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct IsolatedPoints {
     /// How far to look for other points.
@@ -81,8 +87,8 @@ impl IsolatedPoints {
     }
 }
 
-/// Leaves out of `kept` (ascending) the points with fewer than `min_neighbors` others within `radius` metres; returns
-/// how many. Neighbours are counted among all that were kept before, so that the order does not matter.
+/// Leaves out of `kept` (ascending) the points with fewer than `min_neighbors` others within `radius` metres, unless as
+/// many lie above it, and as many below it, within this radius in plan; returns how many. Neighbours are counted among all that were kept before, so that the order does not matter.
 ///
 /// # Errors
 /// [`Error::Cancelled`].
@@ -112,10 +118,27 @@ pub(super) fn drop_isolated(
                 if found >= min_neighbors { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
             })
             .is_continue()
+                && !is_between(positions, &grid, i, radius, min_neighbors)
         })
         .collect();
     stop.check()?;
     Ok(remove_sorted(kept, &alone))
+}
+
+/// Whether `count` points lie above a point, and as many below it, farther from it than `radius`, but no farther in plan.
+fn is_between(positions: &[[f32; 3]], grid: &SortedGrid, index: u32, radius: f64, count: usize) -> bool {
+    let p = positions[index as usize];
+    let [mut above, mut below] = [0, 0];
+    let visited = grid.visit_within(p, [radius, radius, COLUMN], |other| {
+        let q = positions[other as usize];
+        let [x, y, z] = std::array::from_fn(|axis| f64::from(q[axis]) - f64::from(p[axis]));
+        if x * x + y * y <= radius * radius && z.abs() <= COLUMN && x * x + y * y + z * z > radius * radius {
+            above += usize::from(z > 0.0);
+            below += usize::from(z < 0.0);
+        }
+        if above >= count && below >= count { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    });
+    visited.is_break()
 }
 
 /// Median distance in metres from a sample of points to their nearest neighbours, or `None` for fewer than two points

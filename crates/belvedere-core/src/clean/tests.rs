@@ -110,6 +110,27 @@ fn isolated_points_are_those_of_brute_force() {
 }
 
 #[test]
+fn a_point_of_a_wall_stays_and_one_in_the_air_goes() {
+    // a roof of 20 m by 10 m, 12 m high, over a meadow of a metre
+    let mut positions = meadow(20);
+    let roof = (0..20_u8).flat_map(|x| (0..10_u8).map(move |y| [f32::from(x), f32::from(y), 12.0]));
+    positions.extend(roof);
+    let surfaces = positions.len();
+    let wall = [7.2, 9.3, 6.0];
+    // a bird, an echo from below the ground, one over the roof, two birds above each other
+    let stray = [[7.0, 15.0, 6.0], [7.0, 15.0, -6.0], [7.0, 5.0, 20.0], [14.0, 15.0, 5.0], [14.0, 15.0, 9.0]];
+    positions.push(wall);
+    positions.extend(stray);
+    let params = CleanParams {
+        isolated: Some(IsolatedPoints { radius: IsolationRadius::Metres(2.0), min_neighbors: 2 }),
+        ..CleanParams::default()
+    };
+    let (kept, report) = cleaned(&cloud(positions), &params);
+    assert_eq!((kept.len(), report.isolated_count), (surfaces + 1, stray.len()));
+    assert_eq!(kept.last().copied(), u32::try_from(surfaces).ok());
+}
+
+#[test]
 fn strange_clouds_are_no_trouble() {
     assert!(cleaned(&PointCloud::default(), &CleanParams::default()).0.is_empty());
     assert_eq!(cleaned(&cloud(vec![[1.0; 3]]), &CleanParams::default()).0, [0]);
