@@ -72,7 +72,7 @@ pub(super) struct Block {
     /// Lowest return.
     pub(super) lowest: f64,
     /// Most lean of a pulse.
-    max_lean: f64,
+    pub(super) max_lean: f64,
     /// Number of first returns in each cell of the grid.
     counts: Vec<u32>,
 }

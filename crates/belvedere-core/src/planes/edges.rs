@@ -70,8 +70,8 @@ pub(super) struct EdgeLine {
 pub(super) struct Parapet {
     /// Metres above the plane; 0 where nothing stands.
     pub(super) height: f64,
-    /// Mean distance of its points from the edge, to the right, metres.
-    pub(super) right: f64,
+    /// From the edge to its inner face, metres.
+    pub(super) width: f64,
 }
 
 /// A place in plan where a pulse passed the plane.
@@ -90,7 +90,9 @@ pub(super) struct Standing {
     pub(super) p: [f64; 2],
     /// How far above the plane, metres.
     pub(super) above: f64,
-    /// Whether it lies on no plane of its own.
+    /// Height, metres.
+    pub(super) height: f64,
+    /// Whether it lies on no plane of its own, or on one that is no larger than a box.
     pub(super) is_loose: bool,
 }
 
@@ -135,8 +137,7 @@ pub(super) fn find(
     outline.edges = lines(&outline, &middles, roof.spacing, params, table);
     meet(&mut outline.edges, ridges, plane, END_SPACINGS * roof.spacing);
     outline.edges.retain(|edge| edge.line.length() >= MIN_LENGTH / 2.0);
-    let parapets: Vec<Parapet> =
-        outline.edges.iter().map(|edge| sheets::parapet(&outline.standing, &edge.line)).collect();
+    let parapets: Vec<Parapet> = outline.edges.iter().map(|edge| sheets::parapet(&outline, &edge.line)).collect();
     for (edge, parapet) in outline.edges.iter_mut().zip(parapets) {
         edge.parapet = parapet;
     }
@@ -229,7 +230,8 @@ fn samples(block: &Block, roofs: &Roofs, ridges: &[RidgeLine], plane: usize) -> 
         if above > 0.0 {
             if found.may_be_building() && above < ABOVE && above > 3.0 * roofs.noise && near.holds(at) {
                 inside.push(at);
-                standing.push(Standing { p: at, above, is_loose: on == NONE });
+                let is_loose = roofs.planes.get(on as usize).is_none_or(|roof| roof.is_small);
+                standing.push(Standing { p: at, above, height: found.p[2], is_loose });
             }
             return;
         }

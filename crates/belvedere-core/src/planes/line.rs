@@ -35,6 +35,11 @@ impl PlanLine {
         Self { point: self.at(0.0, right), ..*self }
     }
 
+    /// The same line the other way, with the roof to its right.
+    pub(super) fn turned(&self) -> Self {
+        Self { point: self.point, along: self.along.map(|v| -v), ends: [-self.ends[1], -self.ends[0]] }
+    }
+
     /// Length, metres.
     pub(super) fn length(&self) -> f64 {
         self.ends[1] - self.ends[0]

@@ -31,6 +31,11 @@ const SWEEPS: usize = 3;
 /// Pairs of neighbours on two planes that touch.
 pub(super) const MIN_PAIRS: usize = 4;
 
+/// Longest diagonal of the top of what may stand on a roof, metres, and the least upward part of its normal: 11° of
+/// slope.
+const SMALL: f64 = 5.0;
+const LEVEL: f64 = 0.98;
+
 /// Where points have no class: least area of a roof, m², most noise of its points and least height above the ground,
 /// metres, of its middle, and how far about it ground is looked at, metres.
 const MIN_AREA: f64 = 6.0;
@@ -48,6 +53,8 @@ pub(super) struct Roof {
     pub(super) rows: Vec<u32>,
     /// Mean distance of pulses, metres.
     pub(super) spacing: f64,
+    /// Whether it may be the level top of something that stands on a roof.
+    pub(super) is_small: bool,
 }
 
 impl Roof {
@@ -141,7 +148,12 @@ impl Roofs {
                 self.plane_of_return[self.return_of[row as usize] as usize] = number;
             }
             let spacing = (area / rows.len() as f64).sqrt();
-            self.planes.push(Roof { plane, center: sums.mean(), rows, spacing });
+            let extent = |axis: usize| {
+                let along = || rows.iter().map(|&row| self.points[row as usize][axis]);
+                along().fold(f64::NEG_INFINITY, f64::max) - along().fold(f64::INFINITY, f64::min)
+            };
+            let is_small = extent(0).hypot(extent(1)) <= SMALL && plane.normal[2] >= LEVEL;
+            self.planes.push(Roof { plane, center: sums.mean(), rows, spacing, is_small });
         }
     }
 }

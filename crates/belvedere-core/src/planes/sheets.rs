@@ -4,7 +4,7 @@ use super::block::Block;
 use super::edges::{EdgeLine, Outline, Parapet, Standing};
 use super::line::{PlanLine, area, clip};
 use super::patches::fan;
-use super::roof_planes::{NONE, Roofs};
+use super::roof_planes::{NONE, Roof, Roofs};
 use super::walls::WallLine;
 use super::{BLOCK, BuildingSurfaces, PatchKind};
 use std::cmp::Ordering;
@@ -17,6 +17,8 @@ const WITHIN: f64 = 0.5;
 const MIN_DROP: f64 = 2.0;
 /// Least share of such edges of a roof that have a wall below them: canopies and decks have none.
 const MIN_WALLED: f64 = 0.5;
+/// How far below its edge such a wall reaches at least, metres: sides of slabs and canopies are lower.
+const MIN_WALL_DEPTH: f64 = 1.0;
 /// How far a pulse must pass from both ends of an upright sheet to contradict it, metres.
 const CLEAR: f64 = 0.3;
 /// Heights of the points of parapets above the roof, metres.
@@ -46,6 +48,8 @@ const BOX_SIDE: f64 = 4.0;
 const BOX_LEVEL: f64 = 0.15;
 /// Least share of the pulses over it that it stopped.
 const BOX_DENSITY: f64 = 0.4;
+/// How far below the foot of a box pulses that pass it may end, metres: others pass the roof, too.
+const BELOW_ROOF: f64 = 1.0;
 /// How far its points lie apart at most, spacings.
 const BOX_SPACINGS: f64 = 1.3;
 
@@ -101,8 +105,8 @@ pub(super) fn give_out(
         let own: Vec<&WallLine> = walls.iter().filter(|wall| wall.plane == plane).collect();
         let high = |edge: &&EdgeLine| edge.is_sure && edge.drop >= MIN_DROP;
         let all: f64 = outline.edges.iter().filter(high).map(|edge| edge.line.length()).sum();
-        let walled: f64 =
-            own.iter().filter(|wall| high(&&outline.edges[wall.edge])).map(|wall| wall.line.length()).sum();
+        let is_high = |wall: &&&WallLine| high(&&outline.edges[wall.edge]) && wall.depth >= MIN_WALL_DEPTH;
+        let walled: f64 = own.iter().filter(is_high).map(|wall| wall.line.length()).sum();
         for (number, edge) in outline.edges.iter().enumerate().filter(|(_, edge)| edge.is_sure) {
             upstand(block, roofs, plane, edge, found);
             if edge.drop >= MIN_DROP && walled >= MIN_WALLED * all {
@@ -132,10 +136,10 @@ fn piece_at(range: f64, step: f64, count: usize) -> usize {
 }
 
 /// The points that stand along an edge at one height; none where there are too few.
-pub(super) fn parapet(standing: &[Standing], line: &PlanLine) -> Parapet {
+pub(super) fn parapet(outline: &Outline, line: &PlanLine) -> Parapet {
     // height above the roof, range, distance from the edge
     let mut on: Vec<[f64; 3]> = Vec::new();
-    for standing in standing {
+    for standing in &outline.standing {
         let [t, d] = line.of(standing.p);
         let is_beside = (-PARAPET_WITHIN..=PARAPET_WITHOUT).contains(&d) && (line.ends[0]..=line.ends[1]).contains(&t);
         if is_beside && (PARAPET[0]..=PARAPET[1]).contains(&standing.above) {
@@ -162,18 +166,43 @@ pub(super) fn parapet(standing: &[Standing], line: &PlanLine) -> Parapet {
     if held < 2 || (held as f64) < PARAPET_SHARE * count as f64 {
         return Parapet::default();
     }
-    let right = on.iter().map(|p| p[2]).sum::<f64>() / on.len() as f64;
-    Parapet { height: on[on.len() / 2][0], right: right.min(0.0) }
+    // how far right of the edge, and whether it is on top
+    let mut across: Vec<(f64, bool)> = on.iter().map(|p| (p[2], true)).collect();
+    across.extend(outline.inside[..outline.own].iter().filter_map(|&p| {
+        let [t, d] = line.of(p);
+        let is_beside = (-PARAPET_WITHIN..=0.0).contains(&d) && (line.ends[0]..=line.ends[1]).contains(&t);
+        is_beside.then_some((d, false))
+    }));
+    Parapet { height: on[on.len() / 2][0], width: -inner_face(across) }
 }
 
-/// Adds the parapet of an edge.
+/// Where the inner face of a parapet stands, metres to the right of its edge: as few points of its top as can be lie
+/// left of it, and of the roof right of it.
+fn inner_face(mut across: Vec<(f64, bool)>) -> f64 {
+    across.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    let mut wrong = across.iter().filter(|point| !point.1).count();
+    let (mut least, mut face) = (wrong, -PARAPET_WITHIN);
+    for (number, &(d, is_on_top)) in across.iter().enumerate() {
+        wrong = if is_on_top { wrong + 1 } else { wrong - 1 };
+        if wrong < least {
+            let next = across.get(number + 1).map_or(0.0, |point| point.0);
+            (least, face) = (wrong, f64::midpoint(d, next));
+        }
+    }
+    face.min(0.0)
+}
+
+/// Adds both faces of the parapet of an edge.
 fn upstand(block: &Block, roofs: &Roofs, plane: usize, edge: &EdgeLine, found: &mut BuildingSurfaces) {
-    let (line, roof) = (&edge.line.moved(edge.parapet.right), &roofs.planes[plane].plane);
+    let roof = &roofs.planes[plane].plane;
     let rise = edge.parapet.height / roof.normal[2];
-    let ends = line.end_points().map(|p| roof.height(p));
-    let heights = [ends[0].min(ends[1]), ends[0].max(ends[1]) + rise];
-    let sheet = Sheet { line, ranges: line.ends, heights, kind: PatchKind::Parapet };
-    sheet.give_out(block, |p| roof.height(p) + rise, |p| roof.height(p), found);
+    let inner = edge.line.moved(-edge.parapet.width).turned();
+    for line in [&edge.line, &inner] {
+        let ends = line.end_points().map(|p| roof.height(p));
+        let heights = [ends[0].min(ends[1]), ends[0].max(ends[1]) + rise];
+        let sheet = Sheet { line, ranges: line.ends, heights, kind: PatchKind::Parapet };
+        sheet.give_out(block, |p| roof.height(p) + rise, |p| roof.height(p), found);
+    }
 }
 
 /// The plane that most pulses end on which pass an edge close to it.
@@ -260,11 +289,43 @@ fn within(block: &Block, roofs: &Roofs, plane: usize, line: &PlanLine, drop: f64
     }
 }
 
+/// Whether a point lies on a parapet.
+fn is_of_parapet(outline: &Outline, standing: &Standing) -> bool {
+    outline.edges.iter().filter(|edge| edge.is_sure && edge.parapet.height > 0.0).any(|edge| {
+        let [t, d] = edge.line.of(standing.p);
+        (edge.line.ends[0]..=edge.line.ends[1]).contains(&t)
+            && (-edge.parapet.width - PARAPET_LEVEL..=PARAPET_WITHOUT).contains(&d)
+            && standing.above <= edge.parapet.height + PARAPET_LEVEL
+    })
+}
+
+/// Where pulses pass a box, in its frame: at the height of its top, and where they end. One that meets the roof beside
+/// it bounds its foot, and one that slants past it its top.
+fn past_box(block: &Block, roof: &Roof, frame: &PlanLine, [low, high]: [[f64; 2]; 2], top: f64) -> Vec<[f64; 2]> {
+    let corners = [low, [low[0], high[1]], high, [high[0], low[1]]].map(|[t, d]| frame.at(t, d));
+    let foot = corners.iter().map(|&p| roof.plane.height(p)).fold(f64::INFINITY, f64::min);
+    let lowest = foot - BELOW_ROOF;
+    let reach = roof.spacing + block.max_lean * (top - lowest).max(0.0);
+    let lows = [0, 1].map(|axis| corners.iter().map(|p| p[axis]).fold(f64::INFINITY, f64::min) - reach);
+    let highs = [0, 1].map(|axis| corners.iter().map(|p| p[axis]).fold(f64::NEG_INFINITY, f64::max) + reach);
+    let mut past = Vec::new();
+    block.each_in(lows, highs, |_, found| {
+        let rise = top - found.p[2];
+        if found.is_first && rise > BOX_LEVEL && found.p[2] > lowest {
+            let at_top = [0, 1].map(|axis| found.p[axis] + rise * found.lean[axis]);
+            let places = [at_top, [found.p[0], found.p[1]]];
+            past.extend(places.into_iter().filter(|p| p.iter().all(|v| v.is_finite())).map(|p| frame.of(p)));
+        }
+    });
+    past
+}
+
 /// Adds the sides of what stands on a roof and is too small for a plane: chimneys and the like.
 fn boxes(block: &Block, roofs: &Roofs, plane: usize, outline: &Outline, found: &mut BuildingSurfaces) {
     let roof = &roofs.planes[plane];
-    let loose: Vec<&Standing> =
-        outline.standing.iter().filter(|standing| standing.is_loose && standing.above >= BOX_HEIGHT).collect();
+    let is_wanted =
+        |standing: &&Standing| standing.is_loose && standing.above >= BOX_HEIGHT && !is_of_parapet(outline, standing);
+    let loose: Vec<&Standing> = outline.standing.iter().filter(is_wanted).collect();
     let longest =
         outline.edges.iter().filter(|edge| edge.is_sure).max_by(|a, b| a.line.length().total_cmp(&b.line.length()));
     let along = longest.map_or([1.0, 0.0], |edge| edge.line.along);
@@ -296,29 +357,27 @@ fn boxes(block: &Block, roofs: &Roofs, plane: usize, outline: &Outline, found: &
         if (0..2).any(|axis| high[axis] - low[axis] > BOX_SIDE) {
             continue;
         }
-        let mut heights: Vec<f64> = of_box.iter().map(|&row| loose[row].above).collect();
+        // tops are level, whatever the slope of the roof
+        let mut heights: Vec<f64> = of_box.iter().map(|&row| loose[row].height).collect();
         heights.sort_unstable_by(f64::total_cmp);
-        let level = heights[heights.len() * 3 / 4];
-        let on_level = heights.iter().filter(|&height| (height - level).abs() <= BOX_LEVEL).count();
+        let top = heights[heights.len() * 3 / 4];
+        let on_level = heights.iter().filter(|&height| (height - top).abs() <= BOX_LEVEL).count();
         let area = (high[0] - low[0]) * (high[1] - low[1]);
         if 2 * on_level < heights.len() || (of_box.len() as f64) < BOX_DENSITY * area / roof.spacing.powi(2) {
             continue;
         }
-        let rise = level / roof.plane.normal[2];
-        // as far as the roof beside it leaves room
+        // as far as pulses that pass it leave room
+        let past = past_box(block, roof, &frame, [low, high], top);
         for axis in 0..2 {
             let wider = ((high[axis] - low[axis]) / (of_box.len() - 1) as f64).min(roof.spacing / 2.0);
             let beside = 1 - axis;
             let (mut room_low, mut room_high) = (wider, wider);
-            for p in &outline.inside[..outline.own] {
-                let q = frame.of(*p);
-                if (low[beside]..=high[beside]).contains(&q[beside]) {
-                    if q[axis] <= low[axis] {
-                        room_low = room_low.min((low[axis] - q[axis]) / 2.0);
-                    }
-                    if q[axis] >= high[axis] {
-                        room_high = room_high.min((q[axis] - high[axis]) / 2.0);
-                    }
+            for q in past.iter().filter(|q| (low[beside]..=high[beside]).contains(&q[beside])) {
+                if q[axis] <= low[axis] {
+                    room_low = room_low.min((low[axis] - q[axis]) / 2.0);
+                }
+                if q[axis] >= high[axis] {
+                    room_high = room_high.min((q[axis] - high[axis]) / 2.0);
                 }
             }
             (low[axis], high[axis]) = (low[axis] - room_low, high[axis] + room_high);
@@ -334,9 +393,9 @@ fn boxes(block: &Block, roofs: &Roofs, plane: usize, outline: &Outline, found: &
             let along = [0, 1].map(|axis| (to[axis] - from[axis]) / length);
             let line = PlanLine { point: from, along, ends: [0.0, length] };
             let ends = [from, to].map(|p| roof.plane.height(p));
-            let heights = [ends[0].min(ends[1]), ends[0].max(ends[1]) + rise];
+            let heights = [ends[0].min(ends[1]), top];
             let sheet = Sheet { line: &line, ranges: line.ends, heights, kind: PatchKind::Box };
-            sheet.give_out(block, |p| roof.plane.height(p) + rise, |p| roof.plane.height(p), found);
+            sheet.give_out(block, |_| top, |p| roof.plane.height(p), found);
         }
     }
 }

@@ -44,6 +44,8 @@ pub(super) struct WallLine {
     pub(super) share: f64,
     /// Lowest point.
     pub(super) bottom: f64,
+    /// How far below the edge its lowest point lies, metres.
+    pub(super) depth: f64,
     /// How far the edge stands out before it, metres.
     pub(super) eaves: f64,
 }
@@ -146,13 +148,15 @@ fn below(block: &Block, roofs: &Roofs, plane: usize, number: usize, edge: &EdgeL
     let ends = edge.end_points().map(|p| line.of(p)[0]);
     line.ends = ends;
     let middle = line.at(f64::midpoint(ends[0], ends[1]), 0.0);
+    let bottom = points.iter().map(|p| p[1]).fold(f64::INFINITY, f64::min);
     Some(WallLine {
         plane,
         edge: number,
         noise,
         sd: (noise.powi(2) / points.len() as f64 + COMMON_SD.powi(2)).sqrt(),
         share: points.len() as f64 / near.len() as f64,
-        bottom: points.iter().map(|p| p[1]).fold(f64::INFINITY, f64::min),
+        bottom,
+        depth: top.height(middle) - bottom,
         eaves: -edge.of(middle)[1],
         points,
         rows: on.iter().map(|(_, row)| *row).collect(),
