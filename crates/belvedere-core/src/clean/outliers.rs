@@ -88,7 +88,8 @@ impl IsolatedPoints {
 }
 
 /// Leaves out of `kept` (ascending) the points with fewer than `min_neighbors` others within `radius` metres, unless as
-/// many lie above it, and as many below it, within this radius in plan; returns how many. Neighbours are counted among all that were kept before, so that the order does not matter.
+/// many lie above it, and as many below it, within this radius in plan; returns how many. Neighbours are counted among
+/// all that were kept before, so that the order does not matter.
 ///
 /// # Errors
 /// [`Error::Cancelled`].
@@ -125,7 +126,8 @@ pub(super) fn drop_isolated(
     Ok(remove_sorted(kept, &alone))
 }
 
-/// Whether `count` points lie above a point, and as many below it, farther from it than `radius`, but no farther in plan.
+/// Whether `count` points lie above a point, and as many below it, farther from it than `radius`, but no farther in
+/// plan.
 fn is_between(positions: &[[f32; 3]], grid: &SortedGrid, index: u32, radius: f64, count: usize) -> bool {
     let p = positions[index as usize];
     let [mut above, mut below] = [0, 0];
