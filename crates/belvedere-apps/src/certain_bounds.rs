@@ -1,5 +1,5 @@
-//! Ends of intervals along a way on which what is seen becomes what is not: an elevation along an azimuth, a range along
-//! a ray.
+//! Ends of intervals along a way on which what is seen becomes what is not: an elevation along an azimuth, a range
+//! along a ray.
 //!
 //! The probability that a place is visible falls along such a way. Where it passes 95 % and 5 %, the truth is likely to
 //! lie between.
@@ -7,7 +7,7 @@
 /// Probabilities of what is nearly certain, and of what nearly cannot be.
 pub(crate) const LIKELY: f32 = 0.95;
 pub(crate) const UNLIKELY: f32 = 0.05;
-/// Halvings after steps that double: a sixteenth of the last of them is not told apart.
+/// Halvings after steps that double: a sixteenth of the last step is not separated.
 const HALVINGS: usize = 4;
 
 /// The first place from `from` on that `is_certain`, on the way to `limit`, which ends it: in steps that begin with

@@ -74,8 +74,8 @@ pub fn horizons(
         .collect()
 }
 
-/// Between which elevations, radians, the sky begins at each azimuth of `skylines`, of those around `eyes`: nine times in
-/// ten. Where no pulse is known both are those of the skyline. Progress counts eyes.
+/// Between which elevations, radians, the sky begins at each azimuth of `skylines`, of those around `eyes`: nine times
+/// in ten. Where no pulse is known both are those of the skyline. Progress counts eyes.
 ///
 /// # Errors
 /// [`Error::Cancelled`].

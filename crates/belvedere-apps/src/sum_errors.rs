@@ -185,8 +185,8 @@ impl Outlines {
         (0..self.directions.len()).filter(is_at_outline).map(weight).sum::<f64>() / (2.0 * self.spacing)
     }
 
-    /// The class of each target of a block, whose first columns are these directions, by which of the targets are inside
-    /// obstacles. A target that is turned away from a direction by its normal does not see it.
+    /// The class of each target of a block, whose first columns are these directions, by which of the targets are
+    /// inside obstacles. A target that is turned away from a direction by its normal does not see it.
     #[must_use]
     pub fn classes(&self, block: &RowBlock, are_inside: &[bool], normals: Option<&[[f32; 3]]>) -> Vec<u8> {
         let normals = normals_of(normals, &block.rows);
@@ -213,8 +213,8 @@ pub fn class_of(is_inside_obstacle: bool, moved_share: f64) -> u8 {
     class
 }
 
-/// Measures of what `sums` of a kind may be in truth, of which each is `max` at most: the expected value and the ends of
-/// the interval that holds the truth in 90 % of cases. Each target has its class; `stem` begins their names.
+/// Measures of what `sums` of a kind may be in truth, of which each is `max` at most: the expected value and the ends
+/// of the interval that holds the truth in 90 % of cases. Each target has its class; `stem` begins their names.
 #[must_use]
 pub fn expected_measures(
     stem: &str,

@@ -50,7 +50,8 @@ type Described<'py> = (Bound<'py, PyDict>, Vec<Bound<'py, PyAny>>, Vec<Bound<'py
 #[pymethods]
 impl PyScene {
     /// Elevations of the horizon, degrees, a row for each observer and a column for each azimuth, NaN for those
-    /// skipped, each with the ends of its interval behind it where these are wanted; the number of azimuths; and remarks.
+    /// skipped, each with the ends of its interval behind it where these are wanted; the number of azimuths; and
+    /// remarks.
     fn horizon<'py>(
         &self,
         py: Python<'py>,

@@ -123,8 +123,8 @@ impl<'a> PartialEvidence<'a> {
     }
 
     /// How likely each target is free for the viewer, or the expected number of viewers for which it is; and how many
-    /// of their answers are less certain than wanted; NaN where there is no answer. Also for how many targets balls that
-    /// may block are missing: such answers count for nothing.
+    /// of their answers are less certain than wanted; NaN where there is no answer. Also for how many targets balls
+    /// that may block are missing: such answers count for nothing.
     pub(crate) fn bands(
         &self,
         (plan, run): (&Plan, &Path),

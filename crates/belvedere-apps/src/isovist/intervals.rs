@@ -1,8 +1,8 @@
 //! How large an isovist may be in truth: from how likely places along each ray are visible.
 //!
-//! The probability that a place is visible falls with its range: it is how likely sight along the ray reaches so far, so
-//! that the expected area or volume of a ray and its variance follow. Errors of rays beside each other come from the same
-//! edges: their deviations are added up within a sector, and sectors are taken for independent of each other.
+//! The probability that a place is visible falls with its range: it is how likely sight along the ray reaches so far,
+//! so that the expected area or volume of a ray and its variance follow. Errors of rays beside each other come from the
+//! same edges: their deviations are added up within a sector, and sectors are taken for independent of each other.
 
 use super::{Isovist, IsovistParams, direction};
 use crate::certain_bounds::UNLIKELY;

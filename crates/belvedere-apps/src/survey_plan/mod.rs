@@ -221,12 +221,11 @@ impl OpenSpace {
     }
 }
 
-/// Chooses `count` of `candidates`: of each the places that it is scanned from, local metres, one of a tripod and several
-/// of a flight line; a place that is not finite is not used. `lines` are the
-/// unproven lines of sight of a question: of each the pieces that no pulse came near to
-/// ([`MedialScene::unproven_pieces`]), which must be longer than what the proof of `scene` tolerates. Where the model
-/// ends, pulses return from the level of `ground` below the station. Control counts candidates. The same for any number
-/// of threads.
+/// Chooses `count` of `candidates`: of each the places that it is scanned from, local metres, one of a tripod and
+/// several of a flight line; a place that is not finite is not used. `lines` are the unproven lines of sight of a
+/// question: of each the pieces that no pulse came near to ([`MedialScene::unproven_pieces`]), which must be longer
+/// than what the proof of `scene` tolerates. Where the model ends, pulses return from the level of `ground` below the
+/// station. Control counts candidates. The same for any number of threads.
 ///
 /// # Errors
 /// [`Error::MissingAttribute`] for a scene without pulses, those of [`ScannerParams::validate`] and of

@@ -1,7 +1,7 @@
 //! Flags of plans of where to scan again.
 
 use super::observers::{EndHeights, LinesArguments};
-use super::{GroundChoice, NorthArguments, Numbers, SceneInput, SunPlaceArguments, above_zero, at_most, height};
+use super::{GroundChoice, NorthArguments, Numbers, SceneInput, above_zero, at_most, height};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -13,22 +13,17 @@ pub(crate) struct SurveyPlanArguments {
     #[arg(long, value_name = "FILE", group = "lines", conflicts_with_all = ["pairs", "random", "from", "to"],
         help_heading = "Lines of sight (one of)")]
     pub(crate) observers: Option<PathBuf>,
-    /// A sun whose light on all cells of the ground is to be proven: azimuth and elevation in degrees; repeatable
+    /// Prove the light of a sun on the ground, in degrees; repeatable
     ///
-    /// Azimuths are clockwise from true north, or from grid north with --grid-north.
+    /// Its azimuth and elevation, for all cells of the ground.
+    /// Azimuths are clockwise from true north, or from grid north with --grid-north. belvedere sun-position says where
+    /// the sun stands.
     #[arg(long = "sun", value_name = "AZ,EL", group = "lines", allow_hyphen_values = true,
         conflicts_with_all = ["pairs", "random", "from", "to", "observers"], help_heading = "Lines of sight (one of)")]
     pub(crate) suns: Vec<Numbers<2>>,
-    /// The same of an instant, such as 2026-06-21T15:00+02:00; repeatable
-    #[arg(long = "time", value_name = "TIME", group = "lines",
-        conflicts_with_all = ["pairs", "random", "from", "to", "observers", "suns"],
-        help_heading = "Lines of sight (one of)")]
-    pub(crate) times: Vec<String>,
-    #[command(flatten)]
-    pub(crate) sun: SunPlaceArguments,
     #[command(flatten)]
     pub(crate) north: NorthArguments,
-    /// With --observers, --sun or --time: side of a cell in metres [default: 2, doubled until there are at most 40000]
+    /// With --observers or --sun: side of a cell in metres [default: 2, doubled until there are at most 40000]
     #[arg(long, value_name = "M", conflicts_with_all = ["pairs", "random", "from"], value_parser = above_zero::<f64>, allow_negative_numbers = true,
         help_heading = "Lines of sight (one of)")]
     pub(crate) cell: Option<f64>,
@@ -40,16 +35,22 @@ pub(crate) struct SurveyPlanArguments {
     #[arg(long = "distance-step-m", value_name = "M", requires = "file", value_parser = above_zero::<f64>, allow_negative_numbers = true,
         help_heading = "Candidates (one of)")]
     pub(crate) step: Option<f64>,
-    /// Take each line of --candidates for one candidate, scanned from all of its places: a flight line
+    /// Take each line of --candidates as one candidate: a flight line
+    ///
+    /// It is scanned from all of its places, and proves what these prove together.
     #[arg(long, requires = "file", help_heading = "Candidates (one of)")]
     pub(crate) whole_lines: bool,
-    /// Height of the scanner above the ground or the roof for candidates without Z, in metres [default: 1.8]
+    /// Height of the scanner for candidates without Z, in metres [default: 1.8]
+    ///
+    /// Above the ground or the roof.
     #[arg(long, value_name = "M", value_parser = height::<f64>, allow_negative_numbers = true, help_heading = "Candidates (one of)")]
     pub(crate) station_height: Option<f64>,
     /// Number of stations to choose
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = at_most::<100_000>, help_heading = "Scanner")]
     pub(crate) count: usize,
-    /// Maximum range of the scanner in metres [default: 100, which medium-range scanners reach on most surfaces]
+    /// Maximum range of the scanner in metres [default: 100]
+    ///
+    /// Medium-range scanners reach 100 m on most surfaces.
     #[arg(long, value_name = "M", value_parser = above_zero::<f64>, allow_negative_numbers = true, help_heading = "Scanner")]
     pub(crate) max_distance: Option<f64>,
     /// Angle between pulses in degrees [default: 0.1, a coarse scan]

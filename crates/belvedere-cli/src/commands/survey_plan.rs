@@ -10,7 +10,7 @@ use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::Result;
 use belvedere::apps::ask::{
-    self, Ask, Candidates, GridCells, Places, PlannedStation, Scene, Standing, Suns, SurveyPlanQuestion,
+    self, Ask, Candidates, GridCells, Places, PlannedStation, Scene, Standing, SunPlace, Suns, SurveyPlanQuestion,
     SurveyPlanResults,
 };
 use belvedere::io::{RowsAre, Spot, TableCells, write_geojson, write_table};
@@ -22,7 +22,7 @@ pub(crate) fn run(arguments: &SurveyPlanArguments, global: &Global) -> Result<Su
     for output in &arguments.output {
         check_output("-o", output, &["geojson", "csv"])?;
     }
-    let mut question = question(arguments)?;
+    let mut question = question(arguments);
     question.check()?;
     let mut run = CommandContext::new(global);
     let scene = pipeline::scene(&arguments.scene, KeepPoints::Keep, &mut run)?;
@@ -58,16 +58,12 @@ pub(crate) fn run(arguments: &SurveyPlanArguments, global: &Global) -> Result<Su
 }
 
 /// The question, before files are read.
-fn question(arguments: &SurveyPlanArguments) -> Result<SurveyPlanQuestion> {
+fn question(arguments: &SurveyPlanArguments) -> SurveyPlanQuestion {
     let usual = SurveyPlanQuestion::default();
-    let suns = match (&arguments.suns[..], &arguments.times[..]) {
-        ([], []) => None,
-        ([], times) => Some(Suns::Times(times.to_vec())),
-        (directions, _) => Some(Suns::Directions(directions.iter().map(|direction| direction.0).collect())),
-    };
-    Ok(SurveyPlanQuestion {
-        suns,
-        place: arguments.sun.place(&arguments.north)?,
+    let directions: Vec<[f64; 2]> = arguments.suns.iter().map(|direction| direction.0).collect();
+    SurveyPlanQuestion {
+        suns: (!directions.is_empty()).then_some(Suns::Directions(directions)),
+        place: SunPlace { north: arguments.north.choice(), ..SunPlace::default() },
         whole_lines: arguments.whole_lines,
         count: arguments.count,
         candidates: match (arguments.stations.on_roofs, arguments.stations.on_ground) {
@@ -82,7 +78,7 @@ fn question(arguments: &SurveyPlanArguments) -> Result<SurveyPlanQuestion> {
         target_height: arguments.heights.target_height,
         ground: arguments.ground.points(),
         ..usual
-    })
+    }
 }
 
 /// A row or a point for each candidate that can be used.

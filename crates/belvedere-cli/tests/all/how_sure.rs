@@ -134,7 +134,7 @@ fn energies_of_places_and_of_roofs_have_intervals() {
         loss.iter().zip(&loss_high).all(|(loss, high)| (-1e-3..=1.0).contains(&(high - loss))),
         "{loss:?} {loss_high:?}"
     );
-    let through = format!("{energy} --through-trees auto -o no.csv");
+    let through = format!("{energy} --through-trees seasons -o no.csv");
     place.refusal(2, &through, &["--interval", "trees"]);
 }
 

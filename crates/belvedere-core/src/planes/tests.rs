@@ -286,15 +286,15 @@ fn pulses_that_pass_a_box_bound_it() {
 }
 
 #[test]
-fn a_canopy_with_a_high_rim_has_no_inside() {
-    // a roof on posts, whose rim of 0.8 m pulses meet from the side
+fn a_canopy_with_a_high_edge_has_no_inside() {
+    // a roof on posts, whose edge of 0.8 m pulses meet from the side
     let (low, high) = ([-8.0, -6.0], [8.0, 6.0]);
     let outline = [low, [high[0], low[1]], high, [low[0], high[1]]];
     let mut faces = box_on(low, high, 4.2, 5.0);
     faces.push((outline.iter().rev().map(|p| [p[0], p[1], 4.2]).collect(), 6));
     let scene = scan(&faces, AROUND[0], AROUND[1]);
     let surfaces = scene.surfaces();
-    assert!(surfaces.walls.len() >= 2, "its rim is taken for walls: {:?}", surfaces.walls);
+    assert!(surfaces.walls.len() >= 2, "its edge is taken for walls: {:?}", surfaces.walls);
     assert!(corners_of(&surfaces, PatchKind::Inside).is_empty());
     // a house of the same outline has one
     let house = scan(&block_of(low, high, 5.0), AROUND[0], AROUND[1]).surfaces();

@@ -22,7 +22,8 @@ use belvedere_scenes::QuerySet;
 const LATITUDE_DEG: f64 = 52.0;
 /// Steps of the year, seconds.
 const STEP: f64 = 1800.0;
-/// Share of the direct radiation of a clear sky that gets through usual clouds; as much again comes from all of the sky.
+/// Share of the direct radiation of a clear sky that gets through usual clouds; as much again comes from all of the
+/// sky.
 const THROUGH_CLOUDS: f64 = 0.4;
 /// Side of the panels of planes, metres, and cells of planes that count.
 const PANEL: f64 = 2.0;
