@@ -62,7 +62,9 @@ pub(crate) struct SurveyPlanArguments {
     /// shape of the cloud. cloud=FILE: the ground of another cloud, which a ball file needs.
     #[arg(long, value_name = "HOW", default_value = "auto", help_heading = "Scanner")]
     pub(crate) ground: GroundChoice,
-    /// Candidates with what is expected of them: a table (.csv) or points in WGS 84 (.geojson); repeatable
+    /// Candidates with what is expected of them (.csv .geojson); repeatable
+    ///
+    /// A table, or points in WGS 84.
     ///
     /// Chosen stations come first. station: its number, empty for a candidate that was not chosen. settles_alone and
     /// settles_alone_percent: unproven lines that become proven by it alone if nothing stands where no pulse was.
