@@ -9,8 +9,9 @@ use std::collections::BTreeSet;
 
 /// Directions up to which each is looked at by itself.
 const FEW: usize = 8;
-/// By how much lines of sight are taken for wider than they are, metres: more than f32 rounds.
-pub(crate) const ROOM: f64 = 0.25;
+/// By how much lines of sight are taken for wider than they are, metres: more than f32 rounds, and than the lines lie
+/// beside them that probabilities look at (0.32 m).
+pub(crate) const ROOM: f64 = 0.35;
 /// How far above and beside its points any ball reaches at most, metres: twice the radius that they start with.
 pub(crate) const MAX_BALL: f64 = 10.0;
 
