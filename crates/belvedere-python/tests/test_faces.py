@@ -282,9 +282,7 @@ def test_intervals_are_the_same_in_the_program_and_in_python(scene, ask_program,
         if question == "sun-hours":
             rasters = scene.sun_hours(date=DAY, zone=ZONE, interval=True, cell=4)
         elif question == "irradiance":
-            rasters = scene.irradiance(
-                clear_sky="ineichen", patch_division=1, sun_cell_deg=9, interval=True, cell=4
-            )
+            rasters = scene.irradiance(clear_sky="ineichen", patch_division=1, sun_cell_deg=9, interval=True, cell=4)
         else:
             rasters = scene.sky_view(directions=145, interval=True, cell=4)
     for band in (name for name in bands if name.endswith(("_expected", "_low", "_high"))):

@@ -37,6 +37,9 @@ pub enum Refraction {
     Without,
 }
 
+/// Steps of one in which components of a direction are rounded: 2 to the 32.
+const DIRECTION_STEPS: f64 = 4_294_967_296.0;
+
 /// Where the sun stands: the middle of its disc, as seen from the site (topocentric).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SunPosition {
@@ -49,10 +52,12 @@ pub struct SunPosition {
 }
 
 impl SunPosition {
-    /// Unit vector to the apparent sun in the axes of the grid of `site`: x east, y grid north, z up.
+    /// Unit vector to the apparent sun in the axes of the grid of `site`: x east, y grid north, z up. Rounded to a
+    /// 4 294 967 296th, a hundredth of a millionth of a degree, so that sines and cosines of other platforms, which differ
+    /// in their last digit, give the same shadows.
     #[must_use]
     pub fn to_sun(&self, site: &Site) -> [f64; 3] {
-        to_sun(self.azimuth - site.convergence, self.elevation)
+        to_sun(self.azimuth - site.convergence, self.elevation).map(|v| (v * DIRECTION_STEPS).round() / DIRECTION_STEPS)
     }
 }
 

@@ -289,9 +289,7 @@ class Outlook:
         check_finite(angle_step_deg=angle_step_deg)
         places = map_places(observers, "observers", _OBSERVERS)
         place = _place(None, grid_north=grid_north)
-        found, count, given = self._core.horizon(
-            places, angle_step_deg, looking, place, interval, reporter(progress)
-        )
+        found, count, given = self._core.horizon(places, angle_step_deg, looking, place, interval, reporter(progress))
         warned(given)
         azimuths = 360.0 * np.arange(count) / count
         elevations = found.reshape((len(places), count, 3) if interval else (len(places), count))
