@@ -201,10 +201,7 @@ class Cameras:
         """
         if isinstance(candidates, str) and candidates not in ("ground", "roofs"):
             raise wrong("candidates", repr(candidates), "give places, 'ground' or 'roofs'")
-        given, lines = _stations(candidates)
-        if (sun is None) == (observer is None and target is None):
-            raise wrong("observer and target", "missing" if sun is None else "given", "give both of them, or only sun")
-        suns = [] if sun is None else [list(direction) for direction in _suns(sun, None)[0]]
+        given = None if isinstance(candidates, str) else map_places(candidates, "candidates", _PLACES)
         check_finite(spacing=spacing, camera_height=camera_height, fov_deg=fov_deg, vertical_fov_deg=vertical_fov_deg)
         check_finite(pixels=pixels, min_distance=min_distance, coverage_percent=coverage_percent, refraction=refraction)
         if isinstance(targets, Mesh) and weights is not None:
@@ -338,7 +335,10 @@ class Cameras:
         """
         if isinstance(candidates, str) and candidates not in ("ground", "roofs"):
             raise wrong("candidates", repr(candidates), "give places, 'ground' or 'roofs'")
-        given = None if isinstance(candidates, str) else map_places(candidates, "candidates", _PLACES)
+        given, lines = _stations(candidates)
+        if (sun is None) == (observer is None and target is None):
+            raise wrong("observer and target", "missing" if sun is None else "given", "give both of them, or only sun")
+        suns = [] if sun is None else [list(direction) for direction in _suns(sun, None)[0]]
         check_finite(spacing=spacing, station_height=station_height, max_distance=max_distance)
         check_finite(observer_height=observer_height, target_height=target_height, angle_step_deg=angle_step_deg)
         nobody = np.empty((0, 3))
