@@ -53,8 +53,8 @@ pub struct SunPosition {
 
 impl SunPosition {
     /// Unit vector to the apparent sun in the axes of the grid of `site`: x east, y grid north, z up. Rounded to a
-    /// 4 294 967 296th, a hundredth of a millionth of a degree, so that sines and cosines of other platforms, which differ
-    /// in their last digit, give the same shadows.
+    /// 4 294 967 296th, a hundredth of a millionth of a degree, so that sines and cosines of other platforms, which
+    /// differ in their last digit, give the same shadows.
     #[must_use]
     pub fn to_sun(&self, site: &Site) -> [f64; 3] {
         to_sun(self.azimuth - site.convergence, self.elevation).map(|v| (v * DIRECTION_STEPS).round() / DIRECTION_STEPS)
