@@ -55,6 +55,7 @@ type LandmarkReply<'py> = (Vec<PyColumn<'py>>, Option<Grid>, Vec<Bound<'py, PyDi
 
 #[pymethods]
 impl PyScene {
+    #[expect(clippy::too_many_arguments, reason = "keywords in Python")]
     fn landmark<'py>(
         &self,
         py: Python<'py>,

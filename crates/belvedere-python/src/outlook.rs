@@ -52,6 +52,7 @@ impl PyScene {
     /// Elevations of the horizon, degrees, a row for each observer and a column for each azimuth, NaN for those
     /// skipped, each with the ends of its interval behind it where these are wanted; the number of azimuths; and
     /// remarks.
+    #[expect(clippy::too_many_arguments, reason = "keywords in Python")]
     fn horizon<'py>(
         &self,
         py: Python<'py>,
