@@ -1,6 +1,5 @@
 //! Horizon profiles: above which elevation the sky is free around a place, as photovoltaic tools read it.
 
-use crate::certain_bounds::{LIKELY, UNLIKELY, first_certain};
 use belvedere_core::query::{EarthParams, MedialScene, SkylinePoint};
 use belvedere_data::control::Control;
 use belvedere_data::crs::evidence::{CONTRADICTION_DISTANCE, distance_in_words};
@@ -12,6 +11,11 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// First step from a skyline to where the sky is certainly free or hidden, radians: an eighth of a degree.
 const FIRST_STEP: f64 = PI / 1440.0;
+/// Halvings after steps that double: a sixteenth of the last step is not separated.
+const HALVINGS: usize = 4;
+/// Probabilities of what is nearly certain, and of what nearly cannot be.
+const LIKELY: f32 = 0.95;
+const UNLIKELY: f32 = 0.05;
 
 /// How horizons are made.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -75,7 +79,8 @@ pub fn horizons(
 }
 
 /// Between which elevations, radians, the sky begins at each azimuth of `skylines`, of those around `eyes`: nine times
-/// in ten. Where no pulse is known both are those of the skyline. Progress counts eyes.
+/// in ten. The probability that the sky is free rises with the elevation; where it passes 5 % and 95 % the truth is
+/// likely to lie between. Where no pulse is known both are those of the skyline. Progress counts eyes.
 ///
 /// # Errors
 /// [`Error::Cancelled`].
@@ -104,6 +109,27 @@ pub fn horizon_intervals(
         found
     };
     eyes.iter().zip(skylines).map(of_eye).collect()
+}
+
+/// The first elevation from `from` on that `is_certain`, on the way to `limit`, which ends it: in steps that begin with
+/// `step`, above 0, and double, and then by halving the last of them.
+fn first_certain(from: f64, step: f64, limit: f64, is_certain: impl Fn(f64) -> bool) -> f64 {
+    if is_certain(from) {
+        return from;
+    }
+    let all = (limit - from).abs();
+    let at = |away: f64| from + away.copysign(limit - from);
+    let (mut open, mut away) = (0.0, step);
+    while away < all && !is_certain(at(away)) {
+        open = away;
+        away *= 2.0;
+    }
+    let mut certain = away.min(all);
+    for _ in 0..HALVINGS {
+        let middle = f64::midpoint(open, certain);
+        *(if is_certain(at(middle)) { &mut certain } else { &mut open }) = middle;
+    }
+    at(certain)
 }
 
 /// Number of azimuths for a step, radians, above 0: steps of a full circle are made equal.
@@ -164,6 +190,18 @@ fn convergence_of(projection: &GeographicProjection, position: [f64; 2]) -> Resu
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_first_certain_elevation_is_found_to_a_sixteenth_of_the_last_step() {
+        for bound in [0.0, 0.3, 1.0, 5.5, 40.0] {
+            let up = first_certain(0.0, 0.25, 90.0, |at| at >= bound);
+            assert!(up >= bound && up - bound <= bound.max(0.25) / 16.0, "{bound} {up}");
+            let down = first_certain(0.0, 0.25, -90.0, |at| at <= -bound);
+            assert_eq!(down, -up);
+        }
+        assert_eq!(first_certain(3.0, 0.25, 10.0, |_| false), 10.0);
+        assert_eq!(first_certain(10.0, 0.25, 10.0, |_| false), 10.0);
+    }
 
     #[test]
     fn steps_part_the_circle() {

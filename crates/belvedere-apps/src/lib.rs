@@ -3,7 +3,6 @@
 pub mod ask;
 pub mod calibration;
 pub mod cameras;
-mod certain_bounds;
 pub mod difference;
 pub mod edge;
 pub mod exposure;

@@ -5,7 +5,6 @@
 //! same edges: their deviations are added up within a sector, and sectors are taken for independent of each other.
 
 use super::{Isovist, IsovistParams, direction};
-use crate::certain_bounds::UNLIKELY;
 use belvedere_core::query::MedialScene;
 use belvedere_data::Result;
 use belvedere_data::control::Control;
@@ -15,6 +14,9 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// Ranges at which the probability is looked at, as shares of the range at which the ray ends.
 const LOOKED_AT: [f64; 14] = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.97, 1.03, 1.1, 1.3, 2.0];
+/// What is less likely visible than this is taken for hidden: a small rest that never ends would be most of an area that
+/// grows with the square of the range.
+const UNLIKELY: f32 = 0.05;
 /// Rays of the plan.
 const PLAN_RAYS: usize = 360;
 /// Rays around the horizon; half as many from the zenith to the nadir.
@@ -55,7 +57,6 @@ pub fn isovist_intervals(
         let likely = |at: f64| {
             let target = std::array::from_fn(|axis| eye[axis] + at * direction[axis]);
             let probability = scene.evidence(target, backward, at).map_or(1.0, |evidence| evidence.probability());
-            // a small rest that never ends would be most of an area that grows with the square of the range
             if probability <= UNLIKELY { 0.0 } else { f64::from(probability) }
         };
         let ranges = LOOKED_AT.map(|share| (share * range).min(reach)).into_iter().filter(|at| *at > 0.0);
