@@ -175,12 +175,13 @@ fn of_planes(
         let outlines = (intervals == Intervals::With).then(|| EnergyOutlines::new(&season.radiation));
         fold_blocks(obstacles.into(), &places, &directions, places.len().max(1), &Control::new(&quiet), |block| {
             let own = of_season(&block, planes, &strings, season)?;
-            let mut first = 0;
-            for ((plane, strings), moved) in planes.iter().zip(&strings).zip(&mut moved) {
-                let cells = first..first + strings.len();
-                first = cells.end;
-                let share = outlines.as_ref().map(|o| o.moved_share_of_plane(&block.matrix, cells, plane.normal));
-                *moved = moved.max(share.unwrap_or(0.0));
+            if let Some(outlines) = &outlines {
+                let mut first = 0;
+                for ((plane, strings), moved) in planes.iter().zip(&strings).zip(&mut moved) {
+                    let cells = first..first + strings.len();
+                    first = cells.end;
+                    *moved = moved.max(outlines.moved_share_of_plane(&block.matrix, cells, plane.normal));
+                }
             }
             if sums.is_empty() {
                 sums = own;
