@@ -33,10 +33,15 @@ pub(crate) fn run(arguments: &HorizonArguments, global: &Global) -> Result<Summa
     check_formats(arguments, standing.len())?;
     let answers = ask::ask(&scene, &question, &Places::Eyes(standing), &run.control())?;
     run.answered(&answers);
-    let elevations = &answers.found.elevations_deg;
+    let HorizonResults { elevations_deg: elevations, intervals_deg: intervals, .. } = &answers.found;
+    let ends = intervals.as_ref().and_then(|intervals| intervals.first()).map(Vec::as_slice);
+    let title = match ends {
+        Some(_) => "Horizon elevation, degrees; light grey: where the sky begins in nine of ten cases",
+        None => "Horizon elevation, degrees",
+    };
     for output in &arguments.output {
         run.stage("writing", 0, |_| match (extension(output).as_str(), elevations.first()) {
-            ("png", Some(one)) => write_png(output, &horizon_picture(one, "Horizon elevation, degrees")),
+            ("png", Some(one)) => write_png(output, &horizon_picture(one, ends, title)),
             ("txt", Some(one)) => write_lines(output, one.iter().map(|v| format!("{v:.2}"))),
             _ => write_columns(output, &answers.found),
         })?;
@@ -45,8 +50,16 @@ pub(crate) fn run(arguments: &HorizonArguments, global: &Global) -> Result<Summa
     Ok(run.finish())
 }
 
-/// Refuses formats that hold one observer where there are more.
+/// Refuses formats that hold one observer where there are more, or no interval where it is wanted.
 fn check_formats(arguments: &HorizonArguments, count: usize) -> Result<()> {
+    let has_no_interval = |output: &&std::path::PathBuf| arguments.interval.interval && extension(output) == "txt";
+    if let Some(output) = arguments.output.iter().find(has_no_interval) {
+        let what = format!(
+            "{}: the format has no columns of an interval; use .csv, or leave out --interval",
+            output.display()
+        );
+        return Err(Usage(what).into());
+    }
     match arguments.output.iter().find(|output| count > 1 && extension(output) != "csv") {
         Some(output) => {
             let output = output.display();

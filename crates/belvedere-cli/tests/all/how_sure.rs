@@ -153,6 +153,7 @@ fn horizons_and_isovists_have_intervals_and_landmarks_an_expected_share() {
     assert_intervals([&elevation, &low, &high], 0.3);
     assert!((0..low.len()).all(|row| low[row] <= elevation[row] && elevation[row] <= high[row]));
     assert!(sure["horizons"]["mean_interval_deg"].as_f64().unwrap() > 0.01, "{sure}");
+    place.refusal(2, &format!("{horizon} --interval -o sure.txt"), &["sure.txt", "--interval", ".csv"]);
 
     let isovist = format!("isovist town/cloud.laz --observer {x},{y} --max-distance 40 --angle-step-deg 4");
     place.summary(&format!("{isovist} --interval -o space.csv"));
