@@ -307,7 +307,7 @@ async function main() {
     assert.equal(await page.evaluate(() => document.querySelectorAll("#card figure svg").length), 1);
     await page.waitForFunction(() => document.querySelectorAll("#marks path").length >= 1);
   });
-  await step("sun here", () => ask("sun", [roof], /\d+\.\d hours of sun[\s\S]*First light/));
+  await step("sun here", () => ask("sun", [roof], /\d+\.\d hours of sun[\s\S]*In nine of ten cases\s*\d+\.\d to \d+\.\d h[\s\S]*First light/));
   await step("shadow at a time", async () => {
     await ask("shadow", [], /% is lit/);
     const noon = await page.evaluate(() => belvedere.last.lit_share);
@@ -402,7 +402,7 @@ async function main() {
     await settled(page);
     assert.ok(await page.evaluate(() => belvedere.cloud.extra.children.length) === 1);
   });
-  await step("energy of a roof", () => ask("roof", [roof], /[\d,]+ kWh a year[\s\S]*solar energy received[\s\S]*not electricity[\s\S]*Faces/));
+  await step("energy of a roof", () => ask("roof", [roof], /[\d,]+ kWh a year[\s\S]*solar energy received[\s\S]*not electricity[\s\S]*In nine of ten cases\s*[\d,]+ to [\d,]+ kWh[\s\S]*Faces/));
   await step("edges of roofs, and the plane of a point", async () => {
     // what is darker and redder than all points
     const edges = () => page.evaluate(async () => {

@@ -219,7 +219,10 @@ pub fn remark_from_ground(blockers: &MedialScene) -> Option<Remark> {
 }
 
 /// Refuses intervals where light gets through trees: they are those of errors among opaque ones.
-pub(super) fn check_interval(is_wanted: bool, trees: &ThroughTrees) -> Result<()> {
+///
+/// # Errors
+/// [`Error::InvalidParameter`].
+pub fn check_interval(is_wanted: bool, trees: &ThroughTrees) -> Result<()> {
     if !is_wanted || !trees.is_light() {
         return Ok(());
     }
@@ -230,15 +233,24 @@ pub(super) fn check_interval(is_wanted: bool, trees: &ThroughTrees) -> Result<()
     })
 }
 
-/// Refuses intervals of scenes without pulses, and where scanners stood on the ground: the errors that intervals follow
-/// from are those of balls that pulses from the air carved, and three truths in four would lie outside.
+/// Whether it is known how far sums of a scene may be from the truth: that of pulses from the air. The errors that
+/// intervals follow from are those of balls that such pulses carved; for scanners on the ground three truths in four
+/// would lie outside.
+///
+/// # Errors
+/// Those of [`Scene::blockers`].
+pub fn knows_intervals(scene: &Scene, control: &Control<'_>) -> Result<bool> {
+    let has_pulses = scene.model().pulses().is_some();
+    Ok(has_pulses && !scene.blockers(UnprovenAs::Reported, control)?.proof().is_some_and(Proof::is_from_ground))
+}
+
+/// Refuses intervals of scenes for which they are not known.
 pub(super) fn check_interval_scene(is_wanted: bool, scene: &Scene, control: &Control<'_>) -> Result<()> {
     if !is_wanted {
         return Ok(());
     }
     scene.check_pulses(Parameter::Interval)?;
-    let blockers = scene.blockers(UnprovenAs::Reported, control)?;
-    if !blockers.proof().is_some_and(Proof::is_from_ground) {
+    if knows_intervals(scene, control)? {
         return Ok(());
     }
     Err(Error::InvalidParameter {

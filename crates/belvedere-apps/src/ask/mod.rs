@@ -59,7 +59,8 @@ pub use depth_map::{DepthMapQuestion, DepthMapResults, PictureSection, ViewFrom,
 pub use envelope::{EnvelopeQuestion, EnvelopeResults, EnvelopeSection, Protected, ProtectedShape, ProtectedSuns};
 pub use horizon::{BelowLevel, HorizonQuestion, HorizonResults};
 pub use how_sure::{
-    BEING_FREE, CertaintySection, EXPECTED, EXPECTED_OBSERVERS, HowSure, PROBABILITY, UNCERTAIN, remark_from_ground,
+    BEING_FREE, CertaintySection, EXPECTED, EXPECTED_OBSERVERS, HowSure, PROBABILITY, UNCERTAIN, check_interval,
+    knows_intervals, remark_from_ground,
 };
 pub use in_parts::summarise_parts;
 pub use irradiance::{IrradianceQuestion, IrradianceResults, Radiation, Roofs, RoofsResults, remark_on_radiation};

@@ -195,6 +195,11 @@ fn wrong_plans_are_refused_with_advice() {
     place.refusal(2, &format!("{plan} --sky-view --date 2026-03-21"), &["--date", "--sun-hours"]);
     place.refusal(2, &format!("{plan} --irradiance"), &["--weather", "--clear-sky"]);
     place.refusal(2, &format!("{plan} --clear-sky bird"), &["--irradiance"]);
+    let through = "--through-trees seasons";
+    place.refusal(2, &format!("{plan} --sky-view --interval {through}"), &["--interval", "trees"]);
+    place.refusal(2, &format!("{plan} --sun 150,20 --probability {through}"), &["--probability", "trees"]);
+    place.refusal(2, &format!("{plan} --sky-view --probability"), &["--probability", "--sun", "--observer"]);
+    place.refusal(2, &format!("{plan} --sun 150,20 --interval"), &["--interval", "--sky-view"]);
     place.refusal(2, &format!("{plan} --time 2026-03-20T02:00+01:00"), &["--time", "horizon"]);
     place.refusal(2, &format!("{plan} --time 2026-03-20T10:00"), &["--time", "zone"]);
     place.refusal(2, &format!("{plan} --sun 150,20 --sun 150,20"), &["shadow_150_20 twice"]);

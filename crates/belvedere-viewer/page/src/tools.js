@@ -8,6 +8,8 @@ const icon = (d) => `<svg viewBox="0 0 24 24" aria-hidden="true">${d}</svg>`;
 const EYE = '<path d="M2 12s4-7 10-7 10 7 10 7-4 7-10 7S2 12 2 12z"/><circle cx="12" cy="12" r="3"/>';
 const SUN = '<circle cx="12" cy="12" r="4"/><path d="M12 2v3M12 19v3M2 12h3M19 12h3M5 5l2 2M17 17l2 2M19 5l-2 2M7 17l-2 2"/>';
 const percent = (part, whole) => `${fixed((100 * part) / Math.max(whole, 1), 1)} %`;
+// A row of the numbers between which the truth lies nine times in ten, where they are known.
+const interval = (ends, shown, unit) => (ends ? [[t`In nine of ten cases`, `${t`${shown(ends[0])} to ${shown(ends[1])}`} ${unit}`]] : []);
 const list = (rows) => `<dl>${rows.map(([name, value]) => `<dt>${escape(name)}</dt><dd>${escape(value)}</dd>`).join("")}</dl>`;
 
 // A first answer is one for a sample: its shares are about right, and its counts are those of the sample times the
@@ -90,7 +92,7 @@ export const TOOLS = [
     ask: ([place], { date, zone, trees }) => ["sun", { place, date, zone, trees }],
     show: (answer, page) => `<p class="verdict">${t`${fixed(answer.sun_hours, 1)} hours of sun`}</p><p class="note">${t`on ${escape(page.time.date)}, of ${fixed(answer.possible_hours, 1)} hours between sunrise and sunset.`}</p>`
       + `<figure>${charts.sunPaths(answer, page.time.date)}<figcaption><i class="swatch" style="background:#f5a300"></i>${t`lit`} <i class="swatch" style="background:#2f3d73;margin-left:10px"></i>${t`in shadow`} <i class="swatch" style="background:#5f6b78;margin-left:10px"></i>${t`horizon; dashed: 21 June, March, December`}</figcaption></figure>`
-      + list([[t`First light`, hours(answer.first_light)], [t`Last light`, hours(answer.last_light)], [t`Longest stretch`, `${fixed(answer.longest, 1)} h`], [t`Share of possible sun`, percent(answer.sun_share ?? 0, 1)]])
+      + list([...interval(answer.interval_hours, (v) => fixed(v, 1), "h"), [t`First light`, hours(answer.first_light)], [t`Last light`, hours(answer.last_light)], [t`Longest stretch`, `${fixed(answer.longest, 1)} h`], [t`Share of possible sun`, percent(answer.sun_share ?? 0, 1)]])
       + `<h3>${t`Hours of sun on the 21st of each month`}</h3><figure>${charts.months(answer)}</figure>`,
     rows: (answer) => [["hour", "azimuth_deg", "elevation_deg", "lit"], ...answer.path.map((p, i) => [...p, answer.lit[i] ? 1 : 0])],
     properties: (answer) => ({ sun_hours: answer.sun_hours, first_light: answer.first_light, last_light: answer.last_light, possible_hours: answer.possible_hours }),
@@ -149,7 +151,7 @@ export const TOOLS = [
     show(answer, page) {
       page.plane(answer);
       return `<p class="verdict">${t`${count(Math.round(answer.kwh / 100) * 100)} kWh a year`}</p><p class="note">${t`is the solar energy received by ${fixed(answer.panel_area_m2, 0)} m² of panels from sun and sky, not electricity: panels turn a part of it into that. It is for a sky without clouds, an upper bound. With a file of weather, the command below gives less.`}</p>`
-        + list([[t`Received by a square metre`, `${count(Math.round(answer.kwh_m2))} kWh`], [t`Without any shade`, `${count(Math.round(answer.free_kwh_m2))} kWh`], [t`Lost by shade, each panel for itself`, percent(answer.min_loss, 1)], [t`Lost by shade, panels in strings`, percent(answer.max_loss, 1)],
+        + list([[t`Received by a square metre`, `${count(Math.round(answer.kwh_m2))} kWh`], ...interval(answer.interval_kwh_m2, (v) => count(Math.round(v)), "kWh"), [t`Without any shade`, `${count(Math.round(answer.free_kwh_m2))} kWh`], [t`Lost by shade, each panel for itself`, percent(answer.min_loss, 1)], [t`Lost by shade, panels in strings`, percent(answer.max_loss, 1)],
           [t`Tilt`, `${fixed(answer.tilt_deg, 0)}°`], [t`Faces`, answer.azimuth_deg === null ? t`up` : t`${fixed(answer.azimuth_deg, 0)}° from north`], [t`Area of the plane`, `${fixed(answer.area_m2, 1)} m²`], [t`Plane`, t`${answer.plane} of ${answer.planes}`]])
         + `<h3>${t`Solar energy received in each month, kWh/m²`}</h3><figure>${charts.energy(answer.months_kwh_m2)}</figure>`;
     },

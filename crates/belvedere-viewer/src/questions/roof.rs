@@ -4,6 +4,7 @@ use super::RequestContext;
 use super::places::{local, number, rounded};
 use crate::replies::{QuestionReply, Refusal};
 use belvedere::Error;
+use belvedere::apps::ask::knows_intervals;
 use belvedere::apps::irradiance::{CLEAR_SKY_YEAR, roof_irradiation};
 use belvedere::apps::sum_errors::Intervals;
 use belvedere::query::UnprovenAs;
@@ -27,12 +28,13 @@ pub(super) fn answer(question: &RoofRequest, context: &RequestContext<'_>) -> Re
         ));
     };
     let blockers = scene.blockers(UnprovenAs::Visible, control)?;
-    let energies =
-        roof_irradiation(&*blockers, std::slice::from_ref(plane), &roofs.seasons, Intervals::Without, control)?;
+    let intervals = Intervals::wanted(knows_intervals(&scene.inner, control)?);
+    let energies = roof_irradiation(&*blockers, std::slice::from_ref(plane), &roofs.seasons, intervals, control)?;
     let Some(energy) = energies.first() else {
         return Err(Error::NoPoints { what: "the plane has no cells".to_owned() }.into());
     };
     let from_north = |azimuth: f64| (azimuth + site.convergence).to_degrees().rem_euclid(360.0);
+    let [_, low, high] = energy.expected();
     let months: Vec<Value> = energy.groups.iter().map(|&v| number(v, 2)).collect();
     let head = json!({
         "plane": plane_index + 1,
@@ -41,6 +43,7 @@ pub(super) fn answer(question: &RoofRequest, context: &RequestContext<'_>) -> Re
         "tilt_deg": number(plane.tilt().to_degrees(), 2),
         "azimuth_deg": number(plane.azimuth().map_or(f64::NAN, from_north), 2),
         "kwh_m2": number(energy.mean.total(), 1),
+        "interval_kwh_m2": energy.class.map(|_| [low, high].map(|end| number(end, 1))),
         "free_kwh_m2": number(energy.mean.unshaded, 1),
         "min_loss": number(energy.mean.loss(), 4),
         "max_loss": number(energy.greatest_loss(), 4),

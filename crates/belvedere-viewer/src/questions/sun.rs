@@ -5,7 +5,9 @@ use super::places::{command_at, local, number, rounded};
 use crate::replies::{QuestionReply, Refusal};
 use crate::scene_text::in_words;
 use belvedere::PointCloud;
-use belvedere::apps::ask::{self, Answers, Days, OnTargets, Places, SunHoursQuestion, SunPlace, ThroughTrees};
+use belvedere::apps::ask::{
+    self, Answers, Days, OnTargets, Places, SunHoursQuestion, SunPlace, ThroughTrees, knows_intervals,
+};
 use belvedere::apps::horizon::{HorizonParams, horizons};
 use belvedere::apps::sun::{Date, DayParams, Period, Refraction, Site, SunDay, Zone, sun_days, sun_position_with};
 use belvedere::apps::targets::Targets;
@@ -40,10 +42,12 @@ pub(super) fn answer(question: &SunRequest, context: &RequestContext<'_>) -> Res
         return Err(Refusal::Unanswerable("This place is outside the cloud, where nothing is known.".to_owned()));
     }
     let targets = Arc::new(at(context, place));
+    let interval = question.trees == ThroughTrees::Opaque && knows_intervals(&scene.inner, control)?;
     let hours_on = |date: Date| {
         let days = Days { dates: vec![date.to_string()], ..Days::default() };
         let place = SunPlace { zone: Some(question.zone.clone()), ..SunPlace::default() };
-        let question = SunHoursQuestion { days, place, trees: question.trees, ..SunHoursQuestion::default() };
+        let trees = question.trees;
+        let question = SunHoursQuestion { days, place, interval, trees, ..SunHoursQuestion::default() };
         ask::ask(&scene.inner, &question, &Places::Targets(Arc::clone(&targets)), control)
     };
     let of_day = hours_on(date)?;
@@ -70,6 +74,7 @@ pub(super) fn answer(question: &SunRequest, context: &RequestContext<'_>) -> Res
     let flags = format!("--date {} --zone {}{trees} -o sun.csv", question.date, zone.name());
     let head = json!({
         "sun_hours": first(&of_day, "sun_hours"),
+        "interval_hours": interval.then(|| ["hours_low", "hours_high"].map(|end| first(&of_day, end))),
         "sun_share": first(&of_day, "sun_share"),
         "first_light": first(&of_day, "first_light"),
         "last_light": first(&of_day, "last_light"),

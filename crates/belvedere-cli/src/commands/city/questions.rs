@@ -5,7 +5,7 @@ use crate::commands::irradiance::radiation;
 use crate::run::CommandContext;
 use anyhow::Result;
 use belvedere::Error;
-use belvedere::apps::ask::{self, Context, SkyParts, SunPlace, Suns, ThroughTrees};
+use belvedere::apps::ask::{self, Context, SkyParts, SunPlace, Suns};
 use belvedere::apps::shadow::Edges;
 use belvedere::apps::sun::zone_of_instant;
 use belvedere::crs::Crs;
@@ -27,20 +27,18 @@ pub(super) fn check(arguments: &CityPlan) -> Result<()> {
         (false, true) => return usage("--date, --from and --to need --sun-hours"),
         _ => {}
     }
-    of_sun_and_sky(arguments)?.iter().try_for_each(ask::Ask::check)?;
     if arguments.probability && !has_suns && arguments.observers.is_empty() {
         return usage("--probability needs --sun, --time or --observer");
     }
     if arguments.interval && !(arguments.sun_hours || arguments.sky_view || arguments.irradiance) {
         return usage("--interval needs --sun-hours, --sky-view or --irradiance");
     }
-    if (arguments.probability || arguments.interval) && arguments.trees.choice()?.is_light() {
-        return usage("--probability and --interval are of opaque trees; leave out --through-trees");
-    }
     let has_radiation = arguments.weather.is_some() || arguments.clear_sky.is_some();
     if arguments.irradiance && !has_radiation {
         return usage("--irradiance needs --weather FILE or --clear-sky MODEL");
     }
+    of_sun_and_sky(arguments)?.iter().try_for_each(ask::Ask::check)?;
+    ask::check_interval(arguments.interval, &arguments.trees.choice()?)?;
     MapPosition::refuse_twice("--observer", &arguments.observers)?;
     for mesh in &arguments.add {
         read_mesh(mesh)?;
@@ -107,9 +105,9 @@ fn how_sure(arguments: &CityPlan) -> ask::HowSure {
 
 /// The questions that were typed about sun and sky, as one would put them to a scene.
 fn of_sun_and_sky(arguments: &CityPlan) -> Result<Vec<ask::Question>> {
-    let place = sun_place(arguments)?;
+    let (place, trees) = (sun_place(arguments)?, arguments.trees.choice()?);
     let shadow = |suns| {
-        let (place, edges, trees) = (place.clone(), Edges::Hard, ThroughTrees::Opaque);
+        let (place, edges) = (place.clone(), Edges::Hard);
         ask::Question::Shadow(ask::ShadowQuestion {
             suns,
             place,
@@ -132,6 +130,7 @@ fn of_sun_and_sky(arguments: &CityPlan) -> Result<Vec<ask::Question>> {
             days,
             rules,
             place,
+            trees,
             interval: arguments.interval,
             ..ask::SunHoursQuestion::default()
         }));
@@ -155,7 +154,7 @@ pub(super) fn questions(arguments: &CityPlan, plan: &Plan, run: &mut CommandCont
             radiation: radiation::of(from, &arguments.model, arguments.when.year, run)?,
             params: radiation::params(&arguments.model),
             place: sun_place(arguments)?,
-            trees: ThroughTrees::Opaque,
+            trees: arguments.trees.choice()?,
             roofs: None,
             interval: arguments.interval,
         });
@@ -165,8 +164,8 @@ pub(super) fn questions(arguments: &CityPlan, plan: &Plan, run: &mut CommandCont
         let sky = SkyParts::Even(arguments.direction_count);
         let question = ask::Question::SkyView(ask::SkyViewQuestion {
             sky,
+            trees: arguments.trees.choice()?,
             interval: arguments.interval,
-            ..ask::SkyViewQuestion::default()
         });
         questions.extend(TileQuestion::of(&question, (plan, &whereabouts), &mut context, &run.control())?);
     }

@@ -124,6 +124,7 @@ export const de = {
     "Hours of sun on the day": "Sonnenstunden an diesem Tag",
     "How likely it is lit": "Wahrscheinlichkeit, besonnt zu sein",
     "How likely it is visible": "Wahrscheinlichkeit, sichtbar zu sein",
+    "In nine of ten cases": "In neun von zehn Fällen",
     "Intensity": "Intensität",
     "Is B seen from A": "Sicht von A nach B",
     "It is {0} there now, and the sun is down or near the horizon: this is noon, when it stands highest.": "Dort ist es jetzt {0} Uhr, und die Sonne steht unter oder nahe dem Horizont: Gezeigt wird der Mittag, wenn sie am höchsten steht.",

@@ -124,6 +124,7 @@ export const fr = {
     "Hours of sun on the day": "Heures d’ensoleillement ce jour-là",
     "How likely it is lit": "Probabilité d’être au soleil",
     "How likely it is visible": "Probabilité d’être visible",
+    "In nine of ten cases": "Dans neuf cas sur dix",
     "Intensity": "Intensité",
     "Is B seen from A": "B visible depuis A",
     "It is {0} there now, and the sun is down or near the horizon: this is noon, when it stands highest.": "Il est actuellement {0} sur place, et le soleil est couché ou proche de l’horizon : l’heure affichée est celle du midi solaire, quand il est au plus haut.",

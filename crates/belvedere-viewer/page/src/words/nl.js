@@ -124,6 +124,7 @@ export const nl = {
     "Hours of sun on the day": "Zonuren op deze dag",
     "How likely it is lit": "Kans dat het in de zon ligt",
     "How likely it is visible": "Kans dat het zichtbaar is",
+    "In nine of ten cases": "In negen van de tien gevallen",
     "Intensity": "Intensiteit",
     "Is B seen from A": "Is B te zien vanuit A",
     "It is {0} there now, and the sun is down or near the horizon: this is noon, when it stands highest.": "Het is daar nu {0}, en de zon is onder of staat vlak boven de horizon: dit is midden op de dag, wanneer de zon het hoogst staat.",
