@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import shutil
 import subprocess
@@ -85,3 +86,17 @@ def run_program(program: str, folder: Path):
         subprocess.run([program, "--quiet", *map(str, arguments)], cwd=folder, check=True, timeout=300)
 
     return run
+
+
+@pytest.fixture(scope="session")
+def ask_program(program: str, folder: Path, tile: Path):
+    """Runs a command of the program on the tile; returns its summary."""
+
+    def ask(*words: object):
+        done = subprocess.run(
+            [program, "--json", *map(str, words)], cwd=folder, capture_output=True, text=True, timeout=300
+        )
+        assert done.returncode == 0, done.stderr
+        return json.loads(done.stdout)
+
+    return ask

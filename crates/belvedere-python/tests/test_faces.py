@@ -17,8 +17,9 @@ from typing import Any
 import belvedere
 import numpy as np
 import pytest
+from rasters import bands_of, values_of
 
-rasterio = pytest.importorskip("rasterio")
+pytest.importorskip("rasterio")
 laspy = pytest.importorskip("laspy")
 
 ZONE = "Europe/Amsterdam"
@@ -149,20 +150,6 @@ def rows() -> list[Row]:
 
 
 @pytest.fixture(scope="session")
-def ask_program(program, folder, tile):
-    """Runs a command of the program; returns its summary."""
-
-    def ask(*words):
-        done = subprocess.run(
-            [program, "--json", *map(str, words)], cwd=folder, capture_output=True, text=True, timeout=300
-        )
-        assert done.returncode == 0, done.stderr
-        return json.loads(done.stdout)
-
-    return ask
-
-
-@pytest.fixture(scope="session")
 def ask_page(program, folder, tile):
     """Asks the page's server of the tile; returns the named values and the bytes of an answer."""
     server = subprocess.Popen(
@@ -200,23 +187,6 @@ def said(remarks):
     return sorted((one["key"], one["severity"], one["text"]) for one in as_dicts)
 
 
-def bands_of(path):
-    """Bands by name, NaN where there is no value, and where the raster lies."""
-    with rasterio.open(path) as file:
-        found = {}
-        for number, name in enumerate(file.descriptions, 1):
-            values = file.read(number).astype(np.float64)
-            values[values == file.nodata] = np.nan
-            found[name] = values
-        return found, file.transform
-
-
-def values_of(raster):
-    """The values of a raster of Python, NaN where there is none."""
-    values = np.asarray(raster.values, np.float64)
-    return np.where(values == raster.nodata, np.nan, values) if raster.nodata is not None else values
-
-
 @pytest.mark.parametrize("row", rows(), ids=lambda row: row.name)
 def test_cells_have_the_same_answers_in_the_program_and_in_python(scene, ask_program, folder, row):
     output = folder / "face.tif"
@@ -233,97 +203,6 @@ def test_cells_have_the_same_answers_in_the_program_and_in_python(scene, ask_pro
     if unproven is not None:
         assert np.array_equal(unproven, values_of(raster.unproven), equal_nan=True)
     assert said(summary.get("remarks", [])) == said(raster.remarks)
-
-
-SURE = {
-    "shadow": (
-        ["shadow", "--sun", "200,30", "--cell", 2],
-        lambda scene, place, **sure: scene.shadow(sun=(200, 30), cell=2, **sure),
-    ),
-    "viewshed": (
-        ["viewshed", "--observer", "{place}", "--cell", 2],
-        lambda scene, place, **sure: scene.viewshed(place, cell=2, **sure),
-    ),
-}
-
-
-@pytest.mark.parametrize("name", SURE)
-def test_answers_are_as_sure_in_the_program_and_in_python(scene, ask_program, folder, standing, name):
-    words, of_python = SURE[name]
-    words = [str(word).format(place=f"{standing[0]},{standing[1]}") for word in words]
-    ask_program(words[0], "tile.laz", *words[1:], "--probability", "--certain", 0.9, "-o", "sure.tif")
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", belvedere.BelvedereWarning)
-        raster = of_python(scene, standing, probability=True, certain=0.9)
-        plain = of_python(scene, standing)
-    bands, _ = bands_of(folder / "sure.tif")
-    assert np.array_equal(values_of(plain), values_of(raster), equal_nan=True), "answers stay"
-    for band, of_face in [("probability", raster.probability), ("uncertain", raster.uncertain)]:
-        assert np.array_equal(bands[band], values_of(of_face), equal_nan=True), band
-    likely = bands["probability"][np.isfinite(bands["probability"])]
-    assert likely.size > 300
-    assert ((likely >= 0) & (likely <= 1)).all()
-    assert 0 < np.nansum(bands["uncertain"]) < 0.5 * likely.size
-    assert plain.probability is None
-    assert plain.uncertain is None
-
-
-@pytest.mark.parametrize("question", ["sun-hours", "sky-view", "irradiance"])
-def test_intervals_are_the_same_in_the_program_and_in_python(scene, ask_program, folder, question):
-    flags = {
-        "sun-hours": ["--date", DAY, "--zone", ZONE],
-        "sky-view": ["--directions", 145],
-        "irradiance": ["--clear-sky", "ineichen", "--patch-division", 1, "--sun-cell-deg", 9],
-    }[question]
-    ask_program(question, "tile.laz", *flags, "--interval", "--cell", 4, "-o", "interval.tif")
-    bands, _ = bands_of(folder / "interval.tif")
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", belvedere.BelvedereWarning)
-        if question == "sun-hours":
-            rasters = scene.sun_hours(date=DAY, zone=ZONE, interval=True, cell=4)
-        elif question == "irradiance":
-            rasters = scene.irradiance(clear_sky="ineichen", patch_division=1, sun_cell_deg=9, interval=True, cell=4)
-        else:
-            rasters = scene.sky_view(directions=145, interval=True, cell=4)
-    for band in (name for name in bands if name.endswith(("_expected", "_low", "_high"))):
-        assert np.array_equal(bands[band], values_of(rasters[band]), equal_nan=True), band
-    assert sum(name.endswith("_low") for name in bands) == {"sun-hours": 1, "sky-view": 2, "irradiance": 1}[question]
-
-
-def test_horizons_isovists_and_landmarks_are_as_sure_in_the_program_as_in_python(scene, ask_program, folder, standing):
-    x, y = standing
-    place = ["--observer", f"{x},{y}"]
-    ask_program("horizon", "tile.laz", *place, "--angle-step-deg", 5, "--below", "keep", "--interval", "-o", "h.csv")
-    ask_program("isovist", "tile.laz", *place, "--angle-step-deg", 5, "--interval", "-o", "i.csv")
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", belvedere.BelvedereWarning)
-        _, elevations = scene.horizon((x, y), angle_step_deg=5, interval=True)
-        space = scene.isovist((x, y), angle_step_deg=5, interval=True)
-        views = scene.landmark(target_class=6, observers=[(x, y)], probability=True)
-    table = np.genfromtxt(folder / "h.csv", delimiter=",", names=True)
-    assert elevations.shape == (72, 3)
-    for column, name in enumerate(["elevation", "low", "high"]):
-        # tables have four decimals
-        assert np.allclose(elevations[:, column], table[name], atol=6e-5), name
-    table = np.genfromtxt(folder / "i.csv", delimiter=",", names=True)
-    for name in ["plan_area_low_m2", "plan_area_high_m2", "volume_low_m3", "volume_high_m3"]:
-        assert np.isclose(space[name][0], table[name], atol=6e-3), name
-    (folder / "who.csv").write_text(f"x,y\n{x},{y}\n")
-    ask_program("landmark", "tile.laz", "--target-class", 6, "--observers", "who.csv", "--probability", "-o", "l.csv")
-    table = np.genfromtxt(folder / "l.csv", delimiter=",", names=True)
-    assert np.isclose(views["expected_share"][0], table["expected_share"], atol=6e-6)
-
-
-def test_certain_cameras_are_the_same_in_the_program_and_in_python(scene, ask_program, folder, standing):
-    x, y = standing
-    (folder / "mast.csv").write_text(f"x,y\n{x},{y}\n")
-    flags = ["--candidates", "mast.csv", "--camera-height", 6, "--fov", 360, "--count", 1, "--cell", 2]
-    ask_program("cameras", "tile.laz", *flags, "--certain", 0.9, "-o", "covered.tif")
-    bands, _ = bands_of(folder / "covered.tif")
-    given = {"camera_height": 6, "fov_deg": 360, "count": 1, "cell": 2}
-    certain, any_answer = (scene.cameras([(x, y)], **given, certain=least).counts for least in (0.9, None))
-    assert np.array_equal(next(iter(bands.values())), values_of(certain), equal_nan=True)
-    assert np.nansum(values_of(certain)) < np.nansum(values_of(any_answer))
 
 
 #: Questions that a city can answer.

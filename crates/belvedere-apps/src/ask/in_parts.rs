@@ -24,10 +24,10 @@ pub fn summarise_parts(
     // the figures of the place are there already
     let mut aside = Context::default();
     let mut listed = measures;
+    let answers = &measures[..measures.iter().position(says_how_sure).unwrap_or(measures.len())];
     let title = match question {
         Question::Shadow(about) => {
             let suns = about.suns.over(&about.place, whereabouts, &mut aside)?;
-            let answers = &measures[..measures.iter().position(says_how_sure).unwrap_or(measures.len())];
             shadow::summarise(&suns, answers, &places, context);
             about.how_sure.summarise_measures(measures, ["lit", "in shadow"], context);
             listed = &answers[..answers.len().min(MAX_LISTED_SUNS)];
@@ -49,7 +49,6 @@ pub fn summarise_parts(
             irradiance::title(whereabouts)
         }
         Question::Viewshed(about) => {
-            let answers = &measures[..measures.iter().position(says_how_sure).unwrap_or(measures.len())];
             about.summarise_parts(answers, (measures, cell), context);
             return Ok(title_of_cells(about.observers.len() == 1, about.reverse).to_owned());
         }

@@ -72,9 +72,7 @@ impl LandmarkParams {
         }
         Ok(())
     }
-}
 
-impl LandmarkParams {
     /// Whether a piece is turned to an eye, or both of its sides count.
     fn can_be_seen(&self, landmark: &SurfacePieces, piece: &SurfacePiece, eye: [f64; 3]) -> bool {
         let backs_count = self.faces.back_faces == BackFaces::BothSides || landmark.sides == Sides::Both;
