@@ -173,7 +173,9 @@ pub(super) fn files_of<'a>(sources: impl Iterator<Item = Source<'a>>, reading: &
             continue;
         };
         let (files, note) = files_in(folder)?;
-        let (others, clouds): (Vec<PathBuf>, Vec<PathBuf>) = files.into_iter().partition(|file| is_stray(file));
+        let beside_scans = files.iter().any(|file| !is_text(file));
+        let is_stray = |file: &PathBuf| is_text(file) && is_another_table(file, beside_scans);
+        let (others, clouds): (Vec<PathBuf>, Vec<PathBuf>) = files.into_iter().partition(is_stray);
         if clouds.is_empty() {
             return Err(Error::malformed(folder, "the folder holds tables, but none with columns x, y and z"));
         }
@@ -207,11 +209,14 @@ fn opened<'a>(source: Source<'a>, reading: &Reading<'_>) -> Result<Opened<'a>> {
     Ok(Opened::Catalogue(files.into_iter().map(Source::path).collect()))
 }
 
-/// Whether a file beside clouds is a table or a grid that belongs to them, such as a trajectory of other columns, a
-/// list of tiles or a model of the ground.
-fn is_stray(file: &Path) -> bool {
+fn is_text(file: &Path) -> bool {
     ["xyz", "txt", "csv", "pts", "asc"].contains(&extension(file).as_str())
-        && Source::path(file).open_text().is_ok_and(xyz::is_another_table)
+}
+
+/// Whether a text file of a folder is a table or a grid that belongs to its clouds, such as a list of tiles, a model of
+/// the ground, or, `beside_scans`, a trajectory or the positions of a scanner.
+fn is_another_table(file: &Path, beside_scans: bool) -> bool {
+    Source::path(file).open_text().is_ok_and(|input| xyz::is_another_table(input, beside_scans))
 }
 
 /// The files of a folder with an extension of clouds, by name, and a note on the others. Those that systems and

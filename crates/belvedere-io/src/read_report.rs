@@ -17,8 +17,8 @@ pub struct ReadReport {
     pub doubt: Option<String>,
     /// Attributes that only some of the files have and the cloud therefore lacks.
     pub dropped_attributes: Vec<&'static str>,
-    /// Files of a folder that are no point clouds although their names look so: tables without x, y and z, grids of
-    /// heights.
+    /// Files of a folder that are no point clouds although their names look so: tables of something else, such as
+    /// trajectories, and grids of heights.
     pub skipped_files: Vec<PathBuf>,
     /// What should be known before the cloud is used.
     pub notes: Vec<String>,
@@ -90,7 +90,7 @@ impl Serialize for ReadReport {
         if !self.skipped_files.is_empty() {
             let names: Vec<String> = self.skipped_files.iter().map(|file| file.display().to_string()).collect();
             map.serialize_entry("skipped_file_count", &names.len())?;
-            map.serialize_entry("skipped_files_without_x_y_z", &names)?;
+            map.serialize_entry("skipped_tables", &names)?;
         }
         map.serialize_entry("notes", &notes)?;
         map.end()

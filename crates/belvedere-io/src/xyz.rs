@@ -148,12 +148,14 @@ pub(super) fn read_text(input: Input<'_>) -> Result<TextRows> {
     Ok(rows)
 }
 
-/// Whether a text file is a table of something else: its first line has names, but not of x, y and z.
-pub(super) fn is_another_table(input: Input<'_>) -> bool {
+/// Whether a text file is a table of something else than points: its first line has names, but not of x, y and z; or,
+/// `beside_scans`, another name before these, as `time,x,y,z` of a trajectory and `station,x,y,z`.
+pub(super) fn is_another_table(input: Input<'_>, beside_scans: bool) -> bool {
     let Input { name, reader: mut file, .. } = input;
     let mut lines = XyzLines { path: &name, file: &mut file, number: 0, bytes: Vec::new(), announced: None };
     let Ok(Some((_, line))) = lines.next_data() else { return false };
-    is_names(&line) && header(&line).is_none()
+    let begins_with_x = |(columns, _): XyzHeader| columns.first() == Some(&Some(Role::X));
+    is_names(&line) && !header(&line).is_some_and(|header| !beside_scans || begins_with_x(header))
 }
 
 /// Whether a first line is that of an ESRI ASCII grid, whose files have the extension `.asc` as text clouds have.

@@ -175,7 +175,7 @@ fn a_stray_table_in_a_folder_of_tiles_is_skipped_and_named() {
     assert_eq!(run["points"], house().len());
     let reading = place.summary("balls tiles -o balls.npz")["reading"].clone();
     assert_eq!(reading["skipped_file_count"], 1);
-    assert_eq!(reading["skipped_files_without_x_y_z"], serde_json::json!(["tiles/index.csv"]));
+    assert_eq!(reading["skipped_tables"], serde_json::json!(["tiles/index.csv"]));
     // named by itself it is an error, and so is a folder with nothing else
     place.refusal(1, "info tiles/index.csv", &["tiles/index.csv", "without columns x, y and z"]);
     std::fs::remove_file(place.path("tiles/house.laz")).unwrap();

@@ -76,6 +76,7 @@ fn a_folder_is_read_whatever_programs_left_in_it() {
     let path = |name: &str| folder.path().join(name);
     std::fs::write(path("tile.laz"), file("tile.laz", &cloud(500))).unwrap();
     std::fs::write(path("scan.pts"), format!("20\n{}", rows(20))).unwrap();
+    std::fs::write(path("part.txt"), "//X Y Z\n1 2 3\n").unwrap();
     let left = [
         "._tile.laz",
         ".DS_Store",
@@ -95,16 +96,25 @@ fn a_folder_is_read_whatever_programs_left_in_it() {
         std::fs::write(path(name), b"\0\x05\x16\x07 what is no cloud").unwrap();
     }
     std::fs::write(path("dtm.asc"), "ncols 1\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 1\n7\n").unwrap();
+    // trajectories and positions of scanners have x, y and z too
+    std::fs::write(path("flight.csv"), "time,x,y,z\n1,2,3,400\n2,2,4,400\n").unwrap();
+    std::fs::write(path("stations.txt"), "station x y z\n1 2 3 1.8\n").unwrap();
     std::fs::create_dir(path("old.laz")).unwrap();
     let (found, report) = read(folder.path()).unwrap();
-    assert_eq!(found.len(), 520);
-    assert_eq!(report.skipped_files, [path("dtm.asc")]);
+    assert_eq!(found.len(), 521);
+    assert_eq!(report.skipped_files, ["dtm.asc", "flight.csv", "stations.txt"].map(path));
     let notes: Vec<&String> = report.notes.iter().filter(|note| note.contains("passed over")).collect();
     assert!(matches!(notes[..], [note] if note.contains(": 13 (") && note.contains("…")), "{notes:?}");
-    assert_eq!(cloud_files(&[folder.path().to_owned()]).unwrap().len(), 2);
+    assert_eq!(cloud_files(&[folder.path().to_owned()]).unwrap().len(), 3);
     // nothing but leftovers is no cloud
     std::fs::remove_file(path("tile.laz")).unwrap();
     std::fs::remove_file(path("scan.pts")).unwrap();
+    std::fs::remove_file(path("part.txt")).unwrap();
+    // alone, a table with x, y and z is a cloud, whatever else it has
+    assert_eq!(read(folder.path()).unwrap().0.len(), 3);
+    for name in ["flight.csv", "stations.txt"] {
+        std::fs::remove_file(path(name)).unwrap();
+    }
     assert!(read(folder.path()).is_err());
 }
 
