@@ -9,6 +9,7 @@ use crate::pipeline::{self, KeepPoints};
 use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::Result;
+use belvedere::Error;
 use belvedere::apps::ask::{
     self, Ask, Candidates, GridCells, Places, PlannedStation, Scene, Standing, SunPlace, Suns, SurveyPlanQuestion,
     SurveyPlanResults,
@@ -45,6 +46,11 @@ pub(crate) fn run(arguments: &SurveyPlanArguments, global: &Global) -> Result<Su
     };
     if let Some(path) = &arguments.stations.file {
         let given = candidates_on_path(path, arguments.step, ObserverUse::Places, &frame, &mut run)?;
+        if arguments.whole_lines && given.iter().all(|one| one.line.is_none()) {
+            let what =
+                "it has no lines, which --whole-lines needs; give GeoJSON with lines, or leave out --whole-lines";
+            return Err(Error::malformed(path, what).into());
+        }
         question.candidates = Candidates::Given(given);
     }
     let answers = ask::ask(&scene, &question, &places, &run.control())?;

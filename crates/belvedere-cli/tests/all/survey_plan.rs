@@ -102,6 +102,8 @@ fn a_line_of_candidates_is_one_candidate_that_proves_what_its_places_do_together
     assert!(of_lines.len() == 2 && of_places.len() > 10, "{of_lines:?} {of_places:?}");
     let best = of_places.iter().copied().fold(0.0, f64::max);
     assert!(of_lines[0] >= best && best > 0.0 && of_lines[1] == 0.0, "{of_lines:?} {of_places:?} {whole}");
+    let of_table = plan.replace("flights.geojson", "stations.csv");
+    place.refusal(1, &format!("{of_table} --whole-lines"), &["stations.csv", "no lines", "GeoJSON"]);
 }
 
 #[test]
