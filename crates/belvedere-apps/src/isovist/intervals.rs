@@ -14,8 +14,8 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// Ranges at which the probability is looked at, as shares of the range at which the ray ends.
 const LOOKED_AT: [f64; 14] = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.97, 1.03, 1.1, 1.3, 2.0];
-/// What is less likely visible than this is taken for hidden: a small rest that never ends would be most of an area that
-/// grows with the square of the range.
+/// What is less likely visible than this is taken for hidden: a small rest that never ends would be most of an area
+/// that grows with the square of the range.
 const UNLIKELY: f32 = 0.05;
 /// Rays of the plan.
 const PLAN_RAYS: usize = 360;

@@ -38,22 +38,22 @@ pub(crate) fn run(arguments: &SurfacesArguments, global: &Global) -> Result<Summ
             arguments.points.input.clouds[0].display()
         )
     };
-    run.summary.remarks(remark_on_roofs(found.planes.len()));
+    run.summary.remarks(remark_on_roofs(found.outlines.planes.len()));
     for output in &arguments.output {
         let report = run.stage("writing", 0, |_| write(output, &found, &cloud))?;
         run.summary.add_writing(output, &report);
     }
     warn_of_geojson(&arguments.output, &cloud.frame.crs, &mut run.summary);
     let counts = [
-        ("roofs", found.planes.len()),
-        ("edges", found.edges.len()),
-        ("ridges_and_valleys", found.ridges.len()),
-        ("walls", found.walls.len()),
+        ("roofs", found.outlines.planes.len()),
+        ("edges", found.outlines.edges.len()),
+        ("ridges_and_valleys", found.outlines.ridges.len()),
+        ("walls", found.outlines.walls.len()),
     ];
     for (name, count) in counts {
         run.summary.add(name, count);
     }
-    run.summary.add("edge_deviation_m", median_sd(&found.edges).map(|v| rounded(v, 3)));
+    run.summary.add("edge_deviation_m", median_sd(&found.outlines.edges).map(|v| rounded(v, 3)));
     run.summary
         .headline("<roofs> roofs, <edges> edges, <ridges_and_valleys> ridges and valleys, <walls> walls, cut to blocks of 64 m")
         .headline("an edge is known to <edge_deviation_m> m (standard deviation, median)");
@@ -102,7 +102,7 @@ fn write_points(output: &Path, found: &BuildingSurfaces, cloud: &PointCloud) -> 
 /// Roofs as points, everything else as lines.
 fn features(found: &BuildingSurfaces, frame: &Frame) -> (Vec<Spot>, Vec<PathLine>) {
     let placed = |p: [f64; 3]| std::array::from_fn(|axis| p[axis] + frame.origin[axis]);
-    let roofs = found.planes.iter().zip(0_u64..).map(|(plane, number)| {
+    let roofs = found.outlines.planes.iter().zip(0_u64..).map(|(plane, number)| {
         let [east, north, up] = plane.normal;
         let slope = east.hypot(north).atan2(up);
         let azimuth = (slope > MAX_LEVEL).then(|| east.atan2(north).to_degrees().rem_euclid(360.0));
@@ -117,7 +117,7 @@ fn features(found: &BuildingSurfaces, frame: &Frame) -> (Vec<Spot>, Vec<PathLine
         ]);
         Spot { place: placed(plane.center), properties }
     });
-    let edges = found.edges.iter().map(|edge| PathLine {
+    let edges = found.outlines.edges.iter().map(|edge| PathLine {
         places: edge.ends.map(placed).to_vec(),
         properties: properties([
             ("kind", "edge".into()),
@@ -126,14 +126,14 @@ fn features(found: &BuildingSurfaces, frame: &Frame) -> (Vec<Spot>, Vec<PathLine
             ("drop_m", rounded(edge.drop, 2).into()),
         ]),
     });
-    let ridges = found.ridges.iter().map(|ridge| PathLine {
+    let ridges = found.outlines.ridges.iter().map(|ridge| PathLine {
         places: ridge.ends.map(placed).to_vec(),
         properties: properties([
             ("kind", if ridge.is_convex { "ridge" } else { "valley" }.into()),
             ("roofs", ridge.planes.to_vec().into()),
         ]),
     });
-    let walls = found.walls.iter().zip(0_u64..).map(|(wall, number)| {
+    let walls = found.outlines.walls.iter().zip(0_u64..).map(|(wall, number)| {
         let [bottom, top] = wall.heights.map(|z| z + frame.origin[2]);
         PathLine {
             places: wall.ends.map(|[x, y]| placed([x, y, wall.heights[1]])).to_vec(),

@@ -76,13 +76,13 @@ pub(super) fn close_surfaces(
     *transmission = left.iter().filter_map(|&row| transmission.get(row).copied()).collect();
     *balls = balls.select(&left);
     let report = SurfacesReport {
-        roof_planes: found.planes.len(),
-        roof_edges: found.edges.len(),
-        ridges: found.ridges.len(),
-        walls: found.walls.len(),
+        roof_planes: found.outlines.planes.len(),
+        roof_edges: found.outlines.edges.len(),
+        ridges: found.outlines.ridges.len(),
+        walls: found.outlines.walls.len(),
         triangles: found.patches.len(),
         balls_capped,
     };
     let patches = std::mem::take(&mut found.patches);
-    Ok((patches, found.into_outlines(), Some(report)))
+    Ok((patches, found.outlines, Some(report)))
 }

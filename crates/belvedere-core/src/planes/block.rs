@@ -348,10 +348,10 @@ impl Block {
                 }
             }
             if is_here {
-                row_of[number] = found.planes.len();
+                row_of[number] = found.outlines.planes.len();
                 let returns = roof.rows.iter().map(|&row| roofs.return_of[row as usize] as usize);
-                self.give_points(returns, Surface::Roof(found.planes.len()), found);
-                found.planes.push(RoofPlane {
+                self.give_points(returns, Surface::Roof(found.outlines.planes.len()), found);
+                found.outlines.planes.push(RoofPlane {
                     normal: roof.plane.normal,
                     center: self.local(roof.center),
                     bounds: bounds.map(|corner| self.local(corner)),
@@ -372,8 +372,8 @@ impl Block {
             for (number, edge) in outline.edges.iter().enumerate() {
                 let ends = edge.line.end_points();
                 let Some(range) = self.piece(ends).filter(|_| row_of[plane] != usize::MAX) else { continue };
-                edge_row.insert((plane, number), found.edges.len());
-                found.edges.push(Edge {
+                edge_row.insert((plane, number), found.outlines.edges.len());
+                found.outlines.edges.push(Edge {
                     ends: lifted(plane, ends, range),
                     plane: row_of[plane],
                     sd: edge.sd,
@@ -386,7 +386,7 @@ impl Block {
             let ends = ridge.line.end_points();
             let planes = ridge.planes.map(|plane| row_of[plane]);
             if let Some(range) = self.piece(ends).filter(|_| planes.iter().all(|&row| row != usize::MAX)) {
-                found.ridges.push(Ridge {
+                found.outlines.ridges.push(Ridge {
                     ends: lifted(ridge.planes[0], ends, range),
                     planes,
                     is_convex: ridge.is_convex,
@@ -399,8 +399,8 @@ impl Block {
             if let (Some(range), Some(&edge)) = (self.piece(ends), edge) {
                 let ends = lifted(wall.plane, ends, range);
                 let middle = f64::midpoint(ends[0][2], ends[1][2]);
-                self.give_points(wall.rows.iter().copied(), Surface::Wall(found.walls.len()), found);
-                found.walls.push(Wall {
+                self.give_points(wall.rows.iter().copied(), Surface::Wall(found.outlines.walls.len()), found);
+                found.outlines.walls.push(Wall {
                     ends: ends.map(|p| [p[0], p[1]]),
                     heights: [wall.bottom, middle],
                     edge,

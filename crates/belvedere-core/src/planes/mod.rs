@@ -89,9 +89,9 @@ pub struct SurveyPoints<'a> {
 /// A plane that points lie on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Surface {
-    /// Row among [`BuildingSurfaces::planes`].
+    /// Row among [`BuildingOutlines::planes`].
     Roof(usize),
-    /// Row among [`BuildingSurfaces::walls`].
+    /// Row among [`BuildingOutlines::walls`].
     Wall(usize),
 }
 
@@ -107,14 +107,8 @@ pub struct PointOnSurface {
 /// Surfaces of buildings.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct BuildingSurfaces {
-    /// Planes of roofs; those that reach over several blocks are in each of them.
-    pub planes: Vec<RoofPlane>,
-    /// Edges of roofs, cut to blocks.
-    pub edges: Vec<Edge>,
-    /// Ridges, hips and valleys, cut to blocks.
-    pub ridges: Vec<Ridge>,
-    /// Walls, cut to blocks.
-    pub walls: Vec<Wall>,
+    /// Planes, edges, ridges and walls.
+    pub outlines: BuildingOutlines,
     /// Points on planes of roofs and on walls, each in the block that it lies in. Where two walls meet, a point may lie
     /// on both.
     pub points: Vec<PointOnSurface>,
@@ -131,9 +125,9 @@ impl BuildingSurfaces {
     pub fn distance(&self, surface: Surface, place: [f64; 3]) -> f64 {
         match surface {
             Surface::Roof(row) => {
-                self.planes.get(row).map_or(f64::NAN, |plane| dot(plane.normal, sub(place, plane.center)))
+                self.outlines.planes.get(row).map_or(f64::NAN, |plane| dot(plane.normal, sub(place, plane.center)))
             }
-            Surface::Wall(row) => self.walls.get(row).map_or(f64::NAN, |Wall { ends: [a, b], .. }| {
+            Surface::Wall(row) => self.outlines.walls.get(row).map_or(f64::NAN, |Wall { ends: [a, b], .. }| {
                 let along = [b[0] - a[0], b[1] - a[1]];
                 // the house lies to the left
                 (along[1] * (place[0] - a[0]) - along[0] * (place[1] - a[1])) / along[0].hypot(along[1])
@@ -141,27 +135,22 @@ impl BuildingSurfaces {
         }
     }
 
-    /// The planes and lines alone.
-    #[must_use]
-    pub fn into_outlines(self) -> BuildingOutlines {
-        let Self { planes, edges, ridges, walls, .. } = self;
-        BuildingOutlines { planes, edges, ridges, walls }
-    }
-
     /// Adds what another block found.
     fn append(&mut self, other: Self) {
-        let (planes, edges, walls) = (self.planes.len(), self.edges.len(), self.walls.len());
+        let outlines = &mut self.outlines;
+        let (planes, edges, walls) = (outlines.planes.len(), outlines.edges.len(), outlines.walls.len());
         let moved = |surface| match surface {
             Surface::Roof(row) => Surface::Roof(row + planes),
             Surface::Wall(row) => Surface::Wall(row + walls),
         };
         let points = other.points.into_iter();
         self.points.extend(points.map(|point| PointOnSurface { surface: moved(point.surface), ..point }));
-        self.planes.extend(other.planes);
-        self.edges.extend(other.edges.into_iter().map(|edge| Edge { plane: edge.plane + planes, ..edge }));
+        let added = other.outlines;
+        outlines.planes.extend(added.planes);
+        outlines.edges.extend(added.edges.into_iter().map(|edge| Edge { plane: edge.plane + planes, ..edge }));
         let moved = |ridge: Ridge| Ridge { planes: ridge.planes.map(|plane| plane + planes), ..ridge };
-        self.ridges.extend(other.ridges.into_iter().map(moved));
-        self.walls.extend(other.walls.into_iter().map(|wall| Wall { edge: wall.edge + edges, ..wall }));
+        outlines.ridges.extend(added.ridges.into_iter().map(moved));
+        outlines.walls.extend(added.walls.into_iter().map(|wall| Wall { edge: wall.edge + edges, ..wall }));
         self.patches.triangles.extend(other.patches.triangles);
         self.patches.kinds.extend(other.patches.kinds);
         self.regions.append(other.regions);

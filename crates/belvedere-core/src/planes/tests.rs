@@ -140,7 +140,7 @@ fn area_of(surfaces: &BuildingSurfaces, kind: PatchKind) -> f64 {
 /// The edge that faces a way, and how far along this way it lies.
 fn facing(surfaces: &BuildingSurfaces, way: [f64; 2]) -> Vec<(f64, Edge)> {
     let mut found = Vec::new();
-    for edge in &surfaces.edges {
+    for edge in &surfaces.outlines.edges {
         let [a, b] = edge.ends;
         let [x, y] = [b[0] - a[0], b[1] - a[1]];
         let along = (x * way[1] - y * way[0]).abs();
@@ -156,12 +156,12 @@ fn facing(surfaces: &BuildingSurfaces, way: [f64; 2]) -> Vec<(f64, Edge)> {
 #[test]
 fn a_gable_house_has_two_planes_a_ridge_and_its_outline() {
     let surfaces = scan(&gable(0.0), AROUND[0], AROUND[1]).surfaces();
-    assert_eq!(surfaces.planes.len(), 2);
-    for plane in &surfaces.planes {
+    assert_eq!(surfaces.outlines.planes.len(), 2);
+    for plane in &surfaces.outlines.planes {
         // a slope of 3 in 4; 500 points of 2 cm leave less than a thousandth
         assert!((plane.normal[2] - 0.8).abs() < 2e-3 && (plane.normal[1].abs() - 0.6).abs() < 2e-3, "{plane:?}");
     }
-    let [ridge] = surfaces.ridges[..] else { panic!("{:?}", surfaces.ridges) };
+    let [ridge] = surfaces.outlines.ridges[..] else { panic!("{:?}", surfaces.outlines.ridges) };
     assert!(ridge.is_convex);
     for end in ridge.ends {
         assert!(end[1].abs() < 0.02 && (end[2] - 9.0).abs() < 0.02, "{ridge:?}");
@@ -174,7 +174,7 @@ fn a_gable_house_has_two_planes_a_ridge_and_its_outline() {
     }
     for way in [[-1.0, 0.0], [1.0, 0.0]] {
         let found = facing(&surfaces, way);
-        assert_eq!(found.len(), 2, "each plane has a verge {way:?}: {:?}", surfaces.edges);
+        assert_eq!(found.len(), 2, "each plane has a verge {way:?}: {:?}", surfaces.outlines.edges);
         assert!(found.iter().all(|(at, edge)| (at - 6.0).abs() < 3.0 * edge.sd), "{found:?}");
     }
     // 12 m by 8 m; edges err by 3 cm each
@@ -186,8 +186,8 @@ fn a_gable_house_has_two_planes_a_ridge_and_its_outline() {
     for place in [[0.0, -4.2], [6.2, 0.0], [-6.2, 3.0]] {
         assert!(heights_of(&surfaces, PatchKind::Roof, place).is_empty());
     }
-    assert!(!surfaces.walls.is_empty());
-    for wall in &surfaces.walls {
+    assert!(!surfaces.outlines.walls.is_empty());
+    for wall in &surfaces.outlines.walls {
         let middle = [0, 1].map(|axis| f64::midpoint(wall.ends[0][axis], wall.ends[1][axis]));
         let off = (middle[0].abs() - 6.0).abs().min((middle[1].abs() - 4.0).abs());
         assert!(off < 3.0 * wall.sd, "{wall:?}");
@@ -206,8 +206,13 @@ fn a_hip_roof_has_four_planes_that_meet_in_five_convex_lines() {
         (vec![d, a, west], 6),
     ]);
     let surfaces = scan(&faces, AROUND[0], AROUND[1]).surfaces();
-    assert_eq!(surfaces.planes.len(), 4);
-    assert_eq!(surfaces.ridges.iter().filter(|ridge| ridge.is_convex).count(), 5, "{:?}", surfaces.ridges);
+    assert_eq!(surfaces.outlines.planes.len(), 4);
+    assert_eq!(
+        surfaces.outlines.ridges.iter().filter(|ridge| ridge.is_convex).count(),
+        5,
+        "{:?}",
+        surfaces.outlines.ridges
+    );
     assert!((area_of(&surfaces, PatchKind::Roof) - 96.0).abs() < 2.0);
     // patches do not reach beyond hips and ridges: one height everywhere
     for place in [[-4.5, -3.5], [-3.9, 2.3], [0.1, 0.1], [4.0, -2.2], [5.5, 0.2]] {
@@ -229,7 +234,7 @@ fn a_flat_roof_with_a_parapet_has_a_sheet_along_its_edge() {
     assert!(!corners.is_empty());
     // the outer face lies at the edge, to three of its standard deviations; 120 points in each metre across the inner
     // face leave a few centimetres
-    let [(_, edge)] = facing(&surfaces, [0.0, -1.0])[..] else { panic!("{:?}", surfaces.edges) };
+    let [(_, edge)] = facing(&surfaces, [0.0, -1.0])[..] else { panic!("{:?}", surfaces.outlines.edges) };
     let is_on = |p: &[f32; 3], face: f64, error: f64| (f64::from(p[1]) - face).abs() < error;
     let (outer, inner): (Vec<_>, Vec<_>) = corners.iter().partition(|p| p[1] < -4.85);
     assert!(outer.len() >= 4 && outer.iter().all(|p| is_on(p, -5.0, 3.0 * edge.sd)), "{outer:?}");
@@ -294,7 +299,7 @@ fn a_canopy_with_a_high_edge_has_no_inside() {
     faces.push((outline.iter().rev().map(|p| [p[0], p[1], 4.2]).collect(), 6));
     let scene = scan(&faces, AROUND[0], AROUND[1]);
     let surfaces = scene.surfaces();
-    assert!(surfaces.walls.len() >= 2, "its edge is taken for walls: {:?}", surfaces.walls);
+    assert!(surfaces.outlines.walls.len() >= 2, "its edge is taken for walls: {:?}", surfaces.outlines.walls);
     assert!(corners_of(&surfaces, PatchKind::Inside).is_empty());
     // a house of the same outline has one
     let house = scan(&block_of(low, high, 5.0), AROUND[0], AROUND[1]).surfaces();
@@ -310,8 +315,8 @@ fn an_l_stays_open_in_its_corner() {
     };
     faces.extend([top([-8.0, -8.0], [8.0, 0.0]), top([-8.0, 0.0], [0.0, 8.0])]);
     let surfaces = scan(&faces, AROUND[0], AROUND[1]).surfaces();
-    assert_eq!(surfaces.planes.len(), 1);
-    assert_eq!(surfaces.edges.iter().filter(|edge| edge.sd < 0.1).count(), 6, "{:?}", surfaces.edges);
+    assert_eq!(surfaces.outlines.planes.len(), 1);
+    assert_eq!(surfaces.outlines.edges.iter().filter(|edge| edge.sd < 0.1).count(), 6, "{:?}", surfaces.outlines.edges);
     // 64 m of edges that err by 2 cm
     assert!((area_of(&surfaces, PatchKind::Roof) - 192.0).abs() < 2.0, "{}", area_of(&surfaces, PatchKind::Roof));
     assert!(heights_of(&surfaces, PatchKind::Roof, [0.3, 0.3]).is_empty());
@@ -324,10 +329,10 @@ fn an_l_stays_open_in_its_corner() {
 #[test]
 fn below_eaves_the_wall_is_a_plane_of_its_own() {
     let surfaces = scan(&gable(0.5), AROUND[0], AROUND[1]).surfaces();
-    let below: Vec<&Wall> = surfaces.walls.iter().filter(|wall| wall.eaves > 0.3).collect();
+    let below: Vec<&Wall> = surfaces.outlines.walls.iter().filter(|wall| wall.eaves > 0.3).collect();
     assert!(!below.is_empty());
     for wall in below {
-        let edge = &surfaces.edges[wall.edge];
+        let edge = &surfaces.outlines.edges[wall.edge];
         assert!((wall.eaves - 0.5).abs() < 3.0 * edge.sd, "{wall:?}");
         let middle = f64::midpoint(wall.ends[0][1], wall.ends[1][1]);
         // a direction that few points show moves the middle
@@ -357,9 +362,9 @@ fn a_ball_ends_at_the_wall_that_its_point_lies_behind() {
     // a ball of the roof 0.5 m within the south edge, which bulges half a metre out of the wall
     let (point, center) = ([0.0, -4.5, 8.0], [0.0, -4.5, 7.0]);
     let radius = surfaces.regions.radius_of(point, center, 1.0);
-    let wall = surfaces.walls.iter().find(|wall| wall.ends[0][1] < -4.0 && wall.ends[1][1] < -4.0).unwrap();
+    let wall = surfaces.outlines.walls.iter().find(|wall| wall.ends[0][1] < -4.0 && wall.ends[1][1] < -4.0).unwrap();
     // it may stand out by 2 cm, of the wall and of the edge, whichever lies farther out
-    let edge = &surfaces.edges[wall.edge];
+    let edge = &surfaces.outlines.edges[wall.edge];
     let farthest = f64::midpoint(wall.ends[0][1], wall.ends[1][1]).min(f64::midpoint(edge.ends[0][1], edge.ends[1][1]));
     let nearest = f64::midpoint(wall.ends[0][1], wall.ends[1][1]).max(f64::midpoint(edge.ends[0][1], edge.ends[1][1]));
     let reach = -4.5 - f64::from(radius);
@@ -381,10 +386,10 @@ fn a_tree_and_a_deck_give_no_walls_and_no_inside() {
     };
     let mut faces: Vec<Face> = (0..800).map(leaf).collect();
     let tree = scan(&faces, AROUND[0], AROUND[1]).surfaces();
-    assert_eq!((tree.planes.len(), tree.patches.len()), (0, 0));
+    assert_eq!((tree.outlines.planes.len(), tree.patches.len()), (0, 0));
     faces.push((vec![[4.0, -3.0, 4.0], [12.0, -3.0, 4.0], [12.0, 3.0, 4.0], [4.0, 3.0, 4.0]], 6));
     let deck = scan(&faces, AROUND[0], AROUND[1]).surfaces();
-    assert_eq!((deck.planes.len(), deck.walls.len()), (1, 0));
+    assert_eq!((deck.outlines.planes.len(), deck.outlines.walls.len()), (1, 0));
     assert!(deck.patches.kinds.iter().all(|kind| *kind == PatchKind::Roof));
 }
 
@@ -405,14 +410,14 @@ fn without_a_class_of_buildings_a_house_is_known_by_its_shape() {
     let classified = scan(&gable(0.4), AROUND[0], AROUND[1]).surfaces();
     scene.classes.iter_mut().filter(|class| **class == 6).for_each(|class| *class = 1);
     let surfaces = scene.surfaces();
-    assert_eq!((surfaces.planes.len(), surfaces.ridges.len()), (2, 1));
-    assert!(surfaces.walls.len() >= 2 && surfaces.patches.len() > classified.patches.len() / 2);
+    assert_eq!((surfaces.outlines.planes.len(), surfaces.outlines.ridges.len()), (2, 1));
+    assert!(surfaces.outlines.walls.len() >= 2 && surfaces.patches.len() > classified.patches.len() / 2);
     let roof = area_of(&surfaces, PatchKind::Roof);
     assert!((roof - area_of(&classified, PatchKind::Roof)).abs() < 2.0, "{roof} m²");
     // one point of class 6 says that buildings were classified
     let mut with_one = scene.clone();
     with_one.classes[0] = 6;
-    assert_eq!(with_one.surfaces().planes.len(), 0);
+    assert_eq!(with_one.surfaces().outlines.planes.len(), 0);
     // nothing tells how high it stands
     scene.classes.iter_mut().for_each(|class| *class = 1);
     assert_eq!(scene.surfaces().patches.len(), 0);
@@ -441,7 +446,7 @@ fn a_part_finds_what_the_whole_finds_in_any_order() {
     let of = |surfaces: &BuildingSurfaces| {
         let triangles: Vec<_> = surfaces.patches.triangles.iter().copied().filter(|t| is_of(middle(t))).collect();
         let edges: Vec<_> =
-            surfaces.edges.iter().map(|e| (e.ends, e.sd)).filter(|e| is_of(e.0[0]) && is_of(e.0[1])).collect();
+            surfaces.outlines.edges.iter().map(|e| (e.ends, e.sd)).filter(|e| is_of(e.0[0]) && is_of(e.0[1])).collect();
         (triangles, edges)
     };
     let (of_whole, of_part) = (of(&whole), of(&part));

@@ -61,10 +61,11 @@ fn judge(preset: Preset, density: f64, seed: u64) -> Result<()> {
     let exact = Truth::new(&scene);
     let (edges, ridges) = lines_of(&scene, &exact);
     let absolute = |ends: [[f64; 3]; 2]| ends.map(|p| std::array::from_fn(|i| p[i] + cloud.frame.origin[i]));
-    let sure = found.edges.iter().filter(|edge| edge.sd <= params.max_edge_sd);
+    let sure = found.outlines.edges.iter().filter(|edge| edge.sd <= params.max_edge_sd);
     let found_edges: Vec<FoundLine> = sure.map(|edge| FoundLine { ends: absolute(edge.ends), sd: edge.sd }).collect();
     // a ridge is known as well as its planes
-    let of_ridge = |planes: [usize; 2]| planes.iter().map(|&plane| found.planes[plane].sd.powi(2)).sum::<f64>().sqrt();
+    let of_ridge =
+        |planes: [usize; 2]| planes.iter().map(|&plane| found.outlines.planes[plane].sd.powi(2)).sum::<f64>().sqrt();
     let found_ridges: Vec<FoundLine> = found
         .ridges
         .iter()
@@ -86,10 +87,10 @@ fn counts(found: &BuildingSurfaces, seconds: f64, points: usize) -> String {
     let of = |kind: PatchKind| found.patches.kinds.iter().filter(|own| **own == kind).count();
     format!(
         "{} planes, {} edges, {} ridges, {} walls; triangles: {} of roofs, {} of walls, {} of parapets, {} of steps, {} of boxes, {} within; {:.2} s, {:.1} s for a million points",
-        found.planes.len(),
-        found.edges.len(),
-        found.ridges.len(),
-        found.walls.len(),
+        found.outlines.planes.len(),
+        found.outlines.edges.len(),
+        found.outlines.ridges.len(),
+        found.outlines.walls.len(),
         of(PatchKind::Roof),
         of(PatchKind::Wall),
         of(PatchKind::Parapet),

@@ -203,7 +203,7 @@ fn outward(found: &FoundLine, p: [f64; 3], way: [f64; 2]) -> Option<f64> {
 /// Errors across of the walls found, from the true surface behind and before them half way up.
 pub(crate) fn errors_of_walls(found: &BuildingSurfaces, origin: [f64; 3], exact: &Truth) -> Errors {
     let mut errors = Errors::default();
-    for wall in &found.walls {
+    for wall in &found.outlines.walls {
         let [a, b] = wall.ends;
         let line = Line { ends: [a, b].map(|p| [p[0] + origin[0], p[1] + origin[1], 0.0]) };
         if line.length() < 2.0 * STEP {
