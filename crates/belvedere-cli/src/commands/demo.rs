@@ -1,5 +1,6 @@
 //! `belvedere demo`: a simulated town, all computations on it, and the accuracy of the answers.
 
+use super::check_folder;
 use crate::arguments::{CloudInput, Demo, Global, UpChoice};
 use crate::pipeline;
 use crate::run::CommandContext;
@@ -39,6 +40,7 @@ const PEDESTRIAN: f64 = 1.5;
 
 pub(crate) fn run(arguments: &Demo, global: &Global) -> Result<Summary> {
     let folder = &arguments.output;
+    check_folder(folder)?;
     let mut run = CommandContext::new(global);
     atomic::make_folder(folder)?;
 

@@ -4,7 +4,7 @@ use crate::arguments::Usage;
 use crate::summary::Summary;
 use anyhow::{Context, Result, bail};
 use belvedere::crs::Crs;
-use belvedere::io::{ExtraColumn, ExtraValues, Source, atomic};
+use belvedere::io::{CLOUD_EXTENSIONS, ExtraColumn, ExtraValues, Source, atomic};
 use std::path::{Path, PathBuf};
 
 /// The extension of a path in lower case, empty where it has none.
@@ -72,9 +72,17 @@ pub(super) fn check_parent(path: &Path) -> Result<()> {
     }
 }
 
-/// Refuses an output folder that cannot be made, before hours of work go into it.
+/// Refuses an output folder that cannot be made or that has the name of a point cloud, before hours of work go into it.
 pub(super) fn check_folder(path: &Path) -> Result<()> {
     let is_new = !path.exists();
+    if is_new && CLOUD_EXTENSIONS.contains(&extension(path).as_str()) {
+        let what = format!(
+            "-o {}: results are several files in a folder; give it a name without .{}",
+            path.display(),
+            extension(path)
+        );
+        return Err(Usage(what).into());
+    }
     atomic::make_folder(path)?;
     if is_new {
         std::fs::remove_dir(path).with_context(|| path.display().to_string())?;

@@ -1,5 +1,6 @@
 //! `belvedere simulate`: a town, a survey of it, and what is true about both.
 
+use super::check_folder;
 use crate::arguments::{Global, PatternChoice, ScannerChoice, Simulate, Usage};
 use crate::run::CommandContext;
 use crate::simulated::{EPSG, SUNS_DEG, cloud_of, crs, write_text};
@@ -24,6 +25,7 @@ pub(crate) fn run(arguments: &Simulate, global: &Global) -> Result<Summary> {
     check_flags(arguments)?;
     check_pulses(arguments)?;
     let folder = &arguments.output;
+    check_folder(folder)?;
     let mut run = CommandContext::new(global);
 
     let town_params = arguments.scene.params(arguments.extent, global.seed);

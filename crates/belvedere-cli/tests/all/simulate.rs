@@ -206,6 +206,10 @@ fn wrong_use_is_refused_with_the_way_out() {
     let place = Workplace::new();
     place.refusal(2, "simulate", &["--output"]);
     place.refusal(2, "simulate city -o out", &["city", "old-town"]);
+    place.refusal(2, "simulate -o town.laz", &["town.laz", "folder", "without .laz"]);
+    place.refusal(2, "demo -o town.laz", &["town.laz", "folder"]);
+    place.write("taken", "a file");
+    place.refusal(1, "simulate -o taken", &["taken", "folder is needed"]);
     place.refusal(2, "simulate -o out --stations 2", &["--stations", "--scanner terrestrial"]);
     place.refusal(2, "simulate -o out --ptx", &["--ptx", "--scanner terrestrial"]);
     place.refusal(2, "simulate -o out --scanner terrestrial --density 2", &["--density", "--scanner airborne"]);
@@ -221,5 +225,5 @@ fn wrong_use_is_refused_with_the_way_out() {
     );
     place.refusal(1, "simulate -o out --extent 60 --density 0.1 --dropout 1", &["--dropout"]);
     place.refusal(1, "simulate -o no/such/out --extent 60 --density 0.1", &["no/such"]);
-    assert_eq!(place.names(), Vec::<String>::new(), "nothing is left behind");
+    assert_eq!(place.names(), ["taken"], "nothing is left behind");
 }
