@@ -228,7 +228,7 @@ fn points_of_a_query_have_probabilities() {
 #[test]
 fn scanners_on_the_ground_have_doubtful_probabilities_and_no_intervals() {
     let place = Workplace::new();
-    place.summary("simulate village -o tls --extent 60 --scanner terrestrial");
+    place.summary("simulate village -o tls --extent 60 --scanner terrestrial --angle-step-deg 0.6");
     let scans = "tls/cloud.laz --orient stations=tls/stations.csv --cell 6";
     let lit = place.run(&format!("shadow {scans} --sun 200,30 --probability -o lit.tif"));
     assert!(lit.status == 0 && lit.stderr.contains("probabilities of what it did not see"), "{lit:?}");

@@ -127,7 +127,7 @@ fn a_scan_from_one_place_sees_its_own_points() {
 fn walls_of_a_scanned_room_block_and_the_room_is_as_large_as_it_is() {
     let carved = ModelParams::default();
     let from_points = ModelParams::default().with_balls(BallParams::Shrunk(ShrinkParams::tau_by_spacing()));
-    for (spacing, params) in [(0.04, &carved), (0.1, &from_points), (0.04, &from_points)] {
+    for (spacing, params) in [(0.06, &carved), (0.1, &from_points), (0.05, &from_points)] {
         let cloud = scanned(spacing);
         let (model, report) = SceneModel::build(&cloud, params, &Control::none()).unwrap();
         if let Some(BallsReport::Shrunk(balls)) = &report.interior_balls {
