@@ -67,6 +67,7 @@ fn judge(preset: Preset, density: f64, seed: u64) -> Result<()> {
     let of_ridge =
         |planes: [usize; 2]| planes.iter().map(|&plane| found.outlines.planes[plane].sd.powi(2)).sum::<f64>().sqrt();
     let found_ridges: Vec<FoundLine> = found
+        .outlines
         .ridges
         .iter()
         .map(|ridge| FoundLine { ends: absolute(ridge.ends), sd: of_ridge(ridge.planes).max(0.005) })
