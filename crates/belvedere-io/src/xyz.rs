@@ -154,8 +154,7 @@ pub(super) fn is_another_table(input: Input<'_>, beside_scans: bool) -> bool {
     let Input { name, reader: mut file, .. } = input;
     let mut lines = XyzLines { path: &name, file: &mut file, number: 0, bytes: Vec::new(), announced: None };
     let Ok(Some((_, line))) = lines.next_data() else { return false };
-    let begins_with_x = |(columns, _): XyzHeader| columns.first() == Some(&Some(Role::X));
-    is_names(&line) && !header(&line).is_some_and(|header| !beside_scans || begins_with_x(header))
+    is_names(&line) && header(&line).is_none_or(|(columns, _)| beside_scans && columns.first() != Some(&Some(Role::X)))
 }
 
 /// Whether a first line is that of an ESRI ASCII grid, whose files have the extension `.asc` as text clouds have.

@@ -3,15 +3,15 @@
 use crate::grid::{MapArea, TileId, block_area};
 use crate::plan::Plan;
 use crate::question::PreparedQuestion;
-use belvedere::query::EarthParams;
+use belvedere::query::{BlockedLines, EarthParams};
 use belvedere::vector::piece_in_box;
 use std::collections::BTreeSet;
 
 /// Directions up to which each is looked at by itself.
 const FEW: usize = 8;
 /// By how much lines of sight are taken for wider than they are, metres: more than f32 rounds, and than the lines lie
-/// beside them that probabilities look at (0.32 m).
-pub(crate) const ROOM: f64 = 0.35;
+/// beside them that probabilities look at.
+pub(crate) const ROOM: f64 = BlockedLines::WIDTH + 0.03;
 /// How far above and beside its points any ball reaches at most, metres: twice the radius that they start with.
 pub(crate) const MAX_BALL: f64 = 10.0;
 

@@ -4,7 +4,7 @@ use super::how_sure::check_interval_scene;
 use super::observers::{Eyes, Observers, check_height};
 use super::scene::Scene;
 use super::sections::{LinesSection, NamedValues};
-use super::{Answers, Ask, Context, North, Places, spread};
+use super::{Answers, Ask, Context, North, Places, Remark, spread};
 use crate::isovist::{Isovist, IsovistFigure, IsovistParams, isovist, isovist_intervals};
 use belvedere_core::ground::GroundPoints;
 use belvedere_core::query::UnprovenAs;
@@ -154,9 +154,25 @@ impl IsovistsResults {
         let blocked = spread(&values("blocked_volume_m3"), 0, "m³");
         context.headline(format!("volume in the directions that hit something: {blocked}"));
         context.headline(format!("openness: {}", spread(&values("openness"), 3, "")));
-        let ends = [values("plan_area_low_m2"), values("plan_area_high_m2")];
-        if let ([low], [high]) = (&ends[0][..], &ends[1][..]) {
-            context.headline(format!("area seen in the level plane: {low:.0} to {high:.0} m², nine times in ten"));
+        let [area, low, high] = ["plan_area_m2", "plan_area_low_m2", "plan_area_high_m2"].map(values);
+        if let ([area], [low], [high]) = (&area[..], &low[..], &high[..]) {
+            let ends = format!("nine times in ten {low:.0} to {high:.0}");
+            context.headline(format!("area seen in the level plane: {area:.0} m²; {ends}"));
         }
+        context.add(remark_on_doubtful_sight(&self.isovists));
     }
+}
+
+/// A note on isovists larger than their intervals say; `None` where there are none.
+fn remark_on_doubtful_sight(isovists: &[Option<Isovist>]) -> Option<Remark> {
+    let is_doubtful = |isovist: &&Isovist| {
+        isovist.intervals.is_some_and(|ends| isovist.plan.area > ends.plan_area[1] || isovist.volume > ends.volume[1])
+    };
+    let count = isovists.iter().flatten().filter(is_doubtful).count();
+    let text = format!(
+        "for {count} of {} observers the area or the volume seen is larger than its interval: sight runs on where no \
+         pulse was, such as over water or beyond the cloud; the answer takes that space for free, the interval does not",
+        isovists.len()
+    );
+    (count > 0).then(|| Remark::note("isovist-above-interval", text).with("count", count as f64))
 }

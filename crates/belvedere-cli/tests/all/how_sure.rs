@@ -1,7 +1,8 @@
 //! How sure answers are, on the command line: bands and columns of probabilities, uncertain answers, intervals.
 
 use crate::common::{Workplace, column};
-use belvedere::io::{ReadBands, read_tif_bands};
+use belvedere::control::Control;
+use belvedere::io::{ReadBands, ReadOptions, read_cloud, read_tif_bands};
 
 /// A surveyed village, and what reads it.
 fn village() -> Workplace {
@@ -156,7 +157,19 @@ fn horizons_and_isovists_have_intervals_and_landmarks_an_expected_share() {
     place.refusal(2, &format!("{horizon} --interval -o sure.txt"), &["sure.txt", "--interval", ".csv"]);
 
     let isovist = format!("isovist town/cloud.laz --observer {x},{y} --max-distance 40 --angle-step-deg 4");
-    place.summary(&format!("{isovist} --interval -o space.csv"));
+    let within = place.summary(&format!("{isovist} --interval -o space.csv"));
+    assert!(!within["remarks"].to_string().contains("isovist-above-interval"), "{within}");
+    // a place that no pulse came near to is free in the answer, and doubtful in the interval
+    let (cloud, _) = read_cloud([place.path("town/cloud.laz")], &ReadOptions::default(), &Control::none()).unwrap();
+    let is_far = |row: &u32| {
+        let [east, north, _] = cloud.frame.file_from_local(cloud.positions[*row as usize].map(f64::from));
+        (east - x).hypot(north - y) > 20.0
+    };
+    let rows: Vec<u32> = (0..u32::try_from(cloud.len()).unwrap()).filter(is_far).collect();
+    place.write_cloud("hole.laz", &cloud.select(&rows));
+    let over = isovist.replace("town/cloud.laz", "hole.laz").replace(&format!("{x},{y}"), &format!("{x},{y},1.7"));
+    let over = place.summary(&format!("{over} --interval -o over.csv"));
+    assert!(over["remarks"].to_string().contains("isovist-above-interval"), "{over}");
     for (name, ends) in [
         ("plan_area_m2", ["plan_area_low_m2", "plan_area_high_m2"]),
         ("volume_m3", ["volume_low_m3", "volume_high_m3"]),

@@ -49,6 +49,8 @@ pub struct BlockedLines {
 impl BlockedLines {
     /// What nothing blocks.
     pub const NONE: Self = Self { free: ALL, held: 0 };
+    /// How far beside the line itself the others run at most, metres.
+    pub const WIDTH: f64 = RINGS[1];
 
     /// Whether an end of the line itself is inside an obstacle.
     #[must_use]

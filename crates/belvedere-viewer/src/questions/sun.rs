@@ -42,7 +42,7 @@ pub(super) fn answer(question: &SunRequest, context: &RequestContext<'_>) -> Res
         return Err(Refusal::Unanswerable("This place is outside the cloud, where nothing is known.".to_owned()));
     }
     let targets = Arc::new(at(context, place));
-    let interval = question.trees == ThroughTrees::Opaque && knows_intervals(&scene.inner, control)?;
+    let interval = !question.trees.is_light() && knows_intervals(&scene.inner, control)?;
     let hours_on = |date: Date| {
         let days = Days { dates: vec![date.to_string()], ..Days::default() };
         let place = SunPlace { zone: Some(question.zone.clone()), ..SunPlace::default() };
