@@ -562,7 +562,7 @@ mod tests {
     fn eight_boxes_at_once_give_the_rows_of_one_after_the_other() {
         let index = RayIndex::new(&boxes(5000)).unwrap();
         if index.instructions == Instructions::Scalar {
-            println!("SKIPPED: this machine has no AVX2 or no FMA");
+            println!("SKIPPED a comparison of instructions: this machine has no AVX2 or no FMA");
             return;
         }
         let mut counts = [0; 3];

@@ -45,29 +45,31 @@ def test_other_threads_run_during_work(scene):
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals are others there")
-def test_ctrl_c_stops_within_a_fifth_of_a_second(tile):
+def test_ctrl_c_stops_long_before_the_end(tile):
     script = textwrap.dedent(f"""
         import belvedere, os, signal, threading, time
         scene = belvedere.Scene(belvedere.read({str(tile)!r}))
         scene.sky_view(directions=10, cell=5)
         # who started the tests in the background may have had Ctrl-C ignored
         signal.signal(signal.SIGINT, signal.default_int_handler)
-        sent = []
-        def interrupt():
-            time.sleep(0.5)
-            sent.append(time.perf_counter())
-            os.kill(os.getpid(), signal.SIGINT)
-        threading.Thread(target=interrupt).start()
+        begun, sent = time.perf_counter(), []
+        # interrupts once a hundredth of the work is done
+        def interrupt(stage, done, total):
+            if stage == "testing sky" and done > 0.01 * total and not sent:
+                sent[:] = [time.perf_counter(), done / total]
+                threading.Timer(0.05, os.kill, (os.getpid(), signal.SIGINT)).start()
         try:
-            scene.sky_view(directions=20_000, cell=0.1)
+            scene.sky_view(directions=20_000, cell=0.1, progress=interrupt)
         except KeyboardInterrupt:
-            print(time.perf_counter() - sent[0])
+            moment, share = sent
+            print((time.perf_counter() - moment) / ((moment - begun) / share))
         # the scene still answers
         assert scene.shadow(sun=(180, 30)).values.size
     """)
     result = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=120)
     assert result.returncode == 0, result.stderr
-    assert float(result.stdout) < 0.2, result.stdout
+    # of the time that all of the work would take, on a machine of any speed
+    assert float(result.stdout) < 0.25, result.stdout
 
 
 def test_progress_counts_to_the_end_and_what_it_raises_stops_the_work(scene):
@@ -82,13 +84,17 @@ def test_progress_counts_to_the_end_and_what_it_raises_stops_the_work(scene):
     class Stop(Exception):
         pass
 
+    stopped: list[float] = []
+
     def stop(stage, done, total):
+        stopped.append(done / max(total, 1))
         raise Stop
 
-    begun = time.perf_counter()
     with pytest.raises(Stop):
         long_work(scene, progress=stop)
-    assert time.perf_counter() - begun < 1.0
+    # nothing is reported after that
+    assert len(stopped) == 1
+    assert stopped[0] < 0.25
 
 
 def test_a_bar_is_shown_where_it_is_wanted(scene, capfd):

@@ -56,7 +56,7 @@ fn data(test: &str, relative: &str) -> Option<PathBuf> {
         .map_or_else(|| PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared")), PathBuf::from);
     let path = root.join(relative);
     if !path.exists() {
-        skipped(&format!("{test}: {relative} is not under BELVEDERE_TEST_DATA"));
+        skipped(&format!("{test} ({relative}): there is no reference data; name its folder in BELVEDERE_TEST_DATA"));
         return None;
     }
     Some(path)

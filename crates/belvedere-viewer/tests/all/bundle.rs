@@ -9,10 +9,10 @@ fn the_committed_bundle_is_made_of_its_sources() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("page");
     let skip = |why: &str| {
         // not `eprintln!`, which the test runner captures and shows for failed tests only
-        let _ = writeln!(std::io::stderr().lock(), "SKIPPED the bundle of the page is not compared: {why}");
+        let _ = writeln!(std::io::stderr().lock(), "SKIPPED a comparison of the bundle of the page: {why}");
     };
     if !folder.join("node_modules/esbuild").is_dir() {
-        return skip("run `npm ci` in crates/belvedere-viewer/page");
+        return skip("its packages are not installed; run `npm ci` in crates/belvedere-viewer/page");
     }
     let made = tempfile::tempdir().unwrap();
     let output = made.path().join("page.js");

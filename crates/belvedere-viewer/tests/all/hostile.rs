@@ -4,10 +4,10 @@ use belvedere::PointCloud;
 use belvedere::control::Control;
 use belvedere::model::{ModelParams, OrientBy, SceneModel};
 use belvedere_viewer::{PageServer, ViewerParams};
-use std::io::{Read, Write};
+use std::io::{ErrorKind, Read, Write};
 use std::net::TcpStream;
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// A viewer of rough ground with a step, 20 m wide.
 fn viewer() -> PageServer {
@@ -63,6 +63,12 @@ fn response(host: &str, token: &str, body: &str) -> (u16, String) {
 fn is_well(host: &str, token: &str) {
     let (status, text) = get(host, &format!("/{token}/state"), &format!("Host: {host}\r\n"));
     assert!(status == 200 && text.contains("point_count"), "{status} {text}");
+}
+
+/// Tells whether the server still holds a connection that it has sent nothing to.
+fn is_open(stream: &mut TcpStream) -> bool {
+    stream.set_nonblocking(true).unwrap();
+    matches!(stream.peek(&mut [0]), Err(error) if error.kind() == ErrorKind::WouldBlock)
 }
 
 #[test]
@@ -195,9 +201,8 @@ fn huge_false_and_slow_requests_do_no_harm() {
     // 9: a client that sends a byte a second holds up nobody
     let mut slow = TcpStream::connect(&host).unwrap();
     slow.write_all(b"G").unwrap();
-    let start = Instant::now();
     is_well(&host, &token);
-    assert!(start.elapsed() < Duration::from_secs(2));
+    assert!(is_open(&mut slow));
     drop(slow);
     is_well(&host, &token);
 }
@@ -214,18 +219,12 @@ fn connections_that_rest_or_crawl_hold_up_nobody() {
         stream.write_all(b"GET /x HTTP/1.1\r\nHost: localhost\r\n\r\n").unwrap();
         held.push(stream);
     }
-    let times: Vec<Duration> = (0..20)
-        .map(|_| {
-            let start = Instant::now();
-            is_well(&host, &token);
-            start.elapsed()
-        })
-        .collect();
-    let mut sorted = times.clone();
-    sorted.sort();
-    // a tenth of a second on a machine with nothing else to do: the middle of twenty
-    assert!(sorted[10] < Duration::from_millis(100), "{times:?}");
-    assert!(sorted[19] < Duration::from_secs(2), "{times:?}");
+    // each of these is answered while those that rest are still held: nobody waits until they are given up
+    for _ in 0..20 {
+        is_well(&host, &token);
+    }
+    let open = held.iter_mut().filter(|stream| is_open(stream)).count();
+    assert!(open > 0);
     drop(held);
     is_well(&host, &token);
 }

@@ -179,7 +179,7 @@ mod tests {
     #[test]
     fn every_test_gives_the_bits_of_its_scalar_form() {
         if Instructions::detect() != Instructions::Avx2 {
-            println!("SKIPPED: this machine has no AVX2 or no FMA");
+            println!("SKIPPED a comparison of instructions: this machine has no AVX2 or no FMA");
             return;
         }
         let mut passed = [0; 4];

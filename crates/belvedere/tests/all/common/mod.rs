@@ -15,7 +15,7 @@ pub(crate) fn data(test: &str, relative: &str) -> Option<PathBuf> {
     if path.exists() {
         return Some(path);
     }
-    skipped(&format!("{test}: {relative} is not under BELVEDERE_TEST_DATA"));
+    skipped(&format!("{test} ({relative}): there is no reference data; name its folder in BELVEDERE_TEST_DATA"));
     None
 }
 
