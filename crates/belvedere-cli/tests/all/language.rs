@@ -1,7 +1,7 @@
 //! Plain words in help, messages, pages and code; and pages that name only what exists.
 
 use crate::common::Workplace;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -240,10 +240,65 @@ fn long_lines_of_comments_are_found_and_long_addresses_are_not() {
     assert_eq!(long_comments("x.py", &format!("# {long}\n")).len(), 1);
 }
 
+/// Command lines of the program in a page: at the beginning of a line or of a piece of code, without `belvedere`.
+fn command_lines(page: &str) -> Vec<String> {
+    let lines = page.replace("\\\n", " ");
+    let pieces = lines.split(['\n', '`', '|', ';']).filter_map(|piece| piece.trim().strip_prefix("belvedere "));
+    let is_command = |piece: &&str| piece.starts_with(|c: char| c.is_ascii_lowercase());
+    pieces.filter(is_command).map(|piece| piece.split(" # ").next().unwrap_or_default().to_owned()).collect()
+}
+
+/// Commands, and flags of other commands, that a page names; `flags` has the names of commands, each with its flags.
+fn wrong_commands(page: &str, flags: &BTreeMap<String, BTreeSet<String>>) -> Vec<String> {
+    let mut wrong = Vec::new();
+    for line in command_lines(page) {
+        let words: Vec<&str> = line.split_whitespace().collect();
+        let names = [words.iter().take(2).copied().collect::<Vec<_>>().join(" "), words[0].to_owned()];
+        let own = names.iter().find_map(|name| flags.get(name));
+        let has_flag = |flag: &str| own.is_some_and(|own| own.contains(flag.split('=').next().unwrap_or_default()));
+        let is_step = flags.keys().any(|name| name.starts_with(&format!("{} ", words[0])));
+        match own {
+            None if words[0] == "help" && words.get(1).is_none_or(|name| *name == "COMMAND" || flags.contains_key(*name)) => {}
+            None if is_step && words.len() == 1 => {}
+            None => wrong.push(format!("there is no command: belvedere {line}")),
+            Some(_) => {
+                let flags = words.iter().filter(|word| word.starts_with("--") && word.len() > 2);
+                wrong.extend(flags.filter(|flag| !has_flag(flag)).map(|flag| format!("{flag} is no flag: belvedere {line}")));
+            }
+        }
+    }
+    wrong
+}
+
 #[test]
-fn every_flag_and_file_that_a_page_names_exists() {
+fn commands_and_flags_of_others_are_found_in_pages() {
+    let own = |flags: &[&str]| flags.iter().map(|&flag| flag.to_owned()).collect::<BTreeSet<String>>();
+    let flags = BTreeMap::from([
+        ("shadow".to_owned(), own(&["--time", "--json"])),
+        ("city run".to_owned(), own(&["--json"])),
+    ]);
+    let fine = "belvedere shadow a.laz --time=1 \\\n  --json # --any\n`belvedere city run x`, `belvedere help shadow`, belvedere does";
+    assert_eq!(wrong_commands(fine, &flags), [""; 0]);
+    let wrong = "see `belvedere compare`\nbelvedere city run a --time 1\n`belvedere help compare`";
+    assert_eq!(wrong_commands(wrong, &flags).len(), 3);
+}
+
+#[test]
+fn every_command_flag_and_file_that_a_page_names_exists() {
     let place = Workplace::new();
     let program = place.summary("describe");
+    let names = |parameters: &serde_json::Value| -> BTreeSet<String> {
+        let rows = parameters.as_array().unwrap().iter();
+        rows.map(|parameter| parameter["name"].as_str().unwrap().to_owned()).collect()
+    };
+    let mut global = names(&program["global_parameters"]);
+    global.extend(["--help", "--version"].map(str::to_owned));
+    let of_command = |command: &serde_json::Value| {
+        let own = names(&command["parameters"]).union(&global).cloned().collect();
+        (command["name"].as_str().unwrap().to_owned(), own)
+    };
+    let by_command: BTreeMap<String, BTreeSet<String>> =
+        program["commands"].as_array().unwrap().iter().map(of_command).collect();
     let mut flags: BTreeSet<String> =
         ["--help", "--version"].into_iter().chain(FLAGS_OF_OTHERS).map(str::to_owned).collect();
     let all =
@@ -255,6 +310,8 @@ fn every_flag_and_file_that_a_page_names_exists() {
     let mut missing = Vec::new();
     for page in pages() {
         let text = fs::read_to_string(&page).unwrap();
+        let wrong = wrong_commands(&text, &by_command);
+        missing.extend(wrong.into_iter().map(|wrong| format!("{}: {wrong}", page.display())));
         for word in text.split(|c: char| !(c.is_ascii_alphanumeric() || c == '-')) {
             if word.len() > 2 && word.starts_with("--") && !word[2..].starts_with('-') && !flags.contains(word) {
                 missing.push(format!("{}: {word}", page.display()));
