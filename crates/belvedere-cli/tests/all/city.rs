@@ -161,8 +161,8 @@ fn a_damaged_file_is_named_and_the_exit_status_says_so() {
 #[test]
 fn pieces_of_files_save_reading_and_change_no_result() {
     let place = Workplace::new();
-    assert_eq!(place.run("simulate village -o town --extent 300 --density 3").status, 0);
-    // a high sun, so that a sixth of the tiles needs few others
+    assert_eq!(place.run("simulate village -o town --extent 200 --density 3").status, 0);
+    // a high sun, so that a quarter of the tiles needs few others
     let plan = "city plan town/cloud.laz --sun 150,80 --tile-size 64 --cell 2";
     place.summary(&format!("{plan} -o pieces"));
     place.summary(&format!("{plan} -o whole"));
@@ -170,13 +170,13 @@ fn pieces_of_files_save_reading_and_change_no_result() {
     let pieces = whole["inputs"][0].as_object_mut().unwrap().remove("pieces").unwrap();
     let points = whole["inputs"][0]["points"].as_u64().unwrap();
     assert_eq!(pieces.as_array().unwrap().len() as u64, points.div_ceil(50_000));
-    assert!(points > 200_000, "{points}");
+    assert!(points > 100_000, "{points}");
     place.write("whole/plan.json", &sealed(&mut whole));
     for run in ["pieces", "whole"] {
-        place.summary(&format!("city run {run} --shard 1/6"));
+        place.summary(&format!("city run {run} --shard 1/4"));
     }
     let [found, expected] = ["pieces", "whole"].map(|run| results(&place.path(run)));
-    assert!(found.len() > 20, "{}", found.len());
+    assert!(found.len() > 8, "{}", found.len());
     assert!(found == expected, "the results differ");
     // pieces of another file are no plan
     whole["inputs"][0]["pieces"] = serde_json::json!([[0, 0, 1, 1]]);

@@ -258,12 +258,15 @@ fn wrong_commands(page: &str, flags: &BTreeMap<String, BTreeSet<String>>) -> Vec
         let has_flag = |flag: &str| own.is_some_and(|own| own.contains(flag.split('=').next().unwrap_or_default()));
         let is_step = flags.keys().any(|name| name.starts_with(&format!("{} ", words[0])));
         match own {
-            None if words[0] == "help" && words.get(1).is_none_or(|name| *name == "COMMAND" || flags.contains_key(*name)) => {}
+            None if words[0] == "help"
+                && words.get(1).is_none_or(|name| *name == "COMMAND" || flags.contains_key(*name)) => {}
             None if is_step && words.len() == 1 => {}
             None => wrong.push(format!("there is no command: belvedere {line}")),
             Some(_) => {
                 let flags = words.iter().filter(|word| word.starts_with("--") && word.len() > 2);
-                wrong.extend(flags.filter(|flag| !has_flag(flag)).map(|flag| format!("{flag} is no flag: belvedere {line}")));
+                wrong.extend(
+                    flags.filter(|flag| !has_flag(flag)).map(|flag| format!("{flag} is no flag: belvedere {line}")),
+                );
             }
         }
     }
@@ -273,10 +276,8 @@ fn wrong_commands(page: &str, flags: &BTreeMap<String, BTreeSet<String>>) -> Vec
 #[test]
 fn commands_and_flags_of_others_are_found_in_pages() {
     let own = |flags: &[&str]| flags.iter().map(|&flag| flag.to_owned()).collect::<BTreeSet<String>>();
-    let flags = BTreeMap::from([
-        ("shadow".to_owned(), own(&["--time", "--json"])),
-        ("city run".to_owned(), own(&["--json"])),
-    ]);
+    let flags =
+        BTreeMap::from([("shadow".to_owned(), own(&["--time", "--json"])), ("city run".to_owned(), own(&["--json"]))]);
     let fine = "belvedere shadow a.laz --time=1 \\\n  --json # --any\n`belvedere city run x`, `belvedere help shadow`, belvedere does";
     assert_eq!(wrong_commands(fine, &flags), [""; 0]);
     let wrong = "see `belvedere compare`\nbelvedere city run a --time 1\n`belvedere help compare`";

@@ -4,14 +4,11 @@
 use std::path::PathBuf;
 
 use belvedere::io::{LevelOfDetail, read_cityjson};
-use belvedere::io::{MeshReport, read_mesh};
+use belvedere::io::{MeshReport, Source, read_mesh};
 use belvedere::{Error, Mesh, Result};
 
 fn read(name: &str, bytes: impl AsRef<[u8]>) -> Result<(Mesh, MeshReport)> {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join(name);
-    std::fs::write(&path, bytes).unwrap();
-    read_mesh(&path)
+    read_mesh(Source::bytes(name, bytes.as_ref()))
 }
 
 fn doubled_area_vector(mesh: &Mesh, index: usize) -> [f64; 3] {
