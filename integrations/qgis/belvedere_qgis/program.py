@@ -17,7 +17,7 @@ ENVIRONMENT = "BELVEDERE_PROGRAM"
 NAME = "belvedere.exe" if os.name == "nt" else "belvedere"
 PLUGIN = Path(__file__).resolve().parent
 MISSING = (
-    "The program belvedere was not found. Install it with `pip install belvedere` (in the OSGeo4W shell on Windows), or download it and put it into "
+    "The program belvedere was not found. Build it from a checkout of Belvedere (docs/qgis.md says how), and put it into "
     f"{PLUGIN / 'bin'}. If it is elsewhere, give its path in Settings > Options > Processing > Providers > Belvedere, or in the environment "
     f"variable {ENVIRONMENT}."
 )

@@ -29,7 +29,7 @@ def nowhere(tmp_path, monkeypatch):
 
 @pytest.mark.usefixtures("nowhere")
 def test_places_are_searched_in_their_order(tmp_path, monkeypatch):
-    with pytest.raises(program.ProgramError, match=r"pip install belvedere.*download"):
+    with pytest.raises(program.ProgramError, match=r"checkout.*docs/qgis.md"):
         program.find()
     in_plugin = make_program(tmp_path / "plugin" / "bin" / program.NAME)
     assert program.find() == in_plugin

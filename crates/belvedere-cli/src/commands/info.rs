@@ -25,7 +25,6 @@ pub(crate) fn run(arguments: &Info, global: &Global) -> Result<Summary> {
         return Ok(of_balls(&run.stage("reading balls", 0, |_| read_balls(path))?));
     }
     let mut summary = Summary::default();
-    summary.is_report();
     let options = arguments.input.read_options();
     let read = run.stage("reading", 0, |control| read_cloud(&arguments.input.clouds, &options, control));
     let (cloud, report) = read.map_err(|error| pipeline::named_for_part(&arguments.input, error))?;
@@ -75,7 +74,37 @@ pub(crate) fn run(arguments: &Info, global: &Global) -> Result<Summary> {
     summary.add("usable_for", can_serve(&cloud, &statistics, &scanner));
     summary.add("duplicate_points", statistics.duplicate_count);
     crate::device::list(&mut summary);
+    add_headlines(&mut summary, &cloud, &statistics);
     Ok(summary)
+}
+
+/// Adds the lines that matter to most people; all figures follow with `--verbose`.
+fn add_headlines(summary: &mut Summary, cloud: &PointCloud, statistics: &CloudSummary) {
+    summary.headline("<points> points");
+    if let Some((low, high)) = statistics.bounds {
+        let [width, depth] = [0, 1].map(|axis| high[axis] - low[axis]);
+        let unit = if cloud.frame.crs.metres_per_unit == 1.0 { "m" } else { "units" };
+        let heights = format!("heights {:.1} to {:.1}", low[2], high[2]);
+        summary.answer(&format!("{width:.0} x {depth:.0} {unit} on the map, {heights}"));
+    }
+    summary.headline("reference system: <reading.reference_system>");
+    summary.headline(
+        "<points_per_m2_of_covered_ground> points[ and <pulses_per_m2_of_covered_ground> pulses] per m² of covered \
+         ground[, <facades.points_per_m2_of_wall> points per m² of wall]",
+    );
+    summary.headline("survey: <survey>");
+    if !statistics.classes.is_empty() && !cloud.is_empty() {
+        let percent = |count: usize| 100.0 * count as f64 / cloud.len() as f64;
+        let classes = statistics.classes.iter().map(|(class, &count)| format!("{class}: {:.1} %", percent(count)));
+        summary.answer(&format!("classes: {}", classes.collect::<Vec<_>>().join(", ")));
+    }
+    if !missing(cloud, statistics).is_empty() {
+        summary.headline("missing: <missing>");
+    }
+    if statistics.duplicate_count > 0 {
+        summary.headline("<duplicate_points> points share their place with another one");
+    }
+    summary.answer("attributes, scanner, uses, devices: -v, or --json");
 }
 
 fn of_file(file: &FileReport) -> serde_json::Value {
