@@ -211,7 +211,7 @@ fn ends_can_change_places_where_rounding_decides() {
                     decided_by_rounding += usize::from(blocks(a, b) != blocks(b, a));
                 }
             }
-        })
+        });
     });
     // or this test says nothing
     assert!(decided_by_rounding > 0);
