@@ -2,9 +2,8 @@
 //!
 //! The tests run on every device of the computer, software ones among them (Debian: `mesa-vulkan-drivers`).
 
-use crate::common::{Workplace, house_in_a_field};
+use crate::common::{Workplace, house_in_a_field, skipped};
 use serde_json::Value;
-use std::io::Write;
 
 /// The numbers and names of the devices of this computer.
 fn devices(place: &Workplace) -> Vec<(u64, String)> {
@@ -12,11 +11,7 @@ fn devices(place: &Workplace) -> Vec<(u64, String)> {
     let device = |device: &Value| (device["number"].as_u64().unwrap(), device["name"].as_str().unwrap().to_owned());
     let found: Vec<_> = info["devices"].as_array().unwrap().iter().map(device).collect();
     if found.is_empty() {
-        // not `eprintln!`, which the test runner captures and shows for failed tests only
-        let _ = writeln!(
-            std::io::stderr().lock(),
-            "SKIPPED tests of --device: this computer has no device with a driver for Vulkan, Metal or DirectX 12"
-        );
+        skipped("tests of --device: this computer has no device with a driver for Vulkan, Metal or DirectX 12");
     }
     found
 }

@@ -291,10 +291,12 @@ pub(crate) fn shared_data(test: &str) -> Option<PathBuf> {
     if folder.join("reference").is_dir() {
         return Some(folder);
     }
-    // not `eprintln!`, which the test runner captures and shows for failed tests only
-    let _ = writeln!(
-        std::io::stderr().lock(),
-        "SKIPPED {test}: there is no reference data; name its folder in BELVEDERE_TEST_DATA"
-    );
+    skipped(&format!("{test}: there is no reference data; name its folder in BELVEDERE_TEST_DATA"));
     None
+}
+
+/// Says that a test, or a part of one, did not run. The test runner captures what `eprintln!` prints and shows it for
+/// failed tests only, so this writes to standard error itself.
+pub(crate) fn skipped(what: &str) {
+    let _ = writeln!(std::io::stderr().lock(), "SKIPPED {what}");
 }
