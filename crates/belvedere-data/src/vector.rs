@@ -1,6 +1,15 @@
 //! Arithmetic on vectors of three numbers, f32 and f64 alike, in one fixed order so that results do not vary.
 
+use std::cmp::Ordering;
 use std::ops::{Add, Mul, Sub};
+
+/// Compares two places by their coordinates, east first: an order of points that does not depend on their file.
+#[must_use]
+#[inline]
+pub fn compare_places(a: &[f32; 3], b: &[f32; 3]) -> Ordering {
+    // adding zero turns -0 into 0
+    (0..3).map(|i| (a[i] + 0.0).total_cmp(&(b[i] + 0.0))).find(|order| order.is_ne()).unwrap_or(Ordering::Equal)
+}
 
 /// `a − b`.
 #[must_use]

@@ -13,7 +13,9 @@ pub use points::{GROUND_CELL, RoofsFrom, roof_points};
 use belvedere_core::neighbors::NeighborIndex;
 use belvedere_core::normals::estimate::{Neighborhood, estimate};
 use belvedere_data::control::Control;
+use belvedere_data::vector::compare_places;
 use belvedere_data::{Error, Parameter, Result};
+use rayon::prelude::*;
 use room::Room;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -155,6 +157,10 @@ impl RoofPlane {
 /// number of squares it meets and the length of their outline is Steiner's formula.
 pub fn roof_planes(points: &[[f32; 3]], params: &RoofPlaneParams, control: &Control<'_>) -> Result<Vec<RoofPlane>> {
     params.validate()?;
+    // planes grow from the first of several points that are equally flat
+    let mut rows: Vec<u32> = (0..).zip(points).map(|(row, _)| row).collect();
+    rows.par_sort_unstable_by(|&a, &b| compare_places(&points[a as usize], &points[b as usize]).then(a.cmp(&b)));
+    let points = &rows.iter().map(|&row| points[row as usize]).collect::<Vec<_>>()[..];
     let index = NeighborIndex::new(points, &Control::none())?;
     // near ridges and eaves few neighbours are on one plane
     let normals = estimate(points, &index, Neighborhood::adaptive(), &Control::none())?;
@@ -178,5 +184,6 @@ pub fn roof_planes(points: &[[f32; 3]], params: &RoofPlaneParams, control: &Cont
         .collect();
     // of equal areas the one with the lower first point, so that the order is settled
     planes.sort_by(|a, b| b.area.total_cmp(&a.area).then_with(|| a.points.first().cmp(&b.points.first())));
+    planes.iter_mut().flat_map(|plane| &mut plane.points).for_each(|row| *row = rows[*row as usize]);
     Ok(planes)
 }

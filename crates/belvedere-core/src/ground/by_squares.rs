@@ -38,7 +38,7 @@ impl GroundBySquares {
     /// Those of [`Ground::of_cloud`].
     pub fn new(cloud: &PointCloud, params: &GroundParams, control: &Control<'_>) -> Result<Self> {
         params.check()?;
-        let found = tested_points(cloud, params, control)?;
+        let found = tested_points(cloud, params, control)?.in_order(cloud);
         let points = found.positions(cloud);
         let flat = super::on_map(&points);
         let ((triangles, nearest), shift) = rayon::join(

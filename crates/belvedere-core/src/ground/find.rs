@@ -5,7 +5,9 @@ use super::{Ground, MapGrid, WITHHELD};
 use belvedere_data::Bounds;
 use belvedere_data::control::Control;
 use belvedere_data::raster::Raster;
+use belvedere_data::vector::compare_places;
 use belvedere_data::{Error, Parameter, PointCloud, Result};
+use rayon::prelude::*;
 
 /// Classes that are never ground: noise, low and high.
 const NOISE: [u8; 2] = [7, 18];
@@ -90,7 +92,9 @@ pub fn find_ground(cloud: &PointCloud, params: &FinderParams, control: &Control<
         classes.and_then(|classes| classes.get(row)).is_none_or(|class| !NOISE.contains(class))
             && flags.and_then(|flags| flags.get(row)).is_none_or(|flags| flags & WITHHELD == 0)
     };
-    let rows: Vec<usize> = (0..cloud.len()).filter(|&row| usable(row)).collect();
+    let mut rows: Vec<usize> = (0..cloud.len()).filter(|&row| usable(row)).collect();
+    // the first of several points that are equally low is taken
+    rows.par_sort_unstable_by(|&a, &b| compare_places(&cloud.positions[a], &cloud.positions[b]).then(a.cmp(&b)));
     let positions: Vec<[f32; 3]> = rows.iter().filter_map(|&row| cloud.positions.get(row).copied()).collect();
     let Some(Bounds { low, high }) = Bounds::around(positions.iter().copied()) else {
         return Err(Error::NoPoints { what: "all points are noise or withheld, so there is no ground".to_owned() });
@@ -122,6 +126,7 @@ pub fn find_ground(cloud: &PointCloud, params: &FinderParams, control: &Control<
     if found.is_empty() {
         return Err(Error::NoPoints { what: "no ground was detected; classify it first".to_owned() });
     }
+    found.par_sort_unstable();
     Ok(found)
 }
 

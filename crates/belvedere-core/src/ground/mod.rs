@@ -24,6 +24,7 @@ pub use surface::{SurfaceParams, top_surface};
 use crate::neighbors::NeighborIndex;
 use belvedere_data::control::Control;
 use belvedere_data::raster::Raster;
+use belvedere_data::vector::compare_places;
 use belvedere_data::{Error, Parameter, PointCloud, Result};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -141,6 +142,17 @@ struct GroundRows {
 }
 
 impl GroundRows {
+    /// The same in an order that does not depend on that of the cloud.
+    fn in_order(mut self, cloud: &PointCloud) -> Self {
+        let strips = cloud.attributes.point_source_id.as_deref();
+        let strip = |row: u32| strips.and_then(|strips| strips.get(row as usize));
+        let place = |row: u32| &cloud.positions[row as usize];
+        self.rows.par_sort_unstable_by(|&a, &b| {
+            compare_places(place(a), place(b)).then_with(|| strip(a).cmp(&strip(b))).then(a.cmp(&b))
+        });
+        self
+    }
+
     fn positions(&self, cloud: &PointCloud) -> Vec<[f32; 3]> {
         self.rows.iter().filter_map(|&row| cloud.positions.get(row as usize).copied()).collect()
     }
@@ -194,6 +206,12 @@ fn tested_points(cloud: &PointCloud, params: &GroundParams, control: &Control<'_
     Ok(GroundRows { rows, from: GroundPoints::Classed, doubted_count })
 }
 
+/// Points sorted by their coordinates: triangulations and the nearest of several points depend on the order.
+fn in_order(mut points: Vec<[f32; 3]>) -> Vec<[f32; 3]> {
+    points.par_sort_unstable_by(compare_places);
+    points
+}
+
 /// Points in the plane, for distances and neighbours on the map.
 fn on_map(points: &[[f32; 3]]) -> Vec<[f32; 3]> {
     points.iter().map(|p| [p[0], p[1], 0.0]).collect()
@@ -214,7 +232,7 @@ impl Ground {
         control: &Control<'_>,
     ) -> Result<(Self, GroundReport)> {
         params.check()?;
-        let found = tested_points(cloud, params, control)?;
+        let found = tested_points(cloud, params, control)?.in_order(cloud);
         let points = found.positions(cloud);
         let left = cloud.positions.iter().map(|p| [f64::from(p[0]), f64::from(p[1])]);
         let returns = left.chain(cloud.cleared_places.iter().map(|place| place.map(f64::from)));
@@ -247,6 +265,7 @@ impl Ground {
     /// # Errors
     /// [`Error::InvalidParameter`] for a point that is not finite, [`Error::Cancelled`].
     pub fn of_points(points: &[[f32; 3]], grid: MapGrid, reach: f64, control: &Control<'_>) -> Result<Self> {
+        let points = &in_order(points.to_vec())[..];
         let flat = on_map(points);
         let (heights, nearest) =
             rayon::join(|| triangulate::heights(points, &grid), || NeighborIndex::new(&flat, control));

@@ -88,6 +88,7 @@ pub fn top_surface(
     control: &Control<'_>,
 ) -> Result<Raster<f32>> {
     params.validate()?;
+    let positions = &super::in_order(positions.to_vec())[..];
     let mut heights = highest_points(positions, ground);
     let grid = ground.grid;
     let flat: Vec<[f32; 3]> = positions.iter().map(|p| [p[0], p[1], 0.0]).collect();

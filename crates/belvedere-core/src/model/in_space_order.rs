@@ -1,37 +1,30 @@
-//! Points in the order of space: those near each other on the map are near each other in memory.
+//! Points in an order that follows from where they are and not from their file: those near each other on the map are
+//! near each other in memory.
 //!
-//! Every stage looks around each point. Scanners write points that follow each other on the ground. Where a program has
-//! mixed them, what a stage finds lies anywhere in memory, and fetching it takes most of the time.
+//! Every stage looks around each point, and takes the first of several that are equally near. In this order it takes
+//! the same one whatever the order of the file. Where a program has mixed the points of a scanner, what a stage finds
+//! would also lie anywhere in memory, and fetching it would take most of the time.
 
+use belvedere_data::vector::compare_places;
 use belvedere_data::{Attributes, PointCloud};
 use rayon::prelude::*;
+use std::cmp::Ordering;
 
-/// Side of the squares within which points keep their order, metres.
+/// Side of the squares that the points are sorted by first, metres.
 const SIDE: f64 = 4.0;
 
-/// Share of the points far from the one before from which on a cloud counts as mixed: seven of nine open surveys have
-/// 7 % at most, the other two and shuffled ones 74 % and more.
-const MIXED_SHARE: f64 = 0.2;
-
-/// Whether points that follow each other in a cloud lie far apart on the map, so that it is worth sorting.
-fn is_mixed(cloud: &PointCloud) -> bool {
-    let far = |pair: &[[f32; 3]]| {
-        let [x, y] = [0, 1].map(|axis| f64::from(pair[1][axis]) - f64::from(pair[0][axis]));
-        x.hypot(y) > 2.0 * SIDE
-    };
-    let count = cloud.positions.par_windows(2).filter(|pair| far(pair)).count();
-    count as f64 > MIXED_SHARE * cloud.len() as f64
-}
-
-/// Rows of a cloud in the order of space, where its points are mixed; `None` where they follow each other.
-pub(super) fn order_of_mixed(cloud: &PointCloud) -> Option<Vec<u32>> {
-    // columns of other lengths are refused by cleaning
+/// Rows of a cloud in the order of space; `None` where they are in it, or columns have other lengths, which cleaning
+/// refuses.
+pub(super) fn space_order(cloud: &PointCloud) -> Option<Vec<u32>> {
     let is_whole = cloud.attributes.columns().iter().all(|(_, length)| *length == cloud.len());
-    (is_whole && is_mixed(cloud)).then(|| rows_in_space_order(cloud))
+    let rows = is_whole.then(|| rows_in_space_order(cloud))?;
+    let is_in_order = (0..).zip(&rows).all(|(place, row): (u32, &u32)| place == *row);
+    (!is_in_order).then_some(rows)
 }
 
 /// Rows of a cloud, square by square: squares come along a Z-order curve, which seldom leaves a neighbourhood (Morton
-/// 1966). The rows of a square ascend. A point has the same square in every part of a survey.
+/// 1966). Within a square points are sorted by their coordinates, and those in one place by their attributes. A point
+/// has the same square in every part of a survey.
 fn rows_in_space_order(cloud: &PointCloud) -> Vec<u32> {
     let [east, north, _] = cloud.frame.origin;
     let square = |place: f32, origin: f64| {
@@ -48,7 +41,48 @@ fn rows_in_space_order(cloud: &PointCloud) -> Vec<u32> {
     let mut keys: Vec<u64> = cloud.positions.par_iter().enumerate().map(|(row, p)| key((row as u32, *p))).collect();
     keys.par_sort_unstable();
     #[expect(clippy::cast_possible_truncation, reason = "the lower half")]
-    keys.into_par_iter().map(|key| key as u32).collect()
+    let row = |key: u64| key as u32;
+    let of_square = keys.par_chunk_by_mut(|a, b| a >> 32 == b >> 32);
+    of_square.for_each(|keys| keys.sort_unstable_by(|&a, &b| compare(cloud, row(a), row(b)).then(a.cmp(&b))));
+    keys.into_par_iter().map(row).collect()
+}
+
+/// Compares two points of a cloud by all that a model is made from.
+fn compare(cloud: &PointCloud, a: u32, b: u32) -> Ordering {
+    let [a, b] = [a, b].map(|row| row as usize);
+    let PointCloud { positions, attributes, .. } = cloud;
+    let places = compare_places(&positions[a], &positions[b]);
+    if places.is_ne() {
+        return places;
+    }
+    let Attributes {
+        normals,
+        classification,
+        gps_time,
+        return_number,
+        return_count,
+        scan_angle,
+        point_source_id,
+        scanner_channel,
+        flags,
+        scanner_index,
+        ..
+    } = attributes;
+    let times = gps_time.as_ref().map_or(Ordering::Equal, |times| times[a].total_cmp(&times[b]));
+    times
+        .then_with(|| of_column(return_number.as_deref(), a, b))
+        .then_with(|| of_column(return_count.as_deref(), a, b))
+        .then_with(|| of_column(classification.as_deref(), a, b))
+        .then_with(|| of_column(point_source_id.as_deref(), a, b))
+        .then_with(|| of_column(scanner_channel.as_deref(), a, b))
+        .then_with(|| of_column(flags.as_deref(), a, b))
+        .then_with(|| of_column(scanner_index.as_deref(), a, b))
+        .then_with(|| scan_angle.as_ref().map_or(Ordering::Equal, |angles| angles[a].total_cmp(&angles[b])))
+        .then_with(|| normals.as_ref().map_or(Ordering::Equal, |normals| compare_places(&normals[a], &normals[b])))
+}
+
+fn of_column<T: Ord>(values: Option<&[T]>, a: usize, b: usize) -> Ordering {
+    values.map_or(Ordering::Equal, |values| values[a].cmp(&values[b]))
 }
 
 /// The points of `cloud` at `rows`, with what models are made from: neither colours nor where they come from.
@@ -97,7 +131,8 @@ mod tests {
         let count = squares.len();
         squares.dedup();
         assert_eq!(squares.len(), count, "a square comes twice");
-        assert!(runs.iter().all(|run| run.is_sorted()) && count > 2000);
+        let east = |row: &u32| cloud.positions[*row as usize][0];
+        assert!(runs.iter().all(|run| run.is_sorted_by_key(east)) && count > 2000);
         // most squares lie beside the one before
         let beside = runs.windows(2).filter(|pair| {
             let [a, b] = [square(pair[0][0]), square(pair[1][0])];
@@ -107,13 +142,31 @@ mod tests {
     }
 
     #[test]
-    fn lines_of_a_scanner_are_in_order_and_mixed_points_are_not() {
-        #[expect(clippy::cast_precision_loss, reason = "a thousand points")]
-        let line = |i: usize| [0.4 * (i % 100) as f32, 0.5 * (i / 100) as f32, 0.0];
-        let in_lines = PointCloud { positions: (0..1000).map(line).collect(), ..PointCloud::default() };
-        let mixed = in_lines.select(&(0..1000).map(|i| i * 337 % 1000).collect::<Vec<u32>>());
-        assert!(!is_mixed(&in_lines) && is_mixed(&mixed) && !is_mixed(&PointCloud::default()));
-        assert!(!is_mixed(&mixed.select(&rows_in_space_order(&mixed))));
+    fn the_order_is_that_of_places_and_attributes_whatever_the_file_has() {
+        // points on a grid of 2 m, each place twice with two classes
+        let row = |i: u32| ([2.0 * (i % 9) as f32 - 8.0, 2.0 * (i / 9 % 9) as f32, 0.0], u8::from(i >= 81));
+        let cloud = |numbers: &[u32]| PointCloud {
+            positions: numbers.iter().map(|&i| row(i).0).collect(),
+            attributes: Attributes {
+                classification: Some(numbers.iter().map(|&i| row(i).1).collect()),
+                ..Attributes::default()
+            },
+            ..PointCloud::default()
+        };
+        let sorted = |cloud: PointCloud| match space_order(&cloud) {
+            Some(rows) => points_at(&cloud, &rows),
+            None => cloud,
+        };
+        let numbers: Vec<u32> = (0..162).collect();
+        let expected = sorted(cloud(&numbers));
+        assert!(space_order(&expected).is_none() && space_order(&PointCloud::default()).is_none());
+        for step in [5, 25, 125] {
+            let mut mixed: Vec<u32> = numbers.iter().map(|i| i * step % 162).collect();
+            mixed.dedup();
+            let found = sorted(cloud(&mixed));
+            assert_eq!(found.positions, expected.positions);
+            assert_eq!(found.attributes.classification, expected.attributes.classification);
+        }
     }
 
     #[test]

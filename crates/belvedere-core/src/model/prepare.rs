@@ -1,7 +1,7 @@
 //! From a cloud to a cleaned cloud with outward normals, and what its pulses prove empty.
 
 use super::close_range_normals::CloseRange;
-use super::in_space_order::{order_of_mixed, points_at};
+use super::in_space_order::{points_at, space_order};
 use super::params::{Carving, ModelParams, OrientBy};
 use super::report::{BuildReport, NormalsReport, PulsesReport, SmoothingReport};
 use crate::clean::clean;
@@ -34,8 +34,7 @@ pub struct OrientedSurvey {
     pub oriented: OrientedCloud,
     /// Index of these points.
     pub index: NeighborIndex,
-    /// Their rows in the cloud as it was given: ascending, or in the order of space where they are to be carved
-    /// and were mixed.
+    /// Their rows in the cloud as it was given: ascending, or in the order of space where they are to be carved.
     pub kept: Vec<u32>,
     /// The smallest box around them: a stray point that was cleaned away does not widen a view.
     pub bounds: Bounds,
@@ -139,7 +138,7 @@ pub(super) fn prepare(
     let cleaning = cleaning.as_ref().unwrap_or(&params.clean);
     // where nothing carves, balls have the rows of their points
     let carving = params.balls.carving();
-    let order = if carving == Carving::Unwanted { None } else { order_of_mixed(&cloud) };
+    let order = if carving == Carving::Unwanted { None } else { space_order(&cloud) };
     let mut cloud = match &order {
         Some(rows) => Cow::Owned(points_at(&cloud, rows)),
         None => cloud,
