@@ -108,11 +108,10 @@ impl BuildingOutlines {
         self.planes.iter().filter(is_on).min_by(|a, b| distance(a).total_cmp(&distance(b)))
     }
 
-    /// Without the planes whose middles lie in a polygon, local metres on the map, the lines that end these, and those
+    /// Without the planes whose middles lie in polygons, local metres on the map, the lines that end these, and those
     /// whose own middles lie there.
     #[must_use]
-    pub fn outside(self, rings: &[Vec<[f64; 2]>]) -> Self {
-        let index = PolygonIndex::new(rings);
+    pub fn outside(self, index: &PolygonIndex) -> Self {
         let is_out = |[a, b]: [[f64; 2]; 2]| !index.holds([0, 1].map(|i| f64::midpoint(a[i], b[i])));
         let on_map = |ends: [[f64; 3]; 2]| ends.map(|[x, y, _]| [x, y]);
         let (planes, plane_at) = kept(self.planes, |plane| is_out(on_map([plane.center; 2])));
@@ -227,12 +226,12 @@ mod tests {
     #[test]
     fn lines_go_with_their_planes() {
         let area = vec![vec![[-1.0, -1.0], [9.0, -1.0], [9.0, 11.0], [-1.0, 11.0]]];
-        let left = two_roofs().outside(&area);
+        let left = two_roofs().outside(&PolygonIndex::new(&area));
         assert!(left.validate().is_ok() && left.ridges.is_empty(), "{left:?}");
         let all = two_roofs();
         assert_eq!((left.planes, left.walls.len()), (vec![all.planes[1]], 1));
         assert_eq!((left.edges[0].ends, left.edges[0].plane, left.walls[0].edge), (all.edges[1].ends, 0, 0));
-        assert_eq!(all.clone().outside(&[]), all);
+        assert_eq!(all.clone().outside(&PolygonIndex::new(&[])), all);
     }
 
     #[test]

@@ -136,7 +136,12 @@ impl SurfacePatches {
     /// of the rings come near to.
     #[must_use]
     pub fn outside(&self, rings: &[Vec<[f64; 2]>]) -> Self {
-        let index = PolygonIndex::new(rings);
+        self.outside_polygons(&PolygonIndex::new(rings))
+    }
+
+    /// The same outside some polygons.
+    #[must_use]
+    pub fn outside_polygons(&self, index: &PolygonIndex) -> Self {
         let holds =
             |piece: &Triangle| index.holds(std::array::from_fn(|i| piece.iter().map(|c| c[i]).sum::<f64>() / 3.0));
         let mut left = Self::default();
@@ -147,12 +152,9 @@ impl SurfacePatches {
             };
             let mut sides = Vec::new();
             index.each_side_near(bound(f64::min), bound(f64::max), |side| sides.push(side));
-            let mut pieces = vec![whole];
-            if sides.len() <= MAX_SIDES {
-                for side in &sides {
-                    pieces = pieces.iter().flat_map(|piece| cut(*piece, side)).collect();
-                }
-            }
+            let mut pieces = Vec::new();
+            let sides = if sides.len() <= MAX_SIDES { &sides[..] } else { &[] };
+            cut_along(whole, sides, &mut pieces);
             if !pieces.iter().any(holds) {
                 left.push(*triangle, kind);
                 continue;
@@ -190,6 +192,35 @@ fn may_cross(piece: &Triangle, edge: &[[f64; 2]; 2]) -> bool {
         });
         low.0 <= high.1 && low.1 <= high.0
     })
+}
+
+/// Whether an edge runs through the inside of a triangle on the map, or may where that is a line there.
+fn crosses(piece: &Triangle, edge: &[[f64; 2]; 2]) -> bool {
+    let turn = |a: [f64; 3], b: [f64; 3], [x, y]: [f64; 2]| (b[0] - a[0]) * (y - a[1]) - (b[1] - a[1]) * (x - a[0]);
+    let [a, b, c] = *piece;
+    let doubled_area = turn(a, b, [c[0], c[1]]);
+    let is_beside = |[from, to]: [[f64; 3]; 2]| edge.iter().all(|end| turn(from, to, *end) * doubled_area <= 0.0);
+    may_cross(piece, edge) && (doubled_area == 0.0 || ![[a, b], [b, c], [c, a]].into_iter().any(is_beside))
+}
+
+/// Adds the pieces of a triangle that edges cut it into. Each piece is cut by those alone that run through it, so that
+/// the edges of an outline take as many pieces as there are of them, and not each the pieces of all others.
+fn cut_along(piece: Triangle, edges: &[[[f64; 2]; 2]], pieces: &mut Vec<Triangle>) {
+    let mut pending = vec![(piece, edges.to_vec())];
+    while let Some((piece, mut edges)) = pending.pop() {
+        edges.retain(|edge| crosses(&piece, edge));
+        let parts = loop {
+            let Some(edge) = edges.pop() else { break Vec::new() };
+            let parts = cut(piece, &edge);
+            if parts.len() > 1 {
+                break parts;
+            }
+        };
+        match &parts[..] {
+            [] => pieces.push(piece),
+            parts => pending.extend(parts.iter().map(|part| (*part, edges.clone()))),
+        }
+    }
 }
 
 /// A triangle cut along the vertical plane of an edge, where the edge may cross it.

@@ -1,6 +1,7 @@
 //! Polygons on the map.
 
 use crate::{Error, Parameter};
+use std::ops::{ControlFlow, Range};
 
 /// Whether a place lies within an outline and outside its holes: the rule of odd crossings over all rings, which may be
 /// closed or not.
@@ -70,15 +71,32 @@ impl RingFault {
     }
 }
 
-/// Rings in which sides near a place are found without a look at all of them: a tree over the sides of each ring, in
-/// their order.
+/// Polygons in which sides near a place are found without a look at all of them: a tree over the sides of each ring, in
+/// their order, and one over the polygons.
 #[derive(Clone, Debug)]
 pub struct PolygonIndex {
     /// Corners of all rings, the first of each repeated at its end.
     corners: Vec<[f64; 2]>,
     nodes: Vec<RingNode>,
-    /// The first node of each ring.
+    /// The first node of each ring, polygon by polygon.
     roots: Vec<usize>,
+    polygons: Vec<PolygonNode>,
+}
+
+/// Some polygons that lie beside each other, and the box around them.
+#[derive(Clone, Debug)]
+struct PolygonNode {
+    low: [f64; 2],
+    high: [f64; 2],
+    content: PolygonContent,
+}
+
+#[derive(Clone, Debug)]
+enum PolygonContent {
+    /// One polygon, by its place among the roots.
+    One(Range<usize>),
+    /// The second of the two nodes that it consists of; the first follows it.
+    Two(usize),
 }
 
 /// A run of sides of a ring, and the box around them.
@@ -97,16 +115,85 @@ impl PolygonIndex {
     /// The index of an outline and its holes, which may be closed or not.
     #[must_use]
     pub fn new(rings: &[Vec<[f64; 2]>]) -> Self {
-        let mut index = Self { corners: Vec::new(), nodes: Vec::new(), roots: Vec::new() };
-        for ring in rings {
-            let Some(&start) = ring.first() else { continue };
-            let first = index.corners.len();
-            index.corners.extend(ring);
-            index.corners.push(start);
-            let root = index.push(first, index.corners.len() - 1);
-            index.roots.push(root);
+        Self::of_polygons([rings])
+    }
+
+    /// The index of some polygons, each an outline and its holes, which may be closed or not.
+    #[must_use]
+    pub fn of_polygons<'a>(polygons: impl IntoIterator<Item = &'a [Vec<[f64; 2]>]>) -> Self {
+        let mut index = Self { corners: Vec::new(), nodes: Vec::new(), roots: Vec::new(), polygons: Vec::new() };
+        let mut leaves = Vec::new();
+        for rings in polygons {
+            let start = index.roots.len();
+            for ring in rings {
+                let Some(&corner) = ring.first() else { continue };
+                let first = index.corners.len();
+                index.corners.extend(ring);
+                index.corners.push(corner);
+                let root = index.push(first, index.corners.len() - 1);
+                index.roots.push(root);
+            }
+            let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+            for node in index.roots[start..].iter().map(|&root| &index.nodes[root]) {
+                low = [0, 1].map(|axis| low[axis].min(node.low[axis]));
+                high = [0, 1].map(|axis| high[axis].max(node.high[axis]));
+            }
+            if index.roots.len() > start {
+                leaves.push(PolygonNode { low, high, content: PolygonContent::One(start..index.roots.len()) });
+            }
         }
+        index.polygons.reserve(2 * leaves.len());
+        index.push_polygons(&mut leaves);
         index
+    }
+
+    /// Appends the nodes over some polygons, parted in the middle of the longer side of their box.
+    fn push_polygons(&mut self, leaves: &mut [PolygonNode]) {
+        let [leaf] = leaves else {
+            if leaves.is_empty() {
+                return;
+            }
+            let bound = |axis: usize| {
+                let low = leaves.iter().map(|leaf| leaf.low[axis]).fold(f64::INFINITY, f64::min);
+                (low, leaves.iter().map(|leaf| leaf.high[axis]).fold(f64::NEG_INFINITY, f64::max))
+            };
+            let [east, north] = [0, 1].map(bound);
+            let axis = usize::from(north.1 - north.0 > east.1 - east.0);
+            let middle = |leaf: &PolygonNode| leaf.low[axis] + leaf.high[axis];
+            let half = leaves.len() / 2;
+            leaves.select_nth_unstable_by(half, |a, b| middle(a).total_cmp(&middle(b)));
+            let number = self.polygons.len();
+            let (low, high) = ([east.0, north.0], [east.1, north.1]);
+            self.polygons.push(PolygonNode { low, high, content: PolygonContent::Two(0) });
+            let (first, second) = leaves.split_at_mut(half);
+            self.push_polygons(first);
+            self.polygons[number].content = PolygonContent::Two(self.polygons.len());
+            self.push_polygons(second);
+            return;
+        };
+        self.polygons.push(leaf.clone());
+    }
+
+    /// The roots of each polygon whose box meets that between two corners, edges included, until `visit` breaks.
+    fn each_polygon_near(
+        &self,
+        low: [f64; 2],
+        high: [f64; 2],
+        mut visit: impl FnMut(&[usize]) -> ControlFlow<()>,
+    ) -> ControlFlow<()> {
+        let mut pending: Vec<usize> = (!self.polygons.is_empty()).then_some(0).into_iter().collect();
+        while let Some(number) = pending.pop() {
+            let node = &self.polygons[number];
+            // of a place that is no number every comparison fails, and it lies in none
+            if !(0..2).all(|axis| node.low[axis] <= high[axis] && low[axis] <= node.high[axis]) {
+                continue;
+            }
+            match &node.content {
+                PolygonContent::One(roots) => visit(&self.roots[roots.clone()])?,
+                PolygonContent::Two(second) => pending.extend([number + 1, *second]),
+            }
+        }
+        ControlFlow::Continue(())
     }
 
     /// Appends the nodes of the sides between two corners; returns the number of the first.
@@ -127,10 +214,14 @@ impl PolygonIndex {
         number
     }
 
-    /// Calls `visit` with the sides of the rings whose boxes meet the box between two corners, edges included.
+    /// Calls `visit` with the sides of the polygons whose boxes meet the box between two corners, edges included.
     pub fn each_side_near(&self, low: [f64; 2], high: [f64; 2], mut visit: impl FnMut([[f64; 2]; 2])) {
         let meets = |of: [[f64; 2]; 2]| (0..2).all(|axis| of[0][axis] <= high[axis] && low[axis] <= of[1][axis]);
-        let mut pending = self.roots.clone();
+        let mut pending: Vec<usize> = Vec::new();
+        let _ = self.each_polygon_near(low, high, |roots: &[usize]| {
+            pending.extend(roots);
+            ControlFlow::Continue(())
+        });
         while let Some(number) = pending.pop() {
             let node = &self.nodes[number];
             if !meets([node.low, node.high]) {
@@ -149,12 +240,20 @@ impl PolygonIndex {
         }
     }
 
-    /// Whether a place lies within the outline and outside its holes, by the rule of odd crossings as [`is_inside`] has
-    /// it.
+    /// Whether a place lies within the outline of a polygon and outside its holes, by the rule of odd crossings as
+    /// [`is_inside`] has it.
     #[must_use]
-    pub fn holds(&self, [x, y]: [f64; 2]) -> bool {
+    pub fn holds(&self, place: [f64; 2]) -> bool {
+        let is_in = |roots: &[usize]| {
+            if self.is_within(roots, place) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        };
+        self.each_polygon_near(place, place, is_in).is_break()
+    }
+
+    /// Whether a place lies within the rings with these roots.
+    fn is_within(&self, roots: &[usize], [x, y]: [f64; 2]) -> bool {
         let mut inside = false;
-        let mut pending = self.roots.clone();
+        let mut pending = roots.to_vec();
         while let Some(number) = pending.pop() {
             let node = &self.nodes[number];
             if y < node.low[1] || y > node.high[1] || x > node.high[0] {
@@ -288,6 +387,34 @@ mod tests {
             for &corner in rings.iter().flatten() {
                 assert_eq!(index.holds(corner), is_inside(&rings, corner), "{corner:?}");
             }
+        }
+    }
+
+    #[test]
+    fn an_index_of_many_polygons_says_what_each_of_them_says() {
+        let polygon = |number: u64| -> Vec<Vec<[f64; 2]>> {
+            let [x, y] = [0, 1].map(|axis| 100.0 * uniform(7 + axis, number) - 50.0);
+            star(3 + number as usize % 9)
+                .iter()
+                .map(|ring| ring.iter().map(|c| [c[0] + x, c[1] + y]).collect())
+                .collect()
+        };
+        for count in [0, 1, 2, 3, 40, 301] {
+            let polygons: Vec<_> = (0..count).map(polygon).collect();
+            let index = PolygonIndex::of_polygons(polygons.iter().map(Vec::as_slice));
+            for number in 0..2000_u64 {
+                let place = [uniform(1, number), uniform(2, number)].map(|v| 140.0 * v - 70.0);
+                assert_eq!(index.holds(place), polygons.iter().any(|rings| is_inside(rings, place)), "{place:?}");
+                let mut sides = 0;
+                index.each_side_near(place, place.map(|v| v + 3.0), |_| sides += 1);
+                let alone = |rings: &Vec<Vec<[f64; 2]>>| {
+                    let mut sides = 0;
+                    PolygonIndex::new(rings).each_side_near(place, place.map(|v| v + 3.0), |_| sides += 1);
+                    sides
+                };
+                assert!(number > 100 || sides == polygons.iter().map(alone).sum::<usize>(), "{place:?}");
+            }
+            assert!(!index.holds([f64::NAN, 0.0]));
         }
     }
 

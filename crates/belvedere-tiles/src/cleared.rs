@@ -232,7 +232,9 @@ fn each_block(
                 };
                 let is_concerned = match (cleared, polygon) {
                     (ClearedArea::Class(class), _) => has_class(*class),
-                    (ClearedArea::Polygon(_), polygon) => polygon.is_some_and(|area| reaches(&area, &block_area(at))),
+                    (ClearedArea::Polygon(_) | ClearedArea::Polygons(_), polygon) => {
+                        polygon.is_some_and(|area| reaches(&area, &block_area(at)))
+                    }
                 };
                 if left.is_empty() || !is_concerned {
                     continue;

@@ -16,7 +16,7 @@ pub(crate) fn of_tile(patches: &SurfacePatches, core: &MapArea, cleared: &[Clear
     let mut own = chosen(patches, |area, _| area.meets(core) && blocks.holds(middle(area)));
     for area in cleared {
         match area {
-            ClearedArea::Polygon(rings) => own = own.outside(rings),
+            ClearedArea::Polygon(_) | ClearedArea::Polygons(_) => own = own.outside_polygons(&area.index()),
             ClearedArea::Class(SurfacePatches::CLASS) => own = SurfacePatches::default(),
             ClearedArea::Class(_) => {}
         }

@@ -52,14 +52,14 @@ pub(crate) fn areas(choice: &AreaChoice, frame: &Frame) -> Result<Vec<ClearedAre
     };
     let local = |ring: &Vec<[f64; 3]>| ring.iter().map(|c| [c[0] - frame.origin[0], c[1] - frame.origin[1]]).collect();
     let polygons = read_geojson(path, &frame.crs)?.into_iter().filter_map(|feature| match feature.shape {
-        FeatureShape::Polygon(rings) => Some(ClearedArea::Polygon(rings.iter().map(local).collect())),
+        FeatureShape::Polygon(rings) => Some(rings.iter().map(local).collect()),
         _ => None,
     });
-    let polygons: Vec<ClearedArea> = polygons.collect();
-    if polygons.is_empty() {
+    let areas = ClearedArea::of_polygons(polygons.collect());
+    if areas.is_empty() {
         bail!("{}: no polygon to clear is in the file", path.display());
     }
-    Ok(polygons)
+    Ok(areas)
 }
 
 /// The model of a scene as it will be.

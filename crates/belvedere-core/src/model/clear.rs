@@ -13,11 +13,16 @@ use belvedere_data::polygon::{PolygonIndex, simple_rings};
 use belvedere_data::{Bounds, Error, Parameter, PointCloud, Result, SurfacePatches};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 
 /// ASPRS class of ground.
 const GROUND: u8 = 2;
 /// Most columns in which space is freed: their side is doubled until they are no more.
 const MAX_CELLS: f64 = 4e6;
+
+/// Side of the squares whose polygons are cleared together, metres: columns of the usual width over one are fewer than
+/// [`MAX_CELLS`].
+const AREA_SIDE: f64 = 256.0;
 
 /// What is cleared.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -25,6 +30,8 @@ const MAX_CELLS: f64 = 4e6;
 pub enum ClearedArea {
     /// What stands above the ground inside rings, local metres on the map: an outline and its holes.
     Polygon(Vec<Vec<[f64; 2]>>),
+    /// The same inside several polygons, as [`ClearedArea::of_polygons`] joins them.
+    Polygons(Vec<Vec<Vec<[f64; 2]>>>),
     /// The points of a class, and the balls at them.
     Class(u8),
 }
@@ -97,13 +104,13 @@ impl SceneModel {
     /// that of buildings takes all patches with it.
     fn clear_triangles(&mut self, area: &ClearedArea, report: &mut ClearReport) -> Result<()> {
         let left = match area {
-            ClearedArea::Polygon(rings) => {
+            ClearedArea::Polygon(_) | ClearedArea::Polygons(_) => {
+                let index = area.index();
                 if let Some(triangles) = &self.triangles {
-                    let index = PolygonIndex::new(rings);
                     self.triangles = triangles.without(|[x, y, _]| index.holds([x, y]))?;
                 }
-                self.parts.outlines = std::mem::take(&mut self.parts.outlines).outside(rings);
-                self.parts.patches.outside(rings)
+                self.parts.outlines = std::mem::take(&mut self.parts.outlines).outside(&index);
+                self.parts.patches.outside_polygons(&index)
             }
             ClearedArea::Class(SurfacePatches::CLASS) => {
                 self.parts.outlines = BuildingOutlines::default();
@@ -190,8 +197,41 @@ impl SceneModel {
 }
 
 impl ClearedArea {
-    /// The rectangle around a polygon on the map, from its lowest to its highest corner, as far as it lies on `bounds`,
-    /// local metres from `origin`; `None` for a class.
+    /// Areas that clear what stands in `polygons`, local metres on the map, each an outline and its holes. Those near
+    /// each other are one area, so that many take hardly longer than one, and the columns over each area stay narrow.
+    #[must_use]
+    pub fn of_polygons(polygons: Vec<Vec<Vec<[f64; 2]>>>) -> Vec<Self> {
+        let mut squares: BTreeMap<[i64; 2], Vec<Vec<Vec<[f64; 2]>>>> = BTreeMap::new();
+        for rings in polygons {
+            let corner = rings.iter().flatten().next().copied().unwrap_or_default();
+            #[expect(clippy::cast_possible_truncation, reason = "`as` saturates")]
+            let square = corner.map(|v| (v / AREA_SIDE).floor() as i64);
+            squares.entry(square).or_default().push(rings);
+        }
+        let area = |mut polygons: Vec<Vec<Vec<[f64; 2]>>>| match polygons.pop() {
+            Some(only) if polygons.is_empty() => Self::Polygon(only),
+            last => Self::Polygons(polygons.into_iter().chain(last).collect()),
+        };
+        squares.into_values().map(area).collect()
+    }
+
+    /// Its polygons; none for a class.
+    fn polygons(&self) -> &[Vec<Vec<[f64; 2]>>] {
+        match self {
+            Self::Polygon(rings) => std::slice::from_ref(rings),
+            Self::Polygons(polygons) => polygons,
+            Self::Class(_) => &[],
+        }
+    }
+
+    /// The index of its polygons; an empty one for a class.
+    #[must_use]
+    pub fn index(&self) -> PolygonIndex {
+        PolygonIndex::of_polygons(self.polygons().iter().map(Vec::as_slice))
+    }
+
+    /// The rectangle around polygons on the map, from their lowest to their highest corner, as far as it lies on
+    /// `bounds`, local metres from `origin`; `None` for a class.
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] for a polygon beside `bounds`, for one that is none, and for the class of the
@@ -200,23 +240,28 @@ impl ClearedArea {
         let invalid = |value: String, expected| {
             Err(Error::InvalidParameter { parameter: Parameter::ClearedArea, value, expected })
         };
-        let rings = match self {
+        match self {
             Self::Class(GROUND) => return invalid("class 2".to_owned(), "a class that stands on the ground"),
             Self::Class(_) => return Ok(None),
-            Self::Polygon(rings) => rings,
-        };
-        let corners = || rings.iter().flatten();
-        let bound = |axis: usize, pick: fn(f64, f64) -> f64, start: f64| corners().map(|c| c[axis]).fold(start, pick);
-        let low = [0, 1].map(|axis| bound(axis, f64::min, f64::INFINITY));
-        let high = [0, 1].map(|axis| bound(axis, f64::max, f64::NEG_INFINITY));
-        let (first, last) = bounds.on_map();
-        if rings.is_empty() {
-            return invalid("0 corners".to_owned(), "a polygon: three corners or more in each ring");
+            Self::Polygon(_) | Self::Polygons(_) => {}
         }
-        simple_rings(rings).map_err(|fault| fault.refusal(Parameter::ClearedArea))?;
-        if (0..2).any(|axis| low[axis] > last[axis] || high[axis] < first[axis]) {
-            let [x, y] = [0, 1].map(|axis| low[axis] + origin[axis]);
-            return invalid(format!("from x {x:.1}, y {y:.1} m on"), "on the cloud, in its coordinates");
+        let (first, last) = bounds.on_map();
+        let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+        for rings in self.polygons() {
+            if rings.is_empty() {
+                return invalid("0 corners".to_owned(), "a polygon: three corners or more in each ring");
+            }
+            simple_rings(rings).map_err(|fault| fault.refusal(Parameter::ClearedArea))?;
+            let bound = |pick: fn(f64, f64) -> f64, start: f64| {
+                [0, 1].map(|axis| rings.iter().flatten().map(|corner| corner[axis]).fold(start, pick))
+            };
+            let (own_low, own_high) = (bound(f64::min, f64::INFINITY), bound(f64::max, f64::NEG_INFINITY));
+            if (0..2).any(|axis| own_low[axis] > last[axis] || own_high[axis] < first[axis]) {
+                let [x, y] = [0, 1].map(|axis| own_low[axis] + origin[axis]);
+                return invalid(format!("from x {x:.1}, y {y:.1} m on"), "on the cloud, in its coordinates");
+            }
+            low = [0, 1].map(|axis| low[axis].min(own_low[axis]));
+            high = [0, 1].map(|axis| high[axis].max(own_high[axis]));
         }
         let within = |axis: usize| (low[axis].max(first[axis]), high[axis].min(last[axis]));
         let (x, y) = (within(0), within(1));
@@ -229,7 +274,7 @@ fn grid_over(area: &ClearedArea, cloud: &PointCloud) -> Result<Option<MapGrid>> 
     let bounds = cloud.bounds().ok_or_else(|| Error::NoPoints { what: "clearing needs the cloud".to_owned() })?;
     let (low, high) = match (area.rectangle_on(&bounds, cloud.frame.origin)?, area) {
         (Some(rectangle), _) => rectangle,
-        (None, ClearedArea::Polygon(_)) => return Ok(None),
+        (None, ClearedArea::Polygon(_) | ClearedArea::Polygons(_)) => return Ok(None),
         (None, ClearedArea::Class(class)) => {
             let classes = cloud.attributes.classification.as_deref().unwrap_or_default();
             let of_class = cloud.positions.iter().zip(classes).filter(|(_, own)| *own == class).map(|(p, _)| *p);

@@ -65,10 +65,10 @@ impl Clearing {
         let (rows, from) = ground_points(cloud, &params, control)?;
         let points: Vec<[f32; 3]> = rows.iter().filter_map(|&row| cloud.positions.get(row as usize).copied()).collect();
         let ground = Ground::of_points(&points, grid, params.reach, control)?;
-        let clears_low = matches!((area, from), (ClearedArea::Polygon(_), GroundPoints::Classed));
+        let clears_low = !matches!(area, ClearedArea::Class(_)) && from == GroundPoints::Classed;
         let nothing = Raster::filled(grid.width, grid.height, f32::NAN);
         let area = match area {
-            ClearedArea::Polygon(rings) => IndexedArea::Polygon(PolygonIndex::new(rings)),
+            ClearedArea::Polygon(_) | ClearedArea::Polygons(_) => IndexedArea::Polygon(area.index()),
             ClearedArea::Class(class) => IndexedArea::Class(*class),
         };
         let clearing = Self { area, ground, ground_rows: rows, tops: nothing, clears_low };
