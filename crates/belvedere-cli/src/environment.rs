@@ -1,15 +1,24 @@
-//! What the environment says of threads, of the instructions of the processor, and of where scenes are kept.
+//! What was typed, and what the environment says of threads, of the instructions of the processor, and of where scenes
+//! are kept.
 
 use crate::arguments::{Global, MAX_THREADS, Usage};
 use anyhow::{Result, anyhow};
 use belvedere::cache::SceneCache;
+use belvedere::io::hidden_text;
 use belvedere::neighbors::Instructions;
 use std::env;
+use std::ffi::OsString;
 
 /// Threads, as other programs with the same library have it.
 const THREADS: &str = "RAYON_NUM_THREADS";
 /// Whether AVX2 is used where the processor has it: on or off.
 const AVX2: &str = "BELVEDERE_AVX2";
+
+/// The words that were typed. Addresses in them are without user, password and key from here on, so that nothing that
+/// is printed or written can have any.
+pub(crate) fn words() -> Vec<OsString> {
+    env::args_os().map(|word| word.to_str().and_then(hidden_text).map_or(word, OsString::from)).collect()
+}
 
 /// Makes the threads of the program, and turns AVX2 off where that is wanted.
 ///

@@ -16,25 +16,36 @@ mod simulated;
 mod summary;
 mod written_files;
 
+use belvedere::shown::is_command;
 use clap::FromArgMatches;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
     interrupt::listen();
     let program = help::command();
-    let typed: Vec<_> = std::env::args_os().collect();
+    let typed = environment::words();
     let matches = match program.clone().try_get_matches_from(&typed) {
         Ok(matches) => matches,
-        Err(error) => scene_config::advised(error, &program, &typed).exit(),
+        Err(error) => refusal(&scene_config::advised(error, &program, &typed), &typed),
     };
     let cli = match arguments::Cli::from_arg_matches(&matches) {
         Ok(cli) => cli,
-        Err(error) => error.exit(),
+        Err(error) => refusal(&error, &typed),
     };
     match written_files::check(&program, &matches).and_then(|()| commands::run(&cli)) {
         Ok(summary) => summary.print(&cli.global),
         Err(error) => failure(&parameter_flags::with_flag(error, &program, &matches)),
     }
+}
+
+/// Says why what was typed is refused, or gives the help that was wanted. Words that command a terminal are printed
+/// without colours, which are commands too.
+fn refusal(error: &clap::Error, typed: &[std::ffi::OsString]) -> ! {
+    if typed.iter().any(|word| word.to_string_lossy().contains(is_command)) {
+        summary::note(error.render().to_string().trim_end());
+        std::process::exit(error.exit_code());
+    }
+    error.exit()
 }
 
 fn failure(error: &anyhow::Error) -> ExitCode {

@@ -4,6 +4,7 @@ use crate::arguments::Global;
 use belvedere::apps::ask::{Remark, remark_on_left_out};
 use belvedere::io::WriteReport;
 use belvedere::report;
+use belvedere::shown::{is_command, printable};
 use serde::Serialize;
 use serde_json::{Map, Value};
 use std::io::Write;
@@ -164,10 +165,12 @@ impl Summary {
             self.print_remarks(global);
         }
         let text = match (global.json, global.quiet) {
-            (true, _) => format!("{:#}\n", Value::Object(self.of_json())),
+            (true, _) => format!("{}\n", printable_json(&Value::Object(self.of_json()))),
             (false, true) => String::new(),
-            (false, false) if global.verbose || self.extent == SummaryDetail::Whole => self.whole(),
-            (false, false) => short::text(&self.headlines, &self.entries),
+            (false, false) if global.verbose || self.extent == SummaryDetail::Whole => {
+                printable(&self.whole()).into_owned()
+            }
+            (false, false) => printable(&short::text(&self.headlines, &self.entries)).into_owned(),
         };
         // a reader that stopped listening is not a failure
         match std::io::stdout().lock().write_all(text.as_bytes()) {
@@ -267,10 +270,19 @@ fn plain(value: &Value) -> String {
     }
 }
 
+/// JSON in which characters that command a terminal are escaped, as JSON has it: the values stay the same.
+fn printable_json(value: &Value) -> String {
+    let escaped = |text: String, c: char| {
+        if is_command(c) { text + &format!("\\u{:04x}", c as u32) } else { text + c.encode_utf8(&mut [0; 4]) }
+    };
+    let text = format!("{value:#}");
+    if text.contains(is_command) { text.chars().fold(String::with_capacity(text.len()), escaped) } else { text }
+}
+
 /// Says something beside the result.
 pub(crate) fn note(text: &str) {
     // nobody is left to tell where standard error is closed
-    let _ = writeln!(std::io::stderr().lock(), "{text}");
+    let _ = writeln!(std::io::stderr().lock(), "{}", printable(text));
 }
 
 /// Says what went wrong, with its causes.

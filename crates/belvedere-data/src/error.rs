@@ -1,6 +1,7 @@
 //! The one error type of the library.
 
 use crate::parameter::Parameter;
+use crate::shown::{ShownPath, printable};
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
@@ -12,7 +13,7 @@ pub type Result<T> = std::result::Result<T, Error>;
 #[non_exhaustive]
 pub enum Error {
     /// The operating system refused to read or write a file.
-    #[error("{}: {}", path.display(), refusal(source))]
+    #[error("{}: {}", ShownPath(path), refusal(source))]
     Io {
         /// The file.
         path: PathBuf,
@@ -20,7 +21,7 @@ pub enum Error {
         source: std::io::Error,
     },
     /// The content of a file cannot be understood.
-    #[error("{}: {what}", path.display())]
+    #[error("{}: {}", ShownPath(path), printable(what))]
     Malformed {
         /// The file.
         path: PathBuf,
@@ -28,7 +29,7 @@ pub enum Error {
         what: String,
     },
     /// The extension of a file names no format that fits its use.
-    #[error("{}: not a known {kind} format; use one of {supported}", path.display())]
+    #[error("{}: not a known {kind} format; use one of {supported}", ShownPath(path))]
     UnknownFormat {
         /// The file.
         path: PathBuf,
@@ -38,7 +39,7 @@ pub enum Error {
         supported: &'static str,
     },
     /// The format of a file, or a reference system, needs a part of the library that was not built in.
-    #[error("{}: this program was built without the cargo feature `{feature}`, which this needs", path.display())]
+    #[error("{}: this program was built without the cargo feature `{feature}`, which this needs", ShownPath(path))]
     MissingFeature {
         /// The file.
         path: PathBuf,
@@ -46,7 +47,7 @@ pub enum Error {
         feature: &'static str,
     },
     /// Coordinates in degrees, earth-centred coordinates, or two files whose reference systems differ.
-    #[error("{}: {what}", path.display())]
+    #[error("{}: {}", ShownPath(path), printable(what))]
     UnusableCrs {
         /// The file.
         path: PathBuf,
@@ -56,7 +57,7 @@ pub enum Error {
     /// A file of several whose points all lie far away from those of the others.
     #[error(
         "{}: all of its points lie more than 1000 km from the middle of the other files; is it in another reference system? Convert it, leave it away, or skip such files (--skip-distant, in Python skip_distant=True)",
-        path.display()
+        ShownPath(path)
     )]
     DistantFile {
         /// The file.
@@ -83,7 +84,7 @@ pub enum Error {
     #[error("cancelled; nothing was written")]
     Cancelled,
     /// There is no point to work on.
-    #[error("no points are left: {what}")]
+    #[error("no points are left: {}", printable(what))]
     NoPoints {
         /// Where they were lost.
         what: String,
@@ -105,7 +106,7 @@ pub enum Error {
         what: String,
     },
     /// A parameter lies outside its range.
-    #[error("{parameter} is {value}, but must be {expected}")]
+    #[error("{parameter} is {}, but must be {expected}", printable(value))]
     InvalidParameter {
         /// The parameter.
         parameter: Parameter,
@@ -156,7 +157,7 @@ pub enum Error {
 fn refusal(source: &std::io::Error) -> String {
     match source.kind() {
         // readers and writers that know more have said it
-        _ if source.get_ref().is_some() => source.to_string(),
+        _ if source.get_ref().is_some() => printable(&source.to_string()).into_owned(),
         ErrorKind::NotFound => "there is no such file or folder; check the path".to_owned(),
         ErrorKind::PermissionDenied => "access is denied; check the permissions".to_owned(),
         ErrorKind::UnexpectedEof => "ends too early; is the file complete?".to_owned(),

@@ -22,6 +22,7 @@ pub mod random;
 pub mod raster;
 pub mod report;
 mod setters;
+pub mod shown;
 pub mod sky_region;
 pub mod trajectory;
 pub mod vector;

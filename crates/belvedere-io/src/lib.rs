@@ -86,6 +86,7 @@ mod rows;
 #[cfg(feature = "npy")]
 mod saved_matrix;
 mod scan_pose;
+mod secrets;
 mod simple_faces;
 mod sky;
 mod source;
@@ -151,6 +152,7 @@ pub use read_report::{FileReport, LeftOut, ReadReport};
 pub use saved_matrix::{
     MatrixHead, RowSink, SavedMatrix, read_matrix, read_matrix_head, read_matrix_rows, write_matrix, write_matrix_rows,
 };
+pub use secrets::{hidden, hidden_text};
 pub use source::{OpenSource, ReadSeek, Source, SystemBeside, web_address};
 pub use stations::read_stations;
 pub use table::{Table, TableCells, read_table, write_table};

@@ -6,11 +6,13 @@
 use std::io::{Error, ErrorKind, Read, Result, Seek, SeekFrom};
 use std::sync::{Arc, LazyLock};
 use std::thread::sleep;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use ureq::http::{HeaderMap, header};
 use ureq::tls::{Certificate, RootCerts, TlsConfig};
 use ureq::{Agent, Body};
+
+use belvedere_data::shown::without_secrets;
 
 /// Bytes requested at first: mostly a whole header. And those requested behind a gap, where the reader needs no more:
 /// chunks and pages of COPC files may be small.
@@ -20,6 +22,8 @@ const MIN_BYTES: u64 = 1 << 12;
 const MAX_AHEAD: u64 = 1 << 20;
 /// Most bytes of one request, however many the reader wants at once.
 const MAX_BYTES: u64 = 1 << 24;
+/// Bytes that are taken from a connection at once.
+const BLOCK_BYTES: usize = 1 << 16;
 /// Largest file of a server that gives no parts: it is kept in memory.
 const MAX_WHOLE: u64 = 1 << 28;
 /// Time to wait before asking again, where a server was busy or a connection broke.
@@ -30,8 +34,14 @@ const CONNECT: Duration = Duration::from_secs(20);
 const NO_PROGRESS: Duration = Duration::from_secs(30);
 const WHOLE_ANSWER: Duration = Duration::from_secs(600);
 
+/// Least speed of a server once it was waited for as long as [`NO_PROGRESS`], bytes a second: a third of what the
+/// slowest mobile networks have. One that sends a byte now and then would hold a command for ever.
+const MIN_SPEED: u64 = 1000;
+
 /// What is said of a server that sends nothing for too long.
 const SILENT: &str = "the server does not answer: it sent nothing for 30 s; try again later";
+/// What is said of a server that sends next to nothing.
+const SLOW: &str = "the server sends less than a kilobyte a second; try again later, or download the file first";
 /// What is said of a file that is not the one of which parts were read before.
 const CHANGED: &str = "the file on the server changed while it was read; run again";
 
@@ -73,6 +83,28 @@ pub(crate) struct Remote {
     part_start: u64,
     /// Where the reader last jumped to.
     run_start: u64,
+    pace: Pace,
+}
+
+/// How fast a server was so far.
+#[derive(Clone, Copy)]
+struct Pace {
+    bytes: u64,
+    waited: Duration,
+    /// How long it is waited for before it is judged.
+    patience: Duration,
+}
+
+impl Pace {
+    fn new(patience: Duration) -> Self {
+        Self { bytes: 0, waited: Duration::ZERO, patience }
+    }
+
+    /// Counts what came since `start`; says whether the server is too slow.
+    fn is_too_slow(&self, start: Instant, bytes: usize) -> bool {
+        let waited = self.waited + start.elapsed();
+        waited > self.patience && ((self.bytes + bytes as u64) as f64) < waited.as_secs_f64() * MIN_SPEED as f64
+    }
 }
 
 /// What a server sent.
@@ -108,9 +140,10 @@ impl Remote {
     /// Those of connecting and of the server, in words that say what to do.
     pub(crate) fn open(address: &str) -> Result<Self> {
         let first = Part { start: 0, length: FIRST_BYTES, size: None };
-        let Reply { bytes, size, version, .. } = patiently(|| request(&AGENT, address, first))?;
+        let mut pace = Pace::new(NO_PROGRESS);
+        let Reply { bytes, size, version, .. } = patiently(|| request(&AGENT, address, first, &mut pace))?;
         let address = address.to_owned();
-        Ok(Self { address, size, version, position: 0, part: bytes, part_start: 0, run_start: 0 })
+        Ok(Self { address, size, version, position: 0, part: bytes, part_start: 0, run_start: 0, pace })
     }
 
     /// Size of the file, bytes.
@@ -137,7 +170,7 @@ impl Remote {
         let ahead = ((self.position - self.run_start) / 2).clamp(MIN_BYTES, MAX_AHEAD);
         let length = wanted.max(ahead).min(MAX_BYTES).min(self.size - self.position);
         let part = Part { start: self.position, length, size: Some(self.size) };
-        let reply = patiently(|| request(&AGENT, &self.address, part))?;
+        let reply = patiently(|| request(&AGENT, &self.address, part, &mut self.pace))?;
         if reply.is_whole || reply.size != self.size || reply.version != self.version {
             return Err(Error::other(CHANGED));
         }
@@ -175,7 +208,7 @@ impl Seek for Remote {
 }
 
 /// Asks again where that may help.
-fn patiently(ask: impl Fn() -> std::result::Result<Reply, Failure>) -> Result<Reply> {
+fn patiently(mut ask: impl FnMut() -> std::result::Result<Reply, Failure>) -> Result<Reply> {
     for pause in PAUSES {
         match ask() {
             Err(Failure { may_pass: true, .. }) => sleep(pause),
@@ -187,7 +220,8 @@ fn patiently(ask: impl Fn() -> std::result::Result<Reply, Failure>) -> Result<Re
 }
 
 /// Asks once for a part, or fewer bytes where the file ends before.
-fn request(agent: &Agent, address: &str, part: Part) -> std::result::Result<Reply, Failure> {
+fn request(agent: &Agent, address: &str, part: Part, pace: &mut Pace) -> std::result::Result<Reply, Failure> {
+    let start_of_wait = Instant::now();
     let Part { start, length, size: known } = part;
     let last = start.saturating_add(length).saturating_sub(1);
     let mut response = agent
@@ -213,7 +247,7 @@ fn request(agent: &Agent, address: &str, part: Part) -> std::result::Result<Repl
                         .to_owned(),
                 ));
             }
-            let bytes = body(response.body_mut(), end - start)?;
+            let bytes = body(response.body_mut(), end - start, (start_of_wait, pace))?;
             Ok(Reply { bytes, size: range.size, version, is_whole: false })
         }
         (200, _) => {
@@ -221,7 +255,7 @@ fn request(agent: &Agent, address: &str, part: Part) -> std::result::Result<Repl
             let no_parts = "the server gives no parts of files (HTTP ranges)";
             match size {
                 Some(size) if size <= MAX_WHOLE => {
-                    let bytes = body(response.body_mut(), size)?;
+                    let bytes = body(response.body_mut(), size, (start_of_wait, pace))?;
                     Ok(Reply { bytes, size, version, is_whole: true })
                 }
                 Some(_) => Err(lasting(format!("{no_parts}, and this one has more than 256 MiB; download it first"))),
@@ -262,15 +296,24 @@ fn text_of(headers: &HeaderMap, name: header::HeaderName) -> Option<&str> {
     headers.get(name)?.to_str().ok()
 }
 
-/// All of a body of `length` bytes.
-fn body(body: &mut Body, length: u64) -> std::result::Result<Vec<u8>, Failure> {
-    let mut bytes = Vec::new();
-    let read = body.with_config().limit(length.saturating_add(1)).reader().take(length).read_to_end(&mut bytes);
-    match read {
-        Ok(_) if bytes.len() as u64 == length => Ok(bytes),
-        Ok(_) => Err(broken(ErrorKind::UnexpectedEof.into())),
-        Err(error) => Err(broken(error)),
+/// All of a body of `length` bytes, for which is waited since `start`.
+fn body(body: &mut Body, length: u64, (start, pace): (Instant, &mut Pace)) -> std::result::Result<Vec<u8>, Failure> {
+    let mut reader = body.with_config().limit(length.saturating_add(1)).reader().take(length);
+    let (mut bytes, mut block) = (Vec::new(), vec![0; BLOCK_BYTES]);
+    loop {
+        match reader.read(&mut block) {
+            Ok(0) => break,
+            Ok(count) => bytes.extend_from_slice(block.get(..count).unwrap_or_default()),
+            Err(error) if error.kind() == ErrorKind::Interrupted => {}
+            Err(error) => return Err(broken(error)),
+        }
+        if pace.is_too_slow(start, bytes.len()) {
+            return Err(lasting(SLOW.to_owned()));
+        }
     }
+    pace.bytes += bytes.len() as u64;
+    pace.waited += start.elapsed();
+    if bytes.len() as u64 == length { Ok(bytes) } else { Err(broken(ErrorKind::UnexpectedEof.into())) }
 }
 
 fn broken(error: Error) -> Failure {
@@ -297,9 +340,9 @@ fn is_passing(error: &ureq::Error) -> bool {
     )
 }
 
-/// What is wrong, and what to do.
+/// What is wrong, and what to do; without the secrets of the address, which the client may name.
 fn described(error: &ureq::Error) -> String {
-    match error {
+    let text = match error {
         ureq::Error::HostNotFound => "there is no such server; check the address and the connection".to_owned(),
         ureq::Error::Timeout(_) => SILENT.to_owned(),
         ureq::Error::TooManyRedirects | ureq::Error::RedirectFailed => {
@@ -311,7 +354,8 @@ fn described(error: &ureq::Error) -> String {
              SSL_CERT_FILE names"
         ),
         _ => format!("cannot be reached: {error}; check the address and the connection"),
-    }
+    };
+    without_secrets(&text).into_owned()
 }
 
 #[cfg(test)]
@@ -339,7 +383,7 @@ mod tests {
             });
             let begin = Instant::now();
             let part = Part { start: 0, length: 10, size: None };
-            let reply = request(&agent(Duration::from_secs(1)), &address, part);
+            let reply = request(&agent(Duration::from_secs(1)), &address, part, &mut Pace::new(NO_PROGRESS));
             match reply {
                 Ok(reply) => assert!(ends && reply.bytes.len() == 10),
                 Err(failure) => {
@@ -350,5 +394,39 @@ mod tests {
             }
         }
         assert_eq!(AGENT.config().timeout_per_read(), Some(NO_PROGRESS));
+    }
+
+    #[test]
+    fn a_server_that_sends_a_byte_now_and_then_is_given_up_whatever_the_size_of_parts() {
+        // one long part, and parts that each end before a server is judged
+        for length in [100_000_usize, 3] {
+            let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+            let address = format!("http://{}/a.las", listener.local_addr().unwrap());
+            std::thread::spawn(move || {
+                for stream in listener.incoming() {
+                    let mut stream = stream.unwrap();
+                    std::thread::spawn(move || {
+                        let mut head = [0; 4096];
+                        while stream.read(&mut head).is_ok_and(|count| count > 0) {
+                            let last = length - 1;
+                            let head = format!(
+                                "HTTP/1.1 206 Part\r\nContent-Range: bytes 0-{last}/{length}\r\nContent-Length: {length}\r\n\r\n"
+                            );
+                            let _ = stream.write_all(head.as_bytes());
+                            for _ in 0..length {
+                                sleep(Duration::from_millis(50));
+                                if stream.write_all(b"x").is_err() {
+                                    return;
+                                }
+                            }
+                        }
+                    });
+                }
+            });
+            let part = Part { start: 0, length: length as u64, size: None };
+            let (agent, mut pace) = (agent(Duration::from_secs(5)), Pace::new(Duration::from_millis(400)));
+            let failure = (0..20).find_map(|_| request(&agent, &address, part, &mut pace).err()).unwrap();
+            assert!(!failure.may_pass && failure.error.to_string() == SLOW, "{length}: {}", failure.error);
+        }
     }
 }

@@ -66,10 +66,12 @@ pub(crate) enum Content<'a> {
 }
 
 impl<'a> Source<'a> {
-    /// The file or folder at `path`, or the file at an address of the web.
+    /// The file or folder at `path`, or the file at an address of the web. User, password and key of that are no part
+    /// of its name ([`crate::hidden`]).
     #[must_use]
     pub fn path(path: impl Into<PathBuf>) -> Self {
-        Self { name: path.into(), content: Content::Path, likely_rows: None, system: None }
+        let name = super::secrets::hidden(&path.into());
+        Self { name, content: Content::Path, likely_rows: None, system: None }
     }
 
     /// Bytes in memory, such as a download. `name` needs an extension, such as `tile.laz`.
@@ -122,11 +124,12 @@ impl<'a> Source<'a> {
         let opened = match content {
             Content::Path if web_address(&name).is_some() => remote(&name)?,
             Content::Path => {
+                // opening a pipe would wait for somebody who writes into it
+                if !std::fs::metadata(&name).map_err(Error::io(&name))?.is_file() {
+                    return Err(Error::malformed(&name, "is not a file: save what it gives first"));
+                }
                 let file = File::open(&name).map_err(Error::io(&name))?;
                 let metadata = file.metadata().map_err(Error::io(&name))?;
-                if !metadata.is_file() {
-                    return Err(Error::malformed(&name, "is not a file"));
-                }
                 let modified =
                     metadata.modified().ok().and_then(|time| time.duration_since(std::time::UNIX_EPOCH).ok());
                 let version = modified.map(|time| time.as_nanos().to_string());
@@ -272,7 +275,12 @@ pub(crate) type SourceReader<'a> = BufReader<Box<dyn ReadSeek + 'a>>;
 /// The file at an address of the web.
 #[cfg(feature = "http")]
 fn remote<'a>(name: &Path) -> Result<OpenSource<'a>> {
-    let file = super::remote::Remote::open(web_address(name).unwrap_or_default()).map_err(Error::io(name))?;
+    let Some(address) = super::secrets::whole(web_address(name).unwrap_or_default()) else {
+        let what = "its user, password or key is not known here, since none is ever written down; \
+                    give the whole address, or download the file";
+        return Err(Error::malformed(name, what));
+    };
+    let file = super::remote::Remote::open(&address).map_err(Error::io(name))?;
     let (size, version) = (file.size(), file.version().map(str::to_owned));
     Ok(OpenSource { reader: Box::new(file), size, version })
 }

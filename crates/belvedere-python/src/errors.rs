@@ -1,5 +1,6 @@
 //! Errors of the library as Python exceptions: one place.
 
+use belvedere::shown::ShownPath;
 use belvedere::{Error, Parameter};
 use pyo3::exceptions::{PyMemoryError, PyOSError};
 use pyo3::prelude::*;
@@ -12,17 +13,17 @@ use std::io::ErrorKind;
 pub(crate) fn exception(error: Error) -> PyErr {
     let message = error.to_string();
     let (what, value, advice) = match error {
-        Error::Io { path, source } => return refused(&path.display().to_string(), &source),
+        Error::Io { path, source } => return refused(&ShownPath(&path).to_string(), &source),
         Error::TooLittleMemory { .. } => return PyMemoryError::new_err(message),
         Error::Malformed { path, what } | Error::UnusableCrs { path, what } => {
-            (what.clone(), path.display().to_string(), what)
+            (what.clone(), ShownPath(&path).to_string(), what)
         }
-        Error::DistantFile { path } => ("distant file".to_owned(), path.display().to_string(), message.clone()),
+        Error::DistantFile { path } => ("distant file".to_owned(), ShownPath(&path).to_string(), message.clone()),
         Error::UnknownFormat { path, kind, supported } => {
-            (format!("{kind} format"), path.display().to_string(), format!("use one of {supported}"))
+            (format!("{kind} format"), ShownPath(&path).to_string(), format!("use one of {supported}"))
         }
         Error::MissingFeature { path, feature } => {
-            (format!("feature {feature}"), path.display().to_string(), format!("build the package with `{feature}`"))
+            (format!("feature {feature}"), ShownPath(&path).to_string(), format!("build the package with `{feature}`"))
         }
         Error::NoPoints { what } => ("points".to_owned(), "0".to_owned(), what),
         Error::NoSurface { count, what } => (format!("points {what}"), count.to_string(), message.clone()),

@@ -1,7 +1,7 @@
 //! The files of a survey, and whether they are still what they were when the plan was made.
 
 use belvedere::apps::ask::Remark;
-use belvedere::io::{LasHead, OpenSource, ReadSeek, Source, read_las_head, web_address};
+use belvedere::io::{LasHead, OpenSource, ReadSeek, Source, hidden, read_las_head, web_address};
 use belvedere::{Bounds, Error, GpsTimeKind, Result};
 use serde::{Deserialize, Serialize};
 use std::io::{Read, Seek, SeekFrom};
@@ -181,7 +181,7 @@ impl InputFile {
 /// The place of a file, whatever the folder that the program is started in.
 pub(crate) fn absolute(path: &Path) -> Result<PathBuf> {
     match web_address(path) {
-        Some(_) => Ok(path.to_owned()),
+        Some(_) => Ok(hidden(path)),
         None => std::path::absolute(path).map_err(Error::io(path)),
     }
 }
@@ -228,6 +228,11 @@ fn contents(path: &Path) -> Result<String> {
             count => sum.update(bytes.get(..count).unwrap_or_default()),
         }
     }
+}
+
+/// All bytes of a file of a run. What is none is refused: a pipe with its name would be waited for for ever.
+pub(crate) fn bytes_of_file(path: &Path) -> std::io::Result<Vec<u8>> {
+    if std::fs::metadata(path)?.is_file() { std::fs::read(path) } else { Err(std::io::Error::other("is not a file")) }
 }
 
 /// CRC-32, as hexadecimal digits: what changed is to be found, and no more than that.

@@ -16,7 +16,7 @@ impl Plan {
     /// size of its tiles are usual ones ([`Plan::with_grid_cells`], [`Plan::fitting`]).
     ///
     /// # Errors
-    /// Those of [`Plan::make`] and [`Plan::write`].
+    /// Those of [`Plan::make`] and of writing.
     pub fn kept_in(folder: &Path, params: &PlanParams, control: &Control<'_>) -> Result<Self> {
         let files = cloud_files(&params.clouds)?;
         let is_of_these = |plan: &Self| {
@@ -31,7 +31,7 @@ impl Plan {
         let plan = Self::make(&PlanParams { cells: CellSizes::default(), memory: None, ..params.clone() }, control)?;
         let plan = Self { proves: plan.can_prove(), ..plan };
         fs::create_dir_all(folder).map_err(Error::io(folder))?;
-        plan.write(folder)?;
+        plan.write_here(folder)?;
         Ok(Self { remarks: plan.remarks, ..Self::read(folder)? })
     }
 
@@ -39,13 +39,13 @@ impl Plan {
     /// share; and that folder.
     ///
     /// # Errors
-    /// Those of [`Plan::write`].
+    /// Those of writing.
     pub fn ready_in(self, survey: &Path) -> Result<(Self, PathBuf)> {
         let balls = survey.join(self.survey_fingerprint(survey)?);
         let text = sealed(&self).map_err(|e| Error::malformed(survey, format!("cannot be written: {e}")))?;
         let run = balls.join(hash(text.as_bytes()));
         fs::create_dir_all(&run).map_err(Error::io(&run))?;
-        self.write(&run)?;
+        self.write_here(&run)?;
         let plan = Self { shared_balls: Some(balls), remarks: self.remarks, ..Self::read(&run)? };
         Ok((plan, run))
     }

@@ -2,7 +2,7 @@
 
 use crate::cell_sizes::CellSizes;
 use crate::grid::{MapArea, TileGrid, TileId, block_area};
-use crate::inputs::{InputFile, PointColumns, hash};
+use crate::inputs::{InputFile, PointColumns, bytes_of_file, hash};
 use crate::planned::{Others, SideFile, added_meshes, far_terrain};
 use crate::question::TileQuestion;
 use crate::sealed::{is_sound, sealed};
@@ -21,6 +21,7 @@ use belvedere::io::{Insistence, atomic};
 use belvedere::model::{ClearedArea, ModelParams, SurveyStatistics};
 use belvedere::query::Coverage;
 use belvedere::results::ResultKind;
+use belvedere::shown::Address;
 use belvedere::{Bounds, Error, Frame, Parameter, Result};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
@@ -140,7 +141,7 @@ impl Plan {
     pub fn read(folder: &Path) -> Result<Self> {
         let path = Self::path(folder);
         let refused = |what: String| Err(Error::malformed(&path, format!("{what} again with `belvedere city plan`")));
-        let bytes = match std::fs::read(&path) {
+        let bytes = match bytes_of_file(&path) {
             Err(error) if error.kind() == ErrorKind::NotFound => {
                 let what = "is not there: make a plan first with `belvedere city plan`";
                 return Err(Error::malformed(&path, what));
@@ -228,11 +229,24 @@ impl Plan {
         Whereabouts { frame, bounds: self.bounds(), has_far_terrain }
     }
 
-    /// Writes the plan into the folder of a run, which is made.
+    /// Writes the plan into the folder of a run, which is made. Any program may carry it out.
     ///
     /// # Errors
-    /// [`Error::Io`], and [`Error::Malformed`] for a folder with results of another plan.
+    /// [`Error::Io`], [`Error::Malformed`] for a folder with results of another plan and for files whose address had
+    /// a user, a password or a key, which are never written.
     pub fn write(&self, folder: &Path) -> Result<()> {
+        let beside = self.meshes.iter().chain(&self.terrain).chain(&self.horizon).map(SideFile::path);
+        let is_cut = |path: &&Path| path.to_str().and_then(Address::parse).is_some_and(|it| it.cut_number().is_some());
+        if let Some(path) = self.inputs.iter().map(|input| input.path.as_path()).chain(beside).find(is_cut) {
+            let what = "has a user, a password or a key in its address, which a plan for other programs does not keep; \
+                        download the file, or ask the question with a plain command, which makes tiles by itself";
+            return Err(Error::malformed(path, what));
+        }
+        self.write_here(folder)
+    }
+
+    /// The same for a plan that only this process carries out, which knows the whole addresses.
+    pub(crate) fn write_here(&self, folder: &Path) -> Result<()> {
         atomic::make_folder(folder)?;
         let path = Self::path(folder);
         let text = sealed(self).map_err(|e| Error::malformed(&path, format!("cannot be written: {e}")))?;
@@ -241,7 +255,7 @@ impl Plan {
         // a damaged plan may be that of the results
         let is_other =
             |before: Vec<u8>| before != text.as_bytes() && serde_json::from_slice::<Version>(&before).is_ok();
-        if std::fs::read(&path).is_ok_and(is_other) && has_results() {
+        if bytes_of_file(&path).is_ok_and(is_other) && has_results() {
             let what = "is another plan, and its results are in the folder; give another folder, or remove this one";
             return Err(Error::malformed(&path, what));
         }

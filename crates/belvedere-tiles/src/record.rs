@@ -1,7 +1,7 @@
 //! What became of a tile. A record is written after its result, so that whatever has one is complete.
 
 use crate::grid::TileId;
-use crate::inputs::hash;
+use crate::inputs::{bytes_of_file, hash};
 use crate::plan::Plan;
 use crate::sealed::{is_sound, sealed};
 use crate::stage::Stage;
@@ -42,7 +42,7 @@ pub(crate) struct Stamp {
 impl Stamp {
     pub(crate) fn of(path: &Path) -> Result<Self> {
         let modified = modified(path);
-        let bytes = std::fs::read(path).map_err(Error::io(path))?;
+        let bytes = bytes_of_file(path).map_err(Error::io(path))?;
         Ok(Self { bytes: bytes.len() as u64, fingerprint: hash(&bytes), modified })
     }
 
@@ -51,7 +51,7 @@ impl Stamp {
     /// # Errors
     /// [`Error::Io`], and [`Error::Malformed`] for a file that changed since.
     pub(crate) fn read(&self, path: &Path) -> Result<Vec<u8>> {
-        let bytes = std::fs::read(path).map_err(Error::io(path))?;
+        let bytes = bytes_of_file(path).map_err(Error::io(path))?;
         if self.fingerprint != hash(&bytes) {
             return Err(Error::malformed(path, "is damaged: compute it again with `belvedere city run`"));
         }
@@ -71,7 +71,7 @@ impl Stamp {
     /// Whether the file is what was written. Its content is looked at where it has another time.
     fn fits(&self, path: &Path) -> bool {
         (self.modified.is_some() && modified(path) == self.modified)
-            || std::fs::read(path).is_ok_and(|bytes| hash(&bytes) == self.fingerprint)
+            || bytes_of_file(path).is_ok_and(|bytes| hash(&bytes) == self.fingerprint)
     }
 }
 
@@ -139,7 +139,7 @@ impl TileRecord {
         if std::fs::metadata(&path).ok()?.len() > MAX_BYTES {
             return None;
         }
-        let bytes = std::fs::read(&path).ok()?;
+        let bytes = bytes_of_file(&path).ok()?;
         let record: Self = is_sound(&bytes).then(|| serde_json::from_slice(&bytes).ok())??;
         (record.plan == plan.name_for(stage)).then_some(record)
     }
@@ -164,7 +164,7 @@ impl TileRecord {
     pub(crate) fn read_result(&self, path: &Path) -> Result<Vec<u8>> {
         match &self.result {
             Some(stamp) => stamp.read(path),
-            None => std::fs::read(path).map_err(Error::io(path)),
+            None => bytes_of_file(path).map_err(Error::io(path)),
         }
     }
 

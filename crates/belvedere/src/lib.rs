@@ -71,7 +71,7 @@ pub use belvedere_data::{
     SurfacePatches, cloud,
 };
 pub use belvedere_data::{
-    control, crs, elevation, error, frame, horizon, mesh, patches, polygon, random, raster, report, sky_region,
+    control, crs, elevation, error, frame, horizon, mesh, patches, polygon, random, raster, report, shown, sky_region,
     trajectory, vector, view, weather,
 };
 #[cfg(feature = "figures")]

@@ -126,7 +126,7 @@ class BelvedereAlgorithm(QgsProcessingAlgorithm):
         return wanted
 
     def _run(self, path, typed, feedback):
-        feedback.pushCommandInfo(" ".join(["belvedere", *typed]))
+        feedback.pushCommandInfo(program.shown(typed))
         latest = []
 
         def show(stage, done, total):

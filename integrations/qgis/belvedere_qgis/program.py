@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -25,6 +26,16 @@ MISSING = (
 PATIENCE_S = 2.0
 # How often a run looks whether it was cancelled.
 POLL_S = 0.1
+
+
+# Scheme, user and password, server with its path, and all behind that, such as a key.
+ADDRESS = re.compile(r"([a-z][a-z0-9+.-]+://)([^/?#\s]*@)?([^?#\s]*)([?#]\S*)?", re.IGNORECASE)
+
+
+def shown(words):
+    """A command line as others may read it: addresses without user, password and key."""
+    cut = [ADDRESS.sub(lambda part: part[1] + part[3] + ("?***" if part[2] or part[4] else ""), word) for word in words]
+    return " ".join(["belvedere", *cut])
 
 
 class ProgramError(Exception):

@@ -108,3 +108,8 @@ def test_a_cancelled_run_ends_soon_and_leaves_no_file(binary, tmp_path):
         )
     assert time.monotonic() - start < 0.5 + program.PATIENCE_S + 1.0
     assert not [name for _, _, names in os.walk(out) for name in names if name.endswith(".part")]
+
+
+def test_the_log_has_no_user_password_or_key():
+    typed = ["shadow", "https://ann:pw@example.org/a.laz?sig=1", "--add=http://example.org/b.obj#key", "c?d.laz"]
+    assert program.shown(typed) == "belvedere shadow https://example.org/a.laz?*** --add=http://example.org/b.obj?*** c?d.laz"

@@ -1,6 +1,7 @@
 //! What a user must know to read an answer rightly, and what is worth knowing beside it.
 
 use belvedere_data::report::percent;
+use belvedere_data::shown::{ShownPath, printable};
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 use std::path::Path;
@@ -38,10 +39,10 @@ fn as_map<S: Serializer>(numbers: &[(&'static str, f64)], serializer: S) -> Resu
 }
 
 impl Remark {
-    /// A warning.
+    /// A warning. Characters of its text that command a terminal are escaped: names come from files of others.
     #[must_use]
     pub fn warning(key: &'static str, text: impl Into<String>) -> Self {
-        Self { key, severity: Severity::Warning, numbers: Vec::new(), text: text.into() }
+        Self { key, severity: Severity::Warning, numbers: Vec::new(), text: printable(&text.into()).into_owned() }
     }
 
     /// A note.
@@ -76,7 +77,7 @@ impl Remark {
 /// What a user must know of the written file `output`: `names` what the input has and the file has not.
 #[must_use]
 pub fn remark_on_left_out(output: &Path, names: &[String]) -> Option<Remark> {
-    let text = || format!("{} does not have what the input has: {}", output.display(), names.join(", "));
+    let text = || format!("{} does not have what the input has: {}", ShownPath(output), names.join(", "));
     (!names.is_empty()).then(|| Remark::warning("not-written", text()).with("count", names.len() as f64))
 }
 

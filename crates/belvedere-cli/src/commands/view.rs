@@ -2,6 +2,7 @@
 
 use super::check_output;
 use crate::arguments::{Global, MapPosition, MethodChoice, SceneInput, Usage, ViewPage};
+use crate::environment::words;
 use crate::interrupt;
 use crate::memory::available_bytes;
 use crate::pipeline::{self, KeepPoints, is_file, params};
@@ -229,7 +230,7 @@ impl Files {
         }
         let beside = self.meshes.iter().chain(&self.results).chain(&self.runs);
         let rest = typed(&beside.map(|path| path.to_string_lossy().into_owned()).collect::<Vec<_>>());
-        let is_typed = |path: &PathBuf| std::env::args_os().any(|word| word == path.as_os_str());
+        let is_typed = |path: &PathBuf| words().iter().any(|word| word == path.as_os_str());
         let of_runs = self.clouds.iter().filter(|path| !is_typed(path)).map(|path| quoted(&path.to_string_lossy()));
         of_runs.chain(Some(rest).filter(|rest| !rest.is_empty())).collect::<Vec<_>>().join(" ")
     }
@@ -343,7 +344,7 @@ fn is_las(path: &Path) -> bool {
 
 /// The files and flags of the scene as they were typed, for a shell, without the files named.
 fn typed(without: &[String]) -> String {
-    let words = std::env::args_os().skip(1).map(|word| word.to_string_lossy().into_owned());
+    let words = words().into_iter().skip(1).map(|word| word.to_string_lossy().into_owned());
     let mut kept = Vec::new();
     let mut skips = false;
     for word in words {

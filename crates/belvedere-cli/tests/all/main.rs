@@ -37,6 +37,7 @@ mod protected_views;
 mod queries;
 mod readme;
 mod remote;
+mod secrets;
 mod shadow;
 mod sights;
 mod simulate;
