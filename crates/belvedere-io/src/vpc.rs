@@ -6,6 +6,7 @@
 
 use std::path::{Path, PathBuf};
 
+use serde::Deserialize;
 use serde_json::Value;
 
 use super::read_options::FileBox;
@@ -14,6 +15,36 @@ use belvedere_data::{Error, Result};
 
 /// Largest catalogue that is read, bytes: a million tiles, and far below the memory of any machine.
 const MAX_BYTES: u64 = 1 << 30;
+
+/// What is read of a catalogue: no more of it is held, whatever else it says of a tile.
+#[derive(Deserialize)]
+struct Catalogue {
+    features: Option<Vec<Item>>,
+}
+
+#[derive(Deserialize)]
+struct Item {
+    assets: Option<Assets>,
+    properties: Option<Properties>,
+}
+
+#[derive(Deserialize)]
+struct Assets {
+    data: Option<Asset>,
+}
+
+#[derive(Deserialize)]
+struct Asset {
+    href: Option<Value>,
+}
+
+#[derive(Default, Deserialize)]
+struct Properties {
+    #[serde(rename = "pc:count")]
+    count: Option<Value>,
+    #[serde(rename = "proj:bbox")]
+    bounds: Option<Value>,
+}
 
 /// A tile of a catalogue.
 #[derive(Clone, Debug, PartialEq)]
@@ -47,28 +78,31 @@ pub fn read_catalogue<'a>(source: impl Into<Source<'a>>) -> Result<Vec<Catalogue
     if size > MAX_BYTES {
         return Err(damaged(format!("has {size} bytes, more than a catalogue of tiles; give the folder of the tiles")));
     }
-    let catalogue: Value = serde_json::from_reader(input.reader)
+    let catalogue: Catalogue = serde_json::from_reader(input.reader)
         .map_err(|e| damaged(format!("is no catalogue of tiles (virtual point cloud): {e}")))?;
-    let tiles = catalogue.get("features").and_then(Value::as_array);
-    let tiles = tiles.ok_or_else(|| damaged("is no catalogue of tiles: it has no `features`".to_owned()))?;
+    let tiles =
+        catalogue.features.ok_or_else(|| damaged("is no catalogue of tiles: it has no `features`".to_owned()))?;
     let folder = folder_and_query(&name);
     let mut found = Vec::with_capacity(tiles.len());
-    for (number, tile) in tiles.iter().enumerate() {
-        let path = tile.pointer("/assets/data/href").and_then(Value::as_str);
+    for (number, Item { assets, properties }) in tiles.into_iter().enumerate() {
+        let path = assets.and_then(|assets| assets.data?.href);
+        let path = path.as_ref().and_then(Value::as_str);
         let path = path.ok_or_else(|| damaged(format!("has no file for tile {} (assets, data, href)", number + 1)))?;
         if path.contains("://") && web_address(Path::new(path)).is_none() {
             return Err(damaged(format!(
                 "names {path}, which is neither a file nor an address of the web; download it first"
             )));
         }
-        let point_count = tile.pointer("/properties/pc:count").and_then(Value::as_u64);
-        found.push(CatalogueTile { path: place_beside(&folder, path), bounds: bounds(tile), point_count });
+        let Properties { count, bounds } = properties.unwrap_or_default();
+        let point_count = count.as_ref().and_then(Value::as_u64);
+        let bounds = bounds.as_ref().and_then(bounds_of);
+        found.push(CatalogueTile { path: place_beside(&folder, path), bounds, point_count });
     }
     Ok(found)
 }
 
-fn bounds(tile: &Value) -> Option<([f64; 3], [f64; 3])> {
-    let numbers = tile.pointer("/properties/proj:bbox")?.as_array()?;
+fn bounds_of(numbers: &Value) -> Option<([f64; 3], [f64; 3])> {
+    let numbers = numbers.as_array()?;
     let numbers: Vec<f64> = numbers.iter().map(Value::as_f64).collect::<Option<_>>()?;
     match numbers[..] {
         [a, b, c, d] => Some(([a, b, f64::NEG_INFINITY], [c, d, f64::INFINITY])),
