@@ -159,10 +159,7 @@ fn remove_leftovers(target: &Path, name: &OsStr, own: &Path) {
         let Some(maker) = found.to_str().and_then(|found| found.strip_prefix(&start)?.strip_suffix(".part")) else {
             continue;
         };
-        let is_number = |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_hexdigit());
-        let (true, Ok(metadata)) = (maker.contains('-') && maker.split('-').all(is_number), entry.metadata()) else {
-            continue;
-        };
+        let (true, Ok(metadata)) = (is_maker(maker), entry.metadata()) else { continue };
         // the same clock gave both times
         let age =
             now.modified().ok().zip(metadata.modified().ok()).and_then(|(now, then)| now.duration_since(then).ok());
@@ -170,6 +167,16 @@ fn remove_leftovers(target: &Path, name: &OsStr, own: &Path) {
             // one that cannot be removed is in nobody's way
             let _ = fs::remove_file(entry.path());
         }
+    }
+}
+
+/// Whether the end of a name is that of an unfinished file: its host, the number of its process and its own.
+fn is_maker(text: &str) -> bool {
+    let is_number = |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
+    let is_host = |text: &str| text == "0" || (text.len() > 12 && text.bytes().all(|byte| byte.is_ascii_hexdigit()));
+    match text.split('-').collect::<Vec<_>>()[..] {
+        [host, process, own] => is_host(host) && is_number(process) && is_number(own) && own.len() < 4,
+        _ => false,
     }
 }
 

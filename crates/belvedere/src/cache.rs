@@ -7,9 +7,12 @@
 
 mod folder;
 mod key;
+mod mark;
+mod survey;
 
 pub use folder::{CacheEntry, ReadBefore, SceneCache};
 pub use key::CloudKey;
+pub use survey::SurveyFolder;
 
 use crate::apps::ask::Remark;
 use crate::control::Control;

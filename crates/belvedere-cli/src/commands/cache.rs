@@ -17,6 +17,7 @@ pub(crate) fn run(arguments: &CacheArguments, global: &Global) -> Result<Summary
         return Ok(run.finish());
     };
     run.summary.add("folder", cache.folder().display().to_string());
+    run.summary.remarks(cache.remark());
     let entries = cache.entries()?;
     if arguments.clear {
         let bytes = cache.clear()?;

@@ -10,13 +10,15 @@ use crate::arguments::{
 use crate::memory;
 use crate::run::CommandContext;
 use anyhow::Result;
+use belvedere::Error;
 use belvedere::apps::ask::{Answers, GridCells, Question};
+use belvedere::cache::SurveyFolder;
 use belvedere::figures::{Picture, write_png};
 use belvedere::io::Insistence;
 use belvedere::results::{georeference, measure_map};
 use belvedere_tiles::{Plan, PlanParams, SurveyCells, SurveyQuestion, TileQuestion, TooLarge};
-use std::fs;
-use std::path::PathBuf;
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 /// What was typed of a question about cells.
@@ -35,7 +37,7 @@ pub(crate) struct TypedCells<'a> {
 /// A survey that is answered in tiles.
 pub(crate) struct PlannedSurvey {
     pub(crate) plan: Plan,
-    folder: PathBuf,
+    folder: SurveyFolder,
     /// Whether nobody keeps the tiles.
     is_temporary: bool,
     /// Memory that may be used, bytes.
@@ -105,12 +107,11 @@ impl<'a> TypedCells<'a> {
         let kept = run.cache.as_ref().and_then(|cache| cache.survey_folder(&input.clouds, &options));
         let beside = self.output.first().map(|output| output.with_extension("tiles"));
         let is_temporary = kept.is_none();
-        let Some(folder) = kept.or(beside) else { return Ok(None) };
-        if is_temporary && folder.exists() && !Plan::path(&folder).is_file() {
-            let what =
-                format!("{}: tiles would be made there, but it is there already; move it away", folder.display());
-            return Err(Usage(what).into());
-        }
+        let folder = match (kept, beside) {
+            (Some(kept), _) => kept,
+            (None, Some(beside)) => made_beside(&beside)?,
+            (None, None) => return Ok(None),
+        };
         let params = PlanParams {
             clouds: input.clouds.clone(),
             crs: input.crs.clone(),
@@ -118,7 +119,7 @@ impl<'a> TypedCells<'a> {
             program: city::PROGRAM.to_owned(),
             ..PlanParams::default()
         };
-        let plan = Plan::kept_in(&folder, &params, &run.control())?;
+        let plan = Plan::kept_in(folder.path(), &params, &run.control())?;
         let plan = plan.with_grid_cells(&self.cells)?.fitting(limit)?;
         run.summary.remarks([large.remark_on_tiles(plan.tile_size)]);
         let plan = city::planned(plan, &self.scene.plan, self.far, self.trees)?;
@@ -134,7 +135,7 @@ impl<'a> TypedCells<'a> {
         run: &mut CommandContext,
     ) -> Result<Answers<SurveyCells>> {
         let PlannedSurvey { plan, folder, is_temporary, limit } = survey;
-        let survey = SurveyQuestion::new(plan, &folder, question, limit, &run.control())?;
+        let survey = SurveyQuestion::new(plan, folder.path(), question, limit, &run.control())?;
         let start = Instant::now();
         let report = survey.run(&|| start.elapsed().as_secs_f64(), &run.control())?;
         city::refuse_failed(&report, "run the command again to try them again")?;
@@ -144,8 +145,7 @@ impl<'a> TypedCells<'a> {
         self.write(&answers, map, run)?;
         match (&run.cache, is_temporary) {
             (Some(cache), false) => cache.make_room_beside(&folder),
-            // what cannot be removed does no harm
-            _ => drop(fs::remove_dir_all(&folder)),
+            _ => folder.remove(),
         }
         Ok(answers)
     }
@@ -191,6 +191,17 @@ impl<'a> TypedCells<'a> {
         run.summary.add("written", written);
         Ok(())
     }
+}
+
+/// The folder of tiles that nobody keeps, beside the result.
+fn made_beside(folder: &Path) -> Result<SurveyFolder> {
+    SurveyFolder::make(folder).map_err(|error| match error {
+        Error::Io { source, .. } if source.kind() == ErrorKind::AlreadyExists => {
+            let what = "tiles would be made there, but it is there already, and not made by this program";
+            Usage(format!("{}: {what}; move it away", folder.display())).into()
+        }
+        error => error.into(),
+    })
 }
 
 /// A map of the first measure.

@@ -68,3 +68,45 @@ fn a_cache_that_cannot_be_written_is_named_and_the_answer_is_there() {
     assert!(run.stderr.contains("could not be kept") && run.stderr.contains("another folder"), "{run:?}");
     assert!(fs::metadata(place.path("a.tif")).unwrap().len() > 0);
 }
+
+#[test]
+fn a_folder_of_others_is_no_cache_and_stays() {
+    let place = Workplace::new();
+    place.write_cloud("house.laz", &house());
+    fs::create_dir_all(place.path("mine/tiles/run/balls")).unwrap();
+    for name in ["mine/anything_scene.npz", "mine/tiles/run/plan.json", "mine/tiles/run/balls/e1_n2.npz"] {
+        place.write(name, "mine");
+    }
+    let run = place.run("shadow house.laz --sun 180,40 --grid-north -o a.tif --cache mine");
+    assert!(
+        run.status == 0 && run.stderr.contains("could not be kept") && run.stderr.contains("new or empty"),
+        "{run:?}"
+    );
+    let cleared = place.summary("cache --clear --cache mine");
+    assert_eq!((&cleared["scenes_removed"], &cleared["remarks"][0]["key"]), (&0.into(), &"cache-of-others".into()));
+    for name in ["mine/anything_scene.npz", "mine/tiles/run/plan.json", "mine/tiles/run/balls/e1_n2.npz"] {
+        assert_eq!(place.text(name), "mine");
+    }
+    assert_eq!(fs::read_dir(place.path("mine")).unwrap().count(), 2);
+}
+
+#[cfg(unix)]
+#[test]
+fn a_pipe_is_refused_at_once_and_never_waited_for() {
+    let place = Workplace::new();
+    fs::create_dir(place.path("folder")).unwrap();
+    place.write_cloud("house.laz", &house());
+    place.write_cloud("folder/house.laz", &house());
+    for name in ["pipe.laz", "pipe.obj", "pipe.csv", "pipe.npz", "house.prj", "folder/pipe.laz"] {
+        assert!(std::process::Command::new("mkfifo").arg(place.path(name)).status().unwrap().success());
+    }
+    let shadow = "shadow house.laz --sun 180,40 --grid-north -o a.tif";
+    for command in ["info pipe.laz", "city plan pipe.laz --sun 180,40 -o run"]
+    {
+        place.refusal(1, command, &["is not a file"]);
+    }
+    place.refusal(1, &format!("{shadow} --add pipe.obj"), &["pipe.obj: is not a file"]);
+    place.refusal(1, "viewshed house.laz --observers pipe.csv -o a.tif", &["pipe.csv: is not a file"]);
+    assert_eq!(place.summary("info folder")["reading"]["files"].as_array().map(Vec::len), Some(1));
+    assert_eq!(place.run(shadow).status, 0);
+}

@@ -108,14 +108,18 @@ fn files_that_killed_runs_left_are_removed_and_those_of_others_are_not() {
         format!(".result.csv.0123456789ab4026531836-{dead}-0.part"),
     ];
     kept.iter().for_each(|name| write(name, 20));
+    let mut expected = kept.to_vec();
     for name in [format!(".result.csv.{host}-{dead}-0.part"), format!(".result.csv.{host}-{dead}-12.part")] {
         write(&name, 0);
     }
-    // nobody has written to these since long ago; the last is named as earlier versions did
+    // nobody has written to it since long ago
     write(&format!(".result.csv.0123456789ab4026531836-{own}-1.part"), 25);
-    write(&format!(".result.csv.{dead}-3.part"), 25);
+    // of others, however old: no name that the program gives
+    for name in [".result.csv.2024-11-28.part", ".result.csv.2024-11.part", ".result.csv.0-1-2-3.part"] {
+        write(name, 25);
+        expected.push(name.to_owned());
+    }
     write_table(path.as_path(), &[("x", TableCells::Real(&[1.0], 1))]).unwrap();
-    let mut expected = kept.to_vec();
     expected.push("result.csv".to_owned());
     expected.sort();
     assert_eq!(names_in(folder.path()), expected);

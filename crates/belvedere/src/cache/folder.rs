@@ -1,7 +1,10 @@
 //! The folder of kept scenes.
 
 use super::key::{CloudKey, of_files};
+use super::mark::{is_marked, is_plain_file, is_plain_folder, make_marked, make_private};
+use super::survey::{PLAN, SurveyFolder};
 use super::{BuiltScene, SceneOrigin};
+use crate::apps::ask::Remark;
 use crate::apps::ask::scene::{GroundStore, KnownGround};
 use crate::control::Control;
 use crate::ground::{Ground, GroundParams, GroundReport, MapGrid};
@@ -26,9 +29,10 @@ const MAX_BYTES: u64 = 10_000_000_000;
 const SCENE: &str = "scene.npz";
 const GROUND: &str = "ground.npz";
 const READING: &str = "reading.npz";
-/// The folder of surveys in tiles, each a folder of its own, and the file that says what such a one is of.
+/// The folder of surveys in tiles, each a folder of its own.
 const TILES: &str = "tiles";
-const PLAN: &str = "plan.json";
+/// Hexadecimal digits of the name of an entry.
+const KEY_DIGITS: usize = 32;
 /// Names of the notes of an entry for what reading gave.
 const CLOUD: &str = "cloud";
 const NOTES: &str = "notes";
@@ -111,9 +115,7 @@ impl SceneCache {
     ) -> Option<BuiltScene> {
         // who needs no normals can use a scene with them
         let mut names = [true, false].into_iter().filter(|&has_normals| has_normals || !needs_normals);
-        let path = names.find_map(|has_normals| {
-            Some(self.path(&cloud.of_scene(params, has_normals), SCENE)).filter(|p| p.is_file())
-        })?;
+        let path = names.find_map(|has_normals| self.entry(&cloud.of_scene(params, has_normals), SCENE))?;
         match control.stage("reading kept scene", 0, || scene_in(&path)) {
             Ok((model, report)) => {
                 mark_as_used(&path);
@@ -138,9 +140,8 @@ impl SceneCache {
         report: &Map<String, Value>,
         name: &str,
     ) -> Result<()> {
-        self.make_folder()?;
         let derived = model.derived();
-        let path = self.path(&cloud.of_scene(params, derived.normals.is_some()), SCENE);
+        let path = self.place(&cloud.of_scene(params, derived.normals.is_some()), SCENE)?;
         let notes = json!({ "name": name, "report": report }).to_string();
         write_kept_model(&path, model.parts(), &derived, &notes)?;
         self.make_room(&path);
@@ -150,7 +151,7 @@ impl SceneCache {
     /// What reading these files gave before; `None` where that is not known, they changed, or lie on a server.
     #[must_use]
     pub fn read_before(&self, paths: &[PathBuf], options: &ReadOptions) -> Option<ReadBefore> {
-        let path = self.path(&of_files(paths, options)?, READING);
+        let path = self.entry(&of_files(paths, options)?, READING)?;
         let mut parts = read_balls(&path).ok()?;
         let notes = serde_json::from_str(&parts.provenance.remove(NOTES)?).ok()?;
         mark_as_used(&path);
@@ -162,30 +163,32 @@ impl SceneCache {
     /// # Errors
     /// [`Error::Io`] where it cannot be written.
     pub fn keep_reading(&self, paths: &[PathBuf], options: &ReadOptions, found: &ReadBefore) -> Result<()> {
-        let Some(name) = of_files(paths, options).filter(|name| !self.path(name, READING).exists()) else {
+        let Some(name) = of_files(paths, options).filter(|name| self.entry(name, READING).is_none()) else {
             return Ok(());
         };
-        self.make_folder()?;
+        let path = self.place(&name, READING)?;
         let parts = ModelParts { frame: found.frame.clone(), ..ModelParts::default() };
         let notes = Value::Object(found.notes.clone()).to_string();
-        write_balls(
-            self.path(&name, READING),
-            &parts.with_provenance(CLOUD, &found.cloud.0).with_provenance(NOTES, notes),
-        )
+        write_balls(path, &parts.with_provenance(CLOUD, &found.cloud.0).with_provenance(NOTES, notes))
     }
 
     /// The folder in which tiles of a survey of these files are kept, with all that belongs to them; its `plan.json`
-    /// names the files. `None` where these lie on a server or cannot be read. It counts as used now.
+    /// names the files. `None` where these lie on a server or cannot be read, and where it cannot be made or is not
+    /// the program's. It counts as used now.
     #[must_use]
-    pub fn survey_folder(&self, paths: &[PathBuf], options: &ReadOptions) -> Option<PathBuf> {
-        let folder = self.folder.join(TILES).join(of_files(paths, options)?);
-        mark_as_used(&folder.join(PLAN));
+    pub fn survey_folder(&self, paths: &[PathBuf], options: &ReadOptions) -> Option<SurveyFolder> {
+        let key = of_files(paths, options)?;
+        make_marked(&self.folder).ok()?;
+        let tiles = self.folder.join(TILES);
+        make_private(&tiles).ok().filter(|()| is_plain_folder(&tiles))?;
+        let folder = SurveyFolder::make(tiles.join(key)).ok()?;
+        mark_as_used(&folder.path().join(PLAN));
         Some(folder)
     }
 
     /// Makes room for what was kept in the folder of a survey.
-    pub fn make_room_beside(&self, survey: &Path) {
-        self.make_room(survey);
+    pub fn make_room_beside(&self, survey: &SurveyFolder) {
+        self.make_room(survey.path());
     }
 
     /// A store for the ground of a cloud.
@@ -199,10 +202,11 @@ impl SceneCache {
     /// # Errors
     /// [`Error::Io`] for a folder that cannot be read; one that is not there is empty.
     pub fn entries(&self) -> Result<Vec<CacheEntry>> {
-        let scenes = self.files()?.into_iter().filter(|file| file.path.is_dir() || is_named(&file.path, SCENE));
+        let scenes = self.files()?.into_iter().filter(|file| file.survey.is_some() || is_named(&file.path, SCENE));
         let mut entries: Vec<CacheEntry> = scenes
             .map(|file| {
-                let name = if file.path.is_dir() { name_of_survey(&file.path) } else { name_of_scene(&file.path) };
+                let is_survey = file.survey.is_some();
+                let name = if is_survey { name_of_survey(&file.path) } else { name_of_scene(&file.path) };
                 CacheEntry { name: name.unwrap_or_else(|| "damaged".to_owned()), bytes: file.bytes, used: file.used }
             })
             .collect();
@@ -218,7 +222,8 @@ impl SceneCache {
         Ok(self.files()?.iter().map(|file| file.bytes).sum())
     }
 
-    /// Removes all that is kept; returns how many bytes that was. Other files of the folder stay.
+    /// Removes all that is kept; returns how many bytes that was. Other files of the folder stay, and all of a folder
+    /// that the program did not make.
     ///
     /// # Errors
     /// [`Error::Io`] for what cannot be removed.
@@ -233,12 +238,35 @@ impl SceneCache {
         Ok(bytes)
     }
 
-    fn make_folder(&self) -> Result<()> {
-        fs::create_dir_all(&self.folder).map_err(Error::io(&self.folder))
+    /// A warning where the folder holds files, but the program did not make it: nothing is kept or removed there.
+    #[must_use]
+    pub fn remark(&self) -> Option<Remark> {
+        let holds_files = || self.folder.read_dir().is_ok_and(|mut rows| rows.next().is_some());
+        (!is_marked(&self.folder) && holds_files()).then(|| {
+            let text =
+                "the folder has no mark of this program: nothing is kept there, and none of its files is removed";
+            Remark::warning("cache-of-others", text)
+        })
     }
 
     fn path(&self, key: &str, kind: &str) -> PathBuf {
         self.folder.join(format!("{key}.{kind}"))
+    }
+
+    /// An entry that is there.
+    fn entry(&self, key: &str, kind: &str) -> Option<PathBuf> {
+        Some(self.path(key, kind)).filter(|path| is_plain_file(path) && is_marked(&self.folder))
+    }
+
+    /// Where an entry goes; the folder is made.
+    fn place(&self, key: &str, kind: &str) -> Result<PathBuf> {
+        make_marked(&self.folder)?;
+        let path = self.path(key, kind);
+        // writing would go through a link, and wait for the reader of a pipe
+        if path.symlink_metadata().is_ok_and(|found| !found.is_file()) {
+            return Err(Error::malformed(&path, "is not a file; remove it, or have scenes kept in another folder"));
+        }
+        Ok(path)
     }
 
     /// The entries of all kinds.
@@ -247,18 +275,23 @@ impl SceneCache {
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(Vec::new()),
             rows => rows.map_err(Error::io(&self.folder))?,
         };
-        let paths = rows.filter_map(|row| Some(row.ok()?.path()));
-        let files =
-            paths.filter(|path| [SCENE, GROUND, READING].iter().any(|kind| is_named(path, kind))).filter_map(|path| {
-                // another program may have removed it meanwhile
-                let metadata = path.metadata().ok()?;
-                Some(KeptFile { bytes: metadata.len(), used: metadata.modified().ok()?, path })
-            });
-        let surveys = self.folder.join(TILES).read_dir().into_iter().flatten();
-        let surveys = surveys.filter_map(|row| {
+        if !is_marked(&self.folder) {
+            return Ok(Vec::new());
+        }
+        let files = rows.filter_map(|row| {
             let path = row.ok()?.path();
-            let used = path.join(PLAN).metadata().and_then(|plan| plan.modified()).ok()?;
-            Some(KeptFile { bytes: bytes_below(&path), used, path })
+            let is_own = [SCENE, GROUND, READING].iter().any(|kind| is_named(&path, kind)) && is_plain_file(&path);
+            // another program may have removed it meanwhile
+            let metadata = path.symlink_metadata().ok().filter(|_| is_own)?;
+            Some(KeptFile { bytes: metadata.len(), used: metadata.modified().ok()?, survey: None, path })
+        });
+        let tiles = self.folder.join(TILES);
+        let surveys = is_plain_folder(&tiles).then(|| tiles.read_dir()).into_iter().flatten().flatten();
+        let surveys = surveys.filter_map(|row| {
+            let row = row.ok()?;
+            let survey = SurveyFolder::find(row.path()).filter(|_| row.file_name().to_str().is_some_and(is_key))?;
+            let used = row.path().join(PLAN).symlink_metadata().ok()?.modified().ok()?;
+            Some(KeptFile { bytes: survey.bytes(), used, path: row.path(), survey: Some(survey) })
         });
         Ok(files.chain(surveys).collect())
     }
@@ -295,7 +328,7 @@ struct GroundNotes {
 
 impl GroundStore for GroundOfCloud {
     fn find(&self, grid: &MapGrid, params: &GroundParams) -> Option<KnownGround> {
-        let path = self.cache.path(&self.cloud.of_ground(grid, params), GROUND);
+        let path = self.cache.entry(&self.cloud.of_ground(grid, params), GROUND)?;
         let (rasters, notes) = read_kept_rasters(&path).ok()?;
         let GroundNotes { corner, cell, report } = serde_json::from_str(&notes).ok()?;
         let [heights, gaps]: [Raster<f32>; 2] = rasters.try_into().ok()?;
@@ -308,11 +341,9 @@ impl GroundStore for GroundOfCloud {
     fn keep(&self, params: &GroundParams, known: &KnownGround) {
         let KnownGround { ground: Ground { grid, heights, gaps }, report } = known;
         let notes = GroundNotes { corner: grid.corner, cell: grid.cell, report: *report };
-        let path = self.cache.path(&self.cloud.of_ground(grid, params), GROUND);
-        let is_kept = self.cache.make_folder().is_ok()
-            && serde_json::to_string(&notes)
-                .is_ok_and(|notes| write_kept_rasters(&path, &[heights, gaps], &notes).is_ok());
-        if is_kept {
+        let Ok(path) = self.cache.place(&self.cloud.of_ground(grid, params), GROUND) else { return };
+        let write = |notes: String| write_kept_rasters(&path, &[heights, gaps], &notes);
+        if serde_json::to_string(&notes).is_ok_and(|notes| write(notes).is_ok()) {
             self.cache.make_room(&path);
         }
     }
@@ -323,22 +354,19 @@ struct KeptFile {
     path: PathBuf,
     bytes: u64,
     used: SystemTime,
+    survey: Option<SurveyFolder>,
 }
 
 impl KeptFile {
     fn remove(&self) -> std::io::Result<()> {
-        if self.path.is_dir() { fs::remove_dir_all(&self.path) } else { fs::remove_file(&self.path) }
+        match &self.survey {
+            Some(survey) => {
+                survey.remove();
+                Ok(())
+            }
+            None => fs::remove_file(&self.path),
+        }
     }
-}
-
-/// Bytes of all files below a folder.
-fn bytes_below(folder: &Path) -> u64 {
-    let of_row = |row: fs::DirEntry| match row.metadata() {
-        Ok(found) if found.is_dir() => bytes_below(&row.path()),
-        Ok(found) => found.len(),
-        Err(_) => 0,
-    };
-    folder.read_dir().into_iter().flatten().filter_map(std::result::Result::ok).map(of_row).sum()
 }
 
 fn name_of_scene(path: &Path) -> Option<String> {
@@ -347,17 +375,27 @@ fn name_of_scene(path: &Path) -> Option<String> {
 }
 
 fn name_of_survey(folder: &Path) -> Option<String> {
-    let plan: Value = serde_json::from_slice(&fs::read(folder.join(PLAN)).ok()?).ok()?;
+    let plan = Some(folder.join(PLAN)).filter(|plan| is_plain_file(plan))?;
+    let plan: Value = serde_json::from_slice(&fs::read(plan).ok()?).ok()?;
     let names: Vec<&str> = plan["inputs"].as_array()?.iter().filter_map(|file| file["path"].as_str()).collect();
     Some(format!("{}, in tiles", names.join(", ")))
 }
 
+/// Whether a path has the name of an entry of this kind.
 fn is_named(path: &Path, kind: &str) -> bool {
-    path.file_name().and_then(|name| name.to_str()).is_some_and(|name| name.ends_with(kind))
+    let name = path.file_name().and_then(|name| name.to_str());
+    name.and_then(|name| name.strip_suffix(kind)?.strip_suffix('.')).is_some_and(is_key)
+}
+
+fn is_key(name: &str) -> bool {
+    name.len() == KEY_DIGITS && name.bytes().all(|byte| matches!(byte, b'0'..=b'9' | b'a'..=b'f'))
 }
 
 /// The time of a file says when it was used. Where that cannot be set, it counts from when it was made.
 fn mark_as_used(path: &Path) {
+    if !is_plain_file(path) {
+        return;
+    }
     let _ = File::options().write(true).open(path).and_then(|file| file.set_modified(SystemTime::now()));
 }
 

@@ -147,7 +147,7 @@ fn two_that_build_the_same_at_once_keep_it_once() {
         threads.into_iter().map(|thread| thread.join().unwrap().model.parts().balls.centers.clone()).collect()
     });
     assert!(centers.iter().all(|own| *own == centers[0]));
-    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+    assert_eq!(scenes(&folder).len(), 1);
     assert!(matches!(scene_of(&cloud, &params, &cache).origin, SceneOrigin::Found));
 }
 

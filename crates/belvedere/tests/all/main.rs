@@ -11,6 +11,7 @@ mod between_returns;
 mod blocking;
 mod bounded_views;
 mod cache;
+mod cache_ownership;
 mod camera_coverage;
 mod camera_placement;
 mod carving;
