@@ -31,7 +31,8 @@ const textAt = (at, length) => new TextDecoder().decode(copy(at, length));
 const host = {
   read: (id, at, to, length) => {
     try {
-      const bytes = files.get(id).read(at, length);
+      // the module gave room for no more than it requested
+      const bytes = files.get(id).read(at, length).subarray(0, length);
       bytesAt(to, bytes.length).set(bytes);
       return bytes.length;
     } catch (error) {
@@ -71,21 +72,27 @@ class Blocks {
   }
   read(at, length) {
     const whole = Math.min(length, this.size - at);
-    if (whole >= this.side) return this.part(at, at + whole);
+    if (whole >= this.side) return this.wholePart(at, at + whole);
     const number = Math.floor(at / this.side);
     let block = this.kept.get(number);
     if (!block) {
-      block = this.part(number * this.side, Math.min((number + 1) * this.side, this.size));
+      block = this.wholePart(number * this.side, Math.min((number + 1) * this.side, this.size));
       if (this.kept.size >= MAX_BLOCKS) this.kept.delete(this.kept.keys().next().value);
       this.kept.set(number, block);
     }
     const from = at - number * this.side;
     return block.subarray(from, from + Math.min(whole, this.side - from));
   }
+  wholePart(from, to) {
+    const bytes = this.part(from, to);
+    if (bytes.length !== to - from) throw new Error(`${this.name} gives ${bytes.length} bytes of the ${to - from} from ${from} on: the file is not what it was when it was opened; open it again`);
+    return bytes;
+  }
 }
 class LocalFile extends Blocks {
   constructor(file) {
     super(file.size, BLOCK);
+    this.name = file.name;
     this.file = file;
     this.reader = new FileReaderSync();
   }
@@ -95,12 +102,21 @@ class LocalFile extends Blocks {
 }
 class WebFile extends Blocks {
   constructor(url) {
-    super(sizeAt(url), WEB_BLOCK);
+    const head = requested("HEAD", url);
+    super(sizeOf(head, url), WEB_BLOCK);
+    this.name = shown(url);
     this.url = url;
+    this.version = versionOf(head);
   }
   part(from, to) {
     const request = requested("GET", this.url, `bytes=${from}-${to - 1}`);
-    if (request.status !== 206) throw new Error(`${this.url} gives no parts of files (HTTP ranges): download the file, and open it from the disk`);
+    if (request.status !== 206) throw new Error(`${this.name} gives no parts of files (HTTP ranges): download the file, and open it from the disk`);
+    // what a server of another site does not let pages read is null
+    const range = /^bytes (\d+)-(\d+)\/(\d+|\*)$/.exec(request.getResponseHeader("Content-Range") ?? "");
+    if (range && (Number(range[1]) !== from || Number(range[2]) !== to - 1)) throw new Error(`${this.name} gives another part than the one that is needed: download the file, and open it from the disk`);
+    const version = versionOf(request);
+    const isOther = version.some((own, i) => own && this.version[i] && own !== this.version[i]);
+    if (isOther || (range && range[3] !== "*" && Number(range[3]) !== this.size)) throw new Error(`${this.name} changed on the server while it was read: open it again`);
     return new Uint8Array(request.response);
   }
 }
@@ -122,26 +138,33 @@ function requested(method, url, range) {
   try {
     request.send();
   } catch {
-    throw new Error(`${url} cannot be read from this page: the server is not there, or it does not allow other pages to read from it (CORS). Download the file, and open it from the disk`);
+    throw new Error(`${shown(url)} cannot be read from this page: the server is not there, or it does not allow other pages to read from it (CORS). Download the file, and open it from the disk`);
   }
-  if (request.status >= 400) throw new Error(`${url}: the server answers with ${request.status}`);
+  if (request.status >= 400) throw new Error(`${shown(url)}: the server answers with ${request.status}`);
   return request;
 }
-function sizeAt(url) {
-  const size = Number(requested("HEAD", url).getResponseHeader("Content-Length"));
-  if (!(size > 0)) throw new Error(`${url}: the server does not tell the size of the file`);
+// An address as it is shown: without user, password and key.
+function shown(url) {
+  const { protocol, host, pathname, username, password, search, hash } = new URL(url);
+  return `${protocol}//${host}${pathname}${username || password || search || hash ? "?***" : ""}`;
+}
+function sizeOf(head, url) {
+  const size = Number(head.getResponseHeader("Content-Length"));
+  if (!(size > 0)) throw new Error(`${shown(url)}: the server does not tell the size of the file`);
   return size;
 }
+// What a server calls this version of a file, as far as it lets the page know.
+const versionOf = (request) => ["ETag", "Last-Modified"].map((name) => request.getResponseHeader(name));
 // A file in the browser's own store.
 class KeptFile extends Blocks {
   constructor(handle) {
     super(handle.getSize(), BLOCK);
+    this.name = "the scene that was kept";
     this.handle = handle;
   }
   part(from, to) {
     const bytes = new Uint8Array(to - from);
-    this.handle.read(bytes, { at: from });
-    return bytes;
+    return bytes.subarray(0, this.handle.read(bytes, { at: from }));
   }
 }
 

@@ -8,10 +8,12 @@ use belvedere::io::{
     read_kept_model, read_las_head, read_mesh_in,
 };
 use belvedere::model::{ModelParams, SceneModel};
+use belvedere::shown::ShownPath;
 use belvedere::{Error, PointCloud, Result};
 use belvedere_viewer::{PointsOf, Refusal, SceneText, Session, are_results, quoted};
 use serde::{Deserialize, Serialize};
 use std::io::{Read, Seek};
+use std::path::Path;
 use std::sync::Arc;
 
 /// What an engine needs of whoever runs it.
@@ -248,7 +250,10 @@ pub fn tiles_of<H: Host>(file: &OpenedFile, host: &H) -> std::result::Result<Vec
             Some((low, high)) if [low[0], low[1], high[0], high[1]].iter().all(|v| v.is_finite()) => {
                 Ok(Tile { address, low: on_map(low), high: on_map(high), points: tile.point_count })
             }
-            _ => Err(Refusal::from(format!("{} does not say where {address} lies (proj:bbox).", file.name))),
+            _ => {
+                let [catalogue, tile] = [Path::new(&file.name), &tile.path].map(ShownPath);
+                Err(Refusal::from(format!("{catalogue} does not say where {tile} lies (proj:bbox).")))
+            }
         }
     };
     read_catalogue(source(file, host))?.into_iter().map(placed).collect()

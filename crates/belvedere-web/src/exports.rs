@@ -3,7 +3,13 @@
 //! Texts and bytes are handed over as an address and a length. [`take`] gives room for what comes in. What goes out is
 //! given to `reply` before the call returns. A call returns 0 after a reply, and 1 after a refusal, whose text is the
 //! reply. One thread calls all of them, and it is none of the pool.
+//!
+//! Tests compile this file too, with a host in Rust, and compare it with [`Engine`], the same without `unsafe`.
 #![expect(unsafe_code, reason = "the border to JavaScript")]
+#![cfg_attr(test, allow(dead_code, reason = "tests start no threads and call what a file goes through"))]
+
+#[cfg(test)]
+mod twin;
 
 use crate::engine::{Announced, Engine, Host, OpenRequest, OpenedFile, tiles_of};
 use belvedere::control::Control;
@@ -12,6 +18,10 @@ use std::io::{Read, Seek, SeekFrom};
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Mutex, PoisonError};
 
+#[cfg(test)]
+use twin::{failed, read, reply, spawn, stage, tick};
+
+#[cfg(not(test))]
 #[link(wasm_import_module = "host")]
 unsafe extern "C" {
     /// Reads at most `length` bytes of the file `id` from `at` on; returns how many, or -1.
@@ -115,7 +125,7 @@ fn parsed<T: serde::de::DeserializeOwned>(bytes: &[u8]) -> Result<T, Refusal> {
 }
 
 /// Room for so many bytes.
-#[unsafe(no_mangle)]
+#[cfg_attr(target_family = "wasm", unsafe(no_mangle))]
 extern "C" fn take(length: usize) -> *mut u8 {
     let mut room = Vec::<u8>::with_capacity(length.max(1));
     let at = room.as_mut_ptr();
@@ -127,14 +137,14 @@ extern "C" fn take(length: usize) -> *mut u8 {
 ///
 /// # Safety
 /// It is from [`take`] with the same length, and not used any more.
-#[unsafe(no_mangle)]
+#[cfg_attr(target_family = "wasm", unsafe(no_mangle))]
 unsafe extern "C" fn give(at: *mut u8, length: usize) {
     // SAFETY: as promised
     drop(unsafe { Vec::from_raw_parts(at, 0, length.max(1)) });
 }
 
 /// Called first: from then on `failed` gets what a panic says.
-#[unsafe(no_mangle)]
+#[cfg_attr(target_family = "wasm", unsafe(no_mangle))]
 extern "C" fn start() {
     std::panic::set_hook(Box::new(|info| {
         let text = info.to_string();
@@ -144,7 +154,7 @@ extern "C" fn start() {
 }
 
 /// Address of the number of items done, 32 bits.
-#[unsafe(no_mangle)]
+#[cfg_attr(target_family = "wasm", unsafe(no_mangle))]
 extern "C" fn progress() -> *const u32 {
     DONE.as_ptr()
 }
@@ -153,7 +163,7 @@ extern "C" fn progress() -> *const u32 {
 ///
 /// # Safety
 /// That of [`given`].
-#[unsafe(no_mangle)]
+#[cfg_attr(target_family = "wasm", unsafe(no_mangle))]
 unsafe extern "C" fn announced(from: *const u8, length: usize) -> u32 {
     // SAFETY: as promised
     let files = parsed::<Vec<OpenedFile>>(unsafe { given(from, length) });
@@ -164,7 +174,7 @@ unsafe extern "C" fn announced(from: *const u8, length: usize) -> u32 {
 ///
 /// # Safety
 /// That of [`given`].
-#[unsafe(no_mangle)]
+#[cfg_attr(target_family = "wasm", unsafe(no_mangle))]
 unsafe extern "C" fn tiles(from: *const u8, length: usize) -> u32 {
     // SAFETY: as promised
     let tiles = parsed::<OpenedFile>(unsafe { given(from, length) }).and_then(|file| tiles_of(&file, &Browser));
@@ -175,7 +185,7 @@ unsafe extern "C" fn tiles(from: *const u8, length: usize) -> u32 {
 ///
 /// # Safety
 /// That of [`given`].
-#[unsafe(no_mangle)]
+#[cfg_attr(target_family = "wasm", unsafe(no_mangle))]
 unsafe extern "C" fn open(from: *const u8, length: usize) -> u32 {
     // SAFETY: as promised
     let request = parsed::<OpenRequest>(unsafe { given(from, length) });
@@ -188,13 +198,13 @@ unsafe extern "C" fn open(from: *const u8, length: usize) -> u32 {
 }
 
 /// The reply is the name under which the scene of what was read can be kept.
-#[unsafe(no_mangle)]
+#[cfg_attr(target_family = "wasm", unsafe(no_mangle))]
 extern "C" fn scene_name() -> u32 {
     with_engine(|engine| Ok(engine.scene_name().unwrap_or_default().into_bytes()))
 }
 
 /// Builds the scene; the reply is the state.
-#[unsafe(no_mangle)]
+#[cfg_attr(target_family = "wasm", unsafe(no_mangle))]
 extern "C" fn build() -> u32 {
     with_engine(|engine| {
         engine.build(&Browser)?;
@@ -206,7 +216,7 @@ extern "C" fn build() -> u32 {
 ///
 /// # Safety
 /// That of [`given`].
-#[unsafe(no_mangle)]
+#[cfg_attr(target_family = "wasm", unsafe(no_mangle))]
 unsafe extern "C" fn build_from(from: *const u8, length: usize) -> u32 {
     // SAFETY: as promised
     let kept = parsed::<OpenedFile>(unsafe { given(from, length) });
@@ -217,13 +227,13 @@ unsafe extern "C" fn build_from(from: *const u8, length: usize) -> u32 {
 }
 
 /// The reply is the scene, to be kept.
-#[unsafe(no_mangle)]
+#[cfg_attr(target_family = "wasm", unsafe(no_mangle))]
 extern "C" fn scene_file() -> u32 {
     with_engine(|engine| engine.session().scene_file())
 }
 
 /// Makes what must be there before the first question; the reply is empty.
-#[unsafe(no_mangle)]
+#[cfg_attr(target_family = "wasm", unsafe(no_mangle))]
 extern "C" fn index_proof() -> u32 {
     with_engine(|engine| {
         engine.session().index_proof();
@@ -232,7 +242,7 @@ extern "C" fn index_proof() -> u32 {
 }
 
 /// Makes what most questions need; the reply is empty.
-#[unsafe(no_mangle)]
+#[cfg_attr(target_family = "wasm", unsafe(no_mangle))]
 extern "C" fn prepare() -> u32 {
     with_engine(|engine| {
         engine.session().prepare();
@@ -244,7 +254,7 @@ extern "C" fn prepare() -> u32 {
 ///
 /// # Safety
 /// That of [`given`], for both.
-#[unsafe(no_mangle)]
+#[cfg_attr(target_family = "wasm", unsafe(no_mangle))]
 unsafe extern "C" fn ask(path: *const u8, path_length: usize, body: *const u8, body_length: usize) -> u32 {
     // SAFETY: as promised
     let (path, body) = unsafe { (given(path, path_length), given(body, body_length)) };
@@ -261,7 +271,7 @@ unsafe extern "C" fn ask(path: *const u8, path_length: usize, body: *const u8, b
 
 /// Starts a pool of so many threads, each by `spawn`, for all that follows. The host has them waiting already: this
 /// call returns only when all of them run.
-#[unsafe(no_mangle)]
+#[cfg_attr(target_family = "wasm", unsafe(no_mangle))]
 extern "C" fn start_threads(count: usize) -> u32 {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(count).spawn_handler(|thread| {
         // SAFETY: takes a number
@@ -275,7 +285,7 @@ extern "C" fn start_threads(count: usize) -> u32 {
 ///
 /// # Safety
 /// The address is one that `spawn` was given, and is used once.
-#[unsafe(no_mangle)]
+#[cfg_attr(target_family = "wasm", unsafe(no_mangle))]
 unsafe extern "C" fn run_thread(builder: usize) {
     // SAFETY: as promised
     let thread = unsafe { Box::from_raw(builder as *mut rayon::ThreadBuilder) };

@@ -6,7 +6,7 @@
 //! [`Engine`] is the same without a browser.
 
 mod engine;
-#[cfg(target_family = "wasm")]
+#[cfg(any(target_family = "wasm", test))]
 mod exports;
 
 pub use engine::{Announced, Engine, Host, OpenRequest, OpenedFile, Tile, tiles_of};

@@ -123,7 +123,7 @@ export function panel(note = "") {
   ].join("");
   const files = page.planned?.files ?? [];
   card(`<div class="row"><button data-draw="building" aria-pressed="${drawing === "building"}">${t`Draw a building`}</button><button data-draw="area" aria-pressed="${drawing === "area"}">${t`Clear an area`}</button>`
-    + `<button id="mesh">${t`Load a mesh`}</button><input id="meshfile" type="file" accept=".obj,.ply,.json,.jsonl,.cityjson" hidden aria-label="${t`Mesh file`}"></div>`
+    + `<button id="mesh">${t`Load a mesh`}</button><input id="meshfile" type="file" hidden aria-label="${t`Mesh file`}"></div>`
     + (drawing === "building" ? `<div class="field"><label for="high">${t`Height of the building`}</label><span><input id="high" type="number" min="0.1" step="0.5" value="${height}"> m</span></div>` : "")
     + (note || `<p class="note">${page.places.length ? corners(page.places) : HINTS[drawing]}</p>`)
     + (!note && page.places.length >= 3 ? `<div class="row"><button id="done">${t`Finish`} (Enter)</button></div>` : "")

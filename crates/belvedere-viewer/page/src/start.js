@@ -5,7 +5,6 @@ import { $, page } from "./state.js";
 import { count, fixed, LANGUAGES, language, setLanguage, t } from "./words.js";
 import { open, tilesOf } from "./engines/worker.js";
 
-const FORMATS = ".laz .las .copc.laz .e57 .ply .pcd .ptx .xyz .txt .csv .npy .obj .json .jsonl .cityjson .tif .tiff .geojson";
 const DEMO = "demo.laz";
 
 // Memory of a scene for each point, bytes: measured with AHN and towns of 12 points/m². The most that a page can have,
@@ -146,7 +145,7 @@ export function startScreen(whenOpen) {
     const files = [...list].map((file) => ({ name: file.name, file }));
     if (files.length) begin(files, whenOpen);
   };
-  $("choose").accept = FORMATS.split(" ").join(",");
+  // all files may be chosen: phones know no type for most endings, and would let none be
   $("choose").onchange = () => take($("choose").files);
   // as a whole, so that it is there without a network too
   $("demo").onclick = async () => {
