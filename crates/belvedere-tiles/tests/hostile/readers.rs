@@ -8,8 +8,8 @@ use belvedere::Result;
 use belvedere::control::Control;
 use belvedere::crs::Crs;
 use belvedere::io::{
-    ReadOptions, RowsAre, Source, Within, cloud_files, has_point_results, is_ball_file, read_balls, read_cloud,
-    read_geojson, read_horizon, read_las_head, read_matrix, read_mesh, read_observers, read_point_results,
+    ReadOptions, RowsAre, Source, SystemBeside, Within, cloud_files, has_point_results, is_ball_file, read_balls,
+    read_cloud, read_geojson, read_horizon, read_las_head, read_matrix, read_mesh, read_observers, read_point_results,
     read_stations, read_table, read_text_rows, read_tif, read_trajectory, read_weather,
 };
 use belvedere::model::SceneModel;
@@ -76,10 +76,20 @@ pub(crate) const READERS: &[TriedReader] = &[
         read: |file, bytes| settle(read_trajectory(Source::bytes(file, bytes), &dutch())),
     },
     TriedReader { file: "horizon.csv", read: |file, bytes| settle(read_horizon(Source::bytes(file, bytes))) },
+    TriedReader { file: "horizon.json", read: |file, bytes| settle(read_horizon(Source::bytes(file, bytes))) },
     TriedReader { file: "weather.csv", read: |file, bytes| settle(read_weather(Source::bytes(file, bytes))) },
     TriedReader { file: "matrix.npz", read: |file, bytes| settle(read_matrix(Source::bytes(file, bytes))) },
     TriedReader { file: "raster.tif", read: |file, bytes| settle(read_tif(Source::bytes(file, bytes))) },
     TriedReader { file: "tiles.vpc", read: |file, bytes| in_folder(file, bytes, catalogue) },
+    TriedReader {
+        file: "ept.json",
+        read: |file, bytes| in_folder(file, bytes, |folder| point_tiles(folder, "ept.json", PAGE)),
+    },
+    TriedReader {
+        file: "ept-page.json",
+        read: |file, bytes| in_folder(file, bytes, |folder| point_tiles(folder, "ept-page.json", "")),
+    },
+    TriedReader { file: "cloud.prj", read: |file, bytes| in_folder(file, bytes, beside) },
     TriedReader { file: "plan.json", read: |file, bytes| in_folder(file, &with_checksum(bytes), plan) },
     TriedReader { file: "record.json", read: |file, bytes| in_folder(file, &with_checksum(bytes), record) },
     TriedReader { file: "system.wkt", read: system },
@@ -154,6 +164,34 @@ fn in_folder(file: &'static str, bytes: &[u8], read: fn(&Path) -> bool) -> bool 
 
 fn catalogue(folder: &Path) -> bool {
     settle(cloud_files(&[folder.join("tiles.vpc")]))
+}
+
+/// A description of entwine point tiles, and the first page of their hierarchy.
+const DESCRIPTION: &str = include_str!("inputs/ept.json/valid");
+const PAGE: &str = include_str!("inputs/ept-page.json/valid");
+
+/// The files of entwine point tiles of which `file` lies in the folder: a description beside `page`, or a page beside a
+/// description.
+fn point_tiles(folder: &Path, file: &str, page: &str) -> bool {
+    let (pages, description) = (folder.join("ept-hierarchy"), folder.join("ept.json"));
+    let first = pages.join("0-0-0-0.json");
+    let is_there = std::fs::create_dir(&pages).and_then(|()| match page {
+        "" => std::fs::rename(folder.join(file), first).and_then(|()| std::fs::write(&description, DESCRIPTION)),
+        page => std::fs::write(first, page),
+    });
+    let window = Within::File { low: [0.0, 0.0, -1000.0], high: [500.0, 447_005.0, 1000.0] };
+    let options = ReadOptions::default().with_points_within(window);
+    // the nodes are not there, of which the first one that a window meets is missed
+    let _ = black_box(read_cloud([&description], &options, &Control::none()));
+    is_there.is_ok() && settle(cloud_files(&[description]))
+}
+
+/// The system of a cloud that a file beside it names; one that names none is refused without a reason of its own.
+fn beside(folder: &Path) -> bool {
+    let found = Source::path(folder.join("cloud.copc.laz")).system_beside();
+    let is_known = matches!(found, Some(SystemBeside::Known { .. }));
+    black_box(found);
+    is_known
 }
 
 fn plan(folder: &Path) -> bool {
