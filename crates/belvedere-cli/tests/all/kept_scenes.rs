@@ -101,8 +101,7 @@ fn a_pipe_is_refused_at_once_and_never_waited_for() {
         assert!(std::process::Command::new("mkfifo").arg(place.path(name)).status().unwrap().success());
     }
     let shadow = "shadow house.laz --sun 180,40 --grid-north -o a.tif";
-    for command in ["info pipe.laz", "city plan pipe.laz --sun 180,40 -o run"]
-    {
+    for command in ["info pipe.laz", "city plan pipe.laz --sun 180,40 -o run"] {
         place.refusal(1, command, &["is not a file"]);
     }
     place.refusal(1, &format!("{shadow} --add pipe.obj"), &["pipe.obj: is not a file"]);
