@@ -394,7 +394,7 @@ mod tests {
     fn an_index_of_many_polygons_says_what_each_of_them_says() {
         let polygon = |number: u64| -> Vec<Vec<[f64; 2]>> {
             let [x, y] = [0, 1].map(|axis| 100.0 * uniform(7 + axis, number) - 50.0);
-            star(3 + number as usize % 9)
+            star(3 + usize::try_from(number % 9).unwrap())
                 .iter()
                 .map(|ring| ring.iter().map(|c| [c[0] + x, c[1] + y]).collect())
                 .collect()

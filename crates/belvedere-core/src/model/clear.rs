@@ -24,6 +24,9 @@ const MAX_CELLS: f64 = 4e6;
 /// [`MAX_CELLS`].
 const AREA_SIDE: f64 = 256.0;
 
+/// Corners of an outline and of its holes.
+type Rings = Vec<Vec<[f64; 2]>>;
+
 /// What is cleared.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -201,14 +204,14 @@ impl ClearedArea {
     /// each other are one area, so that many take hardly longer than one, and the columns over each area stay narrow.
     #[must_use]
     pub fn of_polygons(polygons: Vec<Vec<Vec<[f64; 2]>>>) -> Vec<Self> {
-        let mut squares: BTreeMap<[i64; 2], Vec<Vec<Vec<[f64; 2]>>>> = BTreeMap::new();
+        let mut squares: BTreeMap<[i64; 2], Vec<Rings>> = BTreeMap::new();
         for rings in polygons {
             let corner = rings.iter().flatten().next().copied().unwrap_or_default();
             #[expect(clippy::cast_possible_truncation, reason = "`as` saturates")]
             let square = corner.map(|v| (v / AREA_SIDE).floor() as i64);
             squares.entry(square).or_default().push(rings);
         }
-        let area = |mut polygons: Vec<Vec<Vec<[f64; 2]>>>| match polygons.pop() {
+        let area = |mut polygons: Vec<Rings>| match polygons.pop() {
             Some(only) if polygons.is_empty() => Self::Polygon(only),
             last => Self::Polygons(polygons.into_iter().chain(last).collect()),
         };

@@ -23,7 +23,7 @@ thread_local! {
 /// There is room for `length` bytes.
 pub(super) unsafe fn read(id: u32, at: f64, to: *mut u8, length: usize) -> i32 {
     let files = FILES.lock().unwrap();
-    #[expect(clippy::cast_sign_loss, reason = "a place in a file")]
+    #[expect(clippy::cast_sign_loss, clippy::cast_possible_truncation, reason = "a place in a file")]
     let Some(rest) = files.get(id as usize).and_then(|file| file.get(at as usize..)) else { return -1 };
     let count = rest.len().min(length);
     let count = if id as usize + 1 == files.len() { count.div_ceil(3) } else { count };
@@ -100,7 +100,7 @@ fn files_read_through_the_border_are_those_read_without_it() {
                 _ => SeekFrom::Current(0),
             };
             assert_eq!(own.seek(to).ok(), twin.seek(to).ok(), "{to:?}");
-            let length = random(700) as usize;
+            let length = usize::try_from(random(700)).unwrap();
             let mut found = vec![0xEE; length + GUARD];
             let count = own.read(&mut found[..length]).unwrap();
             let mut expected = vec![0xEE; length + GUARD];

@@ -169,7 +169,7 @@ fn files_of_others_stay_in_500_random_folders() {
             .filter(|(path, bytes)| before.contains_key(*path) || bytes.as_slice() == b"mine" || path.is_symlink())
             .collect();
         files_of_others += of_others.len();
-        let survey = cache.survey_folder(&[file.clone()], &ReadOptions::default());
+        let survey = cache.survey_folder(std::slice::from_ref(&file), &ReadOptions::default());
         if let Some(survey) = &survey {
             own += 1;
             add_tiles(survey.path());
@@ -276,7 +276,7 @@ fn a_pipe_with_the_name_of_an_entry_is_passed_over() {
     fs::remove_file(&entry).unwrap();
     assert!(std::process::Command::new("mkfifo").arg(&entry).status().unwrap().success());
     // nobody writes into it: who opened it would wait for ever
-    assert!(cache.read_before(&[file.clone()], &ReadOptions::default()).is_none());
+    assert!(cache.read_before(std::slice::from_ref(&file), &ReadOptions::default()).is_none());
     assert!(!keep(&cache, &file));
     assert!(cache.entries().unwrap().is_empty() && cache.clear().unwrap() == 0);
     assert!(entry.exists());
