@@ -402,7 +402,9 @@ impl Crs {
     ) -> Result<GeographicProjection> {
         let by_code = self.epsg.map(|code| format!("EPSG:{code}"));
         let mut is_named = false;
-        for definition in [by_code.as_deref(), self.wkt.as_deref()].into_iter().flatten() {
+        // heights say nothing of a place, and may be written in ways that the database does not read
+        let on_map = self.wkt.as_deref().and_then(wkt::horizontal_text);
+        for definition in [by_code.as_deref(), self.wkt.as_deref(), on_map].into_iter().flatten() {
             is_named = true;
             if let Ok(projection) = make(definition) {
                 return Ok(GeographicProjection { projection, metres_per_unit: self.metres_per_unit });

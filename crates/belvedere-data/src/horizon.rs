@@ -55,8 +55,8 @@ impl HorizonProfile {
     /// The profile of a table of azimuths and elevations, degrees, all around: what a file or a user gives.
     ///
     /// # Errors
-    /// Those of [`HorizonProfile::new`]; [`Error::InvalidParameter`] for azimuths beyond a full circle, such as those in
-    /// gon, for azimuths that look like radians, and for a table that says nothing of half of the circle
+    /// Those of [`HorizonProfile::new`]; [`Error::InvalidParameter`] for azimuths beyond a full circle, such as those
+    /// in gon, for azimuths that look like radians, and for a table that says nothing of half of the circle
     /// ([`HORIZON_ANGLES`]).
     pub fn of_degrees(rows: &[[f64; 2]]) -> Result<Self> {
         let profile = Self::new(rows.iter().map(|row| row.map(f64::to_radians)))?;

@@ -11,7 +11,8 @@ use serde_json::Value;
 /// first row.
 ///
 /// # Errors
-/// [`Error::Io`]; [`Error::Malformed`] for what holds no profile, and for numbers that [`HorizonProfile::of_degrees`] refuses.
+/// [`Error::Io`]; [`Error::Malformed`] for what holds no profile, and for numbers that [`HorizonProfile::of_degrees`]
+/// refuses.
 pub fn read_horizon<'a>(source: impl Into<Source<'a>>) -> Result<HorizonProfile> {
     let (name, bytes) = source.into().read_text()?;
     let text = String::from_utf8_lossy(&bytes).into_owned();

@@ -188,7 +188,7 @@ fn refuse_twice(path: &Path, header: &[u8]) -> Result<()> {
         match words.next() {
             Some(b"element") => names.clear(),
             Some(b"property") => {
-                let Some(name) = words.last() else { continue };
+                let Some(name) = words.next_back() else { continue };
                 if names.contains(&name) {
                     let name = String::from_utf8_lossy(name);
                     return Err(Error::malformed(

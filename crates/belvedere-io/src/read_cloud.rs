@@ -172,7 +172,7 @@ pub(super) fn files_of<'a>(sources: impl Iterator<Item = Source<'a>>, reading: &
     for source in sources {
         let name = source.name().to_owned();
         let source = match opened(source, reading)? {
-            Opened::Other(source) => source,
+            Opened::Other(source) => *source,
             Opened::Catalogue(files, _) if files.is_empty() => {
                 let what = format!("no file of {} lies in the box to read", name.display());
                 return Err(Error::NoPoints { what });
@@ -208,7 +208,7 @@ pub(super) fn files_of<'a>(sources: impl Iterator<Item = Source<'a>>, reading: &
 enum Opened<'a> {
     /// A catalogue, with its files that may have points in the box to read, and what contradicts each other in it.
     Catalogue(Vec<Source<'static>>, Vec<FoundContradiction>),
-    Other(Source<'a>),
+    Other(Box<Source<'a>>),
 }
 
 fn opened<'a>(source: Source<'a>, reading: &Reading<'_>) -> Result<Opened<'a>> {
@@ -219,7 +219,7 @@ fn opened<'a>(source: Source<'a>, reading: &Reading<'_>) -> Result<Opened<'a>> {
         return Ok(Opened::Catalogue(found.files, found.contradictions));
     }
     if source.extension() != "vpc" {
-        return Ok(Opened::Other(source));
+        return Ok(Opened::Other(Box::new(source)));
     }
     Ok(Opened::Catalogue(vpc::files_within(source, wanted.as_ref())?, Vec::new()))
 }

@@ -25,8 +25,8 @@ const SPREADS: [f64; 3] = [1.0, 2.0, 4.0];
 const MIN_PEAK: f64 = 2.0;
 /// Share of the places that may lie below the ground, as noise and pits do: with more of them the level is another one.
 const MAX_SHARE_BELOW: f64 = 0.05;
-/// A raster further off than this differs whatever its spread, metres: the ellipsoid is further from the sea than slopes
-/// between coarse cells err.
+/// A raster further off than this differs whatever its spread, metres: the ellipsoid is further from the sea than
+/// slopes between coarse cells err.
 const DIFFERS: f64 = 12.0;
 
 /// A warning where heights of the terrain are not those of `places` on surfaces of a scene, local metres, of which a
@@ -86,8 +86,8 @@ pub fn remark_on_terrain(
 /// Side of the squares in which points of a cloud that shows the ground are compared, metres: as wide as streets are.
 const SQUARE: f64 = 5.0;
 
-/// A warning where the lowest of `ground` points, (N, 3), are not at the level of `places` on surfaces of a scene, local
-/// metres both.
+/// A warning where the lowest of `ground` points, (N, 3), are not at the level of `places` on surfaces of a scene, both
+/// local metres.
 pub(super) fn remark_on_ground_cloud(
     ground: &[[f32; 3]],
     places: impl ExactSizeIterator<Item = [f64; 3]>,
@@ -132,8 +132,8 @@ fn differing(offset: f64) -> FoundContradiction {
     TERRAIN_HEIGHTS.found(text).with("difference_m", rounded(offset.abs(), 1)).with("offset_m", by)
 }
 
-/// By how much the terrain lies above the ground, by its heights less those of places, of which a share shows the ground
-/// and the others stand above it; `None` where they tell no common offset.
+/// By how much the terrain lies above the ground, by its heights less those of places, of which a share shows the
+/// ground and the others stand above it; `None` where they tell no common offset.
 fn common_offset(mut rises: Vec<f64>) -> Option<f64> {
     // from the lowest places upwards: what stands on the ground follows
     rises.sort_by(|a, b| b.total_cmp(a));

@@ -61,8 +61,8 @@ pub(crate) fn clock_contradiction(weather: &Weather) -> Result<Option<FoundContr
     Ok(Some(WEATHER_CLOCK.found(text).with("offset_min", minutes)))
 }
 
-/// The middle of the light of a day of rows in their order, seconds since 1970; `None` for a day without a night on both
-/// sides.
+/// The middle of the light of a day of rows in their order, seconds since 1970; `None` for a day without a night on
+/// both sides.
 fn middle_of_light(day: &[&WeatherStep]) -> Option<f64> {
     let light = |step: &WeatherStep| step.ghi.unwrap_or(step.dhi.unwrap_or(0.0) + step.dni.unwrap_or(0.0));
     let is_lit = |step: &&WeatherStep| light(step) > DAYLIGHT;
@@ -125,7 +125,7 @@ mod tests {
     }
 
     #[test]
-    fn rows_of_other_times_are_told_by_the_noon_of_the_sun() {
+    fn rows_of_other_times_are_found_by_the_noon_of_the_sun() {
         for (hours, latitude, longitude) in
             [(1.0, 52.0, 4.4), (0.5, 52.0, 4.4), (0.5, -33.0, 151.2), (0.25, 35.0, -120.0)]
         {

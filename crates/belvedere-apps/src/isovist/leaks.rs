@@ -139,11 +139,8 @@ impl RangeGrid<'_> {
             None
         };
         let across = [[0, 1], [2, 3]].map(|ways| match ways.map(nearest) {
-            [Some((a, first)), Some((b, second))] => {
-                // linear between the two
-                let share = a as f64 / (a + b) as f64;
-                Some((a + b, first + share * (second - first)))
-            }
+            // the farther of the two may have been seen through the gap
+            [Some((a, first)), Some((b, second))] => Some((a + b, first.min(second))),
             [Some((steps, range)), None] | [None, Some((steps, range))] => Some((2 * steps, range)),
             [None, None] => None,
         });
@@ -177,7 +174,11 @@ mod tests {
         let range = |direction: [f64; 3]| {
             let to_side = |axis: usize| {
                 let way = direction[axis];
-                if way > 0.0 { (SIDES[axis] - eye[axis]) / way } else { -eye[axis] / way }
+                match way {
+                    0.0 => f64::INFINITY,
+                    way if way > 0.0 => (SIDES[axis] - eye[axis]) / way,
+                    way => -eye[axis] / way,
+                }
             };
             let range = (0..3).map(to_side).fold(f64::INFINITY, f64::min);
             let place = [0, 1, 2].map(|axis| eye[axis] + range * direction[axis]);

@@ -206,7 +206,8 @@ pub fn isovist_of(
     let total: f64 = weighted.iter().map(|(_, weight)| weight).sum();
     let open = |from: usize, to: usize| {
         let rows = || weighted.iter().zip(&ranges).skip(from * width).take((to - from) * width);
-        rows().filter(|(_, range)| range.is_none()).map(|(w, _)| w.1).sum::<f64>()
+        // the sum of nothing is -0
+        (rows().filter(|(_, range)| range.is_none()).map(|(w, _)| w.1).sum::<f64>() + 0.0)
             / rows().map(|(w, _)| w.1).sum::<f64>()
     };
     let cone = |(range, weight): &(f64, f64)| weight * range.powi(3) / 3.0;

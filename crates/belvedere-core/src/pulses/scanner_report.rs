@@ -236,7 +236,7 @@ impl Serialize for ScannerReport {
             map.serialize_entry("stations", &self.stations)?;
         }
         if let Some(TimeOffset { seconds, is_applied, .. }) = self.time_offset {
-            map.serialize_entry("trajectory_time_offset_s", &rounded(-seconds, 2))?;
+            map.serialize_entry("trajectory_time_offset_s", &rounded(seconds, 2))?;
             map.serialize_entry("trajectory_time_offset_corrected", if is_applied { "yes" } else { "no" })?;
         }
         if let Some(HeightOffset { offset, sd, is_applied, .. }) = self.height_offset {

@@ -43,7 +43,7 @@ impl TimeOffset {
     #[must_use]
     pub fn contradiction(&self) -> FoundContradiction {
         let [before, after] = self.angles.map(|angle| rounded(angle.to_degrees(), 2));
-        let seconds = rounded(-self.seconds, 2);
+        let seconds = rounded(self.seconds, 2);
         let (size, way) = (seconds.abs(), if seconds < 0.0 { "behind" } else { "ahead of" });
         let what = match self.is_applied {
             true => "they are of another clock (UTC is 18 s behind GPS time), and were brought to that of the cloud",
@@ -150,16 +150,15 @@ mod tests {
     fn survey(ahead: f64) -> (PointCloud, Trajectory) {
         let origin = [82_000.0, 440_000.0, 0.0];
         let (mut positions, mut times, mut numbers) = (Vec::new(), Vec::new(), Vec::new());
-        for i in 0..800 {
-            let time = 40.0 + 0.02 * f64::from(i) + 1e-4 * uniform(1, i.unsigned_abs().into());
+        for i in 0..800_u32 {
+            let time = 40.0 + 0.02 * f64::from(i) + 1e-4 * uniform(1, u64::from(i));
             let scanner = place(time);
             let swing = 0.35 * (f64::from(i) * 0.7).sin();
-            let ground =
-                [scanner[0] + 30.0 * uniform(2, i.unsigned_abs().into()), scanner[1] + 1200.0 * swing.tan(), 5.0];
+            let ground = [scanner[0] + 30.0 * uniform(2, u64::from(i)), scanner[1] + 1200.0 * swing.tan(), 5.0];
             let way = sub(ground, scanner);
             // the first return 12 m above the ground, the last one on it, both to a few centimetres
             for (number, part) in [(1_u8, 1.0 - 12.0 / 1195.0), (2, 1.0)] {
-                let noise = 0.03 * (uniform(3, u64::from(number) * 1000 + i.unsigned_abs() as u64) - 0.5);
+                let noise = 0.03 * (uniform(3, u64::from(number) * 1000 + u64::from(i)) - 0.5);
                 #[expect(clippy::cast_possible_truncation, reason = "positions are f32")]
                 positions.push(std::array::from_fn(|k| (scanner[k] + part * way[k] - origin[k] + noise) as f32));
                 times.push(time);

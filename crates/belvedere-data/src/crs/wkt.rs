@@ -104,8 +104,8 @@ fn is_unit(node: &WktNode) -> bool {
 /// Metres in a unit that is believed.
 const UNITS: std::ops::Range<f64> = 1e-6..1e6;
 
-/// A box around where a projection is of use by its parameters, for systems without a code: west, south, east and north,
-/// degrees. `None` for projections and base systems of which that is not known.
+/// A box around where a projection is of use by its parameters, for systems without a code: west, south, east and
+/// north, degrees. `None` for projections and base systems of which that is not known.
 ///
 /// Zones and conics are used up to about these distances from their meridian and parallels. The box is wide: it is to
 /// find another continent.
@@ -216,6 +216,17 @@ pub(super) fn name(text: &str) -> Option<String> {
 /// Name of the horizontal part of the system.
 pub(super) fn horizontal_name(text: &str) -> Option<String> {
     horizontal(&parse(text)?)?.values.first().cloned()
+}
+
+/// The text of the projected system within that of a compound; `None` for other text.
+pub(super) fn horizontal_text(text: &str) -> Option<&str> {
+    let root = parse(text)?;
+    if !["COMPD_CS", "COMPOUNDCRS"].contains(&root.keyword.as_str()) {
+        return None;
+    }
+    let start = ["PROJCS", "PROJCRS", "PROJECTEDCRS"].into_iter().filter_map(|keyword| text.find(keyword)).min()?;
+    let part = text.get(start..)?;
+    part.get(..parse_first(part)?.1)
 }
 
 fn horizontal(root: &WktNode) -> Option<&WktNode> {
@@ -432,7 +443,7 @@ mod tests {
     }
 
     #[test]
-    fn places_far_from_a_projection_are_told_without_a_code() {
+    fn places_far_from_a_projection_are_found_without_a_code() {
         let conic = "PROJCS[\"Vicgrid94\",GEOGCS[\"GCS\",DATUM[\"D\",SPHEROID[\"GRS_1980\",6378137.0,298.257222101]],PRIMEM[\"Greenwich\",0.0],UNIT[\"Degree\",0.0174532925199433]],PROJECTION[\"Lambert_Conformal_Conic\"],PARAMETER[\"False_Easting\",2500000.0],PARAMETER[\"False_Northing\",2500000.0],PARAMETER[\"Central_Meridian\",145.0],PARAMETER[\"Standard_Parallel_1\",-36.0],PARAMETER[\"Standard_Parallel_2\",-38.0],PARAMETER[\"Latitude_Of_Origin\",-37.0],UNIT[\"Meter\",1.0]]";
         let is_far = |text: &str, place: [f64; 2]| {
             let distance = Crs::parse(text).unwrap().distance_to_area_of_use(place);

@@ -67,7 +67,7 @@ const FAR_CUBE: &str = "[164936, 462936, -50, 165064";
 const ROOT_PAGE: &str = "ept-hierarchy/0-0-0-0.json";
 
 #[test]
-fn hierarchies_of_point_tiles_are_held_against_their_files() {
+fn hierarchies_of_point_tiles_are_compared_with_their_files() {
     let count = |name: &str| {
         let bytes = ept().into_iter().find(|(own, _)| own.contains(name)).unwrap().1;
         read_las_head(Source::bytes("a.laz", &bytes)).unwrap().points
@@ -125,7 +125,7 @@ fn catalogue(folder: &Path, bounds: &str, count: &str) -> std::path::PathBuf {
 }
 
 #[test]
-fn catalogues_are_held_against_the_headers_of_their_tiles() {
+fn catalogues_are_compared_with_the_headers_of_their_tiles() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("tile.laz"), file("tile.laz", &cloud(300))).unwrap();
     let around = "[154949, 462949, -1, 155051, 463051, 30]";
@@ -247,7 +247,7 @@ fn columns_of_one_name_are_said_and_a_plain_name_stands_above_others() {
 }
 
 #[test]
-fn the_head_of_a_scan_is_held_against_its_matrix() {
+fn the_head_of_a_scan_is_compared_with_its_matrix() {
     // the scanner stands at 10, 20, 30 by the head
     let level = ["1 0 0 0", "0 1 0 0", "0 0 1 0"];
     for (rows, expected) in [
