@@ -1,12 +1,44 @@
 //! What changes between two results on the same cells: before and after a plan.
 
 use crate::viewshed::SEEN;
+use belvedere_data::contradiction::{DIFFERENT_QUANTITIES, DIFFERENT_SUNS, FoundContradiction};
 use belvedere_data::report::rounded;
 use belvedere_data::{Error, Result};
 use serde::Serialize;
 
 /// Changes up to this share of the largest one count as none: what rounding leaves of equal values.
 const ROUNDING: f64 = 1e-6;
+
+/// What parts the description of a raster from its subject.
+const SUBJECT: &str = "; ";
+
+/// The description of a raster of one of several things alike, such as the shadow of one of several suns.
+#[must_use]
+pub fn described(description: &str, subject: &str) -> String {
+    if subject.is_empty() { description.to_owned() } else { format!("{description}{SUBJECT}{subject}") }
+}
+
+/// What the descriptions of two named rasters say against their difference: other quantities, or the same of other
+/// suns. `None` where one of them is not described.
+#[must_use]
+pub fn contradiction_of(before: [&str; 2], after: [&str; 2]) -> Option<FoundContradiction> {
+    let [[before, first], [after, second]] = [before, after];
+    let parts = |text: &str| -> [String; 2] {
+        let (description, subject) = text.split_once(SUBJECT).unwrap_or((text, ""));
+        [description, subject].map(str::to_owned)
+    };
+    let [[first, of_first], [second, of_second]] = [first, second].map(parts);
+    if first != second && !first.is_empty() && !second.is_empty() {
+        let text = format!(
+            "{before} holds \"{first}\" and {after} \"{second}\"; a difference of different quantities means nothing"
+        );
+        return Some(DIFFERENT_QUANTITIES.found(text));
+    }
+    let text = format!(
+        "{before} is \"{of_first}\", and {after} \"{of_second}\": what changes is the sun as well, and not only what stands there"
+    );
+    (of_first != of_second && !of_first.is_empty() && !of_second.is_empty()).then(|| DIFFERENT_SUNS.found(text))
+}
 
 /// The change of each cell, and its sums.
 #[derive(Clone, Debug, PartialEq)]
@@ -73,7 +105,7 @@ impl DifferenceReport {
 /// Takes the values of unproven cells away, and returns their number: in rasters of what one observer sees, which
 /// `description` names, they are neither visible nor hidden. `unproven`, (M), is above 0 where a value is not proven.
 pub fn clear_unproven(values: &mut [f32], unproven: &[f32], description: Option<&str>) -> usize {
-    if description != Some(SEEN) {
+    if description.is_none_or(|text| text.split(SUBJECT).next() != Some(SEEN)) {
         return 0;
     }
     let cells = values.iter_mut().zip(unproven).filter(|(_, unproven)| **unproven > 0.0);
@@ -139,6 +171,21 @@ pub fn difference(before: &[f32], after: &[f32], cell_area: f64) -> Result<Diffe
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn rasters_of_other_quantities_and_of_other_suns_are_said() {
+        let lit = |subject: &str| described("1: lit", subject);
+        let [noon, evening] =
+            ["Shadow, sun at azimuth 180, elevation 60 degrees", "Shadow, sun at azimuth 290, elevation 9 degrees"];
+        let said = |first: &str, second: &str| {
+            contradiction_of(["a.tif", first], ["b.tif", second]).map(|found| found.row.key)
+        };
+        assert_eq!(said(&lit(noon), &lit(noon)), None);
+        assert_eq!(said(&lit(noon), &lit("")), None);
+        assert_eq!(said(&lit(noon), ""), None);
+        assert_eq!(said(&lit(noon), &lit(evening)), Some("different-suns"));
+        assert_eq!(said(&lit(noon), "hours of sun a day"), Some("different-quantities"));
+    }
 
     #[test]
     fn gains_and_losses_are_summed_apart_and_cells_without_a_value_counted() {

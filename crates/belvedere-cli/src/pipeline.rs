@@ -86,11 +86,11 @@ fn read_counted(input: &CloudInput, run: &mut CommandContext) -> Result<(PointCl
     Ok((cloud, report))
 }
 
-/// Warns of files that hold fewer points than their headers announce, and of what speaks against their reference
-/// system.
+/// Warns of files that hold fewer points than their headers announce, of what speaks against their reference system,
+/// and of what contradicts each other in them.
 pub(crate) fn warn_of_files(report: &ReadReport, summary: &mut Summary) {
     let missing = report.files.iter().map(|file| (file.path.display().to_string(), file.missing_points));
-    summary.remarks(ask::remarks_on_reading(report.doubt.as_deref(), missing));
+    summary.remarks(ask::remarks_on_reading(report.doubt.as_deref(), missing, report.contradictions()));
 }
 
 /// The error of building a model of these clouds, with their names where they have too few points, and with the flags
@@ -154,7 +154,7 @@ impl LoadedScene {
         if let Some(crs) = own {
             cloud.frame.crs = crs;
         }
-        Ok(scene.with_ground_of(Arc::new(cloud)))
+        Ok(scene.with_ground_of(Arc::new(cloud))?)
     }
 }
 

@@ -1,6 +1,7 @@
 //! What a cloud holds, in numbers: for people who need to know what can be done with a file.
 
 mod facades;
+mod room;
 mod survey;
 mod up_axis;
 
@@ -11,6 +12,7 @@ use belvedere_data::control::Control;
 use std::collections::BTreeMap;
 
 pub use facades::{FacadeSummary, Walls};
+pub use room::unit_contradiction_of;
 pub use survey::SurveyKind;
 pub use up_axis::{cloud_looks_y_up, looks_y_up};
 

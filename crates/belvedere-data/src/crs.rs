@@ -142,6 +142,13 @@ impl Crs {
             }
             crs.metres_per_unit = unit;
         }
+        for (what, key) in [("the unit", 3076), ("the unit of heights", 4099)] {
+            if let Some(unit) = value(key).filter(|&unit| unit_of_code(unit).is_none()) {
+                let taken = unit_name(crs.metres_per_unit);
+                crs = crs
+                    .doubted(format!("{what} has the code {unit} in its keys, which is not known; {taken} were taken"));
+            }
+        }
         let (own, of_code) = (value(4099).and_then(unit_of_code), vertical.and_then(registry::vertical_metres_of_code));
         if let Some(what) = own.zip(of_code).and_then(|(own, of_code)| units_apart("the unit of heights", own, of_code))
         {
@@ -149,6 +156,9 @@ impl Crs {
         }
         crs.vertical_metres_per_unit = own.or(of_code).unwrap_or(crs.metres_per_unit);
         crs.vertical_epsg = vertical;
+        if let Some(name) = vertical.and_then(registry::depth_of_code) {
+            crs = crs.doubted(counts_down(&name));
+        }
         Some(crs)
     }
 
@@ -225,7 +235,12 @@ impl Crs {
                 (Some(mine), Some(theirs)) => {
                     mine == theirs || wkt::horizontal_name(mine) == wkt::horizontal_name(theirs)
                 }
-                _ => self.wkt.is_none() == other.wkt.is_none(),
+                (None, None) => true,
+                // text without a code, and a code without text
+                _ => match (self.horizontal_name(), other.horizontal_name()) {
+                    (Some(mine), Some(theirs)) => plain(&mine) == plain(&theirs),
+                    _ => false,
+                },
             },
         }
     }
@@ -265,10 +280,21 @@ impl Crs {
                 .any(|n| name.contains(n))
     }
 
+    /// Name of the horizontal part, by its text or else its code.
+    fn horizontal_name(&self) -> Option<String> {
+        let by_code = || registry::name_of_code(self.horizontal_epsg()?);
+        self.wkt.as_deref().and_then(wkt::horizontal_name).or_else(by_code)
+    }
+
     fn horizontal_epsg(&self) -> Option<u32> {
         let code = self.epsg?;
         Some(registry::horizontal_code_of(code).unwrap_or(code))
     }
+}
+
+/// A name without what programs write differently.
+fn plain(name: &str) -> String {
+    name.chars().filter(char::is_ascii_alphanumeric).map(|c| c.to_ascii_lowercase()).collect()
 }
 
 fn invalid(text: &str) -> Error {
@@ -296,7 +322,15 @@ fn web_mercator_degrees(x: f64) -> f64 {
 }
 
 /// EPSG unit codes as GeoTIFF keys use them, with their metres.
-const UNIT_CODES: [(u16, f64); 4] = [(9001, 1.0), (9002, INTERNATIONAL_FOOT), (9003, US_SURVEY_FOOT), (9036, 1000.0)];
+const UNIT_CODES: [(u16, f64); 7] = [
+    (9001, 1.0),
+    (9002, INTERNATIONAL_FOOT),
+    (9003, US_SURVEY_FOOT),
+    (9005, 0.304_797_265_4),
+    (9036, 1000.0),
+    (1025, 0.001),
+    (1033, 0.01),
+];
 
 fn unit_of_code(code: u16) -> Option<f64> {
     UNIT_CODES.iter().find(|&&(known, _)| known == code).map(|&(_, metres)| metres)
@@ -307,6 +341,11 @@ fn units_apart(what: &str, own: f64, of_code: f64) -> Option<String> {
     let [named, known] = [own, of_code].map(unit_name);
     ((own - of_code).abs() > 1e-7 * of_code)
         .then(|| format!("{what} is given as {named}, but that of its code is {known}"))
+}
+
+/// What speaks against a vertical system that counts downwards.
+fn counts_down(name: &str) -> String {
+    format!("{name} counts downwards, and was read as if it counted upwards; turn the sign of z before")
 }
 
 fn unit_name(metres: f64) -> String {
@@ -363,7 +402,9 @@ impl Crs {
     ) -> Result<GeographicProjection> {
         let by_code = self.epsg.map(|code| format!("EPSG:{code}"));
         let mut is_named = false;
-        for definition in [by_code.as_deref(), self.wkt.as_deref()].into_iter().flatten() {
+        // heights say nothing of a place, and may be written in ways that the database does not read
+        let on_map = self.wkt.as_deref().and_then(wkt::horizontal_text);
+        for definition in [by_code.as_deref(), self.wkt.as_deref(), on_map].into_iter().flatten() {
             is_named = true;
             if let Ok(projection) = make(definition) {
                 return Ok(GeographicProjection { projection, metres_per_unit: self.metres_per_unit });

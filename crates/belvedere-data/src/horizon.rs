@@ -1,7 +1,14 @@
 //! The horizon of far terrain: below which elevation nothing is seen in each direction.
 
+use crate::contradiction::HORIZON_ANGLES;
 use crate::{Error, Parameter, Result};
-use std::f64::consts::{FRAC_PI_2, TAU};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
+/// Rows from which on a table all of whose azimuths lie within 0 to 2π is one in radians: a table in degrees has rows
+/// of other azimuths then.
+const MIN_ROWS: usize = 3;
+/// What tables round azimuths by, degrees.
+const ROUNDING: f64 = 0.01;
 
 /// Elevations of a horizon all around, linear between the azimuths that are given.
 #[derive(Clone, Debug, PartialEq)]
@@ -45,6 +52,39 @@ impl HorizonProfile {
         Ok(Self { rows })
     }
 
+    /// The profile of a table of azimuths and elevations, degrees, all around: what a file or a user gives.
+    ///
+    /// # Errors
+    /// Those of [`HorizonProfile::new`]; [`Error::InvalidParameter`] for azimuths beyond a full circle, such as those
+    /// in gon, for azimuths that look like radians, and for a table that says nothing of half of the circle
+    /// ([`HORIZON_ANGLES`]).
+    pub fn of_degrees(rows: &[[f64; 2]]) -> Result<Self> {
+        let profile = Self::new(rows.iter().map(|row| row.map(f64::to_radians)))?;
+        let refused =
+            |value: String, expected| Err(Error::InvalidParameter { parameter: Parameter::Horizon, value, expected });
+        let ends = |column: usize| {
+            let values = || rows.iter().map(|row| row[column]);
+            [values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max)]
+        };
+        let ([west, east], [_, steepest]) = (ends(0), ends(1));
+        if west < -180.0 - ROUNDING || east > 360.0 + ROUNDING {
+            let value = format!("azimuths from {west} to {east}");
+            return refused(value, "in degrees, from -180 or 0 to a full circle; 400 gon are 360 degrees");
+        }
+        if rows.len() >= MIN_ROWS && west >= -PI - ROUNDING && east <= TAU + ROUNDING && steepest <= FRAC_PI_2 {
+            let value = format!("azimuths from {west} to {east}, which look like radians");
+            return refused(value, "in degrees; multiply azimuths and elevations by 57.29578");
+        }
+        let [first, last] = [profile.rows.first(), profile.rows.last()].map(|row| row.map_or(0.0, |row| row[0]));
+        let between = profile.rows.windows(2).map(|pair| pair[1][0] - pair[0][0]);
+        let widest = between.fold(first + TAU - last, f64::max).to_degrees();
+        if HORIZON_ANGLES.is_exceeded_by((widest - ROUNDING).max(0.0)) {
+            let value = format!("{} rows, of which two are {widest:.0} degrees apart", profile.rows.len());
+            return refused(value, "rows all around, at most 180 degrees apart");
+        }
+        Ok(profile)
+    }
+
     /// Azimuths clockwise from north and elevations, radians, ascending.
     #[must_use]
     pub fn rows(&self) -> &[[f64; 2]] {
@@ -81,6 +121,31 @@ impl HorizonProfile {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn tables_in_other_angles_and_of_half_a_circle_are_refused() {
+        let all_around = |step: f64, unit: f64| -> Vec<[f64; 2]> {
+            (0_u8..).map(|i| f64::from(i) * step).take_while(|&a| a < 360.0).map(|a| [a * unit, 7.0 * unit]).collect()
+        };
+        for step in [3.0, 10.0, 45.0, 90.0, 120.0, 180.0] {
+            assert!(HorizonProfile::of_degrees(&all_around(step, 1.0)).is_ok(), "{step}");
+        }
+        let from_south: Vec<[f64; 2]> = all_around(30.0, 1.0).iter().map(|row| [row[0] - 180.0, row[1]]).collect();
+        assert!(HorizonProfile::of_degrees(&from_south).is_ok());
+        let radian = 1_f64.to_radians();
+        for (rows, words) in [
+            (all_around(10.0, radian), "radians"),
+            (all_around(90.0, radian), "radians"),
+            (all_around(10.0, 400.0 / 360.0), "gon"),
+            (vec![[0.0, 5.0], [90.0, 5.0], [180.0, 5.0], [400.0, 5.0]], "gon"),
+            (vec![[0.0, 5.0], [-270.0, 5.0], [180.0, 5.0]], "full circle"),
+            (vec![[77.0, 5.0]], "1 rows"),
+            (vec![[10.0, 5.0], [60.0, 5.0], [120.0, 3.0]], "250 degrees apart"),
+        ] {
+            let error = HorizonProfile::of_degrees(&rows).unwrap_err().to_string();
+            assert!(error.contains(words), "{words}: {error}");
+        }
+    }
 
     #[test]
     fn elevations_are_linear_between_azimuths_all_around() {

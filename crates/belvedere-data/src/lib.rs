@@ -6,6 +6,7 @@
 pub mod balls;
 pub mod building_outlines;
 pub mod cloud;
+pub mod contradiction;
 pub mod control;
 pub mod crs;
 pub mod elevation;

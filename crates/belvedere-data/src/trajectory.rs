@@ -55,7 +55,7 @@ pub struct TrajectoryQuality {
 pub struct ClockOffset {
     /// Which clock the trajectory was written with.
     pub clock: TrajectoryClock,
-    /// Seconds added after the change of clock: 0, or ±18 for a trajectory in UTC (or a cloud in UTC).
+    /// Seconds added after the change of clock: 0, ±18 for a trajectory in UTC (or a cloud in UTC), or what pulses say.
     pub leap_seconds: f64,
     /// Cloud times at which the trajectory knows a position.
     pub known_count: usize,
@@ -203,11 +203,17 @@ impl Trajectory {
                 expected: "to cover the GPS times of the cloud",
             });
         }
+        Ok((self.positions_by(&offset, times, cloud), offset))
+    }
+
+    /// Local position of the scanner at `times`, (N), on the clock of `cloud`, (N, 3) metres, NaN where none is known.
+    #[must_use]
+    pub fn positions_by(&self, offset: &ClockOffset, times: &[f64], cloud: &PointCloud) -> Vec<[f32; 3]> {
         let position = |&time: &f64| match self.position_at(offset.trajectory_time(time)) {
             Some(position) => to_local(position, cloud.frame.origin),
             None => [f32::NAN; 3],
         };
-        Ok((times.par_iter().map(position).collect(), offset))
+        times.par_iter().map(position).collect()
     }
 
     fn knows(&self, time: f64) -> bool {

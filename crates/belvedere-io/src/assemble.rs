@@ -53,6 +53,7 @@ pub(super) fn assemble(mut parts: Vec<FilePart>, options: &ReadOptions) -> Resul
     }
     let any_scanners = parts.iter().any(|part| part.attributes.scanner_index.is_some());
     for (mut part, found) in parts.into_iter().zip(found) {
+        part.note_unnamed();
         part.leave_out(found.not_finite, "coordinates are not finite");
         part.leave_out(found.far, "more than 1000 km from the middle of the cloud");
         if found.coarse > 0 {
@@ -173,6 +174,8 @@ fn adopt_common_crs(parts: &mut [FilePart], fixed: Option<&Frame>, report: &mut 
 fn nothing_left(report: &ReadReport) -> String {
     let files = report.files.iter().map(|file| {
         let lost: Vec<String> = file.left_out.iter().map(|l| format!("{} left out: {}", l.count, l.reason)).collect();
+        let lost: Vec<String> =
+            lost.into_iter().chain(file.contradictions.iter().map(|found| found.text.clone())).collect();
         let why = if lost.is_empty() { "holds none".to_owned() } else { lost.join(", ") };
         format!("{} ({}): {why}", file.path.display(), file.format)
     });

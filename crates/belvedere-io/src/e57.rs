@@ -5,11 +5,13 @@ use std::path::Path;
 
 use ::e57::{E57Reader, PointCloud as Scan, Quaternion, Record, RecordDataType, RecordName, RecordValue};
 
-use super::part::FilePart;
+use super::e57_counts::records_in_section;
+use super::part::{COARSE_STEP, FilePart, single_step};
 use super::read_options::Reading;
 use super::rows::{Role, Row, Rows, role_of};
 use super::sky::ScanGrid;
-use super::source::Input;
+use super::source::{Input, web_address};
+use belvedere_data::contradiction::POINTS_NOT_COUNTED;
 use belvedere_data::crs::Crs;
 use belvedere_data::{Error, Result};
 
@@ -22,10 +24,11 @@ const MIN_LENGTH: f64 = 1e-9;
 /// Poses are applied to points and normals. The scanner is where the pose puts it; without a pose at (0, 0, 0) if
 /// the scan is a grid or spherical, and is unknown otherwise, as in clouds that only passed through E57.
 pub(super) fn read(input: Input<'_>, reading: &Reading<'_>) -> Result<FilePart> {
-    let Input { name, reader, size } = input;
+    let Input { name, reader: mut file, size } = input;
     let path = name.as_path();
+    let is_near = web_address(path).is_none();
     let damaged = |e: ::e57::Error| Error::malformed(path, format!("is not a readable E57 file: {e}"));
-    let mut reader = E57Reader::new(reader).map_err(damaged)?;
+    let mut reader = E57Reader::new(&mut file).map_err(damaged)?;
     let scans = reader.pointclouds();
     let mut part = FilePart::new(path, format!("E57, {} scan{}", scans.len(), if scans.len() == 1 { "" } else { "s" }));
     if let Some(text) = reader.coordinate_metadata().map(str::trim).filter(|text| !text.is_empty()) {
@@ -40,6 +43,7 @@ pub(super) fn read(input: Input<'_>, reading: &Reading<'_>) -> Result<FilePart> 
         rows: Rows::new(common).with_numbers(reading.options.row_numbers),
         scanner_index: Vec::new(),
         invalid: 0,
+        farthest: 0.0,
     };
     for (i, (scan, plan)) in scans.iter().zip(&plans).enumerate() {
         if scan.records == 0 {
@@ -69,7 +73,24 @@ pub(super) fn read(input: Input<'_>, reading: &Reading<'_>) -> Result<FilePart> 
             }
             part.skies.add(&grid, index, plan.pose.axes(), reading.options.up);
         }
-        part.single_precision |= plan.single_precision;
+        // poses are applied in double precision
+        let step = single_step(std::mem::take(&mut points.farthest)) * part.crs.metres_per_unit;
+        part.single_precision |= plan.single_precision && step > COARSE_STEP;
+    }
+    drop(reader);
+    for (i, (scan, plan)) in scans.iter().zip(&plans).enumerate().filter(|_| is_near) {
+        let held = plan.widest().and_then(|(at, bits)| records_in_section(&mut file, scan.file_offset, at, bits));
+        let Some(beyond) = held.and_then(|held| held.checked_sub(scan.records)).filter(|&beyond| beyond > 0) else {
+            continue;
+        };
+        let counted = scan.records;
+        let text = format!(
+            "scan {}{} counts {counted} points, but {beyond} more follow in the file: its writer was interrupted; export it again",
+            i + 1,
+            named(scan)
+        );
+        let found = POINTS_NOT_COUNTED.found(text).with("counted", counted as f64).with("beyond", beyond as f64);
+        part.contradict(found);
     }
     points.rows.finish(&mut part);
     if !part.scanners.is_empty() {
@@ -84,6 +105,8 @@ struct ScanPoints {
     rows: Rows,
     scanner_index: Vec<u16>,
     invalid: usize,
+    /// Greatest coordinate of the scan that is read, in its own axes.
+    farthest: f64,
 }
 
 /// How to read the records of one scan.
@@ -154,6 +177,12 @@ impl ScanLayout {
             roles.extend([Role::X, Role::Y, Role::Z]);
         }
         roles
+    }
+
+    /// The column with most bits, and their number: at least a byte, so that what fills up its last byte is no record.
+    fn widest(&self) -> Option<(usize, u64)> {
+        let bits = self.columns.iter().map(|column| bits(&column.kind)).enumerate();
+        bits.filter(|&(_, bits)| bits >= 8).max_by_key(|&(_, bits)| bits)
     }
 
     /// Holds the number of points against the size of the file.
@@ -309,6 +338,8 @@ fn read_scan<R: Read + Seek>(
         if let (Some(grid), Some(cell)) = (&mut *grid, cell) {
             grid.add_return(cell, row.three(super::rows::POSITION));
         }
+        let own = row.three(super::rows::POSITION).map(f64::abs);
+        points.farthest = own.into_iter().filter(|v| v.is_finite()).fold(points.farthest, f64::max);
         plan.pose.apply(&mut row);
         points.rows.push(&row);
         points.scanner_index.push(index);

@@ -11,9 +11,13 @@ use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
+use super::announced::{Announced, BoundsAre};
+use super::las::read_las_head;
 use super::octree::OctreeCube;
 use super::read_options::FileBox;
 use super::source::{Input, Source, SystemBeside, folder_and_query, place_beside, web_address};
+use belvedere_data::contradiction::{FoundContradiction, HIERARCHY_POINTS};
+use belvedere_data::control::Control;
 use belvedere_data::crs::Crs;
 use belvedere_data::{Error, Result};
 
@@ -23,6 +27,8 @@ pub(super) const NAME: &str = "ept.json";
 const NODES: &str = "ept-data";
 /// Largest page of a hierarchy that is read, bytes: some million nodes.
 const MAX_BYTES: u64 = 1 << 28;
+/// Most pages of a hierarchy that are read for one box. A country has some thousand, and each is a request.
+const MAX_PAGES: usize = 20_000;
 /// How far points may lie outside the cell of their node, in steps of the coordinates, and the step of files that do
 /// not say it.
 const ROOM_STEPS: f64 = 10.0;
@@ -46,47 +52,144 @@ struct EptDescription {
     cube: OctreeCube,
     room: [f64; 3],
     system: Option<SystemBeside>,
+    /// Number of points, where it is stated.
+    points: Option<u64>,
+}
+
+/// The nodes of entwine point tiles that may have points in a box.
+#[derive(Default)]
+pub(super) struct EptNodes {
+    /// Their LAZ files.
+    pub(super) files: Vec<Source<'static>>,
+    /// What contradicts each other in the hierarchy.
+    pub(super) contradictions: Vec<FoundContradiction>,
 }
 
 /// The LAZ files of the nodes that may have points in `wanted`, level by level; of all nodes without a box. Each has
 /// the system of the description, where it names none itself.
 ///
 /// # Errors
-/// [`Error::Io`]; [`Error::Malformed`] for what is no description or no hierarchy, and for nodes that are not LAZ.
-pub(super) fn files_within(path: &Path, wanted: Option<&FileBox>) -> Result<Vec<Source<'static>>> {
+/// [`Error::Io`]; [`Error::Malformed`] for what is no description or no hierarchy, for a hierarchy without end, for
+/// bounds that do not hold the points where a box needs them, and for nodes that are not LAZ; [`Error::Cancelled`].
+pub(super) fn files_within(path: &Path, wanted: Option<&FileBox>, control: &Control<'_>) -> Result<EptNodes> {
     let description = describe(path)?;
     let folder = folder_and_query(path);
-    let mut pages = vec![String::from("0-0-0-0")];
-    let mut seen: HashSet<String> = pages.iter().cloned().collect();
-    let mut nodes: BTreeMap<[i32; 4], String> = BTreeMap::new();
+    let mut walk = HierarchyWalk::default();
+    let mut pages = vec![String::from(ROOT)];
     while let Some(page) = pages.pop() {
+        control.check()?;
         let file = place_beside(&folder, &format!("ept-hierarchy/{page}.json"));
-        let damaged = |what: String| Error::malformed(&file, format!("has a damaged EPT hierarchy: {what}"));
         let entries = json(&file)?;
-        let entries = entries.as_object().ok_or_else(|| damaged("it is no list of nodes".to_owned()))?;
-        for (name, count) in entries {
-            let key = key(name).ok_or_else(|| damaged(format!("node {name}")))?;
-            let count = count.as_i64().ok_or_else(|| damaged(format!("node {name} has {count} points")))?;
-            let meets = description.cube.node_meets(key, description.room, wanted);
-            if !meets.ok_or_else(|| damaged(format!("node {name}")))? {
-                continue;
-            }
-            match count {
-                0 => {}
-                1.. => drop(nodes.insert(key, name.clone())),
-                -1 if seen.insert(name.clone()) => pages.push(name.clone()),
-                // a page begins with the node that the page above names
-                -1 if *name == page => {}
-                _ => return Err(damaged(format!("node {name} with {count} points"))),
-            }
+        let found = walk.read_page(&page, &entries, &description, wanted);
+        pages.extend(found.map_err(|what| Error::malformed(&file, format!("has a damaged EPT hierarchy: {what}")))?);
+    }
+    let place_of = |name: &str| place_beside(&folder, &format!("{NODES}/{name}.laz"));
+    if let (Some(_), Some((key, first))) = (wanted, &walk.first)
+        && let Ok(head) = read_las_head(place_of(first).as_path())
+    {
+        let [low, high] = head.bounds;
+        let (own_low, own_high) = description.cube.node_bounds(*key, description.room);
+        let is_beside = (0..3).any(|i| high[i] < own_low[i] || own_high[i] < low[i]);
+        // headers of nodes may have the bounds of all points, and the root holds these
+        let is_beyond = (0..3).any(|i| low[i] < own_low[i] || own_high[i] < high[i]);
+        if is_beside || key[0] == 0 && is_beyond {
+            let what = format!(
+                "has `bounds` without its points: those of node {first} lie between {low:.2?} and {high:.2?}; correct them, or read all points and not a box"
+            );
+            return Err(Error::malformed(path, what));
         }
     }
-    let source = |name: &String| {
-        let mut source = Source::path(place_beside(&folder, &format!("{NODES}/{name}.laz")));
+    let source = |(key, (name, points)): (&[i32; 4], &(String, u64))| {
+        let mut source = Source::path(place_of(name));
         source.system = description.system.clone();
+        let bounds = Some(description.cube.node_bounds(*key, description.room));
+        source.announced = Some(Announced {
+            by: "the EPT hierarchy".to_owned(),
+            points: Some(*points),
+            bounds,
+            bounds_are: BoundsAre::OfCell,
+        });
         source
     };
-    Ok(nodes.values().map(source).collect())
+    let contradictions = walk.lost_points(&description, path).into_iter().collect();
+    Ok(EptNodes { files: walk.nodes.iter().map(source).collect(), contradictions })
+}
+
+/// Name of the node of all points.
+const ROOT: &str = "0-0-0-0";
+
+/// What was found in the pages of a hierarchy so far.
+#[derive(Default)]
+struct HierarchyWalk {
+    /// Names of pages.
+    seen: HashSet<String>,
+    /// Name and number of points of each node that is wanted.
+    nodes: BTreeMap<[i32; 4], (String, u64)>,
+    /// The node with points of the lowest level, wanted or not.
+    first: Option<([i32; 4], String)>,
+    /// Points of all nodes of these pages.
+    points: u64,
+    /// Whether pages were passed over, since their nodes lie beside the box.
+    is_partial: bool,
+}
+
+impl HierarchyWalk {
+    /// Takes the nodes of a page, and gives the names of the pages below it; what is wrong with it otherwise.
+    fn read_page(
+        &mut self,
+        page: &str,
+        entries: &Value,
+        description: &EptDescription,
+        wanted: Option<&FileBox>,
+    ) -> std::result::Result<Vec<String>, String> {
+        let entries = entries.as_object().ok_or_else(|| "it is no list of nodes".to_owned())?;
+        let mut below = Vec::new();
+        for (name, count) in entries {
+            let key = key(name).ok_or_else(|| format!("node {name}"))?;
+            let count = count.as_i64().ok_or_else(|| format!("node {name} has {count} points"))?;
+            let meets = description.cube.node_meets(key, description.room, wanted);
+            let meets = meets.ok_or_else(|| format!("node {name}"))?;
+            match (count, u64::try_from(count)) {
+                (0, _) => {}
+                (-1, _) if !meets => self.is_partial = true,
+                (-1, _) if self.seen.insert(name.clone()) => below.push(name.clone()),
+                (_, Ok(points)) => {
+                    self.points = self.points.saturating_add(points);
+                    if self.first.as_ref().is_none_or(|(first, _)| key < *first) {
+                        self.first = Some((key, name.clone()));
+                    }
+                    if meets {
+                        self.nodes.insert(key, (name.clone(), points));
+                    }
+                }
+                _ => return Err(format!("node {name} with {count} points")),
+            }
+        }
+        // a page begins with the node that the page above names: one without points could go on without end
+        let has_own = entries.get(page).and_then(Value::as_i64).is_some_and(|count| count > 0 || page == ROOT);
+        if !has_own {
+            return Err(format!("the page {page} has no points of node {page}"));
+        }
+        if description.points.is_some_and(|all| self.points > all) {
+            let all = description.points.unwrap_or(0);
+            return Err(format!("its nodes have more points than the {all} of {NAME}"));
+        }
+        if self.seen.len() > MAX_PAGES {
+            return Err(format!("it has more than {MAX_PAGES} pages here; give a smaller box to read (--bounds)"));
+        }
+        Ok(below)
+    }
+
+    /// What to say of a hierarchy with fewer points than the description; `None` where it is whole, and where not all
+    /// of it was read.
+    fn lost_points(&self, description: &EptDescription, path: &Path) -> Option<FoundContradiction> {
+        let all = description.points.filter(|&all| !self.is_partial && self.points < all)?;
+        let (own, path) = (self.points, path.display());
+        let text = format!(
+            "{path}: {all} points are announced, but the nodes of the hierarchy have {own}: nodes are missing, so that points are; copy the folder again"
+        );
+        Some(HIERARCHY_POINTS.found(text).with("announced", all as f64).with("of_nodes", own as f64))
+    }
 }
 
 /// The system that the description above a node gives, where `path` is that of a node.
@@ -120,7 +223,8 @@ fn describe(path: &Path) -> Result<EptDescription> {
         own.and_then(|column| column.get("scale")?.as_f64()).filter(|step| step.is_finite()).unwrap_or(USUAL_STEP)
     };
     let room = ["X", "Y", "Z"].map(|axis| ROOM_STEPS * step(axis).abs());
-    Ok(EptDescription { cube, room, system: content.get("srs").and_then(system) })
+    let points = content.get("points").and_then(Value::as_u64);
+    Ok(EptDescription { cube, room, system: content.get("srs").and_then(system), points })
 }
 
 /// The system of a description: a code with its authority, or well-known text.

@@ -11,14 +11,14 @@ use serde_json::Value;
 /// first row.
 ///
 /// # Errors
-/// [`Error::Io`]; [`Error::Malformed`] for what holds no profile, and for numbers that [`HorizonProfile::new`] refuses.
+/// [`Error::Io`]; [`Error::Malformed`] for what holds no profile, and for numbers that [`HorizonProfile::of_degrees`]
+/// refuses.
 pub fn read_horizon<'a>(source: impl Into<Source<'a>>) -> Result<HorizonProfile> {
     let (name, bytes) = source.into().read_text()?;
     let text = String::from_utf8_lossy(&bytes).into_owned();
     let rows = if text.trim_start().starts_with('{') { of_json(&text) } else { of_table(&text) };
     let rows = rows.map_err(|what| Error::malformed(&name, what))?;
-    HorizonProfile::new(rows.into_iter().map(|row| row.map(f64::to_radians)))
-        .map_err(|error| Error::malformed(&name, error.to_string()))
+    HorizonProfile::of_degrees(&rows).map_err(|error| Error::malformed(&name, error.to_string()))
 }
 
 /// An azimuth of PVGIS, from south and positive to the west, from north.

@@ -2,7 +2,7 @@
 //! chunks of a COPC file are read that may hold points of it, and nothing of a file whose bounds do not meet it.
 
 use std::collections::VecDeque;
-use std::io::{Read, Seek, SeekFrom};
+use std::io::{ErrorKind, Read, Seek, SeekFrom};
 use std::iter;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -16,11 +16,12 @@ use super::las_extra::{ExtraField, ExtraNormals, find_columns, find_extra_normal
 use super::las_header::{COPC, LasHeader, RecordSize, read_header};
 use super::las_records;
 use super::las_system::{find_crs, unnamed_degrees};
-use super::laz::{LazFields, LazReader, NeededChunks, is_chunked};
+use super::laz::{self, LazFields, LazReader, NeededChunks, is_chunked};
 use super::part::{Coordinates, FilePart};
 use super::read_options::{FileBox, PassedOver, Reading, RowNumbers, Selection};
 use super::source::{Input, Source, SourceReader, web_address};
 use belvedere_data::cloud::{Attributes, GpsTimeKind};
+use belvedere_data::contradiction::{FoundContradiction, POINTS_NOT_COUNTED};
 use belvedere_data::crs::Crs;
 use belvedere_data::{Error, Result};
 
@@ -71,6 +72,37 @@ impl<'a> LasFile<'a> {
         self.header.points.min(room)
     }
 
+    /// Points that the file holds beyond those that its header counts: a writer that was interrupted did not come to
+    /// correct the count. Not looked for on web servers.
+    fn uncounted(&mut self) -> Result<Option<FoundContradiction>> {
+        if web_address(&self.name).is_some() {
+            return Ok(None);
+        }
+        let Self { name, reader, size, header, .. } = self;
+        let (counted, start, length) = (header.points, header.points_start, u64::from(header.record_length).max(1));
+        let beyond = if header.compressed {
+            laz::chunks_beyond(name, reader, header, *size).unwrap_or(0)
+        } else {
+            let room = header.points_end.saturating_sub(start) / length;
+            let mut next = vec![0; usize::from(header.record_length)];
+            let byte = start.saturating_add(counted.saturating_mul(length));
+            let is_record = room > counted && {
+                reader.seek(SeekFrom::Start(byte)).map_err(Error::io(name))?;
+                // room that a writer reserved holds zeros
+                reader.read_exact(&mut next).is_ok() && next.iter().any(|&v| v != 0)
+            };
+            if is_record { room - counted } else { 0 }
+        };
+        let things = if header.compressed { "chunks of points" } else { "points" };
+        let text = || {
+            format!(
+                "the header counts {counted} points, but {beyond} more {things} follow in the file: its writer was interrupted; write the file again, for example with PDAL, or repair its header"
+            )
+        };
+        let found = || POINTS_NOT_COUNTED.found(text()).with("counted", counted as f64).with("beyond", beyond as f64);
+        Ok((beyond > 0).then(found))
+    }
+
     /// All points in file order, many at a time.
     pub(super) fn batches(self, extra: LazFields) -> Result<Batches<'a>> {
         let rows = iter::once(0..self.points_in_file());
@@ -110,7 +142,7 @@ impl<'a> LasFile<'a> {
         let room = room(self.header.scale);
         let low = std::array::from_fn(|i| bounds[i][0] - room[i]);
         let high = std::array::from_fn(|i| bounds[i][1] + room[i]);
-        if are_given(&bounds) && !wanted.meets(low, high) {
+        if self.header.has_bounds() && !wanted.meets(low, high) {
             return Ok((self.batches_of(extra, iter::empty(), None)?, all, None));
         }
         let nodes = self.copc_nodes(Some(wanted))?;
@@ -247,14 +279,14 @@ pub(super) fn read(source: Source<'_>, reading: &Reading<'_>) -> Result<FilePart
     check_bounds(part, points.bounds, points.scale)
 }
 
-/// Whether bounds of a header say anything.
-fn are_given(bounds: &[[f64; 2]; 3]) -> bool {
-    bounds.iter().all(|[low, high]| low <= high) && bounds.iter().flatten().any(|&v| v != 0.0)
-}
-
 /// How far points with coordinates in steps of `scale` may lie outside the bounds of their header.
 fn room(scale: [f64; 3]) -> [f64; 3] {
     scale.map(|scale| (10.0 * scale.abs()).max(MIN_ROOM))
+}
+
+/// Whether bounds of a header say anything.
+pub(super) fn are_given(bounds: &[[f64; 2]; 3]) -> bool {
+    bounds.iter().all(|[low, high]| low <= high) && bounds.as_flattened().iter().any(|&v| v != 0.0)
 }
 
 /// Compares the points of a file with the bounds of its header, which follow from the same scale and offset: notes
@@ -293,11 +325,14 @@ fn check_bounds(mut part: FilePart, bounds: [[f64; 2]; 3], scale: [f64; 3]) -> R
 /// The points of a source, batch by batch, and what is known of all of them.
 pub(super) fn open<'a>(mut source: Source<'a>, reading: &Reading<'_>) -> Result<(FilePart, LasPoints<'a>)> {
     let rows = source.likely_rows.take();
-    let beside = source.system_beside();
+    let (beside, announced) = (source.system_beside(), source.announced.take());
     let mut source = LasFile::open(source.open()?)?;
     let path = source.name.clone();
+    let uncounted = source.uncounted()?;
     let header = &source.header;
     let mut part = FilePart::new(&path, describe(&path, header));
+    let found = announced.iter().flat_map(|announced| announced.contradictions(header)).chain(uncounted);
+    found.for_each(|found| part.contradict(found));
     if header.counts_differ {
         part.note(format!("the two point counts of the header differ; {} is used", header.points));
     }
@@ -458,8 +493,10 @@ impl LasHeader {
         let skip = if self.compressed { 8 } else { 0 };
         file.seek(SeekFrom::Start(self.points_start + skip)).map_err(Error::io(path))?;
         let mut raw = [0_u8; 12];
-        if file.read_exact(&mut raw).is_err() {
-            return Ok(self.offset);
+        match file.read_exact(&mut raw) {
+            Ok(()) => {}
+            Err(error) if error.kind() == ErrorKind::UnexpectedEof => return Ok(self.offset),
+            Err(error) => return Err(Error::io(path)(error)),
         }
         let values = raw.as_chunks::<4>().0;
         Ok(std::array::from_fn(|i| f64::from(i32::from_le_bytes(values[i])) * self.scale[i] + self.offset[i]))
@@ -487,6 +524,8 @@ pub struct LasHead {
     pub has_channels: bool,
     /// What is odd about the file.
     pub notes: Vec<String>,
+    /// What contradicts each other in it, and what was said of it.
+    pub contradictions: Vec<FoundContradiction>,
 }
 
 /// What the header of a LAS, LAZ or COPC file says, without a look at its points, and whether the hierarchy of COPC is
@@ -495,13 +534,14 @@ pub struct LasHead {
 /// # Errors
 /// [`Error::Io`], and [`Error::Malformed`] for a damaged header and for one without usable bounds.
 pub fn read_las_head<'a>(source: impl Into<Source<'a>>) -> Result<LasHead> {
-    let source = source.into();
-    let beside = source.system_beside();
+    let mut source = source.into();
+    let (beside, announced) = (source.system_beside(), source.announced.take());
     let mut file = LasFile::open(source.open()?)?;
     let note = file.copc_nodes(None)?.note();
+    let uncounted = file.uncounted()?;
     let header = &file.header;
     let bounds = header.bounds;
-    if header.points > 0 && (!are_given(&bounds) || !bounds.as_flattened().iter().all(|v| v.is_finite())) {
+    if header.points > 0 && (!header.has_bounds() || !bounds.as_flattened().iter().all(|v| v.is_finite())) {
         return Err(Error::malformed(&file.name, "has no bounds in its header; write it again, for example with PDAL"));
     }
     let mut part = FilePart::new(&file.name, "");
@@ -516,5 +556,6 @@ pub fn read_las_head<'a>(source: impl Into<Source<'a>>) -> Result<LasHead> {
         gps_times: file.format.has_gps_time.then_some(kind),
         has_channels: file.format.is_extended,
         notes: note.into_iter().collect(),
+        contradictions: announced.iter().flat_map(|own| own.contradictions(header)).chain(uncounted).collect(),
     })
 }

@@ -4,6 +4,7 @@ use ::las::point::Format;
 
 use super::las_header::LasHeader;
 use super::part::FilePart;
+use belvedere_data::contradiction::COLUMN_TWICE;
 
 /// Where in a record NormalX, NormalY and NormalZ lie, and how they are kept.
 pub(super) type ExtraNormals = [ExtraField; 3];
@@ -109,6 +110,12 @@ pub(super) fn find_extra_normals(part: &mut FilePart, header: &LasHeader, format
     };
     let is_normal = |name: &str| normals.is_some() && NAMES.iter().any(|normal| normal.eq_ignore_ascii_case(name));
     let names = described(header, format).into_iter().map(|(name, _)| name);
+    let is_twice = |name: &&str| names.clone().filter(|other| other.eq_ignore_ascii_case(name)).count() > 1;
+    let twice: Vec<&str> = NAMES.into_iter().filter(is_twice).collect();
+    if normals.is_some() && !twice.is_empty() {
+        let text = format!("extra bytes that occur twice: {}; the last of each was read", twice.join(", "));
+        part.contradict(COLUMN_TWICE.found(text).with("columns", twice.len() as f64));
+    }
     let others: Vec<String> = names.filter(|name| !is_normal(name)).collect();
     if let Some(note) = note_on_unused(&others, format.extra_bytes, normals.is_some()) {
         part.note(note);

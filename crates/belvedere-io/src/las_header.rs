@@ -16,6 +16,8 @@ pub(super) struct LasHeader {
     pub(super) compressed: bool,
     pub(super) record_length: u16,
     pub(super) points_start: u64,
+    /// Byte behind the points: that of what follows them, or of the end of the file.
+    pub(super) points_end: u64,
     /// Points the header promises.
     pub(super) points: u64,
     pub(super) scale: [f64; 3],
@@ -120,7 +122,11 @@ pub(super) fn read_header(
     let long_points = if version.1 >= 4 && header_size >= 375 { fields.u64(247)? } else { 0 };
     let format = fields.u8(104)?;
     let encoding = if version.1 >= 2 { fields.u16(6)? } else { 0 };
+    let waveforms = if version.1 >= 3 && header_size >= 235 { fields.u64(227)? } else { 0 };
+    let extended = if version.1 >= 4 && header_size >= 375 && fields.u32(243)? > 0 { fields.u64(235)? } else { 0 };
+    let behind = [waveforms, extended].into_iter().filter(|&byte| byte >= points_start);
     let mut header = LasHeader {
+        points_end: behind.fold(size, u64::min),
         is_of_belvedere: bytes.get(58..90).is_some_and(|name| name.starts_with(b"belvedere\0")),
         version,
         format: format & 0x3f,
@@ -235,7 +241,9 @@ fn read_record(
 
 /// A record without its data; `None` for a head that is cut off.
 fn record_head(head: &[u8], length: Length) -> Option<VariableRecord> {
-    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).trim_end_matches(['\0', ' ']).to_owned();
+    // writers leave what was in their memory behind the end of a name
+    let name = |bytes: &[u8]| bytes.split(|&byte| byte == 0).next().unwrap_or_default().to_vec();
+    let text = |bytes: &[u8]| String::from_utf8_lossy(&name(bytes)).trim_end_matches(' ').to_owned();
     let user = text(head.get(2..18)?);
     let id = u16::from_le_bytes(*head.get(18..)?.first_chunk()?);
     let (length_of_data, description) = match length {

@@ -1,7 +1,7 @@
 //! The reference system of a LAS file: its records, compared with each other and with what stands beside the file.
 
 use super::las_header::LasHeader;
-use super::part::FilePart;
+use super::part::{FilePart, Unnamed};
 use super::source::SystemBeside;
 use belvedere_data::crs::evidence::Comparison;
 use belvedere_data::crs::{Crs, CrsKind};
@@ -44,8 +44,8 @@ pub(super) fn find_crs(part: &mut FilePart, header: &LasHeader, beside: Option<S
             (true, true) => {
                 part.note(format!("its WKT record is not readable; that of {} is used", part.report.crs_source));
             }
-            (false, true) => part.note("its WKT record is not readable; coordinates are taken as metres"),
-            (false, false) => part.note("it names no reference system; coordinates are taken as metres"),
+            (false, true) => part.unnamed = Some(Unnamed::Unreadable),
+            (false, false) => part.unnamed = Some(Unnamed::Missing),
         }
         return;
     };

@@ -6,7 +6,7 @@ mod chunks;
 mod gps_times;
 mod point14;
 
-use std::io::{Read, Seek, SeekFrom};
+use std::io::{ErrorKind, Read, Seek, SeekFrom};
 use std::ops::Range;
 use std::path::Path;
 
@@ -14,7 +14,7 @@ use super::copc::ChunkPlace;
 use super::source::{ReadSeek, SourceReader};
 
 use ::laz::laszip::{ChunkTable, ChunkTableEntry, CompressorType, LazItemType};
-use ::laz::{DecompressionSelection, LazVlr};
+use ::laz::{DecompressionSelection, LasZipError, LazVlr};
 
 use super::las_header::LasHeader;
 use belvedere_data::{Error, Result};
@@ -209,8 +209,10 @@ fn all_chunks(
 ) -> Result<Vec<LazChunk>> {
     file.seek(SeekFrom::Start(header.points_start)).map_err(Error::io(path))?;
     check_chunk_count(path, file, header, size)?;
-    let table = ChunkTable::read_from(&mut *file, vlr)
-        .map_err(|e| Error::malformed(path, format!("has no readable LAZ chunk table: {e}")))?;
+    let table = ChunkTable::read_from(&mut *file, vlr).map_err(|error| match error {
+        LasZipError::IoError(error) if error.kind() != ErrorKind::UnexpectedEof => Error::io(path)(error),
+        error => Error::malformed(path, format!("has no readable LAZ chunk table: {error}")),
+    })?;
     checked_chunks(path, &table, vlr, header, size)
 }
 
@@ -230,6 +232,22 @@ pub(super) fn chunk_table(
     let place =
         |LazChunk { start, entry }: LazChunk| ChunkPlace { start, bytes: entry.byte_count, points: entry.point_count };
     Ok(Some(chunks.into_iter().map(place).collect()))
+}
+
+/// Chunks of the chunk table that hold points beyond those of the header.
+pub(super) fn chunks_beyond(path: &Path, file: &mut SourceReader<'_>, header: &LasHeader, size: u64) -> Result<u64> {
+    let vlr = compression(path, header)?;
+    check_chunk_count(path, file, header, size)?;
+    let table = ChunkTable::read_from(&mut *file, &vlr)
+        .map_err(|e| Error::malformed(path, format!("has no readable LAZ chunk table: {e}")))?;
+    let (mut points, mut beyond) = (0_u64, 0);
+    for chunk in &table {
+        if points >= header.points && chunk.byte_count > 0 && chunk.point_count > 0 {
+            beyond += 1;
+        }
+        points = points.saturating_add(chunk.point_count);
+    }
+    Ok(beyond)
 }
 
 /// Bytes of an item, which the file states again, as the decompressor knows them.
@@ -263,7 +281,11 @@ fn check_chunk_count(path: &Path, file: &mut SourceReader<'_>, header: &LasHeade
     let broken = || Error::malformed(path, "has no LAZ chunk table: the file is cut off or was not finished");
     let mut bytes = [0; 8];
     let mut table_start = |file: &mut SourceReader<'_>, from: SeekFrom| -> Result<u64> {
-        file.seek(from).and_then(|_| file.read_exact(&mut bytes)).map_err(|_| broken())?;
+        file.seek(from).and_then(|_| file.read_exact(&mut bytes)).map_err(|error| match error.kind() {
+            ErrorKind::UnexpectedEof | ErrorKind::InvalidInput => broken(),
+            // what a server or a disk says is no fault of the file
+            _ => Error::io(path)(error),
+        })?;
         Ok(u64::from_le_bytes(bytes))
     };
     let valid = |at: u64| at > header.points_start && at.saturating_add(8) <= size;

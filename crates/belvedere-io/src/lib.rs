@@ -11,6 +11,8 @@
 //! weather files and trajectories are always there. A format that was not built in gives
 //! [`belvedere_data::Error::MissingFeature`].
 
+#[cfg(feature = "las")]
+mod announced;
 mod antimeridian;
 mod assemble;
 pub mod atomic;
@@ -25,6 +27,8 @@ mod columns;
 mod copc;
 #[cfg(feature = "e57")]
 mod e57;
+#[cfg(feature = "e57")]
+mod e57_counts;
 #[cfg(feature = "las")]
 mod ept;
 mod geojson;
@@ -145,7 +149,7 @@ pub use observers::{ObserverRow, ObserverRows, RowsAre, property, read_observers
 pub use outline::{GridPolygon, outlines};
 pub use output::{Output, WriteSeek};
 pub use polygons::MeshReport;
-pub use read_cloud::{CLOUD_EXTENSIONS, cloud_files, read_cloud};
+pub use read_cloud::{CLOUD_EXTENSIONS, cloud_files, cloud_sources, read_cloud};
 pub use read_options::{DistantFiles, Insistence, ReadOptions, RowNumbers, UpAxis, Within};
 pub use read_report::{FileReport, LeftOut, ReadReport};
 #[cfg(feature = "npy")]

@@ -19,12 +19,18 @@ impl OctreeCube {
         if !(0..=DEEPEST).contains(&level) {
             return None;
         }
-        let side = self.side / f64::from(level).exp2();
         if place.iter().any(|&v| v < 0 || f64::from(v) >= f64::from(level).exp2()) {
             return None;
         }
-        let low: [f64; 3] = std::array::from_fn(|i| self.low[i] + f64::from(place[i]) * side - room[i]);
-        let high: [f64; 3] = std::array::from_fn(|i| low[i] + side + 2.0 * room[i]);
+        let (low, high) = self.node_bounds(key, room);
         Some(wanted.is_none_or(|wanted| wanted.meets(low, high)))
+    }
+
+    /// Lowest and highest corner of the cell of a node, widened by `room`.
+    pub(super) fn node_bounds(&self, key: [i32; 4], room: [f64; 3]) -> ([f64; 3], [f64; 3]) {
+        let [level, place @ ..] = key;
+        let side = self.side / f64::from(level).exp2();
+        let low: [f64; 3] = std::array::from_fn(|i| self.low[i] + f64::from(place[i]) * side - room[i]);
+        (low, std::array::from_fn(|i| low[i] + side + 2.0 * room[i]))
     }
 }

@@ -8,6 +8,7 @@ use super::sky::Skies;
 use super::source::SystemBeside;
 use belvedere_data::Result;
 use belvedere_data::cloud::Attributes;
+use belvedere_data::contradiction::FoundContradiction;
 use belvedere_data::crs::evidence::Comparison;
 use belvedere_data::crs::{Crs, CrsKind};
 
@@ -16,7 +17,7 @@ const MANY_POINTS: usize = 1000;
 const FEW_TIMES: usize = 16;
 
 /// Single precision that steps further than this, in metres, is worth a warning: finer steps drown in scanner noise.
-const COARSE_STEP: f64 = 0.002;
+pub(super) const COARSE_STEP: f64 = 0.002;
 
 /// The points of one file in the unit of the file.
 #[derive(Debug, Default)]
@@ -28,6 +29,8 @@ pub(super) struct FilePart {
     /// Where pulses of these met nothing up to the sky.
     pub(super) skies: Skies,
     pub(super) crs: Crs,
+    /// Why the file names no system that is known; `None` where it names one.
+    pub(super) unnamed: Option<Unnamed>,
     /// A position of the file, in its unit, where one is known before its points are read.
     pub(super) somewhere: Option<[f64; 3]>,
     /// Row of each point in the file where they are wanted and differ from 0, 1, 2 …
@@ -42,6 +45,15 @@ pub(super) struct FilePart {
     /// Whether the file keeps its coordinates as f32.
     pub(super) single_precision: bool,
     pub(super) report: FileReport,
+}
+
+/// Why a file names no system that is known.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Unnamed {
+    /// No record names one.
+    Missing,
+    /// Its well-known text cannot be read.
+    Unreadable,
 }
 
 /// Coordinates as a file keeps them.
@@ -119,6 +131,10 @@ impl FilePart {
         self.report.notes.push(text.into());
     }
 
+    pub(super) fn contradict(&mut self, found: FoundContradiction) {
+        self.report.contradictions.push(found);
+    }
+
     /// Counts points that were in the file but are not in the part.
     pub(super) fn leave_out(&mut self, count: usize, reason: impl Into<String>) {
         if count > 0 {
@@ -169,6 +185,24 @@ impl FilePart {
         self.scanners.iter_mut().for_each(|p| *p = [p[0], -p[2], p[1]]);
         self.attributes.normals.iter_mut().flatten().for_each(|n| *n = [n[0], -n[2], n[1]]);
         self.skies.turn_y_up();
+    }
+
+    /// Notes that the file names no system, as far as no other source does: an option and other files say theirs.
+    pub(super) fn note_unnamed(&mut self) {
+        let is_known = self.crs.kind != CrsKind::Unknown;
+        match self.unnamed.take() {
+            Some(Unnamed::Missing) if !is_known => {
+                self.note("it names no reference system; coordinates are taken as metres");
+            }
+            Some(Unnamed::Unreadable) if !is_known => {
+                self.note("its WKT record is not readable; coordinates are taken as metres");
+            }
+            Some(Unnamed::Unreadable) => {
+                let used = self.crs.describe();
+                self.note(format!("its WKT record is not readable; {used} is used"));
+            }
+            Some(Unnamed::Missing) | None => {}
+        }
     }
 
     /// Drops the points that `reading` does not ask for.
@@ -285,8 +319,8 @@ impl FilePart {
         let mut step = 0.0_f64;
         for p in values {
             for (v, unit) in p.iter().zip(units) {
-                if v.is_finite() && *v != 0.0 {
-                    step = step.max((v.abs().log2().floor() - 23.0).exp2() * unit);
+                if v.is_finite() {
+                    step = step.max(single_step(*v) * unit);
                 }
             }
         }
@@ -301,6 +335,11 @@ impl FilePart {
             "coordinates have single precision, with steps of up to {step} m here; {repeated} points coincide with another point. Export again with an offset or in double precision"
         ));
     }
+}
+
+/// Step of single precision at a coordinate, in its unit.
+pub(super) fn single_step(coordinate: f64) -> f64 {
+    if coordinate == 0.0 { 0.0 } else { (coordinate.abs().log2().floor() - 23.0).exp2() }
 }
 
 /// Scales `normals` to unit length where they are not within a thousandth of it; what has no direction becomes zero

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use super::part::FilePart;
 use super::read_options::Reading;
-use super::rows::{Role, Row, Rows, role_of};
+use super::rows::{Role, Row, Rows, contradict_twice, roles_of};
 use super::source::Input;
 use belvedere_data::{Error, Result};
 
@@ -33,6 +33,8 @@ struct PcdField {
     size: usize,
     kind: char,
     count: usize,
+    /// What a single value means.
+    role: Option<Role>,
 }
 
 /// The points of the source.
@@ -109,7 +111,7 @@ fn read_header(path: &Path, file: &mut impl BufRead, part: &mut FilePart) -> Res
                 if header.points == 0 {
                     header.points = width.saturating_mul(height);
                 }
-                header.fields = fields(path, &names, &sizes, &kinds, &counts)?;
+                header.fields = fields((path, part), &names, &sizes, &kinds, &counts)?;
                 return Ok(header);
             }
             None if read == 0 => break,
@@ -120,7 +122,7 @@ fn read_header(path: &Path, file: &mut impl BufRead, part: &mut FilePart) -> Res
 }
 
 fn fields(
-    path: &Path,
+    (path, part): (&Path, &mut FilePart),
     names: &[String],
     sizes: &[String],
     kinds: &[String],
@@ -136,8 +138,13 @@ fn fields(
         if !matches!((kind, size), ('F', 4 | 8) | ('I' | 'U', 1 | 2 | 4 | 8)) {
             return Err(damaged(i));
         }
-        fields.push(PcdField { name: name.clone(), size, kind, count });
+        fields.push(PcdField { name: name.clone(), size, kind, count, role: None });
     }
+    let (roles, twice) = roles_of(names.iter().map(String::as_str));
+    for (field, role) in fields.iter_mut().zip(roles) {
+        field.role = role.filter(|_| field.count == 1);
+    }
+    contradict_twice(part, &twice);
     Ok(fields)
 }
 
@@ -147,11 +154,7 @@ impl PcdField {
     }
 
     fn roles(&self) -> Vec<Role> {
-        if self.is_packed_color() {
-            vec![Role::Red, Role::Green, Role::Blue]
-        } else {
-            role_of(&self.name).into_iter().filter(|_| self.count == 1).collect()
-        }
+        if self.is_packed_color() { vec![Role::Red, Role::Green, Role::Blue] } else { self.role.into_iter().collect() }
     }
 
     /// Puts the value in `bytes` into `row`; `None` where there are too few.
@@ -161,7 +164,7 @@ impl PcdField {
             put_color(row, [red, green, blue]);
             return Some(());
         }
-        let Some(role) = role_of(&self.name).filter(|_| self.count == 1) else { return Some(()) };
+        let Some(role) = self.role else { return Some(()) };
         #[expect(clippy::cast_precision_loss, reason = "64-bit integers beyond 2^53 are no coordinates")]
         let value = match (self.kind, self.size) {
             ('F', 4) => f64::from(f32::from_le_bytes(*bytes.first_chunk()?)),
@@ -235,7 +238,7 @@ fn ascii_row(line: &str, header: &PcdHeader) -> Option<Row> {
                 let bits = if field.kind == 'F' { super::part::narrow(value).to_bits() } else { to_bits(value) };
                 let [blue, green, red, _] = bits.to_le_bytes();
                 put_color(&mut row, [red, green, blue]);
-            } else if let (Some(role), 1) = (role_of(&field.name), field.count) {
+            } else if let (Some(role), 1) = (field.role, field.count) {
                 row.set(role, value);
             }
         }

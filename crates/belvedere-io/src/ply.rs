@@ -10,7 +10,7 @@ use ply_rs_bw::ply::{
 
 use super::part::FilePart;
 use super::read_options::Reading;
-use super::rows::{Role, Row, Rows, role_of};
+use super::rows::{Role, Row, Rows, is_plain_name, role_of};
 use super::source::{Input, SourceReader};
 use belvedere_data::crs::text::crs_from_comments;
 use belvedere_data::{Error, Result};
@@ -26,7 +26,11 @@ const VERTEX: &str = "vertex";
 
 /// One vertex: the numbers whose names have a role.
 #[derive(Default)]
-struct Vertex(Row);
+struct Vertex {
+    row: Row,
+    /// A bit for each role that a property gave, and for each that one with a plain name gave.
+    given: [u32; 2],
+}
 
 impl PropertyAccess for Vertex {
     fn new() -> Self {
@@ -37,7 +41,14 @@ impl PropertyAccess for Vertex {
         let Some(value) = scalar(&property) else { return PropertyAccessResult::Ignored };
         match role_of(name) {
             Some(role) => {
-                self.0.set(role, value);
+                // of several names of one meaning the plain one counts, as in `roles_of`
+                let (bit, is_plain) = (1 << role as u32, is_plain_name(name));
+                let [any, plain] = &mut self.given;
+                if *any & bit == 0 || is_plain && *plain & bit == 0 {
+                    self.row.set(role, value);
+                }
+                *any |= bit;
+                *plain |= if is_plain { bit } else { 0 };
                 PropertyAccessResult::Set
             }
             None => PropertyAccessResult::Ignored,
@@ -58,6 +69,7 @@ impl<'a> PlyFile<'a> {
     pub(super) fn open(input: Input<'a>) -> Result<Self> {
         let Input { name, mut reader, size } = input;
         let bytes = header_bytes(&name, &mut reader)?;
+        refuse_twice(&name, &bytes)?;
         let header = Parser::<Vertex>::new()
             .read_header(&mut HeaderReader::new(bytes.as_slice()))
             .map_err(|e| Error::malformed(&name, format!("is not a readable PLY file: {e}")))?;
@@ -126,7 +138,7 @@ pub(super) fn read(input: Input<'_>, reading: &Reading<'_>) -> Result<FilePart> 
     });
     file.for_each_vertex(|vertex: Vertex| {
         reading.check(rows.count())?;
-        rows.push(&vertex.0);
+        rows.push(&vertex.row);
         Ok(())
     })?;
     rows.finish(&mut part);
@@ -165,6 +177,31 @@ fn header_bytes(path: &Path, file: &mut impl BufRead) -> Result<Vec<u8>> {
             return Ok(bytes);
         }
     }
+}
+
+/// Refuses an element with two properties of one name: the parser keeps one of them, so that all numbers behind it
+/// would be read in a wrong place.
+fn refuse_twice(path: &Path, header: &[u8]) -> Result<()> {
+    let mut names: Vec<&[u8]> = Vec::new();
+    for line in header.split(|&byte| byte == b'\n').map(<[u8]>::trim_ascii) {
+        let mut words = line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty());
+        match words.next() {
+            Some(b"element") => names.clear(),
+            Some(b"property") => {
+                let Some(name) = words.next_back() else { continue };
+                if names.contains(&name) {
+                    let name = String::from_utf8_lossy(name);
+                    return Err(Error::malformed(
+                        path,
+                        format!("has two properties {name} of one element; rename one"),
+                    ));
+                }
+                names.push(name);
+            }
+            _ => {}
+        }
+    }
+    Ok(())
 }
 
 /// Holds the number of an element against the bytes there are: in ascii every value takes two.

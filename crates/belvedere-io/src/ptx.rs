@@ -9,6 +9,7 @@ use super::rows::{POSITION, Role, Row, Rows};
 use super::scan_pose::fault_of_rotation;
 use super::sky::ScanGrid;
 use super::source::Input;
+use belvedere_data::contradiction::{FoundContradiction, SCAN_POSE};
 use belvedere_data::{Error, Result};
 
 /// A line longer than this is no point.
@@ -40,6 +41,9 @@ pub(super) fn read(input: Input<'_>, reading: &Reading<'_>) -> Result<FilePart> 
                 header.line + 9
             );
             return Err(Error::malformed(path, format!("scan {scan}: {what}")));
+        }
+        if let Some(found) = header.contradiction(part.scanners.len() + 1) {
+            part.contradict(found);
         }
         // A point takes at least "0 0 0" and a line break.
         if header.cells.saturating_mul(6) > size + 1 {
@@ -87,6 +91,9 @@ pub(super) fn read(input: Input<'_>, reading: &Reading<'_>) -> Result<FilePart> 
     Ok(part)
 }
 
+/// The head of programs that write the matrix alone: a place of zeros, and the axes of the file.
+const NO_HEAD: [[f64; 3]; 4] = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+
 struct PtxHeader {
     /// Its first line, from 1.
     line: usize,
@@ -94,6 +101,8 @@ struct PtxHeader {
     size: [u64; 2],
     cells: u64,
     scanner: [f64; 3],
+    /// Position and axes of the scanner as the head of the scan gives them.
+    head: [[f64; 3]; 4],
     /// Rows of the matrix that turns scan into file coordinates; points are row vectors multiplied from the left.
     matrix: [[f64; 4]; 4],
 }
@@ -109,6 +118,28 @@ impl PtxHeader {
             return Some("has a shift that is not finite".to_owned());
         }
         fault_of_rotation([x, y, z].map(|[a, b, c, _]| [a, b, c]))
+    }
+
+    /// In what the head of the scan with this number contradicts the matrix; `None` for a head that was not filled.
+    fn contradiction(&self, number: usize) -> Option<FoundContradiction> {
+        if self.head == NO_HEAD {
+            return None;
+        }
+        let [place, axes @ ..] = self.head;
+        let apart = |a: [f64; 3], b: [f64; 3]| (0..3).map(|i| (a[i] - b[i]).powi(2)).sum::<f64>().sqrt();
+        let [x, y, z, _] = self.matrix.map(|[a, b, c, _]| [a, b, c]);
+        let (off, turn) =
+            (apart(place, self.scanner), (0..3).map(|i| apart(axes[i], [x, y, z][i])).fold(0.0, f64::max));
+        if ![off, turn].into_iter().any(|by| SCAN_POSE.is_exceeded_by(by)) {
+            return None;
+        }
+        let line = self.line;
+        let text = format!(
+            "scan {number}: its head, in lines {} to {}, puts the scanner {off:.2} units from where its matrix does, with axes {turn:.3} apart; the matrix was used",
+            line + 2,
+            line + 5
+        );
+        Some(SCAN_POSE.found(text).with("scan", number as f64).with("off", off).with("axes", turn))
     }
 }
 
@@ -136,6 +167,7 @@ fn read_header<R: BufRead>(lines: &mut PtxLines<'_, R>) -> Result<Option<PtxHead
         size: [rows, columns],
         cells: rows * columns,
         scanner: std::array::from_fn(|i| value(9, i)),
+        head: std::array::from_fn(|line| std::array::from_fn(|i| value(2 + line, i))),
         matrix: std::array::from_fn(|row| std::array::from_fn(|column| value(6 + row, column))),
     }))
 }

@@ -16,6 +16,7 @@ use super::{ept, las};
 #[cfg(feature = "npy")]
 use super::{masbcpp, npy};
 use belvedere_data::cloud::PointCloud;
+use belvedere_data::contradiction::FoundContradiction;
 use belvedere_data::control::Control;
 use belvedere_data::crs::{Crs, CrsKind};
 use belvedere_data::{Error, Result};
@@ -61,7 +62,8 @@ pub fn read_cloud<'a, S: Into<Source<'a>>>(
     let reading = Reading { options, forced: forced.as_ref(), control };
     let mut systems = Systems::new(options);
     let mut parts: Vec<FilePart> = Vec::new();
-    let CloudFiles { sources, tables, notes } = files_of(sources.into_iter().map(Into::into), &reading)?;
+    let CloudFiles { sources, tables, notes, contradictions } =
+        files_of(sources.into_iter().map(Into::into), &reading)?;
     for source in sources {
         control.check()?;
         let mut part = read_one(source, &reading)?;
@@ -80,6 +82,7 @@ pub fn read_cloud<'a, S: Into<Source<'a>>>(
     }
     let (cloud, mut report) = assemble::assemble(parts, options)?;
     report.notes.splice(..0, notes);
+    report.contradictions.splice(..0, contradictions);
     Ok((cloud, ReadReport { skipped_files: tables, ..report }))
 }
 
@@ -136,35 +139,47 @@ impl Systems {
 /// # Errors
 /// Those of [`read_cloud`] about folders and catalogues.
 pub fn cloud_files(paths: &[PathBuf]) -> Result<Vec<PathBuf>> {
+    Ok(cloud_sources(paths)?.0.iter().map(|source| source.name().to_owned()).collect())
+}
+
+/// The same files, each with what a hierarchy or a catalogue says of it; and what contradicts each other in these.
+///
+/// # Errors
+/// Those of [`cloud_files`].
+pub fn cloud_sources(paths: &[PathBuf]) -> Result<(Vec<Source<'_>>, Vec<FoundContradiction>)> {
     let (options, control) = (ReadOptions::default(), Control::none());
     let reading = Reading { options: &options, forced: None, control: &control };
     let files = files_of(paths.iter().map(Source::from), &reading)?;
-    Ok(files.sources.iter().map(|source| source.name().to_owned()).collect())
+    Ok((files.sources, files.contradictions))
 }
 
 /// What the sources of a cloud mean.
+#[derive(Default)]
 pub(super) struct CloudFiles<'a> {
     pub(super) sources: Vec<Source<'a>>,
     /// Files of folders that are tables or grids of something else.
     tables: Vec<PathBuf>,
     /// What was passed over in folders.
     notes: Vec<String>,
+    /// What contradicts each other in catalogues.
+    contradictions: Vec<FoundContradiction>,
 }
 
 /// The sources with folders and catalogues replaced by their files. Tiles of catalogues that cannot have a point that
 /// `reading` requests are left out.
 pub(super) fn files_of<'a>(sources: impl Iterator<Item = Source<'a>>, reading: &Reading<'_>) -> Result<CloudFiles<'a>> {
-    let mut found = CloudFiles { sources: Vec::new(), tables: Vec::new(), notes: Vec::new() };
+    let mut found = CloudFiles::default();
     for source in sources {
         let name = source.name().to_owned();
         let source = match opened(source, reading)? {
-            Opened::Other(source) => source,
-            Opened::Catalogue(files) if files.is_empty() => {
+            Opened::Other(source) => *source,
+            Opened::Catalogue(files, _) if files.is_empty() => {
                 let what = format!("no file of {} lies in the box to read", name.display());
                 return Err(Error::NoPoints { what });
             }
-            Opened::Catalogue(files) => {
+            Opened::Catalogue(files, contradictions) => {
                 found.sources.extend(files);
+                found.contradictions.extend(contradictions);
                 continue;
             }
         };
@@ -191,22 +206,22 @@ pub(super) fn files_of<'a>(sources: impl Iterator<Item = Source<'a>>, reading: &
 
 /// What a source is.
 enum Opened<'a> {
-    /// A catalogue, with its files that may have points in the box to read.
-    Catalogue(Vec<Source<'static>>),
-    Other(Source<'a>),
+    /// A catalogue, with its files that may have points in the box to read, and what contradicts each other in it.
+    Catalogue(Vec<Source<'static>>, Vec<FoundContradiction>),
+    Other(Box<Source<'a>>),
 }
 
 fn opened<'a>(source: Source<'a>, reading: &Reading<'_>) -> Result<Opened<'a>> {
     let wanted = reading.box_of_unopened();
     #[cfg(feature = "las")]
     if let Some(description) = ept::description(&source) {
-        return ept::files_within(&description, wanted.as_ref()).map(Opened::Catalogue);
+        let found = ept::files_within(&description, wanted.as_ref(), reading.control)?;
+        return Ok(Opened::Catalogue(found.files, found.contradictions));
     }
     if source.extension() != "vpc" {
-        return Ok(Opened::Other(source));
+        return Ok(Opened::Other(Box::new(source)));
     }
-    let files = vpc::files_within(source, wanted.as_ref())?;
-    Ok(Opened::Catalogue(files.into_iter().map(Source::path).collect()))
+    Ok(Opened::Catalogue(vpc::files_within(source, wanted.as_ref())?, Vec::new()))
 }
 
 fn is_text(file: &Path) -> bool {

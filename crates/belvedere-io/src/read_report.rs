@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use belvedere_data::contradiction::FoundContradiction;
 use serde::{Serialize, Serializer, ser::SerializeMap};
 
 /// What reading a cloud found.
@@ -22,6 +23,8 @@ pub struct ReadReport {
     pub skipped_files: Vec<PathBuf>,
     /// What should be known before the cloud is used.
     pub notes: Vec<String>,
+    /// What contradicts each other in folders and catalogues.
+    pub contradictions: Vec<FoundContradiction>,
     /// Row of each point among the points of its file, from 0, where
     /// [`ReadOptions::row_numbers`](crate::ReadOptions::row_numbers) requests it; empty otherwise. The points of the
     /// files follow each other as in `files`.
@@ -49,6 +52,8 @@ pub struct FileReport {
     pub crs_source: String,
     /// What is odd about it.
     pub notes: Vec<String>,
+    /// What contradicts each other in it, and what was said of it.
+    pub contradictions: Vec<FoundContradiction>,
 }
 
 /// Points left out for one reason.
@@ -65,6 +70,18 @@ impl ReadReport {
     #[must_use]
     pub fn left_out_count(&self) -> usize {
         self.files.iter().flat_map(|file| &file.left_out).map(|left_out| left_out.count).sum()
+    }
+
+    /// What contradicts each other in all files, each with the name of its file.
+    #[must_use]
+    pub fn contradictions(&self) -> Vec<FoundContradiction> {
+        let of_files = self.files.iter().flat_map(|file| {
+            let name = file.path.display();
+            file.contradictions
+                .iter()
+                .map(move |found| FoundContradiction { text: format!("{name}: {}", found.text), ..found.clone() })
+        });
+        self.contradictions.iter().cloned().chain(of_files).collect()
     }
 }
 
@@ -93,6 +110,10 @@ impl Serialize for ReadReport {
             map.serialize_entry("skipped_tables", &names)?;
         }
         map.serialize_entry("notes", &notes)?;
+        let contradictions: Vec<String> = self.contradictions().into_iter().map(|found| found.text).collect();
+        if !contradictions.is_empty() {
+            map.serialize_entry("contradictions", &contradictions)?;
+        }
         map.end()
     }
 }

@@ -233,7 +233,10 @@ fn request(agent: &Agent, address: &str, part: Part, pace: &mut Pace) -> std::re
     let status = response.status().as_u16();
     let headers = response.headers().clone();
     let text = |name| text_of(&headers, name);
-    let version = text(header::ETAG).or_else(|| text(header::LAST_MODIFIED)).map(str::to_owned);
+    // the servers of a farm make tags of their own, such as from inodes, for the same file; when it was changed is the
+    // same on all of them
+    let tag = || text(header::ETAG).map(|tag| tag.trim_start_matches("W/"));
+    let version = text(header::LAST_MODIFIED).or_else(tag).map(str::to_owned);
     if text(header::CONTENT_ENCODING).is_some_and(|encoding| encoding != "identity") {
         return Err(lasting("the server sends the file in compressed form only; download it first".to_owned()));
     }
@@ -264,8 +267,10 @@ fn request(agent: &Agent, address: &str, part: Part, pace: &mut Pace) -> std::re
         }
         // the first byte of an empty file is none
         (416, _) if start == 0 => Ok(Reply { bytes: Vec::new(), size: 0, version, is_whole: false }),
+        // one server of a farm may not have it yet
+        (404, _) if known.is_some() => Err(Failure { error: Error::other(CHANGED), may_pass: true }),
         // it ends earlier than before, or is gone
-        (404 | 410 | 416, _) if known.is_some() => Err(lasting(CHANGED.to_owned())),
+        (410 | 416, _) if known.is_some() => Err(lasting(CHANGED.to_owned())),
         (401 | 403 | 407, _) => Err(lasting(format!("the server refuses access (status {status})"))),
         (404 | 410, _) => Err(lasting(format!("the server has no such file (status {status}); check the address"))),
         (408 | 429 | 500..=599, _) => {

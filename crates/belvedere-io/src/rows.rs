@@ -3,6 +3,7 @@
 use super::part::{Coordinates, FilePart, narrow, to_u8, to_u16};
 use super::read_options::RowNumbers;
 use belvedere_data::cloud::{Attributes, GpsTimeKind};
+use belvedere_data::contradiction::COLUMN_TWICE;
 
 /// What a number of a point means.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -92,6 +93,64 @@ pub(super) fn role_of(name: &str) -> Option<Role> {
         "flags" => Role::Flags,
         _ => return None,
     })
+}
+
+/// What each of some columns means, by their names; and names that occur twice with one meaning, of which the first
+/// column counts.
+///
+/// Of several names of one meaning the plain one counts, wherever it stands: of "z" and "height" that is "z".
+pub(super) fn roles_of<'a>(names: impl Iterator<Item = &'a str> + Clone) -> (Vec<Option<Role>>, Vec<String>) {
+    let all: Vec<Option<Role>> = names.clone().map(role_of).collect();
+    let rank = |name: &str| usize::from(!is_plain_name(name));
+    let mut chosen: [Option<(usize, usize)>; ROLES] = [None; ROLES];
+    let mut twice = Vec::new();
+    for (index, name) in names.enumerate() {
+        let Some(role) = all.get(index).copied().flatten() else { continue };
+        let best = &mut chosen[role as usize];
+        match *best {
+            Some((own, _)) if own == rank(name) => twice.push(name.trim().to_owned()),
+            Some((own, _)) if own < rank(name) => {}
+            _ => *best = Some((rank(name), index)),
+        }
+    }
+    let is_chosen = |index: usize, role: Role| chosen[role as usize].is_some_and(|(_, own)| own == index);
+    let roles = all.iter().enumerate().map(|(index, role)| role.filter(|&role| is_chosen(index, role))).collect();
+    (roles, twice)
+}
+
+/// Whether a name stands above others of the same meaning.
+pub(super) fn is_plain_name(name: &str) -> bool {
+    PLAIN_NAMES.iter().any(|plain| name.trim().eq_ignore_ascii_case(plain))
+}
+
+/// Names that stand above others of the same meaning.
+const PLAIN_NAMES: [&str; 17] = [
+    "x",
+    "y",
+    "z",
+    "nx",
+    "ny",
+    "nz",
+    "red",
+    "green",
+    "blue",
+    "intensity",
+    "classification",
+    "gps_time",
+    "return_number",
+    "number_of_returns",
+    "scan_angle",
+    "point_source_id",
+    "gpstime",
+];
+
+/// Warns of columns that occur twice.
+pub(super) fn contradict_twice(part: &mut FilePart, twice: &[String]) {
+    if twice.is_empty() {
+        return;
+    }
+    let text = format!("columns that occur twice: {}; the first of each was read", twice.join(", "));
+    part.contradict(COLUMN_TWICE.found(text).with("columns", twice.len() as f64));
 }
 
 /// Points as they are read row by row.

@@ -5,6 +5,8 @@ use std::io::{BufReader, Cursor, Read, Seek, SeekFrom};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
+#[cfg(feature = "las")]
+use super::announced::Announced;
 use belvedere_data::crs::Crs;
 use belvedere_data::{Error, Result};
 
@@ -40,6 +42,9 @@ pub struct Source<'a> {
     pub(crate) likely_rows: Option<Vec<Range<u64>>>,
     /// The system of a source that names none, where a catalogue gives it.
     pub(crate) system: Option<SystemBeside>,
+    /// What a hierarchy or a catalogue says of its points.
+    #[cfg(feature = "las")]
+    pub(crate) announced: Option<Announced>,
 }
 
 /// What stands beside a file about its reference system.
@@ -70,8 +75,7 @@ impl<'a> Source<'a> {
     /// of its name ([`crate::hidden`]).
     #[must_use]
     pub fn path(path: impl Into<PathBuf>) -> Self {
-        let name = super::secrets::hidden(&path.into());
-        Self { name, content: Content::Path, likely_rows: None, system: None }
+        Self::of(super::secrets::hidden(&path.into()), Content::Path)
     }
 
     /// Bytes in memory, such as a download. `name` needs an extension, such as `tile.laz`.
@@ -83,7 +87,18 @@ impl<'a> Source<'a> {
     /// Anything that reads and seeks, from its first byte to its last. `name` needs an extension, such as `tile.laz`.
     #[must_use]
     pub fn reader(name: impl Into<PathBuf>, reader: impl Read + Seek + Send + 'a) -> Self {
-        Self { name: name.into(), content: Content::Reader(Box::new(reader)), likely_rows: None, system: None }
+        Self::of(name.into(), Content::Reader(Box::new(reader)))
+    }
+
+    fn of(name: PathBuf, content: Content<'a>) -> Self {
+        Self {
+            name,
+            content,
+            likely_rows: None,
+            system: None,
+            #[cfg(feature = "las")]
+            announced: None,
+        }
     }
 
     /// The same, of which it is known that the points of a window ([`crate::ReadOptions::within`]) lie in `rows` only:
@@ -106,6 +121,16 @@ impl<'a> Source<'a> {
     #[must_use]
     pub fn extension(&self) -> String {
         extension(&self.name)
+    }
+
+    /// What a hierarchy or a catalogue says of its points, as text that differs where that does.
+    #[must_use]
+    pub fn announced_in_words(&self) -> String {
+        #[cfg(feature = "las")]
+        let words = self.announced.as_ref().map(|announced| format!("{announced:?}"));
+        #[cfg(not(feature = "las"))]
+        let words: Option<String> = None;
+        words.unwrap_or_default()
     }
 
     /// The folder at the path, where the source is one.

@@ -49,7 +49,11 @@ impl Table {
     /// # Errors
     /// [`Error::Malformed`] where one of its cells holds text.
     pub fn column(&self, path: &Path, name: &str) -> Result<Option<&[f64]>> {
-        let Some(index) = self.names().iter().position(|own| own.eq_ignore_ascii_case(name)) else { return Ok(None) };
+        let mut places = self.names().iter().enumerate().filter(|(_, own)| own.eq_ignore_ascii_case(name));
+        let Some((index, _)) = places.next() else { return Ok(None) };
+        if places.next().is_some() {
+            return Err(Error::malformed(path, format!("there are two columns {name}; remove or rename one")));
+        }
         if let Some(Some((row, text))) = self.not_numbers.get(index) {
             let text: String = text.chars().take(40).collect();
             return Err(Error::malformed(path, format!("row {row}: \"{text}\" in column {name} is not a number")));

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use super::part::FilePart;
 use super::read_options::Reading;
-use super::rows::{Role, Row, Rows, role_of};
+use super::rows::{Role, Row, Rows, contradict_twice, roles_of};
 use super::source::{Input, Source};
 use super::text_rows::TextRows;
 use belvedere_data::{Error, Result};
@@ -278,8 +278,9 @@ fn find_start<R: BufRead>(path: &Path, part: &mut FilePart, lines: &mut XyzLines
         return Err(Error::malformed(path, what));
     }
     let (columns, names) = names.unwrap_or_else(|| (guess_columns(part, separator, &ahead), Vec::new()));
-    let without_role = names.iter().filter(|name| role_of(name).is_none());
-    part.other_attributes.extend(without_role.cloned());
+    contradict_twice(part, &roles_of(names.iter().map(String::as_str)).1);
+    let without_role = names.iter().zip(&columns).filter(|(_, role)| role.is_none());
+    part.other_attributes.extend(without_role.map(|(name, _)| name.clone()));
     if separator.split(first).count() > columns.len() {
         part.note(format!("columns ignored: all after number {}", columns.len()));
     }
@@ -297,7 +298,7 @@ type XyzHeader = (Vec<Option<Role>>, Vec<String>);
 /// The names in a header line and their roles, or `None` where x, y and z are not among them.
 fn header(line: &str) -> Option<XyzHeader> {
     let names: Vec<String> = separator(line).split(line).map(str::to_owned).collect();
-    let columns: Vec<Option<Role>> = names.iter().map(|name| role_of(name)).collect();
+    let (columns, _) = roles_of(names.iter().map(String::as_str));
     [Role::X, Role::Y, Role::Z].iter().all(|&role| columns.contains(&Some(role))).then_some((columns, names))
 }
 

@@ -56,8 +56,8 @@ impl PyScene {
     ) -> PyResult<Vec<Bound<'py, PyDict>>> {
         let model = self.0.model();
         let of_eye = ask::remark_on_eye(model.coverage().as_ref(), eye);
-        let of_axis = ask::remark_on_axis(model.looks_y_up());
-        remarks_of(py, of_axis.iter().chain(&of_eye).chain(&ask::remark_on_outside(outside, count, things)))
+        let of_model = ask::remarks_on_model(model);
+        remarks_of(py, of_model.iter().chain(&of_eye).chain(&ask::remark_on_outside(outside, count, things)))
     }
 }
 

@@ -6,6 +6,7 @@ use crate::question::TileQuestion;
 use crate::run::{RunParams, RunReport, Shard, Steps, run};
 use belvedere::Frame;
 use belvedere::apps::ask::{self, Answers, Context, HowSure, NamedSun, Remark, summarise_parts};
+use belvedere::apps::difference::described;
 use belvedere::apps::sum_errors::INTERVAL_MEASURES;
 use belvedere::apps::targets::Measure;
 use belvedere::apps::viewshed::SeenProbabilities;
@@ -319,7 +320,8 @@ impl SurveyCells {
     pub fn write_cog(&self, path: &Path, measures: &[Measure]) -> Result<()> {
         let pixels = Pixels::of_measures(measures, [self.grid.width, self.grid.height])?;
         let names = measures.iter().map(|measure| measure.name.clone()).collect();
-        let raster = ResultRaster { pixels, names, description: self.description.to_owned() };
+        let subject = if self.suns.is_empty() { "" } else { self.title.as_str() };
+        let raster = ResultRaster { pixels, names, description: described(self.description, subject) };
         raster.write_cog(path, &georeference(&self.grid, &self.frame))
     }
 

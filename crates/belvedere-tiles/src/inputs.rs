@@ -1,6 +1,7 @@
 //! The files of a survey, and whether they are still what they were when the plan was made.
 
 use belvedere::apps::ask::Remark;
+use belvedere::contradiction::FoundContradiction;
 use belvedere::io::{LasHead, OpenSource, ReadSeek, Source, hidden, read_las_head, web_address};
 use belvedere::{Bounds, Error, GpsTimeKind, Result};
 use serde::{Deserialize, Serialize};
@@ -65,19 +66,13 @@ pub(crate) fn hold([west, south, east, north]: &mut PieceCell, [x, y, _]: [f32; 
 }
 
 /// What to know of a file by its header.
-pub(crate) fn remarks_on_file(file: &InputFile, head: &LasHead) -> Vec<Remark> {
-    let path = file.path.display().to_string();
-    head.notes.iter().map(|note| Remark::note("file-odd", format!("{path}: {note}"))).collect()
-}
-
-/// What to know of the files of a plan that was made before.
-///
-/// # Errors
-/// Those of [`read_las_head`].
-pub(crate) fn remarks_on_files(files: &[InputFile]) -> Result<Vec<Remark>> {
-    let of_file = |file: &InputFile| Ok(remarks_on_file(file, &read_las_head(file.path.as_path())?));
-    let found: Vec<Vec<Remark>> = files.iter().map(of_file).collect::<Result<_>>()?;
-    Ok(found.concat())
+pub(crate) fn remarks_on_file(path: &Path, head: &LasHead) -> Vec<Remark> {
+    let path = path.display().to_string();
+    let notes = head.notes.iter().map(|note| Remark::note("file-odd", format!("{path}: {note}")));
+    let contradictions = head.contradictions.iter().filter_map(|found| {
+        Remark::of_contradiction(FoundContradiction { text: format!("{path}: {}", found.text), ..found.clone() })
+    });
+    notes.chain(contradictions).collect()
 }
 
 impl InputFile {
@@ -85,16 +80,17 @@ impl InputFile {
     ///
     /// # Errors
     /// Those of [`read_las_head`].
-    pub(crate) fn new(path: &Path) -> Result<(Self, LasHead)> {
-        let is_las = ["las", "laz"].contains(&Source::path(path).extension().as_str());
-        if !is_las {
+    pub(crate) fn new(source: Source<'_>) -> Result<(Self, LasHead)> {
+        let name = source.name().to_owned();
+        let path = name.as_path();
+        if !["las", "laz"].contains(&source.extension().as_str()) {
             return Err(Error::UnknownFormat {
                 path: path.to_owned(),
                 kind: "tile",
                 supported: ".las, .laz, .copc.laz; convert other clouds first",
             });
         }
-        let head = read_las_head(path)?;
+        let head = read_las_head(source)?;
         if head.missing_points > 0 {
             let (points, announced) = (head.points, head.points + head.missing_points);
             let what = format!("is cut off: it holds {points} of the {announced} points of its header; copy it again");

@@ -1,12 +1,13 @@
 //! Surveys that are kept: looked at once, with balls that all questions share.
 
 use crate::cell_sizes::CellSizes;
-use crate::inputs::{hash, remarks_on_files};
+use crate::inputs::{absolute, hash, remarks_on_file};
 use crate::make_plan::PlanParams;
 use crate::plan::Plan;
 use crate::sealed::sealed;
+use belvedere::apps::ask::Remark;
 use belvedere::control::Control;
-use belvedere::io::cloud_files;
+use belvedere::io::{cloud_sources, read_las_head};
 use belvedere::{Error, Result};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -18,7 +19,8 @@ impl Plan {
     /// # Errors
     /// Those of [`Plan::make`] and of writing.
     pub fn kept_in(folder: &Path, params: &PlanParams, control: &Control<'_>) -> Result<Self> {
-        let files = cloud_files(&params.clouds)?;
+        let (sources, contradictions) = cloud_sources(&params.clouds)?;
+        let files: Vec<PathBuf> = sources.iter().map(|source| absolute(source.name())).collect::<Result<_>>()?;
         let is_of_these = |plan: &Self| {
             plan.program == params.program
                 && plan.crs == params.crs
@@ -26,7 +28,12 @@ impl Plan {
                 && plan.inputs.iter().map(|input| &input.path).eq(&files)
         };
         if let Some(plan) = Self::read(folder).ok().filter(is_of_these) {
-            return Ok(Self { remarks: remarks_on_files(&plan.inputs)?, ..plan });
+            let mut remarks: Vec<Remark> = contradictions.into_iter().filter_map(Remark::of_contradiction).collect();
+            for source in sources {
+                let path = absolute(source.name())?;
+                remarks.extend(remarks_on_file(&path, &read_las_head(source)?));
+            }
+            return Ok(Self { remarks, ..plan });
         }
         let plan = Self::make(&PlanParams { cells: CellSizes::default(), memory: None, ..params.clone() }, control)?;
         let plan = Self { proves: plan.can_prove(), ..plan };

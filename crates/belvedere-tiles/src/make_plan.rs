@@ -7,9 +7,10 @@ use crate::plan::{LAYOUT, Plan, PlanFrame, on_surface, without_ground};
 use crate::proof;
 use crate::survey::survey;
 use crate::window;
+use belvedere::apps::ask::Remark;
 use belvedere::control::Control;
 use belvedere::crs::Crs;
-use belvedere::io::{Insistence, LasHead, cloud_files};
+use belvedere::io::{Insistence, LasHead, cloud_sources};
 use belvedere::model::{ModelParams, SurveyStatistics};
 use belvedere::{Error, Parameter, Result};
 use std::path::{Path, PathBuf};
@@ -68,12 +69,12 @@ impl Plan {
     /// memory into which no tile fits; those of reading the files, and of [`SurveyStatistics::estimate`].
     pub fn make(params: &PlanParams, control: &Control<'_>) -> Result<Self> {
         params.cells.check_tile(params.tile_size)?;
-        let (mut inputs, heads) = inputs(&params.clouds)?;
+        let (mut inputs, heads, mut remarks) = inputs(&params.clouds)?;
         let with_crs = heads.iter().position(|head| head.crs.epsg.is_some() || head.crs.wkt.is_some()).unwrap_or(0);
         let crs = system_of(params, &inputs, &heads, with_crs)?;
         let (frame, [low, high]) = frame_of(&crs, params, &inputs, &inputs[with_crs].path)?;
         let columns = PointColumns::common(&heads);
-        let remarks = inputs.iter().zip(&heads).flat_map(|(file, head)| remarks_on_file(file, head)).collect();
+        remarks.extend(inputs.iter().zip(&heads).flat_map(|(file, head)| remarks_on_file(&file.path, head)));
         let files: Vec<PathBuf> = inputs.iter().map(|file| file.path.clone()).collect();
         let points = inputs.iter().map(|file| file.points).sum();
         let local = |v: [f64; 3]| [v[0] - frame.origin[0], v[1] - frame.origin[1]];
@@ -235,14 +236,16 @@ fn system_of(params: &PlanParams, inputs: &[InputFile], heads: &[LasHead], with_
     Ok(given.with_heights_of(of_files))
 }
 
-fn inputs(clouds: &[PathBuf]) -> Result<(Vec<InputFile>, Vec<LasHead>)> {
-    let found: Vec<(InputFile, LasHead)> =
-        cloud_files(clouds)?.iter().map(|file| InputFile::new(file)).collect::<Result<_>>()?;
+/// Files of a survey with their headers, and what to know of the catalogues that name them.
+fn inputs(clouds: &[PathBuf]) -> Result<(Vec<InputFile>, Vec<LasHead>, Vec<Remark>)> {
+    let (sources, contradictions) = cloud_sources(clouds)?;
+    let found: Vec<(InputFile, LasHead)> = sources.into_iter().map(InputFile::new).collect::<Result<_>>()?;
     if let Some((first, rest)) = found.split_first()
         && let Some((other, _)) = rest.iter().find(|(_, head)| head.crs.contradicts(&first.1.crs))
     {
         let what = format!("is in another reference system than {}; convert one of them", first.0.path.display());
         return Err(Error::UnusableCrs { path: other.path.clone(), what });
     }
-    Ok(found.into_iter().unzip())
+    let (files, heads) = found.into_iter().unzip();
+    Ok((files, heads, contradictions.into_iter().filter_map(Remark::of_contradiction).collect()))
 }

@@ -97,7 +97,7 @@ impl Engine {
         }
         let cloud = Arc::new(cloud);
         let missing = report.files.iter().map(|file| (file.path.display().to_string(), file.missing_points));
-        session.loading().remark(&remarks_on_reading(report.doubt.as_deref(), missing));
+        session.loading().remark(&remarks_on_reading(report.doubt.as_deref(), missing, report.contradictions()));
         session.loading().show(&cloud);
         chosen.show(&session, &cloud, host, &control)?;
         Ok(Self { session, cloud: Some(cloud) })

@@ -71,8 +71,8 @@ pub use belvedere_data::{
     SurfacePatches, cloud,
 };
 pub use belvedere_data::{
-    control, crs, elevation, error, frame, horizon, mesh, patches, polygon, random, raster, report, shown, sky_region,
-    trajectory, vector, view, weather,
+    contradiction, control, crs, elevation, error, frame, horizon, mesh, patches, polygon, random, raster, report,
+    shown, sky_region, trajectory, vector, view, weather,
 };
 #[cfg(feature = "figures")]
 pub use belvedere_figures as figures;

@@ -2,12 +2,12 @@
 
 use super::places::{leave_out_outside, test_edge};
 use super::sections::{LinesSection, NamedValues, PeriodSection};
-use super::sun::{Days, SunPlace};
+use super::sun::{Days, SunPlace, sun_days_above};
 use super::sun_hours::days_in_words;
 use super::windows::{GivenWindows, WindowTargets};
 use super::{Answers, Ask, Context, Places, Remark, Scene, SkyParts};
 use crate::exposure::{Exposure, ROUTE_STEP, ShadeAtEachSun, WALKER_HEIGHT, scene_exposure};
-use crate::sun::{Binning, SunSchedule, Zone, sun_days};
+use crate::sun::{Binning, SunSchedule, Zone};
 use crate::targets::{Route, Targets, Window, grid_around, set_on_ground};
 use crate::viewshed::{CELL, places_along};
 use belvedere_core::ground::GroundPoints;
@@ -154,7 +154,7 @@ impl ComfortQuestion {
             ShadeAtEachSun::Kept => Binning::Exact,
             ShadeAtEachSun::NotKept => Binning::Auto,
         };
-        let schedule = SunSchedule::new(&sun_days(&site, &zone, &period, &params)?, binning)?;
+        let schedule = SunSchedule::new(&sun_days_above(&site, &zone, &period, &params)?, binning)?;
         context.report.period = Some(PeriodSection::of(&schedule, &zone, &params));
         Ok((schedule, zone))
     }

@@ -2,7 +2,7 @@
 
 use super::scene::KnownGround;
 use super::sections::{LinesSection, PeriodSection};
-use super::sun::{Days, SunPlace, SunRange, check_sun, remark_on_sun};
+use super::sun::{Days, SunPlace, SunRange, check_min_elevation, check_sun, remark_on_sun};
 use super::{Answers, Ask, Context, Places, Remark, Scene, SharedObject};
 use crate::solar_envelope::{
     EnvelopeParams, Parcel, ProtectedPiece, SolarEnvelope, check_fence, check_hours, envelope_suns, existing_shade,
@@ -189,6 +189,7 @@ impl EnvelopeQuestion {
                 let dates = self.dates(days, &site, &zone)?;
                 let params = days.params(&self.place);
                 let (suns, low) = envelope_suns(&site, &zone, &dates, hours.unwrap_or(ALL_DAY), &params)?;
+                check_min_elevation(suns.is_empty() && low > 0 && params.min_elevation > 0.0, &params)?;
                 context.report.period = Some(PeriodSection::of_dates(&dates, &zone, &params, [suns.len(), low]));
                 Ok(NamedSuns {
                     directions: suns.iter().map(|sun| sun.direction).collect(),

@@ -8,7 +8,8 @@ use super::sun::SunPlace;
 use super::{Answers, Ask, Context, Places, Remark, Scene, ThroughTrees, spread};
 use crate::irradiance::{
     CLEAR_SKY_YEAR, ClearSky, IrradianceParams, PARTS, PeriodReport, RadiationSource, RoofIrradiation, RoofsReport,
-    SeasonRadiation, Surroundings, look_count, period_seasons, roof_irradiation, season_irradiation,
+    SeasonRadiation, Surroundings, clock_contradiction, look_count, period_seasons, roof_irradiation,
+    season_irradiation,
 };
 use crate::roof_planes::{GROUND_CELL, RoofPlane, RoofPlaneParams, RoofsFrom, roof_planes, roof_points};
 use crate::rows::Obstacles;
@@ -246,6 +247,8 @@ fn remark_on(weather: &Weather, site: &Site, context: &mut Context) {
         let text = format!("the weather is for a location {:.0} km away", distance / 1000.0);
         context.add(Some(Remark::warning("weather-far-away", text).with("distance_km", rounded(distance / 1000.0, 1))));
     }
+    // a place where the sun has no times has no remark on them
+    context.add(clock_contradiction(weather).ok().flatten().and_then(Remark::of_contradiction));
     for note in &weather.notes {
         context.add(Some(Remark::note("weather-note", note.clone())));
     }

@@ -9,6 +9,7 @@ use crate::isovist::{Isovist, IsovistFigure, IsovistParams, isovist, isovist_int
 use belvedere_core::ground::GroundPoints;
 use belvedere_core::query::UnprovenAs;
 use belvedere_data::Result;
+use belvedere_data::contradiction::SIGHT_LEAVES_ROOM;
 use belvedere_data::control::Control;
 use belvedere_data::report::rounded;
 use serde::{Deserialize, Serialize};
@@ -159,8 +160,21 @@ impl IsovistsResults {
             let ends = format!("nine times in ten {low:.0} to {high:.0}");
             context.headline(format!("area seen in the level plane: {area:.0} m²; {ends}"));
         }
+        context.add(remark_on_gaps(&self.isovists));
         context.add(remark_on_doubtful_sight(&self.isovists));
     }
+}
+
+/// A note on rays that leave closed rooms; `None` where none does.
+fn remark_on_gaps(isovists: &[Option<Isovist>]) -> Option<Remark> {
+    let shares = || isovists.iter().flatten().map(|isovist| isovist.unbounded).filter(|&share| share > 0.0);
+    let (count, most) = (shares().count(), rounded(100.0 * shares().fold(0.0, f64::max), 3));
+    let text = format!(
+        "{count} of {} observers are in a closed room, of which up to {most} % of the directions leave between its points: these are unbounded, and count up to the surface around",
+        isovists.len()
+    );
+    let found = || SIGHT_LEAVES_ROOM.found(text).with("count", count as f64).with("percent", most);
+    (count > 0).then(found).and_then(Remark::of_contradiction)
 }
 
 /// A note on isovists larger than their intervals say; `None` where there are none.

@@ -27,6 +27,7 @@ mod isovist;
 mod landmark;
 mod light;
 mod line_of_sight;
+mod mesh_levels;
 pub mod north;
 pub mod observers;
 pub mod places;
@@ -68,6 +69,7 @@ pub use isovist::{IsovistColumn, IsovistsQuestion, IsovistsResults};
 pub use landmark::{LandmarkQuestion, LandmarkResults, LandmarkSection, LandmarkShape};
 pub use light::OnTargets;
 pub use line_of_sight::{LinesOfSightQuestion, ProfileRows, SightColumns, SightsResults};
+pub use mesh_levels::remarks_on_model;
 pub use north::North;
 pub use observers::{Eyes, Standing};
 pub use places::{GridCells, Places, Turned, remark_on_edge};
@@ -242,7 +244,8 @@ pub fn ask<Q: Ask>(scene: &Scene, question: &Q, places: &Places, control: &Contr
     let mut context = Context::default();
     scene.whereabouts().remark(&mut context);
     context.add(scene.remark_on_terrain());
-    context.add(remark_on_axis(scene.model().looks_y_up()));
+    context.add(scene.remark_on_ground_cloud());
+    remarks_on_model(scene.model()).into_iter().for_each(|remark| context.add(Some(remark)));
     context.add(reliability::remark_on_reliability(scene.model().parts()));
     let answers = question.answer(scene, places, &mut context, control)?;
     Ok(answers.with(context))

@@ -1,5 +1,6 @@
 //! What a user must know to read an answer rightly, and what is worth knowing beside it.
 
+use belvedere_data::contradiction::{FoundContradiction, Outcome};
 use belvedere_data::report::percent;
 use belvedere_data::shown::{ShownPath, printable};
 use serde::ser::SerializeMap;
@@ -64,6 +65,18 @@ impl Remark {
         self
     }
 
+    /// A contradiction that was found; `None` for one that is refused, which an error says.
+    #[must_use]
+    pub fn of_contradiction(found: FoundContradiction) -> Option<Self> {
+        let FoundContradiction { row, text, numbers } = found;
+        let remark = Self { numbers, ..Self::warning(row.key, text) };
+        match row.outcome {
+            Outcome::Refused => None,
+            Outcome::Warned => Some(remark),
+            Outcome::Noted => Some(remark.into_note()),
+        }
+    }
+
     /// A warning that `part` of `whole` things are so, such as "3 of 40 targets (7.5 %) are outside the cloud"; `None`
     /// where none is.
     #[must_use]
@@ -84,6 +97,34 @@ pub fn remark_on_left_out(output: &Path, names: &[String]) -> Option<Remark> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_page_has_the_row_of_every_contradiction() {
+        let page = include_str!("../../../../docs/troubleshooting.md");
+        for row in belvedere_data::contradiction::ALL {
+            let line = format!(
+                "| {} | {} | {} {} | {} `{}` |",
+                row.given,
+                row.known,
+                row.tolerance,
+                row.unit,
+                row.outcome.name(),
+                row.key
+            );
+            assert!(page.lines().any(|own| own == line), "docs/troubleshooting.md lacks the line\n{line}");
+        }
+    }
+
+    #[test]
+    fn a_contradiction_is_a_remark_unless_it_is_refused() {
+        use belvedere_data::contradiction::{GROUND_ELSEWHERE, SIGHT_LEAVES_ROOM, TERRAIN_HEIGHTS};
+        let severity = |row: &'static belvedere_data::contradiction::Contradiction| {
+            Remark::of_contradiction(row.found("a")).map(|remark| remark.severity)
+        };
+        assert_eq!(severity(&TERRAIN_HEIGHTS), Some(Severity::Warning));
+        assert_eq!(severity(&SIGHT_LEAVES_ROOM), Some(Severity::Note));
+        assert_eq!(severity(&GROUND_ELSEWHERE), None);
+    }
 
     #[test]
     fn a_share_has_its_numbers_as_fields_and_in_words() {

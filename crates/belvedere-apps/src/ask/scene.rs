@@ -1,12 +1,13 @@
 //! The scene that questions are put to: a model with its cloud, and what takes long to make and several questions need.
 
-use super::terrain_heights::remark_on_terrain;
+use super::terrain_heights::{remark_on_ground_cloud, remark_on_terrain};
 use super::viewer::remark_on_doubt;
 use super::{Context, Remark};
 use crate::horizon::convergence;
 use belvedere_core::ground::{Ground, GroundBySquares, GroundParams, GroundPoints, GroundReport, MapGrid};
 use belvedere_core::model::SceneModel;
 use belvedere_core::query::{BlockRule, MedialScene, UnprovenAs};
+use belvedere_data::contradiction::{AREA_OF_USE, GROUND_ELSEWHERE};
 use belvedere_data::control::Control;
 use belvedere_data::crs::CrsKind;
 use belvedere_data::crs::evidence::{CONTRADICTION_DISTANCE, distance_in_words};
@@ -62,16 +63,16 @@ impl Whereabouts<'_> {
         let middle = self.middle();
         let of_file = [0, 1].map(|axis| (origin[axis] + middle[axis]) / crs.metres_per_unit);
         let distance = crs.distance_to_area_of_use(of_file).filter(|&distance| distance > OUTSIDE_AREA);
-        context.add(distance.map(|distance| {
+        context.add(distance.and_then(|distance| {
             let how_far = if distance.is_finite() { distance_in_words(distance) } else { "far".to_owned() };
             let text = format!("the scene lies {how_far} outside of the area of use of {}", crs.describe());
-            let remark = Remark::warning("outside-area-of-use", text);
-            let remark = match distance.is_finite() {
-                true => remark.with("distance_km", rounded(distance / 1000.0, 1)),
-                false => remark,
-            };
+            let found = AREA_OF_USE.found(text);
+            let remark = Remark::of_contradiction(match distance.is_finite() {
+                true => found.with("distance_km", rounded(distance / 1000.0, 1)),
+                false => found,
+            });
             // countries use zones beyond their edges
-            if distance > CONTRADICTION_DISTANCE { remark } else { remark.into_note() }
+            if distance > CONTRADICTION_DISTANCE { remark } else { remark.map(Remark::into_note) }
         }));
     }
 
@@ -157,9 +158,24 @@ impl Scene {
     }
 
     /// This, with the ground of another cloud in the same frame.
-    #[must_use]
-    pub fn with_ground_of(self, ground_cloud: Arc<PointCloud>) -> Self {
-        Self { ground_cloud, ground: Mutex::default(), ground_store: None, ..self }
+    ///
+    /// # Errors
+    /// [`Error::InvalidParameter`] for a cloud that lies beside the scene on the map.
+    pub fn with_ground_of(self, ground_cloud: Arc<PointCloud>) -> Result<Self> {
+        if let Some(own) = ground_cloud.bounds() {
+            let of_scene = self.model.bounds();
+            let gap =
+                |axis: usize| f64::from((own.low[axis] - of_scene.high[axis]).max(of_scene.low[axis] - own.high[axis]));
+            let distance = gap(0).max(0.0).hypot(gap(1).max(0.0));
+            if GROUND_ELSEWHERE.is_exceeded_by(distance) {
+                return Err(Error::InvalidParameter {
+                    parameter: Parameter::Ground,
+                    value: format!("a cloud that lies {} beside the scene", distance_in_words(distance)),
+                    expected: "a cloud of the same place, in the coordinates of the scene",
+                });
+            }
+        }
+        Ok(Self { ground_cloud, ground: Mutex::default(), ground_store: None, ..self })
     }
 
     /// This, with a store for the ground of its cloud.
@@ -291,14 +307,23 @@ impl Scene {
     /// A warning where far terrain and the scene disagree on heights.
     pub(super) fn remark_on_terrain(&self) -> Option<Remark> {
         let grid = self.model.far_terrain().grid()?;
+        remark_on_terrain(grid, self.tops(), self.model.frame().origin[2])
+    }
+
+    /// A warning where the scene and another cloud that shows its ground disagree on heights.
+    pub(super) fn remark_on_ground_cloud(&self) -> Option<Remark> {
+        let is_another = !self.ground_cloud.is_empty() && !Arc::ptr_eq(&self.ground_cloud, &self.cloud);
+        if is_another { remark_on_ground_cloud(&self.ground_cloud.positions, self.tops()) } else { None }
+    }
+
+    /// Places on surfaces: tops of balls, which lie in the surface where a ball is in the ground.
+    fn tops(&self) -> impl ExactSizeIterator<Item = [f64; 3]> {
         let balls = self.model.balls();
-        // the top of a ball in the ground lies in its surface
         let top = |(center, radius): (&[f32; 3], &f32)| {
             let [x, y, z] = center.map(f64::from);
             [x, y, z + f64::from(*radius)]
         };
-        let tops = balls.centers.iter().zip(&balls.radii).map(top);
-        remark_on_terrain(grid, tops, self.model.frame().origin[2])
+        balls.centers.iter().zip(&balls.radii).map(top)
     }
 
     /// Where it lies.

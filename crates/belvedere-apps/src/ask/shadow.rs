@@ -142,6 +142,7 @@ impl Ask for ShadowQuestion {
         let as_band = |measure: Measure| measure.with_range(Some([0.0, 1.0])).with_kind(kind);
         let of_sun = |(sun, values): (&NamedSun, Vec<f32>)| {
             as_band(Measure::new(&sun.column, values).with_description(LIT).with_decimals(decimals))
+                .with_subject(&sun.title)
         };
         let mut measures: Vec<Measure> = suns.iter().zip(lit).map(of_sun).collect();
         measures.extend(doubts.map(|doubts| {

@@ -6,7 +6,7 @@ use super::sections::{LocationSection, SunAt, SunSection};
 use super::{Context, Remark};
 use crate::shadow::ShadowSun;
 use crate::sun::{
-    Date, DayParams, Period, Refraction, Site, SiteFrom, Zone, parse_instant, sun_days, sun_position_with,
+    Date, DayParams, Period, Refraction, Site, SiteFrom, SunDay, Zone, parse_instant, sun_days, sun_position_with,
     zone_of_instant,
 };
 use crate::sun_hours::RuleDays;
@@ -348,19 +348,37 @@ impl Days {
             return refused(Parameter::Period, "missing", "given as days or as two times");
         };
         let params = self.params(place);
-        let days = sun_days(site, zone, &period, &params)?;
+        let days = sun_days_above(site, zone, &period, &params)?;
         let steps: Vec<f64> =
             days.iter().flat_map(|day| &day.steps).map(|step| f64::midpoint(step.start, step.end)).collect();
         if !steps.is_empty() {
             return Ok(steps);
         }
-        let from_horizon = sun_days(site, zone, &period, &params.with_min_elevation(0.0))?;
-        if from_horizon.iter().any(|day| !day.steps.is_empty()) {
-            let lowest = format!("{} degrees", params.min_elevation.to_degrees());
-            return refused(Parameter::MinSunElevation, lowest, "lower: the sun stays below it there in this period");
-        }
         refused(Parameter::Period, "without sun", "other days: the sun does not rise there in this period")
     }
+}
+
+/// The days of a period with their sun, as [`sun_days`] gives them.
+///
+/// # Errors
+/// Those of [`sun_days`], and [`Error::InvalidParameter`] for a least elevation that the sun does not reach in the
+/// period, although it rises ([`SUN_TOO_LOW`](belvedere_data::contradiction::SUN_TOO_LOW)).
+pub(super) fn sun_days_above(site: &Site, zone: &Zone, period: &Period, params: &DayParams) -> Result<Vec<SunDay>> {
+    let days = sun_days(site, zone, period, params)?;
+    let has_sun = |days: &[SunDay]| days.iter().any(|day| !day.steps.is_empty());
+    if params.min_elevation > 0.0 && !has_sun(&days) {
+        check_min_elevation(has_sun(&sun_days(site, zone, period, &params.with_min_elevation(0.0))?), params)?;
+    }
+    Ok(days)
+}
+
+/// Refuses a least elevation that leaves no sun, where the sun rises.
+pub(super) fn check_min_elevation(rises: bool, params: &DayParams) -> Result<()> {
+    if !rises {
+        return Ok(());
+    }
+    let lowest = format!("{} degrees", params.min_elevation.to_degrees());
+    refused(Parameter::MinSunElevation, lowest, "lower: the sun stays below it there in this period")
 }
 
 impl Suns {

@@ -4,11 +4,11 @@ use super::how_sure::{check_interval, check_interval_scene};
 use super::light::{Light, OnTargets};
 use super::scene::Whereabouts;
 use super::sections::{MeasuresSection, NamedValues, PeriodSection, PlacesReport};
-use super::sun::{Days, SunPlace};
+use super::sun::{Days, SunPlace, sun_days_above};
 use super::{Answers, Ask, Context, Places, Scene, ThroughTrees, spread};
 use crate::rows::Obstacles;
 use crate::sum_errors::Intervals;
-use crate::sun::{Binning, DayParams, Period, Site, SunSchedule, Zone, sun_days};
+use crate::sun::{Binning, DayParams, Period, Site, SunSchedule, Zone};
 use crate::sun_hours::{SunPlan, SunRule, SunSums, scene_sun_hours};
 use crate::targets::{Measure, ResultKind, Targets};
 use belvedere_core::query::UnprovenAs;
@@ -94,7 +94,7 @@ impl SunHoursQuestion {
         let zone = self.place.zone_at(site, self.days.times())?;
         let params = self.days.params(&self.place);
         let schedule = |period: &Period, params: &DayParams| {
-            let days = sun_days(site, &zone, period, params)?;
+            let days = sun_days_above(site, &zone, period, params)?;
             match among {
                 None => SunSchedule::new(&days, self.binning()),
                 Some(directions) => {

@@ -2,6 +2,7 @@
 
 use super::Remark;
 use belvedere_core::query::{BlockingTriangles, Coverage, MedialScene};
+use belvedere_data::contradiction::{FoundContradiction, REFERENCE_SYSTEM, UP_AXIS};
 use belvedere_data::{Bounds, Frame, Mesh};
 
 const OUTSIDE_CLOUD: &str = "are outside the cloud, where nothing is known, and have no answer";
@@ -42,18 +43,35 @@ pub fn remark_on_outside(outside: usize, count: usize, things: &str) -> Option<R
 /// A warning of what speaks against a reference system.
 #[must_use]
 pub fn remark_on_doubt(doubt: Option<&str>) -> Option<Remark> {
-    doubt.map(|doubt| Remark::warning("reference-system-doubtful", doubt))
+    doubt.and_then(|doubt| Remark::of_contradiction(REFERENCE_SYSTEM.found(doubt)))
 }
 
-/// What is to be known of files that were read: what speaks against the reference system, and files that hold fewer
-/// points than their headers announce, each with its name and the number that is missing.
+/// What is to be known of files that were read: what speaks against the reference system, files that hold fewer points
+/// than their headers announce, each with its name and the number that is missing, and what contradicts each other. Of
+/// many contradictions of one kind the first is said, with their number.
 #[must_use]
-pub fn remarks_on_reading(doubt: Option<&str>, missing: impl IntoIterator<Item = (String, usize)>) -> Vec<Remark> {
+pub fn remarks_on_reading(
+    doubt: Option<&str>,
+    missing: impl IntoIterator<Item = (String, usize)>,
+    contradictions: impl IntoIterator<Item = FoundContradiction>,
+) -> Vec<Remark> {
     let cut_off = |(name, count): (String, usize)| {
         let text = format!("{name}: the file is cut off: {count} points of its header are missing; copy it again");
         (count > 0).then(|| Remark::warning("file-cut-off", text))
     };
-    remark_on_doubt(doubt).into_iter().chain(missing.into_iter().filter_map(cut_off)).collect()
+    let mut kinds: Vec<(FoundContradiction, usize)> = Vec::new();
+    for found in contradictions {
+        match kinds.iter_mut().find(|(first, _)| first.row.key == found.row.key) {
+            Some((_, more)) => *more += 1,
+            None => kinds.push((found, 0)),
+        }
+    }
+    let of_kind = |(first, more): (FoundContradiction, usize)| {
+        let text = if more > 0 { format!("{}; and {more} more of this kind", first.text) } else { first.text.clone() };
+        Remark::of_contradiction(FoundContradiction { text, ..first })
+    };
+    let of_kinds = kinds.into_iter().filter_map(of_kind);
+    remark_on_doubt(doubt).into_iter().chain(missing.into_iter().filter_map(cut_off)).chain(of_kinds).collect()
 }
 
 /// A warning of a mesh that blocks nothing, since it lies beside a cloud of these bounds; `None` where it does not.
@@ -109,7 +127,7 @@ pub fn remark_on_inside(blockers: &MedialScene, end: [f64; 3], what: &str) -> Op
 pub fn remark_on_axis(looks_y_up: bool) -> Option<Remark> {
     let text = "y looks up in this cloud, not z: its flat surfaces face along y, and it is lowest that way; \
                 if so, read it with y as the axis that is up (--up y, up=\"y\")";
-    looks_y_up.then(|| Remark::warning("y-looks-up", text))
+    Remark::of_contradiction(UP_AXIS.found(text)).filter(|_| looks_y_up)
 }
 
 /// A warning that no surface of a building was found, where there are no `roofs`.
@@ -129,14 +147,24 @@ pub fn remark_on_cleared(points: usize) -> Option<Remark> {
 #[cfg(test)]
 mod tests {
     use super::remarks_on_reading;
+    use belvedere_data::contradiction::{COLUMN_TWICE, Contradiction, SCAN_POSE};
 
     #[test]
     fn files_that_are_whole_need_no_remark() {
         let files = [("whole.las".to_owned(), 0), ("cut.las".to_owned(), 5)];
-        let remarks = remarks_on_reading(Some("the system is far away"), files);
+        let remarks = remarks_on_reading(Some("the system is far away"), files, []);
         let keys: Vec<&str> = remarks.iter().map(|remark| remark.key).collect();
         assert_eq!(keys, ["reference-system-doubtful", "file-cut-off"]);
         assert!(remarks[1].text.starts_with("cut.las") && remarks[1].text.contains("5 points"), "{}", remarks[1].text);
-        assert!(remarks_on_reading(None, [("whole.las".to_owned(), 0)]).is_empty());
+        assert!(remarks_on_reading(None, [("whole.las".to_owned(), 0)], []).is_empty());
+    }
+
+    #[test]
+    fn contradictions_of_one_kind_are_said_once_with_their_number() {
+        let found = |row: &'static Contradiction, text: &str| row.found(text);
+        let all = [found(&SCAN_POSE, "a"), found(&COLUMN_TWICE, "b"), found(&SCAN_POSE, "c"), found(&SCAN_POSE, "d")];
+        let remarks = remarks_on_reading(None, [], all);
+        let said: Vec<(&str, &str)> = remarks.iter().map(|remark| (remark.key, remark.text.as_str())).collect();
+        assert_eq!(said, [("scan-pose", "a; and 2 more of this kind"), ("column-twice", "b")]);
     }
 }

@@ -26,6 +26,7 @@ mod roof_columns;
 mod roofs;
 mod seasons;
 mod strings;
+mod weather_clock;
 
 pub use atmosphere::{SOLAR_CONSTANT, absolute_air_mass, air_mass, extraterrestrial, pressure};
 pub use clear_sky::{BirdParams, ClearSky};
@@ -42,3 +43,4 @@ pub use seasons::{
     CLEAR_SKY_YEAR, RadiationSource, SeasonRadiation, TargetEnergies, look_count, period_seasons, season_irradiation,
 };
 pub use strings::{PlaneIrradiation, plane_irradiation};
+pub(crate) use weather_clock::clock_contradiction;

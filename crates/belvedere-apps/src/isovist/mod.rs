@@ -2,6 +2,7 @@
 
 mod figures;
 mod intervals;
+mod leaks;
 mod plan;
 
 pub use figures::IsovistFigure;
@@ -13,6 +14,7 @@ use belvedere_data::control::Control;
 use belvedere_data::raster::Raster;
 use belvedere_data::view::to_sun;
 use belvedere_data::{Error, Parameter, Result};
+use leaks::{ClosedSurface, RangeGrid};
 use rayon::prelude::*;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -74,9 +76,11 @@ pub struct Isovist {
     /// south at the left edge over west, north in the middle and east to south again; a row is an elevation, from the
     /// zenith down to the nadir.
     pub panorama: Raster<f32>,
-    /// Volume seen, m³. Directions in which nothing blocks reach to the greatest range: a few of them through gaps of
-    /// a wall are most of it.
+    /// Volume seen, m³. Directions in which nothing blocks reach to the greatest range; in a closed room those that
+    /// leave it between its points reach to its surface.
     pub volume: f64,
+    /// Share of all directions that leave a closed room between its points, 0 to 1: they are neither blocked nor open.
+    pub unbounded: f64,
     /// Volume seen in the directions in which something blocks, m³.
     pub blocked_volume: f64,
     /// Ranges in all directions, each counting by its solid angle, open ones as the greatest range.
@@ -186,18 +190,28 @@ pub fn isovist_of(
         let top = FRAC_PI_2 - row as f64 * step;
         step * (top.sin() - (top - step).sin())
     };
+    let weights: Vec<f64> = (0..height).map(weight).collect();
+    let panorama: Vec<f32> = in_f32(&ranges);
+    let blocked: f64 = (ranges.iter().enumerate())
+        .map(|(at, range)| range.map_or(0.0, |range| weight(at / width) * range.powi(3) / 3.0))
+        .sum();
+    let surface = ClosedSurface::of(&RangeGrid { ranges: &ranges, width, weights: &weights });
+    let (ranges, unbounded) = match &surface {
+        Some(surface) => (surface.ranges.clone(), surface.gap_share),
+        None => (ranges, 0.0),
+    };
+    let within = |direction: [f64; 3]| within(direction).or_else(|| surface.as_ref()?.range_at(direction));
     let weighted: Vec<(f64, f64)> =
         ranges.iter().enumerate().map(|(at, range)| (range.unwrap_or(reach), weight(at / width))).collect();
     let total: f64 = weighted.iter().map(|(_, weight)| weight).sum();
     let open = |from: usize, to: usize| {
         let rows = || weighted.iter().zip(&ranges).skip(from * width).take((to - from) * width);
-        rows().filter(|(_, range)| range.is_none()).map(|(w, _)| w.1).sum::<f64>()
+        // the sum of nothing is -0
+        (rows().filter(|(_, range)| range.is_none()).map(|(w, _)| w.1).sum::<f64>() + 0.0)
             / rows().map(|(w, _)| w.1).sum::<f64>()
     };
     let cone = |(range, weight): &(f64, f64)| weight * range.powi(3) / 3.0;
     let volume: f64 = weighted.iter().map(cone).sum();
-    let blocked = weighted.iter().zip(&ranges).filter(|(_, range)| range.is_some());
-    let blocked_volume: f64 = blocked.map(|(weighted, _)| cone(weighted)).sum();
     let mut drift = [0.0; 3];
     for (at, (range, weight)) in weighted.iter().enumerate() {
         // the middle of a cone lies at three quarters of its height
@@ -206,12 +220,11 @@ pub fn isovist_of(
         drift = std::array::from_fn(|i| drift[i] + share * direction[i]);
     }
     debug_assert!((total / (2.0 * TAU) - 1.0).abs() < 1e-9);
-    #[expect(clippy::cast_possible_truncation, reason = "pictures and arrays of ranges are f32")]
-    let panorama = ranges.iter().map(|range| range.map_or(f32::INFINITY, |range| range as f32)).collect();
     Ok(Isovist {
         panorama: Raster::from_values(width, height, panorama)?,
         volume,
-        blocked_volume,
+        unbounded,
+        blocked_volume: blocked,
         ranges: RadialStatistics::of(&weighted),
         openness: open(0, height),
         sky_openness: open(0, height / 2),
@@ -219,6 +232,11 @@ pub fn isovist_of(
         plan: plan::plan(&within, width, params),
         intervals: None,
     })
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "pictures and arrays of ranges are f32")]
+fn in_f32(ranges: &[Option<f64>]) -> Vec<f32> {
+    ranges.iter().map(|range| range.map_or(f32::INFINITY, |range| range as f32)).collect()
 }
 
 /// Unit vector through the middle of a cell of the panorama.

@@ -11,6 +11,9 @@ pub struct Measure {
     pub name: String,
     /// What it is and its unit, of 31 letters at most.
     pub description: &'static str,
+    /// Which of several alike it is, such as the sun of a shadow: rasters say it behind the description. Empty where
+    /// there is but one.
+    pub subject: String,
     /// Digits after the point in tables.
     pub decimals: usize,
     /// What a legend spans; `None` for the span of the values.
@@ -37,13 +40,19 @@ impl Measure {
     #[must_use]
     pub fn new(name: &str, values: Vec<f32>) -> Self {
         let (name, kind) = (name.to_owned(), ResultKind::Number);
-        Self { name, description: "", decimals: 4, range: None, kind, values }
+        Self { name, description: "", subject: String::new(), decimals: 4, range: None, kind, values }
     }
 
     /// This with another description.
     #[must_use]
     pub fn with_description(self, description: &'static str) -> Self {
         Self { description, ..self }
+    }
+
+    /// This with what tells it from others alike.
+    #[must_use]
+    pub fn with_subject(self, subject: &str) -> Self {
+        Self { subject: subject.to_owned(), ..self }
     }
 
     /// This with another number of digits after the point.
@@ -67,7 +76,7 @@ impl Measure {
     /// The same measure of no target.
     #[must_use]
     pub fn without_values(&self) -> Self {
-        Self { name: self.name.clone(), values: Vec::new(), ..*self }
+        Self { name: self.name.clone(), subject: self.subject.clone(), values: Vec::new(), ..*self }
     }
 
     /// How the known values are spread; `None` where no target has a value.

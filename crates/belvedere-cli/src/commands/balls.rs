@@ -7,7 +7,7 @@ use crate::run::CommandContext;
 use crate::summary::{Summary, percent};
 use anyhow::Result;
 use belvedere::PointCloud;
-use belvedere::apps::ask::remark_on_axis;
+use belvedere::apps::ask::{remark_on_axis, remarks_on_model};
 use belvedere::io::{MasbcppFolder, write_balls, write_masbcpp};
 use belvedere::medial::feature_size::{FeatureSizeParams, SimplifyParams, local_feature_size, simplify};
 use belvedere::medial::{MedialBalls, NO_TOUCH, Side};
@@ -93,7 +93,7 @@ fn interior(
     run: &mut CommandContext,
 ) -> Result<ModelParts> {
     let model = pipeline::model_of(Cow::Owned(cloud), params, input, run)?;
-    run.summary.remarks(remark_on_axis(model.looks_y_up()));
+    run.summary.remarks(remarks_on_model(&model));
     Ok(model.into_parts())
 }
 

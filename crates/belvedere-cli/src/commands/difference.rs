@@ -6,7 +6,7 @@ use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::{Result, bail};
 use belvedere::apps::ask::Remark;
-use belvedere::apps::difference::{clear_added, clear_unproven, difference};
+use belvedere::apps::difference::{clear_added, clear_unproven, contradiction_of, difference};
 use belvedere::figures::write_png;
 use belvedere::io::{
     BandValues, Bands, Georeference, NamedBand, PlacedRaster, ReadOptions, TableCells, read_cloud, read_tif,
@@ -85,15 +85,10 @@ fn warn_of_quantities(
     arguments: &DifferenceArguments,
     summary: &mut Summary,
 ) {
-    if let (Some(first), Some(second)) = (&before.description, &after.description)
-        && first != second
-    {
-        let [before, after] = [&arguments.before, &arguments.after].map(|path| path.display());
-        let text = format!(
-            "{before} holds \"{first}\" and {after} \"{second}\"; a difference of different quantities means nothing"
-        );
-        summary.warn("different-quantities", text);
-    }
+    let names = [&arguments.before, &arguments.after].map(|path| path.display().to_string());
+    let [first, second] = [before, after].map(|raster| raster.description.as_deref().unwrap_or_default());
+    let found = contradiction_of([&names[0], first], [&names[1], second]);
+    summary.remarks(found.and_then(Remark::of_contradiction));
 }
 
 fn write_figures(output: &Path, figures: &[(&str, f64)]) -> belvedere::Result<()> {

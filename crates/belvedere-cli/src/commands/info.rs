@@ -6,11 +6,12 @@ use crate::run::CommandContext;
 use crate::summary::{Summary, rounded, sections, whole};
 use anyhow::Result;
 use belvedere::apps::ask;
+use belvedere::crs::CrsKind;
 use belvedere::io::{FileReport, is_ball_file, read_balls, read_cloud};
 use belvedere::model::ModelParts;
 use belvedere::planes::{BuildingOutlines, median_sd};
 use belvedere::pulses::{FoundBy, LocateParams, Means, ScannerReport, locate};
-use belvedere::summary::{CloudSummary, FacadeSummary, SurveyKind, cloud_looks_y_up};
+use belvedere::summary::{CloudSummary, FacadeSummary, SurveyKind, cloud_looks_y_up, unit_contradiction_of};
 use belvedere::{Error, PatchKind, PointCloud, SurfacePatches};
 
 pub(crate) fn run(arguments: &Info, global: &Global) -> Result<Summary> {
@@ -33,6 +34,10 @@ pub(crate) fn run(arguments: &Info, global: &Global) -> Result<Summary> {
     summary.add("points", cloud.len());
     let looks_y_up = run.stage("looking for the axis that is up", 0, |control| cloud_looks_y_up(&cloud, control))?;
     summary.remarks(ask::remark_on_axis(looks_y_up));
+    if cloud.frame.crs.kind == CrsKind::Unknown {
+        let unit = run.stage("looking for the unit", 0, |control| unit_contradiction_of(&cloud.positions, control))?;
+        summary.remarks(unit.and_then(ask::Remark::of_contradiction));
+    }
     let statistics = run.stage("counting points", 0, |control| CloudSummary::of(&cloud, control))?;
     let (positions, scanner) = match run.stage("estimating scanner positions", 0, |control| {
         locate(&cloud, &Means::Automatic, &LocateParams::default(), control)

@@ -40,7 +40,7 @@ pub(super) fn run(arguments: &Query, path: &Path, global: &Global) -> Result<Sum
     let profile = arguments.shape.of(&arguments.scene.balls)?;
     let mut run = CommandContext::new(global);
     let scene = pipeline::scene(&arguments.scene, KeepPoints::LetGo, &mut run)?;
-    run.summary.remarks(ask::remark_on_axis(scene.model.looks_y_up()));
+    run.summary.remarks(ask::remarks_on_model(&scene.model));
     let mesh = mesh_of(path, &scene, &mut run)?;
     let views = arguments.view.views(&scene, &mut run.summary)?;
     let giving_way = GivingWay { shell: arguments.shell, unproven: arguments.unproven };

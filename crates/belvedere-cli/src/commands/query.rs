@@ -50,7 +50,7 @@ pub(crate) fn run(arguments: &Query, global: &Global) -> Result<Summary> {
     if arguments.shell.is_some() && !scene.model.is_carved() {
         return Err(Usage("--shell applies only to carved balls, and these are not carved".to_owned()).into());
     }
-    run.summary.remarks(ask::remark_on_axis(scene.model.looks_y_up()));
+    run.summary.remarks(ask::remarks_on_model(&scene.model));
     let mut views = arguments.view.views(&scene, &mut run.summary)?;
     if arguments.targets.own && extension(output) == "npy" {
         pipeline::refuse_part(&arguments.scene.input)?;

@@ -241,7 +241,7 @@ fn mountains_are_ground_in_the_view_of_a_window_and_maps_name_them() {
     assert!((expected[0] - 0.7..expected[1] + 0.7).contains(&sky) && beyond == 0.0, "{sky} {beyond} {expected:?}");
     let [sky, beyond] = shares("");
     assert!((sky - 50.0).abs() < 0.7 && beyond > 1.0, "{sky} {beyond}");
-    place.write("horizon.csv", "azimuth,elevation\n0,20\n");
+    place.write("horizon.csv", "azimuth,elevation\n0,20\n180,20\n");
     let [sky, beyond] = shares("--horizon horizon.csv");
     let expected = 50.0 * (1.0 - 20f64.to_radians().sin());
     assert!((sky - expected).abs() < 0.7 && beyond == 0.0, "{sky} {beyond}");

@@ -10,6 +10,7 @@ mod cameras;
 mod carved;
 mod city;
 mod common;
+mod contradictions;
 mod conventions;
 mod depth_maps;
 mod determinism;

@@ -99,6 +99,14 @@ fn of_survey(
     if params.statistics.is_none() && survey.looks_y_up(&frame) {
         provenance.insert(LOOKS_UP[0].to_owned(), LOOKS_UP[1].to_owned());
     }
+    if params.statistics.is_none()
+        && let Some(found) = survey.unit_contradiction(&frame, control)?
+    {
+        found.note_in(&mut provenance);
+    }
+    if let Some(offset) = report.scanner.as_ref().and_then(|scanner| scanner.time_offset) {
+        offset.contradiction().note_in(&mut provenance);
+    }
     // pulses at the edge of a part lack the balls beyond
     let checked = report.pulses.as_mut().filter(|_| params.statistics.is_none());
     let triangles = BlockingTriangles::of_patches(&patches, None)?;

@@ -11,7 +11,8 @@ use crate::normals::{Normals, Orientation, OrientedCloud, Scatter, orient};
 use crate::pulses::{
     FoundBy, FreeSegmentColumns, FreeSegments, MIN_ASSUMED_SHARE, Pulses, ScannerReport, group, locate,
 };
-use crate::summary::looks_y_up;
+use crate::summary::{looks_y_up, unit_contradiction_of};
+use belvedere_data::contradiction::FoundContradiction;
 use belvedere_data::control::Control;
 use belvedere_data::crs::CrsKind;
 use belvedere_data::vector::{cross, length, sub, unit};
@@ -102,6 +103,15 @@ impl OrientedSurvey {
     #[must_use]
     pub fn looks_y_up(&self, frame: &Frame) -> bool {
         frame.crs.kind == CrsKind::Unknown && looks_y_up(self.oriented.positions(), self.oriented.normals())
+    }
+
+    /// What the height of a room says against metres, which a cloud without a reference system is taken to be in.
+    ///
+    /// # Errors
+    /// Those of [`unit_contradiction_of`].
+    pub fn unit_contradiction(&self, frame: &Frame, control: &Control<'_>) -> Result<Option<FoundContradiction>> {
+        let is_known = frame.crs.kind != CrsKind::Unknown;
+        if is_known { Ok(None) } else { unit_contradiction_of(self.oriented.positions(), control) }
     }
 
     /// What pulses prove empty, where carving was wanted and possible and pulses are known rather than assumed.

@@ -3,7 +3,6 @@
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::SensorPositions;
 use super::estimate::{self, height_offset, paths_from_angles, paths_from_returns};
 use super::flight_parts::{
     AngleVerdict, HeightOffset, PartVerdict, ScanAngleParams, ScanAnglePart, SensorEstimateParams,
@@ -11,6 +10,7 @@ use super::flight_parts::{
 use super::group::{Pulses, group};
 use super::line_path::position_on;
 use super::scanner_report::{FoundBy, FoundStation, ScannerReport};
+use super::time_offset::{TimeOffset, time_offset};
 use super::vertical::{VerticalParams, vertical_pulses};
 use belvedere_data::cloud::to_local;
 use belvedere_data::control::Control;
@@ -159,13 +159,21 @@ fn by_trajectory(
     report: &mut ScannerReport,
     control: &Control<'_>,
 ) -> Result<Vec<[f32; 3]>> {
-    let (mut positions, clock) = trajectory.scanner_positions(cloud)?;
+    let (mut positions, mut clock) = trajectory.scanner_positions(cloud)?;
+    control.check()?;
+    let pulses = pulses_of(cloud, report, control)?;
+    report.time_offset = pulses.as_ref().and_then(|pulses| time_offset(cloud, pulses, trajectory, &clock));
+    if let Some(TimeOffset { seconds, is_applied: true, .. }) = report.time_offset {
+        clock.leap_seconds += seconds;
+        let times = cloud.attributes.gps_time.as_deref().unwrap_or_default();
+        positions = trajectory.positions_by(&clock, times, cloud);
+        clock.known_count = positions.iter().filter(|p| is_known(p)).count();
+    }
     report.clock = Some(clock);
     report.count(FoundBy::Trajectory, positions.iter().filter(|p| is_known(p)).count());
-    control.check()?;
-    match pulses_of(cloud, report, control)? {
+    match pulses {
         Some(pulses) => {
-            let per_pulse = SensorPositions::from_trajectory(cloud, &pulses, trajectory)?.0.per_pulse;
+            let per_pulse = trajectory.positions_by(&clock, &pulses.times, cloud);
             report.height_offset = height_offset(cloud, &pulses, &per_pulse);
             if report.height_offset.is_none() {
                 report.remarks.push(

@@ -19,6 +19,7 @@ mod locate;
 mod path_samples;
 mod scanner_report;
 mod sensor_positions;
+mod time_offset;
 mod vertical;
 
 pub use flight_parts::{
@@ -33,5 +34,6 @@ pub use locate::{LocateParams, Means, locate};
 pub use path_samples::path_samples;
 pub use scanner_report::{FlightLine, FoundBy, FoundStation, ScannerReport, TypicalFlight};
 pub use sensor_positions::{SensorPositions, SensorReport};
+pub use time_offset::TimeOffset;
 pub(crate) use vertical::MIN_ASSUMED_SHARE;
 pub use vertical::{VerticalParams, vertical_pulses};

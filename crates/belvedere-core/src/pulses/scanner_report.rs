@@ -3,6 +3,7 @@
 use super::flight_parts::{HeightOffset, ScanAnglePart, SensorPart};
 use super::group::PulseReport;
 use super::line_path::LinePath;
+use super::time_offset::TimeOffset;
 use belvedere_data::report::{percent, rounded};
 use belvedere_data::trajectory::ClockOffset;
 use serde::{Deserialize, Serialize, Serializer, ser::SerializeMap};
@@ -81,6 +82,8 @@ pub struct ScannerReport {
     pub paths: Vec<LinePath>,
     /// How GPS times became those of the trajectory, where one was given.
     pub clock: Option<ClockOffset>,
+    /// What the times of that trajectory are off by; `None` where they fit, and where pulses do not tell.
+    pub time_offset: Option<TimeOffset>,
     /// What the heights of that trajectory are off by; `None` where pulses do not tell.
     pub height_offset: Option<HeightOffset>,
     /// Stations of tripods that were found in the points, by point source id.
@@ -231,6 +234,10 @@ impl Serialize for ScannerReport {
         if !self.stations.is_empty() {
             map.serialize_entry("stations_found", &self.stations.len())?;
             map.serialize_entry("stations", &self.stations)?;
+        }
+        if let Some(TimeOffset { seconds, is_applied, .. }) = self.time_offset {
+            map.serialize_entry("trajectory_time_offset_s", &rounded(seconds, 2))?;
+            map.serialize_entry("trajectory_time_offset_corrected", if is_applied { "yes" } else { "no" })?;
         }
         if let Some(HeightOffset { offset, sd, is_applied, .. }) = self.height_offset {
             map.serialize_entry("trajectory_height_offset_m", &rounded(offset, 2))?;

@@ -1,5 +1,6 @@
 //! Whether a cloud stands on its third axis, as surveys do, or lies on its side.
 
+use super::room::{ALONG, is_room_along_y};
 use crate::neighbors::NeighborIndex;
 use crate::normals::estimate::{Neighborhood, estimate};
 use belvedere_data::cloud::PointCloud;
@@ -7,8 +8,6 @@ use belvedere_data::control::Control;
 use belvedere_data::crs::CrsKind;
 use belvedere_data::{Bounds, Result};
 
-/// A normal is along an axis where its component is more than this: within 14°.
-const ALONG: f32 = 0.97;
 /// Least share of the points on flat surfaces along y of a cloud whose y is up: ground is half of most clouds.
 const MIN_SHARE: f64 = 0.15;
 /// How many times as many points these are as those on flat surfaces along z: walls along one axis are no more than
@@ -18,12 +17,14 @@ const MIN_RATIO: f64 = 3.0;
 const MAX_HEIGHT: f32 = 0.75;
 
 /// Whether `positions`, (N, 3), with unit `normals`, (N, 3), zero where a point has none, look as if y were up: most
-/// flat surfaces face along y, few along z, and the cloud is lowest along y.
+/// flat surfaces face along y, few along z, and the cloud is lowest along y; or it is a room whose floor and ceiling
+/// face along y.
 #[must_use]
 pub fn looks_y_up(positions: &[[f32; 3]], normals: &[[f32; 3]]) -> bool {
     let along = |axis: usize| normals.iter().filter(|normal| normal[axis].abs() > ALONG).count() as f64;
     let [y, z] = [along(1), along(2)];
-    is_lowest_along_y(positions) && y >= MIN_SHARE * normals.len() as f64 && y > MIN_RATIO * z && y > 0.0
+    let is_flat = is_lowest_along_y(positions) && y >= MIN_SHARE * normals.len() as f64 && y > MIN_RATIO * z;
+    is_flat && y > 0.0 || is_room_along_y(positions, normals)
 }
 
 /// The same of a cloud whose normals are not known yet. Clouds with a reference system have z up.
@@ -31,7 +32,7 @@ pub fn looks_y_up(positions: &[[f32; 3]], normals: &[[f32; 3]]) -> bool {
 /// # Errors
 /// Those of [`NeighborIndex::new`] and [`estimate`].
 pub fn cloud_looks_y_up(cloud: &PointCloud, control: &Control<'_>) -> Result<bool> {
-    if cloud.frame.crs.kind != CrsKind::Unknown || !is_lowest_along_y(&cloud.positions) {
+    if cloud.frame.crs.kind != CrsKind::Unknown || !may_lie(&cloud.positions) {
         return Ok(false);
     }
     let index = NeighborIndex::new(&cloud.positions, control)?;
@@ -40,9 +41,17 @@ pub fn cloud_looks_y_up(cloud: &PointCloud, control: &Control<'_>) -> Result<boo
 }
 
 fn is_lowest_along_y(positions: &[[f32; 3]]) -> bool {
-    let Some(Bounds { low, high }) = Bounds::around(positions.iter().copied()) else { return false };
-    let [x, y, z] = [0, 1, 2].map(|axis: usize| high[axis] - low[axis]);
-    y < MAX_HEIGHT * x.min(z)
+    extent_of(positions).is_some_and(|[x, y, z]| y < MAX_HEIGHT * x.min(z))
+}
+
+/// Whether the normals are worth a look: y is the shortest side.
+fn may_lie(positions: &[[f32; 3]]) -> bool {
+    extent_of(positions).is_some_and(|[x, y, z]| y < x.min(z))
+}
+
+fn extent_of(positions: &[[f32; 3]]) -> Option<[f32; 3]> {
+    let Bounds { low, high } = Bounds::around(positions.iter().copied())?;
+    Some([0, 1, 2].map(|axis: usize| high[axis] - low[axis]))
 }
 
 #[cfg(test)]

@@ -67,7 +67,10 @@ impl Crs {
         if self.kind != CrsKind::Projected || !coordinates.iter().all(|v| v.is_finite()) {
             return None;
         }
-        let [west, south, east, north] = registry::area_of_use(self.horizontal_epsg()?)?;
+        let of_code = self.horizontal_epsg().map(registry::area_of_use);
+        // a system without a code is known by its parameters alone
+        let by_parameters = || wkt::area_by_parameters(self.wkt.as_deref()?);
+        let [west, south, east, north] = of_code.unwrap_or_else(by_parameters)?;
         // a projection that is not known says nothing, one that has no such coordinates says no
         let projection = self.geographic_projection().ok()?;
         let metres = coordinates.map(|v| v * self.metres_per_unit);

@@ -25,6 +25,11 @@ pub(super) fn vertical_metres_of_code(_code: u32) -> Option<f64> {
     None
 }
 
+/// Name of the vertical system with an EPSG code, where it counts downwards.
+pub(super) fn depth_of_code(_code: u32) -> Option<String> {
+    None
+}
+
 pub(super) fn wkt(_text: &str) -> Option<String> {
     None
 }

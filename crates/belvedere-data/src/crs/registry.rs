@@ -33,6 +33,16 @@ pub(super) fn vertical_metres_of_code(code: u32) -> Option<f64> {
     Some(proj_core::lookup_vertical_epsg(code)?.linear_unit_to_meter())
 }
 
+/// Name of the vertical system with an EPSG code, where it counts downwards.
+pub(super) fn depth_of_code(code: u32) -> Option<String> {
+    depth(&proj_core::lookup_vertical_epsg(code)?)
+}
+
+/// EPSG names systems that count downwards depths.
+fn depth(vertical: &proj_core::VerticalCrsDef) -> Option<String> {
+    Some(vertical.name()).filter(|name| name.to_ascii_lowercase().contains("depth")).map(str::to_owned)
+}
+
 /// Well-known text of the system that a code names.
 pub(super) fn wkt(text: &str) -> Option<String> {
     proj_wkt::to_wkt(&proj_wkt::parse_crs(text).ok()?).ok()
@@ -221,7 +231,7 @@ fn from_definition(definition: &CrsDef) -> Crs {
         } else {
             CrsKind::Projected
         },
-        doubt: None,
+        doubt: vertical.and_then(depth).map(|name| super::counts_down(&name)),
     }
 }
 

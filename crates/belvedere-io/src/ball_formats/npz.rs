@@ -103,6 +103,10 @@ pub(super) fn read_arrays<R: Read + Seek>(archive: &mut ZipArchive<R>, path: &Pa
     let origin = <[f64; 3]>::try_from(origin.as_slice())
         .map_err(|_| Error::malformed(path, format!("origin has {} numbers, but must have 3", origin.len())))?;
     let mut parts = metadata.balls(origin, centers);
+    if text.is_empty() {
+        let what = "the ball file has lost its metadata: no reference system is known, and its bounds are those of its balls; make it again";
+        parts.frame.crs = parts.frame.crs.doubted(what.to_owned());
+    }
     parts.balls.radii = values(archive, "radii", u64::MAX).map_err(malformed)?.0;
     parts.balls.source = values(archive, "source", u64::MAX).map_err(malformed)?.0;
     parts.balls.touch = values(archive, "touch", u64::MAX).map_err(malformed)?.0;

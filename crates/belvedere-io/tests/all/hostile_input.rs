@@ -133,7 +133,7 @@ fn ptx() -> Vec<u8> {
     [header.to_vec(), xyz()].concat()
 }
 
-fn e57() -> Vec<u8> {
+pub(crate) fn e57() -> Vec<u8> {
     let mut cursor = Cursor::new(Vec::new());
     let mut writer = e57::E57Writer::new(&mut cursor, "file").unwrap();
     let double = e57::RecordDataType::Double { min: None, max: None };

@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 mod common;
+mod contradictions;
 mod hostile_archives;
 mod hostile_input;
 mod hostile_laz;

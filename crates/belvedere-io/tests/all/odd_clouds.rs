@@ -154,7 +154,7 @@ fn a_file_without_a_system_has_that_of_the_prj_beside_it() {
 }
 
 /// Entwine point tiles of 900 points in four nodes, the deepest in a page of its own: names and contents of the files.
-fn ept() -> Vec<(&'static str, Vec<u8>)> {
+pub(crate) fn ept() -> Vec<(&'static str, Vec<u8>)> {
     let plain = PointCloud { frame: belvedere_data::Frame { crs: Default::default(), ..cloud(1).frame }, ..cloud(900) };
     // the cube of the root is 128 m wide, from the south-west of the points on
     let [x, y] = [154_936.0, 462_936.0];
@@ -268,7 +268,7 @@ fn entwine_point_tiles_that_are_damaged_are_named() {
 }
 
 /// A PTX file of two scans of two points, the second with these rows of its matrix.
-fn ptx(rows: [&str; 4]) -> String {
+pub(crate) fn ptx(rows: [&str; 4]) -> String {
     let head = "2\n1\n10 20 30\n1 0 0\n0 1 0\n0 0 1\n";
     let points = "1 0 0 0.5\n2 1 0 0.5\n";
     format!("{head}1 0 0 0\n0 1 0 0\n0 0 1 0\n10 20 30 1\n{points}{head}{}\n{points}", rows.join("\n"))

@@ -299,7 +299,7 @@ def _notes(report: dict[str, Any]) -> list[str]:
     lost = report.get("attributes_not_in_every_file", [])
     if lost:
         found.append(f"attributes that only some of the files have are left out: {', '.join(lost)}")
-    return found + list(report.get("notes", []))
+    return found + list(report.get("contradictions", [])) + list(report.get("notes", []))
 
 
 def _warn(text: str) -> None:

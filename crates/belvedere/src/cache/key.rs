@@ -1,7 +1,7 @@
 //! What a kept scene follows from, as a name.
 
 use crate::ground::{GroundParams, MapGrid};
-use crate::io::{ReadOptions, cloud_files, web_address};
+use crate::io::{ReadOptions, Source, cloud_sources, web_address};
 use crate::model::ModelParams;
 use crate::{Attributes, PointCloud};
 use sha2::{Digest, Sha256};
@@ -92,7 +92,11 @@ pub(super) fn of_files(paths: &[PathBuf], options: &ReadOptions) -> Option<Strin
         return None;
     }
     let mut folders = BTreeMap::new();
-    for file in cloud_files(paths).ok()? {
+    let (sources, contradictions) = cloud_sources(paths).ok()?;
+    key.text(&format!("{contradictions:?}"));
+    for source in sources {
+        key.text(&source.announced_in_words());
+        let file = source.name().to_owned();
         let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new(".")).to_owned();
         let files = match folders.entry(folder) {
             Entry::Occupied(read) => read.into_mut(),
@@ -109,6 +113,8 @@ pub(super) fn of_files(paths: &[PathBuf], options: &ReadOptions) -> Option<Strin
             key.text(&file.to_string_lossy());
             key.file(file)?;
         }
+        // a system beside a file may stand under another stem, or in another folder
+        key.text(&format!("{:?}", Source::path(&file).system_beside()));
     }
     Some(key.finish())
 }
@@ -221,6 +227,29 @@ mod tests {
         assert_ne!(beside, first);
         std::fs::write(&path, "1 2 4\n").unwrap();
         assert!(![Some(first), Some(beside)].contains(&key()));
+        // a system beside a file of another stem, and that of point tiles
+        let copc = folder.path().join("part.copc.laz");
+        std::fs::write(&copc, "points").unwrap();
+        let of_copc = || of_files(std::slice::from_ref(&copc), &ReadOptions::default());
+        let without = of_copc().unwrap();
+        std::fs::write(folder.path().join("part.prj"), "EPSG:28992").unwrap();
+        let dutch = of_copc().unwrap();
+        std::fs::write(folder.path().join("part.prj"), "EPSG:25832").unwrap();
+        assert!(without != dutch && dutch != of_copc().unwrap());
+        let tiles = folder.path().join("ept");
+        std::fs::create_dir_all(tiles.join("ept-data")).unwrap();
+        std::fs::create_dir_all(tiles.join("ept-hierarchy")).unwrap();
+        std::fs::write(tiles.join("ept-data/0-0-0-0.laz"), "points").unwrap();
+        let of_tiles = |code: u32, count: u32| {
+            let description = format!(
+                r#"{{"dataType": "laszip", "bounds": [0, 0, 0, 8, 8, 8], "srs": {{"authority": "EPSG", "horizontal": "{code}"}}}}"#
+            );
+            std::fs::write(tiles.join("ept.json"), description).unwrap();
+            std::fs::write(tiles.join("ept-hierarchy/0-0-0-0.json"), format!(r#"{{"0-0-0-0": {count}}}"#)).unwrap();
+            of_files(std::slice::from_ref(&tiles), &ReadOptions::default()).unwrap()
+        };
+        let first = of_tiles(28_992, 7);
+        assert!(first == of_tiles(28_992, 7) && first != of_tiles(25_832, 7) && first != of_tiles(28_992, 8));
         let options = ReadOptions::default().with_classes([2]);
         assert_ne!(of_files(std::slice::from_ref(&path), &options), key());
         let address = PathBuf::from("https://example.org/tile.laz");

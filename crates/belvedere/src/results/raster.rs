@@ -1,6 +1,7 @@
 //! Results as rasters: bands with names, of one pixel type and one value for no data for each kind of result, whoever
 //! writes them.
 
+use crate::apps::difference::described;
 use crate::apps::targets::{Measure, ResultKind};
 use crate::apps::viewshed::{SEEN, SEEN_BY, Viewshed};
 use crate::io::{BandValues, Bands, Georeference, ReadBands, Source, read_tif_bands, write_cog, write_tif_bands};
@@ -170,7 +171,8 @@ impl ResultRaster {
     /// Those of [`Pixels::of_measures`].
     pub fn of_measures(measures: &[Measure], size: [usize; 2]) -> Result<Self> {
         let names = measures.iter().map(|measure| measure.name.clone()).collect();
-        let description = measures.first().map_or("", |measure| measure.description).to_owned();
+        let description = measures.first().map(|first| described(first.description, &first.subject));
+        let description = description.unwrap_or_default();
         Ok(Self { pixels: Pixels::of_measures(measures, size)?, names, description })
     }
 
