@@ -170,7 +170,7 @@ fn light_through_trees_lies_between_opaque_trees_and_none_whatever_the_tiles() {
     let through = |share: f64| {
         move |plan: Plan| {
             let transmissivity = Transmissivity::constant(share).unwrap();
-            plan.with_light_through_trees(CrownLight { transmissivity, leaves: Leaves::ByDate }).unwrap()
+            plan.with_light_through_trees(CrownLight::Share { transmissivity, leaves: Leaves::ByDate }).unwrap()
         }
     };
     let folder = |name: &str| place.path().join(name);
