@@ -1,6 +1,7 @@
 //! Crowns as a medium: how much of the light plants take per metre, in voxels.
 
 use crate::{Error, Parameter, Result};
+use std::collections::HashSet;
 
 /// Side of a voxel, metres. At 2 to 20 pulses/m² 1 m predicts kept pulses best: 2 m and three spacings are worse, 0.5 m
 /// is better from 20 pulses/m² on only.
@@ -62,6 +63,18 @@ impl ExtinctionVoxels {
         let (voxels, extinction) =
             self.voxels.iter().zip(&self.extinction).filter(|(voxel, _)| is_kept(**voxel)).unzip();
         Self { voxels, extinction }
+    }
+
+    /// The voxels that are left where the voxels in `cleared` hold points that are gone, and those in `kept` others: none
+    /// that holds or touches what is gone, unless something is left in it.
+    #[must_use]
+    pub fn without_cleared(&self, cleared: &HashSet<[i32; 3]>, kept: &HashSet<[i32; 3]>) -> Self {
+        let is_beside = |voxel: [i32; 3]| {
+            let offsets = (0..27).map(|number| [number % 3 - 1, number / 3 % 3 - 1, number / 9 - 1]);
+            let mut around = offsets.map(|offset: [i32; 3]| std::array::from_fn(|axis| voxel[axis] + offset[axis]));
+            around.any(|other: [i32; 3]| cleared.contains(&other))
+        };
+        self.filtered(|voxel| kept.contains(&voxel) || !is_beside(voxel))
     }
 
     /// Adds the voxels of `other`, which are none of these.

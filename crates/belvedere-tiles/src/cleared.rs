@@ -151,8 +151,8 @@ pub(crate) fn clear_balls(
     Ok(())
 }
 
-/// The voxels of crowns of a tile, without those that hold points that are cleared and no others. `points` are those of
-/// the tile and around it.
+/// The voxels of crowns of a tile, without those at points that are cleared. `points` are those of the tile and around
+/// it.
 ///
 /// # Errors
 /// Those of [`clear_balls`].
@@ -183,7 +183,7 @@ pub(crate) fn left_crowns(
             voxels.insert(ExtinctionVoxels::voxel_of(position, origin));
         }
     })?;
-    Ok(own.filtered(|voxel| !cleared.contains(&voxel) || kept.contains(&voxel)))
+    Ok(own.without_cleared(&cleared, &kept))
 }
 
 /// What clearing leaves of the surface of a tile.

@@ -128,7 +128,7 @@ impl SceneModel {
         Ok(())
     }
 
-    /// Leaves out the voxels of crowns that hold cleared points, and no others.
+    /// Leaves out the voxels of crowns at cleared points.
     fn clear_crowns(&mut self, cloud: &PointCloud, is_cleared: &[bool]) {
         let origin = self.frame().origin;
         let Some(voxels) = &mut self.parts.medium else { return };
@@ -137,7 +137,7 @@ impl SceneModel {
             rows.map(|(p, _)| ExtinctionVoxels::voxel_of(*p, origin)).collect()
         };
         let (cleared, kept) = (voxels_of(true), voxels_of(false));
-        *voxels = voxels.filtered(|voxel| !cleared.contains(&voxel) || kept.contains(&voxel));
+        *voxels = voxels.without_cleared(&cleared, &kept);
         self.medium = OnceLock::new();
     }
 

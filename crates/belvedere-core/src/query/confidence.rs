@@ -26,12 +26,13 @@ const UNPROVEN_CLASSES: [f64; 6] = [0.05, 0.5, 1.0, 2.0, 4.0, MAX_UNPROVEN];
 /// Length from which on more makes no difference, metres.
 const MAX_UNPROVEN: f64 = 8.0;
 /// Logarithm of the odds of being dark behind crowns: constant, and weights of the same of the evidence past all balls
-/// and of the optical depth.
-const CROWNS_CONSTANT: f64 = -1.5;
+/// and of the optical depth. Fitted to photographs of shadows on eleven plots (docs/methods/tree-light.md), whose
+/// weights are alike where one is left out.
+const CROWNS_CONSTANT: f64 = -2.0;
 /// See [`CROWNS_CONSTANT`].
 const CROWNS_BALLS: f64 = 0.2;
 /// See [`CROWNS_CONSTANT`].
-const CROWNS_DEPTH: f64 = 2.2;
+const CROWNS_DEPTH: f64 = 2.4;
 /// Probabilities are no nearer to 0 and 1 before logarithms are taken.
 const MIN_PROBABILITY: f64 = 1e-4;
 
