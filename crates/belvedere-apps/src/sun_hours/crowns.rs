@@ -4,9 +4,13 @@ use super::stretches::{DayStretch, runs_of};
 use super::{CHUNK, ROUNDING, SunHours, SunHoursParams, sun_hours};
 use crate::rows::{LineLight, RowBlock};
 use crate::sun::SunSchedule;
+use belvedere_core::query::VisibilityMatrix;
 use belvedere_data::vector::dot;
 use belvedere_data::{Error, Result};
 use rayon::prelude::*;
+
+/// Bits in a word of a row of a matrix.
+const WORD: usize = 64;
 
 /// As [`sun_hours`], where an hour of a sun behind crowns counts as much as these let through on that day: `factors` has
 /// a [`factor`](crate::tree_light::CrownLight::factor) for each day of `schedule`. Hours, share, the least day and the
@@ -14,7 +18,7 @@ use rayon::prelude::*;
 /// ([`LineLight::is_free`]), since a share of light has no such hour.
 ///
 /// # Errors
-/// Those of [`sun_hours`] and [`RowBlock::free_lines`], and [`Error::LengthMismatch`] where there is not a factor for
+/// Those of [`sun_hours`], and [`Error::LengthMismatch`] where there is not a factor for
 /// each day.
 pub fn sun_hours_through_crowns(
     block: &RowBlock<'_>,
@@ -27,9 +31,18 @@ pub fn sun_hours_through_crowns(
     if expected != found {
         return Err(Error::LengthMismatch { what: "factors of crowns of days", expected, found });
     }
-    let mut hours = sun_hours(&block.free_lines()?, schedule, normals, params)?;
+    let (expected, found) = (params.first_direction + schedule.directions.len(), block.matrix.direction_count());
+    if expected > found {
+        return Err(Error::LengthMismatch { what: "directions of the matrix", expected, found });
+    }
+    if let Some(found) = normals.map(<[_]>::len).filter(|&found| found != block.matrix.target_count()) {
+        let expected = block.matrix.target_count();
+        return Err(Error::LengthMismatch { what: "normals of targets", expected, found });
+    }
+    let direction_count = schedule.directions.len();
+    let width = direction_count.div_ceil(WORD);
     let days: Vec<(Vec<DayStretch>, f64)> = schedule.days.iter().map(runs_of).zip(factors.iter().copied()).collect();
-    let sums: Vec<CrownSum> = (0..block.matrix.target_count())
+    let (sums, words): (Vec<CrownSum>, Vec<Vec<u64>>) = (0..block.matrix.target_count())
         .into_par_iter()
         .with_min_len(CHUNK)
         .map(|target| {
@@ -39,9 +52,15 @@ pub fn sun_hours_through_crowns(
                 _ => block.line(target, params.first_direction + number),
             };
             let lines: Vec<LineLight> = schedule.directions.iter().enumerate().map(line).collect();
-            CrownSum::over(&days, &lines, params.sufficient_hours - ROUNDING)
+            let mut free = vec![0; width];
+            for number in lines.iter().enumerate().filter(|(_, line)| line.is_free()).map(|(number, _)| number) {
+                free[number / WORD] |= 1_u64 << (number % WORD);
+            }
+            (CrownSum::over(&days, &lines, params.sufficient_hours - ROUNDING), free)
         })
-        .collect();
+        .unzip();
+    let free = VisibilityMatrix::from_words(sums.len(), direction_count, words.concat())?;
+    let mut hours = sun_hours(&free, schedule, normals, &SunHoursParams { first_direction: 0, ..*params })?;
     let (day_count, possible) = (schedule.days.len().max(1) as f64, schedule.possible_hours());
     #[expect(clippy::cast_possible_truncation, reason = "hours of a day and shares of one")]
     let column = |of: &dyn Fn(&CrownSum) -> f64| sums.iter().map(|sum| of(sum) as f32).collect();

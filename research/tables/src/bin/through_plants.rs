@@ -43,7 +43,7 @@ fn main() -> AnyResult<()> {
     let [by, files @ ..] = &arguments[..] else { return Err("give pulse or line, and clouds".into()) };
     println!("cloud | crossing | method | MSE | ECE, % | predicted → found");
     for file in files {
-        let (cloud, _) = read_cloud(Path::new(file), &ReadOptions::default())?;
+        let (cloud, _) = read_cloud(Path::new(file), &ReadOptions::default(), &Control::none())?;
         let survey = Survey::new(&cloud)?;
         let mut found = Found::default();
         if by == "line" {
