@@ -306,8 +306,8 @@ mod tests {
                 sum += medium.optical_depth(start, towards, f64::INFINITY) * towards[2] / 8.0;
                 count += 1.0;
             }
-            // the lower half of the denser crown is reached by few: the prior pulls it by some percent
-            assert!((sum / count / extinction - 1.0).abs() < 0.08, "{extinction}: {}", sum / count);
+            // voxels around the crown hold a little, and few pulses reach the lower half of the denser one
+            assert!((sum / count / extinction - 1.0).abs() < 0.15, "{extinction}: {}", sum / count);
         }
     }
 

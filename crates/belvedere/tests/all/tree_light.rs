@@ -3,8 +3,7 @@
 
 use crate::common::light_share;
 use belvedere::apps::rows::{CrownRows, RowBlock};
-use belvedere::apps::sky_view::sky_through_crowns;
-use belvedere::apps::sky_view::{SkyDirections, sky_view};
+use belvedere::apps::sky_view::{SkyDirections, sky_through_crowns};
 use belvedere::apps::tree_light::{Foliage, Transmissivity};
 use belvedere::control::Control;
 use belvedere::medial::{MedialBalls, vegetation_of_classes, vegetation_of_transmission, without_vegetation};
