@@ -6,6 +6,7 @@
 //! cut into blocks.
 
 use crate::tree_light::{CrownLight, TreeLight};
+use belvedere_core::medium::{HALF_DEPTH, Medium};
 use belvedere_core::query::{MedialScene, VisibilityMatrix};
 use belvedere_data::control::Control;
 use belvedere_data::{Error, Parameter, Result};
@@ -45,9 +46,12 @@ pub trait ObstacleParts: Sync {
     /// What crowns let through, where they do; `None` where trees are opaque.
     fn crowns(&self) -> Option<CrownLight>;
 
+    /// The medium of crowns, where [`CrownLight::Measured`] is wanted.
+    fn medium(&self) -> Option<&Medium>;
+
     /// Which of `directions`, (D, 3) unit vectors, each of `targets`, (M, 3) local metres, sees, and what each would
-    /// see without trees where these let light through: the bits that one scene of all parts would give. Progress
-    /// counts targets, once for each matrix.
+    /// see without trees where these let a share of the light through: the bits that one scene of all parts would give.
+    /// Where crowns were measured the first is already without trees. Progress counts targets, once for each matrix.
     ///
     /// # Errors
     /// Those of [`MedialScene::visibility_matrix`] and of reading the parts.
@@ -86,7 +90,7 @@ impl<'a> From<&'a MedialScene> for SkyObstacles<'a> {
     }
 }
 
-impl SkyObstacles<'_> {
+impl<'a> SkyObstacles<'a> {
     /// What crowns let through, where they do; `None` where trees are opaque.
     #[must_use]
     pub fn crowns(&self) -> Option<CrownLight> {
@@ -96,10 +100,17 @@ impl SkyObstacles<'_> {
         }
     }
 
-    /// Number of matrices to compute: one, or two where trees let light through.
+    /// Number of matrices to compute: two where trees let a share of the light through, else one.
     #[must_use]
     pub fn matrix_count(&self) -> usize {
-        1 + usize::from(self.crowns().is_some())
+        1 + usize::from(matches!(self.crowns(), Some(CrownLight::Share { .. })))
+    }
+
+    fn medium(&self) -> Option<&'a Medium> {
+        match self {
+            Self::Whole(obstacles) => obstacles.trees.and_then(|trees| trees.medium.as_deref()),
+            Self::InParts(parts) => parts.medium(),
+        }
     }
 
     /// Whether each of `targets`, (M, 3) local metres, lies inside an obstacle.
@@ -123,10 +134,12 @@ impl SkyObstacles<'_> {
         control: &Control<'_>,
     ) -> Result<(VisibilityMatrix, Option<VisibilityMatrix>)> {
         match self {
-            Self::Whole(obstacles) => {
-                let matrix = obstacles.scene.visibility_matrix(targets, directions, control)?;
-                let opaque = obstacles.trees.map(|trees| trees.opaque.visibility_matrix(targets, directions, control));
-                Ok((matrix, opaque.transpose()?))
+            Self::Whole(Obstacles { scene, trees }) => {
+                let without = || trees.map(|trees| trees.opaque.visibility_matrix(targets, directions, control));
+                if let (Some(_), Some(without)) = (self.medium(), without()) {
+                    return Ok((without?, None));
+                }
+                Ok((scene.visibility_matrix(targets, directions, control)?, without().transpose()?))
             }
             Self::InParts(parts) => parts.look(targets, directions, control),
         }
@@ -135,13 +148,118 @@ impl SkyObstacles<'_> {
 
 /// The rows of some targets.
 #[derive(Clone, Debug)]
-pub struct RowBlock {
+pub struct RowBlock<'a> {
     /// Which of the targets these are.
     pub rows: Range<usize>,
-    /// What each of them sees; row 0 is that of the first target of the block.
+    /// What each of them sees; row 0 is that of the first target of the block. Crowns block, unless they were measured.
     pub matrix: VisibilityMatrix,
-    /// What each of them would see without trees; `None` where trees are opaque.
-    pub without_trees: Option<VisibilityMatrix>,
+    /// What crowns let through; `None` where they are opaque.
+    pub crowns: Option<CrownRows<'a>>,
+}
+
+/// What crowns let through to the targets of a block.
+#[derive(Clone, Debug)]
+pub enum CrownRows<'a> {
+    /// The same share of everything: what each target would see without trees.
+    Share(VisibilityMatrix),
+    /// What pulses measured.
+    Measured {
+        /// The crowns.
+        medium: &'a Medium,
+        /// The targets of the block, (M, 3) local metres.
+        targets: &'a [[f32; 3]],
+        /// Directions of the columns, (D, 3) unit vectors.
+        directions: &'a [[f64; 3]],
+    },
+}
+
+/// What a line meets on its way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum LineLight {
+    /// Nothing.
+    Free,
+    /// Something opaque.
+    Blocked,
+    /// A crown that lets a share through that is the same for all.
+    Crown,
+    /// Crowns of this optical depth, above 0.
+    Depth(f64),
+}
+
+impl LineLight {
+    /// Share of the light that arrives, 0 to 1, where crowns have this [`CrownLight::factor`].
+    #[must_use]
+    pub fn share(self, factor: f64) -> f64 {
+        match self {
+            Self::Free => 1.0,
+            Self::Blocked => 0.0,
+            Self::Crown => factor,
+            Self::Depth(depth) => (-factor * depth).exp(),
+        }
+    }
+
+    /// Whether the line counts as free where a yes or no is wanted: half or more passes the crowns that were measured,
+    /// and nothing else is there.
+    #[must_use]
+    pub fn is_free(self) -> bool {
+        match self {
+            Self::Free => true,
+            Self::Blocked | Self::Crown => false,
+            Self::Depth(depth) => depth <= HALF_DEPTH,
+        }
+    }
+}
+
+impl From<VisibilityMatrix> for RowBlock<'_> {
+    /// The rows of all targets, where trees are opaque.
+    fn from(matrix: VisibilityMatrix) -> Self {
+        Self { rows: 0..matrix.target_count(), matrix, crowns: None }
+    }
+}
+
+impl RowBlock<'_> {
+    /// What the line from a target of the block in the direction of a column meets.
+    #[must_use]
+    pub fn line(&self, row: usize, column: usize) -> LineLight {
+        match (&self.crowns, self.matrix.is_free(row, column)) {
+            (Some(CrownRows::Measured { medium, targets, directions }), true) => {
+                let (Some(target), Some(direction)) = (targets.get(row), directions.get(column)) else {
+                    return LineLight::Blocked;
+                };
+                let depth = medium.optical_depth(target.map(f64::from), *direction, f64::INFINITY);
+                if depth > 0.0 { LineLight::Depth(depth) } else { LineLight::Free }
+            }
+            (_, true) => LineLight::Free,
+            (Some(CrownRows::Share(without)), false) if without.is_free(row, column) => LineLight::Crown,
+            (_, false) => LineLight::Blocked,
+        }
+    }
+
+    /// Share of the light that arrives at a target of the block from the direction of each column, (D), where crowns
+    /// have this [`CrownLight::factor`].
+    #[must_use]
+    pub fn light(&self, row: usize, factor: f64) -> Vec<f64> {
+        (0..self.matrix.direction_count()).map(|column| self.line(row, column).share(factor)).collect()
+    }
+
+    /// The bits of [`LineLight::is_free`] of all lines of the block.
+    ///
+    /// # Errors
+    /// Those of [`VisibilityMatrix::from_words`].
+    pub fn free_lines(&self) -> Result<VisibilityMatrix> {
+        if !matches!(self.crowns, Some(CrownRows::Measured { .. })) {
+            return Ok(self.matrix.clone());
+        }
+        let (targets, directions) = (self.matrix.target_count(), self.matrix.direction_count());
+        let of_target = |row: usize| {
+            let bit = |column: usize| u64::from(column < directions && self.line(row, column).is_free());
+            (0..directions.div_ceil(64))
+                .map(|word| (0..64).fold(0, |bits, place| bits | bit(64 * word + place) << place))
+                .collect::<Vec<u64>>()
+        };
+        let words: Vec<Vec<u64>> = (0..targets).into_par_iter().map(of_target).collect();
+        VisibilityMatrix::from_words(targets, directions, words.concat())
+    }
 }
 
 /// Asks which of `directions`, (D, 3) unit vectors, each of `targets`, (M, 3) local metres, sees, and hands the rows to
@@ -155,7 +273,7 @@ pub fn fold_rows(
     targets: &[[f32; 3]],
     directions: &[[f64; 3]],
     control: &Control<'_>,
-    fold: impl FnMut(RowBlock) -> Result<()>,
+    fold: impl FnMut(RowBlock<'_>) -> Result<()>,
 ) -> Result<()> {
     let of_target = directions.len().max(1) * surroundings.matrix_count();
     fold_blocks(surroundings, targets, directions, (BLOCK_BITS / of_target).max(1), control, fold)
@@ -171,7 +289,7 @@ pub fn fold_blocks(
     directions: &[[f64; 3]],
     block: usize,
     control: &Control<'_>,
-    mut fold: impl FnMut(RowBlock) -> Result<()>,
+    mut fold: impl FnMut(RowBlock<'_>) -> Result<()>,
 ) -> Result<()> {
     if block == 0 {
         let value = "0".to_owned();
@@ -181,7 +299,12 @@ pub fn fold_blocks(
         control.check()?;
         let (matrix, without_trees) = surroundings.look(of_block, directions, control)?;
         let first = number * block;
-        fold(RowBlock { rows: first..first + of_block.len(), matrix, without_trees })?;
+        let measured = || {
+            let medium = surroundings.medium()?;
+            Some(CrownRows::Measured { medium, targets: of_block, directions })
+        };
+        let crowns = without_trees.map(CrownRows::Share).or_else(measured);
+        fold(RowBlock { rows: first..first + of_block.len(), matrix, crowns })?;
     }
     Ok(())
 }

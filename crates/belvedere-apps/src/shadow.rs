@@ -1,9 +1,9 @@
 //! Shadow: what of the sun reaches a place, its disc taken as a point or as it is.
 
-use crate::rows::{SkyObstacles, check_normals, fold_rows, normals_of};
+use crate::rows::{RowBlock, SkyObstacles, check_normals, fold_rows, normals_of};
 use crate::targets::Targets;
-use crate::tree_light::{Season, through_crowns};
-use belvedere_core::query::{Answer, MedialScene, Viewer, VisibilityMatrix};
+use crate::tree_light::{Season, TreeLight};
+use belvedere_core::query::{Answer, MedialScene, Viewer};
 use belvedere_data::control::Control;
 use belvedere_data::vector::{cross, dot, unit};
 use belvedere_data::{Error, Result};
@@ -65,7 +65,8 @@ impl ShadowSun {
 }
 
 /// The share of each of `suns` that reaches each of `targets` among `obstacles`, 0 to 1, (suns) rows of (M); NaN for a
-/// target without a position. Progress counts targets, once or twice each.
+/// target without a position. Where crowns let light through, it is also less than 1 with hard edges. Progress counts
+/// targets, once or twice each.
 ///
 /// # Errors
 /// Those of [`fold_rows`] and [`lit_shares`].
@@ -85,18 +86,20 @@ pub fn scene_shadow<'a>(
         let normals = normals_of(normals, &block.rows);
         let mut first = 0;
         for ((lit, of_sun), sun) in lit.iter_mut().zip(&directions).zip(suns) {
-            let mut shares = lit_shares(&block.matrix, first, of_sun, normals)?;
-            if let (Some(matrix), Some(crowns)) = (&block.without_trees, obstacles.crowns()) {
-                let without = lit_shares(matrix, first, of_sun, normals)?;
-                shares = through_crowns(&shares, &without, crowns.share(sun.season))?;
-            }
-            lit.extend(shares);
+            let factor = obstacles.crowns().map_or(0.0, |crowns| crowns.factor(sun.season));
+            lit.extend(lit_shares(&block, (first, of_sun), normals, factor)?);
             first += of_sun.len();
         }
         Ok(())
     })?;
     lit.iter_mut().for_each(|shares| targets.clear_unasked(shares));
     Ok(lit)
+}
+
+/// 1 where half or more of the light arrives, else 0; NaN for NaN: a place behind crowns that were measured is lit or not.
+#[must_use]
+pub fn half_or_more(share: f32) -> f32 {
+    if share.is_nan() { share } else { f32::from(u8::from(share >= 0.5)) }
 }
 
 /// The light of one sun with hard edges at each target: 1 for a target that is lit, 0 for one in shadow, NaN for one
@@ -147,14 +150,18 @@ pub fn unproven_light(
 /// [`Error::LengthMismatch`] for normals that are not as many as targets, and those of
 /// [`MedialScene::visible_probabilities`].
 pub fn lit_probabilities(
-    scene: &MedialScene,
+    (scene, trees): (&MedialScene, Option<&TreeLight>),
     targets: &Targets,
     sun: ShadowSun,
     control: &Control<'_>,
 ) -> Result<Vec<f32>> {
     let normals = targets.normals.as_deref();
     check_normals(normals, targets.len())?;
-    let mut found = scene.visible_probabilities(Viewer::Direction(sun.to_sun), &targets.positions, control)?;
+    let viewer = Viewer::Direction(sun.to_sun);
+    let mut found = match trees.and_then(|trees| Some((&*trees.opaque, trees.medium.as_deref()?))) {
+        Some(crowns) => scene.lit_probabilities(crowns, viewer, &targets.positions, control)?,
+        None => scene.visible_probabilities(viewer, &targets.positions, control)?,
+    };
     for (row, probability) in found.iter_mut().enumerate().filter(|(_, probability)| !probability.is_nan()) {
         let is_before = normals.is_none_or(|normals| dot(normals[row].map(f64::from), sun.to_sun) > 0.0);
         if sun.to_sun[2] <= 0.0 || !is_before {
@@ -185,18 +192,20 @@ pub fn sun_directions(to_sun: [f64; 3], edges: Edges) -> Vec<[f64; 3]> {
         .collect()
 }
 
-/// The share of a sun that each target of `matrix` sees, 0 to 1, (M), where `directions` represent the sun, the first
-/// of them being column `first` of the matrix. What is below the horizon is not seen, nor is what stands behind a
-/// target that is turned away by its outward normal, (M, 3); `None` where targets have none.
+/// The share of a sun that each target of `block` gets, 0 to 1, (M), where `directions` represent the sun, the first of
+/// them being column `first` of the block, and crowns have a [`factor`](crate::tree_light::CrownLight::factor). What is
+/// below the horizon is not seen, nor is what stands behind a target that is turned away by its outward normal, (M, 3);
+/// `None` where targets have none.
 ///
 /// # Errors
-/// [`Error::LengthMismatch`] where the matrix has fewer columns, or normals are not as many as targets.
+/// [`Error::LengthMismatch`] where the block has fewer columns, or normals are not as many as targets.
 pub fn lit_shares(
-    matrix: &VisibilityMatrix,
-    first: usize,
-    directions: &[[f64; 3]],
+    block: &RowBlock<'_>,
+    (first, directions): (usize, &[[f64; 3]]),
     normals: Option<&[[f32; 3]]>,
+    factor: f64,
 ) -> Result<Vec<f32>> {
+    let matrix = &block.matrix;
     let (expected, found) = (first + directions.len(), matrix.direction_count());
     if found < expected {
         return Err(Error::LengthMismatch { what: "directions of the sun", expected, found });
@@ -206,11 +215,15 @@ pub fn lit_shares(
         return Err(Error::LengthMismatch { what: "normals of targets", expected, found });
     }
     let share = |target: usize| {
-        let is_lit = |(column, direction): &(usize, &[f64; 3])| {
+        let is_before = |(_, direction): &(usize, &[f64; 3])| {
             let is_before = normals.is_none_or(|normals| dot(normals[target].map(f64::from), **direction) > 0.0);
-            direction[2] > 0.0 && is_before && matrix.is_free(target, first + column)
+            direction[2] > 0.0 && is_before
         };
-        directions.iter().enumerate().filter(is_lit).count() as f32 / directions.len().max(1) as f32
+        let before = directions.iter().enumerate().filter(is_before);
+        let light: f64 = before.map(|(column, _)| block.line(target, first + column).share(factor)).sum();
+        #[expect(clippy::cast_possible_truncation, reason = "a share")]
+        let share = (light / directions.len().max(1) as f64) as f32;
+        share
     };
     Ok((0..matrix.target_count()).into_par_iter().with_min_len(CHUNK).map(share).collect())
 }

@@ -187,18 +187,21 @@ impl Outlines {
 
     /// The class of each target of a block, whose first columns are these directions, by which of the targets are
     /// inside obstacles. A target that is turned away from a direction by its normal does not see it.
-    #[must_use]
-    pub fn classes(&self, block: &RowBlock, are_inside: &[bool], normals: Option<&[[f32; 3]]>) -> Vec<u8> {
+    ///
+    /// # Errors
+    /// Those of [`RowBlock::free_lines`].
+    pub fn classes(&self, block: &RowBlock<'_>, are_inside: &[bool], normals: Option<&[[f32; 3]]>) -> Result<Vec<u8>> {
+        let free = block.free_lines()?;
         let normals = normals_of(normals, &block.rows);
         let class = |row: usize| {
             let normal = normals.and_then(|normals| normals.get(row)).map(|normal| normal.map(f64::from));
             let is_free = |number: usize| {
-                block.matrix.is_free(row, number) && normal.is_none_or(|n| dot(n, self.directions[number]) > 0.0)
+                free.is_free(row, number) && normal.is_none_or(|n| dot(n, self.directions[number]) > 0.0)
             };
             let is_inside = are_inside.get(block.rows.start + row) == Some(&true);
             class_of(is_inside, self.moved_share(is_free))
         };
-        (0..block.matrix.target_count()).into_par_iter().with_min_len(CHUNK).map(class).collect()
+        Ok((0..free.target_count()).into_par_iter().with_min_len(CHUNK).map(class).collect())
     }
 }
 

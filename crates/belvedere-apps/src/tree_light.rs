@@ -1,11 +1,11 @@
-//! Light through the crowns of trees: what share of it gets through, by season or as pulses measured it.
+//! Light through the crowns of trees: what share of it gets through, as pulses measured it, or the same for all crowns.
 //!
-//! Balls are opaque. Two matrices tell what all of them leave free and what those leave free that are not vegetation;
-//! every measure that is a sum over directions lies between its two values, by the share of the light that crowns let
-//! through.
+//! Where pulses measured crowns, these are a medium: the share that gets along a line follows from its optical depth, and
+//! the balls that are no vegetation block beside it. Otherwise crowns are balls. Two matrices tell what all balls leave
+//! free and what those leave free that are not vegetation; what is free in the second only gets a constant share.
 
 use crate::sun::{Date, Site};
-use belvedere_core::medial::MedialBalls;
+use belvedere_core::medium::Medium;
 use belvedere_core::model::SceneModel;
 use belvedere_core::query::{BlockRule, MedialScene};
 use belvedere_data::control::Control;
@@ -79,26 +79,6 @@ impl Transmissivity {
         Ok(Self { in_leaf: share, bare: share })
     }
 
-    /// What the pulses measured: the mean of `transmission`, (B), as [`belvedere_core::medial::CarvedBalls`] has it,
-    /// over the balls of crowns by the area they cover; of the season that the survey was flown in, which is taken for
-    /// both. `None` where no crown was measured.
-    ///
-    /// A beam is as wide as a hand and returns from below a crown where part of it gets through, so that this is more
-    /// than the share of the light that does.
-    #[must_use]
-    pub fn measured(balls: &MedialBalls, transmission: &[f32]) -> Option<Self> {
-        let (mut through, mut covered) = (0.0, 0.0);
-        for (&share, &radius) in transmission.iter().zip(&balls.radii).filter(|(share, _)| !share.is_nan()) {
-            let area = f64::from(radius) * f64::from(radius);
-            through += area * f64::from(share);
-            covered += area;
-        }
-        let share = through / covered;
-        (covered > 0.0 && share.is_finite())
-            .then(|| share.clamp(0.0, 1.0))
-            .map(|share| Self { in_leaf: share, bare: share })
-    }
-
     /// The share in one state.
     #[must_use]
     pub fn of(&self, foliage: Foliage) -> f64 {
@@ -122,6 +102,18 @@ pub enum Leaves {
     Off,
 }
 
+impl Leaves {
+    /// The leaves of a season; `None` where a question has no date.
+    #[must_use]
+    pub fn foliage(self, season: Option<Season>) -> Foliage {
+        match (self, season) {
+            (Self::Off, _) => Foliage::Bare,
+            (Self::ByDate, Some(Season { day_of_year, latitude })) => Foliage::on_day(day_of_year, latitude),
+            (Self::On, _) | (Self::ByDate, None) => Foliage::InLeaf,
+        }
+    }
+}
+
 /// A day at a place, as far as trees are concerned.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Season {
@@ -141,24 +133,51 @@ impl Season {
 
 /// What crowns let through, and when.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct CrownLight {
-    /// What share of the light gets through a crown.
-    pub transmissivity: Transmissivity,
-    /// Whether trees carry leaves.
-    pub leaves: Leaves,
+#[serde(rename_all = "snake_case")]
+pub enum CrownLight {
+    /// The same share for all crowns, whatever the way through them.
+    Share {
+        /// What share of the light gets through a crown.
+        transmissivity: Transmissivity,
+        /// Whether trees carry leaves.
+        leaves: Leaves,
+    },
+    /// What pulses measured in each voxel ([`belvedere_core::medium`]).
+    Measured {
+        /// Whether trees carry leaves, where the survey was flown in leaf; `None` for the leaves of the survey, whatever
+        /// the date.
+        leaves: Option<Leaves>,
+    },
 }
 
 impl CrownLight {
-    /// Share of the light that gets through crowns in a season; `None` where a question has no date.
+    /// Whether shadows are shares of light. What pulses measured, as they did, is a yes or no.
     #[must_use]
-    pub fn share(&self, season: Option<Season>) -> f64 {
-        let foliage = match (self.leaves, season) {
-            (Leaves::Off, _) => Foliage::Bare,
-            (Leaves::ByDate, Some(Season { day_of_year, latitude })) => Foliage::on_day(day_of_year, latitude),
-            (Leaves::On, _) | (Leaves::ByDate, None) => Foliage::InLeaf,
-        };
-        self.transmissivity.of(foliage)
+    pub fn gives_shares(&self) -> bool {
+        *self != Self::Measured { leaves: None }
     }
+
+    /// Share of the light that gets through crowns in a season, or what their optical depth is multiplied by where it
+    /// was measured; a season is `None` where a question has no date.
+    #[must_use]
+    pub fn factor(&self, season: Option<Season>) -> f64 {
+        match self {
+            Self::Share { transmissivity, leaves } => transmissivity.of(leaves.foliage(season)),
+            Self::Measured { leaves: None } => 1.0,
+            Self::Measured { leaves: Some(leaves) } => match leaves.foliage(season) {
+                Foliage::InLeaf => 1.0,
+                Foliage::Bare => bare_depth(),
+            },
+        }
+    }
+}
+
+/// Optical depth of a bare crown as a share of that in leaf: that of the shares of light in [`Transmissivity::default`],
+/// 0.2.
+#[must_use]
+pub fn bare_depth() -> f64 {
+    let Transmissivity { in_leaf, bare } = Transmissivity::default();
+    bare.ln() / in_leaf.ln()
 }
 
 /// A scene without its vegetation, and what share of the light its vegetation lets through.
@@ -167,6 +186,8 @@ pub struct TreeLight {
     pub opaque: Arc<MedialScene>,
     /// What the vegetation lets through.
     pub crowns: CrownLight,
+    /// The crowns, where they were measured.
+    pub medium: Option<Arc<Medium>>,
 }
 
 impl TreeLight {
@@ -182,26 +203,6 @@ impl TreeLight {
         control: &Control<'_>,
     ) -> Result<Self> {
         let opaque = Arc::new(model.scene_without_vegetation(rule, control)?);
-        Ok(Self { opaque, crowns: CrownLight { transmissivity, leaves } })
+        Ok(Self { opaque, crowns: CrownLight::Share { transmissivity, leaves }, medium: None })
     }
-}
-
-/// Measures that are sums over directions, (M), with trees that let a share of the light through: `all` are their
-/// values where nothing does, `opaque` those without vegetation. Sky view factors, openness, hours of sun and
-/// irradiance are such sums.
-///
-/// # Errors
-/// [`Error::LengthMismatch`] where the two differ in length, [`Error::InvalidParameter`] for a share outside 0 to 1.
-pub fn through_crowns(all: &[f32], opaque: &[f32], transmissivity: f64) -> Result<Vec<f32>> {
-    let share = Transmissivity::constant(transmissivity)?.in_leaf;
-    let (expected, found) = (all.len(), opaque.len());
-    if expected != found {
-        return Err(Error::LengthMismatch { what: "values without vegetation", expected, found });
-    }
-    let between = |(&all, &opaque): (&f32, &f32)| {
-        #[expect(clippy::cast_possible_truncation, reason = "between two numbers of f32")]
-        let value = (f64::from(all) + share * (f64::from(opaque) - f64::from(all))) as f32;
-        value
-    };
-    Ok(all.iter().zip(opaque).map(between).collect())
 }

@@ -10,6 +10,7 @@ mod eight;
 pub mod ground;
 mod instructions;
 pub mod medial;
+pub mod medium;
 pub mod model;
 pub mod neighbors;
 pub mod normals;

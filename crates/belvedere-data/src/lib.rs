@@ -14,6 +14,7 @@ pub mod error;
 pub mod frame;
 pub mod free_segments;
 pub mod horizon;
+pub mod medium;
 pub mod mesh;
 pub mod model;
 pub mod parameter;
@@ -34,6 +35,7 @@ pub use cloud::{Attributes, CloudFile, CloudFiles, FileRows, GpsTimeKind, PointC
 pub use elevation::ElevationGrid;
 pub use error::{Error, Result};
 pub use frame::{Bounds, Frame};
+pub use medium::ExtinctionVoxels;
 pub use mesh::Mesh;
 pub use parameter::Parameter;
 pub use patches::{PatchKind, SurfacePatches};

@@ -4,6 +4,7 @@ use crate::balls::MedialBalls;
 use crate::building_outlines::BuildingOutlines;
 use crate::frame::{Bounds, Frame};
 use crate::free_segments::FreeSegmentColumns;
+use crate::medium::ExtinctionVoxels;
 use crate::patches::SurfacePatches;
 use crate::{Error, Parameter, Result};
 use std::collections::BTreeMap;
@@ -35,12 +36,14 @@ pub struct ModelParts {
     /// The balls that block lines of sight.
     pub balls: MedialBalls,
     /// Share of the pulses that got through the part of a crown that a ball belongs to, (B), 0 to 1; NaN for a ball
-    /// that is no vegetation. Empty where this was not measured.
+    /// that is no vegetation, and 0 for vegetation where this was not measured. Empty where vegetation is unknown.
     pub transmission: Vec<f32>,
     /// Surfaces that are known better than from single balls, and block beside them.
     pub patches: SurfacePatches,
     /// What is known of surfaces of buildings; it blocks nothing. Only `.npz` files keep it.
     pub outlines: BuildingOutlines,
+    /// Crowns as a medium, where pulses measured them. Only `.npz` files keep them.
+    pub medium: Option<ExtinctionVoxels>,
     /// The pulses that prove lines of sight free, where they are known.
     pub pulses: Option<FreeSegmentColumns>,
     /// How the model was made, by name: side, method, parameters, program, input.
@@ -127,6 +130,7 @@ impl ModelParts {
         }
         self.patches.validate()?;
         self.outlines.validate()?;
+        self.medium.as_ref().map_or(Ok(()), ExtinctionVoxels::validate)?;
         self.pulses.as_ref().map_or(Ok(()), FreeSegmentColumns::validate)
     }
 }

@@ -35,13 +35,18 @@ impl Through {
             Some(leaves) => return refused("leaves", leaves, "use 'auto', 'on' or 'off'"),
         };
         match &self.share {
-            None => Ok(ThroughTrees::Opaque),
+            None => Ok(ThroughTrees::Measured),
             Some(LightShare::Number(share)) => Ok(ThroughTrees::Share(*share)),
             Some(LightShare::Name(name)) => match name.as_str() {
+                "measured" => Ok(ThroughTrees::Measured),
                 "none" => Ok(ThroughTrees::Opaque),
                 "seasons" => Ok(ThroughTrees::Seasons(leaves)),
                 "pulses" => Ok(ThroughTrees::Pulses),
-                _ => refused("through_trees", name, "use 'none', 'seasons', 'pulses', or a number from 0 to 1"),
+                _ => refused(
+                    "through_trees",
+                    name,
+                    "use 'measured', 'none', 'seasons', 'pulses', or a number from 0 to 1",
+                ),
             },
         }
     }

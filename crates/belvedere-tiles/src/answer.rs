@@ -18,7 +18,7 @@ use belvedere::apps::edge::near_edge;
 use belvedere::apps::eyes::skip_unfit_eyes;
 use belvedere::apps::irradiance::season_irradiation;
 use belvedere::apps::rows::SkyObstacles;
-use belvedere::apps::shadow::{Edges, scene_shadow};
+use belvedere::apps::shadow::{Edges, half_or_more, scene_shadow};
 use belvedere::apps::sky_view::scene_sky_view;
 use belvedere::apps::sum_errors::Intervals;
 use belvedere::apps::sun_hours::scene_sun_hours;
@@ -128,7 +128,7 @@ pub(crate) fn answer(
     let (found, balls) = match prepared {
         PreparedQuestion::Viewshed { observers, is_reverse } => {
             let mut sight = PartialSight::new(observers, *is_reverse, &targets.positions);
-            parts.each_scene(&lines, control, |scene| sight.look(scene, control))?;
+            parts.each_scene(&lines, control, |scene, _| sight.look(scene, control))?;
             let planned = MedialScene::new(&MedialBalls::default(), &rule(plan))?.with_triangles(others.added.clone());
             sight.look(&planned, control)?;
             let mut balls = parts.into_found();
@@ -244,7 +244,7 @@ fn lit(
         }
     };
     let is_yes_or_no = match light {
-        LightQuestion::Shadow(_) => around.crowns().is_none(),
+        LightQuestion::Shadow(_) => !around.crowns().is_some_and(|crowns| crowns.gives_shares()),
         LightQuestion::SunRule { .. } => true,
         LightQuestion::Sky(..) | LightQuestion::SunHours { .. } | LightQuestion::Irradiance { .. } => false,
     };
@@ -253,7 +253,8 @@ fn lit(
     if !is_yes_or_no {
         return Ok((measured(bands, &is_missing, size)?, balls));
     }
-    let numbers = bands.into_iter().next().unwrap_or_default();
+    let mut numbers = bands.into_iter().next().unwrap_or_default();
+    numbers.iter_mut().for_each(|share| *share = half_or_more(*share));
     let is_without_proof = match light {
         LightQuestion::Shadow(sun) if plan.proves => {
             let lit = numbers.iter().zip(&is_missing).map(|(&lit, &is_missing)| lit > 0.0 && !is_missing);

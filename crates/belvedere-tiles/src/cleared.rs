@@ -11,9 +11,10 @@ use crate::window;
 use belvedere::control::Control;
 use belvedere::ground::{MAX_GAP_FROM_RETURNS, MapGrid, SurfaceParams};
 use belvedere::medial::{LIMIT_TOUCH, MedialBalls};
+use belvedere::medium::VOXEL_SIDE;
 use belvedere::model::{ClearedArea, Clearing};
-use belvedere::{PointCloud, Result};
-use std::collections::HashMap;
+use belvedere::{ExtinctionVoxels, PointCloud, Result};
+use std::collections::{HashMap, HashSet};
 
 /// How far beyond a block its columns reach, metres: as far as a ball at one of its points, 10 m at most, and what is
 /// cleared around a point.
@@ -148,6 +149,41 @@ pub(crate) fn clear_balls(
     }
     *balls = left;
     Ok(())
+}
+
+/// The voxels of crowns of a tile, without those at points that are cleared. `points` are those of the tile and around
+/// it.
+///
+/// # Errors
+/// Those of [`clear_balls`].
+pub(crate) fn left_crowns(
+    plan: &Plan,
+    core: &MapArea,
+    voxels: &ExtinctionVoxels,
+    points: &[ClassedPoint],
+    control: &Control<'_>,
+) -> Result<ExtinctionVoxels> {
+    let origin = plan.frame.origin;
+    let is_own = |voxel: [i32; 3]| {
+        let [low, high] = ExtinctionVoxels::square_of(voxel, origin);
+        core.holds([0, 1].map(|axis| f64::midpoint(low[axis], high[axis])))
+    };
+    let own = voxels.filtered(is_own);
+    if plan.cleared.is_empty() || own.is_empty() {
+        return Ok(own);
+    }
+    let of_blocks = by_block(points.iter().map(|point| point.0));
+    let [mut cleared, mut kept] = [HashSet::new(), HashSet::new()];
+    let area = core.widened(VOXEL_SIDE);
+    each_block(plan, &area, core, control, |block, clearings| {
+        for &row in of_blocks.get(&block).into_iter().flatten() {
+            let (position, class) = points[row as usize];
+            let is_cleared = clearings.iter().any(|clearing| clearing.clears(position, class));
+            let voxels = if is_cleared { &mut cleared } else { &mut kept };
+            voxels.insert(ExtinctionVoxels::voxel_of(position, origin));
+        }
+    })?;
+    Ok(own.without_cleared(&cleared, &kept))
 }
 
 /// What clearing leaves of the surface of a tile.

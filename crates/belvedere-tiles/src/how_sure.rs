@@ -9,6 +9,7 @@ use crate::planned::Others;
 use crate::proof::{self, Line, sampled_lengths};
 use crate::question::{LightQuestion, PreparedQuestion};
 use belvedere::apps::eyes::skip_unfit_eyes;
+use belvedere::apps::rows::ObstacleParts;
 use belvedere::apps::viewshed::{Observer, add_known};
 use belvedere::control::Control;
 use belvedere::medial::MedialBalls;
@@ -27,6 +28,10 @@ pub(crate) struct PartialEvidence<'a> {
     targets: &'a [[f32; 3]],
     /// What all parts so far block, of each viewer.
     blocked: Vec<Vec<BlockedLines>>,
+    /// The same without vegetation, where a sun is looked at past crowns that were measured; otherwise empty.
+    solid: Vec<BlockedLines>,
+    /// Optical depth of the crowns before each target; as long as `solid`.
+    depths: Vec<f64>,
 }
 
 enum Viewers {
@@ -83,7 +88,7 @@ impl<'a> PartialEvidence<'a> {
             }
         };
         let blocked = vec![vec![BlockedLines::NONE; targets.len()]; viewers.count()];
-        Ok(Self { viewers, targets, blocked })
+        Ok(Self { viewers, targets, blocked, solid: Vec::new(), depths: Vec::new() })
     }
 
     /// Looks past all `parts`, and what blocks beside them.
@@ -94,20 +99,34 @@ impl<'a> PartialEvidence<'a> {
         lines: &AreaLines<'_>,
         control: &Control<'_>,
     ) -> Result<()> {
-        parts.each_scene(lines, control, |scene| self.look(scene, control))?;
+        if let (Viewers::Sun(to_sun), Some(medium)) = (&self.viewers, parts.medium()) {
+            self.solid = vec![BlockedLines::NONE; self.targets.len()];
+            let depth = |target: &[f32; 3]| match target.iter().all(|v| v.is_finite()) {
+                true => medium.optical_depth(target.map(f64::from), *to_sun, f64::INFINITY),
+                false => 0.0,
+            };
+            self.depths = self.targets.par_iter().with_min_len(CHUNK).map(depth).collect();
+        }
+        parts.each_scene(lines, control, |scene, solid| self.look(scene, solid, control))?;
         let beside = MedialScene::new(&MedialBalls::default(), &rule(plan))?
             .with_triangles(others.added.clone())
             .with_far_terrain(others.far_terrain.clone());
-        self.look(&beside, control)
+        self.look(&beside, Some(&beside), control)
     }
 
-    fn look(&mut self, scene: &MedialScene, control: &Control<'_>) -> Result<()> {
+    fn look(&mut self, scene: &MedialScene, solid: Option<&MedialScene>, control: &Control<'_>) -> Result<()> {
         if let Viewers::Observers { observers, is_reverse: false } = &mut self.viewers {
             let mut eyes: Vec<[f64; 3]> = observers.iter().map(|observer| observer.eye).collect();
             skip_unfit_eyes(scene, None, &mut eyes, control)?;
             observers.iter_mut().zip(eyes).for_each(|(observer, eye)| observer.eye = eye);
         }
-        let Self { viewers, targets, blocked } = self;
+        let Self { viewers, targets, blocked, .. } = self;
+        if let (Some(solid), Viewers::Sun(to_sun)) = (solid, &*viewers) {
+            let rows = self.solid.par_iter_mut().zip(targets.par_iter()).with_min_len(CHUNK);
+            rows.filter(|(_, target)| target.iter().all(|v| v.is_finite())).for_each(|(blocked, target)| {
+                *blocked = solid.blocked_lines(*blocked, target.map(f64::from), *to_sun, f64::INFINITY);
+            });
+        }
         for (number, blocked) in blocked.iter_mut().enumerate() {
             control.stage("computing probabilities", 0, || {
                 blocked.par_iter_mut().zip(targets.par_iter()).with_min_len(CHUNK).try_for_each(|(blocked, target)| {
@@ -148,7 +167,11 @@ impl<'a> PartialEvidence<'a> {
                 }
                 let end_height = target[2] + range * towards[2];
                 let is_between_places = range.is_finite() && target[2] <= top && end_height <= top;
-                let probability = Evidence::from_the_air(blocked[row], is_between_places, unseen).probability();
+                let evidence = Evidence::from_the_air(blocked[row], is_between_places, unseen);
+                let probability = match (self.solid.get(row), self.depths.get(row)) {
+                    (Some(solid), Some(depth)) => evidence.probability_among_crowns(*solid, *depth),
+                    _ => evidence.probability(),
+                };
                 add_known(&mut expected[row], probability);
                 let is_uncertain = certainty.is_some_and(|certainty| certainty.is_missed_by(probability));
                 add_known(&mut uncertain[row], f32::from(u8::from(is_uncertain)));

@@ -1,6 +1,6 @@
 //! The balls of a tile.
 
-use crate::cleared::{ClassedPoint, classed, clear_balls};
+use crate::cleared::{ClassedPoint, classed, clear_balls, left_crowns};
 use crate::grid::{MapArea, TOP_SIDE, TileId, square_at};
 use crate::patches;
 use crate::plan::Plan;
@@ -11,10 +11,11 @@ use crate::window;
 use belvedere::control::Control;
 use belvedere::io::{atomic, write_balls};
 use belvedere::medial::MedialBalls;
+use belvedere::medium::VOXEL_SIDE;
 use belvedere::model::{ModelParts, SceneModel};
 use belvedere::planes::BuildingOutlines;
 use belvedere::pulses::FreeSegmentColumns;
-use belvedere::{PointCloud, Result};
+use belvedere::{ExtinctionVoxels, PointCloud, Result};
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -56,6 +57,7 @@ fn made(plan: &Plan, run: &Path, tile: TileId, cloud: PointCloud, control: &Cont
     let own_points: Vec<ClassedPoint> = own.iter().filter_map(|&row| of_ball(row)).collect();
     let mut transmission = own.iter().filter_map(|&row| parts.transmission.get(row).copied()).collect();
     let mut balls = parts.balls.select(&own);
+    let medium = parts.medium.as_ref().map(|voxels| left_crowns(plan, &core, voxels, &all, control)).transpose()?;
     drop(all);
     clear_balls(plan, &core, &mut balls, &mut transmission, &own_points, control)?;
     let patches = patches::of_tile(&parts.patches, &core, &plan.cleared);
@@ -63,7 +65,7 @@ fn made(plan: &Plan, run: &Path, tile: TileId, cloud: PointCloud, control: &Cont
     let pulses = parts.pulses.as_ref().filter(|_| plan.proves).map(own_pulses);
     // those of the margin are other tiles'
     let outlines = BuildingOutlines::default();
-    let parts = ModelParts { balls, transmission, patches, outlines, pulses, ..parts };
+    let parts = ModelParts { balls, transmission, patches, outlines, medium, pulses, ..parts };
     written(plan, run, tile, parts, nothing, control)
 }
 
@@ -77,20 +79,28 @@ fn written(
     control: &Control<'_>,
 ) -> Result<TileRecord> {
     let pulses = parts.pulses.filter(|pulses| !pulses.starts.is_empty());
-    let parts = ModelParts { bounds: plan.bounds(), pulses: None, ..parts };
-    let record = match pulses {
-        None => record,
-        Some(pulses) => {
-            let path = Stage::Balls.pulses(plan, run, tile);
-            let alone = ModelParts { pulses: Some(pulses), frame: parts.frame.clone(), ..ModelParts::default() };
-            control.stage("writing", 0, || write_balls(&path, &alone.with_provenance("tile", tile.name())))?;
-            TileRecord { pulses: Some(Stamp::of(&path)?), ..record }
-        }
+    let medium = parts.medium.filter(|voxels| !voxels.is_empty());
+    let parts = ModelParts { bounds: plan.bounds(), pulses: None, medium: None, ..parts };
+    let beside = |alone: ModelParts, path: &Path| {
+        let alone = ModelParts { frame: parts.frame.clone(), ..alone }.with_provenance("tile", tile.name());
+        control.stage("writing", 0, || write_balls(path, &alone))?;
+        Stamp::of(path)
     };
-    if parts.balls.is_empty() && parts.patches.is_empty() {
+    let mut record = record;
+    if let Some(pulses) = pulses {
+        let alone = ModelParts { pulses: Some(pulses), ..ModelParts::default() };
+        record.pulses = Some(beside(alone, &Stage::Balls.pulses(plan, run, tile))?);
+    }
+    let mut tops = patches::raise(tops(&parts.balls), &parts.patches);
+    let has_crowns = medium.is_some();
+    if let Some(medium) = medium {
+        tops = raised_to_crowns(tops, &medium, parts.frame.origin);
+        let alone = ModelParts { medium: Some(medium), ..ModelParts::default() };
+        record.crowns = Some(beside(alone, &Stage::Balls.crowns(plan, run, tile))?);
+    }
+    if parts.balls.is_empty() && parts.patches.is_empty() && !has_crowns {
         return Ok(record);
     }
-    let tops = patches::raise(tops(&parts.balls), &parts.patches);
     let count = parts.balls.len();
     let path = Stage::Balls.result(plan, run, tile);
     control.stage("writing", 0, || write_balls(&path, &parts.with_provenance("tile", tile.name())))?;
@@ -111,6 +121,30 @@ pub(crate) fn tops(balls: &MedialBalls) -> Vec<([i32; 2], f32)> {
         }
     }
     tops.into_iter().collect()
+}
+
+/// Tops over squares of 16 m, raised to those of the voxels of crowns, which take light half a voxel beyond.
+fn raised_to_crowns(tops: Vec<([i32; 2], f32)>, voxels: &ExtinctionVoxels, origin: [f64; 3]) -> Vec<([i32; 2], f32)> {
+    let mut tops: BTreeMap<[i32; 2], f32> = tops.into_iter().collect();
+    for &voxel in &voxels.voxels {
+        let (area, top) = crown_box(voxel, origin);
+        #[expect(clippy::cast_possible_truncation, reason = "local positions are f32")]
+        let [first, last] = [area.low, area.high].map(|corner| square_at(corner.map(|v| v as f32), TOP_SIDE));
+        for square in (first[1]..=last[1]).flat_map(|north| (first[0]..=last[0]).map(move |east| [east, north])) {
+            let highest = tops.entry(square).or_insert(f32::NEG_INFINITY);
+            #[expect(clippy::cast_possible_truncation, reason = "local positions are f32")]
+            let top = top as f32;
+            *highest = highest.max(top);
+        }
+    }
+    tops.into_iter().collect()
+}
+
+/// The square on the map over which a voxel of a crown takes light, and up to where, local metres.
+pub(crate) fn crown_box(voxel: [i32; 3], origin: [f64; 3]) -> (MapArea, f64) {
+    let [low, high] = ExtinctionVoxels::square_of(voxel, origin);
+    let reach = VOXEL_SIDE;
+    (MapArea { low, high }.widened(reach), ExtinctionVoxels::top_of(voxel, origin) + reach)
 }
 
 /// The square on the map that a ball covers.

@@ -2,7 +2,7 @@
 
 use crate::grid::{CELL, MapArea, TOP_SIDE, TileId, block_area, square_area};
 use crate::lines::{AreaLines, MAX_BALL, passes, tiles};
-use crate::make_balls::{make_balls, square_of};
+use crate::make_balls::{crown_box, make_balls, square_of};
 use crate::plan::Plan;
 use crate::record::{TileOutcome, TileRecord};
 use crate::stage::Stage;
@@ -91,6 +91,44 @@ impl ObstacleSearch {
             }
         }
         made_again((plan, run, tile), read, control).map(Option::flatten)
+    }
+}
+
+impl ObstacleSearch {
+    /// Adds the crowns of a tile that may take light from `lines` to `voxels`. Those that are damaged are made again.
+    ///
+    /// # Errors
+    /// Those of writing records, and [`Error::Cancelled`].
+    pub(crate) fn add_crowns(
+        &mut self,
+        (plan, run, tile): (&Plan, &Path, TileId),
+        lines: &AreaLines<'_>,
+        voxels: &mut Vec<([i32; 3], f32)>,
+        control: &Control<'_>,
+    ) -> Result<()> {
+        let path = Stage::Balls.crowns(plan, run, tile);
+        let read = |record: TileRecord| match &record.crowns {
+            Some(stamp) => Ok(read_balls(Source::bytes(&path, &stamp.read(&path)?))?.medium),
+            None => Ok(None),
+        };
+        let found = match TileRecord::read(plan, run, Stage::Balls, tile).map(read) {
+            Some(Ok(found)) => found,
+            Some(Err(Error::Cancelled)) => return Err(Error::Cancelled),
+            Some(Err(error)) => {
+                self.damaged.push(error.to_string());
+                made_again((plan, run, tile), read, control)?.flatten()
+            }
+            // what may stand there is noted with its balls
+            None => None,
+        };
+        let Some(found) = found else { return Ok(()) };
+        let origin = plan.frame.origin;
+        let may_meet = |(voxel, _): &([i32; 3], f32)| {
+            let (area, top) = crown_box(*voxel, origin);
+            lines.may_meet(&area, top)
+        };
+        voxels.extend(found.voxels.into_iter().zip(found.extinction).filter(may_meet));
+        Ok(())
     }
 }
 

@@ -15,11 +15,13 @@ use crate::planned::Others;
 use crate::strips::Strips;
 use belvedere::apps::rows::ObstacleParts;
 use belvedere::apps::tree_light::CrownLight;
+use belvedere::blocking::BlockRule;
 use belvedere::control::Control;
 use belvedere::medial::{MedialBalls, vegetation_of_transmission};
+use belvedere::medium::Medium;
 use belvedere::model::ModelParts;
 use belvedere::query::{BlockingTriangles, FreeLines, MedialScene, VisibilityMatrix};
-use belvedere::{Result, SurfacePatches};
+use belvedere::{ExtinctionVoxels, Result, SurfacePatches};
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -45,6 +47,8 @@ pub(crate) struct TileObstacles<'a> {
     max_balls: usize,
     /// Squares of tiles, nearest first.
     squares: Vec<Vec<BallTile>>,
+    /// Crowns, where they were measured and let light through.
+    medium: Option<Medium>,
     found: Mutex<ObstacleSearch>,
 }
 
@@ -62,12 +66,26 @@ impl<'a> TileObstacles<'a> {
         control: &Control<'_>,
     ) -> Result<Self> {
         let mut found = ObstacleSearch::default();
-        let squares = squares(tile, ball_tiles(plan, run, lines, &mut found, control)?, max_balls);
-        Ok(Self { plan, run, cells: lines.targets, others, max_balls, squares, found: Mutex::new(found) })
+        let tiles = ball_tiles(plan, run, lines, &mut found, control)?;
+        let medium = match plan.trees {
+            Some(CrownLight::Measured { .. }) => {
+                let mut voxels = Vec::new();
+                for of_tile in &tiles {
+                    control.check()?;
+                    found.add_crowns((plan, run, of_tile.tile), lines, &mut voxels, control)?;
+                }
+                voxels.sort_unstable_by_key(|(voxel, _)| *voxel);
+                let (voxels, extinction) = voxels.into_iter().unzip();
+                Some(Medium::new(&ExtinctionVoxels { voxels, extinction }, plan.frame.origin))
+            }
+            _ => None,
+        };
+        let squares = squares(tile, tiles, max_balls);
+        Ok(Self { plan, run, cells: lines.targets, others, max_balls, squares, medium, found: Mutex::new(found) })
     }
 
-    /// Gives `look` scenes of at most so many balls that may block one of `lines`, until all were given. A line of
-    /// sight is free where it is free in all.
+    /// Gives `look` scenes of at most so many balls that may block one of `lines`, until all were given, and with each the
+    /// same without vegetation where crowns were measured. A line of sight is free where it is free in all.
     ///
     /// # Errors
     /// Those of `look`, of writing records, and [`belvedere::Error::Cancelled`].
@@ -75,38 +93,30 @@ impl<'a> TileObstacles<'a> {
         &self,
         lines: &AreaLines<'_>,
         control: &Control<'_>,
-        mut look: impl FnMut(&MedialScene) -> Result<()>,
+        mut look: impl FnMut(&MedialScene, Option<&MedialScene>) -> Result<()>,
     ) -> Result<()> {
         let mut found = self.found.lock().unwrap_or_else(PoisonError::into_inner);
-        let (mut part, mut patches) = (MedialBalls::default(), SurfacePatches::default());
+        let mut part =
+            SceneBatch { solid: self.medium.as_ref().map(|_| MedialBalls::default()), ..SceneBatch::default() };
         for of_tile in self.squares.iter().flatten() {
             control.check()?;
             let read = control.stage("reading balls", 0, || found.read(self.plan, self.run, of_tile.tile, control))?;
-            let Some(ModelParts { balls, patches: of_tile, .. }) = read else { continue };
-            add_blocking(&mut patches, &of_tile, lines);
+            let Some(ModelParts { balls, patches: of_tile, transmission, .. }) = read else { continue };
+            add_blocking(&mut part.patches, &of_tile, lines);
+            let vegetation = vegetation_of_transmission(&transmission);
             for row in may_block(&balls, lines) {
-                if part.len() == self.max_balls {
-                    let taken = (std::mem::take(&mut part), std::mem::take(&mut patches));
-                    look(&self.scene(taken, &mut found, control)?)?;
+                if part.all.len() == self.max_balls {
+                    let (scene, solid) = part.taken(&rule(self.plan), &mut found, control)?;
+                    look(&scene, solid.as_ref())?;
                 }
-                push(&mut part, &balls, row);
+                push(&mut part.all, &balls, row);
+                if let Some(solid) = part.solid.as_mut().filter(|_| vegetation.get(row) != Some(&true)) {
+                    push(solid, &balls, row);
+                }
             }
         }
-        look(&self.scene((part, patches), &mut found, control)?)
-    }
-
-    /// The scene of balls and patches that are tested together.
-    fn scene(
-        &self,
-        (balls, patches): (MedialBalls, SurfacePatches),
-        found: &mut ObstacleSearch,
-        control: &Control<'_>,
-    ) -> Result<MedialScene> {
-        found.ball_count += balls.len();
-        found.max_held = found.max_held.max(balls.len());
-        let triangles = BlockingTriangles::of_patches(&patches, None)?;
-        let scene = control.stage("indexing balls", balls.len(), || MedialScene::new(&balls, &rule(self.plan)))?;
-        Ok(scene.with_triangles(triangles))
+        let (scene, solid) = part.taken(&rule(self.plan), &mut found, control)?;
+        look(&scene, solid.as_ref())
     }
 
     /// What became of the balls.
@@ -151,10 +161,13 @@ impl<'a> TileObstacles<'a> {
                 let rows: Vec<usize> =
                     (0..balls.len()).into_par_iter().filter(|row| is_in(row) && may_block(row)).collect();
                 for row in rows {
+                    let is_vegetation = vegetation.get(row) == Some(&true);
+                    if is_vegetation && self.medium.is_some() {
+                        continue;
+                    }
                     if part.ball_count() == self.max_balls {
                         part.hide(free, self.plan, found, control)?;
                     }
-                    let is_vegetation = vegetation.get(row) == Some(&true);
                     push(if is_vegetation { &mut part.vegetation } else { &mut part.opaque }, &balls, row);
                 }
                 from = to;
@@ -173,6 +186,10 @@ impl ObstacleParts for TileObstacles<'_> {
         self.plan.trees
     }
 
+    fn medium(&self) -> Option<&Medium> {
+        self.medium.as_ref()
+    }
+
     fn look(
         &self,
         targets: &[[f32; 3]],
@@ -180,7 +197,7 @@ impl ObstacleParts for TileObstacles<'_> {
         control: &Control<'_>,
     ) -> Result<(VisibilityMatrix, Option<VisibilityMatrix>)> {
         let without_trees = FreeLines::new(targets, directions)?;
-        let all = self.crowns().map(|_| without_trees.clone());
+        let all = matches!(self.crowns(), Some(CrownLight::Share { .. })).then(|| without_trees.clone());
         let mut strips = Strips::new(directions, &self.cells);
         strips.look_up(&without_trees, &without_trees.free_columns());
         let mut free = Free { without_trees, all, target_count: targets.len(), strips };
@@ -226,6 +243,36 @@ impl ObstacleParts for TileObstacles<'_> {
             });
         }
         Ok(are_inside)
+    }
+}
+
+/// Balls and patches that become a scene together.
+#[derive(Default)]
+struct SceneBatch {
+    all: MedialBalls,
+    /// Those that are no vegetation, where crowns were measured.
+    solid: Option<MedialBalls>,
+    patches: SurfacePatches,
+}
+
+impl SceneBatch {
+    /// The scenes of all balls and of those that are solid; none are left.
+    fn taken(
+        &mut self,
+        rule: &BlockRule,
+        found: &mut ObstacleSearch,
+        control: &Control<'_>,
+    ) -> Result<(MedialScene, Option<MedialScene>)> {
+        let triangles = BlockingTriangles::of_patches(&std::mem::take(&mut self.patches), None)?;
+        let balls = std::mem::take(&mut self.all);
+        found.ball_count += balls.len();
+        found.max_held = found.max_held.max(balls.len());
+        let indexed = |balls: MedialBalls| {
+            let scene = control.stage("indexing balls", balls.len(), || MedialScene::new(&balls, rule))?;
+            Ok(scene.with_triangles(triangles.clone()))
+        };
+        let solid = self.solid.as_mut().map(|solid| indexed(std::mem::take(solid))).transpose()?;
+        Ok((indexed(balls)?, solid))
     }
 }
 

@@ -30,7 +30,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// Version of the layout of plans and records.
-pub(crate) const LAYOUT: u32 = 11;
+pub(crate) const LAYOUT: u32 = 12;
 /// Points around a place that its ground is taken from, metres, beside the usual ones.
 const GROUND_AROUND: f64 = 32.0;
 /// A plan: input files, tiles and what is known of the whole survey. It is the same for the same files and parameters.
@@ -398,20 +398,20 @@ impl Plan {
     /// # Errors
     /// [`Error::MissingAttribute`] for a survey whose pulses do not say what vegetation is.
     pub fn with_light_through_trees(self, trees: CrownLight) -> Result<Self> {
-        if !(self.statistics.carves && self.statistics.measures_crowns) {
+        if !self.measures_crowns() {
             return Err(Error::MissingAttribute {
-                attribute: "return numbers and GPS times",
+                attribute: "pulses that carve",
                 needed_for: "knowing which balls are vegetation",
-                advice: "use a survey that has them, or opaque trees",
+                advice: "use a survey that has return numbers and GPS times, or opaque trees",
             });
         }
         Ok(Self { trees: Some(trees), ..self })
     }
 
-    /// Share of the pulses that get through crowns, in the places that the plan looked at.
+    /// Whether tiles know crowns as a medium.
     #[must_use]
-    pub fn share_of_pulses_through_crowns(&self) -> f64 {
-        self.statistics.whole.transmission
+    pub fn measures_crowns(&self) -> bool {
+        self.statistics.carves
     }
 
     /// The meshes of what is planned, and far terrain.
@@ -428,7 +428,7 @@ impl Plan {
 
     /// What the values of a result are.
     pub(crate) fn kind_of(&self, question: &TileQuestion) -> ResultKind {
-        question.kind(self.trees.is_none())
+        question.kind(self.trees.is_some_and(|trees| trees.gives_shares()))
     }
 
     /// Puts places on the map, local metres, on the ground: each that has no height gets `height` metres above the

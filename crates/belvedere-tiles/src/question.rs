@@ -340,10 +340,10 @@ impl TileQuestion {
         matches!(self, Self::Viewshed { eyes, .. } if eyes.len() > 1)
     }
 
-    /// What its values are, where trees are `opaque` or let light through.
-    pub(crate) fn kind(&self, opaque: bool) -> ResultKind {
+    /// What its values are, where shadows are `shares` of light or a yes or no.
+    pub(crate) fn kind(&self, shares: bool) -> ResultKind {
         match self {
-            Self::Shadow { .. } if !opaque => ResultKind::Number,
+            Self::Shadow { .. } if shares => ResultKind::Number,
             Self::Shadow { .. } | Self::SunRule { .. } => ResultKind::Answer,
             Self::Viewshed { eyes, .. } if eyes.len() == 1 => ResultKind::Answer,
             Self::Viewshed { .. } => ResultKind::Count,
@@ -420,7 +420,8 @@ impl TileQuestion {
         control: &Control<'_>,
     ) -> Result<PreparedQuestion> {
         let invalid = |parameter, value: String, expected| Err(Error::InvalidParameter { parameter, value, expected });
-        if self.has_interval() && crowns.is_some() {
+        let gives_shares = crowns.is_some_and(|crowns| crowns.gives_shares());
+        if self.has_interval() && gives_shares {
             return invalid(Parameter::Interval, self.name().to_owned(), "left out where light gets through trees");
         }
         match self {
@@ -461,7 +462,7 @@ impl TileQuestion {
                 Ok(PreparedQuestion::Viewshed { observers, is_reverse: *is_reverse })
             }
             Self::Probability { of, certain, .. } => match of.prepare(crowns, context, control)? {
-                PreparedQuestion::Light(light) if !matches!(light, LightQuestion::Shadow(_)) || crowns.is_some() => {
+                PreparedQuestion::Light(light) if !matches!(light, LightQuestion::Shadow(_)) || gives_shares => {
                     let expected = "that of a sun with opaque trees, or of observers";
                     invalid(Parameter::Certainty, of.name().to_owned(), expected)
                 }

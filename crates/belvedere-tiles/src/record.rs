@@ -94,6 +94,9 @@ pub struct TileRecord {
     /// The file of the pulses that end in it, where there is one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) pulses: Option<Stamp>,
+    /// The file of its crowns, where it has any.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) crowns: Option<Stamp>,
     /// Points that were read.
     pub points: usize,
     /// Balls that were made, or that could matter for the answer.
@@ -154,7 +157,8 @@ impl TileRecord {
     pub(crate) fn damage(&self, plan: &Plan, run: &Path, stage: Stage<'_>, tile: TileId) -> Option<String> {
         let of_result = || self.result.as_ref()?.damage(&stage.result(plan, run, tile));
         let of_pulses = || self.pulses.as_ref()?.damage(&stage.pulses(plan, run, tile));
-        of_result().or_else(of_pulses)
+        let of_crowns = || self.crowns.as_ref()?.damage(&stage.crowns(plan, run, tile));
+        of_result().or_else(of_pulses).or_else(of_crowns)
     }
 
     /// The bytes of the file of its result, refused unless they are what was written.

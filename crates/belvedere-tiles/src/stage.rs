@@ -44,6 +44,11 @@ impl Stage<'_> {
         self.folder(plan, run).join(format!("{}.pulses.npz", tile.name()))
     }
 
+    /// Where the crowns of a tile lie.
+    pub(crate) fn crowns(&self, plan: &Plan, run: &Path, tile: TileId) -> PathBuf {
+        self.folder(plan, run).join(format!("{}.crowns.npz", tile.name()))
+    }
+
     pub(crate) fn record(&self, plan: &Plan, run: &Path, tile: TileId) -> PathBuf {
         self.folder(plan, run).join(format!("{}.json", tile.name()))
     }

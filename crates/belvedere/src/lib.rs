@@ -63,12 +63,12 @@
 #[cfg(feature = "apps")]
 pub use belvedere_apps as apps;
 pub use belvedere_core::{
-    blocking, clean, depth, ground, medial, model, neighbors, normals, planes, pulses, query, ray_index, summary,
-    triangle_tree,
+    blocking, clean, depth, ground, medial, medium, model, neighbors, normals, planes, pulses, query, ray_index,
+    summary, triangle_tree,
 };
 pub use belvedere_data::{
-    Attributes, Bounds, ElevationGrid, Error, Frame, GpsTimeKind, Mesh, Parameter, PatchKind, PointCloud, Result,
-    SurfacePatches, cloud,
+    Attributes, Bounds, ElevationGrid, Error, ExtinctionVoxels, Frame, GpsTimeKind, Mesh, Parameter, PatchKind,
+    PointCloud, Result, SurfacePatches, cloud,
 };
 pub use belvedere_data::{
     contradiction, control, crs, elevation, error, frame, horizon, mesh, patches, polygon, random, raster, report,

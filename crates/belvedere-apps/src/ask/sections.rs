@@ -4,8 +4,9 @@ use super::scene::KnownGround;
 use crate::edge::EdgeReport;
 use crate::sun::{Date, DayParams, Site, SiteFrom, SunSchedule, Zone};
 use crate::targets::{Measure, MeasureStatistics, Targets};
-use crate::tree_light::Transmissivity;
+use crate::tree_light::{CrownLight, Transmissivity, bare_depth};
 use belvedere_core::ground::GroundPoints;
+use belvedere_core::medium::ExtinctionVoxels;
 use belvedere_core::query::{Answer, AnswerCounts, MedialScene, UnprovenAs};
 use belvedere_data::report::{percent, rounded};
 use serde::ser::SerializeMap;
@@ -255,7 +256,7 @@ impl LinesSection {
 }
 
 /// What trees let through.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct TreesSection {
     vegetation_balls: usize,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -264,18 +265,41 @@ pub struct TreesSection {
     transmissivity_in_leaf: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     transmissivity_without_leaves: Option<f64>,
+    /// Voxels of crowns that pulses measured.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    crown_voxels: Option<usize>,
+    /// Mean extinction in them, per metre.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    mean_extinction: Option<f64>,
+    /// By what their optical depth is multiplied without leaves.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    depth_without_leaves: Option<f64>,
 }
 
 impl TreesSection {
-    pub(super) fn of(transmissivity: &Transmissivity, vegetation: &[bool]) -> Self {
-        let Transmissivity { in_leaf, bare } = *transmissivity;
-        let is_constant = in_leaf == bare;
+    pub(super) fn of(crowns: &CrownLight, vegetation: &[bool], medium: Option<&ExtinctionVoxels>) -> Self {
         let digits = |share: f64| rounded(share, 4);
-        Self {
-            vegetation_balls: vegetation.iter().filter(|&&is| is).count(),
-            transmissivity: is_constant.then(|| digits(in_leaf)),
-            transmissivity_in_leaf: (!is_constant).then(|| digits(in_leaf)),
-            transmissivity_without_leaves: (!is_constant).then(|| digits(bare)),
+        let section = Self { vegetation_balls: vegetation.iter().filter(|&&is| is).count(), ..Self::default() };
+        match (crowns, medium) {
+            (CrownLight::Share { transmissivity: Transmissivity { in_leaf, bare }, .. }, _) => {
+                let is_constant = in_leaf == bare;
+                Self {
+                    transmissivity: is_constant.then(|| digits(*in_leaf)),
+                    transmissivity_in_leaf: (!is_constant).then(|| digits(*in_leaf)),
+                    transmissivity_without_leaves: (!is_constant).then(|| digits(*bare)),
+                    ..section
+                }
+            }
+            (CrownLight::Measured { leaves }, Some(ExtinctionVoxels { extinction, .. })) => {
+                let sum: f64 = extinction.iter().map(|&v| f64::from(v)).sum();
+                Self {
+                    crown_voxels: Some(extinction.len()),
+                    mean_extinction: Some(digits(sum / extinction.len().max(1) as f64)),
+                    depth_without_leaves: leaves.map(|_| digits(bare_depth())),
+                    ..section
+                }
+            }
+            (CrownLight::Measured { .. }, None) => section,
         }
     }
 }

@@ -5,8 +5,11 @@ use super::light::{Light, OnTargets};
 use super::sections::{MeasuresSection, PlacesReport};
 use super::sun::{MAX_LISTED_SUNS, NamedSun, SunPlace, Suns};
 use super::{Answers, Ask, Context, Places, Remark, Scene, ThroughTrees, spread};
-use crate::shadow::{Edges, LIT, ShadowSun, lit_probabilities, scene_shadow, sun_directions, unproven_light};
+use crate::shadow::{
+    Edges, LIT, ShadowSun, half_or_more, lit_probabilities, scene_shadow, sun_directions, unproven_light,
+};
 use crate::targets::{Measure, ResultKind, Targets};
+use crate::tree_light::TreeLight;
 use belvedere_core::query::UnprovenAs;
 use belvedere_data::control::Control;
 use belvedere_data::report::percent;
@@ -74,7 +77,7 @@ impl ShadowQuestion {
         &self,
         suns: &[ShadowSun],
         targets: &Targets,
-        doubts: Option<&[f32]>,
+        (trees, doubts): (Option<&TreeLight>, Option<&[f32]>),
         (scene, context): (&Scene, &mut Context),
         control: &Control<'_>,
     ) -> Result<Vec<Sureness>> {
@@ -82,7 +85,7 @@ impl ShadowQuestion {
         let is_unproven = |row: usize| doubts.and_then(|doubts| doubts.get(row)).is_some_and(|&doubt| doubt > 0.0);
         control.stage("computing probabilities", suns.len() * targets.len(), || {
             let of_sun = |sun: &ShadowSun| {
-                let probabilities = lit_probabilities(&blockers, targets, *sun, control)?;
+                let probabilities = lit_probabilities((&blockers, trees), targets, *sun, control)?;
                 let uncertain = self.how_sure.uncertain(&probabilities, is_unproven)?;
                 Ok((probabilities, uncertain))
             };
@@ -126,6 +129,15 @@ impl Ask for ShadowQuestion {
         let mut lit = control.stage("testing sun", light.steps(), || {
             scene_shadow(light.obstacles(), &light.targets, &kinds, self.edges, control)
         })?;
+        let is_answer = self.edges == Edges::Hard && !self.trees.is_light();
+        let through_crowns = match &light.trees {
+            Some(TreeLight { medium: Some(_), .. }) if is_answer => {
+                let shares = lit.clone();
+                lit.iter_mut().flatten().for_each(|share| *share = half_or_more(*share));
+                shares
+            }
+            _ => Vec::new(),
+        };
         let doubts = match (&kinds[..], &mut lit[..]) {
             ([sun], [lit]) if light.blockers.proof().is_some() => {
                 let tested = control.stage("testing pulses", 0, || {
@@ -135,10 +147,10 @@ impl Ask for ShadowQuestion {
             }
             _ => None,
         };
-        let sure = self.sureness(&kinds, &light.targets, doubts.as_deref(), (scene, context), control)?;
+        let beside = (light.trees.as_ref(), doubts.as_deref());
+        let sure = self.sureness(&kinds, &light.targets, beside, (scene, context), control)?;
         let decimals = if self.edges == Edges::Soft { 4 } else { 2 };
-        let kind =
-            if self.edges == Edges::Hard && light.trees.is_none() { ResultKind::Answer } else { ResultKind::Number };
+        let kind = if is_answer { ResultKind::Answer } else { ResultKind::Number };
         let as_band = |measure: Measure| measure.with_range(Some([0.0, 1.0])).with_kind(kind);
         let of_sun = |(sun, values): (&NamedSun, Vec<f32>)| {
             as_band(Measure::new(&sun.column, values).with_description(LIT).with_decimals(decimals))
@@ -155,14 +167,24 @@ impl Ask for ShadowQuestion {
         if let [(probabilities, uncertain)] = &sure[..] {
             self.how_sure.summarise(probabilities, uncertain.as_deref(), ["lit", "in shadow"], context);
         }
+        let suffix = |sun: &NamedSun| if suns.len() == 1 { String::new() } else { format!("_{}", sun.column) };
+        for (sun, shares) in suns.iter().zip(through_crowns) {
+            let measure = Measure::new(&format!("{LIGHT}{}", suffix(sun)), shares).with_description(LIGHT_IN_WORDS);
+            measures.push(measure.with_range(Some([0.0, 1.0])).with_decimals(4));
+        }
         for (sun, (probabilities, uncertain)) in suns.iter().zip(sure) {
-            let suffix = if suns.len() == 1 { String::new() } else { format!("_{}", sun.column) };
+            let suffix = suffix(sun);
             measures.extend(self.how_sure.measures(probabilities, uncertain, &suffix));
         }
         let title = suns.first().map(|sun| sun.title.clone()).unwrap_or_default();
         Ok(Answers::new(ShadowResults { on: light.titled(title), suns }, measures))
     }
 }
+
+/// Name of the measure that says what share of the sun arrives through crowns that pulses measured.
+const LIGHT: &str = "light";
+/// What [`LIGHT`] is.
+const LIGHT_IN_WORDS: &str = "share of the sun, through crowns as pulses measured them";
 
 /// Takes unproven light for what it is to be, and returns it where it is to be reported.
 fn settled(lit: &mut [f32], doubts: Option<Vec<f32>>, unproven: UnprovenAs) -> Option<Vec<f32>> {

@@ -5,6 +5,7 @@ use super::period::PeriodRadiation;
 use crate::rows::{RowBlock, normals_of};
 use crate::sum_errors::{Outlines, class_of};
 use belvedere_core::query::VisibilityMatrix;
+use belvedere_data::Result;
 use belvedere_data::vector::{dot, length};
 use rayon::prelude::*;
 use std::ops::Range;
@@ -69,14 +70,23 @@ impl<'a> EnergyOutlines<'a> {
     }
 
     /// The class of each target of a block, by which of all targets are inside obstacles.
-    pub(super) fn classes(&self, block: &RowBlock, are_inside: &[bool], normals: Option<&[[f32; 3]]>) -> Vec<u8> {
+    ///
+    /// # Errors
+    /// Those of [`RowBlock::free_lines`].
+    pub(super) fn classes(
+        &self,
+        block: &RowBlock<'_>,
+        are_inside: &[bool],
+        normals: Option<&[[f32; 3]]>,
+    ) -> Result<Vec<u8>> {
+        let free = block.free_lines()?;
         let normals = normals_of(normals, &block.rows);
         let class = |row: usize| {
             let normal = normals.and_then(|normals| normals.get(row)).map_or([0.0, 0.0, 1.0], |n| n.map(f64::from));
             let is_inside = are_inside.get(block.rows.start + row) == Some(&true);
-            class_of(is_inside, self.moved_share(normal, |direction| block.matrix.is_free(row, direction)))
+            class_of(is_inside, self.moved_share(normal, |direction| free.is_free(row, direction)))
         };
-        (0..block.matrix.target_count()).into_par_iter().with_min_len(CHUNK).map(class).collect()
+        Ok((0..free.target_count()).into_par_iter().with_min_len(CHUNK).map(class).collect())
     }
 
     /// The mean share that moves of those cells of a plane, rows of `matrix`, that see anything.

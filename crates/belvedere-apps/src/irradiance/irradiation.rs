@@ -1,7 +1,7 @@
 //! The energy that planes get over a period.
 
 use super::period::{PeriodRadiation, Surroundings};
-use crate::rows::{check_normals, fold_rows, normals_of};
+use crate::rows::{RowBlock, check_normals, fold_rows, normals_of};
 use belvedere_core::query::{MedialScene, VisibilityMatrix};
 use belvedere_data::control::Control;
 use belvedere_data::vector::dot;
@@ -58,21 +58,6 @@ impl Irradiation {
         self
     }
 
-    /// What arrives where crowns of trees let `transmissivity`, 0 to 1, of the light through: `self` is what does where
-    /// they let nothing through, `opaque` what does without them. Both are sums over directions, and so is all between.
-    /// Strings limited by their worst cell are as well: what gets to all cells of one is the same share, or nothing, or
-    /// all.
-    #[must_use]
-    pub fn through_crowns(&self, opaque: &Self, transmissivity: f64) -> Self {
-        let between = |all: f64, opaque: f64| all + transmissivity * (opaque - all);
-        Self {
-            beam: between(self.beam, opaque.beam),
-            diffuse: between(self.diffuse, opaque.diffuse),
-            reflected: between(self.reflected, opaque.reflected),
-            unshaded: self.unshaded,
-        }
-    }
-
     /// The sum over groups.
     #[must_use]
     pub fn sum(groups: &[Self]) -> Self {
@@ -120,6 +105,39 @@ pub fn irradiation(
     normals: Option<&[[f32; 3]]>,
     radiation: &PeriodRadiation,
 ) -> Result<Vec<Irradiation>> {
+    each_target(matrix, normals, radiation, |target, normal, groups| {
+        let light = |direction: usize| f64::from(u8::from(matrix.is_free(target, direction)));
+        on_plane(radiation, normal, light, groups);
+    })
+}
+
+/// As [`irradiation`], where what is behind crowns counts by the share that these let through, with this
+/// [`factor`](crate::tree_light::CrownLight::factor).
+///
+/// # Errors
+/// Those of [`irradiation`].
+pub fn irradiation_through_crowns(
+    block: &RowBlock<'_>,
+    normals: Option<&[[f32; 3]]>,
+    radiation: &PeriodRadiation,
+    factor: f64,
+) -> Result<Vec<Irradiation>> {
+    if block.crowns.is_none() {
+        return irradiation(&block.matrix, normals, radiation);
+    }
+    each_target(&block.matrix, normals, radiation, |target, normal, groups| {
+        let light = block.light(target, factor);
+        on_plane(radiation, normal, |direction| light.get(direction).copied().unwrap_or(0.0), groups);
+    })
+}
+
+/// Calls `sum` with each target of `matrix`, its normal and its sums.
+fn each_target(
+    matrix: &VisibilityMatrix,
+    normals: Option<&[[f32; 3]]>,
+    radiation: &PeriodRadiation,
+    sum: impl Fn(usize, [f64; 3], &mut [Irradiation]) + Sync,
+) -> Result<Vec<Irradiation>> {
     let expected = radiation.sun_directions.len() + radiation.sky.directions.len();
     if matrix.direction_count() != expected {
         let found = matrix.direction_count();
@@ -132,17 +150,17 @@ pub fn irradiation(
     let mut sums = vec![Irradiation::default(); expected * radiation.group_count()];
     sums.par_chunks_mut(radiation.group_count()).enumerate().with_min_len(CHUNK).for_each(|(target, groups)| {
         let normal = normals.map_or([0.0, 0.0, 1.0], |normals| normals[target].map(f64::from));
-        on_plane(radiation, normal, |direction| matrix.is_free(target, direction), groups);
+        sum(target, normal, groups);
     });
     Ok(sums)
 }
 
-/// The energy of a plane with a unit `normal`, before which the directions that `is_free` tells, by their row in
-/// [`PeriodRadiation::directions`], are free, for each group into `groups`.
+/// The energy of a plane with a unit `normal`, at which a share of the `light` of each direction arrives, by its row in
+/// [`PeriodRadiation::directions`], for each group into `groups`.
 pub(super) fn on_plane(
     radiation: &PeriodRadiation,
     normal: [f64; 3],
-    is_free: impl Fn(usize) -> bool,
+    light: impl Fn(usize) -> f64,
     groups: &mut [Irradiation],
 ) {
     if !(dot(normal, normal) > 0.5) {
@@ -150,7 +168,7 @@ pub(super) fn on_plane(
         return;
     }
     groups.fill(Irradiation::default());
-    add_sun(radiation, normal, &is_free, groups);
+    add_sun(radiation, normal, &light, groups);
     let first = radiation.sun_directions.len();
     let (mut sky, mut horizon) = (SeenWeights::default(), SeenWeights::default());
     let group_count = groups.len();
@@ -163,18 +181,16 @@ pub(super) fn on_plane(
         if cosine <= 0.0 && !in_band {
             continue;
         }
-        let is_free = is_free(first + patch);
-        sky.add(cosine.max(0.0) * solid_angle, is_free);
+        let light = light(first + patch);
+        sky.add(cosine.max(0.0) * solid_angle, light);
         if in_band {
-            horizon.add(ahead * solid_angle, is_free);
+            horizon.add(ahead * solid_angle, light);
         }
         let of_patch = radiation.patches.get(patch * group_count..(patch + 1) * group_count).unwrap_or_default();
         for (sum, radiation) in groups.iter_mut().zip(of_patch) {
             let energy = radiation * cosine.max(0.0);
             sum.unshaded += energy;
-            if is_free {
-                sum.diffuse += energy;
-            }
+            sum.diffuse += light * energy;
         }
     }
     // patches represent the share that is seen; what a free plane sees is known exactly
@@ -194,14 +210,15 @@ pub(super) fn on_plane(
 }
 
 /// Adds what comes from the sun and from the sky around it.
-fn add_sun(radiation: &PeriodRadiation, normal: [f64; 3], is_free: impl Fn(usize) -> bool, groups: &mut [Irradiation]) {
+fn add_sun(radiation: &PeriodRadiation, normal: [f64; 3], light: impl Fn(usize) -> f64, groups: &mut [Irradiation]) {
     for share in &radiation.sun {
         let Some(sum) = groups.get_mut(share.group) else { continue };
         let (beam, around) = (dot(share.beam, normal).max(0.0), dot(share.around, normal).max(0.0));
         sum.unshaded += beam + around;
-        if beam + around > 0.0 && is_free(share.direction) {
-            sum.beam += beam;
-            sum.diffuse += around;
+        if beam + around > 0.0 {
+            let light = light(share.direction);
+            sum.beam += light * beam;
+            sum.diffuse += light * around;
         }
     }
 }
@@ -214,11 +231,9 @@ struct SeenWeights {
 }
 
 impl SeenWeights {
-    fn add(&mut self, weight: f64, is_free: bool) {
+    fn add(&mut self, weight: f64, light: f64) {
         self.all += weight;
-        if is_free {
-            self.seen += weight;
-        }
+        self.seen += light * weight;
     }
 
     fn share(self) -> f64 {

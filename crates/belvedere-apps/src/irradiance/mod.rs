@@ -33,7 +33,7 @@ pub use clear_sky::{BirdParams, ClearSky};
 pub use diffuse::{DiffuseParts, SkyModel, diffuse_parts};
 pub use erbs::{complete, split_global};
 pub use instants::{PARTS, clear_instants, weather_instants};
-pub use irradiation::{Irradiation, irradiation, scene_irradiation};
+pub use irradiation::{Irradiation, irradiation, irradiation_through_crowns, scene_irradiation};
 pub use measures::{ENERGY, ENERGY_NAME, MONTH_COLUMNS, irradiation_measures};
 pub use patch_sky::patch_radiation;
 pub use period::{Grouping, Instant, IrradianceParams, PeriodRadiation, PeriodReport, Surroundings};

@@ -2,7 +2,7 @@
 
 use super::intervals::EnergyOutlines;
 use super::irradiation::Irradiation;
-use super::seasons::{SeasonRadiation, add, group_count, mix};
+use super::seasons::{SeasonRadiation, add, group_count};
 use super::strings::{PlaneIrradiation, plane_irradiation};
 use crate::roof_planes::RoofPlane;
 use crate::rows::{BLOCK_BITS, Obstacles, RowBlock, fold_blocks};
@@ -176,11 +176,11 @@ fn of_planes(
         fold_blocks(obstacles.into(), &places, &directions, places.len().max(1), &Control::new(&quiet), |block| {
             let own = of_season(&block, planes, &strings, season)?;
             if let Some(outlines) = &outlines {
-                let mut first = 0;
+                let (mut first, free) = (0, block.free_lines()?);
                 for ((plane, strings), moved) in planes.iter().zip(&strings).zip(&mut moved) {
                     let cells = first..first + strings.len();
                     first = cells.end;
-                    *moved = moved.max(outlines.moved_share_of_plane(&block.matrix, cells, plane.normal));
+                    *moved = moved.max(outlines.moved_share_of_plane(&free, cells, plane.normal));
                 }
             }
             if sums.is_empty() {
@@ -208,7 +208,7 @@ fn of_planes(
 }
 
 fn of_season(
-    block: &RowBlock,
+    block: &RowBlock<'_>,
     planes: &[RoofPlane],
     strings: &[Vec<usize>],
     season: &SeasonRadiation,
@@ -216,14 +216,7 @@ fn of_season(
     let mut first = 0;
     let mut found = Vec::with_capacity(planes.len());
     for (plane, strings) in planes.iter().zip(strings) {
-        let of = |matrix| plane_irradiation(matrix, first, strings, plane.normal, &season.radiation);
-        let mut own = of(&block.matrix)?;
-        if let Some(without_trees) = &block.without_trees {
-            let without = of(without_trees)?;
-            mix(&mut own.mean, &without.mean, season.share);
-            mix(&mut own.string_limited, &without.string_limited, season.share);
-        }
-        found.push(own);
+        found.push(plane_irradiation(block, (first, strings), plane.normal, &season.radiation, season.factor)?);
         first += strings.len();
     }
     Ok(found)

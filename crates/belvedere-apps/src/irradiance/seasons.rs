@@ -3,7 +3,7 @@
 use super::ClearSky;
 use super::instants::{clear_instants, weather_instants};
 use super::intervals::EnergyOutlines;
-use super::irradiation::{Irradiation, irradiation};
+use super::irradiation::{Irradiation, irradiation_through_crowns};
 use super::measures::{ENERGY_NAME, irradiation_measures};
 use super::period::{Instant, IrradianceParams, PeriodRadiation, PeriodReport};
 use crate::rows::{Obstacles, SkyObstacles, check_normals, fold_rows, normals_of};
@@ -44,8 +44,8 @@ pub enum RadiationSource<'a> {
 pub struct SeasonRadiation {
     /// What they send.
     pub radiation: PeriodRadiation,
-    /// Share of the light that gets through crowns; 0 where trees are opaque.
-    pub share: f64,
+    /// [`CrownLight::factor`] of these days; 0 where trees are opaque.
+    pub factor: f64,
 }
 
 /// A period in parts by what crowns let through; one part where they let nothing through. The report is that of all
@@ -61,7 +61,7 @@ pub fn period_seasons(
     control: &Control<'_>,
 ) -> Result<(Vec<SeasonRadiation>, PeriodReport)> {
     let zone = Zone::mean_solar(site);
-    let share = |date: Date| crowns.map_or(0.0, |crowns| crowns.share(Some(Season::on(date, site))));
+    let share = |date: Date| crowns.map_or(0.0, |crowns| crowns.factor(Some(Season::on(date, site))));
     let mut parts: Vec<(f64, Vec<Instant>)> = Vec::new();
     let mut put = |share: f64, instants: Vec<Instant>| match parts.iter_mut().find(|(own, _)| *own == share) {
         Some((_, part)) => part.extend(instants),
@@ -91,7 +91,7 @@ pub fn period_seasons(
         control.check()?;
         let radiation = PeriodRadiation::gather(instants, params)?;
         report.add(&radiation.report);
-        seasons.push(SeasonRadiation { radiation, share: *share });
+        seasons.push(SeasonRadiation { radiation, factor: *share });
     }
     Ok((seasons, report))
 }
@@ -157,7 +157,7 @@ impl TargetEnergies {
 /// The energy of `targets` over all of `seasons` among `obstacles`. Progress counts targets, [`look_count`] times each.
 ///
 /// # Errors
-/// Those of [`fold_rows`] and [`irradiation`]; [`Error::NoPoints`] without any season.
+/// Those of [`fold_rows`] and [`irradiation_through_crowns`]; [`Error::NoPoints`] without any season.
 pub fn season_irradiation<'a>(
     obstacles: impl Into<SkyObstacles<'a>>,
     targets: &Targets,
@@ -177,14 +177,11 @@ pub fn season_irradiation<'a>(
         fold_rows(obstacles, &targets.positions, &season.radiation.directions(), control, |block| {
             if let Some((are_inside, outlines)) = &outlines {
                 let of_block = classes.get_mut(block.rows.clone()).unwrap_or_default();
-                let own = outlines.classes(&block, are_inside, normals);
+                let own = outlines.classes(&block, are_inside, normals)?;
                 of_block.iter_mut().zip(own).for_each(|(class, own)| *class = own.max(*class));
             }
-            let mut own = irradiation(&block.matrix, normals_of(normals, &block.rows), &season.radiation)?;
-            if let Some(opaque) = &block.without_trees {
-                let without = irradiation(opaque, normals_of(normals, &block.rows), &season.radiation)?;
-                mix(&mut own, &without, season.share);
-            }
+            let normals = normals_of(normals, &block.rows);
+            let own = irradiation_through_crowns(&block, normals, &season.radiation, season.factor)?;
             let rows = block.rows.start * group_count..block.rows.end * group_count;
             add(sums.get_mut(rows).unwrap_or_default(), &own);
             Ok(())
@@ -209,13 +206,6 @@ pub fn look_count(obstacles: &Obstacles<'_>, seasons: &[SeasonRadiation]) -> usi
 pub(super) fn group_count(seasons: &[SeasonRadiation]) -> Result<usize> {
     let first = seasons.first().ok_or_else(|| Error::NoPoints { what: "the period has no season".to_owned() })?;
     Ok(first.radiation.group_count())
-}
-
-/// Mixes what arrives with what would without trees.
-pub(super) fn mix(all: &mut [Irradiation], without_trees: &[Irradiation], share: f64) {
-    for (all, without) in all.iter_mut().zip(without_trees) {
-        *all = all.through_crowns(without, share);
-    }
 }
 
 /// Adds the sums of a season to those of the others.

@@ -2,11 +2,9 @@
 
 use super::irradiation::{Irradiation, on_plane};
 use super::period::PeriodRadiation;
+use crate::rows::RowBlock;
 use belvedere_core::query::VisibilityMatrix;
 use belvedere_data::{Error, Result};
-
-/// Bits in a word of a row of the matrix.
-const WORD: usize = 64;
 
 /// Energy of a plane of cells over a period.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -21,19 +19,21 @@ pub struct PlaneIrradiation {
     pub cell_count: usize,
 }
 
-/// The energy of a plane with a unit `normal`, upward, whose cells are rows of `matrix` from `first` on: `strings`,
-/// (C), numbers the string of each, those of a string together. Cells that see nothing at all lie inside an obstacle or
+/// The energy of a plane with a unit `normal`, upward, whose cells are rows of `block` from `first` on: `strings`,
+/// (C), numbers the string of each, those of a string together. Crowns have a
+/// [`factor`](crate::tree_light::CrownLight::factor). Cells that see nothing at all lie inside an obstacle or
 /// under a roof, where no panel is put: they do not count. A plane without cells gets nothing.
 ///
 /// # Errors
 /// [`Error::LengthMismatch`] where the matrix has fewer rows or other directions.
 pub fn plane_irradiation(
-    matrix: &VisibilityMatrix,
-    first: usize,
-    strings: &[usize],
+    block: &RowBlock<'_>,
+    (first, strings): (usize, &[usize]),
     normal: [f64; 3],
     radiation: &PeriodRadiation,
+    factor: f64,
 ) -> Result<PlaneIrradiation> {
+    let matrix = &block.matrix;
     let expected = radiation.directions().len();
     if matrix.direction_count() != expected {
         let found = matrix.direction_count();
@@ -53,16 +53,15 @@ pub fn plane_irradiation(
     let mut groups = vec![Irradiation::default(); group_count];
     let mut cell = first;
     for string in strings.chunk_by(|a, b| a == b) {
-        let mut all = vec![u64::MAX; matrix.row(cell).len()];
+        let mut all = vec![1.0_f64; matrix.direction_count()];
         let open: Vec<usize> = (cell..cell + string.len()).filter(|&target| sees_sky(matrix, target)).collect();
         for &target in &open {
-            on_plane(radiation, normal, |direction| matrix.is_free(target, direction), &mut groups);
+            let light = block.light(target, factor);
+            on_plane(radiation, normal, |direction| light.get(direction).copied().unwrap_or(0.0), &mut groups);
             add(&mut sums.mean, &groups, share);
-            all.iter_mut().zip(matrix.row(target)).for_each(|(all, own)| *all &= own);
+            all.iter_mut().zip(&light).for_each(|(all, own)| *all = all.min(*own));
         }
-        let is_free =
-            |direction: usize| all.get(direction / WORD).is_some_and(|word| word >> (direction % WORD) & 1 == 1);
-        on_plane(radiation, normal, is_free, &mut groups);
+        on_plane(radiation, normal, |direction| all.get(direction).copied().unwrap_or(0.0), &mut groups);
         add(&mut sums.string_limited, &groups, share * open.len() as f64);
         cell += string.len();
     }

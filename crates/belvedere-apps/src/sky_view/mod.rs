@@ -4,10 +4,9 @@ mod directions;
 
 pub use directions::SkyDirections;
 
-use crate::rows::{SkyObstacles, check_normals, fold_rows, normals_of};
+use crate::rows::{RowBlock, SkyObstacles, check_normals, fold_rows, normals_of};
 use crate::sum_errors::{Intervals, Outlines, SumKind, expected_measures};
 use crate::targets::{Measure, Targets};
-use crate::tree_light::through_crowns;
 use belvedere_core::query::VisibilityMatrix;
 use belvedere_data::control::Control;
 use belvedere_data::vector::dot;
@@ -79,16 +78,13 @@ pub fn scene_sky_view<'a>(
     let outlines = are_inside.map(|are_inside| (are_inside, Outlines::new(&sky.directions, &sky.solid_angles)));
     fold_rows(obstacles, &targets.positions, &sky.directions, control, |block| {
         if let Some((are_inside, outlines)) = &outlines {
-            seen.classes.extend(outlines.classes(&block, are_inside, normals));
+            seen.classes.extend(outlines.classes(&block, are_inside, normals)?);
         }
         let normals = normals_of(normals, &block.rows);
-        let mut own = sky_view(&block.matrix, sky, normals)?;
-        if let (Some(matrix), Some(crowns)) = (&block.without_trees, obstacles.crowns()) {
-            let without = sky_view(matrix, sky, normals)?;
-            let share = crowns.share(None);
-            own.factors = through_crowns(&own.factors, &without.factors, share)?;
-            own.openness = through_crowns(&own.openness, &without.openness, share)?;
-        }
+        let own = match obstacles.crowns() {
+            Some(crowns) => sky_through_crowns(&block, sky, normals, crowns.factor(None))?,
+            None => sky_view(&block.matrix, sky, normals)?,
+        };
         seen.factors.extend(own.factors);
         seen.openness.extend(own.openness);
         Ok(())
@@ -104,6 +100,29 @@ pub fn scene_sky_view<'a>(
 /// # Errors
 /// [`Error::LengthMismatch`] where matrix, sky and normals differ.
 pub fn sky_view(matrix: &VisibilityMatrix, sky: &SkyDirections, normals: Option<&[[f32; 3]]>) -> Result<SkyView> {
+    sky_shares(matrix, sky, normals, |target, column| f64::from(u8::from(matrix.is_free(target, column))))
+}
+
+/// As [`sky_view`], where what is behind crowns counts by the share that these let through, with this
+/// [`factor`](crate::tree_light::CrownLight::factor).
+///
+/// # Errors
+/// Those of [`sky_view`].
+pub fn sky_through_crowns(
+    block: &RowBlock<'_>,
+    sky: &SkyDirections,
+    normals: Option<&[[f32; 3]]>,
+    factor: f64,
+) -> Result<SkyView> {
+    sky_shares(&block.matrix, sky, normals, |target, column| block.line(target, column).share(factor))
+}
+
+fn sky_shares(
+    matrix: &VisibilityMatrix,
+    sky: &SkyDirections,
+    normals: Option<&[[f32; 3]]>,
+    light: impl Fn(usize, usize) -> f64 + Sync,
+) -> Result<SkyView> {
     let expected = matrix.direction_count();
     if sky.directions.len() != expected {
         return Err(Error::LengthMismatch { what: "directions of the sky", expected, found: sky.directions.len() });
@@ -120,9 +139,10 @@ pub fn sky_view(matrix: &VisibilityMatrix, sky: &SkyDirections, normals: Option<
             let mut seen = [0.0, 0.0];
             for (column, (&direction, &solid_angle)) in sky.directions.iter().zip(&sky.solid_angles).enumerate() {
                 let cosine = dot(normal, direction);
-                if cosine > 0.0 && matrix.is_free(target, column) {
-                    seen[0] += cosine * solid_angle;
-                    seen[1] += solid_angle;
+                if cosine > 0.0 {
+                    let light = light(target, column);
+                    seen[0] += light * cosine * solid_angle;
+                    seen[1] += light * solid_angle;
                 }
             }
             [seen[0] / PI, seen[1] / TAU]

@@ -1,73 +1,74 @@
 //! Hours of sun where crowns of trees let a share of it through.
 
-use super::stretches::{DayStretch, Lit, runs_of};
+use super::stretches::{DayStretch, runs_of};
 use super::{CHUNK, ROUNDING, SunHours, SunHoursParams, sun_hours};
+use crate::rows::{LineLight, RowBlock};
 use crate::sun::SunSchedule;
 use belvedere_core::query::VisibilityMatrix;
 use belvedere_data::vector::dot;
-use belvedere_data::{Error, Parameter, Result};
+use belvedere_data::{Error, Result};
 use rayon::prelude::*;
 
-/// As [`sun_hours`], where only vegetation stands in the way of a sun an hour counting as much as crowns let through on
-/// that day: `transmissivities`, 0 to 1, has one for each day of `schedule`. `all` is the matrix of all balls, `opaque`
-/// that of those that are not vegetation, of the same targets and directions. Hours, share, the least day and the days
-/// that suffice are those of the light that arrives; first, last and longest are of the sun that nothing stands before,
-/// since light through leaves has no such hour.
+/// Bits in a word of a row of a matrix.
+const WORD: usize = 64;
+
+/// As [`sun_hours`], where an hour of a sun behind crowns counts as much as these let through on that day: `factors` has
+/// a [`factor`](crate::tree_light::CrownLight::factor) for each day of `schedule`. Hours, share, the least day and the
+/// days that suffice are those of the light that arrives; first, last and longest are of suns that count as free
+/// ([`LineLight::is_free`]), since a share of light has no such hour.
 ///
 /// # Errors
-/// Those of [`sun_hours`], [`Error::LengthMismatch`] where the matrices differ or there is not a share for each day,
-/// and [`Error::InvalidParameter`] for a share outside 0 to 1.
+/// Those of [`sun_hours`], and [`Error::LengthMismatch`] where there is not a factor for
+/// each day.
 pub fn sun_hours_through_crowns(
-    all: &VisibilityMatrix,
-    opaque: &VisibilityMatrix,
+    block: &RowBlock<'_>,
     schedule: &SunSchedule,
     normals: Option<&[[f32; 3]]>,
     params: &SunHoursParams,
-    transmissivities: &[f64],
+    factors: &[f64],
 ) -> Result<SunHours> {
-    let mut found = sun_hours(all, schedule, normals, params)?;
-    let same = |what, expected, found| match expected == found {
-        true => Ok(()),
-        false => Err(Error::LengthMismatch { what, expected, found }),
-    };
-    same("targets without vegetation", all.target_count(), opaque.target_count())?;
-    same("directions without vegetation", all.direction_count(), opaque.direction_count())?;
-    same("transmissivities of days", schedule.days.len(), transmissivities.len())?;
-    if let Some(bad) = transmissivities.iter().find(|share| !(0.0..=1.0).contains(*share)) {
-        return Err(Error::InvalidParameter {
-            parameter: Parameter::Transmissivity,
-            value: bad.to_string(),
-            expected: "0 (opaque) to 1",
-        });
+    let (expected, found) = (schedule.days.len(), factors.len());
+    if expected != found {
+        return Err(Error::LengthMismatch { what: "factors of crowns of days", expected, found });
     }
-    let days: Vec<(Vec<DayStretch>, f64)> =
-        schedule.days.iter().map(runs_of).zip(transmissivities.iter().copied()).collect();
-    let count = schedule.directions.len();
-    let sums: Vec<CrownSum> = (0..all.target_count())
+    let (expected, found) = (params.first_direction + schedule.directions.len(), block.matrix.direction_count());
+    if expected > found {
+        return Err(Error::LengthMismatch { what: "directions of the matrix", expected, found });
+    }
+    if let Some(found) = normals.map(<[_]>::len).filter(|&found| found != block.matrix.target_count()) {
+        let expected = block.matrix.target_count();
+        return Err(Error::LengthMismatch { what: "normals of targets", expected, found });
+    }
+    let direction_count = schedule.directions.len();
+    let width = direction_count.div_ceil(WORD);
+    let days: Vec<(Vec<DayStretch>, f64)> = schedule.days.iter().map(runs_of).zip(factors.iter().copied()).collect();
+    let (sums, words): (Vec<CrownSum>, Vec<Vec<u64>>) = (0..block.matrix.target_count())
         .into_par_iter()
         .with_min_len(CHUNK)
-        .map_init(
-            || [Lit::new(count), Lit::new(count)],
-            |[free, through], target| {
-                let normal = normals.map(|normals| normals[target].map(f64::from));
-                for (lit, matrix) in [(&mut *free, all), (&mut *through, opaque)] {
-                    lit.set(|number| {
-                        let faces = normal.is_none_or(|normal| dot(normal, schedule.directions[number]) > 0.0);
-                        faces && matrix.is_free(target, params.first_direction + number)
-                    });
-                }
-                CrownSum::over(&days, free, through, params.sufficient_hours - ROUNDING)
-            },
-        )
-        .collect();
+        .map(|target| {
+            let normal = normals.map(|normals| normals[target].map(f64::from));
+            let line = |(number, direction): (usize, &[f64; 3])| match normal {
+                Some(normal) if dot(normal, *direction) <= 0.0 => LineLight::Blocked,
+                _ => block.line(target, params.first_direction + number),
+            };
+            let lines: Vec<LineLight> = schedule.directions.iter().enumerate().map(line).collect();
+            let mut free = vec![0; width];
+            for number in lines.iter().enumerate().filter(|(_, line)| line.is_free()).map(|(number, _)| number) {
+                free[number / WORD] |= 1_u64 << (number % WORD);
+            }
+            (CrownSum::over(&days, &lines, params.sufficient_hours - ROUNDING), free)
+        })
+        .unzip();
+    let free = VisibilityMatrix::from_words(sums.len(), direction_count, words.concat())?;
+    let mut hours = sun_hours(&free, schedule, normals, &SunHoursParams { first_direction: 0, ..*params })?;
     let (day_count, possible) = (schedule.days.len().max(1) as f64, schedule.possible_hours());
     #[expect(clippy::cast_possible_truncation, reason = "hours of a day and shares of one")]
     let column = |of: &dyn Fn(&CrownSum) -> f64| sums.iter().map(|sum| of(sum) as f32).collect();
-    found.hours = column(&|sum| sum.total / day_count);
-    found.share = column(&|sum| if possible > 0.0 { (sum.total / possible).min(1.0) } else { f64::NAN });
-    found.min = column(&|sum| sum.min);
-    found.days = sums.iter().map(|sum| sum.days).collect();
-    Ok(found)
+    hours.hours = column(&|sum| sum.total / day_count);
+    hours.share = column(&|sum| if possible > 0.0 { (sum.total / possible).min(1.0) } else { f64::NAN });
+    hours.min = column(&|sum| sum.min);
+    hours.days = sums.iter().map(|sum| sum.days).collect();
+    Ok(hours)
 }
 
 /// What is summed up at one target.
@@ -78,11 +79,12 @@ struct CrownSum {
 }
 
 impl CrownSum {
-    fn over(days: &[(Vec<DayStretch>, f64)], free: &Lit, through: &Lit, sufficient: f64) -> Self {
+    fn over(days: &[(Vec<DayStretch>, f64)], lines: &[LineLight], sufficient: f64) -> Self {
         let mut sum = Self { total: 0.0, min: 24.0, days: 0 };
-        for (runs, share) in days {
-            let [free, through] = [free, through].map(|lit| runs.iter().map(|run| lit_hours(run, lit)).sum::<f64>());
-            let hours = free + share * (through - free);
+        let mut light = LightBefore::default();
+        for (runs, factor) in days {
+            light.set(lines, *factor);
+            let hours = runs.iter().map(|run| f64::from(run.hours) * light.between(run.first, run.end)).sum();
             sum.total += hours;
             sum.min = sum.min.min(hours);
             sum.days += u32::from(hours >= sufficient);
@@ -91,14 +93,30 @@ impl CrownSum {
     }
 }
 
-/// Hours of a run that are lit.
-fn lit_hours(run: &DayStretch, lit: &Lit) -> f64 {
-    let (mut hours, mut from) = (0.0, run.first);
-    while from < run.end {
-        let start = lit.next_lit(from).min(run.end);
-        let end = lit.next_dark(start).min(run.end);
-        hours += f64::from(run.hours) * f64::from(end - start);
-        from = end;
+/// The light of all directions before each, so that a stretch of them is one difference.
+#[derive(Default)]
+struct LightBefore {
+    factor: Option<f64>,
+    sums: Vec<f64>,
+}
+
+impl LightBefore {
+    fn set(&mut self, lines: &[LineLight], factor: f64) {
+        if self.factor == Some(factor) {
+            return;
+        }
+        self.factor = Some(factor);
+        self.sums.clear();
+        let mut sum = 0.0;
+        self.sums.push(sum);
+        self.sums.extend(lines.iter().map(|line| {
+            sum += line.share(factor);
+            sum
+        }));
     }
-    hours
+
+    fn between(&self, first: u32, end: u32) -> f64 {
+        let before = |number: u32| self.sums.get(number as usize).copied().unwrap_or_default();
+        before(end) - before(first)
+    }
 }

@@ -89,16 +89,16 @@ impl SunSums {
     pub fn add(
         &mut self,
         plan: &SunPlan,
-        block: &RowBlock,
+        block: &RowBlock<'_>,
         normals: Option<&[[f32; 3]]>,
         crowns: Option<(CrownLight, &Site)>,
     ) -> Result<()> {
         let normals = normals_of(normals, &block.rows);
-        let of = |schedule: &SunSchedule, params: &SunHoursParams| match (&block.without_trees, crowns) {
-            (Some(opaque), Some((crowns, site))) => {
-                let shares: Vec<f64> =
-                    schedule.days.iter().map(|day| crowns.share(Some(Season::on(day.date, site)))).collect();
-                sun_hours_through_crowns(&block.matrix, opaque, schedule, normals, params, &shares)
+        let of = |schedule: &SunSchedule, params: &SunHoursParams| match (&block.crowns, crowns) {
+            (Some(_), Some((crowns, site))) => {
+                let factors: Vec<f64> =
+                    schedule.days.iter().map(|day| crowns.factor(Some(Season::on(day.date, site)))).collect();
+                sun_hours_through_crowns(block, schedule, normals, params, &factors)
             }
             _ => sun_hours(&block.matrix, schedule, normals, params),
         };
@@ -186,7 +186,7 @@ pub fn scene_sun_hours<'a>(
         .map(|are_inside| (are_inside, Outlines::new(&plan.period.directions, &plan.period.hours_of_directions())));
     fold_rows(obstacles, &targets.positions, plan.directions(), control, |block| {
         if let Some((are_inside, outlines)) = &outlines {
-            sums.classes.extend(outlines.classes(&block, are_inside, normals));
+            sums.classes.extend(outlines.classes(&block, are_inside, normals)?);
         }
         sums.add(plan, &block, normals, crowns)
     })?;

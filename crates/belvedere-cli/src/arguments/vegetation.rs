@@ -7,12 +7,14 @@ use std::str::FromStr;
 #[derive(Args)]
 #[command(next_help_heading = "Trees")]
 pub(crate) struct ThroughTreesArguments {
-    /// Share of light that passes through tree crowns: none, seasons, pulses, or a number from 0 to 1
+    /// Light that passes through tree crowns: measured, none, seasons, pulses, or a number from 0 to 1
     ///
-    /// seasons: 0.03 in leaf and 0.5 without leaves (Konarska et al. 2014). pulses: the share of laser pulses that
-    /// passed, which is higher than that of light. Gaps that --trees leaves in crowns let light through in addition;
-    /// --trees opaque closes them.
-    #[arg(long, value_name = "SHARE", default_value = "none", allow_negative_numbers = true)]
+    /// measured: as far as laser pulses passed each cubic metre of the crown, and none where that is not known; a place
+    /// behind crowns is lit where half or more passes, and sums count the share. none: crowns are solid. seasons: the
+    /// measured crowns in leaf, with a fifth of the leaves' depth without leaves; 0.03 and 0.5 of the light where nothing
+    /// was measured (Konarska et al. 2014). pulses: as measured, and an error where nothing was. A number: this share,
+    /// through any crown.
+    #[arg(long, value_name = "SHARE", default_value = "measured", allow_negative_numbers = true)]
     pub(crate) through_trees: ThroughTreesChoice,
     /// Whether trees have leaves, with --through-trees seasons [default: auto with a date, else on]
     ///
@@ -23,6 +25,7 @@ pub(crate) struct ThroughTreesArguments {
 
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) enum ThroughTreesChoice {
+    Measured,
     None,
     Seasons,
     Pulses,
@@ -34,12 +37,13 @@ impl FromStr for ThroughTreesChoice {
 
     fn from_str(text: &str) -> Result<Self, String> {
         match text {
+            "measured" => Ok(Self::Measured),
             "none" => Ok(Self::None),
             "seasons" => Ok(Self::Seasons),
             "pulses" => Ok(Self::Pulses),
             _ => match text.parse() {
                 Ok(share) if (0.0..=1.0).contains(&share) => Ok(Self::Share(share)),
-                _ => Err("use none, seasons, pulses, or a number from 0 (opaque) to 1".to_owned()),
+                _ => Err("use measured, none, seasons, pulses, or a number from 0 (opaque) to 1".to_owned()),
             },
         }
     }

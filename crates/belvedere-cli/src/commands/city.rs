@@ -12,7 +12,6 @@ use crate::run::CommandContext;
 use crate::summary::{Summary, rounded};
 use anyhow::{Result, bail};
 use belvedere::apps::ask::remark_on_cleared;
-use belvedere::apps::tree_light::Transmissivity;
 use belvedere::io::Insistence;
 use belvedere::{Error, Parameter};
 use belvedere_tiles::{
@@ -103,8 +102,7 @@ pub(super) fn planned(
         None => plan,
     };
     let Some(trees) = trees else { return Ok(plan) };
-    let measured = || Transmissivity::constant(plan.share_of_pulses_through_crowns()).ok();
-    match trees.choice()?.crowns(measured)? {
+    match trees.choice()?.crowns(plan.measures_crowns())? {
         Some(crowns) => Ok(plan.with_light_through_trees(crowns)?),
         None => Ok(plan),
     }

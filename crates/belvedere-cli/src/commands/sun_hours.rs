@@ -95,6 +95,8 @@ fn with_matrix(
     run.stage("testing sun", targets.len(), |control| {
         write_matrix_rows(file, &head, |sink| {
             fold_rows(prepared.obstacles().into(), &targets.positions, plan.directions(), control, |block| {
+                // a matrix has a yes or no for each line, also of those through crowns
+                let block = RowBlock { matrix: block.free_lines()?, crowns: None, ..block };
                 (0..block.matrix.target_count()).try_for_each(|row| sink(block.matrix.row(row)))?;
                 sums.add(plan, &block, targets.normals.as_deref(), None)
             })
@@ -143,7 +145,7 @@ fn add_rows(
     first: usize,
     matrix: VisibilityMatrix,
 ) -> belvedere::Result<()> {
-    let block = RowBlock { rows: first..first + matrix.target_count(), matrix, without_trees: None };
+    let block = RowBlock { rows: first..first + matrix.target_count(), matrix, crowns: None };
     sums.add(&prepared.plan, &block, prepared.targets().normals.as_deref(), None)
 }
 

@@ -17,6 +17,7 @@ impl ThroughTreesArguments {
             Some(LeavesChoice::Off) => Leaves::Off,
         };
         Ok(match self.through_trees {
+            ThroughTreesChoice::Measured => ask::ThroughTrees::Measured,
             ThroughTreesChoice::None => ask::ThroughTrees::Opaque,
             ThroughTreesChoice::Seasons => ask::ThroughTrees::Seasons(leaves),
             ThroughTreesChoice::Share(share) => ask::ThroughTrees::Share(share),

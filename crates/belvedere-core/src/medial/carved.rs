@@ -3,12 +3,14 @@
 use super::carve::{CarveReport, carve};
 use super::close_range::CloseRangeBalls;
 use super::crowns;
+use super::kinds::Kind;
 use super::marking_rule::{MarkingRule, Phase};
 use super::marks::{self, RadiusCaps};
 use super::rules::CarvedParams;
 use super::shrinking_ball::{ShrinkReport, shrink};
 use super::survey::{CarvedInput, RuleStatistics, Survey};
 use super::vegetation::find_vegetation;
+use crate::medium::PlantReturn;
 use belvedere_data::Result;
 use belvedere_data::balls::{MedialBalls, Side};
 use belvedere_data::control::Control;
@@ -44,8 +46,10 @@ pub struct CarvedBalls {
     /// may have the same source.
     pub balls: MedialBalls,
     /// Share of the pulses that got through the piece of crown that a ball is part of, (B), 0 to 1; NaN for balls that
-    /// are not vegetation. Empty where nothing was measured.
+    /// are not vegetation, and 0 for all others where pulses cannot be told apart. Empty where nothing is vegetation.
     pub transmission: Vec<f32>,
+    /// What each return tells of plants, (N); empty where scanners stood on the ground.
+    pub returns: Vec<PlantReturn>,
     /// What became of them.
     pub report: CarvedReport,
 }
@@ -64,7 +68,7 @@ pub fn carved_balls(input: &CarvedInput<'_>, params: &CarvedParams, control: &Co
             let CloseRangeBalls { balls, shrinking, carving, below_tripods } = sizes.balls(input, control)?;
             let rules = BTreeMap::from([("balls_below_tripods", below_tripods)]);
             let report = CarvedReport { shrinking, carving, rules };
-            Ok(CarvedBalls { balls: balls.shrunk(), transmission: Vec::new(), report })
+            Ok(CarvedBalls { balls: balls.shrunk(), report, ..CarvedBalls::default() })
         }
         None => carve_survey(survey(input, params, control)?, &params.rules(), params, control),
     }
@@ -150,9 +154,16 @@ fn carve_survey(
         Ok(())
     })?;
     let balls = balls.shrunk();
-    let of = |&source: &u32| survey.transmission.get(source as usize).copied();
-    let transmission = balls.source.iter().filter_map(of).collect();
-    Ok(CarvedBalls { balls, transmission, report })
+    let is_plant = |row: usize| survey.kinds.get(row) == Some(&Kind::Vegetation);
+    let of = |&source: &u32| match survey.transmission.get(source as usize) {
+        Some(&share) => share,
+        // known to be a plant, and no more
+        None if is_plant(source as usize) => 0.0,
+        None => f32::NAN,
+    };
+    let is_known = !survey.transmission.is_empty() || survey.kinds.contains(&Kind::Vegetation);
+    let transmission = if is_known { balls.source.iter().map(of).collect() } else { Vec::new() };
+    Ok(CarvedBalls { balls, transmission, returns: survey.plant_returns(), report })
 }
 
 #[cfg(test)]

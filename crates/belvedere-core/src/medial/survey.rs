@@ -1,17 +1,22 @@
 //! What rules read: the points of a survey, what each of them is, and the statistics of the whole.
 
-use super::cells::{Cells, highest, lowest_near};
+use super::cells::{Cells, cell, highest, lowest_near};
 use super::kinds::{Kind, kinds};
 use super::spacing::{pulse_counts, pulse_spacing};
+use crate::medium::PlantReturn;
 use crate::neighbors::NeighborIndex;
 use crate::normals::OrientedCloud;
 use crate::pulses::{FreeSegments, Pulses};
 use belvedere_data::Attributes;
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 /// Side of the blocks in which balls are pruned and thin surfaces end, metres: many times the largest ball, so that
 /// little is kept twice.
 pub(crate) const BLOCK: f32 = 64.0;
+/// Height above the lowest return near by from which on plants take light, metres: below lie grass and the noise of the
+/// ground.
+const PLANTS_ABOVE: f32 = 0.5;
 
 /// Statistics of a whole survey that rules need, so that a part of it has the balls of the whole.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -140,6 +145,21 @@ impl<'a> Survey<'a> {
                 *claimed = true;
             }
         }
+    }
+
+    /// What each return tells of plants: those of the kind are plants, those of no particular class (0 and 1) perhaps,
+    /// but for what lies on the ground.
+    pub(super) fn plant_returns(&self) -> Vec<PlantReturn> {
+        let of_row = |(row, (p, kind)): (usize, (&[f32; 3], &Kind))| {
+            let is_low = self.lowest.get(cell(*p)).is_none_or(|lowest| p[2] < lowest + PLANTS_ABOVE);
+            match (kind, self.class(row)) {
+                _ if is_low => PlantReturn::Elsewhere,
+                (Kind::Vegetation, _) => PlantReturn::Plant,
+                (Kind::Other | Kind::Later, None | Some(0 | 1)) => PlantReturn::Perhaps,
+                _ => PlantReturn::Elsewhere,
+            }
+        };
+        self.measured.par_iter().zip(&self.kinds).enumerate().map(of_row).collect()
     }
 
     /// Whether a rule represents a point by fills of its own.

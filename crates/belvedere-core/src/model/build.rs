@@ -7,9 +7,10 @@ use super::report::{BallsReport, BuildReport};
 use super::surfaces::close_surfaces;
 use super::{LOOKS_UP, ModelParts, SceneModel};
 use crate::medial::{
-    CarvedBalls, CarvedInput, MedialBalls, ShrinkParams, Side, carved_balls, shrink, vegetation_of_classes,
+    CarvedBalls, CarvedInput, MedialBalls, ShrinkParams, Side, Trees, carved_balls, shrink, vegetation_of_classes,
     vegetation_of_transmission,
 };
+use crate::medium::{ExtinctionVoxels, MediumParams, PlantReturn, PlantReturns, estimate};
 use crate::planes::BuildingOutlines;
 use crate::query::{BallTree, BlockRule, BlockingTriangles};
 use belvedere_data::control::Control;
@@ -55,6 +56,7 @@ fn of_survey(
     control: &Control<'_>,
 ) -> Result<(SceneModel, BuildReport)> {
     let (mut balls, mut transmission);
+    let mut medium = None;
     let (mut patches, mut outlines) = (SurfacePatches::default(), BuildingOutlines::default());
     let settled = match params.balls {
         BallParams::CarvedIfPossible(carved, _) if survey.carving.is_some() => BallParams::Carved(carved),
@@ -68,7 +70,11 @@ fn of_survey(
             let statistics = params.statistics.as_deref().map(|statistics| &statistics.whole);
             let input = CarvedInput { oriented, measured, index, attributes, free_segments, pulses, statistics };
             let found;
-            CarvedBalls { balls, transmission, report: found } = carved_balls(&input, carved, control)?;
+            let returns;
+            CarvedBalls { balls, transmission, returns, report: found } = carved_balls(&input, carved, control)?;
+            if carved.crowns.is_some_and(|crowns| crowns.trees == Trees::Measured) && !returns.is_empty() {
+                medium = Some(survey.medium(&returns, &frame, control)?);
+            }
             report.interior_balls = Some(BallsReport::Carved(found));
             if let Some(params) = &carved.planes {
                 (patches, outlines, report.surfaces) =
@@ -121,7 +127,7 @@ fn of_survey(
         _ => None,
     };
     let (bounds, pulses) = (survey.bounds, survey.pulses());
-    let parts = ModelParts { frame, bounds, balls, patches, outlines, transmission, pulses, provenance };
+    let parts = ModelParts { frame, bounds, balls, patches, outlines, transmission, medium, pulses, provenance };
     Ok((SceneModel { parts, vegetation, tree, triangles, ..SceneModel::default() }, report))
 }
 
@@ -146,6 +152,19 @@ impl OrientedSurvey {
         let (balls, report) =
             control.stage("shrinking balls", oriented.len(), || shrink(oriented, index, side, &params, control))?;
         Ok((balls, BallsReport::Shrunk(report)))
+    }
+
+    /// Crowns as a medium, by what returns, (N) as the points kept, tell of plants.
+    fn medium(&self, kinds: &[PlantReturn], frame: &Frame, control: &Control<'_>) -> Result<ExtinctionVoxels> {
+        let Some(input) = &self.carving else { return Ok(ExtinctionVoxels::default()) };
+        let returns = PlantReturns {
+            positions: &self.measured,
+            scanner: &input.scanner,
+            return_count: input.attributes.return_count.as_deref(),
+            kinds,
+            origin: frame.origin,
+        };
+        control.stage("measuring crowns", kinds.len(), || estimate(&returns, &MediumParams::default(), control))
     }
 
     /// Turns the points that `balls` are tangent at and touch from rows of the points kept into rows of the cloud as

@@ -10,10 +10,11 @@ use crate::query::{BlockingTriangles, FreedSpace};
 use belvedere_data::balls::LIMIT_TOUCH;
 use belvedere_data::control::Control;
 use belvedere_data::polygon::{PolygonIndex, simple_rings};
-use belvedere_data::{Bounds, Error, Parameter, PointCloud, Result, SurfacePatches};
+use belvedere_data::{Bounds, Error, ExtinctionVoxels, Parameter, PointCloud, Result, SurfacePatches};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashSet};
+use std::sync::OnceLock;
 
 /// ASPRS class of ground.
 const GROUND: u8 = 2;
@@ -91,6 +92,7 @@ impl SceneModel {
         let cleared = cloud.positions.iter().zip(&is_cleared).filter(|(_, is_cleared)| **is_cleared);
         kept.cleared_places.extend(cleared.map(|(p, _)| [p[0], p[1]]));
         if report.points_cleared > 0 {
+            self.clear_crowns(cloud, &is_cleared);
             self.clear_balls(cloud, &is_cleared, &clearing, &mut report);
             self.close_ground(cloud, &is_cleared, &clearing, &mut report, control)?;
             self.renumber(&rows, cloud.len());
@@ -127,6 +129,19 @@ impl SceneModel {
             self.parts.patches = left;
         }
         Ok(())
+    }
+
+    /// Leaves out the voxels of crowns at cleared points.
+    fn clear_crowns(&mut self, cloud: &PointCloud, is_cleared: &[bool]) {
+        let origin = self.frame().origin;
+        let Some(voxels) = &mut self.parts.medium else { return };
+        let voxels_of = |wanted: bool| -> HashSet<[i32; 3]> {
+            let rows = cloud.positions.iter().zip(is_cleared).filter(|(_, cleared)| **cleared == wanted);
+            rows.map(|(p, _)| ExtinctionVoxels::voxel_of(*p, origin)).collect()
+        };
+        let (cleared, kept) = (voxels_of(true), voxels_of(false));
+        *voxels = voxels.without_cleared(&cleared, &kept);
+        self.medium = OnceLock::new();
     }
 
     /// Leaves out the balls at points that are cleared, and cuts those that reach into the area of a polygon.

@@ -34,6 +34,7 @@ pub use surfaces::SurfacesReport;
 pub use terrain::{TerrainReport, check_terrain};
 
 use crate::medial::{MedialBalls, PULSE_TOUCH, vegetation_of_transmission};
+use crate::medium::Medium;
 use crate::planes::BuildingOutlines;
 use crate::pulses::FreeSegmentColumns;
 use crate::query::{Backend, BallTree, BlockingTriangles, FarTerrain, FreedSpace, Proof};
@@ -56,6 +57,8 @@ pub struct SceneModel {
     tree: Option<BallTree>,
     /// What its pulses prove, where something has needed it so already.
     proof: OnceLock<Proof>,
+    /// Its crowns, where something has needed them so already.
+    medium: OnceLock<Arc<Medium>>,
     /// What blocks beside the balls: the patches, and meshes that were added.
     triangles: Option<BlockingTriangles>,
     /// Space that was cleared.
@@ -277,6 +280,15 @@ impl SceneModel {
     #[must_use]
     pub fn vegetation(&self) -> &[bool] {
         &self.vegetation
+    }
+
+    /// Crowns as a medium, which with the balls that are no vegetation takes the place of all balls; `None` where they
+    /// were not measured, and where there are none.
+    #[must_use]
+    pub fn medium(&self) -> Option<Arc<Medium>> {
+        let voxels = self.parts.medium.as_ref().filter(|voxels| !voxels.is_empty())?;
+        let is_known = self.vegetation.contains(&true);
+        is_known.then(|| Arc::clone(self.medium.get_or_init(|| Arc::new(Medium::new(voxels, self.frame().origin)))))
     }
 
     /// Outward unit normals of the points that the model was built from, (N, 3); zero for points without one and for

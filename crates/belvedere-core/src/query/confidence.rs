@@ -10,6 +10,7 @@
 //! This project's own. Logistic regression on classes of evidence: a scorecard (Hosmer & Lemeshow 2000, chapter 3).
 
 use super::{Answer, BlockedLines, MedialScene, ParallelLines, Proof, Viewer};
+use crate::medium::Medium;
 use crate::ray_index::Ray;
 use belvedere_data::control::Control;
 use belvedere_data::{Error, Parameter, Result};
@@ -24,6 +25,16 @@ const SCORES: &str = include_str!("confidence_scores.csv");
 const UNPROVEN_CLASSES: [f64; 6] = [0.05, 0.5, 1.0, 2.0, 4.0, MAX_UNPROVEN];
 /// Length from which on more makes no difference, metres.
 const MAX_UNPROVEN: f64 = 8.0;
+/// Logarithm of the odds of being dark behind crowns: constant, and weights of the same of the evidence past all balls
+/// and of the optical depth. Fitted to photographs of shadows on eleven plots (docs/methods/tree-light.md), whose
+/// weights are alike where one is left out.
+const CROWNS_CONSTANT: f64 = -2.0;
+/// See [`CROWNS_CONSTANT`].
+const CROWNS_BALLS: f64 = 0.2;
+/// See [`CROWNS_CONSTANT`].
+const CROWNS_DEPTH: f64 = 2.4;
+/// Probabilities are no nearer to 0 and 1 before logarithms are taken.
+const MIN_PROBABILITY: f64 = 1e-4;
 
 /// What speaks for a target being visible, and against it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -154,6 +165,26 @@ impl Evidence {
         terms.into_iter().map(move |(term, class)| ScoreKey { term, is_free, class })
     }
 
+    /// How likely the target is lit, 0 to 1, where crowns of this optical depth stand before it, of whose line this is
+    /// the evidence past all balls, and `solid` is what those block that are no vegetation.
+    ///
+    /// Where crowns play no part, it is [`Evidence::probability`]. Otherwise light gets past what is solid with the
+    /// probability that solid balls alone give, and through crowns with one that follows from the optical depth and from
+    /// the evidence past all balls; both must be.
+    #[must_use]
+    pub fn probability_among_crowns(&self, solid: BlockedLines, depth: f64) -> f32 {
+        let without_crowns = Self { lines: solid.lines(), is_inside_obstacle: solid.is_inside_obstacle(), ..*self };
+        if depth == 0.0 && without_crowns.lines == self.lines {
+            return self.probability();
+        }
+        let past_all = f64::from(self.probability()).clamp(MIN_PROBABILITY, 1.0 - MIN_PROBABILITY);
+        let dark = CROWNS_CONSTANT + CROWNS_BALLS * ((1.0 - past_all) / past_all).ln() + CROWNS_DEPTH * depth;
+        let through = 1.0 / (1.0 + dark.exp());
+        #[expect(clippy::cast_possible_truncation, reason = "a probability")]
+        let lit = (f64::from(without_crowns.probability()) * through) as f32;
+        lit
+    }
+
     /// How likely the target is visible, 0 to 1.
     #[must_use]
     pub fn probability(&self) -> f32 {
@@ -221,6 +252,37 @@ impl MedialScene {
             (![observer, target].into_iter().any(|end| self.is_outside_cloud(end))).then_some(sight)
         };
         self.probabilities(pairs.len(), sight, control)
+    }
+
+    /// As [`MedialScene::visible_probabilities`], for light through crowns that were measured: `solid` is this scene
+    /// without its vegetation, `medium` its vegetation.
+    ///
+    /// # Errors
+    /// Those of [`MedialScene::visible_probabilities`].
+    pub fn lit_probabilities(
+        &self,
+        (solid, medium): (&Self, &Medium),
+        viewer: Viewer<'_>,
+        targets: &[[f32; 3]],
+        control: &Control<'_>,
+    ) -> Result<Vec<f32>> {
+        let mut found = self.visible_probabilities(viewer, targets, control)?;
+        let chunks = found.par_chunks_mut(CHUNK).zip(targets.par_chunks(CHUNK)).enumerate();
+        chunks.try_for_each(|(chunk, (found, targets))| {
+            control.check()?;
+            for (i, (found, target)) in found.iter_mut().zip(targets).enumerate() {
+                let Some(sight) = viewer.sight(chunk * CHUNK + i, *target).filter(|_| !found.is_nan()) else {
+                    continue;
+                };
+                let Ray { origin, direction, ranges: [_, range] } = sight;
+                let depth = medium.optical_depth(origin, direction, range);
+                let Some(of_all) = self.evidence(origin, direction, range) else { continue };
+                let blocked = solid.blocked_lines(BlockedLines::NONE, origin, direction, range);
+                *found = of_all.probability_among_crowns(blocked, depth);
+            }
+            Ok(())
+        })?;
+        Ok(found)
     }
 
     fn probabilities(

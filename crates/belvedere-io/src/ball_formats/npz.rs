@@ -10,6 +10,7 @@ use super::patches::{in_corners, kinds_of_codes};
 use crate::npz_arrays::{array, array_names, has, invalid, open, rows, values, write_archive};
 use crate::output::Output;
 use crate::source::Input;
+use belvedere_data::ExtinctionVoxels;
 use belvedere_data::free_segments::FreeSegmentColumns;
 use belvedere_data::model::ModelParts;
 use belvedere_data::{Error, Result, SurfacePatches};
@@ -21,7 +22,7 @@ const PULSE_ARRAYS: [&str; 3] = ["pulse_starts", "pulse_slopes", "pulse_top"];
 /// Arrays that files with surface patches have.
 const PATCH_ARRAYS: [&str; 2] = ["patch_corners", "patch_kinds"];
 /// Arrays that all or some files have beside these.
-const OTHER_ARRAYS: [&str; 10] = [
+const OTHER_ARRAYS: [&str; 12] = [
     "centers",
     "origin",
     "radii",
@@ -32,6 +33,8 @@ const OTHER_ARRAYS: [&str; 10] = [
     "pulse_lengths",
     "pulse_ways",
     "metadata",
+    "crown_voxels",
+    "crown_extinction",
 ];
 /// Metadata longer than this is not ours.
 const MAX_METADATA_BYTES: u64 = 1 << 24;
@@ -60,6 +63,11 @@ pub(super) fn write_arrays<W: Write + Seek>(archive: &mut ZipWriter<W>, parts: &
     }
     if !parts.outlines.is_empty() {
         write_outlines(archive, &parts.outlines)?;
+    }
+    if let Some(ExtinctionVoxels { voxels, extinction }) = &parts.medium {
+        let v = voxels.len() as u64;
+        array(archive, "crown_voxels", &[v, 3], voxels.as_flattened().iter().copied())?;
+        array(archive, "crown_extinction", &[v], extinction.iter().copied())?;
     }
     if let Some(FreeSegmentColumns { starts, ways, slopes, lengths, top }) = &parts.pulses {
         let p = starts.len() as u64;
@@ -119,6 +127,9 @@ pub(super) fn read_arrays<R: Read + Seek>(archive: &mut ZipArchive<R>, path: &Pa
     }
     check_patches(&parts.patches).map_err(|e| Error::malformed(path, e))?;
     parts.outlines = read_outlines(archive).map_err(malformed)?;
+    if has(archive, "crown_voxels") || has(archive, "crown_extinction") {
+        parts.medium = Some(crowns(archive).map_err(malformed)?);
+    }
     if PULSE_ARRAYS.iter().any(|name| has(archive, name)) {
         parts.pulses = Some(pulses(archive).map_err(malformed)?);
     }
@@ -133,6 +144,11 @@ fn patches<R: Read + Seek>(archive: &mut ZipArchive<R>) -> io::Result<SurfacePat
     let kinds = values::<u8, _>(archive, "patch_kinds", u64::MAX)?.0;
     let triangles = corners.as_chunks::<9>().0.iter().map(in_corners).collect();
     Ok(SurfacePatches { triangles, kinds: kinds_of_codes(&kinds).map_err(invalid)? })
+}
+
+fn crowns<R: Read + Seek>(archive: &mut ZipArchive<R>) -> io::Result<ExtinctionVoxels> {
+    let voxels = rows::<i32, 3, _>(archive, "crown_voxels")?;
+    Ok(ExtinctionVoxels { voxels, extinction: values(archive, "crown_extinction", u64::MAX)?.0 })
 }
 
 fn pulses<R: Read + Seek>(archive: &mut ZipArchive<R>) -> io::Result<FreeSegmentColumns> {

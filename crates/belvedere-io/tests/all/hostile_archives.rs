@@ -8,7 +8,7 @@ use belvedere_data::building_outlines::{BuildingOutlines, Edge, Ridge, RoofPlane
 use belvedere_data::crs::Crs;
 use belvedere_data::free_segments::FreeSegmentColumns;
 use belvedere_data::model::ModelParts;
-use belvedere_data::{Bounds, Frame, PatchKind, SurfacePatches};
+use belvedere_data::{Bounds, ExtinctionVoxels, Frame, PatchKind, SurfacePatches};
 use belvedere_io::{Output, Source, read_balls, read_mesh, write_balls};
 
 /// A small ball file in the format of an extension.
@@ -112,6 +112,7 @@ fn full_archive() -> (ModelParts, Vec<u8>) {
             separation_angles: vec![0.5; count],
         },
         transmission: vec![0.25; count],
+        medium: Some(ExtinctionVoxels { voxels: vec![[85_001, 447_002, 3]], extinction: vec![0.5] }),
         pulses: Some(FreeSegmentColumns {
             starts: vec![[0.5; 3]; 3],
             ways: vec![0, 4, 5],

@@ -80,8 +80,8 @@ class Sunlight:
             Which points are ground: class 2 where there is one (default), always class 2, or those that are found.
         soft : bool, optional
             Whether the sun is a disc, of which places see a share.
-        through_trees : {'none', 'seasons', 'pulses'} or float, optional
-            Share of light that passes through crowns; none if not given.
+        through_trees : {'measured', 'none', 'seasons', 'pulses'} or float, optional
+            Light that passes through crowns; as pulses measured it if not given, where they did.
         leaves : {'auto', 'on', 'off'}, optional
             Whether trees have leaves, with ``through_trees='seasons'``.
         location : array_like, shape (2,), optional

@@ -170,7 +170,7 @@ fn light_through_trees_lies_between_opaque_trees_and_none_whatever_the_tiles() {
     let through = |share: f64| {
         move |plan: Plan| {
             let transmissivity = Transmissivity::constant(share).unwrap();
-            plan.with_light_through_trees(CrownLight { transmissivity, leaves: Leaves::ByDate }).unwrap()
+            plan.with_light_through_trees(CrownLight::Share { transmissivity, leaves: Leaves::ByDate }).unwrap()
         }
     };
     let folder = |name: &str| place.path().join(name);
@@ -205,6 +205,28 @@ fn light_through_trees_lies_between_opaque_trees_and_none_whatever_the_tiles() {
         let more = none.iter().filter(|(cell, v)| **v > opaque[*cell]).count();
         assert!(more > 100, "{}: {more} cells see more without trees", question.name());
     }
+}
+
+#[test]
+fn light_through_measured_crowns_is_the_same_in_tiles_of_any_size() {
+    let place = tempfile::tempdir().unwrap();
+    let clouds = write_town(place.path(), 84.0, 1.0);
+    let questions = [suns()[1].clone(), TileQuestion::SkyView { sky: SkyParts::Even(25), interval: false }];
+    let measured = |plan: Plan| plan.with_light_through_trees(CrownLight::Measured { leaves: None }).unwrap();
+    let folder = |name: &str| place.path().join(name);
+    let opaque = done(&clouds, &folder("opaque"), 512.0, &questions, |plan| plan);
+    let whole = done(&clouds, &folder("whole"), 512.0, &questions, measured);
+    let tiles = done(&clouds, &folder("tiles"), 64.0, &questions, measured);
+    let [solid, found, of_tiles] = [(&opaque, "opaque"), (&whole, "whole"), (&tiles, "tiles")]
+        .map(|(plan, name)| codes(plan, &folder(name), &questions[0]));
+    assert!(found == of_tiles, "shadows of tiles differ");
+    let changed = found.iter().filter(|(cell, lit)| solid[*cell] != **lit).count();
+    assert!(changed > 20, "{changed} cells differ from those among solid crowns");
+    let [solid, found, of_tiles] = [(&opaque, "opaque"), (&whole, "whole"), (&tiles, "tiles")]
+        .map(|(plan, name)| numbers(plan, &folder(name), &questions[1]));
+    assert!(found == of_tiles, "views of the sky from tiles differ");
+    let more = found.iter().filter(|(cell, v)| **v > solid[*cell]).count();
+    assert!(more > 100, "{more} cells see more of the sky through crowns");
 }
 
 /// Height of a ridge north of the town, and where its side stands, file coordinates.

@@ -15,7 +15,7 @@ function written() {
   // a page that opens files itself has there what it opened
   const opened = [...wordsOf(location.hash)].filter(([name]) => ["open", "crs", "window"].includes(name));
   const words = { ...Object.fromEntries(opened), q: tool.name, d: time.date, t: clockText(time.minutes), z: time.zone };
-  if (time.trees !== "opaque") words.trees = time.trees;
+  if (time.trees !== "measured") words.trees = time.trees;
   if ($("outlines").getAttribute("aria-pressed") === "true") words.edges = "yes";
   if (page.isSure) words.sure = "yes";
   if (page.compared) Object.assign(words, { from: page.compared.time, fromz: page.compared.zone });
@@ -48,7 +48,7 @@ function recallTime(words) {
   if (/^\d{4}-\d\d-\d\d$/.test(words.get("d") ?? "")) time.date = $("date").value = words.get("d");
   if (words.get("z")) time.zone = $("zone").value = words.get("z");
   if (minutes < 1440) time.minutes = minutes;
-  if (["opaque", "seasons"].includes(words.get("trees"))) time.trees = $("trees").querySelector("select").value = words.get("trees");
+  if (["measured", "opaque", "seasons"].includes(words.get("trees"))) time.trees = $("trees").querySelector("select").value = words.get("trees");
   showClock();
 }
 function recallColor(name) {

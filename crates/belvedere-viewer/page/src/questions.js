@@ -149,7 +149,7 @@ function pick(clicked, point = null) {
 page.pick = pick;
 
 // Whether answers can be shown by how sure they are: pulses tell, of what is yes or no.
-const offersSure = (tool) => tool.samples && page.scene.tells_unproven && !api.exported && !(tool.time && page.time.trees !== "opaque");
+const offersSure = (tool) => tool.samples && page.scene.tells_unproven && !api.exported && !(tool.time && page.time.trees === "seasons");
 // Probabilities stand behind the answers, a byte for each.
 function withProbabilities(answer) {
   if (!answer.certainty) return answer;
@@ -160,7 +160,7 @@ function withProbabilities(answer) {
 // Date, time and zone as questions have them, and what gets through trees.
 function timeNow() {
   const { date, zone, minutes, trees } = page.time;
-  return { date, zone, clock: clockText(minutes), trees: trees === "seasons" ? { seasons: "by_date" } : "opaque" };
+  return { date, zone, clock: clockText(minutes), trees: trees === "seasons" ? { seasons: "by_date" } : trees };
 }
 // Whether answers are compared with those of another time.
 const isCompared = (tool) => Boolean(tool.between && page.compared && !isChange() && !api.exported);

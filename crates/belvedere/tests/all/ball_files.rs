@@ -15,7 +15,7 @@ use belvedere::medial::MedialBalls;
 use belvedere::model::ModelParts;
 use belvedere::planes::BuildingOutlines;
 use belvedere::pulses::FreeSegmentColumns;
-use belvedere::{Bounds, Error, Frame, PatchKind, PointCloud, SurfacePatches};
+use belvedere::{Bounds, Error, ExtinctionVoxels, Frame, PatchKind, PointCloud, SurfacePatches};
 use tempfile::TempDir;
 
 fn dutch() -> Crs {
@@ -37,6 +37,10 @@ fn balls(crs: Crs) -> ModelParts {
         transmission: (0..n).map(|i| f32::from(i) / 499.0).collect(),
         patches: patches(),
         outlines: BuildingOutlines::default(),
+        medium: Some(ExtinctionVoxels {
+            voxels: (0..40).map(|i| [84_500 + i / 8, 446_700 + i % 8, 9 - i]).collect(),
+            extinction: (0..40_u8).map(|i| f32::from(i) * 0.037).collect(),
+        }),
         pulses: Some(FreeSegmentColumns {
             starts: (0..700_u16).map(|i| [f32::from(i) * 0.37, f32::from(i).sqrt(), 1.0 / f32::from(i + 3)]).collect(),
             ways: (0..700_u16).map(|i| u8::try_from(i % 6).unwrap()).collect(),
@@ -83,6 +87,7 @@ fn balls_come_back() {
             assert!(same_bits(&found.balls.separation_angles, &balls.balls.separation_angles));
             assert_eq!(found.transmission, balls.transmission, "{name}");
             assert_eq!(found.pulses.is_some(), name == "b.npz", "{name}");
+            assert_eq!(found.medium, balls.medium.clone().filter(|_| name == "b.npz"), "{name}");
             assert_eq!(found.patches.kinds, balls.patches.kinds, "{name}");
             let corners = |parts: &ModelParts| parts.patches.triangles.as_flattened().as_flattened().to_vec();
             if name == "b.ply" {

@@ -4,6 +4,7 @@ use belvedere::apps::irradiance::{
     ClearSky, Grouping, Instant, IrradianceParams, Irradiation, PeriodRadiation, SkyModel, Surroundings,
     clear_instants, irradiation, plane_irradiation, scene_irradiation, weather_instants,
 };
+use belvedere::apps::rows::RowBlock;
 use belvedere::apps::sky_view::{SkyDirections, sky_view};
 use belvedere::apps::sun::{Site, Zone, sun_position};
 use belvedere::control::Control;
@@ -203,8 +204,9 @@ fn a_string_gets_what_all_of_its_cells_get() {
     let radiation = PeriodRadiation::gather(&instants, &IrradianceParams::default()).unwrap();
     let matrix = scene.visibility_matrix(&cells, &radiation.directions(), &Control::none()).unwrap();
     let alone = irradiation(&matrix, None, &radiation).unwrap();
+    let block = RowBlock::from(matrix);
     let up = [0.0, 0.0, 1.0];
-    let string = |strings: &[usize]| plane_irradiation(&matrix, 0, strings, up, &radiation).unwrap();
+    let string = |strings: &[usize]| plane_irradiation(&block, (0, strings), up, &radiation, 0.0).unwrap();
     let one = string(&[0, 0, 0, 0]);
     let mean = alone.iter().map(Irradiation::total).sum::<f64>() / 4.0;
     assert!((one.mean[0].total() - mean).abs() < 1e-9 * mean);

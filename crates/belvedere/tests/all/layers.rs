@@ -29,7 +29,7 @@ const RESEARCH: [(&str, &[&str]); 5] = [
 ];
 
 /// Level of each module of `belvedere-core`: a module imports from lower levels, or from its own folder.
-const LEVELS: [(&str, u8); 16] = [
+const LEVELS: [(&str, u8); 17] = [
     ("eight", 0),
     ("instructions", 0),
     ("neighbors", 1),
@@ -39,6 +39,7 @@ const LEVELS: [(&str, u8); 16] = [
     ("clean", 2),
     ("normals", 2),
     ("pulses", 2),
+    ("medium", 2),
     ("ground", 2),
     ("planes", 3),
     ("summary", 3),

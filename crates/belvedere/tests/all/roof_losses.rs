@@ -6,6 +6,7 @@ use belvedere::apps::irradiance::{
     plane_irradiation, roof_irradiation,
 };
 use belvedere::apps::roof_planes::{RoofPlane, RoofPlaneParams, roof_planes, roof_points};
+use belvedere::apps::rows::RowBlock;
 use belvedere::apps::sum_errors::Intervals;
 use belvedere::apps::sun::{Site, Zone};
 use belvedere::control::Control;
@@ -44,7 +45,8 @@ fn true_loss(plane: &RoofPlane, truth: &Truth, origin: [f64; 3], radiation: &Per
     }
     let matrix = VisibilityMatrix::from_words(cells.len(), directions.len(), words).unwrap();
     let strings: Vec<usize> = cells.iter().map(|(_, string)| *string).collect();
-    Irradiation::sum(&plane_irradiation(&matrix, 0, &strings, plane.normal, radiation).unwrap().mean).loss()
+    let block = RowBlock::from(matrix);
+    Irradiation::sum(&plane_irradiation(&block, (0, &strings), plane.normal, radiation, 0.0).unwrap().mean).loss()
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Rows of the visibility matrix as a stream: the same for any blocks, and stopped where that is requested.
 
 use belvedere::apps::exposure::{ShadeAtEachSun, scene_exposure, shaded_shares};
-use belvedere::apps::rows::{Obstacles, fold_blocks, fold_rows};
+use belvedere::apps::rows::{CrownRows, Obstacles, fold_blocks, fold_rows};
 use belvedere::apps::shadow::{Edges, ShadowSun, scene_shadow};
 use belvedere::apps::sky_view::{SkyDirections, scene_sky_view, sky_view};
 use belvedere::apps::sum_errors::Intervals;
@@ -55,7 +55,8 @@ fn blocks_of_any_size_give_the_rows_of_the_whole_matrix() {
     let opaque = MedialScene::new(&without_vegetation(&balls, &vegetation).unwrap(), &params()).unwrap();
     let trees = TreeLight {
         opaque: opaque.into(),
-        crowns: CrownLight { transmissivity: Transmissivity::default(), leaves: Leaves::ByDate },
+        crowns: CrownLight::Share { transmissivity: Transmissivity::default(), leaves: Leaves::ByDate },
+        medium: None,
     };
     let targets = targets(300);
     let sky = SkyDirections::even(150).unwrap();
@@ -69,7 +70,8 @@ fn blocks_of_any_size_give_the_rows_of_the_whole_matrix() {
             assert_eq!((rows.rows.start, rows.matrix.target_count()), (next, rows.rows.len()));
             for row in rows.rows.clone() {
                 assert_eq!(rows.matrix.row(row - next), whole.row(row), "{block}: row {row}");
-                assert_eq!(rows.without_trees.as_ref().unwrap().row(row - next), opaque.row(row), "{block}: row {row}");
+                let Some(CrownRows::Share(without)) = &rows.crowns else { panic!("trees let a share through") };
+                assert_eq!(without.row(row - next), opaque.row(row), "{block}: row {row}");
             }
             next = rows.rows.end;
             Ok(())

@@ -2,8 +2,9 @@
 #![expect(clippy::cast_possible_truncation, reason = "test places within a hundred metres in f32")]
 
 use crate::common::light_share;
-use belvedere::apps::sky_view::{SkyDirections, sky_view};
-use belvedere::apps::tree_light::{Foliage, Transmissivity, through_crowns};
+use belvedere::apps::rows::{CrownRows, RowBlock};
+use belvedere::apps::sky_view::{SkyDirections, sky_through_crowns};
+use belvedere::apps::tree_light::{Foliage, Transmissivity};
 use belvedere::control::Control;
 use belvedere::medial::{MedialBalls, vegetation_of_classes, vegetation_of_transmission, without_vegetation};
 use belvedere::query::{BlockRule, MedialScene, VisibilityMatrix};
@@ -68,9 +69,9 @@ fn a_hedge_before_a_low_wall_lets_its_share_of_the_sun_through() {
             assert_eq!(found, share(elevation, transmissivity), "{} degrees", elevation.to_degrees());
         }
         let expected: f64 = elevations.iter().map(|&e| 0.25 * share(e, transmissivity)).sum();
-        let sums = [&all, &opaque].map(|matrix| [matrix.sum(0, &[0.25; 90]) as f32]);
-        let mixed = through_crowns(&sums[0], &sums[1], transmissivity).unwrap()[0];
-        assert!((f64::from(mixed) - expected).abs() < 1e-5, "{mixed} instead of {expected}");
+        let block = RowBlock { crowns: Some(CrownRows::Share(opaque.clone())), ..RowBlock::from(all.clone()) };
+        let mixed = 0.25 * block.light(0, transmissivity).iter().sum::<f64>();
+        assert!((mixed - expected).abs() < 1e-9, "{mixed} instead of {expected}");
     }
 }
 
@@ -79,21 +80,19 @@ fn a_crown_takes_of_the_sky_what_it_covers_but_its_share() {
     // a crown of 2 m of radius, 5 m above
     let balls = ClassifiedBalls::new(&[([0.0, 0.0, 5.0], 2.0, LEAF)]);
     let sky = SkyDirections::even(2305).unwrap();
-    let [all, opaque] = balls.matrices(&sky.directions).map(|matrix| sky_view(&matrix, &sky, None).unwrap());
+    let [all, opaque] = balls.matrices(&sky.directions);
+    let block = RowBlock { crowns: Some(CrownRows::Share(opaque)), ..RowBlock::from(all) };
     let sin: f64 = 2.0 / 5.0;
     let covered = [sin * sin, 1.0 - (1.0 - sin * sin).sqrt()];
     for transmissivity in [0.0, 0.05, 0.5] {
-        let factor = through_crowns(&all.factors, &opaque.factors, transmissivity).unwrap()[0];
-        let openness = through_crowns(&all.openness, &opaque.openness, transmissivity).unwrap()[0];
-        for (found, covered) in [factor, openness].into_iter().zip(covered) {
+        let seen = sky_through_crowns(&block, &sky, None, transmissivity).unwrap();
+        for (found, covered) in [seen.factors[0], seen.openness[0]].into_iter().zip(covered) {
             let expected = 1.0 - (1.0 - transmissivity) * covered;
             // 2305 directions err by 0.0015
             assert!((f64::from(found) - expected).abs() < 0.002, "{found} instead of {expected}");
         }
     }
-    assert!(through_crowns(&[1.0], &[1.0, 1.0], 0.5).is_err());
     for share in [-0.01, 1.01, f64::NAN, f64::INFINITY] {
-        assert!(through_crowns(&[1.0], &[1.0], share).is_err(), "{share}");
         assert!(Transmissivity::constant(share).is_err(), "{share}");
     }
 }
@@ -118,18 +117,13 @@ fn trees_are_in_leaf_from_april_to_october_and_half_a_year_later_in_the_south() 
 }
 
 #[test]
-fn what_pulses_measured_is_the_mean_over_the_area_of_crowns() {
+fn balls_at_points_of_vegetation_are_told_from_others() {
     let balls =
         ClassifiedBalls::new(&[([0.0; 3], 1.0, LEAF), ([5.0, 0.0, 0.0], 2.0, LEAF), ([9.0, 0.0, 0.0], 9.0, WALL)]);
     let transmission = [0.5, 0.25, f32::NAN];
-    let found = Transmissivity::measured(&balls.balls, &transmission).unwrap();
-    // areas as 1 to 4: (0.5 + 4 · 0.25) / 5
-    assert!((found.in_leaf - 0.3).abs() < 1e-9 && found.in_leaf == found.bare, "{found:?}");
     assert_eq!(vegetation_of_transmission(&transmission), [true, true, false]);
     assert_eq!(vegetation_of_classes(&balls.balls, &balls.classes), [true, true, false]);
     // classes of a cloud that is shorter than it should be name nothing
     assert_eq!(vegetation_of_classes(&balls.balls, &[LEAF]), [true, false, false]);
-    assert_eq!(Transmissivity::measured(&balls.balls, &[f32::NAN; 3]), None);
-    assert_eq!(Transmissivity::measured(&balls.balls, &[]), None);
     assert!(without_vegetation(&balls.balls, &[true]).is_err());
 }

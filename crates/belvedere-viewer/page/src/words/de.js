@@ -18,6 +18,7 @@ export const de = {
     "Area in its plane": "Fläche in ihrer Ebene",
     "Area of the plane": "Größe der Dachfläche",
     "Area on the map": "Fläche auf der Karte",
+    "As measured": "Wie gemessen",
     "Ask": "Fragen",
     "Ask about this place": "Fragen zu dieser Stelle",
     "Ask at the centre of the view": "In der Bildmitte fragen",

@@ -18,6 +18,7 @@ export const fr = {
     "Area in its plane": "Surface dans son plan",
     "Area of the plane": "Surface du pan",
     "Area on the map": "Surface sur la carte",
+    "As measured": "Selon la mesure",
     "Ask": "Poser la question",
     "Ask about this place": "Questions sur cet endroit",
     "Ask at the centre of the view": "Poser la question au centre de la vue",

@@ -18,6 +18,7 @@ export const nl = {
     "Area in its plane": "Oppervlakte in het eigen vlak",
     "Area of the plane": "Oppervlakte van het dakvlak",
     "Area on the map": "Oppervlakte op de kaart",
+    "As measured": "Zoals gemeten",
     "Ask": "Vraag stellen",
     "Ask about this place": "Stel een vraag over deze plek",
     "Ask at the centre of the view": "Vraag stellen in het midden van het beeld",

@@ -8,6 +8,7 @@ use belvedere::apps::irradiance::{
     irradiation, plane_irradiation, roof_irradiation, season_irradiation,
 };
 use belvedere::apps::roof_planes::{RoofPlane, RoofPlaneParams, roof_planes};
+use belvedere::apps::rows::RowBlock;
 use belvedere::apps::sum_errors::{Intervals, SumKind};
 use belvedere::apps::sun::{Site, Zone};
 use belvedere::apps::targets::Targets;
@@ -142,7 +143,8 @@ fn of_planes(
         let places: Vec<[f64; 3]> = cells.iter().map(at).collect();
         let truth = exact(&places, &radiation.directions(), surveyed)?;
         let strings: Vec<usize> = cells.iter().map(|(_, string)| *string).collect();
-        let exact = Irradiation::sum(&plane_irradiation(&truth, 0, &strings, plane.normal, radiation)?.mean);
+        let block = RowBlock::from(truth);
+        let exact = Irradiation::sum(&plane_irradiation(&block, (0, &strings), plane.normal, radiation, 0.0)?.mean);
         if let (Some(class), true) = (found.class, found.cell_count > 0 && exact.unshaded > 0.0) {
             cases.push(SumCase {
                 kind: SumKind::Plane,
