@@ -63,8 +63,8 @@
 #[cfg(feature = "apps")]
 pub use belvedere_apps as apps;
 pub use belvedere_core::{
-    blocking, clean, depth, ground, medial, model, neighbors, normals, planes, pulses, query, ray_index, summary,
-    triangle_tree,
+    blocking, clean, depth, ground, medial, model, neighbors, normals, planes, pulses, query, ray_index, strips,
+    summary, triangle_tree,
 };
 pub use belvedere_data::{
     Attributes, Bounds, ElevationGrid, Error, Frame, GpsTimeKind, Mesh, Parameter, PatchKind, PointCloud, Result,

@@ -19,6 +19,11 @@ const RATIO_ERROR: f64 = 0.02;
 /// A raster further off than this has other heights, metres: slopes between coarse cells err less, the difference
 /// between the ellipsoid and the sea is more.
 const DIFFERS: f64 = 12.0;
+/// Least difference that is no slope between coarse cells where many places share it, metres; how far these may differ
+/// from each other, and their least share.
+const DIFFERS_EVENLY: f64 = 3.0;
+const EVENLY: f64 = 1.0;
+const EVEN_SHARE: f64 = 0.25;
 
 /// A warning where heights of the terrain are not those of `places` on surfaces of a scene, local metres, of which a
 /// fifth or more lie on the ground. `base` is the height of local zero.
@@ -60,13 +65,27 @@ pub fn remark_on_terrain(
         );
         return remark("terrain-in-metres", text);
     }
-    if as_read > DIFFERS {
+    if as_read > DIFFERS || (as_read > DIFFERS_EVENLY && differ_evenly(&pairs)) {
         let text = format!(
             "the terrain lies {difference} m off the ground of the scene: are both heights above the same level, and in the same unit?"
         );
         return remark("terrain-heights-differ", text);
     }
     None
+}
+
+/// Whether many places differ from the terrain by the same height.
+fn differ_evenly(pairs: &[[f64; 2]]) -> bool {
+    let mut differences: Vec<f64> = pairs.iter().map(|[top, terrain]| top - terrain).collect();
+    differences.sort_by(f64::total_cmp);
+    let (mut first, mut most) = (0, 0);
+    for (last, difference) in differences.iter().enumerate() {
+        while difference - differences[first] > EVENLY {
+            first += 1;
+        }
+        most = most.max(last + 1 - first);
+    }
+    most as f64 >= EVEN_SHARE * differences.len() as f64
 }
 
 #[cfg(test)]
@@ -99,6 +118,9 @@ mod tests {
             assert_eq!(found(level, 1.0 / foot, 0.0), Some("terrain-in-metres"), "{level}");
             // the geoid of the Netherlands lies 43 m above the ellipsoid
             assert_eq!(found(level, 1.0, 43.0), Some("terrain-heights-differ"), "{level}");
+            // another zero
+            assert_eq!(found(level, 1.0, 10.0), Some("terrain-heights-differ"), "{level}");
+            assert_eq!(found(level, 1.0, -4.0), Some("terrain-heights-differ"), "{level}");
         }
     }
 }

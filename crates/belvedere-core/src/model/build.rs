@@ -5,7 +5,7 @@ use super::params::{BallParams, ModelParams};
 use super::prepare::{OrientedSurvey, prepare};
 use super::report::{BallsReport, BuildReport};
 use super::surfaces::close_surfaces;
-use super::{LOOKS_UP, ModelParts, SceneModel};
+use super::{FINDINGS, LOOKS_UP, ModelParts, SceneModel};
 use crate::medial::{
     CarvedBalls, CarvedInput, MedialBalls, ShrinkParams, Side, carved_balls, shrink, vegetation_of_classes,
     vegetation_of_transmission,
@@ -98,6 +98,9 @@ fn of_survey(
     // parts of surveys are not judged alone
     if params.statistics.is_none() && survey.looks_y_up(&frame) {
         provenance.insert(LOOKS_UP[0].to_owned(), LOOKS_UP[1].to_owned());
+    }
+    if let Some(found) = report.survey.to_text().filter(|_| !report.survey.is_empty()) {
+        provenance.insert(FINDINGS.to_owned(), found);
     }
     // pulses at the edge of a part lack the balls beyond
     let checked = report.pulses.as_mut().filter(|_| params.statistics.is_none());
