@@ -4,10 +4,11 @@ use crate::arguments::Cli;
 use clap::{Command, CommandFactory};
 
 /// Flags of how balls are built, by their names with underscores. They are also the keys of `--scene-config`.
-pub(crate) const BALL_FLAGS: [&str; 14] = [
+pub(crate) const BALL_FLAGS: [&str; 15] = [
     "keep_noise",
     "keep_duplicates",
     "keep_isolated",
+    "keep_strips",
     "neighbors",
     "orient",
     "method",

@@ -46,19 +46,24 @@ pub(crate) fn read_every_row(input: &CloudInput, run: &mut CommandContext) -> Re
 /// The error of reading these clouds, with the flag that left no point of them.
 pub(crate) fn named_for_part(input: &CloudInput, error: Error) -> anyhow::Error {
     match error {
-        Error::NoPoints { .. } if input.bounds.is_some() => anyhow::Error::new(error).context("--bounds"),
+        Error::NoPoints { .. } => match input.part_flag() {
+            Some(flag) => anyhow::Error::new(error).context(flag),
+            None => error.into(),
+        },
         _ => error.into(),
     }
 }
 
 /// Refuses a part of a cloud.
 pub(crate) fn refuse_part(input: &CloudInput) -> Result<()> {
-    match input.bounds {
+    match input.part_flag() {
         None => Ok(()),
-        Some(_) => {
-            let what = "--bounds: this result has a row for each row of the file, of which only a part is read; \
-                        leave it out, or give a format with coordinates";
-            Err(Usage(what.to_owned()).into())
+        Some(flag) => {
+            let what = format!(
+                "{flag}: this result has a row for each row of the file, of which only a part is read; leave it out, \
+                 or give a format with coordinates"
+            );
+            Err(Usage(what).into())
         }
     }
 }
@@ -238,7 +243,9 @@ fn present_scene(arguments: &SceneInput, points: KeepPoints, run: &mut CommandCo
         // what fails here has failed for the scene as well, which says it
         let _ = cache.keep_reading(&arguments.input.clouds, &arguments.input.read_options(), &before);
     }
-    let ground_store = run.cache.as_ref().zip(built.cloud.as_ref()).map(|(cache, contents)| cache.ground_of(contents));
+    let kept = run.cache.as_ref().zip(built.cloud.as_ref()).map(|(cache, contents)| cache.ground_of(contents));
+    // the ground that is kept is that of lines fitted to each other
+    let ground_store = kept.filter(|_| !parameters.cleaning.keep_strips);
     Ok(LoadedScene { model: reported(built, run), cloud, left_out, profile, ground_store })
 }
 
@@ -292,6 +299,9 @@ fn refuse_flags_of_clouds(arguments: &SceneInput, parameters: &BallParameters, p
         ("--crs", arguments.input.crs.is_some()),
         ("--up", arguments.input.up != UpChoice::Z),
         ("--bounds", arguments.input.bounds.is_some()),
+        ("--lines", !arguments.input.lines.is_empty()),
+        ("--dates", arguments.input.dates.is_some()),
+        ("--only-classes", !arguments.input.only_classes.is_empty()),
         ("--orient", arguments.balls.orient.is_some()),
         ("--trees", arguments.balls.trees.is_some()),
     ];

@@ -152,6 +152,7 @@ impl Cleaning {
             keep_noise: self.keep_noise || other.keep_noise,
             keep_duplicates: self.keep_duplicates || other.keep_duplicates,
             keep_isolated: self.keep_isolated || other.keep_isolated,
+            keep_strips: self.keep_strips || other.keep_strips,
         }
     }
 }

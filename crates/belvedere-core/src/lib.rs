@@ -18,5 +18,6 @@ pub mod planes;
 pub mod pulses;
 pub mod query;
 pub mod ray_index;
+pub mod strips;
 pub mod summary;
 pub mod triangle_tree;

@@ -20,11 +20,13 @@ pub enum PatchKind {
     Box,
     /// An upright sheet within a building, from the roof to the ground.
     Inside,
+    /// The top or the underside of a deck, a canopy, a balcony or a bridge.
+    Slab,
 }
 
 impl PatchKind {
     /// All kinds, in the order of their codes.
-    pub const ALL: [Self; 6] = [Self::Roof, Self::Wall, Self::Parapet, Self::Step, Self::Box, Self::Inside];
+    pub const ALL: [Self; 7] = [Self::Roof, Self::Wall, Self::Parapet, Self::Step, Self::Box, Self::Inside, Self::Slab];
 
     /// Its number in files.
     #[must_use]
@@ -41,7 +43,7 @@ impl PatchKind {
     /// What it is called in answers and tables.
     #[must_use]
     pub fn name(self) -> &'static str {
-        ["roof", "wall", "parapet", "step", "box", "inside"][self as usize]
+        ["roof", "wall", "parapet", "step", "box", "inside", "slab"][self as usize]
     }
 }
 
@@ -115,8 +117,8 @@ impl SurfacePatches {
 
     /// How many triangles of each kind there are, in the order of [`PatchKind::ALL`].
     #[must_use]
-    pub fn counts(&self) -> [PatchCount; 6] {
-        let mut counts = [PatchCount::default(); 6];
+    pub fn counts(&self) -> [PatchCount; 7] {
+        let mut counts = [PatchCount::default(); 7];
         for (triangle, kind) in self.iter() {
             let count = &mut counts[kind as usize];
             count.count += 1;
@@ -269,7 +271,7 @@ mod tests {
         for (code, kind) in (0..).zip(PatchKind::ALL) {
             assert_eq!((kind.code(), PatchKind::of_code(code)), (code, Some(kind)));
         }
-        assert_eq!(PatchKind::of_code(6), None);
+        assert_eq!(PatchKind::of_code(7), None);
     }
 
     #[test]

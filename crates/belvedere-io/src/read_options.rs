@@ -3,7 +3,10 @@
 use belvedere_data::cloud::{Attributes, to_local};
 use belvedere_data::control::Control;
 use belvedere_data::crs::{Crs, CrsKind};
-use belvedere_data::{Bounds, Error, Frame, Parameter, Result};
+use belvedere_data::weather::{CalendarDay, unix_day};
+use belvedere_data::{Bounds, Error, Frame, GpsTimeKind, Parameter, Result};
+
+use std::collections::BTreeSet;
 
 use std::path::Path;
 
@@ -28,6 +31,10 @@ pub struct ReadOptions {
     pub within: Option<Within>,
     /// Only points of these ASPRS classes are read. Default: all.
     pub classes: Option<Vec<u8>>,
+    /// Only points of these flight lines (point source ids) are read. Default: all.
+    pub lines: Option<Vec<u16>>,
+    /// Only points that were measured from one day to another, both included, in UTC, are read. Default: all.
+    pub dates: Option<[CalendarDay; 2]>,
     /// Whether the report gives the row of each point in its file. Default: not.
     pub row_numbers: RowNumbers,
     /// Which axis of the files is up. Default: z.
@@ -129,6 +136,20 @@ impl ReadOptions {
     #[must_use]
     pub fn with_classes(mut self, classes: impl Into<Vec<u8>>) -> Self {
         self.classes = Some(classes.into());
+        self
+    }
+
+    /// The same for the points of some flight lines (point source ids) only.
+    #[must_use]
+    pub fn with_lines(mut self, lines: impl Into<Vec<u16>>) -> Self {
+        self.lines = Some(lines.into());
+        self
+    }
+
+    /// The same for the points of some days only, from the first to the last.
+    #[must_use]
+    pub fn with_dates(mut self, dates: [CalendarDay; 2]) -> Self {
+        self.dates = Some(dates);
         self
     }
 
@@ -259,7 +280,11 @@ impl Reading<'_> {
             classes.iter().for_each(|&class| kept[usize::from(class)] = true);
             kept
         });
-        (place.is_some() || classes.is_some()).then_some(Selection { place, classes })
+        let lines = self.options.lines.as_ref().map(|lines| lines.iter().copied().collect::<BTreeSet<u16>>());
+        let times = self.options.dates.map(|[first, last]| [gps_time_of(first, 0), gps_time_of(last, 1)]);
+        let selection = Selection { place, classes, lines, times };
+        let chooses = selection.place.is_some() || selection.chooses_by_attribute();
+        chooses.then_some(selection)
     }
 }
 
@@ -267,7 +292,18 @@ impl Reading<'_> {
 pub(super) struct Selection {
     place: Option<SelectedBox>,
     classes: Option<[bool; 256]>,
+    lines: Option<BTreeSet<u16>>,
+    /// First GPS time, and the one that is too late, less 10⁹ s.
+    times: Option<[f64; 2]>,
 }
+
+/// GPS time at the beginning of a day, so many days later, as files have it: less 10⁹ s.
+fn gps_time_of(day: CalendarDay, later: i64) -> f64 {
+    (unix_day(day) + later) as f64 * 86_400.0 - GPS_EPOCH
+}
+
+/// Unix seconds at which adjusted GPS times are 0: 6 January 1980, 10⁹ s, less the leap seconds since 2017.
+const GPS_EPOCH: f64 = 315_964_800.0 + 1e9 - 18.0;
 
 enum SelectedBox {
     File { low: [f64; 3], high: [f64; 3] },
@@ -282,6 +318,8 @@ const MIN_BOX_ROOM: f64 = 1e-3;
 pub(super) struct PassedOver {
     outside: usize,
     other_class: usize,
+    other_line: usize,
+    other_date: usize,
 }
 
 impl PassedOver {
@@ -295,6 +333,8 @@ impl PassedOver {
     pub(super) fn report(self, part: &mut FilePart) {
         part.leave_out(self.outside, "outside the box to read");
         part.leave_out(self.other_class, "of a class that is not read");
+        part.leave_out(self.other_line, "of a flight line that is not read");
+        part.leave_out(self.other_date, "of a date that is not read");
     }
 }
 
@@ -329,6 +369,39 @@ impl Selection {
         }
     }
 
+    fn chooses_by_attribute(&self) -> bool {
+        self.classes.is_some() || self.lines.is_some() || self.times.is_some()
+    }
+
+    /// Refuses points that lack what they are chosen by.
+    fn check(&self, attributes: &Attributes) -> Result<()> {
+        let is_dated = attributes.gps_time.is_some() && attributes.gps_time_kind == GpsTimeKind::AdjustedStandard;
+        let lacking = [
+            (
+                self.classes.is_some() && attributes.classification.is_none(),
+                ("classification", "reading some classes only", "read all points, or classify them first"),
+            ),
+            (
+                self.lines.is_some() && attributes.point_source_id.is_none(),
+                ("point source ids", "reading some flight lines only", "read all points, or files with these ids"),
+            ),
+            (
+                self.times.is_some() && !is_dated,
+                (
+                    "GPS times that tell the day",
+                    "reading some dates only",
+                    "read all points, or choose by flight lines",
+                ),
+            ),
+        ];
+        match lacking.into_iter().find(|(lacks, _)| *lacks) {
+            Some((_, (attribute, needed_for, advice))) => {
+                Err(Error::MissingAttribute { attribute, needed_for, advice })
+            }
+            None => Ok(()),
+        }
+    }
+
     fn holds(&self, p: [f64; 3]) -> bool {
         match &self.place {
             None => true,
@@ -342,19 +415,15 @@ impl Selection {
     /// Indices of the points that are read; the others are counted in `passed_over`.
     ///
     /// # Errors
-    /// [`Error::MissingAttribute`] where classes are requested but the points have none.
+    /// [`Error::MissingAttribute`] where classes, lines or dates are requested but the points have none.
     pub(super) fn kept(
         &self,
         coordinates: &Coordinates,
         attributes: &Attributes,
         passed_over: &mut PassedOver,
     ) -> Result<Vec<u32>> {
-        if self.classes.is_some() && attributes.classification.is_none() && coordinates.len() > 0 {
-            return Err(Error::MissingAttribute {
-                attribute: "classification",
-                needed_for: "reading some classes only",
-                advice: "read all points, or classify them first",
-            });
+        if coordinates.len() > 0 {
+            self.check(attributes)?;
         }
         let mut kept = Vec::new();
         for (index, position) in (0_u32..).zip(coordinates.positions()) {
@@ -365,10 +434,56 @@ impl Selection {
                 && !classes[usize::from(class)]
             {
                 passed_over.other_class += 1;
+            } else if let (Some(lines), Some(of_points)) = (&self.lines, &attributes.point_source_id)
+                && !of_points.get(index as usize).is_some_and(|line| lines.contains(line))
+            {
+                passed_over.other_line += 1;
+            } else if let (Some([from, to]), Some(of_points)) = (self.times, &attributes.gps_time)
+                && !of_points.get(index as usize).is_some_and(|time| (from..to).contains(time))
+            {
+                passed_over.other_date += 1;
             } else {
                 kept.push(index);
             }
         }
         Ok(kept)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The rows that options choose of three points of lines 1, 2 and 2 on three days.
+    fn chosen(options: &ReadOptions, kind: GpsTimeKind) -> Result<Vec<u32>> {
+        // GPS times of 29 April 2025, 22:30; of the same night, 0:30; and of 1 May
+        let day = 86_400.0;
+        let first = 1_745_965_800.0 - GPS_EPOCH;
+        let attributes = Attributes {
+            gps_time: Some(vec![first, first + day / 12.0, first + 1.5 * day]),
+            gps_time_kind: kind,
+            point_source_id: Some(vec![1, 2, 2]),
+            ..Attributes::default()
+        };
+        let control = Control::none();
+        let selection = Reading { options, forced: None, control: &control }.selection(&Crs::default());
+        let coordinates = Coordinates::Real(vec![[0.0; 3]; 3]);
+        let Some(selection) = selection else { return Ok(vec![0, 1, 2]) };
+        selection.kept(&coordinates, &attributes, &mut PassedOver::default())
+    }
+
+    #[test]
+    fn lines_and_dates_choose_points() {
+        let chosen_of = |options: ReadOptions| chosen(&options, GpsTimeKind::AdjustedStandard).unwrap();
+        let day = |month, day| CalendarDay { year: 2025, month, day };
+        assert_eq!(chosen_of(ReadOptions::new()), [0, 1, 2]);
+        assert_eq!(chosen_of(ReadOptions::new().with_lines([2, 7])), [1, 2]);
+        assert_eq!(chosen_of(ReadOptions::new().with_dates([day(4, 29); 2])), [0]);
+        assert_eq!(chosen_of(ReadOptions::new().with_dates([day(4, 30), day(5, 31)])), [1, 2]);
+        assert_eq!(chosen_of(ReadOptions::new().with_lines([2]).with_dates([day(4, 30); 2])), [1]);
+        // seconds of a week have no date
+        let dated = ReadOptions::new().with_dates([day(4, 29); 2]);
+        assert!(matches!(chosen(&dated, GpsTimeKind::SecondsOfWeek), Err(Error::MissingAttribute { .. })));
+        assert_eq!(chosen(&ReadOptions::new().with_lines([1]), GpsTimeKind::SecondsOfWeek).unwrap(), [0]);
     }
 }

@@ -18,9 +18,10 @@ use belvedere::io::{
     write_balls,
 };
 use belvedere::medial::{CarvedParams, Rule, ShrinkMethod, ShrinkParams, Trees};
-use belvedere::model::{BallParams, ClearedArea, ModelParams, OrientBy, SceneModel};
+use belvedere::model::{BallParams, ClearedArea, ModelParams, OrientBy, SceneModel, StripHeights};
 use belvedere::normals::estimate::Neighborhood;
 use belvedere::query::UnprovenAs;
+use belvedere::strips::StripParams;
 use belvedere::{Frame, PointCloud};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
@@ -104,6 +105,7 @@ pub(crate) struct Choices {
     keep_noise: bool,
     keep_duplicates: bool,
     keep_isolated: bool,
+    keep_strips: bool,
     neighbors: Option<usize>,
     initial_radius: Option<f32>,
     max_radius: Option<f32>,
@@ -141,6 +143,10 @@ impl Choices {
             params = params.keeping_isolated();
         }
         params
+    }
+
+    fn strips(&self) -> StripHeights {
+        if self.keep_strips { StripHeights::Kept(StripParams::default()) } else { StripHeights::default() }
     }
 
     fn orient(&self, frame: &Frame) -> PyResult<OrientBy> {
@@ -211,6 +217,7 @@ impl Choices {
         let neighborhood = self.neighbors.map_or_else(Neighborhood::default, |k| Neighborhood::Fixed { k });
         neighborhood.check().map_err(exception)?;
         let params = ModelParams::default().with_clean(self.clean()).with_neighborhood(neighborhood);
+        let params = params.with_strips(self.strips());
         Ok(params.with_orient(self.orient(frame)?).with_balls(self.balls()?))
     }
 }
@@ -232,6 +239,8 @@ impl PyScene {
             let cache = cache.clone();
             move |control| scene_model(Cow::Borrowed(&*given), &params, cache.as_ref(), control)
         })?;
+        // the ground that is kept is that of lines fitted to each other
+        let cache = cache.filter(|_| !choices.keep_strips);
         let store = cache.zip(built.cloud).map(|(cache, contents)| cache.ground_of(&contents));
         let mut report = built.report;
         report.insert("scene".to_owned(), built.origin.name().into());
@@ -293,7 +302,7 @@ impl PyScene {
                 model.with_added(&mesh.in_metres(&inner)?, &mesh.name.display().to_string())
             })
         })?;
-        Ok(Self(Arc::new(ask::Scene::new(model, Arc::clone(self.0.cloud())))))
+        Ok(Self(Arc::new(ask::Scene::of_fitted(model, Arc::clone(self.0.cloud())))))
     }
 
     fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
@@ -340,7 +349,7 @@ impl PyScene {
             inner.model().clone().without(&area, inner.cloud(), control)
         })?;
         let remarks = remarks_of(py, &ask::remark_on_cleared(report.points_cleared))?;
-        Ok((Self(Arc::new(ask::Scene::new(model, Arc::new(cloud)))), json(&report)?, remarks))
+        Ok((Self(Arc::new(ask::Scene::of_fitted(model, Arc::new(cloud)))), json(&report)?, remarks))
     }
 
     /// The same scene before the terrain of an elevation raster.
@@ -350,7 +359,7 @@ impl PyScene {
             let terrain = read_terrain(&path, inner.frame())?;
             inner.model().clone().with_terrain(terrain, &path.display().to_string())
         })?;
-        Ok(Self(Arc::new(ask::Scene::new(model, Arc::clone(self.0.cloud())))))
+        Ok(Self(Arc::new(ask::Scene::of_fitted(model, Arc::clone(self.0.cloud())))))
     }
 
     /// The same scene before the far terrain of a file.
@@ -363,14 +372,14 @@ impl PyScene {
             let of_grid = convergence(&frame.crs, middle).unwrap_or(0.0);
             Ok(inner.model().clone().with_horizon(read_horizon(&path)?.turned(-of_grid)))
         })?;
-        Ok(Self(Arc::new(ask::Scene::new(model, Arc::clone(self.0.cloud())))))
+        Ok(Self(Arc::new(ask::Scene::of_fitted(model, Arc::clone(self.0.cloud())))))
     }
 
     /// The same scene, whose lines of sight a device decides.
     fn with_device(&self, py: Python<'_>, device: String) -> PyResult<Self> {
         let inner = Arc::clone(&self.0);
         let model = run(py, None, move |_| Ok(inner.model().clone().with_backend(backend(&device)?)))?;
-        Ok(Self(Arc::new(ask::Scene::new(model, Arc::clone(self.0.cloud())))))
+        Ok(Self(Arc::new(ask::Scene::of_fitted(model, Arc::clone(self.0.cloud())))))
     }
 
     /// The name of the device that is ready for use, if any is.

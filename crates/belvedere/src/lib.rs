@@ -64,7 +64,7 @@
 pub use belvedere_apps as apps;
 pub use belvedere_core::{
     blocking, clean, depth, ground, medial, medium, model, neighbors, normals, planes, pulses, query, ray_index,
-    summary, triangle_tree,
+    strips, summary, triangle_tree,
 };
 pub use belvedere_data::{
     Attributes, Bounds, ElevationGrid, Error, ExtinctionVoxels, Frame, GpsTimeKind, Mesh, Parameter, PatchKind,

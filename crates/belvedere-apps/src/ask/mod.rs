@@ -43,6 +43,7 @@ mod sky_view;
 pub mod sun;
 mod sun_hours;
 mod sun_position;
+mod survey;
 mod survey_plan;
 mod terrain_heights;
 mod trees;
@@ -84,6 +85,7 @@ pub use sky_view::{SkyParts, SkyViewQuestion};
 pub use sun::{Days, NamedSun, SunPlace, SunRange, Suns, check_sun, remark_on_sun};
 pub use sun_hours::{PreparedSun, SunHoursQuestion, rules};
 pub use sun_position::{SunPositionQuestion, SunStands};
+pub use survey::remarks_on_survey;
 pub use survey_plan::{PlannedStation, SurveyPlanQuestion, SurveyPlanResults};
 pub use terrain_heights::remark_on_terrain;
 pub use trees::ThroughTrees;
@@ -246,6 +248,9 @@ pub fn ask<Q: Ask>(scene: &Scene, question: &Q, places: &Places, control: &Contr
     context.add(scene.remark_on_terrain());
     context.add(scene.remark_on_ground_cloud());
     remarks_on_model(scene.model()).into_iter().for_each(|remark| context.add(Some(remark)));
+    for remark in remarks_on_survey(&scene.model().findings(), scene.frame()) {
+        context.add(Some(remark));
+    }
     context.add(reliability::remark_on_reliability(scene.model().parts()));
     let answers = question.answer(scene, places, &mut context, control)?;
     Ok(answers.with(context))

@@ -7,6 +7,7 @@ use crate::horizon::convergence;
 use belvedere_core::ground::{Ground, GroundBySquares, GroundParams, GroundPoints, GroundReport, MapGrid};
 use belvedere_core::model::SceneModel;
 use belvedere_core::query::{BlockRule, MedialScene, UnprovenAs};
+use belvedere_core::strips::move_strips;
 use belvedere_data::contradiction::{AREA_OF_USE, GROUND_ELSEWHERE};
 use belvedere_data::control::Control;
 use belvedere_data::crs::CrsKind;
@@ -142,8 +143,20 @@ fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 impl Scene {
     /// A model, and its cloud in the same frame; a cloud without points for a ball file alone. Balls block by the rule
     /// of the model.
+    ///
+    /// Heights of flight lines that the model fitted to each other are those of the cloud, too.
     #[must_use]
-    pub fn new(model: SceneModel, cloud: Arc<PointCloud>) -> Self {
+    pub fn new(model: SceneModel, mut cloud: Arc<PointCloud>) -> Self {
+        let findings = model.findings();
+        if !(findings.moved_strips().is_empty() || cloud.is_empty()) {
+            move_strips(Arc::make_mut(&mut cloud), findings.moved_strips());
+        }
+        Self::of_fitted(model, cloud)
+    }
+
+    /// As [`Scene::new`], for the cloud of another scene, whose heights are fitted already.
+    #[must_use]
+    pub fn of_fitted(model: SceneModel, cloud: Arc<PointCloud>) -> Self {
         Self {
             rule: model.rule(),
             ground_cloud: Arc::clone(&cloud),

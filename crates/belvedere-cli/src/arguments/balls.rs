@@ -92,6 +92,9 @@ pub(crate) struct Cleaning {
     /// Keep isolated points
     #[arg(long)]
     pub(crate) keep_isolated: bool,
+    /// Keep the heights of flight lines that differ by more than 5 cm, which are fitted to each other otherwise
+    #[arg(long)]
+    pub(crate) keep_strips: bool,
 }
 
 #[derive(Args, Clone, Default, Deserialize)]

@@ -4,6 +4,7 @@ use super::balls::trees;
 use super::{MemoryAmount, OrientChoice, Rectangle, known_crs, rectangle};
 use belvedere::io::{ReadOptions, Within};
 use belvedere::medial::Trees;
+use belvedere::weather::CalendarDay;
 use clap::{Args, ValueEnum};
 use serde::Deserialize;
 use std::path::PathBuf;
@@ -44,12 +45,71 @@ pub(crate) struct CloudInput {
     #[arg(long, value_name = "W,S,E,N", value_parser = rectangle, allow_hyphen_values = true, help_heading = "Scene",
         hide_short_help = true)]
     pub(crate) bounds: Option<Rectangle>,
+    /// Read only the points of some flight lines: point source ids such as 1,2,17
+    ///
+    /// For folders with surveys of several years, or with a line that does not fit the others: what stood in one survey
+    /// only would be carved away by the pulses of the other. `belvedere info` lists lines and dates.
+    #[arg(long, value_name = "ID,...", value_delimiter = ',', help_heading = "Scene", hide_short_help = true)]
+    pub(crate) lines: Vec<u16>,
+    /// Read only the points of some dates in UTC: 2021, 2021-04, 2021-04-29, or from one to another as 2021..2022-03
+    ///
+    /// Files must have GPS times that tell the day, not seconds of a week.
+    #[arg(long, value_name = "DATES", value_parser = dates, help_heading = "Scene", hide_short_help = true)]
+    pub(crate) dates: Option<Dates>,
+    /// Read only the points of some ASPRS classes, such as 2,6
+    #[arg(long, value_name = "CLASS,...", value_delimiter = ',', help_heading = "Scene", hide_short_help = true)]
+    pub(crate) only_classes: Vec<u8>,
+}
+
+/// The first and the last day of those that are read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Dates(pub(crate) [CalendarDay; 2]);
+
+/// Dates as they are typed.
+fn dates(text: &str) -> Result<Dates, String> {
+    let (first, last) = text.split_once("..").unwrap_or((text, text));
+    let (Some([first, _]), Some([_, last])) = (days_of(first), days_of(last)) else {
+        return Err(
+            "give a year, a month as 2021-04 or a day as 2021-04-29, or two of them as 2021..2022-03".to_owned()
+        );
+    };
+    if first > last { Err("the first day is later than the last".to_owned()) } else { Ok(Dates([first, last])) }
+}
+
+/// The first and the last day of a year, a month or a day.
+fn days_of(text: &str) -> Option<[CalendarDay; 2]> {
+    let parts: Vec<&str> = text.trim().split('-').collect();
+    let year = parts.first()?.parse().ok()?;
+    let number = |part: &str| part.parse::<u8>().ok();
+    let last_of = |month: u8| (28..=31).rev().find_map(|day| CalendarDay::new(year, month, day));
+    match parts[1..] {
+        [] => Some([CalendarDay::new(year, 1, 1)?, CalendarDay::new(year, 12, 31)?]),
+        [month] => Some([CalendarDay::new(year, number(month)?, 1)?, last_of(number(month)?)?]),
+        [month, day] => Some([CalendarDay::new(year, number(month)?, number(day)?)?; 2]),
+        _ => None,
+    }
 }
 
 impl CloudInput {
     /// The names of the clouds, as they were typed.
     pub(crate) fn names(&self) -> Vec<String> {
         self.clouds.iter().map(|path| path.display().to_string()).collect()
+    }
+
+    /// The flag that makes only a part of the points be read, if one does.
+    pub(crate) fn part_flag(&self) -> Option<&'static str> {
+        let flags = [
+            ("--bounds", self.bounds.is_some()),
+            ("--lines", !self.lines.is_empty()),
+            ("--dates", self.dates.is_some()),
+            ("--only-classes", !self.only_classes.is_empty()),
+        ];
+        flags.into_iter().find(|(_, is_given)| *is_given).map(|(flag, _)| flag)
+    }
+
+    /// The same for all points.
+    pub(crate) fn whole(self) -> Self {
+        Self { bounds: None, lines: Vec::new(), dates: None, only_classes: Vec::new(), ..self }
     }
 
     /// How the clouds are read.
@@ -66,6 +126,15 @@ impl CloudInput {
                 UpChoice::Y => ([west, -FAR, -north], [east, FAR, -south]),
             };
             options = options.with_points_within(Within::File { low, high });
+        }
+        if !self.lines.is_empty() {
+            options = options.with_lines(self.lines.clone());
+        }
+        if let Some(Dates(dates)) = self.dates {
+            options = options.with_dates(dates);
+        }
+        if !self.only_classes.is_empty() {
+            options = options.with_classes(self.only_classes.clone());
         }
         if self.skip_distant { options.without_distant_files() } else { options }
     }
@@ -220,4 +289,25 @@ pub(crate) enum ProfileChoice {
     Sphere,
     /// The cone of the paper's Algorithm 1, unchanged
     PaperCone,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn dates_are_years_months_days_and_what_lies_between() {
+        let day = |year, month, day| CalendarDay { year, month, day };
+        for (text, first, last) in [
+            ("2021", day(2021, 1, 1), day(2021, 12, 31)),
+            ("2024-02", day(2024, 2, 1), day(2024, 2, 29)),
+            ("2021-04-29", day(2021, 4, 29), day(2021, 4, 29)),
+            ("2021..2022-03", day(2021, 1, 1), day(2022, 3, 31)),
+        ] {
+            assert_eq!(dates(text), Ok(Dates([first, last])), "{text}");
+        }
+        for text in ["", "2021-13", "2021-02-30", "2022..2021", "2021-1-1-1", "spring"] {
+            assert!(dates(text).is_err(), "{text}");
+        }
+    }
 }

@@ -54,8 +54,17 @@ pub(crate) fn run(arguments: &Demo, global: &Global) -> Result<Summary> {
 
     // from here on only what a survey would deliver: the LAZ file and the trajectory
     let clouds = vec![folder.join("town.laz")];
-    let input =
-        CloudInput { clouds, crs: None, crs_override: false, up: UpChoice::Z, skip_distant: false, bounds: None };
+    let input = CloudInput {
+        clouds,
+        crs: None,
+        crs_override: false,
+        up: UpChoice::Z,
+        skip_distant: false,
+        bounds: None,
+        lines: Vec::new(),
+        dates: None,
+        only_classes: Vec::new(),
+    };
     let cloud = pipeline::read(&input, &mut run)?;
     let path = folder.join("trajectory.csv");
     let (trajectory, _) = run.stage("reading trajectory", 0, |_| read_trajectory(&path, &cloud.frame.crs))?;

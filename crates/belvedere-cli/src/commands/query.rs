@@ -1,7 +1,7 @@
 //! `belvedere query`.
 
 use super::{check_output, extension, mesh_targets, sights};
-use crate::arguments::{CloudInput, Global, Query, Usage};
+use crate::arguments::{Global, Query, Usage};
 use crate::pipeline::{self, KeepPoints, LoadedScene};
 use crate::run::CommandContext;
 use crate::summary::{Summary, percent, rounded};
@@ -242,7 +242,7 @@ fn targets(
         return Ok(frame(run.compute("choosing random targets", || random_targets(low, high, count, run.seed))));
     }
     if let Some(path) = &arguments.targets.targets {
-        let whole = CloudInput { bounds: None, ..arguments.scene.input.clone() };
+        let whole = arguments.scene.input.clone().whole();
         return points_of_file(path, &whole.read_options().with_up(UpAxis::Z), &scene.frame, run);
     }
     if scene.is_empty() {

@@ -8,8 +8,9 @@ use belvedere::clean::CleanParams;
 use belvedere::crs::Crs;
 use belvedere::io::{read_mesh_in, read_stations, read_trajectory};
 use belvedere::medial::{CarvedParams, ShrinkMethod, ShrinkParams};
-use belvedere::model::{BallParams, ModelParams, OrientBy};
+use belvedere::model::{BallParams, ModelParams, OrientBy, StripHeights};
 use belvedere::normals::estimate::Neighborhood;
+use belvedere::strips::StripParams;
 
 /// Parameters of a model as typed, with the trajectory or the mesh that they name, for a cloud in `crs`.
 pub(crate) fn model(
@@ -46,6 +47,7 @@ pub(crate) fn model(
     };
     Ok(defaults
         .with_clean(parameters.cleaning.params())
+        .with_strips(parameters.cleaning.strips())
         .with_neighborhood(neighborhood)
         .with_orient(orient)
         .with_balls(balls))
@@ -67,9 +69,14 @@ impl Cleaning {
         params
     }
 
+    /// What becomes of flight lines that differ.
+    pub(crate) fn strips(&self) -> StripHeights {
+        if self.keep_strips { StripHeights::Kept(StripParams::default()) } else { StripHeights::default() }
+    }
+
     /// Flags that clean nothing away.
     pub(crate) fn nothing() -> Self {
-        Self { keep_noise: true, keep_duplicates: true, keep_isolated: true }
+        Self { keep_noise: true, keep_duplicates: true, keep_isolated: true, keep_strips: true }
     }
 }
 

@@ -3,6 +3,7 @@
 mod believed;
 mod by_squares;
 pub mod find;
+mod in_blocks;
 pub mod map_grid;
 mod morphology;
 mod relief;
@@ -15,6 +16,7 @@ pub(crate) use triangulate::sides;
 
 pub use by_squares::GroundBySquares;
 pub use find::{FinderParams, find_ground};
+pub(crate) use in_blocks::{GROUND_REACH, ground_in_blocks};
 pub use map_grid::MapGrid;
 pub use relief::{HighestPoints, hidden_ground, highest_points};
 pub use returns::{MAX_GAP_FROM_RETURNS, cells_near_returns};
@@ -31,6 +33,9 @@ use serde::{Deserialize, Serialize};
 
 /// ASPRS class of ground.
 const GROUND: u8 = 2;
+/// ASPRS classes of the surface of water, which is the ground there: without it heights would be interpolated from bank
+/// to bank, and boats float as high as the quays.
+const WATER: [u8; 2] = [9, 41];
 /// LAS flag of points that the supplier withdrew.
 const WITHHELD: u8 = 4;
 /// Ground points beyond the outermost of which the nearest one's height is still taken, metres: a few spacings of
@@ -57,10 +62,10 @@ pub struct GroundParams {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum GroundPoints {
-    /// Class 2 where at least one point in a thousand has it, else [`GroundPoints::Found`].
+    /// Class 2 and water where at least one point in a thousand has class 2, else [`GroundPoints::Found`].
     #[default]
     Auto,
-    /// Those of class 2, less small groups metres below or above the rest.
+    /// Those of class 2, less small groups metres below or above the rest, and the surface of water (9, 41).
     Classed,
     /// Those that [`find_ground`] finds, whatever their class.
     Found,
@@ -139,6 +144,8 @@ struct GroundRows {
     rows: Vec<u32>,
     from: GroundPoints,
     doubted_count: usize,
+    /// Whether some of the rows are water.
+    has_water: bool,
 }
 
 impl GroundRows {
@@ -161,6 +168,14 @@ impl GroundRows {
     fn shift(&self, cloud: &PointCloud, points: &[[f32; 3]], control: &Control<'_>) -> Result<Option<GroundShift>> {
         match self.from {
             GroundPoints::Found => Ok(None),
+            // what lies lower than ground around it is no error there
+            _ if self.has_water => {
+                let is_ground = |row: &&u32| class_of(cloud, **row) == Some(GROUND);
+                let rows: Vec<u32> = self.rows.iter().filter(is_ground).copied().collect();
+                let points: Vec<[f32; 3]> =
+                    rows.iter().filter_map(|&row| cloud.positions.get(row as usize).copied()).collect();
+                shifted::shift_of(cloud, &rows, &points, control)
+            }
             _ => shifted::shift_of(cloud, &self.rows, points, control),
         }
     }
@@ -178,17 +193,20 @@ fn tested_points(cloud: &PointCloud, params: &GroundParams, control: &Control<'_
     }
     let found = || {
         let rows = find_ground(cloud, &params.finder, control)?;
-        Ok(GroundRows { rows, from: GroundPoints::Found, doubted_count: 0 })
+        Ok(GroundRows { rows, from: GroundPoints::Found, doubted_count: 0, has_water: false })
     };
     if params.points == GroundPoints::Found {
         return found();
     }
     let classes = cloud.attributes.classification.as_deref().unwrap_or_default();
     let flags = cloud.attributes.flags.as_deref().unwrap_or_default();
-    let is_ground = |(row, class): &(u32, &u8)| {
-        **class == GROUND && flags.get(*row as usize).is_none_or(|flags| flags & WITHHELD == 0)
+    let rows_of = |of_classes: &[u8]| -> Vec<u32> {
+        let is_wanted = |(row, class): &(u32, &u8)| {
+            of_classes.contains(class) && flags.get(*row as usize).is_none_or(|flags| flags & WITHHELD == 0)
+        };
+        (0_u32..).zip(classes).filter(is_wanted).map(|(row, _)| row).collect()
     };
-    let classed: Vec<u32> = (0_u32..).zip(classes).filter(is_ground).map(|(row, _)| row).collect();
+    let classed = rows_of(&[GROUND]);
     match params.points {
         GroundPoints::Classed if classed.is_empty() => {
             let what = "no point has class 2 (ground); detect the ground from all points".to_owned();
@@ -203,7 +221,19 @@ fn tested_points(cloud: &PointCloud, params: &GroundParams, control: &Control<'_
     let rows: Vec<u32> =
         classed.into_iter().zip(believed).filter(|(_, believed)| *believed).map(|(row, _)| row).collect();
     let doubted_count = count - rows.len();
-    Ok(GroundRows { rows, from: GroundPoints::Classed, doubted_count })
+    let water = rows_of(&WATER);
+    let has_water = !water.is_empty();
+    let mut rows = rows;
+    if has_water {
+        rows.extend(water);
+        rows.sort_unstable();
+    }
+    Ok(GroundRows { rows, from: GroundPoints::Classed, doubted_count, has_water })
+}
+
+/// Class of a point.
+fn class_of(cloud: &PointCloud, row: u32) -> Option<u8> {
+    cloud.attributes.classification.as_ref().and_then(|classes| classes.get(row as usize)).copied()
 }
 
 /// Points sorted by their coordinates: triangulations and the nearest of several points depend on the order.
@@ -359,5 +389,35 @@ impl Ground {
             }
         }
         (weights > 0.0).then(|| sum / weights)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use belvedere_data::Attributes;
+
+    #[test]
+    fn water_is_its_own_level_and_not_a_bridge_between_its_banks() {
+        // a canal of 20 m, 3 m below its quays, a point each half metre
+        for water in [9, 41] {
+            let (mut positions, mut classes) = (Vec::new(), Vec::new());
+            for i in 0..120_u8 {
+                for k in 0..60_u8 {
+                    let (x, y) = (0.5 * f32::from(i), 0.5 * f32::from(k));
+                    let is_water = (20.0..40.0).contains(&x);
+                    positions.push([x, y, if is_water { 0.0 } else { 3.0 }]);
+                    classes.push(if is_water { water } else { 2 });
+                }
+            }
+            let attributes = Attributes { classification: Some(classes), ..Attributes::default() };
+            let cloud = PointCloud { positions, attributes, ..PointCloud::default() };
+            let grid = MapGrid::covering([0.0, 0.0], [59.0, 29.0], 1.0, [0.0; 2]).unwrap();
+            let (ground, report) = Ground::of_cloud(&cloud, grid, &GroundParams::default(), &Control::none()).unwrap();
+            for (x, height) in [(10.5, 3.0), (22.5, 0.0), (30.5, 0.0), (37.5, 0.0), (50.5, 3.0)] {
+                assert_eq!(ground.height_at([x, 15.5]), Some(height), "{x}");
+            }
+            assert_eq!((report.from, report.shift), (GroundPoints::Classed, None));
+        }
     }
 }

@@ -2,8 +2,8 @@
 
 use std::ops::Range;
 
-/// Side of a cell, metres: two points of a survey of 8 pulses a square metre fall into one on the mean.
-pub(super) const CELL: f32 = 0.5;
+/// Cells fill blocks of this side, metres, without a remainder, so that surfaces can end at blocks.
+const BLOCK: f32 = super::survey::BLOCK;
 /// Height of a voxel, metres.
 const STEP: f32 = 0.4;
 /// Voxels up and down that count as of the same height, which allows for slopes up to 45° and for the parapet of a
@@ -17,7 +17,10 @@ type Cell = [i32; 2];
 
 /// The voxels that hold points, column by column.
 pub(super) struct Layers {
-    low: [f32; 2],
+    /// Side of a cell, metres.
+    side: f32,
+    /// Cells along half the side of a block.
+    cells_of_half_block: i64,
     /// Number of the first cell east and north of the local origin.
     first_cell: Cell,
     /// Number of the cell of the local origin, east and north, in the reference system.
@@ -35,8 +38,18 @@ pub(super) struct Layers {
 
 impl Layers {
     /// Voxels of `positions`, metres from `origin`, and which of them hold a point whose row is `solid`; `None` for no
-    /// points, or for a place too wide. Cells begin at the origin.
-    pub(super) fn new(positions: &[[f32; 3]], origin: [f64; 3], solid: impl Fn(usize) -> bool) -> Option<Self> {
+    /// points, or for a place too wide. Cells begin at the origin, and are at least `min_side` metres wide: as little
+    /// more as makes half a block a whole number of them.
+    pub(super) fn new(
+        positions: &[[f32; 3]],
+        origin: [f64; 3],
+        min_side: f32,
+        solid: impl Fn(usize) -> bool,
+    ) -> Option<Self> {
+        let half = (BLOCK / 2.0 / min_side).floor().max(1.0);
+        let side = BLOCK / 2.0 / half;
+        #[expect(clippy::cast_possible_truncation, reason = "casts of floats saturate")]
+        let cells_of_half_block = half as i64;
         let (mut low, mut high) = ([f32::INFINITY; 2], [f32::NEG_INFINITY; 2]);
         for p in positions {
             for axis in 0..2 {
@@ -44,18 +57,21 @@ impl Layers {
                 high[axis] = high[axis].max(p[axis]);
             }
         }
-        let first_cell = low.map(cell_from_origin);
-        low = first_cell.map(|number| number as f32 * CELL);
+        let first_cell = low.map(|v| cell_from_origin(v, side));
+        low = first_cell.map(|number| number as f32 * side);
+        // multiplied first: exact for an origin at the corner of a block
+        let cells = |v: f64| v * f64::from(half) / (f64::from(BLOCK) / 2.0);
         #[expect(clippy::cast_possible_truncation, reason = "casts of floats saturate")]
-        let origin = [0, 1].map(|axis| (origin[axis] / f64::from(CELL)).floor() as i64);
-        let [width, height] = [0, 1].map(|axis| ((high[axis] - low[axis]) / CELL).floor() + 1.0);
+        let origin = [0, 1].map(|axis| cells(origin[axis]).floor() as i64);
+        let [width, height] = [0, 1].map(|axis| ((high[axis] - low[axis]) / side).floor() + 2.0);
         if !(width > 0.0 && height > 0.0 && width * height < MAX_CELLS) {
             return None;
         }
         #[expect(clippy::cast_possible_truncation, reason = "checked to be small")]
         let size = [width as i32, height as i32];
         let (first, level, cell, solid_voxels) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-        let mut layers = Self { low, first_cell, origin, size, first, level, cell, solid: solid_voxels };
+        let mut layers =
+            Self { side, cells_of_half_block, first_cell, origin, size, first, level, cell, solid: solid_voxels };
         let voxel = |(row, &p): (usize, &[f32; 3])| {
             Some((u32::try_from(layers.number(layers.cell(p))?).ok()?, level_of(p[2]), !solid(row)))
         };
@@ -139,7 +155,9 @@ impl Layers {
         let mut from = 0.0;
         // where along the line it leaves its cell over the side across one axis
         let leave = |cell: Cell, axis: usize| {
-            let side = cell[axis].saturating_add(i32::from(up[axis] > 0.0)) as f32 * CELL + self.low[axis];
+            // from the origin, so that rounding does not depend on where the points begin
+            let number = self.first_cell[axis].saturating_add(cell[axis]);
+            let side = number.saturating_add(i32::from(up[axis] > 0.0)) as f32 * self.side;
             if up[axis] == 0.0 { f32::INFINITY } else { (side - start[axis]) / up[axis] }
         };
         loop {
@@ -176,16 +194,17 @@ impl Layers {
 
     /// Cell of a point, which may lie beyond the raster.
     fn cell(&self, point: [f32; 3]) -> Cell {
-        [0, 1].map(|axis| cell_from_origin(point[axis]).saturating_sub(self.first_cell[axis]))
+        [0, 1].map(|axis| cell_from_origin(point[axis], self.side).saturating_sub(self.first_cell[axis]))
     }
 
-    /// Number east and north of the block of `cells` by `cells` cells that a voxel lies in. Blocks begin `offset` cells
-    /// west and south of the origin of the reference system.
-    pub(super) fn block(&self, voxel: usize, cells: i64, offset: [i64; 2]) -> [i64; 2] {
+    /// Number east and north of the block that a voxel lies in. Blocks begin `offset` halves of their side west and
+    /// south of the origin of the reference system.
+    pub(super) fn block(&self, voxel: usize, offset: [i64; 2]) -> [i64; 2] {
         let own = self.cell_of(voxel);
         [0, 1].map(|axis| {
-            let local = i64::from(self.first_cell[axis]) + i64::from(own[axis]) + offset[axis];
-            self.origin[axis].saturating_add(local).div_euclid(cells)
+            let moved = offset[axis] * self.cells_of_half_block;
+            let local = i64::from(self.first_cell[axis]) + i64::from(own[axis]) + moved;
+            self.origin[axis].saturating_add(local).div_euclid(2 * self.cells_of_half_block)
         })
     }
 
@@ -196,10 +215,10 @@ impl Layers {
     }
 }
 
-/// Number of a cell from the origin on.
+/// Number of a cell of this side from the origin on.
 #[expect(clippy::cast_possible_truncation, reason = "casts of floats saturate")]
-fn cell_from_origin(coordinate: f32) -> i32 {
-    (coordinate / CELL).floor() as i32
+fn cell_from_origin(coordinate: f32, side: f32) -> i32 {
+    (coordinate / side).floor() as i32
 }
 
 /// Number upward of the voxel of height `z`.

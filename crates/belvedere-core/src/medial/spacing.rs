@@ -32,3 +32,10 @@ pub(super) fn spacing_of(count: u32) -> f32 {
 pub(super) fn pulse_spacing(positions: &[[f32; 3]], counts: &Cells<u32>) -> Vec<f32> {
     positions.par_iter().map(|&p| spacing_of(counts.get(cell(p)).unwrap_or_default())).collect()
 }
+
+/// Median of [`spacing_of`] over the cells that pulses reach, metres; 0 for none.
+pub(super) fn median_spacing(counts: &Cells<u32>) -> f32 {
+    let mut counts: Vec<u32> = counts.iter().map(|(_, count)| count).collect();
+    counts.sort_unstable();
+    counts.get(counts.len() / 2).map_or(0.0, |&count| spacing_of(count))
+}

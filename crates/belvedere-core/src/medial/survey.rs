@@ -2,7 +2,7 @@
 
 use super::cells::{Cells, cell, highest, lowest_near};
 use super::kinds::{Kind, kinds};
-use super::spacing::{pulse_counts, pulse_spacing};
+use super::spacing::{median_spacing, pulse_counts, pulse_spacing};
 use crate::medium::PlantReturn;
 use crate::neighbors::NeighborIndex;
 use crate::normals::OrientedCloud;
@@ -29,6 +29,10 @@ pub struct RuleStatistics {
     pub transmission: f64,
     /// Median spacing of later returns within crowns, metres; `None` where there are none.
     pub crown_spacing: Option<f32>,
+    /// Median of the mean distance between pulses over the cells of a square metre that they reach, metres; 0 where it
+    /// is unknown.
+    #[serde(default)]
+    pub spacing: f32,
 }
 
 /// What carved balls are made from. All columns have a row for each point.
@@ -97,6 +101,7 @@ impl<'a> Survey<'a> {
         let own = || RuleStatistics {
             has_ground: kinds.contains(&Kind::Ground),
             has_vegetation: kinds.contains(&Kind::Vegetation),
+            spacing: median_spacing(&counts),
             ..RuleStatistics::default()
         };
         Self {

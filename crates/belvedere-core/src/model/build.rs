@@ -5,7 +5,7 @@ use super::params::{BallParams, ModelParams};
 use super::prepare::{OrientedSurvey, prepare};
 use super::report::{BallsReport, BuildReport};
 use super::surfaces::close_surfaces;
-use super::{LOOKS_UP, ModelParts, SceneModel};
+use super::{FINDINGS, LOOKS_UP, ModelParts, SceneModel};
 use crate::medial::{
     CarvedBalls, CarvedInput, MedialBalls, ShrinkParams, Side, Trees, carved_balls, shrink, vegetation_of_classes,
     vegetation_of_transmission,
@@ -112,6 +112,9 @@ fn of_survey(
     }
     if let Some(offset) = report.scanner.as_ref().and_then(|scanner| scanner.time_offset) {
         offset.contradiction().note_in(&mut provenance);
+    }
+    if let Some(found) = report.survey.to_text().filter(|_| !report.survey.is_empty()) {
+        provenance.insert(FINDINGS.to_owned(), found);
     }
     // pulses at the edge of a part lack the balls beyond
     let checked = report.pulses.as_mut().filter(|_| params.statistics.is_none());

@@ -3,6 +3,7 @@
 use super::params::{BallParams, ModelParams, OrientBy};
 use super::prepare::{OrientedSurvey, prepare};
 use super::statistics::{SurveyStatistics, lean};
+use crate::ground::GROUND_REACH;
 use crate::medial::{BLOCK, CarvedInput, CarvedParams, RuleStatistics, rule_statistics};
 use crate::neighbors::FARTHEST_NEIGHBOR;
 use crate::pulses::{Means, locate};
@@ -67,8 +68,10 @@ impl SurveyStatistics {
             top: extremes.top,
             relief: extremes.relief,
             measures_crowns: true,
+            finds_ground: !(extremes.has_ground || extremes.has_vegetation),
             whole: RuleStatistics {
-                has_ground: extremes.has_ground,
+                // found otherwise
+                has_ground: extremes.has_ground || !extremes.has_vegetation,
                 has_vegetation: extremes.has_vegetation,
                 ..RuleStatistics::default()
             },
@@ -80,6 +83,7 @@ impl SurveyStatistics {
         let free = if statistics.paths.is_empty() { params.clone() } else { params.clone().with_orient(scanner) };
         let (survey, report) = prepare(Cow::Owned(cloud), &free, control)?;
         statistics.isolation_radius = report.removed_by_cleaning.isolation_radius;
+        statistics.strips = report.survey.moved_strips().to_vec();
         statistics.noise = report.smoothing.map(|smoothing| smoothing.noise);
         let Some(input) = &survey.carving else { return Ok(Self { carves: false, ..statistics }) };
         if input.free_segments.are_from_the_ground() {
@@ -91,8 +95,9 @@ impl SurveyStatistics {
         }
         statistics.measures_crowns = input.pulses.is_some();
         if let BallParams::Carved(carved) | BallParams::CarvedIfPossible(carved, _) = &params.balls {
-            let RuleStatistics { transmission, crown_spacing, .. } = statistics.crowns(&survey, carved, control)?;
-            statistics.whole = RuleStatistics { transmission, crown_spacing, ..statistics.whole };
+            let RuleStatistics { transmission, crown_spacing, spacing, .. } =
+                statistics.crowns(&survey, carved, control)?;
+            statistics.whole = RuleStatistics { transmission, crown_spacing, spacing, ..statistics.whole };
         }
         Ok(statistics)
     }
@@ -123,6 +128,8 @@ impl SurveyStatistics {
         let pulses = ball + (self.relief + ball) * self.max_lean;
         // or at a thin surface, which pulses prove that pass half a block away and end lower
         let thin = f64::from(BLOCK) / 2.0 + self.relief * self.max_lean;
-        points.max(pulses).max(thin) + isolation + RULES_REACH
+        // and classes that are found follow from blocks of their own
+        let ground = if self.finds_ground { GROUND_REACH } else { 0.0 };
+        points.max(pulses).max(thin) + isolation + RULES_REACH + ground
     }
 }

@@ -12,6 +12,7 @@ mod clear;
 mod clearing;
 mod close_range_normals;
 mod estimate_statistics;
+mod findings;
 mod in_space_order;
 mod params;
 mod pictures;
@@ -26,7 +27,8 @@ pub use belvedere_data::model::{DerivedParts, ModelParts};
 pub use clear::{ClearReport, ClearedArea};
 pub use clearing::Clearing;
 pub use estimate_statistics::SurveyExtremes;
-pub use params::{BallParams, ModelParams, OrientBy};
+pub use findings::{DatedSurvey, SurveyChange, SurveyFindings};
+pub use params::{BallParams, ModelParams, OrientBy, StripHeights};
 pub use prepare::OrientedSurvey;
 pub use report::{BallsReport, BlockedPulses, BuildReport, NormalsReport, PulsesReport};
 pub use statistics::SurveyStatistics;
@@ -72,7 +74,16 @@ pub struct SceneModel {
 /// What the provenance of a model says where its cloud looks as if y were up.
 const LOOKS_UP: [&str; 2] = ["axis_that_looks_up", "y"];
 
+/// Where the provenance of a model keeps what was found of its survey.
+const FINDINGS: &str = "survey_findings";
+
 impl SceneModel {
+    /// What was found of its survey beside surfaces.
+    #[must_use]
+    pub fn findings(&self) -> SurveyFindings {
+        self.parts.provenance.get(FINDINGS).map(|text| SurveyFindings::from_text(text)).unwrap_or_default()
+    }
+
     /// Whether its cloud, which has no reference system, looks as if y were up and not z
     /// ([`crate::summary::looks_y_up`]).
     #[must_use]

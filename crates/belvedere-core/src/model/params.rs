@@ -5,6 +5,7 @@ use crate::clean::CleanParams;
 use crate::medial::{CarvedParams, ShrinkMethod, ShrinkParams};
 use crate::normals::estimate::Neighborhood;
 use crate::pulses::{FreeSegmentParams, LocateParams, Means};
+use crate::strips::StripParams;
 use belvedere_data::trajectory::Trajectory;
 use belvedere_data::{Frame, Mesh, Result};
 use std::sync::Arc;
@@ -31,6 +32,8 @@ pub struct ModelParams {
     pub locate: LocateParams,
     /// How pulses become what they prove empty.
     pub free_segments: FreeSegmentParams,
+    /// What becomes of flight lines whose heights differ. Default: they are fitted to each other.
+    pub strips: StripHeights,
     /// How balls are made.
     pub balls: BallParams,
     /// What is known of the survey that the cloud is a part of. Default: none, and the cloud is a whole.
@@ -43,9 +46,35 @@ belvedere_data::setters!(ModelParams {
     with_orient(orient: OrientBy),
     with_locate(locate: LocateParams),
     with_free_segments(free_segments: FreeSegmentParams),
+    with_strips(strips: StripHeights),
     with_balls(balls: BallParams),
     with_statistics(statistics: Option<Arc<SurveyStatistics>>),
 });
+
+/// What becomes of flight lines whose heights differ.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum StripHeights {
+    /// They are fitted to each other where they differ beyond the tolerance.
+    Fitted(StripParams),
+    /// They are compared, and stay.
+    Kept(StripParams),
+}
+
+impl Default for StripHeights {
+    fn default() -> Self {
+        Self::Fitted(StripParams::default())
+    }
+}
+
+impl StripHeights {
+    /// How heights are compared.
+    #[must_use]
+    pub fn params(&self) -> &StripParams {
+        match self {
+            Self::Fitted(params) | Self::Kept(params) => params,
+        }
+    }
+}
 
 /// How the outward side of normals is found. Ways that know where the scanner was also say where pulses came from.
 #[derive(Clone, Debug, Default)]

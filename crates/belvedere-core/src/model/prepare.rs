@@ -1,20 +1,24 @@
 //! From a cloud to a cleaned cloud with outward normals, and what its pulses prove empty.
 
 use super::close_range_normals::CloseRange;
+use super::findings::SurveyFindings;
 use super::in_space_order::{points_at, space_order};
-use super::params::{Carving, ModelParams, OrientBy};
+use super::params::{Carving, ModelParams, OrientBy, StripHeights};
 use super::report::{BuildReport, NormalsReport, PulsesReport, SmoothingReport};
 use crate::clean::clean;
+use crate::ground::ground_in_blocks;
 use crate::neighbors::{FARTHEST_NEIGHBOR, NeighborIndex};
 use crate::normals::estimate::estimate_within;
 use crate::normals::{Normals, Orientation, OrientedCloud, Scatter, orient};
 use crate::pulses::{
     FoundBy, FreeSegmentColumns, FreeSegments, MIN_ASSUMED_SHARE, Pulses, ScannerReport, group, locate,
 };
+use crate::strips::{compare_strips, move_strips};
 use crate::summary::{looks_y_up, unit_contradiction_of};
 use belvedere_data::contradiction::FoundContradiction;
 use belvedere_data::control::Control;
 use belvedere_data::crs::CrsKind;
+use belvedere_data::report::rounded;
 use belvedere_data::vector::{cross, length, sub, unit};
 use belvedere_data::{Attributes, Bounds, Error, Frame, PointCloud, Result};
 use std::borrow::Cow;
@@ -24,6 +28,9 @@ const LINE_WIDTH: f64 = 1e-3;
 /// Memory that a model takes for each point at least, beside the cloud, bytes: two thirds of what was measured with
 /// large clouds.
 const MIN_BYTES_OF_POINT: usize = 400;
+/// Median angle between pulses with several returns and their trajectory that is believed, degrees: returns 3 m apart
+/// show a true one to 2°, and one that is a second off in time misses by more than 3.
+const MAX_MISS_DEG: f64 = 3.0;
 /// How far before its return a pulse proves its way at most, in noises of ranges, where nothing else is uncertain: one
 /// return in 30,000 lies so much too far away, and balls begin below the surface.
 const NOISES_BEFORE_RETURNS: f32 = 4.0;
@@ -168,10 +175,22 @@ pub(super) fn prepare(
     if let Some(rows) = order {
         kept.iter_mut().for_each(|row| *row = rows.get(*row as usize).copied().unwrap_or(*row));
     }
+    let moved = match statistics {
+        Some(statistics) => statistics.strips.clone(),
+        None => {
+            report.survey = findings(&cloud, params, control)?;
+            report.survey.moved_strips().to_vec()
+        }
+    };
+    if !moved.is_empty() {
+        move_strips(cloud.to_mut(), &moved);
+    }
     let wants_scanner = carving != Carving::Unwanted
         || matches!(params.orient, OrientBy::Pulses | OrientBy::ScannerOfEachPoint(_) | OrientBy::Stations(_));
     let scanner = if wants_scanner {
         let (scanner, found) = find_scanner(&cloud, &kept, read_count, params, control)?;
+        let missed = found.height_offset.map(|offset| offset.miss_angle.to_degrees());
+        report.survey.trajectory_miss_deg = missed.filter(|miss| *miss > MAX_MISS_DEG).map(|miss| rounded(miss, 1));
         report.scanner = Some(found);
         scanner
     } else {
@@ -232,6 +251,23 @@ pub(super) fn prepare(
     }
     let bounds = cloud.bounds().ok_or_else(|| Error::NoPoints { what: "none was read".to_owned() })?;
     Ok((OrientedSurvey { oriented, index, kept, bounds, measured, classification, carving }, report))
+}
+
+/// What a whole cloud shows of its survey. Heights of lines are compared where they are those of flights.
+fn findings(cloud: &PointCloud, params: &ModelParams, control: &Control<'_>) -> Result<SurveyFindings> {
+    let mut findings = SurveyFindings::of_cloud(cloud);
+    let is_flown = cloud.scanner_positions.is_empty()
+        && cloud.attributes.gps_time.is_some()
+        && !matches!(params.orient, OrientBy::Stations(_) | OrientBy::Scanner | OrientBy::ScannerAt(_));
+    if is_flown {
+        let compare = || compare_strips(cloud, params.strips.params(), control);
+        let compared = control.stage("comparing flight lines", cloud.len(), compare)?;
+        findings.strips = compared.filter(|strips| !strips.moved.is_empty());
+    }
+    if let (Some(strips), StripHeights::Kept(_)) = (&mut findings.strips, &params.strips) {
+        strips.moved.clear();
+    }
+    Ok(findings)
 }
 
 /// The attributes that [`orient()`] reads.
@@ -376,8 +412,14 @@ fn carving_input(
         ));
         return Ok((None, report));
     }
+    let finds_ground = match &params.statistics {
+        Some(statistics) => statistics.finds_ground,
+        None => !free_segments.are_from_the_ground() && !tell_ground(cloud),
+    };
+    let found = if finds_ground { Some(found_classes(cloud, control)?) } else { None };
+    report.found_ground = found.as_ref().map_or(0, |classes| classes.iter().filter(|class| **class == 2).count());
     let attributes = Attributes {
-        classification: cloud.attributes.classification.clone(),
+        classification: found.or_else(|| cloud.attributes.classification.clone()),
         return_number: cloud.attributes.return_number.clone(),
         return_count: cloud.attributes.return_count.clone(),
         ..Attributes::default()
@@ -415,6 +457,22 @@ fn carving_input(
         pulses,
     };
     Ok((Some(input), report))
+}
+
+/// Whether classes of a cloud say what is ground or vegetation.
+fn tell_ground(cloud: &PointCloud) -> bool {
+    cloud.attributes.classification.as_ref().is_some_and(|classes| classes.iter().any(|class| matches!(class, 2..=5)))
+}
+
+/// Classes of a cloud whose own do not say what is ground: 2 where that is found, and otherwise as they are.
+fn found_classes(cloud: &PointCloud, control: &Control<'_>) -> Result<Vec<u8>> {
+    let is_ground = control.stage("finding ground", cloud.len(), || ground_in_blocks(cloud, control))?;
+    let mut classes = cloud.attributes.classification.clone().unwrap_or_else(|| vec![1; cloud.len()]);
+    for (class, _) in classes.iter_mut().zip(is_ground).filter(|(class, found)| *found && matches!(**class, 0 | 1 | 12))
+    {
+        *class = 2;
+    }
+    Ok(classes)
 }
 
 #[cfg(test)]

@@ -1,5 +1,6 @@
 //! What became of a cloud on the way to a scene model.
 
+use super::findings::SurveyFindings;
 use super::surfaces::SurfacesReport;
 use crate::clean::CleanReport;
 use crate::medial::{CarvedReport, ShrinkReport};
@@ -31,6 +32,9 @@ pub struct BuildReport {
     /// The surfaces of buildings, where they were looked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub surfaces: Option<SurfacesReport>,
+    /// What was found of the survey beside these.
+    #[serde(skip_serializing_if = "SurveyFindings::is_empty")]
+    pub survey: SurveyFindings,
 }
 
 /// How points were moved onto the surface that they scatter about.
@@ -63,6 +67,9 @@ pub struct PulsesReport {
     /// they do not carve. `None` where no scan has any.
     #[serde(rename = "pulses_into_the_sky", skip_serializing_if = "Option::is_none")]
     pub into_the_sky: Option<usize>,
+    /// Points found to be ground, where no class says which are. Left out where classes do.
+    #[serde(rename = "points_found_to_be_ground", skip_serializing_if = "is_zero")]
+    pub found_ground: usize,
     /// Why the crowns of trees could not be measured, if they could not: what is missing to tell pulses apart.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub crowns_not_measured: Option<String>,
@@ -73,6 +80,11 @@ pub struct PulsesReport {
     /// Why pulses do not carve, where they were to carve if possible.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub remark: Option<String>,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands over references")]
+fn is_zero(count: &usize) -> bool {
+    *count == 0
 }
 
 /// Pulses whose way is blocked.

@@ -4,6 +4,7 @@ use crate::clean::{CleanParams, IsolatedPoints, IsolationRadius};
 use crate::medial::RuleStatistics;
 use crate::neighbors::FARTHEST_NEIGHBOR;
 use crate::pulses::{LinePath, VerticalParams, positions_on_paths, vertical_pulses};
+use crate::strips::StripOffset;
 use belvedere_data::control::Control;
 use belvedere_data::{PointCloud, Result};
 use serde::{Deserialize, Serialize};
@@ -35,6 +36,12 @@ pub struct SurveyStatistics {
     pub measures_crowns: bool,
     /// What rules take from the whole.
     pub whole: RuleStatistics,
+    /// Whether ground is found, since no class tells which points are.
+    #[serde(default)]
+    pub finds_ground: bool,
+    /// How far heights of flight lines are moved.
+    #[serde(default)]
+    pub strips: Vec<StripOffset>,
 }
 
 impl SurveyStatistics {

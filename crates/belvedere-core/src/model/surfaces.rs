@@ -24,11 +24,16 @@ pub struct SurfacesReport {
     pub triangles: usize,
     /// Balls that are smaller because they reached out of a surface.
     pub balls_capped: usize,
+    /// Slabs (decks, canopies, balconies, bridges), in each block of 64 m that they reach into.
+    pub slabs: usize,
+    /// Balls left out because two sheets close their slab.
+    pub balls_of_slabs: usize,
 }
 
 impl OrientedSurvey {
     /// The surfaces of the buildings, with rows of points as in the cloud as it was given; `None` where the survey is
-    /// not from the air, or where its scanner is not known.
+    /// not from the air. Where its scanner is not known pulses are taken to fall straight down: where they passed an
+    /// edge is then known too badly to cut anything, and well enough to look for the wall below.
     ///
     /// # Errors
     /// Those of [`find`].
@@ -38,18 +43,16 @@ impl OrientedSurvey {
         params: &PlaneParams,
         control: &Control<'_>,
     ) -> Result<Option<BuildingSurfaces>> {
-        let is_known = |input: &&CarvingInput| {
-            // the place where an upright line passes a roof is not where the pulse did
-            !input.is_assumed && !input.free_segments.are_from_the_ground()
-        };
-        let Some(input) = self.carving.as_ref().filter(is_known) else { return Ok(None) };
+        let is_flown = |input: &&CarvingInput| !input.free_segments.are_from_the_ground();
+        let Some(input) = self.carving.as_ref().filter(is_flown) else { return Ok(None) };
+        let params = if input.is_assumed { params.for_assumed_pulses() } else { *params };
         let points = SurveyPoints {
             positions: &self.measured,
             scanner: &input.scanner,
             attributes: &input.attributes,
             origin: frame.origin,
         };
-        let find = || find(&points, params, control);
+        let find = || find(&points, &params, control);
         let mut found = control.stage("finding roofs and walls", self.measured.len(), find)?;
         for point in &mut found.points {
             point.row = self.kept.get(point.row as usize).copied().unwrap_or(point.row);
@@ -72,7 +75,15 @@ pub(super) fn close_surfaces(
     };
     let balls_capped =
         control.stage("capping balls", balls.len(), || cap(balls, &survey.measured, &found.regions, control))?;
-    let left: Vec<usize> = (0..balls.len()).filter(|&row| balls.touch[row] != NO_TOUCH).collect();
+    let mut is_on_slab = vec![false; survey.measured.len()];
+    for &row in &found.slab_rows {
+        if let Some(is_on_slab) = is_on_slab.get_mut(row as usize) {
+            *is_on_slab = true;
+        }
+    }
+    let is_of_slab = |row: &usize| is_on_slab.get(balls.source[*row] as usize).copied().unwrap_or(false);
+    let capped = (0..balls.len()).filter(|&row| balls.touch[row] != NO_TOUCH);
+    let (of_slabs, left): (Vec<usize>, Vec<usize>) = capped.partition(is_of_slab);
     *transmission = left.iter().filter_map(|&row| transmission.get(row).copied()).collect();
     *balls = balls.select(&left);
     let report = SurfacesReport {
@@ -82,6 +93,8 @@ pub(super) fn close_surfaces(
         walls: found.outlines.walls.len(),
         triangles: found.patches.len(),
         balls_capped,
+        slabs: found.slabs,
+        balls_of_slabs: of_slabs.len(),
     };
     let patches = std::mem::take(&mut found.patches);
     Ok((patches, found.outlines, Some(report)))

@@ -17,6 +17,8 @@ use std::collections::BTreeMap;
 const CELL: f64 = 2.0;
 /// Class of points on the ground.
 const GROUND: u8 = 2;
+/// Classes of bridge decks: that of ASPRS, and that of the Dutch AHN.
+const DECKS: [u8; 2] = [17, 26];
 /// Least upward part of the way to a scanner that flies, as a share.
 const MIN_UP: f64 = 0.3;
 
@@ -30,6 +32,10 @@ pub(super) struct Return {
     pub(super) lean: [f64; 2],
     /// Whether it lies on a building.
     pub(super) building: Building,
+    /// Whether its class leaves open what it lies on, or says that this is a structure.
+    pub(super) is_structure: bool,
+    /// Whether it has the class of bridge decks.
+    pub(super) is_deck: bool,
     /// Whether it lies on the ground.
     pub(super) is_ground: bool,
     /// Whether it is the first of its pulse.
@@ -53,6 +59,16 @@ pub(super) enum Building {
 impl Return {
     pub(super) fn may_be_building(&self) -> bool {
         self.building != Building::No
+    }
+
+    /// Whether it lies on a building or another structure.
+    pub(super) fn is_solid(&self) -> bool {
+        self.may_be_building() || self.is_structure
+    }
+
+    /// Whether it may lie on a slab that is no part of a building.
+    pub(super) fn may_be_slab(&self) -> bool {
+        self.is_structure && !self.may_be_building() && self.is_first && !self.is_split
     }
 }
 
@@ -121,15 +137,17 @@ pub(super) fn blocks(survey: &SurveyPoints<'_>, params: &PlaneParams, control: &
         }
         let Ok(short) = u32::try_from(row) else { break };
         let may_be_building = building(survey, row) != Building::No;
-        if !(may_be_building || is_first(survey, row)) {
+        let is_first = is_first(survey, row);
+        if !(may_be_building || is_first) {
             continue;
         }
+        let is_wanted = may_be_building || (is_structure(survey, row) && returns(survey, row) <= 1);
         let [x, y] = [0, 1].map(|axis| f64::from(p[axis]) + survey.origin[axis]);
         let own = [number(x), number(y)];
         for column in number(x - params.margin)..=number(x + params.margin) {
             for line in number(y - params.margin)..=number(y + params.margin) {
                 let (holds, rows) = rows_of.entry([column, line]).or_default();
-                *holds |= may_be_building && own == [column, line];
+                *holds |= is_wanted && own == [column, line];
                 rows.push(short);
             }
         }
@@ -164,6 +182,11 @@ fn building(survey: &SurveyPoints<'_>, row: usize) -> Building {
     }
 }
 
+/// Whether the class of a point is none of ground, plants, noise, water and wires.
+fn is_structure(survey: &SurveyPoints<'_>, row: usize) -> bool {
+    class(survey, row).is_some_and(|class| !matches!(class, 2..=5 | 7..=9 | 13..=16 | 18 | 20 | 40..=45))
+}
+
 /// Class of a point.
 fn class(survey: &SurveyPoints, row: usize) -> Option<u8> {
     survey.attributes.classification.as_ref().and_then(|classes| classes.get(row)).copied()
@@ -191,6 +214,8 @@ impl Block {
                 p: std::array::from_fn(|i| f64::from(at[i]) - corner[i]),
                 lean: if is_flown { [way[0] / way[2], way[1] / way[2]] } else { [f64::NAN; 2] },
                 building: building(survey, row),
+                is_structure: is_structure(survey, row),
+                is_deck: class(survey, row).is_some_and(|class| DECKS.contains(&class)),
                 is_ground: class(survey, row) == Some(GROUND),
                 is_first: is_first(survey, row),
                 is_split: returns(survey, row) > 1,
@@ -216,7 +241,8 @@ impl Block {
             if group.len() > 1 {
                 returns[first..first + group.len()].sort_unstable_by(|a, b| {
                     let by_lean = (0..2).fold(Ordering::Equal, |order, i| order.then(a.lean[i].total_cmp(&b.lean[i])));
-                    let flags = |r: &Return| (r.building, [r.is_ground, r.is_first, r.is_split]);
+                    let flags =
+                        |r: &Return| (r.building, [r.is_ground, r.is_first, r.is_split, r.is_structure, r.is_deck]);
                     by_lean.then(flags(a).cmp(&flags(b)))
                 });
             }

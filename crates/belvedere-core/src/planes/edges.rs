@@ -5,7 +5,7 @@ use super::likelihood::{LikelihoodTable, likeliest};
 use super::line::PlanLine;
 use super::ridges::RidgeLine;
 use super::roof_planes::{NONE, Roofs};
-use super::{PlaneParams, sheets};
+use super::{EdgeParams, PlaneParams, sheets};
 use crate::ground::sides;
 
 /// How far below the plane a pulse must end to have passed it, metres. With 0.3 those are left out that meet the wall
@@ -41,10 +41,8 @@ const MIN_MIDDLES: usize = 4;
 const MIN_LENGTH: f64 = 1.0;
 /// How far an end moves to a crossing with another line of the plane, spacings.
 const END_SPACINGS: f64 = 3.5;
-/// Middles of sides that share a return or a pulse are not independent: how many count as one; and how well their mean
-/// must be known at least for a line to be an edge, metres.
+/// Middles of sides that share a return or a pulse are not independent: how many count as one.
 const MIDDLES_AS_ONE: f64 = 6.0;
-const MAX_SCATTER: f64 = 0.08;
 /// Standard deviation of what no number of pulses averages out, metres: how far outside an axis may lie and
 /// a part of its beam still be seen.
 const COMMON_SD: f64 = 0.02;
@@ -59,8 +57,10 @@ pub(super) struct EdgeLine {
     pub(super) count: usize,
     /// Median height of what lies below, metres below the plane.
     pub(super) drop: f64,
-    /// Whether its standard deviation is small enough for use.
+    /// Whether it is known well enough to cut balls and to end patches.
     pub(super) is_sure: bool,
+    /// Whether it is known well enough to look for a wall below.
+    pub(super) may_have_wall: bool,
     /// What stands along it.
     pub(super) parapet: Parapet,
 }
@@ -330,13 +330,16 @@ fn edge(
     depths.sort_unstable_by(f64::total_cmp);
     let (line, sd) = likeliest(outline, &piece.line, spacing, table);
     let sd = sd.hypot(COMMON_SD);
-    let together = (piece.rows.len() as f64 / MIDDLES_AS_ONE).max(1.0);
+    let scatter = piece.rms / (piece.rows.len() as f64 / MIDDLES_AS_ONE).max(1.0).sqrt();
+    let EdgeParams { max_sd, max_scatter, max_sd_spacings, max_scatter_spacings } = params.edges;
     EdgeLine {
         line,
         sd,
         count: piece.rows.len(),
         drop: depths.get(depths.len() / 2).copied().unwrap_or(0.0),
-        is_sure: sd <= params.max_edge_sd && piece.rms / together.sqrt() <= MAX_SCATTER,
+        is_sure: sd <= max_sd && scatter <= max_scatter,
+        may_have_wall: sd <= max_sd.max(max_sd_spacings * spacing)
+            && scatter <= max_scatter.max(max_scatter_spacings * spacing),
         parapet: Parapet::default(),
     }
 }

@@ -7,7 +7,7 @@ use super::ridges::RidgeLine;
 use super::roof_planes::Roofs;
 use super::sheets::Sheet;
 use super::walls::WallLine;
-use super::{BLOCK, BuildingSurfaces, PatchKind, PlaneParams};
+use super::{BLOCK, BuildingSurfaces, PatchKind, WallParams};
 
 /// Side of the cells in which it is decided whether a surface is there, metres.
 const CELL: f64 = 0.25;
@@ -38,10 +38,22 @@ pub(super) struct Leaf {
     pub(super) is_whole: bool,
 }
 
+impl Leaf {
+    /// Whether it holds a place in plan.
+    pub(super) fn holds(&self, p: [f64; 2]) -> bool {
+        self.polygon.iter().enumerate().all(|(i, a)| {
+            let b = self.polygon[(i + 1) % self.polygon.len()];
+            (b[0] - a[0]) * (p[1] - a[1]) >= (b[1] - a[1]) * (p[0] - a[0])
+        })
+    }
+}
+
 /// The pieces of all roofs.
 pub(super) fn roofs(block: &Block, roofs: &Roofs, ridges: &[RidgeLine], outlines: &[Outline]) -> Vec<Leaf> {
     let _ = block;
-    (0..roofs.planes.len()).flat_map(|plane| pieces(roofs, ridges, &outlines[plane], plane)).collect()
+    let has_points = |plane: &usize| !(outlines[*plane].inside.is_empty() && outlines[*plane].split.is_empty());
+    let planes = (0..roofs.planes.len()).filter(has_points);
+    planes.flat_map(|plane| pieces(roofs, ridges, &outlines[plane], plane)).collect()
 }
 
 /// The cells of a roof.
@@ -321,7 +333,7 @@ pub(super) fn give_out(
     roofs: &Roofs,
     leaves: &[Leaf],
     walls: &[WallLine],
-    params: &PlaneParams,
+    params: &WallParams,
     found: &mut BuildingSurfaces,
 ) {
     for leaf in leaves {
@@ -335,8 +347,8 @@ pub(super) fn give_out(
         fan(block, &corners, PatchKind::Roof, found);
     }
     for wall in walls {
-        if wall.share >= params.min_wall_share && wall.points.len() >= params.min_wall_points {
-            let reach = params.wall_reach_spacings * roofs.planes[wall.plane].spacing;
+        if wall.is_closed {
+            let reach = params.reach_spacings * roofs.planes[wall.plane].spacing;
             close_wall(block, roofs, wall, reach, found);
         }
     }

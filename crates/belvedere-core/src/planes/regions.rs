@@ -285,6 +285,9 @@ pub(super) fn of_block(
     }
     for wall in walls {
         let edge = &outlines[wall.plane].edges[wall.edge];
+        if !(edge.is_sure || wall.is_closed) {
+            continue;
+        }
         let top = roofs.planes[wall.plane].plane;
         let middle = edge.line.at(f64::midpoint(edge.line.ends[0], edge.line.ends[1]), 0.0);
         let foot = wall.bottom.min(top.height(middle) - edge.drop) - ABOVE;

@@ -90,14 +90,35 @@ struct Patchwork {
     noise: f64,
 }
 
-/// The planes of roofs in a block.
+/// Points that planes are looked for in.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Candidates {
+    /// Those that may lie on buildings.
+    Buildings,
+    /// Those that may lie on slabs beside them.
+    Slabs,
+}
+
+/// The planes in a block.
 ///
 /// # Errors
 /// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
-pub(super) fn find(block: &Block, params: &PlaneParams, control: &Control<'_>) -> Result<Roofs> {
-    let is_candidate = |row: &usize| block.returns[*row].may_be_building() && block.returns[*row].is_first;
+pub(super) fn find(
+    block: &Block,
+    candidates: Candidates,
+    params: &PlaneParams,
+    control: &Control<'_>,
+) -> Result<Roofs> {
+    let is_candidate = |row: &usize| {
+        let found = &block.returns[*row];
+        match candidates {
+            Candidates::Buildings => found.may_be_building() && found.is_first,
+            Candidates::Slabs => found.may_be_slab(),
+        }
+    };
     let rows: Vec<usize> = (0..block.returns.len()).filter(is_candidate).collect();
-    let work = Patchwork::new(rows.iter().map(|&row| block.returns[row].p).collect(), control)?;
+    let max_noise = if candidates == Candidates::Slabs { params.slabs.max_noise } else { NOISE[1] };
+    let work = Patchwork::new(rows.iter().map(|&row| block.returns[row].p).collect(), max_noise, control)?;
     let (mut plane_of, mut planes) = work.grow(params.min_points);
     for _ in 0..SWEEPS {
         work.sweep(&mut plane_of, &planes);
@@ -175,7 +196,8 @@ impl Roofs {
 }
 
 impl Patchwork {
-    fn new(points: Vec<[f64; 3]>, control: &Control<'_>) -> Result<Self> {
+    /// Noise is at most `max_noise` metres.
+    fn new(points: Vec<[f64; 3]>, max_noise: f64, control: &Control<'_>) -> Result<Self> {
         #[expect(clippy::cast_possible_truncation, reason = "positions of a block")]
         let places: Vec<[f32; 3]> = points.iter().map(|p| p.map(|v| v as f32)).collect();
         let index = NeighborIndex::new(&places, control)?;
@@ -199,7 +221,7 @@ impl Patchwork {
         roughness.sort_unstable_by(f64::total_cmp);
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a share of a length")]
         let quartile = roughness.get((roughness.len() as f64 * SMOOTH[0]) as usize).copied();
-        let noise = quartile.map_or(NOISE[1], |v| (v / SMOOTH[1]).clamp(NOISE[0], NOISE[1]));
+        let noise = quartile.map_or(max_noise, |v| (v / SMOOTH[1]).clamp(NOISE[0], max_noise));
         Ok(Self { points, neighbors, local, noise })
     }
 

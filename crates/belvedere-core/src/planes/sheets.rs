@@ -103,13 +103,10 @@ pub(super) fn give_out(
 ) {
     for (plane, outline) in outlines.iter().enumerate() {
         let own: Vec<&WallLine> = walls.iter().filter(|wall| wall.plane == plane).collect();
-        let high = |edge: &&EdgeLine| edge.is_sure && edge.drop >= MIN_DROP;
-        let all: f64 = outline.edges.iter().filter(high).map(|edge| edge.line.length()).sum();
-        let is_high = |wall: &&&WallLine| high(&&outline.edges[wall.edge]) && wall.depth >= MIN_WALL_DEPTH;
-        let walled: f64 = own.iter().filter(is_high).map(|wall| wall.line.length()).sum();
+        let is_walled = is_walled(outline, &own);
         for (number, edge) in outline.edges.iter().enumerate().filter(|(_, edge)| edge.is_sure) {
             upstand(block, roofs, plane, edge, found);
-            if edge.drop >= MIN_DROP && walled >= MIN_WALLED * all {
+            if edge.drop >= MIN_DROP && is_walled {
                 let eaves = own.iter().find(|wall| wall.edge == number).map_or(0.0, |wall| wall.eaves);
                 let line = PlanLine { point: edge.line.at(0.0, -WITHIN.max(eaves + CLEAR)), ..edge.line };
                 let line = PlanLine { ends: [line.ends[0] + WITHIN, line.ends[1] - WITHIN], ..line };
@@ -119,6 +116,15 @@ pub(super) fn give_out(
         steps(block, roofs, plane, outline, found);
         boxes(block, roofs, plane, outline, found);
     }
+}
+
+/// Whether walls stand below enough of the high edges of a roof, given those below it.
+pub(super) fn is_walled(outline: &Outline, own: &[&WallLine]) -> bool {
+    let high = |edge: &&EdgeLine| edge.is_sure && edge.drop >= MIN_DROP;
+    let all: f64 = outline.edges.iter().filter(high).map(|edge| edge.line.length()).sum();
+    let is_high = |wall: &&&WallLine| high(&&outline.edges[wall.edge]) && wall.depth >= MIN_WALL_DEPTH;
+    let walled: f64 = own.iter().filter(is_high).map(|wall| wall.line.length()).sum();
+    walled >= MIN_WALLED * all
 }
 
 /// Pieces of so many metres that a length is cut into, and their length.

@@ -390,7 +390,7 @@ fn a_tree_and_a_deck_give_no_walls_and_no_inside() {
     faces.push((vec![[4.0, -3.0, 4.0], [12.0, -3.0, 4.0], [12.0, 3.0, 4.0], [4.0, 3.0, 4.0]], 6));
     let deck = scan(&faces, AROUND[0], AROUND[1]).surfaces();
     assert_eq!((deck.outlines.planes.len(), deck.outlines.walls.len()), (1, 0));
-    assert!(deck.patches.kinds.iter().all(|kind| *kind == PatchKind::Roof));
+    assert!(deck.patches.kinds.iter().all(|kind| matches!(kind, PatchKind::Roof | PatchKind::Slab)));
 }
 
 #[test]
@@ -452,4 +452,59 @@ fn a_part_finds_what_the_whole_finds_in_any_order() {
     let (of_whole, of_part) = (of(&whole), of(&part));
     assert!(of_whole.0.len() > 10 && of_whole.1.len() > 3);
     assert_eq!(of_whole, of_part);
+}
+
+/// A level polygon at a height.
+fn level(low: [f64; 2], high: [f64; 2], height: f64, class: u8) -> Face {
+    (
+        vec![
+            [low[0], low[1], height],
+            [high[0], low[1], height],
+            [high[0], high[1], height],
+            [low[0], high[1], height],
+        ],
+        class,
+    )
+}
+
+#[test]
+fn a_deck_is_two_sheets_and_eaves_are_none() {
+    // a deck of 5 m by 8 m beside a flat roof that stands out over its walls by 0.5 m
+    let mut faces = vec![level([-16.0, -4.0], [-11.0, 4.0], 3.5, 1)];
+    faces.extend(block_of([2.0, -5.0], [12.0, 5.0], 5.9));
+    faces.push(level([1.5, -5.5], [12.5, 5.5], 6.0, 6));
+    let scene = scan(&faces, AROUND[0], AROUND[1]);
+    let surfaces = scene.surfaces();
+    let mut heights = heights_of(&surfaces, PatchKind::Slab, [-13.5, 0.0]);
+    let above = heights_of(&surfaces, PatchKind::Slab, [7.0, 0.0]);
+    assert!(above.is_empty() && heights_of(&surfaces, PatchKind::Roof, [7.0, 0.0]).len() == 1, "{above:?}");
+    heights.sort_by(f64::total_cmp);
+    assert_eq!(heights.len(), 2, "{heights:?}");
+    assert!((heights[0] - 3.2).abs() < 0.02 && (heights[1] - 3.5).abs() < 0.02, "{heights:?}");
+    // 40 m², to a sixth of a spacing all round
+    let tops = |([a, ..], kind): &(&[[f32; 3]; 3], PatchKind)| *kind == PatchKind::Slab && a[2] > 3.35;
+    let area: f64 = surfaces
+        .patches
+        .iter()
+        .filter(tops)
+        .map(|(corners, _)| {
+            let [a, b, c] = corners.map(|p| p.map(f64::from));
+            cross(sub(b, a), sub(c, a))[2] / 2.0
+        })
+        .sum();
+    assert!((area - 40.0).abs() < 4.0, "{area} m²");
+    let is_deck = |row: &&u32| scene.classes[**row as usize] == 1;
+    let decks = scene.classes.iter().filter(|class| **class == 1).count();
+    let on_deck = surfaces.slab_rows.iter().filter(is_deck).count();
+    assert_eq!((surfaces.slab_rows.len() - on_deck, surfaces.slabs), (0, 1));
+    assert!(on_deck as f64 > 0.95 * decks as f64, "{on_deck} of {decks}");
+}
+
+#[test]
+fn a_bridge_deck_by_its_class_needs_no_pulse_below() {
+    // as wide as the scene, so that no pulse gets below it but from the sides
+    let narrow = |class: u8| scan(&[level([-20.0, -9.0], [20.0, 9.0], 6.0, class)], AROUND[0], AROUND[1]).surfaces();
+    assert!(narrow(17).slabs > 0);
+    // of a class that says nothing it may be the roof of a hall
+    assert_eq!(narrow(6).slabs, 0);
 }

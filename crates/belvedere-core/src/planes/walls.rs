@@ -1,5 +1,6 @@
 //! Walls below edges of roofs: upright planes of their own, wherever the edge is.
 
+use super::WallParams;
 use super::block::Block;
 use super::edges::{EdgeLine, Outline};
 use super::line::PlanLine;
@@ -12,8 +13,7 @@ const BEFORE: f64 = 0.4;
 const BELOW: f64 = 0.25;
 /// Steepest turn of a wall from its edge: 3.4°.
 const MAX_TURN: f64 = 0.06;
-/// Points on a wall at least, the least share of the edge that they take, and the least length instead, metres.
-const MIN_POINTS: usize = 8;
+/// Least share of the edge that the points of a wall take, and the least length instead, metres.
 const MIN_SHARE: f64 = 0.4;
 const MIN_LENGTH: f64 = 1.5;
 
@@ -42,6 +42,8 @@ pub(super) struct WallLine {
     pub(super) noise: f64,
     pub(super) sd: f64,
     pub(super) share: f64,
+    /// Whether it is closed near its points.
+    pub(super) is_closed: bool,
     /// Lowest point.
     pub(super) bottom: f64,
     /// How far below the edge its lowest point lies, metres.
@@ -51,11 +53,15 @@ pub(super) struct WallLine {
 }
 
 /// The walls below the edges of all planes.
-pub(super) fn find(block: &Block, roofs: &Roofs, outlines: &[Outline]) -> Vec<WallLine> {
+pub(super) fn find(block: &Block, roofs: &Roofs, outlines: &[Outline], params: &WallParams) -> Vec<WallLine> {
     let mut walls = Vec::new();
     for (plane, outline) in outlines.iter().enumerate() {
-        let edges = outline.edges.iter().enumerate().filter(|(_, edge)| edge.is_sure);
-        walls.extend(edges.filter_map(|(number, edge)| below(block, roofs, plane, number, edge)));
+        let min_points = params.points_at(params.min_points, roofs.planes[plane].spacing);
+        let edges = outline.edges.iter().enumerate().filter(|(_, edge)| edge.may_have_wall);
+        let found = edges.filter_map(|(number, edge)| below(block, roofs, [plane, number], edge, min_points));
+        let min_closed = params.points_at(params.min_closed_points, roofs.planes[plane].spacing);
+        let is_closed = |wall: &WallLine| wall.share >= params.min_share && wall.points.len() >= min_closed;
+        walls.extend(found.map(|wall| WallLine { is_closed: is_closed(&wall), ..wall }));
     }
     meet(&mut walls);
     walls.retain(|wall| wall.line.length() >= MIN_LENGTH / 2.0);
@@ -87,8 +93,14 @@ fn meet(walls: &mut [WallLine]) {
     }
 }
 
-/// The wall below an edge.
-fn below(block: &Block, roofs: &Roofs, plane: usize, number: usize, edge: &EdgeLine) -> Option<WallLine> {
+/// The wall below an edge, given its plane and its number among those of the plane.
+fn below(
+    block: &Block,
+    roofs: &Roofs,
+    [plane, number]: [usize; 2],
+    edge: &EdgeLine,
+    min_points: usize,
+) -> Option<WallLine> {
     let (edge, sd) = (&edge.line, edge.sd);
     let corners = [[0, 0], [0, 1], [1, 0], [1, 1]]
         .map(|[end, side]| edge.at(edge.ends[end], if side == 0 { -BEHIND } else { BEFORE }));
@@ -106,7 +118,7 @@ fn below(block: &Block, roofs: &Roofs, plane: usize, number: usize, edge: &EdgeL
             near.push(([t, d, found.p[2]], row));
         }
     });
-    if near.len() < MIN_POINTS {
+    if near.len() < min_points {
         return None;
     }
     near.sort_unstable_by(|(a, _), (b, _)| (0..3).fold(a[1].total_cmp(&b[1]), |o, i| o.then(a[i].total_cmp(&b[i]))));
@@ -123,7 +135,7 @@ fn below(block: &Block, roofs: &Roofs, plane: usize, number: usize, edge: &EdgeL
     let mut on: Vec<([f64; 3], usize)> = near[best.0..best.1].to_vec();
     let (mut line, mut noise) = (PlanLine::default(), 0.0);
     for _ in 0..4 {
-        if on.len() < MIN_POINTS {
+        if on.len() < min_points {
             return None;
         }
         (line, noise) = PlanLine::fit(on.iter().map(|(p, _)| edge.at(p[0], p[1])), edge.along)?;
@@ -140,7 +152,7 @@ fn below(block: &Block, roofs: &Roofs, plane: usize, number: usize, edge: &EdgeL
     let mut points: Vec<[f64; 2]> = on.iter().map(|(p, _)| [line.of(edge.at(p[0], p[1]))[0], p[2]]).collect();
     points.sort_unstable_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
     let length = points.last()?[0] - points.first()?[0];
-    if points.len() < MIN_POINTS || (length < MIN_SHARE * edge.length() && length < MIN_LENGTH) {
+    if points.len() < min_points || (length < MIN_SHARE * edge.length() && length < MIN_LENGTH) {
         return None;
     }
     line = turned(&line, edge, noise / (points.len() as f64).sqrt() / length, sd / edge.length());
@@ -155,6 +167,7 @@ fn below(block: &Block, roofs: &Roofs, plane: usize, number: usize, edge: &EdgeL
         noise,
         sd: (noise.powi(2) / points.len() as f64 + COMMON_SD.powi(2)).sqrt(),
         share: points.len() as f64 / near.len() as f64,
+        is_closed: false,
         bottom,
         depth: top.height(middle) - bottom,
         eaves: -edge.of(middle)[1],

@@ -204,6 +204,8 @@ pub struct HeightOffset {
     pub sd: f64,
     /// Pulses with several returns from which it was estimated.
     pub pair_count: usize,
+    /// Median angle between these pulses and the trajectory as it is used, radians.
+    pub miss_angle: f64,
     /// Whether it stands out from chance and from what beams feign, exceeds a metre, and was therefore added.
     pub is_applied: bool,
 }

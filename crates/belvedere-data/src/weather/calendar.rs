@@ -48,6 +48,27 @@ pub fn unix_day(date: CalendarDay) -> i64 {
     365 * march_year + leap_days + day_of_year - 719_468
 }
 
+/// The date so many days after 1970-01-01; `None` outside the years 1 to 9999.
+///
+/// # Source
+/// As [`unix_day`], the other way round.
+#[must_use]
+pub fn date_of_unix_day(day: i64) -> Option<CalendarDay> {
+    if !(-719_162..=2_932_896).contains(&day) {
+        return None;
+    }
+    // days since 1 March of year 0, and within an era of 400 years
+    let from_march = day + 719_468;
+    let (era, of_era) = (from_march.div_euclid(146_097), from_march.rem_euclid(146_097));
+    let year_of_era = (of_era - of_era / 1460 + of_era / 36_524 - of_era / 146_096) / 365;
+    let of_year = of_era - (365 * year_of_era + year_of_era / 4 - year_of_era / 100);
+    let month = (5 * of_year + 2) / 153;
+    let day = of_year - (153 * month + 2) / 5 + 1;
+    let month = if month < 10 { month + 3 } else { month - 9 };
+    let year = 400 * era + year_of_era + i64::from(month < 3);
+    CalendarDay::new(i32::try_from(year).ok()?, u8::try_from(month).ok()?, u8::try_from(day).ok()?)
+}
+
 /// Day of the year in UTC, from 1, with its fraction left out; `None` for an instant outside the years 1 to 9999.
 #[must_use]
 pub fn day_of_year(unix_s: f64) -> Option<u16> {
@@ -84,6 +105,7 @@ mod tests {
                     let Some(date) = CalendarDay::new(year, month, number) else { continue };
                     of_year += 1;
                     assert_eq!(unix_day(date), day, "{date:?}");
+                    assert_eq!(date_of_unix_day(day), Some(date));
                     assert_eq!(day_of_year(day as f64 * DAY + 1.0), Some(of_year), "{date:?}");
                     day += 1;
                 }

@@ -2,7 +2,7 @@
 
 mod calendar;
 
-pub use calendar::{CalendarDay, day_of_year, unix_day};
+pub use calendar::{CalendarDay, date_of_unix_day, day_of_year, unix_day};
 
 use crate::{Error, Parameter, Result};
 

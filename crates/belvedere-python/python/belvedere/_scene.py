@@ -55,6 +55,8 @@ class Scene(Sights, Outlook, Sunlight, Energy, Planning, Cameras):
         Rules of carving to leave out, such as ``'crowns'``.
     keep_noise, keep_duplicates, keep_isolated : bool, optional
         Points that cleaning would leave out.
+    keep_strips : bool, optional
+        Heights of flight lines that differ by more than 5 cm, which are fitted to each other otherwise.
     neighbors : int, optional
         Points that a normal is estimated from.
     initial_radius, max_radius, penetration : float, optional
@@ -111,6 +113,7 @@ class Scene(Sights, Outlook, Sunlight, Energy, Planning, Cameras):
         keep_noise: bool = False,
         keep_duplicates: bool = False,
         keep_isolated: bool = False,
+        keep_strips: bool = False,
         neighbors: int | None = None,
         initial_radius: float | None = None,
         max_radius: float | None = None,
@@ -139,6 +142,7 @@ class Scene(Sights, Outlook, Sunlight, Energy, Planning, Cameras):
             "keep_noise": keep_noise,
             "keep_duplicates": keep_duplicates,
             "keep_isolated": keep_isolated,
+            "keep_strips": keep_strips,
             "neighbors": neighbors,
             "initial_radius": initial_radius,
             "max_radius": max_radius,

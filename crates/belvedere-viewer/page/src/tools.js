@@ -40,7 +40,7 @@ const UNPROVEN = t`Nothing blocks what is unproven, but part of the line runs th
 
 const BY_PLAN = (n) => t`by the plan, of ${n} points of the cloud.`;
 // What a surface of the survey is a part of.
-const SURFACES = { roof: t`roof`, wall: t`wall`, parapet: t`parapet`, step: t`step of a roof`, box: t`structure on a roof`, inside: t`inside of a building` };
+const SURFACES = { roof: t`roof`, wall: t`wall`, parapet: t`parapet`, step: t`step of a roof`, box: t`structure on a roof`, inside: t`inside of a building`, slab: t`deck, canopy or balcony` };
 
 // Whether fingers are the way to point.
 export const IS_TOUCH = matchMedia("(pointer: coarse)").matches;

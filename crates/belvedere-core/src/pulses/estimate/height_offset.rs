@@ -64,13 +64,15 @@ pub(in crate::pulses) fn height_offset(
         sd = (squares / (2.0 * pairs.len() as f64) / normal).sqrt();
     }
     let found = misses(offset);
-    let angle =
+    let at_return =
         |(miss, (pair, _)): (&super::sensor_fit::Miss, &(ReturnPair, _))| miss.offset.norm() / pair.along.norm();
-    let angle = median(found.iter().zip(&pairs).map(angle).collect());
+    let angle = median(found.iter().zip(&pairs).map(at_return).collect());
     let height = median(pairs.iter().map(|(pair, scanner)| scanner.z + offset - pair.first.z).collect());
     // sine of the angle from the vertical, which is what a change of height shows in
     let tilt = median(found.iter().map(|miss| miss.across.column(2).norm()).collect());
     let feigned = SYSTEMATIC_SHARE * height.abs() * angle / tilt;
     let is_applied = offset.is_finite() && offset.abs() > MIN_OFFSET.max(MIN_DEVIATIONS * sd).max(feigned);
-    offset.is_finite().then_some(HeightOffset { offset, sd, pair_count: pairs.len(), is_applied })
+    let used = if is_applied { found } else { misses(0.0) };
+    let miss_angle = median(used.iter().zip(&pairs).map(at_return).collect());
+    offset.is_finite().then_some(HeightOffset { offset, sd, pair_count: pairs.len(), is_applied, miss_angle })
 }

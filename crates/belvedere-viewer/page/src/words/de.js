@@ -82,6 +82,7 @@ export const de = {
     "Dark": "Dunkel",
     "Date": "Datum",
     "Date and time": "Datum und Uhrzeit",
+    "deck, canopy or balcony": "Deck, Vordach oder Balkon",
     "Down (Q)": "Abwärts (Q)",
     "Drag to turn, right drag to move, wheel to zoom. Click a point for its coordinates.": "Ziehen dreht, Ziehen mit der rechten Maustaste verschiebt, das Mausrad zoomt. Klicken Sie auf einen Punkt, um seine Koordinaten zu sehen.",
     "Draw a building": "Gebäude zeichnen",

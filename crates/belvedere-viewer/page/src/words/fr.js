@@ -82,6 +82,7 @@ export const fr = {
     "Dark": "Sombre",
     "Date": "Date",
     "Date and time": "Date et heure",
+    "deck, canopy or balcony": "tablier, auvent ou balcon",
     "Down (Q)": "Vers le bas (Q)",
     "Drag to turn, right drag to move, wheel to zoom. Click a point for its coordinates.": "Glissez pour tourner, glissez avec le bouton droit pour déplacer la vue, molette pour zoomer. Cliquez sur un point pour voir ses coordonnées.",
     "Draw a building": "Dessiner un bâtiment",

@@ -82,6 +82,7 @@ export const nl = {
     "Dark": "Donker",
     "Date": "Datum",
     "Date and time": "Datum en tijd",
+    "deck, canopy or balcony": "dek, luifel of balkon",
     "Down (Q)": "Omlaag (Q)",
     "Drag to turn, right drag to move, wheel to zoom. Click a point for its coordinates.": "Sleep om te draaien, sleep met de rechtermuisknop om te verschuiven, draai aan het muiswiel om te zoomen. Klik op een punt voor de coördinaten.",
     "Draw a building": "Gebouw tekenen",

@@ -61,7 +61,7 @@ fn judge(preset: Preset, density: f64, seed: u64) -> Result<()> {
     let exact = Truth::new(&scene);
     let (edges, ridges) = lines_of(&scene, &exact);
     let absolute = |ends: [[f64; 3]; 2]| ends.map(|p| std::array::from_fn(|i| p[i] + cloud.frame.origin[i]));
-    let sure = found.outlines.edges.iter().filter(|edge| edge.sd <= params.max_edge_sd);
+    let sure = found.outlines.edges.iter().filter(|edge| edge.sd <= params.edges.max_sd);
     let found_edges: Vec<FoundLine> = sure.map(|edge| FoundLine { ends: absolute(edge.ends), sd: edge.sd }).collect();
     // a ridge is known as well as its planes
     let of_ridge =
