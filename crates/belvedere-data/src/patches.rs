@@ -266,7 +266,7 @@ mod tests {
     #[test]
     fn patches_are_counted_by_kind() {
         let counts = house().counts();
-        assert_eq!(counts.map(|count| count.count), [2, 2, 0, 0, 0, 0]);
+        assert_eq!(counts.map(|count| count.count), [2, 2, 0, 0, 0, 0, 0]);
         assert!((counts[0].area_m2 - 60.0).abs() < 1e-9 && (counts[1].area_m2 - 50.0).abs() < 1e-9);
         for (code, kind) in (0..).zip(PatchKind::ALL) {
             assert_eq!((kind.code(), PatchKind::of_code(code)), (code, Some(kind)));

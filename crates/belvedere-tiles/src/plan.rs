@@ -398,7 +398,7 @@ impl Plan {
     /// # Errors
     /// [`Error::MissingAttribute`] for a survey whose pulses do not say what vegetation is.
     pub fn with_light_through_trees(self, trees: CrownLight) -> Result<Self> {
-        if !self.measures_crowns() {
+        if !self.knows_crowns() {
             return Err(Error::MissingAttribute {
                 attribute: "pulses that carve",
                 needed_for: "knowing which balls are vegetation",
@@ -410,7 +410,7 @@ impl Plan {
 
     /// Whether tiles know crowns as a medium.
     #[must_use]
-    pub fn measures_crowns(&self) -> bool {
+    pub fn knows_crowns(&self) -> bool {
         self.statistics.carves
     }
 

@@ -102,7 +102,7 @@ pub(super) fn planned(
         None => plan,
     };
     let Some(trees) = trees else { return Ok(plan) };
-    match trees.choice()?.crowns(plan.measures_crowns())? {
+    match trees.choice()?.crowns(plan.knows_crowns())? {
         Some(crowns) => Ok(plan.with_light_through_trees(crowns)?),
         None => Ok(plan),
     }

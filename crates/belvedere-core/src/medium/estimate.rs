@@ -259,6 +259,7 @@ fn add(sums: &[AtomicU32], place: Option<usize>, steps: f64) {
 }
 
 #[cfg(test)]
+#[expect(clippy::cast_possible_truncation, reason = "small numbers of tests")]
 mod tests {
     use super::*;
     use crate::medium::Medium;

@@ -95,6 +95,7 @@ fn cells_around(voxel: [i32; 3]) -> impl Iterator<Item = [i32; 3]> {
 }
 
 #[cfg(test)]
+#[expect(clippy::cast_possible_truncation, reason = "small numbers of tests")]
 mod tests {
     use super::*;
     use belvedere_data::random::uniform;

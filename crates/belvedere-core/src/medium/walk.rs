@@ -91,6 +91,7 @@ impl GridLine {
 }
 
 #[cfg(test)]
+#[expect(clippy::cast_possible_truncation, reason = "small numbers of tests")]
 mod tests {
     use super::*;
     use belvedere_data::random::uniform;

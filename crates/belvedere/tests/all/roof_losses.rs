@@ -69,7 +69,7 @@ fn losses_of_the_planes_of_an_exact_town_are_within_a_point_on_the_mean() {
         let points: Vec<[f32; 3]> = rows.iter().map(|&row| cloud.positions[row as usize]).collect();
         let planes = roof_planes(&points, &RoofPlaneParams::default(), &none).unwrap();
         let planes: Vec<RoofPlane> = planes.into_iter().take(20).collect();
-        let seasons = [SeasonRadiation { radiation: radiation.clone(), share: 0.0 }];
+        let seasons = [SeasonRadiation { radiation: radiation.clone(), factor: 0.0 }];
         let found = roof_irradiation(&blockers, &planes, &seasons, Intervals::Without, &none).unwrap();
         let truth = Truth::new(&scene);
         let (mut error, mut expected, mut mean) = (0.0, 0.0, 0.0);
