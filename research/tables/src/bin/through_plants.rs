@@ -43,7 +43,7 @@ fn main() -> AnyResult<()> {
     let [by, files @ ..] = &arguments[..] else { return Err("give pulse or line, and clouds".into()) };
     println!("cloud | crossing | method | MSE | ECE, % | predicted → found");
     for file in files {
-        let (cloud, _) = read_cloud(Path::new(file), &ReadOptions::default(), &Control::none())?;
+        let (cloud, _) = read_cloud([Path::new(file)], &ReadOptions::default(), &Control::none())?;
         let survey = Survey::new(&cloud)?;
         let mut found = Found::default();
         if by == "line" {
@@ -104,9 +104,7 @@ impl<'a> Survey<'a> {
     fn lines(&self) -> BTreeSet<u16> {
         let Some(ids) = &self.cloud.attributes.point_source_id else { return BTreeSet::new() };
         let mut lines: BTreeSet<u16> = ids.iter().copied().collect();
-        let is_left = |line: &u16| {
-            ids.iter().filter(|id| *id != line).count() as f64 >= MIN_LEFT * ids.len() as f64
-        };
+        let is_left = |line: &u16| ids.iter().filter(|id| *id != line).count() as f64 >= MIN_LEFT * ids.len() as f64;
         lines.retain(is_left);
         lines
     }
@@ -203,7 +201,8 @@ impl Found {
             for tenth in 0..10 {
                 let range = [f64::from(tenth) / 10.0, f64::from(tenth + 1) / 10.0];
                 let is_in = |p: &f64| *p >= range[0] && (*p < range[1] || tenth == 9);
-                let own: Vec<(f64, f64)> = predicted.iter().zip(&self.truth).filter(|(p, _)| is_in(p)).map(|(p, t)| (*p, *t)).collect();
+                let own: Vec<(f64, f64)> =
+                    predicted.iter().zip(&self.truth).filter(|(p, _)| is_in(p)).map(|(p, t)| (*p, *t)).collect();
                 let mean = |of: fn(&(f64, f64)) -> f64| own.iter().map(of).sum::<f64>() / own.len().max(1) as f64;
                 let (expected, found) = (mean(|pair| pair.0), mean(|pair| pair.1));
                 error += own.len() as f64 / count.max(1) as f64 * (expected - found).abs();

@@ -90,7 +90,7 @@ fn of_places(
     if set == QuerySet::Facades {
         targets.normals = Some(outward(&truth, &radiation.directions()));
     }
-    let seasons = [SeasonRadiation { radiation: radiation.clone(), share: 0.0 }];
+    let seasons = [SeasonRadiation { radiation: radiation.clone(), factor: 0.0 }];
     let energies = season_irradiation(&surveyed.scene, &targets, &seasons, Intervals::With, &none)?;
     let exact = irradiation(&truth, targets.normals.as_deref(), radiation)?;
     let rows = energies.sums.iter().zip(&exact).zip(&energies.classes).filter(|((found, _), _)| found.unshaded > 0.0);
@@ -131,7 +131,7 @@ fn of_planes(
     radiation: &PeriodRadiation,
     surveyed: &SurveyedTown,
 ) -> AnyResult<Vec<SumCase>> {
-    let seasons = [SeasonRadiation { radiation: radiation.clone(), share: 0.0 }];
+    let seasons = [SeasonRadiation { radiation: radiation.clone(), factor: 0.0 }];
     let found = roof_irradiation(&surveyed.scene, planes, &seasons, Intervals::With, &Control::none())?;
     let mut cases = Vec::new();
     for (plane, found) in planes.iter().zip(found) {

@@ -113,7 +113,8 @@ impl Counts {
             let said_blocked = match answer {
                 Answer::Blocked | Answer::InsideObstacle => true,
                 Answer::Visible | Answer::Unproven => false,
-                Answer::OutsideView | Answer::OutsideCloud => continue,
+                // outside the view or the cloud
+                _ => continue,
             };
             self.free += usize::from(!is_blocked);
             self.blocked += usize::from(is_blocked);
