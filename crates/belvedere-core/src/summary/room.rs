@@ -23,6 +23,9 @@ const MAX_HEIGHT: f32 = 0.8;
 const MIN_HEIGHT: f32 = 0.04;
 /// Heights of rooms, metres: building rules ask for 2.1 m and more, and stairwells and halls reach three storeys.
 const ROOM_HEIGHTS: [f32; 2] = [2.1, 9.0];
+/// A corridor is longer than so many times its height, and narrower than so many times.
+const CORRIDOR_LENGTH: f32 = 5.0;
+const CORRIDOR_WIDTH: f32 = 1.5;
 /// Units of exports, metres.
 const UNITS: [f64; 2] = [0.01, 0.001];
 /// How many times as many points stand in the lower half of a room as in the upper one, if furniture shows the floor.
@@ -43,6 +46,9 @@ struct RoomExtent {
 pub(super) fn is_room_along_y(positions: &[[f32; 3]], normals: &[[f32; 3]]) -> bool {
     let Some(along_y) = room_along(1, positions, normals) else { return false };
     if !(ROOM_HEIGHTS[0]..=ROOM_HEIGHTS[1]).contains(&along_y.height) && unit_of(along_y.height).is_none() {
+        return false;
+    }
+    if is_corridor(positions, along_y.height) {
         return false;
     }
     room_along(2, positions, normals).is_none_or(|along_z| {
@@ -89,6 +95,13 @@ fn unit_of(height: f32) -> Option<f64> {
         let metres = f64::from(height) * unit;
         (f64::from(ROOM_HEIGHTS[0])..=f64::from(ROOM_HEIGHTS[1])).contains(&metres)
     })
+}
+
+/// Whether a cloud so high along y may be a corridor that is higher, along z, than wide.
+fn is_corridor(positions: &[[f32; 3]], height: f32) -> bool {
+    let Some(Bounds { low, high }) = Bounds::around(positions.iter().copied()) else { return false };
+    let [x, z] = [0, 2].map(|axis: usize| high[axis] - low[axis]);
+    x.max(z) > CORRIDOR_LENGTH * height && x.min(z) < CORRIDOR_WIDTH * height
 }
 
 /// What closes a cloud along an axis; `None` where it is no room along it.
