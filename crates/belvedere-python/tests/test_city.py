@@ -21,7 +21,9 @@ def results(folder):
 
 
 def test_a_killed_worker_loses_nothing(folder):
-    distributed = pytest.importorskip("distributed", reason="SKIPPED a cluster of workers: distributed is not installed (pip install distributed)")
+    distributed = pytest.importorskip(
+        "distributed", reason="SKIPPED a cluster of workers: distributed is not installed (pip install distributed)"
+    )
     cloud = folder / "larger.laz"
     belvedere.simulate("town", extent=110, density=2, seed=5).save(cloud)
     questions = {"sun": [(150, 20)], "sky_view": True, "directions": 49, "tile_size": 64}

@@ -49,7 +49,7 @@ def test_notebook_runs(path, tmp_path):
     code = ["".join(cell["source"]) for cell in cells if cell["cell_type"] == "code"]
     assert len(code) >= 3
     if "BELVEDERE_TEST_DATA" in "".join(code) and not (DATA / "data" / "delft_ahn3").is_dir():
-        pytest.skip(f"SKIPPED a page: there is no reference data; name its folder in BELVEDERE_TEST_DATA")
+        pytest.skip("SKIPPED a page: there is no reference data; name its folder in BELVEDERE_TEST_DATA")
     run("\n\n".join(code), tmp_path)
 
 
@@ -80,7 +80,7 @@ def test_tutorial_works_as_printed(path, tmp_path):
     page = path.read_text(encoding="utf-8")
     source, name = re.search(r"<!-- data: (\S+) as (\S+) -->", page).groups()
     if not (DATA / "data" / source).exists():
-        pytest.skip(f"SKIPPED a page: there is no reference data; name its folder in BELVEDERE_TEST_DATA")
+        pytest.skip("SKIPPED a page: there is no reference data; name its folder in BELVEDERE_TEST_DATA")
     shutil.copyfile(DATA / "data" / source, tmp_path / name)
     paths = os.pathsep.join([sysconfig.get_path("scripts"), os.environ["PATH"]])
     printed, code, count = "", "", 0

@@ -277,7 +277,7 @@ def check_cancelling():
 
 def main():
     if not DATA.is_file():
-        print(f"SKIPPED the plugin in QGIS on a real tile: there is no reference data; name its folder in BELVEDERE_TEST_DATA")
+        print("SKIPPED the plugin in QGIS on a real tile: there is no reference data; name its folder in BELVEDERE_TEST_DATA")
         return
     application = QgsApplication([], False)
     application.initQgis()

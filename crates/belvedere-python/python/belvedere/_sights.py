@@ -32,7 +32,8 @@ class Sight(NamedTuple):
     fresnel_free_percent : float
         How much of the radius of the first Fresnel zone is free; NaN without a frequency.
     block_surface : str
-        Kind of the surface patch that blocks first: roof, wall, parapet, step, box, inside or slab; empty where none does.
+        Kind of the surface patch that blocks first: roof, wall, parapet, step, box, inside or slab; empty where
+        none does.
     block_terrain : bool
         Whether it is the terrain of `with_terrain` that blocks first.
     probability : float
