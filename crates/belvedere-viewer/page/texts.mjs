@@ -1,8 +1,9 @@
 // The texts of the page, for tests: those in src/ and in index.html, as the tables of languages have them.
 import { existsSync, readdirSync, readFileSync } from "node:fs";
 import { join } from "node:path";
+import { fileURLToPath } from "node:url";
 
-const here = new URL(".", import.meta.url).pathname;
+const here = fileURLToPath(new URL(".", import.meta.url));
 const sources = () => readdirSync(join(here, "src"), { recursive: true }).filter((name) => name.endsWith(".js") && !name.startsWith("words")).map((name) => readFileSync(join(here, "src", name), "utf8"));
 const plain = (text) => text.replaceAll("&amp;", "&").trim();
 const hasWords = (text) => /\p{L}{2}/u.test(text);

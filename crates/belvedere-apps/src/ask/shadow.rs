@@ -132,7 +132,8 @@ impl Ask for ShadowQuestion {
         let is_answer = self.edges == Edges::Hard && !self.trees.is_light();
         let through_crowns = match &light.trees {
             Some(TreeLight { medium: Some(_), .. }) if is_answer => {
-                let shares = lit.clone();
+                // a band of shares makes those of answers wider too: only who wants to know more gets it
+                let shares = if self.how_sure.is_wanted() { lit.clone() } else { Vec::new() };
                 lit.iter_mut().flatten().for_each(|share| *share = half_or_more(*share));
                 shares
             }
