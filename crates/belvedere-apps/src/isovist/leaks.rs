@@ -11,6 +11,8 @@ const ALIKE: f64 = 1.15;
 const MAX_SHARE: f64 = 0.02;
 /// So is one that is this narrow, metres, however long: where a ceiling meets a wall, scans have no points.
 const MAX_WIDTH: f64 = 0.5;
+/// Share of the greatest range: where the surface around an opening is further away, the place goes on, as corridors do.
+const MAX_REACH: f64 = 0.5;
 
 /// A panorama of ranges.
 #[derive(Clone, Copy)]
@@ -21,6 +23,8 @@ pub(super) struct RangeGrid<'a> {
     pub(super) width: usize,
     /// Solid angle of a cell of each row, in steradians.
     pub(super) weights: &'a [f64],
+    /// Greatest range, metres.
+    pub(super) reach: f64,
 }
 
 /// The surface of a room without its gaps.
@@ -45,7 +49,8 @@ impl ClosedSurface {
         for cells in grid.openings() {
             let share = cells.iter().map(|&at| grid.weight(at)).sum::<f64>() / total;
             let filled: Vec<Option<f64>> = cells.iter().map(|&at| grid.range_around(at)).collect();
-            if share > MAX_SHARE && grid.width_of(&cells, &filled) > MAX_WIDTH {
+            let goes_on = filled.iter().flatten().any(|range| *range > MAX_REACH * grid.reach);
+            if goes_on || share > MAX_SHARE && grid.width_of(&cells, &filled) > MAX_WIDTH {
                 continue;
             }
             gaps += share;

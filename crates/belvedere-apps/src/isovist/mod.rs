@@ -195,7 +195,7 @@ pub fn isovist_of(
     let blocked: f64 = (ranges.iter().enumerate())
         .map(|(at, range)| range.map_or(0.0, |range| weight(at / width) * range.powi(3) / 3.0))
         .sum();
-    let surface = ClosedSurface::of(&RangeGrid { ranges: &ranges, width, weights: &weights });
+    let surface = ClosedSurface::of(&RangeGrid { ranges: &ranges, width, weights: &weights, reach });
     let (ranges, unbounded) = match &surface {
         Some(surface) => (surface.ranges.clone(), surface.gap_share),
         None => (ranges, 0.0),

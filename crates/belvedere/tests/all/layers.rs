@@ -29,7 +29,7 @@ const RESEARCH: [(&str, &[&str]); 5] = [
 ];
 
 /// Level of each module of `belvedere-core`: a module imports from lower levels, or from its own folder.
-const LEVELS: [(&str, u8); 17] = [
+const LEVELS: [(&str, u8); 18] = [
     ("eight", 0),
     ("instructions", 0),
     ("neighbors", 1),
@@ -40,6 +40,7 @@ const LEVELS: [(&str, u8); 17] = [
     ("normals", 2),
     ("pulses", 2),
     ("medium", 2),
+    ("strips", 2),
     ("ground", 2),
     ("planes", 3),
     ("summary", 3),

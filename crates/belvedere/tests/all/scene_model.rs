@@ -70,7 +70,10 @@ fn a_model_is_what_the_stages_make_one_after_the_other() {
     let capped = planes::cap(&mut balls, &clean.positions, &surfaces.regions, &none).unwrap();
     assert!(capped > 100 && report.surfaces.is_some_and(|found| found.balls_capped == capped), "{capped}");
     let balls = balls.shrunk();
-    assert_eq!(model.balls().centers, balls.centers);
+    // two sheets close a slab instead of balls
+    let is_left = |row: &usize| !surfaces.slab_rows.contains(&balls.source[*row]);
+    let balls = balls.select(&(0..balls.len()).filter(is_left).collect::<Vec<_>>());
+    assert!(model.balls().centers == balls.centers);
     assert_eq!(model.balls().radii, balls.radii);
     assert!(!model.patches().is_empty() && *model.patches() == surfaces.patches);
     let mut columns = free_segments.to_columns();
