@@ -106,6 +106,6 @@ fn a_pipe_is_refused_at_once_and_never_waited_for() {
     }
     place.refusal(1, &format!("{shadow} --add pipe.obj"), &["pipe.obj: is not a file"]);
     place.refusal(1, "viewshed house.laz --observers pipe.csv -o a.tif", &["pipe.csv: is not a file"]);
-    assert_eq!(place.summary("info folder")["reading"]["files"].as_array().map(Vec::len), Some(1));
+    assert_eq!(place.summary("info folder")["file"].as_array().map(Vec::len), Some(1));
     assert_eq!(place.run(shadow).status, 0);
 }
