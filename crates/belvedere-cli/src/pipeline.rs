@@ -299,7 +299,7 @@ fn refuse_flags_of_clouds(arguments: &SceneInput, parameters: &BallParameters, p
         ("--crs", arguments.input.crs.is_some()),
         ("--up", arguments.input.up != UpChoice::Z),
         ("--bounds", arguments.input.bounds.is_some()),
-        ("--lines", !arguments.input.lines.is_empty()),
+        ("--lines", !arguments.input.flight_lines.is_empty()),
         ("--dates", arguments.input.dates.is_some()),
         ("--only-classes", !arguments.input.only_classes.is_empty()),
         ("--orient", arguments.balls.orient.is_some()),

@@ -48,9 +48,15 @@ pub(crate) struct CloudInput {
     /// Read only the points of some flight lines: point source ids such as 1,2,17
     ///
     /// For folders with surveys of several years, or with a line that does not fit the others: what stood in one survey
-    /// only would be carved away by the pulses of the other. `belvedere info` lists lines and dates.
-    #[arg(long, value_name = "ID,...", value_delimiter = ',', help_heading = "Scene", hide_short_help = true)]
-    pub(crate) lines: Vec<u16>,
+    /// only would be carved away by the pulses of the other. `belvedere info -v` lists the lines.
+    #[arg(
+        long = "lines",
+        value_name = "ID,...",
+        value_delimiter = ',',
+        help_heading = "Scene",
+        hide_short_help = true
+    )]
+    pub(crate) flight_lines: Vec<u16>,
     /// Read only the points of some dates in UTC: 2021, 2021-04, 2021-04-29, or from one to another as 2021..2022-03
     ///
     /// Files must have GPS times that tell the day, not seconds of a week.
@@ -100,7 +106,7 @@ impl CloudInput {
     pub(crate) fn part_flag(&self) -> Option<&'static str> {
         let flags = [
             ("--bounds", self.bounds.is_some()),
-            ("--lines", !self.lines.is_empty()),
+            ("--lines", !self.flight_lines.is_empty()),
             ("--dates", self.dates.is_some()),
             ("--only-classes", !self.only_classes.is_empty()),
         ];
@@ -109,7 +115,7 @@ impl CloudInput {
 
     /// The same for all points.
     pub(crate) fn whole(self) -> Self {
-        Self { bounds: None, lines: Vec::new(), dates: None, only_classes: Vec::new(), ..self }
+        Self { bounds: None, flight_lines: Vec::new(), dates: None, only_classes: Vec::new(), ..self }
     }
 
     /// How the clouds are read.
@@ -127,8 +133,8 @@ impl CloudInput {
             };
             options = options.with_points_within(Within::File { low, high });
         }
-        if !self.lines.is_empty() {
-            options = options.with_lines(self.lines.clone());
+        if !self.flight_lines.is_empty() {
+            options = options.with_lines(self.flight_lines.clone());
         }
         if let Some(Dates(dates)) = self.dates {
             options = options.with_dates(dates);
