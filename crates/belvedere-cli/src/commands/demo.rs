@@ -61,7 +61,7 @@ pub(crate) fn run(arguments: &Demo, global: &Global) -> Result<Summary> {
         up: UpChoice::Z,
         skip_distant: false,
         bounds: None,
-        lines: Vec::new(),
+        flight_lines: Vec::new(),
         dates: None,
         only_classes: Vec::new(),
     };
