@@ -32,6 +32,8 @@ pub(super) struct ClosedSurface {
     /// Ranges with those of the surface around in its gaps; `None` in true openings.
     pub(super) ranges: Vec<Option<f64>>,
     width: usize,
+    /// Range of what may close a gap, metres.
+    max_range: f64,
     /// Share of all directions that are gaps, 0 to 1.
     pub(super) gap_share: f64,
 }
@@ -44,12 +46,13 @@ impl ClosedSurface {
         if open > MAX_OPEN * total || !grid.is_smooth() {
             return None;
         }
+        let max_range = MAX_REACH * grid.reach;
         let mut ranges = grid.ranges.to_vec();
         let mut gaps = 0.0;
         for cells in grid.openings() {
             let share = cells.iter().map(|&at| grid.weight(at)).sum::<f64>() / total;
             let filled: Vec<Option<f64>> = cells.iter().map(|&at| grid.range_around(at)).collect();
-            let goes_on = filled.iter().flatten().any(|range| *range > MAX_REACH * grid.reach);
+            let goes_on = filled.iter().flatten().any(|range| *range > max_range);
             if goes_on || share > MAX_SHARE && grid.width_of(&cells, &filled) > MAX_WIDTH {
                 continue;
             }
@@ -58,7 +61,7 @@ impl ClosedSurface {
                 ranges[at] = range;
             }
         }
-        Some(Self { ranges, width: grid.width, gap_share: gaps })
+        Some(Self { ranges, width: grid.width, max_range, gap_share: gaps })
     }
 
     /// Range of the surface in the cell of a direction.
@@ -68,7 +71,8 @@ impl ClosedSurface {
         let cell = |angle: f64| (angle.max(0.0) / step) as usize;
         let column = cell(x.atan2(y) + PI) % self.width;
         let row = cell(FRAC_PI_2 - z.clamp(-1.0, 1.0).asin()).min(self.width / 2 - 1);
-        self.ranges.get(row * self.width + column).copied().flatten()
+        let range = self.ranges.get(row * self.width + column).copied().flatten();
+        range.filter(|range| *range <= self.max_range)
     }
 }
 
