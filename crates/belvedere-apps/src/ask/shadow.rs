@@ -130,15 +130,9 @@ impl Ask for ShadowQuestion {
             scene_shadow(light.obstacles(), &light.targets, &kinds, self.edges, control)
         })?;
         let is_answer = self.edges == Edges::Hard && !self.trees.is_light();
-        let through_crowns = match &light.trees {
-            Some(TreeLight { medium: Some(_), .. }) if is_answer => {
-                // a band of shares makes those of answers wider too: only who wants to know more gets it
-                let shares = if self.how_sure.is_wanted() { lit.clone() } else { Vec::new() };
-                lit.iter_mut().flatten().for_each(|share| *share = half_or_more(*share));
-                shares
-            }
-            _ => Vec::new(),
-        };
+        if is_answer && matches!(&light.trees, Some(TreeLight { medium: Some(_), .. })) {
+            lit.iter_mut().flatten().for_each(|share| *share = half_or_more(*share));
+        }
         let doubts = match (&kinds[..], &mut lit[..]) {
             ([sun], [lit]) if light.blockers.proof().is_some() => {
                 let tested = control.stage("testing pulses", 0, || {
@@ -169,10 +163,6 @@ impl Ask for ShadowQuestion {
             self.how_sure.summarise(probabilities, uncertain.as_deref(), ["lit", "in shadow"], context);
         }
         let suffix = |sun: &NamedSun| if suns.len() == 1 { String::new() } else { format!("_{}", sun.column) };
-        for (sun, shares) in suns.iter().zip(through_crowns) {
-            let measure = Measure::new(&format!("{LIGHT}{}", suffix(sun)), shares).with_description(LIGHT_IN_WORDS);
-            measures.push(measure.with_range(Some([0.0, 1.0])).with_decimals(4));
-        }
         for (sun, (probabilities, uncertain)) in suns.iter().zip(sure) {
             let suffix = suffix(sun);
             measures.extend(self.how_sure.measures(probabilities, uncertain, &suffix));
@@ -181,11 +171,6 @@ impl Ask for ShadowQuestion {
         Ok(Answers::new(ShadowResults { on: light.titled(title), suns }, measures))
     }
 }
-
-/// Name of the measure that says what share of the sun arrives through crowns that pulses measured.
-const LIGHT: &str = "light";
-/// What [`LIGHT`] is.
-const LIGHT_IN_WORDS: &str = "share of the sun, through crowns as pulses measured them";
 
 /// Takes unproven light for what it is to be, and returns it where it is to be reported.
 fn settled(lit: &mut [f32], doubts: Option<Vec<f32>>, unproven: UnprovenAs) -> Option<Vec<f32>> {

@@ -189,8 +189,8 @@ fn flags_of_balls_belong_to_balls_and_a_file_of_them_to_all_commands() {
         let of_balls = parameters.iter().filter(|one| one["builds_balls"] == true);
         let flags: Vec<&str> = of_balls.map(|one| one["name"].as_str().unwrap()).collect();
         match command["name"].as_str().unwrap() {
-            "balls" => assert_eq!(flags.len(), 13),
-            "normals" | "surfaces" => assert_eq!(flags.len(), 5),
+            "balls" => assert_eq!(flags.len(), 14),
+            "normals" | "surfaces" => assert_eq!(flags.len(), 6),
             "depth-map" | "query" => assert_eq!(flags, ["--ball-profile", "--trees", "--orient"]),
             name => assert!(flags.is_empty() || flags == ["--trees", "--orient"], "{name}: {flags:?}"),
         }

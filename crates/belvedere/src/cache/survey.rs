@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 /// The file that says what a survey is of.
 pub(super) const PLAN: &str = "plan.json";
 /// How files of tiles end, behind the name of the tile.
-const OF_TILES: [&str; 4] = [".npz", ".pulses.npz", ".json", ".tif"];
+const OF_TILES: [&str; 5] = [".npz", ".pulses.npz", ".crowns.npz", ".json", ".tif"];
 
 /// The folder of a survey in tiles, which the program made itself.
 #[derive(Clone, Debug)]
