@@ -96,7 +96,8 @@ pub fn scene_shadow<'a>(
     Ok(lit)
 }
 
-/// 1 where half or more of the light arrives, else 0; NaN for NaN: a place behind crowns that were measured is lit or not.
+/// 1 where half or more of the light arrives, else 0; NaN for NaN: a place behind crowns that were measured is lit or
+/// not.
 #[must_use]
 pub fn half_or_more(share: f32) -> f32 {
     if share.is_nan() { share } else { f32::from(u8::from(share >= 0.5)) }

@@ -1,7 +1,8 @@
 //! Light through the crowns of trees: what share of it gets through, as pulses measured it, or the same for all crowns.
 //!
-//! Where pulses measured crowns, these are a medium: the share that gets along a line follows from its optical depth, and
-//! the balls that are no vegetation block beside it. Otherwise crowns are balls. Two matrices tell what all balls leave
+//! Where pulses measured crowns, these are a medium: the share that gets along a line follows from its optical depth,
+//! and the balls that are no vegetation block beside it. Otherwise crowns are balls. Two matrices tell what all balls
+//! leave
 //! free and what those leave free that are not vegetation; what is free in the second only gets a constant share.
 
 use crate::sun::{Date, Site};
@@ -144,8 +145,8 @@ pub enum CrownLight {
     },
     /// What pulses measured in each voxel ([`belvedere_core::medium`]).
     Measured {
-        /// Whether trees carry leaves, where the survey was flown in leaf; `None` for the leaves of the survey, whatever
-        /// the date.
+        /// Whether trees carry leaves, where the survey was flown in leaf; `None` for the leaves of the survey,
+        /// whatever the date.
         leaves: Option<Leaves>,
     },
 }
@@ -172,7 +173,8 @@ impl CrownLight {
     }
 }
 
-/// Optical depth of a bare crown as a share of that in leaf: that of the shares of light in [`Transmissivity::default`],
+/// Optical depth of a bare crown as a share of that in leaf: that of the shares of light in
+/// [`Transmissivity::default`],
 /// 0.2.
 #[must_use]
 pub fn bare_depth() -> f64 {

@@ -65,8 +65,8 @@ impl ExtinctionVoxels {
         Self { voxels, extinction }
     }
 
-    /// The voxels that are left where the voxels in `cleared` hold points that are gone, and those in `kept` others: none
-    /// that holds or touches what is gone, unless something is left in it.
+    /// The voxels that are left where the voxels in `cleared` hold points that are gone, and those in `kept` others:
+    /// none that holds or touches what is gone, unless something is left in it.
     #[must_use]
     pub fn without_cleared(&self, cleared: &HashSet<[i32; 3]>, kept: &HashSet<[i32; 3]>) -> Self {
         let is_beside = |voxel: [i32; 3]| {

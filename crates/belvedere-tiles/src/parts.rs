@@ -84,8 +84,8 @@ impl<'a> TileObstacles<'a> {
         Ok(Self { plan, run, cells: lines.targets, others, max_balls, squares, medium, found: Mutex::new(found) })
     }
 
-    /// Gives `look` scenes of at most so many balls that may block one of `lines`, until all were given, and with each the
-    /// same without vegetation where crowns were measured. A line of sight is free where it is free in all.
+    /// Gives `look` scenes of at most so many balls that may block one of `lines`, until all were given, and with each
+    /// the same without vegetation where crowns were measured. A line of sight is free where it is free in all.
     ///
     /// # Errors
     /// Those of `look`, of writing records, and [`belvedere::Error::Cancelled`].

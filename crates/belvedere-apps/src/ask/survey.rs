@@ -70,7 +70,7 @@ fn remark_on_dates(findings: &SurveyFindings, frame: &Frame) -> Remark {
         let [x, y, _] = frame.file_from_local([change.at[0], change.at[1], 0.0]);
         format!(
             "; on {} m\u{b2} one of them has something that another has not, up to {:.1} m high, as at {:.0}, {:.0}",
-            change.area_m2, change.most_m, x, y
+            change.area_m2, change.max_m, x, y
         )
     });
     let text = format!(

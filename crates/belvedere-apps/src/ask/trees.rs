@@ -27,7 +27,8 @@ pub enum ThroughTrees {
 }
 
 impl ThroughTrees {
-    /// Whether answers are shares of light because of trees. What pulses measured is a yes or no, and a share beside it.
+    /// Whether answers are shares of light because of trees. What pulses measured is a yes or no, and a share beside
+    /// it.
     #[must_use]
     pub fn is_light(&self) -> bool {
         matches!(self, Self::Seasons(_) | Self::Share(_))

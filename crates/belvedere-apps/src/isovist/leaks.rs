@@ -11,7 +11,8 @@ const ALIKE: f64 = 1.15;
 const MAX_SHARE: f64 = 0.02;
 /// So is one that is this narrow, metres, however long: where a ceiling meets a wall, scans have no points.
 const MAX_WIDTH: f64 = 0.5;
-/// Share of the greatest range: where the surface around an opening is further away, the place goes on, as corridors do.
+/// Share of the greatest range: where the surface around an opening is further away, the place goes on, as corridors
+/// do.
 const MAX_REACH: f64 = 0.5;
 
 /// A panorama of ranges.

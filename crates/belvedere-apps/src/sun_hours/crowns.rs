@@ -12,8 +12,9 @@ use rayon::prelude::*;
 /// Bits in a word of a row of a matrix.
 const WORD: usize = 64;
 
-/// As [`sun_hours`], where an hour of a sun behind crowns counts as much as these let through on that day: `factors` has
-/// a [`factor`](crate::tree_light::CrownLight::factor) for each day of `schedule`. Hours, share, the least day and the
+/// As [`sun_hours`], where an hour of a sun behind crowns counts as much as these let through on that day: `factors`
+/// has a [`factor`](crate::tree_light::CrownLight::factor) for each day of `schedule`. Hours, share, the least day and
+/// the
 /// days that suffice are those of the light that arrives; first, last and longest are of suns that count as free
 /// ([`LineLight::is_free`]), since a share of light has no such hour.
 ///

@@ -278,7 +278,7 @@ fn the_bias_decides_about_targets_just_behind_the_surface() {
     place.write_cloud("house.laz", &house());
     // 40 cm below the roof, whose height there is 7.5 m
     place.write_targets("targets.npy", &[at(0.0, 2.0, 7.1)]);
-    let arguments = "query house.laz --targets targets.npy -o answers.npy";
+    let arguments = "query house.laz --scene-config ../balls_alone.json --targets targets.npy -o answers.npy";
     for (bias, expected) in [("0", INSIDE), ("0.2", BLOCKED), ("0.6", VISIBLE), ("-0.5", INSIDE)] {
         place.summary_with(&format!("{arguments} --bias {bias} --viewport"), &[FROM_ABOVE]);
         assert_eq!(place.npy::<u8>("answers.npy").1, [expected], "{bias}");
@@ -294,7 +294,8 @@ fn the_bias_decides_about_targets_just_behind_the_surface() {
 fn the_cone_of_the_paper_blocks_less_than_the_sphere() {
     let place = Workplace::new();
     place.write_cloud("house.laz", &house());
-    let arguments = "query house.laz --random 50000 --bias 0 -o answers.npy --viewport";
+    let arguments =
+        "query house.laz --scene-config ../balls_alone.json --random 50000 --bias 0 -o answers.npy --viewport";
     let mut answers = |profile: &str| {
         place.summary_with(&format!("--seed 3 {arguments}"), &[FROM_ABOVE, "--ball-profile", profile]);
         place.npy::<u8>("answers.npy").1

@@ -148,7 +148,7 @@ fn names_that_command_a_terminal_are_printed_escaped() {
     place.write(name, "x y z\n1 2 3\n1 2 4\n4 5 6\n7 8 5\n");
     place.write("red\u{1b}[31m\u{202e}\u{9b}2J.prj", "nonsense \u{1b}]0;title\u{7}");
     for (command, more) in [
-        ("info", &[][..]),
+        ("info --verbose", &[][..]),
         ("info --json", &[]),
         ("balls -o b.npz", &[]),
         ("info -v", &["--nonsense\u{1b}[31m"]),

@@ -46,7 +46,7 @@ pub struct CarvedBalls {
     /// may have the same source.
     pub balls: MedialBalls,
     /// Share of the pulses that got through the piece of crown that a ball is part of, (B), 0 to 1; NaN for balls that
-    /// are not vegetation, and 0 for all others where pulses cannot be told apart. Empty where nothing is vegetation.
+    /// are not vegetation, and 0 for all others where pulses cannot be separated. Empty where nothing is vegetation.
     pub transmission: Vec<f32>,
     /// What each return tells of plants, (N); empty where scanners stood on the ground.
     pub returns: Vec<PlantReturn>,

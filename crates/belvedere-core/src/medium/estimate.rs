@@ -20,11 +20,12 @@ const CHUNK: usize = 4096;
 pub struct MediumParams {
     /// Path through a voxel that its surroundings count for, metres, above 0. Default 2; 1 and 4 measure the same.
     pub own_path: f64,
-    /// Path through the 27 voxels around one that [`MediumParams::mean`] counts for, metres, above 0. Default 5; 2 measures
-    /// the same.
+    /// Path through the 27 voxels around one that [`MediumParams::mean`] counts for, metres, above 0. Default 5; 2
+    /// measures the same.
     pub near_path: f64,
-    /// Extinction that voxels without paths tend to, per metre, 0 or more. Default 0.15, between the means of voxels with
-    /// returns, 0.27, and of all voxels around these, 0.09, of eleven photographed plots; 0.05 to 0.3 measure the same.
+    /// Extinction that voxels without paths tend to, per metre, 0 or more. Default 0.15, between the means of voxels
+    /// with returns, 0.27, and of all voxels around these, 0.09, of eleven photographed plots; 0.05 to 0.3 measure the
+    /// same.
     pub mean: f64,
 }
 
@@ -69,8 +70,9 @@ struct Counts {
     path: u64,
 }
 
-/// Extinction in all voxels with a plant and those around them: the maximum likelihood of hits among the paths of pulses, shrunk towards the
-/// surroundings and the mean. A return is 1/n of a pulse of n returns; it travelled free from the scanner to where it
+/// Extinction in all voxels with a plant and those around them: the maximum likelihood of hits among the paths of
+/// pulses, shrunk towards the surroundings and the mean. A return is 1/n of a pulse of n returns; it travelled free
+/// from the scanner to where it
 /// stopped. The order of returns and the number of threads make no difference.
 ///
 /// # Errors

@@ -5,7 +5,8 @@ use super::walk::GridLine;
 use belvedere_data::medium::{ExtinctionVoxels, VOXEL_SIDE};
 use std::ops::ControlFlow;
 
-/// Optical depth from which on a line is taken to be dark: a ten-thousandth passes. What lies behind makes no difference.
+/// Optical depth from which on a line is taken to be dark: a ten-thousandth passes. What lies behind makes no
+/// difference.
 const DARK: f64 = 9.2;
 /// Voxels that meet at a corner.
 const AROUND: usize = 8;

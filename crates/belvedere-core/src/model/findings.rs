@@ -44,7 +44,7 @@ pub struct SurveyChange {
     /// Area on the map, m².
     pub area_m2: f64,
     /// Most difference in height, metres.
-    pub most_m: f64,
+    pub max_m: f64,
     /// Where that is, local metres.
     pub at: [f64; 2],
 }
@@ -190,10 +190,10 @@ fn change(cloud: &PointCloud, times: &[f64], [until, from]: [i64; 2]) -> Option<
     for (&cell, &change) in changes.iter().filter(|(cell, _)| is_large(**cell)) {
         let area = CELL * CELL;
         let at = cell.map(|v| (f64::from(v) + 0.5) * CELL);
-        let so_far = found.get_or_insert(SurveyChange { area_m2: 0.0, most_m: change, at });
+        let so_far = found.get_or_insert(SurveyChange { area_m2: 0.0, max_m: change, at });
         so_far.area_m2 += area;
-        if change > so_far.most_m {
-            (so_far.most_m, so_far.at) = (change, at);
+        if change > so_far.max_m {
+            (so_far.max_m, so_far.at) = (change, at);
         }
     }
     found
@@ -236,7 +236,7 @@ mod tests {
         assert_eq!(found.surveys.iter().map(|survey| survey.lines.clone()).collect::<Vec<_>>(), [vec![1], vec![11]]);
         let change = found.change.unwrap();
         // 36 cells of the hut, four of which have too few neighbours
-        assert!((128.0..=144.0).contains(&change.area_m2) && change.most_m == 5.0, "{change:?}");
+        assert!((128.0..=144.0).contains(&change.area_m2) && change.max_m == 5.0, "{change:?}");
         assert!(!found.is_ground_only);
         let mut first = surveys();
         first = first.select(&(0..6400).collect::<Vec<u32>>());

@@ -169,8 +169,8 @@ impl Evidence {
     /// the evidence past all balls, and `solid` is what those block that are no vegetation.
     ///
     /// Where crowns play no part, it is [`Evidence::probability`]. Otherwise light gets past what is solid with the
-    /// probability that solid balls alone give, and through crowns with one that follows from the optical depth and from
-    /// the evidence past all balls; both must be.
+    /// probability that solid balls alone give, and through crowns with one that follows from the optical depth and
+    /// from the evidence past all balls; both must be.
     #[must_use]
     pub fn probability_among_crowns(&self, solid: BlockedLines, depth: f64) -> f32 {
         let without_crowns = Self { lines: solid.lines(), is_inside_obstacle: solid.is_inside_obstacle(), ..*self };

@@ -117,7 +117,7 @@ fn trees_are_in_leaf_from_april_to_october_and_half_a_year_later_in_the_south() 
 }
 
 #[test]
-fn balls_at_points_of_vegetation_are_told_from_others() {
+fn balls_at_points_of_vegetation_differ_from_others() {
     let balls =
         ClassifiedBalls::new(&[([0.0; 3], 1.0, LEAF), ([5.0, 0.0, 0.0], 2.0, LEAF), ([9.0, 0.0, 0.0], 9.0, WALL)]);
     let transmission = [0.5, 0.25, f32::NAN];

@@ -18,9 +18,10 @@ use tempfile::TempDir;
 pub(crate) struct Workplace(TempDir);
 
 /// Files of parameters of balls, as `../NAME`: for commands that have no flags for them.
-const SCENE_CONFIGS: [(&str, &str); 4] = [
+const SCENE_CONFIGS: [(&str, &str); 5] = [
     ("tau.json", r#"{"method": "tau"}"#),
     ("carved.json", r#"{"method": "carved"}"#),
+    ("balls_alone.json", r#"{"without": ["planes"]}"#),
     ("angles.json", r#"{"method": "angles"}"#),
     ("keeping.json", r#"{"keep_isolated": true, "keep_duplicates": true}"#),
 ];
