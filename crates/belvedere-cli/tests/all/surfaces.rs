@@ -1,6 +1,6 @@
 //! `belvedere surfaces`: roofs, edges and walls as features, against the exact mesh of a simulated town.
 
-use crate::common::{Workplace, remarks};
+use crate::common::Workplace;
 use belvedere::control::Control;
 use belvedere::io::{
     FeatureShape, GeojsonFeature, PointResults, ReadOptions, read_cloud, read_geojson, read_mesh, read_point_results,
