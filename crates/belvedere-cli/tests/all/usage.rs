@@ -70,10 +70,10 @@ fn the_answer_comes_first_in_twelve_lines_and_all_figures_with_verbose() {
 #[test]
 fn json_is_one_object_with_the_content_of_the_text() {
     let place = with_house();
-    let text = place.run("info house.laz").stdout;
+    let text = place.run("info house.laz --verbose").stdout;
     let json = place.summary("info house.laz");
     let object = json.as_object().unwrap();
-    for (name, value) in object {
+    for (name, value) in object.iter().filter(|(name, _)| *name != "headline") {
         let is_empty = value.as_array().is_some_and(Vec::is_empty) || value.as_object().is_some_and(|o| o.is_empty());
         assert_eq!(text.contains(&name.replace('_', " ")), !is_empty, "{name} in {text}");
     }
