@@ -174,7 +174,9 @@ mod tests {
             let middle = std::array::from_fn(|axis| start[axis] + 5.0 * towards[axis]);
             let in_two = medium.optical_depth(start, towards, 5.0) + medium.optical_depth(middle, towards, 7.0);
             let of_parts: f64 = parts.iter().map(|part| part.optical_depth(start, towards, 12.0)).sum();
-            assert!((whole - in_two).abs() < 1e-9 && (whole - of_parts).abs() < 1e-9, "{i}");
+            assert!((whole - in_two).abs() < 1e-9, "{i}");
+            // a cell holds the mean of its voxels in single precision
+            assert!((whole - of_parts).abs() < 1e-5, "{i}: {whole} {of_parts}");
         }
     }
 
