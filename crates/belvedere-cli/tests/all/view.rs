@@ -187,7 +187,9 @@ fn each_answer_of_the_page_is_that_of_the_command_it_shows() {
     let row = head["plane"].as_u64().unwrap() as usize - 1;
     for name in ["kwh_m2", "max_loss", "tilt_deg", "azimuth_deg", "kwh"] {
         let written = column(&place, "roofs.csv", name)[row];
-        assert!((head[name].as_f64().unwrap() - written).abs() < 1e-9, "{name}: {written}, {}", head[name]);
+        // whole kilowatt hours, rounded from single precision in tables
+        let tolerance = if name == "kwh" { 1.0 } else { 1e-9 };
+        assert!((head[name].as_f64().unwrap() - written).abs() <= tolerance, "{name}: {written}, {}", head[name]);
     }
 
     let corners = [[-6.0, -6.0], [6.0, -6.0], [6.0, 6.0], [-6.0, 6.0]].map(|[x, y]| [ground[0] + x, ground[1] + y]);
