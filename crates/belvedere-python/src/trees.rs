@@ -35,7 +35,7 @@ impl Through {
             Some(leaves) => return refused("leaves", leaves, "use 'auto', 'on' or 'off'"),
         };
         match &self.share {
-            None => Ok(ThroughTrees::Measured),
+            None => Ok(ThroughTrees::default()),
             Some(LightShare::Number(share)) => Ok(ThroughTrees::Share(*share)),
             Some(LightShare::Name(name)) => match name.as_str() {
                 "measured" => Ok(ThroughTrees::Measured),

@@ -42,8 +42,8 @@ impl SceneText {
 /// Light through trees as it is typed.
 pub(crate) fn in_words(trees: ThroughTrees) -> String {
     match trees {
-        ThroughTrees::Measured => String::new(),
-        ThroughTrees::Opaque => " --through-trees none".to_owned(),
+        ThroughTrees::Opaque => String::new(),
+        ThroughTrees::Measured => " --through-trees measured".to_owned(),
         ThroughTrees::Seasons(_) => " --through-trees seasons".to_owned(),
         ThroughTrees::Share(share) => format!(" --through-trees {share}"),
         ThroughTrees::Pulses => " --through-trees pulses".to_owned(),

@@ -12,12 +12,13 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ThroughTrees {
-    /// What pulses measured, where they did; none where they did not. Default.
-    #[default]
+    /// What pulses measured, where they did; none where they did not.
     Measured,
     /// What pulses measured; refused where they did not.
     Pulses,
-    /// None: crowns are solid balls.
+    /// None: crowns are solid balls. Default: a survey of the winter, whose day is not known, would let the sun of the
+    /// summer through.
+    #[default]
     Opaque,
     /// What pulses measured in leaf, and a fifth of that optical depth without leaves; 0.03 and 0.5 of the light
     /// ([`Transmissivity::default`]) where nothing was measured.

@@ -13,9 +13,8 @@ pub(crate) struct ThroughTreesArguments {
     /// behind crowns is lit where half or more passes, and sums count the share. none: crowns are solid. seasons: the
     /// measured crowns in leaf, with a fifth of the leaves' depth without leaves; 0.03 and 0.5 of the light where
     /// nothing was measured (Konarska et al. 2014). pulses: as measured, and an error where nothing was. A number: this
-    /// share,
-    /// through any crown.
-    #[arg(long, value_name = "SHARE", default_value = "measured", allow_negative_numbers = true)]
+    /// share, through any crown.
+    #[arg(long, value_name = "SHARE", default_value = "none", allow_negative_numbers = true)]
     pub(crate) through_trees: ThroughTreesChoice,
     /// Whether trees have leaves, with --through-trees seasons [default: auto with a date, else on]
     ///

@@ -81,7 +81,7 @@ class Sunlight:
         soft : bool, optional
             Whether the sun is a disc, of which places see a share.
         through_trees : {'measured', 'none', 'seasons', 'pulses'} or float, optional
-            Light that passes through crowns; as pulses measured it if not given, where they did.
+            Light that passes through crowns; none if not given.
         leaves : {'auto', 'on', 'off'}, optional
             Whether trees have leaves, with ``through_trees='seasons'``.
         location : array_like, shape (2,), optional

@@ -15,7 +15,7 @@ function written() {
   // a page that opens files itself has there what it opened
   const opened = [...wordsOf(location.hash)].filter(([name]) => ["open", "crs", "window"].includes(name));
   const words = { ...Object.fromEntries(opened), q: tool.name, d: time.date, t: clockText(time.minutes), z: time.zone };
-  if (time.trees !== "measured") words.trees = time.trees;
+  if (time.trees !== "opaque") words.trees = time.trees;
   if ($("outlines").getAttribute("aria-pressed") === "true") words.edges = "yes";
   if (page.isSure) words.sure = "yes";
   if (page.compared) Object.assign(words, { from: page.compared.time, fromz: page.compared.zone });

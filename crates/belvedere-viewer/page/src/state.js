@@ -9,5 +9,5 @@ export const canvas = $("view");
 const isStored = ({ name }) => name === "look" || (name === "shadow" && api.exported.suns.length) || (name === "seen" && api.exported.viewpoints.length);
 export const TOOLS = api.exported ? ALL.filter(isStored) : ALL;
 export const toolOf = (name) => [...TOOLS, ...ASIDES].find((tool) => tool.name === name);
-export const page = { scene: null, tool: TOOLS[0], places: [], marks: [], answer: null, time: { date: "", zone: "UTC", minutes: 780, trees: "measured" }, isSure: false, compared: null, last: null };
+export const page = { scene: null, tool: TOOLS[0], places: [], marks: [], answer: null, time: { date: "", zone: "UTC", minutes: 780, trees: "opaque" }, isSure: false, compared: null, last: null };
 window.belvedere = page;
