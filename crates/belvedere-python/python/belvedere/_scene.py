@@ -304,7 +304,7 @@ class Scene(Sights, Outlook, Sunlight, Energy, Planning, Cameras):
 
         Examples
         --------
-        >>> _ = (folder / "horizon.csv").write_text("0,30")
+        >>> _ = (folder / "horizon.csv").write_text("0,30\\n180,30")
         >>> float(np.nanmax(scene.with_horizon(folder / "horizon.csv").shadow(sun=(180, 29)).values))
         0.0
         """
