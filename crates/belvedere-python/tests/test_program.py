@@ -123,7 +123,7 @@ def assert_same_rows(table, path):
 
 
 # the block hangs above the town, which is said
-@pytest.mark.filterwarnings("ignore:.*mesh floats:belvedere.BelvedereWarning")
+@pytest.mark.filterwarnings("ignore:.* floats:belvedere.BelvedereWarning")
 def test_faces_of_a_mesh(scene, run_program, folder, block):
     read = belvedere.Mesh.read(folder / "block.obj")
     assert np.array_equal(read.vertices[read.triangles], block.vertices[block.triangles])
