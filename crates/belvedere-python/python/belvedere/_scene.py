@@ -294,7 +294,7 @@ class Scene(Sights, Outlook, Sunlight, Energy, Planning, Cameras):
         return self._plan(core, {**self.report, "cleared": json.loads(text)})
 
     def with_horizon(self, path: str | os.PathLike[str]) -> Scene:
-        """The same scene before far terrain: directions to the sun and the sky below its horizon are blocked.
+        r"""The same scene before far terrain: directions to the sun and the sky below its horizon are blocked.
 
         Parameters
         ----------
@@ -304,7 +304,7 @@ class Scene(Sights, Outlook, Sunlight, Energy, Planning, Cameras):
 
         Examples
         --------
-        >>> _ = (folder / "horizon.csv").write_text("0,30\\n180,30")
+        >>> _ = (folder / "horizon.csv").write_text("0,30\n180,30")
         >>> float(np.nanmax(scene.with_horizon(folder / "horizon.csv").shadow(sun=(180, 29)).values))
         0.0
         """
