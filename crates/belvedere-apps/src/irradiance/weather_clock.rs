@@ -82,8 +82,8 @@ mod tests {
     use crate::sun::sun_position;
     use belvedere_data::weather::RowsHold;
 
-    /// A year of rows of so many hours, under a clear sky and every third afternoon overcast, whose times are `late`
-    /// minutes too late.
+    /// Rows of so many hours on every fifth day of a year, under a clear sky and every third afternoon overcast, whose
+    /// times are `late` minutes too late.
     fn weather(hours: f64, latitude_deg: f64, longitude_deg: f64, late: f64) -> Weather {
         let site = Site {
             latitude: latitude_deg.to_radians(),
@@ -94,8 +94,11 @@ mod tests {
         let start = 1_704_067_200.0;
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "rows of a year")]
         let count = (365.0 * 24.0 / hours) as u32;
+        let middle = |i: u32| start + (f64::from(i) + 0.5) * hours * 3600.0;
+        // by the sun, whose days begin up to half a day earlier or later
+        let day = |i: &u32| (middle(*i) / DAY_S + site.longitude / std::f64::consts::TAU).floor();
         let step = |i: u32| {
-            let middle = start + (f64::from(i) + 0.5) * hours * 3600.0;
+            let middle = middle(i);
             // the mean of the interval
             let parts = [-0.4, -0.2, 0.0, 0.2, 0.4].map(|part| {
                 let sun = sun_position(&site, middle + part * hours * 3600.0).unwrap();
@@ -118,7 +121,7 @@ mod tests {
             longitude: site.longitude,
             height: 0.0,
             rows_hold: RowsHold::Means,
-            steps: (0..count).map(step).collect(),
+            steps: (0..count).filter(|i| day(i) % 5.0 == 0.0).map(step).collect(),
             left_out_count: 0,
             notes: Vec::new(),
         }

@@ -34,8 +34,9 @@ fn sealed(plan: &mut serde_json::Value) -> String {
     format!("{{\"checksum\":\"{crc:08x}\",{rest}")
 }
 
+/// A survey of four tiles of 64 m.
 fn town(place: &Workplace) {
-    assert_eq!(place.run("simulate village -o town --extent 130 --density 3").status, 0);
+    assert_eq!(place.run("simulate village -o town --extent 80 --density 3").status, 0);
 }
 
 /// Results that a record says are done, and when each was written.
@@ -281,7 +282,7 @@ fn a_cleared_area_loses_its_shadow_and_keeps_its_cells() {
     };
     let [dark, light] = lit("before", "");
     let [still_dark, now_light] = lit("polygon", "--clear all.geojson");
-    assert!(dark > 500 && still_dark * 50 < now_light, "{dark} {light} {still_dark} {now_light}");
+    assert!(dark > 200 && still_dark * 50 < now_light, "{dark} {light} {still_dark} {now_light}");
     assert!(still_dark + now_light >= dark + light, "{dark} {light} {still_dark} {now_light}");
     assert_eq!(lit("box", "--clear 154900,462900,155100,463100"), [still_dark, now_light]);
     let warnings = |flags: &str| place.summary(&format!("{plan} {flags} -o warned"))["remarks"].to_string();
@@ -293,7 +294,8 @@ fn a_cleared_area_loses_its_shadow_and_keeps_its_cells() {
 #[test]
 fn questions_are_those_of_the_commands_they_are_named_after() {
     let place = Workplace::new();
-    town(&place);
+    // a viewshed of 30 m lies on it
+    assert_eq!(place.run("simulate village -o town --extent 130 --density 3").status, 0);
     let flags = "--time 2026-03-20T12:45+01:00 --sun-hours --date 2026-03-20 --time-step-min 60 --irradiance --clear-sky haurwitz \
                  --patch-division 1 --sun-cell-deg 20 --observer 155000,462985 --max-distance 30";
     let cells = "--cell 4 --cell-for shadow=2";

@@ -6,7 +6,7 @@ use crate::web_server::{Manner, WebServer};
 #[test]
 fn results_are_the_same_from_a_server_and_from_the_disk() {
     let place = Workplace::new();
-    place.run("simulate village -o town --extent 130 --density 3");
+    place.run("simulate village -o town --extent 80 --density 3");
     place.run("balls town/cloud.laz -o balls.laz");
     place.write("house.obj", "v 154980 462980 0\nv 154990 462980 0\nv 154985 462990 9\nf 1 2 3\n");
     let files = [("cloud.laz", "town/cloud.laz"), ("balls.laz", "balls.laz"), ("house.obj", "house.obj")];

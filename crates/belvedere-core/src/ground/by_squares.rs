@@ -214,7 +214,7 @@ mod tests {
             let params = GroundParams { points, ..GroundParams::default() };
             let kept = GroundBySquares::new(&cloud, &params, &Control::none()).unwrap();
             let mut known = 0;
-            for (number, cell) in (0..40).zip([0.25, 0.5, 1.7, 6.0].into_iter().cycle()) {
+            for (number, cell) in (0..16).zip([0.25, 0.5, 1.7, 6.0].into_iter().cycle()) {
                 let middle = [0, 1].map(|axis| 170.0 * uniform(8, 2 * number + axis) - 25.0);
                 let (low, high) = (middle.map(|v| v - 4.0), middle.map(|v| v + 6.0));
                 let grid = MapGrid::covering(low, high, cell, [0.3, 0.2]).unwrap();
@@ -225,7 +225,7 @@ mod tests {
                 assert_eq!(found.1, expected.1);
                 known += found.1.cell_count;
             }
-            assert!(known > 1000);
+            assert!(known > 400);
         }
     }
 

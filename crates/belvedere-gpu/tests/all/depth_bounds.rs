@@ -59,7 +59,7 @@ fn bounds_hold_for_every_place_of_a_pixel() {
 #[test]
 fn answers_by_bounds_of_a_device_are_those_of_exact_lines_of_sight() {
     let balls = balls_at_eye();
-    let targets = targets(&balls, 10_000);
+    let targets = targets(&balls, 4_000);
     for device in devices_or_skip("answers_by_bounds_of_a_device_are_those_of_exact_lines_of_sight") {
         for (bias, shell) in RULES {
             let gpu = Arc::new(on(&device));
@@ -79,7 +79,7 @@ fn answers_by_bounds_of_a_device_are_those_of_exact_lines_of_sight() {
 
 /// As many targets as there are, seen through all views, have the answers that the CPU gives.
 fn assert_same_answers(gpu: &Arc<Gpu>, balls: &MedialBalls, views: &[(&str, View)], what: &str) {
-    let targets = random_targets([-35.0; 3], [35.0; 3], 4000, 3);
+    let targets = random_targets([-35.0; 3], [35.0; 3], 1500, 3);
     let scene = || MedialScene::new(balls, &BlockRule::carved()).unwrap();
     let (scene, on_device) = (scene(), scene().with_backend(gpu.clone()));
     for (name, view) in views {

@@ -188,7 +188,7 @@ fn rich_town() -> TriangleScene {
 }
 
 #[test]
-fn hundred_thousand_rays_through_a_town_with_everything_agree_with_the_plain_loop() {
+fn random_rays_through_a_town_with_everything_agree_with_the_plain_loop() {
     let scene = rich_town();
     for material in Material::ALL {
         let expected = material != Material::TreeCrown;
@@ -202,7 +202,7 @@ fn hundred_thousand_rays_through_a_town_with_everything_agree_with_the_plain_loo
     // out.
     let triangles: Vec<[[f64; 3]; 3]> =
         (0..scene.triangles.len()).map(|t| scene.corners(t).unwrap().map(|corner| sub(corner, centre))).collect();
-    let rays: Vec<_> = random_rays(&scene, 100_000, 77).into_iter().enumerate().collect();
+    let rays: Vec<_> = random_rays(&scene, 30_000, 77).into_iter().enumerate().collect();
     let outcomes: Vec<Option<bool>> = rays
         .par_iter()
         .map(|&(number, (origin, direction))| {
@@ -234,7 +234,7 @@ fn hundred_thousand_rays_through_a_town_with_everything_agree_with_the_plain_loo
     let disagreements = outcomes.iter().filter(|outcome| outcome.is_none()).count();
     assert_eq!(disagreements, 0, "of {} rays through {} triangles", rays.len(), triangles.len());
     let hits = outcomes.iter().filter(|outcome| **outcome == Some(true)).count();
-    assert!((30_000..90_000).contains(&hits), "{hits}");
+    assert!((9_000..27_000).contains(&hits), "{hits}");
 }
 
 /// Square of ground, 400 m wide, at height 0, with a box of height 10 over −5…5 (x) and −8…8 (y).

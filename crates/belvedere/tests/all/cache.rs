@@ -15,13 +15,13 @@ use std::path::PathBuf;
 use tempfile::TempDir;
 
 fn cloud(seed: u64) -> PointCloud {
-    cloud_of_side(60.0, seed)
+    cloud_of_density(3.0, seed)
 }
 
-/// A scan of a town whose side is `extent` metres.
-fn cloud_of_side(extent: f64, seed: u64) -> PointCloud {
-    let scene = town(&TownParams { extent, seed, ..TownParams::default() });
-    cloud_of(&scan_airborne(&scene, &AirborneParams { pulses_per_m2: 3.0, ..AirborneParams::default() }))
+/// A scan of a town of 60 m with so many pulses per m².
+fn cloud_of_density(pulses_per_m2: f64, seed: u64) -> PointCloud {
+    let scene = town(&TownParams { extent: 60.0, seed, ..TownParams::default() });
+    cloud_of(&scan_airborne(&scene, &AirborneParams { pulses_per_m2, ..AirborneParams::default() }))
 }
 
 fn scene_of(cloud: &PointCloud, params: &ModelParams, cache: &SceneCache) -> BuiltScene {
@@ -75,7 +75,7 @@ fn a_scene_that_is_found_is_the_one_that_was_built() {
 fn a_damaged_scene_is_built_again() {
     let folder = tempfile::tempdir().unwrap();
     // it is built 44 times
-    let (cache, cloud, params) = (SceneCache::new(folder.path()), cloud_of_side(30.0, 2), ModelParams::default());
+    let (cache, cloud, params) = (SceneCache::new(folder.path()), cloud_of_density(0.4, 2), ModelParams::default());
     let centers = scene_of(&cloud, &params, &cache).model.parts().balls.centers.clone();
     let path = scenes(&folder).pop().unwrap();
     let whole = fs::read(&path).unwrap();

@@ -34,7 +34,7 @@ fn ground_found_without_classes_lies_on_the_exact_ground() {
     for (preset, min) in
         [(Preset::Village, [0.99, 0.98]), (Preset::Town, [0.99, 0.95]), (Preset::OldTown, [0.99, 0.97])]
     {
-        let scene = town(&preset.params(150.0, 5));
+        let scene = town(&preset.params(110.0, 5));
         let scan = scan_airborne(&scene, &AirborneParams { seed: 5, ..AirborneParams::covering(&scene, 8.0) });
         let cloud = cloud_of(&scan);
         let unclassed = PointCloud { attributes: Attributes::default(), ..cloud.clone() };

@@ -53,7 +53,7 @@ fn true_loss(plane: &RoofPlane, truth: &Truth, origin: [f64; 3], radiation: &Per
 fn losses_of_the_planes_of_an_exact_town_are_within_a_point_on_the_mean() {
     let radiation = year();
     for (preset, seed) in [(Preset::Town, 3), (Preset::OldTown, 4)] {
-        let scene = town(&preset.params(90.0, seed));
+        let scene = town(&preset.params(70.0, seed));
         let scan = scan_airborne(
             &scene,
             &AirborneParams { seed, pulses_per_m2: 10.0, ..AirborneParams::covering(&scene, 10.0) },

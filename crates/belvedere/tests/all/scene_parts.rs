@@ -12,10 +12,10 @@ use std::sync::Arc;
 /// Blocks that pruning and thin surfaces work in, metres.
 const BLOCK: f32 = 64.0;
 
-/// A flown town in a frame whose origin is a corner of blocks.
-fn survey() -> PointCloud {
-    let scene = town(&TownParams { extent: 240.0, seed: 5, ..TownParams::default() });
-    let scan = scan_airborne(&scene, &AirborneParams { pulses_per_m2: 2.0, ..AirborneParams::default() });
+/// A flown town of `extent` metres in a frame whose origin is a corner of blocks.
+fn survey(extent: f64) -> PointCloud {
+    let scene = town(&TownParams { extent, seed: 5, ..TownParams::default() });
+    let scan = scan_airborne(&scene, &AirborneParams { pulses_per_m2: 1.0, ..AirborneParams::default() });
     let cloud = cloud_of(&scan);
     let origin = [0, 1, 2].map(|axis| (cloud.frame.origin[axis] / 1024.0).floor() * 1024.0);
     let positions = (0..scan.len()).map(|i| to_local([scan.x[i], scan.y[i], scan.z[i]], origin)).collect();
@@ -108,7 +108,7 @@ fn check(cloud: &PointCloud) {
 
 #[test]
 fn a_part_of_a_survey_has_the_balls_and_surfaces_of_the_whole() {
-    let cloud = survey();
+    let cloud = survey(240.0);
     check(&cloud);
     let model = model_of(&cloud, &ModelParams::default());
     assert!(model.patches().len() > 500, "{}", model.patches().len());
@@ -116,7 +116,7 @@ fn a_part_of_a_survey_has_the_balls_and_surfaces_of_the_whole() {
 
 #[test]
 fn a_part_of_a_survey_without_classes_and_pulses_has_the_balls_of_the_whole() {
-    let mut cloud = survey();
+    let mut cloud = survey(240.0);
     cloud.attributes.classification = None;
     cloud.attributes.gps_time = None;
     check(&cloud);
@@ -125,7 +125,7 @@ fn a_part_of_a_survey_without_classes_and_pulses_has_the_balls_of_the_whole() {
 #[test]
 #[expect(clippy::cast_possible_truncation, reason = "hundreds of metres in millimetres")]
 fn a_whole_that_is_built_as_its_own_part_is_nearly_what_it_is_without_statistics() {
-    let cloud = survey();
+    let cloud = survey(130.0);
     let with = ModelParams::default().with_statistics(Some(Arc::new(statistics(&cloud))));
     let far = [[-1e6; 2], [1e6; 2]];
     // positions on a path from the statistics are rounded differently from those that are estimated with the path

@@ -216,7 +216,7 @@ fn wall_area(scene: &TriangleScene, terrain: &belvedere_scenes::Terrain) -> f64 
 
 #[test]
 fn info_reports_density_multi_returns_and_facade_density_as_the_simulation_knows_them() {
-    let town_params = TownParams { extent: 200.0, ..TownParams::default() };
+    let town_params = TownParams { extent: 120.0, ..TownParams::default() };
     let scene = town(&town_params);
     for (pattern, density) in [(ScanPattern::Rotating, 10.0), (ScanPattern::CONICAL_20, 20.0)] {
         let params = AirborneParams { pattern, ..AirborneParams::covering(&scene, 10.0) };
@@ -224,7 +224,7 @@ fn info_reports_density_multi_returns_and_facade_density_as_the_simulation_knows
         let cloud = cloud_of(&scan);
         let statistics = CloudSummary::of(&cloud, &Control::none()).unwrap();
         // Cells on the border count as a whole; they are a metre wide.
-        assert!((statistics.occupied_area / 4e4 - 1.0).abs() < 0.03, "{}", statistics.occupied_area);
+        assert!((statistics.occupied_area / 14_400.0 - 1.0).abs() < 0.03, "{}", statistics.occupied_area);
         assert!((statistics.density * statistics.occupied_area / scan.len() as f64 - 1.0).abs() < 1e-9);
         let pulses = statistics.pulses.unwrap();
         let firsts = || (0..scan.len()).filter(|&i| scan.return_number[i] == 1);
@@ -356,11 +356,11 @@ fn cityjson_parts_are_those_given_and_surfaces_say_what_they_are() {
 #[test]
 fn scanners_that_fly_hit_the_ground_as_densely_as_wanted_and_others_from_where_they_stand() {
     for regime in Regime::ALL {
-        let params = regime.town(Preset::Town.params(100.0, 3));
+        let params = regime.town(Preset::Town.params(60.0, 3));
         let scene = regime.scene(&params);
         let scan = regime.scan(&scene, &params, 2.0);
         let highest = scan.sensor_path.positions.iter().map(|p| p[2]).fold(f64::NEG_INFINITY, f64::max);
-        let density = scan.return_number.iter().filter(|&&number| number == 1).count() as f64 / 1e4;
+        let density = scan.return_number.iter().filter(|&&number| number == 1).count() as f64 / 3600.0;
         if regime.flies() {
             assert!(highest > 50.0 && (density / 2.0 - 1.0).abs() < 0.25, "{regime:?}: {highest} m, {density}");
         } else {
