@@ -170,6 +170,7 @@ pub(crate) fn scene_of_places(
     shell: Option<f32>,
     run: &mut CommandContext,
 ) -> Result<ask::Scene> {
+    places.check_on_map(&input.input)?;
     let points = if places.needs_points() { KeepPoints::Keep } else { KeepPoints::LetGo };
     let mut scene = scene(input, points, run)?;
     places.far.set(&mut scene, run)?;

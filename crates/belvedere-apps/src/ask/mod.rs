@@ -39,6 +39,7 @@ pub mod scene;
 pub mod sections;
 mod shadow;
 mod shared;
+mod single_places;
 mod sky_view;
 pub mod sun;
 mod sun_hours;
@@ -81,6 +82,7 @@ pub use report::Report;
 pub use scene::Scene;
 pub use shadow::{ShadowQuestion, ShadowResults, UNPROVEN};
 pub use shared::SharedObject;
+pub use single_places::{HeightFrom, PlaceSection, position_on_map};
 pub use sky_view::{SkyParts, SkyViewQuestion};
 pub use sun::{Days, NamedSun, SunPlace, SunRange, Suns, check_sun, remark_on_sun};
 pub use sun_hours::{PreparedSun, SunHoursQuestion, rules};
@@ -253,6 +255,9 @@ pub fn ask<Q: Ask>(scene: &Scene, question: &Q, places: &Places, control: &Contr
     }
     context.add(reliability::remark_on_reliability(scene.model().parts()));
     let answers = question.answer(scene, places, &mut context, control)?;
+    for sentence in single_places::sentences(&context.report.at, &answers.measures) {
+        context.headline(sentence);
+    }
     Ok(answers.with(context))
 }
 

@@ -3,7 +3,7 @@
 use super::observers::Standing;
 use super::scene::Scene;
 use super::sections::PlacesReport;
-use super::{Context, Remark, remark_on_outside};
+use super::{Context, Remark, remark_on_outside, single_places};
 use crate::edge::{EdgeReport, near_edge};
 use crate::targets::{CellLevel, CellParams, MeshParams, TargetLayout, Targets};
 use crate::viewshed::cell_for;
@@ -30,6 +30,8 @@ pub enum Places {
     Own(Turned),
     /// Points in local metres, with the unit normals that they are turned to, (N, 3) each.
     Points(Vec<[f32; 3]>, Option<Vec<[f32; 3]>>),
+    /// Single places: one without a height lies above the ground, or above what covers the ground there.
+    At(Vec<Standing>, GroundPoints),
     /// The points of a cloud, with the unit normals that they are turned to.
     Cloud(Arc<PointCloud>, Option<Vec<[f32; 3]>>),
     /// The faces of a mesh in metres.
@@ -86,6 +88,9 @@ impl Places {
             Self::Cells(cells) => return Ok(Arc::new(cells.targets(scene, context, control)?)),
             Self::Own(turned) => own_points(scene, *turned)?,
             Self::Points(positions, normals) => of_points(positions.clone(), normals.clone()),
+            Self::At(places, points) => {
+                of_points(single_places::positions(places, *points, scene, context, control)?, None)
+            }
             Self::Cloud(cloud, normals) => of_points(moved(cloud, scene)?, normals.clone()),
             Self::Mesh(mesh, params) => {
                 control.stage("sampling mesh", 0, || Targets::of_mesh(mesh, scene.frame(), params))?
@@ -265,6 +270,7 @@ impl PlacesReport {
         let count = targets.target_count();
         match &targets.layout {
             TargetLayout::Cells(ground) => Self::cells_in_words(count, ground.grid.cell),
+            TargetLayout::Points if count == 1 => "1 point".to_owned(),
             TargetLayout::Points => format!("{count} points"),
             TargetLayout::Surface(_) => format!("{} faces", targets.groups.len()),
         }

@@ -15,6 +15,7 @@ use super::sections::{
     GroundSection, LinesSection, LocationSection, MeasuresSection, NamedValues, PeriodSection, PlacesReport,
     RadiationSection, RoofsSection, SunSection, TreesSection,
 };
+use super::single_places::PlaceSection;
 use super::survey_plan::SurveyPlanSection;
 use super::viewshed::SeenSection;
 use super::window_views::{ViewsSection, WindowsSection};
@@ -56,6 +57,9 @@ pub struct Report {
     /// What became of the places.
     #[serde(flatten)]
     pub places: PlacesReport,
+    /// The single places.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub at: Vec<PlaceSection>,
     /// Who looks.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub observers: Option<ObserversSection>,

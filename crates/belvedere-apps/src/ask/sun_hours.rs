@@ -1,6 +1,6 @@
 //! Sun hours: how long the sun reaches places on days, and whether rules of daylight are met.
 
-use super::how_sure::{check_interval, check_interval_scene};
+use super::how_sure::{check_interval, check_interval_scene, knows_intervals};
 use super::light::{Light, OnTargets};
 use super::scene::Whereabouts;
 use super::sections::{MeasuresSection, NamedValues, PeriodSection, PlacesReport};
@@ -130,6 +130,9 @@ impl SunHoursQuestion {
         control: &Control<'_>,
     ) -> Result<PreparedSun> {
         check_interval_scene(self.interval, scene, control)?;
+        // a single place costs little more with its interval
+        let is_single = matches!(places, Places::At(..));
+        let has_interval = self.interval || is_single && !self.trees.is_light() && knows_intervals(scene, control)?;
         let site = self.place.site(scene, context, None)?;
         let (plan, zone) = self.plan(&site, among)?;
         context.report.period = Some(section(&plan, &zone, &self.days.params(&self.place)));
@@ -139,7 +142,7 @@ impl SunHoursQuestion {
             context.report.lines_of_sight = None;
         }
         let title = self.title(&plan, &zone, &scene.whereabouts());
-        Ok(PreparedSun { plan, site, light, has_interval: self.interval, title })
+        Ok(PreparedSun { plan, site, light, has_interval, title })
     }
 
     pub(super) fn title(&self, plan: &SunPlan, zone: &Zone, whereabouts: &Whereabouts<'_>) -> String {

@@ -115,7 +115,7 @@ pub(crate) struct IrradianceOutputs {
     /// On a grid: .tif has all measures as bands, the total first, with nodata -9999, and .png is a map of the total
     /// with a legend. Cells and points: all measures as columns. A mesh: a table with a row for each object and each
     /// face (.csv), or the mesh coloured by the total (.ply).
-    #[arg(short, long, value_name = "OUT", required_unless_present = "planes", help_heading = "Result")]
+    #[arg(short, long, value_name = "OUT", required_unless_present_any = ["planes", "at"], help_heading = "Result")]
     pub(crate) output: Vec<PathBuf>,
     /// Also write a raster of each measure of a grid into this folder; created if it does not exist
     #[arg(long, value_name = "DIR", help_heading = "Result")]

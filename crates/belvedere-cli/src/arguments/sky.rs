@@ -1,8 +1,8 @@
 //! Flags of the targets of sun and sky commands, and of the sky view.
 
 use super::{
-    GroundChoice, IntervalArgument, MemoryArgument, SceneInput, Shell, ThroughTreesArguments, above_zero, at_least_one,
-    length,
+    GroundChoice, IntervalArgument, MapPosition, MemoryArgument, SceneInput, Shell, ThroughTreesArguments, above_zero,
+    at_least_one, length,
 };
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
@@ -82,6 +82,12 @@ pub(crate) struct SkyPlacesChoice {
     /// Query points of a file, or a mesh (.obj .json .ply with faces), in the coordinates of the scene
     #[arg(long, value_name = "FILE")]
     pub(crate) targets: Option<PathBuf>,
+    /// Query a single place: X,Y[,Z] in file coordinates, or LATITUDE,LONGITUDE in degrees; repeatable
+    ///
+    /// Without Z it is --target-height above the ground, or above the roof that covers it. The answer is printed, of
+    /// sun hours with the interval that holds the truth in nine of ten cases; -o is not needed.
+    #[arg(long, value_name = "PLACE", allow_hyphen_values = true)]
+    pub(crate) at: Vec<MapPosition>,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -99,7 +105,7 @@ pub(crate) struct SkyOutputs {
     /// On a grid: .tif has all measures as bands with their names (nodata: 255 of yes or no, -9999 of numbers), and
     /// .png is a map of the first with a legend. Cells and points: all measures as columns. A mesh: a table with a row
     /// for each object and each face (.csv), or the mesh coloured by the first measure (.ply).
-    #[arg(short, long, value_name = "OUT", required = true, help_heading = "Result")]
+    #[arg(short, long, value_name = "OUT", required_unless_present = "at", help_heading = "Result")]
     pub(crate) output: Vec<PathBuf>,
     /// Also write a raster of each measure of a grid into this folder; created if it does not exist
     #[arg(long, value_name = "DIR", help_heading = "Result")]

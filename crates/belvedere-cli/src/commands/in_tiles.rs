@@ -60,6 +60,7 @@ impl<'a> TypedCells<'a> {
             ("--ground cloud=FILE", matches!(places.ground, GroundChoice::Cloud(_))),
             ("--self", places.places.own),
             ("--targets", places.places.targets.is_some()),
+            ("--at", !places.places.at.is_empty()),
             ("--edge-mask", places.edge_mask.is_some()),
             ("--measures", outputs.measures.is_some()),
         ];

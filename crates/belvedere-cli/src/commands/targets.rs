@@ -2,16 +2,17 @@
 
 use super::query::{points_of_file, text_rows_for};
 use super::{check_output, extension};
-use crate::arguments::{FacingChoice, GroundChoice, SkyOutputs, SkyPlaces, Usage};
+use crate::arguments::{CloudInput, FacingChoice, GroundChoice, MapPosition, SkyOutputs, SkyPlaces, Usage};
 use crate::pipeline::mesh_in;
 use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::Result;
-use belvedere::apps::ask::{GridCells, OnTargets, Places, Remark, Scene, Turned};
+use belvedere::apps::ask::{GridCells, OnTargets, Places, Remark, Scene, Standing, Turned, position_on_map};
 use belvedere::apps::targets::{CellLevel, Facing, Measure, MeshParams};
+use belvedere::crs::Crs;
 use belvedere::figures::{Picture, write_png};
 use belvedere::ground::{GroundPoints, highest_points};
-use belvedere::io::{Georeference, ReadOptions, atomic, is_mesh, write_tif_u8};
+use belvedere::io::{Georeference, ReadOptions, atomic, cloud_files, is_mesh, read_las_head, write_tif_u8};
 use belvedere::raster::Raster;
 use belvedere::results::{ResultKind, TakenFrom, georeference, measure_map, write_measures, write_raster};
 use belvedere::{Mesh, PointCloud};
@@ -21,6 +22,8 @@ use std::sync::Arc;
 /// What targets were taken from.
 pub(crate) enum TargetSource {
     Cells,
+    /// Places that were typed.
+    Single,
     /// The points of the scene.
     Own,
     /// Points with their attributes, and the file they were read from.
@@ -57,7 +60,8 @@ impl SkyPlaces {
     /// Refuses flags that do not belong together and outputs that cannot be written, before hours of work go into them.
     pub(crate) fn check(&self, outputs: &SkyOutputs) -> Result<()> {
         let mesh = self.places.targets.as_deref().is_some_and(is_mesh);
-        let points = self.places.own || self.places.targets.is_some() && !mesh;
+        let points = self.places.own || self.places.targets.is_some() && !mesh || !self.places.at.is_empty();
+        MapPosition::refuse_twice("--at", &self.places.at)?;
         let known: &[&str] = match (mesh, points) {
             (true, _) => &["csv", "ply"],
             (_, true) => &["laz", "las", "ply", "csv"],
@@ -73,7 +77,7 @@ impl SkyPlaces {
             ("--measures", outputs.measures.is_some(), mesh || points, "a grid"),
             ("--edge-mask", self.edge_mask.is_some(), mesh || points, "a grid"),
             ("--cell", self.cell.is_some(), mesh || points, "a grid"),
-            ("--target-height", self.height.is_some(), mesh || points, "a grid"),
+            ("--target-height", self.height.is_some(), mesh || points && self.places.at.is_empty(), "a grid"),
             ("--spacing", self.spacing.is_some(), !mesh, "a mesh"),
         ];
         if let Some((flag, .., what)) = refused.into_iter().find(|(_, given, wrong, _)| *given && *wrong) {
@@ -89,7 +93,7 @@ impl SkyPlaces {
 
     /// Whether places are cells of a grid.
     pub(crate) fn is_grid(&self) -> bool {
-        !self.places.own && self.places.targets.is_none()
+        !self.places.own && self.places.targets.is_none() && self.places.at.is_empty()
     }
 
     /// Whether the points of the scene are needed.
@@ -108,8 +112,47 @@ impl SkyPlaces {
         }
     }
 
+    /// Refuses single places beside the points, before anything is built, as far as headers tell.
+    pub(crate) fn check_on_map(&self, input: &CloudInput) -> Result<()> {
+        if self.places.at.is_empty() {
+            return Ok(());
+        }
+        let Ok(files) = cloud_files(&input.clouds) else { return Ok(()) };
+        let heads: Option<Vec<_>> = files.iter().map(|file| read_las_head(file.as_path()).ok()).collect();
+        let Some(heads) = heads.filter(|heads| !heads.is_empty()) else { return Ok(()) };
+        let crs = match &input.crs {
+            Some(crs) => Crs::parse(crs)?,
+            None => heads[0].crs.clone(),
+        };
+        let end = |corner: usize, pick: fn(f64, f64) -> f64| {
+            [0, 1].map(|axis| heads.iter().map(|head| head.bounds[corner][axis]).reduce(pick).unwrap_or(f64::NAN))
+        };
+        let bounds = [end(0, f64::min), end(1, f64::max)];
+        self.places.at.iter().try_for_each(|place| position_on_map(place.0, &crs, bounds).map(|_| ()))?;
+        Ok(())
+    }
+
+    /// Single places, local metres.
+    fn standing(&self, scene: &Scene) -> Result<Vec<Standing>> {
+        let frame = scene.frame();
+        let (low, high) = scene.model().bounds().on_map();
+        let bounds = [low, high].map(|[x, y]| {
+            let [x, y, _] = frame.file_from_local([x, y, 0.0]);
+            [x, y]
+        });
+        let one = |&MapPosition(place, height): &MapPosition| {
+            let [x, y] = position_on_map(place, &frame.crs, bounds)?;
+            let place = frame.local_from_file([x, y, height.unwrap_or(f64::NAN)]);
+            Ok(Standing { place, height: self.height.map(f64::from) })
+        };
+        self.places.at.iter().map(one).collect()
+    }
+
     /// The places that were typed, and what they are taken from.
     pub(crate) fn places(&self, scene: &Scene, run: &mut CommandContext) -> Result<(Places, TargetSource)> {
+        if !self.places.at.is_empty() {
+            return Ok((Places::At(self.standing(scene)?, self.ground.points()), TargetSource::Single));
+        }
         let Some(path) = &self.places.targets else {
             if self.places.own {
                 let is_turned = self.facing == Some(FacingChoice::Normals);
@@ -226,7 +269,7 @@ impl<'a> TargetOutput<'a> {
             _ => None,
         };
         let from = match &self.source {
-            TargetSource::Cells => TakenFrom::Nothing,
+            TargetSource::Cells | TargetSource::Single => TakenFrom::Nothing,
             TargetSource::Own => TakenFrom::Cloud(self.scene.cloud()),
             TargetSource::File(cloud, _) => rows.as_ref().map_or(TakenFrom::Cloud(cloud), TakenFrom::Rows),
             TargetSource::Mesh(mesh) => TakenFrom::Mesh(mesh),

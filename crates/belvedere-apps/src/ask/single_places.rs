@@ -1,0 +1,239 @@
+//! Single places: where they lie if no height is given, and what was found there in a sentence each.
+
+use super::observers::Standing;
+use super::places::cells_of;
+use super::scene::Scene;
+use super::{Context, Remark};
+use crate::targets::{CellLevel, CellParams, Measure, Targets, grid_around};
+use belvedere_core::ground::{Ground, GroundPoints};
+use belvedere_data::control::Control;
+use belvedere_data::crs::Crs;
+use belvedere_data::report::rounded;
+use belvedere_data::{Error, Parameter, Result};
+use serde::Serialize;
+
+/// Places that have a sentence of their own.
+const MAX_SENTENCES: usize = 5;
+/// Figures of a sentence.
+const MAX_FIGURES: usize = 5;
+/// How far beside a cloud a place may lie, metres: as far as targets are taken.
+const MARGIN: f64 = 1.0;
+
+/// A place that was asked about.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct PlaceSection {
+    /// Position in the coordinates of the file; the height is NaN where none is known.
+    pub position: [f64; 3],
+    /// What the height was taken from.
+    pub height_from: HeightFrom,
+}
+
+/// What the height of a place was taken from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum HeightFrom {
+    /// It was given.
+    Given,
+    /// The ground below.
+    Ground,
+    /// The roof, or another cover of the ground, below.
+    Cover,
+}
+
+/// Coordinates of the file of a place that is given in them, or as latitude and longitude in degrees. `bounds` are the
+/// south-west and north-east corner of the points, in the coordinates of the file.
+///
+/// # Errors
+/// [`Error::InvalidParameter`] for a place beside the points, and those of [`Crs::geographic_projection`] for degrees.
+pub fn position_on_map(given: [f64; 2], crs: &Crs, bounds: [[f64; 2]; 2]) -> Result<[f64; 2]> {
+    let margin = MARGIN / crs.metres_per_unit;
+    let is_inside =
+        |place: &[f64; 2]| (0..2).all(|i| (bounds[0][i] - margin..=bounds[1][i] + margin).contains(&place[i]));
+    if is_inside(&given) {
+        return Ok(given);
+    }
+    let [latitude, longitude] = given;
+    let mut way_out = "on the points of the cloud";
+    if latitude.abs() <= 90.0 && longitude.abs() <= 180.0 {
+        let projected = crs.geographic_projection()?.project(latitude.to_radians(), longitude.to_radians())?;
+        let place = projected.map(|v| v / crs.metres_per_unit);
+        if is_inside(&place) {
+            return Ok(place);
+        }
+        way_out = "on the points of the cloud, as latitude and longitude in degrees, or in the coordinates of the file";
+    }
+    let [[west, south], [east, north]] = bounds;
+    Err(Error::InvalidParameter {
+        parameter: Parameter::Position,
+        value: format!(
+            "{}, {}, but the points reach from {west:.0}, {south:.0} to {east:.0}, {north:.0}",
+            given[0], given[1]
+        ),
+        expected: way_out,
+    })
+}
+
+/// Local metres of `places`. One without a height lies above the ground, or above what covers the ground there.
+pub(super) fn positions(
+    places: &[Standing],
+    points: GroundPoints,
+    scene: &Scene,
+    context: &mut Context,
+    control: &Control<'_>,
+) -> Result<Vec<[f32; 3]>> {
+    let mut positions: Vec<[f64; 3]> = places.iter().map(|place| place.place).collect();
+    let mut sources = vec![HeightFrom::Given; places.len()];
+    if let Some(grid) = grid_around(positions.iter().copied(), scene.frame().origin)? {
+        let known = scene.ground(grid, points, control)?;
+        context.ground(scene, &known);
+        let usual = CellParams::default().with_height(0.0);
+        // what cells leave out is no matter of single places
+        let cells = |level| {
+            let params = usual.with_level(level);
+            cells_of(scene, known.ground.clone(), &params, &mut Context::default(), control)
+        };
+        let open = cells(CellLevel::Ground)?;
+        let mut covers: Option<Targets> = None;
+        for ((position, source), place) in positions.iter_mut().zip(&mut sources).zip(places) {
+            if !position[2].is_nan() {
+                continue;
+            }
+            let above = place.height.unwrap_or(CellParams::default().height);
+            let on_map = [position[0], position[1]];
+            if height_of_cell(&open, &known.ground, on_map).is_some() {
+                *source = HeightFrom::Ground;
+                position[2] = known.ground.height_at(on_map).unwrap_or(f64::NAN) + above;
+                continue;
+            }
+            *source = HeightFrom::Cover;
+            let covers = match &mut covers {
+                Some(covers) => covers,
+                none => none.insert(cells(CellLevel::Surface)?),
+            };
+            position[2] = height_of_cell(covers, &known.ground, on_map).map_or(f64::NAN, |height| height + above);
+        }
+    }
+    let unknown = positions.iter().filter(|position| position[2].is_nan()).count();
+    context.add(Remark::of_share(
+        "places-without-ground",
+        unknown,
+        positions.len(),
+        "places",
+        "have neither ground nor a roof below that is known: give their height as a third coordinate",
+    ));
+    let in_file = |position: &[f64; 3]| scene.frame().file_from_local(*position).map(|v| rounded(v, 3));
+    context.report.at = positions
+        .iter()
+        .zip(sources)
+        .map(|(position, height_from)| PlaceSection { position: in_file(position), height_from })
+        .collect();
+    #[expect(clippy::cast_possible_truncation, reason = "local metres")]
+    Ok(positions.iter().map(|position| position.map(|v| v as f32)).collect())
+}
+
+/// Height of the cell at a position on the map; `None` for one that is no target.
+fn height_of_cell(cells: &Targets, ground: &Ground, on_map: [f64; 2]) -> Option<f64> {
+    let [column, row] = ground.grid.cell_of(on_map)?;
+    let height = f64::from(cells.positions.get(row * ground.grid.width + column)?[2]);
+    height.is_finite().then_some(height)
+}
+
+/// A sentence for each of few places.
+pub(super) fn sentences(places: &[PlaceSection], measures: &[Measure]) -> Vec<String> {
+    if places.len() > MAX_SENTENCES {
+        return Vec::new();
+    }
+    places.iter().enumerate().map(|(row, place)| sentence(place, measures, row)).collect()
+}
+
+fn sentence(place: &PlaceSection, measures: &[Measure], row: usize) -> String {
+    let [x, y, z] = place.position;
+    let on = match place.height_from {
+        HeightFrom::Given => "",
+        HeightFrom::Ground => ", on the ground",
+        HeightFrom::Cover => ", on what stands there",
+    };
+    let value = |measure: &Measure| measure.values.get(row).copied().map(f64::from).filter(|value| value.is_finite());
+    let named = |name: &str| measures.iter().find(|measure| measure.name == name).and_then(value);
+    let found = match (named("sun_hours"), named("hours_low"), named("hours_high")) {
+        (Some(hours), low, high) => {
+            let mut text = format!("{hours:.1} h of sun a day");
+            if let (Some(low), Some(high)) = (low, high) {
+                text += &format!(", with 90 % {low:.1} to {high:.1} h");
+            }
+            for (name, what) in [("first_light", "first"), ("last_light", "last")] {
+                if let Some(hour) = named(name) {
+                    text += &format!(", {what} {}", clock(hour));
+                }
+            }
+            for measure in measures.iter().filter(|measure| measure.description == crate::sun_hours::RULE_IS_MET) {
+                let is_met = value(measure).is_some_and(|met| met > 0.5);
+                text += &format!(", {}: {}", measure.name, if is_met { "met" } else { "not met" });
+            }
+            text
+        }
+        _ => {
+            let figure = |measure: &Measure| {
+                let value = value(measure)?;
+                let name = if measure.description.is_empty() { &measure.name } else { measure.description };
+                let subject =
+                    if measure.subject.is_empty() { String::new() } else { format!(" ({})", measure.subject) };
+                Some(format!("{name}{subject} {value:.*}", measure.decimals.min(3)))
+            };
+            let figures: Vec<String> = measures.iter().filter_map(figure).take(MAX_FIGURES).collect();
+            if figures.is_empty() { "no answer".to_owned() } else { figures.join(", ") }
+        }
+    };
+    format!("at {x:.1}, {y:.1} (height {z:.1}{on}): {found}")
+}
+
+/// An hour of the day as clocks show it.
+fn clock(hour: f64) -> String {
+    let minutes = (hour * 60.0).round();
+    format!("{:02}:{:02}", (minutes / 60.0).floor(), minutes.rem_euclid(60.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn degrees_and_coordinates_name_the_same_place() {
+        // Dom tower of Utrecht, from the tables of the Dutch cadastre
+        let crs = Crs::parse("EPSG:28992").unwrap();
+        let bounds = [[136_000.0, 455_000.0], [137_000.0, 456_500.0]];
+        let by_degrees = position_on_map([52.090_75, 5.121_37], &crs, bounds).unwrap();
+        assert!((by_degrees[0] - 136_780.0).abs() < 60.0 && (by_degrees[1] - 455_960.0).abs() < 60.0, "{by_degrees:?}");
+        assert_eq!(position_on_map([136_500.0, 456_000.0], &crs, bounds).unwrap(), [136_500.0, 456_000.0]);
+        for wrong in [[155_000.0, 463_000.0], [5.121_37, 52.090_75], [f64::NAN, 0.0]] {
+            let error = position_on_map(wrong, &crs, bounds).unwrap_err().to_string();
+            assert!(error.contains("136000, 455000"), "{error}");
+        }
+        // without a reference system, small coordinates are those of the file
+        let unknown = Crs::default();
+        assert_eq!(position_on_map([3.0, 4.0], &unknown, [[0.0; 2], [9.0; 2]]).unwrap(), [3.0, 4.0]);
+        assert!(position_on_map([52.0, 4.0], &unknown, [[0.0; 2], [9.0; 2]]).is_err());
+    }
+
+    #[test]
+    fn a_sentence_says_hours_with_their_interval_and_clocks() {
+        let place = PlaceSection { position: [1.0, 2.0, 3.25], height_from: HeightFrom::Ground };
+        let measures: Vec<Measure> = [
+            ("sun_hours", 4.91),
+            ("hours_low", 4.3),
+            ("hours_high", 5.4),
+            ("first_light", 9.669),
+            ("last_light", 15.16),
+        ]
+        .map(|(name, value)| Measure::new(name, vec![value]))
+        .into();
+        assert_eq!(
+            sentences(&[place], &measures),
+            [
+                "at 1.0, 2.0 (height 3.2, on the ground): 4.9 h of sun a day, with 90 % 4.3 to 5.4 h, first 09:40, last 15:10"
+            ]
+        );
+        let nothing = [Measure::new("sky", vec![f32::NAN])];
+        assert!(sentences(&[place], &nothing)[0].ends_with("no answer"));
+    }
+}
