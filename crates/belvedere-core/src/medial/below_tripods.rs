@@ -48,7 +48,7 @@ pub(super) fn floors_below(
     tripods(free_segments).into_iter().flat_map(floor_below).collect()
 }
 
-/// Where many free segments end in one place.
+/// Returns the places where many free segments end.
 fn tripods(free_segments: &FreeSegments) -> Vec<[f32; 3]> {
     let mut found: BTreeMap<[i64; 3], (usize, [f32; 3])> = BTreeMap::new();
     for (start, direction, length) in
@@ -103,8 +103,8 @@ struct Edge {
     row: usize,
 }
 
-/// Where the floor begins in each sector about the foot of the tripod, by its own pulses; empty where it does in too
-/// few.
+/// Returns the nearest floor point in each sector around the foot of the tripod, seen by its own pulses. Empty if too
+/// few sectors have one.
 fn nearest_around(
     index: &NeighborIndex,
     positions: &[[f32; 3]],

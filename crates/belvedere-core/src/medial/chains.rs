@@ -7,7 +7,7 @@ pub(super) const MIN_SHARE: f32 = 0.25;
 /// Most balls below each other, so that odd parameters cannot fill the memory.
 const MAX_BELOW: usize = 64;
 
-/// How balls hang below each other.
+/// Chain of balls that hang below a point.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Chain {
     /// Row of the point that tells of them.

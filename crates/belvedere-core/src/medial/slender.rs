@@ -16,14 +16,15 @@ use belvedere_data::control::{Control, Stop};
 use rayon::prelude::*;
 use std::f32::consts::FRAC_1_SQRT_2;
 
-/// How slender things are found and represented.
+/// Parameters of slender things: detection and representation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SlenderParams {
-    /// A thing is slender where pulses enter the balls that touch its point from eight sides before any has this
-    /// radius, metres, above 0: into a wall, a car or a roof one of them can grow on. Default 0.5: some pulse passes
-    /// within that of most points of fences at eight pulses a square metre; 0.35 finds fewer.
+    /// Radius of the balls that decide whether a thing is slender, metres, above 0. It is slender if pulses enter all
+    /// balls of this radius that touch its point from eight sides; into a wall, a car or a roof one of them can grow
+    /// on. Default 0.5: at eight pulses a square metre, some pulse passes within that of most points of fences. 0.35
+    /// finds fewer.
     pub gap: f32,
-    /// How far below its point the balls touch, metres, 0 or more; above the lowest point near by in any case. Default
+    /// Depth below its point at which the balls touch, metres, 0 or more; never below the lowest point near by. Default
     /// 0.7: more than the gap, so that pulses that end beside the point, on the same roof, do not count.
     pub lowering: f32,
     /// Most radius of the balls at its points, in spacings of pulses, above 0. Default 0.32: pulses pass closer on both
@@ -61,7 +62,7 @@ impl Default for SlenderParams {
 
 /// Half of the eight sides from which balls touch a point; the others are opposite.
 const SIDES: [[f32; 2]; 4] = [[1.0, 0.0], [FRAC_1_SQRT_2, FRAC_1_SQRT_2], [0.0, 1.0], [-FRAC_1_SQRT_2, FRAC_1_SQRT_2]];
-/// How far beside a point others say how high the thing is there, metres.
+/// Radius around a point in which the top of the thing is searched, metres.
 const TOP_REACH_M: f32 = 0.4;
 /// Points handed to a thread at once.
 const CHUNK: usize = 512;
@@ -71,9 +72,9 @@ impl MarkingRule for SlenderParams {
         Some((Phase::Points, "finding thin objects"))
     }
 
-    /// Caps at all slender things, and fills of those that stand on the ground: balls below each other, at each point
-    /// from the highest point of the thing close by down to the ground, and midway between points that have no other
-    /// between them.
+    /// Returns caps at all slender things, and fills of those that stand on the ground. Fills are balls below each
+    /// other, from the highest point of the thing close by down to the ground. They stand at each point, and midway
+    /// between neighbouring points.
     fn marks(&self, survey: &Survey<'_>, _: &MedialBalls, control: &Control<'_>) -> Result<Marks> {
         let heights = self.heights(survey, control)?;
         let rows = (0..heights.len()).filter(|&row| !heights[row].is_nan());
@@ -94,9 +95,9 @@ impl MarkingRule for SlenderParams {
 }
 
 impl SlenderParams {
-    /// Height of each point of a slender thing above the lowest point near by, NaN for all others: those of ground,
-    /// vegetation and buildings (class 6; what has no class and is higher than what stands), those too low, and those
-    /// not passed by pulses on all sides.
+    /// Returns the height of each point of a slender thing above the lowest point near by, NaN for all others. Points
+    /// of ground, vegetation and buildings are left out (class 6, or no class and higher than what stands). So are
+    /// points that are too low, or not passed by pulses on all sides.
     fn heights(&self, survey: &Survey<'_>, control: &Control<'_>) -> Result<Vec<f32>> {
         let stop = Stop::new(control);
         let positions = survey.positions();

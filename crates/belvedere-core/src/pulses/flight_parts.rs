@@ -1,8 +1,8 @@
-//! What parts of flight lines show about the scanner, and when this is trusted.
+//! Estimates of the scanner position for parts of flight lines, and their acceptance.
 
 use belvedere_data::{Error, Parameter, Result};
 
-/// How [`SensorPositions::from_returns`](super::SensorPositions::from_returns) works.
+/// Parameters of [`SensorPositions::from_returns`](super::SensorPositions::from_returns).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SensorEstimateParams {
     /// Longest part of a flight line that is taken for straight and evenly flown, seconds, 0.5 to 60. Default 5: gusts
@@ -65,11 +65,11 @@ pub struct SensorPart {
     pub height: f64,
     /// Median angle between the pulses and the directions to the estimated path, radians.
     pub median_angle: f64,
-    /// Whether it is used.
+    /// Acceptance of the estimate.
     pub verdict: PartVerdict,
 }
 
-/// Whether the estimate for a part of a flight line is used, and why not.
+/// Acceptance of the estimate for a part of a flight line, with the reason for a refusal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PartVerdict {
     /// Used.
@@ -85,7 +85,7 @@ pub enum PartVerdict {
 }
 
 impl PartVerdict {
-    /// Whether the part has a position that is used.
+    /// Returns true if the position of this part is used.
     #[must_use]
     pub fn is_used(self) -> bool {
         matches!(self, Self::Accepted | Self::Bridged)
@@ -109,7 +109,7 @@ impl SensorEstimateParams {
     }
 }
 
-/// When scan angles are trusted.
+/// Acceptance thresholds for scan angles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ScanAngleParams {
     /// Longest part of a flight line that is taken for straight and evenly flown, seconds, 0.5 to 60. Default 10.
@@ -148,7 +148,7 @@ impl Default for ScanAngleParams {
     }
 }
 
-/// Whether the scan angles of a part of a flight line are trusted, and why not.
+/// Acceptance of the scan angles of a part of a flight line, with the reason for a refusal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AngleVerdict {
     /// Trusted.
@@ -168,7 +168,7 @@ pub enum AngleVerdict {
     Implausible,
 }
 
-/// What the scan angles of a part of a flight line show.
+/// Scanner position of a part of a flight line, from scan angles.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScanAnglePart {
     /// Flight line.
@@ -190,7 +190,7 @@ pub struct ScanAnglePart {
     pub pitch: f64,
     /// Median angle to the pulses with several returns, radians; NaN where these are too few.
     pub contradiction: f64,
-    /// Whether it is used.
+    /// Acceptance of the scan angles.
     pub verdict: AngleVerdict,
 }
 
@@ -206,6 +206,6 @@ pub struct HeightOffset {
     pub pair_count: usize,
     /// Median angle between these pulses and the trajectory as it is used, radians.
     pub miss_angle: f64,
-    /// Whether it stands out from chance and from what beams feign, exceeds a metre, and was therefore added.
+    /// True if the offset was added: it is significant, larger than beams can feign, and exceeds a metre.
     pub is_applied: bool,
 }

@@ -19,7 +19,7 @@ const FARTHEST: f64 = 30.0;
 const STEPS: [f64; 3] = [1.0, 0.1, 0.01];
 /// Share of the pulses whose place a shifted trajectory must know.
 const MIN_KNOWN: f64 = 0.8;
-/// How many times smaller the median angle between pulses and path must be after the shift, and by how much, radians.
+/// Minimum factor by which the shift reduces the median angle between pulses and path, and minimum reduction, radians.
 const MIN_GAIN: f64 = 3.0;
 const MIN_ANGLE: f64 = 0.2 * std::f64::consts::PI / 180.0;
 /// An offset this near to whole seconds is that of a clock, seconds, if pulses then point to within this angle of the
@@ -32,14 +32,14 @@ const CERTAIN_ANGLE: f64 = 1.0 * std::f64::consts::PI / 180.0;
 pub struct TimeOffset {
     /// Seconds to be added to the times of the cloud, beside what [`ClockOffset`] adds.
     pub seconds: f64,
-    /// Whether it is that of another clock, and was used.
+    /// True if it is the offset of another clock, and was used.
     pub is_applied: bool,
     /// Median angle between pulses and the directions to the path before and after, radians.
     pub angles: [f64; 2],
 }
 
 impl TimeOffset {
-    /// What it says against the trajectory.
+    /// Describes the contradiction between the trajectory and the pulses.
     #[must_use]
     pub fn contradiction(&self) -> FoundContradiction {
         let [before, after] = self.angles.map(|angle| rounded(angle.to_degrees(), 2));
@@ -63,8 +63,8 @@ struct PulsePair {
     along: [f64; 3],
 }
 
-/// The offset of time that `trajectory`, on a clock of `clock`, needs for the pulses to point to it; `None` where it
-/// needs none, and where too few pulses have returns far enough apart.
+/// Estimates the time offset of `trajectory`, on a clock of `clock`, for which the pulses point to it. `None` if it
+/// needs none, and if too few pulses have returns far enough apart.
 pub(super) fn time_offset(
     cloud: &PointCloud,
     pulses: &Pulses,
