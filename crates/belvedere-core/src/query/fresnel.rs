@@ -82,7 +82,7 @@ impl Link {
         if self.is_bent { self.earth.sag(self.span, (along / self.length).clamp(0.0, 1.0)) } else { 0.0 }
     }
 
-    /// How far along the straightened link a place lies, and how far beside it, metres.
+    /// Returns the distance of a place along the straightened link, and its distance from the link, metres.
     fn beside(&self, place: [f64; 3]) -> [f64; 2] {
         let [x, y, z] = sub(place, self.start);
         let raised = [x, y, z + self.sag(dot([x, y, z], self.axis))];
@@ -96,7 +96,7 @@ impl Link {
         self.wave.zone_radius([along, self.length - along])
     }
 
-    /// The part of the radius of the zone that is free if something lies `beside` metres from the line at `along`:
+    /// Returns the free share of the radius of the zone for an obstacle `beside` metres from the line at `along`. It is
     /// infinite at the ends, where the zone is a point.
     fn share(&self, along: f64, beside: f64) -> f64 {
         let radius = self.radius(along);
@@ -181,7 +181,7 @@ impl Link {
         })
     }
 
-    /// How far a piece of this length lies from its chord at most, metres.
+    /// Returns the maximum distance of a piece of this length from its chord, metres.
     fn sag_within(&self, piece: f64) -> f64 {
         if self.is_bent { self.earth.sag(self.span * piece / self.length, 0.5) } else { 0.0 }
     }
@@ -202,9 +202,9 @@ fn min(mut from: f64, mut to: f64, value: impl Fn(f64) -> f64) -> f64 {
 }
 
 impl MedialScene {
-    /// How much of the first Fresnel zone of a radio link between two points, local metres, is free: the share of its
-    /// radius that nothing reaches into, 0 where something touches the line itself, and at most `max`. A zone counts as
-    /// free from 0.6 on (ITU-R P.530). NaN for points that are not finite, or are the same.
+    /// Returns the free share of the radius of the first Fresnel zone of a radio link between two points, local metres.
+    /// It is 0 if something touches the line itself, and at most `max`. A zone counts as free from 0.6 on (ITU-R
+    /// P.530). NaN for points that are not finite, or coincide.
     ///
     /// Balls that hold an end are left out and balls near an end give way to it, as to a target; so do triangles on
     /// which an end lies. Whether the line of sight is proven is another question, and far terrain is not

@@ -6,7 +6,7 @@ use belvedere_data::random;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-/// Whether a target can be seen.
+/// Visibility of a target.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 #[repr(u8)]
@@ -26,7 +26,7 @@ pub enum Answer {
     InsideObstacle = 5,
 }
 
-/// What to make of [`Answer::Unproven`].
+/// Treatment of [`Answer::Unproven`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum UnprovenAs {
@@ -50,7 +50,7 @@ impl UnprovenAs {
     }
 }
 
-/// How many targets got which answer.
+/// Number of targets for each answer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct AnswerCounts {
     /// [`Answer::Visible`].

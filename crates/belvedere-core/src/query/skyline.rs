@@ -12,7 +12,7 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 /// Balls handed to a thread at once.
 const CHUNK: usize = 1 << 15;
 
-/// Where the sky begins in one direction.
+/// Lower edge of the sky in one direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SkylinePoint {
     /// The least elevation above which nothing blocks up to the zenith, radians, −π/2 (nothing blocks at all) to π/2
@@ -20,7 +20,7 @@ pub struct SkylinePoint {
     pub elevation: f64,
     /// Range of what stands there, metres; infinite where nothing does, and for far terrain.
     pub range: f64,
-    /// What stands there; `None` for far terrain and where nothing does.
+    /// Obstacle there; `None` for far terrain and for no obstacle.
     pub blocker: Option<Blocker>,
 }
 
@@ -45,11 +45,11 @@ impl MedialScene {
     /// The skyline around `eye`, local metres: at `count` azimuths, the first north, clockwise in equal steps. Empty
     /// for an eye that is not finite.
     ///
-    /// Exact for the union of balls, for meshes that were added and for surface patches, by the tangents of every ball
-    /// in the vertical plane of each azimuth: nothing that floats above a gap is missed, and there is no step to
-    /// choose. The eye may be a place on a surface: balls give way to it by [`crate::blocking::BlockRule::shell`] as to
-    /// any target. Those that hold it even so are left out; [`MedialScene::enclosure`] tells of them. Over the earth of
-    /// `earth` far balls sink.
+    /// Exact for the union of balls, for added meshes and for surface patches, by the tangents of every ball in the
+    /// vertical plane of each azimuth. Nothing that floats above a gap is missed, and there is no step to choose. The
+    /// eye may be a place on a surface: balls give way to it by [`crate::blocking::BlockRule::shell`] as to any target.
+    /// Balls that hold it even so are left out; [`MedialScene::enclosure`] returns them. Over the earth of `earth` far
+    /// balls sink.
     ///
     /// # Errors
     /// [`Error::Cancelled`](belvedere_data::Error::Cancelled).

@@ -8,7 +8,7 @@ use crate::ray_index::PartSides;
 
 pub(super) struct BeamSimd128;
 
-/// How far inside a plane places lie, metres.
+/// Returns the depth of places behind a plane, metres.
 #[inline(always)]
 fn depth(space: &ConvexSpace, plane: usize, [x, y, z]: [Eight; 3]) -> Eight {
     let [a, b, c] = space.normals[plane].map(Eight::all);

@@ -35,7 +35,7 @@ pub(super) struct TargetCell {
 }
 
 impl TargetCell {
-    /// Where a target, local metres, lies; `None` for one too far from the layers.
+    /// Locates a target, local metres; `None` for one too far from the layers.
     #[must_use]
     pub(super) fn new(space: &SpaceLayers, position: [f32; 3]) -> Option<Self> {
         let at: [f64; 3] = std::array::from_fn(|i| (f64::from(position[i]) - space.low[i]) / space.cell);
@@ -74,7 +74,7 @@ impl TargetCell {
 pub(super) struct SweptDirection {
     /// Cells that a line moves on in a layer along x and y, with 26 bits of fraction.
     pub(super) slope: [i32; 2],
-    /// How many layers above its target a line leaves the near space of the target, with 18 bits of fraction.
+    /// Number of layers above its target at which a line leaves the near space, with 18 bits of fraction.
     pub(super) rise: i32,
     /// The slope itself.
     slope_exact: [f64; 2],
@@ -104,8 +104,8 @@ impl SweptDirection {
 
     /// By how many whole cells along x and y lines of sight have moved in each stretch of a layer, into `moves`.
     ///
-    /// Those of a cell lie over two by two cells of the layer, the same ones until they pass a side of a cell to the
-    /// east or north: a stretch runs from one such passage to the next.
+    /// The lines of a cell lie over two by two cells of the layer, the same ones until they pass a side of a cell to
+    /// the east or north. A stretch runs from one such passage to the next.
     pub(super) fn moves_in(&self, layer: usize, moves: &mut Vec<[i64; 2]>) {
         let slope = self.slope_exact;
         let layer = layer as f64;
