@@ -1,8 +1,8 @@
-//! Which instructions of the processor the indexes run on. Answers are the same bits on all of them.
+//! Choice of the processor instructions of the indexes. Answers are the same bits on all of them.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Whether a face turned AVX2 off.
+/// True if AVX2 was turned off.
 static IS_SCALAR: AtomicBool = AtomicBool::new(false);
 
 /// Instructions that a search runs on.

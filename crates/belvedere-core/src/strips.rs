@@ -9,7 +9,7 @@ use belvedere_data::{PointCloud, Result};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// How heights of flight lines are compared.
+/// Parameters of the comparison of flight-line heights.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StripParams {
     /// Side of the cells in which lines are compared, metres, above 0. Default 2: at 2 pulses per m², of which half
@@ -71,7 +71,7 @@ pub struct StripPair {
 pub struct StripOffset {
     /// Its point source id.
     pub line: u16,
-    /// What is added to its heights, metres, whole millimetres.
+    /// Offset added to its heights, metres, whole millimetres.
     pub up_m: f64,
 }
 
@@ -214,7 +214,7 @@ fn pair(lines: [u16; 2], mut rises: Vec<f64>, params: &StripParams) -> Option<St
     Some(StripPair { lines, cells: rises.len(), rise_m, deviation_m: SD_OF_MAD * median(&mut deviations) })
 }
 
-/// How far each line is moved so that pairs fit best, by least squares with a weight of one for each cell.
+/// Returns the offset of each line so that pairs fit best, by least squares with a weight of one for each cell.
 fn offsets(pairs: &[StripPair]) -> Vec<StripOffset> {
     let believed = || pairs.iter().filter(|pair| pair.deviation_m <= MAX_DEVIATION);
     let mut lines: Vec<u16> = believed().flat_map(|pair| pair.lines).collect();

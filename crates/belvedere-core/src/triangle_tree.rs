@@ -53,16 +53,16 @@ impl TriangleTree {
         self.bounds
     }
 
-    /// Whether `ray` crosses a triangle within its ranges for which `counts` is true: it is given the row of the
-    /// triangle.
+    /// Returns true if `ray` crosses a triangle within its ranges for which `counts` is true. `counts` gets the row of
+    /// the triangle.
     #[must_use]
     pub fn any(&self, ray: &Ray, mut counts: impl FnMut(usize) -> bool) -> bool {
         let crossing = RayAxes::new(ray);
         self.index.any(ray, |row| self.range(&crossing, row, ray).is_some() && counts(row))
     }
 
-    /// Looks for the rays from `origins`, neighbours together, along a unit vector without end that cross a triangle
-    /// for which `counts` is true: it is given the number of the ray and the row of the triangle, until it was true for
+    /// Finds the rays from `origins`, neighbours in space, along a unit vector without end that cross a triangle for
+    /// which `counts` is true. `counts` gets the index of the ray and the row of the triangle, until it was true for
     /// the ray once. Each ray is found as [`TriangleTree::any`] finds it, but they walk through the tree together.
     pub(crate) fn any_of(
         &self,
@@ -152,8 +152,8 @@ fn bounding_box([a, b, c]: &Corners) -> [[f32; 3]; 2] {
 /// axes holds the origin.
 ///
 /// # Source
-/// Woop, Benthin & Wald 2013, "Watertight Ray/Triangle Intersection": it gives the barycentric coordinates of Möller &
-/// Trumbore 1997, but two triangles compute the side of a shared edge from the same numbers, so that no ray slips
+/// Woop, Benthin & Wald 2013, "Watertight Ray/Triangle Intersection". It gives the barycentric coordinates of Möller &
+/// Trumbore 1997, but two triangles compute the side of a shared edge from the same numbers, so that no ray passes
 /// between them. All in f64, hence without the paper's fallback.
 struct RayAxes {
     origin: [f64; 3],
@@ -170,7 +170,7 @@ impl RayAxes {
         Self { origin: ray.origin, axes: [x, y, z], shear: [d[x] / d[z], d[y] / d[z], 1.0 / d[z]] }
     }
 
-    /// Where a place is seen along the rays: its coordinates across the third axis.
+    /// Projects a place along the rays: returns its coordinates across the third axis.
     fn seen(&self, place: [f64; 3]) -> [f64; 2] {
         let ([x, y, z], [shear_x, shear_y, _]) = (self.axes, self.shear);
         let p = sub(place, self.origin);
@@ -204,7 +204,7 @@ fn to_f32(value: f64) -> f32 {
 /// A triangle as seen along rays, with edges that run counter-clockwise.
 struct Shadow {
     corners: [[f32; 2]; 3],
-    /// How far outside an edge a place is still near, times the length of the edge.
+    /// Margin outside an edge within which a place is still near, times the length of the edge.
     margins: [f32; 3],
     low: [f32; 2],
     high: [f32; 2],
@@ -231,7 +231,7 @@ impl Shadow {
 
 /// Rays side by side, as seen along them.
 struct RayGroup {
-    /// Where they start, by axis; beyond the last ray a place that no triangle is near.
+    /// Start of each ray, by axis; beyond the last ray a place that no triangle is near.
     starts: [[f32; Self::LANES]; 2],
     low: [f32; 2],
     high: [f32; 2],

@@ -14,7 +14,7 @@ use rayon::prelude::*;
 /// Value of the item buffer where no ball is hit.
 pub const NO_BALL: u32 = u32::MAX;
 
-/// Whether a depth map also says which ball each pixel shows.
+/// Choice of an item buffer: the index of the ball in each pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum ItemBuffer {
     /// Depths only.
@@ -39,7 +39,7 @@ const CHUNK: usize = 8192;
 pub(super) trait SplatSurface: Sync {
     /// A ball in the view.
     type Splat: Copy + Send + Sync;
-    /// What the pixels of one tile have in common.
+    /// Data shared by the pixels of one tile.
     type PixelTile;
     /// A ball, its centre local, or `None` where it cannot be seen or is no ball of finite size.
     fn place(&self, center: [f32; 3], radius: f32, ball: u32) -> Option<Self::Splat>;
@@ -123,10 +123,10 @@ pub(super) fn draw<S: SplatSurface>(
     Ok((depth, nearest))
 }
 
-/// Which splats each tile has to look at.
+/// Splats that each tile has to test.
 struct TileLists {
     columns: usize,
-    /// Where the list of each tile begins, row by row, and the end of the last.
+    /// Start of the list of each tile, row by row, and the end of the last.
     starts: Vec<usize>,
     listed: Vec<u32>,
     /// Splats over so many tiles that each tile looks at them itself.
@@ -223,7 +223,7 @@ fn pixel_range([min, max]: [f32; 2], size: usize) -> [usize; 2] {
 
 struct Tile<'a, S: SplatSurface> {
     shape: &'a S,
-    /// What its pixels have in common.
+    /// Data shared by its pixels.
     pixels: S::PixelTile,
     /// First pixel.
     left: usize,
@@ -232,7 +232,7 @@ struct Tile<'a, S: SplatSurface> {
     nearest: [u32; TILE * TILE],
     /// At least the farthest depth of each block.
     farthest: [f32; BLOCKS * BLOCKS],
-    /// Whether a block was drawn on since its farthest depth was taken.
+    /// True for blocks that were drawn on since their farthest depth was taken.
     stale: [bool; BLOCKS * BLOCKS],
 }
 

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 /// Width of a cell: about the spacing of the sparsest clouds worth orienting, and a tenth of a small house.
 const CELL_M: f64 = 0.5;
 
-/// How far the vote looks horizontally: most of a small house, less than a street.
+/// Horizontal reach of the vote, metres: most of a small house, less than a street.
 const REACH_M: f64 = 3.0;
 
 /// Heights must differ by this much for one side to count as building and the other as ground: half a storey.
@@ -33,8 +33,8 @@ impl HighestPointGrid {
     /// where they are about level.
     ///
     /// # Source
-    /// The idea that above a facade lies roof (inside) and below it ground (outside); halves of the local relief
-    /// instead of fixed offsets from the point serve points near the ground and near the eaves alike.
+    /// Above a facade is roof (inside), and below it ground (outside). Halves of the local relief instead of fixed
+    /// offsets from the point serve points near the ground and near the eaves alike.
     pub(super) fn downhill(&self, position: [f32; 3]) -> Option<[f64; 2]> {
         let (x, y) = (f64::from(position[0]), f64::from(position[1]));
         let (mut low, mut high) = (f32::INFINITY, f32::NEG_INFINITY);
