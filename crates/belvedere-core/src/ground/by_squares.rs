@@ -12,8 +12,8 @@ const POINTS_OF_SQUARE: f64 = 32.0;
 /// Triangles that lie in more squares than this are kept beside the others.
 const MAX_SQUARES: usize = 64;
 
-/// What shows the ground of a cloud, ready for grids of few cells anywhere: each takes a moment then, where
-/// [`Ground::of_cloud`] looks at the whole cloud again. The results are the same bits.
+/// Index of the ground of a cloud for grids of few cells anywhere. Each grid takes a moment, where [`Ground::of_cloud`]
+/// reads the whole cloud again. The results are the same bits.
 pub struct GroundBySquares {
     params: GroundParams,
     /// Without cells.
@@ -71,7 +71,7 @@ impl GroundBySquares {
         Ok(Self { params: *params, report, points, nearest, squares, triangles, of_squares, large, returns })
     }
 
-    /// Which points are ground.
+    /// Returns the parameters of the ground.
     #[must_use]
     pub fn params(&self) -> &GroundParams {
         &self.params
@@ -150,15 +150,15 @@ impl Squares {
     }
 }
 
-/// What lies in each square.
+/// Items by square.
 struct BySquare<T> {
-    /// Where those of a square begin, and after the last square their number.
+    /// First item of each square, and the number of items after the last square.
     starts: Vec<usize>,
     items: Vec<T>,
 }
 
 impl<T: Copy + Send> BySquare<T> {
-    /// Of items, each with its square.
+    /// Sorts items, each with its square.
     fn new(squares: &Squares, mut items: Vec<(u32, T)>) -> Self {
         items.par_sort_unstable_by_key(|(square, _)| *square);
         let mut starts = vec![0; squares.count() + 1];
@@ -171,7 +171,7 @@ impl<T: Copy + Send> BySquare<T> {
         Self { starts, items: items.into_iter().map(|(_, item)| item).collect() }
     }
 
-    /// What lies in the squares that a box reaches into.
+    /// Returns the items in the squares that a box reaches into.
     fn held(&self, squares: &Squares, low: [f64; 2], high: [f64; 2]) -> impl Iterator<Item = T> + Clone {
         let [columns, rows] = squares.between(low, high);
         let of_row = |row| {

@@ -1,9 +1,9 @@
-//! Whether a part of the points of class 2 lies off by a metre or more: what they themselves, the strips of the survey
-//! and the other returns say against it.
+//! Detects areas of class-2 points that are offset by 0.7 m or more from other evidence: their own levels, the strips
+//! of the survey, and other returns.
 //!
-//! A step alone is no evidence: quays, terraces and pits have one. What no terrain does is to lie at two heights in the
-//! same places over an area, to step where one strip ends and the next begins, to lie above most other returns, or to
-//! lie below a layer of them that continues the ground on all sides. Areas are squares of a few cells, so that a wall,
+//! A step alone is no evidence: quays, terraces and pits have one. No terrain lies at two heights in the same places
+//! over an area, or steps where one strip ends and the next begins. Neither does it lie above most other returns, or
+//! below a layer of them that continues the ground on all sides. Areas are squares of a few cells, so that a wall,
 //! which has two heights along a line, is none.
 
 use super::believed::{Placed, placed};
@@ -14,7 +14,7 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// How far ground must lie off, metres: more than kerbs, stairs and steep slopes do within a cell.
+/// Minimum offset of the ground, metres: more than kerbs, stairs and steep slopes do within a cell.
 const MIN_SHIFT: f32 = 0.7;
 /// Least gap between two levels of a cell, and how far below the ground a return contradicts it, metres: beside noise
 /// and slopes.
@@ -35,19 +35,19 @@ const MIN_CELLS: usize = 8;
 const MIN_SQUARES: usize = 2;
 /// Least share of the cells of a square that have two levels: a wall across it crosses a third.
 const MIN_TWO_LEVELS: f32 = 0.6;
-/// How far the upper level of the cells of a square may lie to one side of the lower one at most, as a share of a cell:
-/// on a slope it lies uphill.
+/// Maximum mean horizontal offset between the upper and the lower level of the cells of a square, as a share of a cell.
+/// On a slope the upper level lies uphill.
 const MAX_LEAN: f32 = 0.25;
-/// How many squares away the ground around those with two levels is looked for.
+/// Search radius for the ground around squares with two levels, squares.
 const AROUND: i32 = 2;
 /// Least share of the cells of a square with a return below its ground.
 const MIN_BELOW: f32 = 0.5;
-/// How many squares away the ground around is looked for, and where it counts whatever its height.
+/// Search radius for the ground around, and radius within which it counts at any height, squares.
 const SEARCH: [i32; 2] = [8, 6];
 /// Directions that need ground, of eight, and the least share of them whose ground continues a layer of other returns.
 const MIN_AROUND: usize = 5;
 const MIN_CONTINUED: f32 = 0.75;
-/// How far this ground may lie from the layer, metres.
+/// Maximum height difference between this ground and the layer, metres.
 const MAX_FROM_LAYER: f32 = 0.35;
 /// Places where two strips must meet.
 const MIN_MEETINGS: usize = 15;
@@ -59,17 +59,17 @@ const NO_EVIDENCE: [u8; 7] = [7, 9, 18, 40, 41, 42, 45];
 pub struct GroundShift {
     /// Points of class 2 that lie off.
     pub point_count: usize,
-    /// How far above what contradicts them they lie, metres; below 0 where they lie below it.
+    /// Height of the points above the evidence, metres; negative if they lie below it.
     pub rise: f32,
     /// South-western corner of the box around them on the map, local metres.
     pub low: [f32; 2],
     /// Its north-eastern corner.
     pub high: [f32; 2],
-    /// What contradicts them.
+    /// Evidence against the points.
     pub against: ShiftEvidence,
 }
 
-/// What contradicts ground points.
+/// Evidence against ground points.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum ShiftEvidence {
     /// More points of class 2 at the same places.
@@ -89,7 +89,7 @@ pub enum ShiftEvidence {
 #[derive(Clone, Copy, Debug)]
 struct Cell {
     at: [i32; 2],
-    /// Where its points start in the order of cells and heights, and how many they are.
+    /// First of its points in the order of cells and heights, and their number.
     first: usize,
     count: usize,
 }
@@ -102,12 +102,12 @@ struct Square {
     heights: Vec<f32>,
     /// Cells with points enough for two levels.
     measured: usize,
-    /// How far apart the levels of those lie that have two, how many points are at either, and the sum of the ways on
-    /// the map from the lower to the upper level, metres.
+    /// Height difference of the two levels of each cell that has two, the points at either, and the sum of the
+    /// horizontal offsets from the lower to the upper level, metres.
     steps: Vec<f32>,
     level_counts: [usize; 2],
     lean: [f32; 2],
-    /// How far above the lowest ground point the lowest other return is, of cells with both.
+    /// Height of the lowest other return above the lowest ground point, of cells with both.
     gaps: Vec<f32>,
 }
 
@@ -122,8 +122,8 @@ impl Square {
 /// Squares by row and column.
 type Squares = BTreeMap<[i32; 2], Square>;
 
-/// Of the ground `points` of a cloud, (N, 3) local metres, which are its `rows`, those that lie off by a metre or more
-/// over an area, with the most telling evidence; `None` where nothing contradicts them.
+/// Returns the ground `points` of a cloud, (N, 3) local metres, `rows` of it, that are offset over an area, with the
+/// strongest evidence. `None` if nothing contradicts them.
 ///
 /// # Errors
 /// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
@@ -238,8 +238,8 @@ fn squares_of(cells: &[Cell], placed: &[Placed], points: &[[f32; 3]], lowest: &[
     squares
 }
 
-/// How far apart the two levels of ascending heights lie, and how many are at the lower one; `None` where there is one
-/// level: neither may be thicker than the gap between them, as the parts of a slope are.
+/// Returns the height difference of the two levels of ascending heights, and the number of points at the lower one.
+/// `None` if there is one level: neither may be thicker than the gap between them, as the parts of a slope are.
 fn step_of(heights: &[f32]) -> Option<(f32, usize)> {
     let gaps = heights.windows(2).map(|pair| pair[1] - pair[0]).enumerate();
     let (before, gap) = gaps.max_by(|a, b| a.1.total_cmp(&b.1))?;
@@ -289,8 +289,9 @@ fn two_levels(squares: &Squares, side: f32) -> Option<GroundShift> {
     of_area.shift(side, level_counts[off], sign, ShiftEvidence::SecondLevel)
 }
 
-/// The mean level of the ground around squares with two levels, which lie so far apart: 0 for the lower one and 1 for
-/// the upper one; `None` without such ground. What a slope adds on one side it takes away on the other.
+/// Returns the mean level of the ground around squares with two levels, in units of their height difference: 0 for the
+/// lower one and 1 for the upper one. `None` without such ground. A slope adds on one side what it takes away on the
+/// other.
 fn level_around(squares: &Squares, steps: &BTreeMap<[i32; 2], f32>) -> Option<f32> {
     let (mut sum, mut count) = (0.0, 0.0);
     for (at, step) in steps {
@@ -397,10 +398,10 @@ fn on_map([low, high]: [[i32; 2]; 2], side: f32) -> [[f32; 2]; 2] {
     [[low[1] as f32, low[0] as f32], [(high[1] + 1) as f32, (high[0] + 1) as f32]].map(|v| v.map(|v| v * side))
 }
 
-/// What is known of two strips where they meet.
+/// Overlap of two strips.
 #[derive(Default)]
 struct Meeting {
-    /// How far the second strip lies above the first.
+    /// Height of the second strip above the first.
     rises: Vec<f32>,
     corners: Option<[[i32; 2]; 2]>,
 }

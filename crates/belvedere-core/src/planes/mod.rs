@@ -1,11 +1,11 @@
 //! Planes, ridges, edges and walls of buildings: surfaces that are known better than the spacing of points.
 //!
-//! A roof is a plane that many points lie on, so that it is known to a few millimetres. Where it ends is known from
-//! pulses as well as from points: a return on the plane lies within its edge, a pulse that passed the plane and ended
-//! below it lies outside. Walls are looked for below edges, where ten points are enough.
+//! A roof is a plane with many points, so that it is known to a few millimetres. Pulses define its end as well as
+//! points. A return on the plane lies within its edge; a pulse that passed the plane and ended below it lies outside.
+//! Walls are searched below edges, where ten points are enough.
 //!
-//! Everything is found in blocks of 64 m of the reference system with what lies about them, in an order that follows
-//! from positions only: a part of a survey finds what the whole finds. Scans from the ground have no planes yet.
+//! Everything is found in blocks of 64 m of the reference system with their surroundings, in an order that follows from
+//! positions only. A part of a survey therefore finds the same as the whole. Scans from the ground have no planes yet.
 //!
 //! # Source
 //! This project's. Edges as lines between returns and pulses that passed: `docs/methods/planes.md`.
@@ -42,23 +42,22 @@ use slabs::Sheets;
 /// Side of the blocks in which surfaces are found, metres.
 pub(crate) const BLOCK: f64 = 64.0;
 
-/// How surfaces of buildings are found. What neighbouring values measured: `docs/methods/planes.md`.
+/// Parameters of the surfaces of buildings. Measurements of neighbouring values: `docs/methods/planes.md`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlaneParams {
-    /// How far beyond a block points are looked at, metres. Default 8: with 16 nothing is
-    /// found better.
+    /// Margin around a block within which points are used, metres. Default 8: 16 improves nothing.
     pub margin: f64,
     /// Least number of points on a plane of a roof. Default 12.
     pub min_points: usize,
-    /// How well edges are known that are used.
+    /// Required accuracy of edges.
     pub edges: EdgeParams,
-    /// How walls are found and closed.
+    /// Parameters of walls.
     pub walls: WallParams,
-    /// How slabs are found and closed.
+    /// Parameters of slabs.
     pub slabs: SlabParams,
 }
 
-/// How well edges of roofs are known that are used.
+/// Required accuracy of edges of roofs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EdgeParams {
     /// Most standard deviation of the place of a sure edge, one that cuts balls and ends patches, metres. Default 0.1:
@@ -73,7 +72,7 @@ pub struct EdgeParams {
     pub max_scatter_spacings: f64,
 }
 
-/// How walls below edges are found and closed.
+/// Parameters of walls below edges.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WallParams {
     /// Least number of points on a wall at `spacing` and closer. Default 8. Farther apart pulses need fewer, in
@@ -89,8 +88,8 @@ pub struct WallParams {
     /// Least share of the points below an edge that lie on a wall, for it to be closed between its points. Default
     /// 0.5: fronts of stacked balconies have 0.3 to 0.4.
     pub min_share: f64,
-    /// How far from its points a wall is closed, in spacings of pulses. Default 4.7, which is 1.5 m at ten pulses per
-    /// m²: with 1 m more is seen through walls, with 2 m arcades close.
+    /// Maximum distance from its points at which a wall is closed, in spacings of pulses. Default 4.7, which is 1.5 m
+    /// at ten pulses per m². With 1 m more is seen through walls, with 2 m arcades close.
     pub reach_spacings: f64,
 }
 
@@ -172,7 +171,7 @@ pub enum Surface {
 pub struct PointOnSurface {
     /// Its row in the survey.
     pub row: u32,
-    /// What it lies on.
+    /// Surface of the point.
     pub surface: Surface,
 }
 
@@ -195,8 +194,8 @@ pub struct BuildingSurfaces {
 }
 
 impl BuildingSurfaces {
-    /// How far outside a surface a place lies, local metres; negative within the building, NaN for a surface that is
-    /// not one of these.
+    /// Returns the distance of a place outside a surface, local metres; negative within the building, NaN for a surface
+    /// that is not one of these.
     #[must_use]
     pub fn distance(&self, surface: Surface, place: [f64; 3]) -> f64 {
         match surface {
@@ -253,7 +252,7 @@ pub fn find(survey: &SurveyPoints<'_>, params: &PlaneParams, control: &Control<'
     Ok(surfaces)
 }
 
-/// What lies in one block.
+/// Finds the surfaces of one block.
 fn of_block(block: &Block, params: &PlaneParams, control: &Control<'_>) -> Result<BuildingSurfaces> {
     control.check()?;
     let roofs = roof_planes::find(block, Candidates::Buildings, params, control)?;

@@ -13,20 +13,20 @@ use belvedere_data::control::{Control, Stop};
 use belvedere_data::vector::{dot, sub, unit};
 use rayon::prelude::*;
 
-/// How far before a surface its region begins, metres: balls stand out over points by as much.
+/// Distance before a surface at which its region begins, metres: balls stand out over points by as much.
 const MARGIN: f64 = 0.02;
-/// How far a region reaches, metres.
+/// Depth of a region, metres.
 const DEPTH: f64 = 3.0;
-/// How far before and behind a surface the points lie whose balls it bounds, metres.
+/// Maximum distance before and behind a surface of points whose balls it bounds, metres.
 const BEFORE: f64 = 0.1;
 const BEHIND: f64 = 6.0;
-/// How far beyond the ends of a line its region reaches, metres.
+/// Length of a region beyond the ends of its line, metres.
 const BEYOND: f64 = 0.4;
-/// How far above the top of a wall points may lie, metres.
+/// Maximum height of points above the top of a wall, metres.
 const ABOVE: f64 = 0.5;
-/// How far below a roof balls of its eaves may reach, metres.
+/// Maximum depth of balls of eaves below their roof, metres.
 const EAVES_DEPTH: f64 = 0.15;
-/// How far beside a piece of a roof points lie whose balls it bounds, metres.
+/// Maximum distance beside a piece of a roof of points whose balls it bounds, metres.
 const BESIDE_ROOF: f64 = 3.0;
 /// Side of the cells in which regions are looked up, metres.
 const CELL: f64 = 4.0;
@@ -41,17 +41,17 @@ pub(super) struct Region {
 
 #[cfg(test)]
 impl Region {
-    /// How far a place lies outside at least, below zero within, metres.
+    /// Returns a lower bound of the distance of a place outside, metres; negative inside.
     pub(super) fn distance(&self, p: [f64; 3]) -> f64 {
         self.half_spaces.iter().map(|&(normal, offset)| dot(normal, p) - offset).fold(f64::NEG_INFINITY, f64::max)
     }
 }
 
-/// What a region lies before.
+/// Surface that bounds a region.
 #[derive(Clone, Debug, PartialEq)]
 enum Surface {
-    /// An upright one on a line, below a plane: heights above that plane up to which it reaches, and the height of its
-    /// foot; how far before it points of eaves lie.
+    /// Upright surface on a line, below a plane: its maximum height above that plane, the height of its foot, and the
+    /// distance before it of points of eaves.
     Upright { line: PlanLine, top: Plane, above: f64, foot: f64, eaves: f64 },
     /// A convex piece of a plane.
     Roof { polygon: Vec<[f64; 2]>, plane: Plane },
@@ -101,8 +101,8 @@ impl SurfaceRegions {
     /// 0 mean that no ball is left.
     ///
     /// # Source
-    /// This project's. A ball that touches at a with its centre in the direction m lies outside a half-space with
-    /// outward normal n and distance s = n·a − d as long as r ≤ s / (1 − n·m); outside a convex region it lies as long
+    /// This project's. A ball touches at a, with its centre in the direction m. It lies outside a half-space with
+    /// outward normal n and distance s = n·a − d as long as r ≤ s / (1 − n·m). It lies outside a convex region as long
     /// as this holds for one of its half-spaces.
     #[must_use]
     pub fn radius_of(&self, point: [f32; 3], center: [f32; 3], radius: f32) -> f32 {
@@ -189,7 +189,7 @@ impl BlockRegions {
 }
 
 impl Surface {
-    /// How far before the surface a place lies, metres.
+    /// Returns the distance of a place before the surface, metres.
     fn before(&self, p: [f64; 3]) -> f64 {
         match self {
             Self::Upright { line, .. } => line.of([p[0], p[1]])[1],

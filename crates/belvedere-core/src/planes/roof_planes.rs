@@ -23,8 +23,8 @@ const ONE_PLANE: f64 = 0.9945;
 const MIN_UP: f64 = 0.34;
 /// Noise of ranges that is believed, metres, whatever the points say.
 const NOISE: [f64; 2] = [0.004, 0.08];
-/// Share of points whose neighbourhoods are rougher by noise alone, and what their roughness is then as a share of the
-/// noise: the lower quartile of χ with ten degrees of freedom, of thirteen points.
+/// Share of points whose neighbourhoods are rougher by noise alone, and the ratio of their roughness to the noise: the
+/// lower quartile of χ with ten degrees of freedom, of thirteen points.
 const SMOOTH: [f64; 2] = [0.25, 0.72];
 /// Passes in which points beside planes are given to them.
 const SWEEPS: usize = 3;
@@ -36,8 +36,8 @@ pub(super) const MIN_PAIRS: usize = 4;
 const SMALL: f64 = 5.0;
 const LEVEL: f64 = 0.98;
 
-/// Where points have no class: least area of a roof, m², most noise of its points and least height above the ground,
-/// metres, of its middle, and how far about it ground is looked at, metres.
+/// Criteria for points without a class: minimum area of a roof, m²; maximum noise of its points, minimum height of its
+/// middle above the ground, and search radius for that ground, metres.
 const MIN_AREA: f64 = 6.0;
 const MAX_NOISE: f64 = 0.05;
 const MIN_HEIGHT: f64 = 2.0;
@@ -53,7 +53,7 @@ pub(super) struct Roof {
     pub(super) rows: Vec<u32>,
     /// Mean distance of pulses, metres.
     pub(super) spacing: f64,
-    /// Whether it may be the level top of something that stands on a roof.
+    /// True if it may be the level top of something that stands on a roof.
     pub(super) is_small: bool,
 }
 
@@ -82,7 +82,7 @@ pub(super) struct Roofs {
     pub(super) noise: f64,
 }
 
-/// What is known of a point before planes grow.
+/// Properties of points before planes grow.
 struct Patchwork {
     points: Vec<[f64; 3]>,
     neighbors: Vec<[u32; NEIGHBORS]>,
@@ -93,9 +93,9 @@ struct Patchwork {
 /// Points that planes are looked for in.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Candidates {
-    /// Those that may lie on buildings.
+    /// Points that may lie on buildings.
     Buildings,
-    /// Those that may lie on slabs beside them.
+    /// Points that may lie on slabs beside them.
     Slabs,
 }
 
@@ -180,7 +180,8 @@ impl Roofs {
 }
 
 impl Roofs {
-    /// Whether a plane of points without a class is one of a building: large, flat, and above all ground about it.
+    /// Returns true if a plane of points without a class is one of a building: large, flat, and above all ground around
+    /// it.
     fn is_roof(&self, block: &Block, plane: &Plane, rows: &[u32], area: f64) -> bool {
         let (mut low, mut high, mut height) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2], 0.0);
         for &row in rows {
@@ -230,7 +231,7 @@ impl Patchwork {
         self.neighbors[row].iter().take_while(|&&near| near != NONE).map(|&near| near as usize)
     }
 
-    /// Whether a point lies on something flat.
+    /// Returns true if a point lies on something flat.
     fn is_flat(&self, row: usize) -> bool {
         self.local[row].noise < 1.6 * self.noise + 0.01
     }

@@ -11,19 +11,19 @@ use std::cmp::Ordering;
 
 /// Smallest piece of a sheet, m².
 const MIN_AREA: f64 = 0.005;
-/// How far within the edge of a roof the building is solid, metres.
+/// Width of the solid part of a building inside the edge of a roof, metres.
 const WITHIN: f64 = 0.5;
 /// Least height of an edge above what lies below it for that, metres.
 const MIN_DROP: f64 = 2.0;
 /// Least share of such edges of a roof that have a wall below them: canopies and decks have none.
 const MIN_WALLED: f64 = 0.5;
-/// How far below its edge such a wall reaches at least, metres: sides of slabs and canopies are lower.
+/// Minimum depth of such a wall below its edge, metres: sides of slabs and canopies are lower.
 const MIN_WALL_DEPTH: f64 = 1.0;
-/// How far a pulse must pass from both ends of an upright sheet to contradict it, metres.
+/// Minimum distance from both ends of an upright sheet of a pulse that contradicts it, metres.
 const CLEAR: f64 = 0.3;
 /// Heights of the points of parapets above the roof, metres.
 const PARAPET: [f64; 2] = [0.15, 1.6];
-/// How far within and without the edge they lie, metres.
+/// Maximum distance of its points inside and outside the edge, metres.
 const PARAPET_WITHIN: f64 = 0.6;
 const PARAPET_WITHOUT: f64 = 0.25;
 /// Half the difference of their heights, metres.
@@ -38,7 +38,7 @@ const MAX_BOX_STEP: f64 = 3.5;
 /// Least share of the pulses that pass an edge which end on the roof below, and their least number.
 const STEP_SHARE: f64 = 0.6;
 const STEP_PULSES: usize = 3;
-/// How far beyond an edge they pass, spacings.
+/// Distance of the pulses beyond an edge, spacings.
 const STEP_SPACINGS: f64 = 2.5;
 /// Least height of what stands on a roof, metres, its fewest points, and its longest side, metres.
 const BOX_HEIGHT: f64 = 0.25;
@@ -48,9 +48,9 @@ const BOX_SIDE: f64 = 4.0;
 const BOX_LEVEL: f64 = 0.15;
 /// Least share of the pulses over it that it stopped.
 const BOX_DENSITY: f64 = 0.4;
-/// How far below the foot of a box pulses that pass it may end, metres: others pass the roof, too.
+/// Maximum depth below the foot of a box at which pulses that pass it may end, metres: deeper ones pass the roof, too.
 const BELOW_ROOF: f64 = 1.0;
-/// How far its points lie apart at most, spacings.
+/// Maximum distance between its points, spacings.
 const BOX_SPACINGS: f64 = 1.3;
 
 /// An upright rectangle on a line.
@@ -118,7 +118,7 @@ pub(super) fn give_out(
     }
 }
 
-/// Whether walls stand below enough of the high edges of a roof, given those below it.
+/// Returns true if walls, given those below the roof, stand below enough of its high edges.
 pub(super) fn is_walled(outline: &Outline, own: &[&WallLine]) -> bool {
     let high = |edge: &&EdgeLine| edge.is_sure && edge.drop >= MIN_DROP;
     let all: f64 = outline.edges.iter().filter(high).map(|edge| edge.line.length()).sum();
@@ -182,8 +182,8 @@ pub(super) fn parapet(outline: &Outline, line: &PlanLine) -> Parapet {
     Parapet { height: on[on.len() / 2][0], width: -inner_face(across) }
 }
 
-/// Where the inner face of a parapet stands, metres to the right of its edge: as few points of its top as can be lie
-/// left of it, and of the roof right of it.
+/// Returns the position of the inner face of a parapet, metres to the right of its edge. It minimises the number of
+/// points of its top to the left, and of the roof to the right.
 fn inner_face(mut across: Vec<(f64, bool)>) -> f64 {
     across.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
     let mut wrong = across.iter().filter(|point| !point.1).count();
@@ -295,7 +295,7 @@ fn within(block: &Block, roofs: &Roofs, plane: usize, line: &PlanLine, drop: f64
     }
 }
 
-/// Whether a point lies on a parapet.
+/// Returns true if a point lies on a parapet.
 fn is_of_parapet(outline: &Outline, standing: &Standing) -> bool {
     outline.edges.iter().filter(|edge| edge.is_sure && edge.parapet.height > 0.0).any(|edge| {
         let [t, d] = edge.line.of(standing.p);
@@ -305,8 +305,8 @@ fn is_of_parapet(outline: &Outline, standing: &Standing) -> bool {
     })
 }
 
-/// Where pulses pass a box, in its frame: at the height of its top, and where they end. One that meets the roof beside
-/// it bounds its foot, and one that slants past it its top.
+/// Returns the places where pulses pass a box, in its frame: at the height of its top, and at their ends. A pulse that
+/// meets the roof beside the box bounds its foot, and one that slants past it its top.
 fn past_box(block: &Block, roof: &Roof, frame: &PlanLine, [low, high]: [[f64; 2]; 2], top: f64) -> Vec<[f64; 2]> {
     let corners = [low, [low[0], high[1]], high, [high[0], low[1]]].map(|[t, d]| frame.at(t, d));
     let foot = corners.iter().map(|&p| roof.plane.height(p)).fold(f64::INFINITY, f64::min);

@@ -12,10 +12,10 @@ use super::{BLOCK, BuildingSurfaces, PatchKind};
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::TAU;
 
-/// How slabs are found and closed.
+/// Parameters of slabs: detection and closing.
 ///
-/// Thresholds but `around` and `open_radius`, which are those of thin surfaces, were set once, on a town of another
-/// simulator, where 89 to 97 % of the points marked lay on slabs.
+/// Thresholds except `around` and `open_radius`, which are those of thin surfaces, were set once, on a town of another
+/// simulator. There 89 to 97 % of the points marked lay on slabs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SlabParams {
     /// Least and most depth below a slab at which a pulse proves it, metres. Default 0.8 to 12.
@@ -61,14 +61,14 @@ impl Default for SlabParams {
 const CELL: f64 = 1.0;
 /// Steps along a pulse below a slab, metres in plan.
 const STEP: f64 = 0.25;
-/// How far below the top of a slab a point is no part of it, metres, beyond its thickness.
+/// Minimum depth below the top of a slab, beyond its thickness, of points that are no part of it, metres.
 const BELOW: f64 = 0.2;
-/// How far above its plane points of a slab lie at most, metres, where their noise is less.
+/// Maximum height of points of a slab above its plane, metres, if their noise is less.
 const ABOVE: f64 = 0.1;
 /// Share of the points of a plane with the class of bridge decks that makes it a slab without any pulse below it.
 const DECK_SHARE: f64 = 0.5;
 
-/// Whether each plane is a slab.
+/// Flags the planes that are slabs.
 pub(super) fn find(block: &Block, roofs: &Roofs, params: &SlabParams) -> Vec<bool> {
     (0..roofs.planes.len()).map(|number| is_slab(block, roofs, number, params)).collect()
 }
@@ -102,7 +102,7 @@ fn cell(p: [f64; 2], side: f64) -> [i64; 2] {
     cell
 }
 
-/// Whether a plane is one: level, flat, and run below by pulses, or of the class of bridge decks.
+/// Returns true if a plane is a slab: level, flat, and with pulses passing below, or of the class of bridge decks.
 fn is_slab(block: &Block, roofs: &Roofs, number: usize, params: &SlabParams) -> bool {
     let roof = &roofs.planes[number];
     if roof.plane.normal[2] < params.min_up || roof.plane.noise > params.max_noise {
@@ -170,8 +170,8 @@ fn each_below(plane: &Plane, pulse: &Return, depths: [f64; 2], mut visit: impl F
     }
 }
 
-/// Whether points of a slab lie all about a place below it. Sparse points do not reach its edge: each end of the gap
-/// may lie one mean angle between them farther, as long as the whole is hardly more than half a turn.
+/// Returns true if points of a slab lie all around a place below it. Sparse points do not reach its edge. Each end of
+/// the gap may lie one mean angle between them farther, as long as the whole is hardly more than half a turn.
 fn is_within(own: &PlanIndex, place: [f64; 3], around: f64, params: &SlabParams) -> bool {
     let near = own.near(place).map(|p| [p[0] - place[0], p[1] - place[1]]).filter(|[x, y]| x.hypot(*y) <= around);
     let mut angles: Vec<f64> = near.map(|[x, y]| y.atan2(x)).collect();
@@ -185,7 +185,7 @@ fn is_within(own: &PlanIndex, place: [f64; 3], around: f64, params: &SlabParams)
 /// Gap about a place that never lies below a slab, radians: hardly more than the π of one below its outermost points.
 const WIDEST_OF_ALL: f64 = 3.2;
 
-/// How a slab is closed: both sheets, or the underside of one that is closed as a roof already.
+/// Sheets that close a slab: both, or the underside of one that is closed as a roof already.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Sheets {
     Both,

@@ -6,10 +6,10 @@ use super::edges::{EdgeLine, Outline};
 use super::line::PlanLine;
 use super::roof_planes::{NONE, Roofs};
 
-/// How far behind and before an edge the points of its wall lie, metres.
+/// Maximum distance of the points of a wall behind and before its edge, metres.
 const BEHIND: f64 = 1.2;
 const BEFORE: f64 = 0.4;
-/// How far below the edge they begin, metres.
+/// Minimum depth of the points below the edge, metres.
 const BELOW: f64 = 0.25;
 /// Steepest turn of a wall from its edge: 3.4°.
 const MAX_TURN: f64 = 0.06;
@@ -17,11 +17,11 @@ const MAX_TURN: f64 = 0.06;
 const MIN_SHARE: f64 = 0.4;
 const MIN_LENGTH: f64 = 1.5;
 
-/// How far from the end of its edge a wall may cross another one, metres.
+/// Maximum distance from the end of its edge at which a wall may cross another one, metres.
 const CORNER: f64 = 1.2;
 /// Least distance of an edge before its wall that makes eaves, metres.
 pub(super) const MIN_EAVES: f64 = 0.12;
-/// How far beyond its points a wall below eaves goes on, metres.
+/// Length of a wall below eaves beyond its points, metres.
 const BEYOND_POINTS: f64 = 0.2;
 
 /// Standard deviation of what no number of points averages out, metres.
@@ -42,13 +42,13 @@ pub(super) struct WallLine {
     pub(super) noise: f64,
     pub(super) sd: f64,
     pub(super) share: f64,
-    /// Whether it is closed near its points.
+    /// True if it is closed near its points.
     pub(super) is_closed: bool,
     /// Lowest point.
     pub(super) bottom: f64,
-    /// How far below the edge its lowest point lies, metres.
+    /// Depth of its lowest point below the edge, metres.
     pub(super) depth: f64,
-    /// How far the edge stands out before it, metres.
+    /// Overhang of the edge before it, metres.
     pub(super) eaves: f64,
 }
 

@@ -40,7 +40,7 @@ impl RayIndex {
 }
 
 impl OpenNode<'_> {
-    /// Those of `parts` that are nodes.
+    /// Selects those of `parts` that are nodes.
     #[inline(always)]
     pub(crate) fn nodes(&self, parts: u32) -> u32 {
         parts & u32::from(self.node.imask)
@@ -77,7 +77,7 @@ impl OpenNode<'_> {
     }
 }
 
-/// What a part of a node is.
+/// Returns the kind of a part of a node.
 #[inline(always)]
 pub(super) fn part_of(node: &CwBvhNode, part: usize) -> NodePart {
     if node.is_child_empty(part) {

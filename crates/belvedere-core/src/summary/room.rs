@@ -17,9 +17,9 @@ const MIN_SLAB_SHARE: f64 = 0.2;
 /// Least share of the points on level surfaces and on walls.
 const MIN_LEVEL_SHARE: f64 = 0.15;
 const MIN_WALL_SHARE: f64 = 0.1;
-/// How high a room is at most as a share of its sides, if nothing but its extents tells its height.
+/// Maximum height of a room as a share of its sides, if nothing but its extents shows its height.
 const MAX_HEIGHT: f32 = 0.8;
-/// How high it is at least as a share of its longer side: a ceiling over a field is a town seen from far above.
+/// Minimum height as a share of its longer side: a ceiling over a field is a town seen from far above.
 const MIN_HEIGHT: f32 = 0.04;
 /// Heights of rooms, metres: building rules ask for 2.1 m and more, and stairwells and halls reach three storeys.
 const ROOM_HEIGHTS: [f32; 2] = [2.1, 9.0];
@@ -28,7 +28,7 @@ const CORRIDOR_LENGTH: f32 = 5.0;
 const CORRIDOR_WIDTH: f32 = 1.5;
 /// Units of exports, metres.
 const UNITS: [f64; 2] = [0.01, 0.001];
-/// How many times as many points stand in the lower half of a room as in the upper one, if furniture shows the floor.
+/// Minimum ratio of points in the lower half of a room to those in the upper one, if furniture shows the floor.
 const MIN_FURNITURE: f64 = 1.05;
 
 /// A closed room along an axis.
@@ -41,8 +41,8 @@ struct RoomExtent {
     level_share: f64,
 }
 
-/// Whether the cloud is a room with its second axis up and not its third: floor and ceiling face along y, in two slabs
-/// at its ends, walls along the others, and what stands on a floor does not speak for z.
+/// Returns true if the cloud is a room with its second axis up and not its third. Floor and ceiling face along y, in
+/// two slabs at its ends, and walls along the others. Objects on a floor must not indicate z.
 pub(super) fn is_room_along_y(positions: &[[f32; 3]], normals: &[[f32; 3]]) -> bool {
     let Some(along_y) = room_along(1, positions, normals) else { return false };
     if !(ROOM_HEIGHTS[0]..=ROOM_HEIGHTS[1]).contains(&along_y.height) && unit_of(along_y.height).is_none() {
@@ -63,7 +63,8 @@ fn unit_of_room(positions: &[[f32; 3]], normals: &[[f32; 3]]) -> Option<f64> {
     [2, 1].into_iter().find_map(|axis| unit_of(room_along(axis, positions, normals)?.height))
 }
 
-/// What the height of a room says against metres, which a cloud without a reference system is taken to be in.
+/// Returns the contradiction between the height of a room and the unit, metres by assumption for a cloud without a
+/// reference system.
 fn unit_contradiction(positions: &[[f32; 3]], normals: &[[f32; 3]]) -> Option<FoundContradiction> {
     let unit = unit_of_room(positions, normals)?;
     let name = if unit < UNITS[0] { "millimetres" } else { "centimetres" };
@@ -97,14 +98,14 @@ fn unit_of(height: f32) -> Option<f64> {
     })
 }
 
-/// Whether a cloud so high along y may be a corridor that is higher, along z, than wide.
+/// Returns true if a cloud of this height along y may be a corridor that is higher, along z, than wide.
 fn is_corridor(positions: &[[f32; 3]], height: f32) -> bool {
     let Some(Bounds { low, high }) = Bounds::around(positions.iter().copied()) else { return false };
     let [x, z] = [0, 2].map(|axis: usize| high[axis] - low[axis]);
     x.max(z) > CORRIDOR_LENGTH * height && x.min(z) < CORRIDOR_WIDTH * height
 }
 
-/// What closes a cloud along an axis; `None` where it is no room along it.
+/// Returns the extent of the room that closes a cloud along an axis; `None` if it is no room along it.
 fn room_along(axis: usize, positions: &[[f32; 3]], normals: &[[f32; 3]]) -> Option<RoomExtent> {
     let Bounds { low, high } = Bounds::around(positions.iter().copied())?;
     let others = [(axis + 1) % 3, (axis + 2) % 3];
