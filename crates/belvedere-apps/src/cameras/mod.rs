@@ -1,4 +1,4 @@
-//! Where to put cameras, watch posts and masts, so that few of them cover much.
+//! Placement of cameras, watch posts and masts, so that few of them cover much.
 //!
 //! | step | function |
 //! |---|---|

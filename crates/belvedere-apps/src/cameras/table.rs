@@ -1,4 +1,4 @@
-//! Which camera covers which target, a bit each.
+//! Bit matrix of the targets that each camera covers.
 
 use belvedere_data::{Error, Parameter, Result};
 

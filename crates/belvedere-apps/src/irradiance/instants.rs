@@ -19,10 +19,10 @@ const MAX_INSTANTS: f64 = 1.1e7;
 
 /// The rows of `weather` under the sun of `site`, each cut into `parts` of equal length, 1 to 120.
 ///
-/// Every part has the radiation of its row. Of a row in which the sun rises or sets, the parts with the sun below the
-/// horizon give their direct radiation to the others, so that what was measured arrives. What the file does not tell is
-/// made by [`complete`] for the sun of the row's instant. With one part these are the sums that pvlib makes with the
-/// sun of each row's instant.
+/// Every part has the radiation of its row. In a row in which the sun rises or sets, the parts with the sun below the
+/// horizon give their direct radiation to the others, so that the measured sum is kept. Values missing in the file come
+/// from [`complete`] for the sun of the row's instant. With one part the sums are those of pvlib with the sun of each
+/// row's instant.
 ///
 /// # Errors
 /// [`Error::InvalidParameter`] for a number of parts outside its range, and those of [`Weather::validate`] and

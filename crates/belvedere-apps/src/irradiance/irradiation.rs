@@ -23,7 +23,7 @@ pub struct Irradiation {
     pub diffuse: f64,
     /// From the ground, and from what hides the sky where that is taken to reflect.
     pub reflected: f64,
-    /// What it would get if nothing stood before it.
+    /// Radiation without obstacles, kWh/m².
     pub unshaded: f64,
 }
 

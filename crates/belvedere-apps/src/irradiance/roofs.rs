@@ -24,11 +24,11 @@ pub struct RoofIrradiation {
     pub mean: Irradiation,
     /// The same where a row of cells gets what all of its cells get at once: strings without bypass diodes.
     pub string_limited: Irradiation,
-    /// What arrives in each group of the period, kWh/m²: 12 months, or the whole.
+    /// Energy in each group of the period, kWh/m²: 12 months, or the whole.
     pub groups: Vec<f64>,
     /// Cells that count: those of the plane that see anything of the sky.
     pub cell_count: usize,
-    /// How far the mean may be from the truth, by a class ([`SumKind::Plane`]); `None` where that was not wanted.
+    /// Error class of the mean ([`SumKind::Plane`]); `None` if not requested.
     pub class: Option<u8>,
 }
 
@@ -92,9 +92,9 @@ pub fn above_roof(place: [f64; 3], normal: [f64; 3]) -> [f32; 3] {
     crate::targets::to_f32([0, 1, 2].map(|i| place[i] + PANEL_HEIGHT * normal[i]))
 }
 
-/// Where the horizon of each of `planes` is measured: above the middle of the cell nearest to the middle of the plane
-/// over which nothing of `scene` is; above the nearest cell where something is over all of them. With it whether
-/// nothing is. Under a ball, however small, the horizon is 90° all around.
+/// Returns the place at which the horizon of each of `planes` is measured, and true if obstacles of `scene` are above
+/// all of its cells. The place is above the middle of the open cell nearest to the middle of the plane; without an open
+/// cell, above the nearest cell. Under a ball, however small, the horizon is 90° all around.
 #[must_use]
 pub fn horizon_places(planes: &[RoofPlane], scene: &MedialScene) -> Vec<([f32; 3], bool)> {
     let of_plane = |plane: &RoofPlane| {
@@ -142,7 +142,7 @@ pub fn roof_irradiation<'a>(
     Ok(found)
 }
 
-/// How many of the first planes have at most so many cells together, at least one.
+/// Returns the number of planes, from the first, that have at most `max_cells` cells together, at least one.
 fn planes_at_once(planes: &[RoofPlane], max_cells: usize) -> usize {
     let mut cells = 0;
     let fits = |plane: &&RoofPlane| {

@@ -1,8 +1,8 @@
-//! How large an isovist may be in truth: from how likely places along each ray are visible.
+//! Intervals of isovists, from the probabilities that places along each ray are visible.
 //!
-//! The probability that a place is visible falls with its range: it is how likely sight along the ray reaches so far,
-//! so that the expected area or volume of a ray and its variance follow. Errors of rays beside each other come from the
-//! same edges: their deviations are added up within a sector, and sectors are taken for independent of each other.
+//! The probability that a place is visible falls with its range: it is that of sight along the ray reaching so far. The
+//! expected area or volume of a ray and its variance follow. Errors of neighbouring rays come from the same edges.
+//! Their deviations are added up within a sector, and sectors are treated as independent.
 
 use super::{Isovist, IsovistParams, direction};
 use belvedere_core::query::MedialScene;
@@ -14,8 +14,8 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// Ranges at which the probability is looked at, as shares of the range at which the ray ends.
 const LOOKED_AT: [f64; 14] = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.97, 1.03, 1.1, 1.3, 2.0];
-/// What is less likely visible than this is taken for hidden: a small rest that never ends would be most of an area
-/// that grows with the square of the range.
+/// Minimum probability of a visible place; less probable places count as hidden. A small remainder that never ends
+/// would be most of an area that grows with the square of the range.
 const UNLIKELY: f32 = 0.05;
 /// Rays of the plan.
 const PLAN_RAYS: usize = 360;
@@ -35,7 +35,7 @@ pub struct IsovistIntervals {
     pub volume: [f64; 2],
 }
 
-/// How large `seen`, the isovist of `eye`, local metres, may be in truth; `None` without pulses.
+/// Returns the intervals of `seen`, the isovist of `eye`, local metres; `None` without pulses.
 ///
 /// # Errors
 /// [`belvedere_data::Error::Cancelled`].
@@ -81,7 +81,8 @@ pub fn isovist_intervals(
     Ok(Some(IsovistIntervals { plan_area: around(seen.plan.area, &plan), volume: around(seen.volume, &space) }))
 }
 
-/// Where sight may end, and how likely it ends there, from the probabilities that places at rising ranges are visible.
+/// Returns the ranges at which sight may end, with their probabilities, from the probabilities that places at rising
+/// ranges are visible.
 fn ends_of_sight(places: impl Iterator<Item = (f64, f64)>, reach: f64) -> Vec<(f64, f64)> {
     let (mut before, mut left) = (0.0, 1.0_f64);
     let mut ends = Vec::new();
@@ -95,7 +96,7 @@ fn ends_of_sight(places: impl Iterator<Item = (f64, f64)>, reach: f64) -> Vec<(f
     ends
 }
 
-/// What a ray adds to a sum.
+/// Contribution of a ray to a sum.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct RayPart {
     /// By how much more is expected than is seen.

@@ -98,7 +98,7 @@ impl RangeGrid<'_> {
         ]
     }
 
-    /// Whether ranges beside each other are mostly alike.
+    /// Returns true if neighbouring ranges are mostly alike.
     fn is_smooth(&self) -> bool {
         let (mut pairs, mut alike) = (0_usize, 0_usize);
         for (at, range) in self.ranges.iter().enumerate() {
@@ -178,7 +178,8 @@ mod tests {
 
     const SIDES: [f64; 3] = [6.0, 4.0, 3.0];
 
-    /// What an eye sees in a room of 6 by 4 by 3 m, whose surface has no points where `is_gap` of a place on it.
+    /// Simulates the isovist of an eye in a room of 6 by 4 by 3 m, whose surface has no points where `is_gap` of a
+    /// place on it.
     fn seen(is_gap: impl Fn([f64; 3]) -> bool + Sync, max_range: f64) -> Isovist {
         let eye = [4.5, 3.0, 1.2];
         let range = |direction: [f64; 3]| {

@@ -21,7 +21,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 /// Rays between two looks at whether the work was cancelled: a few milliseconds.
 const CHECKED: usize = 1024;
 
-/// How isovists are made.
+/// Parameters of isovists.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct IsovistParams {
@@ -69,12 +69,12 @@ impl IsovistParams {
     }
 }
 
-/// What an eye sees around itself.
+/// Space visible from an eye.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Isovist {
-    /// Ranges in metres, +∞ where nothing blocks within the greatest range. A column is an azimuth, clockwise from
-    /// south at the left edge over west, north in the middle and east to south again; a row is an elevation, from the
-    /// zenith down to the nadir.
+    /// Ranges in metres, +∞ if nothing blocks within the maximum range. A column is an azimuth: clockwise from south at
+    /// the left edge over west, north in the middle and east to south again. A row is an elevation, from the zenith
+    /// down to the nadir.
     pub panorama: Raster<f32>,
     /// Volume seen, m³. Directions in which nothing blocks reach to the greatest range; in a closed room those that
     /// leave it between its points reach to its surface.
@@ -91,9 +91,9 @@ pub struct Isovist {
     pub sky_openness: f64,
     /// From the eye to the middle of the volume seen, local metres.
     pub drift: [f64; 3],
-    /// What is seen in the level plane through the eye.
+    /// Visible area in the level plane through the eye.
     pub plan: PlanIsovist,
-    /// How large what is seen may be in truth; `None` where that was not wanted, and without pulses.
+    /// Intervals of its figures; `None` if not requested, and without pulses.
     pub intervals: Option<IsovistIntervals>,
 }
 
@@ -133,8 +133,8 @@ impl RadialStatistics {
     }
 }
 
-/// What an eye at `eye`, local metres, sees of `scene`. Balls that hold the eye are left out
-/// ([`MedialScene::enclosure`] tells of them).
+/// Computes the isovist of an eye at `eye`, local metres, in `scene`. Balls that hold the eye are left out
+/// ([`MedialScene::enclosure`] returns them).
 ///
 /// # Errors
 /// [`Error::InvalidParameter`] for an eye that is not finite and for parameters outside their range, and

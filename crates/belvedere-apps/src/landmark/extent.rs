@@ -1,4 +1,4 @@
-//! How wide and how high pieces stand before an eye.
+//! Angular width and height of pieces before an eye.
 
 use std::f64::consts::{PI, TAU};
 

@@ -25,11 +25,11 @@ pub const BUILDING: u8 = 6;
 /// Least side of a cell, metres: points do not tell more, and the cells of a whole town would fill the memory.
 const MIN_CELL: f64 = 0.1;
 
-/// Tilt up to which a plane is level and faces nowhere, radians: roofs that are called flat have 2 to 3 % of slope for
-/// the rain, and a few of these degrees are noise.
+/// Maximum tilt of a level plane without an aspect, radians. Flat roofs have 2 to 3 % of slope for the rain, and a few
+/// of these degrees are noise.
 pub const MAX_LEVEL: f64 = 2.0 * std::f64::consts::PI / 180.0;
 
-/// How planes are found.
+/// Parameters of the detection of planes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct RoofPlaneParams {

@@ -1,4 +1,4 @@
-//! What shadows must stay off: lines with a fence, faces of facades, points.
+//! Objects that shadows must stay off: lines with a fence, faces of facades, points.
 
 use crate::sky_view::SKY_TARGET_HEIGHT;
 use belvedere_core::ground::Ground;
@@ -31,14 +31,14 @@ impl ProtectedPiece {
     }
 }
 
-/// The top of a fence of `fence` metres along a line through `corners`, local metres, in pieces of at most `spacing`
-/// metres. Shadows may fall on the fence and stay below its top. Where a corner has no height (NaN), the ground below
-/// each piece's ends counts: the line follows the terrain; pieces whose ground is not known are left out, and their
-/// number returned too.
+/// Creates pieces of at most `spacing` metres of the top of a fence of `fence` metres along a line through `corners`,
+/// local metres. Shadows may fall on the fence and stay below its top. If a corner has no height (NaN), the ground
+/// below each piece's ends counts: the line follows the terrain. Pieces whose ground is not known are left out, and
+/// their number is returned too.
 ///
 /// # Errors
-/// [`Error::InvalidParameter`] for a corner whose place on the map is not finite, a fence that is below zero or not
-/// finite, a spacing that is not above zero, and lines of more than a million pieces.
+/// [`Error::InvalidParameter`] for a corner whose position in plan is not finite, a fence that is below zero or not
+/// finite, and a spacing that is not above zero. Also for lines of more than a million pieces.
 pub fn protected_line(
     corners: &[[f64; 3]],
     fence: f64,

@@ -12,7 +12,7 @@ const MAX_EXACT: usize = 2000;
 /// sun.
 const USUAL_ANGLE: f64 = 0.017_453_292_519_943_295;
 
-/// Whether suns that stand close together share a direction.
+/// Rule by which suns that stand close together share a direction.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Binning {
@@ -35,7 +35,7 @@ pub struct LightStep {
     pub hours: f32,
     /// Row of the direction.
     pub direction: u32,
-    /// Whether it begins where the step before it ended.
+    /// True if it begins where the step before it ended.
     pub continues: bool,
 }
 
@@ -83,8 +83,8 @@ impl SunSchedule {
     /// The schedule of `days`, whose steps must have been cut alike (with the same step) for suns to be shared.
     ///
     /// Directions are shared by rows of declination, which the sun passes twice a year, at the same step from noon,
-    /// hence the same hour angle: in a row no wider than twice the angle the mean of the suns is within the angle of
-    /// them all, but for steps that the horizon cuts short; what is farther gets a direction of its own.
+    /// hence the same hour angle. In a row no wider than twice the angle the mean of the suns is within the angle of
+    /// them all, except for steps that the horizon shortens. Suns farther away get a direction of their own.
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] for an angle outside its range, and where there is no day.

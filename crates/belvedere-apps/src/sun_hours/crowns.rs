@@ -12,11 +12,10 @@ use rayon::prelude::*;
 /// Bits in a word of a row of a matrix.
 const WORD: usize = 64;
 
-/// As [`sun_hours`], where an hour of a sun behind crowns counts as much as these let through on that day: `factors`
-/// has a [`factor`](crate::tree_light::CrownLight::factor) for each day of `schedule`. Hours, share, the least day and
-/// the
-/// days that suffice are those of the light that arrives; first, last and longest are of suns that count as free
-/// ([`LineLight::is_free`]), since a share of light has no such hour.
+/// Returns the sums of [`sun_hours`], where an hour of a sun behind crowns is weighted by the light that these let
+/// through on that day. `factors` has a [`factor`](crate::tree_light::CrownLight::factor) for each day of `schedule`.
+/// Hours, share, the shortest day and the sufficient days are those of the light that arrives. First, last and longest
+/// are of suns that count as free ([`LineLight::is_free`]), since a share of light has no such hour.
 ///
 /// # Errors
 /// Those of [`sun_hours`], and [`Error::LengthMismatch`] where there is not a factor for
@@ -72,7 +71,7 @@ pub fn sun_hours_through_crowns(
     Ok(hours)
 }
 
-/// What is summed up at one target.
+/// Sums at one target.
 struct CrownSum {
     total: f64,
     min: f64,

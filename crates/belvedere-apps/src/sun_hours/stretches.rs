@@ -17,7 +17,7 @@ pub(super) struct DayStretch {
     pub(super) start: f32,
     /// Hours of a step.
     pub(super) hours: f32,
-    /// Whether it begins where the run before it ended.
+    /// True if it begins where the run before it ended.
     pub(super) continues: bool,
 }
 
@@ -41,7 +41,7 @@ pub(super) fn runs_of(day: &DayOfLight) -> Vec<DayStretch> {
     runs
 }
 
-/// Which directions light a target, and where the next change is.
+/// Bit masks of the directions that light a target, and the place of the next change.
 pub(super) struct Lit {
     /// For each direction the next that is lit, itself included; the number of directions where there is none.
     lit: Vec<u32>,

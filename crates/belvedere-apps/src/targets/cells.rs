@@ -9,7 +9,7 @@ use belvedere_data::control::Control;
 use belvedere_data::{Error, Parameter, PointCloud, Result};
 use serde::{Deserialize, Serialize};
 
-/// What cells stand on.
+/// Level of cells: ground or surface.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum CellLevel {
@@ -20,11 +20,11 @@ pub enum CellLevel {
     Surface,
 }
 
-/// How cells become targets.
+/// Conversion of cells into targets.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct CellParams {
-    /// What cells stand on.
+    /// Level of cells: ground or surface.
     pub level: CellLevel,
     /// Height of the target above that, metres. Default 0.1.
     pub height: f64,
@@ -41,7 +41,7 @@ impl Default for CellParams {
     }
 }
 
-/// What was left out of cells.
+/// Counts of cells that were left out.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct CellReport {
     /// Cells on the ground under a roof or another cover, which are no targets.

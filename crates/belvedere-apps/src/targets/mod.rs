@@ -42,23 +42,23 @@ const CHUNK: usize = 1024;
 /// Places for which results are computed, and their groups.
 #[derive(Clone, Debug)]
 pub struct Targets {
-    /// Where local coordinates lie.
+    /// Frame of local coordinates.
     pub frame: Frame,
     /// Local metres, (M, 3); NaN for a target that is left out.
     pub positions: Vec<[f32; 3]>,
     /// Outward unit normals, (M, 3); `None` where targets are level.
     pub normals: Option<Vec<[f32; 3]>>,
-    /// How much each target counts, (M): metres of a route, square metres of a surface; empty where all count alike.
+    /// Weight of each target, (M): metres of a route, square metres of a surface; empty for equal weights.
     pub weights: Vec<f64>,
     /// Rows of the targets of each route, window or object; empty where each target is on its own.
     pub groups: Vec<Range<usize>>,
-    /// What targets are.
+    /// Layout of the targets.
     pub layout: TargetLayout,
-    /// Whether each target stands on top of a mesh that was added, (M); empty where none does.
+    /// True for targets on top of an added mesh, (M); empty if there is none.
     pub on_added: Vec<bool>,
 }
 
-/// What targets are, with what is needed to write their values.
+/// Layout of targets, as needed to write their values.
 #[derive(Clone, Debug)]
 pub enum TargetLayout {
     /// Cells of a grid, row by row from the north, and the heights that they stand on.
@@ -94,13 +94,13 @@ impl Targets {
         self.positions.len()
     }
 
-    /// Whether there is no target.
+    /// Returns true if there is no target.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.positions.is_empty()
     }
 
-    /// Whether results are computed for a target: it has a position.
+    /// Returns true if results are computed for a target: it has a position.
     #[must_use]
     pub fn is_target(&self, row: usize) -> bool {
         self.positions.get(row).is_some_and(|position| position.iter().all(|v| v.is_finite()))
@@ -163,13 +163,13 @@ impl Targets {
         Ok(enclosed.into_iter().filter(|&is_enclosed| is_enclosed).count())
     }
 
-    /// How much a target counts.
+    /// Returns the weight of a target.
     #[must_use]
     pub fn weight(&self, row: usize) -> f64 {
         if self.weights.is_empty() { 1.0 } else { self.weights.get(row).copied().unwrap_or(0.0) }
     }
 
-    /// How much each group counts.
+    /// Returns the weight of each group.
     #[must_use]
     pub fn group_weights(&self) -> Vec<f64> {
         self.groups.iter().map(|group| group.clone().map(|row| self.weight(row)).sum()).collect()

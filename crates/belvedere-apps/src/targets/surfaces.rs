@@ -5,7 +5,7 @@ use belvedere_core::query::{MeshTargetParams, SurfacePieces};
 use belvedere_data::frame::Frame;
 use belvedere_data::{Mesh, Result};
 
-/// What targets on a surface are turned to.
+/// Orientation of targets on a surface.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Facing {
     /// Square to the surface. Default.
@@ -15,7 +15,7 @@ pub enum Facing {
     Level,
 }
 
-/// How the faces of a mesh become targets.
+/// Conversion of the faces of a mesh into targets.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct MeshParams {
@@ -23,7 +23,7 @@ pub struct MeshParams {
     pub spacing: f64,
     /// From which the place on each piece is drawn. Default 0.
     pub seed: u64,
-    /// What targets are turned to.
+    /// Orientation of the targets.
     pub facing: Facing,
     /// By how much targets lie before their face, metres. Default: that of [`MeshTargetParams`].
     pub lift: f64,
