@@ -18,7 +18,7 @@ pub struct DepthMapQuestion {
     /// From where the picture is taken; whoever reads a question from text gives it.
     #[serde(skip)]
     pub from: Option<ViewFrom>,
-    /// Whether to keep which ball each pixel shows. Default: not.
+    /// True to keep the index of the ball in each pixel. Default: false.
     pub ball_ids: bool,
 }
 
@@ -73,7 +73,7 @@ pub struct PictureSection {
 }
 
 impl ViewFrom {
-    /// Where the eye is, local metres; `None` for parallel views.
+    /// Returns the position of the eye, local metres; `None` for parallel views.
     #[must_use]
     pub fn eye(&self) -> Option<[f64; 3]> {
         match self {
@@ -82,13 +82,13 @@ impl ViewFrom {
         }
     }
 
-    /// What to know of its eye.
+    /// Returns a remark on its eye.
     #[must_use]
     pub fn remark(&self, coverage: Option<&Coverage>) -> Option<Remark> {
         self.eye().and_then(|eye| remark_on_eye(coverage, eye))
     }
 
-    /// What it is, for reports.
+    /// Describes it for reports.
     #[must_use]
     pub fn section(&self) -> ViewSection {
         match self {

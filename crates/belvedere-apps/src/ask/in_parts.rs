@@ -1,4 +1,4 @@
-//! What was found of cells in parts, such as tile by tile, in the words and figures of one answer.
+//! Results of cells in parts, such as tile by tile, in the words and figures of one answer.
 
 use super::scene::Whereabouts;
 use super::sections::{MeasuresSection, PlacesReport};
@@ -62,7 +62,7 @@ pub fn summarise_parts(
     Ok(title)
 }
 
-/// Whether a measure says how sure others are; it comes after these.
+/// Returns true if a measure gives the certainty of others; it comes after these.
 fn says_how_sure(measure: &Measure) -> bool {
     [PROBABILITY, UNCERTAIN, EXPECTED].iter().any(|name| measure.name.starts_with(name))
 }

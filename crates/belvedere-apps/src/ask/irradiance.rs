@@ -31,30 +31,30 @@ const MIN_CELLS: usize = 10;
 /// Distance from which on a weather file counts as that of another place, metres.
 const FAR: f64 = 50_000.0;
 
-/// How much energy sun and sky send to places and roofs over a period.
+/// Energy of sun and sky at places and on roofs over a period.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct IrradianceQuestion {
-    /// Where the radiation comes from.
+    /// Source of the radiation.
     pub radiation: Radiation,
-    /// How it is gathered.
+    /// Parameters of gathering it.
     #[serde(default)]
     pub params: IrradianceParams,
-    /// Where on earth.
+    /// Location on earth.
     #[serde(default)]
     pub place: SunPlace,
-    /// What gets through trees.
+    /// Light through trees.
     #[serde(default)]
     pub trees: ThroughTrees,
     /// The planes of roofs that are wanted beside places.
     #[serde(default)]
     pub roofs: Option<Roofs>,
-    /// Whether to say how far energies may be from the truth: the expected value and an interval that holds 90 %. Only
-    /// where trees are opaque. Default: not.
+    /// True to give the expected value of energies and an interval that holds 90 %. Only for opaque trees. Default:
+    /// false.
     #[serde(default)]
     pub interval: bool,
 }
 
-/// Where radiation comes from.
+/// Source of radiation.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Radiation {
@@ -70,7 +70,7 @@ pub enum Radiation {
     },
     /// A year without clouds.
     ClearSky {
-        /// What it sends.
+        /// Clear-sky model.
         clear_sky: ClearSky,
         /// The year.
         year: i16,
@@ -102,7 +102,7 @@ pub struct Roofs {
     /// Least number of cells of a plane that is listed; smaller ones are counted. `None` for 10: the panels of the
     /// smallest plant that is worth its inverter.
     pub min_cells: Option<usize>,
-    /// Which points are ground.
+    /// Source of ground points.
     #[serde(skip)]
     pub ground: GroundPoints,
 }
@@ -113,15 +113,15 @@ impl Default for Roofs {
     }
 }
 
-/// What was found of places and roofs.
+/// Results for places and roofs.
 pub struct IrradianceResults {
     /// The places; `None` where only roofs are wanted.
     pub on: Option<OnTargets>,
     /// The roofs; `None` where they are not wanted.
     pub roofs: Option<RoofsResults>,
-    /// Where on earth the scene lies.
+    /// Location of the scene on earth.
     pub site: Site,
-    /// What blocks.
+    /// Obstacles.
     pub blockers: Arc<MedialScene>,
 }
 
@@ -173,7 +173,7 @@ impl Radiation {
 }
 
 impl IrradianceQuestion {
-    /// What a period sends to a site, in parts by what crowns let through, with what is known of it.
+    /// Gathers the radiation of a period at a site, in parts by the transmissivity of crowns, and reports it.
     fn gather(
         &self,
         site: &Site,
@@ -214,7 +214,7 @@ impl IrradianceQuestion {
     }
 }
 
-/// What a user must know of radiation that was gathered for a site, from weather or from a clear sky.
+/// Adds remarks on radiation that was gathered for a site, from weather or from a clear sky.
 pub fn remark_on_radiation(weather: Option<&Weather>, site: &Site, report: &PeriodReport, context: &mut Context) {
     if let Some(weather) = weather {
         remark_on(weather, site, context);
@@ -235,7 +235,7 @@ pub fn remark_on_radiation(weather: Option<&Weather>, site: &Site, report: &Peri
     }
 }
 
-/// What a user must know of weather.
+/// Adds remarks on weather.
 fn remark_on(weather: &Weather, site: &Site, context: &mut Context) {
     let rows = weather.left_out_count + weather.steps.len();
     let so = "of the weather have no radiation and are left out";

@@ -5,7 +5,7 @@ use super::scene::Scene;
 use belvedere_data::report::rounded;
 use serde::{Deserialize, Serialize};
 
-/// Which north azimuths count from.
+/// North of azimuths: true or grid.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum North {

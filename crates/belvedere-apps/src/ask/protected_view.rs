@@ -18,7 +18,7 @@ use std::sync::Arc;
 /// Most viewpoints that the report lists one by one.
 const MAX_LISTED: usize = 10;
 
-/// How high one may build on cells of the ground ([`Places::Cells`]) without entering the view of a landmark.
+/// Maximum building height on cells of the ground ([`Places::Cells`]) outside the view of a landmark.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct ProtectedViewQuestion {
@@ -32,8 +32,8 @@ pub struct ProtectedViewQuestion {
     pub observer_height: f64,
     /// Greatest distance from an observer to the landmark, metres, above 0; `None` for no limit.
     pub max_distance: Option<f64>,
-    /// What lines count as that nothing blocks but that are not proven: reported, the default, and visible ones are
-    /// protected. What is given needs pulses.
+    /// Treatment of unproven lines that nothing blocks: reported, the default, and visible ones are protected. A given
+    /// value needs pulses.
     pub unproven: Option<UnprovenAs>,
 }
 
@@ -44,7 +44,7 @@ impl Default for ProtectedViewQuestion {
     }
 }
 
-/// How high one may build.
+/// Height limits of buildings.
 pub struct ProtectedViewResults {
     /// Greatest heights above the ground, metres; NaN where no protected view passes and where no ground is known.
     pub heights: Raster<f32>,
@@ -52,11 +52,11 @@ pub struct ProtectedViewResults {
     pub tops: Raster<f32>,
     /// The cells.
     pub ground: Arc<KnownGround>,
-    /// Who looks.
+    /// Observers.
     pub eyes: Eyes,
 }
 
-/// What is protected, and how much that limits.
+/// Protected lines and their limits.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct ProtectedViewSection {
     lines_protected: usize,

@@ -32,14 +32,14 @@ pub struct Scene {
     ground_store: Option<Arc<dyn GroundStore>>,
 }
 
-/// Where a scene lies: all that suns and norths need to know of it.
+/// Location of a scene, as suns and norths need it.
 #[derive(Clone, Copy, Debug)]
 pub struct Whereabouts<'a> {
-    /// Where local coordinates lie.
+    /// Frame of local coordinates.
     pub frame: &'a Frame,
     /// The box around the points.
     pub bounds: Bounds,
-    /// Whether terrain beyond the cloud counts.
+    /// True if terrain beyond the cloud counts.
     pub has_far_terrain: bool,
 }
 
@@ -77,7 +77,7 @@ impl Whereabouts<'_> {
         }));
     }
 
-    /// What titles say where far terrain counts.
+    /// Returns the addition to titles if far terrain counts.
     pub(super) fn far_in_words(&self) -> &'static str {
         if self.has_far_terrain { ", with far terrain" } else { "" }
     }
@@ -101,7 +101,7 @@ const FEW_CELLS: usize = 40_000;
 #[derive(Default)]
 struct MadeGround {
     last: Option<(MapGrid, GroundPoints, Arc<KnownGround>)>,
-    /// Whether a ground of few cells was made: the next one finds all that shows it sorted.
+    /// True if a ground of few cells was made: the next one finds all its input sorted.
     has_few: bool,
     by_squares: Option<GroundBySquares>,
 }
@@ -232,7 +232,7 @@ impl Scene {
         Ok(&self.ground_cloud)
     }
 
-    /// Where local coordinates lie. A scene that knows no reference system takes that of the cloud that shows its
+    /// Returns the frame of local coordinates. A scene without a reference system has that of the cloud that shows its
     /// ground.
     #[must_use]
     pub fn frame(&self) -> &Frame {
@@ -240,13 +240,13 @@ impl Scene {
         if frame.crs.kind == CrsKind::Unknown { &self.ground_cloud.frame } else { frame }
     }
 
-    /// How balls block.
+    /// Returns the rule by which balls block.
     #[must_use]
     pub fn rule(&self) -> &BlockRule {
         &self.rule
     }
 
-    /// What blocks lines of sight. Pulses are left out where nothing depends on them.
+    /// Returns the obstacles to lines of sight. Pulses are left out if nothing depends on them.
     ///
     /// # Errors
     /// Those of [`SceneModel::scene`].
@@ -255,7 +255,7 @@ impl Scene {
         kept.get(|| self.model.scene(&self.rule, unproven, control))
     }
 
-    /// What blocks lines of sight beside vegetation.
+    /// Returns the obstacles to lines of sight without vegetation.
     ///
     /// # Errors
     /// Those of [`SceneModel::scene_without_vegetation`].
@@ -339,7 +339,7 @@ impl Scene {
         balls.centers.iter().zip(&balls.radii).map(top)
     }
 
-    /// Where it lies.
+    /// Returns its location.
     #[must_use]
     pub fn whereabouts(&self) -> Whereabouts<'_> {
         let has_far_terrain = !self.model.far_terrain().is_empty();

@@ -16,24 +16,24 @@ use belvedere_data::report::percent;
 use belvedere_data::{Error, Parameter, Result};
 use serde::{Deserialize, Serialize};
 
-/// Which places the sun reaches.
+/// Places in the sun.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ShadowQuestion {
     /// The suns.
     pub suns: Suns,
-    /// Where on earth, and how clocks run.
+    /// Location on earth, and clock.
     #[serde(default)]
     pub place: SunPlace,
-    /// Whether the sun is a point, or a disc of which places see a share.
+    /// Shape of the sun: a point, or a disc of which places see a share.
     #[serde(default)]
     pub edges: Edges,
-    /// What gets through trees.
+    /// Light through trees.
     #[serde(default)]
     pub trees: ThroughTrees,
-    /// What to make of light that pulses do not prove; `None` to report it where one sun with hard edges allows that.
+    /// Treatment of unproven light; `None` to report it if one sun with hard edges allows that.
     #[serde(default)]
     pub unproven: Option<UnprovenAs>,
-    /// How sure to say answers are; for suns with hard edges among opaque trees.
+    /// Request for the certainty of answers; for suns with hard edges among opaque trees.
     #[serde(default)]
     pub how_sure: HowSure,
 }
@@ -51,7 +51,7 @@ pub struct ShadowResults {
 pub const UNPROVEN: &str = "unproven";
 
 impl ShadowQuestion {
-    /// Whether pulses are tested: of one sun that is a point; of many it would take long.
+    /// Returns whether pulses are tested: for one sun that is a point. For many suns it would take long.
     fn proof(&self, suns: usize) -> Result<UnprovenAs> {
         let is_possible = suns == 1 && self.edges == Edges::Hard;
         match self.unproven {
@@ -68,11 +68,11 @@ impl ShadowQuestion {
     }
 }
 
-/// How likely each target is lit, and whether that is uncertain.
+/// Probability that each target is lit, and flags of the uncertain ones.
 type Sureness = (Vec<f32>, Option<Vec<f32>>);
 
 impl ShadowQuestion {
-    /// How sure the answers of each sun are; empty where that is not wanted. `doubts` are of a single sun.
+    /// Computes the certainty of the answers of each sun; empty if not wanted. `doubts` are of a single sun.
     fn sureness(
         &self,
         suns: &[ShadowSun],

@@ -13,20 +13,19 @@ use belvedere_data::Result;
 use belvedere_data::control::Control;
 use serde::{Deserialize, Serialize};
 
-/// How much of the sky places see.
+/// Visible part of the sky.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct SkyViewQuestion {
     /// The directions of the sky.
     pub sky: SkyParts,
-    /// What gets through trees.
+    /// Light through trees.
     pub trees: ThroughTrees,
-    /// Whether to say how far values may be from the truth: the expected value and an interval that holds 90 %. Only
-    /// where trees are opaque. Default: not.
+    /// True to give the expected value and an interval that holds 90 %. Only for opaque trees. Default: false.
     pub interval: bool,
 }
 
-/// How the sky is parted.
+/// Division of the sky.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SkyParts {

@@ -20,7 +20,7 @@ use std::sync::Arc;
 /// Names of the columns of rules of one's own, in the order given.
 const OWN_RULES: [&str; 8] = ["rule_1", "rule_2", "rule_3", "rule_4", "rule_5", "rule_6", "rule_7", "rule_8"];
 
-/// How long the sun reaches places.
+/// Hours of sun at places.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct SunHoursQuestion {
@@ -28,24 +28,23 @@ pub struct SunHoursQuestion {
     pub days: Days,
     /// Rules of daylight, by name or as HOURS@DAYS.
     pub rules: Vec<String>,
-    /// Where on earth, and how clocks run.
+    /// Location on earth, and clock.
     pub place: SunPlace,
     /// Greatest angle between a sun and the direction that is tested for it, degrees, 0 to 5; `None` for 0 up to 2000
     /// suns, else 1.
     pub sun_tolerance_deg: Option<f64>,
-    /// What gets through trees.
+    /// Light through trees.
     pub trees: ThroughTrees,
-    /// Whether to say how far hours may be from the truth: the expected value and an interval that holds 90 %. Only
-    /// where trees are opaque. Default: not.
+    /// True to give the expected value of hours and an interval that holds 90 %. Only for opaque trees. Default: false.
     #[serde(default)]
     pub interval: bool,
 }
 
-/// What is known before the sun is tested. [`PreparedSun::answers`] makes answers of what it lit.
+/// Input that is prepared before the sun is tested. [`PreparedSun::answers`] makes answers from the lit targets.
 pub struct PreparedSun {
     /// The suns.
     pub plan: SunPlan,
-    /// Where on earth the scene lies.
+    /// Location of the scene on earth.
     pub site: Site,
     light: Light,
     has_interval: bool,
@@ -168,7 +167,7 @@ impl PreparedSun {
         &self.light.targets
     }
 
-    /// What the light meets.
+    /// Returns the obstacles to the light.
     #[must_use]
     pub fn obstacles(&self) -> Obstacles<'_> {
         self.light.obstacles()
