@@ -204,7 +204,7 @@ fn middle(parts: &[FilePart], scale: impl Fn(&FilePart) -> [f64; 3]) -> [f64; 3]
     })
 }
 
-/// What a pass over a part found.
+/// Result of a pass over a part.
 #[derive(Clone, Copy, Default)]
 struct PartPass {
     bounds: PointExtent,

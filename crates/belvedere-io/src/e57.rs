@@ -21,8 +21,8 @@ const MIN_LENGTH: f64 = 1e-9;
 
 /// The valid points of all scans of the source.
 ///
-/// Poses are applied to points and normals. The scanner is where the pose puts it; without a pose at (0, 0, 0) if
-/// the scan is a grid or spherical, and is unknown otherwise, as in clouds that only passed through E57.
+/// Poses are applied to points and normals. The pose gives the scanner. Without a pose it is at (0, 0, 0) if the scan
+/// is a grid or spherical, and is unknown otherwise, as in clouds that only passed through E57.
 pub(super) fn read(input: Input<'_>, reading: &Reading<'_>) -> Result<FilePart> {
     let Input { name, reader: mut file, size } = input;
     let path = name.as_path();
@@ -109,7 +109,7 @@ struct ScanPoints {
     farthest: f64,
 }
 
-/// How to read the records of one scan.
+/// Layout of the records of one scan.
 struct ScanLayout {
     columns: Vec<RecordColumn>,
     single_precision: bool,
@@ -159,7 +159,7 @@ impl ScanLayout {
         }
     }
 
-    /// Whether the points are given by angles and range.
+    /// Returns true if the points are given by angles and range.
     fn is_spherical(&self) -> bool {
         self.columns.iter().any(|column| column.meaning == Meaning::Range)
     }
@@ -352,7 +352,7 @@ fn read_scan<R: Read + Seek>(
 struct GridBounds {
     rows: [i64; 2],
     columns: [i64; 2],
-    /// Whether the file states them, rather than the type of its numbers, which may hold more.
+    /// True if the file states them; otherwise they are those of the type of its numbers, which may hold more.
     is_stated: bool,
 }
 

@@ -256,7 +256,7 @@ fn tags(level: &RasterLevel, offsets: &[u32], nodata: &str) -> Vec<Tag> {
     tags
 }
 
-/// Those of the finest level alone, which is the raster.
+/// Returns the tags of the finest level alone, which is the raster.
 fn tags_of_whole(place: &Georeference, bands: &Bands<'_>) -> Vec<Tag> {
     let ([x, y], keys) = (place.upper_left, geo_keys(place));
     let mut tags = vec![

@@ -109,9 +109,9 @@ pub struct PlacedRaster {
     pub values: Raster<f32>,
     /// Name of the first band; empty where the file says none.
     pub name: String,
-    /// Where it lies, if the file says so.
+    /// Position, if the file has one.
     pub place: Option<Georeference>,
-    /// What its values are, if Belvedere wrote the file and said so.
+    /// Description of its values, if Belvedere wrote the file with one.
     pub description: Option<String>,
     /// Bands beside the first, if Belvedere wrote the file.
     pub further_bands: Vec<NamedBand>,

@@ -34,7 +34,7 @@ impl UnreadFields {
         self.scan_bits |= other.scan_bits;
     }
 
-    /// Those that are set at any point, in words.
+    /// Returns the fields that are set at any point, in words.
     pub(super) fn in_words(self) -> impl Iterator<Item = String> {
         let fields = [
             ("user data", self.user_data != 0),

@@ -21,7 +21,7 @@ use crate::columns::Column;
 use belvedere_data::cloud::{Attributes, to_local};
 use belvedere_data::{Error, FileRows, PointCloud, Result};
 
-/// How far a record may lie from its point, in steps of an f32 at the place of the point and steps of the file.
+/// Maximum distance between a record and its point, in steps of an f32 at the place of the point and steps of the file.
 const ROUNDING_STEPS: f64 = 4.0;
 /// Degrees per step of the scan angle of point formats 6 and up (LAS 1.4 R15, table 17).
 const DEGREES_PER_SCAN_STEP: f64 = 0.006;
@@ -29,7 +29,7 @@ const DEGREES_PER_SCAN_STEP: f64 = 0.006;
 const SHORT_FIELDS: usize = 20;
 const LONG_FIELDS: usize = 30;
 
-/// How the records of some files become records of one.
+/// Conversion of the records of some files into records of one.
 pub(super) struct RecordCopy<'a> {
     cloud: &'a PointCloud,
     files: Vec<CopiedFile<'a>>,
@@ -38,9 +38,9 @@ pub(super) struct RecordCopy<'a> {
     transforms: Vector<Transform>,
     /// Extra bytes that are kept, with their place in a copy.
     extra: Vec<ExtraDescription>,
-    /// What the files have and the copies have not, in words.
+    /// Fields of the files that the copies lack, in words.
     lost: Vec<String>,
-    /// Whether all files have times of one kind.
+    /// True if all files have times of one kind.
     keeps_times: bool,
 }
 
@@ -51,13 +51,13 @@ struct CopiedFile<'a> {
     row_count: u64,
     header: LasHeader,
     format: Format,
-    /// Where the extra bytes lie that are kept, in the order of [`RecordCopy::extra`].
+    /// Position of the extra bytes that are kept, in the order of [`RecordCopy::extra`].
     extra_at: Vec<usize>,
 }
 
 impl<'a> RecordCopy<'a> {
-    /// The copy of the records that the points of `cloud` come from, with room for `columns`; `None` where these are no
-    /// LAS files, are gone, or where the rows of the points are not known.
+    /// Creates the copy of the records that the points of `cloud` come from, with room for `columns`. `None` if these
+    /// are no LAS files, are gone, or if the rows of the points are not known.
     pub(super) fn of(cloud: &'a PointCloud, columns: &[Column<'_>]) -> Option<Self> {
         let rows_are_known = match &cloud.files.rows {
             FileRows::All => cloud.files.files.iter().map(|file| file.row_count).sum::<u64>() == cloud.len() as u64,
@@ -181,7 +181,7 @@ impl<'a> RecordCopy<'a> {
         base_length(&self.format) + self.extra.iter().map(|extra| extra.size).sum::<usize>()
     }
 
-    /// What the copies lack of the files, in words.
+    /// Returns the fields of the files that the copies lack, in words.
     pub(super) fn lost(self) -> Vec<String> {
         self.lost
     }
@@ -424,7 +424,8 @@ impl RecordCopy<'_> {
     }
 }
 
-/// Whether the attributes that both have are the same: `own` those of records, `of_cloud` those of its `points`.
+/// Returns true if the attributes that both have are the same: `own` those of records, `of_cloud` those of its
+/// `points`.
 fn is_equal(own: &Attributes, of_cloud: &Attributes, points: std::ops::Range<usize>) -> bool {
     fn same<T: PartialEq>(own: Option<&Vec<T>>, all: Option<&Vec<T>>, points: &std::ops::Range<usize>) -> bool {
         match (own, all) {
@@ -476,7 +477,7 @@ fn base_length(format: &Format) -> usize {
     color_at(format) + if format.has_color { 6 } else { 0 } + if format.has_nir { 2 } else { 0 }
 }
 
-/// Where the colour of a point begins, or would.
+/// Returns the byte at which the colour of a point begins, or would.
 fn color_at(format: &Format) -> usize {
     match (format.is_extended, format.has_gps_time) {
         (true, _) => LONG_FIELDS,
@@ -511,7 +512,7 @@ fn described(header: &LasHeader, format: &Format) -> Vec<ExtraDescription> {
     found
 }
 
-/// Whether two files describe extra bytes in the same way: type, name, and how values are scaled.
+/// Returns true if two files describe extra bytes in the same way: type, name, and scaling of values.
 fn is_same(a: &ExtraDescription, b: &ExtraDescription) -> bool {
     // options of lowest and highest values differ from file to file
     let options = |extra: &ExtraDescription| extra.bytes[3] & if extra.bytes[2] == 0 { !0 } else { !0b110 };

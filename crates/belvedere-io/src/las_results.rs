@@ -20,7 +20,7 @@ pub struct PointResults {
     pub columns: Vec<(String, Vec<f32>)>,
 }
 
-/// Whether a LAS or LAZ file was written by Belvedere and has columns of results.
+/// Returns true if a LAS or LAZ file was written by Belvedere and has columns of results.
 ///
 /// # Errors
 /// [`Error::Io`]; [`Error::Malformed`] for what is no such file.

@@ -33,7 +33,7 @@ struct PcdField {
     size: usize,
     kind: char,
     count: usize,
-    /// What a single value means.
+    /// Meaning of a single value.
     role: Option<Role>,
 }
 
@@ -321,8 +321,8 @@ fn read_compressed(
 /// Unpacks LZF data of `length` bytes; `None` where they do not unpack to just that.
 ///
 /// # Source
-/// Marc Lehmann, LibLZF: a control byte below 32 is followed by so many literal bytes and one more; above, its upper
-/// three bits are a length and its lower five the high bits of how far back to copy from.
+/// Marc Lehmann, LibLZF. A control byte below 32 is followed by so many literal bytes and one more. Above, its upper
+/// three bits are a length and its lower five the high bits of the distance back to copy from.
 fn unpack_lzf(packed: &[u8], length: usize) -> Option<Vec<u8>> {
     let mut out = Vec::with_capacity(length);
     let mut bytes = packed.iter().copied();

@@ -172,7 +172,7 @@ fn read_header<R: BufRead>(lines: &mut PtxLines<'_, R>) -> Result<Option<PtxHead
     }))
 }
 
-/// What the numbers of a point are: x y z, intensity, colour.
+/// Returns the meanings of the numbers of a point: x y z, intensity, colour.
 fn roles(width: usize) -> impl Iterator<Item = Role> {
     const ALL: [Role; 7] = [Role::X, Role::Y, Role::Z, Role::Intensity, Role::Red, Role::Green, Role::Blue];
     ALL.into_iter().take(width)

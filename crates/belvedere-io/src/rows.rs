@@ -5,7 +5,7 @@ use super::read_options::RowNumbers;
 use belvedere_data::cloud::{Attributes, GpsTimeKind};
 use belvedere_data::contradiction::COLUMN_TWICE;
 
-/// What a number of a point means.
+/// Meaning of a number of a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Role {
     X,
@@ -95,8 +95,8 @@ pub(super) fn role_of(name: &str) -> Option<Role> {
     })
 }
 
-/// What each of some columns means, by their names; and names that occur twice with one meaning, of which the first
-/// column counts.
+/// Returns the meaning of each of some columns, by their names. Also returns names that occur twice with one meaning,
+/// of which the first column counts.
 ///
 /// Of several names of one meaning the plain one counts, wherever it stands: of "z" and "height" that is "z".
 pub(super) fn roles_of<'a>(names: impl Iterator<Item = &'a str> + Clone) -> (Vec<Option<Role>>, Vec<String>) {
@@ -118,7 +118,7 @@ pub(super) fn roles_of<'a>(names: impl Iterator<Item = &'a str> + Clone) -> (Vec
     (roles, twice)
 }
 
-/// Whether a name stands above others of the same meaning.
+/// Returns true if a name precedes others of the same meaning.
 pub(super) fn is_plain_name(name: &str) -> bool {
     PLAIN_NAMES.iter().any(|plain| name.trim().eq_ignore_ascii_case(plain))
 }
@@ -208,7 +208,7 @@ impl Rows {
         roles.iter().all(|&role| self.has[role as usize])
     }
 
-    /// Whether x, y and z are among the numbers.
+    /// Returns true if x, y and z are among the numbers.
     pub(super) fn has_position(&self) -> bool {
         self.has(&POSITION)
     }

@@ -15,7 +15,7 @@ pub struct TextRows {
     names: Vec<String>,
     /// All cells, row after row.
     text: String,
-    /// Where each cell ends.
+    /// End of each cell.
     ends: Vec<usize>,
 }
 
@@ -65,9 +65,9 @@ impl TextRows {
     }
 }
 
-/// The columns of a table of `results` for rows that were `read` from a table ([`TextRows::columns`]). Results that are
-/// among the `given` names are written as they were read, with their number only where nothing was; the other columns
-/// read follow behind them, unless a result has their name.
+/// Combines the columns of a table of `results` with rows that were `read` from a table ([`TextRows::columns`]).
+/// Results that are among the `given` names are written as they were read, with their number only where nothing was.
+/// The other columns read follow behind them, unless a result has their name.
 #[must_use]
 pub fn with_columns_read<'a>(
     read: &'a [(&'a str, Vec<&'a str>)],

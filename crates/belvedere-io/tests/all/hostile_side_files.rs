@@ -13,7 +13,7 @@ use belvedere_io::{
     write_trajectory,
 };
 
-/// How often each file is damaged.
+/// Number of damaged variants of each file.
 const SEEDS: u64 = 200;
 /// Duration that only work without end reaches, on any machine, in seconds: most files take milliseconds.
 const SECONDS: f64 = 120.0;
