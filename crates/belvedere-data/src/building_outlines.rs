@@ -5,10 +5,10 @@ use crate::polygon::PolygonIndex;
 use crate::vector::{dot, sub};
 use crate::{Error, Parameter, Result};
 
-/// How far from its plane a point counts as one of it, in noises of the plane: that of the points that a plane is
-/// fitted to.
+/// Maximum distance of a point of a plane from it, in multiples of the noise of the plane: that of the points that a
+/// plane is fitted to.
 const NOISES: f64 = 3.0;
-/// What is added, metres: positions are steps of a millimetre or two in files and on pages.
+/// Addition to that distance, metres: positions have steps of a millimetre or two in files and on pages.
 const STEP: f64 = 0.005;
 
 /// A plane of a roof.
@@ -50,7 +50,7 @@ pub struct Ridge {
     pub ends: [[f64; 3]; 2],
     /// Rows of its planes.
     pub planes: [usize; 2],
-    /// Whether both planes fall from it: a ridge or hip; a valley otherwise.
+    /// True for a ridge or hip, from which both planes fall; false for a valley.
     pub is_convex: bool,
 }
 
@@ -71,7 +71,7 @@ pub struct Wall {
     pub sd: f64,
     /// Share of the points below the edge that lie on it, 0 to 1.
     pub share: f64,
-    /// How far the edge stands out before it, metres.
+    /// Overhang of the edge before it, metres.
     pub eaves: f64,
 }
 
@@ -89,7 +89,7 @@ pub struct BuildingOutlines {
 }
 
 impl BuildingOutlines {
-    /// Whether there is nothing.
+    /// Returns true if it is empty.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.planes.is_empty()
@@ -166,7 +166,7 @@ pub fn median_sd(edges: &[Edge]) -> Option<f64> {
     deviations.get(deviations.len() / 2).copied()
 }
 
-/// What is kept, and for each where it is then.
+/// Returns the items to keep, and the new index of each item, if kept.
 fn kept<T>(all: Vec<T>, is_kept: impl Fn(&T) -> bool) -> (Vec<T>, Vec<Option<usize>>) {
     let mut left = Vec::new();
     let place = |one: T| {

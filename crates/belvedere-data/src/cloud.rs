@@ -9,20 +9,20 @@ use crate::{Error, Parameter, Result};
 
 /// A point cloud.
 ///
-/// Positions are metres, x east, y north, z up, relative to the origin of its frame; f32 holds a tenth of a millimetre
+/// Positions are metres, x east, y north, z up, relative to the origin of its frame. f32 holds a tenth of a millimetre
 /// within a kilometre of the origin, whereas projected coordinates in f32 would be off by centimetres. Every attribute
 /// that is present has one value per point.
 #[derive(Clone, Debug, Default)]
 pub struct PointCloud {
-    /// Where local positions lie, with the reference system and unit of the file.
+    /// Frame of local positions, with the reference system and unit of the file.
     pub frame: Frame,
     /// Local positions, (N, 3), metres.
     pub positions: Vec<[f32; 3]>,
-    /// What else is known of each point.
+    /// Further attributes of each point.
     pub attributes: Attributes,
     /// Local positions of the scanner set-ups that [`Attributes::scanner_index`] refers to, (S, 3), metres.
     pub scanner_positions: Vec<[f32; 3]>,
-    /// Where pulses of these set-ups met nothing up to the sky, as far as the files tell.
+    /// Regions of these set-ups in which pulses met nothing up to the sky, as far as the files have them.
     pub sky_regions: Vec<SkyRegion>,
     /// Places on the map, local metres, that the survey measured and whose points were cleared since, (C, 2): there is
     /// no hole in the survey.
@@ -37,7 +37,7 @@ pub struct PointCloud {
 pub struct CloudFiles {
     /// The files, in the order of their points.
     pub files: Vec<CloudFile>,
-    /// Which rows of them the points are.
+    /// Rows of them that the points are.
     pub rows: FileRows,
 }
 
@@ -48,13 +48,13 @@ pub struct CloudFile {
     pub path: PathBuf,
     /// Number of its points, with those that were not read.
     pub row_count: u64,
-    /// What its points have beside the attributes of a cloud, in words.
+    /// Attributes of its points beside those of a cloud, in words.
     pub other_attributes: Vec<String>,
     /// Records of its header that a cloud has no place for, in words.
     pub records: Vec<String>,
 }
 
-/// Which rows of files the points of a cloud are.
+/// Rows of files that the points of a cloud are.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum FileRows {
     /// All of them, in their order.
@@ -91,11 +91,11 @@ pub struct Attributes {
     pub classification: Option<Vec<u8>>,
     /// GPS time in seconds, see [`Attributes::gps_time_kind`].
     pub gps_time: Option<Vec<f64>>,
-    /// What the GPS times count from.
+    /// Epoch of the GPS times.
     pub gps_time_kind: GpsTimeKind,
-    /// Which return of its pulse a point is, from 1.
+    /// Number of the return in its pulse, from 1.
     pub return_number: Option<Vec<u8>>,
-    /// How many returns its pulse had.
+    /// Number of returns of its pulse.
     pub return_count: Option<Vec<u8>>,
     /// Scan angle in radians.
     pub scan_angle: Option<Vec<f32>>,
@@ -113,7 +113,7 @@ pub struct Attributes {
     pub scanner_index: Option<Vec<u16>>,
 }
 
-/// What GPS times count from.
+/// Epoch of GPS times.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum GpsTimeKind {
     /// Seconds since Sunday midnight (LAS global encoding bit 0 clear).
@@ -237,7 +237,7 @@ impl PointCloud {
         self.positions.len()
     }
 
-    /// Whether there is no point at all.
+    /// Returns true if there is no point.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.positions.is_empty()

@@ -169,7 +169,7 @@ impl Projecting {
         Self { inverse: forward.inverse().ok(), forward, is_north_first }
     }
 
-    /// Whether both datums are taken as one.
+    /// Returns true if both datums are treated as one.
     fn is_without_step(&self) -> bool {
         self.forward.selected_operation().id.is_none()
     }
@@ -190,8 +190,8 @@ fn parsed(definition: &str) -> Result<CrsDef, String> {
     proj_wkt::parse_crs(definition).map_err(|error| error.to_string())
 }
 
-/// Whether a datum is a frame of the whole earth, as all are of the ellipsoids of GRS 80, WGS 84 and CGCS2000: these
-/// agree with WGS 84 to 2 m. What is left out has such an ellipsoid and other axes.
+/// Returns true if a datum is a frame of the whole earth, as all are of the ellipsoids of GRS 80, WGS 84 and CGCS2000:
+/// these agree with WGS 84 to 2 m. Exceptions have such an ellipsoid and other axes.
 fn is_geocentric(system: &CrsDef) -> bool {
     let ellipsoid = system.datum().ellipsoid();
     let base = system.base_geographic_crs_epsg().and_then(name_of_code).unwrap_or_default();

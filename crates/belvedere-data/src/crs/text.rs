@@ -1,4 +1,4 @@
-//! How a reference system is written into files: well-known text, EPSG codes and GeoTIFF keys.
+//! Texts of reference systems in files: well-known text, EPSG codes and GeoTIFF keys.
 
 use super::{Crs, CrsKind, UNIT_CODES, registry};
 
@@ -13,7 +13,7 @@ pub struct GeoKeys {
     pub text: String,
 }
 
-/// What the raster keys should say besides the system.
+/// Content of the raster keys besides the system.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum KeyUse {
     /// Points of a LAS file.
@@ -29,7 +29,7 @@ fn codes(crs: &Crs) -> impl Iterator<Item = String> {
     compound.into_iter().chain(crs.epsg.map(|horizontal| format!("EPSG:{horizontal}")))
 }
 
-/// What the code or else the text of the system says, for systems put together by hand.
+/// Looks up the code or else the text of a system that was made by hand.
 fn looked_up(crs: &Crs) -> Option<Crs> {
     codes(crs).chain(crs.wkt.clone()).find_map(|text| Crs::parse(&text).ok())
 }
@@ -123,7 +123,7 @@ pub fn pieces(key: &str, text: &str) -> Vec<String> {
     lines
 }
 
-/// What the lines that begin with `key` say, put together in order; empty where there is none.
+/// Joins the lines that begin with `key`, in order; empty if there is none.
 pub fn joined<'a>(key: &str, lines: impl Iterator<Item = &'a str>) -> String {
     lines
         .filter_map(|line| line.trim().split_once(' ').filter(|&(k, _)| k == key))

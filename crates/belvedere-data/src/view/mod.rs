@@ -37,8 +37,8 @@ pub fn to_sun(azimuth: f64, elevation: f64) -> [f64; 3] {
     [azimuth.sin() * elevation.cos(), azimuth.cos() * elevation.cos(), elevation.sin()]
 }
 
-/// Pixel size, metres, that suits a scene between two corners: 0.25 m, half the usual spacing of airborne scans, or a
-/// thousandth of the extent where the scene is a small object.
+/// Returns a pixel size, metres, for a scene between two corners: 0.25 m, half the usual spacing of airborne scans, or
+/// a thousandth of the extent of a small object.
 #[must_use]
 pub fn default_pixel_size(low: [f64; 3], high: [f64; 3]) -> f64 {
     let extent = (0..3).map(|i| high[i] - low[i]).fold(0.0, f64::max);

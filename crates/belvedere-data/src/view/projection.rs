@@ -4,7 +4,7 @@ use super::{View, ViewFrame};
 use crate::Parameter;
 use crate::vector::dot;
 
-/// How space is projected onto the picture.
+/// Projection of space onto the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Projection {
     /// Parallel rays along `forward`. Depth is metres along `forward` from the picture plane.
@@ -36,17 +36,17 @@ pub enum Projection {
 }
 
 impl View {
-    /// Where a local position lies in the picture, in pixels from its upper left corner, and its depth, metres, whether
-    /// that is within the picture and its limits or not. `None` for what a projection cannot show: at or behind the eye
-    /// of a perspective view, at the eye or exactly opposite to the axis of a hemispherical one.
+    /// Projects a local position into the picture: pixels from its upper left corner, and depth, metres, inside the
+    /// picture and its limits or not. `None` for a position that a projection cannot show: at or behind the eye of a
+    /// perspective view, at the eye or exactly opposite to the axis of a hemispherical one.
     #[must_use]
     #[inline]
     pub fn project(&self, local: [f32; 3]) -> Option<[f64; 3]> {
         self.place(self.frame.view_from_local(local))
     }
 
-    /// Where a direction from the eye (local, any length) lies in the picture of a view from an eye, pixels, whether
-    /// within or beside it; `None` where [`View::project`] gives none.
+    /// Projects a direction from the eye (local, any length) into the picture of a view from an eye, pixels, inside or
+    /// beside it. `None` where [`View::project`] returns none.
     #[must_use]
     pub fn place_of_direction(&self, direction: [f64; 3]) -> Option<[f64; 2]> {
         let ViewFrame { right, down, forward, .. } = self.frame;
@@ -112,8 +112,8 @@ impl View {
         }
     }
 
-    /// What lies at `depth` metres behind a place of the picture, in pixels from its upper left corner: metres along
-    /// right, down and forward of the frame. The inverse of [`View::project`].
+    /// Returns the position at `depth` metres behind a place of the picture, in pixels from its upper left corner. It
+    /// is in metres along right, down and forward of the frame. The inverse of [`View::project`].
     #[must_use]
     pub fn position(&self, place: [f64; 2], depth: f64) -> [f64; 3] {
         let direction = self.direction(place);
@@ -157,7 +157,8 @@ impl View {
         Ok(self)
     }
 
-    /// Whether lines of sight meet in an eye at [`ViewFrame::eye`](super::ViewFrame::eye), rather than run in parallel.
+    /// Returns true if lines of sight meet in an eye at [`ViewFrame::eye`](super::ViewFrame::eye), false if they are
+    /// parallel.
     #[must_use]
     pub fn is_central(&self) -> bool {
         !matches!(self.projection, Projection::Orthographic { .. })
@@ -183,7 +184,7 @@ impl View {
         }
     }
 
-    /// Where the axis of a central view meets the picture, pixels.
+    /// Returns the place at which the axis of a central view meets the picture, pixels.
     #[must_use]
     pub fn middle(&self) -> [f64; 2] {
         self.size_px.map(|size| size as f64 / 2.0)
