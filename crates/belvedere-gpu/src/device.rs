@@ -6,7 +6,7 @@ use std::sync::{Arc, LazyLock, Mutex, MutexGuard, PoisonError};
 /// Bytes that are copied to a device at a time.
 const PART_BYTES: usize = 1 << 25;
 
-/// What a device is.
+/// Kind of a device.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum DeviceKind {
@@ -40,7 +40,7 @@ pub struct DeviceInfo {
     pub driver: String,
     /// The interface that it is reached by: Vulkan, Metal or DirectX 12.
     pub interface: String,
-    /// What it is.
+    /// Kind of the device.
     pub kind: DeviceKind,
     /// The largest buffer that a shader can use, bytes.
     pub max_bytes: u64,
