@@ -1,4 +1,4 @@
-//! Where cameras cover most.
+//! Placement of cameras for maximum coverage.
 
 use crate::arrays::{to_1d, to_2d};
 use crate::errors::wrong;
@@ -175,7 +175,7 @@ fn columns<'py>(py: Python<'py>, found: &CamerasResults, frame: &Frame) -> PyRes
     Ok(cameras)
 }
 
-/// What is proven of the choice.
+/// Returns the proven properties of the selection.
 fn whole<'py>(py: Python<'py>, found: &CamerasResults) -> PyResult<Bound<'py, PyDict>> {
     let placed = &found.placed;
     let whole = PyDict::new(py);

@@ -198,7 +198,7 @@ impl Cloud {
         Ok(to_2d(py, &self.0.scanner_positions)?.into_any())
     }
 
-    /// What pulses of the scanners saw of the sky.
+    /// Returns the regions of the sky that pulses of the scanners saw.
     #[getter]
     fn sky_regions(&self) -> Vec<SkyState> {
         let state = |region: &SkyRegion| {

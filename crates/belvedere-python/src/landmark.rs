@@ -17,7 +17,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::Arc;
 
-/// What the landmark is.
+/// Choice of the landmark.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub(crate) struct LandmarkKeywords {

@@ -33,7 +33,7 @@ mod work;
 
 use pyo3::prelude::*;
 
-/// What the package is made of.
+/// Defines the native module of the package.
 #[pymodule]
 fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     if std::env::var("BELVEDERE_AVX2").is_ok_and(|text| text == "off") {

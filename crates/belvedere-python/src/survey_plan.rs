@@ -1,4 +1,4 @@
-//! Where to scan again.
+//! Survey plan: stations for another scan.
 
 use crate::arrays::{to_1d, to_2d};
 use crate::errors::wrong;
