@@ -27,7 +27,7 @@ pub(crate) struct PointChunk {
     pub(crate) low: [f32; 3],
     /// Length of a step along each axis, metres.
     pub(crate) step: [f32; 3],
-    /// Which of the points sent.
+    /// Range of the points sent.
     pub(crate) points: Range<usize>,
 }
 

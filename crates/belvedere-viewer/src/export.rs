@@ -25,10 +25,10 @@ use std::sync::Arc;
 const MAX_POINTS: usize = 3_000_000;
 const ALPHABET: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
 
-/// What a file shows.
+/// Content of a file.
 #[derive(Clone, Debug)]
 pub struct ExportParams {
-    /// What the page is called.
+    /// Title of the page.
     pub title: String,
     /// The scene in the command lines that the page shows.
     pub scene: SceneText,
@@ -38,7 +38,7 @@ pub struct ExportParams {
     pub viewpoints: Vec<[f64; 3]>,
 }
 
-/// What is in a file.
+/// Counts of the content of a file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct ExportReport {
     /// Points in the file.

@@ -1,4 +1,4 @@
-//! What if: plans that were drawn on the page, and the scenes with them.
+//! Scenarios: plans that were drawn on the page, and the scenes with them.
 
 use crate::replies::Refusal;
 use crate::scene::PageScene;
@@ -21,7 +21,7 @@ const MAX_MESHES: usize = 16;
 const BUILDINGS: &str = "planned.obj";
 const AREAS: &str = "cleared.geojson";
 
-/// What was drawn, in the coordinates of the file.
+/// Drawn plan, in the coordinates of the file.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub(crate) struct DrawnPlan {
@@ -33,7 +33,7 @@ pub(crate) struct DrawnPlan {
 }
 
 impl DrawnPlan {
-    /// Whether there are areas without what stands there now.
+    /// Returns true if it clears areas.
     pub(crate) fn is_clearing(&self) -> bool {
         !self.clear.is_empty()
     }

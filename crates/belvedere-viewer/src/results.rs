@@ -18,8 +18,7 @@ const NONE: u8 = 255;
 const GREATEST: f32 = 253.0;
 /// Most cells of a raster that are sent; of larger ones every second, third … row and column is.
 const MAX_CELLS: usize = 4_000_000;
-/// How far above the ground cells are drawn, metres: high enough for points that scatter around it. Lines are drawn
-/// above cells.
+/// Height above the ground at which cells are drawn, metres: above the scatter of points. Lines are drawn above cells.
 const ABOVE: f64 = 0.15;
 const LINES_ABOVE: f64 = 0.6;
 /// Piece of a line that follows the ground, metres, and most of them.
@@ -28,7 +27,7 @@ const MAX_PIECES: f64 = 1e4;
 /// Height of a pin that marks a point, metres.
 const PIN: f64 = 4.0;
 
-/// Which points have results.
+/// Points that have results.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PointsOf {
     /// The cloud that is shown: its columns can be chosen.
@@ -37,7 +36,7 @@ pub enum PointsOf {
     Other,
 }
 
-/// What a file of results holds, local metres on the map.
+/// Contents of a file of results, local metres in plan.
 pub(crate) enum ResultsFile {
     Points { positions: Vec<[f32; 3]>, columns: Vec<(String, Vec<f32>)> },
     Cells(PlacedRaster),
@@ -48,7 +47,7 @@ pub(crate) enum ResultsFile {
 pub(crate) struct ResultFile {
     name: String,
     results: ResultsFile,
-    /// Whether it is shown before anybody chooses it.
+    /// True if it is shown before anybody chooses it.
     is_shown_first: bool,
 }
 
@@ -106,7 +105,7 @@ impl ResultFile {
         Ok(Self { name: named(path), results: ResultsFile::Shapes(shapes), is_shown_first: false })
     }
 
-    /// What the menu of the page needs.
+    /// Describes it for the menu of the page.
     pub(crate) fn describe(&self) -> Value {
         let columns: Vec<&str> = match &self.results {
             ResultsFile::Points { columns, .. } => columns.iter().map(|(name, _)| name.as_str()).collect(),

@@ -21,12 +21,12 @@ use crate::scene_text::SceneText;
 use belvedere::control::Control;
 use serde::de::DeserializeOwned;
 
-/// What every question knows.
+/// Context of every question.
 pub(crate) struct RequestContext<'a> {
     pub(crate) scene: &'a PageScene,
     /// The scene on command lines.
     pub(crate) text: &'a SceneText,
-    /// What is planned in all tabs.
+    /// Plans of all tabs.
     pub(crate) plans: &'a Plans,
     pub(crate) control: &'a Control<'a>,
 }

@@ -1,4 +1,4 @@
-//! What is seen from here: an answer for each point of the cloud, and how likely it is seen.
+//! Visibility from an eye: an answer for each point of the cloud, and its probability.
 
 use super::RequestContext;
 use super::certainty::{byte_of, how_sure};
@@ -18,7 +18,7 @@ pub(super) struct SeenRequest {
     place: [f64; 3],
     #[serde(default)]
     points: PointChoice,
-    /// Whether to give the probability that a point is visible too.
+    /// True to give the probability that a point is visible too.
     #[serde(default)]
     probability: bool,
 }

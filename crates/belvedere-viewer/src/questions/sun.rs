@@ -23,7 +23,7 @@ pub(super) struct SunRequest {
     /// Such as 2026-06-21.
     date: String,
     zone: String,
-    /// What gets through trees.
+    /// Light through trees.
     #[serde(default)]
     trees: ThroughTrees,
 }
@@ -127,7 +127,7 @@ fn path(site: &Site, day: &SunDay) -> Vec<Value> {
         .collect()
 }
 
-/// Whether the sun of each step reaches the place.
+/// Flags the steps whose sun reaches the place.
 fn lit(blockers: &MedialScene, targets: &Targets, days: &[SunDay]) -> Vec<bool> {
     let steps = days.iter().flat_map(|day| &day.steps);
     steps
