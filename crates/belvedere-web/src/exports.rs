@@ -1,4 +1,4 @@
-//! What JavaScript calls, and what it must provide: plain functions of numbers. The only `unsafe` of this crate.
+//! Border to JavaScript: exported and imported plain functions of numbers. The only `unsafe` of this crate.
 //!
 //! Texts and bytes are handed over as an address and a length. [`take`] gives room for what comes in. What goes out is
 //! given to `reply` before the call returns. A call returns 0 after a reply, and 1 after a refusal, whose text is the
@@ -96,7 +96,7 @@ impl Seek for HostFile {
     }
 }
 
-/// What JavaScript wrote.
+/// Returns the bytes that JavaScript wrote.
 ///
 /// # Safety
 /// `length` bytes from `from` on were given by [`take`] and written to.
