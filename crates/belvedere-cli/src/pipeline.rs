@@ -176,7 +176,7 @@ pub(crate) fn scene_of_places(
     scene.into_question_scene(Some(&places.ground), shell, run)
 }
 
-/// Whether a scene keeps the points that its balls were made from.
+/// Choice to keep the points that the balls of a scene were made from.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum KeepPoints {
     Keep,
@@ -194,7 +194,7 @@ pub(crate) fn scene(arguments: &SceneInput, points: KeepPoints, run: &mut Comman
     Ok(scene)
 }
 
-/// Whether a path is a file, or the address of one.
+/// Returns true if a path is a file, or the address of one.
 pub(crate) fn is_file(path: &Path) -> bool {
     path.is_file() || web_address(path).is_some()
 }
@@ -396,7 +396,7 @@ impl ViewChoice {
         Ok(())
     }
 
-    /// Whether the view is from an eye.
+    /// Returns true if the view is from an eye.
     pub(crate) fn is_central(&self) -> bool {
         self.kind.panorama.is_some() || self.kind.eye.is_some()
     }

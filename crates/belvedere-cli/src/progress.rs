@@ -43,7 +43,7 @@ struct RunningStage {
     total: usize,
     done: usize,
     bar: ProgressBar,
-    /// When the last line of JSON was written.
+    /// Time of the last line of JSON.
     last_line: Instant,
 }
 
@@ -162,7 +162,7 @@ impl CommandStages {
         self
     }
 
-    /// What functions of the library report their stages to.
+    /// Returns the control to which functions of the library report their stages.
     pub(crate) fn control(&self) -> Control<'_> {
         Control::new(&self.progress)
     }

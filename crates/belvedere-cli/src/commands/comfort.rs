@@ -102,14 +102,14 @@ fn routes(route: &CornersArgument, frame: &Frame) -> Result<NamedRoutes> {
     Ok(routes)
 }
 
-/// What places were taken from.
+/// Source of places.
 enum PlaceSource {
     /// Routes with these names.
     Routes(Vec<String>),
     Windows(WindowFile),
 }
 
-/// What was found, to be written.
+/// Results to write.
 struct ComfortOutput<'a> {
     found: &'a ComfortResults,
     source: PlaceSource,

@@ -207,7 +207,7 @@ fn by_lines_of_sight(
     Ok((answers, Some(probabilities)))
 }
 
-/// How many targets got which answer.
+/// Counts the targets for each answer.
 fn counted(answers: &[Answer], unproven_as: UnprovenAs, how: Summary) -> Summary {
     let settled: Vec<Answer> = answers.iter().map(|&answer| unproven_as.settle(answer)).collect();
     let [raw, counts] = [answers, &settled].map(AnswerCounts::of);

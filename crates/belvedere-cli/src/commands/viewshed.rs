@@ -24,7 +24,7 @@ use std::path::{Path, PathBuf};
 
 /// Outputs that hold points rather than cells.
 const OF_POINTS: [&str; 4] = ["laz", "las", "ply", "csv"];
-/// What --heights writes.
+/// Description of the raster of --heights.
 const VISIBLE_HEIGHTS: &str = "minimum visible height above the ground in metres; -9999: none, or nodata";
 
 pub(crate) fn run(arguments: &ViewshedArguments, global: &Global) -> Result<Summary> {
@@ -87,7 +87,7 @@ fn question(arguments: &ViewshedArguments) -> Result<ask::ViewshedQuestion> {
     })
 }
 
-/// How far typed observers look at most; `None` where that is any distance, or known only with the scene.
+/// Returns the maximum range of typed observers; `None` without a limit, or if only the scene gives it.
 fn reach(arguments: &ViewshedArguments) -> Option<f64> {
     let is_bounded = arguments.who.observers.is_none() && arguments.terrain.is_none();
     arguments.looking.max_distance.filter(|_| is_bounded)

@@ -36,7 +36,7 @@ pub(in crate::commands) fn check_linke(choice: Option<ClearSkyChoice>, model: &R
     Ok(())
 }
 
-/// Where radiation comes from; weather is read.
+/// Returns the source of radiation; reads weather.
 pub(in crate::commands) fn of(
     (weather, choice): (Option<&Path>, Option<ClearSkyChoice>),
     model: &RadiationModel,
