@@ -146,7 +146,7 @@ fn ground_is_hidden_under_buildings_and_not_under_cars() {
     }
 }
 
-/// How far ground lies off over an area, metres, with what says so.
+/// Returns the offset of ground over an area, metres, with the evidence.
 fn shift_of(cloud: &PointCloud) -> Option<(f32, ShiftEvidence)> {
     let (_, report) =
         Ground::of_cloud(cloud, grid_of(cloud, 20.0), &GroundParams::default(), &Control::none()).unwrap();

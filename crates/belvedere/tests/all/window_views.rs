@@ -162,7 +162,7 @@ fn what_is_seen_from_a_surface_is_what_the_matrix_has_as_blocked_and_what_is_ent
     }
 }
 
-/// What a material is to people at a window.
+/// Returns the kind of a material for people at a window.
 fn kind(material: Material) -> SeenKind {
     match material {
         Material::Terrain => SeenKind::Ground,
