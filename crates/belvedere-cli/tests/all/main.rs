@@ -16,6 +16,7 @@ mod depth_maps;
 mod determinism;
 #[cfg(feature = "gpu")]
 mod devices;
+mod doc_comments;
 mod envelopes;
 mod far_terrain;
 mod given_rows;

@@ -1,6 +1,6 @@
 //! Balls in views from an eye: how far away a ball's surface is in the direction of a pixel.
 //!
-//! Only the angle between that direction and the direction of the ball's centre matters, so that one test serves every
+//! Only the angle between that direction and the direction of the ball's centre matters, so that one test covers every
 //! projection. The directions of the pixels and the outline of a ball differ.
 
 use super::ball_bound::{BallBound, BoundSide, margin};
